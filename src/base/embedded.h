@@ -1,0 +1,16 @@
+// Files that are compiled into the binary (shader library, built-in programs); see cmake/QuintetEmbed.cmake.
+#ifndef QUINTET_BASE_EMBEDDED_H
+#define QUINTET_BASE_EMBEDDED_H
+
+#include <span>
+#include <string_view>
+
+namespace quintet {
+
+struct EmbeddedFile {
+  std::string_view path;  // relative, with '/' separators, sorted within its set
+  std::string_view data;
+};
+
+}  // namespace quintet
+#endif

@@ -1,0 +1,216 @@
+#include "base/file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <new>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "base/error.h"
+
+namespace quintet {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string reason(int code) { return std::generic_category().message(code); }
+
+[[noreturn]] void failReading(const fs::path& file, int code) {
+  throw FileError(file, "cannot be read: " + reason(code));
+}
+[[noreturn]] void failWriting(const fs::path& file, const std::string& why) {
+  throw FileError(file, "cannot be written: " + why);
+}
+[[noreturn]] void failWriting(const fs::path& file, int code) { failWriting(file, reason(code)); }
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  explicit operator bool() const { return fd_ >= 0; }
+  int get() const { return fd_; }
+  // False (with errno) if the system reports only now that a write was lost, as NFS does.
+  bool close() { return fd_ < 0 || ::close(std::exchange(fd_, -1)) == 0; }
+
+ private:
+  int fd_;
+};
+
+// Removes the file unless it was renamed.
+struct Temporary {
+  fs::path path;
+  bool renamed = false;
+  ~Temporary() {
+    if (!renamed) ::unlink(path.c_str());
+  }
+};
+
+template <class Container>
+Container readAll(const fs::path& file) {
+  const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat info{};
+  if (!in || ::fstat(in.get(), &info) != 0) failReading(file, errno);
+  if (S_ISDIR(info.st_mode)) failReading(file, EISDIR);
+
+  Container data;
+  std::size_t used = 0;
+  try {
+    // One byte more than the size, so that the end of the file shows without growing the buffer.
+    data.resize(S_ISREG(info.st_mode) ? static_cast<std::size_t>(info.st_size) + 1 : 65536);
+    while (true) {
+      const ssize_t got = ::read(in.get(), data.data() + used, data.size() - used);
+      if (got == 0) break;
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) failReading(file, errno);
+      used += static_cast<std::size_t>(got);
+      if (used == data.size()) data.resize(2 * used);
+    }
+    data.resize(used);
+  } catch (const std::bad_alloc&) {
+    failReading(file, ENOMEM);
+  } catch (const std::length_error&) {
+    failReading(file, EFBIG);
+  }
+  return data;
+}
+
+// Returns 0 or the error's code.
+int writeAll(int fd, std::span<const std::byte> data) {
+  while (!data.empty()) {
+    const ssize_t written = ::write(fd, data.data(), data.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    if (written == 0) return EIO;
+    data = data.subspan(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+struct Target {
+  fs::path path;                // symbolic links followed, so that a rename replaces the file and not the link
+  std::optional<mode_t> mode;   // of the file that is there
+  bool regular() const { return !mode || S_ISREG(*mode); }
+  fs::path folder() const { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+};
+
+// Finds what `file` stands for; throws what checkWritable promises.
+Target findTarget(const fs::path& file) {
+  if (file.empty()) failWriting(file, "the file name is empty");
+  Target target{file, {}};
+  std::error_code ignored;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(target.path, ignored)); ++links) {
+    if (links == 40) failWriting(file, ELOOP);
+    const fs::path next = fs::read_symlink(target.path, ignored);
+    // A link of /proc/self/fd may name a pipe or a deleted file: opened by the link itself.
+    if (struct stat info{}; ::stat(target.path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) break;
+    target.path = target.folder() / next;
+  }
+  struct stat info{};
+  if (::stat(target.path.c_str(), &info) == 0) {
+    target.mode = info.st_mode;
+    if (S_ISDIR(info.st_mode)) failWriting(file, EISDIR);
+    if (::access(target.path.c_str(), W_OK) != 0) failWriting(file, errno);
+  } else if (errno != ENOENT) {
+    failWriting(file, errno);
+  } else if (!target.path.has_filename()) {
+    failWriting(file, EISDIR);
+  }
+  if (!target.regular()) return target;
+  const fs::path folder = target.folder();
+  if (::stat(folder.c_str(), &info) != 0)
+    failWriting(file, errno == ENOENT ? "the folder " + folder.string() + " does not exist" : reason(errno));
+  if (!S_ISDIR(info.st_mode)) failWriting(file, ENOTDIR);
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    failWriting(file, "the folder " + folder.string() + ": " + reason(errno));
+  return target;
+}
+
+void writeDirectly(const fs::path& file, const Target& target, std::span<const std::byte> data) {
+  Descriptor out(::open(target.path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
+  if (!out) failWriting(file, errno);
+  if (const int code = writeAll(out.get(), data)) failWriting(file, code);
+  if (!out.close()) failWriting(file, errno);
+}
+
+void syncFolder(const fs::path& folder) {
+  const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd) ::fsync(fd.get());  // some file systems cannot; the data itself is safe by now
+}
+
+void replaceFile(const fs::path& file, const Target& target, std::span<const std::byte> data) {
+  // A name of its own length: the target's may leave no room for a suffix.
+  static std::atomic<unsigned> counter{0};
+  Temporary temporary;
+  int fd = -1;
+  do {
+    temporary.path =
+        target.folder() / (".quintet-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp");
+    fd = ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (fd < 0 && errno == EEXIST);
+  Descriptor out(fd);
+  if (!out) {
+    const int code = errno;
+    temporary.renamed = true;  // never made
+    failWriting(file, code);
+  }
+  if (target.mode) ::fchmod(out.get(), *target.mode & 07777);
+  if (const int code = writeAll(out.get(), data)) failWriting(file, code);
+  if (::fsync(out.get()) != 0 && errno != EINVAL && errno != ENOTSUP) failWriting(file, errno);
+  if (!out.close()) failWriting(file, errno);
+  if (::rename(temporary.path.c_str(), target.path.c_str()) != 0) failWriting(file, errno);
+  temporary.renamed = true;
+  syncFolder(target.folder());
+}
+
+}  // namespace
+
+std::vector<std::byte> readFile(const fs::path& file) { return readAll<std::vector<std::byte>>(file); }
+std::string readTextFile(const fs::path& file) { return readAll<std::string>(file); }
+
+void writeFile(const fs::path& file, std::span<const std::byte> data) {
+  if (file == "-") {
+    if (const int code = writeAll(STDOUT_FILENO, data)) failWriting("standard output", code);
+    return;
+  }
+  const Target target = findTarget(file);
+  if (target.regular()) {
+    replaceFile(file, target, data);
+  } else {
+    writeDirectly(file, target, data);
+  }
+}
+
+void writeFile(const fs::path& file, std::string_view text) {
+  writeFile(file, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void checkWritable(const fs::path& file) {
+  if (file != "-") findTarget(file);
+}
+
+fs::path cacheFolder() {
+  const auto variable = [](const char* name) -> fs::path {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+  };
+  if (const fs::path own = variable("QUINTET_CACHE_DIR"); !own.empty()) return own;
+  // The XDG base directory specification wants relative paths ignored.
+  if (const fs::path xdg = variable("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / "quintet";
+  if (const fs::path home = variable("HOME"); home.is_absolute()) return home / ".cache" / "quintet";
+  return {};
+}
+
+fs::path executableFolder() {
+  std::error_code failed;
+  return fs::read_symlink("/proc/self/exe", failed).parent_path();
+}
+
+}  // namespace quintet

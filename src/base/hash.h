@@ -1,0 +1,42 @@
+// 128-bit content hash (XXH3): names of cache entries and the scene hash in an image's metadata.
+// Not cryptographic.
+#ifndef QUINTET_BASE_HASH_H
+#define QUINTET_BASE_HASH_H
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace quintet {
+
+struct Hash {
+  std::uint64_t high = 0;
+  std::uint64_t low = 0;
+  auto operator<=>(const Hash&) const = default;
+  std::string hex() const;  // 32 lower-case digits
+};
+
+// Incremental; strings are framed by their length, so ("ab","c") and ("a","bc") differ.
+class Hasher {
+ public:
+  Hasher();
+  ~Hasher();
+  Hasher(Hasher&&) noexcept;
+  Hasher& operator=(Hasher&&) noexcept;
+  Hasher& add(std::string_view text);
+  Hasher& add(std::span<const std::byte> bytes);
+  Hasher& add(std::uint64_t value);
+  Hash finish() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace quintet
+#endif

@@ -1,0 +1,75 @@
+#include "base/parallel.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace quintet {
+namespace {
+
+thread_local bool insideLoop = false;
+
+// Takes indices from a shared counter until none is left or a body has thrown.
+class Loop {
+ public:
+  Loop(std::size_t count, const std::function<void(std::size_t)>& body) : count_(count), body_(body) {}
+
+  void work() noexcept {
+    const bool outer = std::exchange(insideLoop, true);
+    try {
+      for (std::size_t i; !failed_ && (i = next_.fetch_add(1)) < count_;) body_(i);
+    } catch (...) {
+      const std::scoped_lock lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+      failed_ = true;
+    }
+    insideLoop = outer;
+  }
+  void rethrow() const {
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  std::size_t count_;
+  const std::function<void(std::size_t)>& body_;
+  std::atomic<std::size_t> next_{0};
+  std::atomic<bool> failed_{false};
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+unsigned hardwareThreads() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (sched_getaffinity(0, sizeof set, &set) == 0) return static_cast<unsigned>(std::max(1, CPU_COUNT(&set)));
+  return std::max(1u, std::thread::hardware_concurrency());
+}
+
+void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+  Loop loop(count, body);
+  std::vector<std::jthread> helpers;
+  // A loop inside a loop runs on the thread that it is on: the others are busy already.
+  if (count > 1 && !insideLoop) {
+    const std::size_t wanted = std::min<std::size_t>(count, hardwareThreads()) - 1;
+    helpers.reserve(wanted);
+    try {
+      while (helpers.size() < wanted) helpers.emplace_back([&loop] { loop.work(); });
+    } catch (const std::system_error&) {
+      // No more threads to be had: those that started, and this one, do the work.
+    }
+  }
+  loop.work();
+  helpers.clear();  // joins
+  loop.rethrow();
+}
+
+}  // namespace quintet
