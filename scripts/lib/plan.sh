@@ -10,37 +10,38 @@ die() {
 }
 
 # ---- The list -------------------------------------------------------------------------------------------------------
-# Three arrays side by side, one entry for each line of the list.
-needNames=()    # alternatives, separated by spaces
+# Arrays side by side, one entry for each package of the list.
+needNames=()    # the name, and its alternatives, separated by spaces
 needVersion=()  # least version, or empty
 needOptional=() # 'optional' or empty
+needRemark=()   # what does not work without it, or empty
 
 readPackageList() {
-    local line names version optional
+    local line name names version optional remark
     while IFS= read -r line || [[ -n $line ]]; do
-        line=${line%%#*}
+        version='' optional='' remark=''
+        if [[ $line =~ ^([^#]*)#[[:space:]]*(.*)$ ]]; then
+            line=${BASH_REMATCH[1]} remark=${BASH_REMATCH[2]}
+        fi
         [[ $line =~ [^[:space:]] ]] || continue
-        optional='' version=''
         if [[ $line =~ ^(.*[[:space:]])optional[[:space:]]*$ ]]; then
-            optional=optional
-            line=${BASH_REMATCH[1]}
+            line=${BASH_REMATCH[1]} optional=optional
         fi
         if [[ $line =~ ^(.*)\>=[[:space:]]*([^[:space:]]+)[[:space:]]*$ ]]; then
-            line=${BASH_REMATCH[1]}
-            version=${BASH_REMATCH[2]}
+            line=${BASH_REMATCH[1]} version=${BASH_REMATCH[2]}
         fi
         read -ra names <<<"${line//|/ }"
-        local name
         for name in "${names[@]}"; do
-            [[ $name =~ ^[a-z0-9][a-z0-9.+-]+$ ]] || die "$1: not a package name: '$name'"
+            [[ $name =~ ^[a-z0-9][a-z0-9.+-]+$ ]] || die "$1: '$name' is not a package name"
         done
         needNames+=("${names[*]}")
         needVersion+=("$version")
         needOptional+=("$optional")
+        needRemark+=("$remark")
     done <"$1"
 }
 
-# One line for people: 'cmake >= 3.25'.
+# describe INDEX: for people, 'cmake >= 3.25'.
 describe() {
     local text=${needNames[$1]// / or }
     [[ -z ${needVersion[$1]} ]] || text+=" >= ${needVersion[$1]#*:}"
@@ -48,12 +49,19 @@ describe() {
     printf '%s' "$text"
 }
 
+# describeAll INDEX...: the same for several, with commas.
+describeAll() {
+    local i text=''
+    for i in "$@"; do text+="${text:+, }$(describe "$i")"; done
+    printf '%s' "$text"
+}
+
 printNeeds() {
     local i
     for i in "${!needNames[@]}"; do printf '    %s\n' "$(describe "$i")"; done
     cat <<'TEXT'
-(names as on Debian 12), and a Vulkan driver with VK_KHR_ray_tracing_pipeline: that of an RTX-class GPU, or
-Mesa's software driver lavapipe, version 25 or later.
+(names as in Debian 12), and a Vulkan driver with VK_KHR_ray_tracing_pipeline: that of a GPU which has it, or Mesa's
+software driver lavapipe, Mesa 25.0 or later.
 TEXT
 }
 
@@ -73,25 +81,26 @@ readOsRelease() {
     osId=${values[0]} osCodename=${values[1]} osName=${values[2]}
 }
 
-# versionFits HAVE LEAST: is HAVE at least LEAST? An empty LEAST fits all but no version.
+# versionFits HAVE LEAST: is HAVE at least LEAST? Any version fits an empty LEAST; no version (empty) fits nothing.
 versionFits() {
     [[ -n $1 ]] || return 1
     [[ -z $2 ]] || dpkg --compare-versions "$1" ge "$2"
 }
 
-# Fills 'missing' with the indices of the needs that no installed package meets: one call of dpkg-query for all.
+# Fills 'missing' with the indices of what no installed package meets: one call of dpkg-query for all.
 declare -A installedVersion=()
 missing=()
 
 findMissing() {
-    local names architecture package status arch version i
+    local names native package status architecture version i
     read -ra names <<<"${needNames[*]}"
-    architecture=$(dpkg --print-architecture)
+    native=$(dpkg --print-architecture)
     installedVersion=()
-    while IFS=$'\t' read -r package status arch version; do
-        [[ $status == installed && ($arch == "$architecture" || $arch == all) ]] || continue
+    while IFS=$'\t' read -r package status architecture version; do
+        [[ $status == installed && ($architecture == "$native" || $architecture == all) ]] || continue
         installedVersion[$package]=$version
-    done < <(dpkg-query -W -f='${Package}\t${db:Status-Status}\t${Architecture}\t${Version}\n' "${names[@]}" 2>/dev/null)
+    done < <(dpkg-query -W -f='${Package}\t${db:Status-Status}\t${Architecture}\t${Version}\n' \
+        "${names[@]}" 2>/dev/null)
     missing=()
     for i in "${!needNames[@]}"; do
         isInstalled "$i" || missing+=("$i")
@@ -106,12 +115,12 @@ isInstalled() {
     return 1
 }
 
-# Fills 'candidate' with what apt would install now.
+# Fills 'candidate' with the versions that apt would install now.
 declare -A candidate=()
 
 readCandidates() {
-    local names i line package=''
-    candidate=() names=()
+    local names=() line package='' i
+    candidate=()
     for i in "${missing[@]}"; do
         # shellcheck disable=SC2206  # alternatives are separated by spaces
         names+=(${needNames[$i]})
@@ -119,20 +128,33 @@ readCandidates() {
     while IFS= read -r line; do
         if [[ $line =~ ^([^[:space:]].*):$ ]]; then
             package=${BASH_REMATCH[1]}
-        elif [[ $line =~ ^[[:space:]]+Candidate:[[:space:]](.*)$ && ${BASH_REMATCH[1]} != '(none)' ]]; then
+        elif [[ $line =~ ^[[:space:]]+Candidate:[[:space:]]([^\(].*)$ ]]; then
             candidate[$package]=${BASH_REMATCH[1]}
         fi
     done < <(apt-cache policy "${names[@]}" 2>/dev/null)
 }
 
+# Has apt ever read its package lists? (A fresh container image has none.)
+haveLists() {
+    apt-cache policy 2>/dev/null | grep -v 'a=now' | grep -q '^ *release '
+}
+
+# suiteIsThere SUITE: is it among apt's sources?
+suiteIsThere() {
+    # shellcheck disable=SC2016  # apt fills these in
+    apt-get indextargets --format '$(RELEASE) $(CODENAME)' 'Created-By: Packages' 2>/dev/null |
+        tr ' ' '\n' | grep -Fxq -- "$1"
+}
+
 # ---- The plan -------------------------------------------------------------------------------------------------------
-# Debian 12 lacks two things: a Mesa with ray tracing, which is in its backports, and the memory allocator, which is in
-# Debian 13. Where those suites are not among apt's sources, they are added, the second for that one package only.
-planInstall=()       # packages by their plain name
-planFromSuite=()     # 'package suite': to be installed from that suite
-planAddSuite=()      # suites to add to apt's sources
-planWarnings=()      # optional things that apt cannot offer
-planFailures=()      # needed things that apt cannot offer
+# Debian 12 itself lacks two things: a Mesa with ray tracing, which is in its backports, and the memory allocator, which
+# is in Debian 13 (and needs nothing else: it is one header).
+planUpdate=''     # 'unknown' where apt has no package lists yet, so that versions are only known after an update
+planInstall=()    # packages by their plain name
+planFromSuite=()  # 'package suite': to be installed from that suite
+planAddSuite=()   # suites to add to apt's sources
+planWarnings=()   # indices of optional things that will be missing or too old
+planFailures=()   # indices of needed things that cannot be had
 
 # The suite outside of Debian 12 proper that has a package; empty for none.
 suiteFor() {
@@ -144,67 +166,81 @@ suiteFor() {
 }
 
 makePlan() {
-    local i name chosen suite
-    planInstall=() planFromSuite=() planAddSuite=() planWarnings=() planFailures=()
+    local i
+    planUpdate='' planInstall=() planFromSuite=() planAddSuite=() planWarnings=() planFailures=()
+    haveLists || planUpdate=unknown
     readCandidates
-    for i in "${missing[@]}"; do
-        chosen=''
-        for name in ${needNames[$i]}; do
-            if versionFits "${candidate[$name]-}" "${needVersion[$i]}"; then
-                chosen=$name
-                break
-            fi
-        done
-        name=${needNames[$i]%% *}
-        suite=$(suiteFor "$name")
-        if [[ -n $chosen ]]; then
-            planInstall+=("$chosen")
-        elif [[ -n $suite ]]; then
-            planFromSuite+=("$name $suite")
-            suiteIsThere "$suite" || planAddSuite+=("$suite")
-        elif [[ -n ${needOptional[$i]} ]]; then
-            planWarnings+=("$i")
-        else
-            planFailures+=("$i")
+    for i in "${missing[@]}"; do planOne "$i"; done
+}
+
+planOne() {
+    local i=$1 name suite
+    for name in ${needNames[$i]}; do
+        if versionFits "${candidate[$name]-}" "${needVersion[$i]}"; then
+            planInstall+=("$name")
+            return
         fi
     done
+    name=${needNames[$i]%% *}
+    suite=$(suiteFor "$name")
+    if [[ -n $suite ]]; then
+        planFromSuite+=("$name $suite")
+        suiteIsThere "$suite" || planAddSuite+=("$suite")
+    elif [[ -n $planUpdate ]]; then
+        planInstall+=("$name")
+    elif [[ -n ${needOptional[$i]} ]]; then
+        planWarnings+=("$i")
+        # Better an old one than none: an old Mesa still has the drivers of GPUs.
+        [[ -z ${candidate[$name]-} || -n ${installedVersion[$name]-} ]] || planInstall+=("$name")
+    else
+        planFailures+=("$i")
+    fi
 }
 
-# Does apt have this suite among its sources?
-suiteIsThere() {
-    apt-get indextargets --format '$(RELEASE) $(CODENAME)' 'Created-By: Packages' 2>/dev/null | tr ' ' '\n' |
-        grep -Fxq -- "$1"
+# Nothing to do, and no need to ask apt again: all that is missing is optional, and apt has nothing better.
+planIsEmpty() {
+    [[ -z $planUpdate ]] && ((${#planInstall[@]} + ${#planFromSuite[@]} + ${#planFailures[@]} == 0))
 }
 
-# What apt offers for a need, in words.
+# offered INDEX: what is there and what apt offers, in words.
 offered() {
     local name text=''
     for name in ${needNames[$1]}; do
-        [[ -z ${candidate[$name]-} ]] || text="apt offers ${candidate[$name]}"
+        [[ -z ${installedVersion[$name]-} ]] || text="${installedVersion[$name]} is installed, "
+        [[ -z ${candidate[$name]-} ]] || text+="apt offers ${candidate[$name]}"
     done
-    [[ -n $text ]] || text="apt does not know it"
-    printf '%s' "$text"
+    printf '%s' "${text:-apt does not offer it}"
 }
 
+# printPlan [updated]: without the first step, where that is done.
 printPlan() {
     local entry i
-    say "on $osName, the plan:"
-    printf '  apt-get update\n'
+    say "on $osName:"
+    [[ ${1-} == updated ]] || printf '  - apt-get update\n'
     for entry in "${planAddSuite[@]}"; do
-        printf '  add the suite %s to the sources of apt' "$entry"
-        [[ $entry != trixie ]] || printf ', for libvulkan-memory-allocator-dev alone'
-        printf '\n'
+        case $entry in
+            trixie) printf '  - add trixie to the sources of apt for the next step, then take it out again\n' ;;
+            *) printf '  - add %s to the sources of apt\n' "$entry" ;;
+        esac
+    done
+    for entry in "${planFromSuite[@]}"; do
+        printf '  - install from %s: %s\n' "${entry#* }" "${entry% *}"
     done
     if ((${#planInstall[@]})); then
-        printf '  install %s\n' "${planInstall[*]}"
+        printf '  - install: %s\n' "${planInstall[*]}"
     fi
-    for entry in "${planFromSuite[@]}"; do
-        printf '  install %s from %s\n' "${entry% *}" "${entry#* }"
-    done
-    for i in "${planWarnings[@]}"; do
-        printf '  leave out %s: %s\n' "$(describe "$i")" "$(offered "$i")"
-    done
+    if [[ -n $planUpdate ]]; then
+        printf '  (apt has no package lists yet: versions are checked after the update)\n'
+    fi
+    printWarnings
     for i in "${planFailures[@]}"; do
-        printf '  CANNOT install %s: %s\n' "$(describe "$i")" "$(offered "$i")"
+        printf '  - CANNOT install %s: %s\n' "$(describe "$i")" "$(offered "$i")"
+    done
+}
+
+printWarnings() {
+    local i
+    for i in "${planWarnings[@]}"; do
+        warn "$(describe "$i"): $(offered "$i")${needRemark[$i]:+; without it: ${needRemark[$i]}}"
     done
 }

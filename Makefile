@@ -1,0 +1,63 @@
+# The commands of a day's work; 'make help' lists them. CMake does the building: this file only saves the typing.
+#
+# Variables: PRESET       release, debug or asan (CMakePresets.json)
+#            CMAKE_FLAGS  more for CMake's configuration, such as -DQUINTET_WERROR=ON
+#            CTEST_FLAGS  more for CTest, such as '-R scene'
+#            JOBS         how many compilers and tests at a time
+
+PRESET      ?= release
+CMAKE_FLAGS ?=
+CTEST_FLAGS ?=
+JOBS        ?= $(shell nproc 2>/dev/null || echo 2)
+
+BUILD := build/$(PRESET)
+DEMO  := build/demo
+
+# How the demo is rendered: 55 seconds, as many samples as fit.
+RENDER_FLAGS ?= --size 800x450 --time 55
+BENCH_FLAGS  ?=
+
+.DEFAULT_GOAL := build
+.PHONY: demo test build setup bench reference lint clean help configure
+# One step after the other; each of them runs in parallel by itself.
+.NOTPARALLEL:
+
+demo: build ## Set up, build, make the demo scene, render it
+	@$(BUILD)/bin/quintet_make_demo $(DEMO)
+	@$(BUILD)/bin/quintet render $(DEMO)/demo.glb --env $(DEMO)/sky.hdr -o $(DEMO)/demo.png $(RENDER_FLAGS)
+	@echo "The picture: $(DEMO)/demo.png"
+
+test: build ## Set up, build, run every test
+	@ctest --preset $(PRESET) --output-on-failure --no-tests=error -j $(JOBS) $(CTEST_FLAGS)
+
+build: configure ## Set up and build
+	@cmake --build --preset $(PRESET) -j $(JOBS)
+
+configure: setup
+	@cmake --preset $(PRESET) $(CMAKE_FLAGS)
+
+setup: ## Install the packages that are missing (scripts/setup.sh --plan: only say which)
+	@bash scripts/setup.sh
+
+bench: build ## Measure rays per second, as JSON (BENCH_FLAGS)
+	@$(BUILD)/bin/quintet bench $(BENCH_FLAGS)
+
+reference: build ## Compare with the reference images and values (tests/reference/run)
+	@QUINTET=$(CURDIR)/$(BUILD)/bin/quintet tests/reference/run
+
+# The headers below shaders/ are read by C++ too, and formatted by hand, side by side with their GLSL.
+lint: ## Check the layout of C++ (clang-format) and the scripts (shellcheck), where these are installed
+	@if command -v clang-format >/dev/null && [ -e .clang-format ]; then \
+	    git ls-files -z -- 'apps/*.cpp' 'apps/*.h' 'examples/*.cpp' 'examples/*.h' 'include/*.h' \
+	        'src/*.cpp' 'src/*.h' 'tests/*.cpp' 'tests/*.h' \
+	        | xargs -0 -r clang-format --dry-run -Werror && echo "lint: C++ is fine"; \
+	else echo "lint: no clang-format or no .clang-format, C++ not checked"; fi
+	@if command -v shellcheck >/dev/null; then \
+	    shellcheck -x scripts/*.sh tests/setup/*.sh .ci/run && echo "lint: scripts are fine"; \
+	else echo "lint: no shellcheck here, scripts not checked"; fi
+
+clean: ## Remove everything that was built
+	@rm -rf build
+
+help: ## Say what there is
+	@sed -n 's/^\([a-z]*\):.* ## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20

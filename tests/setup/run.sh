@@ -1,0 +1,372 @@
+#!/usr/bin/env bash
+# Tests of scripts/setup.sh on pretended systems (fakes.sh): no network, no root, nothing is installed.
+# Exit status 77: skipped, as this system has no dpkg to compare versions with.
+set -euo pipefail
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+realDpkg=$(command -v dpkg) || { echo "skipped: no dpkg here"; exit 77; }
+export realDpkg
+unset QUINTET_SETUP
+# shellcheck source=tests/setup/fakes.sh
+source "$(dirname "${BASH_SOURCE[0]}")/fakes.sh"
+
+failed=0
+complain() {
+    printf 'in %s: %s\n--- output, status %s:\n%s\n--- calls:\n%s\n---\n' "${FUNCNAME[2]}" "$1" "$status" "$output" "$(calls)"
+    failed=$((failed + 1))
+}
+expectStatus() { [[ $status == "$1" ]] || complain "status $1 expected"; }
+expectOutput() { [[ $output == *"$1"* ]] || complain "not said: $1"; }
+expectNoOutput() { [[ $output != *"$1"* ]] || complain "said: $1"; }
+expectCalls() { [[ $(calls) == "$1" ]] || complain "other calls expected: $1"; }
+
+# ---- Systems --------------------------------------------------------------------------------------------------------
+# The real versions of those packages that decide something.
+bookworm() {
+    newSystem
+    osRelease debian 12 bookworm
+    offerAll
+    offer g++ 4:12.2.0-3
+    offer cmake 3.25.1-1
+    offer libfmt-dev 9.1.0+ds1-2
+    offer mesa-vulkan-drivers 22.3.6-1+deb12u1
+    offer mesa-vulkan-drivers 25.0.7-2~bpo12+1 bookworm-backports
+    offer libvulkan-memory-allocator-dev none
+    offer libvulkan-memory-allocator-dev 3.2.1+dfsg-1 trixie
+    printf 'deb [arch=amd64 signed-by=/keys/a.gpg] http://mirror.test/debian bookworm main\n' >"$system/apt/sources.list"
+    suite bookworm http://mirror.test/debian/ "$system/apt/sources.list:1"
+}
+noble() {
+    newSystem
+    osRelease ubuntu 24.04 noble
+    offerAll
+    offer g++ 4:13.2.0-7ubuntu1
+    offer cmake 3.28.3-1build7
+    offer libvulkan-memory-allocator-dev 3.0.1+git20230911+2f382df+dfsg-2
+    offer mesa-vulkan-drivers "$1"
+    suite noble http://mirror.test/ubuntu/ "$system/apt/sources.list:1"
+}
+
+# ---- Tests ----------------------------------------------------------------------------------------------------------
+bookwormPlan() {
+    bookworm
+    setup --plan
+    expectStatus 0
+    expectOutput "add bookworm-backports to the sources"
+    expectOutput "add trixie to the sources of apt for the next step, then take it out again"
+    expectOutput "install from bookworm-backports: mesa-vulkan-drivers"
+    expectOutput "install from trixie: libvulkan-memory-allocator-dev"
+    expectOutput "install: g++ cmake make ninja-build pkg-config git ccache"
+    expectNoOutput CANNOT
+    expectCalls '' # a plan changes nothing
+}
+
+bookwormInstalls() {
+    bookworm
+    setup
+    expectStatus 0
+    expectOutput "setup: done"
+    local all
+    all=$(namesInList | grep -vx -e mesa-vulkan-drivers -e libvulkan-memory-allocator-dev | tr '\n' ' ')
+    expectCalls "apt-get update
+apt-get update
+apt-get install libvulkan-memory-allocator-dev
+apt-get install -t bookworm-backports mesa-vulkan-drivers
+apt-get install ${all% }"
+    grep -qx 'URIs: http://mirror.test/debian/' "$system/seen-quintet-trixie.sources" || complain "not apt's own mirror"
+    grep -qx 'Signed-By: /keys/a.gpg' "$system/seen-quintet-trixie.sources" || complain "key not taken over"
+    grep -qx 'Suites: bookworm-backports' "$system/apt/sources.list.d/quintet-bookworm-backports.sources" ||
+        complain "backports not kept"
+    # While trixie was there: nothing of it, but for the one package.
+    local pins
+    pins=$(sed '/^#/d' "$system/seen-pins" | tr '\n' ' ')
+    [[ $pins == "Package: * Pin: release n=trixie Pin-Priority: -1  \
+Package: libvulkan-memory-allocator-dev Pin: release n=trixie Pin-Priority: 500 " ]] || complain "pins: $pins"
+    [[ ! -e $system/apt/sources.list.d/quintet-trixie.sources ]] || complain "trixie's source is left"
+    [[ ! -e $system/apt/preferences.d/quintet-trixie ]] || complain "trixie's pin is left"
+
+    : >"$system/calls" # the second time, there is nothing to do
+    setup
+    expectStatus 0
+    expectOutput "nothing to install"
+    expectCalls ''
+}
+
+bookwormWithBackports() { # as in Debian's own cloud images
+    bookworm
+    suite bookworm-backports http://mirror.test/debian/ "$system/apt/sources.list:2"
+    setup
+    expectStatus 0
+    expectNoOutput "add bookworm-backports"
+    expectOutput "install from bookworm-backports: mesa-vulkan-drivers"
+}
+
+bookwormOldMesaInstalled() { # a desktop, that has Mesa 22
+    bookworm
+    installAll
+    installed mesa-vulkan-drivers 22.3.6-1+deb12u1
+    setup
+    expectStatus 0
+    grep -qx 'mesa-vulkan-drivers 25.0.7-2~bpo12+1' "$system/installed" || complain "not upgraded"
+    expectCalls "apt-get update
+apt-get update
+apt-get install -t bookworm-backports mesa-vulkan-drivers"
+}
+
+keyWithinTheSource() { # deb822: the second of two paragraphs, and the key itself in it
+    bookworm
+    cat >"$system/apt/sources.list.d/debian.sources" <<'SOURCES'
+# First
+Types: deb
+URIs: http://other.test/debian
+Suites: bookworm
+Signed-By: /keys/wrong.gpg
+
+Types: deb
+URIs: http://mirror.test/debian
+Suites: bookworm
+Signed-By:
+ -----BEGIN KEY-----
+ .
+ abc=
+ -----END KEY-----
+Components: main
+SOURCES
+    echo "bookworm http://mirror.test/debian/ $system/apt/sources.list.d/debian.sources:2" >"$system/suites"
+    setup
+    expectStatus 0
+    local key
+    key=$(sed -n '/^Signed-By/,$p' "$system/seen-quintet-trixie.sources")
+    [[ $key == $'Signed-By: \n -----BEGIN KEY-----\n .\n abc=\n -----END KEY-----' ]] || complain "key: $key"
+}
+
+noMirrorOfDebian() {
+    bookworm
+    : >"$system/suites"
+    setup
+    expectStatus 1
+    expectOutput "none of apt's sources is a mirror of Debian bookworm"
+}
+
+trixiePlan() {
+    newSystem
+    osRelease debian 13 trixie
+    offerAll
+    offer mesa-vulkan-drivers 25.0.7-2
+    offer libvulkan-memory-allocator-dev 3.2.1+dfsg-1
+    setup --plan
+    expectStatus 0
+    expectNoOutput "to the sources"
+    expectNoOutput warning
+    expectOutput libvulkan-memory-allocator-dev
+}
+
+otherNameTaken() {
+    bookworm
+    offer pkg-config none
+    offer pkgconf 1.8.1-4
+    setup
+    expectStatus 0
+    grep -q '^pkgconf ' "$system/installed" || complain "pkgconf not taken"
+    : >"$system/calls"
+    setup
+    expectOutput "nothing to install"
+}
+
+nobleWithUpdates() {
+    noble 25.0.7-0ubuntu0.24.04.2
+    setup --plan
+    expectStatus 0
+    expectNoOutput warning
+    expectNoOutput "to the sources"
+}
+
+nobleWithoutUpdates() { # Mesa 24.0: installed all the same, said clearly, and not tried again and again
+    noble 24.0.5-1ubuntu1
+    setup
+    expectStatus 0
+    expectOutput "warning: mesa-vulkan-drivers >= 25.0 (optional): apt offers 24.0.5-1ubuntu1"
+    expectOutput "lavapipe has no tested ray tracing"
+    : >"$system/calls"
+    setup
+    expectStatus 0
+    expectOutput "24.0.5-1ubuntu1 is installed"
+    expectCalls ''
+}
+
+tooOldASystem() {
+    newSystem
+    osRelease ubuntu 22.04 jammy
+    offerAll
+    offer cmake 3.22.1-1ubuntu1
+    offer g++ 4:11.2.0-1ubuntu1
+    setup --plan
+    expectStatus 1
+    expectOutput "CANNOT install cmake >= 3.25: apt offers 3.22.1-1ubuntu1"
+    expectOutput "CANNOT install g++ >= 12: apt offers 4:11.2.0-1ubuntu1"
+    setup
+    expectStatus 1
+    expectOutput "Nothing was installed"
+    expectCalls "apt-get update"
+}
+
+neededNotOffered() {
+    noble 25.0.7
+    offer libtinygltf-dev none
+    setup
+    expectStatus 1
+    expectOutput "cannot install libtinygltf-dev: apt does not offer it"
+    expectOutput universe
+}
+
+optionalNotOffered() {
+    noble 25.0.7
+    offer vulkan-validationlayers none
+    setup
+    expectStatus 0
+    expectOutput "warning: vulkan-validationlayers (optional): apt does not offer it"
+    : >"$system/calls"
+    setup
+    expectStatus 0
+    expectCalls ''
+}
+
+noListsYet() {
+    bookworm
+    rm "$system/lists"
+    setup --plan
+    expectStatus 0
+    expectOutput "apt has no package lists yet"
+    expectOutput "install: g++ cmake"
+    expectNoOutput CANNOT
+    setup
+    expectStatus 0
+    expectOutput "setup: done"
+}
+
+offline() {
+    bookworm
+    rm "$system/lists"
+    touch "$system/offline"
+    setup
+    expectStatus 1
+    expectOutput "apt has no package lists: apt-get update failed"
+    expectOutput "Is there a network?"
+}
+
+noRootNoSudo() {
+    bookworm
+    echo 1000 >"$system/uid"
+    hideSudo
+    setup
+    expectStatus 1
+    expectOutput "Installing needs root, and there is no sudo. As root, run: bash scripts/setup.sh"
+    expectCalls ''
+    installAll
+    installed ccache none
+    setup # only something optional is missing
+    expectStatus 0
+    expectOutput "going on without"
+}
+
+withSudo() {
+    bookworm
+    echo 1000 >"$system/uid"
+    fake sudo <<'SH'
+echo "sudo $*" >>"$system/sudo"
+[[ $1 == -n ]] || exit 1 # no terminal: must not ask
+shift
+exec "$@"
+SH
+    setup
+    expectStatus 0
+    expectOutput "setup: done"
+    grep -q 'apt-get .*install' "$system/sudo" || complain "not installed by sudo"
+}
+
+noApt() {
+    newSystem
+    hideSudo
+    rm "$system"/bin/{apt-get,apt-cache,dpkg-query,dpkg}
+    setup
+    expectStatus 0
+    expectOutput "this system has no apt"
+    expectOutput "cmake >= 3.25"
+    expectOutput "g++ >= 12"
+    expectOutput VK_KHR_ray_tracing_pipeline
+}
+
+skipped() {
+    newSystem
+    export QUINTET_SETUP=skip
+    setup
+    unset QUINTET_SETUP
+    expectStatus 0
+    expectOutput skipped
+    expectCalls ''
+}
+
+noHostNames() { # mirrors come from the system, never from the scripts
+    local found
+    found=$(grep -rnE '://|debian\.(org|net)|ubuntu\.com' "$repo"/{scripts,Makefile,.ci/run} || true)
+    status=0 output=$found
+    [[ -z $found ]] || complain "host names in scripts"
+}
+
+versions() {
+    status=0 output=$(
+        source "$repo/scripts/lib/plan.sh"
+        versionFits 3.25 3.25 || echo "equal is not enough"
+        versionFits 4:12.2.0-3 4:12 || echo "later is not enough"
+        versionFits 25.0.7-2~bpo12+1 25.0 || echo "a backport is not enough"
+        versionFits 1 '' || echo "any is not enough"
+        ! versionFits 3.9 3.25 || echo "compared as text"
+        ! versionFits '' '' || echo "none is enough"
+    )
+    [[ -z $output ]] || complain "versions"
+}
+
+badList() {
+    status=0
+    output=$(bash -c '
+        source "$1/scripts/lib/plan.sh"
+        readPackageList <(printf "fine\nno/slash >= 1\n")' - "$repo" 2>&1) || status=$?
+    expectStatus 1
+    expectOutput "'no/slash' is not a package name"
+}
+
+# A PATH with the few programs that setup.sh uses, and neither sudo nor apt.
+hideSudo() {
+    local name
+    for name in cat sed grep tr dirname awk tee chmod rm cp mv touch env; do
+        ln -s "$(command -v "$name")" "$system/bin/$name"
+    done
+    onlyPath=$system/bin
+}
+
+# All at once, each in a shell of its own, with its own pretended system; told in this order.
+tests=(bookwormPlan bookwormInstalls bookwormWithBackports bookwormOldMesaInstalled keyWithinTheSource noMirrorOfDebian
+    trixiePlan otherNameTaken nobleWithUpdates nobleWithoutUpdates tooOldASystem neededNotOffered optionalNotOffered
+    noListsYet offline noRootNoSudo withSudo noApt skipped noHostNames versions badList)
+runs=()
+for test in "${tests[@]}"; do
+    (
+        trap - EXIT
+        onlyPath=''
+        "$test"
+        exit "$((failed > 0))"
+    ) >"$scratch/$test.out" 2>&1 &
+    runs+=($!)
+done
+for i in "${!tests[@]}"; do
+    if wait "${runs[i]}"; then
+        printf 'ok     %s\n' "${tests[i]}"
+    else
+        printf 'FAILED %s\n' "${tests[i]}"
+        cat "$scratch/${tests[i]}.out"
+        failed=$((failed + 1))
+    fi
+done
+echo "$((${#tests[@]} - failed)) passed, $failed failed"
+((failed == 0))
