@@ -1,0 +1,146 @@
+#include "io/image.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "io/color.h"
+
+namespace quintet::io {
+namespace {
+
+// Rec. ITU-R BT.709-6, item 3.2.
+constexpr std::array<float, 3> kLuminance{0.2126f, 0.7152f, 0.0722f};
+
+template <class T>
+constexpr float kUnit = std::is_same_v<T, float> ? 1.0f : static_cast<float>(std::is_same_v<T, std::uint8_t> ? 255 : 65535);
+
+// Calls function(T{}) with T the image's sample type.
+template <class Function>
+auto withType(PixelType type, Function&& function) {
+  switch (type) {
+    case PixelType::u8: return function(std::uint8_t{});
+    case PixelType::u16: return function(std::uint16_t{});
+    case PixelType::f32: break;
+  }
+  return function(float{});
+}
+
+template <class T>
+T fromUnit(float value) {
+  if constexpr (std::is_same_v<T, float>) return value;
+  return static_cast<T>(!(value > 0.0f) ? 0.0f : value >= 1.0f ? kUnit<T> : value * kUnit<T> + 0.5f);
+}
+
+template <class T>
+std::vector<float> colorTable(ColorEncoding encoding) {
+  std::vector<float> table(static_cast<std::size_t>(kUnit<T>) + 1);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const float value = static_cast<float>(i) / kUnit<T>;
+    table[i] = encoding == ColorEncoding::sRgb ? linearFromSrgb(value) : value;
+  }
+  return table;
+}
+
+template <class T>
+void decodeSamples(const Image& image, std::span<float> out) {
+  const std::span<const T> in = image.samples<T>();
+  const std::uint32_t colors = image.colorChannels();
+  const auto convert = [&](auto&& color) {
+    for (std::size_t i = 0; i < in.size(); i += image.channels) {
+      for (std::uint32_t c = 0; c < colors; ++c) out[i + c] = color(in[i + c]);
+      if (image.hasAlpha()) out[i + colors] = static_cast<float>(in[i + colors]) / kUnit<T>;
+    }
+  };
+  if constexpr (std::is_same_v<T, float>) {
+    convert([&](float v) { return image.encoding == ColorEncoding::sRgb ? linearFromSrgb(v) : v; });
+  } else {
+    const std::vector<float> table = colorTable<T>(image.encoding);
+    convert([&](T v) { return table[v]; });
+  }
+}
+
+float luminance(std::span<const float> rgb) {
+  return kLuminance[0] * rgb[0] + kLuminance[1] * rgb[1] + kLuminance[2] * rgb[2];
+}
+
+template <class T>
+float encodedLuminance(const T* rgb, ColorEncoding encoding) {
+  std::array<float, 3> value;
+  for (std::size_t c = 0; c < 3; ++c) value[c] = static_cast<float>(rgb[c]) / kUnit<T>;
+  if (encoding == ColorEncoding::linear) return luminance(value);
+  for (float& v : value) v = linearFromSrgb(v);
+  return srgbFromLinear(luminance(value));
+}
+
+}  // namespace
+
+std::size_t bytesPerSample(PixelType type) {
+  return withType(type, [](auto sample) { return sizeof sample; });
+}
+
+Image makeImage(std::uint32_t width, std::uint32_t height, std::uint32_t channels, PixelType type,
+                ColorEncoding encoding) {
+  assert(channels >= 1 && channels <= 4);
+  Image image{width, height, channels, type, encoding, {}, false};
+  image.data.resize(image.rowBytes() * height);
+  return image;
+}
+
+Image toFloat(const Image& image) {
+  if (image.type == PixelType::f32 && image.encoding == ColorEncoding::linear) return image;
+  Image result = makeImage(image.width, image.height, image.channels, PixelType::f32, ColorEncoding::linear);
+  result.premultiplied = image.premultiplied;
+  withType(image.type, [&](auto sample) { decodeSamples<decltype(sample)>(image, result.samples<float>()); });
+  return result;
+}
+
+Image toSrgb8(const Image& image) {
+  if (image.type == PixelType::u8 && image.encoding == ColorEncoding::sRgb && !image.premultiplied) return image;
+  const Image linear = toFloat(image);
+  Image result = makeImage(image.width, image.height, image.channels, PixelType::u8, ColorEncoding::sRgb);
+  const std::span<const float> in = linear.samples<float>();
+  const std::span<std::uint8_t> out = result.samples<std::uint8_t>();
+  const std::uint32_t colors = image.colorChannels();
+  for (std::size_t i = 0; i < in.size(); i += image.channels) {
+    const float alpha = image.hasAlpha() ? in[i + colors] : 1.0f;
+    const float scale = image.premultiplied && alpha > 0.0f ? 1.0f / alpha : 1.0f;
+    for (std::uint32_t c = 0; c < colors; ++c) out[i + c] = byteFromUnit(srgbFromLinear(in[i + c] * scale));
+    if (image.hasAlpha()) out[i + colors] = byteFromUnit(alpha);
+  }
+  return result;
+}
+
+Image toChannels(const Image& image, std::uint32_t channels) {
+  if (image.channels == channels) return image;
+  Image result = makeImage(image.width, image.height, channels, image.type, image.encoding);
+  result.premultiplied = image.premultiplied && result.hasAlpha();
+  withType(image.type, [&](auto sample) {
+    using T = decltype(sample);
+    const T one = fromUnit<T>(1.0f);
+    const T* in = image.samples<T>().data();
+    T* out = result.samples<T>().data();
+    for (std::size_t i = 0; i < image.pixelCount(); ++i, in += image.channels, out += channels) {
+      const T alpha = image.hasAlpha() ? in[image.channels - 1] : one;
+      if (result.colorChannels() == 1 && image.colorChannels() == 3) {
+        out[0] = fromUnit<T>(encodedLuminance(in, image.encoding));
+      } else {
+        for (std::uint32_t c = 0; c < result.colorChannels(); ++c) out[c] = in[image.colorChannels() == 3 ? c : 0];
+      }
+      if (result.hasAlpha()) out[channels - 1] = alpha;
+    }
+  });
+  return result;
+}
+
+Image toPremultiplied(const Image& image) {
+  Image result = toFloat(image);
+  if (!result.hasAlpha() || result.premultiplied) return result;
+  result.premultiplied = true;
+  const std::span<float> samples = result.samples<float>();
+  for (std::size_t i = 0; i < samples.size(); i += result.channels)
+    for (std::uint32_t c = 0; c < result.colorChannels(); ++c) samples[i + c] *= samples[i + result.channels - 1];
+  return result;
+}
+
+}  // namespace quintet::io
