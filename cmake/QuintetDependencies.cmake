@@ -1,0 +1,29 @@
+# Every library that we do not write ourselves; docs/design/dependencies.md gives each one's reason.
+include(FindPackageHandleStandardArgs)
+find_package(PkgConfig REQUIRED)
+
+find_package(VulkanHeaders CONFIG QUIET)
+if(NOT TARGET Vulkan::Headers)
+  find_package(Vulkan REQUIRED)  # its headers only: volk loads the loader at run time
+endif()
+find_package(fmt REQUIRED)
+find_package(glm REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(OpenEXR REQUIRED)
+pkg_check_modules(spng REQUIRED IMPORTED_TARGET spng)
+pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
+pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
+pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(shaderc REQUIRED IMPORTED_TARGET shaderc)
+
+# Header-only packages without a usable CMake or pkg-config file of their own.
+function(quintet_header_library NAME HEADER)
+  find_path(${NAME}_INCLUDE_DIR ${HEADER} REQUIRED)
+  add_library(${NAME} INTERFACE IMPORTED GLOBAL)
+  target_include_directories(${NAME} SYSTEM INTERFACE ${${NAME}_INCLUDE_DIR})
+endfunction()
+quintet_header_library(quintet_volk volk.h)
+quintet_header_library(quintet_vma vk_mem_alloc.h)
+quintet_header_library(quintet_tinygltf tiny_gltf.h)
+quintet_header_library(quintet_tomlplusplus toml++/toml.h)

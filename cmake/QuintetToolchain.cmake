@@ -1,0 +1,25 @@
+# Compiler flags, sanitizers, ccache and a fast linker where they exist.
+set(QUINTET_SANITIZE "" CACHE STRING "Sanitizers for the whole build, e.g. address,undefined")
+
+add_library(quintet_flags INTERFACE)
+target_compile_options(quintet_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                                               -Woverloaded-virtual -Wconversion -Wno-sign-conversion)
+if(QUINTET_WERROR)
+  target_compile_options(quintet_flags INTERFACE -Werror)
+endif()
+if(QUINTET_SANITIZE)
+  add_compile_options(-fsanitize=${QUINTET_SANITIZE} -fno-omit-frame-pointer -g1)
+  add_link_options(-fsanitize=${QUINTET_SANITIZE})
+endif()
+
+# The shaders' own arithmetic must not depend on the host's contraction: results of the host
+# side of a computation are compared with the device's in the tests.
+add_compile_options(-ffp-contract=off)
+
+find_program(QUINTET_CCACHE ccache)
+if(QUINTET_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${QUINTET_CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${QUINTET_CCACHE})
+endif()
+
+find_package(Threads REQUIRED)

@@ -1,0 +1,32 @@
+// A compute pipeline over the bindless set's layout: film passes, tests of shader functions.
+#ifndef QUINTET_GPU_COMPUTE_H
+#define QUINTET_GPU_COMPUTE_H
+
+#include <span>
+
+#include "gpu/commands.h"
+#include "gpu/descriptors.h"
+
+namespace quintet::gpu {
+
+class ComputePipeline {
+ public:
+  // `cache` may be null. Throws VulkanError.
+  ComputePipeline(Context& context, const BindlessSet& set, std::span<const std::uint32_t> spirv, VkPipelineCache cache,
+                  const std::string& name);
+  ~ComputePipeline();
+  ComputePipeline(const ComputePipeline&) = delete;
+  ComputePipeline& operator=(const ComputePipeline&) = delete;
+
+  // Binds pipeline and set, pushes `constants` (at most the set's pushConstantBytes) and dispatches workgroups.
+  void dispatch(Commands& commands, std::span<const std::byte> constants, std::uint32_t groupsX, std::uint32_t groupsY = 1,
+                std::uint32_t groupsZ = 1) const;
+
+ private:
+  Context& context_;
+  const BindlessSet& set_;
+  VkPipeline pipeline_ = VK_NULL_HANDLE;
+};
+
+}  // namespace quintet::gpu
+#endif
