@@ -17,8 +17,8 @@ apply() {
         printWarnings
         return
     fi
-    printPlan updated
     giveUpIfImpossible
+    printPlan updated
 
     trap removeTrixie EXIT
     installFromSuites
@@ -61,10 +61,22 @@ aptGet() {
 
 # One broken source of several (somebody's old third-party one) is no reason to stop: what can be had decides.
 update() {
-    if ! aptGet -o APT::Update::Error-Mode=any update; then
-        sourceFailed=yes
-        warn "apt-get update failed, at least in part (see above): going on with the package lists that are there"
-    fi
+    local log deadline=$((SECONDS + 300)) failed=''
+    log=$(mktemp)
+    while ! aptGet -o APT::Update::Error-Mode=any update 2>&1 | tee "$log"; do
+        # For this lock, unlike dpkg's, apt does not wait by itself. Fresh machines update when they boot.
+        if grep -q 'Could not get lock' "$log" && ((SECONDS < deadline)); then
+            say "another program is using apt: waiting for it"
+            sleep 5
+        else
+            failed=yes
+            break
+        fi
+    done
+    rm -f -- "$log"
+    [[ -n $failed ]] || return 0
+    sourceFailed=yes
+    warn "apt-get update failed, at least in part (see above): going on with the package lists that are there"
 }
 
 install() {

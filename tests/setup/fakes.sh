@@ -75,6 +75,11 @@ done
 case ${words[0]} in
     update)
         [[ ! -e $system/offline ]] || exit 100
+        if [[ -e $system/locked ]]; then
+            rm "$system/locked"
+            echo "E: Could not get lock lists/lock. It is held by process 1" >&2
+            exit 100
+        fi
         touch "$system/lists"
         for file in "$system"/apt/sources.list.d/quintet-*.sources; do
             [[ ! -e $file ]] || cp "$file" "$system/seen-${file##*/}"
@@ -101,6 +106,7 @@ case ${words[0]} in
         ;;
 esac
 SH
+    fake sleep <<<':'
     fake id <<<'cat "$system/uid"'
 }
 

@@ -255,6 +255,17 @@ offline() {
     expectOutput "Is there a network?"
 }
 
+aptInUse() { # as on a machine that has just booted
+    bookworm
+    rm "$system/lists"
+    touch "$system/locked"
+    setup
+    expectStatus 0
+    expectOutput "another program is using apt: waiting for it"
+    expectNoOutput warning
+    expectOutput "setup: done"
+}
+
 noRootNoSudo() {
     bookworm
     echo 1000 >"$system/uid"
@@ -348,7 +359,7 @@ hideSudo() {
 # All at once, each in a shell of its own, with its own pretended system; told in this order.
 tests=(bookwormPlan bookwormInstalls bookwormWithBackports bookwormOldMesaInstalled keyWithinTheSource noMirrorOfDebian
     trixiePlan otherNameTaken nobleWithUpdates nobleWithoutUpdates tooOldASystem neededNotOffered optionalNotOffered
-    noListsYet offline noRootNoSudo withSudo noApt skipped noHostNames versions badList)
+    noListsYet offline aptInUse noRootNoSudo withSudo noApt skipped noHostNames versions badList)
 runs=()
 for test in "${tests[@]}"; do
     (
