@@ -8,8 +8,8 @@ asRoot=()      # the words before a command that must run as root
 sourceFailed='' # set where apt could not read one of its sources
 
 apply() {
-    findRoot || return 0
     say "missing or too old: $(describeAll "${missing[@]}")"
+    findRoot || return 0
     say "reading apt's package lists anew (apt-get update), then installing them"
     update
     makePlan
@@ -28,24 +28,26 @@ apply() {
 
 # Fails where root is needed and cannot be had; returns 1 where only optional things are missing then.
 findRoot() {
-    local i needed=()
+    local i problem needed=()
     asRoot=()
     [[ $(id -u) != 0 ]] || return 0
     if command -v sudo >/dev/null; then
         asRoot=(sudo)
         # Without a terminal sudo could not ask for a password: let it fail at once.
         [[ -t 0 ]] || asRoot+=(-n)
-        return 0
+        ! "${asRoot[@]}" true || return 0
+        problem="sudo did not work"
+    else
+        problem="there is no sudo"
     fi
     for i in "${missing[@]}"; do
         [[ -n ${needOptional[$i]} ]] || needed+=("$i")
     done
     if ((${#needed[@]} == 0)); then
-        warn "missing: $(describeAll "${missing[@]}"). Installing needs root, and there is no sudo: going on without"
+        warn "installing needs root, and $problem: going on without, as all of this is optional"
         return 1
     fi
-    die "missing: $(describeAll "${needed[@]}"). Installing needs root, and there is no sudo." \
-        "As root, run: bash scripts/setup.sh"
+    die "installing needs root, and $problem. As root, run: bash scripts/setup.sh"
 }
 
 # Runs apt-get as root, asking nothing. Waits for another apt or dpkg that runs at the same time.

@@ -84,13 +84,15 @@ case ${words[0]} in
         for file in "$system"/apt/sources.list.d/quintet-*.sources; do
             [[ ! -e $file ]] || cp "$file" "$system/seen-${file##*/}"
         done
-        [[ ! -e $system/apt/preferences.d/quintet-trixie ]] || cp "$system/apt/preferences.d/quintet-trixie" "$system/seen-pins"
+        pins=$system/apt/preferences.d/quintet-trixie
+        [[ ! -e $pins ]] || cp "$pins" "$system/seen-pins"
         ;;
     install)
         declare -A version=()
         while read -r package number suite; do
             if [[ -n $suite ]]; then
-                [[ -e $system/apt/sources.list.d/quintet-$suite.sources ]] || grep -q "^$suite " "$system/suites" || continue
+                [[ -e $system/apt/sources.list.d/quintet-$suite.sources ]] ||
+                    grep -q "^$suite " "$system/suites" || continue
                 [[ $release == "$suite" || -e $system/apt/preferences.d/quintet-$suite ]] || continue
             fi
             version[$package]=$number
@@ -145,7 +147,8 @@ namesInList() {
 # setup ARGUMENTS: runs setup.sh; its output, both streams, in $output, its exit status in $status.
 setup() {
     status=0
-    output=$(PATH="${onlyPath:-$system/bin:$PATH}" QUINTET_OS_RELEASE="$system/os-release" QUINTET_APT_DIR="$system/apt" \
+    output=$(PATH="${onlyPath:-$system/bin:$PATH}" \
+        QUINTET_OS_RELEASE="$system/os-release" QUINTET_APT_DIR="$system/apt" \
         "$BASH" "$repo/scripts/setup.sh" "$@" 2>&1 </dev/null) || status=$?
 }
 

@@ -13,7 +13,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/fakes.sh"
 
 failed=0
 complain() {
-    printf 'in %s: %s\n--- output, status %s:\n%s\n--- calls:\n%s\n---\n' "${FUNCNAME[2]}" "$1" "$status" "$output" "$(calls)"
+    printf 'in %s: %s\n--- output, status %s:\n%s\n--- calls:\n%s\n---\n' \
+        "${FUNCNAME[2]}" "$1" "$status" "$output" "$(calls)"
     failed=$((failed + 1))
 }
 expectStatus() { [[ $status == "$1" ]] || complain "status $1 expected"; }
@@ -34,7 +35,8 @@ bookworm() {
     offer mesa-vulkan-drivers 25.0.7-2~bpo12+1 bookworm-backports
     offer libvulkan-memory-allocator-dev none
     offer libvulkan-memory-allocator-dev 3.2.1+dfsg-1 trixie
-    printf 'deb [arch=amd64 signed-by=/keys/a.gpg] http://mirror.test/debian bookworm main\n' >"$system/apt/sources.list"
+    printf 'deb [arch=amd64 signed-by=/keys/a.gpg] http://mirror.test/debian bookworm main\n' \
+        >"$system/apt/sources.list"
     suite bookworm http://mirror.test/debian/ "$system/apt/sources.list:1"
 }
 noble() {
@@ -272,13 +274,24 @@ noRootNoSudo() {
     hideSudo
     setup
     expectStatus 1
-    expectOutput "Installing needs root, and there is no sudo. As root, run: bash scripts/setup.sh"
+    expectOutput "missing or too old: g++ >= 12, cmake >= 3.25"
+    expectOutput "installing needs root, and there is no sudo. As root, run: bash scripts/setup.sh"
     expectCalls ''
     installAll
     installed ccache none
     setup # only something optional is missing
     expectStatus 0
     expectOutput "going on without"
+}
+
+sudoRefuses() {
+    bookworm
+    echo 1000 >"$system/uid"
+    fake sudo <<<'exit 1'
+    setup
+    expectStatus 1
+    expectOutput "installing needs root, and sudo did not work"
+    expectCalls ''
 }
 
 withSudo() {
@@ -359,7 +372,7 @@ hideSudo() {
 # All at once, each in a shell of its own, with its own pretended system; told in this order.
 tests=(bookwormPlan bookwormInstalls bookwormWithBackports bookwormOldMesaInstalled keyWithinTheSource noMirrorOfDebian
     trixiePlan otherNameTaken nobleWithUpdates nobleWithoutUpdates tooOldASystem neededNotOffered optionalNotOffered
-    noListsYet offline aptInUse noRootNoSudo withSudo noApt skipped noHostNames versions badList)
+    noListsYet offline aptInUse noRootNoSudo sudoRefuses withSudo noApt skipped noHostNames versions badList)
 runs=()
 for test in "${tests[@]}"; do
     (
