@@ -1,0 +1,36 @@
+// Access to the frame and the scene's arrays from any stage. `launch` is the push-constant block of
+// every program; a compute shader that uses the library declares the same block by this include.
+#ifndef QUINTET_FRAME_GLSL
+#define QUINTET_FRAME_GLSL
+
+#include "shared/bindings.h"
+#include "shared/frame.h"
+
+layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
+layout(set = 0, binding = kBindingTextures) uniform sampler2D textures[];
+
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer FrameReference { Frame value; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer InstanceArray { InstanceData at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer GeometryArray { GeometryData at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MaterialArray { MaterialData at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LightArray { LightData at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer AliasArray { AliasEntry at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer UintArray { uint at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FloatArray { float at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec2Array { vec2 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec3Array { vec3 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec4Array { vec4 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Uvec3Array { uvec3 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer OutputArray { vec4 at[]; };
+
+// The frame's members without a copy: frame.lightCount, frame.camera.halfSize, …
+#define frame FrameReference(launch.frame).value
+
+const float kPi = 3.14159265358979323846;
+const float kInfinity = uintBitsToFloat(0x7F800000u);
+
+// Rec. 709 luminance.
+float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
+float maxComponent(vec3 c) { return max(c.x, max(c.y, c.z)); }
+
+#endif

@@ -1,0 +1,12 @@
+// The one descriptor set and its bindings; everything else travels by address (shared/frame.h).
+#ifndef QUINTET_SHARED_BINDINGS_H
+#define QUINTET_SHARED_BINDINGS_H
+
+#include "types.h"
+
+QT_SHARED_BEGIN
+QT_CONSTANT kBindingTlas = 0;
+QT_CONSTANT kBindingTextures = 1;
+QT_SHARED_END
+
+#endif

@@ -1,0 +1,84 @@
+// What a program sees of a frame: camera, film, and the addresses of the scene's arrays. One Frame per
+// image; its address is the first push constant.
+#ifndef QUINTET_SHARED_FRAME_H
+#define QUINTET_SHARED_FRAME_H
+
+#include "lights.h"
+#include "material.h"
+#include "types.h"
+
+QT_SHARED_BEGIN
+
+// One per TLAS instance, indexed by gl_InstanceCustomIndexEXT.
+struct InstanceData {
+  vec4 worldFromObject[3];  // rows of the affine matrix
+  vec4 objectFromWorld[3];
+  uint firstGeometry;       // GeometryData of geometry g: firstGeometry + g
+  uint firstLightSlot;      // light slot of geometry g: firstLightSlot + g (Frame::lightSlots)
+  uint mirrored;            // 1: negative determinant (winding flips)
+  uint padding;
+};
+QT_SHARED_SIZE(InstanceData, 112);
+
+// One geometry of a mesh. Addresses of absent attributes are 0.
+struct GeometryData {
+  Address positions;     // vec3[]
+  Address triangles;     // uvec3[], in the scene's order
+  Address normals;       // vec3[]
+  Address tangents;      // vec4[]
+  Address uvs[2];        // vec2[]
+  Address colors;        // vec4[], linear
+  Address primitiveMap;  // uint[]: gl_PrimitiveID → index in triangles; 0: identity
+  uint material;
+  uint triangleCount;
+};
+QT_SHARED_SIZE(GeometryData, 72);
+
+// Pinhole, thin lens or orthographic; see quintet/camera.glsl.
+struct CameraData {
+  vec4 worldFromCamera[3];  // rows; looks along -z, y up
+  vec2 halfSize;            // perspective: half extent of the image plane at distance 1; orthographic: metres
+  float apertureRadius;     // metres; 0: pinhole
+  float focusDistance;      // metres
+  uint orthographic;
+  uint padding;
+};
+QT_SHARED_SIZE(CameraData, 72);
+
+QT_CONSTANT kMaxOutputs = 16;
+QT_CONSTANT kNoLight = 0xFFFFFFFFu;
+
+struct Frame {
+  Address instances;    // InstanceData[]
+  Address geometries;   // GeometryData[]
+  Address materials;    // MaterialData[]
+  Address lights;       // LightData[lightCount]
+  Address lightTable;   // AliasEntry[lightCount]
+  Address lightSlots;   // uint[]: first LightData of an instance's geometry (+ primitive), or kNoLight
+  Address albedoTables; // quintet/bsdf/albedo.glsl
+  Address statistics;   // uint64 ray counters, see quintet/statistics.glsl; 0: do not count
+  Address outputs[kMaxOutputs];  // vec4[width · height]: sums of this batch, rows top to bottom
+  EnvironmentData environment;
+  CameraData camera;
+  uint width;           // pixels of the whole image
+  uint height;
+  uint lightCount;
+  uint environmentLight;  // index of the environment in `lights`, or kNoLight
+  uint seed;
+  uint padding;
+};
+QT_SHARED_SIZE(Frame, 8 * 8 + 8 * 16 + 40 + 72 + 24);
+
+// Push constants of every ray tracing program.
+struct Launch {
+  Address frame;        // Frame
+  Address parameters;   // the program's parameter block (generated struct Parameters)
+  uvec2 offset;         // pixel of launch invocation (0,0)
+  uint firstSample;     // index of the first sample of this launch
+  uint sampleCount;     // samples to take per pixel in this launch
+};
+QT_SHARED_SIZE(Launch, 32);
+
+QT_SHARED_END
+
+#endif

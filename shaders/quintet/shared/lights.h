@@ -1,0 +1,53 @@
+// Lights and the tables from which they are drawn.
+#ifndef QUINTET_SHARED_LIGHTS_H
+#define QUINTET_SHARED_LIGHTS_H
+
+#include "types.h"
+
+QT_SHARED_BEGIN
+
+// Walker/Vose alias table: entry i is kept with probability `keep`, else `alias` is taken.
+struct AliasEntry {
+  float keep;         // [0,1]
+  uint alias;
+  float probability;  // of drawing i itself, normalised: the sum over all entries is 1
+};
+QT_SHARED_SIZE(AliasEntry, 12);
+
+// LightData::type
+QT_CONSTANT kLightPoint = 0u;
+QT_CONSTANT kLightSpot = 1u;
+QT_CONSTANT kLightDirectional = 2u;
+QT_CONSTANT kLightTriangle = 3u;     // emissive triangle of an instance
+QT_CONSTANT kLightEnvironment = 4u;  // the whole environment; its direction comes from its own table
+
+struct LightData {
+  vec3 intensity;   // point, spot: W/sr; directional: W/m²; others unused
+  uint type;
+  vec3 position;    // world; point, spot
+  uint instance;    // triangle
+  vec3 direction;   // world, unit, the way the light travels; spot, directional
+  uint geometry;    // triangle: geometry index in the instance's mesh
+  float cosInner;   // spot
+  float cosOuter;   // spot
+  uint primitive;   // triangle: original index in the geometry
+  uint padding;
+};
+QT_SHARED_SIZE(LightData, 64);
+
+// Equirectangular environment (scene::Environment): u = atan2(d.z, d.x)/2π + 0.5, v = acos(d.y)/π after
+// rotating d by -rotation about y. Radiance = scale · texel.
+struct EnvironmentData {
+  Address table;    // AliasEntry[width · height]: texels by luminance · solid angle; 0: none to sample (black or absent)
+  vec3 scale;       // multiplies the texture; the radiance itself when texture is kNoTexture
+  uint texture;     // bindless index or kNoTexture
+  uint width;       // texels of the table
+  uint height;
+  float cosRotation;
+  float sinRotation;
+};
+QT_SHARED_SIZE(EnvironmentData, 40);
+
+QT_SHARED_END
+
+#endif

@@ -1,0 +1,59 @@
+// Materials as the device sees them (scene::Material says meaning, units and ranges).
+#ifndef QUINTET_SHARED_MATERIAL_H
+#define QUINTET_SHARED_MATERIAL_H
+
+#include "types.h"
+
+QT_SHARED_BEGIN
+
+QT_CONSTANT kNoTexture = 0xFFFFFFFFu;
+
+// uv' = (dot(rowU, (u, v, 1)), dot(rowV, (u, v, 1)))
+struct TextureData {
+  vec3 rowU;
+  vec3 rowV;
+  uint index;  // into the bindless array, or kNoTexture
+  uint uvSet;
+};
+QT_SHARED_SIZE(TextureData, 32);
+
+// MaterialData::flags
+QT_CONSTANT kMaterialMask = 1u;         // alpha < alphaCutoff: no surface
+QT_CONSTANT kMaterialBlend = 2u;        // a hit counts with probability alpha
+QT_CONSTANT kMaterialUnlit = 4u;        // base colour is the outgoing radiance
+QT_CONSTANT kMaterialThin = 8u;         // transmission without refraction (no volume)
+QT_CONSTANT kMaterialEmissive = 16u;    // emissive factor is not zero
+QT_CONSTANT kMaterialDoubleSided = 32u;  // for the record: every surface is rendered on both sides
+
+struct MaterialData {
+  vec4 baseColor;
+  vec3 emissive;      // radiance
+  float metallic;
+  float roughness;    // perceptual
+  float normalScale;
+  float alphaCutoff;
+  float ior;
+  float transmission;
+  float specular;
+  vec3 specularColor;
+  float clearcoat;
+  float clearcoatRoughness;
+  float clearcoatNormalScale;
+  vec3 absorption;    // 1/m, -ln(attenuationColor)/attenuationDistance; 0 for none
+  uint flags;
+  TextureData baseColorTexture;
+  TextureData metallicRoughnessTexture;
+  TextureData normalTexture;
+  TextureData emissiveTexture;
+  TextureData transmissionTexture;
+  TextureData specularTexture;
+  TextureData specularColorTexture;
+  TextureData clearcoatTexture;
+  TextureData clearcoatRoughnessTexture;
+  TextureData clearcoatNormalTexture;
+};
+QT_SHARED_SIZE(MaterialData, 96 + 10 * 32);
+
+QT_SHARED_END
+
+#endif
