@@ -1,0 +1,225 @@
+#include "base/file.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <optional>
+#include <thread>
+
+#include "base/error.h"
+#include "temp_folder.h"
+
+namespace quintet {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TempFolder;
+using testing::HasSubstr;
+
+std::string messageOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "no FileError";
+}
+
+// Sets a variable of the environment until the end of the scope.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const char* old = std::getenv(name)) old_ = old;
+    value ? setenv(name, value, 1) : unsetenv(name);
+  }
+  ~Variable() { old_ ? setenv(name_, old_->c_str(), 1) : unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> old_;
+};
+
+TEST(FileErrorTest, NamesFilePlaceAndProblem) {
+  const FileError error("scene.gltf", "/nodes/3", "no such mesh");
+  EXPECT_STREQ(error.what(), "scene.gltf: /nodes/3: no such mesh");
+  EXPECT_EQ(error.file(), "scene.gltf");
+  EXPECT_EQ(error.place(), "/nodes/3");
+  EXPECT_EQ(error.problem(), "no such mesh");
+  EXPECT_STREQ(FileError("a.png", "is empty").what(), "a.png: is empty");
+}
+
+TEST(ReadFileTest, ReturnsWhatWasWritten) {
+  const TempFolder folder;
+  const std::string text("a\0b\n\xff", 5);
+  writeFile(folder / "a", text);
+  EXPECT_EQ(readTextFile(folder / "a"), text);
+  const auto bytes = readFile(folder / "a");
+  ASSERT_EQ(bytes.size(), 5u);
+  EXPECT_EQ(bytes[4], std::byte{0xff});
+}
+
+TEST(ReadFileTest, ReadsEmptyFilesAndFilesWithoutSize) {
+  const TempFolder folder;
+  writeFile(folder / "empty", "");
+  EXPECT_TRUE(readFile(folder / "empty").empty());
+  EXPECT_THAT(readTextFile("/proc/self/status"), HasSubstr("Pid:"));
+}
+
+TEST(ReadFileTest, SaysWhatIsWrong) {
+  const TempFolder folder;
+  EXPECT_THAT(messageOf([&] { readFile(folder / "none"); }), HasSubstr("none: cannot be read: No such file"));
+  EXPECT_THAT(messageOf([&] { readFile(folder.path()); }), HasSubstr("Is a directory"));
+}
+
+TEST(WriteFileTest, ReplacesAndLeavesNoTemporary) {
+  const TempFolder folder;
+  writeFile(folder / "a", "old");
+  writeFile(folder / "a", "new");
+  EXPECT_EQ(readTextFile(folder / "a"), "new");
+  EXPECT_EQ(folder.entryCount(), 1u);
+}
+
+TEST(WriteFileTest, FollowsUmaskForNewFilesAndKeepsPermissionsOfOldOnes) {
+  const TempFolder folder;
+  const mode_t before = umask(027);
+  writeFile(folder / "a", "1");
+  umask(before);
+  struct stat info{};
+  ASSERT_EQ(stat((folder / "a").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0640u);
+  ASSERT_EQ(chmod((folder / "a").c_str(), 0604), 0);
+  writeFile(folder / "a", "2");
+  ASSERT_EQ(stat((folder / "a").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0604u);
+}
+
+TEST(WriteFileTest, WritesThroughSymbolicLinks) {
+  const TempFolder folder;
+  fs::create_directory(folder / "sub");
+  writeFile(folder / "sub/target", "old");
+  fs::create_symlink("sub/target", folder / "link");
+  writeFile(folder / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(readTextFile(folder / "sub/target"), "new");
+
+  fs::create_symlink("sub/later", folder / "dangling");
+  writeFile(folder / "dangling", "made");
+  EXPECT_EQ(readTextFile(folder / "sub/later"), "made");
+
+  fs::create_symlink("loop", folder / "loop");
+  EXPECT_THAT(messageOf([&] { writeFile(folder / "loop", "x"); }), HasSubstr("symbolic links"));
+}
+
+TEST(WriteFileTest, MissingFolderIsAnErrorThatNamesIt) {
+  const TempFolder folder;
+  const std::string message = messageOf([&] { writeFile(folder / "none/a.png", "x"); });
+  EXPECT_THAT(message, HasSubstr("a.png: cannot be written: the folder "));
+  EXPECT_THAT(message, HasSubstr("none does not exist"));
+  EXPECT_EQ(message, messageOf([&] { checkWritable(folder / "none/a.png"); }));
+}
+
+TEST(WriteFileTest, FoldersAndEmptyNamesAreErrors) {
+  const TempFolder folder;
+  EXPECT_THAT(messageOf([&] { writeFile(folder.path(), "x"); }), HasSubstr("Is a directory"));
+  EXPECT_THAT(messageOf([&] { writeFile(folder / "new/", "x"); }), HasSubstr("Is a directory"));
+  EXPECT_THAT(messageOf([&] { writeFile("", "x"); }), HasSubstr("empty"));
+  writeFile(folder / "file", "x");
+  EXPECT_THAT(messageOf([&] { writeFile(folder / "file/a", "x"); }), HasSubstr("Not a directory"));
+}
+
+TEST(WriteFileTest, FullDeviceIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  EXPECT_THAT(messageOf([] { writeFile("/dev/full", "x"); }), HasSubstr("/dev/full: cannot be written: No space left"));
+  writeFile("/dev/null", "x");
+}
+
+// A limit on the file size makes the write fail half way, like a full disk.
+TEST(WriteFileTest, FailureLeavesTheOldFileAndNoTemporary) {
+  const TempFolder folder;
+  writeFile(folder / "a", "old");
+  EXPECT_EXIT(
+      {
+        signal(SIGXFSZ, SIG_IGN);
+        struct rlimit limit{};
+        limit.rlim_cur = limit.rlim_max = 1000;
+        setrlimit(RLIMIT_FSIZE, &limit);
+        const std::string message = messageOf([&] { writeFile(folder / "a", std::string(100000, 'x')); });
+        std::_Exit(message.find("File too large") != std::string::npos ? 0 : 1);
+      },
+      testing::ExitedWithCode(0), "");
+  EXPECT_EQ(readTextFile(folder / "a"), "old");
+  EXPECT_EQ(folder.entryCount(), 1u);
+}
+
+TEST(WriteFileTest, ReadOnlyFilesAndFoldersAreErrors) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const TempFolder folder;
+  writeFile(folder / "a", "old");
+  chmod((folder / "a").c_str(), 0444);
+  EXPECT_THAT(messageOf([&] { writeFile(folder / "a", "x"); }), HasSubstr("Permission denied"));
+  chmod(folder.path().c_str(), 0555);
+  EXPECT_THAT(messageOf([&] { checkWritable(folder / "b"); }), HasSubstr("Permission denied"));
+}
+
+TEST(WriteFileTest, WritesToPipes) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const std::string large(1 << 20, 'x');  // more than a pipe holds
+  std::string received;
+  std::jthread reader([&] {
+    char buffer[4096];
+    for (ssize_t got; (got = read(ends[0], buffer, sizeof buffer)) > 0;)
+      received.append(buffer, static_cast<std::size_t>(got));
+  });
+  writeFile("/dev/fd/" + std::to_string(ends[1]), large);
+  close(ends[1]);
+  reader.join();
+  close(ends[0]);
+  EXPECT_EQ(received, large);
+}
+
+TEST(WriteFileTest, DashIsStandardOutput) {
+  testing::internal::CaptureStdout();
+  writeFile("-", "to stdout");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "to stdout");
+  checkWritable("-");
+}
+
+TEST(CheckWritableTest, TouchesNothing) {
+  const TempFolder folder;
+  writeFile(folder / "a", "old");
+  checkWritable(folder / "a");
+  checkWritable(folder / "new");
+  EXPECT_EQ(readTextFile(folder / "a"), "old");
+  EXPECT_EQ(folder.entryCount(), 1u);
+}
+
+TEST(FoldersTest, CacheFollowsTheEnvironment) {
+  const Variable own("QUINTET_CACHE_DIR", nullptr);
+  const Variable home("HOME", "/home/x");
+  {
+    const Variable xdg("XDG_CACHE_HOME", "/tmp/xdg");
+    EXPECT_EQ(cacheFolder(), "/tmp/xdg/quintet");
+    const Variable override("QUINTET_CACHE_DIR", "/tmp/own");
+    EXPECT_EQ(cacheFolder(), "/tmp/own");
+  }
+  {
+    const Variable relative("XDG_CACHE_HOME", "not/absolute");
+    EXPECT_EQ(cacheFolder(), "/home/x/.cache/quintet");
+  }
+  const Variable none("XDG_CACHE_HOME", nullptr);
+  const Variable homeless("HOME", nullptr);
+  EXPECT_EQ(cacheFolder(), "");
+}
+
+TEST(FoldersTest, ExecutableFolderExists) { EXPECT_TRUE(fs::is_directory(executableFolder())); }
+
+}  // namespace
+}  // namespace quintet

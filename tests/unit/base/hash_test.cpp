@@ -1,0 +1,41 @@
+#include "base/hash.h"
+
+#include <gtest/gtest.h>
+
+namespace quintet {
+namespace {
+
+// The values are part of file names and image metadata: they must not change between versions.
+TEST(HashTest, IsStable) {
+  EXPECT_EQ(Hasher().finish().hex(), "99aa06d3014798d86001c324468d497f");  // XXH3-128 of nothing, from its test vectors
+  EXPECT_EQ(Hasher().add("quintet").add(std::uint64_t{5}).finish(), Hasher().add("quintet").add(std::uint64_t{5}).finish());
+}
+
+TEST(HashTest, FramesItsParts) {
+  EXPECT_NE(Hasher().add("ab").add("c").finish(), Hasher().add("a").add("bc").finish());
+  EXPECT_NE(Hasher().add("").finish(), Hasher().finish());
+  EXPECT_NE(Hasher().add("").add("a").finish(), Hasher().add("a").add("").finish());
+}
+
+TEST(HashTest, EveryBitCounts) {
+  const std::vector<std::byte> zeros(100);
+  const Hash expected = Hasher().add(zeros).finish();
+  for (std::size_t bit = 0; bit < 800; ++bit) {
+    std::vector<std::byte> changed = zeros;
+    changed[bit / 8] = static_cast<std::byte>(1 << bit % 8);
+    EXPECT_NE(Hasher().add(changed).finish(), expected) << bit;
+  }
+}
+
+TEST(HashTest, GoesOnAfterFinishAndMoves) {
+  Hasher hasher;
+  const Hash a = hasher.add("a").finish();
+  EXPECT_EQ(hasher.finish(), a);
+  Hasher moved = std::move(hasher);
+  EXPECT_EQ(moved.add("b").finish(), Hasher().add("a").add("b").finish());
+}
+
+TEST(HashTest, HexHasLeadingZeros) { EXPECT_EQ((Hash{0x1, 0xab}).hex(), "000000000000000100000000000000ab"); }
+
+}  // namespace
+}  // namespace quintet

@@ -1,0 +1,60 @@
+#include "base/parallel.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace quintet {
+namespace {
+
+TEST(ParallelTest, CallsEachIndexOnce) {
+  for (const std::size_t count : {0u, 1u, 2u, 7u, 10000u}) {
+    std::vector<std::atomic<int>> calls(count);
+    parallelFor(count, [&](std::size_t i) { ++calls.at(i); });
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(calls[i], 1) << i << " of " << count;
+  }
+}
+
+TEST(ParallelTest, RethrowsAndSkipsTheRest) {
+  std::atomic<std::size_t> calls{0};
+  EXPECT_THROW(parallelFor(1000000,
+                           [&](std::size_t i) {
+                             ++calls;
+                             if (i == 10) throw std::runtime_error("ten");
+                             std::this_thread::yield();
+                           }),
+               std::runtime_error);
+  EXPECT_LT(calls, 1000000u);
+}
+
+TEST(ParallelTest, LoopsNest) {
+  std::atomic<int> calls{0};
+  parallelFor(8, [&](std::size_t) { parallelFor(8, [&](std::size_t) { ++calls; }); });
+  EXPECT_EQ(calls, 64);
+  EXPECT_THROW(parallelFor(4, [](std::size_t) { parallelFor(4, [](std::size_t) { throw std::logic_error("inner"); }); }),
+               std::logic_error);
+}
+
+TEST(ParallelTest, UsesTheCoresOfTheProcess) {
+  EXPECT_GE(hardwareThreads(), 1u);
+  // In a thread of its own: the affinity is the thread's.
+  std::jthread([] {
+    cpu_set_t all;
+    ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    for (int cpu = 0; cpu < CPU_SETSIZE && CPU_COUNT(&one) == 0; ++cpu)
+      if (CPU_ISSET(cpu, &all)) CPU_SET(cpu, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof one, &one), 0);
+    EXPECT_EQ(hardwareThreads(), 1u);
+    const auto self = std::this_thread::get_id();
+    parallelFor(100, [&](std::size_t) { EXPECT_EQ(std::this_thread::get_id(), self); });
+  });
+}
+
+}  // namespace
+}  // namespace quintet
