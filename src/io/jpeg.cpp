@@ -1,0 +1,90 @@
+// JPEG (baseline and progressive, 8 bit) through TurboJPEG.
+#include <turbojpeg.h>
+
+#include <memory>
+#include <new>
+
+#include "io/formats.h"
+
+namespace quintet::io {
+namespace {
+
+// A Huffman code has at least one bit for 64 coefficients, arithmetic coding may do with less; so tiny a
+// file for so many pixels is not a picture.
+constexpr std::uint64_t kBestRatio = 65536;
+
+struct Destroy {
+  void operator()(void* handle) const { tjDestroy(handle); }
+};
+using Decoder = std::unique_ptr<void, Destroy>;
+
+struct Header {
+  int width = 0;
+  int height = 0;
+  std::uint32_t channels = 0;
+};
+
+Decoder makeDecoder() {
+  Decoder decoder(tjInitDecompress());
+  if (!decoder) throw std::bad_alloc();
+  return decoder;
+}
+
+// TurboJPEG puts its function's name in front of some messages.
+[[noreturn]] void failWith(const Source& source, const std::string& message) {
+  if (message.find("Premature end") != std::string::npos) source.fail(source.size(), "JPEG data ends early");
+  const std::size_t name = message.find("(): ");
+  source.fail("broken JPEG: " + (name == std::string::npos ? message : message.substr(name + 4)));
+}
+
+Header readHeader(const Source& source, void* decoder) {
+  Header header;
+  int subsampling = 0;
+  int colors = 0;
+  if (tjDecompressHeader3(decoder, source.data(), static_cast<unsigned long>(source.size()), &header.width,
+                          &header.height, &subsampling, &colors) != 0)
+    failWith(source, tjGetErrorStr2(decoder));
+  if (colors == TJCS_CMYK || colors == TJCS_YCCK) source.fail("CMYK JPEG is not supported; convert it to RGB");
+  header.channels = colors == TJCS_GRAY ? 1 : 3;
+  const auto width = static_cast<std::uint64_t>(header.width);
+  const auto height = static_cast<std::uint64_t>(header.height);
+  source.checkSize(width, height, header.channels);
+  source.checkExpansion(width * height, kBestRatio);
+  return header;
+}
+
+bool matches(const Source& source) { return source.has(0, "\xff\xd8\xff"); }
+
+ImageInfo probe(const Source& source) {
+  const Decoder decoder = makeDecoder();
+  const Header header = readHeader(source, decoder.get());
+  return {static_cast<std::uint32_t>(header.width), static_cast<std::uint32_t>(header.height), header.channels,
+          PixelType::u8, {}};
+}
+
+Image decode(const Source& source) {
+  const Decoder decoder = makeDecoder();
+  const Header header = readHeader(source, decoder.get());
+  Image image = makeImage(static_cast<std::uint32_t>(header.width), static_cast<std::uint32_t>(header.height),
+                          header.channels, PixelType::u8, ColorEncoding::sRgb);
+  const auto run = [&](int flags) {
+    return tjDecompress2(decoder.get(), source.data(), static_cast<unsigned long>(source.size()),
+                         reinterpret_cast<unsigned char*>(image.data.data()), header.width, 0, header.height,
+                         header.channels == 1 ? TJPF_GRAY : TJPF_RGB, flags | TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS);
+  };
+  // What libjpeg calls a warning is lost data that it has painted over, and an error here. One is harmless
+  // and common: padding between the segments. Warnings behind it show only if decoding goes on.
+  const auto harmless = [&] {
+    return tjGetErrorCode(decoder.get()) == TJERR_WARNING &&
+           std::string_view(tjGetErrorStr2(decoder.get())).find("extraneous bytes before marker") != std::string_view::npos;
+  };
+  if (run(TJFLAG_STOPONWARNING) != 0 && !(harmless() && (run(0) == 0 || harmless())))
+    failWith(source, tjGetErrorStr2(decoder.get()));
+  return image;
+}
+
+}  // namespace
+
+const Format kJpeg{"JPEG", matches, probe, decode, nullptr};
+
+}  // namespace quintet::io
