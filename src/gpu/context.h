@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/log.h"
@@ -49,12 +50,16 @@ struct DeviceInfo {
   std::string uuid;             // 32 hex digits
   std::string kind;             // "discrete GPU", "integrated GPU", "CPU", …
   std::uint32_t apiVersion = 0;
-  std::uint64_t memoryBytes = 0;  // largest device-local heap
+  std::uint64_t memoryBytes = 0;     // largest device-local heap
+  std::uint64_t maxBufferBytes = 0;  // of one buffer
+  std::uint32_t maxImageSize = 0;    // pixels, width and height of a 2D image
+  std::uint32_t maxTextures = 0;     // combined image samplers that one shader may see
   std::string refusal;          // why Quintet cannot use it; empty: usable
   RayTracingLimits limits;      // zero when ray tracing is absent
   bool rayQuery = false;
   bool positionFetch = false;
   float timestampPeriod = 0.0f;  // nanoseconds per tick; 0: no timestamps
+  std::uint32_t timestampBits = 0;  // valid low bits of a timestamp
   std::uint32_t subgroupSize = 0;
   std::array<std::uint8_t, 16> pipelineCacheUuid{};
   Quirks quirks;
