@@ -1,0 +1,161 @@
+#include "gpu/context.h"
+
+#include <cstdlib>
+#include <optional>
+
+#include "gpu/commands.h"
+#include "gpu/context_validation.h"
+#include "gpu/device_choice.h"
+#include "gpu/device_query.h"
+#include "gpu/error.h"
+#include "gpu/instance.h"
+#include "gpu/submissions.h"
+#include "gpu/vma.h"
+
+namespace quintet::gpu {
+
+namespace {
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+FoundDevice findDevice(VkInstance instance, const std::string& request) {
+  std::vector<FoundDevice> devices = findDevices(instance);
+  std::vector<DeviceInfo> infos;
+  for (const FoundDevice& device : devices) infos.push_back(device.info);
+  return devices[chooseDevice(infos, request.empty() ? environment("QUINTET_DEVICE") : request)];
+}
+
+// The logical device with one queue; destroys itself.
+struct Device {
+  explicit Device(FoundDevice& found) {
+    const float priority = 1.0f;
+    VkDeviceQueueCreateInfo queueInfo{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
+    queueInfo.queueFamilyIndex = found.queueFamily;
+    queueInfo.queueCount = 1;
+    queueInfo.pQueuePriorities = &priority;
+
+    const std::vector<const char*> extensions = extensionsToEnable(found.capabilities);
+    DeviceFeatures features = featuresToEnable(found.capabilities);
+    VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
+    info.pNext = features.chain({extensions.begin(), extensions.end()});
+    info.queueCreateInfoCount = 1;
+    info.pQueueCreateInfos = &queueInfo;
+    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
+    check(vkCreateDevice(found.handle, &info, nullptr, &handle), "create the device", found.info.name);
+    volkLoadDeviceTable(&vk, handle);
+    vk.vkGetDeviceQueue(handle, found.queueFamily, 0, &queue);
+  }
+  ~Device() { vk.vkDestroyDevice(handle, nullptr); }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkDevice handle = VK_NULL_HANDLE;
+  VolkDeviceTable vk{};
+  VkQueue queue = VK_NULL_HANDLE;
+};
+
+struct Allocator {
+  Allocator(VkInstance instance, const FoundDevice& found, VkDevice device) {
+    VmaVulkanFunctions functions{};
+    functions.vkGetInstanceProcAddr = vkGetInstanceProcAddr;
+    functions.vkGetDeviceProcAddr = vkGetDeviceProcAddr;
+    VmaAllocatorCreateInfo info{};
+    info.flags = VMA_ALLOCATOR_CREATE_BUFFER_DEVICE_ADDRESS_BIT;
+    if (found.capabilities.has(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME))
+      info.flags |= VMA_ALLOCATOR_CREATE_EXT_MEMORY_BUDGET_BIT;
+    info.physicalDevice = found.handle;
+    info.device = device;
+    info.instance = instance;
+    info.pVulkanFunctions = &functions;
+    info.vulkanApiVersion = VK_API_VERSION_1_3;
+    check(vmaCreateAllocator(&info, &handle), "create the memory allocator");
+  }
+  ~Allocator() { vmaDestroyAllocator(handle); }
+  Allocator(const Allocator&) = delete;
+  Allocator& operator=(const Allocator&) = delete;
+
+  VmaAllocator handle = VK_NULL_HANDLE;
+};
+
+}  // namespace
+
+// Destroyed from the last member to the first.
+struct Context::Impl {
+  explicit Impl(const ContextOptions& options)
+      : log(options.log),
+        sink(options.log),
+        instance(options.validate ? &sink : nullptr),
+        found(findDevice(instance.handle(), options.device)),
+        device(found),
+        allocator(instance.handle(), found, device.handle),
+        submissions(device.vk, device.handle, device.queue, found.queueFamily) {}
+
+  LogSink log;
+  ValidationSink sink;
+  Instance instance;
+  FoundDevice found;
+  Device device;
+  Allocator allocator;
+  Submissions submissions;
+};
+
+bool ContextOptions::validationRequested() {
+  const std::string value = environment("QUINTET_VALIDATE");
+  return !value.empty() && value != "0";
+}
+
+Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+
+Context::~Context() {
+  // A hung device still uses its objects, and destroying the device would wait for ever: leave them.
+  if (!impl_->submissions.shutDown()) static_cast<void>(impl_.release());
+}
+
+std::vector<DeviceInfo> Context::devices() {
+  std::vector<DeviceInfo> result;
+  try {
+    const Instance instance(nullptr);
+    for (FoundDevice& device : findDevices(instance.handle())) result.push_back(std::move(device.info));
+  } catch (const NoDeviceError&) {
+    result.clear();
+  }
+  return result;
+}
+
+const DeviceInfo& Context::info() const { return impl_->found.info; }
+const VolkDeviceTable& Context::vk() const { return impl_->device.vk; }
+VkInstance Context::instance() const { return impl_->instance.handle(); }
+VkPhysicalDevice Context::physicalDevice() const { return impl_->found.handle; }
+VkDevice Context::device() const { return impl_->device.handle; }
+VmaAllocator Context::allocator() const { return impl_->allocator.handle; }
+VkQueue Context::queue() const { return impl_->device.queue; }
+std::uint32_t Context::queueFamily() const { return impl_->found.queueFamily; }
+const LogSink& Context::log() const { return impl_->log; }
+
+std::uint32_t Context::validationMessageCount() const { return impl_->sink.count(); }
+std::vector<std::string> Context::validationMessages() const { return impl_->sink.messages(); }
+
+std::uint64_t Context::submit(const std::function<void(Commands&)>& record) {
+  return impl_->submissions.submit(*this, record);
+}
+void Context::wait(std::uint64_t value, double timeoutSeconds) { impl_->submissions.wait(value, timeoutSeconds); }
+std::uint64_t Context::completed() const { return impl_->submissions.completed(); }
+std::uint64_t Context::submitted() const { return impl_->submissions.submitted(); }
+void Context::retire(std::function<void()> destroy) { impl_->submissions.retire(std::move(destroy)); }
+
+void Context::setName(VkObjectType type, std::uint64_t handle, std::string_view name) {
+  const PFN_vkSetDebugUtilsObjectNameEXT set = impl_->instance.setObjectName();
+  if (!set || name.empty()) return;
+  const std::string text(name);
+  VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
+  info.objectType = type;
+  info.objectHandle = handle;
+  info.pObjectName = text.c_str();
+  check(set(impl_->device.handle, &info), "name an object", text);
+}
+
+}  // namespace quintet::gpu
