@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -76,6 +77,7 @@ Buffer makeBufferOf(Context& context, const std::vector<T>& data, VkBufferUsageF
 }
 
 // Many copies in few submissions: fills device buffers and images through a staging ring of fixed size.
+// `data` is read before upload returns; a destination must live until the flush.
 class Uploader {
  public:
   explicit Uploader(Context& context, VkDeviceSize stagingBytes = VkDeviceSize{64} << 20);
@@ -83,7 +85,7 @@ class Uploader {
   Uploader(const Uploader&) = delete;
   Uploader& operator=(const Uploader&) = delete;
   void upload(const Buffer& destination, std::span<const std::byte> data, VkDeviceSize offset = 0);
-  // All layers of one mip level of a colour image, tightly packed; leaves it in SHADER_READ_ONLY_OPTIMAL.
+  // All pixels of the image, row after row, tightly packed; leaves it in SHADER_READ_ONLY_OPTIMAL.
   void upload(const class Image& destination, std::span<const std::byte> pixels);
   void flush();  // submits and waits
 

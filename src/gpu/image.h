@@ -16,6 +16,9 @@ struct ImageOptions {
   std::string name;
 };
 
+// Bytes of one pixel in memory; throws UsageError for formats that Quintet does not use.
+std::uint32_t bytesPerPixel(VkFormat format);
+
 class Image {
  public:
   Image() = default;
