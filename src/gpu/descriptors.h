@@ -9,6 +9,7 @@ namespace quintet::gpu {
 
 // Layout: binding 0 an acceleration structure, binding 1 `textureCount` combined image samplers
 // (partially bound, non-uniformly indexed); push constants of `pushConstantBytes` for all stages.
+// Sets of any two texture counts have compatible layouts: a pipeline made with one works with the other.
 class BindlessSet {
  public:
   BindlessSet(Context& context, std::uint32_t textureCount, std::uint32_t pushConstantBytes);
@@ -20,12 +21,14 @@ class BindlessSet {
   VkPipelineLayout pipelineLayout() const { return pipelineLayout_; }
   VkDescriptorSet set() const { return set_; }
   std::uint32_t pushConstantBytes() const { return pushConstantBytes_; }
+  static VkShaderStageFlags stages();  // of the bindings and of the push constants: vkCmdPushConstants wants all of them
 
   // The set must not be in use by pending work.
   void setAccelerationStructure(VkAccelerationStructureKHR structure);
   void setTexture(std::uint32_t index, const Image& image, const Sampler& sampler);
 
  private:
+  void release();
   Context& context_;
   VkDescriptorSetLayout layout_ = VK_NULL_HANDLE;
   VkPipelineLayout pipelineLayout_ = VK_NULL_HANDLE;
