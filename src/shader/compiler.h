@@ -34,18 +34,20 @@ struct Diagnostic {
 
 struct Source {
   Stage stage = Stage::compute;
-  std::string text;
-  std::string name;              // path shown in diagnostics; its folder is searched for #include "…"
+  std::string text;              // GLSL 460 (another #version is compiled as 460, with a warning)
+  // Path shown in diagnostics; its folder is searched for #include "…". "<programs/x.rgen>": in memory.
+  std::string name;
   std::vector<std::pair<std::string, std::string>> defines;
-  // Files that exist only in memory, by include name, e.g. <quintet/generated/program.glsl>; they win
-  // over every folder.
+  // Files that exist only in memory, by include name, e.g. "quintet/generated/program.glsl" (brackets
+  // around it do not matter); they win over every folder. A quoted include is first tried relative to
+  // the including file here too. Diagnostics call them <quintet/generated/program.glsl>.
   std::map<std::string, std::string> virtualFiles;
 };
 
 struct Result {
   std::vector<std::uint32_t> spirv;          // empty: did not compile
   std::vector<Diagnostic> diagnostics;
-  std::vector<std::filesystem::path> files;  // every file on disk that was read (for --watch)
+  std::vector<std::filesystem::path> files;  // every file on disk that was read, Source::text's own not (for --watch)
   bool fromCache = false;
   bool ok() const { return !spirv.empty(); }
 };

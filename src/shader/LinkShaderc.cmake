@@ -1,0 +1,33 @@
+# Finds a way to link shaderc. Debian's and Ubuntu's packages (2023.2) leave glslang and SPIRV-Tools
+# out of libshaderc.so and libshaderc_combined.a alike, so that neither links alone; elsewhere the
+# combined archive is complete. Static first: a program then runs where shaderc is not installed.
+include(CheckCXXSourceCompiles)
+
+function(quintet_try_shaderc RESULT)
+  set(CMAKE_REQUIRED_LIBRARIES ${ARGN} Threads::Threads)
+  set(CMAKE_REQUIRED_QUIET ON)
+  check_cxx_source_compiles("#include <shaderc/shaderc.hpp>
+    int main() { return shaderc::Compiler().CompileGlslToSpv(\"\", 0, shaderc_compute_shader, \"\").GetNumErrors() != 0; }"
+    ${RESULT})
+endfunction()
+
+function(quintet_link_shaderc TARGET)
+  set(glslang glslang MachineIndependent GenericCodeGen OSDependent OGLCompiler SPIRV SPIRV-Tools-opt SPIRV-Tools)
+  quintet_try_shaderc(QUINTET_SHADERC_COMBINED shaderc_combined)
+  if(QUINTET_SHADERC_COMBINED)
+    set(libraries shaderc_combined)
+  else()
+    quintet_try_shaderc(QUINTET_SHADERC_STATIC shaderc_combined ${glslang})
+    if(QUINTET_SHADERC_STATIC)
+      set(libraries shaderc_combined ${glslang})
+    else()
+      quintet_try_shaderc(QUINTET_SHADERC_SHARED PkgConfig::shaderc)
+      if(NOT QUINTET_SHADERC_SHARED)
+        message(FATAL_ERROR "shaderc does not link: install libshaderc-dev, glslang-dev and spirv-tools")
+      endif()
+      set(libraries PkgConfig::shaderc)
+    endif()
+  endif()
+  message(STATUS "shaderc: ${libraries}")
+  target_link_libraries(${TARGET} PRIVATE ${libraries} Threads::Threads)
+endfunction()

@@ -1,0 +1,30 @@
+#include <pthread.h>
+
+#include <functional>
+
+#include "shader/glslang_run.h"
+
+namespace quintet::shader {
+
+void runOnDeepStack(std::size_t bytes, const std::function<void()>& body) {
+  const auto entry = [](void* argument) -> void* {
+    (*static_cast<const std::function<void()>*>(argument))();
+    return nullptr;
+  };
+  constexpr std::size_t kSmallest = std::size_t{8} << 20;
+  for (; bytes >= kSmallest; bytes /= 2) {
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_t thread{};
+    const bool started = pthread_attr_setstacksize(&attributes, bytes) == 0 &&
+                         pthread_create(&thread, &attributes, entry, const_cast<std::function<void()>*>(&body)) == 0;
+    pthread_attr_destroy(&attributes);
+    if (started) {
+      pthread_join(thread, nullptr);
+      return;
+    }
+  }
+  body();
+}
+
+}  // namespace quintet::shader

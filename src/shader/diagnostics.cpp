@@ -1,0 +1,148 @@
+#include "shader/diagnostics.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+namespace quintet::shader {
+namespace {
+
+constexpr std::string_view kCompilerId = "GLSL";
+
+std::string_view severityName(Severity severity) {
+  switch (severity) {
+    case Severity::note: return "note";
+    case Severity::warning: return "warning";
+    case Severity::error: break;
+  }
+  return "error";
+}
+
+bool isWordCharacter(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+// Reads "error: " or "warning: " at the start of `rest`.
+bool takeSeverity(std::string_view& rest, Severity& severity) {
+  for (const Severity candidate : {Severity::error, Severity::warning, Severity::note}) {
+    const std::string_view name = severityName(candidate);
+    if (rest.starts_with(name) && rest.substr(name.size(), 2) == ": ") {
+      severity = candidate;
+      rest.remove_prefix(name.size() + 2);
+      return true;
+    }
+  }
+  return false;
+}
+
+// Reads "12: " at the start of `rest`.
+bool takeLine(std::string_view& rest, int& line) {
+  const auto [end, failed] = std::from_chars(rest.data(), rest.data() + rest.size(), line);
+  const auto used = static_cast<std::size_t>(end - rest.data());
+  if (failed != std::errc{} || line < 0 || rest.substr(used, 2) != ": ") return false;
+  rest.remove_prefix(used + 2);
+  return true;
+}
+
+// Parses what follows the name: ":12: error: text" or ": error: text".
+bool takePlace(std::string_view rest, Diagnostic& diagnostic) {
+  if (!rest.starts_with(':')) return false;
+  rest.remove_prefix(1);
+  if (rest.starts_with(' ')) {
+    rest.remove_prefix(1);
+  } else if (!takeLine(rest, diagnostic.line)) {
+    return false;
+  }
+  if (!takeSeverity(rest, diagnostic.severity)) return false;
+  diagnostic.text = rest;
+  return true;
+}
+
+bool parseMessage(std::string_view message, const std::vector<const SourceFile*>& files, Diagnostic& diagnostic) {
+  for (const SourceFile* file : files) {
+    if (!message.starts_with(file->name)) continue;
+    diagnostic.file = file->name;
+    if (takePlace(message.substr(file->name.size()), diagnostic)) return true;
+  }
+  // A name that the source made up with #line "name".
+  for (std::size_t colon = message.find(':'); colon != message.npos; colon = message.find(':', colon + 1)) {
+    diagnostic.file = message.substr(0, colon);
+    if (takePlace(message.substr(colon), diagnostic)) return true;
+  }
+  diagnostic.file.clear();
+  diagnostic.line = 0;
+  if (takeSeverity(message, diagnostic.severity)) {
+    diagnostic.text = message;
+    return true;
+  }
+  return false;
+}
+
+// glslang repeats nothing useful with "compilation terminated", and shaderc's forced version is ours.
+bool isNoise(const Diagnostic& d) {
+  return d.text == "'' : compilation terminated" || d.text.ends_with("while in source code it is (460, none)");
+}
+
+}  // namespace
+
+std::string Diagnostic::format() const {
+  std::string result = file;
+  if (!file.empty() && line > 0) {
+    result += ":" + std::to_string(line);
+    if (column > 0) result += ":" + std::to_string(column);
+  }
+  if (!file.empty()) result += ": ";
+  result.append(severityName(severity)).append(": ").append(text);
+  if (!id.empty()) result.append(" [").append(id).append("]");
+  return result;
+}
+
+int columnOfToken(std::string_view text, int line, std::string_view message) {
+  const std::size_t open = message.find('\'');
+  const std::size_t close = message.find('\'', open == message.npos ? open : open + 1);
+  if (close == message.npos || close == open + 1 || line <= 0) return 0;
+  const std::string_view token = message.substr(open + 1, close - open - 1);
+
+  for (; line > 1; --line) {
+    const std::size_t end = text.find('\n');
+    if (end == text.npos) return 0;
+    text.remove_prefix(end + 1);
+  }
+  text = text.substr(0, text.find('\n'));
+  int column = 0;
+  for (std::size_t at = text.find(token); at != text.npos; at = text.find(token, at + 1)) {
+    const std::size_t after = at + token.size();
+    if (isWordCharacter(token.front()) && at > 0 && isWordCharacter(text[at - 1])) continue;
+    if (isWordCharacter(token.back()) && after < text.size() && isWordCharacter(text[after])) continue;
+    if (column > 0) return 0;
+    column = static_cast<int>(at) + 1;
+  }
+  return column;
+}
+
+std::vector<Diagnostic> parseMessages(std::string_view messages, const IncludeResolver& files) {
+  std::vector<const SourceFile*> known = files.files();
+  std::ranges::sort(known, std::greater{}, [](const SourceFile* f) { return f->name.size(); });  // longest first
+  std::vector<Diagnostic> diagnostics;
+  while (!messages.empty()) {
+    const std::size_t end = std::min(messages.find('\n'), messages.size());
+    const std::string_view message = messages.substr(0, end);
+    messages.remove_prefix(std::min(end + 1, messages.size()));
+    if (message.empty()) continue;
+
+    Diagnostic diagnostic;
+    diagnostic.id = kCompilerId;
+    if (parseMessage(message, known, diagnostic)) {
+      if (const SourceFile* file = files.find(diagnostic.file))
+        diagnostic.column = columnOfToken(file->text, diagnostic.line, diagnostic.text);
+      if (!isNoise(diagnostic)) diagnostics.push_back(std::move(diagnostic));
+    } else if (diagnostics.empty()) {
+      diagnostic.file = files.root().name;
+      diagnostic.text = message;
+      diagnostics.push_back(std::move(diagnostic));
+    } else {
+      diagnostics.back().text.append(" ").append(message);
+    }
+  }
+  return diagnostics;
+}
+
+}  // namespace quintet::shader

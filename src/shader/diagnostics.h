@@ -1,0 +1,18 @@
+// From the compiler's messages to Diagnostics.
+#ifndef QUINTET_SHADER_DIAGNOSTICS_H
+#define QUINTET_SHADER_DIAGNOSTICS_H
+
+#include "shader/include_resolver.h"
+
+namespace quintet::shader {
+
+// Parses shaderc's text: lines "name:line: error: …", "name: warning: …"; a line of another form
+// continues the message before it. Names that the resolver knows may contain colons.
+std::vector<Diagnostic> parseMessages(std::string_view messages, const IncludeResolver& files);
+
+// Column of the only occurrence of the token that the message quotes ("'token' : undeclared …") in
+// its line; 0 if there is none or more than one.
+int columnOfToken(std::string_view text, int line, std::string_view message);
+
+}  // namespace quintet::shader
+#endif

@@ -1,0 +1,123 @@
+// What a source becomes: SPIR-V, or diagnostics that point into the right file.
+#include <thread>
+
+#include "shader_test_support.h"
+
+namespace quintet::shader {
+
+constexpr std::uint32_t kSpirv16 = 0x0001'0600;
+
+TEST(Compiler, CompilesEveryStage) {
+  const Compiler compiler({});
+  const std::string head = "#version 460\n#extension GL_EXT_ray_tracing : require\n";
+  const std::pair<Stage, std::string> sources[] = {
+      {Stage::rayGeneration, "void main() {}"},
+      {Stage::intersection, "void main() { reportIntersectionEXT(1.0, 0u); }"},
+      {Stage::anyHit, "void main() { ignoreIntersectionEXT; }"},
+      {Stage::closestHit, "layout(location = 0) rayPayloadInEXT vec3 p; void main() { p = vec3(gl_HitTEXT); }"},
+      {Stage::miss, "layout(location = 0) rayPayloadInEXT vec3 p; void main() { p = vec3(0); }"},
+      {Stage::callable, "layout(location = 0) callableDataInEXT vec3 p; void main() { p = vec3(0); }"},
+      {Stage::compute, "void main() {}"},
+  };
+  for (const auto& [stage, text] : sources) {
+    Source source;
+    source.stage = stage;
+    source.text = head + text;
+    const Result result = compiler.compile(source);
+    ASSERT_TRUE(result.ok()) << stageName(stage) << "\n" << all(result);
+    EXPECT_EQ(result.spirv[1], kSpirv16);
+    EXPECT_TRUE(result.diagnostics.empty()) << all(result);
+    EXPECT_FALSE(result.fromCache);
+  }
+}
+
+TEST(Compiler, ErrorNamesFileLineAndColumn) {
+  const Result result = Compiler({}).compile(computeSource("int f() {\n  return nowhere;\n}"));
+  ASSERT_FALSE(result.ok());
+  const Diagnostic& error = result.diagnostics.at(0);
+  EXPECT_EQ(error.file, "test.comp");
+  EXPECT_EQ(error.line, 5);
+  EXPECT_EQ(error.column, 10);
+  EXPECT_EQ(error.id, "GLSL");
+  EXPECT_EQ(error.text, "'nowhere' : undeclared identifier");
+}
+
+TEST(Compiler, NameWithColonsAndSpaces) {
+  const Result result = Compiler({}).compile(computeSource("int f() { return nowhere; }", "", "c:/a b:c.comp"));
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.diagnostics.at(0).file, "c:/a b:c.comp");
+  EXPECT_EQ(result.diagnostics.at(0).line, 4);
+}
+
+TEST(Compiler, HashLineMapsBack) {
+  const Result result = Compiler({}).compile(computeSource("#line 70 \"model.frag\"\nint f() { return nowhere; }"));
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.diagnostics.at(0).file, "model.frag");
+  EXPECT_EQ(result.diagnostics.at(0).line, 70);
+}
+
+TEST(Compiler, WarningsAreKept) {
+  const Result result = Compiler({}).compile(computeSource("#extension GL_EXT_does_not_exist : enable"));
+  ASSERT_TRUE(result.ok()) << all(result);
+  ASSERT_EQ(result.diagnostics.size(), 1u) << all(result);
+  EXPECT_EQ(result.diagnostics[0].severity, Severity::warning);
+  EXPECT_EQ(result.diagnostics[0].line, 4);
+}
+
+TEST(Compiler, AnotherVersionIsCompiledAs460WithAWarning) {
+  Source source;
+  source.text = "#version 450\nvoid main() {}\n";
+  const Result result = Compiler({}).compile(source);
+  ASSERT_TRUE(result.ok()) << all(result);
+  ASSERT_EQ(result.diagnostics.size(), 1u);
+  EXPECT_NE(result.diagnostics[0].text.find("450"), std::string::npos);
+  source.text = "void main() {}\n";
+  EXPECT_TRUE(Compiler({}).compile(source).ok());
+}
+
+TEST(Compiler, DefinesReachTheSource) {
+  Source source = computeSource("#ifndef ON\n#error off\n#endif", "b.x = VALUE;");
+  source.defines = {{"ON", ""}, {"VALUE", "7"}};
+  EXPECT_TRUE(Compiler({}).compile(source).ok());
+  source.defines = {{"VALUE", "7"}};
+  const Result result = Compiler({}).compile(source);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.diagnostics.at(0).line, 5);
+}
+
+TEST(Compiler, ImpossibleDefinesAreRefused) {
+  for (const auto& [name, value] : {std::pair<std::string, std::string>{"", "1"}, {"A B", "1"}, {"1A", ""}, {"A", "1\nint x;"}}) {
+    Source source = computeSource("");
+    source.defines = {{name, value}};
+    const Result result = Compiler({}).compile(source);
+    EXPECT_FALSE(result.ok());
+    EXPECT_EQ(result.diagnostics.size(), 1u);
+  }
+}
+
+TEST(Compiler, OptionsChangeTheCode) {
+  Source source = computeSource("int f(int x) { return x * 2 + 0; }", "b.x = f(b.x) + f(3);");
+  const Result fast = Compiler({}).compile(source);
+  CompilerOptions options;
+  options.optimize = false;
+  const Result plain = Compiler(options).compile(source);
+  options.debugInfo = true;
+  const Result debug = Compiler(options).compile(source);
+  ASSERT_TRUE(fast.ok() && plain.ok() && debug.ok());
+  EXPECT_LT(fast.spirv.size(), plain.spirv.size());
+  EXPECT_LT(plain.spirv.size(), debug.spirv.size());
+}
+
+TEST(Compiler, ThreadsMayShareIt) {
+  const Compiler compiler({});
+  const Result expected = compiler.compile(computeSource("int f() { return 1; }", "b.x = f();"));
+  std::vector<Result> results(8);
+  {
+    std::vector<std::jthread> threads;
+    for (Result& result : results)
+      threads.emplace_back([&] { result = compiler.compile(computeSource("int f() { return 1; }", "b.x = f();")); });
+  }
+  for (const Result& result : results) EXPECT_EQ(result.spirv, expected.spirv);
+}
+
+}  // namespace quintet::shader
