@@ -1,0 +1,14 @@
+// What the two samplers share: one interface, `struct Sampler` with
+//   Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed)
+//   float next1D(inout Sampler)   vec2 next2D(inout Sampler)   in [0,1)
+//   uint nextBits(inout Sampler)  32 independent bits, e.g. a ray's seed
+// A program includes sobol.glsl (converges faster) or pcg.glsl (plainly independent), never both.
+#ifdef QUINTET_SAMPLER
+#error "include either quintet/sampling/sobol.glsl or quintet/sampling/pcg.glsl"
+#endif
+#define QUINTET_SAMPLER
+
+#include "hash.glsl"
+
+// A bijection of pixels up to 65536 x 65536 for each seed: no two pixels of an image share a value.
+uint pixelSeed(uvec2 pixel, uint seed) { return hashCombine(hash(pixel.x | pixel.y << 16), seed); }
