@@ -1,0 +1,70 @@
+// The environment: an equirectangular texture (bilinear) or a constant, and its importance sampling. A cell of the
+// table is drawn by its probability, then a direction uniform in solid angle within the cell: uniform
+// in u and in cos θ. So the density in a cell is its probability over its solid angle; that is
+// where the sin θ of the map's Jacobian went.
+#ifndef QUINTET_LIGHTS_ENVIRONMENT_GLSL
+#define QUINTET_LIGHTS_ENVIRONMENT_GLSL
+
+#include "../sampling/hash.glsl"
+#include "alias.glsl"
+#include "equirect.glsl"
+#include "light_sample.glsl"
+
+vec3 environmentRadiance(vec3 direction) {
+  const EnvironmentData e = frame.environment;
+  if (e.texture == kNoTexture) return e.scale;
+  return e.scale * textureLod(textures[nonuniformEXT(e.texture)], equirectFromDirection(e, direction), 0.0).rgb;
+}
+
+// Solid angle of a cell in `row`: 2pi/width · (cos θ_top - cos θ_bottom), as a product without cancellation.
+float environmentCellAngle(EnvironmentData e, uint row) {
+  const float halfStep = 0.5 * kPi / float(e.height);
+#ifdef QUINTET_WRONG_ENVIRONMENT_PDF
+  return 4.0 * kPi / float(e.width * e.height);  // for the tests of the tests: forgets sin θ
+#endif
+  return 4.0 * kPi / float(e.width) * sin(float(2u * row + 1u) * halfStep) * sin(halfStep);
+}
+
+// Density per solid angle of environmentSample.
+float environmentPdf(vec3 direction) {
+  const EnvironmentData e = frame.environment;
+  if (e.table == 0ul) return 0.0;
+  const uvec2 size = uvec2(e.width, e.height);
+  const uvec2 cell = min(uvec2(equirectFromDirection(e, direction) * vec2(size)), size - 1u);
+  return AliasArray(e.table).at[cell.y * e.width + cell.x].probability / environmentCellAngle(e, cell.y);
+}
+
+// A direction and its density. (u.x, u.y) is read as a point of the map, so stratified u stays stratified where
+// the table keeps its entries; the choice between entry and alias takes `bits`, independent of u.
+vec3 environmentSample(vec2 u, uint bits, out float pdf) {
+  const EnvironmentData e = frame.environment;
+  uvec2 fraction;
+  const uint more = hash(bits);
+  uint column = splitIndex(u.x, more, e.width, fraction.x);
+  uint row = splitIndex(u.y, hash(more), e.height, fraction.y);
+  float probability;
+  const uint cell = resolveAlias(AliasArray(e.table), row * e.width + column, fractionFloat(bits), probability);
+  row = cell / e.width;
+  column = cell - row * e.width;
+  pdf = probability / environmentCellAngle(e, row);
+
+  // Rows are counted from the nearer pole; sin²(θ/2) = (1 - cos θ)/2 keeps its digits there.
+  const bool below = 2u * row >= e.height;
+  const float fromPole = float(below ? e.height - 1u - row : row);
+  const float halfStep = 0.5 * kPi / float(e.height);
+  const float top = sin(fromPole * halfStep);
+  const float bottom = sin((fromPole + 1.0) * halfStep);
+  const float s = mix(top * top, bottom * bottom, fractionFloat(below ? ~fraction.y : fraction.y));
+  return directionFromEquirect(e, (float(column) + fractionFloat(fraction.x)) / float(e.width), s, below);
+}
+
+bool sampleEnvironmentLight(vec2 u, uint bits, inout LightSample s) {
+  if (frame.environment.table == 0ul) return false;
+  float pdf;
+  const vec3 wi = environmentSample(u, bits, pdf);
+  lightFromInfinity(wi, environmentRadiance(wi), false, s);
+  s.pdf = pdf;
+  return pdf > 0.0 && maxComponent(s.radiance) > 0.0;
+}
+
+#endif

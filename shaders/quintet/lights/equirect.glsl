@@ -1,0 +1,45 @@
+// Directions and equirectangular texture coordinates: u = atan2(d.z, d.x) / 2pi + 0.5, v = acos(d.y) / pi, with d
+// in the environment's frame (EnvironmentData: rotated about +y). Written for the poles, where acos(y) loses
+// its digits, and with an arc tangent of our own: drivers' may be off by 1e-4 (Vulkan allows 4096 ulp).
+#ifndef QUINTET_LIGHTS_EQUIRECT_GLSL
+#define QUINTET_LIGHTS_EQUIRECT_GLSL
+
+#include "../frame.glsl"
+
+// atan2 within 2e-7: a polynomial for atan(x)/x in x² on [0,1], our own minimax fit (Remez; relative
+// error 9e-8); the octants by symmetry.
+float preciseAtan2(float y, float x) {
+  const float high = max(abs(x), abs(y));
+  const float low = min(abs(x), abs(y));
+  const float t = high > 0.0 ? low / high : 0.0;
+  const float s = t * t;
+  float p = 0.02455712952457009 - 0.004780456974619508 * s;
+  p = -0.059904721565096956 + p * s;
+  p = 0.09942759431121459 + p * s;
+  p = -0.14029419835957174 + p * s;
+  p = 0.19971375159775548 + p * s;
+  p = -0.3333209351368038 + p * s;
+  p = 0.9999999114138739 + p * s;
+  float angle = p * t;
+  if (abs(y) > abs(x)) angle = 0.5 * kPi - angle;
+  if (x < 0.0) angle = kPi - angle;
+  return y < 0.0 ? -angle : angle;
+}
+
+vec2 equirectFromDirection(EnvironmentData e, vec3 d) {
+  const float x = e.cosRotation * d.x - e.sinRotation * d.z;
+  const float z = e.sinRotation * d.x + e.cosRotation * d.z;
+  return vec2(preciseAtan2(z, x) * (0.5 / kPi) + 0.5, preciseAtan2(length(d.xz), d.y) * (1.0 / kPi));
+}
+
+// Direction at horizontal coordinate u with polar angle θ given as sin²(θ/2), from the pole +y or (below) -y.
+vec3 directionFromEquirect(EnvironmentData e, float u, float halfSineSquared, bool below) {
+  const float phi = 2.0 * kPi * (u - 0.5);
+  const float r = 2.0 * sqrt(halfSineSquared * (1.0 - halfSineSquared));
+  const float y = 1.0 - 2.0 * halfSineSquared;
+  const float x = r * cos(phi);
+  const float z = r * sin(phi);
+  return vec3(e.cosRotation * x + e.sinRotation * z, below ? -y : y, e.cosRotation * z - e.sinRotation * x);
+}
+
+#endif

@@ -1,0 +1,81 @@
+// Emissive triangle: uniform over the world-space area, emits the material's emission on both sides.
+#ifndef QUINTET_LIGHTS_TRIANGLE_GLSL
+#define QUINTET_LIGHTS_TRIANGLE_GLSL
+
+#include "../sampling/warp.glsl"
+#include "../surface.glsl"
+#include "light_sample.glsl"
+
+struct LightTriangle {
+  vec3 p0, p1, p2;  // object space
+  uvec3 vertices;
+  vec3 normal;      // world, unit; either side
+  float area;       // world, m²; 0: degenerate
+};
+
+LightTriangle fetchLightTriangle(InstanceData instance, GeometryData geometry, uint primitive) {
+  LightTriangle t;
+  t.vertices = Uvec3Array(geometry.triangles).at[primitive];
+  Vec3Array positions = Vec3Array(geometry.positions);
+  t.p0 = positions.at[t.vertices.x];
+  t.p1 = positions.at[t.vertices.y];
+  t.p2 = positions.at[t.vertices.z];
+  const vec3 edge1 = rowsTimesVector(instance.worldFromObject, t.p1 - t.p0);
+  const vec3 edge2 = rowsTimesVector(instance.worldFromObject, t.p2 - t.p0);
+  // Normalised first: products of tiny edges would underflow.
+  const float size = max(maxComponent(abs(edge1)), maxComponent(abs(edge2)));
+  const vec3 n = cross(edge1 / size, edge2 / size);
+  const float sine = length(n);
+  t.area = sine > 0.0 ? 0.5 * sine * size * size : 0.0;
+  t.normal = n / sine;
+  return t;
+}
+
+// What the surface emits at barycentrics b, times the probability that alpha mask or blend leaves it there:
+// an any-hit shader does not see the end of a shadow ray.
+vec3 lightTriangleEmission(GeometryData geometry, uvec3 v, vec3 b) {
+  const MaterialData m = MaterialArray(frame.materials).at[geometry.material];
+  vec3 emission = m.emissive;
+  if (m.emissiveTexture.index != kNoTexture)
+    emission *= sampleTexture(m.emissiveTexture, interpolateUv(geometry, v, b, m.emissiveTexture.uvSet)).rgb;
+  if ((m.flags & (kMaterialMask | kMaterialBlend)) == 0u) return emission;
+  float alpha = m.baseColor.a;
+  if (geometry.colors != 0ul) {
+    Vec4Array colors = Vec4Array(geometry.colors);
+    alpha *= dot(b, vec3(colors.at[v.x].a, colors.at[v.y].a, colors.at[v.z].a));
+  }
+  if (m.baseColorTexture.index != kNoTexture)
+    alpha *= sampleTexture(m.baseColorTexture, interpolateUv(geometry, v, b, m.baseColorTexture.uvSet)).a;
+  if ((m.flags & kMaterialMask) != 0u) return alpha < m.alphaCutoff ? vec3(0.0) : emission;
+  return clamp(alpha, 0.0, 1.0) * emission;
+}
+
+// Density per solid angle of a uniform point on the triangle, at distance d along a unit ray with
+// cosine = |ray · normal|; 0 where it is not finite, as the sampler then gives nothing.
+float pdfTriangle(float area, float d, float cosine) {
+#ifdef QUINTET_WRONG_TRIANGLE_PDF
+  return area > 0.0 ? d * d / area : 0.0;  // for the tests of the tests: forgets the cosine
+#endif
+  const float projected = area * cosine;
+  const float pdf = d * d / projected;
+  return projected > 0.0 && !isinf(pdf) ? pdf : 0.0;
+}
+
+bool sampleTriangleLight(LightData light, vec3 position, vec2 u, inout LightSample s) {
+  const InstanceData instance = InstanceArray(frame.instances).at[light.instance];
+  const GeometryData geometry = GeometryArray(frame.geometries).at[instance.firstGeometry + light.geometry];
+  const LightTriangle t = fetchLightTriangle(instance, geometry, light.primitive);
+  if (!(t.area > 0.0)) return false;
+  const vec2 b12 = sampleTriangle(u);
+  const vec3 b = vec3(1.0 - b12.x - b12.y, b12);
+  const vec3 point = rowsTimesPoint(instance.worldFromObject, b.x * t.p0 + b.y * t.p1 + b.z * t.p2);
+  lightFromPoint(point, vec3(1.0), position, s);
+  s.radiance = lightTriangleEmission(geometry, t.vertices, b);
+  s.pdf = pdfTriangle(t.area, s.distance, abs(dot(t.normal, s.wi)));
+  s.normal = t.normal;
+  s.error = surfaceError(instance, t.p0, t.p1, t.p2, point, t.normal);
+  s.delta = false;
+  return s.pdf > 0.0 && maxComponent(s.radiance) > 0.0;
+}
+
+#endif
