@@ -45,7 +45,10 @@ struct CameraData {
 };
 QT_SHARED_SIZE(CameraData, 72);
 
-QT_CONSTANT kMaxOutputs = 16;
+// Frame::flags
+QT_CONSTANT kFrameTransparent = 1u;  // camera rays that leave the scene give 0 with alpha 0
+
+QT_CONSTANT kMaxOutputs = 16u;
 QT_CONSTANT kNoLight = 0xFFFFFFFFu;
 
 struct Frame {
@@ -65,7 +68,7 @@ struct Frame {
   uint lightCount;
   uint environmentLight;  // index of the environment in `lights`, or kNoLight
   uint seed;
-  uint padding;
+  uint flags;           // kFrame…
 };
 QT_SHARED_SIZE(Frame, 8 * 8 + 8 * 16 + 40 + 72 + 24);
 

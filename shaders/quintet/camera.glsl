@@ -1,0 +1,44 @@
+// Camera rays: pinhole, thin lens (Kolb et al. 1995, thin-lens model) and orthographic.
+#ifndef QUINTET_CAMERA_GLSL
+#define QUINTET_CAMERA_GLSL
+
+#include "frame.glsl"
+#include "sampling/warp.glsl"
+
+struct Ray {
+  vec3 origin;
+  vec3 direction;  // unit
+};
+
+// Offset from the pixel's centre in pixels, distributed as a tent of radius 0.75: filter importance
+// sampling (Ernst et al. 2006), so that each pixel is the mean of its own samples.
+vec2 filterOffset(vec2 u) {
+  const vec2 v = 2.0 * u - 1.0;
+  return 0.75 * sign(v) * (1.0 - sqrt(1.0 - abs(v)));
+}
+
+vec3 cameraToWorld(CameraData camera, vec4 p) {
+  return vec3(dot(camera.worldFromCamera[0], p), dot(camera.worldFromCamera[1], p), dot(camera.worldFromCamera[2], p));
+}
+
+// Ray through image point `pixel` (in pixels from the top left corner; centres at .5); `lens` in [0,1)².
+Ray cameraRay(vec2 pixel, vec2 lens) {
+  const CameraData camera = frame.camera;
+  const vec2 ndc = vec2(2.0, -2.0) * pixel / vec2(frame.width, frame.height) + vec2(-1.0, 1.0);
+  const vec2 plane = ndc * camera.halfSize;
+  vec3 origin = vec3(0.0);
+  vec3 direction = vec3(plane, -1.0);
+  if (camera.orthographic != 0u) {
+    origin = vec3(plane, 0.0);
+    direction = vec3(0.0, 0.0, -1.0);
+  } else if (camera.apertureRadius > 0.0) {
+    origin = vec3(camera.apertureRadius * sampleDisk(lens), 0.0);
+    direction = camera.focusDistance * direction - origin;
+  }
+  Ray ray;
+  ray.origin = cameraToWorld(camera, vec4(origin, 1.0));
+  ray.direction = normalize(cameraToWorld(camera, vec4(direction, 0.0)));
+  return ray;
+}
+
+#endif

@@ -1,0 +1,52 @@
+// For closest-hit and any-hit shaders on triangles: the payload of a hit, and the alpha test.
+#ifndef QUINTET_HIT_GLSL
+#define QUINTET_HIT_GLSL
+
+#include "frame.glsl"
+#include "payload.glsl"
+
+// Index of the triangle that the built-ins name, in the scene's order.
+uint hitTriangle(GeometryData geometry) {
+  return geometry.primitiveMap != 0ul ? UintArray(geometry.primitiveMap).at[gl_PrimitiveID] : uint(gl_PrimitiveID);
+}
+
+GeometryData hitGeometry() {
+  const uint first = InstanceArray(frame.instances).at[gl_InstanceCustomIndexEXT].firstGeometry;
+  return GeometryArray(frame.geometries).at[first + uint(gl_GeometryIndexEXT)];
+}
+
+// Barycentrics of the ray's hit with the triangle, from the ray itself: drivers exist where a candidate
+// that any-hit has rejected overwrites the attributes of the committed hit (docs/design/quirks.md).
+vec2 barycentricsFromRay(vec3 origin, vec3 direction, vec3 p0, vec3 p1, vec3 p2) {
+  const vec3 edge1 = p1 - p0;
+  const vec3 edge2 = p2 - p0;
+  const vec3 p = cross(direction, edge2);
+  const float determinant = dot(edge1, p);
+  const float inverse = determinant != 0.0 ? 1.0 / determinant : 0.0;
+  const vec3 s = origin - p0;
+  const vec3 q = cross(s, edge1);
+  vec2 b = clamp(vec2(dot(s, p), dot(direction, q)) * inverse, 0.0, 1.0);
+  return b / max(1.0, b.x + b.y);
+}
+
+// The payload of a committed triangle hit; `seed` is kept.
+HitPayload triangleHit(vec2 attributes, uint seed) {
+  const GeometryData geometry = hitGeometry();
+  HitPayload hit;
+  hit.t = gl_HitTEXT;
+  hit.instance = uint(gl_InstanceCustomIndexEXT);
+  hit.geometry = uint(gl_GeometryIndexEXT);
+  hit.primitive = hitTriangle(geometry);
+#ifdef QUINTET_RECOMPUTE_BARYCENTRICS
+  const uvec3 v = Uvec3Array(geometry.triangles).at[hit.primitive];
+  const Vec3Array positions = Vec3Array(geometry.positions);
+  hit.barycentric =
+      barycentricsFromRay(gl_ObjectRayOriginEXT, gl_ObjectRayDirectionEXT, positions.at[v.x], positions.at[v.y], positions.at[v.z]);
+#else
+  hit.barycentric = attributes;
+#endif
+  hit.seed = seed;
+  return hit;
+}
+
+#endif

@@ -1,0 +1,26 @@
+// Writing results. Outputs are sums over the samples of a batch; the film divides later. A program loads
+// the sum, adds its samples one by one in sample order and stores it, so that the bytes do not depend
+// on how many samples a launch takes.
+#ifndef QUINTET_OUTPUT_GLSL
+#define QUINTET_OUTPUT_GLSL
+
+#include "frame.glsl"
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer StatisticsArray { uvec2 at[]; };
+
+uvec2 launchPixel() { return gl_LaunchIDEXT.xy + launch.offset; }
+uint pixelIndex(uvec2 pixel) { return pixel.y * frame.width + pixel.x; }
+
+// `slot`: kOutput_… of the generated program constants.
+vec4 loadOutput(uint slot, uvec2 pixel) { return OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)]; }
+void storeOutput(uint slot, uvec2 pixel, vec4 sum) { OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] = sum; }
+
+// Non-finite samples are left out and counted: `quintet render` reports them as the defect that they are.
+bool isFinite(vec4 value) { return !(any(isnan(value)) || any(isinf(value))); }
+
+// Adds to this pixel's counters: rays traced, samples dropped.
+void countRays(uvec2 pixel, uint rays, uint dropped) {
+  if (frame.statistics != 0ul) StatisticsArray(frame.statistics).at[pixelIndex(pixel)] += uvec2(rays, dropped);
+}
+
+#endif

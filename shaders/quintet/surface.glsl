@@ -1,0 +1,119 @@
+// The surface at a hit: position with its error bound, frames, texture coordinates.
+#ifndef QUINTET_SURFACE_GLSL
+#define QUINTET_SURFACE_GLSL
+
+#include "payload.glsl"
+#include "texture.glsl"
+
+struct Surface {
+  vec3 position;         // world
+  float error;           // metres along the geometric normal within which the traversal may see the surface
+  vec3 geometricNormal;  // world, unit, on the side of wo
+  vec3 shadingNormal;    // world, unit, interpolated, on the side of wo; not yet normal mapped
+  vec3 tangent;          // world, unit, orthogonal to shadingNormal, for normal maps
+  vec3 bitangent;
+  bool frontFace;        // wo is on the side from which the triangle is counter-clockwise
+  uint material;
+  vec4 color;            // vertex colour, 1 if absent
+  vec2 uvs[2];
+};
+
+vec3 rowsTimesPoint(vec4 rows[3], vec3 p) {
+  return vec3(dot(rows[0].xyz, p) + rows[0].w, dot(rows[1].xyz, p) + rows[1].w, dot(rows[2].xyz, p) + rows[2].w);
+}
+vec3 rowsTimesVector(vec4 rows[3], vec3 v) { return vec3(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v)); }
+// Transpose of the linear part times v: normals, when `rows` is the inverse transform.
+vec3 transposeTimesVector(vec4 rows[3], vec3 v) { return rows[0].xyz * v.x + rows[1].xyz * v.y + rows[2].xyz * v.z; }
+
+// Bound of how far, along the world normal n, the computed point p of triangle (p0, p1, p2) may lie from
+// the triangle as the traversal sees it. Standard model of floating-point error (Higham 2002, ch. 3;
+// used for ray offsets by Wächter & Binder 2019 and pbrt ch. 6.8), with e = 2^-24 and k roundings bounded by
+// k·e: interpolation in object space, transform to world, the traversal's transform of the ray's
+// origin back to object space, and its subtraction of origin and vertices.
+float surfaceError(InstanceData instance, vec3 p0, vec3 p1, vec3 p2, vec3 p, vec3 n) {
+  const float e = 5.9604645e-8;
+  const vec3 largest = max(max(abs(p0), abs(p1)), abs(p2));
+  const vec3 extent = max(max(abs(p1 - p0), abs(p2 - p0)), abs(p2 - p1));
+  vec3 world = abs(p);
+  vec3 back;
+  for (int i = 0; i < 3; ++i) {
+    world[i] += 4.0 * (dot(abs(instance.worldFromObject[i].xyz), largest) + abs(instance.worldFromObject[i].w));
+    back[i] = dot(abs(instance.objectFromWorld[i].xyz), abs(p)) + abs(instance.objectFromWorld[i].w);
+  }
+  const vec3 object = 5.0 * largest + 4.0 * back + 8.0 * extent;
+  return 2.0 * e * (dot(abs(n), world) + dot(abs(transposeTimesVector(instance.worldFromObject, n)), object));
+}
+
+// Where a ray that leaves the surface towards `direction` starts, so that it cannot meet the surface itself.
+vec3 offsetOrigin(Surface surface, vec3 direction) {
+  return surface.position + (dot(direction, surface.geometricNormal) < 0.0 ? -surface.error : surface.error) * surface.geometricNormal;
+}
+
+// A tangent for surfaces that have none (Duff et al. 2017).
+vec3 anyTangent(vec3 n) {
+  const float s = n.z >= 0.0 ? 1.0 : -1.0;
+  const float a = -1.0 / (s + n.z);
+  return vec3(1.0 + s * n.x * n.x * a, s * n.x * n.y * a, -s * n.x);
+}
+
+vec3 safeNormalize(vec3 v, vec3 fallback) {
+  const float squared = dot(v, v);
+  return squared > 1e-38 ? v * inversesqrt(squared) : fallback;
+}
+
+Surface fetchSurface(HitPayload hit, vec3 wo) {
+  const InstanceData instance = InstanceArray(frame.instances).at[hit.instance];
+  const GeometryData geometry = GeometryArray(frame.geometries).at[instance.firstGeometry + hit.geometry];
+  const uvec3 v = Uvec3Array(geometry.triangles).at[hit.primitive];
+  const vec3 b = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
+  const Vec3Array positions = Vec3Array(geometry.positions);
+  const vec3 p0 = positions.at[v.x];
+  const vec3 p1 = positions.at[v.y];
+  const vec3 p2 = positions.at[v.z];
+
+  Surface s;
+  s.position = rowsTimesPoint(instance.worldFromObject, b.x * p0 + b.y * p1 + b.z * p2);
+  // From world-space edges: the inverse transpose loses precision for strong scales.
+  const vec3 edge1 = rowsTimesVector(instance.worldFromObject, p1 - p0);
+  const vec3 edge2 = rowsTimesVector(instance.worldFromObject, p2 - p0);
+  const float size = max(maxComponent(abs(edge1)), maxComponent(abs(edge2)));
+  vec3 front = safeNormalize(cross(edge1 / size, edge2 / size), wo);
+  if (instance.mirrored != 0u) front = -front;
+  s.frontFace = dot(front, wo) >= 0.0;
+  s.geometricNormal = s.frontFace ? front : -front;
+  s.error = surfaceError(instance, p0, p1, p2, s.position, front);
+
+  vec3 n = front;
+  if (geometry.normals != 0ul) {
+    const Vec3Array normals = Vec3Array(geometry.normals);
+    const vec3 object = b.x * normals.at[v.x] + b.y * normals.at[v.y] + b.z * normals.at[v.z];
+    n = safeNormalize(transposeTimesVector(instance.objectFromWorld, object), front);
+  }
+  s.shadingNormal = s.frontFace ? n : -n;
+
+  s.tangent = vec3(0.0);
+  s.bitangent = vec3(0.0);
+  if (geometry.tangents != 0ul) {
+    const Vec4Array tangents = Vec4Array(geometry.tangents);
+    const vec4 t = b.x * tangents.at[v.x] + b.y * tangents.at[v.y] + b.z * tangents.at[v.z];
+    const vec3 world = rowsTimesVector(instance.worldFromObject, t.xyz);
+    const float handedness = (t.w < 0.0 ? -1.0 : 1.0) * (instance.mirrored != 0u ? -1.0 : 1.0);
+    s.tangent = safeNormalize(world - n * dot(n, world), anyTangent(n));
+    s.bitangent = handedness * cross(n, s.tangent);
+  } else {
+    s.tangent = anyTangent(n);
+    s.bitangent = cross(n, s.tangent);
+  }
+
+  s.material = geometry.material;
+  s.color = vec4(1.0);
+  if (geometry.colors != 0ul) {
+    const Vec4Array colors = Vec4Array(geometry.colors);
+    s.color = b.x * colors.at[v.x] + b.y * colors.at[v.y] + b.z * colors.at[v.z];
+  }
+  s.uvs[0] = interpolateUv(geometry, v, b, 0u);
+  s.uvs[1] = interpolateUv(geometry, v, b, 1u);
+  return s;
+}
+
+#endif

@@ -1,0 +1,21 @@
+// Texture coordinates and look-ups. No derivatives exist in ray tracing stages and the textures have no
+// mip levels: many samples per pixel filter them.
+#ifndef QUINTET_TEXTURE_GLSL
+#define QUINTET_TEXTURE_GLSL
+
+#include "frame.glsl"
+
+vec4 sampleTexture(TextureData use, vec2 uv) {
+  const vec2 st = vec2(dot(use.rowU, vec3(uv, 1.0)), dot(use.rowV, vec3(uv, 1.0)));
+  return textureLod(textures[nonuniformEXT(use.index)], st, 0.0);
+}
+
+// Texture coordinates of set 0 or 1 at barycentrics b (all three weights); 0 if the geometry has none.
+vec2 interpolateUv(GeometryData geometry, uvec3 v, vec3 b, uint uvSet) {
+  const Address address = geometry.uvs[uvSet];
+  if (address == 0ul) return vec2(0.0);
+  const Vec2Array uvs = Vec2Array(address);
+  return b.x * uvs.at[v.x] + b.y * uvs.at[v.y] + b.z * uvs.at[v.z];
+}
+
+#endif

@@ -1,0 +1,36 @@
+// Rays, payloads, and the two traces that the built-in programs use. A program that includes this file
+// declares the ray types `radiance` and `shadow` in its program.toml; the constants kRay_…, kMiss_… and
+// kRayTypeCount are generated from there.
+#ifndef QUINTET_TRACE_GLSL
+#define QUINTET_TRACE_GLSL
+
+#include "frame.glsl"
+#include "payload.glsl"
+#include <quintet/generated/program.glsl>
+
+layout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT topLevelAS;
+layout(location = 0) rayPayloadEXT HitPayload hitPayload;
+
+// The closest surface along origin + t · direction, t in (0, tmax). `seed` decides stochastic alpha.
+HitPayload traceClosest(vec3 origin, vec3 direction, float tmax, uint seed) {
+  hitPayload.t = -1.0;
+  hitPayload.seed = seed;
+  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_radiance, origin, 0.0, direction,
+              tmax, 0);
+  return hitPayload;
+}
+
+#ifdef QUINTET_SHADOW_RAYS
+layout(location = 1) rayPayloadEXT ShadowPayload shadowPayload;
+
+// True if nothing (alpha decided by `seed`) lies between t = 0 and tmax.
+bool traceVisible(vec3 origin, vec3 direction, float tmax, uint seed) {
+  shadowPayload.visible = 0u;
+  shadowPayload.seed = seed;
+  traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, kRay_shadow,
+              kRayTypeCount, kMiss_shadow, origin, 0.0, direction, tmax, 1);
+  return shadowPayload.visible != 0u;
+}
+#endif
+
+#endif

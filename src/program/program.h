@@ -1,0 +1,72 @@
+// A program: ray tracing shaders plus what connects them (program.toml, docs/programs.md). This is
+// its description as read from a folder; link.h turns it into a pipeline for one device.
+#ifndef QUINTET_PROGRAM_PROGRAM_H
+#define QUINTET_PROGRAM_PROGRAM_H
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "program/parameter.h"
+
+namespace quintet::program {
+
+// Files of one hit group for one ray type; empty: that stage is absent.
+struct HitShaders {
+  std::string closestHit;
+  std::string anyHit;
+  std::string intersection;
+};
+
+// A hit group is bound to a class of geometry: "opaque" (no alpha), "alpha" (mask or blend). The
+// first group also serves every class that no group names.
+struct HitGroup {
+  std::string name;
+  std::string geometry;
+  std::map<std::string, HitShaders> shaders;  // by ray type
+};
+
+// A ray type; its position is its offset in the shader binding table.
+struct RayType {
+  std::string name;
+  std::string miss;  // file
+};
+
+struct Program {
+  std::string name;                // the folder's
+  std::string description;
+  std::string rayGeneration;       // file
+  std::vector<RayType> rays;
+  std::vector<HitGroup> hitGroups;
+  std::vector<std::string> callables;  // files
+  std::vector<std::string> outputs;    // names; index = slot
+  std::vector<Parameter> parameters;
+  std::uint32_t maxRecursion = 1;      // nested traceRayEXT; 1: only ray generation traces
+  std::uint32_t samplesPerLaunch = 1;  // samples per pixel that the ray generation shader can loop over
+
+  std::string origin;                        // folder, or "<programs/NAME>" when built in
+  std::map<std::string, std::string> files;  // every file of the folder: relative path → text
+
+  // Path of a file as diagnostics show it.
+  std::string path(const std::string& file) const { return origin + "/" + file; }
+};
+
+// `nameOrFolder`: a folder with program.toml (or that file itself), or the name of a built-in
+// program. Throws FileError (with line) for a description that is wrong, UsageError with the nearest
+// name for a program that does not exist.
+Program loadProgram(const std::string& nameOrFolder);
+
+// program.toml's text alone; `files` are the folder's.
+Program parseProgram(const std::string& toml, const std::string& name, const std::string& origin,
+                     std::map<std::string, std::string> files);
+
+std::vector<std::string> builtInPrograms();
+
+// The GLSL that #include <quintet/generated/program.glsl> gives: ray types, strides, miss indices,
+// output slots, and `parameters`.
+std::string generatedConstants(const Program& program);
+
+}  // namespace quintet::program
+#endif
