@@ -48,7 +48,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL ValidationSink::callback(VkDebugUtilsMessageSever
 }
 
 void ValidationSink::receive(std::string_view id, std::string_view text, bool counts) {
-  std::string line = fmt::format("Vulkan: {}: {}", id, text);
+  std::string line = fmt::format("{}: {}: {}", counts ? "Vulkan validation" : "Vulkan", id, text);
   std::replace(line.begin(), line.end(), '\n', ' ');
   if (counts) {
     const std::lock_guard lock(mutex_);
