@@ -1,0 +1,56 @@
+#include "scene/gltf.h"
+
+#include <fmt/format.h>
+
+#include <new>
+
+#include "base/error.h"
+#include "scene/gltf_extensions.h"
+#include "scene/gltf_instances.h"
+#include "scene/gltf_material.h"
+#include "scene/gltf_nodes.h"
+#include "scene/gltf_placement.h"
+
+namespace quintet::scene {
+namespace {
+
+Scene load(const std::filesystem::path& file, const LoadOptions& options) {
+  const Document document = readDocument(file);
+  Scene scene;
+  scene.name = file.filename().string();
+  scene.report.generator = document.model.asset.generator;
+  scene.report.copyright = document.model.asset.copyright;
+  reportExtensions(document, scene.report);
+  if (document.animationCount > 0)
+    scene.report.ignored.push_back(fmt::format("/animations: {}, the rest pose is shown", document.animationCount));
+
+  const NodeTree tree = readNodes(document, options.scene, scene.report);
+  TextureTable textures(document);
+  scene.materials = readMaterials(document, textures, scene.report);
+  InstanceBuilder instances(document, tree, scene.report);
+  for (const int index : tree.shown) {
+    const auto i = static_cast<std::size_t>(index);
+    const tinygltf::Node& node = document.model.nodes[i];
+    instances.addNode(index);
+    if (node.camera != kNone) scene.cameras.push_back(placeCamera(document, node.camera, node, tree.worldFromNode[i]));
+    if (const tinygltf::Value* light = findExtension(node.extensions, kPunctualLights))
+      placeLight(document, indexOf(*light, "light"), node, tree.worldFromNode[i], scene);
+  }
+  instances.finish(scene);
+  textures.finish(scene);
+  return scene;
+}
+
+}  // namespace
+
+Scene loadGltf(const std::filesystem::path& file, const LoadOptions& options) {
+  try {
+    return load(file, options);
+  } catch (const std::bad_alloc&) {
+    throw MemoryError(file.string() + ": not enough memory for the scene");
+  } catch (const std::length_error&) {
+    throw MemoryError(file.string() + ": the scene is larger than any memory");
+  }
+}
+
+}  // namespace quintet::scene

@@ -1,0 +1,83 @@
+#include "scene/gltf_texture.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "io/codec.h"
+#include "scene/gltf_extensions.h"
+
+namespace quintet::scene {
+namespace {
+
+Wrap wrapOf(int mode) {
+  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Wrap::clampToEdge;
+  if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Wrap::mirroredRepeat;
+  return Wrap::repeat;
+}
+
+Sampler readSampler(const Document& document, int index) {
+  if (index == kNone) return {};
+  const tinygltf::Sampler& sampler = document.model.samplers[static_cast<std::size_t>(index)];
+  return {wrapOf(sampler.wrapS), wrapOf(sampler.wrapT),
+          sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST ? Filter::nearest : Filter::linear};
+}
+
+NamedImage loadImage(const Document& document, std::size_t index) {
+  const ImageSource& source = document.images[index];
+  const std::string place = fmt::format("/images/{}", index);
+  NamedImage result;
+  result.name = fmt::format("{}: {}", document.file.filename().string(), place);
+  try {
+    if (source.bufferView != kNone) {
+      result.image = io::decodeImage(document.bufferViews[static_cast<std::size_t>(source.bufferView)], place);
+    } else {
+      const std::vector<std::byte> bytes = loadUri(document, source.uri, place + "/uri");
+      if (!isDataUri(source.uri)) result.name = (document.file.parent_path() / source.uri).string();
+      result.image = io::decodeImage(bytes, place);
+    }
+  } catch (const FileError& error) {
+    if (error.file() == document.file) throw;
+    // The codec speaks of bytes of the picture; here they are a part of the scene's file.
+    const std::string inside = error.place().empty() ? error.problem() : error.place() + ": " + error.problem();
+    document.fail(place, source.uri.empty() || isDataUri(source.uri) ? inside : source.uri + ": " + inside);
+  }
+  return result;
+}
+
+}  // namespace
+
+TextureTable::TextureTable(const Document& document)
+    : document_(document), textureOf_(document.model.textures.size(), kNone), imageOf_(document.images.size(), kNone) {}
+
+int TextureTable::useImage(int image) {
+  int& known = imageOf_[static_cast<std::size_t>(image)];
+  if (known == kNone) {
+    known = static_cast<int>(imageSources_.size());
+    imageSources_.push_back(image);
+  }
+  return known;
+}
+
+int TextureTable::use(int texture, const std::string& place) {
+  int& known = textureOf_[static_cast<std::size_t>(texture)];
+  if (known != kNone) return known;
+  const tinygltf::Texture& from = document_.model.textures[static_cast<std::size_t>(texture)];
+  const tinygltf::Value* webp = findExtension(from.extensions, kTextureWebp);
+  const int image = webp ? indexOf(*webp, "source") : from.source;
+  if (image == kNone)
+    document_.fail(place, fmt::format("texture {} has no image of a kind that is read (PNG, JPEG, WebP)", texture));
+  known = static_cast<int>(textures_.size());
+  textures_.push_back({from.name, useImage(image), readSampler(document_, from.sampler)});
+  return known;
+}
+
+void TextureTable::finish(Scene& scene) {
+  scene.textures = std::move(textures_);
+  scene.images.resize(imageSources_.size());
+  parallelFor(imageSources_.size(), [&](std::size_t i) {
+    scene.images[i] = loadImage(document_, static_cast<std::size_t>(imageSources_[i]));
+  });
+}
+
+}  // namespace quintet::scene

@@ -1,0 +1,32 @@
+// Textures, samplers and images. Only what a material uses is loaded; images are decoded on all cores.
+#ifndef QUINTET_SCENE_GLTF_TEXTURE_H
+#define QUINTET_SCENE_GLTF_TEXTURE_H
+
+#include <string>
+#include <vector>
+
+#include "scene/gltf_document.h"
+
+namespace quintet::scene {
+
+class TextureTable {
+ public:
+  explicit TextureTable(const Document&);
+
+  // The index in Scene::textures of a texture of the file; `place` is the use, for errors.
+  int use(int texture, const std::string& place);
+  // Decodes all images that were used and moves everything into the scene. Throws FileError.
+  void finish(Scene&);
+
+ private:
+  int useImage(int image);
+
+  const Document& document_;
+  std::vector<Texture> textures_;
+  std::vector<int> textureOf_;   // file's texture → textures_
+  std::vector<int> imageOf_;     // file's image → imageSources_
+  std::vector<int> imageSources_;  // → file's image
+};
+
+}  // namespace quintet::scene
+#endif

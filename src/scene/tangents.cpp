@@ -1,0 +1,131 @@
+#include "scene/tangents.h"
+
+#include <algorithm>
+
+#include "scene/repair.h"
+
+namespace quintet::scene {
+namespace {
+
+template <class T>
+void appendCopy(std::vector<T>& values, std::size_t index) {
+  if (!values.empty()) values.push_back(T(values[index]));
+}
+
+std::uint32_t duplicateVertex(Geometry& geometry, std::uint32_t index) {
+  const auto copy = static_cast<std::uint32_t>(geometry.positions.size());
+  appendCopy(geometry.positions, index);
+  appendCopy(geometry.normals, index);
+  appendCopy(geometry.colors, index);
+  for (auto& set : geometry.uvs) appendCopy(set, index);
+  return copy;
+}
+
+// +1 or -1: the handedness of the triangle's (dP/du, dP/dv, normal); 0: its mapping is degenerate.
+struct TriangleFrame {
+  vec3 tangent{0.0f};
+  int handedness = 0;
+};
+
+TriangleFrame triangleFrame(const Geometry& geometry, const std::vector<vec2>& uvs, const uvec3& t) {
+  const vec3 e1 = geometry.positions[t.y] - geometry.positions[t.x];
+  const vec3 e2 = geometry.positions[t.z] - geometry.positions[t.x];
+  const vec2 d1 = uvs[t.y] - uvs[t.x];
+  const vec2 d2 = uvs[t.z] - uvs[t.x];
+  const float area = d1.x * d2.y - d2.x * d1.y;  // signed, twice; the tangent's direction needs only its sign
+  const float sign = area < 0.0f ? -1.0f : 1.0f;
+  const vec3 tangent = sign * (e1 * d2.y - e2 * d1.y);
+  const float length = glm::length(tangent);
+  if (area == 0.0f || !std::isfinite(length) || length == 0.0f) return {};
+  return {tangent / length, area < 0.0f ? -1 : 1};
+}
+
+float cornerAngle(const Geometry& geometry, const uvec3& t, std::size_t corner) {
+  const vec3& p = geometry.positions[t[corner]];
+  const vec3 a = geometry.positions[t[(corner + 1) % 3]] - p;
+  const vec3 b = geometry.positions[t[(corner + 2) % 3]] - p;
+  const float lengths = glm::length(a) * glm::length(b);
+  return lengths > 0.0f ? std::acos(std::clamp(glm::dot(a, b) / lengths, -1.0f, 1.0f)) : 0.0f;
+}
+
+// Gives each vertex one handedness: 0 until a triangle has claimed it; triangles of the other one move to a copy.
+std::vector<int> separateHandedness(Geometry& geometry, std::vector<vec2>& uvs, const std::vector<TriangleFrame>& frames) {
+  std::vector<int> handedness(geometry.positions.size(), 0);
+  std::vector<std::uint32_t> mirror(geometry.positions.size(), 0);  // the copy's index; 0: none (it is never vertex 0)
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].handedness == 0) continue;
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::uint32_t& vertex = geometry.triangles[i][c];
+      if (handedness[vertex] == 0) handedness[vertex] = frames[i].handedness;
+      if (handedness[vertex] == frames[i].handedness) continue;
+      if (mirror[vertex] == 0) {
+        mirror[vertex] = duplicateVertex(geometry, vertex);
+        uvs.push_back(vec2(uvs[vertex]));
+        handedness.push_back(frames[i].handedness);
+      }
+      vertex = mirror[vertex];
+    }
+  }
+  return handedness;
+}
+
+}  // namespace
+
+void splitIntoFlatTriangles(Geometry& geometry) {
+  const auto gather = [&](auto& values) {
+    if (values.empty()) return;
+    std::remove_reference_t<decltype(values)> split;
+    split.reserve(3 * geometry.triangles.size());
+    for (const uvec3& t : geometry.triangles)
+      for (std::size_t c = 0; c < 3; ++c) split.push_back(values[t[c]]);
+    values = std::move(split);
+  };
+  gather(geometry.positions);
+  gather(geometry.colors);
+  for (auto& set : geometry.uvs) gather(set);
+  geometry.normals.assign(geometry.positions.size(), vec3(0.0f));
+  geometry.tangents.clear();
+  for (std::uint32_t i = 0; i < geometry.triangles.size(); ++i) geometry.triangles[i] = uvec3(3 * i, 3 * i + 1, 3 * i + 2);
+  repairNormals(geometry);  // the mean of one face normal
+}
+
+vec2 transformUv(const TextureUse& use, const vec2& uv) {
+  const float c = std::cos(use.rotation), s = std::sin(use.rotation);
+  const vec2 scaled = use.scale * uv;
+  return use.offset + vec2(c * scaled.x + s * scaled.y, -s * scaled.x + c * scaled.y);
+}
+
+void generateTangents(Geometry& geometry, const TextureUse& use) {
+  const auto& source = geometry.uvs[static_cast<std::size_t>(use.uvSet)];
+  if (geometry.normals.empty() || source.empty()) return;
+  std::vector<vec2> uvs(source.size());
+  std::ranges::transform(source, uvs.begin(), [&](const vec2& uv) { return transformUv(use, uv); });
+
+  std::vector<TriangleFrame> frames(geometry.triangles.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) frames[i] = triangleFrame(geometry, uvs, geometry.triangles[i]);
+  const std::vector<int> handedness = separateHandedness(geometry, uvs, frames);
+
+  std::vector<vec3> sums(geometry.positions.size(), vec3(0.0f));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].handedness == 0) continue;
+    const uvec3& t = geometry.triangles[i];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const vec3& n = geometry.normals[t[c]];
+      const vec3 inPlane = frames[i].tangent - n * glm::dot(n, frames[i].tangent);
+      const float length = glm::length(inPlane);
+      if (length > 0.0f) sums[t[c]] += cornerAngle(geometry, t, c) / length * inPlane;
+    }
+  }
+
+  geometry.tangents.resize(sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const vec3& n = geometry.normals[i];
+    const vec3 inPlane = sums[i] - n * glm::dot(n, sums[i]);
+    const float length = glm::length(inPlane);
+    const vec3 tangent = length > 1e-6f ? inPlane / length : anyPerpendicular(n);
+    // glTF's v runs down in the picture, "up" of a normal map is -v: the bitangent w · cross(n, t) is -dP/dv.
+    geometry.tangents[i] = vec4(tangent, handedness[i] > 0 ? -1.0f : 1.0f);
+  }
+}
+
+}  // namespace quintet::scene
