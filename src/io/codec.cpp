@@ -16,6 +16,7 @@ namespace quintet::io {
 namespace {
 
 constexpr std::array<const Format*, 5> kFormats{&kPng, &kJpeg, &kWebp, &kHdr, &kExr};
+constexpr std::size_t kMaxMessage = 250;  // characters
 
 const Format& findFormat(const Source& source) {
   for (const Format* format : kFormats)
@@ -34,6 +35,13 @@ auto withFormat(const Source& source, Read&& read) {
   }
 }
 
+// Problems may quote the file: no control characters to the terminal, and one line.
+std::string printable(std::string text) {
+  std::ranges::replace_if(text, [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  if (text.size() > kMaxMessage) text.replace(kMaxMessage, std::string::npos, "...");
+  return text;
+}
+
 std::string lowerExtension(const std::filesystem::path& file) {
   std::string text = file.extension().string();
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -47,9 +55,9 @@ bool Source::has(std::size_t offset, std::string_view text) const {
          std::memcmp(bytes.data() + offset, text.data(), text.size()) == 0;
 }
 
-void Source::fail(const std::string& problem) const { throw FileError(name, problem); }
+void Source::fail(const std::string& problem) const { throw FileError(name, printable(problem)); }
 void Source::fail(std::size_t offset, const std::string& problem) const {
-  throw FileError(name, fmt::format("byte {}", offset), problem);
+  throw FileError(name, fmt::format("byte {}", offset), printable(problem));
 }
 
 void Source::checkSize(std::uint64_t width, std::uint64_t height, std::uint64_t bytesPerPixel) const {

@@ -54,7 +54,8 @@ Metadata readMetadata(std::span<const std::byte> bytes, const std::string& nameF
 // without pixels, for bad keywords, and where noted.
 
 // u8 or u16 (floats: UsageError; toSrgb8 makes bytes); premultiplied alpha is an error, too. sRGB-encoded
-// pictures get an sRGB chunk, linear ones gAMA 1. Text goes to tEXt chunks, or to iTXt if it is not ASCII.
+// pictures get an sRGB chunk, linear ones gAMA 1. Text goes to tEXt chunks, or to iTXt if it is not ASCII;
+// empty text is left out.
 std::vector<std::byte> encodePng(const Image& image, const Metadata& metadata = {});
 
 // Any image, written as linear half floats (finite values clamp to ±65504), channels Y, A, R, G, B as there

@@ -9,9 +9,9 @@
 namespace quintet::io {
 namespace {
 
-// A Huffman code has at least one bit for 64 coefficients, arithmetic coding may do with less; so tiny a
-// file for so many pixels is not a picture.
-constexpr std::uint64_t kBestRatio = 65536;
+// Pixels per byte: each block of 64 takes at least one bit, so 512. (Arithmetic coding could do better for a
+// picture of one colour; none such is known.)
+constexpr std::uint64_t kBestRatio = 512;
 
 struct Destroy {
   void operator()(void* handle) const { tjDestroy(handle); }

@@ -51,6 +51,12 @@ class Reader {
     source_.fail(offset_, fmt::format("broken PNG: {}", spng_strerror(error)));
   }
 
+  // To the end of the file: a lost tail shows only here. libspng forgives that of the last checksum.
+  void finish() const {
+    check(spng_decode_chunks(ctx_.get()));
+    if (ended_) check(SPNG_IO_EOF);
+  }
+
   // True if a tRNS chunk gives a picture without alpha channel its transparency.
   bool transparent() const {
     spng_trns ignored;
@@ -76,7 +82,8 @@ class Reader {
  private:
   static int read(spng_ctx*, void* user, void* to, std::size_t length) {
     Reader& self = *static_cast<Reader*>(user);
-    if (length > self.source_.size() - self.offset_) return SPNG_IO_EOF;
+    self.ended_ |= length > self.source_.size() - self.offset_;
+    if (self.ended_) return SPNG_IO_EOF;
     std::memcpy(to, self.source_.data() + self.offset_, length);
     self.offset_ += length;
     return SPNG_OK;
@@ -84,6 +91,7 @@ class Reader {
 
   const Source& source_;
   std::size_t offset_ = 0;
+  bool ended_ = false;  // more was asked for than there is
   spng_ihdr header_{};
   Context ctx_;
 };
@@ -117,7 +125,7 @@ Image decode(const Source& source) {
   Image image = makeImage(header.width, header.height, channels, type, ColorEncoding::sRgb);
   reader.check(spng_decode_image(reader.ctx(), image.data.data(), image.data.size(), decodingFormat(reader, channels),
                                  SPNG_DECODE_TRNS));
-  reader.check(spng_decode_chunks(reader.ctx()));  // to the end: a lost tail shows only here
+  reader.finish();
   return image;
 }
 
@@ -180,6 +188,7 @@ std::vector<std::byte> encodePng(const Image& image, const Metadata& metadata) {
 
   const Context ctx = makeContext(SPNG_CTX_ENCODER);
   Metadata texts = metadata;
+  std::erase_if(texts, [](const auto& entry) { return entry.second.empty(); });  // libspng takes none
   check(spng_set_option(ctx.get(), SPNG_ENCODE_TO_BUFFER, 1));
   check(spng_set_ihdr(ctx.get(), &header));
   if (image.encoding == ColorEncoding::sRgb) {

@@ -2,6 +2,8 @@
 // container says how many there should be, so the container is checked here.
 #include <webp/decode.h>
 
+#include <cstring>
+#include <memory>
 #include <new>
 
 #include "io/formats.h"
@@ -11,6 +13,10 @@ namespace {
 
 constexpr std::size_t kRiffHeader = 12;  // "RIFF", size, "WEBP"
 constexpr std::size_t kChunkHeader = 8;  // name, size
+
+struct FreeBuffer {
+  void operator()(WebPDecBuffer* buffer) const { WebPFreeDecBuffer(buffer); }
+};
 
 std::size_t littleEndian32(const Source& source, std::size_t offset) {
   std::size_t value = 0;
@@ -63,17 +69,19 @@ Image decode(const Source& source) {
   if (!WebPInitDecoderConfig(&config)) source.fail("libwebp is of another version than its headers");
   config.input = readHeader(source);
   const bool alpha = config.input.has_alpha != 0;
+  config.output.colorspace = alpha ? MODE_RGBA : MODE_RGB;
+  // libwebp's own buffer, copied: it is not touched before there are pixels, so that a header alone, which
+  // may promise 16383 x 16383 of them in 30 bytes, costs nothing.
+  const VP8StatusCode status = WebPDecode(source.data(), source.size(), &config);
+  const std::unique_ptr<WebPDecBuffer, FreeBuffer> buffer(&config.output);
+  if (status != VP8_STATUS_OK) failWith(source, status);
   Image image = makeImage(static_cast<std::uint32_t>(config.input.width),
                           static_cast<std::uint32_t>(config.input.height), alpha ? 4 : 3, PixelType::u8,
                           ColorEncoding::sRgb);
-  config.output.colorspace = alpha ? MODE_RGBA : MODE_RGB;
-  config.output.is_external_memory = 1;
-  config.output.u.RGBA.rgba = reinterpret_cast<std::uint8_t*>(image.data.data());
-  config.output.u.RGBA.stride = static_cast<int>(image.rowBytes());
-  config.output.u.RGBA.size = image.data.size();
-  const VP8StatusCode status = WebPDecode(source.data(), source.size(), &config);
-  WebPFreeDecBuffer(&config.output);
-  if (status != VP8_STATUS_OK) failWith(source, status);
+  const WebPRGBABuffer& rows = config.output.u.RGBA;
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    std::memcpy(image.data.data() + y * image.rowBytes(), rows.rgba + y * static_cast<std::size_t>(rows.stride),
+                image.rowBytes());
   return image;
 }
 

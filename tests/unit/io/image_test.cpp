@@ -1,0 +1,145 @@
+#include "io/image.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "base/error.h"
+#include "io/color.h"
+#include "io/samples.h"
+
+namespace quintet::io {
+namespace {
+
+using testing::ElementsAre;
+using testing::FloatNear;
+using testing::Pointwise;
+
+Image floats(std::uint32_t width, std::uint32_t height, std::uint32_t channels, const std::vector<float>& values) {
+  Image image = makeImage(width, height, channels, PixelType::f32, ColorEncoding::linear);
+  std::ranges::copy(values, image.samples<float>().begin());
+  return image;
+}
+
+double meanOf(const Image& image) {
+  const auto samples = image.samples<float>();
+  return std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
+}
+
+TEST(ColorTest, CurveHasItsPublishedValues) {
+  EXPECT_FLOAT_EQ(linearFromSrgb(0.0f), 0.0f);
+  EXPECT_FLOAT_EQ(linearFromSrgb(1.0f), 1.0f);
+  EXPECT_NEAR(linearFromSrgb(0.5f), 0.21404114f, 1e-7f);
+  EXPECT_NEAR(linearFromSrgb(0.04045f), 0.0031308f, 1e-7f);
+  EXPECT_NEAR(srgbFromLinear(0.18f), 0.46135613f, 1e-7f);
+  EXPECT_NEAR(linearFromSrgb(188.0f / 255.0f), 0.5028865f, 1e-6f);
+}
+
+TEST(ColorTest, CurvesAreInverseAndMonotonic) {
+  float before = -1.0f;
+  for (int i = 0; i <= 1000; ++i) {
+    const float value = static_cast<float>(i) / 1000.0f;
+    EXPECT_NEAR(linearFromSrgb(srgbFromLinear(value)), value, 1e-6f);
+    EXPECT_GT(srgbFromLinear(value), before);
+    before = srgbFromLinear(value);
+  }
+  for (int i = 0; i < 256; ++i)
+    EXPECT_EQ(byteFromUnit(srgbFromLinear(linearFromSrgb(static_cast<float>(i) / 255.0f))), i);
+}
+
+TEST(ColorTest, BytesRoundAndClamp) {
+  EXPECT_EQ(byteFromUnit(-1.0f), 0);
+  EXPECT_EQ(byteFromUnit(2.0f), 255);
+  EXPECT_EQ(byteFromUnit(NAN), 0);
+  EXPECT_EQ(byteFromUnit(0.5f), 128);
+  EXPECT_EQ(byteFromUnit(1.4f / 255.0f), 1);
+}
+
+TEST(ImageTest, MeasuresItself) {
+  Image image = makeImage(5, 3, 4, PixelType::u16, ColorEncoding::linear);
+  EXPECT_EQ(image.rowBytes(), 40u);
+  EXPECT_EQ(image.data.size(), 120u);
+  EXPECT_EQ(image.sampleCount(), 60u);
+  image.pixel<std::uint16_t>(4, 2)[3] = 7;
+  EXPECT_EQ(image.samples<std::uint16_t>()[59], 7);
+  EXPECT_TRUE(image.hasAlpha());
+  EXPECT_TRUE(Image{}.empty());
+}
+
+TEST(ImageTest, ToFloatUndoesTheCurveButNotOnAlpha) {
+  Image image = makeImage(1, 1, 4, PixelType::u8, ColorEncoding::sRgb);
+  std::ranges::copy(std::array<std::uint8_t, 4>{0, 188, 255, 188}, image.samples<std::uint8_t>().begin());
+  const std::vector<float> decoded{0.0f, linearFromSrgb(188.0f / 255.0f), 1.0f, 188.0f / 255.0f};
+  EXPECT_THAT(toFloat(image).samples<float>(), Pointwise(FloatNear(1e-6f), decoded));
+  image.encoding = ColorEncoding::linear;
+  EXPECT_FLOAT_EQ(toFloat(image).samples<float>()[1], 188.0f / 255.0f);
+
+  Image wide = makeImage(1, 1, 1, PixelType::u16, ColorEncoding::sRgb);
+  wide.samples<std::uint16_t>()[0] = 32768;
+  EXPECT_NEAR(toFloat(wide).samples<float>()[0], linearFromSrgb(32768.0f / 65535.0f), 1e-6f);
+}
+
+TEST(ImageTest, ToSrgb8ClampsAndDividesAlphaOut) {
+  EXPECT_THAT(toSrgb8(floats(1, 1, 3, {-1.0f, 0.21404114f, 7.0f})).samples<std::uint8_t>(), ElementsAre(0, 128, 255));
+  Image premultiplied = floats(2, 1, 2, {0.25f, 0.25f, 0.5f, 0.0f});
+  premultiplied.premultiplied = true;
+  const Image straight = toSrgb8(premultiplied);
+  EXPECT_THAT(straight.samples<std::uint8_t>(), ElementsAre(255, 64, 188, 0));
+  EXPECT_FALSE(straight.premultiplied);
+  const Image bytes = test::makePicture(9, 9, 4, PixelType::u8);
+  EXPECT_EQ(toSrgb8(toFloat(bytes)).data, bytes.data);
+}
+
+TEST(ImageTest, ChangesChannels) {
+  const Image rgba = floats(1, 1, 4, {1.0f, 0.5f, 0.25f, 0.75f});
+  EXPECT_THAT(toChannels(rgba, 3).samples<float>(), ElementsAre(1.0f, 0.5f, 0.25f));
+  const float grey = 0.2126f + 0.5f * 0.7152f + 0.25f * 0.0722f;
+  EXPECT_FLOAT_EQ(toChannels(rgba, 1).samples<float>()[0], grey);
+  EXPECT_FLOAT_EQ(toChannels(rgba, 2).samples<float>()[1], 0.75f);
+  EXPECT_THAT(toChannels(floats(1, 1, 2, {0.5f, 0.25f}), 4).samples<float>(), ElementsAre(0.5f, 0.5f, 0.5f, 0.25f));
+  EXPECT_THAT(toChannels(floats(1, 1, 1, {0.5f}), 4).samples<float>(), ElementsAre(0.5f, 0.5f, 0.5f, 1.0f));
+
+  Image bytes = makeImage(1, 1, 3, PixelType::u8, ColorEncoding::sRgb);
+  std::ranges::fill(bytes.samples<std::uint8_t>(), std::uint8_t{100});
+  EXPECT_THAT(toChannels(bytes, 1).samples<std::uint8_t>(), ElementsAre(100));
+  EXPECT_THAT(toChannels(bytes, 4).samples<std::uint8_t>(), ElementsAre(100, 100, 100, 255));
+}
+
+TEST(ResizeTest, AveragesAreas) {
+  const Image image = floats(4, 2, 1, {1, 2, 3, 4, 5, 6, 7, 8});
+  EXPECT_THAT(resizeBox(image, 2, 1).samples<float>(), ElementsAre(3.5f, 5.5f));
+  EXPECT_THAT(resizeBox(image, 1, 1).samples<float>(), ElementsAre(4.5f));
+  EXPECT_THAT(resizeBox(image, 4, 2).samples<float>(), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+  // Three pixels to two: each takes one and a half.
+  EXPECT_THAT(resizeBox(floats(3, 1, 1, {3, 6, 9}), 2, 1).samples<float>(), ElementsAre(FloatNear(4, 1e-5f), FloatNear(8, 1e-5f)));
+  EXPECT_THAT(resizeBox(floats(2, 1, 1, {3, 6}), 4, 1).samples<float>(), ElementsAre(3, 3, 6, 6));
+}
+
+TEST(ResizeTest, KeepsTheMean) {
+  const Image image = test::makePicture(97, 61, 3, PixelType::f32);
+  for (const auto& [width, height] : {std::pair{13u, 61u}, {50u, 7u}, {200u, 150u}, {96u, 60u}})
+    EXPECT_NEAR(meanOf(resizeBox(image, width, height)), meanOf(image), 1e-4) << width;
+}
+
+TEST(ResizeTest, WorksInLinearLight) {
+  Image image = makeImage(2, 1, 1, PixelType::u8, ColorEncoding::sRgb);
+  image.samples<std::uint8_t>()[0] = 255;
+  EXPECT_FLOAT_EQ(resizeBox(image, 1, 1).samples<float>()[0], 0.5f);
+}
+
+TEST(ResizeTest, InvisiblePixelsLendNoColour) {
+  const Image image = floats(2, 1, 2, {1.0f, 1.0f, 9.0f, 0.0f});
+  EXPECT_THAT(resizeBox(image, 1, 1).samples<float>(), ElementsAre(1.0f, 0.5f));
+  Image premultiplied = floats(2, 1, 2, {1.0f, 1.0f, 9.0f, 0.0f});
+  premultiplied.premultiplied = true;
+  EXPECT_THAT(resizeBox(premultiplied, 1, 1).samples<float>(), ElementsAre(5.0f, 0.5f));
+}
+
+TEST(ResizeTest, NothingIsAnError) {
+  EXPECT_THROW(resizeBox(floats(1, 1, 1, {1}), 0, 1), UsageError);
+  EXPECT_THROW(resizeBox(Image{}, 1, 1), UsageError);
+}
+
+}  // namespace
+}  // namespace quintet::io
