@@ -1,0 +1,171 @@
+// The BSDF of glTF 2.0's metallic-roughness material with KHR_materials_transmission, _volume, _ior, _specular
+// and _clearcoat: a mixture of at most four lobes.
+//
+// Contract of this file and of every lobe beside it:
+// - Directions are unit vectors in a local frame whose z is the shading normal on the side of wo: wo.z > 0.
+//   Both point away from the surface; light comes from wi and leaves to wo.
+// - eval returns f(wo, wi) |cos wi|; pdf is the density of wi per solid angle; sample takes numbers in [0,1).
+// - f transports radiance: refraction into a solid scales by (index at wo / index at wi)^2.
+// - Lobes narrower than kDeltaAlpha are deltas: they can be sampled only and are absent from eval and pdf.
+//   ggx.glsl, sampled once here, hands its micronormal to the sample functions of the microfacet lobes.
+// - Each lobe is written flat, without branches: the lobes' common terms are then computed once.
+#ifndef QUINTET_BSDF_BSDF_GLSL
+#define QUINTET_BSDF_BSDF_GLSL
+
+#include "clearcoat.glsl"
+#include "dielectric.glsl"
+#include "diffuse.glsl"
+#include "local_frame.glsl"
+#include "specular.glsl"
+#include "thin.glsl"
+
+// Colours and factors are linear and in [0,1] unless said otherwise.
+struct BsdfParameters {
+  vec3 baseColor;
+  float metallic;
+  float alpha;           // roughness squared
+  float transmission;
+  float ior;             // the material's, at least 1; 0: reflectance is specular * specularColor
+  bool entering;         // wo is on the outside
+  bool thin;             // a thin wall rather than a solid: transmission does not refract
+  float specular;
+  vec3 specularColor;    // at least 0
+  float clearcoat;
+  float clearcoatAlpha;  // clearcoatRoughness squared
+  vec3 clearcoatNormal;  // unit, in the local frame
+};
+
+struct Bsdf {
+  SpecularLobe specular;
+  DiffuseLobe diffuse;
+  ThinLobe thin;
+  DielectricLobe dielectric;
+  ClearcoatLobe clearcoat;
+  vec4 chance;             // of sampling coat, specular, diffuse, transmission: their sum is 1, or 0 for black
+  float underCoat;         // passed by the clearcoat; also for the light that the surface emits
+  bool refractive;         // transmission is `dielectric`, not `thin`
+  bool specularDelta;
+  bool transmissionDelta;
+  bool clearcoatDelta;
+};
+
+struct BsdfSample {
+  vec3 wi;
+  vec3 weight;       // f |cos wi| / pdf
+  float pdf;         // of all lobes together; 0 for a delta
+  bool delta;
+  bool transmitted;  // wi is on the other side
+};
+
+Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
+  vec3 baseColor = clamp(p.baseColor, 0.0, 1.0);
+  float dielectric = 1.0 - p.metallic;
+  float opaque = dielectric * (1.0 - p.transmission);
+  float clear = dielectric * p.transmission;
+  float alpha = max(p.alpha, kDeltaAlpha);
+
+  Bsdf b;
+  b.refractive = clear > 0.0 && !p.thin && p.ior >= 1.0;
+  b.specularDelta = p.alpha < kDeltaAlpha;
+  b.clearcoatDelta = p.clearcoatAlpha < kDeltaAlpha;
+
+  // KHR_materials_specular: reflectance of the dielectric part.
+  vec3 clearF0 = min(reflectanceFromIor(p.ior) * p.specularColor, 1.0);
+  vec3 colorF0 = p.specular * clearF0;
+  float f0 = maxComponent(colorF0);
+  AlbedoCell row = albedoRow(p.alpha);
+  vec2 ab = albedoSchlick(row, wo.z);
+
+  // The metal and all of the dielectric that `dielectric` does not reflect itself.
+  float reflecting = b.refractive ? opaque : dielectric;
+  b.specular.f0 = p.metallic * baseColor + reflecting * colorF0;
+  b.specular.f90 = p.metallic + reflecting * p.specular;
+  b.specular.gain = albedoGain(b.specular.f0, ab);
+  b.specular.alpha = alpha;
+
+  b.diffuse = makeDiffuse(opaque * baseColor, f0, p.specular, row, ab);
+  b.thin = makeThin(clear * baseColor, f0, p.specular, alpha, ab);
+
+  // Where the indices match nearly, refraction is too narrow for its half vector: straight on.
+  float ior = max(p.ior, 1.0);
+  b.transmissionDelta = b.specularDelta || (b.refractive && p.alpha * (ior - 1.0) < 1e-5);
+  vec2 glass = b.refractive ? albedoGlass(wo.z, b.transmissionDelta ? 0.0 : p.alpha, ior, p.entering) : vec2(1.0);
+  b.dielectric.compensation = clear / mix(glass.y, glass.x, p.specular);
+  b.dielectric.color = b.dielectric.compensation * baseColor;
+  b.dielectric.f0 = clearF0;
+  b.dielectric.specular = p.specular;
+  b.dielectric.eta = p.entering ? ior : 1.0 / ior;
+  b.dielectric.alpha = alpha;
+
+  // The coat of a solid is on its outside only.
+  bool coated = dot(wo, p.clearcoatNormal) > 0.0 && (p.entering || !b.refractive);
+  b.clearcoat = ClearcoatLobe(p.clearcoatNormal, coated ? p.clearcoat : 0.0, max(p.clearcoatAlpha, kDeltaAlpha));
+  float coat = clearcoatAlbedo(b.clearcoat, wo);
+  b.underCoat = 1.0 - coat;
+
+  float passed = max(1.0 - albedoCompensated(vec3(f0), p.specular, ab).x, 0.0);
+  float tint = luminance(baseColor);
+  b.chance = vec4(coat, b.underCoat * luminance(albedoCompensated(b.specular.f0, b.specular.f90, ab)),
+                  b.underCoat * opaque * tint * passed,
+                  b.underCoat * clear * (b.refractive ? max(tint, 0.1) : tint * passed));
+  float sum = b.chance.x + b.chance.y + b.chance.z + b.chance.w;
+  b.chance *= sum > 0.0 ? 1.0 / sum : 0.0;
+  return b;
+}
+
+// Is there anything but deltas, so that sampling lights makes sense?
+bool bsdfHasSmooth(Bsdf b) {
+  return dot(b.chance, vec4(!b.clearcoatDelta, !b.specularDelta, true, !b.transmissionDelta)) > 0.0;
+}
+
+vec3 bsdfEval(Bsdf b, vec3 wo, vec3 wi) {
+  vec3 transmission = b.refractive ? dielectricEval(b.dielectric, wo, wi) : thinEval(b.thin, wo, wi);
+  vec3 base = diffuseEval(b.diffuse, wi);
+  base += b.specularDelta ? vec3(0.0) : specularEval(b.specular, wo, wi);
+  base += b.transmissionDelta ? vec3(0.0) : transmission;
+  float coat = b.clearcoatDelta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatEval(b.clearcoat, wo, wi);
+  return vec3(coat) + b.underCoat * base;
+}
+
+float bsdfPdf(Bsdf b, vec3 wo, vec3 wi) {
+  float coat = b.clearcoatDelta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatPdf(b.clearcoat, wo, wi);
+  float specular = b.specularDelta ? 0.0 : specularPdf(b.specular, wo, wi);
+  float transmission = b.refractive ? dielectricPdf(b.dielectric, wo, wi) : thinPdf(b.thin, wo, wi);
+  return dot(b.chance, vec4(coat, specular, diffusePdf(wi), b.transmissionDelta ? 0.0 : transmission));
+}
+
+// The weight of a delta at its direction: b.chance goes in at the caller.
+vec3 bsdfDeltaWeight(Bsdf b, int lobe, float cosine, bool transmitted) {
+  if (lobe == 0) return vec3(clearcoatFresnel(b.clearcoat, cosine));
+  if (lobe == 1) return b.underCoat * specularFresnel(b.specular, cosine);
+  if (!b.refractive) return b.underCoat * thinTransmittance(b.thin, cosine);
+  DielectricSplit split = dielectricSplit(b.dielectric, cosine);
+  return b.underCoat * (transmitted ? split.transmittance / (b.dielectric.eta * b.dielectric.eta * (1.0 - split.reflectChance))
+                                    : split.reflectance / split.reflectChance);
+}
+
+// One sample of the mixture; false if it is worth nothing.
+bool bsdfSample(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s) {
+  vec3 edge = vec3(b.chance.x, b.chance.x + b.chance.y, b.chance.x + b.chance.y + b.chance.z);
+  int lobe = uLobe < edge.x ? 0 : uLobe < edge.y ? 1 : uLobe < edge.z || b.chance.w == 0.0 ? 2 : 3;
+  s.delta = lobe == 0 ? b.clearcoatDelta : lobe == 1 ? b.specularDelta : lobe == 3 && b.transmissionDelta;
+
+  vec3 normal = lobe == 0 ? b.clearcoat.normal : vec3(0.0, 0.0, 1.0);
+  mat3 basis = localFrame(normal);
+  vec3 o = wo * basis;
+  float alpha = lobe == 0 ? b.clearcoat.alpha : b.specular.alpha;
+  float bound = lobe == 3 && b.refractive ? 1.0 : ggxBound(o.z, alpha);
+  vec3 m = s.delta ? normal : basis * ggxSample(o, alpha, bound, u);
+
+  if (lobe == 3) s.wi = b.refractive ? dielectricSample(b.dielectric, wo, m, (uLobe - edge.z) / b.chance.w) : thinSample(wo, m);
+  else s.wi = lobe == 2 ? diffuseSample(u) : specularSample(wo, m);
+  s.transmitted = s.wi.z < 0.0;
+
+  float density = bsdfPdf(b, wo, s.wi);
+  s.pdf = s.delta ? 0.0 : density;
+  s.weight = s.delta ? bsdfDeltaWeight(b, lobe, dot(wo, m), s.transmitted) / b.chance[lobe] : bsdfEval(b, wo, s.wi) / density;
+  float size = s.weight.x + s.weight.y + s.weight.z;
+  return size > 0.0 && size < 1e30;  // false for NaN
+}
+
+#endif
