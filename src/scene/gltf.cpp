@@ -25,7 +25,7 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
     scene.report.ignored.push_back(fmt::format("/animations: {}, the rest pose is shown", document.animationCount));
 
   const NodeTree tree = readNodes(document, options.scene, scene.report);
-  TextureTable textures(document);
+  TextureTable textures(document, scene.report);
   scene.materials = readMaterials(document, textures, scene.report);
   InstanceBuilder instances(document, tree, scene.report);
   for (const int index : tree.shown) {

@@ -39,7 +39,8 @@ std::size_t strideOf(const Document& document, const tinygltf::Accessor& accesso
 // count < 2^32, stride <= 252, offset < 2^53: no sum or product here overflows.
 void checkRange(const Document& document, int view, std::size_t offset, std::size_t count, std::size_t stride,
                 std::size_t size, const std::string& place) {
-  const std::size_t have = document.bufferViews[static_cast<std::size_t>(view)].size();
+  const auto& bytes = document.bufferViews[static_cast<std::size_t>(view)];
+  const std::size_t have = bytes.data() ? bytes.size() : document.model.bufferViews[static_cast<std::size_t>(view)].byteLength;
   const std::size_t end = count == 0 ? 0 : offset + (count - 1) * stride + size;
   if (end > have) document.fail(place + "/bufferView", fmt::format("{} bytes past the end of buffer view {}", end - have, view));
 }
@@ -110,7 +111,7 @@ std::vector<std::uint32_t> readSparseIndices(const Document& document, const tin
   const auto& sparse = accessor.sparse;
   const std::size_t size = componentSize(sparse.indices.componentType);
   std::vector<std::uint32_t> indices(static_cast<std::size_t>(sparse.count));
-  const auto bytes = document.bufferViews[static_cast<std::size_t>(sparse.indices.bufferView)];
+  const auto bytes = document.view(sparse.indices.bufferView);
   if (indices.empty()) return indices;
   copyElements<1>(bytes.data() + sparse.indices.byteOffset, size, indices.size(), sparse.indices.componentType, false,
                   indices.data());
@@ -136,7 +137,7 @@ std::vector<Element> readElements(const Document& document, int index, bool norm
   std::vector<Element> result(accessor.count);
   Out* out = reinterpret_cast<Out*>(result.data());
   if (accessor.bufferView != kNone && accessor.count > 0) {
-    const auto bytes = document.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+    const auto bytes = document.view(accessor.bufferView);
     copyElements<N>(bytes.data() + accessor.byteOffset, strideOf(document, accessor), accessor.count,
                     accessor.componentType, normalized, out);
   }
@@ -144,7 +145,7 @@ std::vector<Element> readElements(const Document& document, int index, bool norm
     const auto indices =
         readSparseIndices(document, accessor, fmt::format("/accessors/{}/sparse/indices", index));
     std::vector<Element> values(indices.size());
-    const auto bytes = document.bufferViews[static_cast<std::size_t>(accessor.sparse.values.bufferView)];
+    const auto bytes = document.view(accessor.sparse.values.bufferView);
     if (!values.empty())
       copyElements<N>(bytes.data() + accessor.sparse.values.byteOffset, elementSize(accessor), values.size(),
                       accessor.componentType, normalized, reinterpret_cast<Out*>(values.data()));

@@ -12,6 +12,7 @@ namespace {
 constexpr std::uint32_t kMagic = 0x46546C67;   // "glTF"
 constexpr std::uint32_t kJson = 0x4E4F534A;    // "JSON"
 constexpr std::uint32_t kBinary = 0x004E4942;  // "BIN"
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kHeaderSize = 12;
 constexpr std::size_t kChunkHeaderSize = 8;
 
@@ -28,8 +29,12 @@ Container splitContainer(const std::filesystem::path& file, std::span<const std:
     throw FileError(file, fmt::format("byte {}", offset), problem);
   };
   if (bytes.empty()) fail(0, "the file is empty");
-  if (bytes.size() < 4 || readU32(bytes, 0) != kMagic)
-    return {.json = {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+  if (bytes.size() < 4 || readU32(bytes, 0) != kMagic) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::size_t first = text.find_first_not_of(text.starts_with(kByteOrderMark) ? "\xEF\xBB\xBF \t\r\n" : " \t\r\n");
+    if (first == std::string_view::npos || text[first] != '{') fail(0, "this is neither a GLB nor a glTF JSON file");
+    return {.json = text};
+  }
 
   if (bytes.size() < kHeaderSize) fail(bytes.size(), "the file ends inside the GLB header");
   if (const std::uint32_t version = readU32(bytes, 4); version != 2)

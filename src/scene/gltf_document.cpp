@@ -93,12 +93,7 @@ std::vector<ImageSource> readImageSources(const Document& document, const json& 
   return sources;
 }
 
-// Buffers that are placeholders for compressed data may have no bytes.
-bool isFallback(const json& buffer) {
-  return buffer.contains("/extensions/EXT_meshopt_compression/fallback"_json_pointer) &&
-         buffer["extensions"]["EXT_meshopt_compression"]["fallback"].get<bool>();
-}
-
+// A buffer without uri and BIN chunk gives a null span: EXT_meshopt_compression's fallback buffers are such.
 std::vector<std::span<const std::byte>> loadBuffers(Document& document, const json& buffers, const Container& container) {
   std::vector<std::span<const std::byte>> result;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
@@ -111,11 +106,9 @@ std::vector<std::span<const std::byte>> loadBuffers(Document& document, const js
       data = document.storage.emplace_back(loadUri(document, uri, place + "/uri"));
     } else if (i == 0 && container.binary.data()) {
       data = container.binary;
-    } else if (isFallback(buffer)) {
+    } else {
       result.emplace_back();
       continue;
-    } else {
-      document.fail(place, container.isGlb && i == 0 ? "has no uri, and the file has no BIN chunk" : "has no uri");
     }
     if (data.size() < length)
       document.fail(place + "/byteLength", fmt::format("{} bytes, but the buffer has only {}", length, data.size()));
@@ -124,7 +117,7 @@ std::vector<std::span<const std::byte>> loadBuffers(Document& document, const js
   return result;
 }
 
-void resolveBufferViews(Document& document, std::span<const std::span<const std::byte>> buffers) {
+void resolveBufferViews(Document& document, const json& bufferList, std::span<const std::span<const std::byte>> buffers) {
   for (std::size_t i = 0; i < document.model.bufferViews.size(); ++i) {
     const tinygltf::BufferView& view = document.model.bufferViews[i];
     const std::string place = fmt::format("/bufferViews/{}", i);
@@ -133,17 +126,25 @@ void resolveBufferViews(Document& document, std::span<const std::span<const std:
           document.storage.emplace_back(decodeMeshopt(document, view, buffers, fmt::format("{}/extensions/{}", place, kMeshopt))));
       continue;
     }
-    const std::span<const std::byte> buffer = buffers[static_cast<std::size_t>(view.buffer)];
+    const auto buffer = static_cast<std::size_t>(view.buffer);
+    const auto size = bufferList[buffer]["byteLength"].get<std::uint64_t>();
     const std::size_t end = view.byteOffset + view.byteLength;  // both < 2^53
-    if (end > buffer.size())
-      document.fail(place, fmt::format("{} bytes past the end of buffer {}", end - buffer.size(), view.buffer));
-    document.bufferViews.push_back(buffer.subspan(view.byteOffset, view.byteLength));
+    if (end > size) document.fail(place, fmt::format("{} bytes past the end of buffer {}", end - size, buffer));
+    document.bufferViews.push_back(buffers[buffer].data() ? buffers[buffer].subspan(view.byteOffset, view.byteLength)
+                                                          : std::span<const std::byte>{});
   }
 }
 
 }  // namespace
 
 void Document::fail(std::string_view place, std::string_view problem) const { throw FileError(file, place, problem); }
+
+std::span<const std::byte> Document::view(int bufferView) const {
+  const auto index = static_cast<std::size_t>(bufferView);
+  if (!bufferViews[index].data())
+    fail(fmt::format("/buffers/{}", model.bufferViews[index].buffer), "has no data: neither a uri nor a BIN chunk");
+  return bufferViews[index];
+}
 
 Document readDocument(const std::filesystem::path& file) {
   Document document;
@@ -161,7 +162,7 @@ Document readDocument(const std::filesystem::path& file) {
   const json images = std::exchange(checked["images"], json::array());
   document.images = readImageSources(document, images);
   document.model = parseModel(document, checked);
-  resolveBufferViews(document, loadBuffers(document, buffers, container));
+  resolveBufferViews(document, buffers, loadBuffers(document, buffers, container));
   checkAccessors(document);
   return document;
 }

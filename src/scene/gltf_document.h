@@ -29,13 +29,17 @@ struct Document {
   std::filesystem::path file;
   tinygltf::Model model;  // `buffers` and `images` stay empty
   std::vector<ImageSource> images;
-  std::vector<std::span<const std::byte>> bufferViews;  // decompressed; parallel to model.bufferViews
+  // Decompressed; parallel to model.bufferViews. data() is null for a view of a buffer that the file leaves
+  // to its surroundings (no uri, no BIN chunk): legal as long as nobody reads it.
+  std::vector<std::span<const std::byte>> bufferViews;
   std::size_t animationCount = 0;
 
   // What the spans point into. A deque: its elements stay where they are.
   std::deque<std::vector<std::byte>> storage;
 
   [[noreturn]] void fail(std::string_view place, std::string_view problem) const;
+  // The bytes of a view; throws FileError if there are none.
+  std::span<const std::byte> view(int bufferView) const;
 };
 
 // Throws FileError.

@@ -19,7 +19,7 @@ DracoMesh::DracoMesh(const Document& document, const tinygltf::Primitive& primit
     : state_(new State{document, extension.Get("attributes"), std::move(place), nullptr}) {
   if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP)
     document.fail(state_->place, "only TRIANGLES and TRIANGLE_STRIP can be compressed");
-  const auto bytes = document.bufferViews[static_cast<std::size_t>(indexOf(extension, "bufferView"))];
+  const auto bytes = document.view(indexOf(extension, "bufferView"));
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   draco::Decoder decoder;

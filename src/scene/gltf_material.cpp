@@ -113,6 +113,7 @@ class MaterialReader {
     TextureUse use;
     if (index == kNone) return use;
     use.texture = textures_.use(index, fmt::format("{}/{}", place_, key));
+    if (!use.used()) return use;
     if (transform) {
       texCoord = indexOf(*transform, "texCoord", texCoord);
       use.offset = vec2Of(*transform, "offset", use.offset);

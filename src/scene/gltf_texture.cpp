@@ -30,7 +30,7 @@ NamedImage loadImage(const Document& document, std::size_t index) {
   result.name = fmt::format("{}: {}", document.file.filename().string(), place);
   try {
     if (source.bufferView != kNone) {
-      result.image = io::decodeImage(document.bufferViews[static_cast<std::size_t>(source.bufferView)], place);
+      result.image = io::decodeImage(document.view(source.bufferView), place);
     } else {
       const std::vector<std::byte> bytes = loadUri(document, source.uri, place + "/uri");
       if (!isDataUri(source.uri)) result.name = (document.file.parent_path() / source.uri).string();
@@ -47,8 +47,8 @@ NamedImage loadImage(const Document& document, std::size_t index) {
 
 }  // namespace
 
-TextureTable::TextureTable(const Document& document)
-    : document_(document), textureOf_(document.model.textures.size(), kNone), imageOf_(document.images.size(), kNone) {}
+TextureTable::TextureTable(const Document& document, Report& report)
+    : document_(document), report_(report), textureOf_(document.model.textures.size(), kNone), imageOf_(document.images.size(), kNone) {}
 
 int TextureTable::useImage(int image) {
   int& known = imageOf_[static_cast<std::size_t>(image)];
@@ -65,8 +65,10 @@ int TextureTable::use(int texture, const std::string& place) {
   const tinygltf::Texture& from = document_.model.textures[static_cast<std::size_t>(texture)];
   const tinygltf::Value* webp = findExtension(from.extensions, kTextureWebp);
   const int image = webp ? indexOf(*webp, "source") : from.source;
-  if (image == kNone)
-    document_.fail(place, fmt::format("texture {} has no image of a kind that is read (PNG, JPEG, WebP)", texture));
+  if (image == kNone) {
+    report_.ignored.push_back(fmt::format("{}: texture {} has no image of a kind that is read (PNG, JPEG, WebP)", place, texture));
+    return kNone;
+  }
   known = static_cast<int>(textures_.size());
   textures_.push_back({from.name, useImage(image), readSampler(document_, from.sampler)});
   return known;

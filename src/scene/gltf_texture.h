@@ -11,9 +11,10 @@ namespace quintet::scene {
 
 class TextureTable {
  public:
-  explicit TextureTable(const Document&);
+  TextureTable(const Document&, Report&);
 
-  // The index in Scene::textures of a texture of the file; `place` is the use, for errors.
+  // The index in Scene::textures of a texture of the file; kNone, with a line in the report, if it has no
+  // image that can be read. `place` is the use.
   int use(int texture, const std::string& place);
   // Decodes all images that were used and moves everything into the scene. Throws FileError.
   void finish(Scene&);
@@ -22,6 +23,7 @@ class TextureTable {
   int useImage(int image);
 
   const Document& document_;
+  Report& report_;
   std::vector<Texture> textures_;
   std::vector<int> textureOf_;   // file's texture → textures_
   std::vector<int> imageOf_;     // file's image → imageSources_

@@ -1,0 +1,96 @@
+#include "scene/auto_camera.h"
+
+#include <algorithm>
+#include <array>
+
+namespace quintet::scene {
+namespace {
+
+using glm::dmat3;
+using glm::dvec2;
+using glm::dvec3;
+
+constexpr double kAzimuth = 30.0, kElevation = 20.0, kVerticalFov = 40.0;  // degrees
+constexpr double kMargin = 1.04;
+
+struct Box {
+  dvec3 center{0.0};
+  dvec3 half{1.0};
+};
+
+// Empty: the unit cube. No extent: a cube that is small against the distance from the origin, but not below the
+// resolution of floats there.
+Box usableBox(const Bounds3& bounds) {
+  if (bounds.empty() || !isFinite(bounds.min) || !isFinite(bounds.max)) return {};
+  const dvec3 low(bounds.min), high(bounds.max);
+  Box box{0.5 * (low + high), 0.5 * (high - low)};
+  const double largest = std::max({box.half.x, box.half.y, box.half.z});
+  const double away = glm::length(box.center);
+  if (largest <= 1e-6 * away || largest < 1e-30) box.half = dvec3(away > 0.0 ? 1e-2 * away : 1.0);
+  return box;
+}
+
+dmat3 viewAxes() {  // columns: right, up, backwards
+  const double azimuth = glm::radians(kAzimuth), elevation = glm::radians(kElevation);
+  const dvec3 back(std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation));
+  const dvec3 right = glm::normalize(glm::cross(dvec3(0, 1, 0), back));
+  return {right, glm::cross(back, right), back};
+}
+
+using Corners = std::array<dvec3, 8>;  // in the camera's axes, relative to the box's centre
+
+Corners cornersOf(const Box& box, const dmat3& axes) {
+  Corners corners;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const dvec3 sign(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+    corners[i] = glm::transpose(axes) * (sign * box.half);
+  }
+  return corners;
+}
+
+// The eye (in the same axes) from which the corners fill the frustum |x|, |y| <= slope · depth: as near as
+// the tighter axis allows, centred on the other.
+dvec3 placeEye(const Corners& corners, const dvec2& slope) {
+  dvec3 eye(0.0);
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    // The two frustum planes of this axis touch the corners; their intersection is the nearest eye.
+    double right = -std::numeric_limits<double>::infinity(), left = right;
+    for (const dvec3& c : corners) {
+      right = std::max(right, c[axis] + slope[axis] * c.z);
+      left = std::max(left, -c[axis] + slope[axis] * c.z);
+    }
+    eye[axis] = 0.5 * (right - left);
+    eye.z = std::max(eye.z, 0.5 * (right + left) / slope[axis]);
+  }
+  for (int iteration = 0; iteration < 8; ++iteration) {  // the looser axis sits farther back than its own eye
+    dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (const dvec3& c : corners) {
+      const dvec2 projected = (dvec2(c) - dvec2(eye)) / (eye.z - c.z);
+      low = glm::min(low, projected), high = glm::max(high, projected);
+    }
+    const dvec2 shift = 0.5 * (low + high) * eye.z;
+    eye += dvec3(shift, 0.0);
+  }
+  return eye;
+}
+
+}  // namespace
+
+Camera frameScene(const Bounds3& bounds, float aspect) {
+  if (!std::isfinite(aspect) || aspect <= 0.0f) aspect = 1.0f;
+  const Box box = usableBox(bounds);
+  const dmat3 axes = viewAxes();
+  const double slope = std::tan(glm::radians(kVerticalFov / 2.0)) / kMargin;
+  const dvec3 eye = placeEye(cornersOf(box, axes), slope * dvec2(aspect, 1.0));
+
+  Camera camera;
+  camera.name = "automatic";
+  camera.verticalFov = static_cast<float>(glm::radians(kVerticalFov));
+  const dvec3 limit(std::numeric_limits<float>::max());
+  const vec3 position(glm::clamp(box.center + axes * eye, -limit, limit));
+  camera.worldFromCamera = mat4(vec4(vec3(axes[0]), 0.0f), vec4(vec3(axes[1]), 0.0f), vec4(vec3(axes[2]), 0.0f), vec4(position, 1.0f));
+  camera.focusDistance = static_cast<float>(std::min(eye.z, limit.x));
+  return camera;
+}
+
+}  // namespace quintet::scene
