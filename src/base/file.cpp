@@ -56,7 +56,7 @@ struct Temporary {
 template <class Container>
 Container readAll(const fs::path& file) {
   const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  struct stat info{};
+  struct stat info {};
   if (!in || ::fstat(in.get(), &info) != 0) failReading(file, errno);
   if (S_ISDIR(info.st_mode)) failReading(file, EISDIR);
 
@@ -95,8 +95,8 @@ int writeAll(int fd, std::span<const std::byte> data) {
 }
 
 struct Target {
-  fs::path path;                // symbolic links followed, so that a rename replaces the file and not the link
-  std::optional<mode_t> mode;   // of the file that is there
+  fs::path path;               // symbolic links followed, so that a rename replaces the file and not the link
+  std::optional<mode_t> mode;  // of the file that is there
   bool regular() const { return !mode || S_ISREG(*mode); }
   fs::path folder() const { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 };
@@ -113,7 +113,7 @@ Target findTarget(const fs::path& file) {
     if (struct stat info{}; ::stat(target.path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) break;
     target.path = target.folder() / next;
   }
-  struct stat info{};
+  struct stat info {};
   if (::stat(target.path.c_str(), &info) == 0) {
     target.mode = info.st_mode;
     if (S_ISDIR(info.st_mode)) failWriting(file, EISDIR);

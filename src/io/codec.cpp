@@ -37,7 +37,8 @@ auto withFormat(const Source& source, Read&& read) {
 
 // Problems may quote the file: no control characters to the terminal, and one line.
 std::string printable(std::string text) {
-  std::ranges::replace_if(text, [](unsigned char c) { return c < 32 || c > 126; }, '?');
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < 32 || c > 126; }, '?');
   if (text.size() > kMaxMessage) text.replace(kMaxMessage, std::string::npos, "...");
   return text;
 }

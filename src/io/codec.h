@@ -17,7 +17,7 @@
 
 namespace quintet::io {
 
-inline constexpr std::uint32_t kMaxImageSide = 65536;              // pixels
+inline constexpr std::uint32_t kMaxImageSide = 65536;                // pixels
 inline constexpr std::size_t kMaxImageBytes = std::size_t{1} << 30;  // decoded
 
 struct ImageInfo {

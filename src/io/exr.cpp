@@ -127,7 +127,8 @@ Choice choosePart(const Source& source, Imf::MultiPartInputFile& file, const Sel
       if (width * height * pixelBytes > maxBytes) source.fail("the OpenEXR channels are too large together");
     }
     source.checkExpansion(std::uint64_t{extent(choice.data.min.x, choice.data.max.x)} *
-                              extent(choice.data.min.y, choice.data.max.y) * pixelBytes, kBestRatio);
+                              extent(choice.data.min.y, choice.data.max.y) * pixelBytes,
+                          kBestRatio);
     return choice;
   }
   source.fail(fmt::format("OpenEXR without channels that make an image (Y; R, G, B; or one alone): {}",
@@ -171,7 +172,9 @@ ExrPicture readPicture(const Source& source, const Select& select, std::uint64_t
     const std::size_t height = extent(data.min.y, data.max.y);
 
     ExrPicture picture{extent(choice.display.min.x, choice.display.max.x),
-                       extent(choice.display.min.y, choice.display.max.y), {}, readStrings(header)};
+                       extent(choice.display.min.y, choice.display.max.y),
+                       {},
+                       readStrings(header)};
     Imf::FrameBuffer buffers;
     for (const std::string& name : choice.channels)
       picture.channels.push_back({name, storedType(header.channels()[name].type), std::vector<float>(width * height)});
@@ -193,7 +196,9 @@ ImageInfo probe(const Source& source) {
     const Choice choice = choosePart(source, file, imageChannels, kMaxImageBytes);
     return ImageInfo{extent(choice.display.min.x, choice.display.max.x),
                      extent(choice.display.min.y, choice.display.max.y),
-                     static_cast<std::uint32_t>(choice.channels.size()), PixelType::f32, {}};
+                     static_cast<std::uint32_t>(choice.channels.size()),
+                     PixelType::f32,
+                     {}};
   });
 }
 

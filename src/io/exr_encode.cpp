@@ -49,7 +49,8 @@ half toHalf(float value) {
 
 std::uint32_t toUnsigned(float value) {
   if (!(value > 0.0f)) return 0;
-  return value >= 4294967296.0f ? 0xffffffffu : static_cast<std::uint32_t>(std::floor(static_cast<double>(value) + 0.5));
+  return value >= 4294967296.0f ? 0xffffffffu
+                                : static_cast<std::uint32_t>(std::floor(static_cast<double>(value) + 0.5));
 }
 
 // The samples as the file stores them: OpenEXR converts when it reads, not when it writes.
@@ -83,7 +84,8 @@ void checkPicture(const ExrPicture& picture) {
 Imf::Header makeHeader(const ExrPicture& picture) {
   Imf::Header header(static_cast<int>(picture.width), static_cast<int>(picture.height));
   header.compression() = Imf::ZIP_COMPRESSION;
-  for (const ExrChannel& channel : picture.channels) header.channels().insert(channel.name, Imf::Channel(pixelType(channel.type)));
+  for (const ExrChannel& channel : picture.channels)
+    header.channels().insert(channel.name, Imf::Channel(pixelType(channel.type)));
   constexpr std::string_view kReserved[]{"type", "name", "view", "version", "chunkCount", "tiles", "preview"};
   checkMetadata(picture.metadata);
   for (const auto& [key, text] : picture.metadata) {

@@ -63,7 +63,8 @@ bool parseResolution(std::string_view line, Header& header) {
     if (!isX) header.bottomToTop = line[0] == '+';
     const std::string_view rest = line.substr(3);
     const std::size_t space = axis == 0 ? rest.find(' ') : rest.size();
-    if (space == std::string_view::npos || !parse(rest.substr(0, space), isX ? header.width : header.height)) return false;
+    if (space == std::string_view::npos || !parse(rest.substr(0, space), isX ? header.width : header.height))
+      return false;
     line = rest.substr(std::min(space + 1, rest.size()));
   }
   return true;
@@ -117,7 +118,8 @@ class LineReader {
       const std::size_t code = source_[at_++];
       const bool run = code > 128;
       const std::size_t count = run ? code - 128 : code;
-      if (count == 0 || count > line.size() - x) source_.fail(at_ - 1, "broken Radiance HDR: a run leaves its scan line");
+      if (count == 0 || count > line.size() - x)
+        source_.fail(at_ - 1, "broken Radiance HDR: a run leaves its scan line");
       need(run ? 1 : count);
       for (std::size_t i = 0; i < count; ++i) line[x + i][component] = source_[at_ + (run ? 0 : i)];
       at_ += run ? 1 : count;
@@ -228,8 +230,8 @@ const Format kHdr{"Radiance HDR", matches, probe, decode, nullptr};
 std::vector<std::byte> encodeHdr(const Image& image) {
   checkEncodable(image, "Radiance HDR");
   const Image rgb = toChannels(toPremultiplied(image), 3);
-  const std::string header = fmt::format("#?RADIANCE\nSOFTWARE=quintet\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n",
-                                         image.height, image.width);
+  const std::string header =
+      fmt::format("#?RADIANCE\nSOFTWARE=quintet\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
   const auto text = std::as_bytes(std::span(header));
   std::vector<std::byte> out(text.begin(), text.end());
   std::vector<Rgbe> line(image.width);
@@ -240,7 +242,8 @@ std::vector<std::byte> encodeHdr(const Image& image) {
         for (const std::uint8_t value : pixel) out.push_back(std::byte{value});
       continue;
     }
-    for (const std::uint32_t value : {2u, 2u, image.width >> 8, image.width & 255}) out.push_back(static_cast<std::byte>(value));
+    for (const std::uint32_t value : {2u, 2u, image.width >> 8, image.width & 255})
+      out.push_back(static_cast<std::byte>(value));
     for (std::size_t component = 0; component < 4; ++component) appendComponent(out, line, component);
   }
   return out;

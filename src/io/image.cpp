@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/parallel.h"
 #include "io/color.h"
 
 namespace quintet::io {
@@ -13,15 +14,19 @@ namespace {
 constexpr std::array<float, 3> kLuminance{0.2126f, 0.7152f, 0.0722f};
 
 template <class T>
-constexpr float kUnit = std::is_same_v<T, float> ? 1.0f : static_cast<float>(std::is_same_v<T, std::uint8_t> ? 255 : 65535);
+constexpr float kUnit = std::is_same_v<T, float> ? 1.0f
+                                                 : static_cast<float>(std::is_same_v<T, std::uint8_t> ? 255 : 65535);
 
 // Calls function(T{}) with T the image's sample type.
 template <class Function>
 auto withType(PixelType type, Function&& function) {
   switch (type) {
-    case PixelType::u8: return function(std::uint8_t{});
-    case PixelType::u16: return function(std::uint16_t{});
-    case PixelType::f32: break;
+    case PixelType::u8:
+      return function(std::uint8_t{});
+    case PixelType::u16:
+      return function(std::uint16_t{});
+    case PixelType::f32:
+      break;
   }
   return function(float{});
 }
@@ -102,12 +107,15 @@ Image toSrgb8(const Image& image) {
   const std::span<const float> in = linear.samples<float>();
   const std::span<std::uint8_t> out = result.samples<std::uint8_t>();
   const std::uint32_t colors = image.colorChannels();
-  for (std::size_t i = 0; i < in.size(); i += image.channels) {
-    const float alpha = image.hasAlpha() ? in[i + colors] : 1.0f;
-    const float scale = image.premultiplied && alpha > 0.0f ? 1.0f / alpha : 1.0f;
-    for (std::uint32_t c = 0; c < colors; ++c) out[i + c] = byteFromUnit(srgbFromLinear(in[i + c] * scale));
-    if (image.hasAlpha()) out[i + colors] = byteFromUnit(alpha);
-  }
+  const std::size_t row = static_cast<std::size_t>(image.width) * image.channels;
+  parallelFor(image.height, [&](std::size_t y) {
+    for (std::size_t i = y * row; i < (y + 1) * row; i += image.channels) {
+      const float alpha = image.hasAlpha() ? in[i + colors] : 1.0f;
+      const float scale = image.premultiplied && alpha > 0.0f ? 1.0f / alpha : 1.0f;
+      for (std::uint32_t c = 0; c < colors; ++c) out[i + c] = byteFromUnit(srgbFromLinear(in[i + c] * scale));
+      if (image.hasAlpha()) out[i + colors] = byteFromUnit(alpha);
+    }
+  });
   return result;
 }
 

@@ -58,8 +58,11 @@ bool matches(const Source& source) { return source.has(0, "\xff\xd8\xff"); }
 ImageInfo probe(const Source& source) {
   const Decoder decoder = makeDecoder();
   const Header header = readHeader(source, decoder.get());
-  return {static_cast<std::uint32_t>(header.width), static_cast<std::uint32_t>(header.height), header.channels,
-          PixelType::u8, {}};
+  return {static_cast<std::uint32_t>(header.width),
+          static_cast<std::uint32_t>(header.height),
+          header.channels,
+          PixelType::u8,
+          {}};
 }
 
 Image decode(const Source& source) {
@@ -76,7 +79,8 @@ Image decode(const Source& source) {
   // and common: padding between the segments. Warnings behind it show only if decoding goes on.
   const auto harmless = [&] {
     return tjGetErrorCode(decoder.get()) == TJERR_WARNING &&
-           std::string_view(tjGetErrorStr2(decoder.get())).find("extraneous bytes before marker") != std::string_view::npos;
+           std::string_view(tjGetErrorStr2(decoder.get())).find("extraneous bytes before marker") !=
+               std::string_view::npos;
   };
   if (run(TJFLAG_STOPONWARNING) != 0 && !(harmless() && (run(0) == 0 || harmless())))
     failWith(source, tjGetErrorStr2(decoder.get()));

@@ -39,11 +39,15 @@ void checkContainer(const Source& source) {
 
 [[noreturn]] void failWith(const Source& source, VP8StatusCode status) {
   switch (status) {
-    case VP8_STATUS_OUT_OF_MEMORY: throw std::bad_alloc();
+    case VP8_STATUS_OUT_OF_MEMORY:
+      throw std::bad_alloc();
     case VP8_STATUS_NOT_ENOUGH_DATA:
-    case VP8_STATUS_SUSPENDED: source.fail(source.size(), "WebP data ends early");
-    case VP8_STATUS_UNSUPPORTED_FEATURE: source.fail("WebP with a feature that is not supported");
-    default: source.fail("broken WebP: the image data is corrupt");
+    case VP8_STATUS_SUSPENDED:
+      source.fail(source.size(), "WebP data ends early");
+    case VP8_STATUS_UNSUPPORTED_FEATURE:
+      source.fail("WebP with a feature that is not supported");
+    default:
+      source.fail("broken WebP: the image data is corrupt");
   }
 }
 
@@ -59,8 +63,11 @@ WebPBitstreamFeatures readHeader(const Source& source) {
 
 ImageInfo probe(const Source& source) {
   const WebPBitstreamFeatures features = readHeader(source);
-  return {static_cast<std::uint32_t>(features.width), static_cast<std::uint32_t>(features.height),
-          features.has_alpha ? 4u : 3u, PixelType::u8, {}};
+  return {static_cast<std::uint32_t>(features.width),
+          static_cast<std::uint32_t>(features.height),
+          features.has_alpha ? 4u : 3u,
+          PixelType::u8,
+          {}};
 }
 
 Image decode(const Source& source) {
@@ -75,9 +82,9 @@ Image decode(const Source& source) {
   const VP8StatusCode status = WebPDecode(source.data(), source.size(), &config);
   const std::unique_ptr<WebPDecBuffer, FreeBuffer> buffer(&config.output);
   if (status != VP8_STATUS_OK) failWith(source, status);
-  Image image = makeImage(static_cast<std::uint32_t>(config.input.width),
-                          static_cast<std::uint32_t>(config.input.height), alpha ? 4 : 3, PixelType::u8,
-                          ColorEncoding::sRgb);
+  Image image =
+      makeImage(static_cast<std::uint32_t>(config.input.width), static_cast<std::uint32_t>(config.input.height),
+                alpha ? 4 : 3, PixelType::u8, ColorEncoding::sRgb);
   const WebPRGBABuffer& rows = config.output.u.RGBA;
   for (std::uint32_t y = 0; y < image.height; ++y)
     std::memcpy(image.data.data() + y * image.rowBytes(), rows.rgba + y * static_cast<std::size_t>(rows.stride),

@@ -91,7 +91,7 @@ TEST(WriteFileTest, FollowsUmaskForNewFilesAndKeepsPermissionsOfOldOnes) {
   const mode_t before = umask(027);
   writeFile(folder / "a", "1");
   umask(before);
-  struct stat info{};
+  struct stat info {};
   ASSERT_EQ(stat((folder / "a").c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0777, 0640u);
   ASSERT_EQ(chmod((folder / "a").c_str(), 0604), 0);
@@ -147,7 +147,7 @@ TEST(WriteFileTest, FailureLeavesTheOldFileAndNoTemporary) {
   EXPECT_EXIT(
       {
         signal(SIGXFSZ, SIG_IGN);
-        struct rlimit limit{};
+        struct rlimit limit {};
         limit.rlim_cur = limit.rlim_max = 1000;
         setrlimit(RLIMIT_FSIZE, &limit);
         const std::string message = messageOf([&] { writeFile(folder / "a", std::string(100000, 'x')); });

@@ -8,7 +8,8 @@ namespace {
 // The values are part of file names and image metadata: they must not change between versions.
 TEST(HashTest, IsStable) {
   EXPECT_EQ(Hasher().finish().hex(), "99aa06d3014798d86001c324468d497f");  // XXH3-128 of nothing, from its test vectors
-  EXPECT_EQ(Hasher().add("quintet").add(std::uint64_t{5}).finish(), Hasher().add("quintet").add(std::uint64_t{5}).finish());
+  EXPECT_EQ(Hasher().add("quintet").add(std::uint64_t{5}).finish(),
+            Hasher().add("quintet").add(std::uint64_t{5}).finish());
 }
 
 TEST(HashTest, FramesItsParts) {

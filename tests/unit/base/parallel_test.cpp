@@ -35,8 +35,9 @@ TEST(ParallelTest, LoopsNest) {
   std::atomic<int> calls{0};
   parallelFor(8, [&](std::size_t) { parallelFor(8, [&](std::size_t) { ++calls; }); });
   EXPECT_EQ(calls, 64);
-  EXPECT_THROW(parallelFor(4, [](std::size_t) { parallelFor(4, [](std::size_t) { throw std::logic_error("inner"); }); }),
-               std::logic_error);
+  EXPECT_THROW(
+      parallelFor(4, [](std::size_t) { parallelFor(4, [](std::size_t) { throw std::logic_error("inner"); }); }),
+      std::logic_error);
 }
 
 TEST(ParallelTest, UsesTheCoresOfTheProcess) {

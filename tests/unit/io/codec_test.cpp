@@ -79,7 +79,8 @@ TEST(PngTest, ExpandsPalettesAndBits) {
 }
 
 TEST(PngTest, AppliesTransparentColours) {
-  const Image grey = decodeImage(test::makePng({2, 1, 8, 0, 0, {{"tRNS", std::string("\0\7", 2)}}, std::string("\0\7\x8", 3)}), "a");
+  const Image grey =
+      decodeImage(test::makePng({2, 1, 8, 0, 0, {{"tRNS", std::string("\0\7", 2)}}, std::string("\0\7\x8", 3)}), "a");
   EXPECT_EQ(grey.channels, 2u);
   EXPECT_THAT(bytesAsInts(grey), ElementsAre(7, 0, 8, 255));
 
@@ -87,17 +88,26 @@ TEST(PngTest, AppliesTransparentColours) {
   const Image rgb = decodeImage(test::makePng({2, 1, 8, 2, 0, {{"tRNS", key}}, std::string("\0\1\2\3\4\5\6", 7)}), "a");
   EXPECT_THAT(bytesAsInts(rgb), ElementsAre(1, 2, 3, 0, 4, 5, 6, 255));
 
-  const Image wide = decodeImage(test::makePng({1, 1, 16, 2, 0, {{"tRNS", key}}, std::string("\0\0\1\0\2\0\3", 7)}), "a");
+  const Image wide =
+      decodeImage(test::makePng({1, 1, 16, 2, 0, {{"tRNS", key}}, std::string("\0\0\1\0\2\0\3", 7)}), "a");
   EXPECT_EQ(wide.type, PixelType::u16);
   EXPECT_THAT(wide.samples<std::uint16_t>(), ElementsAre(1, 2, 3, 0));
-  const Image wideGrey = decodeImage(test::makePng({2, 1, 16, 0, 0, {{"tRNS", "\1\2"}}, std::string("\0\1\2\3\4", 5)}), "a");
+  const Image wideGrey =
+      decodeImage(test::makePng({2, 1, 16, 0, 0, {{"tRNS", "\1\2"}}, std::string("\0\1\2\3\4", 5)}), "a");
   EXPECT_THAT(wideGrey.samples<std::uint16_t>(), ElementsAre(0x102, 0, 0x304, 0xffff));
 }
 
 TEST(PngTest, ReadsInterlacedFiles) {
   // Adam7 order of a 3 x 3 picture: (0,0); (2,0)…: pass 4 has (2,0), pass 5 (0,2) (2,2), 6 (1,0) (1,2), 7 row 1.
   test::PngParts parts{3, 3, 8, 0, 1, {}, {}};
-  parts.rows = std::string("\0\1" "\0\2" "\0\3\4" "\0\5" "\0\6" "\0\7\x8\x9", 15);
+  parts.rows = std::string(
+      "\0\1"
+      "\0\2"
+      "\0\3\4"
+      "\0\5"
+      "\0\6"
+      "\0\7\x8\x9",
+      15);
   EXPECT_THAT(bytesAsInts(decodeImage(test::makePng(parts), "a.png")), ElementsAre(1, 5, 2, 7, 8, 9, 3, 6, 4));
 }
 
@@ -136,7 +146,8 @@ TEST(PngTest, PaletteIndicesOutOfRangeAreBlack) {
 }
 
 TEST(PngTest, AStrangeAncillaryChunkDoesNoHarm) {
-  const test::PngParts parts{1, 1, 8, 0, 0, {{"tIME", std::string("\7\xe8\x0d\x01\1\1\1", 7)}, {"quIn", "?"}}, std::string("\0\5", 2)};
+  const test::PngParts parts{
+      1, 1, 8, 0, 0, {{"tIME", std::string("\7\xe8\x0d\x01\1\1\1", 7)}, {"quIn", "?"}}, std::string("\0\5", 2)};
   EXPECT_THAT(bytesAsInts(decodeImage(test::makePng(parts), "a.png")), ElementsAre(5));
 }
 
@@ -196,9 +207,11 @@ TEST(CodecTest, OtherContentIsAnError) {
 }
 
 TEST(CodecTest, HugeSizesAreRefusedBeforeAnyAllocation) {
-  EXPECT_THAT(errorOf(test::makePng({60000, 60000, 8, 6, 0, {}, "x"})), HasSubstr("the image is too large: 60000 x 60000"));
+  EXPECT_THAT(errorOf(test::makePng({60000, 60000, 8, 6, 0, {}, "x"})),
+              HasSubstr("the image is too large: 60000 x 60000"));
   EXPECT_THAT(errorOf(test::makePng({70000, 1, 8, 0, 0, {}, "x"})), HasSubstr("at most 65536 a side"));
-  EXPECT_THAT(errorOf(test::makePng({16000, 16000, 8, 0, 0, {}, "x"})), HasSubstr("its header promises 256000000 bytes"));
+  EXPECT_THAT(errorOf(test::makePng({16000, 16000, 8, 0, 0, {}, "x"})),
+              HasSubstr("its header promises 256000000 bytes"));
   EXPECT_THAT(errorOf(test::makePng({0, 5, 8, 0, 0, {}, "x"})), HasSubstr("PNG"));
   EXPECT_THAT(errorOf(test::bytesOf("#?RADIANCE\n\n-Y 60000 +X 60000\n")), HasSubstr("too large"));
   EXPECT_THAT(errorOf(test::bytesOf("#?RADIANCE\n\n-Y 9000 +X 9000\nabcd")), HasSubstr("ends early"));

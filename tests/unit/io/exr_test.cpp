@@ -50,7 +50,8 @@ TEST(ExrTest, MultipliesStraightAlpha) {
 
 TEST(ExrTest, KeepsChannelsTypesAndMetadata) {
   const float inf = std::numeric_limits<float>::infinity();
-  const ExrPicture picture{3, 1,
+  const ExrPicture picture{3,
+                           1,
                            {{"B", ExrType::half, {1.0f, 70000.0f, -inf}},
                             {"albedo.R", ExrType::f32, {0.1f, 1e30f, -0.0f}},
                             {"sampleCount", ExrType::u32, {7.0f, 16777215.0f, -3.0f}}},
@@ -104,8 +105,8 @@ TEST(ExrTest, ShowsTheDisplayWindow) {
   ASSERT_EQ(image.width, 5u);
   ASSERT_EQ(image.height, 4u);
   ASSERT_EQ(image.channels, 4u);
-  EXPECT_THAT(image.pixel<float>(0, 0), ElementsAre(0, 0, 0, 0));  // above the data
-  EXPECT_THAT(image.pixel<float>(3, 1), ElementsAre(0, 0, 0, 0));  // right of it
+  EXPECT_THAT(image.pixel<float>(0, 0), ElementsAre(0, 0, 0, 0));              // above the data
+  EXPECT_THAT(image.pixel<float>(3, 1), ElementsAre(0, 0, 0, 0));              // right of it
   EXPECT_THAT(image.pixel<float>(0, 1), ElementsAre(5110, 4110, 3110, 2110));  // A, B, G, R stand 1000 apart
   EXPECT_THAT(image.pixel<float>(2, 3), ElementsAre(5312, 4312, 3312, 2312));
 }
@@ -120,7 +121,8 @@ TEST(ExrTest, FindsTheImageInLayersAndParts) {
   EXPECT_THAT(part.pixel<float>(1, 2), ElementsAre(2201, 1201, 201));
 
   const ExrPicture noImage{1, 1, {{"U", ExrType::half, {1.0f}}, {"V", ExrType::half, {1.0f}}}, {}};
-  EXPECT_THAT(errorOf(encodeExr(noImage)), HasSubstr("without channels that make an image (Y; R, G, B; or one alone): U, V"));
+  EXPECT_THAT(errorOf(encodeExr(noImage)),
+              HasSubstr("without channels that make an image (Y; R, G, B; or one alone): U, V"));
   const ExrPicture depth{1, 1, {{"Z", ExrType::f32, {3.0f}}}, {}};
   EXPECT_THAT(decodeImage(encodeExr(depth), "a").samples<float>(), ElementsAre(3.0f));
 }

@@ -99,7 +99,8 @@ TEST(HdrTest, DividesByExposure) {
 
 TEST(HdrTest, SaysWhatIsWrongAndWhere) {
   const std::string header = "#?RADIANCE\n\n-Y 1 +X 9\n";
-  EXPECT_THAT(errorOf("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 9\n"), HasSubstr("a.hdr: byte 11: Radiance HDR with FORMAT"));
+  EXPECT_THAT(errorOf("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 9\n"),
+              HasSubstr("a.hdr: byte 11: Radiance HDR with FORMAT"));
   for (const char* line : {"-Y 1", "-Y 1 +Y 2", "-Y 1 +X", "-Y one +X 2", "-Y 1 +X 2x", "Y 1 X 2", "-Y -1 +X 2"})
     EXPECT_THAT(errorOf(std::string("#?RADIANCE\n\n") + line + "\n"), HasSubstr("resolution")) << line;
   EXPECT_THAT(errorOf("#?RADIANCE\n"), HasSubstr("header ends early"));

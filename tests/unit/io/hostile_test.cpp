@@ -17,7 +17,9 @@ using test::Sample;
 constexpr int kMutations = 2000;  // per sample
 
 enum class Outcome { picture, refused };
-std::ostream& operator<<(std::ostream& out, Outcome outcome) { return out << (outcome == Outcome::picture ? "picture" : "refused"); }
+std::ostream& operator<<(std::ostream& out, Outcome outcome) {
+  return out << (outcome == Outcome::picture ? "picture" : "refused");
+}
 
 // Anything but a picture or a FileError of one line fails the test (by the exception).
 Outcome tryDecode(std::span<const std::byte> bytes, const std::string& name) {
@@ -43,10 +45,17 @@ Bytes mutate(const Bytes& original, std::minstd_rand& random) {
   constexpr std::byte kExtremes[]{std::byte{0}, std::byte{0xff}, std::byte{0x7f}, std::byte{0x80}, std::byte{1}};
   for (auto changes = 1 + random() % 4; changes > 0; --changes) {
     switch (random() % 6) {
-      case 0: bytes.erase(bytes.begin() + position()); break;
-      case 1: bytes.insert(bytes.begin() + position(), static_cast<std::byte>(random())); break;
-      case 2: bytes[static_cast<std::size_t>(position())] = kExtremes[random() % 5]; break;
-      default: bytes[static_cast<std::size_t>(position())] ^= static_cast<std::byte>(1u << random() % 8);
+      case 0:
+        bytes.erase(bytes.begin() + position());
+        break;
+      case 1:
+        bytes.insert(bytes.begin() + position(), static_cast<std::byte>(random()));
+        break;
+      case 2:
+        bytes[static_cast<std::size_t>(position())] = kExtremes[random() % 5];
+        break;
+      default:
+        bytes[static_cast<std::size_t>(position())] ^= static_cast<std::byte>(1u << random() % 8);
     }
   }
   return bytes;

@@ -112,7 +112,8 @@ TEST(ResizeTest, AveragesAreas) {
   EXPECT_THAT(resizeBox(image, 1, 1).samples<float>(), ElementsAre(4.5f));
   EXPECT_THAT(resizeBox(image, 4, 2).samples<float>(), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
   // Three pixels to two: each takes one and a half.
-  EXPECT_THAT(resizeBox(floats(3, 1, 1, {3, 6, 9}), 2, 1).samples<float>(), ElementsAre(FloatNear(4, 1e-5f), FloatNear(8, 1e-5f)));
+  EXPECT_THAT(resizeBox(floats(3, 1, 1, {3, 6, 9}), 2, 1).samples<float>(),
+              ElementsAre(FloatNear(4, 1e-5f), FloatNear(8, 1e-5f)));
   EXPECT_THAT(resizeBox(floats(2, 1, 1, {3, 6}), 4, 1).samples<float>(), ElementsAre(3, 3, 6, 6));
 }
 

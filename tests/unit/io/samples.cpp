@@ -42,8 +42,13 @@ std::string storedDeflate(const std::string& data) {
   std::uint32_t a = 1;
   std::uint32_t b = 0;
   for (const unsigned char c : data) a = (a + c) % 65521, b = (b + a) % 65521;
-  const std::string head{0x78, 0x01, 0x01, static_cast<char>(size & 255), static_cast<char>(size >> 8),
-                         static_cast<char>(~size & 255), static_cast<char>(~size >> 8 & 255)};
+  const std::string head{0x78,
+                         0x01,
+                         0x01,
+                         static_cast<char>(size & 255),
+                         static_cast<char>(size >> 8),
+                         static_cast<char>(~size & 255),
+                         static_cast<char>(~size >> 8 & 255)};
   return head + data + bigEndian(b << 16 | a);
 }
 
@@ -55,8 +60,8 @@ Bytes bytesOf(std::string_view text) {
 }
 
 Image makePicture(std::uint32_t width, std::uint32_t height, std::uint32_t channels, PixelType type) {
-  Image image = makeImage(width, height, channels, type,
-                          type == PixelType::f32 ? ColorEncoding::linear : ColorEncoding::sRgb);
+  Image image =
+      makeImage(width, height, channels, type, type == PixelType::f32 ? ColorEncoding::linear : ColorEncoding::sRgb);
   std::minstd_rand random(width * 31 + height * 7 + channels);
   for (std::size_t i = 0; i < image.sampleCount(); ++i) {
     const std::size_t c = i % channels;
@@ -135,7 +140,14 @@ std::vector<Sample> allSamples() {
   PngParts palette{5, 2, 2, 3, 0, {{"PLTE", std::string("\1\2\3\4\5\6\7\x8\x9", 9)}, {"tRNS", "\x80"}}, {}};
   palette.rows = std::string("\0\x18\x40\0\x24\x80", 6);
   PngParts interlaced{3, 3, 8, 0, 1, {}, {}};
-  interlaced.rows = std::string("\0\1" "\0\2" "\0\3\4" "\0\5" "\0\6" "\0\7\x8\x9", 15);
+  interlaced.rows = std::string(
+      "\0\1"
+      "\0\2"
+      "\0\3\4"
+      "\0\5"
+      "\0\6"
+      "\0\7\x8\x9",
+      15);
   const std::string flat = "#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n" + std::string(16, '\x80');
   const std::string oldRuns = "#?RADIANCE\n\n-Y 1 +X 9\n\x80\x40\x20\x81\1\1\1\4\x80\x80\x80\x80\1\1\1\3";
   return {

@@ -37,14 +37,17 @@ struct Plane {
     for (int y = box.min.y; y <= box.max.y; ++y)
       for (int x = box.min.x; x <= box.max.x; ++x) samples.push_back(static_cast<float>(100 * y + x) + offset);
   }
-  void addTo(Imf::FrameBuffer& buffers) const { buffers.insert(name, Imf::Slice::Make(Imf::FLOAT, samples.data(), window)); }
+  void addTo(Imf::FrameBuffer& buffers) const {
+    buffers.insert(name, Imf::Slice::Make(Imf::FLOAT, samples.data(), window));
+  }
 
   std::string name;
   Imath::Box2i window;
   std::vector<float> samples;
 };
 
-Imf::Header makeHeader(const Imath::Box2i& display, const Imath::Box2i& data, const std::vector<std::string>& channels) {
+Imf::Header makeHeader(const Imath::Box2i& display, const Imath::Box2i& data,
+                       const std::vector<std::string>& channels) {
   Imf::Header header(display, data);
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const std::string& name : channels) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
@@ -114,13 +117,18 @@ Bytes writeParts(const Imath::Box2i& box) {
 Bytes makeExr(ExrKind kind) {
   const Imath::Box2i box({0, 0}, {9, 5});
   switch (kind) {
-    case ExrKind::tiled: return writeTiles(makeHeader(box, box, {"R", "G", "B"}), Imf::ONE_LEVEL);
-    case ExrKind::mipmapped: return writeTiles(makeHeader(box, box, {"Y"}), Imf::MIPMAP_LEVELS);
+    case ExrKind::tiled:
+      return writeTiles(makeHeader(box, box, {"R", "G", "B"}), Imf::ONE_LEVEL);
+    case ExrKind::mipmapped:
+      return writeTiles(makeHeader(box, box, {"Y"}), Imf::MIPMAP_LEVELS);
     case ExrKind::offsetWindows:
       return writeLines(makeHeader({{10, 20}, {14, 23}}, {{8, 21}, {12, 30}}, {"R", "G", "B", "A"}));
-    case ExrKind::layers: return writeLines(makeHeader(box, box, {"Z", "view.A", "view.B", "view.G", "view.R"}));
-    case ExrKind::multiPart: return writeParts(box);
-    case ExrKind::piz: break;
+    case ExrKind::layers:
+      return writeLines(makeHeader(box, box, {"Z", "view.A", "view.B", "view.G", "view.R"}));
+    case ExrKind::multiPart:
+      return writeParts(box);
+    case ExrKind::piz:
+      break;
   }
   Imf::Header header = makeHeader(box, box, {"Y"});
   header.compression() = Imf::PIZ_COMPRESSION;

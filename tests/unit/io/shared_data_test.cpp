@@ -62,7 +62,8 @@ TEST(SharedDataTest, EveryImageDecodes) {
       if (extension != ".glb") continue;
       const auto glb = readFile(entry.path());
       const auto images = imagesInside(glb);
-      for (std::size_t i = 0; i < images.size(); ++i) decode(images[i], fmt::format("{}: image {}", entry.path().string(), i));
+      for (std::size_t i = 0; i < images.size(); ++i)
+        decode(images[i], fmt::format("{}: image {}", entry.path().string(), i));
     }
   }
   fmt::print("{} images of {} MiB decoded\n", count, bytesRead >> 20);
