@@ -52,7 +52,7 @@ float albedoAverage(float f0, float f90, AlbedoCell row) {
 vec2 albedoGlass(float cosine, float alpha, float ior, bool outside) {
   AlbedoCell row = albedoCell(sqrt(alpha), kGlassRoughnesses);
   AlbedoCell column = albedoCell(sqrt(max(cosine, 0.0)), kGlassCosines);
-  AlbedoCell layer = albedoCell(2.0 * (ior - 1.0) / (ior + 1.0), kGlassIors);
+  AlbedoCell layer = albedoCell(sqrt(2.0 * (ior - 1.0) / (ior + 1.0)), kGlassIors);
   uint stride = 8u * kGlassRoughnesses * kGlassCosines;
   Address table = frame.albedoTables + 4u * kGlassOffset + stride * (layer.index + (outside ? 0u : kGlassIors));
   return mix(albedoFetch(table, kGlassCosines, row, column), albedoFetch(table + stride, kGlassCosines, row, column), layer.offset);

@@ -1,6 +1,6 @@
-// Layout of the albedo tables at Frame::albedoTables: floats, computed by src/render/albedo_tables.cpp and
-// read by quintet/bsdf/albedo.glsl. Axes are uniform in sqrt(cos theta), in roughness = sqrt(alpha),
-// and in (ior - 1) / (ior + 1); they go from 0 to 1 (the last one to 1/2: ior 3), both ends included.
+// Layout of the albedo tables at Frame::albedoTables: floats, computed by src/render/albedo_tables.cpp and read by
+// quintet/bsdf/albedo.glsl. Axes are uniform in sqrt(cos theta), in roughness = sqrt(alpha) and in
+// sqrt(2 (ior - 1) / (ior + 1)); they go from 0 to 1 (ior 3), both ends included.
 #ifndef QUINTET_SHARED_ALBEDO_H
 #define QUINTET_SHARED_ALBEDO_H
 
@@ -15,9 +15,9 @@ QT_CONSTANT kAlbedoRoughnesses = 32;
 QT_CONSTANT kAlbedoAverageOffset = kAlbedoCosines * kAlbedoRoughnesses * 2;
 // vec2 [side][ior][roughness][cosine], side 0 outside: albedo of rough glass (reflection + refraction),
 // x: with Fresnel's reflectance, y: with reflectance 0 except where reflection is total.
-QT_CONSTANT kGlassCosines = 16;
-QT_CONSTANT kGlassRoughnesses = 12;
-QT_CONSTANT kGlassIors = 8;
+QT_CONSTANT kGlassCosines = 24;
+QT_CONSTANT kGlassRoughnesses = 14;
+QT_CONSTANT kGlassIors = 12;
 QT_CONSTANT kGlassOffset = kAlbedoAverageOffset + kAlbedoRoughnesses * 4;
 QT_CONSTANT kAlbedoFloatCount = kGlassOffset + 2 * kGlassIors * kGlassRoughnesses * kGlassCosines * 2;
 
