@@ -37,12 +37,20 @@ Decoder makeDecoder() {
   source.fail("broken JPEG: " + (name == std::string::npos ? message : message.substr(name + 4)));
 }
 
+// What libjpeg calls a warning is lost data that it has painted over, and an error here. One is harmless and
+// common: padding between the segments.
+bool onlyPadding(void* decoder) {
+  return tjGetErrorCode(decoder) == TJERR_WARNING &&
+         std::string_view(tjGetErrorStr2(decoder)).find("extraneous bytes before marker") != std::string_view::npos;
+}
+
 Header readHeader(const Source& source, void* decoder) {
   Header header;
   int subsampling = 0;
   int colors = 0;
   if (tjDecompressHeader3(decoder, source.data(), static_cast<unsigned long>(source.size()), &header.width,
-                          &header.height, &subsampling, &colors) != 0)
+                          &header.height, &subsampling, &colors) != 0 &&
+      !onlyPadding(decoder))
     failWith(source, tjGetErrorStr2(decoder));
   if (colors == TJCS_CMYK || colors == TJCS_YCCK) source.fail("CMYK JPEG is not supported; convert it to RGB");
   header.channels = colors == TJCS_GRAY ? 1 : 3;
@@ -75,14 +83,8 @@ Image decode(const Source& source) {
                          reinterpret_cast<unsigned char*>(image.data.data()), header.width, 0, header.height,
                          header.channels == 1 ? TJPF_GRAY : TJPF_RGB, flags | TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS);
   };
-  // What libjpeg calls a warning is lost data that it has painted over, and an error here. One is harmless
-  // and common: padding between the segments. Warnings behind it show only if decoding goes on.
-  const auto harmless = [&] {
-    return tjGetErrorCode(decoder.get()) == TJERR_WARNING &&
-           std::string_view(tjGetErrorStr2(decoder.get())).find("extraneous bytes before marker") !=
-               std::string_view::npos;
-  };
-  if (run(TJFLAG_STOPONWARNING) != 0 && !(harmless() && (run(0) == 0 || harmless())))
+  // Warnings behind a first, harmless one show only if decoding goes on.
+  if (run(TJFLAG_STOPONWARNING) != 0 && !(onlyPadding(decoder.get()) && (run(0) == 0 || onlyPadding(decoder.get()))))
     failWith(source, tjGetErrorStr2(decoder.get()));
   return image;
 }

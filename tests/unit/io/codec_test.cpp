@@ -170,10 +170,14 @@ TEST(JpegTest, RefusesCmyk) {
 }
 
 TEST(JpegTest, AllowsPaddingBetweenSegments) {
-  Bytes bytes = test::encodeJpeg(makePicture(16, 16, 3, PixelType::u8), 90, TJSAMP_444, 0);
+  const Bytes bytes = test::encodeJpeg(makePicture(16, 16, 3, PixelType::u8), 90, TJSAMP_444, 0);
   const Image clean = decodeImage(bytes, "a.jpg");
-  bytes.insert(bytes.end() - 2, 3, std::byte{0});  // before EOI
-  EXPECT_TRUE(decodeImage(bytes, "a.jpg").data == clean.data);
+  const std::size_t frame = textOf(bytes).find("\xff\xc0");
+  for (const std::size_t at : {frame, bytes.size() - 2}) {  // before the frame header, and before the end
+    Bytes padded = bytes;
+    padded.insert(padded.begin() + static_cast<std::ptrdiff_t>(at), 3, std::byte{0});
+    EXPECT_TRUE(decodeImage(padded, "a.jpg").data == clean.data) << at;
+  }
 }
 
 TEST(WebpTest, ReadsLosslessExactlyAndLossyNearly) {
