@@ -3,7 +3,8 @@ set(QUINTET_SANITIZE "" CACHE STRING "Sanitizers for the whole build, e.g. addre
 
 add_library(quintet_flags INTERFACE)
 target_compile_options(quintet_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                                               -Woverloaded-virtual -Wconversion -Wno-sign-conversion)
+                                               -Woverloaded-virtual -Wconversion -Wno-sign-conversion
+                                               $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # GCC bug 105651: false alarms in std::string
 if(QUINTET_WERROR)
   target_compile_options(quintet_flags INTERFACE -Werror)
 endif()

@@ -9,7 +9,10 @@
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer StatisticsArray { uvec2 at[]; };
 
 uvec2 launchPixel() { return gl_LaunchIDEXT.xy + launch.offset; }
-uint pixelIndex(uvec2 pixel) { return pixel.y * frame.width + pixel.x; }
+uint pixelIndex(uvec2 pixel) {
+  const uvec2 film = pixel - frame.filmOffset;
+  return film.y * frame.filmWidth + film.x;
+}
 
 // `slot`: kOutput_… of the generated program constants.
 vec4 loadOutput(uint slot, uvec2 pixel) { return OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)]; }

@@ -59,18 +59,32 @@ struct Frame {
   Address lightTable;   // AliasEntry[lightCount]
   Address lightSlots;   // uint[]: first LightData of an instance's geometry (+ primitive), or kNoLight
   Address albedoTables; // quintet/bsdf/albedo.glsl
-  Address statistics;   // uint64 ray counters, see quintet/statistics.glsl; 0: do not count
-  Address outputs[kMaxOutputs];  // vec4[width · height]: sums of this batch, rows top to bottom
+  Address statistics;   // uvec2[filmWidth · filmHeight]: rays traced, samples dropped; 0: do not count
+  Address outputs[kMaxOutputs];  // vec4[filmWidth · filmHeight]: sums of this batch, rows top to bottom
   EnvironmentData environment;
   CameraData camera;
   uint width;           // pixels of the whole image
   uint height;
+  uvec2 filmOffset;     // pixel of the image at which the film begins (a region of the image)
+  uint filmWidth;       // pixels
+  uint filmHeight;
   uint lightCount;
   uint environmentLight;  // index of the environment in `lights`, or kNoLight
   uint seed;
   uint flags;           // kFrame…
 };
-QT_SHARED_SIZE(Frame, 8 * 8 + 8 * 16 + 40 + 72 + 24);
+QT_SHARED_SIZE(Frame, 8 * 8 + 8 * 16 + 40 + 72 + 40);
+
+// Push constants of the pass that adds a batch to the total; its workgroups form rows of kFilmAddColumns.
+QT_CONSTANT kFilmAddGroupSize = 64;
+QT_CONSTANT kFilmAddColumns = 32768;
+struct FilmAdd {
+  Address total;  // vec4[count]
+  Address batch;  // vec4[count]
+  uint count;
+  uint padding;
+};
+QT_SHARED_SIZE(FilmAdd, 24);
 
 // Push constants of every ray tracing program.
 struct Launch {

@@ -1,0 +1,63 @@
+// From a program's description to what the device runs: compile all stages, make the pipeline, and lay
+// out hit records for the geometry of a scene.
+#ifndef QUINTET_PROGRAM_LINK_H
+#define QUINTET_PROGRAM_LINK_H
+
+#include <memory>
+#include <optional>
+
+#include "program/program.h"
+#include "rt/pipeline.h"
+
+namespace quintet::program {
+
+// Every stage's SPIR-V, or why not.
+struct CompiledProgram {
+  struct Stage {
+    std::string file;
+    shader::Stage kind = shader::Stage::rayGeneration;
+    std::vector<std::uint32_t> spirv;
+  };
+  std::vector<Stage> stages;  // one per file of the program that is used
+  std::vector<shader::Diagnostic> diagnostics;
+  double seconds = 0;         // wall clock
+  bool ok = false;
+
+  const Stage& stage(const std::string& file) const;
+};
+
+// `defines`: for all stages (features of the scene and the device).
+CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
+                        const std::vector<std::pair<std::string, std::string>>& defines);
+
+// What the scene gives to the link: the class of each geometry, in the order of hit records.
+enum class GeometryClass { opaque, alpha };
+
+// A program on a device.
+class LinkedProgram {
+ public:
+  // `compiled.ok` must hold.
+  LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set, const Program& program, const CompiledProgram& compiled,
+                const gpu::PipelineCache* cache);
+
+  const Program& program() const { return program_; }
+  const rt::Pipeline& pipeline() const { return *pipeline_; }
+  std::uint32_t rayTypeCount() const { return static_cast<std::uint32_t>(program_.rays.size()); }
+  double pipelineSeconds() const { return pipelineSeconds_; }
+
+  // Records: geometry k has records k · rayTypeCount … + rayTypeCount - 1, one per ray type.
+  rt::ShaderBindingTable makeTable(std::span<const GeometryClass> geometries) const;
+
+ private:
+  std::uint32_t hitGroupFor(GeometryClass) const;
+  gpu::Context& context_;
+  Program program_;
+  std::unique_ptr<rt::Pipeline> pipeline_;
+  std::uint32_t firstMissGroup_ = 0;
+  std::uint32_t firstHitGroup_ = 0;  // group of hit group h and ray r: first + h · rayTypeCount + r
+  std::uint32_t firstCallableGroup_ = 0;
+  double pipelineSeconds_ = 0;
+};
+
+}  // namespace quintet::program
+#endif

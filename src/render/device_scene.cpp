@@ -1,0 +1,208 @@
+#include "render/device_scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "render/albedo_tables.h"
+#include "render/light_table.h"
+#include "render/material_data.h"
+#include "render/scene_upload.h"
+
+namespace quintet::render {
+namespace {
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+shared::InstanceData makeInstance(const scene::Instance& instance) {
+  shared::InstanceData data{};
+  const mat4 forward = glm::transpose(instance.worldFromObject);
+  const mat4 backward = glm::transpose(glm::inverse(instance.worldFromObject));
+  for (int i = 0; i < 3; ++i) {
+    data.worldFromObject[i] = forward[i];
+    data.objectFromWorld[i] = backward[i];
+  }
+  data.mirrored = glm::determinant(mat3(instance.worldFromObject)) < 0.0f ? 1 : 0;
+  return data;
+}
+
+// The environment's texels as the device may see them: finite, not negative.
+io::Image cleanEnvironment(const io::Image& image) {
+  io::Image clean = io::toChannels(io::toFloat(image), 4);
+  for (float& value : clean.samples<float>()) value = value > 0.0f ? std::min(value, 1e30f) : 0.0f;
+  return clean;
+}
+
+}  // namespace
+
+struct DeviceScene::Impl {
+  gpu::Context& context;
+  DeviceSceneOptions options;
+  DeviceSceneStatistics statistics;
+  Bounds3 bounds;
+  GeometryUpload geometry;
+  std::optional<TextureUpload> textures;
+  std::unique_ptr<gpu::BindlessSet> set;
+  gpu::Buffer geometryTable, instanceTable, materialTable, lights, lightTable, lightSlots, environmentTable, albedoTables;
+  std::vector<rt::Blas> blas;                // one per used mesh
+  std::vector<int> blasOfMesh;               // -1: no instance uses the mesh
+  std::vector<rt::InstanceInput> instances;  // recordOffset holds the first geometry until prepareFor
+  std::vector<std::uint32_t> firstGeometryOfInstance;
+  std::unique_ptr<rt::Tlas> tlas;
+  std::uint32_t rayTypeCount = 0;
+  std::vector<program::GeometryClass> classes;
+  shared::Frame frame{};
+
+  Impl(gpu::Context& gpuContext, const scene::Scene& scene, const scene::Environment& environment, const DeviceSceneOptions& sceneOptions)
+      : context(gpuContext), options(sceneOptions), bounds(scene::worldBounds(scene)) {
+    const auto start = std::chrono::steady_clock::now();
+    gpu::Uploader uploader(context);
+    geometry = uploadGeometries(context, uploader, scene);
+    uploadMaterials(scene, environment, uploader);
+    uploadLights(scene, environment);
+    uploader.flush();
+    statistics.uploadSeconds = secondsSince(start);
+    buildBottomLevel(scene);
+    uploadTables(scene);
+    statistics.geometryBytes = geometry.bytes;
+    statistics.textureBytes = textures->bytes();
+  }
+
+  void uploadMaterials(const scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader) {
+    textures.emplace(context, uploader, scene);
+    std::vector<shared::MaterialData> materials;
+    const TextureIndex textureIndex = [&](int texture, bool sRgb) { return textures->index(texture, sRgb); };
+    for (const scene::Material& material : scene.materials) materials.push_back(makeMaterial(material, textureIndex));
+    materials.push_back(makeMaterial(scene::Material{}, textureIndex));
+    materialTable = gpu::makeBufferOf(context, materials, 0, "materials");
+    frame.materials = materialTable.address();
+
+    std::size_t k = 0;
+    for (const scene::Mesh& mesh : scene.meshes) {
+      for (const scene::Geometry& g : mesh.geometries) {
+        classes.push_back(needsAlphaTest(scene, g) ? program::GeometryClass::alpha : program::GeometryClass::opaque);
+        geometry.geometries[k++].material = g.material == scene::kNone ? static_cast<std::uint32_t>(scene.materials.size())
+                                                                       : static_cast<std::uint32_t>(g.material);
+      }
+    }
+
+    shared::EnvironmentData& data = frame.environment;
+    data.scale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
+    data.texture = environment.image.empty() ? shared::kNoTexture : textures->addEnvironment(cleanEnvironment(environment.image));
+    data.cosRotation = std::cos(environment.rotation);
+    data.sinRotation = std::sin(environment.rotation);
+
+    set = std::make_unique<gpu::BindlessSet>(context, std::max(1u, textures->count()), static_cast<std::uint32_t>(sizeof(shared::Launch)));
+    uploader.flush();
+    textures->bind(*set);
+  }
+
+  void uploadLights(const scene::Scene& scene, const scene::Environment& environment) {
+    const LightTable table = buildLightTable(scene, environment);
+    lights = gpu::makeBufferOf(context, table.lights, 0, "lights");
+    lightTable = gpu::makeBufferOf(context, table.entries, 0, "light table");
+    lightSlots = gpu::makeBufferOf(context, table.slots, 0, "light slots");
+    frame.lights = lights.address();
+    frame.lightTable = lightTable.address();
+    frame.lightSlots = lightSlots.address();
+    frame.lightCount = static_cast<std::uint32_t>(table.entries.size());
+    frame.environmentLight = table.environmentLight;
+    if (table.environment.width > 0) {
+      environmentTable = gpu::makeBufferOf(context, table.environment.entries, 0, "environment table");
+      frame.environment.table = environmentTable.address();
+      frame.environment.width = table.environment.width;
+      frame.environment.height = table.environment.height;
+    }
+    statistics.lightCount = frame.lightCount;
+    firstLightSlots = table.firstSlots;
+
+    static const std::vector<float> kAlbedoTables = computeAlbedoTables();
+    albedoTables = gpu::makeBufferOf(context, kAlbedoTables, 0, "albedo tables");
+    frame.albedoTables = albedoTables.address();
+  }
+
+  void buildBottomLevel(const scene::Scene& scene) {
+    blasOfMesh.assign(scene.meshes.size(), -1);
+    for (const scene::Instance& instance : scene.instances) blasOfMesh[static_cast<std::size_t>(instance.mesh)] = 0;
+    std::vector<rt::BlasInput> inputs;
+    std::vector<std::size_t> meshOfInput;
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+      if (blasOfMesh[m] < 0) continue;
+      blasOfMesh[m] = static_cast<int>(inputs.size());
+      meshOfInput.push_back(m);
+      rt::BlasInput& input = inputs.emplace_back();
+      input.options.name = scene.meshes[m].name;
+      input.options.keepInputOrder = options.keepInputOrder;
+      std::size_t k = geometry.firstGeometry[m];
+      for (const scene::Geometry& g : scene.meshes[m].geometries) {
+        rt::GeometryInput& part = input.geometries.emplace_back();
+        part.positions = g.positions;
+        part.triangles = g.triangles;
+        part.opaque = classes[k++] == program::GeometryClass::opaque;
+      }
+    }
+    blas = rt::BlasBuilder(context).build(inputs, &statistics.build);
+    for (std::size_t i = 0; i < blas.size(); ++i) {
+      statistics.accelerationBytes += blas[i].size();
+      for (std::size_t g = 0; g < inputs[i].geometries.size(); ++g)
+        geometry.geometries[geometry.firstGeometry[meshOfInput[i]] + g].primitiveMap = blas[i].primitiveMap(g);
+    }
+  }
+
+  void uploadTables(const scene::Scene& scene) {
+    geometryTable = gpu::makeBufferOf(context, geometry.geometries, 0, "geometries");
+    frame.geometries = geometryTable.address();
+    std::vector<shared::InstanceData> data;
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+      const scene::Instance& instance = scene.instances[i];
+      const auto mesh = static_cast<std::size_t>(instance.mesh);
+      shared::InstanceData& d = data.emplace_back(makeInstance(instance));
+      d.firstGeometry = geometry.firstGeometry[mesh];
+      d.firstLightSlot = firstLightSlots[i];
+      rt::InstanceInput& input = instances.emplace_back();
+      input.worldFromObject = instance.worldFromObject;
+      input.blas = &blas[static_cast<std::size_t>(blasOfMesh[mesh])];
+      input.customIndex = static_cast<std::uint32_t>(i);
+      firstGeometryOfInstance.push_back(d.firstGeometry);
+    }
+    instanceTable = gpu::makeBufferOf(context, data, 0, "instances");
+    frame.instances = instanceTable.address();
+  }
+
+  void prepareFor(std::uint32_t count) {
+    if (tlas && count == rayTypeCount) return;
+    const auto start = std::chrono::steady_clock::now();
+    rayTypeCount = count;
+    for (std::size_t i = 0; i < instances.size(); ++i) instances[i].recordOffset = firstGeometryOfInstance[i] * count;
+    if (!tlas) {
+      tlas = std::make_unique<rt::Tlas>(context, static_cast<std::uint32_t>(instances.size()));
+      tlas->keepInputOrder(options.keepInputOrder);
+      statistics.accelerationBytes += tlas->size();
+    }
+    tlas->buildAndWait(instances);
+    set->setAccelerationStructure(tlas->handle());
+    statistics.topLevelSeconds = secondsSince(start);
+  }
+
+  std::vector<std::uint32_t> firstLightSlots;
+};
+
+DeviceScene::DeviceScene(gpu::Context& context, const scene::Scene& scene, const scene::Environment& environment, const DeviceSceneOptions& options)
+    : impl_(std::make_unique<Impl>(context, scene, environment, options)) {}
+DeviceScene::~DeviceScene() = default;
+
+gpu::Context& DeviceScene::context() const { return impl_->context; }
+const gpu::BindlessSet& DeviceScene::set() const { return *impl_->set; }
+std::span<const program::GeometryClass> DeviceScene::geometryClasses() const { return impl_->classes; }
+bool DeviceScene::hasAlpha() const {
+  return std::find(impl_->classes.begin(), impl_->classes.end(), program::GeometryClass::alpha) != impl_->classes.end();
+}
+const shared::Frame& DeviceScene::frameTemplate() const { return impl_->frame; }
+const DeviceSceneStatistics& DeviceScene::statistics() const { return impl_->statistics; }
+const Bounds3& DeviceScene::bounds() const { return impl_->bounds; }
+void DeviceScene::prepareFor(std::uint32_t rayTypeCount) { impl_->prepareFor(rayTypeCount); }
+
+}  // namespace quintet::render

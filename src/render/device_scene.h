@@ -1,0 +1,61 @@
+// A scene on the device: attributes, textures, materials, lights and acceleration structures, uploaded
+// once and used by any number of renderers (programs, sizes, cameras).
+#ifndef QUINTET_RENDER_DEVICE_SCENE_H
+#define QUINTET_RENDER_DEVICE_SCENE_H
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gpu/descriptors.h"
+#include "program/link.h"
+#include "quintet/shared/frame.h"
+#include "rt/acceleration_structure.h"
+#include "scene/scene.h"
+
+namespace quintet::render {
+
+struct DeviceSceneOptions {
+  bool keepInputOrder = false;  // for benchmarks: no spatial order of primitives and instances
+};
+
+struct DeviceSceneStatistics {
+  double uploadSeconds = 0;     // attributes, textures, light tables
+  rt::BuildStatistics build;    // bottom level
+  double topLevelSeconds = 0;
+  std::uint64_t geometryBytes = 0;
+  std::uint64_t textureBytes = 0;
+  std::uint64_t accelerationBytes = 0;  // bottom and top level
+  std::uint32_t lightCount = 0;
+};
+
+class DeviceScene {
+ public:
+  // `environment` is the one in use (the scene's own, the user's, or the default). `scene` is needed during
+  // construction only.
+  DeviceScene(gpu::Context& context, const scene::Scene& scene, const scene::Environment& environment,
+              const DeviceSceneOptions& options = {});
+  ~DeviceScene();
+  DeviceScene(const DeviceScene&) = delete;
+  DeviceScene& operator=(const DeviceScene&) = delete;
+
+  gpu::Context& context() const;
+  const gpu::BindlessSet& set() const;
+  // Classes of all geometries, in the order of hit records.
+  std::span<const program::GeometryClass> geometryClasses() const;
+  bool hasAlpha() const;  // any geometry of class alpha
+  // The frame's addresses and environment; camera, film and outputs are left for the renderer.
+  const shared::Frame& frameTemplate() const;
+  const DeviceSceneStatistics& statistics() const;
+  const Bounds3& bounds() const;
+
+  // Makes the TLAS fit programs with this many ray types (hit record offsets depend on it).
+  void prepareFor(std::uint32_t rayTypeCount);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace quintet::render
+#endif

@@ -1,0 +1,21 @@
+// scene::Material to the device's form.
+#ifndef QUINTET_RENDER_MATERIAL_DATA_H
+#define QUINTET_RENDER_MATERIAL_DATA_H
+
+#include <functional>
+
+#include "quintet/shared/material.h"
+#include "scene/scene.h"
+
+namespace quintet::render {
+
+// Gives the bindless index of a texture of the scene, decoded as sRGB colour or as linear data.
+using TextureIndex = std::function<std::uint32_t(int texture, bool sRgb)>;
+
+shared::MaterialData makeMaterial(const scene::Material& material, const TextureIndex& textureIndex);
+
+// True if some of the surface may be absent: mask or blend, with an alpha that can be below 1.
+bool needsAlphaTest(const scene::Scene& scene, const scene::Geometry& geometry);
+
+}  // namespace quintet::render
+#endif

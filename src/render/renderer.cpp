@@ -1,0 +1,162 @@
+#include "render/renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+
+#include "gpu/timer.h"
+#include "io/codec.h"
+
+namespace quintet::render {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+Region checkedRegion(const RenderSettings& settings) {
+  if (settings.width == 0 || settings.height == 0 || settings.width > io::kMaxImageSide || settings.height > io::kMaxImageSide)
+    throw UsageError(fmt::format("image size {}x{}: each side must be 1 to {} pixels", settings.width, settings.height, io::kMaxImageSide));
+  const Region& r = settings.region;
+  if (r.width == 0 && r.height == 0) return {0, 0, settings.width, settings.height};
+  if (r.width == 0 || r.height == 0 || r.x >= settings.width || r.y >= settings.height || r.width > settings.width - r.x ||
+      r.height > settings.height - r.y)
+    throw UsageError(fmt::format("region {},{},{},{} is not inside the image of {}x{}", r.x, r.y, r.width, r.height, settings.width, settings.height));
+  return r;
+}
+
+std::string firstError(const std::vector<shader::Diagnostic>& diagnostics) {
+  for (const shader::Diagnostic& d : diagnostics)
+    if (d.severity == shader::Severity::error) return d.format();
+  return "the program does not compile";
+}
+
+}  // namespace
+
+ProgramError::ProgramError(std::vector<shader::Diagnostic> diagnostics) : Error(firstError(diagnostics)), diagnostics_(std::move(diagnostics)) {}
+
+struct Renderer::Impl {
+  DeviceScene& scene;
+  gpu::Context& context;
+  program::Program description;
+  RenderSettings settings;
+  std::unique_ptr<program::LinkedProgram> linked;
+  std::optional<rt::ShaderBindingTable> table;
+  std::unique_ptr<Film> film;
+  gpu::Buffer frameBuffer;
+  gpu::Buffer parameterBuffer;
+  gpu::Timer timer;
+  RenderStatistics statistics;
+  double pixelSamplesPerSecond = 0;  // measured; 0: unknown yet
+
+  Impl(DeviceScene& deviceScene, const program::Program& program, const shader::Compiler& compiler, const gpu::PipelineCache* cache,
+       const RenderSettings& renderSettings)
+      : scene(deviceScene), context(deviceScene.context()), description(program), settings(renderSettings), timer(context, 2) {
+    const Region region = checkedRegion(settings);
+    link(compiler, cache);
+    film = std::make_unique<Film>(context, scene.set(), compiler, region, program.outputs);
+
+    shared::Frame frame = scene.frameTemplate();
+    frame.camera = makeCamera(settings.camera, settings.width, settings.height);
+    frame.width = settings.width;
+    frame.height = settings.height;
+    frame.seed = settings.seed;
+    frame.flags = settings.transparent ? shared::kFrameTransparent : 0;
+    film->describe(frame);
+    frameBuffer = gpu::makeBuffer(context, std::as_bytes(std::span(&frame, 1)), 0, "frame");
+    parameterBuffer = gpu::makeBuffer(context, settings.parameters.pack(), 0, "parameters");
+  }
+
+  void link(const shader::Compiler& compiler, const gpu::PipelineCache* cache) {
+    std::vector<std::pair<std::string, std::string>> defines;
+    if (context.info().quirks.corruptsHitAttributes && scene.hasAlpha()) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
+    const program::CompiledProgram compiled = program::compile(description, compiler, defines);
+    if (!compiled.ok) throw ProgramError(compiled.diagnostics);
+    scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()));
+    linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled, cache);
+    table.emplace(linked->makeTable(scene.geometryClasses()));
+    statistics.compileSeconds = compiled.seconds;
+    statistics.pipelineSeconds = linked->pipelineSeconds();
+  }
+
+  // Rows of the next launch, so that `samples` samples of each pixel take about launchSeconds. What is
+  // chosen changes nothing in the image.
+  std::uint32_t launchRows(std::uint32_t rowsLeft, std::uint32_t samples) const {
+    const double width = film->region().width;
+    const auto limit = static_cast<double>(context.info().limits.maxLaunchInvocations);
+    double rows = pixelSamplesPerSecond > 0 ? settings.launchSeconds * pixelSamplesPerSecond / (width * samples) : 16384.0 / width;
+    rows = std::clamp(rows, 1.0, std::max(1.0, limit / width));
+    return std::min(rowsLeft, static_cast<std::uint32_t>(rows));
+  }
+
+  // Launches a strip with `count` samples from `first` on and waits.
+  void launch(std::uint32_t row, std::uint32_t rows, std::uint32_t first, std::uint32_t count, bool begins, bool ends) {
+    const auto start = Clock::now();
+    const Region& region = film->region();
+    const std::uint64_t value = context.submit([&](gpu::Commands& commands) {
+      if (begins) film->beginBatch(commands);
+      timer.reset(commands);
+      timer.mark(commands, 0);
+      for (std::uint32_t done = 0; done < count;) {
+        shared::Launch constants{};
+        constants.frame = frameBuffer.address();
+        constants.parameters = parameterBuffer.address();
+        constants.offset = {region.x, region.y + row};
+        constants.firstSample = first + done;
+        constants.sampleCount = std::min(count - done, description.samplesPerLaunch);
+        if (done > 0) commands.barrier(gpu::Stage::rayTracing, gpu::Stage::rayTracing);
+        rt::trace(commands, linked->pipeline(), *table, std::as_bytes(std::span(&constants, 1)), region.width, rows);
+        done += constants.sampleCount;
+      }
+      timer.mark(commands, 1);
+      if (ends) film->endBatch(commands);
+    });
+    context.wait(value, settings.timeoutSeconds);
+    const double wall = secondsSince(start);
+    if (statistics.firstLaunchSeconds == 0) statistics.firstLaunchSeconds = wall;
+    const double device = timer.seconds(0, 1);
+    statistics.deviceSeconds += device;
+    const double rate = static_cast<double>(region.width) * rows * count / std::max(1e-6, device > 0 ? device : wall);
+    // Strips differ in cost: follow slowly upwards, at once downwards.
+    pixelSamplesPerSecond = pixelSamplesPerSecond > 0 ? std::min(rate, 2.0 * pixelSamplesPerSecond) : 0.25 * rate;
+  }
+
+  bool renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) {
+    assert(sampleCount >= 1 && sampleCount <= kBatchSamples);
+    const auto start = Clock::now();
+    const std::uint32_t height = film->region().height;
+    const auto first = static_cast<std::uint32_t>(statistics.batches * kBatchSamples);
+    for (std::uint32_t row = 0; row < height;) {
+      // Where even one row is too long, its samples are launched one by one: same sums, same order.
+      const std::uint32_t rows = launchRows(height - row, sampleCount);
+      const double predicted = static_cast<double>(rows) * film->region().width * sampleCount;
+      const bool whole = pixelSamplesPerSecond == 0 || predicted <= 2.0 * settings.launchSeconds * pixelSamplesPerSecond;
+      const std::uint32_t step = whole ? sampleCount : 1;
+      for (std::uint32_t s = 0; s < sampleCount; s += step)
+        launch(row, rows, first + s, std::min(step, sampleCount - s), row == 0 && s == 0, row + rows == height && s + step >= sampleCount);
+      row += rows;
+      if (progress && !progress(static_cast<double>(row) / height)) return false;
+    }
+    statistics.batches++;
+    statistics.samples += sampleCount;
+    statistics.renderSeconds += secondsSince(start);
+    return true;
+  }
+};
+
+Renderer::Renderer(DeviceScene& scene, const program::Program& program, const shader::Compiler& compiler, const gpu::PipelineCache* cache,
+                   const RenderSettings& settings)
+    : impl_(std::make_unique<Impl>(scene, program, compiler, cache, settings)) {}
+Renderer::~Renderer() = default;
+
+bool Renderer::renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) { return impl_->renderBatch(sampleCount, progress); }
+const Film& Renderer::film() const { return *impl_->film; }
+io::Image Renderer::image(std::size_t output) const { return impl_->film->download(output, impl_->statistics.samples); }
+RayCount Renderer::rays() const { return impl_->film->countRays(); }
+const RenderStatistics& Renderer::statistics() const { return impl_->statistics; }
+const program::Program& Renderer::program() const { return impl_->description; }
+
+}  // namespace quintet::render

@@ -1,0 +1,79 @@
+// Runs a program over a scene, batch by batch, into a film. Built-in programs and a user's go the same way.
+#ifndef QUINTET_RENDER_RENDERER_H
+#define QUINTET_RENDER_RENDERER_H
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "base/error.h"
+#include "program/link.h"
+#include "render/device_scene.h"
+#include "render/film.h"
+
+namespace quintet::render {
+
+struct RenderSettings {
+  std::uint32_t width = 1280;   // pixels of the whole image
+  std::uint32_t height = 720;
+  Region region;                // what is rendered; width 0: everything
+  scene::Camera camera;
+  std::uint32_t seed = 0;
+  bool transparent = false;     // background: alpha 0 instead of the environment
+  program::ParameterValues parameters{{}};
+  double launchSeconds = 0.25;  // a launch is cut so that it takes about this long
+  double timeoutSeconds = 60;   // a launch that takes longer: gpu::DeviceLostError
+};
+
+// A program whose shaders do not compile; what() is the first error's line.
+class ProgramError : public Error {
+ public:
+  explicit ProgramError(std::vector<shader::Diagnostic> diagnostics);
+  const std::vector<shader::Diagnostic>& diagnostics() const { return diagnostics_; }
+
+ private:
+  std::vector<shader::Diagnostic> diagnostics_;
+};
+
+struct RenderStatistics {
+  double compileSeconds = 0;     // GLSL to SPIR-V
+  double pipelineSeconds = 0;    // SPIR-V to pipeline
+  double firstLaunchSeconds = 0; // first launch, with what the driver still compiles in it
+  double renderSeconds = 0;      // wall clock of all batches
+  double deviceSeconds = 0;      // timestamps around all launches
+  std::uint64_t samples = 0;     // per pixel
+  std::uint64_t batches = 0;
+};
+
+// Called between launches with the fraction of the current batch that is done; false: give the batch up
+// (its samples are lost).
+using BatchProgress = std::function<bool(double)>;
+
+class Renderer {
+ public:
+  // `scene` outlives the renderer. Throws ProgramError, UsageError (size, region), gpu errors.
+  Renderer(DeviceScene& scene, const program::Program& program, const shader::Compiler& compiler,
+           const gpu::PipelineCache* cache, const RenderSettings& settings);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  // Renders the next batch of kBatchSamples samples per pixel, or fewer for the last one. False: given up.
+  bool renderBatch(std::uint32_t sampleCount = kBatchSamples, const BatchProgress& progress = {});
+
+  const Film& film() const;
+  io::Image image(std::size_t output = 0) const;  // mean of all samples so far; linear, premultiplied RGBA
+  RayCount rays() const;
+  const RenderStatistics& statistics() const;
+  const program::Program& program() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+// The device's camera for an image of this size.
+shared::CameraData makeCamera(const scene::Camera& camera, std::uint32_t width, std::uint32_t height);
+
+}  // namespace quintet::render
+#endif

@@ -1,0 +1,60 @@
+// The parts of a scene's upload: attribute arrays in few large buffers, and textures.
+#ifndef QUINTET_RENDER_SCENE_UPLOAD_H
+#define QUINTET_RENDER_SCENE_UPLOAD_H
+
+#include <deque>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "gpu/descriptors.h"
+#include "gpu/image.h"
+#include "quintet/shared/frame.h"
+#include "scene/scene.h"
+
+namespace quintet::render {
+
+// Vertex attributes and triangles of all geometries, in the order of hit records. Addresses of
+// primitive maps and materials are left for the caller.
+struct GeometryUpload {
+  std::deque<gpu::Buffer> buffers;
+  std::vector<shared::GeometryData> geometries;
+  std::vector<std::uint32_t> firstGeometry;  // per mesh
+  std::uint64_t bytes = 0;
+};
+GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene);
+
+// Textures on the device, one for each (image, encoding, sampler) that is asked for.
+class TextureUpload {
+ public:
+  TextureUpload(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene);
+  // Bindless index of a texture of the scene; uploads it the first time.
+  std::uint32_t index(int texture, bool sRgb);
+  // An image that is not the scene's (the environment), repeated in u, clamped in v.
+  std::uint32_t addEnvironment(const io::Image& image);
+
+  std::uint32_t count() const { return static_cast<std::uint32_t>(entries_.size()); }
+  void bind(gpu::BindlessSet& set) const;
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  struct Entry {
+    const gpu::Image* image;
+    const gpu::Sampler* sampler;
+  };
+  const gpu::Image& upload(const io::Image& image, bool sRgb, const std::string& name);
+  const gpu::Sampler& sampler(const gpu::SamplerOptions& options);
+
+  gpu::Context& context_;
+  gpu::Uploader& uploader_;
+  const scene::Scene& scene_;
+  std::deque<gpu::Image> images_;
+  std::deque<std::pair<gpu::SamplerOptions, gpu::Sampler>> samplers_;
+  std::map<std::pair<int, bool>, const gpu::Image*> imageByKey_;
+  std::map<std::pair<int, bool>, std::uint32_t> indexByTexture_;
+  std::vector<Entry> entries_;
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace quintet::render
+#endif
