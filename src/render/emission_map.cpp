@@ -13,6 +13,8 @@ namespace {
 
 // Texels looked at for one triangle: larger ones use a coarser level.
 constexpr double kMaxTexels = 4096.0;
+// Of blocks that a triangle touches but whose centre it does not contain.
+constexpr double kBorderWeight = 0.125;
 
 // Texel values of any type as linear colour.
 class TexelReader {
@@ -131,14 +133,16 @@ float EmissionMap::meanOver(vec2 a, vec2 b, vec2 c) const {
   const float size = std::ldexp(1.0f, shift);
   const vec2 halfSize(0.5f * size + 0.5f);
   double sum = 0.0;
-  long count = 0;
+  double weights = 0.0;
   for (long y = std::lround(std::floor(low.y / size)); y <= std::lround(std::floor(high.y / size)); ++y)
     for (long x = std::lround(std::floor(low.x / size)); x <= std::lround(std::floor(high.x / size)); ++x) {
-      if (!triangle.touches(size * (vec2(x, y) + 0.5f), halfSize)) continue;
-      sum += blockAt(level, shift, x, y);
-      ++count;
+      const vec2 center = size * (vec2(x, y) + 0.5f);
+      if (!triangle.touches(center, halfSize)) continue;
+      const double weight = triangle.touches(center, vec2(0.0f)) ? 1.0 : kBorderWeight;
+      sum += weight * blockAt(level, shift, x, y);
+      weights += weight;
     }
-  const float result = count > 0 ? static_cast<float>(sum / static_cast<double>(count)) : mean_;
+  const float result = weights > 0.0 ? static_cast<float>(sum / weights) : mean_;
   // Coarse blocks are not aligned with a repeated texture of odd size: let no bright texel get lost.
   return shift == 0 ? result : std::max(result, 1e-3f * mean_);
 }

@@ -56,12 +56,13 @@ Emitter makeEmitter(const scene::Geometry& geometry, const EmissionMap& map) {
 
 class Builder {
  public:
-  Builder(const scene::Scene& scene, const scene::Environment& environment) : scene_(scene) {
+  Builder(const scene::Scene& scene, const scene::Environment& environment, std::size_t maxTriangleLights)
+      : scene_(scene) {
     const Bounds3 bounds = scene::worldBounds(scene);
     const double radius = bounds.empty() ? 0.0 : 0.5 * glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
     crossSection_ = kPiDouble * (radius > 0.0 && std::isfinite(radius) ? radius * radius : 1.0);
     for (const scene::Light& light : scene.lights) addPunctual(light);
-    addTriangles();
+    addTriangles(maxTriangleLights);
     table_.environment = buildEnvironmentTable(environment);
     if (table_.environment.width > 0) {
       table_.environmentLight = static_cast<std::uint32_t>(table_.lights.size());
@@ -136,7 +137,7 @@ class Builder {
     const Emitter* emitter;
   };
 
-  void addTriangles() {
+  void addTriangles(std::size_t maxCount) {
     const std::vector<std::vector<Emitter>> emitters = makeEmitters();
     std::vector<Part> parts;
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
@@ -149,19 +150,19 @@ class Builder {
         table_.slots.push_back(shared::kNoLight);
       }
     }
-    dropLargest(parts);
+    dropLargest(parts, maxCount);
     for (const Part& part : parts) addPart(part);
   }
 
-  static void dropLargest(std::vector<Part>& parts) {
+  static void dropLargest(std::vector<Part>& parts, std::size_t maxCount) {
     const auto triangles = [](const Part& p) { return p.emitter->luminance.size(); };
     std::size_t total = 0;
     for (const Part& part : parts) total += triangles(part);
-    if (total <= kMaxTriangleLights) return;
+    if (total <= maxCount) return;
     std::ranges::stable_sort(parts, {}, triangles);
     std::size_t kept = 0;
     total = 0;
-    while (total + triangles(parts[kept]) <= kMaxTriangleLights) total += triangles(parts[kept++]);
+    while (total + triangles(parts[kept]) <= maxCount) total += triangles(parts[kept++]);
     parts.resize(kept);
   }
 
@@ -224,8 +225,9 @@ double spotSolidAngle(double cosInner, double cosOuter) {
   return 2.0 * kPiDouble * (ramp * ramp * ramp / (3.0 * width * width) + (1.0 - cosOuter - ramp));
 }
 
-LightTable buildLightTable(const scene::Scene& scene, const scene::Environment& environmentInUse) {
-  return Builder(scene, environmentInUse).run();
+LightTable buildLightTable(const scene::Scene& scene, const scene::Environment& environmentInUse,
+                           std::size_t maxTriangleLights) {
+  return Builder(scene, environmentInUse, maxTriangleLights).run();
 }
 
 }  // namespace quintet::render

@@ -24,15 +24,16 @@ struct LightTable {
 // lamp on the desk, nor the other way round.
 inline constexpr double kMinimumClassShare = 0.1;
 
-// Emissive instance geometries beyond this count of triangles in all (the largest first) are left to BSDF
-// sampling, so that a forest of emissive instances does not fill the memory. 64 bytes and 12 each.
+// So that a forest of emissive instances does not fill the memory: 64 bytes and 12 for each light.
 inline constexpr std::size_t kMaxTriangleLights = std::size_t{1} << 23;
 
 // LightData::instance is the index in scene.instances, LightData::geometry the index in its mesh. Power, as
 // luminance: point 4π·I; spot I · its effective solid angle; directional E·π·R² and environment ∫L·π·R² with
 // the radius R of the scene's bounds; triangle π·area·L with the mean L of its texture. Unlit
 // materials make no lights (BSDF sampling alone sees them). Any table is unbiased; this is about noise.
-LightTable buildLightTable(const scene::Scene& scene, const scene::Environment& environmentInUse);
+// Instance geometries beyond maxTriangleLights triangles in all (the largest first) are left to BSDF sampling, too.
+LightTable buildLightTable(const scene::Scene& scene, const scene::Environment& environmentInUse,
+                           std::size_t maxTriangleLights = kMaxTriangleLights);
 
 // ∫ of KHR_lights_punctual's angular attenuation over the sphere, sr.
 double spotSolidAngle(double cosInner, double cosOuter);
