@@ -8,6 +8,7 @@
 
 #include "gpu/commands.h"
 #include "gpu/error.h"
+#include "gpu/memory.h"
 #include "gpu/vma.h"
 
 namespace quintet::gpu {
@@ -26,7 +27,6 @@ VkDeviceSize alignmentOf(const Context& context, const BufferOptions& options) {
   return alignment;
 }
 
-// Drivers that overcommit would accept what they cannot keep, so the plain limits come first.
 void refuseAbsurdSize(const Context& context, const BufferOptions& options) {
   const DeviceInfo& info = context.info();
   const double size = static_cast<double>(options.size) / kMiB;
@@ -36,17 +36,16 @@ void refuseAbsurdSize(const Context& context, const BufferOptions& options) {
   if (options.size > info.maxBufferBytes)
     throw MemoryError(fmt::format("buffer '{}' of {:.1f} MiB is larger than the device's limit of {:.1f} MiB",
                                   options.name, size, static_cast<double>(info.maxBufferBytes) / kMiB));
+  refuseOvercommitment(context, options.size, fmt::format("buffer '{}'", options.name));
 }
 
-VmaAllocationCreateInfo allocationInfo(Memory memory, bool software) {
+VmaAllocationCreateInfo allocationInfo(Memory memory) {
   VmaAllocationCreateInfo info{};
   info.usage = memory == Memory::device ? VMA_MEMORY_USAGE_AUTO_PREFER_DEVICE : VMA_MEMORY_USAGE_AUTO_PREFER_HOST;
   if (memory == Memory::upload)
     info.flags = VMA_ALLOCATION_CREATE_MAPPED_BIT | VMA_ALLOCATION_CREATE_HOST_ACCESS_SEQUENTIAL_WRITE_BIT;
   if (memory == Memory::readback)
     info.flags = VMA_ALLOCATION_CREATE_MAPPED_BIT | VMA_ALLOCATION_CREATE_HOST_ACCESS_RANDOM_BIT;
-  // The memory of a CPU device is the system's, which is given out before it exists.
-  if (software) info.flags |= VMA_ALLOCATION_CREATE_WITHIN_BUDGET_BIT;
   return info;
 }
 
@@ -59,7 +58,7 @@ Buffer::Buffer(Context& context, const BufferOptions& options) : context_(&conte
   info.size = size_;
   info.usage = options.usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
-  const VmaAllocationCreateInfo allocation = allocationInfo(options.memory, context.info().quirks.software);
+  const VmaAllocationCreateInfo allocation = allocationInfo(options.memory);
   VmaAllocationInfo allocated{};
   const VkResult result = vmaCreateBufferWithAlignment(context.allocator(), &info, &allocation,
                                                        alignmentOf(context, options), &handle_, &allocation_, &allocated);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "gpu/error.h"
+#include "gpu/memory.h"
 #include "gpu/vma.h"
 
 namespace quintet::gpu {
@@ -38,6 +39,7 @@ void refuseAbsurdSize(const Context& context, const ImageOptions& options, VkDev
     throw MemoryError(fmt::format("image '{}' of {:.1f} MiB is larger than the device's memory of {:.1f} MiB",
                                   options.name, static_cast<double>(bytes) / kMiB,
                                   static_cast<double>(device.memoryBytes) / kMiB));
+  refuseOvercommitment(context, bytes, fmt::format("image '{}'", options.name));
 }
 
 void refuseUnsupported(const Context& context, const VkImageCreateInfo& info, const std::string& name) {
@@ -55,7 +57,6 @@ Image::Image(Context& context, const ImageOptions& options) : context_(&context)
   refuseUnsupported(context, info, options.name);
   VmaAllocationCreateInfo allocation{};
   allocation.usage = VMA_MEMORY_USAGE_AUTO_PREFER_DEVICE;
-  if (context.info().quirks.software) allocation.flags = VMA_ALLOCATION_CREATE_WITHIN_BUDGET_BIT;
   check(vmaCreateImage(context.allocator(), &info, &allocation, &handle_, &allocation_, nullptr),
         fmt::format("allocate {:.1f} MiB for image", static_cast<double>(byteSize()) / kMiB), options.name);
 
