@@ -29,10 +29,11 @@ bool matches(const DeviceInfo& device, const std::string& request) {
   return false;
 }
 
-std::optional<std::size_t> asIndex(std::string_view text) {
+// A number that is no device's index is a part of a name: "4090".
+std::optional<std::size_t> asIndex(std::string_view text, std::size_t count) {
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  if (error != std::errc{} || end != text.data() + text.size() || index >= count) return std::nullopt;
   return index;
 }
 
@@ -65,7 +66,7 @@ std::size_t chooseDevice(std::span<const DeviceInfo> devices, std::string_view r
   if (devices.empty())
     throw NoDeviceError("no Vulkan device found: the drivers know of none; install mesa-vulkan-drivers (CPU) or your "
                         "GPU's driver, then look at `quintet info`");
-  const std::optional<std::size_t> index = asIndex(request);
+  const std::optional<std::size_t> index = asIndex(request, devices.size());
   const std::string wanted = lowerCase(request);
   bool matched = false;
   for (std::size_t i = 0; i < devices.size(); ++i) {
