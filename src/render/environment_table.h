@@ -23,7 +23,7 @@ struct EnvironmentTable {
 // A constant environment has one cell. `present` is not looked at: pass the environment in use. The
 // texture must be sampled bilinearly, repeated in u and clamped in v: a cell's weight is the mean of the
 // so interpolated luminance over it, times its solid angle; hence each direction whose interpolated radiance
-// is not zero has a density above zero. Negative and non-finite samples count as 0.
+// is not zero has a density above zero. Negative and NaN samples count as 0, infinite ones as 1e30.
 EnvironmentTable buildEnvironmentTable(const scene::Environment& environment);
 
 }  // namespace quintet::render
