@@ -54,8 +54,9 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
   compiled.stages.resize(files.size());
   parallelFor(files.size(), [&](std::size_t i) {
     shader::Source source;
-    source.stage = *shader::stageOfFile(files[i]);
-    source.text = program.files.at(files[i]);
+    const bool library = isLibraryStage(files[i]);
+    source.stage = *shader::stageOfFile(library ? files[i].substr(1, files[i].size() - 2) : files[i]);
+    source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + files[i] + "\n" : program.files.at(files[i]);
     source.name = program.path(files[i]);
     source.defines = defines;
     source.virtualFiles = virtualFiles;

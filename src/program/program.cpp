@@ -239,8 +239,9 @@ class Parser {
   }
 
   std::string checkFile(const Reader& reader, const toml::node& node, const std::string& name, const std::string& extension) const {
-    if (fs::path(name).extension() != extension) reader.fail(&node, fmt::format("'{}' must end in {}", name, extension));
-    if (!program_.files.count(name)) reader.fail(&node, fmt::format("there is no file '{}' in {}", name, program_.origin));
+    const bool library = isLibraryStage(name);
+    if (fs::path(library ? name.substr(1, name.size() - 2) : name).extension() != extension) reader.fail(&node, fmt::format("'{}' must end in {}", name, extension));
+    if (!library && !program_.files.count(name)) reader.fail(&node, fmt::format("there is no file '{}' in {}", name, program_.origin));
     return name;
   }
 
@@ -277,6 +278,8 @@ Program parseProgram(const std::string& toml, const std::string& name, const std
   Parser(program, file).parse(root);
   return program;
 }
+
+bool isLibraryStage(const std::string& file) { return file.size() > 2 && file.front() == '<' && file.back() == '>'; }
 
 std::vector<std::string> builtInPrograms() {
   std::vector<std::string> names;

@@ -13,6 +13,10 @@
 
 namespace quintet::program {
 
+// A stage is a file of the program's folder ("main.rgen"), or one of the shader library
+// ("<quintet/stages/surface.rchit>").
+bool isLibraryStage(const std::string& file);
+
 // Files of one hit group for one ray type; empty: that stage is absent.
 struct HitShaders {
   std::string closestHit;
@@ -50,7 +54,7 @@ struct Program {
   std::map<std::string, std::string> files;  // every file of the folder: relative path → text
 
   // Path of a file as diagnostics show it.
-  std::string path(const std::string& file) const { return origin + "/" + file; }
+  std::string path(const std::string& file) const { return isLibraryStage(file) ? file : origin + "/" + file; }
 };
 
 // `nameOrFolder`: a folder with program.toml (or that file itself), or the name of a built-in

@@ -1,6 +1,4 @@
 // The ray left the scene: t stays negative.
-#version 460
-#extension GL_EXT_ray_tracing : require
 #include <quintet/frame.glsl>
 #include <quintet/payload.glsl>
 

@@ -1,6 +1,4 @@
 // Nothing is in the way.
-#version 460
-#extension GL_EXT_ray_tracing : require
 #include <quintet/frame.glsl>
 #include <quintet/payload.glsl>
 

@@ -1,6 +1,4 @@
 // Says which triangle was hit; the ray generation shader does the rest.
-#version 460
-#extension GL_EXT_ray_tracing : require
 #include <quintet/hit.glsl>
 
 layout(location = 0) rayPayloadInEXT HitPayload payload;
