@@ -58,11 +58,17 @@ void checkVersion(const Document& document, const json& asset) {
   major("minVersion");
 }
 
-// Index accessors without a buffer view are legal (Draco, sparse), but tinygltf 2.7.0 refuses them: they point
-// to one view too many until it has read the file (test: GltfSparse.IndicesWithoutBufferView).
+// Two things are kept from tinygltf 2.7.0 until it has read the file. It refuses index accessors without a
+// buffer view, which are legal (Draco, sparse): they point to one view too many. And it refuses strides that are
+// no multiple of four, which do no harm. Tests: GltfSparse.IndicesWithoutBufferView, GltfAccessor.OddStrides.
 tinygltf::Model parseModel(const Document& document, json& checked) {
   json& views = checked["bufferViews"];
-  const std::size_t viewCount = views.is_array() ? views.size() : 0;
+  const std::size_t viewCount = views.size();  // null has none
+  std::vector<std::size_t> strides;
+  for (json& view : views) {
+    strides.push_back(view.value("byteStride", std::size_t{0}));
+    view.erase("byteStride");
+  }
   views.push_back({{"buffer", 0}, {"byteLength", 1}});
   if (const auto accessors = checked.find("accessors"); accessors != checked.end())
     for (json& accessor : *accessors)
@@ -77,6 +83,7 @@ tinygltf::Model parseModel(const Document& document, json& checked) {
     document.fail("", error.substr(0, error.find('\n')));
 
   model.bufferViews.pop_back();
+  for (std::size_t i = 0; i < viewCount; ++i) model.bufferViews[i].byteStride = strides[i];
   for (tinygltf::Accessor& accessor : model.accessors)
     if (accessor.bufferView == static_cast<int>(viewCount)) accessor.bufferView = kNone;
   return model;
