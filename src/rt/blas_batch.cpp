@@ -1,0 +1,125 @@
+#include "rt/blas_batch.h"
+
+#include <algorithm>
+
+namespace quintet::rt {
+namespace {
+
+constexpr VkDeviceSize kInputAlignment = 16;
+
+VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) { return (value + alignment - 1) / alignment * alignment; }
+
+template <class T>
+std::span<const std::byte> bytesOf(std::span<const T> data) { return std::as_bytes(data); }
+
+}  // namespace
+
+void BlasBatch::add(const BlasOptions& options, const BlasData& data) { addJob(options, data, nullptr); }
+void BlasBatch::addRefit(Blas& target, const BlasData& data) { addJob(target.options_, data, &target); }
+
+VkDeviceSize BlasBatch::place(HostBytes data) {
+  const auto [at, isNew] = places_.try_emplace({data.data(), data.size()}, inputBytes_);
+  if (isNew) inputBytes_ = alignUp(inputBytes_ + data.size(), kInputAlignment);
+  return at->second;
+}
+
+void BlasBatch::addJob(const BlasOptions& options, const BlasData& data, Blas* refitted) {
+  Job job{&options, &data, refitted != nullptr, refitted, {}, {}, scratchBytes_};
+  job.description.flags = buildFlags(context_, options);
+  for (const GeometryData& geometry : data.geometries) {
+    for (const HostBytes bytes : {bytesOf(geometry.positions), bytesOf(geometry.triangles), bytesOf(geometry.boxes)}) place(bytes);
+    job.description.add(geometry, 0, 0);
+  }
+  job.sizes = job.description.sizes(context_, options.name);
+  const VkDeviceSize scratch = refitted ? job.sizes.updateScratchSize : job.sizes.buildScratchSize;
+  scratchBytes_ += alignUp(scratch, context_.info().limits.scratchAlignment);
+  jobs_.push_back(std::move(job));
+}
+
+void BlasBatch::uploadInputs() {
+  // At least some bytes: a geometry without primitives needs a valid address too.
+  inputs_ = filler_->make(std::max<VkDeviceSize>(inputBytes_, 64),
+                          VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, "BLAS inputs");
+  for (const auto& [data, offset] : places_) filler_->write(inputs_, offset, HostBytes(data.first, data.second));
+}
+
+// Now that the input buffer has an address.
+void BlasBatch::describe(Job& job) {
+  job.description.geometries.clear();
+  job.description.ranges.clear();
+  for (const GeometryData& geometry : job.data->geometries) {
+    const bool triangles = geometry.kind == GeometryKind::triangles;
+    const VkDeviceSize points = place(triangles ? bytesOf(geometry.positions) : bytesOf(geometry.boxes));
+    const VkDeviceSize indices = place(bytesOf(geometry.triangles));
+    const bool none = geometry.count() == 0;
+    job.description.add(geometry, inputs_.address() + (none ? 0 : points), inputs_.address() + (none ? 0 : indices));
+  }
+}
+
+Blas BlasBatch::create(const Job& job) {
+  Blas blas;
+  blas.context_ = &context_;
+  blas.options_ = *job.options;
+  blas.bounds_ = job.data->bounds;
+  blas.inactiveCount_ = job.data->inactiveCount;
+  blas.builtSize_ = job.sizes.accelerationStructureSize;
+  blas.handle_ = createStructure(context_, blas.storage_, blas.builtSize_, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
+                                 job.options->name);
+  blas.address_ = structureAddress(context_, blas.handle_);
+  uploadMaps(*job.data, blas);
+  return blas;
+}
+
+void BlasBatch::uploadMaps(const BlasData& data, Blas& blas) {
+  VkDeviceSize bytes = 0;
+  for (const GeometryData& geometry : data.geometries) bytes += geometry.map.size() * sizeof(std::uint32_t);
+  if (bytes > 0) blas.mapStorage_ = filler_->make(bytes, 0, blas.options_.name + " primitive map");
+  VkDeviceSize offset = 0;
+  for (const GeometryData& geometry : data.geometries) {
+    blas.maps_.push_back(geometry.map.empty() ? 0 : blas.mapStorage_.address() + offset);
+    filler_->write(blas.mapStorage_, offset, std::as_bytes(std::span(geometry.map)));
+    offset += geometry.map.size() * sizeof(std::uint32_t);
+  }
+}
+
+void BlasBatch::recordBuilds(gpu::Commands& commands) const {
+  std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
+  std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> ranges;
+  for (const Job& job : jobs_) {
+    auto info = job.description.info(job.refit ? VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR
+                                               : VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR);
+    info.dstAccelerationStructure = job.target->handle_;
+    if (job.refit) info.srcAccelerationStructure = job.target->handle_;
+    info.scratchData.deviceAddress = scratch_.address() + job.scratchOffset;
+    infos.push_back(info);
+    ranges.push_back(job.description.ranges.data());
+  }
+  context_.vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), static_cast<std::uint32_t>(infos.size()), infos.data(),
+                                                    ranges.data());
+}
+
+std::vector<Blas> BlasBatch::run() {
+  std::vector<Blas> results;
+  if (jobs_.empty()) return results;
+  filler_.emplace(context_, inputBytes_);
+  uploadInputs();
+  scratch_ = gpu::Buffer(context_, {.size = std::max<VkDeviceSize>(scratchBytes_, 64),
+                                    .alignment = context_.info().limits.scratchAlignment,
+                                    .name = "BLAS scratch"});
+  results.reserve(jobs_.size());  // pointers to results stay valid
+  std::vector<Blas*> compactable;
+  for (Job& job : jobs_) {
+    describe(job);
+    if (job.refit) continue;
+    job.target = &results.emplace_back(create(job));
+    if (compacts(context_, *job.options)) compactable.push_back(job.target);
+  }
+  filler_->flush();
+  context_.submitAndWait([&](gpu::Commands& commands) { recordBuilds(commands); });
+  inputs_ = {};
+  scratch_ = {};
+  if (!compactable.empty()) compact(compactable);
+  return results;
+}
+
+}  // namespace quintet::rt
