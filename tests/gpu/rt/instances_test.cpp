@@ -1,0 +1,126 @@
+// The top level: transforms, masks, records per instance, rebuilds while the device is busy.
+#include "base/error.h"
+#include "rt_test_support.h"
+
+namespace quintet::rt::test {
+namespace {
+
+gpu::Context& context() { return quintet::test::testContext(); }
+
+Blas buildQuad() {
+  const Mesh mesh = quad(0);
+  const BlasInput input{.geometries = {mesh.geometry()}, .options = {.name = "quad"}};
+  return std::move(BlasBuilder(context()).build({&input, 1})[0]);
+}
+
+mat4 translation(float x, float z) { return glm::translate(mat4(1.0f), vec3(x, 0, z)); }
+
+TEST(RtInstances, EmptyTlasMisses) {
+  for (const std::uint32_t capacity : {0u, 4u}) {
+    Tlas tlas(context(), capacity);
+    tlas.buildAndWait({});
+    const auto hits = traceRays(tlas, contentsOf({}, {5}), {Ray{}});
+    EXPECT_EQ(hits[0].t, -1.0f);
+    EXPECT_EQ(hits[0].tag, 5u);
+  }
+}
+
+TEST(RtInstances, TransformsIndicesMasksAndRecords) {
+  const Blas blas = buildQuad();
+  constexpr std::uint32_t kCount = 101;
+  std::vector<InstanceInput> instances;
+  std::vector<SbtRecord> records;
+  std::vector<Ray> rays;
+  for (std::uint32_t k = 0; k < kCount; ++k) {
+    const float x = 10.0f * static_cast<float>((k * 37) % kCount);  // not in the order of space
+    const mat4 rotated = translation(x, -5) * glm::rotate(mat4(1.0f), glm::half_pi<float>(), vec3(0, 1, 0)) *
+                         glm::scale(mat4(1.0f), vec3(1, 2, 3));  // seen from +x: z from -1 to 1, y from -2 to 2
+    instances.push_back({rotated, &blas, 1000 + k, k % 2 ? 0x01u : 0x02u, k, 0});
+    records.push_back(hitRecord(kTriangleHit, {.map = blas.primitiveMap(0), .tag = k}));
+    rays.push_back({.origin = {x + 1, 1.5f, -4.5f}, .direction = {-1, 0, 0}, .tMax = 5});
+  }
+  Tlas tlas(context(), kCount);
+  tlas.buildAndWait(instances);
+  const SbtContents contents = contentsOf(records);
+  for (const std::uint32_t mask : {1u, 2u, 3u, 0u}) {
+    const auto hits = traceRays(tlas, contents, rays, {.mask = mask});
+    for (std::uint32_t k = 0; k < kCount; ++k) {
+      const bool seen = mask & instances[k].mask;
+      ASSERT_NEAR(hits[k].t, seen ? 1.0f : -1.0f, 1e-3f) << k << " mask " << mask;
+      if (!seen) continue;
+      EXPECT_EQ(hits[k].custom, 1000 + k);
+      EXPECT_EQ(hits[k].tag, k);
+    }
+  }
+}
+
+TEST(RtInstances, UnusableOnesAreLeftOut) {
+  const Blas blas = buildQuad();
+  const BlasInput nothing;
+  const Blas empty = std::move(BlasBuilder(context()).build({&nothing, 1})[0]);
+  mat4 nan = translation(0, -1);
+  nan[3][0] = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<InstanceInput> instances{{.worldFromObject = nan, .blas = &blas},
+                                             {.worldFromObject = mat4(0.0f), .blas = &blas},
+                                             {.worldFromObject = glm::scale(mat4(1.0f), vec3(1, 0, 1)), .blas = &blas},
+                                             {.worldFromObject = translation(0, -1), .blas = &empty},
+                                             {.worldFromObject = translation(0, -7), .blas = &blas, .customIndex = 9}};
+  Tlas tlas(context(), 5);
+  tlas.buildAndWait(instances);
+  const SbtContents contents = contentsOf({hitRecord(kTriangleHit, {.map = blas.primitiveMap(0)})});
+  const auto hits = traceRays(tlas, contents, {{.origin = {0.5f, -0.25f, 0}}});
+  EXPECT_FLOAT_EQ(hits[0].t, 7.0f);
+  EXPECT_EQ(hits[0].custom, 9u);
+}
+
+// Ten frames are recorded without waiting: each rebuilds the TLAS and traces into its own buffer.
+TEST(RtInstances, RebuiltWhileFramesAreInFlight) {
+  const Blas blas = buildQuad();
+  constexpr std::uint32_t kInstances = 200, kFrames = 10;
+  Tlas tlas(context(), kInstances);
+  testSet().setAccelerationStructure(tlas.handle());
+  const Pipeline& pipeline = testPipeline();
+  const ShaderBindingTable table(context(), pipeline, contentsOf({hitRecord(kTriangleHit, {.map = blas.primitiveMap(0)})}), "table");
+  std::vector<Ray> rays;
+  for (std::uint32_t k = 0; k < kInstances; ++k) rays.push_back({.origin = {3.0f * static_cast<float>(k), -0.5f, 0}});
+  const gpu::Buffer rayBuffer = gpu::makeBufferOf(context(), rays, 0, "rays");
+  std::vector<gpu::Buffer> hits;
+  const auto depthOf = [](std::uint32_t frame, std::uint32_t k) { return 1.0f + static_cast<float>((frame * 7 + k) % 50); };
+  for (std::uint32_t frame = 0; frame < kFrames; ++frame) hits.push_back(gpu::Buffer(context(), {.size = kInstances * sizeof(Hit), .name = "hits"}));
+
+  for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
+    std::vector<InstanceInput> instances;
+    for (std::uint32_t k = 0; k < kInstances; ++k)
+      instances.push_back({.worldFromObject = translation(3.0f * static_cast<float>(k), -depthOf(frame, k)), .blas = &blas, .customIndex = k});
+    struct {
+      VkDeviceAddress rays, hits;
+      std::uint32_t count, flags, mask, recordOffset, recordStride, missIndex;
+    } const launch{rayBuffer.address(), hits[frame].address(), kInstances, 0, 0xFF, 0, 1, 0};
+    context().submit([&](gpu::Commands& commands) {
+      tlas.build(commands, instances);
+      trace(commands, pipeline, table, std::as_bytes(std::span(&launch, 1)), kInstances, 1);
+    });
+  }
+  context().wait(context().submitted());
+  for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
+    const auto result = hits[frame].downloadAs<Hit>(kInstances);
+    for (std::uint32_t k = 0; k < kInstances; ++k) {
+      ASSERT_NEAR(result[k].t, depthOf(frame, k), 1e-3f) << "frame " << frame << " instance " << k;
+      ASSERT_EQ(result[k].custom, k);
+    }
+  }
+}
+
+TEST(RtInstances, RefusesWhatDoesNotFit) {
+  const Blas blas = buildQuad();
+  Tlas tlas(context(), 1);
+  const std::vector<InstanceInput> two(2, InstanceInput{.blas = &blas});
+  EXPECT_THROW(tlas.buildAndWait(two), UsageError);
+  for (const InstanceInput& instance : {InstanceInput{.blas = &blas, .customIndex = 1u << 24}, InstanceInput{.blas = &blas, .mask = 256},
+                                        InstanceInput{.blas = &blas, .recordOffset = 1u << 24}})
+    EXPECT_THROW(tlas.buildAndWait({&instance, 1}), UsageError);
+  EXPECT_THROW(Tlas(context(), ~0u), UsageError);
+}
+
+}  // namespace
+}  // namespace quintet::rt::test

@@ -1,0 +1,85 @@
+// Pipelines and launches: what is refused, and callable shaders, which no other test uses.
+#include "base/error.h"
+#include "rt_test_support.h"
+
+namespace quintet::rt::test {
+namespace {
+
+gpu::Context& context() { return quintet::test::testContext(); }
+
+struct OneShader {
+  explicit OneShader(shader::Stage stage, const std::string& text) : spirv(compileStage(stage, text)) {
+    options.stages = {{stage, spirv, "only"}};
+    options.groups = {{.general = 0}};
+    options.name = "single";
+  }
+  std::vector<std::uint32_t> spirv;
+  PipelineOptions options;
+};
+
+TEST(RtPipeline, RefusesDeepRecursionAndNoRayGeneration) {
+  OneShader rayGeneration(shader::Stage::rayGeneration, "void main() {}");
+  rayGeneration.options.maxRecursionDepth = context().info().limits.maxRecursionDepth + 1;
+  EXPECT_THROW(Pipeline(context(), testSet(), rayGeneration.options, nullptr), UsageError);
+  OneShader miss(shader::Stage::miss, "void main() {}");
+  EXPECT_THROW(Pipeline(context(), testSet(), miss.options, nullptr), UsageError);
+}
+
+TEST(RtPipeline, EmptyTablesAndEmptyLaunches) {
+  const OneShader shader(shader::Stage::rayGeneration, "void main() { launch.hits.at[gl_LaunchIDEXT.x].primitive = 7; }");
+  const gpu::PipelineCache cache(context(), {});
+  const Pipeline pipeline(context(), testSet(), shader.options, &cache);
+  const ShaderBindingTable table(context(), pipeline, {}, "only ray generation");
+  const gpu::Buffer hits = gpu::makeBufferOf(context(), std::vector<Hit>(3), 0, "hits");
+  const std::uint64_t constants[] = {0, hits.address()};
+  const auto bytes = std::as_bytes(std::span(constants));
+  context().submitAndWait([&](gpu::Commands& commands) {
+    trace(commands, pipeline, table, bytes, 0, 5);
+    trace(commands, pipeline, table, bytes, 2, 1);
+    EXPECT_THROW(trace(commands, pipeline, table, bytes, 1u << 31, 1u << 31, 4), UsageError);
+  });
+  const auto result = hits.downloadAs<Hit>(3);
+  EXPECT_EQ(result[0].primitive, 7u);
+  EXPECT_EQ(result[1].primitive, 7u);
+  EXPECT_EQ(result[2].primitive, 0u);
+}
+
+TEST(RtPipeline, CallablesReadTheirRecords) {
+  const auto rayGeneration = compileStage(shader::Stage::rayGeneration, R"(
+    layout(location = 0) callableDataEXT uint data;
+    void main() {
+      data = 0;
+      executeCallableEXT(gl_LaunchIDEXT.x, 0);
+      launch.hits.at[gl_LaunchIDEXT.x].tag = data;
+    })");
+  const auto callable = compileStage(shader::Stage::callable, R"(
+    layout(location = 0) callableDataInEXT uint data;
+    layout(shaderRecordEXT, scalar) buffer Record { uint tag; } record;
+    void main() { data = record.tag; })");
+  PipelineOptions options;
+  options.stages = {{shader::Stage::rayGeneration, rayGeneration, "rgen"}, {shader::Stage::callable, callable, "rcall"}};
+  options.groups = {{.general = 0}, {.general = 1}};
+  const Pipeline pipeline(context(), testSet(), options, nullptr);
+  SbtContents contents;
+  for (std::uint32_t k = 0; k < 9; ++k) {
+    SbtRecord record{1, std::vector<std::byte>(4 + 4 * (k % 3))};  // of several sizes
+    const std::uint32_t tag = 100 + k;
+    std::memcpy(record.data.data(), &tag, sizeof tag);
+    contents.callable.push_back(std::move(record));
+  }
+  const ShaderBindingTable table(context(), pipeline, contents, "callables");
+  const gpu::Buffer hits = gpu::makeBufferOf(context(), std::vector<Hit>(9), 0, "hits");
+  const std::uint64_t constants[] = {0, hits.address()};
+  context().submitAndWait([&](gpu::Commands& commands) { trace(commands, pipeline, table, std::as_bytes(std::span(constants)), 9, 1); });
+  const auto result = hits.downloadAs<Hit>(9);
+  for (std::uint32_t k = 0; k < 9; ++k) EXPECT_EQ(result[k].tag, 100 + k);
+}
+
+TEST(RtPipeline, OversizedRecordIsRefused) {
+  SbtContents contents = contentsOf({});
+  contents.miss[0].data.resize(context().info().limits.maxRecordStride);
+  EXPECT_THROW(ShaderBindingTable(context(), testPipeline(), contents, "fat"), UsageError);
+}
+
+}  // namespace
+}  // namespace quintet::rt::test
