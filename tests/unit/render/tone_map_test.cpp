@@ -100,7 +100,7 @@ TEST(ToneMap, GreysRiseAndStayInRange) {
     float last = 0.0f;
     for (int step = -200; step <= 200; ++step) {
       const vec3 result = toneMap(operation, vec3(std::exp2(static_cast<float>(step) * 0.1f)));
-      EXPECT_GE(result.g, last - 1e-6f) << toneMapNames()[static_cast<std::size_t>(operation)] << " at 2^" << step * 0.1f;
+      EXPECT_GE(result.g, last - 1e-6f) << toneMapNames()[static_cast<std::size_t>(operation)] << ", step " << step;
       EXPECT_LE(result.g, 1.0f);
       last = result.g;
     }
