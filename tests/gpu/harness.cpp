@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "driver_leaks.h"
 #include "shader/compiler.h"
 
 namespace quintet::test {
@@ -41,6 +42,7 @@ Device& testDevice() {
     validationLog.push_back(line);
   };
   device = std::make_unique<Device>(options);
+  keepDriversLoaded();
   std::printf("device: %s (%s)%s\n", device->context.info().name.c_str(), device->context.info().driver.c_str(),
               options.validate ? ", validated" : "");
   return *device;
