@@ -16,7 +16,7 @@ bool alphaRejects(vec2 barycentric, uint seed) {
   const vec3 b = vec3(1.0 - barycentric.x - barycentric.y, barycentric);
   float alpha = material.baseColor.a;
   if (geometry.colors != 0ul) {
-    const Vec4Array colors = Vec4Array(geometry.colors);
+    Vec4Array colors = Vec4Array(geometry.colors);
     alpha *= dot(b, vec3(colors.at[v.x].a, colors.at[v.y].a, colors.at[v.z].a));
   }
   if (material.baseColorTexture.index != kNoTexture) {

@@ -27,7 +27,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer OutputArray 
 #define frame FrameReference(launch.frame).value
 
 const float kPi = 3.14159265358979323846;
-const float kInfinity = uintBitsToFloat(0x7F800000u);
+const float kInfinity = 3.402823466e38;  // the largest float: "no limit" for a ray
 
 // Rec. 709 luminance.
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }

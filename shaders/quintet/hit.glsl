@@ -39,7 +39,7 @@ HitPayload triangleHit(vec2 attributes, uint seed) {
   hit.primitive = hitTriangle(geometry);
 #ifdef QUINTET_RECOMPUTE_BARYCENTRICS
   const uvec3 v = Uvec3Array(geometry.triangles).at[hit.primitive];
-  const Vec3Array positions = Vec3Array(geometry.positions);
+  Vec3Array positions = Vec3Array(geometry.positions);
   hit.barycentric =
       barycentricsFromRay(gl_ObjectRayOriginEXT, gl_ObjectRayDirectionEXT, positions.at[v.x], positions.at[v.y], positions.at[v.z]);
 #else

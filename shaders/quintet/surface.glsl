@@ -66,7 +66,7 @@ Surface fetchSurface(HitPayload hit, vec3 wo) {
   const GeometryData geometry = GeometryArray(frame.geometries).at[instance.firstGeometry + hit.geometry];
   const uvec3 v = Uvec3Array(geometry.triangles).at[hit.primitive];
   const vec3 b = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
-  const Vec3Array positions = Vec3Array(geometry.positions);
+  Vec3Array positions = Vec3Array(geometry.positions);
   const vec3 p0 = positions.at[v.x];
   const vec3 p1 = positions.at[v.y];
   const vec3 p2 = positions.at[v.z];
@@ -85,7 +85,7 @@ Surface fetchSurface(HitPayload hit, vec3 wo) {
 
   vec3 n = front;
   if (geometry.normals != 0ul) {
-    const Vec3Array normals = Vec3Array(geometry.normals);
+    Vec3Array normals = Vec3Array(geometry.normals);
     const vec3 object = b.x * normals.at[v.x] + b.y * normals.at[v.y] + b.z * normals.at[v.z];
     n = safeNormalize(transposeTimesVector(instance.objectFromWorld, object), front);
   }
@@ -94,7 +94,7 @@ Surface fetchSurface(HitPayload hit, vec3 wo) {
   s.tangent = vec3(0.0);
   s.bitangent = vec3(0.0);
   if (geometry.tangents != 0ul) {
-    const Vec4Array tangents = Vec4Array(geometry.tangents);
+    Vec4Array tangents = Vec4Array(geometry.tangents);
     const vec4 t = b.x * tangents.at[v.x] + b.y * tangents.at[v.y] + b.z * tangents.at[v.z];
     const vec3 world = rowsTimesVector(instance.worldFromObject, t.xyz);
     const float handedness = (t.w < 0.0 ? -1.0 : 1.0) * (instance.mirrored != 0u ? -1.0 : 1.0);
@@ -108,7 +108,7 @@ Surface fetchSurface(HitPayload hit, vec3 wo) {
   s.material = geometry.material;
   s.color = vec4(1.0);
   if (geometry.colors != 0ul) {
-    const Vec4Array colors = Vec4Array(geometry.colors);
+    Vec4Array colors = Vec4Array(geometry.colors);
     s.color = b.x * colors.at[v.x] + b.y * colors.at[v.y] + b.z * colors.at[v.z];
   }
   s.uvs[0] = interpolateUv(geometry, v, b, 0u);

@@ -14,7 +14,7 @@ vec4 sampleTexture(TextureData use, vec2 uv) {
 vec2 interpolateUv(GeometryData geometry, uvec3 v, vec3 b, uint uvSet) {
   const Address address = geometry.uvs[uvSet];
   if (address == 0ul) return vec2(0.0);
-  const Vec2Array uvs = Vec2Array(address);
+  Vec2Array uvs = Vec2Array(address);
   return b.x * uvs.at[v.x] + b.y * uvs.at[v.y] + b.z * uvs.at[v.z];
 }
 
