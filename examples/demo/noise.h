@@ -1,0 +1,34 @@
+// Deterministic noise for textures, terrains and scattered things.
+#ifndef QUINTET_DEMO_NOISE_H
+#define QUINTET_DEMO_NOISE_H
+
+#include <cstdint>
+
+#include "base/math.h"
+
+namespace quintet::demo {
+
+// [0,1), well mixed (PCG hash; Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
+float hash01(std::uint32_t x, std::uint32_t y = 0, std::uint32_t z = 0, std::uint32_t seed = 0);
+
+// A stream of such numbers.
+class Random {
+ public:
+  explicit Random(std::uint32_t seed) : seed_(seed) {}
+  float operator()() { return hash01(count_++, 0, 0, seed_); }
+  float operator()(float low, float high) { return low + (high - low) * (*this)(); }
+
+ private:
+  std::uint32_t seed_;
+  std::uint32_t count_ = 0;
+};
+
+// Gradient noise (Perlin 2002) in about [-1,1], 0 at lattice points. `period` > 0: repeats after so many
+// lattice cells along that axis; 0: never.
+float noise(vec3 p, std::uint32_t seed = 0, glm::ivec3 period = {0, 0, 0});
+
+// Sum of `octaves` of it, each twice as fine and half as strong; about [-1,1].
+float fbm(vec3 p, int octaves, std::uint32_t seed = 0, glm::ivec3 period = {0, 0, 0});
+
+}  // namespace quintet::demo
+#endif
