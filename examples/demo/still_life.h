@@ -1,0 +1,24 @@
+// The scene of `make demo` and of the picture at the top of README.
+#ifndef QUINTET_DEMO_STILL_LIFE_H
+#define QUINTET_DEMO_STILL_LIFE_H
+
+#include <cstddef>
+#include <vector>
+
+#include "demo/sky.h"
+
+namespace quintet::demo {
+
+struct StillLifeSettings {
+  std::uint32_t oakTextureSize = 2048;
+  std::uint32_t textureSize = 1024;
+};
+
+// demo.glb: camera "hero", 16:9.
+std::vector<std::byte> stillLife(const StillLifeSettings& settings = {});
+
+// Its light.
+SkySettings stillLifeSky();
+
+}  // namespace quintet::demo
+#endif
