@@ -34,13 +34,20 @@ float noise(vec3 p, std::uint32_t seed, glm::ivec3 period) {
   const vec3 f = p - cell;
   const vec3 s = f * f * f * (f * (f * 6.0f - 15.0f) + 10.0f);
   const glm::ivec3 i(cell);
+  std::uint32_t x[2], y[2], z[2];  // the lattice coordinates of the cell's two sides
+  for (int k = 0; k < 2; ++k) {
+    x[k] = static_cast<std::uint32_t>(wrap(i.x + k, period.x));
+    y[k] = static_cast<std::uint32_t>(wrap(i.y + k, period.y));
+    z[k] = static_cast<std::uint32_t>(wrap(i.z + k, period.z));
+  }
+  const std::uint32_t start = pcg(seed);
   float corner[8];
-  for (int c = 0; c < 8; ++c) {
-    const glm::ivec3 d(c & 1, (c >> 1) & 1, c >> 2);
-    const std::uint32_t h =
-        hash(static_cast<std::uint32_t>(wrap(i.x + d.x, period.x)), static_cast<std::uint32_t>(wrap(i.y + d.y, period.y)),
-             static_cast<std::uint32_t>(wrap(i.z + d.z, period.z)), seed);
-    corner[c] = gradient(h, f - vec3(d));
+  for (unsigned c = 0; c < 8; c += 2) {  // hash(x, y, z, seed), with what is common computed once
+    const unsigned dy = (c >> 1) & 1u, dz = c >> 2;
+    const std::uint32_t row = pcg(y[dy] + pcg(z[dz] + start));
+    const vec3 offset = f - vec3(0.0f, static_cast<float>(dy), static_cast<float>(dz));
+    corner[c] = gradient(pcg(x[0] + row), offset);
+    corner[c + 1] = gradient(pcg(x[1] + row), offset - vec3(1, 0, 0));
   }
   const float near = glm::mix(glm::mix(corner[0], corner[1], s.x), glm::mix(corner[2], corner[3], s.x), s.y);
   const float far = glm::mix(glm::mix(corner[4], corner[5], s.x), glm::mix(corner[6], corner[7], s.x), s.y);

@@ -13,15 +13,6 @@ namespace {
 constexpr float kPlinthRadius = 0.50f, kPlinthHeight = 0.055f;
 constexpr float kTerraceRadius = 3.4f;
 
-struct Textures {
-  int color = kNoTexture, roughness = kNoTexture, normal = kNoTexture;
-};
-
-Textures addMaps(GlbWriter& glb, const std::string& name, const SurfaceMaps& maps) {
-  return {glb.addTexture(name + " colour", maps.baseColor), glb.addTexture(name + " roughness", maps.metallicRoughness),
-          glb.addTexture(name + " normal", maps.normal)};
-}
-
 mat4 placed(float x, float z, float y = kPlinthHeight, float turnDegrees = 0.0f, float tiltDegrees = 0.0f) {
   mat4 m = glm::translate(mat4(1.0f), vec3(x, y, z));
   m = glm::rotate(m, glm::radians(turnDegrees), vec3(0, 1, 0));
@@ -38,11 +29,11 @@ void unrollFromTop(TriangleMesh& mesh, float profileLength, float metresPerTile)
 }
 
 void addGround(GlbWriter& glb, const StillLifeSettings& settings) {
-  const Textures oak = addMaps(glb, "oak", oakHerringbone(settings.oakTextureSize));
+  const SurfaceMaps oak = oakHerringbone(settings.oakTextureSize);
   const int floor = glb.addMaterial({.name = "oiled oak",
-                                     .baseColorTexture = oak.color,
-                                     .metallicRoughnessTexture = oak.roughness,
-                                     .normalTexture = oak.normal});
+                                     .baseColorTexture = glb.addTexture("oak colour", oak.baseColor),
+                                     .metallicRoughnessTexture = glb.addTexture("oak roughness", oak.metallicRoughness),
+                                     .normalTexture = glb.addTexture("oak normal", oak.normal)});
   TriangleMesh disc = flatDisc(0.0f, kTerraceRadius, 96, kOakTile);
   const float turn = glm::radians(38.0f);
   for (vec2& uv : disc.uvs) {
@@ -58,10 +49,10 @@ void addGround(GlbWriter& glb, const StillLifeSettings& settings) {
                            vec2(r, -0.3f)};
   glb.addObject("kerb", revolve(kerb, 160, 50.0f), stone);
 
-  const Textures veins = addMaps(glb, "marble", marble(settings.textureSize));
+  const SurfaceMaps veins = marble(settings.textureSize);
   const int marbled = glb.addMaterial({.name = "white marble",
-                                       .baseColorTexture = veins.color,
-                                       .metallicRoughnessTexture = veins.roughness});
+                                       .baseColorTexture = glb.addTexture("marble colour", veins.baseColor),
+                                       .metallicRoughnessTexture = glb.addTexture("marble roughness", veins.metallicRoughness)});
   const std::vector<vec2> profile = discProfile(kPlinthRadius, kPlinthHeight, 0.008f, 6);
   TriangleMesh plinth = revolve(profile, 192);
   unrollFromTop(plinth, 2.0f * kPlinthRadius + kPlinthHeight, kMarbleTile);

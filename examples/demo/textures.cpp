@@ -46,10 +46,10 @@ Texel oakBoard(const Board& board, float length) {
   const float fibre = fbm(vec3(1.6f * board.along, 34.0f * board.across, 0.0f) + seed, 3, 21);
   const float pores = glm::smoothstep(0.28f, 0.5f, noise(vec3(3.0f * board.along, 46.0f * board.across, 5.0f) + seed, 29));
 
-  const vec3 early(0.46f, 0.315f, 0.19f), dark(0.32f, 0.198f, 0.108f);
+  const vec3 early(0.43f, 0.278f, 0.158f), dark(0.29f, 0.170f, 0.087f);
   vec3 color = glm::mix(early, dark, 0.62f * late + 0.30f * fibre);
   color *= (0.80f + 0.36f * random(7)) * (1.0f - 0.22f * pores);
-  color = glm::mix(color, vec3(glm::dot(color, vec3(0.33f))), 0.22f * random(8));
+  color = glm::mix(color, vec3(glm::dot(color, vec3(0.33f))), 0.15f * random(8));
   return {glm::clamp(color, 0.02f, 0.9f), 0.52f + 0.08f * late + 0.10f * fibre + 0.12f * pores, 0.0f,
           -6e-5f * pores - 2e-5f * late + 2e-5f * fibre};
 }
