@@ -7,7 +7,8 @@
 // - eval returns f(wo, wi) |cos wi|; pdf is the density of wi per solid angle; sample takes numbers in [0,1).
 // - f transports radiance: refraction into a solid scales by (index at wo / index at wi)^2.
 // - Lobes narrower than kDeltaAlpha are deltas: they can be sampled only and are absent from eval and pdf.
-//   ggx.glsl, sampled once here, hands its micronormal to the sample functions of the microfacet lobes.
+// - ggx.glsl, sampled once here, hands its micronormal to the sample functions of the microfacet lobes. These
+//   may return a direction on the wrong side of the surface, to be rejected.
 // - Each lobe is written flat, without branches: the lobes' common terms are then computed once.
 #ifndef QUINTET_BSDF_BSDF_GLSL
 #define QUINTET_BSDF_BSDF_GLSL
@@ -144,8 +145,10 @@ vec3 bsdfDeltaWeight(Bsdf b, int lobe, float cosine, bool transmitted) {
                                     : split.reflectance / split.reflectChance);
 }
 
-// One sample of the mixture; false if it is worth nothing.
-bool bsdfSample(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s) {
+// The direction of a sample, and all of it for a delta; for the rest bsdfFinish gives weight and pdf. In two
+// steps so that a program can evaluate this direction and a light's by one loop: compilers that inline
+// the evaluation then see it once. False if the direction is worth nothing.
+bool bsdfSampleDirection(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s) {
   vec3 edge = vec3(b.chance.x, b.chance.x + b.chance.y, b.chance.x + b.chance.y + b.chance.z);
   int lobe = uLobe < edge.x ? 0 : uLobe < edge.y ? 1 : uLobe < edge.z || b.chance.w == 0.0 ? 2 : 3;
   s.delta = lobe == 0 ? b.clearcoatDelta : lobe == 1 ? b.specularDelta : lobe == 3 && b.transmissionDelta;
@@ -159,13 +162,30 @@ bool bsdfSample(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s) {
 
   if (lobe == 3) s.wi = b.refractive ? dielectricSample(b.dielectric, wo, m, (uLobe - edge.z) / b.chance.w) : thinSample(wo, m);
   else s.wi = lobe == 2 ? diffuseSample(u) : specularSample(wo, m);
-  s.transmitted = s.wi.z < 0.0;
+  s.transmitted = lobe == 3 && (!b.refractive || dot(s.wi, m) < 0.0);
+  s.pdf = 0.0;
+  s.weight = s.delta ? bsdfDeltaWeight(b, lobe, dot(wo, m), s.transmitted) / b.chance[lobe] : vec3(0.0);
+  // A microfacet may reflect below the surface, or refract above it.
+  return s.transmitted ? s.wi.z < 0.0 : s.wi.z > 0.0;
+}
 
-  float density = bsdfPdf(b, wo, s.wi);
-  s.pdf = s.delta ? 0.0 : density;
-  s.weight = s.delta ? bsdfDeltaWeight(b, lobe, dot(wo, m), s.transmitted) / b.chance[lobe] : bsdfEval(b, wo, s.wi) / density;
+// Completes a sample that is no delta with f |cos wi| and the density of its direction.
+void bsdfFinish(inout BsdfSample s, vec3 f, float density) {
+  s.pdf = density;
+  s.weight = f / density;
+}
+
+// Worth following: not zero, no NaN.
+bool bsdfUseful(BsdfSample s) {
   float size = s.weight.x + s.weight.y + s.weight.z;
-  return size > 0.0 && size < 1e30;  // false for NaN
+  return size > 0.0 && size < 1e30;
+}
+
+// One sample of the mixture; false if it is worth nothing.
+bool bsdfSample(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s) {
+  if (!bsdfSampleDirection(b, wo, uLobe, u, s)) return false;
+  if (!s.delta) bsdfFinish(s, bsdfEval(b, wo, s.wi), bsdfPdf(b, wo, s.wi));
+  return bsdfUseful(s);
 }
 
 #endif

@@ -1,0 +1,123 @@
+// Materials and directions that the tests of quintet/bsdf share, and the shader text around them.
+#ifndef QUINTET_TESTS_GPU_BSDF_CASES_H
+#define QUINTET_TESTS_GPU_BSDF_CASES_H
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "harness.h"
+#include "quintet/shared/frame.h"
+#include "render/albedo_tables.h"
+
+namespace quintet::test {
+
+// BsdfParameters and wo, as the shader's struct Case below. The default is a white, fully rough dielectric.
+struct BsdfCase {
+  vec3 wo{0.0f, 0.0f, 1.0f};
+  float alpha = 1.0f;
+  vec3 baseColor{1.0f};
+  float metallic = 0.0f;
+  float transmission = 0.0f;
+  float ior = 1.5f;
+  std::uint32_t entering = 1;
+  std::uint32_t thin = 0;
+  float specular = 1.0f;
+  vec3 specularColor{1.0f};
+  float clearcoat = 0.0f;
+  float clearcoatAlpha = 0.01f;
+  vec3 clearcoatNormal{0.0f, 0.0f, 1.0f};
+};
+
+inline vec3 directionAt(float cosine, float azimuth = 0.7f) {
+  const float sine = std::sqrt(1.0f - cosine * cosine);
+  return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
+}
+
+// One sample of a lobe or of the mixture, as the shader's struct Sample below.
+struct BsdfSampleOut {
+  vec3 wi;
+  std::uint32_t valid;  // 0: rejected
+  vec3 weight;
+  float pdf;
+  std::uint32_t delta;
+  std::uint32_t transmitted;
+};
+
+// The frame with the albedo tables; made once.
+class BsdfFrame {
+ public:
+  BsdfFrame()
+      : tables_(gpu::makeBufferOf(testContext(), render::computeAlbedoTables(), 0, "albedo tables")),
+        frame_(gpu::makeBufferOf(testContext(), std::vector<shared::Frame>{makeFrame()}, 0, "frame")) {}
+  VkDeviceAddress address() const { return frame_.address(); }
+
+ private:
+  shared::Frame makeFrame() const {
+    shared::Frame frame{};
+    frame.albedoTables = tables_.address();
+    return frame;
+  }
+  gpu::Buffer tables_;
+  gpu::Buffer frame_;
+};
+
+// What every body starts with.
+inline const std::string kBsdfPrelude = R"(
+#include <quintet/bsdf/bsdf.glsl>
+struct Case {
+  vec3 wo; float alpha; vec3 baseColor; float metallic; float transmission; float ior; uint entering; uint thin;
+  float specular; vec3 specularColor; float clearcoat; float clearcoatAlpha; vec3 clearcoatNormal;
+};
+struct Sample { vec3 wi; uint valid; vec3 weight; float pdf; uint delta; uint transmitted; };
+Bsdf makeBsdfOf(Case c) {
+  return makeBsdf(BsdfParameters(c.baseColor, c.metallic, c.alpha, c.transmission, c.ior, c.entering != 0u, c.thin != 0u,
+                                 c.specular, c.specularColor, c.clearcoat, c.clearcoatAlpha, c.clearcoatNormal), c.wo);
+}
+// Jarzynski and Olano 2020, "Hash Functions for GPU Rendering", listing "pcg3d"; 24 bits in [0,1).
+vec3 randomAt(uint index, uint dimension) {
+  uvec3 v = uvec3(index, dimension, 0x9E3779B9u) * 1664525u + 1013904223u;
+  v.x += v.y * v.z; v.y += v.z * v.x; v.z += v.x * v.y;
+  v ^= v >> 16u;
+  v.x += v.y * v.z; v.y += v.z * v.x; v.z += v.x * v.y;
+  return vec3(v >> 8u) / 16777216.0;
+}
+vec3 uniformDirection(vec2 u) {
+  float z = 1.0 - 2.0 * u.x;
+  float r = sqrt(max(1.0 - z * z, 0.0));
+  return vec3(r * cos(6.2831853 * u.y), r * sin(6.2831853 * u.y), z);
+}
+)";
+
+// bsdfSample run by run(index, case) → Sample.
+inline const std::string kBsdfSampling = kBsdfPrelude + R"(
+#define In Case
+#define Out Sample
+Out run(uint index, In c) {
+  BsdfSample s;
+  vec3 u = randomAt(index, 1u);
+  bool valid = bsdfSample(makeBsdfOf(c), c.wo, u.z, u.xy, s);
+  return Out(s.wi, uint(valid), s.weight, s.pdf, uint(s.delta), uint(s.transmitted));
+}
+)";
+
+// Has the frame at hand; each suite derives from it.
+class BsdfTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { frame_ = std::make_unique<BsdfFrame>(); }
+  static void TearDownTestSuite() { frame_.reset(); }
+
+  template <class Out>
+  static std::vector<Out> runCases(const std::string& body, const std::vector<BsdfCase>& cases, std::size_t count,
+                                   const Defines& defines = {}) {
+    return runCompute<Out>(body, cases, count, {.defines = defines, .frame = frame_->address()});
+  }
+
+ private:
+  static inline std::unique_ptr<BsdfFrame> frame_;
+};
+
+}  // namespace quintet::test
+#endif
