@@ -19,13 +19,6 @@ struct Shading {
 vec3 toLocal(Shading s, vec3 v) { return vec3(dot(v, s.tangent), dot(v, s.bitangent), dot(v, s.normal)); }
 vec3 toWorld(Shading s, vec3 v) { return v.x * s.tangent + v.y * s.bitangent + v.z * s.normal; }
 
-// Tangent-space normal of a normal texture, z up.
-vec3 mappedNormal(TextureData use, vec2 uv, float scale) {
-  vec3 n = 2.0 * sampleTexture(use, uv).xyz - 1.0;
-  n.xy *= scale;
-  return n;
-}
-
 // Bends n so that it is on wo's side and the mirror direction of wo stays above the geometric surface:
 // no black borders on normal-mapped or coarsely tessellated surfaces, no light through them
 // (Keller et al. 2017, "The Iray Light Transport Simulation and Rendering System", section A.3).
@@ -40,58 +33,66 @@ vec3 consistentNormal(vec3 n, vec3 geometricNormal, vec3 wo) {
   return safeNormalize(wo + normalize(mirrored + (wanted - height) * geometricNormal), geometricNormal);
 }
 
-float textureOr(TextureData use, Surface s, int channel) {
-  return use.index == kNoTexture ? 1.0 : sampleTexture(use, s.uvs[use.uvSet])[channel];
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TextureArray { TextureData at[]; };
+
+// A tangent-space direction (z up) in world space, in the frame of the front side.
+vec3 fromTangentSpace(Surface s, vec3 front, vec3 t) {
+  return safeNormalize(t.x * s.tangent + t.y * s.bitangent + t.z * front, front);
 }
 
 Shading shadeSurface(Surface s, vec3 wo) {
-  const MaterialData m = MaterialArray(frame.materials).at[s.material];
+  MaterialArray materials = MaterialArray(frame.materials);
+#define MATERIAL materials.at[s.material]
   Shading r;
-  vec4 base = m.baseColor * s.color;
-  if (m.baseColorTexture.index != kNoTexture) base *= sampleTexture(m.baseColorTexture, s.uvs[m.baseColorTexture.uvSet]);
-  r.unlit = (m.flags & kMaterialUnlit) != 0u;
-  r.emission = m.emissive;
-  if ((m.flags & kMaterialEmissive) != 0u && m.emissiveTexture.index != kNoTexture)
-    r.emission *= sampleTexture(m.emissiveTexture, s.uvs[m.emissiveTexture.uvSet]).rgb;
-  if (r.unlit) r.emission = base.rgb;
+  const uint flags = MATERIAL.flags;
+  vec4 base = MATERIAL.baseColor * s.color;
+  vec2 roughMetal = vec2(MATERIAL.roughness, MATERIAL.metallic);
+  r.emission = MATERIAL.emissive;
+  r.bsdf.transmission = MATERIAL.transmission;
+  r.bsdf.specular = MATERIAL.specular;
+  r.bsdf.specularColor = MATERIAL.specularColor;
+  r.bsdf.clearcoat = MATERIAL.clearcoat;
+  float coatRoughness = MATERIAL.clearcoatRoughness;
+  vec3 mapped = vec3(0.0, 0.0, 1.0);
+  vec3 coatMapped = mapped;
 
-  vec2 roughMetal = vec2(m.roughness, m.metallic);
-  if (m.metallicRoughnessTexture.index != kNoTexture)
-    roughMetal *= sampleTexture(m.metallicRoughnessTexture, s.uvs[m.metallicRoughnessTexture.uvSet]).gb;
+  // One look-up in a loop: compilers that inline it (lavapipe's) then see it once.
+  TextureArray textureUses = TextureArray(frame.materials + uint64_t(s.material) * (kMaterialTextureOffset + kTextureCount * 32u) + kMaterialTextureOffset);
+  for (uint left = flags >> kMaterialTextureShift; left != 0u; left &= left - 1u) {
+    const uint slot = uint(findLSB(left));
+    const TextureData use = textureUses.at[slot];
+    const vec4 v = sampleTexture(use, use.uvSet == 0u ? s.uvs[0] : s.uvs[1]);
+    if (slot == kTextureBaseColor) base *= v;
+    else if (slot == kTextureMetallicRoughness) roughMetal *= v.gb;
+    else if (slot == kTextureNormal) mapped = vec3(MATERIAL.normalScale * (2.0 * v.xy - 1.0), 2.0 * v.z - 1.0);
+    else if (slot == kTextureEmissive) r.emission *= v.rgb;
+    else if (slot == kTextureTransmission) r.bsdf.transmission *= v.r;
+    else if (slot == kTextureSpecular) r.bsdf.specular *= v.a;
+    else if (slot == kTextureSpecularColor) r.bsdf.specularColor *= v.rgb;
+    else if (slot == kTextureClearcoat) r.bsdf.clearcoat *= v.r;
+    else if (slot == kTextureClearcoatRoughness) coatRoughness *= v.g;
+    else coatMapped = vec3(MATERIAL.clearcoatNormalScale * (2.0 * v.xy - 1.0), 2.0 * v.z - 1.0);
+  }
+
+  r.unlit = (flags & kMaterialUnlit) != 0u;
+  if (r.unlit) r.emission = base.rgb;
   r.bsdf.baseColor = clamp(base.rgb, 0.0, 1.0);
   r.bsdf.metallic = roughMetal.y;
   r.bsdf.alpha = roughMetal.x * roughMetal.x;
-  r.bsdf.transmission = m.transmission * textureOr(m.transmissionTexture, s, 0);
-  r.bsdf.ior = m.ior;
+  r.bsdf.ior = MATERIAL.ior;
   r.bsdf.entering = s.frontFace;
-  r.bsdf.thin = (m.flags & kMaterialThin) != 0u;
-  r.bsdf.specular = m.specular * textureOr(m.specularTexture, s, 3);
-  r.bsdf.specularColor = m.specularColor;
-  if (m.specularColorTexture.index != kNoTexture)
-    r.bsdf.specularColor *= sampleTexture(m.specularColorTexture, s.uvs[m.specularColorTexture.uvSet]).rgb;
-  r.bsdf.clearcoat = m.clearcoat * textureOr(m.clearcoatTexture, s, 0);
-  const float coatRoughness = m.clearcoatRoughness * textureOr(m.clearcoatRoughnessTexture, s, 1);
+  r.bsdf.thin = (flags & kMaterialThin) != 0u;
   r.bsdf.clearcoatAlpha = coatRoughness * coatRoughness;
-  r.absorption = m.absorption;
+  r.absorption = MATERIAL.absorption;
+#undef MATERIAL
 
   // Normal maps live in the frame of the front side; the whole frame turns for a back side.
   const float side = s.frontFace ? 1.0 : -1.0;
-  vec3 n = side * s.shadingNormal;
-  const vec3 front = n;
-  if (m.normalTexture.index != kNoTexture) {
-    const vec3 t = mappedNormal(m.normalTexture, s.uvs[m.normalTexture.uvSet], m.normalScale);
-    n = safeNormalize(t.x * s.tangent + t.y * s.bitangent + t.z * front, front);
-  }
-  r.normal = consistentNormal(side * n, s.geometricNormal, wo);
+  const vec3 front = side * s.shadingNormal;
+  r.normal = consistentNormal(side * fromTangentSpace(s, front, mapped), s.geometricNormal, wo);
   r.tangent = safeNormalize(s.tangent - r.normal * dot(r.normal, s.tangent), anyTangent(r.normal));
   r.bitangent = cross(r.normal, r.tangent);
-
-  vec3 coat = front;
-  if (r.bsdf.clearcoat > 0.0 && m.clearcoatNormalTexture.index != kNoTexture) {
-    const vec3 t = mappedNormal(m.clearcoatNormalTexture, s.uvs[m.clearcoatNormalTexture.uvSet], m.clearcoatNormalScale);
-    coat = safeNormalize(t.x * s.tangent + t.y * s.bitangent + t.z * front, front);
-  }
-  r.bsdf.clearcoatNormal = toLocal(r, consistentNormal(side * coat, s.geometricNormal, wo));
+  r.bsdf.clearcoatNormal = toLocal(r, consistentNormal(side * fromTangentSpace(s, front, coatMapped), s.geometricNormal, wo));
   return r;
 }
 

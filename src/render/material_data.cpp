@@ -64,6 +64,9 @@ shared::MaterialData makeMaterial(const scene::Material& m, const TextureIndex& 
   data.clearcoatTexture = makeTexture(m.clearcoatTexture, false, textureIndex);
   data.clearcoatRoughnessTexture = makeTexture(m.clearcoatRoughnessTexture, false, textureIndex);
   data.clearcoatNormalTexture = makeTexture(m.clearcoatNormalTexture, false, textureIndex);
+  const shared::TextureData* textures = &data.baseColorTexture;
+  for (std::uint32_t k = 0; k < shared::kTextureCount; ++k)
+    if (textures[k].index != shared::kNoTexture) data.flags |= 1u << (shared::kMaterialTextureShift + k);
   return data;
 }
 

@@ -25,6 +25,21 @@ QT_CONSTANT kMaterialThin = 8u;         // transmission without refraction (no v
 QT_CONSTANT kMaterialEmissive = 16u;    // emissive factor is not zero
 QT_CONSTANT kMaterialDoubleSided = 32u;  // for the record: every surface is rendered on both sides
 
+// Bit kMaterialTextureShift + k of the flags is set if the k-th texture of MaterialData is there.
+QT_CONSTANT kMaterialTextureShift = 16;
+QT_CONSTANT kTextureBaseColor = 0;
+QT_CONSTANT kTextureMetallicRoughness = 1;
+QT_CONSTANT kTextureNormal = 2;
+QT_CONSTANT kTextureEmissive = 3;
+QT_CONSTANT kTextureTransmission = 4;
+QT_CONSTANT kTextureSpecular = 5;
+QT_CONSTANT kTextureSpecularColor = 6;
+QT_CONSTANT kTextureClearcoat = 7;
+QT_CONSTANT kTextureClearcoatRoughness = 8;
+QT_CONSTANT kTextureClearcoatNormal = 9;
+QT_CONSTANT kTextureCount = 10;
+QT_CONSTANT kMaterialTextureOffset = 96;  // bytes of the first texture in MaterialData
+
 struct MaterialData {
   vec4 baseColor;
   vec3 emissive;      // radiance
@@ -52,7 +67,7 @@ struct MaterialData {
   TextureData clearcoatRoughnessTexture;
   TextureData clearcoatNormalTexture;
 };
-QT_SHARED_SIZE(MaterialData, 96 + 10 * 32);
+QT_SHARED_SIZE(MaterialData, kMaterialTextureOffset + kTextureCount * 32);
 
 QT_SHARED_END
 
