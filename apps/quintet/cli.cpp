@@ -1,0 +1,54 @@
+#include "cli.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "values.h"
+
+namespace quintet::app {
+namespace {
+
+// CLI11 keeps what it could not place: an option that does not exist, or one argument too many.
+void refuseRemaining(const CLI::App& app) {
+  const std::vector<std::string> extras = app.remaining();
+  if (extras.empty()) return;
+  const auto option = std::ranges::find_if(extras, [](const std::string& e) { return e.size() > 1 && e[0] == '-'; });
+  if (option == extras.end())
+    throw UsageError(fmt::format("unexpected argument '{}'; see '{} --help'", extras.front(), app.get_name()));
+  std::vector<std::string> names;
+  for (const CLI::Option* known : app.get_options())
+    for (const std::string& name : known->get_lnames()) names.push_back("--" + name);
+  const std::string name = option->substr(0, option->find('='));
+  throw UsageError(
+      fmt::format("unknown option '{}'{}; see '{} --help'", name, suggestion(name, names), app.get_name()));
+}
+
+}  // namespace
+
+void setUp(CLI::App& app, const std::string& examples) {
+  app.footer("\nExamples:\n" + examples);
+  app.get_formatter()->column_width(34);
+  app.allow_extras();
+  app.set_help_flag("-h,--help", "Print this and leave");
+}
+
+bool parse(CLI::App& app, Arguments arguments) {
+  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+  try {
+    app.parse(reversed);
+  } catch (const CLI::CallForHelp&) {
+    writeFile("-", app.help());
+    return false;
+  } catch (const CLI::ParseError& error) {
+    refuseRemaining(app);
+    throw UsageError(fmt::format("{}; see '{} --help'", error.what(), app.get_name()));
+  }
+  refuseRemaining(app);
+  return true;
+}
+
+}  // namespace quintet::app

@@ -1,0 +1,16 @@
+#include "commands.h"
+
+#include <array>
+
+namespace quintet::app {
+
+std::span<const Command> commands() {
+  static constexpr std::array kCommands{
+      Command{"render", "make a picture of a glTF scene", renderCommand},
+      Command{"info", "say what a device can do, or what is in a scene or picture", infoCommand},
+      Command{"compare", "say how far two pictures are apart", compareCommand},
+  };
+  return kCommands;
+}
+
+}  // namespace quintet::app

@@ -1,0 +1,163 @@
+// `quintet compare`: all measures of io/compare.h, a picture of the difference, and an exit status.
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "cli.h"
+#include "io/codec.h"
+#include "io/color.h"
+#include "io/compare.h"
+#include "output.h"
+#include "side_by_side.h"
+#include "signals.h"
+#include "values.h"
+
+namespace quintet::app {
+namespace {
+
+constexpr const char* kExamples =
+    "  quintet compare out.png reference.png\n"
+    "  quintet compare out.png reference.png --max 2            status 1 if mae8 is more than 2\n"
+    "  quintet compare out.exr big.exr --resize --metric flip --max 0.05 -o difference.png\n"
+    "  quintet compare out.png reference.png --json | jq .psnr\n";
+
+struct Options {
+  std::string a, b, output, sideBySide, metric = "mae8", max, gammaB;
+  bool resize = false;
+  bool json = false;
+};
+
+struct Measure {
+  const char* name;
+  const char* meaning;
+  double value;
+  bool moreIsBetter = false;
+};
+
+std::array<Measure, 7> measures(const io::Comparison& c) {
+  return {{{"mae8", "mean absolute difference, in steps of 1/255", c.mae8},
+           {"max8", "largest difference, in steps of 1/255", c.max8},
+           {"psnr", "peak signal to noise ratio, dB", c.psnr, true},
+           {"rmse", "root mean square difference, linear light", c.rmse},
+           {"relmse", "relative mean square error, linear light", c.relMse},
+           {"flip", "mean FLIP error, 0 to 1", c.flip},
+           {"alpha8", "mean absolute difference of alpha, in steps of 1/255", c.alphaMae8}}};
+}
+
+std::optional<Options> parseOptions(Arguments arguments) {
+  CLI::App app("Says how far picture A is from picture B, the reference.", "quintet compare");
+  Options options;
+  app.add_option("A", options.a, "The picture: PNG, JPEG, WebP, Radiance HDR or OpenEXR");
+  app.add_option("B", options.b, "The reference");
+  app.add_option("-o,--output", options.output, "Write the FLIP error of each pixel as a picture, black (none) to yellow");
+  app.add_option("--side-by-side", options.sideBySide, "Write A, B and the error next to one another");
+  app.add_option("--max", options.max, "Exit with status 1 if the metric is beyond this (psnr: below)");
+  app.add_option("--metric", options.metric, "The one for --max: mae8, max8, rmse, relmse, psnr, flip, alpha8 (default: mae8)");
+  app.add_flag("--resize", options.resize, "Bring pictures of different sizes to the smaller size (box filter)");
+  app.add_option("--gamma-b", options.gammaB, "B is encoded by this power instead of the sRGB curve");
+  app.add_flag("--json", options.json, "One JSON object instead of text");
+  setUp(app, kExamples);
+  if (!parse(app, arguments)) return std::nullopt;
+  if (options.b.empty()) throw UsageError("two pictures are needed; see 'quintet compare --help'");
+  return options;
+}
+
+const Measure& findMeasure(const std::array<Measure, 7>& all, const std::string& name) {
+  std::vector<std::string> names;
+  for (const Measure& measure : all) {
+    if (name == measure.name) return measure;
+    names.emplace_back(measure.name);
+  }
+  throw UsageError(fmt::format("--metric: there is no '{}'{}; there are {}", plain(name), suggestion(name, names),
+                               fmt::join(names, ", ")));
+}
+
+// Display values of a pure power, as linear light.
+io::Image fromGamma(io::Image image, float gamma) {
+  if (image.encoding == io::ColorEncoding::linear) return image;
+  image.encoding = io::ColorEncoding::linear;  // so that the values stay what they are
+  io::Image result = io::toFloat(image);
+  const auto samples = result.samples<float>();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const bool isAlpha = result.hasAlpha() && i % result.channels == result.channels - 1;
+    if (!isAlpha) samples[i] = std::pow(samples[i], gamma);
+  }
+  return result;
+}
+
+void bringToOneSize(io::Image& a, io::Image& b) {
+  if (a.width == b.width && a.height == b.height) return;
+  const io::Image& smaller = a.pixelCount() <= b.pixelCount() ? a : b;
+  const std::uint32_t width = smaller.width;
+  const std::uint32_t height = smaller.height;
+  for (io::Image* image : {&a, &b})
+    if (image->width != width || image->height != height) *image = io::resizeBox(*image, width, height);
+}
+
+std::string report(const Options& options, const io::Image& a, const io::Comparison& comparison) {
+  if (options.json) {
+    nlohmann::ordered_json json{{"a", options.a}, {"b", options.b}, {"size", {a.width, a.height}}};
+    for (const Measure& m : measures(comparison))
+      json[m.name] = std::isfinite(m.value) ? nlohmann::ordered_json(m.value) : nlohmann::ordered_json();  // psnr of equals
+    json["nonFinitePixels"] = comparison.nonFinitePixels;
+    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  }
+  std::string text;
+  for (const Measure& m : measures(comparison)) text += fmt::format("{:<8}{:<12.6g}{}\n", m.name, m.value, m.meaning);
+  if (comparison.nonFinitePixels > 0)
+    text += fmt::format("{} pixels hold NaN or infinity\n", comparison.nonFinitePixels);
+  return text;
+}
+
+void writePng(const std::string& file, const io::Image& image) {
+  const std::vector<std::byte> bytes = io::encodePng(image);
+  const ProtectedWrite protect;
+  writeFile(file, bytes);
+}
+
+void checkPicture(const std::string& option, const std::string& file) {
+  if (file.empty()) return;
+  if (outputKind(file) != OutputKind::png) throw UsageError(fmt::format("{}: {}: the extension must be .png", option, file));
+  if (file == "-") throw UsageError(fmt::format("{}: the standard output has the numbers", option));
+  checkWritable(file);
+}
+
+}  // namespace
+
+int compareCommand(Arguments arguments) {
+  const std::optional<Options> options = parseOptions(arguments);
+  if (!options) return 0;
+  findMeasure(measures({}), options->metric);
+  std::optional<double> limit;
+  if (!options->max.empty()) limit = parseNumber("--max", options->max, 0.0, 1e30);
+  checkPicture("-o", options->output);
+  checkPicture("--side-by-side", options->sideBySide);
+
+  io::Image a = io::readImage(options->a);
+  io::Image b = io::readImage(options->b);
+  if (!options->gammaB.empty())
+    b = fromGamma(std::move(b), static_cast<float>(parseNumber("--gamma-b", options->gammaB, 0.1, 10.0)));
+  if (options->resize) bringToOneSize(a, b);
+  const io::Comparison comparison = io::compareImages(a, b);
+  if (!options->output.empty()) writePng(options->output, io::colorMap(comparison.flipMap));
+  if (!options->sideBySide.empty()) writePng(options->sideBySide, sideBySide(a, b, io::colorMap(comparison.flipMap)));
+  writeFile("-", report(*options, a, comparison));
+
+  const auto all = measures(comparison);
+  const Measure& measure = findMeasure(all, options->metric);
+  if (limit && !(measure.moreIsBetter ? measure.value >= *limit : measure.value <= *limit))
+    throw Error(fmt::format("{} and {}: {} {:.6g} is {} than {:.6g}", options->a, options->b, measure.name, measure.value,
+                            measure.moreIsBetter ? "less" : "more", *limit));
+  return 0;
+}
+
+}  // namespace quintet::app

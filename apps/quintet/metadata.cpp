@@ -1,0 +1,97 @@
+#include "metadata.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "values.h"
+
+namespace quintet::app {
+namespace {
+
+std::string regionText(const RenderRecord& record) {
+  return fmt::format("{},{},{},{}", record.region[0], record.region[1], record.region[2], record.region[3]);
+}
+
+}  // namespace
+
+io::Metadata metadata(const RenderRecord& record) {
+  io::Metadata data{
+      {"Software", "quintet " QUINTET_VERSION},
+      {"Command", record.commandLine},
+      {"Scene", record.scene},
+      {"SceneHash", record.sceneHash},
+      {"Environment", record.environment},
+      {"Camera", record.camera},
+      {"Program", record.program},
+      {"Parameters", record.parameters},
+      {"Seed", fmt::format("{}", record.seed)},
+      {"Samples", fmt::format("{}", record.samples)},
+      {"Size", fmt::format("{}x{}", record.width, record.height)},
+  };
+  if (record.cropped()) data.emplace_back("Region", regionText(record));
+  if (!record.toneMap.empty()) {
+    data.emplace_back("ToneMap", record.toneMap);
+    data.emplace_back("Exposure", fmt::format("{}", record.exposure));
+  }
+  data.emplace_back("Device", record.device);
+  data.emplace_back("Driver", record.driver);
+  data.emplace_back("Seconds", fmt::format("{:.3f}", record.renderSeconds));
+  data.emplace_back("Rays", fmt::format("{}", record.rays));
+  if (record.droppedSamples > 0) data.emplace_back("DroppedSamples", fmt::format("{}", record.droppedSamples));
+  if (record.interrupted) data.emplace_back("Interrupted", "yes");
+  return data;
+}
+
+std::string toJson(const RenderRecord& record) {
+  const nlohmann::ordered_json json{
+      {"version", QUINTET_VERSION},
+      {"command", record.commandLine},
+      {"output", record.output},
+      {"scene", record.scene},
+      {"sceneHash", record.sceneHash},
+      {"environment", record.environment},
+      {"camera", record.camera},
+      {"program", record.program},
+      {"parameters", record.parameters},
+      {"size", {record.width, record.height}},
+      {"region", {record.region[0], record.region[1], record.region[2], record.region[3]}},
+      {"transparent", record.transparent},
+      {"toneMap", record.toneMap.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(record.toneMap)},
+      {"exposure", record.exposure},
+      {"seed", record.seed},
+      {"samples", record.samples},
+      {"rays", record.rays},
+      {"raysPerSecond", record.raysPerSecond()},
+      {"droppedSamples", record.droppedSamples},
+      {"interrupted", record.interrupted},
+      {"device", record.device},
+      {"driver", record.driver},
+      {"seconds",
+       {{"start", record.startSeconds},
+        {"load", record.loadSeconds},
+        {"build", record.buildSeconds},
+        {"compile", record.compileSeconds},
+        {"pipeline", record.pipelineSeconds},
+        {"firstPixel", record.firstPixelSeconds},
+        {"render", record.renderSeconds},
+        {"device", record.deviceSeconds},
+        {"total", record.totalSeconds}}},
+      {"bytes",
+       {{"geometry", record.geometryBytes},
+        {"textures", record.textureBytes},
+        {"accelerationStructures", record.accelerationBytes},
+        {"film", record.filmBytes}}},
+      {"warnings", record.warnings},
+  };
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string summary(const RenderRecord& record) {
+  return fmt::format("{}: {}x{}, {} samples per pixel, {}, {:.3g} Mrays/s{}",
+                     record.output == "-" ? "standard output" : record.output, record.region[2], record.region[3],
+                     record.samples, durationText(record.renderSeconds), record.raysPerSecond() * 1e-6,
+                     record.interrupted ? ", interrupted" : "");
+}
+
+}  // namespace quintet::app

@@ -1,0 +1,54 @@
+#include "output.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "signals.h"
+
+namespace quintet::app {
+
+OutputKind outputKind(const std::filesystem::path& file) {
+  if (file == "-") return OutputKind::png;
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".png") return OutputKind::png;
+  if (extension == ".exr") return OutputKind::exr;
+  if (extension == ".hdr") return OutputKind::hdr;
+  // Devices have no extension: /dev/null, /dev/stdout, a pipe.
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  if (extension.empty() && std::filesystem::is_other(status)) return OutputKind::png;
+  if (std::filesystem::is_directory(status)) checkWritable(file);  // the clearer message
+  throw UsageError(fmt::format("{}: the extension must be .png, .exr or .hdr", file.string()));
+}
+
+void checkOutput(const std::filesystem::path& file) {
+  outputKind(file);
+  checkWritable(file);
+}
+
+void writePicture(const std::filesystem::path& file, const io::Image& image, const DisplayOptions& display,
+                  const io::Metadata& metadata) {
+  const OutputKind kind = outputKind(file);
+  std::vector<std::byte> bytes;
+  if (kind == OutputKind::png) {
+    bytes = io::encodePng(render::toDisplay(image, display.toneMap, display.exposure, display.opaque), metadata);
+  } else if (kind == OutputKind::exr) {
+    bytes = io::encodeExr(display.opaque ? io::toChannels(image, 3) : image, metadata);
+  } else {
+    bytes = io::encodeHdr(image);
+  }
+  if (file == "-") {
+    writeFile(file, bytes);  // no temporary file: nothing to protect
+  } else {
+    const ProtectedWrite protect;
+    writeFile(file, bytes);
+  }
+}
+
+}  // namespace quintet::app

@@ -1,0 +1,31 @@
+// The picture file that a command writes.
+#ifndef QUINTET_APP_OUTPUT_H
+#define QUINTET_APP_OUTPUT_H
+
+#include <filesystem>
+
+#include "io/codec.h"
+#include "render/tone_map.h"
+
+namespace quintet::app {
+
+enum class OutputKind { png, exr, hdr };
+
+// By the extension, any case; "-" is PNG. Throws UsageError.
+OutputKind outputKind(const std::filesystem::path& file);
+
+// Fails before the work is done rather than after it: the kind is known, the file can be written.
+void checkOutput(const std::filesystem::path& file);
+
+struct DisplayOptions {
+  render::ToneMap toneMap = render::ToneMap::linear;
+  float exposure = 0;  // stops
+  bool opaque = true;
+};
+
+// `image`: linear premultiplied RGBA. PNG is tone mapped; OpenEXR and Radiance HDR get the linear values.
+void writePicture(const std::filesystem::path& file, const io::Image& image, const DisplayOptions& display,
+                  const io::Metadata& metadata);
+
+}  // namespace quintet::app
+#endif

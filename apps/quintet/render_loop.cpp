@@ -1,0 +1,56 @@
+#include "render_loop.h"
+
+#include <algorithm>
+
+namespace quintet::app {
+namespace {
+
+constexpr double kCountSeconds = 1.0;  // reading the ray counter waits for the device: not more often
+
+}  // namespace
+
+RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limits, const GracefulStop& stop,
+                            Progress& progress) {
+  RenderOutcome outcome;
+  const Stopwatch clock;
+  ProgressState state;
+  state.sampleLimit = limits.samples;
+  state.secondLimit = limits.seconds;
+  std::uint64_t done = 0;
+  double counted = 0;
+  bool told = false;
+  while (true) {
+    std::uint32_t count = render::kBatchSamples;
+    if (limits.samples)
+      count = static_cast<std::uint32_t>(std::min<std::uint64_t>(count, *limits.samples - done));
+    const double begin = clock.seconds();
+    renderer.renderBatch(count, [&](double fraction) {
+      if (outcome.firstPixelSeconds == 0) outcome.firstPixelSeconds = clock.seconds();
+      if (stop.requested() && !told) {
+        progress.note("interrupted: finishing the batch; once more leaves at once, without a picture");
+        told = true;
+      }
+      state.samples = static_cast<double>(done) + fraction * count;
+      state.seconds = clock.seconds();
+      progress.update(state);
+      return true;
+    });
+    done += count;
+    const double now = clock.seconds();
+    if (outcome.firstPixelSeconds == 0) outcome.firstPixelSeconds = now;
+    outcome.seconds = now;
+    if (stop.requested()) {
+      outcome.interrupted = !limits.samples || done < *limits.samples;
+      break;
+    }
+    if (limits.samples && done >= *limits.samples) break;
+    if (limits.seconds && now + 0.5 * (now - begin) >= *limits.seconds) break;
+    if (now - counted > kCountSeconds) {
+      state.raysPerSecond = static_cast<double>(renderer.rays().rays) / now;
+      counted = clock.seconds();
+    }
+  }
+  return outcome;
+}
+
+}  // namespace quintet::app

@@ -1,0 +1,31 @@
+// Batch after batch until the samples are there, the time is over, or somebody presses Ctrl-C.
+#ifndef QUINTET_APP_RENDER_LOOP_H
+#define QUINTET_APP_RENDER_LOOP_H
+
+#include <cstdint>
+#include <optional>
+
+#include "progress.h"
+#include "render/renderer.h"
+#include "signals.h"
+
+namespace quintet::app {
+
+struct RenderLimits {
+  std::optional<std::uint64_t> samples;  // per pixel
+  std::optional<double> seconds;         // wall clock of rendering
+};
+
+struct RenderOutcome {
+  bool interrupted = false;
+  double seconds = 0;            // wall clock of all batches
+  double firstPixelSeconds = 0;  // from the start of the loop until the first launch is done
+};
+
+// At least one batch is rendered. A batch is begun only if at least half of it is likely to fit into
+// the time that is left.
+RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limits, const GracefulStop& stop,
+                            Progress& progress);
+
+}  // namespace quintet::app
+#endif

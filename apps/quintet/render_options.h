@@ -1,0 +1,47 @@
+// The options of `quintet render`, checked as far as they can be without the scene.
+#ifndef QUINTET_APP_RENDER_OPTIONS_H
+#define QUINTET_APP_RENDER_OPTIONS_H
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "render/film.h"
+#include "render/tone_map.h"
+#include "scene_setup.h"
+
+namespace quintet::app {
+
+struct RenderOptions {
+  std::filesystem::path scene;
+  std::filesystem::path output;  // "-": PNG to standard output
+  uvec2 size{0};                 // 0: decided by the camera
+  std::optional<std::uint64_t> samples;
+  std::optional<double> seconds;
+  CameraOptions camera;
+  EnvironmentOptions environment;
+  float exposure = 0.0f;         // stops
+  std::optional<render::ToneMap> toneMap;
+  std::uint32_t seed = 0;
+  render::Region region;         // width 0: everything
+  std::string program = "pathtracer";
+  std::vector<std::string> assignments;  // name=value, in the order of the command line
+  std::optional<std::string> bounces;
+  std::optional<std::string> clamp;
+  bool programHelp = false;
+  std::string device;
+  double timeout = 60.0;         // seconds of one launch
+  bool quiet = false;
+  bool json = false;
+  bool transparent = false;
+  std::string commandLine;
+};
+
+// Nothing: help was printed. Throws UsageError.
+std::optional<RenderOptions> parseRenderOptions(Arguments arguments);
+
+}  // namespace quintet::app
+#endif
