@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <set>
+#include <utility>
 
 namespace quintet::shader {
 namespace {
@@ -139,10 +141,22 @@ std::vector<Diagnostic> parseMessages(std::string_view messages, const IncludeRe
       diagnostic.text = message;
       diagnostics.push_back(std::move(diagnostic));
     } else {
-      diagnostics.back().text.append(" ").append(message);
+      // "Possible extensions include:" continues with "test.rgen: GL_EXT_ray_tracing".
+      const std::string prefix = files.root().name + ": ";
+      diagnostics.back().text.append(" ").append(message.starts_with(prefix) ? message.substr(prefix.size()) : message);
     }
   }
   return diagnostics;
+}
+
+void dropConsequences(std::vector<Diagnostic>& diagnostics) {
+  const auto isMissingInclude = [](const Diagnostic& d) { return d.text.starts_with("'#include'"); };
+  if (std::ranges::any_of(diagnostics, isMissingInclude))
+    std::erase_if(diagnostics, [&](const Diagnostic& d) { return d.severity == Severity::error && !isMissingInclude(d); });
+  std::set<std::pair<std::string, int>> seen;
+  std::erase_if(diagnostics, [&](const Diagnostic& d) {
+    return d.severity == Severity::error && d.line > 0 && !seen.emplace(d.file, d.line).second;
+  });
 }
 
 }  // namespace quintet::shader

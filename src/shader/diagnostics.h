@@ -10,6 +10,10 @@ namespace quintet::shader {
 // continues the message before it. Names that the resolver knows may contain colons.
 std::vector<Diagnostic> parseMessages(std::string_view messages, const IncludeResolver& files);
 
+// Leaves out what follows from another error: everything but the include if a file is missing, and
+// all but the first error of a line (an undeclared name makes glslang complain about every operator).
+void dropConsequences(std::vector<Diagnostic>& diagnostics);
+
 // Column of the only occurrence of the token that the message quotes ("'token' : undeclared …") in
 // its line; 0 if there is none or more than one.
 int columnOfToken(std::string_view text, int line, std::string_view message);

@@ -132,6 +132,7 @@ GlslangRun runGlslang(const shaderc::Compiler& compiler, const Source& source, c
 
   std::vector<Diagnostic> diagnostics = parseMessages(result.GetErrorMessage(), files);
   diagnostics.insert(diagnostics.end(), run.diagnostics.begin(), run.diagnostics.end());
+  dropConsequences(diagnostics);
   run.diagnostics = std::move(diagnostics);
   if (result.GetCompilationStatus() == shaderc_compilation_status_success) run.spirv.assign(result.begin(), result.end());
   const auto isError = [](const Diagnostic& d) { return d.severity == Severity::error; };

@@ -42,6 +42,25 @@ TEST(Compiler, ErrorNamesFileLineAndColumn) {
   EXPECT_EQ(error.text, "'nowhere' : undeclared identifier");
 }
 
+TEST(Compiler, ConsequencesOfAnErrorAreLeftOut) {
+  const Result result = Compiler({}).compile(computeSource("int f() { return nowhere.x + nowhere.y * 2.0; }\nint g() { return gone; }"));
+  ASSERT_EQ(result.diagnostics.size(), 2u) << all(result);
+  EXPECT_EQ(result.diagnostics[0].text, "'nowhere' : undeclared identifier");
+  EXPECT_EQ(result.diagnostics[1].text, "'gone' : undeclared identifier");
+}
+
+TEST(Compiler, MessageOverSeveralLines) {
+  Source source;
+  source.stage = Stage::closestHit;
+  source.name = "hit.rchit";
+  source.text = "#version 460\nvoid main() { int i = gl_PrimitiveID; }\n";
+  const Result result = Compiler({}).compile(source);
+  ASSERT_EQ(result.diagnostics.size(), 1u) << all(result);
+  EXPECT_EQ(result.diagnostics[0].line, 2);
+  EXPECT_NE(result.diagnostics[0].text.find("GL_EXT_ray_tracing"), std::string::npos);
+  EXPECT_EQ(result.diagnostics[0].text.find("hit.rchit"), std::string::npos) << result.diagnostics[0].text;
+}
+
 TEST(Compiler, NameWithColonsAndSpaces) {
   const Result result = Compiler({}).compile(computeSource("int f() { return nowhere; }", "", "c:/a b:c.comp"));
   ASSERT_FALSE(result.ok());

@@ -108,7 +108,8 @@ TEST(Include, MissingFileTellsWhereItWasSearched) {
   CompilerOptions options;
   options.includeFolders = {folder.path()};
   const Result result =
-      Compiler(options).compile(computeSource("#include \"no/such.glsl\"", "", "/some/where/m.comp"));
+      Compiler(options).compile(computeSource("#include \"no/such.glsl\"\nint f() { return fromThere; }", "", "/some/where/m.comp"));
+  EXPECT_EQ(result.diagnostics.size(), 2u) << all(result);
   const Diagnostic* error = firstOf(result, Severity::error);
   ASSERT_TRUE(error);
   EXPECT_EQ(error->line, 4);
