@@ -34,11 +34,12 @@ vec2 albedoSchlick(AlbedoCell row, float cosine) {
   return albedoFetch(frame.albedoTables, kAlbedoCosines, row, albedoCell(sqrt(max(cosine, 0.0)), kAlbedoCosines));
 }
 
-// The same after compensation: single scattering is scaled by albedoGain. Turquin 2019, "Practical
-// multiple scattering compensation for microfacet models", eq. 16. Exactly 1 for f0 = f90 = 1.
-float albedoLost(vec2 ab) { return 1.0 / max(ab.x + ab.y, 1e-3) - 1.0; }
-vec3 albedoGain(vec3 f0, vec2 ab) { return 1.0 + f0 * albedoLost(ab); }
-vec3 albedoCompensated(vec3 f0, float f90, vec2 ab) { return (f0 * ab.x + f90 * ab.y) * albedoGain(f0, ab); }
+// The factor that puts the energy of multiple scattering back: the light that single scattering loses
+// meets the surface again, where f0 of it is reflected. 1 / (A + B) for f0 = 1: nothing is lost.
+// Turquin 2019, "Practical multiple scattering compensation for microfacet models", eq. 16.
+vec3 albedoGain(vec3 f0, vec2 ab) { return 1.0 + f0 * (1.0 / max(ab.x + ab.y, 1e-3) - 1.0); }
+// The albedo with it.
+float albedoCompensated(float f0, float f90, vec2 ab) { return (f0 * ab.x + f90 * ab.y) * albedoGain(vec3(f0), ab).x; }
 
 // Cosine-weighted average over the hemisphere of albedoCompensated (a polynomial in f0 and f90).
 float albedoAverage(float f0, float f90, AlbedoCell row) {

@@ -79,9 +79,10 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
 
   // The metal and all of the dielectric that `dielectric` does not reflect itself.
   float reflecting = b.refractive ? opaque : dielectric;
-  b.specular.f0 = p.metallic * baseColor + reflecting * colorF0;
-  b.specular.f90 = p.metallic + reflecting * p.specular;
-  b.specular.gain = albedoGain(b.specular.f0, ab);
+  vec3 metalGain = p.metallic * albedoGain(baseColor, ab);
+  vec3 dielectricGain = reflecting * albedoGain(colorF0, ab);
+  b.specular.f0 = metalGain * baseColor + dielectricGain * colorF0;
+  b.specular.f90 = metalGain + dielectricGain * p.specular;
   b.specular.alpha = alpha;
 
   b.diffuse = makeDiffuse(opaque * baseColor, f0, p.specular, row, ab);
@@ -104,9 +105,9 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   float coat = clearcoatAlbedo(b.clearcoat, wo);
   b.underCoat = 1.0 - coat;
 
-  float passed = max(1.0 - albedoCompensated(vec3(f0), p.specular, ab).x, 0.0);
+  float passed = max(1.0 - albedoCompensated(f0, p.specular, ab), 0.0);
   float tint = luminance(baseColor);
-  b.chance = vec4(coat, b.underCoat * luminance(albedoCompensated(b.specular.f0, b.specular.f90, ab)),
+  b.chance = vec4(coat, b.underCoat * luminance(b.specular.f0 * ab.x + b.specular.f90 * ab.y),
                   b.underCoat * opaque * tint * passed,
                   b.underCoat * clear * (b.refractive ? max(tint, 0.1) : tint * passed));
   float sum = b.chance.x + b.chance.y + b.chance.z + b.chance.w;

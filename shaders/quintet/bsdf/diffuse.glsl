@@ -17,12 +17,12 @@ struct DiffuseLobe {
 
 // `ab`: the layer's albedoSchlick at wo.
 DiffuseLobe makeDiffuse(vec3 color, float f0, float f90, AlbedoCell row, vec2 ab) {
-  float passed = 1.0 - albedoCompensated(vec3(f0), f90, ab).x;
+  float passed = 1.0 - albedoCompensated(f0, f90, ab);
   return DiffuseLobe(color * max(passed, 0.0) / max(1.0 - albedoAverage(f0, f90, row), 1e-4), f0, f90, row);
 }
 
 vec3 diffuseEval(DiffuseLobe lobe, vec3 wi) {
-  float reflected = albedoCompensated(vec3(lobe.f0), lobe.f90, albedoSchlick(lobe.row, wi.z)).x;
+  float reflected = albedoCompensated(lobe.f0, lobe.f90, albedoSchlick(lobe.row, wi.z));
   return lobe.color * (max(1.0 - reflected, 0.0) * max(wi.z, 0.0) / kPi);
 }
 

@@ -1,6 +1,6 @@
 // Reflection by the opaque base: GGX with Schlick's Fresnel, metals and dielectrics in one lobe (both are
 // linear in f0 and f90). Energy lost to multiple scattering is put back by scaling with a factor of wo
-// (Turquin 2019, eq. 16), so f is not reciprocal where the gain is not 1.
+// (Turquin 2019, eq. 16), so f is not reciprocal where the factor is not 1.
 #ifndef QUINTET_BSDF_SPECULAR_GLSL
 #define QUINTET_BSDF_SPECULAR_GLSL
 
@@ -8,20 +8,19 @@
 #include "ggx.glsl"
 
 struct SpecularLobe {
-  vec3 f0;
-  float f90;
-  vec3 gain;  // compensation
+  vec3 f0;   // both times the compensation
+  vec3 f90;
   float alpha;
 };
 
-vec3 specularFresnel(SpecularLobe lobe, float cosine) { return mix(lobe.f0, vec3(lobe.f90), schlickWeight(cosine)); }
+vec3 specularFresnel(SpecularLobe lobe, float cosine) { return mix(lobe.f0, lobe.f90, schlickWeight(cosine)); }
 
 vec3 specularEval(SpecularLobe lobe, vec3 wo, vec3 wi) {
   vec3 h = wo + wi;
   float h2 = dot(h, h);
   float d = ggxDistribution(h.z * h.z, dot(h.xy, h.xy), lobe.alpha);
   float f = ggxReflection(d, wo.z, wi.z, lobe.alpha);
-  return wi.z > 0.0 ? lobe.gain * f * specularFresnel(lobe, 0.5 * sqrt(h2)) : vec3(0.0);
+  return wi.z > 0.0 ? f * specularFresnel(lobe, 0.5 * sqrt(h2)) : vec3(0.0);
 }
 
 // m: drawn by ggxSample with the bound ggxBound.

@@ -17,7 +17,7 @@ struct ThinLobe {
 
 // `ab`: the layer's albedoSchlick at wo.
 ThinLobe makeThin(vec3 color, float f0, float f90, float alpha, vec2 ab) {
-  float passed = 1.0 - albedoCompensated(vec3(f0), f90, ab).x;
+  float passed = 1.0 - albedoCompensated(f0, f90, ab);
   float single = (1.0 - f0) * ab.x + (1.0 - f90) * ab.y;
   return ThinLobe(color * clamp(passed / max(single, 1e-4), 0.0, 4.0), f0, f90, alpha);
 }

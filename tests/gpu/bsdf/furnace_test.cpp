@@ -1,0 +1,122 @@
+// White furnace: in a uniform light of radiance 1 a white surface looks exactly like the light. The mean of
+// the sample weights is the albedo; where light refracts, 1/eta² is taken off again, since in
+// equilibrium the radiance inside a solid is eta² times that outside.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "bsdf/bsdf_cases.h"
+
+namespace quintet::test {
+namespace {
+
+constexpr std::size_t kSamples = 1 << 17;
+const std::vector<float> kAlphas = {0.0f, 0.0006f, 0.003f, 0.02f, 0.1f, 0.3f, 0.6f, 1.0f};
+const std::vector<float> kCosines = {1.0f, 0.75f, 0.3f, 0.1f, 0.03f};
+
+struct Albedo {
+  glm::dvec3 mean{0.0};
+  double error = 0.0;  // standard error of the largest channel
+};
+
+class BsdfFurnace : public BsdfTest {
+ protected:
+  static Albedo albedoOf(const BsdfCase& material) {
+    const auto samples = runCases<BsdfSampleOut>(kBsdfSampling, {material}, kSamples);
+    const double eta = material.entering ? material.ior : 1.0 / material.ior;
+    const bool refracts = !material.thin && material.ior >= 1.0f;
+    glm::dvec3 sum(0.0), squares(0.0);
+    for (const BsdfSampleOut& s : samples) {
+      if (!s.valid) continue;
+      const glm::dvec3 weight = glm::dvec3(s.weight) * (s.transmitted && refracts ? eta * eta : 1.0);
+      sum += weight;
+      squares += weight * weight;
+    }
+    const double n = kSamples;
+    const glm::dvec3 variance = glm::max(squares / n - sum * sum / (n * n), 0.0);
+    return {sum / n, std::sqrt(std::max({variance.x, variance.y, variance.z}) / n)};
+  }
+
+  // Expects albedo 1 within `tolerance` for all roughnesses and angles; prints the largest deviation.
+  template <class Change>
+  static void expectWhite(const char* name, double tolerance, const Change& change) {
+    double worst = 0.0;
+    std::string where;
+    for (const float alpha : kAlphas) {
+      for (const float cosine : kCosines) {
+        BsdfCase c;
+        c.wo = directionAt(cosine);
+        c.alpha = alpha;
+        change(c);
+        const Albedo albedo = albedoOf(c);
+        EXPECT_NEAR(albedo.mean.x, 1.0, tolerance + 4.0 * albedo.error) << name << ", alpha " << alpha << ", cosine " << cosine;
+        if (std::abs(albedo.mean.x - 1.0) <= std::abs(worst)) continue;
+        worst = albedo.mean.x - 1.0;
+        where = "alpha " + std::to_string(alpha) + ", cosine " + std::to_string(cosine);
+      }
+    }
+    std::printf("  furnace, %s: largest deviation %+.4f (%s)\n", name, worst, where.c_str());
+  }
+};
+
+TEST_F(BsdfFurnace, WhiteMetal) {
+  expectWhite("metal", 0.01, [](BsdfCase& c) { c.metallic = 1.0f; });
+}
+
+TEST_F(BsdfFurnace, WhiteDielectric) {
+  expectWhite("dielectric", 0.01, [](BsdfCase&) {});
+  expectWhite("dielectric, ior 2.4", 0.01, [](BsdfCase& c) { c.ior = 2.4f; });
+  expectWhite("dielectric, ior 0", 0.01, [](BsdfCase& c) { c.ior = 0.0f; });
+  expectWhite("dielectric, half specular", 0.01, [](BsdfCase& c) { c.specular = 0.5f; });
+}
+
+TEST_F(BsdfFurnace, WhiteThinWall) {
+  expectWhite("thin wall", 0.01, [](BsdfCase& c) { c.transmission = 1.0f, c.thin = 1; });
+}
+
+TEST_F(BsdfFurnace, WhiteGlass) {
+  for (const float ior : {1.15f, 1.5f, 2.4f}) {
+    for (const bool entering : {true, false}) {
+      const std::string name = "glass, ior " + std::to_string(ior) + (entering ? ", outside" : ", inside");
+      expectWhite(name.c_str(), 0.03, [&](BsdfCase& c) { c.transmission = 1.0f, c.ior = ior, c.entering = entering; });
+    }
+  }
+  expectWhite("glass without specular", 0.04, [](BsdfCase& c) { c.transmission = 1.0f, c.specular = 0.0f; });
+  expectWhite("matched glass", 1e-4, [](BsdfCase& c) { c.transmission = 1.0f, c.ior = 1.0f; });
+}
+
+TEST_F(BsdfFurnace, ClearcoatAndMixture) {
+  expectWhite("clearcoat on dielectric", 0.01, [](BsdfCase& c) { c.clearcoat = 1.0f, c.clearcoatAlpha = c.alpha, c.alpha = 0.5f; });
+  expectWhite("everything", 0.02, [](BsdfCase& c) {
+    c.clearcoat = 0.7f, c.clearcoatAlpha = 0.05f, c.transmission = 0.5f, c.metallic = 0.3f, c.entering = 0;
+  });
+}
+
+TEST_F(BsdfFurnace, NoMaterialGainsEnergy) {
+  std::mt19937 generator(11);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  const auto next = [&] { return uniform(generator); };
+  for (int i = 0; i < 150; ++i) {
+    BsdfCase c;
+    c.wo = directionAt(std::max(next() * next(), 0.002f));
+    c.alpha = next() * next();
+    c.baseColor = {1.0f, next(), 1.0f};
+    c.metallic = i % 3 == 0 ? next() : 0.0f;
+    c.transmission = i % 2 == 0 ? next() : 0.0f;
+    c.ior = 1.0f + 1.5f * next();
+    c.entering = next() < 0.5f;
+    c.thin = next() < 0.3f;
+    c.specular = next() < 0.5f ? next() : 1.0f;
+    c.specularColor = {1.0f, next(), 2.0f * next()};
+    c.clearcoat = next() < 0.5f ? next() : 0.0f;
+    c.clearcoatAlpha = next() * next();
+    c.clearcoatNormal = glm::normalize(vec3(next() - 0.5f, next() - 0.5f, 1.0f));
+    const Albedo albedo = albedoOf(c);
+    EXPECT_LE(std::max({albedo.mean.x, albedo.mean.y, albedo.mean.z}), 1.04 + 4.0 * albedo.error)
+        << "case " << i << ": alpha " << c.alpha << ", cosine " << c.wo.z << ", ior " << c.ior << ", transmission " << c.transmission
+        << ", metallic " << c.metallic << ", specular " << c.specular << ", entering " << c.entering << ", thin " << c.thin;
+  }
+}
+
+}  // namespace
+}  // namespace quintet::test
