@@ -32,7 +32,8 @@ Box usableBox(const Bounds3& bounds) {
 
 dmat3 viewAxes() {  // columns: right, up, backwards
   const double azimuth = glm::radians(kAzimuth), elevation = glm::radians(kElevation);
-  const dvec3 back(std::sin(azimuth) * std::cos(elevation), std::sin(elevation), std::cos(azimuth) * std::cos(elevation));
+  const dvec3 back(std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                   std::cos(azimuth) * std::cos(elevation));
   const dvec3 right = glm::normalize(glm::cross(dvec3(0, 1, 0), back));
   return {right, glm::cross(back, right), back};
 }
@@ -48,30 +49,37 @@ Corners cornersOf(const Box& box, const dmat3& axes) {
   return corners;
 }
 
+// The eye's coordinate on one axis that puts the corners' projections around the middle, from depth `z`.
+// The sum of the outermost projections falls as the eye moves on, so bisection finds its zero.
+double centre(const Corners& corners, std::size_t axis, double z) {
+  const auto [low, high] = std::ranges::minmax(corners, {}, [axis](const dvec3& c) { return c[axis]; });
+  double left = low[axis], right = high[axis];
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (left + right);
+    double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
+    for (const dvec3& c : corners) {
+      const double projected = (c[axis] - middle) / (z - c.z);
+      smallest = std::min(smallest, projected), largest = std::max(largest, projected);
+    }
+    (smallest + largest > 0.0 ? left : right) = middle;
+  }
+  return 0.5 * (left + right);
+}
+
 // The eye (in the same axes) from which the corners fill the frustum |x|, |y| <= slope · depth: as near as
-// the tighter axis allows, centred on the other.
+// the tighter axis allows, centred on both.
 dvec3 placeEye(const Corners& corners, const dvec2& slope) {
-  dvec3 eye(0.0);
+  double z = 0.0;
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    // The two frustum planes of this axis touch the corners; their intersection is the nearest eye.
+    // The two frustum planes of this axis touch the corners; where they meet is the nearest eye.
     double right = -std::numeric_limits<double>::infinity(), left = right;
     for (const dvec3& c : corners) {
       right = std::max(right, c[axis] + slope[axis] * c.z);
       left = std::max(left, -c[axis] + slope[axis] * c.z);
     }
-    eye[axis] = 0.5 * (right - left);
-    eye.z = std::max(eye.z, 0.5 * (right + left) / slope[axis]);
+    z = std::max(z, 0.5 * (right + left) / slope[axis]);
   }
-  for (int iteration = 0; iteration < 8; ++iteration) {  // the looser axis sits farther back than its own eye
-    dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
-    for (const dvec3& c : corners) {
-      const dvec2 projected = (dvec2(c) - dvec2(eye)) / (eye.z - c.z);
-      low = glm::min(low, projected), high = glm::max(high, projected);
-    }
-    const dvec2 shift = 0.5 * (low + high) * eye.z;
-    eye += dvec3(shift, 0.0);
-  }
-  return eye;
+  return {centre(corners, 0, z), centre(corners, 1, z), z};
 }
 
 }  // namespace
@@ -88,7 +96,8 @@ Camera frameScene(const Bounds3& bounds, float aspect) {
   camera.verticalFov = static_cast<float>(glm::radians(kVerticalFov));
   const dvec3 limit(std::numeric_limits<float>::max());
   const vec3 position(glm::clamp(box.center + axes * eye, -limit, limit));
-  camera.worldFromCamera = mat4(vec4(vec3(axes[0]), 0.0f), vec4(vec3(axes[1]), 0.0f), vec4(vec3(axes[2]), 0.0f), vec4(position, 1.0f));
+  camera.worldFromCamera =
+      mat4(vec4(vec3(axes[0]), 0.0f), vec4(vec3(axes[1]), 0.0f), vec4(vec3(axes[2]), 0.0f), vec4(position, 1.0f));
   camera.focusDistance = static_cast<float>(std::min(eye.z, limit.x));
   return camera;
 }

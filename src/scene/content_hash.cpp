@@ -31,10 +31,8 @@ class Feeder {
     for (const T& value : values) add(value);
   }
   template <class T>
-    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-  void add(const T& value) {
-    hasher_.add(std::as_bytes(std::span(&value, 1)));
-  }
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void add(const T& value) { hasher_.add(std::as_bytes(std::span(&value, 1))); }
   template <glm::length_t N, class T, glm::qualifier Q>
   void add(const glm::vec<N, T, Q>& value) {
     for (glm::length_t i = 0; i < N; ++i) add(value[i]);
@@ -48,12 +46,12 @@ class Feeder {
   void add(const io::Image& i) { (*this)(i.width, i.height, i.channels, i.type, i.encoding, i.premultiplied, i.data); }
   void add(const NamedImage& i) { add(i.image); }  // its name is a path
   void add(const Material& m) {
-    (*this)(m.name, m.baseColor, m.baseColorTexture, m.metallic, m.roughness, m.metallicRoughnessTexture, m.normalTexture,
-            m.normalScale, m.occlusionTexture, m.occlusionStrength, m.emissive, m.emissiveTexture, m.alphaMode, m.alphaCutoff,
-            m.doubleSided, m.unlit, m.ior, m.transmission, m.transmissionTexture, m.thickness, m.attenuationDistance,
-            m.attenuationColor, m.specular, m.specularTexture, m.specularColor, m.specularColorTexture, m.clearcoat,
-            m.clearcoatTexture, m.clearcoatRoughness, m.clearcoatRoughnessTexture, m.clearcoatNormalTexture,
-            m.clearcoatNormalScale);
+    (*this)(m.name, m.baseColor, m.baseColorTexture, m.metallic, m.roughness, m.metallicRoughnessTexture,
+            m.normalTexture, m.normalScale, m.occlusionTexture, m.occlusionStrength, m.emissive, m.emissiveTexture,
+            m.alphaMode, m.alphaCutoff, m.doubleSided, m.unlit, m.ior, m.transmission, m.transmissionTexture,
+            m.thickness, m.attenuationDistance, m.attenuationColor, m.specular, m.specularTexture, m.specularColor,
+            m.specularColorTexture, m.clearcoat, m.clearcoatTexture, m.clearcoatRoughness, m.clearcoatRoughnessTexture,
+            m.clearcoatNormalTexture, m.clearcoatNormalScale);
   }
   void add(const Geometry& g) {
     (*this)(g.positions, g.triangles, g.normals, g.tangents, g.uvs, g.colors, g.material, g.fileTriangles);
@@ -61,8 +59,8 @@ class Feeder {
   void add(const Mesh& m) { (*this)(m.name, m.geometries); }
   void add(const Instance& i) { (*this)(i.name, i.mesh, i.worldFromObject); }
   void add(const Camera& c) {
-    (*this)(c.name, c.orthographic, c.verticalFov, c.aspect, c.orthographicHalfSize, c.worldFromCamera, c.apertureRadius,
-            c.focusDistance);
+    (*this)(c.name, c.orthographic, c.verticalFov, c.aspect, c.orthographicHalfSize, c.worldFromCamera,
+            c.apertureRadius, c.focusDistance);
   }
   void add(const Light& l) {
     (*this)(l.name, l.type, l.intensity, l.position, l.direction, l.innerConeAngle, l.outerConeAngle, l.range);
@@ -76,7 +74,8 @@ class Feeder {
 
 Hash contentHash(const Scene& scene) {
   Feeder feed;
-  feed(scene.meshes, scene.instances, scene.materials, scene.textures, scene.images, scene.cameras, scene.lights, scene.environment);
+  feed(scene.meshes, scene.instances, scene.materials, scene.textures, scene.images, scene.cameras, scene.lights,
+       scene.environment);
   return feed.finish();
 }
 

@@ -16,8 +16,8 @@ dvec3 radiance(const dvec3& direction) {
   const auto lobe = [&](const dvec3& axis, double sharpness) {
     return std::exp(sharpness * (glm::dot(direction, glm::normalize(axis)) - 1.0));
   };
-  return glm::mix(ground, sky, glm::smoothstep(-0.06, 0.06, h)) + dvec3(14.0, 13.2, 12.0) * lobe({0.5, 0.75, 0.55}, 60.0) +
-         dvec3(1.0, 1.1, 1.3) * lobe({-0.8, 0.3, 0.2}, 8.0);
+  return glm::mix(ground, sky, glm::smoothstep(-0.06, 0.06, h)) +
+         dvec3(14.0, 13.2, 12.0) * lobe({0.5, 0.75, 0.55}, 60.0) + dvec3(1.0, 1.1, 1.3) * lobe({-0.8, 0.3, 0.2}, 8.0);
 }
 
 }  // namespace

@@ -10,7 +10,8 @@
 namespace quintet::scene {
 
 struct LoadOptions {
-  int scene = kNone;  // index of the file's scene to load; kNone: its default scene, else its first, else all root nodes
+  int scene =
+      kNone;  // index of the file's scene to load; kNone: its default scene, else its first, else all root nodes
 };
 
 // Throws FileError with the place in the file ("/accessors/3/bufferView", "line 3, column 7", "byte 12"),

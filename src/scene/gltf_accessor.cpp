@@ -40,9 +40,11 @@ std::size_t strideOf(const Document& document, const tinygltf::Accessor& accesso
 void checkRange(const Document& document, int view, std::size_t offset, std::size_t count, std::size_t stride,
                 std::size_t size, const std::string& place) {
   const auto& bytes = document.bufferViews[static_cast<std::size_t>(view)];
-  const std::size_t have = bytes.data() ? bytes.size() : document.model.bufferViews[static_cast<std::size_t>(view)].byteLength;
+  const std::size_t have =
+      bytes.data() ? bytes.size() : document.model.bufferViews[static_cast<std::size_t>(view)].byteLength;
   const std::size_t end = count == 0 ? 0 : offset + (count - 1) * stride + size;
-  if (end > have) document.fail(place + "/bufferView", fmt::format("{} bytes past the end of buffer view {}", end - have, view));
+  if (end > have)
+    document.fail(place + "/bufferView", fmt::format("{} bytes past the end of buffer view {}", end - have, view));
 }
 
 void checkSparse(const Document& document, const tinygltf::Accessor& accessor, const std::string& place) {
@@ -117,9 +119,11 @@ std::vector<std::uint32_t> readSparseIndices(const Document& document, const tin
                   indices.data());
   for (std::size_t i = 0; i < indices.size(); ++i) {
     if (indices[i] >= accessor.count)
-      document.fail(place, fmt::format("element {} is {}, but the accessor has {} elements", i, indices[i], accessor.count));
+      document.fail(place,
+                    fmt::format("element {} is {}, but the accessor has {} elements", i, indices[i], accessor.count));
     if (i > 0 && indices[i] <= indices[i - 1])
-      document.fail(place, fmt::format("element {} is {}, after {}: the indices must increase", i, indices[i], indices[i - 1]));
+      document.fail(
+          place, fmt::format("element {} is {}, after {}: the indices must increase", i, indices[i], indices[i - 1]));
   }
   return indices;
 }
@@ -132,8 +136,9 @@ std::vector<Element> readElements(const Document& document, int index, bool norm
   static_assert(sizeof(Element) == N * sizeof(Out));
   const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
   if (accessor.bufferView == kNone && accessor.count > kMaxUnbackedCount)
-    document.fail(fmt::format("/accessors/{}/count", index),
-                  fmt::format("{} elements without a buffer view; at most {} are read", accessor.count, kMaxUnbackedCount));
+    document.fail(
+        fmt::format("/accessors/{}/count", index),
+        fmt::format("{} elements without a buffer view; at most {} are read", accessor.count, kMaxUnbackedCount));
   std::vector<Element> result(accessor.count);
   Out* out = reinterpret_cast<Out*>(result.data());
   if (accessor.bufferView != kNone && accessor.count > 0) {
@@ -142,8 +147,7 @@ std::vector<Element> readElements(const Document& document, int index, bool norm
                     accessor.componentType, normalized, out);
   }
   if (accessor.sparse.isSparse) {
-    const auto indices =
-        readSparseIndices(document, accessor, fmt::format("/accessors/{}/sparse/indices", index));
+    const auto indices = readSparseIndices(document, accessor, fmt::format("/accessors/{}/sparse/indices", index));
     std::vector<Element> values(indices.size());
     const auto bytes = document.view(accessor.sparse.values.bufferView);
     if (!values.empty())
@@ -180,11 +184,13 @@ const char* componentName(int componentType) {
 void expectType(const Document& document, int index, int type, std::string_view place) {
   const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
   if (accessor.type != type)
-    document.fail(place, fmt::format("accessor {} is {}, but {} is needed", index, typeName(accessor.type), typeName(type)));
+    document.fail(place,
+                  fmt::format("accessor {} is {}, but {} is needed", index, typeName(accessor.type), typeName(type)));
 }
 
 template <std::size_t N, class Element>
-std::vector<Element> readVectors(const Document& document, int index, int type, std::string_view place, Integers integers) {
+std::vector<Element> readVectors(const Document& document, int index, int type, std::string_view place,
+                                 Integers integers) {
   expectType(document, index, type, place);
   const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
   if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
@@ -195,7 +201,8 @@ std::vector<Element> readVectors(const Document& document, int index, int type, 
 void expectUnsigned(const Document& document, int index, std::initializer_list<int> allowed, std::string_view place) {
   const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
   if (std::find(allowed.begin(), allowed.end(), accessor.componentType) == allowed.end())
-    document.fail(place, fmt::format("accessor {} has {}; unsigned integers are needed", index, componentName(accessor.componentType)));
+    document.fail(place, fmt::format("accessor {} has {}; unsigned integers are needed", index,
+                                     componentName(accessor.componentType)));
 }
 
 }  // namespace
@@ -206,7 +213,7 @@ void checkAccessors(const Document& document) {
     const std::string place = fmt::format("/accessors/{}", i);
     if (accessor.bufferView != kNone) {
       const std::size_t stride = strideOf(document, accessor), size = elementSize(accessor);
-      if (stride < size && accessor.count > 1)
+      if (stride < size)
         document.fail(place, fmt::format("elements of {} bytes with a byteStride of {}", size, stride));
       checkRange(document, accessor.bufferView, accessor.byteOffset, accessor.count, stride, size, place);
     }
@@ -254,7 +261,8 @@ std::vector<std::uint32_t> readIndices(const Document& document, int index, std:
 
 std::vector<glm::u16vec4> readJoints(const Document& document, int index, std::string_view place) {
   expectType(document, index, TINYGLTF_TYPE_VEC4, place);
-  expectUnsigned(document, index, {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT}, place);
+  expectUnsigned(document, index, {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT},
+                 place);
   return readElements<4, glm::u16vec4>(document, index, false);
 }
 

@@ -31,7 +31,8 @@ Container splitContainer(const std::filesystem::path& file, std::span<const std:
   if (bytes.empty()) fail(0, "the file is empty");
   if (bytes.size() < 4 || readU32(bytes, 0) != kMagic) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const std::size_t first = text.find_first_not_of(text.starts_with(kByteOrderMark) ? "\xEF\xBB\xBF \t\r\n" : " \t\r\n");
+    const std::size_t first =
+        text.find_first_not_of(text.starts_with(kByteOrderMark) ? "\xEF\xBB\xBF \t\r\n" : " \t\r\n");
     if (first == std::string_view::npos || text[first] != '{') fail(0, "this is neither a GLB nor a glTF JSON file");
     return {.json = text};
   }

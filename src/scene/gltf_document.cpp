@@ -41,7 +41,8 @@ json parseJson(const std::filesystem::path& file, std::string_view text) {
   } catch (const json::exception& error) {  // a number beyond the range of double; no place is given
     const std::string problem = afterPlace(error.what());
     const std::size_t quote = problem.find('\'');
-    const std::string token = quote == std::string::npos ? "" : problem.substr(quote + 1, problem.rfind('\'') - quote - 1);
+    const std::string token =
+        quote == std::string::npos ? "" : problem.substr(quote + 1, problem.rfind('\'') - quote - 1);
     const std::size_t byte = token.empty() ? std::string_view::npos : text.find(token);
     throw FileError(file, byte == std::string_view::npos ? "" : lineAndColumn(text, byte + 1), problem);
   }
@@ -51,11 +52,25 @@ void checkVersion(const Document& document, const json& asset) {
   const auto major = [&](const char* key) {
     const std::string version = asset.value(key, "2.0");
     if (!version.starts_with("2.")) {
-      document.fail(fmt::format("/asset/{}", key), fmt::format("glTF {} is not supported, only 2.x", version.substr(0, 20)));
+      document.fail(fmt::format("/asset/{}", key),
+                    fmt::format("glTF {} is not supported, only 2.x", version.substr(0, 20)));
     }
   };
   major("version");
   major("minVersion");
+}
+
+// Objects that another property makes necessary. A spot without "spot" has only defaults; tinygltf wants it.
+void checkDependencies(const Document& document, json& checked) {
+  const auto cameras = checked.find("cameras");
+  for (std::size_t i = 0; cameras != checked.end() && i < cameras->size(); ++i) {
+    const auto& type = (*cameras)[i]["type"].get_ref<const std::string&>();
+    if (!(*cameras)[i].contains(type)) document.fail(fmt::format("/cameras/{}", i), type + " is missing");
+  }
+  const json::json_pointer lights("/extensions/KHR_lights_punctual/lights");
+  if (!checked.contains(lights)) return;
+  for (json& light : checked[lights])
+    if (!light.contains("spot")) light["spot"] = json::object();
 }
 
 // Two things are kept from tinygltf 2.7.0 until it has read the file. It refuses index accessors without a
@@ -101,7 +116,8 @@ std::vector<ImageSource> readImageSources(const Document& document, const json& 
 }
 
 // A buffer without uri and BIN chunk gives a null span: EXT_meshopt_compression's fallback buffers are such.
-std::vector<std::span<const std::byte>> loadBuffers(Document& document, const json& buffers, const Container& container) {
+std::vector<std::span<const std::byte>> loadBuffers(Document& document, const json& buffers,
+                                                    const Container& container) {
   std::vector<std::span<const std::byte>> result;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     const json& buffer = buffers[i];
@@ -124,13 +140,14 @@ std::vector<std::span<const std::byte>> loadBuffers(Document& document, const js
   return result;
 }
 
-void resolveBufferViews(Document& document, const json& bufferList, std::span<const std::span<const std::byte>> buffers) {
+void resolveBufferViews(Document& document, const json& bufferList,
+                        std::span<const std::span<const std::byte>> buffers) {
   for (std::size_t i = 0; i < document.model.bufferViews.size(); ++i) {
     const tinygltf::BufferView& view = document.model.bufferViews[i];
     const std::string place = fmt::format("/bufferViews/{}", i);
     if (view.extensions.contains(kMeshopt)) {
-      document.bufferViews.push_back(
-          document.storage.emplace_back(decodeMeshopt(document, view, buffers, fmt::format("{}/extensions/{}", place, kMeshopt))));
+      document.bufferViews.push_back(document.storage.emplace_back(
+          decodeMeshopt(document, view, buffers, fmt::format("{}/extensions/{}", place, kMeshopt))));
       continue;
     }
     const auto buffer = static_cast<std::size_t>(view.buffer);
@@ -163,6 +180,7 @@ Document readDocument(const std::filesystem::path& file) {
   if (const auto animations = root.find("animations"); animations != root.end() && animations->is_array())
     document.animationCount = animations->size();
   checkVersion(document, checked["asset"]);
+  checkDependencies(document, checked);
   checkRequiredExtensions(document, checked.value("extensionsRequired", std::vector<std::string>{}));
 
   const json buffers = std::exchange(checked["buffers"], json::array());

@@ -56,6 +56,7 @@ Container splitContainer(const std::filesystem::path& file, std::span<const std:
 // gltf_uri.cpp: the bytes behind a URI of the file: a data URI, or a relative path beside it.
 std::vector<std::byte> loadUri(const Document&, std::string_view uri, std::string_view place);
 bool isDataUri(std::string_view uri);
+std::string percentDecode(std::string_view text);
 
 }  // namespace quintet::scene
 #endif

@@ -11,11 +11,20 @@ namespace {
 
 // Sorted by nothing but habit: the order of docs/gltf.md.
 constexpr auto kUnderstood = std::to_array<std::string_view>({
-    "KHR_materials_emissive_strength", "KHR_materials_ior",       "KHR_materials_transmission",
-    "KHR_materials_volume",            "KHR_materials_unlit",     "KHR_materials_specular",
-    "KHR_materials_clearcoat",         "KHR_lights_punctual",     "KHR_texture_transform",
-    "KHR_mesh_quantization",           "EXT_texture_webp",        "EXT_mesh_gpu_instancing",
-    "KHR_draco_mesh_compression",      "EXT_meshopt_compression",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_materials_unlit",
+    "KHR_materials_specular",
+    "KHR_materials_clearcoat",
+    "KHR_lights_punctual",
+    "KHR_texture_transform",
+    "KHR_mesh_quantization",
+    "EXT_texture_webp",
+    "EXT_mesh_gpu_instancing",
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
 });
 
 // Ignoring these is a legal reading of the file, so they may even be required.
@@ -39,7 +48,8 @@ Vec vectorOf(const tinygltf::Value& object, const std::string& key, Vec fallback
 void checkRequiredExtensions(const Document& document, const std::vector<std::string>& required) {
   for (std::size_t i = 0; i < required.size(); ++i)
     if (!contains(kUnderstood, required[i]) && !contains(kHarmless, required[i]))
-      document.fail(fmt::format("/extensionsRequired/{}", i), fmt::format("{} is not supported", required[i].substr(0, 80)));
+      document.fail(fmt::format("/extensionsRequired/{}", i),
+                    fmt::format("{} is not supported", required[i].substr(0, 80)));
 }
 
 void reportExtensions(const Document& document, Report& report) {

@@ -65,7 +65,8 @@ void InstanceBuilder::addNode(int index) {
   const tinygltf::Mesh& mesh = document_.model.meshes[static_cast<std::size_t>(node.mesh)];
   const std::size_t targetCount = mesh.primitives[0].targets.size();
   if (!node.weights.empty() && node.weights.size() != targetCount)
-    document_.fail(fmt::format("/nodes/{}/weights", index), fmt::format("{} weights for {} morph targets", node.weights.size(), targetCount));
+    document_.fail(fmt::format("/nodes/{}/weights", index),
+                   fmt::format("{} weights for {} morph targets", node.weights.size(), targetCount));
   if (node.skin != kNone) {
     if (hasJoints(mesh)) return addSkinned(index);
     report_.ignored.push_back(fmt::format("/nodes/{}/skin: the mesh has no JOINTS_0 and WEIGHTS_0", index));
@@ -84,9 +85,7 @@ void InstanceBuilder::addSkinned(int index) {
 void InstanceBuilder::addPlaced(int index, const mat4& worldFromObject) {
   const tinygltf::Node& node = document_.model.nodes[static_cast<std::size_t>(index)];
   switch (rankOf(worldFromObject)) {
-    case Rank::full:
-      instances_.push_back({node.name, sharedPose(node.mesh, node.weights), worldFromObject});
-      return;
+    case Rank::full: instances_.push_back({node.name, sharedPose(node.mesh, node.weights), worldFromObject}); return;
     case Rank::plane:  // flattened by a zero scale: visible, but without an inverse
       instances_.push_back({node.name, newPose(node.mesh, {node.weights, {}, worldFromObject}), mat4(1.0f)});
       return;
@@ -123,12 +122,15 @@ std::vector<mat4> InstanceBuilder::instanceTransforms(int index) const {
   const std::string place = fmt::format("/nodes/{}/extensions/{}/attributes", index, kInstancing);
   std::vector<vec3> translations, scales;
   std::vector<vec4> rotations;
-  if (attributes.Has("TRANSLATION")) translations = readVec3(document_, indexOf(attributes, "TRANSLATION"), place + "/TRANSLATION");
-  if (attributes.Has("ROTATION")) rotations = readVec4(document_, indexOf(attributes, "ROTATION"), place + "/ROTATION", Integers::unit);
+  if (attributes.Has("TRANSLATION"))
+    translations = readVec3(document_, indexOf(attributes, "TRANSLATION"), place + "/TRANSLATION");
+  if (attributes.Has("ROTATION"))
+    rotations = readVec4(document_, indexOf(attributes, "ROTATION"), place + "/ROTATION", Integers::unit);
   if (attributes.Has("SCALE")) scales = readVec3(document_, indexOf(attributes, "SCALE"), place + "/SCALE");
   const std::size_t count = std::max({translations.size(), rotations.size(), scales.size()});
   const auto fits = [count](const auto& values) { return values.empty() || values.size() == count; };
-  if (!fits(translations) || !fits(rotations) || !fits(scales)) document_.fail(place, "the attributes have different counts");
+  if (!fits(translations) || !fits(rotations) || !fits(scales))
+    document_.fail(place, "the attributes have different counts");
 
   std::vector<mat4> transforms;
   transforms.reserve(count);
@@ -138,7 +140,8 @@ std::vector<mat4> InstanceBuilder::instanceTransforms(int index) const {
                                       scales.empty() ? vec3(1.0f) : scales[i]));
     transforms.push_back(worldFromNode * local);
     for (std::size_t column = 0; column < 4; ++column)
-      if (!isFinite(vec3(transforms.back()[column]))) document_.fail(place, fmt::format("the transform of instance {} is not finite", i));
+      if (!isFinite(vec3(transforms.back()[column])))
+        document_.fail(place, fmt::format("the transform of instance {} is not finite", i));
   }
   return transforms;
 }

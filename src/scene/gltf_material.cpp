@@ -35,7 +35,8 @@ class MaterialReader {
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_specular")) {
       material_.specular = unit(numberOf(*e, "specularFactor", 1.0), "specularFactor");
       material_.specularTexture = texture(*e, "specularTexture");
-      material_.specularColor = range(vec3Of(*e, "specularColorFactor", vec3(1.0f)), 0.0f, kHuge, "specularColorFactor");
+      material_.specularColor =
+          range(vec3Of(*e, "specularColorFactor", vec3(1.0f)), 0.0f, kHuge, "specularColorFactor");
       material_.specularColorTexture = texture(*e, "specularColorTexture");
     }
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_clearcoat")) readClearcoat(*e);
@@ -81,18 +82,20 @@ class MaterialReader {
       repair(fmt::format("attenuationDistance {} is not positive, taken as infinite", distance));
     }
     // Zero would be infinite absorption: the darkest that stays finite.
-    material_.attenuationColor = glm::max(
-        range(vec3Of(extension, "attenuationColor", vec3(1.0f)), 0.0f, 1.0f, "attenuationColor"), vec3(1e-6f));
+    material_.attenuationColor =
+        glm::max(range(vec3Of(extension, "attenuationColor", vec3(1.0f)), 0.0f, 1.0f, "attenuationColor"), vec3(1e-6f));
   }
 
   void readClearcoat(const tinygltf::Value& extension) {
     material_.clearcoat = unit(numberOf(extension, "clearcoatFactor", 0.0), "clearcoatFactor");
     material_.clearcoatTexture = texture(extension, "clearcoatTexture");
-    material_.clearcoatRoughness = unit(numberOf(extension, "clearcoatRoughnessFactor", 0.0), "clearcoatRoughnessFactor");
+    material_.clearcoatRoughness =
+        unit(numberOf(extension, "clearcoatRoughnessFactor", 0.0), "clearcoatRoughnessFactor");
     material_.clearcoatRoughnessTexture = texture(extension, "clearcoatRoughnessTexture");
     material_.clearcoatNormalTexture = texture(extension, "clearcoatNormalTexture");
     if (extension.Has("clearcoatNormalTexture"))
-      material_.clearcoatNormalScale = static_cast<float>(numberOf(extension.Get("clearcoatNormalTexture"), "scale", 1.0));
+      material_.clearcoatNormalScale =
+          static_cast<float>(numberOf(extension.Get("clearcoatNormalTexture"), "scale", 1.0));
   }
 
   TextureUse texture(const tinygltf::Value& extension, const char* key) {
@@ -133,7 +136,8 @@ class MaterialReader {
 
   float range(double value, float low, float high, const char* key) {
     const float clamped = std::clamp(static_cast<float>(value), low, high);
-    if (static_cast<double>(clamped) != value && (value < static_cast<double>(low) || value > static_cast<double>(high)))
+    if (static_cast<double>(clamped) != value &&
+        (value < static_cast<double>(low) || value > static_cast<double>(high)))
       repair(fmt::format("{} {} is out of range, taken as {}", key, value, clamped));
     return clamped;
   }

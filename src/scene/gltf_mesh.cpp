@@ -30,7 +30,8 @@ void applyMorphTargets(Geometry& geometry, const PrimitiveReader& reader, std::s
   }
 }
 
-void deform(Geometry& geometry, const PrimitiveReader& reader, const tinygltf::Mesh& mesh, const Deformation& deformation) {
+void deform(Geometry& geometry, const PrimitiveReader& reader, const tinygltf::Mesh& mesh,
+            const Deformation& deformation) {
   applyMorphTargets(geometry, reader, deformation.morphWeights.empty() ? mesh.weights : deformation.morphWeights);
   if (!deformation.jointMatrices.empty()) {
     const auto sets = reader.readSkinSets(geometry.positions.size(), deformation.jointMatrices.size());
@@ -66,8 +67,8 @@ const char* modeName(int mode) {
 
 }  // namespace
 
-GeometryResult readGeometry(const Document& document, const std::vector<Material>& materials, int meshIndex, int primitiveIndex,
-                            const Deformation& deformation) {
+GeometryResult readGeometry(const Document& document, const std::vector<Material>& materials, int meshIndex,
+                            int primitiveIndex, const Deformation& deformation) {
   const tinygltf::Mesh& mesh = document.model.meshes[static_cast<std::size_t>(meshIndex)];
   const PrimitiveReader reader(document, meshIndex, primitiveIndex);
   const std::string& place = reader.place();

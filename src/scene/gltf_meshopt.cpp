@@ -19,7 +19,8 @@ bool strideFits(const std::string& mode, const std::string& filter, std::size_t 
   return stride % 4 == 0 && stride <= 256;
 }
 
-int decode(const std::string& mode, std::byte* out, std::size_t count, std::size_t stride, std::span<const std::byte> in) {
+int decode(const std::string& mode, std::byte* out, std::size_t count, std::size_t stride,
+           std::span<const std::byte> in) {
   const auto* data = reinterpret_cast<const unsigned char*>(in.data());
   if (mode == "TRIANGLES") return meshopt_decodeIndexBuffer(out, count, stride, data, in.size());
   if (mode == "INDICES") return meshopt_decodeIndexSequence(out, count, stride, data, in.size());
@@ -43,12 +44,14 @@ std::vector<std::byte> decodeMeshopt(const Document& document, const tinygltf::B
   const std::string mode = stringOf(extension, "mode", ""), filter = stringOf(extension, "filter", "NONE");
 
   if (offset + length > buffers[buffer].size())
-    document.fail(place, fmt::format("{} bytes past the end of buffer {}", offset + length - buffers[buffer].size(), buffer));
+    document.fail(place,
+                  fmt::format("{} bytes past the end of buffer {}", offset + length - buffers[buffer].size(), buffer));
   if (!strideFits(mode, filter, stride))
     document.fail(place + "/byteStride", fmt::format("{} does not fit mode {} with filter {}", stride, mode, filter));
   if (view.byteStride != 0 && view.byteStride != stride)
     document.fail(place + "/byteStride", fmt::format("{}, but the buffer view says {}", stride, view.byteStride));
-  if (mode == "TRIANGLES" && count % 3 != 0) document.fail(place + "/count", fmt::format("{} is not a multiple of 3", count));
+  if (mode == "TRIANGLES" && count % 3 != 0)
+    document.fail(place + "/count", fmt::format("{} is not a multiple of 3", count));
   if (mode != "ATTRIBUTES" && filter != "NONE") document.fail(place + "/filter", "only attributes can have one");
   if (count * stride > kMaxRatio * length)
     document.fail(place + "/count", fmt::format("{} bytes cannot hold {} elements", length, count));

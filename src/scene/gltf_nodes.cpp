@@ -16,9 +16,12 @@ using glm::dvec4;
 dmat4 localTransform(const Document& document, std::size_t index) {
   const tinygltf::Node& node = document.model.nodes[index];
   if (node.matrix.empty()) {
-    const auto at = [](const std::vector<double>& v, std::size_t i, double fallback) { return v.empty() ? fallback : v[i]; };
+    const auto at = [](const std::vector<double>& v, std::size_t i, double fallback) {
+      return v.empty() ? fallback : v[i];
+    };
     const auto &t = node.translation, &r = node.rotation, &s = node.scale;
-    return composeTransform({at(t, 0, 0), at(t, 1, 0), at(t, 2, 0)}, {at(r, 0, 0), at(r, 1, 0), at(r, 2, 0), at(r, 3, 1)},
+    return composeTransform({at(t, 0, 0), at(t, 1, 0), at(t, 2, 0)},
+                            {at(r, 0, 0), at(r, 1, 0), at(r, 2, 0), at(r, 3, 1)},
                             {at(s, 0, 1), at(s, 1, 1), at(s, 2, 1)});
   }
   dmat4 matrix;
@@ -73,7 +76,8 @@ std::vector<int> rootNodes(const std::vector<int>& parents) {
 std::vector<int> sceneRoots(const Document& document, int sceneIndex, const std::vector<int>& parents) {
   const tinygltf::Model& model = document.model;
   if (sceneIndex != kNone && (sceneIndex < 0 || static_cast<std::size_t>(sceneIndex) >= model.scenes.size()))
-    throw UsageError(fmt::format("{}: scene {} does not exist: the file has {}", document.file.string(), sceneIndex, model.scenes.size()));
+    throw UsageError(fmt::format("{}: scene {} does not exist: the file has {}", document.file.string(), sceneIndex,
+                                 model.scenes.size()));
   if (sceneIndex == kNone) sceneIndex = model.defaultScene;
   if (sceneIndex == kNone && !model.scenes.empty()) sceneIndex = 0;
   if (sceneIndex == kNone) return rootNodes(parents);
@@ -83,7 +87,8 @@ std::vector<int> sceneRoots(const Document& document, int sceneIndex, const std:
   for (std::size_t i = 0; i < roots.size(); ++i) {
     const auto node = static_cast<std::size_t>(roots[i]);
     const std::string place = fmt::format("/scenes/{}/nodes/{}", sceneIndex, i);
-    if (parents[node] != kNone) document.fail(place, fmt::format("node {} is a child of node {}, not a root", node, parents[node]));
+    if (parents[node] != kNone)
+      document.fail(place, fmt::format("node {} is a child of node {}, not a root", node, parents[node]));
     if (listed[node]) document.fail(place, fmt::format("node {} is listed twice", node));
     listed[node] = true;
   }
@@ -118,7 +123,8 @@ NodeTree readNodes(const Document& document, int sceneIndex, Report& report) {
   if (order.size() != count) {  // what no root reaches can only hang in a loop
     std::vector<bool> reached(count, false);
     for (const int node : order) reached[static_cast<std::size_t>(node)] = true;
-    document.fail(fmt::format("/nodes/{}", std::ranges::find(reached, false) - reached.begin()), "the node is its own ancestor");
+    document.fail(fmt::format("/nodes/{}", std::ranges::find(reached, false) - reached.begin()),
+                  "the node is its own ancestor");
   }
   reportTransforms(document, report);
 

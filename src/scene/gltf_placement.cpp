@@ -54,7 +54,8 @@ Camera placeCamera(const Document& document, int index, const tinygltf::Node& no
   return camera;
 }
 
-void placeLight(const Document& document, int index, const tinygltf::Node& node, const mat4& worldFromNode, Scene& scene) {
+void placeLight(const Document& document, int index, const tinygltf::Node& node, const mat4& worldFromNode,
+                Scene& scene) {
   const tinygltf::Light& from = document.model.lights[static_cast<std::size_t>(index)];
   const std::string place = fmt::format("/extensions/KHR_lights_punctual/lights/{}", index);
   Light light;

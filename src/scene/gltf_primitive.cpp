@@ -16,7 +16,8 @@ PrimitiveReader::PrimitiveReader(const Document& document, int mesh, int primiti
       primitive_(document.model.meshes[static_cast<std::size_t>(mesh)].primitives[static_cast<std::size_t>(primitive)]),
       place_(fmt::format("/meshes/{}/primitives/{}", mesh, primitive)) {
   if (const tinygltf::Value* extension = findExtension(primitive_.extensions, kDraco))
-    draco_ = std::make_unique<DracoMesh>(document, primitive_, *extension, fmt::format("{}/extensions/{}", place_, kDraco));
+    draco_ =
+        std::make_unique<DracoMesh>(document, primitive_, *extension, fmt::format("{}/extensions/{}", place_, kDraco));
 }
 
 PrimitiveReader::~PrimitiveReader() = default;
@@ -64,8 +65,8 @@ std::vector<uvec3> PrimitiveReader::readTriangles(std::size_t vertexCount) const
   const std::vector<std::uint32_t> indices = readIndexList();
   const auto wrong = std::ranges::find_if(indices, [&](std::uint32_t i) { return i >= vertexCount; });
   if (wrong != indices.end())
-    document_.fail(place_ + "/indices", fmt::format("element {} is {}, but there are {} vertices", wrong - indices.begin(),
-                                                    *wrong, vertexCount));
+    document_.fail(place_ + "/indices", fmt::format("element {} is {}, but there are {} vertices",
+                                                    wrong - indices.begin(), *wrong, vertexCount));
   if (indices.empty()) return {};
   return makeTriangles(mode, indices, static_cast<std::uint32_t>(vertexCount));
 }
@@ -88,7 +89,8 @@ std::vector<SkinSet> PrimitiveReader::readSkinSets(std::size_t vertexCount, std:
     for (std::size_t i = 0; i < vertexCount; ++i)
       for (std::size_t c = 0; c < 4; ++c)
         if (set.joints[i][c] >= jointCount)
-          document_.fail(place, fmt::format("vertex {} is bound to joint {}, but the skin has {}", i, set.joints[i][c], jointCount));
+          document_.fail(place, fmt::format("vertex {} is bound to joint {}, but the skin has {}", i, set.joints[i][c],
+                                            jointCount));
     sets.push_back(std::move(set));
   }
   return sets;

@@ -26,9 +26,12 @@ struct Place {
     std::string text = parent->pointer() + "/";
     if (key.data() == nullptr) return text + std::to_string(index);
     for (const char c : key) {
-      if (c == '~') text += "~0";
-      else if (c == '/') text += "~1";
-      else text += c;
+      if (c == '~')
+        text += "~0";
+      else if (c == '/')
+        text += "~1";
+      else
+        text += c;
     }
     return text;
   }
@@ -64,26 +67,18 @@ class Checker {
       case PropertyKind::boolean:
         if (!in.is_boolean()) fail(place, "must be true or false");
         return in;
-      case PropertyKind::string:
-        return string(in, property, place);
-      case PropertyKind::integer:
-        return integer(in, property, place);
-      case PropertyKind::number:
-        return number(in, property, place);
-      case PropertyKind::numbers:
-        return numbers(in, property, place);
-      case PropertyKind::index:
-        return index(in, property, place);
-      case PropertyKind::object:
-        return object(in, property.object, place);
+      case PropertyKind::string: return string(in, property, place);
+      case PropertyKind::integer: return integer(in, property, place);
+      case PropertyKind::number: return number(in, property, place);
+      case PropertyKind::numbers: return numbers(in, property, place);
+      case PropertyKind::index: return index(in, property, place);
+      case PropertyKind::object: return object(in, property.object, place);
       case PropertyKind::indexMap:
-      case PropertyKind::integerMap:
-        return map(in, property, place);
+      case PropertyKind::integerMap: return map(in, property, place);
       case PropertyKind::strings:
       case PropertyKind::indices:
       case PropertyKind::indexMaps:
-      case PropertyKind::objects:
-        return array(in, property, place);
+      case PropertyKind::objects: return array(in, property, place);
     }
     return {};
   }

@@ -43,9 +43,9 @@ struct Property {
   std::size_t minCount = 0;  // numbers: how many
   std::size_t maxCount = std::numeric_limits<std::size_t>::max();
   const Collection* target = nullptr;
-  std::span<const Property> object{};            // object, objects: what is inside
+  std::span<const Property> object{};           // object, objects: what is inside
   std::span<const std::string_view> choices{};  // string
-  std::span<const int> values{};                 // integer
+  std::span<const int> values{};                // integer
 };
 
 // Returns the part of `root` that the table names (strings are moved out of it). Integral numbers that were

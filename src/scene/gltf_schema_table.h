@@ -90,9 +90,8 @@ inline constexpr Property kBuffer[] = {required(integer("byteLength", 1, kMaxByt
                                        object("extensions", kBufferExtensions)};
 
 inline constexpr Property kMeshoptView[] = {
-    required(index("buffer", kBuffers)),       integer("byteOffset"),
-    required(integer("byteLength", 1)),        required(integer("byteStride", 1, 256)),
-    required(integer("count", 0)),             required(choice("mode", kMeshoptModes)),
+    required(index("buffer", kBuffers)),     integer("byteOffset"),         required(integer("byteLength", 1)),
+    required(integer("byteStride", 1, 256)), required(integer("count", 0)), required(choice("mode", kMeshoptModes)),
     choice("filter", kMeshoptFilters),
 };
 inline constexpr Property kViewExtensions[] = {object("EXT_meshopt_compression", kMeshoptView)};
@@ -106,30 +105,44 @@ inline constexpr Property kSparseValues[] = {required(index("bufferView", kBuffe
 inline constexpr Property kSparse[] = {required(integer("count", 0)), required(object("indices", kSparseIndices)),
                                        required(object("values", kSparseValues))};
 inline constexpr Property kAccessor[] = {
-    index("bufferView", kBufferViews),           integer("byteOffset", 0, kMaxBytes),
-    required(integer("count", 0, 4294967295.0)), required(choice("type", kVectorTypes)),
-    boolean("normalized"),                       required(oneOf("componentType", kComponentTypes)),
+    index("bufferView", kBufferViews),
+    integer("byteOffset", 0, kMaxBytes),
+    required(integer("count", 0, 4294967295.0)),
+    required(choice("type", kVectorTypes)),
+    boolean("normalized"),
+    required(oneOf("componentType", kComponentTypes)),
     object("sparse", kSparse),
 };
 
 inline constexpr Property kDraco[] = {required(index("bufferView", kBufferViews)), required(integerMap("attributes"))};
 inline constexpr Property kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", kDraco)};
 inline constexpr Property kPrimitive[] = {
-    required(indexMap("attributes", kAccessors)), index("indices", kAccessors),
-    index("material", kMaterials),                oneOf("mode", kModes),
-    indexMaps("targets", kAccessors),             object("extensions", kPrimitiveExtensions),
+    required(indexMap("attributes", kAccessors)),
+    index("indices", kAccessors),
+    index("material", kMaterials),
+    oneOf("mode", kModes),
+    indexMaps("targets", kAccessors),
+    object("extensions", kPrimitiveExtensions),
 };
-inline constexpr Property kMesh[] = {required(objects("primitives", kPrimitive)), anyNumbers("weights"), string("name")};
+inline constexpr Property kMesh[] = {required(objects("primitives", kPrimitive)), anyNumbers("weights"),
+                                     string("name")};
 
 inline constexpr Property kNodeLight[] = {required(index("light", kLights))};
 inline constexpr Property kInstancing[] = {required(indexMap("attributes", kAccessors))};
 inline constexpr Property kNodeExtensions[] = {object("KHR_lights_punctual", kNodeLight),
                                                object("EXT_mesh_gpu_instancing", kInstancing)};
 inline constexpr Property kNode[] = {
-    index("camera", kCameras), indices("children", kNodes),  index("skin", kSkins),
-    index("mesh", kMeshes),    numbers("matrix", 16),        numbers("rotation", 4),
-    numbers("scale", 3),       numbers("translation", 3),    anyNumbers("weights"),
-    string("name"),            object("extensions", kNodeExtensions),
+    index("camera", kCameras),
+    indices("children", kNodes),
+    index("skin", kSkins),
+    index("mesh", kMeshes),
+    numbers("matrix", 16),
+    numbers("rotation", 4),
+    numbers("scale", 3),
+    numbers("translation", 3),
+    anyNumbers("weights"),
+    string("name"),
+    object("extensions", kNodeExtensions),
 };
 inline constexpr Property kScene[] = {indices("nodes", kNodes), string("name")};
 inline constexpr Property kSkin[] = {index("inverseBindMatrices", kAccessors), index("skeleton", kNodes),
@@ -194,7 +207,7 @@ inline constexpr Property kCamera[] = {required(choice("type", kCameraTypes)), o
                                        object("orthographic", kOrthographic), string("name")};
 
 inline constexpr Property kSpot[] = {number("innerConeAngle"), number("outerConeAngle")};
-inline constexpr Property kLight[] = {required(string("type")), numbers("color", 3),    number("intensity"),
+inline constexpr Property kLight[] = {required(string("type")), numbers("color", 3),   number("intensity"),
                                       number("range"),          object("spot", kSpot), string("name")};
 inline constexpr Property kRootLights[] = {required(objects("lights", kLight))};
 inline constexpr Property kRootExtensions[] = {object("KHR_lights_punctual", kRootLights)};

@@ -33,14 +33,15 @@ NamedImage loadImage(const Document& document, std::size_t index) {
       result.image = io::decodeImage(document.view(source.bufferView), place);
     } else {
       const std::vector<std::byte> bytes = loadUri(document, source.uri, place + "/uri");
-      if (!isDataUri(source.uri)) result.name = (document.file.parent_path() / source.uri).string();
+      if (!isDataUri(source.uri)) result.name = (document.file.parent_path() / percentDecode(source.uri)).string();
       result.image = io::decodeImage(bytes, place);
     }
   } catch (const FileError& error) {
     if (error.file() == document.file) throw;
     // The codec speaks of bytes of the picture; here they are a part of the scene's file.
     const std::string inside = error.place().empty() ? error.problem() : error.place() + ": " + error.problem();
-    document.fail(place, source.uri.empty() || isDataUri(source.uri) ? inside : source.uri + ": " + inside);
+    document.fail(place,
+                  source.uri.empty() || isDataUri(source.uri) ? inside : percentDecode(source.uri) + ": " + inside);
   }
   return result;
 }
@@ -48,7 +49,10 @@ NamedImage loadImage(const Document& document, std::size_t index) {
 }  // namespace
 
 TextureTable::TextureTable(const Document& document, Report& report)
-    : document_(document), report_(report), textureOf_(document.model.textures.size(), kNone), imageOf_(document.images.size(), kNone) {}
+    : document_(document),
+      report_(report),
+      textureOf_(document.model.textures.size(), kNone),
+      imageOf_(document.images.size(), kNone) {}
 
 int TextureTable::useImage(int image) {
   int& known = imageOf_[static_cast<std::size_t>(image)];
@@ -66,7 +70,8 @@ int TextureTable::use(int texture, const std::string& place) {
   const tinygltf::Value* webp = findExtension(from.extensions, kTextureWebp);
   const int image = webp ? indexOf(*webp, "source") : from.source;
   if (image == kNone) {
-    report_.ignored.push_back(fmt::format("{}: texture {} has no image of a kind that is read (PNG, JPEG, WebP)", place, texture));
+    report_.ignored.push_back(
+        fmt::format("{}: texture {} has no image of a kind that is read (PNG, JPEG, WebP)", place, texture));
     return kNone;
   }
   known = static_cast<int>(textures_.size());

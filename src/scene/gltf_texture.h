@@ -25,8 +25,8 @@ class TextureTable {
   const Document& document_;
   Report& report_;
   std::vector<Texture> textures_;
-  std::vector<int> textureOf_;   // file's texture → textures_
-  std::vector<int> imageOf_;     // file's image → imageSources_
+  std::vector<int> textureOf_;     // file's texture → textures_
+  std::vector<int> imageOf_;       // file's image → imageSources_
   std::vector<int> imageSources_;  // → file's image
 };
 

@@ -18,26 +18,12 @@ int hexDigit(char c) {
   return -1;
 }
 
-// A '%' that starts no escape stands for itself: exporters write file names as they are.
-std::string percentDecode(std::string_view text) {
-  std::string result;
-  result.reserve(text.size());
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '%' && i + 2 < text.size() && hexDigit(text[i + 1]) >= 0 && hexDigit(text[i + 2]) >= 0) {
-      result += static_cast<char>(hexDigit(text[i + 1]) * 16 + hexDigit(text[i + 2]));
-      i += 2;
-    } else {
-      result += text[i];
-    }
-  }
-  return result;
-}
-
 constexpr std::array<signed char, 256> kBase64 = [] {
   std::array<signed char, 256> table{};
   table.fill(-1);
   const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  for (std::size_t i = 0; i < digits.size(); ++i) table[static_cast<unsigned char>(digits[i])] = static_cast<signed char>(i);
+  for (std::size_t i = 0; i < digits.size(); ++i)
+    table[static_cast<unsigned char>(digits[i])] = static_cast<signed char>(i);
   table['-'] = 62, table['_'] = 63;  // the URL-safe alphabet
   return table;
 }();
@@ -65,8 +51,8 @@ std::vector<std::byte> decodeDataUri(const Document& document, std::string_view 
   std::vector<std::byte> bytes;
   if (uri.substr(0, comma).ends_with(";base64")) {
     // Percent escapes inside base64 are legal, if rare.
-    const bool valid = data.find('%') == std::string_view::npos ? decodeBase64(data, bytes)
-                                                                : decodeBase64(percentDecode(data), bytes);
+    const bool valid =
+        data.find('%') == std::string_view::npos ? decodeBase64(data, bytes) : decodeBase64(percentDecode(data), bytes);
     if (!valid) document.fail(place, "the data URI is not valid base64");
   } else {
     const std::string text = percentDecode(data);
@@ -86,6 +72,21 @@ bool hasScheme(std::string_view uri) {
 }
 
 }  // namespace
+
+// A '%' that starts no escape stands for itself: exporters write file names as they are.
+std::string percentDecode(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '%' && i + 2 < text.size() && hexDigit(text[i + 1]) >= 0 && hexDigit(text[i + 2]) >= 0) {
+      result += static_cast<char>(hexDigit(text[i + 1]) * 16 + hexDigit(text[i + 2]));
+      i += 2;
+    } else {
+      result += text[i];
+    }
+  }
+  return result;
+}
 
 bool isDataUri(std::string_view uri) { return uri.starts_with("data:"); }
 

@@ -49,7 +49,8 @@ float cornerAngle(const Geometry& geometry, const uvec3& t, std::size_t corner) 
 }
 
 // Gives each vertex one handedness: 0 until a triangle has claimed it; triangles of the other one move to a copy.
-std::vector<int> separateHandedness(Geometry& geometry, std::vector<vec2>& uvs, const std::vector<TriangleFrame>& frames) {
+std::vector<int> separateHandedness(Geometry& geometry, std::vector<vec2>& uvs,
+                                    const std::vector<TriangleFrame>& frames) {
   std::vector<int> handedness(geometry.positions.size(), 0);
   std::vector<std::uint32_t> mirror(geometry.positions.size(), 0);  // the copy's index; 0: none (it is never vertex 0)
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -85,7 +86,8 @@ void splitIntoFlatTriangles(Geometry& geometry) {
   for (auto& set : geometry.uvs) gather(set);
   geometry.normals.assign(geometry.positions.size(), vec3(0.0f));
   geometry.tangents.clear();
-  for (std::uint32_t i = 0; i < geometry.triangles.size(); ++i) geometry.triangles[i] = uvec3(3 * i, 3 * i + 1, 3 * i + 2);
+  for (std::uint32_t i = 0; i < geometry.triangles.size(); ++i)
+    geometry.triangles[i] = uvec3(3 * i, 3 * i + 1, 3 * i + 2);
   repairNormals(geometry);  // the mean of one face normal
 }
 

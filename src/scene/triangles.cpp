@@ -22,7 +22,8 @@ std::vector<uvec3> assemble(TriangleMode mode, std::size_t count, Vertex vertex)
 
 }  // namespace
 
-std::vector<uvec3> makeTriangles(TriangleMode mode, const std::vector<std::uint32_t>& indices, std::uint32_t vertexCount) {
+std::vector<uvec3> makeTriangles(TriangleMode mode, const std::vector<std::uint32_t>& indices,
+                                 std::uint32_t vertexCount) {
   if (indices.empty()) return assemble(mode, vertexCount, [](std::size_t i) { return static_cast<std::uint32_t>(i); });
   if (mode == TriangleMode::list) {  // the usual and the large case: a copy
     std::vector<uvec3> triangles(indices.size() / 3);

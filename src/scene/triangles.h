@@ -12,7 +12,8 @@ namespace quintet::scene {
 enum class TriangleMode { list, strip, fan };
 
 // `indices` empty: vertices 0 … vertexCount-1 in their order. Vertices beyond the last whole triangle are dropped.
-std::vector<uvec3> makeTriangles(TriangleMode mode, const std::vector<std::uint32_t>& indices, std::uint32_t vertexCount);
+std::vector<uvec3> makeTriangles(TriangleMode mode, const std::vector<std::uint32_t>& indices,
+                                 std::uint32_t vertexCount);
 
 }  // namespace quintet::scene
 #endif

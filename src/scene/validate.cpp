@@ -38,7 +38,8 @@ void checkGeometry(const Scene& scene, const Geometry& geometry, const std::stri
     fail("{}.material: {} of {}", name, geometry.material, scene.materials.size());
   for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
     const uvec3& t = geometry.triangles[i];
-    if (std::max({t.x, t.y, t.z}) >= count) fail("{}.triangles[{}]: vertex {} of {}", name, i, std::max({t.x, t.y, t.z}), count);
+    if (std::max({t.x, t.y, t.z}) >= count)
+      fail("{}.triangles[{}]: vertex {} of {}", name, i, std::max({t.x, t.y, t.z}), count);
   }
   const auto wrong = std::ranges::find_if_not(geometry.positions, [](const vec3& p) { return quintet::isFinite(p); });
   if (wrong != geometry.positions.end()) fail("{}.positions[{}]: not finite", name, wrong - geometry.positions.begin());
@@ -50,7 +51,8 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
                                 &material.specularTexture, &material.specularColorTexture, &material.clearcoatTexture,
                                 &material.clearcoatRoughnessTexture, &material.clearcoatNormalTexture}) {
     if (!use->used()) continue;
-    if (!inRange(use->texture, scene.textures.size())) fail("{}: texture {} of {}", name, use->texture, scene.textures.size());
+    if (!inRange(use->texture, scene.textures.size()))
+      fail("{}: texture {} of {}", name, use->texture, scene.textures.size());
     if (!inRange(use->uvSet, kMaxUvSets)) fail("{}: texture coordinate set {} of {}", name, use->uvSet, kMaxUvSets);
   }
   if (!(material.attenuationDistance > 0.0f)) fail("{}.attenuationDistance: {}", name, material.attenuationDistance);
@@ -58,7 +60,8 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
 
 void checkImage(const io::Image& image, const std::string& name) {
   if (image.empty() || image.channels < 1 || image.channels > 4 || image.data.size() != image.height * image.rowBytes())
-    fail("{}: {} bytes for {} x {} pixels of {} channels", name, image.data.size(), image.width, image.height, image.channels);
+    fail("{}: {} bytes for {} x {} pixels of {} channels", name, image.data.size(), image.width, image.height,
+         image.channels);
 }
 
 }  // namespace
@@ -69,19 +72,24 @@ void validate(const Scene& scene) {
       checkGeometry(scene, scene.meshes[i].geometries[k], fmt::format("meshes[{}].geometries[{}]", i, k));
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
-    if (!inRange(instance.mesh, scene.meshes.size())) fail("instances[{}].mesh: {} of {}", i, instance.mesh, scene.meshes.size());
+    if (!inRange(instance.mesh, scene.meshes.size()))
+      fail("instances[{}].mesh: {} of {}", i, instance.mesh, scene.meshes.size());
     if (!isFinite(instance.worldFromObject)) fail("instances[{}].worldFromObject: not finite", i);
-    if (glm::determinant(glm::dmat3(glm::mat3(instance.worldFromObject))) == 0.0) fail("instances[{}].worldFromObject: no inverse", i);
+    if (glm::determinant(glm::dmat3(glm::mat3(instance.worldFromObject))) == 0.0)
+      fail("instances[{}].worldFromObject: no inverse", i);
   }
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) checkMaterial(scene, scene.materials[i], fmt::format("materials[{}]", i));
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    checkMaterial(scene, scene.materials[i], fmt::format("materials[{}]", i));
   for (std::size_t i = 0; i < scene.textures.size(); ++i)
-    if (!inRange(scene.textures[i].image, scene.images.size())) fail("textures[{}].image: {} of {}", i, scene.textures[i].image, scene.images.size());
+    if (!inRange(scene.textures[i].image, scene.images.size()))
+      fail("textures[{}].image: {} of {}", i, scene.textures[i].image, scene.images.size());
   for (std::size_t i = 0; i < scene.images.size(); ++i) checkImage(scene.images[i].image, fmt::format("images[{}]", i));
   for (std::size_t i = 0; i < scene.cameras.size(); ++i)
     if (!isFinite(scene.cameras[i].worldFromCamera)) fail("cameras[{}].worldFromCamera: not finite", i);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const Light& light = scene.lights[i];
-    if (!quintet::isFinite(light.intensity) || !quintet::isFinite(light.position) || !quintet::isFinite(light.direction))
+    if (!quintet::isFinite(light.intensity) || !quintet::isFinite(light.position) ||
+        !quintet::isFinite(light.direction))
       fail("lights[{}]: not finite", i);
   }
   if (!scene.environment.image.empty()) checkImage(scene.environment.image, "environment.image");

@@ -73,8 +73,11 @@ TEST(GltfAccessor, StridesInterleave) {
   // position and texture coordinate, 20 bytes each vertex
   GltfBuilder builder;
   const int view = builder.addView<float>({0, 0, 0, .5f, .25f, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, 20);
-  const int positions = builder.add("accessors", {{"bufferView", view}, {"componentType", kFloat}, {"count", 3}, {"type", "VEC3"}});
-  const int uvs = builder.add("accessors", {{"bufferView", view}, {"byteOffset", 12}, {"componentType", kFloat}, {"count", 3}, {"type", "VEC2"}});
+  const int positions =
+      builder.add("accessors", {{"bufferView", view}, {"componentType", kFloat}, {"count", 3}, {"type", "VEC3"}});
+  const int uvs = builder.add(
+      "accessors",
+      {{"bufferView", view}, {"byteOffset", 12}, {"componentType", kFloat}, {"count", 3}, {"type", "VEC2"}});
   builder.addMesh({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}}});
   const scene::Scene scene = builder.load();
   EXPECT_EQ(onlyGeometry(scene).positions[2], vec3(0, 1, 0));
@@ -92,8 +95,11 @@ TEST(GltfAccessor, StridesInterleave) {
 TEST(GltfAccessor, OddStrides) {
   GltfBuilder builder;
   const int view = builder.addView<std::uint16_t>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 6);
-  builder.addMesh({{"attributes", {{"POSITION", builder.add("accessors", {{"bufferView", view}, {"componentType", kUnsignedShort},
-                                                                          {"count", 3}, {"type", "VEC3"}})}}}});
+  builder.addMesh(
+      {{"attributes",
+        {{"POSITION",
+          builder.add("accessors",
+                      {{"bufferView", view}, {"componentType", kUnsignedShort}, {"count", 3}, {"type", "VEC3"}})}}}});
   EXPECT_EQ(onlyGeometry(builder.load()).positions[2], vec3(0, 1, 0));
 }
 
@@ -121,14 +127,17 @@ TEST(GltfAccessor, QuantisedPositions) {
   EXPECT_THAT(loadPositions<std::uint16_t>({65535, 0, 13107, 1, 2, 3, 4, 5, 6}, true)[0], vec3(1, 0, 0.2f));
   EXPECT_THAT(loadPositions<std::uint16_t>({65535, 0, 13107, 1, 2, 3, 4, 5, 6}, false)[0], vec3(65535, 0, 13107));
   EXPECT_THAT(loadPositions<std::int16_t>({32767, -32768, -32767, 1, 2, 3, 4, 5, 6}, true)[0], vec3(1, -1, -1));
-  EXPECT_THAT(loadPositions<std::int16_t>({32767, -32768, -32767, 1, 2, 3, 4, 5, 6}, false)[0], vec3(32767, -32768, -32767));
+  EXPECT_THAT(loadPositions<std::int16_t>({32767, -32768, -32767, 1, 2, 3, 4, 5, 6}, false)[0],
+              vec3(32767, -32768, -32767));
 }
 
 TEST(GltfAccessor, UnsignedIntsAreNoAttributes) {
   GltfBuilder builder;
-  builder.addMesh({{"attributes", {{"POSITION", builder.addAccessor<std::uint32_t>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3")}}}});
-  EXPECT_EQ(errorOf(builder),
-            "/meshes/0/primitives/0/attributes/POSITION: accessor 0 has unsigned ints; floats, bytes or shorts are needed");
+  builder.addMesh(
+      {{"attributes", {{"POSITION", builder.addAccessor<std::uint32_t>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3")}}}});
+  EXPECT_EQ(
+      errorOf(builder),
+      "/meshes/0/primitives/0/attributes/POSITION: accessor 0 has unsigned ints; floats, bytes or shorts are needed");
 }
 
 template <class T>
@@ -154,13 +163,16 @@ TEST(GltfAccessor, IndicesMustFit) {
     return errorOf(builder);
   };
   const std::string place = "/meshes/0/primitives/0/indices: ";
-  EXPECT_EQ(errorWith(builder.addAccessor<std::uint8_t>({0, 1, 3}, "SCALAR")), place + "element 2 is 3, but there are 3 vertices");
+  EXPECT_EQ(errorWith(builder.addAccessor<std::uint8_t>({0, 1, 3}, "SCALAR")),
+            place + "element 2 is 3, but there are 3 vertices");
   EXPECT_EQ(errorWith(builder.addAccessor<std::uint32_t>({0, 4294967295u, 0}, "SCALAR")),
             place + "element 1 is 4294967295, but there are 3 vertices");
-  EXPECT_EQ(errorWith(builder.addAccessor<float>({0, 1, 2}, "SCALAR")), place + "accessor 3 has floats; unsigned integers are needed");
+  EXPECT_EQ(errorWith(builder.addAccessor<float>({0, 1, 2}, "SCALAR")),
+            place + "accessor 3 has floats; unsigned integers are needed");
   EXPECT_EQ(errorWith(builder.addAccessor<std::int16_t>({0, 1, 2}, "SCALAR")),
             place + "accessor 4 has signed shorts; unsigned integers are needed");
-  EXPECT_EQ(errorWith(builder.addAccessor<std::uint8_t>({0, 1, 2, 0, 1, 2}, "VEC2")), place + "accessor 5 is VEC2, but SCALAR is needed");
+  EXPECT_EQ(errorWith(builder.addAccessor<std::uint8_t>({0, 1, 2, 0, 1, 2}, "VEC2")),
+            place + "accessor 5 is VEC2, but SCALAR is needed");
   EXPECT_EQ(errorWith(99), place + "accessor 99 does not exist: the file has 6");
 }
 
@@ -190,10 +202,14 @@ TEST(GltfSparse, IndicesWithoutBufferView) {
   GltfBuilder builder;
   builder.addTriangle();
   const int indices = builder.addView<std::uint8_t>({1, 2}), values = builder.addView<std::uint16_t>({2, 1});
-  builder.primitive()["indices"] = builder.add(
-      "accessors", {{"componentType", kUnsignedShort}, {"count", 3}, {"type", "SCALAR"},
-                    {"sparse", {{"count", 2}, {"indices", {{"bufferView", indices}, {"componentType", kUnsignedByte}}},
-                                {"values", {{"bufferView", values}}}}}});
+  builder.primitive()["indices"] =
+      builder.add("accessors", {{"componentType", kUnsignedShort},
+                                {"count", 3},
+                                {"type", "SCALAR"},
+                                {"sparse",
+                                 {{"count", 2},
+                                  {"indices", {{"bufferView", indices}, {"componentType", kUnsignedByte}}},
+                                  {"values", {{"bufferView", values}}}}}});
   EXPECT_THAT(onlyGeometry(builder.load()).triangles, testing::ElementsAre(uvec3(0, 2, 1)));
 }
 
@@ -203,8 +219,10 @@ TEST(GltfSparse, MustBeConsistent) {
     change(builder);
     return errorOf(builder);
   };
-  EXPECT_EQ(errorWith([](auto& b) { b.sparse()["count"] = 4; }), "/accessors/0/sparse/count: 4 values for an accessor of 3 elements");
-  EXPECT_EQ(errorWith([](auto& b) { b.sparse()["count"] = 3; }), "/accessors/0/sparse/indices/bufferView: 2 bytes past the end of buffer view 1");
+  EXPECT_EQ(errorWith([](auto& b) { b.sparse()["count"] = 4; }),
+            "/accessors/0/sparse/count: 4 values for an accessor of 3 elements");
+  EXPECT_EQ(errorWith([](auto& b) { b.sparse()["count"] = 3; }),
+            "/accessors/0/sparse/indices/bufferView: 2 bytes past the end of buffer view 1");
   EXPECT_EQ(errorWith([](auto& b) { b.sparse()["values"]["byteOffset"] = 4; }),
             "/accessors/0/sparse/values/bufferView: 4 bytes past the end of buffer view 2");
   EXPECT_EQ(errorWith([](auto& b) { b.sparse()["indices"]["componentType"] = kFloat; }),
@@ -224,7 +242,8 @@ TEST(GltfAccessor, NothingBehindItIsZeros) {
   builder.root["accessors"][0].erase("bufferView");
   EXPECT_EQ(onlyGeometry(builder.load()).positions[1], vec3(0));
   builder.root["accessors"][0]["count"] = 4000000000u;
-  EXPECT_EQ(errorOf(builder), "/accessors/0/count: 4000000000 elements without a buffer view; at most 16777216 are read");
+  EXPECT_EQ(errorOf(builder),
+            "/accessors/0/count: 4000000000 elements without a buffer view; at most 16777216 are read");
 }
 
 }  // namespace

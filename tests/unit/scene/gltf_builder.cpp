@@ -48,7 +48,8 @@ std::string base64(const std::vector<std::byte>& bytes) {
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t group = 0;
     const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (k < count ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0u);
     for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[group >> (18 - 6 * k) & 63] : '=';
   }
   return text;
@@ -86,13 +87,16 @@ scene::Scene loadBytes(const std::vector<std::byte>& bytes, const std::string& e
   const TempFolder folder;
   const std::filesystem::path file = folder / ("scene." + extension);
   // Not writeFile: it waits for the disk, and the tests write thousands of files.
-  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   scene::Scene scene = scene::loadGltf(file);
   scene::validate(scene);
   return scene;
 }
 
-scene::Scene loadText(std::string_view text, const std::string& extension) { return loadBytes(bytesOf(text), extension); }
+scene::Scene loadText(std::string_view text, const std::string& extension) {
+  return loadBytes(bytesOf(text), extension);
+}
 
 std::string errorOf(const GltfBuilder& builder) {
   return errorFrom([&] { builder.load(); });

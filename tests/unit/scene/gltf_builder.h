@@ -25,12 +25,18 @@ inline constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsigne
 
 template <class T>
 constexpr int componentTypeOf() {
-  if constexpr (std::is_same_v<T, std::int8_t>) return kByte;
-  else if constexpr (std::is_same_v<T, std::uint8_t>) return kUnsignedByte;
-  else if constexpr (std::is_same_v<T, std::int16_t>) return kShort;
-  else if constexpr (std::is_same_v<T, std::uint16_t>) return kUnsignedShort;
-  else if constexpr (std::is_same_v<T, std::uint32_t>) return kUnsignedInt;
-  else return kFloat;
+  if constexpr (std::is_same_v<T, std::int8_t>)
+    return kByte;
+  else if constexpr (std::is_same_v<T, std::uint8_t>)
+    return kUnsignedByte;
+  else if constexpr (std::is_same_v<T, std::int16_t>)
+    return kShort;
+  else if constexpr (std::is_same_v<T, std::uint16_t>)
+    return kUnsignedShort;
+  else if constexpr (std::is_same_v<T, std::uint32_t>)
+    return kUnsignedInt;
+  else
+    return kFloat;
 }
 
 inline std::size_t componentsOf(const std::string& type) {
@@ -82,9 +88,9 @@ class GltfBuilder {
   }
   Json& primitive(std::size_t mesh = 0) { return root["meshes"][mesh]["primitives"][0]; }
 
-  std::string json() const;          // with `binary` as buffer 0 without uri
+  std::string json() const;  // with `binary` as buffer 0 without uri
   std::vector<std::byte> glb() const;
-  std::string gltf() const;          // with `binary` as a data URI
+  std::string gltf() const;  // with `binary` as a data URI
 
   // Written to a temporary .glb and loaded.
   scene::Scene load() const;

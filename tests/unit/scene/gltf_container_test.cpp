@@ -65,8 +65,10 @@ TEST(GltfContainer, ChecksTheChunks) {
   const std::size_t bin = 20 + jsonSize;
   EXPECT_THAT(errorOfBytes(patched(glb, 12, 0xFFFFFFFC)), StartsWith("byte 12: the chunk is 42949"));
   EXPECT_EQ(errorOfBytes(patched(glb, 16, 0x004E4942)), "byte 12: the first chunk is not JSON");
-  EXPECT_EQ(errorOfBytes(patched(glb, bin + 4, 0x4E4F534A)), "byte " + std::to_string(bin) + ": there is a second JSON chunk");
-  EXPECT_EQ(errorOfBytes(patched(glb, bin, 40)), "byte " + std::to_string(bin) + ": the chunk is 4 bytes longer than the file");
+  EXPECT_EQ(errorOfBytes(patched(glb, bin + 4, 0x4E4F534A)),
+            "byte " + std::to_string(bin) + ": there is a second JSON chunk");
+  EXPECT_EQ(errorOfBytes(patched(glb, bin, 40)),
+            "byte " + std::to_string(bin) + ": the chunk is 4 bytes longer than the file");
   // An unknown chunk is skipped; then the buffer has no data.
   EXPECT_EQ(errorOfBytes(patched(glb, bin + 4, 0x12345678)), "/buffers/0: has no data: neither a uri nor a BIN chunk");
 }
@@ -165,7 +167,8 @@ TEST(GltfUri, DataUris) {
   std::string escaped = "data:,";
   for (const std::byte b : builder.binary) escaped += fmt::format("%{:02x}", std::to_integer<int>(b));
   EXPECT_EQ(errorWith(escaped), "");
-  EXPECT_EQ(errorWith("data:;base64," + digits.substr(0, 20)), "/buffers/0/byteLength: 36 bytes, but the buffer has only 15");
+  EXPECT_EQ(errorWith("data:;base64," + digits.substr(0, 20)),
+            "/buffers/0/byteLength: 36 bytes, but the buffer has only 15");
   EXPECT_EQ(errorWith("data:;base64,$$$$"), "/buffers/0/uri: the data URI is not valid base64");
   EXPECT_EQ(errorWith("data:;base64," + digits + "=AAAA"), "/buffers/0/uri: the data URI is not valid base64");
   EXPECT_EQ(errorWith("data:"), "/buffers/0/uri: the data URI has no comma");
@@ -198,7 +201,8 @@ TEST(GltfUri, ExternalFiles) {
   EXPECT_EQ(errorWith("short.bin"), "/buffers/0/byteLength: 36 bytes, but the buffer has only 10");
   EXPECT_EQ(errorWith("none.bin"), "/buffers/0/uri: none.bin does not exist");
   EXPECT_EQ(errorWith("../models"), "/buffers/0/uri: ../models is not a file");
-  EXPECT_EQ(errorWith((folder / "up.bin").string()), "/buffers/0/uri: the file name is absolute; only relative ones are read");
+  EXPECT_EQ(errorWith((folder / "up.bin").string()),
+            "/buffers/0/uri: the file name is absolute; only relative ones are read");
   EXPECT_EQ(errorWith("http://example.com/a.bin"), "/buffers/0/uri: only data URIs and relative file names are read");
   EXPECT_EQ(errorWith("file:///a.bin"), "/buffers/0/uri: only data URIs and relative file names are read");
   EXPECT_EQ(errorWith("up%00.bin"), "/buffers/0/uri: the file name contains a zero byte");
