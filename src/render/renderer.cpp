@@ -65,13 +65,15 @@ struct Renderer::Impl {
     frame.height = settings.height;
     frame.seed = settings.seed;
     frame.flags = settings.transparent ? shared::kFrameTransparent : 0;
+    frame.rayRecords = settings.rayRecords ? settings.rayRecords->address() : 0;
+    frame.rayRecordCapacity = settings.rayRecords ? settings.rayRecordCapacity : 0;
     film->describe(frame);
     frameBuffer = gpu::makeBuffer(context, std::as_bytes(std::span(&frame, 1)), 0, "frame");
     parameterBuffer = gpu::makeBuffer(context, settings.parameters.pack(), 0, "parameters");
   }
 
   void link(const shader::Compiler& compiler, const gpu::PipelineCache* cache) {
-    std::vector<std::pair<std::string, std::string>> defines;
+    std::vector<std::pair<std::string, std::string>> defines = settings.defines;
     if (context.info().quirks.corruptsHitAttributes && scene.hasAlpha()) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
     const program::CompiledProgram compiled = program::compile(description, compiler, defines);
     if (!compiled.ok) throw ProgramError(compiled.diagnostics);

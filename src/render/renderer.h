@@ -21,6 +21,9 @@ struct RenderSettings {
   std::uint32_t seed = 0;
   bool transparent = false;     // background: alpha 0 instead of the environment
   program::ParameterValues parameters{{}};
+  std::vector<std::pair<std::string, std::string>> defines;  // for all shaders of the program
+  const gpu::Buffer* rayRecords = nullptr;  // shared::RayRecord, rayRecordCapacity per pixel: for benchmarks
+  std::uint32_t rayRecordCapacity = 0;
   double launchSeconds = 0.25;  // a launch is cut so that it takes about this long
   double timeoutSeconds = 60;   // a launch that takes longer: gpu::DeviceLostError
 };

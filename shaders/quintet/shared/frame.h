@@ -49,6 +49,20 @@ QT_SHARED_SIZE(CameraData, 72);
 QT_CONSTANT kFrameTransparent = 1u;  // camera rays that leave the scene give 0 with alpha 0
 
 QT_CONSTANT kMaxOutputs = 16u;
+// RayRecord::kind
+QT_CONSTANT kRecordEnd = 0u;      // no further ray of this pixel
+QT_CONSTANT kRecordClosest = 1u;
+QT_CONSTANT kRecordShadow = 2u;
+
+// A ray that a program traced (QUINTET_RECORD_RAYS), to be traced again by the program `replay`.
+struct RayRecord {
+  vec3 origin;
+  float tmax;
+  vec3 direction;
+  uint kind;
+};
+QT_SHARED_SIZE(RayRecord, 32);
+
 QT_CONSTANT kNoLight = 0xFFFFFFFFu;
 
 struct Frame {
@@ -60,6 +74,7 @@ struct Frame {
   Address lightSlots;   // uint[]: first LightData of an instance's geometry (+ primitive), or kNoLight
   Address albedoTables; // quintet/bsdf/albedo.glsl
   Address statistics;   // uvec2[filmWidth · filmHeight]: rays traced, samples dropped; 0: do not count
+  Address rayRecords;   // RayRecord[filmWidth · filmHeight · rayRecordCapacity], for benchmarks; else 0
   Address outputs[kMaxOutputs];  // vec4[filmWidth · filmHeight]: sums of this batch, rows top to bottom
   EnvironmentData environment;
   CameraData camera;
@@ -72,8 +87,10 @@ struct Frame {
   uint environmentLight;  // index of the environment in `lights`, or kNoLight
   uint seed;
   uint flags;           // kFrame…
+  uint rayRecordCapacity;  // records per pixel
+  uint padding;
 };
-QT_SHARED_SIZE(Frame, 8 * 8 + 8 * 16 + 40 + 72 + 40);
+QT_SHARED_SIZE(Frame, 8 * 9 + 8 * 16 + 40 + 72 + 48);
 
 // Push constants of the pass that adds a batch to the total; its workgroups form rows of kFilmAddColumns.
 QT_CONSTANT kFilmAddGroupSize = 64;
