@@ -9,6 +9,7 @@ std::span<const Command> commands() {
       Command{"render", "make a picture of a glTF scene", renderCommand},
       Command{"info", "say what a device can do, or what is in a scene or picture", infoCommand},
       Command{"compare", "say how far two pictures are apart", compareCommand},
+      Command{"bench", "measure rays per second against the ceiling of the device", benchCommand},
   };
   return kCommands;
 }

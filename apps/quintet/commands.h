@@ -22,6 +22,7 @@ std::span<const Command> commands();
 int renderCommand(Arguments);   // render.cpp
 int infoCommand(Arguments);     // info.cpp
 int compareCommand(Arguments);  // compare.cpp
+int benchCommand(Arguments);    // bench.cpp
 
 }  // namespace quintet::app
 #endif
