@@ -8,6 +8,7 @@
 #include "render/albedo_tables.h"
 #include "render/light_table.h"
 #include "render/material_data.h"
+#include "render/scene_features.h"
 #include "render/scene_upload.h"
 
 namespace quintet::render {
@@ -55,6 +56,7 @@ struct DeviceScene::Impl {
   std::uint32_t rayTypeCount = 0;
   std::vector<program::GeometryClass> classes;
   shared::Frame frame{};
+  std::vector<std::pair<std::string, std::string>> defines;
 
   Impl(gpu::Context& gpuContext, const scene::Scene& scene, const scene::Environment& environment, const DeviceSceneOptions& sceneOptions)
       : context(gpuContext), options(sceneOptions), bounds(scene::worldBounds(scene)) {
@@ -67,6 +69,9 @@ struct DeviceScene::Impl {
     statistics.uploadSeconds = secondsSince(start);
     buildBottomLevel(scene);
     uploadTables(scene);
+    defines = featureDefines(scene, environment);
+    if (context.info().quirks.corruptsHitAttributes && std::find(classes.begin(), classes.end(), program::GeometryClass::alpha) != classes.end())
+      defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
     statistics.geometryBytes = geometry.bytes;
     statistics.textureBytes = textures->bytes();
   }
@@ -200,6 +205,7 @@ std::span<const program::GeometryClass> DeviceScene::geometryClasses() const { r
 bool DeviceScene::hasAlpha() const {
   return std::find(impl_->classes.begin(), impl_->classes.end(), program::GeometryClass::alpha) != impl_->classes.end();
 }
+const std::vector<std::pair<std::string, std::string>>& DeviceScene::defines() const { return impl_->defines; }
 const shared::Frame& DeviceScene::frameTemplate() const { return impl_->frame; }
 const DeviceSceneStatistics& DeviceScene::statistics() const { return impl_->statistics; }
 const Bounds3& DeviceScene::bounds() const { return impl_->bounds; }

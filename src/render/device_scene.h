@@ -5,6 +5,8 @@
 
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "gpu/descriptors.h"
@@ -44,6 +46,8 @@ class DeviceScene {
   // Classes of all geometries, in the order of hit records.
   std::span<const program::GeometryClass> geometryClasses() const;
   bool hasAlpha() const;  // any geometry of class alpha
+  // Preprocessor definitions for shaders: QUINTET_NO_… (quintet/features.glsl) and driver workarounds.
+  const std::vector<std::pair<std::string, std::string>>& defines() const;
   // The frame's addresses and environment; camera, film and outputs are left for the renderer.
   const shared::Frame& frameTemplate() const;
   const DeviceSceneStatistics& statistics() const;

@@ -74,7 +74,7 @@ struct Renderer::Impl {
 
   void link(const shader::Compiler& compiler, const gpu::PipelineCache* cache) {
     std::vector<std::pair<std::string, std::string>> defines = settings.defines;
-    if (context.info().quirks.corruptsHitAttributes && scene.hasAlpha()) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
+    defines.insert(defines.end(), scene.defines().begin(), scene.defines().end());
     const program::CompiledProgram compiled = program::compile(description, compiler, defines);
     if (!compiled.ok) throw ProgramError(compiled.diagnostics);
     scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()));

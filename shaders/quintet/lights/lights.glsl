@@ -4,6 +4,7 @@
 #ifndef QUINTET_LIGHTS_LIGHTS_GLSL
 #define QUINTET_LIGHTS_LIGHTS_GLSL
 
+#include "../features.glsl"
 #include "alias.glsl"
 #include "directional.glsl"
 #include "environment.glsl"
@@ -23,11 +24,11 @@ bool sampleLight(vec3 position, float uLight, vec2 u, out LightSample s) {
   const LightData light = LightArray(frame.lights).at[index];
 
   bool useful = false;
-  if (light.type == kLightTriangle) useful = sampleTriangleLight(light, position, u, s);
-  else if (light.type == kLightEnvironment) useful = sampleEnvironmentLight(u, hash(bits), s);
-  else if (light.type == kLightPoint) useful = samplePointLight(light, position, s);
-  else if (light.type == kLightSpot) useful = sampleSpotLight(light, position, s);
-  else if (light.type == kLightDirectional) useful = sampleDirectionalLight(light, s);
+  if (kHasTriangleLights && light.type == kLightTriangle) useful = sampleTriangleLight(light, position, u, s);
+  else if (kHasEnvironment && light.type == kLightEnvironment) useful = sampleEnvironmentLight(u, hash(bits), s);
+  else if (kHasPunctualLights && light.type == kLightPoint) useful = samplePointLight(light, position, s);
+  else if (kHasPunctualLights && light.type == kLightSpot) useful = sampleSpotLight(light, position, s);
+  else if (kHasPunctualLights && light.type == kLightDirectional) useful = sampleDirectionalLight(light, s);
   s.pdf *= probability;
   return useful && s.pdf > 0.0;
 }
@@ -35,6 +36,7 @@ bool sampleLight(vec3 position, float uLight, vec2 u, out LightSample s) {
 // Density with which sampleLight finds the point of an emissive triangle that a BSDF-sampled ray has met at
 // `distance` (unit direction) with |direction · normal| = cosine; 0 if the triangle is not in the table.
 float pdfLightTriangle(uint instanceIndex, uint geometryIndex, uint primitive, float distance, float cosine) {
+  if (!kHasTriangleLights) return 0.0;
   const InstanceData instance = InstanceArray(frame.instances).at[instanceIndex];
   const uint slot = UintArray(frame.lightSlots).at[instance.firstLightSlot + geometryIndex];
   if (slot == kNoLight) return 0.0;
@@ -46,7 +48,7 @@ float pdfLightTriangle(uint instanceIndex, uint geometryIndex, uint primitive, f
 
 // Density with which sampleLight finds the direction of a BSDF-sampled ray that has left the scene.
 float pdfLightEnvironment(vec3 direction) {
-  if (frame.environmentLight == kNoLight) return 0.0;
+  if (!kHasEnvironment || frame.environmentLight == kNoLight) return 0.0;
   return AliasArray(frame.lightTable).at[frame.environmentLight].probability * environmentPdf(direction);
 }
 

@@ -1,0 +1,38 @@
+// What the scene has. The renderer defines QUINTET_NO_… for what no material and no light of the scene
+// needs (src/render/scene_features.h); the compiler then drops that code. Results do not change.
+#ifndef QUINTET_FEATURES_GLSL
+#define QUINTET_FEATURES_GLSL
+
+#ifdef QUINTET_NO_SOLID_TRANSMISSION
+const bool kHasSolidTransmission = false;  // refraction into closed solids
+#else
+const bool kHasSolidTransmission = true;
+#endif
+#ifdef QUINTET_NO_THIN_TRANSMISSION
+const bool kHasThinTransmission = false;  // thin walls
+#else
+const bool kHasThinTransmission = true;
+#endif
+#ifdef QUINTET_NO_CLEARCOAT
+const bool kHasClearcoat = false;
+#else
+const bool kHasClearcoat = true;
+#endif
+#ifdef QUINTET_NO_TRIANGLE_LIGHTS
+const bool kHasTriangleLights = false;
+#else
+const bool kHasTriangleLights = true;
+#endif
+#ifdef QUINTET_NO_PUNCTUAL_LIGHTS
+const bool kHasPunctualLights = false;
+#else
+const bool kHasPunctualLights = true;
+#endif
+#ifdef QUINTET_NO_ENVIRONMENT
+const bool kHasEnvironment = false;  // it is black
+#else
+const bool kHasEnvironment = true;
+#endif
+const bool kHasTransmission = kHasSolidTransmission || kHasThinTransmission;
+
+#endif

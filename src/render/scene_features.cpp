@@ -1,0 +1,25 @@
+#include "render/scene_features.h"
+
+#include <algorithm>
+
+namespace quintet::render {
+
+std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Scene& scene, const scene::Environment& environment) {
+  const auto any = [&](auto predicate) { return std::any_of(scene.materials.begin(), scene.materials.end(), predicate); };
+  const auto emits = [](const scene::Material& m) { return glm::any(glm::greaterThan(m.emissive, vec3(0.0f))); };
+  const vec3 environmentScale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
+
+  std::vector<std::pair<std::string, std::string>> defines;
+  const auto without = [&](const char* name, bool present) {
+    if (!present) defines.emplace_back(name, "1");
+  };
+  without("QUINTET_NO_SOLID_TRANSMISSION", any([](const scene::Material& m) { return m.transmission > 0.0f && m.thickness > 0.0f; }));
+  without("QUINTET_NO_THIN_TRANSMISSION", any([](const scene::Material& m) { return m.transmission > 0.0f && !(m.thickness > 0.0f); }));
+  without("QUINTET_NO_CLEARCOAT", any([](const scene::Material& m) { return m.clearcoat > 0.0f; }));
+  without("QUINTET_NO_TRIANGLE_LIGHTS", any(emits));
+  without("QUINTET_NO_PUNCTUAL_LIGHTS", !scene.lights.empty());
+  without("QUINTET_NO_ENVIRONMENT", glm::any(glm::greaterThan(environmentScale, vec3(0.0f))));
+  return defines;
+}
+
+}  // namespace quintet::render
