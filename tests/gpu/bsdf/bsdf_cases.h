@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "gpu/buffer.h"
 #include "harness.h"
@@ -113,6 +116,14 @@ class BsdfTest : public testing::Test {
   static std::vector<Out> runCases(const std::string& body, const std::vector<BsdfCase>& cases, std::size_t count,
                                    const Defines& defines = {}) {
     return runCompute<Out>(body, cases, count, {.defines = defines, .frame = frame_->address()});
+  }
+  template <class Out, class In>
+  static std::vector<Out> runQueries(const std::string& body, const std::vector<In>& queries) {
+    return runCompute<Out>(body, queries, queries.size(), {.frame = frame_->address()});
+  }
+  template <class Out>
+  static std::vector<Out> runCases(const std::string& body, std::size_t count) {
+    return runCompute<Out>(body, count, {.frame = frame_->address()});
   }
 
  private:

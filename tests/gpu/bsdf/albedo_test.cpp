@@ -1,0 +1,110 @@
+// The albedo tables, as the shader looks them up, against an oracle in double precision that shares nothing
+// with src/render/albedo_tables.cpp: it integrates Walter's BSDF over all micronormals, by D cos theta.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "bsdf/bsdf_cases.h"
+
+namespace quintet::test {
+namespace {
+
+struct Query { float cosine; float alpha; float ior; std::uint32_t outside; };
+struct Answer { vec2 schlick; vec2 glass; float average; };
+
+const std::string kLookUp = kBsdfPrelude + R"(
+struct Query { float cosine; float alpha; float ior; uint outside; };
+struct Answer { vec2 schlick; vec2 glass; float average; };
+#define In Query
+#define Out Answer
+Out run(uint index, In q) {
+  AlbedoCell row = albedoRow(q.alpha);
+  return Answer(albedoSchlick(row, q.cosine), albedoGlass(q.cosine, q.alpha, q.ior, q.outside != 0u), albedoAverage(0.2, 0.9, row));
+}
+)";
+
+double masking(double cosine, double alpha) {
+  const double tan2 = 1.0 / (cosine * cosine) - 1.0;
+  return 2.0 / (1.0 + std::sqrt(1.0 + alpha * alpha * tan2));
+}
+
+// (A, B, glass, glass without Fresnel), by the micronormals' density D cos theta: f cos_i D^-1 integrates to
+// the mean of F G (wo.m) / (cos_o cos_m).
+glm::dvec4 integrate(const Query& q) {
+  const double alpha = q.alpha, cosO = q.cosine, sinO = std::sqrt(1.0 - cosO * cosO);
+  const double eta = q.outside ? q.ior : 1.0 / q.ior;
+  constexpr int kRadii = 3000, kAngles = 256;
+  glm::dvec4 sum(0.0);
+  for (int i = 0; i < kRadii; ++i) {
+    const double t = (i + 0.5) / kRadii;
+    const double u = 1.0 - (1.0 - t) * (1.0 - t), density = 2.0 * (1.0 - t);
+    const double tangent = alpha * std::sqrt(u / (1.0 - u)), cosM = 1.0 / std::sqrt(1.0 + tangent * tangent);
+    for (int j = 0; j < kAngles; ++j) {
+      const double phi = 2.0 * std::numbers::pi * (j + 0.5) / kAngles;
+      const double c = sinO * tangent * cosM * std::cos(phi) + cosO * cosM;
+      if (c <= 0.0) continue;
+      const double weight = density * c / (cosO * cosM);
+      const double maskO = masking(cosO, alpha);
+      const double reflectedZ = 2.0 * c * cosM - cosO;
+      double reflected = 0.0;
+      if (reflectedZ > 0.0) {
+        const double maskI = masking(reflectedZ, alpha);
+        reflected = maskO * maskI / (maskO + maskI - maskO * maskI);  // height-correlated
+      }
+      double fresnel = 1.0, refracted = reflected;
+      const double cosT2 = 1.0 - (1.0 - c * c) / (eta * eta);
+      if (cosT2 > 0.0) {
+        const double cosT = std::sqrt(cosT2);
+        const double rs = (c - eta * cosT) / (c + eta * cosT), rp = (eta * c - cosT) / (eta * c + cosT);
+        fresnel = 0.5 * (rs * rs + rp * rp);
+        const double refractedZ = (c / eta - cosT) * cosM - cosO / eta;
+        refracted = refractedZ < 0.0 ? maskO * masking(-refractedZ, alpha) : 0.0;
+      }
+      const double schlick = std::pow(1.0 - c, 5.0);
+      sum += weight * glm::dvec4(reflected * (1.0 - schlick), reflected * schlick,
+                                 fresnel * reflected + (1.0 - fresnel) * refracted, refracted);
+    }
+  }
+  return sum / double{kRadii * kAngles};
+}
+
+class BsdfAlbedo : public BsdfTest {
+ protected:
+  static std::vector<Answer> lookUp(const std::vector<Query>& queries) {
+    return runQueries<Answer>(kLookUp, queries);
+  }
+};
+
+TEST_F(BsdfAlbedo, TablesAgreeWithTheOracle) {
+  const std::vector<Query> queries = {
+      {1.0f, 1.0f, 1.5f, 1}, {1.0f, 1.0f, 1.5f, 0}, {0.6f, 0.5f, 1.33f, 1}, {0.6f, 0.5f, 1.33f, 0},  {0.15f, 0.8f, 2.0f, 1},
+      {0.15f, 0.8f, 2.0f, 0}, {0.3f, 0.1f, 1.5f, 1}, {0.3f, 0.1f, 1.5f, 0}, {0.85f, 0.02f, 1.7f, 1}, {0.85f, 0.25f, 1.7f, 0},
+      {0.05f, 0.3f, 1.2f, 1}, {0.05f, 0.3f, 1.2f, 0}};
+  const std::vector<Answer> answers = lookUp(queries);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const glm::dvec4 expected = integrate(queries[i]);
+    EXPECT_NEAR(answers[i].schlick.x, expected.x, 0.004) << i;
+    EXPECT_NEAR(answers[i].schlick.y, expected.y, 0.004) << i;
+    EXPECT_NEAR(answers[i].glass.x, expected.z, 0.012) << i;
+    EXPECT_NEAR(answers[i].glass.y, expected.w, 0.015) << i;
+  }
+}
+
+// The average is that of the albedo as it is looked up: the coupling of the diffuse base relies on it.
+TEST_F(BsdfAlbedo, AverageIsThatOfTheRow) {
+  constexpr int kPoints = 4096;
+  for (const float alpha : {0.0f, 0.05f, 0.4f, 1.0f}) {
+    std::vector<Query> queries;
+    for (int i = 0; i < kPoints; ++i) queries.push_back({std::sqrt((static_cast<float>(i) + 0.5f) / kPoints), alpha, 1.5f, 1});
+    double sum = 0.0;
+    const std::vector<Answer> answers = lookUp(queries);
+    for (const Answer& a : answers) {
+      const double albedo = 0.2 * a.schlick.x + 0.9 * a.schlick.y;
+      sum += albedo * (1.0 + 0.2 * (1.0 / (a.schlick.x + a.schlick.y) - 1.0)) / kPoints;
+    }
+    EXPECT_NEAR(answers[0].average, sum, 2e-3) << alpha;
+  }
+}
+
+}  // namespace
+}  // namespace quintet::test

@@ -1,0 +1,275 @@
+// What the lobes promise at single pairs of directions: weights, reciprocity, deltas, total reflection,
+// sides; and that no parameters make them fail.
+#include <gtest/gtest.h>
+
+#include "bsdf/bsdf_cases.h"
+
+namespace quintet::test {
+namespace {
+
+constexpr std::size_t kSamples = 1 << 14;
+
+double relativeDifference(const vec3& a, const vec3& b) {
+  return glm::length(a - b) / std::max(1e-6f, std::max(glm::length(a), glm::length(b)));
+}
+
+class BsdfLobes : public BsdfTest {
+ protected:
+  static std::vector<BsdfSampleOut> sample(const BsdfCase& material, std::size_t count = kSamples) {
+    return runCases<BsdfSampleOut>(kBsdfSampling, {material}, count);
+  }
+};
+
+// The functions that a program calls agree with one another on what was sampled.
+TEST_F(BsdfLobes, WeightIsEvalOverPdf) {
+  struct Out { vec3 weight; float pdf; vec3 value; float evaluatedPdf; };
+  const std::string body = kBsdfPrelude + R"(
+    struct Out_ { vec3 weight; float pdf; vec3 value; float evaluatedPdf; };
+    #define In Case
+    #define Out Out_
+    Out run(uint index, In c) {
+      Bsdf b = makeBsdfOf(c);
+      BsdfSample s;
+      vec3 u = randomAt(index, 2u);
+      if (!bsdfSample(b, c.wo, u.z, u.xy, s) || s.delta) return Out(vec3(0.0), 0.0, vec3(0.0), 0.0);
+      return Out(s.weight, s.pdf, bsdfEval(b, c.wo, s.wi), bsdfPdf(b, c.wo, s.wi));
+    }
+  )";
+  std::vector<BsdfCase> cases;
+  for (const float cosine : {1.0f, 0.6f, 0.2f, 0.02f}) {
+    for (const float alpha : {0.001f, 0.02f, 0.1f, 0.4f, 1.0f}) {
+      BsdfCase c;
+      c.wo = directionAt(cosine);
+      c.alpha = alpha;
+      c.baseColor = {0.9f, 0.5f, 0.2f};
+      c.metallic = 0.3f;
+      c.transmission = 0.5f;
+      c.clearcoat = 0.5f;
+      c.clearcoatAlpha = alpha;
+      cases.push_back(c);
+      c.thin = 1;
+      cases.push_back(c);
+    }
+  }
+  std::size_t valid = 0;
+  for (const Out& out : runCases<Out>(body, cases, cases.size() * 4096)) {
+    if (out.pdf == 0.0f) continue;
+    ++valid;
+    ASSERT_LE(std::abs(out.pdf - out.evaluatedPdf), 1e-3f * out.pdf);
+    ASSERT_LE(relativeDifference(out.weight * out.pdf, out.value), 2e-3);
+  }
+  EXPECT_GT(valid, cases.size() * 4000);
+}
+
+// f(wo, wi) = f(wi, wo), for the diffuse lobe as it is, for the others without the compensation and the
+// coupling, which are factors of wo; f / (index at wo)^2 for refraction (Veach 1997, eq. 5.14).
+TEST_F(BsdfLobes, Reciprocity) {
+  struct Out { vec3 forward; vec3 backward; };
+  const std::string body = kBsdfPrelude + R"(
+    struct Out_ { vec3 forward; vec3 backward; };
+    #define In Case
+    #define Out Out_
+    vec3 evalOf(Case c, vec3 wo, vec3 wi, int lobe) {
+      c.wo = wo;
+      Bsdf b = makeBsdfOf(c);
+      b.specular.f0 = vec3(0.3, 0.5, 0.7);
+      b.specular.f90 = vec3(1.0);
+      b.thin.color = vec3(0.3, 0.5, 0.7);
+      b.dielectric.color = vec3(0.3, 0.5, 0.7);
+      b.dielectric.compensation = 1.0;
+      float scale = c.entering != 0u ? 1.0 : c.ior * c.ior;
+      return (lobe == 0 ? diffuseEval(b.diffuse, wi) : lobe == 1 ? specularEval(b.specular, wo, wi)
+            : lobe == 2 ? thinEval(b.thin, wo, wi) : lobe == 3 ? dielectricEval(b.dielectric, wo, wi) / scale
+            : vec3(clearcoatEval(b.clearcoat, wo, wi))) / abs(wi.z);
+    }
+    Out run(uint index, In c) {
+      int lobe = int(index) % 5;
+      vec3 u = randomAt(index, 3u);
+      vec3 wo = uniformDirection(u.xy);
+      wo.z = max(abs(wo.z), 0.01);
+      wo = normalize(wo);
+      vec3 wi = uniformDirection(randomAt(index, 4u).xy);
+      if (abs(wi.z) < 0.01) wi = vec3(0.0, 0.0, 1.0);
+      vec3 forward = evalOf(c, wo, wi, lobe);
+      if (wi.z > 0.0) return Out(forward, evalOf(c, wi, wo, lobe));
+      if (c.thin == 0u) c.entering = 1u - c.entering;  // seen from the other side, upside down
+      if (lobe == 4) return Out(vec3(0.0), vec3(0.0));
+      return Out(forward, evalOf(c, wi * vec3(1.0, 1.0, -1.0), wo * vec3(1.0, 1.0, -1.0), lobe));
+    }
+  )";
+  for (const float alpha : {0.05f, 0.3f, 1.0f}) {
+    BsdfCase c;
+    c.alpha = alpha;
+    c.transmission = 0.5f;
+    c.clearcoat = 1.0f;
+    c.clearcoatAlpha = alpha;
+    std::size_t compared = 0;
+    for (const Out& out : runCases<Out>(body, {c}, 100'000)) {
+      const double size = std::max(glm::length(out.forward), glm::length(out.backward));
+      if (size < 1e-3) continue;  // far off the peak of a narrow lobe float has few digits left
+      ++compared;
+      ASSERT_LE(relativeDifference(out.forward, out.backward), 2e-3);
+    }
+    EXPECT_GT(compared, 30'000u);
+  }
+}
+
+TEST_F(BsdfLobes, MirrorReflectsByFresnel) {
+  BsdfCase c;
+  c.alpha = 0.0f;
+  c.metallic = 1.0f;
+  c.baseColor = {0.9f, 0.5f, 0.2f};
+  c.wo = directionAt(0.5f);
+  const float schlick = std::pow(0.5f, 5.0f);
+  const vec3 expected = c.baseColor + (1.0f - c.baseColor) * schlick;
+  for (const BsdfSampleOut& s : sample(c, 1000)) {
+    ASSERT_TRUE(s.valid && s.delta && !s.transmitted);
+    EXPECT_EQ(s.pdf, 0.0f);
+    EXPECT_LT(glm::length(s.wi - vec3(-c.wo.x, -c.wo.y, c.wo.z)), 1e-6f);
+    EXPECT_LT(relativeDifference(s.weight, expected), 2e-3);
+  }
+}
+
+// Reflected and refracted shares, Snell's direction and the scaling of radiance, from both sides.
+TEST_F(BsdfLobes, SmoothGlassFollowsSnellAndFresnel) {
+  for (const bool entering : {true, false}) {
+    for (const float cosine : {1.0f, 0.9f, 0.8f}) {
+      BsdfCase c;
+      c.alpha = 0.0f;
+      c.transmission = 1.0f;
+      c.entering = entering;
+      c.wo = directionAt(cosine);
+      c.baseColor = {1.0f, 0.5f, 0.25f};
+      const double eta = entering ? 1.5 : 1.0 / 1.5;
+      const double cosT = std::sqrt(1.0 - (1.0 - double{cosine} * cosine) / (eta * eta));
+      const double rs = (cosine - eta * cosT) / (cosine + eta * cosT), rp = (eta * cosine - cosT) / (eta * cosine + cosT);
+      const double fresnel = 0.5 * (rs * rs + rp * rp);
+      glm::dvec3 reflected(0.0), refracted(0.0);
+      for (const BsdfSampleOut& s : sample(c)) {
+        ASSERT_TRUE(s.valid && s.delta);
+        (s.transmitted ? refracted : reflected) += glm::dvec3(s.weight) / double{kSamples};
+        const vec3 snell(-c.wo.x / eta, -c.wo.y / eta, -cosT);
+        ASSERT_LT(glm::length(s.wi - (s.transmitted ? snell : vec3(-c.wo.x, -c.wo.y, c.wo.z))), 2e-6f);
+      }
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(reflected[i], fresnel, 0.01);
+        EXPECT_NEAR(refracted[i] * eta * eta, (1.0 - fresnel) * c.baseColor[i], 0.02);
+      }
+    }
+  }
+}
+
+TEST_F(BsdfLobes, TotalReflectionLosesNothing) {
+  BsdfCase c;
+  c.alpha = 0.0f;
+  c.transmission = 1.0f;
+  c.entering = 0;
+  c.specular = 0.3f;
+  c.wo = directionAt(0.5f);  // beyond the critical angle, 48 degrees off the normal
+  for (const BsdfSampleOut& s : sample(c, 1000)) {
+    ASSERT_TRUE(s.valid && s.delta && !s.transmitted);
+    EXPECT_LT(relativeDifference(s.weight, vec3(1.0f)), 2e-3);
+  }
+}
+
+// KHR_materials_transmission: straight on, tinted, one interface.
+TEST_F(BsdfLobes, SmoothThinWallGoesStraightOn) {
+  BsdfCase c;
+  c.alpha = 0.0f;
+  c.transmission = 1.0f;
+  c.thin = 1;
+  c.baseColor = {1.0f, 0.5f, 0.25f};
+  c.wo = directionAt(0.8f);
+  const double fresnel = 0.04 + 0.96 * std::pow(0.2, 5.0);
+  glm::dvec3 passed(0.0);
+  for (const BsdfSampleOut& s : sample(c)) {
+    ASSERT_TRUE(s.valid && s.delta);
+    if (!s.transmitted) continue;
+    ASSERT_LT(glm::length(s.wi + c.wo), 1e-6f);
+    passed += glm::dvec3(s.weight) / double{kSamples};
+  }
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(passed[i], (1.0 - fresnel) * c.baseColor[i], 0.01);
+}
+
+TEST_F(BsdfLobes, SmoothLobesAreAnnounced) {
+  const std::string body = kBsdfPrelude + R"(
+    #define In Case
+    #define Out uint
+    Out run(uint index, In c) { return uint(bsdfHasSmooth(makeBsdfOf(c))); }
+  )";
+  BsdfCase mirror, glass, diffuse, lacquered;
+  mirror.alpha = 0.0f, mirror.metallic = 1.0f;
+  glass.alpha = 0.0f, glass.transmission = 1.0f;
+  diffuse.alpha = 0.0f;
+  lacquered = mirror, lacquered.clearcoat = 1.0f;
+  EXPECT_EQ((runCases<std::uint32_t>(body, {mirror, glass, diffuse, lacquered}, 4)), (std::vector<std::uint32_t>{0, 0, 1, 1}));
+}
+
+// Millions of random materials and directions, with the corners of the parameters over-represented.
+TEST_F(BsdfLobes, NothingIsInvalid) {
+  struct Out { std::uint32_t faults; float weight; };
+  const std::string body = kBsdfPrelude + R"(
+    struct Out_ { uint faults; float weight; };
+    #define Out Out_
+    // In [0,1], with 0 and 1 often.
+    float corner(uint index, uint dimension) { return clamp(randomAt(index, dimension).x * 1.4 - 0.2, 0.0, 1.0); }
+    bool broken(vec3 v) { return !(dot(v, vec3(1.0)) >= 0.0 && dot(v, vec3(1.0)) < 1e30 && min(v.x, min(v.y, v.z)) >= 0.0); }
+    Out run(uint index) {
+      vec3 a = randomAt(index, 100u);
+      Case c;
+      float cosine = a.x < 0.1 ? 1e-4 : a.x < 0.2 ? 1e-6 : a.x < 0.3 ? 1.0 : a.y;
+      c.wo = vec3(sqrt(1.0 - cosine * cosine) * vec2(cos(6.2831853 * a.z), sin(6.2831853 * a.z)), cosine);
+      c.alpha = pow(corner(index, 101u), 4.0);
+      c.baseColor = vec3(corner(index, 102u), corner(index, 103u), corner(index, 104u));
+      c.metallic = corner(index, 105u);
+      c.transmission = corner(index, 106u);
+      float ior = randomAt(index, 107u).x;
+      c.ior = ior < 0.1 ? 0.0 : ior < 0.2 ? 1.0 : ior < 0.3 ? 1.0 + 1e-3 * randomAt(index, 108u).x : 1.0 + 3.0 * randomAt(index, 108u).x;
+      c.entering = uint(randomAt(index, 109u).x < 0.5);
+      c.thin = uint(randomAt(index, 110u).x < 0.3);
+      c.specular = corner(index, 111u);
+      c.specularColor = 2.0 * vec3(corner(index, 112u), corner(index, 113u), corner(index, 114u));
+      c.clearcoat = corner(index, 115u);
+      c.clearcoatAlpha = pow(corner(index, 116u), 4.0);
+      c.clearcoatNormal = a.y < 0.5 ? vec3(0.0, 0.0, 1.0) : uniformDirection(randomAt(index, 117u).xy);
+      Bsdf b = makeBsdfOf(c);
+      uint faults = 0u;
+      float chances = b.chance.x + b.chance.y + b.chance.z + b.chance.w;
+      if (!(abs(chances - 1.0) < 1e-5 || chances == 0.0)) faults |= 1u;
+      vec3 wi = uniformDirection(randomAt(index, 118u).xy);
+      if (randomAt(index, 119u).x < 0.1) wi = -c.wo;
+      if (randomAt(index, 119u).y < 0.1) wi = vec3(wi.xy * inversesqrt(max(dot(wi.xy, wi.xy), 1e-20)), 0.0);
+      if (broken(bsdfEval(b, c.wo, wi))) faults |= 2u;
+      if (broken(vec3(bsdfPdf(b, c.wo, wi)))) faults |= 4u;
+      BsdfSample s;
+      vec3 u = randomAt(index, 120u);
+      if (u.x < 0.05) u.xy = vec2(0.0);
+      if (u.x > 0.95) u.xy = vec2(0.99999994);
+      if (randomAt(index, 121u).x < 0.05) u.z = 0.99999994;
+      bool valid = bsdfSample(b, c.wo, u.z, u.xy, s);
+      if (!valid) return Out(faults, 0.0);
+      if (!(abs(length(s.wi) - 1.0) < 1e-4)) faults |= 8u;
+      if (broken(s.weight)) faults |= 16u;
+      if (s.transmitted != (s.wi.z < 0.0)) faults |= 32u;
+      if (s.delta != (s.pdf == 0.0)) faults |= 64u;
+      if (s.transmitted && c.metallic == 1.0 || s.transmitted && c.transmission == 0.0) faults |= 128u;
+      return Out(faults, maxComponent(s.weight));
+    }
+  )";
+  const auto outs = runCases<Out>(body, 4'000'000);
+  std::uint32_t faults = 0;
+  std::size_t faulty = 0, valid = 0;
+  float largest = 0.0f;
+  for (const Out& out : outs) {
+    faults |= out.faults;
+    faulty += out.faults != 0;
+    valid += out.weight > 0.0f;
+    largest = std::max(largest, out.weight);
+  }
+  EXPECT_EQ(faulty, 0u) << "bits " << faults;
+  EXPECT_GT(valid, outs.size() * 8 / 10);
+  std::printf("  %zu of %zu samples valid, largest weight %g\n", valid, outs.size(), static_cast<double>(largest));
+}
+
+}  // namespace
+}  // namespace quintet::test
