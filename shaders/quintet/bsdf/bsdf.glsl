@@ -13,6 +13,7 @@
 #ifndef QUINTET_BSDF_BSDF_GLSL
 #define QUINTET_BSDF_BSDF_GLSL
 
+#include "../features.glsl"
 #include "clearcoat.glsl"
 #include "dielectric.glsl"
 #include "diffuse.glsl"
@@ -61,12 +62,13 @@ struct BsdfSample {
 Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   vec3 baseColor = clamp(p.baseColor, 0.0, 1.0);
   float dielectric = 1.0 - p.metallic;
-  float opaque = dielectric * (1.0 - p.transmission);
-  float clear = dielectric * p.transmission;
+  float transmission = kHasTransmission ? p.transmission : 0.0;
+  float opaque = dielectric * (1.0 - transmission);
+  float clear = dielectric * transmission;
   float alpha = max(p.alpha, kDeltaAlpha);
 
   Bsdf b;
-  b.refractive = clear > 0.0 && !p.thin && p.ior >= 1.0;
+  b.refractive = kHasSolidTransmission && clear > 0.0 && !(kHasThinTransmission && p.thin) && p.ior >= 1.0;
   b.specularDelta = p.alpha < kDeltaAlpha;
   b.clearcoatDelta = p.clearcoatAlpha < kDeltaAlpha;
 
@@ -102,7 +104,7 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   // The coat of a solid is on its outside only.
   bool coated = dot(wo, p.clearcoatNormal) > 0.0 && (p.entering || !b.refractive);
   b.clearcoat = ClearcoatLobe(p.clearcoatNormal, coated ? p.clearcoat : 0.0, max(p.clearcoatAlpha, kDeltaAlpha));
-  float coat = clearcoatAlbedo(b.clearcoat, wo);
+  float coat = kHasClearcoat ? clearcoatAlbedo(b.clearcoat, wo) : 0.0;
   b.underCoat = 1.0 - coat;
 
   float passed = max(1.0 - albedoCompensated(f0, p.specular, ab), 0.0);
@@ -110,7 +112,7 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   float glassAlbedo = mix(tint, 1.0, max(fresnelDielectric(wo.z, b.dielectric.eta), 0.1));
   b.chance = vec4(coat, b.underCoat * luminance(b.specular.f0 * ab.x + b.specular.f90 * ab.y),
                   b.underCoat * opaque * tint * passed,
-                  b.underCoat * clear * (b.refractive ? glassAlbedo : tint * passed));
+                  kHasTransmission ? b.underCoat * clear * (b.refractive ? glassAlbedo : tint * passed) : 0.0);
   float sum = b.chance.x + b.chance.y + b.chance.z + b.chance.w;
   b.chance *= sum > 0.0 ? 1.0 / sum : 0.0;
   return b;
@@ -122,26 +124,31 @@ bool bsdfHasSmooth(Bsdf b) {
 }
 
 vec3 bsdfEval(Bsdf b, vec3 wo, vec3 wi) {
-  vec3 transmission = b.refractive ? dielectricEval(b.dielectric, wo, wi) : thinEval(b.thin, wo, wi);
+  vec3 transmission = vec3(0.0);
+  if (kHasSolidTransmission) transmission = dielectricEval(b.dielectric, wo, wi);
+  if (kHasThinTransmission) transmission = b.refractive ? transmission : thinEval(b.thin, wo, wi);
   vec3 base = diffuseEval(b.diffuse, wi);
   base += b.specularDelta ? vec3(0.0) : specularEval(b.specular, wo, wi);
-  base += b.transmissionDelta ? vec3(0.0) : transmission;
+  if (kHasTransmission) base += b.transmissionDelta ? vec3(0.0) : transmission;
+  if (!kHasClearcoat) return base;
   float coat = b.clearcoatDelta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatEval(b.clearcoat, wo, wi);
   return vec3(coat) + b.underCoat * base;
 }
 
 float bsdfPdf(Bsdf b, vec3 wo, vec3 wi) {
-  float coat = b.clearcoatDelta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatPdf(b.clearcoat, wo, wi);
+  float coat = !kHasClearcoat || b.clearcoatDelta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatPdf(b.clearcoat, wo, wi);
   float specular = b.specularDelta ? 0.0 : specularPdf(b.specular, wo, wi);
-  float transmission = b.refractive ? dielectricPdf(b.dielectric, wo, wi) : thinPdf(b.thin, wo, wi);
+  float transmission = 0.0;
+  if (kHasSolidTransmission) transmission = dielectricPdf(b.dielectric, wo, wi);
+  if (kHasThinTransmission) transmission = b.refractive ? transmission : thinPdf(b.thin, wo, wi);
   return dot(b.chance, vec4(coat, specular, diffusePdf(wi), b.transmissionDelta ? 0.0 : transmission));
 }
 
 // The weight of a delta at its direction: b.chance goes in at the caller.
 vec3 bsdfDeltaWeight(Bsdf b, int lobe, float cosine, bool transmitted) {
-  if (lobe == 0) return vec3(clearcoatFresnel(b.clearcoat, cosine));
-  if (lobe == 1) return b.underCoat * specularFresnel(b.specular, cosine);
-  if (!b.refractive) return b.underCoat * thinTransmittance(b.thin, cosine);
+  if (kHasClearcoat && lobe == 0) return vec3(clearcoatFresnel(b.clearcoat, cosine));
+  if (!kHasTransmission || lobe == 1) return b.underCoat * specularFresnel(b.specular, cosine);
+  if (!kHasSolidTransmission || !b.refractive) return b.underCoat * thinTransmittance(b.thin, cosine);
   DielectricSplit split = dielectricSplit(b.dielectric, cosine);
   return b.underCoat * (transmitted ? split.transmittance / (b.dielectric.eta * b.dielectric.eta * (1.0 - split.reflectChance))
                                     : split.reflectance / split.reflectChance);
@@ -152,19 +159,21 @@ vec3 bsdfDeltaWeight(Bsdf b, int lobe, float cosine, bool transmitted) {
 // the evaluation then see it once. False if the direction is worth nothing.
 bool bsdfSampleDirection(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s) {
   vec3 edge = vec3(b.chance.x, b.chance.x + b.chance.y, b.chance.x + b.chance.y + b.chance.z);
-  int lobe = uLobe < edge.x ? 0 : uLobe < edge.y ? 1 : uLobe < edge.z || b.chance.w == 0.0 ? 2 : 3;
+  int lobe = kHasClearcoat && uLobe < edge.x ? 0 : uLobe < edge.y ? 1 : !kHasTransmission || uLobe < edge.z || b.chance.w == 0.0 ? 2 : 3;
+  bool coat = kHasClearcoat && lobe == 0;
+  bool transmits = kHasTransmission && lobe == 3;
   s.delta = lobe == 0 ? b.clearcoatDelta : lobe == 1 ? b.specularDelta : lobe == 3 && b.transmissionDelta;
 
-  vec3 normal = lobe == 0 ? b.clearcoat.normal : vec3(0.0, 0.0, 1.0);
-  mat3 basis = localFrame(normal);
+  vec3 normal = coat ? b.clearcoat.normal : vec3(0.0, 0.0, 1.0);
+  mat3 basis = kHasClearcoat ? localFrame(normal) : mat3(1.0);
   vec3 o = wo * basis;
-  float alpha = lobe == 0 ? b.clearcoat.alpha : b.specular.alpha;
-  float bound = lobe == 3 && b.refractive ? 1.0 : ggxBound(o.z, alpha);
+  float alpha = coat ? b.clearcoat.alpha : b.specular.alpha;
+  float bound = transmits && b.refractive ? 1.0 : ggxBound(o.z, alpha);
   vec3 m = s.delta ? normal : basis * ggxSample(o, alpha, bound, u);
 
-  if (lobe == 3) s.wi = b.refractive ? dielectricSample(b.dielectric, wo, m, (uLobe - edge.z) / b.chance.w) : thinSample(wo, m);
+  if (transmits) s.wi = b.refractive ? dielectricSample(b.dielectric, wo, m, (uLobe - edge.z) / b.chance.w) : thinSample(wo, m);
   else s.wi = lobe == 2 ? diffuseSample(u) : specularSample(wo, m);
-  s.transmitted = lobe == 3 && (!b.refractive || dot(s.wi, m) < 0.0);
+  s.transmitted = transmits && (!b.refractive || dot(s.wi, m) < 0.0);
   s.pdf = 0.0;
   s.weight = s.delta ? bsdfDeltaWeight(b, lobe, dot(wo, m), s.transmitted) / b.chance[lobe] : vec3(0.0);
   // A microfacet may reflect below the surface (or the coat's), or refract above it.
