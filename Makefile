@@ -12,6 +12,7 @@ JOBS        ?= $(shell nproc 2>/dev/null || echo 2)
 
 BUILD := build/$(PRESET)
 DEMO  := build/demo
+SCENES := build/scenes
 
 # How the demo is rendered: 55 seconds, as many samples as fit.
 RENDER_FLAGS ?= --size 800x450 --time 55
@@ -39,8 +40,9 @@ configure: setup
 setup: ## Install the packages that are missing (scripts/setup.sh --plan: only say which)
 	@bash scripts/setup.sh
 
-bench: build ## Measure rays per second, as JSON (BENCH_FLAGS)
-	@$(BUILD)/bin/quintet bench $(BENCH_FLAGS)
+bench: build ## Measure rays per second against the device's own ceiling (BENCH_FLAGS)
+	@$(BUILD)/bin/quintet_make_scenes $(SCENES)
+	@$(BUILD)/bin/quintet bench $(SCENES)/bench.glb $(BENCH_FLAGS)
 
 reference: build ## Compare with the reference images and values (tests/reference/run)
 	@QUINTET=$(CURDIR)/$(BUILD)/bin/quintet tests/reference/run

@@ -19,8 +19,10 @@ add_compile_options(-ffp-contract=off)
 
 find_program(QUINTET_CCACHE ccache)
 if(QUINTET_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${QUINTET_CCACHE})
-  set(CMAKE_C_COMPILER_LAUNCHER ${QUINTET_CCACHE})
+  # Paths below the source folder do not count: another clone finds the same objects.
+  set(launcher ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${QUINTET_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
+  set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
 endif()
 
 find_package(Threads REQUIRED)
