@@ -1,0 +1,259 @@
+// The two samplers: range, uniformity, independence of pixels and of demands, stratification, and what that buys.
+// Every statistical test says which mistake it would find, and finds it.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/math.h"
+#include "bsdf/chi_square.h"
+#include "harness.h"
+
+namespace quintet::test {
+namespace {
+
+constexpr double kLevel = 0.01;  // of each TEST, shared among its chi-square tests after Šidák
+
+// One question: the 2D (or 1D, then y = 0) number of a demand.
+struct Demand {
+  uvec2 pixel;
+  std::uint32_t index;      // of the sample
+  std::uint32_t dimension;  // demands made before
+  std::uint32_t seed = 0;
+};
+
+// SAMPLER is the library's file; WRONG makes one mistake of many.
+const std::string kBody = R"(
+#include <quintet/frame.glsl>
+#ifdef PCG
+#include <quintet/sampling/pcg.glsl>
+#else
+#include <quintet/sampling/sobol.glsl>
+#endif
+struct In { uvec2 pixel; uint index; uint dimension; uint seed; };
+#define Out vec2
+vec2 run(uint i, In value) {
+#ifdef WRONG
+  value.WRONG = 0u;
+#endif
+  Sampler s = makeSampler(value.pixel, value.index, value.seed);
+  s.dimension = value.dimension;
+#ifdef ONE
+  return vec2(next1D(s), 0.0);
+#elif defined(BITS)
+  const uint bits = nextBits(s);
+  return vec2(unitFloat(bits), unitFloat(bits << 16));
+#else
+  return next2D(s);
+#endif
+}
+)";
+
+std::vector<vec2> ask(const std::vector<Demand>& demands, const Defines& defines = {}) {
+  ComputeOptions options;
+  options.defines = defines;
+  return runCompute<vec2>(kBody, demands, demands.size(), options);
+}
+
+// Demands over a 512 x 256 image, each pixel once.
+std::vector<Demand> image(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed = 0,
+                          std::uint32_t shift = 0) {
+  std::vector<Demand> result;
+  for (std::uint32_t y = 0; y < 256; ++y)
+    for (std::uint32_t x = 0; x < 512; ++x) result.push_back({{x + shift, y}, index, dimension, seed});
+  return result;
+}
+
+// Successive samples of one pixel.
+std::vector<Demand> series(uvec2 pixel, std::uint32_t dimension, std::uint32_t count, std::uint32_t first = 0) {
+  std::vector<Demand> result;
+  for (std::uint32_t i = 0; i < count; ++i) result.push_back({pixel, first + i, dimension, 0});
+  return result;
+}
+
+// That the points (x, y) fill the unit square evenly: 32 x 32 cells.
+double uniformity(const std::vector<float>& x, const std::vector<float>& y) {
+  constexpr int kCells = 32;
+  std::vector<double> observed(kCells * kCells, 0.0);
+  const std::vector<double> expected(kCells * kCells, static_cast<double>(x.size()) / (kCells * kCells));
+  for (std::size_t i = 0; i < x.size(); ++i)
+    observed[static_cast<std::size_t>(y[i] * kCells) * kCells + static_cast<std::size_t>(x[i] * kCells)] += 1.0;
+  return chiSquareTest(observed, expected).pValue;
+}
+
+std::vector<float> component(const std::vector<vec2>& points, int c) {
+  std::vector<float> result;
+  for (const vec2& p : points) result.push_back(p[c]);
+  return result;
+}
+
+// Each of the 2^k boxes of 2^-i x 2^-j, i + j = k, holds exactly one of 2^k points, for every i.
+bool isNet(const std::vector<vec2>& points) {
+  const int k = std::countr_zero(points.size());
+  for (int i = 0; i <= k; ++i) {
+    std::vector<bool> seen(points.size(), false);
+    for (const vec2& p : points) {
+      const auto x = static_cast<std::size_t>(p.x * std::ldexp(1.0f, i));
+      const auto y = static_cast<std::size_t>(p.y * std::ldexp(1.0f, k - i));
+      const std::size_t box = (x << (k - i)) + y;
+      if (seen[box]) return false;
+      seen[box] = true;
+    }
+  }
+  return true;
+}
+
+const std::vector<Defines> kSamplers{{}, {{"PCG", "1"}}};
+
+TEST(Sampler, StaysBelowOne) {
+  for (Defines defines : kSamplers)
+    for (const char* kind : {"TWO", "ONE", "BITS"}) {
+      defines.emplace_back(kind, "1");
+      for (const vec2& p : ask(series({7, 9}, 3, 1 << 18), defines)) {
+        ASSERT_GE(glm::min(p.x, p.y), 0.0f);
+        ASSERT_LT(glm::max(p.x, p.y), 1.0f);
+      }
+      defines.pop_back();
+    }
+  const auto largest = runCompute<vec2>(R"(
+    #include <quintet/sampling/hash.glsl>
+    #define Out vec2
+    vec2 run(uint i) { return vec2(unitFloat(0xFFFFFFFFu), unitFloat(0u)); }
+  )", 1);
+  EXPECT_EQ(largest[0].x, 1.0f - 0x1p-24f);
+  EXPECT_EQ(largest[0].y, 0.0f);
+}
+
+// Prefixes and aligned blocks of 2^k samples are (0,k,2)-nets for every demand and pixel; scrambling keeps that.
+TEST(Sobol, BlocksAreNets) {
+  for (const uvec2 pixel : {uvec2(0, 0), uvec2(3, 7), uvec2(1919, 1079)})
+    for (const std::uint32_t dimension : {0u, 1u, 5u, 40u})
+      for (const std::uint32_t first : {0u, 1024u, 3u << 20}) {
+        const std::vector<vec2> points = ask(series(pixel, dimension, 1024, first));
+        for (std::size_t count = 1; count <= points.size(); count *= 2)
+          EXPECT_TRUE(isNet({points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count)})) << count;
+        EXPECT_TRUE(isNet({points.begin() + 512, points.end()}));
+      }
+  EXPECT_FALSE(isNet(ask(series({3, 7}, 0, 1024), {{"PCG", "1"}})));
+  EXPECT_FALSE(isNet(ask(series({3, 7}, 0, 1024, 512))));  // not aligned
+}
+
+TEST(Sobol, OneDimensionalDemandsAreStratified) {
+  for (const std::uint32_t dimension : {0u, 3u, 17u}) {
+    const std::vector<vec2> points = ask(series({11, 5}, dimension, 4096), {{"ONE", "1"}});
+    for (std::size_t count = 1; count <= points.size(); count *= 2) {
+      std::vector<bool> seen(count, false);
+      for (std::size_t i = 0; i < count; ++i)
+        seen[static_cast<std::size_t>(points[i].x * static_cast<float>(count))] = true;
+      EXPECT_EQ(std::ranges::count(seen, true), static_cast<std::ptrdiff_t>(count));
+    }
+  }
+}
+
+// One sample of each pixel: uniform, whatever the sample's index, the demand and the seed.
+TEST(Sampler, EachNumberIsUniformOverPixels) {
+  constexpr std::size_t kTests = 2 * 2 * 4 + 2;
+  const double least = sidak(kLevel, kTests);
+  for (const Defines& defines : kSamplers) {
+    for (const std::uint32_t index : {0u, 1u, 100u, 65535u})
+      for (const std::uint32_t dimension : {0u, 9u}) {
+        const std::vector<vec2> points = ask(image(index, dimension, index), defines);
+        EXPECT_GT(uniformity(component(points, 0), component(points, 1)), least) << index << " " << dimension;
+      }
+    Defines bits = defines;
+    bits.emplace_back("BITS", "1");
+    const std::vector<vec2> points = ask(image(3, 4), bits);
+    EXPECT_GT(uniformity(component(points, 0), component(points, 1)), least);
+  }
+}
+
+// Numbers that a path multiplies: of two demands, two samples, two pixels, two seeds. WRONG: the difference is ignored.
+TEST(Sampler, PairsAreIndependent) {
+  struct Pair {
+    std::vector<Demand> a, b;
+    const char* wrong;
+  };
+  std::vector<Pair> pairs;
+  for (const std::uint32_t other : {1u, 2u, 3u, 16u, 64u}) pairs.push_back({image(5, 0), image(5, other), "dimension"});
+  pairs.push_back({image(0, 7), image(0, 8), "dimension"});
+  pairs.push_back({image(0, 0), image(1, 1), "dimension = value.index"});
+  for (const std::uint32_t shift : {1u, 2u, 64u}) pairs.push_back({image(5, 3), image(5, 3, 0, shift), "pixel.x"});
+  pairs.push_back({image(5, 3, 0), image(5, 3, 1), "seed"});
+  pairs.push_back({image(5, 3, 1), image(5, 3, 0x80000000u), "seed"});
+  const double least = sidak(kLevel, pairs.size() * 2 * 4);
+  for (const Defines& defines : kSamplers)
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const std::vector<vec2> a = ask(pairs[k].a, defines), b = ask(pairs[k].b, defines);
+      for (int i = 0; i < 4; ++i)
+        EXPECT_GT(uniformity(component(a, i & 1), component(b, i >> 1)), least) << "pair " << k << " " << i;
+      Defines wrong = defines;
+      wrong.emplace_back("WRONG", pairs[k].wrong);
+      const std::vector<vec2> c = ask(pairs[k].a, wrong), d = ask(pairs[k].b, wrong);
+      EXPECT_LT(uniformity(component(c, 0), component(d, 0)), 1e-9) << "pair " << k;
+    }
+}
+
+// Plain random numbers are independent from sample to sample of one pixel, too; Sobol's are not meant to be.
+TEST(Pcg, SuccessiveSamplesAreIndependent) {
+  constexpr std::uint32_t kCount = 1 << 17;
+  const std::vector<float> x = component(ask(series({12, 34}, 6, kCount + 8), {{"PCG", "1"}}), 0);
+  const auto lagged = [](const std::vector<float>& v, std::ptrdiff_t lag) {
+    return uniformity({v.begin(), v.begin() + kCount}, {v.begin() + lag, v.begin() + lag + kCount});
+  };
+  for (const std::ptrdiff_t lag : {1, 2, 8}) EXPECT_GT(lagged(x, lag), sidak(kLevel, 3));
+  EXPECT_LT(lagged(component(ask(series({12, 34}, 6, kCount + 8)), 0), 1), 1e-9);
+}
+
+// Root mean square error of the mean of `count` values of f over 256 pixels; f(p, q) of two demands.
+template <class F>
+double integrationError(std::uint32_t count, const Defines& defines, double exact, const F& f) {
+  std::vector<Demand> first, second;
+  for (std::uint32_t pixel = 0; pixel < 256; ++pixel) {
+    const auto append = [&](std::vector<Demand>& to, std::uint32_t dimension) {
+      const std::vector<Demand> more = series({pixel % 16, pixel / 16}, dimension, count);
+      to.insert(to.end(), more.begin(), more.end());
+    };
+    append(first, 2);
+    append(second, 3);
+  }
+  const std::vector<vec2> p = ask(first, defines), q = ask(second, defines);
+  double sum = 0.0;
+  for (std::size_t pixel = 0; pixel < 256; ++pixel) {
+    double mean = 0.0;
+    for (std::size_t i = pixel * count; i < (pixel + 1) * count; ++i) mean += f(p[i], q[i]);
+    const double error = mean / count - exact;
+    sum += error * error;
+  }
+  return std::sqrt(sum / 256.0);
+}
+
+// A smooth function of one demand: error about N^-1.5 instead of N^-0.5.
+TEST(Sobol, ConvergesFasterThanRandom) {
+  const auto smooth = [](const vec2& p, const vec2&) { return std::sin(kPi * p.x) * p.y * p.y; };
+  const double exact = 2.0 / (3.0 * kPi);
+  const double sobol64 = integrationError(64, {}, exact, smooth), sobol1024 = integrationError(1024, {}, exact, smooth);
+  const double random64 = integrationError(64, {{"PCG", "1"}}, exact, smooth);
+  const double random1024 = integrationError(1024, {{"PCG", "1"}}, exact, smooth);
+  EXPECT_NEAR(random64 / random1024, 4.0, 0.8);
+  EXPECT_GT(sobol64 / sobol1024, 32.0);  // 64 in theory
+  EXPECT_LT(sobol64, 0.1 * random64);
+  EXPECT_LT(sobol1024, 0.01 * random1024);
+}
+
+// The price of padding: samples 2i and 2i + 1 lie in opposite halves in *every* demand, so a product of two demands
+// may have up to twice the variance of random points (gain of the coarsest Walsh terms), and never more.
+TEST(Sobol, ProductsOfTwoDemandsCostAtMostTwiceTheVariance) {
+  const auto product = [](const vec2& p, const vec2& q) { return (p.x - 0.5) * (q.x - 0.5); };
+  for (const std::uint32_t count : {16u, 256u, 1024u}) {
+    const double random = 1.0 / 12.0 / std::sqrt(static_cast<double>(count));
+    const double gain = std::pow(integrationError(count, {}, 0.0, product) / random, 2.0);
+    EXPECT_LT(gain, 2.0 * 1.4) << count;  // 1.4: four standard deviations of a variance from 256 pixels
+    EXPECT_GT(gain, 0.2) << count;
+  }
+}
+
+}  // namespace
+}  // namespace quintet::test
