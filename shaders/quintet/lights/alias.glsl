@@ -5,7 +5,7 @@
 #include "../frame.glsl"
 
 // Splits (u + extra · 2^-56) · count into its whole part and a fraction in units of 2^-32. u has 24 bits, too few to
-// address millions of entries evenly; `extra` (32 independent random bits) continues its binary digits.
+// address millions of entries evenly; `extra` (32 independent random bits) continues its binary digits. count ≤ 2^24.
 uint splitIndex(float u, uint extra, uint count, out uint fraction) {
   uint whole, low, high, ignored, carry;
   umulExtended(uint(u * 16777216.0) << 8, count, whole, low);
