@@ -10,9 +10,19 @@
 #include "scene/gltf_material.h"
 #include "scene/gltf_nodes.h"
 #include "scene/gltf_placement.h"
+#include "scene/memory_budget.h"
+#include "scene/printable.h"
 
 namespace quintet::scene {
 namespace {
+
+// The lines quote names from the file.
+void makePrintable(Report& report) {
+  for (auto* lines : {&report.extensionsUsed, &report.extensionsIgnored, &report.ignored, &report.repaired})
+    for (std::string& line : *lines) line = printable(line);
+  report.generator = printable(report.generator);
+  report.copyright = printable(report.copyright);
+}
 
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
   const Document document = readDocument(file);
@@ -36,8 +46,10 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
     if (const tinygltf::Value* light = findExtension(node.extensions, kPunctualLights))
       placeLight(document, indexOf(*light, "light"), node, tree.worldFromNode[i], scene);
   }
-  instances.finish(scene);
-  textures.finish(scene);
+  MemoryBudget budget(file);
+  instances.finish(scene, budget);
+  textures.finish(scene, budget);
+  makePrintable(scene.report);
   return scene;
 }
 

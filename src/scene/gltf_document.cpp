@@ -11,6 +11,7 @@
 #include "scene/gltf_extensions.h"
 #include "scene/gltf_meshopt.h"
 #include "scene/gltf_schema.h"
+#include "scene/printable.h"
 
 namespace quintet::scene {
 namespace {
@@ -37,14 +38,15 @@ json parseJson(const std::filesystem::path& file, std::string_view text) {
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {
-    throw FileError(file, lineAndColumn(text, error.byte), "the JSON is broken: " + afterPlace(error.what()));
+    throw FileError(file, lineAndColumn(text, error.byte),
+                    "the JSON is broken: " + printable(afterPlace(error.what())));
   } catch (const json::exception& error) {  // a number beyond the range of double; no place is given
     const std::string problem = afterPlace(error.what());
     const std::size_t quote = problem.find('\'');
     const std::string token =
         quote == std::string::npos ? "" : problem.substr(quote + 1, problem.rfind('\'') - quote - 1);
     const std::size_t byte = token.empty() ? std::string_view::npos : text.find(token);
-    throw FileError(file, byte == std::string_view::npos ? "" : lineAndColumn(text, byte + 1), problem);
+    throw FileError(file, byte == std::string_view::npos ? "" : lineAndColumn(text, byte + 1), printable(problem));
   }
 }
 
@@ -161,7 +163,9 @@ void resolveBufferViews(Document& document, const json& bufferList,
 
 }  // namespace
 
-void Document::fail(std::string_view place, std::string_view problem) const { throw FileError(file, place, problem); }
+void Document::fail(std::string_view place, std::string_view problem) const {
+  throw FileError(file, printable(place), printable(problem));
+}
 
 std::span<const std::byte> Document::view(int bufferView) const {
   const auto index = static_cast<std::size_t>(bufferView);

@@ -12,6 +12,9 @@
 namespace quintet::scene {
 namespace {
 
+// What Vulkan guarantees for a top-level structure (VkPhysicalDeviceAccelerationStructurePropertiesKHR).
+constexpr std::size_t kMaxInstances = (std::size_t{1} << 24) - 1;
+
 enum class Rank { full, plane, less };
 
 // How many dimensions an object keeps: a matrix without an inverse must not reach the acceleration structure.
@@ -34,6 +37,18 @@ bool hasJoints(const tinygltf::Mesh& mesh) {
   return std::ranges::any_of(mesh.primitives, [](const tinygltf::Primitive& p) {
     return p.attributes.contains("JOINTS_0") && p.attributes.contains("WEIGHTS_0");
   });
+}
+
+// Roughly what a geometry takes; exact enough to refuse what no machine holds.
+std::size_t estimateBytes(const tinygltf::Model& model, int mesh, int primitiveIndex) {
+  const tinygltf::Primitive& primitive =
+      model.meshes[static_cast<std::size_t>(mesh)].primitives[static_cast<std::size_t>(primitiveIndex)];
+  if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return 0;
+  const auto count = [&](int accessor) { return model.accessors[static_cast<std::size_t>(accessor)].count; };
+  std::size_t bytes = primitive.indices == kNone ? 0 : sizeof(uvec3) * count(primitive.indices);
+  for (const auto& [name, accessor] : primitive.attributes)
+    if (!name.starts_with('_')) bytes += sizeof(vec4) * count(accessor);
+  return bytes;
 }
 
 void appendUnique(std::vector<std::string>& lines, std::set<std::string>& seen, std::vector<std::string>& more) {
@@ -74,20 +89,26 @@ void InstanceBuilder::addNode(int index) {
   for (const mat4& transform : instanceTransforms(index)) addPlaced(index, transform);
 }
 
+void InstanceBuilder::addInstance(int index, int pose, const mat4& worldFromObject) {
+  if (instances_.size() == kMaxInstances)
+    document_.fail(fmt::format("/nodes/{}", index), fmt::format("more than {} instances", kMaxInstances));
+  instances_.push_back({document_.model.nodes[static_cast<std::size_t>(index)].name, pose, worldFromObject});
+}
+
 // glTF 2.0 section 3.7.3.3: the node's own transform does not count, the joints' do.
 void InstanceBuilder::addSkinned(int index) {
   const auto i = static_cast<std::size_t>(index);
   const tinygltf::Node& node = document_.model.nodes[i];
   const int pose = newPose(node.mesh, {node.weights, jointMatrices(index), tree_.worldFromNode[i]});
-  instances_.push_back({node.name, pose, mat4(1.0f)});
+  addInstance(index, pose, mat4(1.0f));
 }
 
 void InstanceBuilder::addPlaced(int index, const mat4& worldFromObject) {
   const tinygltf::Node& node = document_.model.nodes[static_cast<std::size_t>(index)];
   switch (rankOf(worldFromObject)) {
-    case Rank::full: instances_.push_back({node.name, sharedPose(node.mesh, node.weights), worldFromObject}); return;
+    case Rank::full: addInstance(index, sharedPose(node.mesh, node.weights), worldFromObject); return;
     case Rank::plane:  // flattened by a zero scale: visible, but without an inverse
-      instances_.push_back({node.name, newPose(node.mesh, {node.weights, {}, worldFromObject}), mat4(1.0f)});
+      addInstance(index, newPose(node.mesh, {node.weights, {}, worldFromObject}), mat4(1.0f));
       return;
     case Rank::less:
       report_.ignored.push_back(fmt::format("/nodes/{}: the scale leaves nothing to see", index));
@@ -132,6 +153,8 @@ std::vector<mat4> InstanceBuilder::instanceTransforms(int index) const {
   if (!fits(translations) || !fits(rotations) || !fits(scales))
     document_.fail(place, "the attributes have different counts");
 
+  if (instances_.size() + count > kMaxInstances)
+    document_.fail(place, fmt::format("more than {} instances", kMaxInstances));
   std::vector<mat4> transforms;
   transforms.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -146,7 +169,7 @@ std::vector<mat4> InstanceBuilder::instanceTransforms(int index) const {
   return transforms;
 }
 
-void InstanceBuilder::finish(Scene& scene) {
+void InstanceBuilder::finish(Scene& scene, MemoryBudget& budget) {
   std::vector<bool> used(document_.model.meshes.size(), false);
   for (const Pose& pose : poses_) used[static_cast<std::size_t>(pose.mesh)] = true;
   for (std::size_t i = 0; i < used.size(); ++i)
@@ -164,6 +187,7 @@ void InstanceBuilder::finish(Scene& scene) {
   }
   parallelFor(jobs.size(), [&](std::size_t i) {
     const Pose& pose = poses_[jobs[i].pose];
+    budget.take(estimateBytes(document_.model, pose.mesh, jobs[i].primitive));
     jobs[i].result = readGeometry(document_, scene.materials, pose.mesh, jobs[i].primitive, pose.deformation);
     if (!pose.shown) jobs[i].result = {};
   });

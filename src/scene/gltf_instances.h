@@ -8,6 +8,7 @@
 
 #include "scene/gltf_mesh.h"
 #include "scene/gltf_nodes.h"
+#include "scene/memory_budget.h"
 
 namespace quintet::scene {
 
@@ -17,8 +18,8 @@ class InstanceBuilder {
 
   void addNode(int node);
   // Reads all meshes (also those that no node shows, to check them) on all cores and fills meshes and
-  // instances; scene.materials must be complete. Throws FileError.
-  void finish(Scene&);
+  // instances; scene.materials must be complete. Throws FileError, MemoryError.
+  void finish(Scene&, MemoryBudget&);
 
  private:
   struct Pose {
@@ -29,6 +30,7 @@ class InstanceBuilder {
   int sharedPose(int mesh, const std::vector<double>& morphWeights);
   int newPose(int mesh, Deformation deformation);
   void addSkinned(int node);
+  void addInstance(int node, int pose, const mat4& worldFromObject);
   void addPlaced(int node, const mat4& worldFromObject);
   std::vector<mat4> jointMatrices(int node) const;
   std::vector<mat4> instanceTransforms(int node) const;

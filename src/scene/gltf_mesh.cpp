@@ -92,6 +92,7 @@ GeometryResult readGeometry(const Document& document, const std::vector<Material
     result.ignored.push_back(place + ": no triangle, nothing to show");
     return result;
   }
+  dropUnusedVertices(geometry);
   if (geometry.material != kNone) addTangents(geometry, materials[static_cast<std::size_t>(geometry.material)]);
   result.geometry = std::move(geometry);
   return result;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "scene/gltf_schema_table.h"
+#include "scene/printable.h"
 
 namespace quintet::scene {
 namespace {
@@ -59,7 +60,7 @@ class Checker {
 
  private:
   [[noreturn]] void fail(const Place& place, std::string_view problem) const {
-    throw FileError(file_, place.pointer(), problem);
+    throw FileError(file_, printable(place.pointer()), printable(problem));
   }
 
   json value(json& in, const Property& property, const Place& place) const {

@@ -23,18 +23,24 @@ Sampler readSampler(const Document& document, int index) {
           sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST ? Filter::nearest : Filter::linear};
 }
 
-NamedImage loadImage(const Document& document, std::size_t index) {
+io::Image decode(std::span<const std::byte> bytes, const std::string& place, MemoryBudget& budget) {
+  const io::ImageInfo info = io::probeImage(bytes, place);
+  budget.take(std::size_t{info.width} * info.height * info.channels * io::bytesPerSample(info.type));
+  return io::decodeImage(bytes, place);
+}
+
+NamedImage loadImage(const Document& document, std::size_t index, MemoryBudget& budget) {
   const ImageSource& source = document.images[index];
   const std::string place = fmt::format("/images/{}", index);
   NamedImage result;
   result.name = fmt::format("{}: {}", document.file.filename().string(), place);
   try {
     if (source.bufferView != kNone) {
-      result.image = io::decodeImage(document.view(source.bufferView), place);
+      result.image = decode(document.view(source.bufferView), place, budget);
     } else {
       const std::vector<std::byte> bytes = loadUri(document, source.uri, place + "/uri");
       if (!isDataUri(source.uri)) result.name = (document.file.parent_path() / percentDecode(source.uri)).string();
-      result.image = io::decodeImage(bytes, place);
+      result.image = decode(bytes, place, budget);
     }
   } catch (const FileError& error) {
     if (error.file() == document.file) throw;
@@ -79,11 +85,11 @@ int TextureTable::use(int texture, const std::string& place) {
   return known;
 }
 
-void TextureTable::finish(Scene& scene) {
+void TextureTable::finish(Scene& scene, MemoryBudget& budget) {
   scene.textures = std::move(textures_);
   scene.images.resize(imageSources_.size());
   parallelFor(imageSources_.size(), [&](std::size_t i) {
-    scene.images[i] = loadImage(document_, static_cast<std::size_t>(imageSources_[i]));
+    scene.images[i] = loadImage(document_, static_cast<std::size_t>(imageSources_[i]), budget);
   });
 }
 

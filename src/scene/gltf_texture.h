@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/gltf_document.h"
+#include "scene/memory_budget.h"
 
 namespace quintet::scene {
 
@@ -16,8 +17,8 @@ class TextureTable {
   // The index in Scene::textures of a texture of the file; kNone, with a line in the report, if it has no
   // image that can be read. `place` is the use.
   int use(int texture, const std::string& place);
-  // Decodes all images that were used and moves everything into the scene. Throws FileError.
-  void finish(Scene&);
+  // Decodes all images that were used and moves everything into the scene. Throws FileError, MemoryError.
+  void finish(Scene&, MemoryBudget&);
 
  private:
   int useImage(int image);

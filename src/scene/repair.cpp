@@ -50,6 +50,30 @@ std::size_t dropNonFiniteTriangles(Geometry& geometry) {
   return dropped;
 }
 
+void dropUnusedVertices(Geometry& geometry) {
+  std::vector<std::uint32_t> newIndex(geometry.positions.size(), 0);
+  for (const uvec3& t : geometry.triangles) newIndex[t.x] = newIndex[t.y] = newIndex[t.z] = 1;
+  const auto used = static_cast<std::size_t>(std::ranges::count(newIndex, 1u));
+  if (4 * used >= 3 * newIndex.size()) return;
+
+  const auto compact = [&](auto& values) {
+    if (values.empty()) return;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < newIndex.size(); ++i)
+      if (newIndex[i] != 0) values[kept++] = values[i];
+    values.resize(kept);
+    values.shrink_to_fit();
+  };
+  compact(geometry.positions);
+  compact(geometry.normals);
+  compact(geometry.tangents);
+  compact(geometry.colors);
+  for (auto& set : geometry.uvs) compact(set);
+  std::uint32_t next = 0;
+  for (std::uint32_t& index : newIndex) index = index != 0 ? next++ : 0;
+  for (uvec3& t : geometry.triangles) t = {newIndex[t.x], newIndex[t.y], newIndex[t.z]};
+}
+
 std::size_t repairNormals(Geometry& geometry) {
   std::vector<std::size_t> broken;
   for (std::size_t i = 0; i < geometry.normals.size(); ++i)

@@ -11,6 +11,10 @@ namespace quintet::scene {
 // vertices onto a finite one, so that boxes over all positions stay finite.
 std::size_t dropNonFiniteTriangles(Geometry&);
 
+// Removes vertices that no triangle uses, if they are more than a quarter of all: files often have one vertex
+// buffer for many primitives. Keeps the order.
+void dropUnusedVertices(Geometry&);
+
 // Normalises all normals. Those that are zero or not finite become the area-weighted mean of the face
 // normals around the vertex. The count has only the latter.
 std::size_t repairNormals(Geometry&);

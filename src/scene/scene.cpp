@@ -3,6 +3,10 @@
 namespace quintet::scene {
 namespace {
 
+// Up to so many instanced vertices the world's box is exact (a fraction of a second); beyond, it holds the boxes
+// of the turned boxes.
+constexpr std::uint64_t kExactVertexCount = 20'000'000;
+
 Bounds3 objectBounds(const Mesh& mesh) {
   Bounds3 bounds;
   for (const Geometry& geometry : mesh.geometries)
@@ -10,15 +14,39 @@ Bounds3 objectBounds(const Mesh& mesh) {
   return bounds;
 }
 
+std::uint64_t countVertices(const Mesh& mesh) {
+  std::uint64_t count = 0;
+  for (const Geometry& geometry : mesh.geometries) count += geometry.positions.size();
+  return count;
+}
+
+const Mesh& meshOf(const Scene& scene, const Instance& instance) {
+  return scene.meshes[static_cast<std::size_t>(instance.mesh)];
+}
+
+Bounds3 exactBounds(const Scene& scene) {
+  Bounds3 bounds;
+  for (const Instance& instance : scene.instances)
+    for (const Geometry& geometry : meshOf(scene, instance).geometries)
+      for (const vec3& p : geometry.positions) bounds.extend(vec3(instance.worldFromObject * vec4(p, 1.0f)));
+  return bounds;
+}
+
+Bounds3 boundsOfBoxes(const Scene& scene) {
+  std::vector<Bounds3> boxes;
+  for (const Mesh& mesh : scene.meshes) boxes.push_back(objectBounds(mesh));
+  Bounds3 bounds;
+  for (const Instance& instance : scene.instances)
+    bounds.extend(boxes[static_cast<std::size_t>(instance.mesh)].transformed(instance.worldFromObject));
+  return bounds;
+}
+
 }  // namespace
 
 Bounds3 worldBounds(const Scene& scene) {
-  std::vector<Bounds3> meshBounds;
-  for (const Mesh& mesh : scene.meshes) meshBounds.push_back(objectBounds(mesh));
-  Bounds3 bounds;
-  for (const Instance& instance : scene.instances)
-    bounds.extend(meshBounds[static_cast<std::size_t>(instance.mesh)].transformed(instance.worldFromObject));
-  return bounds;
+  std::uint64_t vertexCount = 0;
+  for (const Instance& instance : scene.instances) vertexCount += countVertices(meshOf(scene, instance));
+  return vertexCount <= kExactVertexCount ? exactBounds(scene) : boundsOfBoxes(scene);
 }
 
 TriangleCount countTriangles(const Scene& scene) {

@@ -241,9 +241,8 @@ TEST(GltfAccessor, NothingBehindItIsZeros) {
   builder.addTriangle();
   builder.root["accessors"][0].erase("bufferView");
   EXPECT_EQ(onlyGeometry(builder.load()).positions[1], vec3(0));
-  builder.root["accessors"][0]["count"] = 4000000000u;
-  EXPECT_EQ(errorOf(builder),
-            "/accessors/0/count: 4000000000 elements without a buffer view; at most 16777216 are read");
+  builder.root["accessors"][0]["count"] = 20000000;
+  EXPECT_EQ(errorOf(builder), "/accessors/0/count: 20000000 elements without a buffer view; at most 16777216 are read");
 }
 
 }  // namespace

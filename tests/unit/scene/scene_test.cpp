@@ -44,6 +44,15 @@ TEST(Scene, BoundsAndCounts) {
   EXPECT_TRUE(scene::worldBounds({}).empty());
 }
 
+TEST(Scene, BoundsOfTurnedObjectsAreTight) {
+  scene::Scene s = smallScene();
+  s.instances.resize(1);
+  s.instances[0].worldFromObject = glm::rotate(mat4(1.0f), kPi / 4, vec3(0, 0, 1));
+  const Bounds3 bounds = scene::worldBounds(s);
+  EXPECT_NEAR(bounds.max.y, std::sqrt(0.5f), 1e-6f);  // the turned box would reach 1.41
+  EXPECT_NEAR(bounds.min.x, -std::sqrt(0.5f), 1e-6f);
+}
+
 TEST(Validate, NamesTheFirstFault) {
   EXPECT_NO_THROW(scene::validate(smallScene()));
   EXPECT_NO_THROW(scene::validate({}));

@@ -1,0 +1,29 @@
+#include "scene/memory_budget.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "base/error.h"
+
+namespace quintet::scene {
+namespace {
+
+std::size_t machineMemory() {
+  const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGE_SIZE);
+  constexpr std::size_t kUnknown = std::size_t{1} << 46;
+  return pages > 0 && size > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(size) : kUnknown;
+}
+
+}  // namespace
+
+MemoryBudget::MemoryBudget(const std::filesystem::path& file, std::size_t limit)
+    : file_(file), limit_(limit ? limit : machineMemory()) {}
+
+void MemoryBudget::take(std::size_t bytes) {
+  // Each request is far below 2^60 and the first one over the limit throws: no overflow.
+  if (bytes > limit_ || taken_.fetch_add(bytes) + bytes > limit_)
+    throw MemoryError(fmt::format("{}: the scene needs more than {:.1f} GiB of memory", file_.string(),
+                                  static_cast<double>(limit_) / (1024.0 * 1024.0 * 1024.0)));
+}
+
+}  // namespace quintet::scene
