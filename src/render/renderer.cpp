@@ -56,6 +56,7 @@ struct Renderer::Impl {
        const RenderSettings& renderSettings)
       : scene(deviceScene), context(deviceScene.context()), description(program), settings(renderSettings), timer(context, 2) {
     const Region region = checkedRegion(settings);
+    if (settings.timeoutSeconds <= 0) settings.timeoutSeconds = context.info().quirks.software ? 600 : 60;
     link(compiler, cache);
     film = std::make_unique<Film>(context, scene.set(), compiler, region, program.outputs);
 

@@ -25,7 +25,8 @@ struct RenderSettings {
   const gpu::Buffer* rayRecords = nullptr;  // shared::RayRecord, rayRecordCapacity per pixel: for benchmarks
   std::uint32_t rayRecordCapacity = 0;
   double launchSeconds = 0.25;  // a launch is cut so that it takes about this long
-  double timeoutSeconds = 60;   // a launch that takes longer: gpu::DeviceLostError
+  // A launch that takes longer: gpu::DeviceLostError. 0: 60, or 600 on a CPU, whose first launch compiles.
+  double timeoutSeconds = 0;
 };
 
 // A program whose shaders do not compile; what() is the first error's line.
