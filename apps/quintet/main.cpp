@@ -77,7 +77,9 @@ int fail(std::string message, int status) {
 int main(int argc, char** argv) {
   using namespace quintet;
   app::occupyStandardStreams();
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is an error like another
+  // A reader that goes away and a file that becomes too large are errors like others.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   app::installSignalHandlers();
   try {
     gpu::prepareDriverEnvironment();  // before there are other threads

@@ -98,7 +98,6 @@ class Job {
     settings_.seed = options_.seed;
     settings_.transparent = options_.transparent;
     settings_.region = options_.region;
-    settings_.timeoutSeconds = options_.timeout;
     display_ = {chooseToneMap(program_, options_), options_.exposure, !options_.transparent};
     checkOutput(options_.output);
     checkReadable(options_.scene);
@@ -111,6 +110,8 @@ class Job {
       if (level == LogLevel::warning) warnings_.add(text);
     };
     context_ = std::make_unique<gpu::Context>(contextOptions);
+    // On a CPU the first launch compiles, and other processes take their share.
+    settings_.timeoutSeconds = options_.timeout.value_or(context_->info().quirks.software ? 600.0 : 60.0);
     record_.device = context_->info().name;
     record_.driver = context_->info().driver;
     record_.startSeconds = clock_.seconds();

@@ -86,7 +86,7 @@ void declareRest(CLI::App& app, Raw& raw, RenderOptions& options) {
   const std::string run = "Run";
   app.add_option("--device", options.device, "Index or part of the name: 0, h200, lavapipe, cpu, gpu (see 'quintet info')")
       ->group(run);
-  app.add_option("--timeout", raw.timeout, "Seconds after which a launch counts as hanging (default: 60)")->group(run);
+  app.add_option("--timeout", raw.timeout, "Seconds after which a launch counts as hanging (default: 60; on a CPU, which also compiles in it, 600)")->group(run);
   app.add_flag("-q,--quiet", options.quiet, "No progress and no notes on standard error")->group(run);
   app.add_flag("--json", options.json, "At the end, one JSON object on standard output")->group(run);
 }
@@ -129,7 +129,7 @@ void interpretImage(const Raw& raw, RenderOptions& options) {
   if (!options.samples && !options.seconds) options.samples = kDefaultSamples;
   options.exposure = real("--exposure", raw.exposure, -100.0, 100.0).value_or(0.0f);
   options.seed = static_cast<std::uint32_t>(whole("--seed", raw.seed, 0, 4294967295.0).value_or(0));
-  options.timeout = number("--timeout", raw.timeout, 0.001, kUnlimited).value_or(options.timeout);
+  options.timeout = number("--timeout", raw.timeout, 0.001, kUnlimited);
   if (raw.toneMap.empty()) return;
   options.toneMap = render::toneMapByName(raw.toneMap);
   if (!options.toneMap)

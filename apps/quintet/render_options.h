@@ -33,7 +33,7 @@ struct RenderOptions {
   std::optional<std::string> clamp;
   bool programHelp = false;
   std::string device;
-  double timeout = 60.0;         // seconds of one launch
+  std::optional<double> timeout; // seconds of one launch
   bool quiet = false;
   bool json = false;
   bool transparent = false;
