@@ -1,0 +1,101 @@
+// From the material's parameters to the lobes and the chances of sampling them.
+#ifndef QUINTET_BSDF_MIXTURE_GLSL
+#define QUINTET_BSDF_MIXTURE_GLSL
+
+#include "../features.glsl"
+#include "clearcoat.glsl"
+#include "dielectric.glsl"
+#include "diffuse.glsl"
+#include "specular.glsl"
+#include "thin.glsl"
+
+// Colours and factors are linear and in [0,1] unless said otherwise.
+struct BsdfParameters {
+  vec3 baseColor;
+  float metallic;
+  float alpha;           // roughness squared
+  float transmission;
+  float ior;             // the material's, at least 1; 0: reflectance is specular * specularColor
+  bool entering;         // wo is on the outside
+  bool thin;             // a thin wall rather than a solid: transmission does not refract
+  float specular;
+  vec3 specularColor;    // at least 0
+  float clearcoat;
+  float clearcoatAlpha;  // clearcoatRoughness squared
+  vec3 clearcoatNormal;  // unit, in the local frame
+};
+
+struct Bsdf {
+  SpecularLobe specular;
+  DiffuseLobe diffuse;
+  ThinLobe thin;
+  DielectricLobe dielectric;
+  ClearcoatLobe clearcoat;
+  vec4 chance;             // of sampling coat, specular, diffuse, transmission: their sum is 1, or 0 for black
+  float underCoat;         // passed by the clearcoat; also for the light that the surface emits
+  bool refractive;         // transmission is `dielectric`, not `thin`
+  bool specularDelta;
+  bool transmissionDelta;
+  bool clearcoatDelta;
+};
+
+Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
+  vec3 baseColor = clamp(p.baseColor, 0.0, 1.0);
+  float dielectric = 1.0 - p.metallic;
+  float transmission = kHasTransmission ? p.transmission : 0.0;
+  float opaque = dielectric * (1.0 - transmission);
+  float clear = dielectric * transmission;
+  float alpha = max(p.alpha, kDeltaAlpha);
+
+  Bsdf b;
+  b.refractive = kHasSolidTransmission && clear > 0.0 && !(kHasThinTransmission && p.thin);
+  b.specularDelta = p.alpha < kDeltaAlpha;
+  b.clearcoatDelta = p.clearcoatAlpha < kDeltaAlpha;
+
+  // KHR_materials_specular: reflectance of the dielectric part.
+  vec3 clearF0 = min(reflectanceFromIor(p.ior) * p.specularColor, 1.0);
+  vec3 colorF0 = p.specular * clearF0;
+  float f0 = maxComponent(colorF0);
+  AlbedoCell row = albedoRow(p.alpha);
+  vec2 ab = albedoSchlick(row, wo.z);
+
+  // The metal and all of the dielectric that `dielectric` does not reflect itself.
+  float reflecting = b.refractive ? opaque : dielectric;
+  vec3 metalGain = p.metallic * albedoGain(baseColor, ab);
+  vec3 dielectricGain = reflecting * albedoGain(colorF0, ab);
+  b.specular.f0 = metalGain * baseColor + dielectricGain * colorF0;
+  b.specular.f90 = metalGain + dielectricGain * p.specular;
+  b.specular.alpha = alpha;
+
+  b.diffuse = makeDiffuse(opaque * baseColor, f0, p.specular, row, ab);
+  b.thin = makeThin(clear * baseColor, f0, p.specular, alpha, ab);
+
+  // Where the indices nearly match, refraction is too narrow for its half vector: straight on. So for ior 0.
+  float ior = max(p.ior, 1.0);
+  b.transmissionDelta = b.specularDelta || (b.refractive && (ior < 1.01 || p.alpha * (ior - 1.0) < 1e-5));
+  vec2 glass = b.refractive ? albedoGlass(wo.z, b.transmissionDelta ? 0.0 : p.alpha, ior, p.entering) : vec2(1.0);
+  b.dielectric.compensation = clear / mix(glass.y, glass.x, p.specular);
+  b.dielectric.color = b.dielectric.compensation * baseColor;
+  b.dielectric.f0 = clearF0;
+  b.dielectric.specular = p.specular;
+  b.dielectric.eta = p.entering ? ior : 1.0 / ior;
+  b.dielectric.alpha = alpha;
+
+  // The coat of a solid is on its outside only.
+  bool coated = dot(wo, p.clearcoatNormal) > 0.0 && (p.entering || !b.refractive);
+  b.clearcoat = ClearcoatLobe(p.clearcoatNormal, coated ? p.clearcoat : 0.0, max(p.clearcoatAlpha, kDeltaAlpha));
+  float coat = kHasClearcoat ? clearcoatAlbedo(b.clearcoat, wo) : 0.0;
+  b.underCoat = 1.0 - coat;
+
+  float passed = max(1.0 - albedoCompensated(f0, p.specular, ab), 0.0);
+  float tint = luminance(baseColor);
+  float glassAlbedo = mix(tint, 1.0, max(fresnelDielectric(wo.z, b.dielectric.eta), 0.1));
+  b.chance = vec4(coat, b.underCoat * luminance(b.specular.f0 * ab.x + b.specular.f90 * ab.y),
+                  b.underCoat * opaque * tint * passed,
+                  kHasTransmission ? b.underCoat * clear * (b.refractive ? glassAlbedo : tint * passed) : 0.0);
+  float sum = b.chance.x + b.chance.y + b.chance.z + b.chance.w;
+  b.chance *= sum > 0.0 ? 1.0 / sum : 0.0;
+  return b;
+}
+
+#endif
