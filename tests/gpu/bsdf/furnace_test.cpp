@@ -10,7 +10,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr std::size_t kSamples = 1 << 17;
+constexpr std::size_t kSamples = 1 << 16;
 const std::vector<float> kAlphas = {0.0f, 0.0006f, 0.003f, 0.02f, 0.1f, 0.3f, 0.6f, 1.0f};
 const std::vector<float> kCosines = {1.0f, 0.75f, 0.3f, 0.1f, 0.03f};
 

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kRings = 24;
 constexpr int kSectors = 16;
-constexpr int kPoints = 48;  // per cell and axis of the quadrature
-constexpr std::size_t kSamples = 200'000;
+constexpr int kPoints = 32;  // per cell and axis of the quadrature
+constexpr std::size_t kSamples = 120'000;
 
 // LOBE: 0 diffuse, 1 specular, 2 thin, 3 dielectric, 4 clearcoat, 5 all. WRONG: a mistake to be found.
 const std::string kLobes = kBsdfPrelude + R"(
