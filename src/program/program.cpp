@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #define TOML_EXCEPTIONS 1
@@ -22,6 +23,8 @@ namespace quintet::program {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxOutputs = 16;  // shared::kMaxOutputs, as a static_assert in render/film.cpp says
 
 // Typed access to a table that knows where it is, refuses unknown keys and names the line.
 class Reader {
@@ -127,6 +130,7 @@ class Parser {
     }
     for (const toml::table* table : reader.tables("parameter")) parseParameter(*table);
     reader.refuseOthers();
+    if (program_.outputs.size() > kMaxOutputs) reader.fail(nullptr, fmt::format("more than {} outputs are not possible", kMaxOutputs));
     if (program_.outputs.empty()) program_.outputs.push_back("color");
     if (program_.rays.empty()) reader.fail(nullptr, "at least one [[ray]] is needed");
   }
@@ -156,6 +160,8 @@ class Parser {
     for (const RayType& other : program_.rays) names.push_back(other.name);
     addName(reader, table, reader.text("name", true), names);
     ray.name = names.back();
+    if (ray.name == "name" || ray.name == "geometry")
+      reader.fail(table.get("name"), fmt::format("'{}' cannot be a ray's name: it is a key of [[hit_group]]", ray.name));
     ray.miss = shaderFile(reader, table, "miss", ".rmiss", true);
     reader.refuseOthers();
     if (program_.rays.size() == 15) reader.fail(nullptr, "more than 15 ray types do not fit the 4-bit stride");
@@ -170,6 +176,8 @@ class Parser {
     addName(reader, table, reader.text("name", true), names);
     group.name = names.back();
     group.geometry = reader.text("geometry");
+    if (!group.geometry.empty() && group.geometry != "opaque" && group.geometry != "alpha")
+      reader.fail(table.get("geometry"), fmt::format("'{}' is no class of geometry; there are opaque and alpha", group.geometry));
     for (const RayType& ray : program_.rays) {
       const toml::node* node = reader.find(ray.name);
       if (!node) continue;
@@ -222,6 +230,9 @@ class Parser {
       if (count != 1) reader.fail(node, fmt::format("the default of '{}' needs {} numbers", parameter.name, count));
       parameter.defaultValue[0] = reader.numberOf(*node, "default");
     }
+    const bool whole = parameter.type == ParameterType::integer || parameter.type == ParameterType::boolean;
+    if (whole && parameter.defaultValue[0] != std::floor(parameter.defaultValue[0]))
+      reader.fail(node, fmt::format("the default of '{}' must be a whole number", parameter.name));
     for (std::size_t i = 0; i < count; ++i)
       if (!(parameter.defaultValue[i] >= parameter.min && parameter.defaultValue[i] <= parameter.max))
         reader.fail(node, fmt::format("the default of '{}' is outside {} … {}", parameter.name, parameter.min, parameter.max));
