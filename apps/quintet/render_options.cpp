@@ -23,7 +23,7 @@ constexpr const char* kExamples =
     "  quintet render scene.glb -o out.exr --size 1920x1080 --spp 256\n"
     "  quintet render scene.glb --time 60 --env sky.hdr        as many samples as a minute allows\n"
     "  quintet render scene.glb --look-from 2,1,3 --look-at 0,0.5,0 --fov 35\n"
-    "  quintet render scene.glb --program ao --set radius=0.5  another program with a parameter\n"
+    "  quintet render scene.glb --program ao --set distance=0.5  another program with a parameter\n"
     "  quintet render --program pathtracer --help-program      what parameters it has\n"
     "  quintet render scene.glb -o - --quiet | display         PNG on standard output\n";
 
