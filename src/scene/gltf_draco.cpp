@@ -6,6 +6,34 @@
 #include "scene/gltf_extensions.h"
 
 namespace quintet::scene {
+namespace {
+
+// The number of triangles that the stream claims to hold, from its header (Draco bitstream specification 2.2,
+// sections 2.1 and 2.3); 0 where it comes behind metadata or is cut off.
+std::uint64_t claimedTriangles(std::span<const std::byte> stream) {
+  const auto byte = [&](std::size_t i) { return i < stream.size() ? std::to_integer<std::uint64_t>(stream[i]) : 0; };
+  std::size_t at = 11;  // behind "DRACO", version (2 bytes), type, method, flags (2 bytes)
+  const auto varint = [&] {
+    std::uint64_t value = 0;
+    for (int shift = 0; shift < 35; shift += 7) {
+      value |= (byte(at) & 0x7F) << shift;
+      if (byte(at++) < 0x80) break;
+    }
+    return value;
+  };
+  constexpr std::uint64_t kEdgebreaker = 1, kHasMetadata = 0x80;
+  if (byte(10) & kHasMetadata) return 0;
+  if (byte(8) == kEdgebreaker) {
+    ++at;      // traversal type
+    varint();  // vertices
+  }
+  return varint();
+}
+
+// Far beyond what Draco reaches (about 8): more is a claim that costs minutes and gigabytes to disprove.
+constexpr std::uint64_t kMaxTrianglesPerByte = 256;
+
+}  // namespace
 
 struct DracoMesh::State {
   const Document& document;
@@ -20,6 +48,8 @@ DracoMesh::DracoMesh(const Document& document, const tinygltf::Primitive& primit
   if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP)
     document.fail(state_->place, "only TRIANGLES and TRIANGLE_STRIP can be compressed");
   const auto bytes = document.view(indexOf(extension, "bufferView"));
+  if (const std::uint64_t claimed = claimedTriangles(bytes); claimed > kMaxTrianglesPerByte * bytes.size())
+    document.fail(state_->place, fmt::format("{} bytes cannot hold {} triangles", bytes.size(), claimed));
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   draco::Decoder decoder;

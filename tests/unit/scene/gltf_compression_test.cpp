@@ -92,6 +92,22 @@ TEST(GltfDraco, BrokenStreams) {
   EXPECT_EQ(errorOf(builder), place + ": only TRIANGLES and TRIANGLE_STRIP can be compressed");
 }
 
+TEST(GltfDraco, AbsurdClaimsAreRefusedAtOnce) {
+  for (const int method : {0, 1}) {
+    GltfBuilder builder = DracoBuilder();
+    const std::vector<std::uint8_t> header = {'D', 'R', 'A', 'C', 'O', 2, 2, 1, static_cast<std::uint8_t>(method),
+                                              0,   0};
+    std::vector<std::uint8_t> stream = header;
+    if (method == 1) stream.insert(stream.end(), {0, 0x80, 0xC2, 0xD7, 0x2F});  // traversal, 10^8 vertices
+    stream.insert(stream.end(), {0x80, 0xC2, 0xD7, 0x2F});                      // 10^8 triangles
+    stream.resize(100);
+    builder.primitive()["extensions"]["KHR_draco_mesh_compression"]["bufferView"] = builder.addView(stream);
+    EXPECT_EQ(
+        errorOf(builder),
+        "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression: 100 bytes cannot hold 100000000 triangles");
+  }
+}
+
 TEST(GltfDraco, EveryBrokenByteIsSurvived) {
   const DracoBuilder original;
   for (std::size_t i = 0; i < original.binary.size(); ++i)

@@ -54,6 +54,14 @@ TEST(Tangents, FollowTheTextureTransform) {
   EXPECT_LT(glm::distance(scene::transformUv(use, vec2(1, 0)), vec2(0, -1)), 1e-6f);
 }
 
+// The sense of the rotation, from Khronos' TextureTransformTest: its arrow, at (0.7778, 0.7778) in the picture, must
+// be seen where the quad's own coordinates are those of the green marker.
+TEST(Tangents, TextureTransformTurnsAsKhronosShowsIt) {
+  TextureUse use;
+  use.rotation = kPi / 8;
+  EXPECT_LT(glm::distance(scene::transformUv(use, vec2(0.42095f, 1.01627f)), vec2(0.77782f)), 1e-4f);
+}
+
 TEST(Tangents, UseTheirSet) {
   Geometry g = square();
   g.uvs[1] = {{1, 1}, {1, 0}, {0, 0}, {0, 1}};  // turned by a quarter
