@@ -16,13 +16,18 @@ vec3 environmentRadiance(vec3 direction) {
   return e.scale * textureLod(textures[nonuniformEXT(e.texture)], equirectFromDirection(e, direction), 0.0).rgb;
 }
 
-// Solid angle of a cell in `row`: 2pi/width · (cos θ_top - cos θ_bottom), as a product without cancellation.
-float environmentCellAngle(EnvironmentData e, uint row) {
+// (cos θ_top - cos θ_bottom) / 2 of a row, as a product without cancellation, from the nearer pole.
+float environmentRowHeight(EnvironmentData e, uint row) {
   const float halfStep = 0.5 * kPi / float(e.height);
+  const uint fromPole = min(row, e.height - 1u - row);
+  return preciseSin(float(2u * fromPole + 1u) * halfStep) * preciseSin(halfStep);
+}
+
+float environmentCellAngle(EnvironmentData e, uint row) {
 #ifdef QUINTET_WRONG_ENVIRONMENT_PDF
   return 4.0 * kPi / float(e.width * e.height);  // for the tests of the tests: forgets sin θ
 #endif
-  return 4.0 * kPi / float(e.width) * sin(float(2u * row + 1u) * halfStep) * sin(halfStep);
+  return 4.0 * kPi / float(e.width) * environmentRowHeight(e, row);
 }
 
 // Density per solid angle of environmentSample.
@@ -48,13 +53,11 @@ vec3 environmentSample(vec2 u, uint bits, out float pdf) {
   column = cell - row * e.width;
   pdf = probability / environmentCellAngle(e, row);
 
-  // Rows are counted from the nearer pole; sin²(θ/2) = (1 - cos θ)/2 keeps its digits there.
+  // sin²(θ/2) = (1 - cos θ)/2, from the nearer pole, keeps its digits there.
   const bool below = 2u * row >= e.height;
-  const float fromPole = float(below ? e.height - 1u - row : row);
-  const float halfStep = 0.5 * kPi / float(e.height);
-  const float top = sin(fromPole * halfStep);
-  const float bottom = sin((fromPole + 1.0) * halfStep);
-  const float s = mix(top * top, bottom * bottom, fractionFloat(below ? ~fraction.y : fraction.y));
+  const uint fromPole = below ? e.height - 1u - row : row;
+  const float top = preciseSin(float(fromPole) * 0.5 * kPi / float(e.height));
+  const float s = top * top + fractionFloat(below ? ~fraction.y : fraction.y) * environmentRowHeight(e, row);
   return directionFromEquirect(e, (float(column) + fractionFloat(fraction.x)) / float(e.width), s, below);
 }
 
