@@ -1,0 +1,110 @@
+// The words of a shared struct's members, as C++ and as GLSL see them. `GPU_FIELDS(Type, members…)` is the one
+// list: C++ binds it to all members in order (a member too few or too many does not compile), GLSL reads
+// each by its name (a wrong name does not compile, a wrong order fails).
+#ifndef QUINTET_TESTS_GPU_SHARED_FIELDS_H
+#define QUINTET_TESTS_GPU_SHARED_FIELDS_H
+
+#include <algorithm>
+#include <bit>
+#include <string>
+#include <vector>
+
+#include "quintet/shared/frame.h"
+
+namespace quintet::test {
+
+using Words = std::vector<std::uint32_t>;
+
+// What a member is made of, in the order of memory.
+inline void appendWords(Words& words, std::uint32_t value) { words.push_back(value); }
+inline void appendWords(Words& words, float value) { words.push_back(std::bit_cast<std::uint32_t>(value)); }
+inline void appendWords(Words& words, std::uint64_t value) {
+  words.push_back(static_cast<std::uint32_t>(value));
+  words.push_back(static_cast<std::uint32_t>(value >> 32));
+}
+template <glm::length_t n, class T, glm::qualifier q>
+void appendWords(Words& words, const glm::vec<n, T, q>& value) {
+  for (glm::length_t i = 0; i < n; ++i) appendWords(words, value[i]);
+}
+template <class T, std::size_t n>
+void appendWords(Words& words, const T (&values)[n]) {
+  for (const T& value : values) appendWords(words, value);
+}
+
+// GLSL of the same, in both directions; functions for a struct S are made from its list by glslOf.
+inline constexpr const char* kGlslWords = R"(
+uint words[128];
+uint wordCount = 0u;
+void put(uint v) { words[wordCount++] = v; }
+void put(float v) { put(floatBitsToUint(v)); }
+void put(uint64_t v) { put(uint(v)); put(uint(v >> 32)); }
+void put(uvec2 v) { put(v.x); put(v.y); }
+void put(vec2 v) { put(v.x); put(v.y); }
+void put(vec3 v) { put(v.xy); put(v.z); }
+void put(vec4 v) { put(v.xyz); put(v.w); }
+void put(vec4 v[3]) { for (int i = 0; i < 3; ++i) put(v[i]); }
+void put(uint64_t v[2]) { for (int i = 0; i < 2; ++i) put(v[i]); }
+void put(uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) put(v[i]); }
+uint nextWord() { return words[wordCount++]; }
+void take(out uint v) { v = nextWord(); }
+void take(out float v) { v = uintBitsToFloat(nextWord()); }
+void take(out uint64_t v) { const uint low = nextWord(); v = uint64_t(low) | uint64_t(nextWord()) << 32; }
+void take(out uvec2 v) { take(v.x); take(v.y); }
+void take(out vec2 v) { take(v.x); take(v.y); }
+void take(out vec3 v) { take(v.x); take(v.y); take(v.z); }
+void take(out vec4 v) { take(v.x); take(v.y); take(v.z); take(v.w); }
+void take(out vec4 v[3]) { for (int i = 0; i < 3; ++i) take(v[i]); }
+void take(out uint64_t v[2]) { for (int i = 0; i < 2; ++i) take(v[i]); }
+void take(out uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) take(v[i]); }
+)";
+
+// put and take for a struct with these members ("a, b, c").
+inline std::string glslOf(const std::string& type, const std::string& members) {
+  std::string put, take;
+  for (std::size_t at = 0; at < members.size();) {
+    const std::size_t comma = std::min(members.find(',', at), members.size());
+    const std::string name = members.substr(at, comma - at);
+    put += " put(v." + name + ");";
+    take += " take(v." + name + ");";
+    at = comma + 1;
+  }
+  return "void put(" + type + " v) {" + put + " }\nvoid take(out " + type + " v) {" + take + " }\n";
+}
+
+template <class T>
+struct Fields;
+
+#define GPU_FIELDS(Type, ...)                                                                         \
+  inline void appendWords(Words& words, const shared::Type& value) {                                  \
+    const auto& [__VA_ARGS__] = value;                                                                \
+    const auto append = [&](const auto&... members) { (appendWords(words, members), ...); };          \
+    append(__VA_ARGS__);                                                                              \
+  }                                                                                                   \
+  template <>                                                                                         \
+  struct Fields<shared::Type> {                                                                       \
+    static constexpr const char* kName = #Type;                                                       \
+    static std::string glsl() { return glslOf(#Type, #__VA_ARGS__); }                                 \
+  }
+
+GPU_FIELDS(TextureData, rowU, rowV, index, uvSet);
+GPU_FIELDS(MaterialData, baseColor, emissive, metallic, roughness, normalScale, alphaCutoff, ior, transmission, specular,
+           specularColor, clearcoat, clearcoatRoughness, clearcoatNormalScale, absorption, flags, baseColorTexture,
+           metallicRoughnessTexture, normalTexture, emissiveTexture, transmissionTexture, specularTexture,
+           specularColorTexture, clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture);
+GPU_FIELDS(AliasEntry, keep, alias, probability);
+GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, padding);
+GPU_FIELDS(EnvironmentData, table, scale, texture, width, height, cosRotation, sinRotation);
+GPU_FIELDS(InstanceData, worldFromObject, objectFromWorld, firstGeometry, firstLightSlot, mirrored, padding);
+GPU_FIELDS(GeometryData, positions, triangles, normals, tangents, uvs, colors, primitiveMap, material, triangleCount);
+GPU_FIELDS(CameraData, worldFromCamera, halfSize, apertureRadius, focusDistance, orthographic, padding);
+GPU_FIELDS(RayRecord, origin, tmax, direction, kind);
+GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics, rayRecords,
+           outputs, environment, camera, width, height, filmOffset, filmWidth, filmHeight, lightCount, environmentLight,
+           seed, flags, rayRecordCapacity, padding);
+GPU_FIELDS(FilmAdd, total, batch, count, padding);
+GPU_FIELDS(Launch, frame, parameters, offset, firstSample, sampleCount);
+
+#undef GPU_FIELDS
+
+}  // namespace quintet::test
+#endif
