@@ -29,7 +29,9 @@ vec3 transposeTimesVector(vec4 rows[3], vec3 v) { return rows[0].xyz * v.x + row
 // the triangle as the traversal sees it. Standard model of floating-point error (Higham 2002, ch. 3;
 // used for ray offsets by Wächter & Binder 2019 and pbrt ch. 6.8), with e = 2^-24 and k roundings bounded by
 // k·e: interpolation in object space, transform to world, the traversal's transform of the ray's
-// origin back to object space, and its subtraction of origin and vertices.
+// origin back to object space, and its subtraction of origin and vertices. That last error is spread over all
+// axes: watertight tests shear the triangle along the ray, so the extent of one axis reaches the others
+// (an axis-aligned plane through the origin has no error but this one).
 float surfaceError(InstanceData instance, vec3 p0, vec3 p1, vec3 p2, vec3 p, vec3 n) {
   const float e = 5.9604645e-8;
   const vec3 largest = max(max(abs(p0), abs(p1)), abs(p2));
@@ -40,7 +42,7 @@ float surfaceError(InstanceData instance, vec3 p0, vec3 p1, vec3 p2, vec3 p, vec
     world[i] += 4.0 * (dot(abs(instance.worldFromObject[i].xyz), largest) + abs(instance.worldFromObject[i].w));
     back[i] = dot(abs(instance.objectFromWorld[i].xyz), abs(p)) + abs(instance.objectFromWorld[i].w);
   }
-  const vec3 object = 5.0 * largest + 4.0 * back + 8.0 * extent;
+  const vec3 object = 5.0 * largest + 4.0 * back + vec3(8.0 * maxComponent(extent));
   return 2.0 * e * (dot(abs(n), world) + dot(abs(transposeTimesVector(instance.worldFromObject, n)), object));
 }
 
