@@ -1,4 +1,6 @@
 // KHR_draco_mesh_compression and EXT_meshopt_compression: streams made by the libraries' own encoders.
+#include <algorithm>
+#include <array>
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gmock/gmock.h>
@@ -97,10 +99,11 @@ TEST(GltfDraco, AbsurdClaimsAreRefusedAtOnce) {
     GltfBuilder builder = DracoBuilder();
     const std::vector<std::uint8_t> header = {'D', 'R', 'A', 'C', 'O', 2, 2, 1, static_cast<std::uint8_t>(method),
                                               0,   0};
-    std::vector<std::uint8_t> stream = header;
-    if (method == 1) stream.insert(stream.end(), {0, 0x80, 0xC2, 0xD7, 0x2F});  // traversal, 10^8 vertices
-    stream.insert(stream.end(), {0x80, 0xC2, 0xD7, 0x2F});                      // 10^8 triangles
-    stream.resize(100);
+    constexpr std::array<std::uint8_t, 4> kMillions = {0x80, 0xC2, 0xD7, 0x2F};  // 10^8 as a varint
+    std::vector<std::uint8_t> stream(100);
+    auto end = std::copy(header.begin(), header.end(), stream.begin());
+    if (method == 1) end = std::copy(kMillions.begin(), kMillions.end(), end + 1);  // traversal 0, vertices
+    std::copy(kMillions.begin(), kMillions.end(), end);                             // triangles
     builder.primitive()["extensions"]["KHR_draco_mesh_compression"]["bufferView"] = builder.addView(stream);
     EXPECT_EQ(
         errorOf(builder),
