@@ -1,0 +1,76 @@
+// `compare`: its numbers, pictures and exit status.
+#include <gmock/gmock.h>
+
+#include "fixtures.h"
+#include "io/codec.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Compare : public CliTest {
+ protected:
+  Compare() {
+    io::Image image = testImage(32, 16);
+    write(folder_ / "a.png", io::encodePng(image));
+    for (auto& sample : image.samples<std::uint8_t>()) sample = static_cast<std::uint8_t>(sample < 128 ? sample + 4 : sample - 4);
+    write(folder_ / "b.png", io::encodePng(image));
+    write(folder_ / "big.png", io::encodePng(testImage(64, 32)));
+  }
+};
+
+TEST_F(Compare, EqualPictures) {
+  const RunResult result = quintet({"compare", "a.png", "a.png", "--max", "0"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  for (const char* name : {"mae8", "rmse", "relmse", "psnr", "flip"}) EXPECT_THAT(result.out, HasSubstr(name));
+  const auto json = nlohmann::json::parse(quintet({"compare", "a.png", "a.png", "--json"}).out);
+  EXPECT_EQ(json["mae8"], 0.0);
+  EXPECT_TRUE(json["psnr"].is_null());
+  EXPECT_EQ(quintet({"compare", "a.png", "a.png", "--metric", "psnr", "--max", "90"}).status, 0);
+}
+
+TEST_F(Compare, DifferentPictures) {
+  const auto json = nlohmann::json::parse(quintet({"compare", "a.png", "b.png", "--json"}).out);
+  EXPECT_EQ(json["mae8"], 4.0);
+  EXPECT_EQ(json["max8"], 4.0);
+  EXPECT_NEAR(json["psnr"].get<double>(), 36.0896, 1e-3);  // 20 log10(255 / 4)
+  EXPECT_EQ(quintet({"compare", "a.png", "b.png", "--max", "4"}).status, 0);
+  const RunResult beyond = quintet({"compare", "a.png", "b.png", "--max", "3.5"});
+  EXPECT_EQ(beyond.status, 1);
+  EXPECT_THAT(beyond.err, HasSubstr("mae8 4 is more than 3.5"));
+  EXPECT_EQ(quintet({"compare", "a.png", "b.png", "--metric", "psnr", "--max", "40"}).status, 1);
+  EXPECT_EQ(quintet({"compare", "a.png", "b.png", "--metric", "psnr", "--max", "30"}).status, 0);
+}
+
+TEST_F(Compare, DifferentSizes) {
+  expectError(quintet({"compare", "a.png", "big.png"}), 2, {"sizes"});
+  const RunResult result = quintet({"compare", "a.png", "big.png", "--resize", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out)["size"], nlohmann::json({32, 16}));
+}
+
+TEST_F(Compare, PicturesOfTheDifference) {
+  const RunResult result = quintet({"compare", "a.png", "b.png", "-o", "diff.png", "--side-by-side", "all.png"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(picture("diff.png").width, 32u);
+  EXPECT_EQ(picture("all.png").width, 3 * 32u + 8u);
+  EXPECT_EQ(picture("all.png").height, 16u);
+}
+
+TEST_F(Compare, MissingPicture) { expectError(quintet({"compare", "a.png", "c.png"}), 1, {"c.png", "No such file"}); }
+
+TEST_F(Compare, GammaOfTheReference) {
+  // 118 of the sRGB curve is 0.181 light; so is 117 of the power 2.2.
+  io::Image image = io::makeImage(8, 8, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
+  for (auto& sample : image.samples<std::uint8_t>()) sample = 118;
+  write(folder_ / "srgb.png", io::encodePng(image));
+  for (auto& sample : image.samples<std::uint8_t>()) sample = 117;
+  write(folder_ / "power.png", io::encodePng(image));
+  const auto json = nlohmann::json::parse(quintet({"compare", "srgb.png", "power.png", "--gamma-b", "2.2", "--json"}).out);
+  EXPECT_LE(json["mae8"], 0.0);
+}
+
+}  // namespace
+}  // namespace quintet::test

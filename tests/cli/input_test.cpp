@@ -1,0 +1,129 @@
+// Scenes and pictures that are missing or broken: status 1, one line with the file and the place in it.
+#include "fixtures.h"
+#include "io/codec.h"
+
+namespace quintet::test {
+namespace {
+
+class Input : public CliTest {
+ protected:
+  // What `info` and `render` both say.
+  void expectRefused(const std::string& file, const std::vector<std::string>& parts) {
+    expectError(quintet({"info", file}), 1, parts);
+    expectError(quintet({"render", file, "--program", "normals", "--size", "8x8", "--spp", "1", "-q", "-o", "out.png"}), 1, parts);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
+  }
+  void expectSceneRefused(const nlohmann::json& json, const std::vector<std::string>& parts) {
+    write(folder_ / "bad.gltf", json.dump());
+    expectRefused("bad.gltf", parts);
+  }
+};
+
+TEST_F(Input, MissingFile) { expectRefused("nothing.glb", {"nothing.glb", "No such file"}); }
+
+TEST_F(Input, Folder) {
+  std::filesystem::create_directory(folder_ / "folder.glb");
+  expectRefused("folder.glb", {"folder.glb", "directory"});
+}
+
+TEST_F(Input, Empty) {
+  write(folder_ / "empty.glb", "");
+  expectRefused("empty.glb", {"empty.glb"});
+}
+
+TEST_F(Input, BrokenJson) {
+  write(folder_ / "bad.gltf", "{\n  \"asset\": {\"version\": \"2.0\"},\n  \"nodes\": [}\n");
+  expectRefused("bad.gltf", {"bad.gltf", "line 3"});
+}
+
+TEST_F(Input, NeitherSceneNorPicture) {
+  write(folder_ / "text.txt", "some text");
+  expectError(quintet({"info", "text.txt"}), 1, {"text.txt"});
+}
+
+TEST_F(Input, IndexThatDoesNotExist) {
+  nlohmann::json json = quadScene();
+  json["nodes"][0]["mesh"] = 5;
+  expectSceneRefused(json, {"bad.gltf: /nodes/0/mesh", "5"});
+  json = quadScene();
+  json["accessors"][0]["bufferView"] = 17;
+  expectSceneRefused(json, {"bad.gltf: /accessors/0/bufferView", "17"});
+}
+
+TEST_F(Input, AccessorBeyondItsBuffer) {
+  nlohmann::json json = quadScene();
+  json["accessors"][0]["count"] = 5;
+  expectSceneRefused(json, {"bad.gltf: /accessors/0", "bytes"});
+  json = quadScene();
+  json["bufferViews"][2]["byteLength"] = 4000;
+  expectSceneRefused(json, {"bad.gltf: /bufferViews/2"});
+}
+
+TEST_F(Input, MissingBuffer) {
+  nlohmann::json json = quadScene();
+  json["buffers"][0]["uri"] = "data.bin";
+  expectSceneRefused(json, {"data.bin"});
+}
+
+TEST_F(Input, CutPngInsideGlb) {
+  std::vector<std::byte> png = io::encodePng(testImage(64, 64));
+  png.resize(png.size() / 2);
+  write(folder_ / "bad.glb", texturedGlb(png, "image/png"));
+  expectRefused("bad.glb", {"bad.glb: /images/0", "PNG"});
+}
+
+TEST_F(Input, CutJpegInsideGlb) {
+  std::vector<std::byte> jpeg = encodeJpeg(testImage(64, 64));
+  write(folder_ / "good.glb", texturedGlb(jpeg, "image/jpeg"));
+  EXPECT_EQ(quintet({"info", "good.glb"}).status, 0);
+  jpeg.resize(jpeg.size() * 3 / 4);
+  write(folder_ / "bad.glb", texturedGlb(jpeg, "image/jpeg"));
+  expectRefused("bad.glb", {"bad.glb: /images/0", "JPEG"});
+}
+
+TEST_F(Input, AbsurdImageSize) {
+  write(folder_ / "bad.glb", texturedGlb(pngOfClaimedSize(60000, 60000), "image/png"));
+  expectRefused("bad.glb", {"bad.glb: /images/0", "60000"});
+  write(folder_ / "bad.png", pngOfClaimedSize(2000000000, 2000000000));
+  expectError(quintet({"info", "bad.png"}), 1, {"bad.png"});
+  expectError(quintet({"compare", "bad.png", "bad.png"}), 1, {"bad.png"});
+}
+
+TEST_F(Input, EnvironmentThatIsNoPicture) {
+  expectError(quintet(quick({"--env", "missing.hdr", "-o", "out.png"})), 1, {"missing.hdr", "No such file"});
+  write(folder_ / "sky.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n");
+  expectError(quintet(quick({"--env", "sky.hdr", "-o", "out.png"})), 1, {"sky.hdr"});
+  expectError(quintet(quick({"--env", "1,-1,1", "-o", "out.png"})), 2, {"negative"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
+}
+
+TEST_F(Input, ProgramThatDoesNotCompile) {
+  std::filesystem::create_directory(folder_ / "mine");
+  write(folder_ / "mine" / "program.toml", R"([program]
+ray_generation = "mine.rgen"
+[[ray]]
+name = "radiance"
+miss = "mine.rmiss"
+[[hit_group]]
+name = "all"
+[[output]]
+name = "color"
+)");
+  write(folder_ / "mine" / "mine.rgen", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {\n  undefined();\n}\n");
+  write(folder_ / "mine" / "mine.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n");
+  expectError(quintet({"render", "scene.gltf", "--program", "mine", "--size", "8x8", "-q"}), 1, {"mine.rgen:4", "undefined"});
+  write(folder_ / "mine" / "program.toml", "[program\n");
+  expectError(quintet({"render", "scene.gltf", "--program", "mine", "--size", "8x8", "-q"}), 1, {"program.toml", "line 1"});
+}
+
+TEST_F(Input, ControlCharactersOfAFileStayInIt) {
+  nlohmann::json json = quadScene();
+  json["extensionsRequired"] = {"EXT_\x1b[31m\nred"};
+  json["extensionsUsed"] = {"EXT_\x1b[31m\nred"};
+  write(folder_ / "bad.gltf", json.dump());
+  const RunResult result = quintet({"info", "bad.gltf"});
+  EXPECT_EQ((result.out + result.err).find('\x1b'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace quintet::test

@@ -1,0 +1,106 @@
+// Places that cannot be written, devices that are not there: status 1, one line, nothing left behind.
+#include "fixtures.h"
+#include "io/codec.h"
+
+namespace quintet::test {
+namespace {
+
+class Output : public CliTest {
+ protected:
+  void expectOnlyTheScene() { EXPECT_EQ(fileNames(), std::vector<std::string>{"scene.gltf"}); }
+};
+
+TEST_F(Output, FolderThatDoesNotExist) {
+  expectError(quintet(quick({"-o", "no/such/out.png"})), 1, {"no/such/out.png", "does not exist"});
+  expectOnlyTheScene();
+}
+
+TEST_F(Output, IsAFolder) {
+  std::filesystem::create_directory(folder_ / "out.png");
+  std::filesystem::create_directory(folder_ / "out");
+  expectError(quintet(quick({"-o", "out.png"})), 1, {"out.png", "directory"});
+  expectError(quintet(quick({"-o", "out"})), 1, {"out", "directory"});
+}
+
+TEST_F(Output, FolderWithoutPermission) {
+  if (::geteuid() == 0) {
+    // Root may write everywhere, except where the kernel keeps its own.
+    expectError(quintet(quick({"-o", "/proc/out.png"})), 1, {"/proc/out.png", "cannot be written"});
+  } else {
+    std::filesystem::create_directory(folder_ / "locked");
+    std::filesystem::permissions(folder_ / "locked", std::filesystem::perms::owner_read);
+    expectError(quintet(quick({"-o", "locked/out.png"})), 1, {"locked/out.png", "cannot be written"});
+  }
+}
+
+TEST_F(Output, FullDevice) {
+  expectError(quintet(quick({"-o", "/dev/full"})), 1, {"/dev/full", "No space left"});
+  expectOnlyTheScene();
+}
+
+// Stands for a full disk: the temporary file is made, and the first byte is refused. (A renderer on the CPU
+// would not start under this limit, because it keeps its memory in files without names.)
+TEST_F(Output, FileThatMayNotGrow) {
+  write(folder_ / "a.png", io::encodePng(testImage(8, 8)));
+  write(folder_ / "old.png", "what was there");
+  RunOptions options;
+  options.shell = "ulimit -f 0";
+  expectError(quintet({"compare", "a.png", "a.png", "-o", "new.png"}, options), 1, {"new.png", "cannot be written"});
+  expectError(quintet({"compare", "a.png", "a.png", "-o", "old.png"}, options), 1, {"old.png", "cannot be written"});
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "old.png"), 14u);
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"a.png", "old.png", "scene.gltf"}));
+}
+
+TEST_F(Output, StandardOutputFullOrClosed) {
+  RunOptions full;
+  full.out = "/dev/full";
+  expectError(quintet(quick({"-o", "-"}), full), 1, {"standard output", "No space left"});
+  expectError(quintet({"info", "scene.gltf"}, full), 1, {"standard output", "No space left"});
+  expectError(quintet({"--version"}, full), 1, {"standard output", "No space left"});
+  RunOptions closed;
+  closed.shell = "exec >&-";
+  expectError(quintet(quick({"-o", "-"}), closed), 1, {"standard output", "cannot be written"});
+  expectError(quintet(quick({"-o", "out.png", "--json"}), closed), 1, {"standard output", "cannot be written"});
+  expectError(quintet({"info", "scene.gltf"}, closed), 1, {"standard output", "cannot be written"});
+}
+
+TEST_F(Output, SuccessWithEveryStreamClosed) {
+  RunOptions closed;
+  closed.shell = "exec <&- >&- 2>&-";
+  const RunResult result = quintet(quick({"-o", "out.png"}), closed);
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(picture("out.png").width, 32u);
+}
+
+TEST_F(Output, PicturesOfCompareCannotBeWritten) {
+  write(folder_ / "a.png", io::encodePng(testImage(8, 8)));
+  expectError(quintet({"compare", "a.png", "a.png", "-o", "no/diff.png"}), 1, {"no/diff.png"});
+  expectError(quintet({"compare", "a.png", "a.png", "-o", "diff.jpg"}), 2, {"diff.jpg"});
+}
+
+class Device : public CliTest {};
+
+TEST_F(Device, NoVulkanDevice) {
+  RunOptions none;
+  none.environment = {{"VK_DRIVER_FILES", "/nonexistent/icd.json"}, {"VK_ICD_FILENAMES", "/nonexistent/icd.json"}};
+  expectError(quintet(quick({"-o", "out.png"}), none), 1, {"no Vulkan driver"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
+  const RunResult info = quintet({"info"}, none);
+  EXPECT_EQ(info.status, 0);
+  EXPECT_NE(info.out.find("no Vulkan device"), std::string::npos) << info.out;
+  EXPECT_EQ(nlohmann::json::parse(quintet({"info", "--json"}, none).out)["devices"].size(), 0u);
+}
+
+TEST_F(Device, OneThatIsNotThere) {
+  expectError(quintet(quick({"--device", "voodoo2"})), 1, {"no device 'voodoo2'", "found 0: "});
+  RunOptions asked;
+  asked.environment = {{"QUINTET_DEVICE", "voodoo2"}};
+  expectError(quintet(quick({}), asked), 1, {"voodoo2"});
+}
+
+TEST_F(Device, ImageLargerThanItsMemory) {
+  expectError(quintet(quick({"--size", "65536x65536", "-o", "out.png"})), 1, {"65536x65536", "GiB", "--region"});
+}
+
+}  // namespace
+}  // namespace quintet::test
