@@ -70,9 +70,9 @@ void addVase(GlbWriter& glb, const mat4& place) {
                               vec2(0.045f, 0.402f), vec2(0.0465f, 0.406f), vec2(0.044f, 0.408f), vec2(0.040f, 0.404f),
                               vec2(0.026f, 0.370f), vec2(0.028f, 0.335f), vec2(0.055f, 0.285f)};
   std::vector<vec2> profile{{0.0f, 0.0f}, {0.030f, 0.0f}, {0.046f, 0.001f}};
-  for (const vec2& p : smoothCurve(outside, 8)) profile.push_back(p);
+  for (const vec2& p : smoothCurve(outside, 6)) profile.push_back(p);
   profile.insert(profile.end(), {{0.030f, 0.27f}, {0.0f, 0.265f}});
-  glb.addInstance("vase", glb.addMesh("vase", revolve(profile, 128), ceramic), place);
+  glb.addInstance("vase", glb.addMesh("vase", revolve(profile, 112), ceramic), place);
 }
 
 // Olive twigs that stand in the vase.
@@ -85,7 +85,7 @@ void addTwigs(GlbWriter& glb, const mat4& place) {
     float length;
   };
   const std::array twigs = {Twig{{-0.80f, 0.02f, 0.15f}, 0.36f}, Twig{{0.70f, 0.10f, -0.25f}, 0.33f},
-                            Twig{{-0.25f, 0.35f, -0.60f}, 0.30f}};
+                            Twig{{-0.20f, 0.15f, -0.65f}, 0.29f}};
   Random random(5);
   TriangleMesh stems, leaves;
   for (const Twig& twig : twigs) {
@@ -117,7 +117,7 @@ void addMetals(GlbWriter& glb) {
   const int gold = glb.addMaterial(
       {.name = "satin gold", .baseColor = {0.98f, 0.75f, 0.40f, 1.0f}, .metallic = 1.0f, .roughness = 0.30f});
   const float radius = 0.092f, swing = 0.040f, rope = 0.0285f;
-  glb.addInstance("knot", glb.addMesh("knot", torusKnot(2, 3, radius, swing, rope, 480, 48), gold),
+  glb.addInstance("knot", glb.addMesh("knot", torusKnot(2, 3, radius, swing, rope, 360, 36), gold),
                   placed(0.02f, -0.15f, kPlinthHeight + radius + swing + rope - 0.006f, 14.0f));
 
   const SurfaceMaps brush = brushedMetal(512, 0.40f);
@@ -126,13 +126,13 @@ void addMetals(GlbWriter& glb) {
                                       .metallic = 1.0f,
                                       .metallicRoughnessTexture = glb.addTexture("brush roughness", brush.metallicRoughness),
                                       .normalTexture = glb.addTexture("brush normal", brush.normal)});
-  TriangleMesh cushion = superellipsoid({0.082f, 0.075f, 0.082f}, 4.0f, 48);
+  TriangleMesh cushion = superellipsoid({0.082f, 0.075f, 0.082f}, 4.0f, 36);
   computeTangents(cushion);
   glb.addInstance("cushion", glb.addMesh("cushion", cushion, copper), placed(-0.095f, 0.12f, kPlinthHeight + 0.075f, 24.0f));
 
   const int steel = glb.addMaterial(
       {.name = "polished steel", .baseColor = {0.80f, 0.80f, 0.81f, 1.0f}, .metallic = 1.0f, .roughness = 0.03f});
-  glb.addInstance("bearing", glb.addMesh("bearing", icosphere(0.034f, 4), steel), placed(0.045f, 0.255f, kPlinthHeight + 0.034f));
+  glb.addInstance("bearing", glb.addMesh("bearing", icosphere(0.030f, 4), steel), placed(0.065f, 0.275f, kPlinthHeight + 0.030f));
 }
 
 void addGlass(GlbWriter& glb) {
@@ -141,8 +141,8 @@ void addGlass(GlbWriter& glb) {
                                      .ior = 1.5f,
                                      .transmission = 1.0f,
                                      .thickness = 0.2f,
-                                     .attenuationColor = {0.80f, 0.93f, 0.92f},
-                                     .attenuationDistance = 0.20f});
+                                     .attenuationColor = {0.78f, 0.93f, 0.91f},
+                                     .attenuationDistance = 0.18f});
   glb.addInstance("sphere", glb.addMesh("sphere", icosphere(0.098f, 5), clear), placed(0.185f, 0.115f, kPlinthHeight + 0.098f));
 
   const int amber = glb.addMaterial({.name = "amber glass",
@@ -150,16 +150,16 @@ void addGlass(GlbWriter& glb) {
                                      .ior = 1.5f,
                                      .transmission = 1.0f,
                                      .thickness = 0.1f,
-                                     .attenuationColor = {0.94f, 0.66f, 0.38f},
-                                     .attenuationDistance = 0.15f});
-  const PrismShape prism{.sides = 4, .radius = 0.080f, .rounding = 0.014f, .bevel = 0.006f, .height = 0.37f,
-                         .twist = 2.1f, .taper = 0.72f};
+                                     .attenuationColor = {0.95f, 0.62f, 0.28f},
+                                     .attenuationDistance = 0.19f});
+  const PrismShape prism{.sides = 3, .radius = 0.098f, .rounding = 0.020f, .bevel = 0.007f, .height = 0.39f,
+                         .twist = 2.0f, .taper = 0.70f};
   glb.addInstance("prism", glb.addMesh("prism", twistedPrism(prism), amber), placed(0.325f, -0.13f));
 }
 
 void addStone(GlbWriter& glb) {
   const int lapis = glb.addMaterial(
-      {.name = "lapis", .baseColor = {0.045f, 0.11f, 0.27f, 1.0f}, .roughness = 0.15f});
+      {.name = "lapis", .baseColor = {0.05f, 0.12f, 0.29f, 1.0f}, .roughness = 0.25f});
   glb.addInstance("gem", glb.addMesh("gem", icosphere(0.058f, 1, true), lapis), placed(-0.32f, 0.17f, kPlinthHeight + 0.050f, 20.0f));
 }
 
@@ -182,9 +182,9 @@ SkySettings stillLifeSky() {
   const float azimuth = glm::radians(160.0f), elevation = glm::radians(32.0f);  // azimuth from +x towards +z
   return {.sunDirection = {std::cos(elevation) * std::cos(azimuth), std::sin(elevation), std::cos(elevation) * std::sin(azimuth)},
           .turbidity = 2.0f,
-          .skyIrradiance = 1.1f,
-          .sunIrradiance = 1.8f,
-          .sunRadius = glm::radians(14.0f),
+          .skyIrradiance = 1.7f,
+          .sunIrradiance = 2.8f,
+          .sunRadius = glm::radians(24.0f),
           .clouds = 0.8f,
           .haze = 0.4f,
           .hills = true};

@@ -46,7 +46,7 @@ Texel oakBoard(const Board& board, float length) {
   const float fibre = fbm(vec3(1.6f * board.along, 34.0f * board.across, 0.0f) + seed, 3, 21);
   const float pores = glm::smoothstep(0.28f, 0.5f, noise(vec3(3.0f * board.along, 46.0f * board.across, 5.0f) + seed, 29));
 
-  const vec3 early(0.43f, 0.278f, 0.158f), dark(0.29f, 0.170f, 0.087f);
+  const vec3 early(0.60f, 0.405f, 0.240f), dark(0.44f, 0.275f, 0.150f);
   vec3 color = glm::mix(early, dark, 0.62f * late + 0.30f * fibre);
   color *= (0.80f + 0.36f * random(7)) * (1.0f - 0.22f * pores);
   color = glm::mix(color, vec3(glm::dot(color, vec3(0.33f))), 0.15f * random(8));
@@ -123,7 +123,7 @@ SurfaceMaps marble(std::uint32_t size) {
     const float clouds = 0.5f + 0.9f * field(q, 5, 59, 1);
     const float grain = field(p, 2, 61, 48);
 
-    vec3 color = glm::mix(vec3(0.80f, 0.785f, 0.76f), vec3(0.66f, 0.66f, 0.665f), glm::clamp(0.55f * clouds, 0.0f, 1.0f));
+    vec3 color = glm::mix(vec3(0.82f, 0.795f, 0.755f), vec3(0.68f, 0.67f, 0.66f), glm::clamp(0.55f * clouds, 0.0f, 1.0f));
     color = glm::mix(color, vec3(0.26f, 0.27f, 0.295f), 0.95f * wide * where);
     color = glm::mix(color, vec3(0.42f, 0.385f, 0.34f), 0.80f * fine * (0.35f + 0.65f * where));
     color *= 1.0f + 0.03f * grain;
