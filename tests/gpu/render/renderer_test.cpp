@@ -1,0 +1,192 @@
+// What a renderer promises besides the right picture: the same bytes however the work is cut, errors that say where.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "harness.h"
+#include "picture.h"
+
+namespace quintet::test {
+namespace {
+
+using testing::HasSubstr;
+
+// Some of everything: glass, metal, a veil, two kinds of lights and the sky.
+SceneBuilder something() {
+  SceneBuilder scene;
+  scene::Material metal, veil = unlit({0.2f, 0.9f, 0.4f}, 0.5f);
+  metal.roughness = 0.4f;
+  veil.alphaMode = scene::AlphaMode::blend;
+  scene.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.6f, 0.5f, 0.4f}));
+  scene.add(sphere({-0.6f, 0.5f, 0}, 0.5f, 2), metal).add(sphere({0.6f, 0.5f, 0}, 0.5f, 2), clearGlass(1.5f, 1.0f));
+  scene.add(quad({-0.4f, 0.2f, 1}, {0.8f, 0, 0}, {0, 0.8f, 0}), veil);
+  scene.add(quad({-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}), emitter(vec3(8.0f)));
+  scene::Light lamp;
+  lamp.position = {1.0f, 2.0f, 1.0f};
+  scene.light(lamp).sky(vec3(0.3f)).camera(perspective({0.5f, 1.5f, 3.0f}, {0, 0.4f, 0}, 40.0f));
+  return scene;
+}
+
+struct Shared {
+  SceneBuilder scene = something();
+  render::DeviceScene device{testContext(), scene.scene, scene.environment};
+  program::Program program = program::loadProgram("pathtracer");
+  render::RenderSettings settings;
+
+  Shared() {
+    PictureOptions options;
+    options.width = 20;
+    options.height = 14;
+    settings = settingsFor(scene.scene.cameras[0], options);
+  }
+  io::Image render(const render::RenderSettings& with, const std::vector<std::uint32_t>& batches = {4, 4, 3}) {
+    render::Renderer renderer(device, program, testCompiler(), nullptr, with);
+    for (const std::uint32_t count : batches) renderer.renderBatch(count);
+    return renderer.image();
+  }
+};
+
+TEST(Renderer, BytesDoNotDependOnLaunchSizes) {
+  Shared shared;
+  const io::Image whole = shared.render(shared.settings);
+  EXPECT_TRUE(std::any_of(whole.data.begin(), whole.data.end(), [](std::byte b) { return b != std::byte{0}; }));
+  for (const double seconds : {1e-9, 1e9}) {
+    render::RenderSettings settings = shared.settings;
+    settings.launchSeconds = seconds;
+    EXPECT_EQ(shared.render(settings).data, whole.data) << seconds;
+  }
+  for (const std::uint32_t samples : {1u, 3u}) {  // per launch
+    shared.program.samplesPerLaunch = samples;
+    EXPECT_EQ(shared.render(shared.settings).data, whole.data) << samples;
+  }
+}
+
+TEST(Renderer, TheSeedDecidesTheBytes) {
+  Shared shared;
+  const io::Image first = shared.render(shared.settings);
+  EXPECT_EQ(shared.render(shared.settings).data, first.data);
+  render::RenderSettings settings = shared.settings;
+  settings.seed = 2;
+  EXPECT_NE(shared.render(settings).data, first.data);
+}
+
+// Materials that nothing uses bring their shader code back (render/scene_features.h).
+TEST(Renderer, CodeForAbsentFeaturesIsNotMissed) {
+  PictureOptions options;
+  options.batches = 4;
+  SceneBuilder scene;
+  scene::Material metal;
+  metal.roughness = 0.4f;
+  scene.add(sphere(vec3(0.0f), 1.0f, 2), metal).add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.6f, 0.5f, 0.4f}));
+  scene.sky({0.5f, 0.6f, 0.7f}).camera(perspective({0, 0.5f, 4}, vec3(0.0f), 40.0f));
+  const Picture lean = renderPicture(scene, options);
+  scene.scene.materials.insert(scene.scene.materials.end(), {clearGlass(1.5f, 1.0f), clearGlass(1.5f, 0.0f), emitter(vec3(1.0f))});
+  scene.scene.materials.back().clearcoat = 1.0f;
+  const Picture full = renderPicture(scene, options);
+  for (std::uint32_t y = 0; y < options.height; ++y)
+    for (std::uint32_t x = 0; x < options.width; ++x)
+      EXPECT_NEAR(lean.at(x, y, 0).mean(), full.at(x, y, 0).mean(), 1e-5);
+}
+
+TEST(Renderer, ARegionIsAPartOfTheImage) {
+  Shared shared;
+  const io::Image whole = shared.render(shared.settings);
+  for (const render::Region region : {render::Region{0, 0, 20, 14}, {3, 5, 7, 4}, {19, 13, 1, 1}}) {
+    render::RenderSettings settings = shared.settings;
+    settings.region = region;
+    settings.launchSeconds = 1e-9;
+    const io::Image part = shared.render(settings);
+    ASSERT_EQ(part.width, region.width);
+    ASSERT_EQ(part.height, region.height);
+    std::size_t wrong = 0;
+    for (std::uint32_t y = 0; y < region.height; ++y)
+      for (std::uint32_t x = 0; x < region.width; ++x)
+        wrong += !std::ranges::equal(part.pixel<float>(x, y), whole.pixel<float>(region.x + x, region.y + y));
+    EXPECT_EQ(wrong, 0u);
+  }
+}
+
+TEST(Renderer, RefusesRegionsAndSizesThatMakeNoSense) {
+  Shared shared;
+  for (const render::Region region : {render::Region{20, 0, 1, 1}, {0, 0, 21, 1}, {10, 10, 5, 5}, {0, 0, 0, 3}, {1, 0, 0xFFFFFFFFu, 1}}) {
+    render::RenderSettings settings = shared.settings;
+    settings.region = region;
+    try {
+      shared.render(settings);
+      ADD_FAILURE() << region.x << "," << region.y << "," << region.width << "," << region.height;
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("is not inside the image of 20x14"));
+    }
+  }
+  render::RenderSettings settings = shared.settings;
+  settings.width = 0;
+  EXPECT_THROW(shared.render(settings), UsageError);
+}
+
+TEST(Renderer, SaysWhereAProgramIsWrong) {
+  Shared shared;
+  shared.program = program::loadProgram("normals");
+  shared.settings.parameters = program::ParameterValues(shared.program.parameters);
+  std::string& text = shared.program.files.at("normals.rgen");
+  const std::size_t at = text.find("void main()");
+  ASSERT_NE(at, std::string::npos);
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  text.insert(at, "vec3 broken() { return nothing; }\n");
+  try {
+    shared.render(shared.settings);
+    FAIL();
+  } catch (const render::ProgramError& error) {
+    ASSERT_FALSE(error.diagnostics().empty());
+    EXPECT_EQ(error.diagnostics()[0].file, "<programs/normals>/normals.rgen");
+    EXPECT_EQ(error.diagnostics()[0].line, line);
+    EXPECT_THAT(error.what(), HasSubstr("<programs/normals>/normals.rgen:" + std::to_string(line)));
+    EXPECT_THAT(error.what(), HasSubstr("nothing"));
+  }
+}
+
+TEST(Renderer, CountsAndCanBeStopped) {
+  Shared shared;
+  render::Renderer renderer(shared.device, shared.program, testCompiler(), nullptr, shared.settings);
+  EXPECT_TRUE(renderer.renderBatch());
+  EXPECT_TRUE(renderer.renderBatch(2));
+  EXPECT_EQ(renderer.statistics().samples, 6u);
+  EXPECT_EQ(renderer.statistics().batches, 2u);
+  EXPECT_GE(renderer.rays().rays, 6u * 20u * 14u);  // one camera ray each
+  EXPECT_EQ(renderer.rays().droppedSamples, 0u);
+  const io::Image before = renderer.image();
+  std::vector<double> seen;
+  EXPECT_FALSE(renderer.renderBatch(4, [&](double done) { seen.push_back(done); return false; }));
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_GT(seen[0], 0.0);
+  EXPECT_EQ(renderer.statistics().samples, 6u);
+}
+
+// The other programs run over the same scene.
+TEST(BuiltInProgram, NormalsShowsTheNormalAsColour) {
+  SceneBuilder scene;
+  scene.add(quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), lambert(vec3(0.5f)), glm::rotate(mat4(1.0f), 0.5f, vec3(0, 1, 0)));
+  scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
+  PictureOptions options;
+  options.program = program::loadProgram("normals");
+  options.batches = 2;
+  expectUniform(renderPicture(scene, options), vec4(0.5f + 0.5f * std::sin(0.5f), 0.5f, 0.5f + 0.5f * std::cos(0.5f), 1.0f), {.error = 1e-5});
+}
+
+// Seen from a plane, a parallel square of side 2 at height 1 hides its form factor.
+TEST(BuiltInProgram, AoShowsTheOpenPartOfTheHemisphere) {
+  SceneBuilder scene;
+  scene.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}), lambert(vec3(0.5f)));
+  scene.add(quad({-1, 1, 1}, {2, 0, 0}, {0, 0, -2}), lambert(vec3(0.5f)));
+  scene.camera(orthographic({0, 0.5f, 0}, vec3(0.0f), 0.001f));
+  PictureOptions options;
+  options.program = program::loadProgram("ao");
+  options.batches = 32;
+  const float hidden = 4.0f / (kPi * std::sqrt(2.0f)) * std::atan(1.0f / std::sqrt(2.0f));
+  expectUniform(renderPicture(scene, options), vec4(vec3(1.0f - hidden), 1.0f), {.error = 0.01, .rounding = 1e-4});
+  options.set = {"distance=0.9"};
+  expectUniform(renderPicture(scene, options), vec4(1.0f), {.error = 1e-5});
+}
+
+}  // namespace
+}  // namespace quintet::test

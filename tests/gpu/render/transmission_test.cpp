@@ -1,0 +1,184 @@
+// What is seen through glass and through holes: closed forms for slabs, walls, blend, mask and unlit surfaces.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "picture.h"
+
+namespace quintet::test {
+namespace {
+
+PictureOptions batches(std::uint32_t count, std::uint32_t size = 8) {
+  PictureOptions options;
+  options.batches = count;
+  options.width = options.height = size;
+  return options;
+}
+
+// Reflectance of a smooth interface for unpolarised light (Fresnel 1823); `eta`: index behind over in front.
+double fresnel(double cosine, double eta) {
+  const double inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (eta * eta));
+  const double s = (cosine - eta * inside) / (cosine + eta * inside);
+  const double p = (eta * cosine - inside) / (eta * cosine + inside);
+  return 0.5 * (s * s + p * p);
+}
+
+constexpr float kFar = 4.0f;  // beyond its edges nothing is seen
+const vec3 kBehind(1.0f, 0.5f, 2.0f);
+
+// A camera along -z through something turned about y, before a glowing wall in a black world. The image is
+// small: every path that leaves the slab straight meets the wall, all others the black (turned by less than 45
+// degrees: beyond, what is reflected meets the wall, too).
+SceneBuilder lookingThrough(const scene::Geometry& geometry, const scene::Material& material, float degrees) {
+  SceneBuilder scene;
+  const mat4 turned = glm::rotate(mat4(1.0f), glm::radians(degrees), vec3(0, 1, 0));
+  scene.add(geometry, material, turned).add(quad({-50, -50, -kFar}, {100, 0, 0}, {0, 100, 0}), emitter(kBehind));
+  scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
+  return scene;
+}
+
+struct SlabCase {
+  const char* name;
+  float degrees;
+  float ior;
+  float absorbs;  // colour that is left of white after 1 m
+};
+
+class GlassSlab : public testing::TestWithParam<SlabCase> {};
+
+// All internal reflections summed: T = (1-R)² a / (1 - R² a²), with a the transmittance of one crossing.
+TEST_P(GlassSlab, TransmitsByFresnelAndBeer) {
+  const SlabCase& c = GetParam();
+  constexpr double kThickness = 0.3;
+  scene::Material glass = clearGlass(c.ior, static_cast<float>(kThickness));
+  glass.attenuationColor = vec3(c.absorbs, 1.0f, std::sqrt(c.absorbs));
+  glass.attenuationDistance = 1.0f;
+  const auto half = static_cast<float>(0.5 * kThickness);
+  const Picture picture = renderPicture(lookingThrough(box({-3, -3, -half}, {3, 3, half}), glass, c.degrees), batches(64));
+
+  const double cosine = std::cos(glm::radians(static_cast<double>(c.degrees)));
+  const double r = fresnel(cosine, c.ior);
+  const double length = kThickness / std::sqrt(1.0 - (1.0 - cosine * cosine) / (c.ior * c.ior));
+  vec4 expected(0, 0, 0, 1);
+  for (glm::length_t i = 0; i < 3; ++i) {
+    const double a = std::pow(static_cast<double>(glass.attenuationColor[i]), length);
+    expected[i] = kBehind[i] * static_cast<float>((1.0 - r) * (1.0 - r) * a / (1.0 - r * r * a * a));
+  }
+  expectUniform(picture, expected, {.error = 0.005, .rounding = 2e-4});
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, GlassSlab,
+                         testing::Values(SlabCase{"ClearStraight", 0, 1.5f, 1.0f}, SlabCase{"ClearTilted", 35, 1.5f, 1.0f},
+                                         SlabCase{"ColouredTilted", 40, 1.5f, 0.1f}, SlabCase{"DenseColoured", 25, 2.4f, 0.3f}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+// A thin wall is one interface (KHR_materials_transmission), its reflectance Schlick's.
+TEST(ThinGlass, TransmitsWhatItDoesNotReflect) {
+  for (const float degrees : {0.0f, 35.0f}) {
+    SCOPED_TRACE(degrees);
+    scene::Material glass = clearGlass(1.5f, 0.0f);
+    glass.baseColor = {0.8f, 0.6f, 0.4f, 1.0f};
+    const float cosine = std::cos(glm::radians(degrees));
+    const float reflectance = 0.04f + 0.96f * std::pow(1.0f - cosine, 5.0f);
+    const Picture picture = renderPicture(lookingThrough(quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), glass, degrees), batches(32));
+    // The tables behind the lobe's scale are good to about 1e-3.
+    expectUniform(picture, vec4(kBehind * vec3(0.8f, 0.6f, 0.4f) * (1.0f - reflectance), 1.0f), {.error = 0.005, .rounding = 2e-3});
+  }
+}
+
+scene::Material veil(const vec3& color, float alpha, scene::AlphaMode mode, float cutoff = 0.5f) {
+  scene::Material m = unlit(color, alpha);
+  m.alphaMode = mode;
+  m.alphaCutoff = cutoff;
+  return m;
+}
+
+const scene::Geometry kSheet = quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0});
+
+TEST(Alpha, BlendsByItsValue) {
+  const SceneBuilder scene = lookingThrough(kSheet, veil({0.2f, 3.0f, 0.0f}, 0.3f, scene::AlphaMode::blend), 0.0f);
+  expectUniform(renderPicture(scene, batches(64)), vec4(0.3f * vec3(0.2f, 3.0f, 0.0f) + 0.7f * kBehind, 1.0f), {.error = 0.01});
+}
+
+TEST(Alpha, TakesVertexColours) {
+  scene::Geometry sheet = kSheet;
+  sheet.colors.assign(4, vec4(0.5f, 1.0f, 1.0f, 0.5f));
+  const SceneBuilder scene = lookingThrough(sheet, veil({0.2f, 3.0f, 0.0f}, 0.6f, scene::AlphaMode::blend), 0.0f);
+  expectUniform(renderPicture(scene, batches(64)), vec4(0.3f * vec3(0.1f, 3.0f, 0.0f) + 0.7f * kBehind, 1.0f), {.error = 0.01});
+}
+
+TEST(Alpha, MasksAllOrNothing) {
+  for (const float cutoff : {0.2f, 0.5f}) {
+    const SceneBuilder scene = lookingThrough(kSheet, veil({0.2f, 3.0f, 0.0f}, 0.3f, scene::AlphaMode::mask, cutoff), 0.0f);
+    expectUniform(renderPicture(scene, batches(4)), vec4(cutoff < 0.3f ? vec3(0.2f, 3.0f, 0.0f) : kBehind, 1.0f), {.error = 1e-4});
+  }
+}
+
+// In the shadow of two veils, seen from below them.
+TEST(Alpha, LetsLightThroughInShadowRays) {
+  SceneBuilder scene;
+  scene.add(quad({-9, 0, 9}, {18, 0, 0}, {0, 0, -18}), lambert(vec3(0.6f)));
+  scene.add(quad({-9, 2, 9}, {18, 0, 0}, {0, 0, -18}), veil(vec3(0.0f), 0.3f, scene::AlphaMode::blend));
+  scene.add(quad({-9, 3, 9}, {18, 0, 0}, {0, 0, -18}), veil(vec3(0.0f), 0.5f, scene::AlphaMode::blend));
+  scene::Light sun;
+  sun.type = scene::LightType::directional;
+  sun.direction = {0.6f, -0.8f, 0.0f};
+  sun.intensity = vec3(2.0f);
+  scene.light(sun).camera(orthographic({0, 1, 0}, vec3(0.0f), 0.1f));
+  expectUniform(renderPicture(scene, batches(64)), vec4(vec3(0.6f / kPi * 2.0f * 0.8f * 0.7f * 0.5f), 1.0f), {.error = 0.02});
+}
+
+// `transparent`: the background has alpha 0, colours are premultiplied.
+TEST(Transparent, AlphaIsCoverage) {
+  PictureOptions options = batches(64);
+  options.transparent = true;
+  SceneBuilder scene;
+  scene.add(kSheet, veil({0.2f, 3.0f, 0.0f}, 0.3f, scene::AlphaMode::blend)).sky(vec3(7.0f));
+  scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
+  expectUniform(renderPicture(scene, options), vec4(0.06f, 0.9f, 0.0f, 0.3f), {.error = 0.02});
+}
+
+// The edge x = 0 runs through the middle of column 1 of 3, and between columns 1 and 2 of 4; there the tent of
+// radius 0.75 pixels reaches a quarter of a pixel across: (1/3)²/2 of it.
+TEST(Transparent, EdgesAreCoveredInPart) {
+  SceneBuilder scene;
+  scene.add(quad({-3, -3, 0}, {3, 0, 0}, {0, 6, 0}), unlit(vec3(2.0f))).sky(vec3(7.0f));
+  scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
+  for (const std::vector<double>& coverage : {std::vector<double>{1, 0.5, 0}, {1, 17.0 / 18.0, 1.0 / 18.0, 0}}) {
+    PictureOptions options = batches(64, static_cast<std::uint32_t>(coverage.size()));
+    options.transparent = true;
+    const Picture picture = renderPicture(scene, options);
+    for (std::uint32_t y = 0; y < options.height; ++y) {
+      for (std::uint32_t x = 0; x < options.width; ++x) {
+        EXPECT_NEAR(picture.at(x, y, 3).mean(), coverage[x], 0.02);
+        EXPECT_NEAR(picture.at(x, y, 0).mean(), 2.0 * picture.at(x, y, 3).mean(), 1e-5);
+      }
+    }
+  }
+}
+
+TEST(Transparent, OpaqueByDefault) {
+  SceneBuilder scene;
+  scene.add(quad({-3, -3, 0}, {1, 0, 0}, {0, 1, 0}), unlit(vec3(2.0f))).sky({7.0f, 1.0f, 0.5f});
+  scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
+  expectUniform(renderPicture(scene, batches(4)), vec4(7.0f, 1.0f, 0.5f, 1.0f), {.error = 1e-4});
+}
+
+// Unlit and emissive surfaces show their own colour in any light, from both sides.
+TEST(Unlit, ShowsItsBaseColour) {
+  scene::Light sun;
+  sun.type = scene::LightType::directional;
+  const std::array materials = {unlit({0.25f, 0.5f, 0.75f}), emitter({25.0f, 50.0f, 75.0f})};
+  for (const float z : {9.0f, -9.0f}) {
+    for (const scene::Material& m : materials) {
+      SceneBuilder scene;
+      scene.scene.materials.assign(materials.begin(), materials.end());  // one set of shaders for both
+      scene.add(kSheet, m).light(sun).sky(vec3(100.0f)).camera(orthographic({0, 0, z}, vec3(0.0f), 0.05f));
+      const vec3 color = m.unlit ? vec3(m.baseColor) : m.emissive;
+      expectUniform(renderPicture(scene, batches(2, 4)), vec4(color, 1.0f), {.error = 1e-5, .rounding = 1e-6});
+    }
+  }
+}
+
+}  // namespace
+}  // namespace quintet::test
