@@ -155,7 +155,7 @@ scene::Environment constantSky(float radiance) {
 INSTANTIATE_TEST_SUITE_P(Scenes, PathtracerAgainstNaive,
                          testing::Values(Scene{"cornell", demo::cornell, {}, 48, 48, 4, 128, 512},
                                          Scene{"glass", demo::glass, scene::defaultEnvironment(), 64, 36, 4, 128, 512},
-                                         Scene{"many_lights", demo::manyLights, constantSky(0.1f), 64, 36, 4, 128, 512}),
+                                         Scene{"many_lights", demo::manyLights, constantSky(0.5f), 64, 36, 4, 256, 1536}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
