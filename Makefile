@@ -14,8 +14,8 @@ BUILD := build/$(PRESET)
 DEMO  := build/demo
 SCENES := build/scenes
 
-# How the demo is rendered: 55 seconds, as many samples as fit.
-RENDER_FLAGS ?= --size 800x450 --time 55
+# How the demo is rendered: 50 seconds, as many samples as fit.
+RENDER_FLAGS ?= --size 800x450 --time 50
 BENCH_FLAGS  ?=
 
 .DEFAULT_GOAL := build
