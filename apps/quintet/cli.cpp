@@ -27,6 +27,12 @@ void refuseRemaining(const CLI::App& app) {
       fmt::format("unknown option '{}'{}; see '{} --help'", name, suggestion(name, names), app.get_name()));
 }
 
+// CLI11 puts two empty lines between groups.
+std::string withoutGaps(std::string text) {
+  for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n", at)) text.erase(at, 1);
+  return text;
+}
+
 }  // namespace
 
 void setUp(CLI::App& app, const std::string& examples) {
@@ -41,7 +47,7 @@ bool parse(CLI::App& app, Arguments arguments) {
   try {
     app.parse(reversed);
   } catch (const CLI::CallForHelp&) {
-    writeFile("-", app.help());
+    writeFile("-", withoutGaps(app.help()));
     return false;
   } catch (const CLI::ParseError& error) {
     refuseRemaining(app);

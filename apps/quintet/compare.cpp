@@ -56,14 +56,17 @@ std::array<Measure, 7> measures(const io::Comparison& c) {
 std::optional<Options> parseOptions(Arguments arguments) {
   CLI::App app("Says how far picture A is from picture B, the reference.", "quintet compare");
   Options options;
-  app.add_option("A", options.a, "The picture: PNG, JPEG, WebP, Radiance HDR or OpenEXR");
-  app.add_option("B", options.b, "The reference");
-  app.add_option("-o,--output", options.output, "Write the FLIP error of each pixel as a picture, black (none) to yellow");
-  app.add_option("--side-by-side", options.sideBySide, "Write A, B and the error next to one another");
-  app.add_option("--max", options.max, "Exit with status 1 if the metric is beyond this (psnr: below)");
-  app.add_option("--metric", options.metric, "The one for --max: mae8, max8, rmse, relmse, psnr, flip, alpha8 (default: mae8)");
+  const auto add = [&app](const char* name, std::string& value, const char* form, const char* help) {
+    app.add_option(name, value, help)->type_name(form);
+  };
+  add("A", options.a, "", "The picture: PNG, JPEG, WebP, Radiance HDR or OpenEXR");
+  add("B", options.b, "", "The reference");
+  add("-o,--output", options.output, "FILE", "Write the FLIP error of each pixel as PNG, black (none) to yellow");
+  add("--side-by-side", options.sideBySide, "FILE", "Write A, B and the error next to one another");
+  add("--max", options.max, "VALUE", "Exit with status 1 if the metric is beyond this (psnr: below)");
+  add("--metric", options.metric, "NAME", "For --max: mae8, max8, rmse, relmse, psnr, flip, alpha8 (default: mae8)");
   app.add_flag("--resize", options.resize, "Bring pictures of different sizes to the smaller size (box filter)");
-  app.add_option("--gamma-b", options.gammaB, "B is encoded by this power instead of the sRGB curve");
+  add("--gamma-b", options.gammaB, "X", "B is encoded by this power instead of the sRGB curve");
   app.add_flag("--json", options.json, "One JSON object instead of text");
   setUp(app, kExamples);
   if (!parse(app, arguments)) return std::nullopt;

@@ -145,6 +145,8 @@ class Job {
 
   void describeScene() {
     const std::string name = options_.scene.filename().string();
+    if (outputKind(options_.output) != OutputKind::png && (options_.toneMap || options_.exposure != 0))
+      progress_.note(fmt::format("{}: linear radiance, --exposure and --tonemap do not apply", options_.output.string()));
     if (environment_.isDefault)
       progress_.note(fmt::format("{}: nothing gives light, taking the default environment (--env none for darkness)", name));
     if (scene_.instances.empty()) warnings_.add(fmt::format("{}: the scene shows no surface", name));

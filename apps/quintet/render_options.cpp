@@ -1,6 +1,7 @@
 #include "render_options.h"
 
-#include <algorithm>
+#include <unistd.h>
+
 #include <cmath>
 #include <limits>
 
@@ -34,59 +35,65 @@ struct Raw {
 };
 
 void declareImage(CLI::App& app, Raw& raw, RenderOptions& options) {
-  app.add_option("SCENE", raw.scene, "The scene: .gltf or .glb");
-  const std::string image = "Image";
-  app.add_option("-o,--output", raw.output,
-                 "File to write: .png, .exr, .hdr, or - for PNG on standard output (default: the scene's name with .png, here)")
-      ->group(image);
-  app.add_option("--size", raw.size,
-                 "WxH pixels, or W alone (default: 1280x720, or 1280 along the longer side of the file's camera)")
-      ->group(image);
-  app.add_option("--region", raw.region, "X,Y,W,H: render and write only this part, in pixels from the top left")->group(image);
-  app.add_flag("--transparent", options.transparent, "Alpha 0 where nothing is, instead of the environment")->group(image);
-  app.add_option("--exposure", raw.exposure, "Stops; picture times 2^EXPOSURE (PNG only; default: 0)")->group(image);
-  app.add_option("--tonemap", raw.toneMap,
-                 "linear, aces, agx or neutral (PNG only; default: neutral for colour, linear for other outputs)")
-      ->group(image);
-  const std::string quality = "Quality";
-  app.add_option("--spp", raw.spp, "Samples per pixel (default: 64; none with --time)")->group(quality);
-  app.add_option("--time", raw.time, "Seconds to render for; with --spp, what comes first")->group(quality);
-  app.add_option("--seed", raw.seed, "Of the random numbers (default: 0)")->group(quality);
-  app.add_option("--bounces", options.bounces, "Short for --set bounces=N")->group(quality);
-  app.add_option("--clamp", options.clamp, "Short for --set clamp=X")->group(quality);
+  app.add_option("SCENE", raw.scene, "The scene: .gltf or .glb")->type_name("");
+  const auto add = [&app](const char* name, std::string& value, const char* form, const char* help) {
+    app.add_option(name, value, help)->type_name(form)->group("Image");
+  };
+  add("-o,--output", raw.output, "FILE", ".png, .exr or .hdr; - is PNG on standard output (default: SCENE.png, here)");
+  add("--size", raw.size, "WxH", "Pixels; or W alone (default: 1280x720, or 1280 on the camera's longer side)");
+  add("--region", raw.region, "X,Y,W,H", "Render and write only this part, in pixels from the top left");
+  app.add_flag("--transparent", options.transparent, "Alpha 0 where nothing is, instead of the environment")->group("Image");
+  add("--exposure", raw.exposure, "STOPS", "Multiply by 2^STOPS (PNG only; default: 0)");
+  add("--tonemap", raw.toneMap, "NAME", "linear, aces, agx or neutral (PNG only; default: neutral for colour)");
+}
+
+void declareQuality(CLI::App& app, Raw& raw, RenderOptions& options) {
+  const auto add = [&app](const char* name, auto& value, const char* form, const char* help) {
+    app.add_option(name, value, help)->type_name(form)->group("Quality");
+  };
+  add("--spp", raw.spp, "N", "Samples per pixel (default: 64; none with --time)");
+  add("--time", raw.time, "SECONDS", "Render for so long; with --spp, what comes first");
+  add("--seed", raw.seed, "N", "Of the random numbers (default: 0)");
+  add("--bounces", options.bounces, "N", "Short for --set bounces=N");
+  add("--clamp", options.clamp, "X", "Short for --set clamp=X");
 }
 
 void declareScene(CLI::App& app, Raw& raw, RenderOptions& options) {
-  const std::string camera = "Camera";
-  app.add_option("--camera", options.camera.camera, "Index or name of a camera in the file (default: the first, else automatic)")
-      ->group(camera);
-  app.add_option("--look-from", raw.lookFrom, "X,Y,Z of the eye, metres")->group(camera);
-  app.add_option("--look-at", raw.lookAt, "X,Y,Z of the point looked at (default: the middle of the scene)")->group(camera);
-  app.add_option("--up", raw.up, "X,Y,Z that is up in the image (default: 0,1,0)")->group(camera);
-  app.add_option("--fov", raw.fov, "Vertical field of view, degrees (default: 45, or the file's)")->group(camera);
-  app.add_option("--aperture", raw.aperture, "Radius of the lens, metres (default: 0, all is sharp)")->group(camera);
-  app.add_option("--focus", raw.focus, "Distance that is sharp, metres (default: the point looked at)")->group(camera);
-  const std::string light = "Light";
-  app.add_option("--env", options.environment.source,
-                 "Environment: an image (equirectangular), 'none', 'default', or R,G,B (default: the scene's; "
-                 "'default' if nothing in the scene gives light)")
-      ->group(light);
-  app.add_option("--env-intensity", raw.envIntensity, "Factor for the environment (default: 1)")->group(light);
-  app.add_option("--env-rotation", raw.envRotation, "Degrees about the y axis, counter-clockwise seen from above")->group(light);
+  const auto add = [&app](const char* group, const char* name, std::string& value, const char* form, const char* help) {
+    app.add_option(name, value, help)->type_name(form)->group(group);
+  };
+  add("Camera", "--camera", options.camera.camera, "NAME", "Index or name in the file (default: the first, else automatic)");
+  add("Camera", "--look-from", raw.lookFrom, "X,Y,Z", "The eye, metres");
+  add("Camera", "--look-at", raw.lookAt, "X,Y,Z", "The point looked at (default: the middle of the scene)");
+  add("Camera", "--up", raw.up, "X,Y,Z", "What is up in the image (default: 0,1,0)");
+  add("Camera", "--fov", raw.fov, "DEGREES", "Vertical field of view (default: 45, or the file's)");
+  add("Camera", "--aperture", raw.aperture, "METRES", "Radius of the lens (default: 0, all is sharp)");
+  add("Camera", "--focus", raw.focus, "METRES", "Distance that is sharp (default: the point looked at)");
+  add("Light", "--env", options.environment.source, "WHAT",
+      "An equirectangular image, none, default, or R,G,B (default: what the scene\n"
+      "has; 'default' if nothing in it gives light)");
+  add("Light", "--env-intensity", raw.envIntensity, "X", "Factor for the environment (default: 1)");
+  add("Light", "--env-rotation", raw.envRotation, "DEGREES", "About the y axis, counter-clockwise seen from above");
 }
 
 void declareRest(CLI::App& app, Raw& raw, RenderOptions& options) {
-  const std::string program = "Program";
-  app.add_option("--program", options.program, "Name or folder of a program (default: pathtracer)")->group(program);
-  app.add_option("--set", options.assignments, "NAME=VALUE for a parameter of the program; may be repeated")
+  const char* program = "Program";
+  app.add_option("--program", options.program, "Built-in program, or folder of one (default: pathtracer)")
+      ->type_name("NAME")
+      ->group(program);
+  app.add_option("--set", options.assignments, "A parameter of the program; may be repeated")
       ->expected(1)
       ->take_all()
+      ->type_name("NAME=VALUE")
       ->group(program);
   app.add_flag("--help-program", options.programHelp, "Print the program's parameters and leave")->group(program);
-  const std::string run = "Run";
-  app.add_option("--device", options.device, "Index or part of the name: 0, h200, lavapipe, cpu, gpu (see 'quintet info')")
+  const char* run = "Run";
+  app.add_option("--device", options.device, "Index or part of the name: 0, h200, lavapipe, cpu, gpu")
+      ->type_name("NAME")
       ->group(run);
-  app.add_option("--timeout", raw.timeout, "Seconds after which a launch counts as hanging (default: 60; on a CPU, which also compiles in it, 600)")->group(run);
+  app.add_option("--timeout", raw.timeout, "A launch that takes longer hangs (default: 60; on a CPU 600)")
+      ->type_name("SECONDS")
+      ->group(run);
   app.add_flag("-q,--quiet", options.quiet, "No progress and no notes on standard error")->group(run);
   app.add_flag("--json", options.json, "At the end, one JSON object on standard output")->group(run);
 }
@@ -145,6 +152,7 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   RenderOptions options;
   Raw raw;
   declareImage(app, raw, options);
+  declareQuality(app, raw, options);
   declareScene(app, raw, options);
   declareRest(app, raw, options);
   setUp(app, kExamples);
@@ -157,6 +165,8 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
                                              : options.scene.filename().replace_extension(".png");
   if (options.json && options.output == "-")
     throw UsageError("--json and -o - both want the standard output");
+  if (options.output == "-" && ::isatty(STDOUT_FILENO) == 1)
+    throw UsageError("-o -: the standard output is a terminal; send it to a file or a program");
   interpretImage(raw, options);
   interpretView(raw, options);
   return options;

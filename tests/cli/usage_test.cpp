@@ -104,6 +104,15 @@ TEST_F(Usage, ProgramHelpNamesTheParameters) {
   EXPECT_NE(result.out.find("default"), std::string::npos);
 }
 
+TEST_F(Usage, SetMayBeRepeated) {
+  const RunResult result = quintet({"render", "scene.gltf", "--program", "ao", "--size", "8x8", "--spp", "1", "-q", "--set", "distance=2",
+                                    "--set", "background=0,0.5,1", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string parameters = nlohmann::json::parse(result.out)["parameters"];
+  EXPECT_NE(parameters.find("distance=2"), std::string::npos) << parameters;
+  EXPECT_NE(parameters.find("background=0,0.5,1"), std::string::npos) << parameters;
+}
+
 TEST_F(Usage, OutputsThatMakeNoSense) {
   expectError(quintet(quick({"-o", "out.jpg"})), 2, {"out.jpg", ".png, .exr or .hdr"});
   expectError(quintet(quick({"-o", "out"})), 2, {"extension"});
