@@ -162,9 +162,8 @@ void GlbWriter::addObject(const std::string& name, const TriangleMesh& mesh, int
 }
 
 void GlbWriter::addCamera(const std::string& name, vec3 eye, vec3 target, float verticalFovDegrees, float aspect) {
-  Json perspective = {{"yfov", number(glm::radians(verticalFovDegrees))},
-                      {"aspectRatio", number(aspect)},
-                      {"znear", 0.01}};
+  Json perspective = {
+      {"yfov", number(glm::radians(verticalFovDegrees))}, {"aspectRatio", number(aspect)}, {"znear", 0.01}};
   root_["cameras"].push_back({{"name", name}, {"type", "perspective"}, {"perspective", std::move(perspective)}});
   const vec3 up = std::abs(glm::normalize(target - eye).y) > 0.999f ? vec3(0, 0, -1) : vec3(0, 1, 0);
   addNode({{"name", name}, {"camera", lastIndex(root_["cameras"])}}, glm::inverse(glm::lookAt(eye, target, up)));

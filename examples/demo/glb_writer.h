@@ -27,7 +27,7 @@ struct Material {
   int metallicRoughnessTexture = kNoTexture;
   int normalTexture = kNoTexture;
   float normalScale = 1.0f;
-  vec3 emissive{0.0f};  // radiance; above 1 through KHR_materials_emissive_strength
+  vec3 emissive{0.0f};       // radiance; above 1 through KHR_materials_emissive_strength
   float alphaCutoff = 0.0f;  // above 0: alpha mode MASK
   bool doubleSided = false;
   float ior = 1.5f;

@@ -51,7 +51,8 @@ vec2 polygonPoint(const PrismShape& shape, int index, float inset) {
 
 }  // namespace
 
-TriangleMesh parametric(int uCount, int vCount, bool wrapU, bool wrapV, const std::function<vec3(float, float)>& point) {
+TriangleMesh parametric(int uCount, int vCount, bool wrapU, bool wrapV,
+                        const std::function<vec3(float, float)>& point) {
   TriangleMesh mesh;
   for (int j = 0; j <= vCount; ++j) {
     for (int i = 0; i <= uCount; ++i) {
@@ -77,12 +78,12 @@ TriangleMesh parametric(int uCount, int vCount, bool wrapU, bool wrapV, const st
 TriangleMesh icosphere(float radius, int level, bool facets) {
   const float g = (1.0f + std::sqrt(5.0f)) / 2.0f;
   TriangleMesh mesh;
-  mesh.positions = {{-1, g, 0}, {1, g, 0},   {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+  mesh.positions = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
                     {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
   for (vec3& p : mesh.positions) p = glm::normalize(p);
-  mesh.triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},   {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                    {3, 8, 9},  {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (int i = 0; i < level; ++i) subdivide(mesh);
   mesh.normals = mesh.positions;
   for (vec3& p : mesh.positions) p *= radius;
@@ -213,8 +214,8 @@ TriangleMesh twistedPrism(const PrismShape& shape) {
 TriangleMesh box(vec3 low, vec3 high) {
   const vec3 x(high.x - low.x, 0, 0), y(0, high.y - low.y, 0), z(0, 0, high.z - low.z);
   TriangleMesh mesh = quad(low, y, x);
-  for (const TriangleMesh& face : {quad(low, x, z), quad(low, z, y), quad(low + z, x, y), quad(low + x, y, z),
-                                   quad(low + y, z, x)}) {
+  for (const TriangleMesh& face :
+       {quad(low, x, z), quad(low, z, y), quad(low + z, x, y), quad(low + x, y, z), quad(low + y, z, x)}) {
     mesh.append(face);
   }
   return mesh;

@@ -37,13 +37,13 @@ TriangleMesh torusKnot(int p, int q, float radius, float swing, float tube, int 
 
 struct PrismShape {
   int sides = 5;
-  float radius = 0.1f;      // to the corners, before rounding
-  float rounding = 0.02f;   // radius of the vertical edges
-  float bevel = 0.006f;     // of the rims
+  float radius = 0.1f;     // to the corners, before rounding
+  float rounding = 0.02f;  // radius of the vertical edges
+  float bevel = 0.006f;    // of the rims
   float height = 0.4f;
-  float twist = 1.0f;       // radians, bottom to top
-  float taper = 1.0f;       // top size / bottom size
-  int perSide = 24;         // vertices of the outline per side
+  float twist = 1.0f;  // radians, bottom to top
+  float taper = 1.0f;  // top size / bottom size
+  int perSide = 24;    // vertices of the outline per side
   int rings = 96;
 };
 TriangleMesh twistedPrism(const PrismShape& shape);

@@ -25,8 +25,7 @@ TriangleMesh tube(std::span<const vec3> curve, float startRadius, float endRadiu
     if (row == 0 || row == last) return curve[i];
     const float radius = glm::mix(startRadius, endRadius, static_cast<float>(i) / static_cast<float>(last - 2));
     const float angle = 2.0f * kPi * u;
-    return curve[i] + radius * (std::cos(angle) * across[i] +
-                                std::sin(angle) * glm::cross(tangentAt(i), across[i]));
+    return curve[i] + radius * (std::cos(angle) * across[i] + std::sin(angle) * glm::cross(tangentAt(i), across[i]));
   });
   computeNormals(mesh, 60.0f);
   return mesh;

@@ -65,15 +65,21 @@ Sky::Sky(const SkySettings& settings)
     : settings_(settings), thetaSun_(std::acos(glm::clamp(settings.sunDirection.y, 0.0f, 1.0f))) {
   const float t = settings.turbidity;
   const float chi = (4.0f / 9.0f - t / 120.0f) * (kPi - 2.0f * thetaSun_);
-  luminance_ = {0.1787f * t - 1.4630f, -0.3554f * t + 0.4275f, -0.0227f * t + 5.3251f,
-                0.1206f * t - 2.5771f, -0.0670f * t + 0.3703f,
-                (4.0453f * t - 4.9710f) * std::tan(chi) - 0.2155f * t + 2.4192f};
-  x_ = {-0.0193f * t - 0.2592f, -0.0665f * t + 0.0008f, -0.0004f * t + 0.2125f,
-        -0.0641f * t - 0.8989f, -0.0033f * t + 0.0452f,
+  luminance_ = {0.1787f * t - 1.4630f,  -0.3554f * t + 0.4275f,
+                -0.0227f * t + 5.3251f, 0.1206f * t - 2.5771f,
+                -0.0670f * t + 0.3703f, (4.0453f * t - 4.9710f) * std::tan(chi) - 0.2155f * t + 2.4192f};
+  x_ = {-0.0193f * t - 0.2592f,
+        -0.0665f * t + 0.0008f,
+        -0.0004f * t + 0.2125f,
+        -0.0641f * t - 0.8989f,
+        -0.0033f * t + 0.0452f,
         zenithChromaticity(t, thetaSun_, {0.00166f, -0.00375f, 0.00209f, 0.0f},
                            {-0.02903f, 0.06377f, -0.03202f, 0.00394f}, {0.11693f, -0.21196f, 0.06052f, 0.25886f})};
-  y_ = {-0.0167f * t - 0.2608f, -0.0950f * t + 0.0092f, -0.0079f * t + 0.2102f,
-        -0.0441f * t - 1.6537f, -0.0109f * t + 0.0529f,
+  y_ = {-0.0167f * t - 0.2608f,
+        -0.0950f * t + 0.0092f,
+        -0.0079f * t + 0.2102f,
+        -0.0441f * t - 1.6537f,
+        -0.0109f * t + 0.0529f,
         zenithChromaticity(t, thetaSun_, {0.00275f, -0.00610f, 0.00317f, 0.0f},
                            {-0.04214f, 0.08970f, -0.04153f, 0.00516f}, {0.15346f, -0.26756f, 0.06670f, 0.26688f})};
 
@@ -140,7 +146,8 @@ vec3 Sky::hilly(const vec3& behind, const vec3& d) const {
   struct Ridge {
     float height, amplitude, frequency, air;
   };
-  constexpr Ridge kRidges[] = {{0.034f, 0.060f, 2.2f, 0.74f}, {0.014f, 0.046f, 3.1f, 0.55f}, {-0.006f, 0.034f, 4.3f, 0.36f}};
+  constexpr Ridge kRidges[] = {
+      {0.034f, 0.060f, 2.2f, 0.74f}, {0.014f, 0.046f, 3.1f, 0.55f}, {-0.006f, 0.034f, 4.3f, 0.36f}};
   const vec3 ground = vec3(0.10f, 0.13f, 0.12f) / kPi * (settings_.skyIrradiance + 0.4f * settings_.sunIrradiance);
   const vec2 around = glm::normalize(vec2(d.x, d.z) + vec2(1e-9f, 0.0f));
   const vec3 air = 0.5f * haze(d) + 0.5f * dome(glm::normalize(vec3(around.x, 0.6f, around.y)));

@@ -13,14 +13,14 @@
 namespace quintet::demo {
 
 struct SkySettings {
-  vec3 sunDirection{0.0f, 1.0f, 0.0f};  // unit, towards the sun, above the horizon
-  float turbidity = 3.0f;               // haze: 2 (clear) … 6
-  float skyIrradiance = 1.5f;           // luminance-weighted, on the ground, from the sky alone
-  float sunIrradiance = 3.0f;           // the same, of the sun alone, on a surface that faces it
+  vec3 sunDirection{0.0f, 1.0f, 0.0f};   // unit, towards the sun, above the horizon
+  float turbidity = 3.0f;                // haze: 2 (clear) … 6
+  float skyIrradiance = 1.5f;            // luminance-weighted, on the ground, from the sky alone
+  float sunIrradiance = 3.0f;            // the same, of the sun alone, on a surface that faces it
   float sunRadius = glm::radians(4.0f);  // where the disc has faded to nothing
-  float clouds = 0.0f;                  // 0: none … 1
-  float haze = 0.0f;                    // whiteness of the horizon, 0 … 1
-  bool hills = false;                   // along the horizon
+  float clouds = 0.0f;                   // 0: none … 1
+  float haze = 0.0f;                     // whiteness of the horizon, 0 … 1
+  bool hills = false;                    // along the horizon
 };
 
 class Sky {
@@ -48,7 +48,7 @@ class Sky {
   float thetaSun_;
   Perez luminance_, x_, y_;
   float scale_ = 1.0f;
-  vec3 sunColor_{1.0f};  // of luminance 1
+  vec3 sunColor_{1.0f};    // of luminance 1
   vec3 whiteLight_{0.0f};  // radiance of a cloud
   vec3 sunRadiance_{0.0f};
 };

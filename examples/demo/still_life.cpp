@@ -42,17 +42,19 @@ void addGround(GlbWriter& glb, const StillLifeSettings& settings) {
   computeTangents(disc);
   glb.addObject("terrace", disc, floor);
 
-  const int stone = glb.addMaterial({.name = "pale stone", .baseColor = {0.50f, 0.45f, 0.38f, 1.0f}, .roughness = 0.75f});
+  const int stone =
+      glb.addMaterial({.name = "pale stone", .baseColor = {0.50f, 0.45f, 0.38f, 1.0f}, .roughness = 0.75f});
   const float r = kTerraceRadius;
-  const std::array kerb = {vec2(r, -0.3f),         vec2(r + 0.34f, -0.3f), vec2(r + 0.34f, 0.06f), vec2(r + 0.33f, 0.075f),
-                           vec2(r + 0.31f, 0.08f), vec2(r + 0.03f, 0.08f), vec2(r + 0.01f, 0.075f), vec2(r, 0.06f),
-                           vec2(r, -0.3f)};
+  const std::array kerb = {vec2(r, -0.3f),          vec2(r + 0.34f, -0.3f), vec2(r + 0.34f, 0.06f),
+                           vec2(r + 0.33f, 0.075f), vec2(r + 0.31f, 0.08f), vec2(r + 0.03f, 0.08f),
+                           vec2(r + 0.01f, 0.075f), vec2(r, 0.06f),         vec2(r, -0.3f)};
   glb.addObject("kerb", revolve(kerb, 160, 50.0f), stone);
 
   const SurfaceMaps veins = marble(settings.textureSize);
-  const int marbled = glb.addMaterial({.name = "white marble",
-                                       .baseColorTexture = glb.addTexture("marble colour", veins.baseColor),
-                                       .metallicRoughnessTexture = glb.addTexture("marble roughness", veins.metallicRoughness)});
+  const int marbled =
+      glb.addMaterial({.name = "white marble",
+                       .baseColorTexture = glb.addTexture("marble colour", veins.baseColor),
+                       .metallicRoughnessTexture = glb.addTexture("marble roughness", veins.metallicRoughness)});
   const std::vector<vec2> profile = discProfile(kPlinthRadius, kPlinthHeight, 0.008f, 6);
   TriangleMesh plinth = revolve(profile, 192);
   unrollFromTop(plinth, 2.0f * kPlinthRadius + kPlinthHeight, kMarbleTile);
@@ -65,10 +67,10 @@ void addVase(GlbWriter& glb, const mat4& place) {
                                        .roughness = 0.42f,
                                        .clearcoat = 1.0f,
                                        .clearcoatRoughness = 0.05f});
-  const std::array outside = {vec2(0.050f, 0.006f), vec2(0.056f, 0.012f), vec2(0.085f, 0.085f), vec2(0.104f, 0.165f),
-                              vec2(0.096f, 0.235f), vec2(0.060f, 0.290f), vec2(0.034f, 0.335f), vec2(0.031f, 0.370f),
+  const std::array outside = {vec2(0.050f, 0.006f), vec2(0.056f, 0.012f),  vec2(0.085f, 0.085f), vec2(0.104f, 0.165f),
+                              vec2(0.096f, 0.235f), vec2(0.060f, 0.290f),  vec2(0.034f, 0.335f), vec2(0.031f, 0.370f),
                               vec2(0.045f, 0.402f), vec2(0.0465f, 0.406f), vec2(0.044f, 0.408f), vec2(0.040f, 0.404f),
-                              vec2(0.026f, 0.370f), vec2(0.028f, 0.335f), vec2(0.055f, 0.285f)};
+                              vec2(0.026f, 0.370f), vec2(0.028f, 0.335f),  vec2(0.055f, 0.285f)};
   std::vector<vec2> profile{{0.0f, 0.0f}, {0.030f, 0.0f}, {0.046f, 0.001f}};
   for (const vec2& p : smoothCurve(outside, 6)) profile.push_back(p);
   profile.insert(profile.end(), {{0.030f, 0.27f}, {0.0f, 0.265f}});
@@ -94,7 +96,8 @@ void addTwigs(GlbWriter& glb, const mat4& place) {
     for (int i = 0; i <= 24; ++i) {
       const float t = static_cast<float>(i) / 24.0f;
       const vec3 wave = 0.008f * vec3(std::sin(9.0f * t), 0.0f, std::cos(7.0f * t) - 1.0f);
-      curve.push_back(vec3(0, 0.28f, 0) + twig.length * (vec3(0, t * (1.0f - 0.35f * t), 0) + 0.75f * t * t * lean) + wave);
+      curve.push_back(vec3(0, 0.28f, 0) + twig.length * (vec3(0, t * (1.0f - 0.35f * t), 0) + 0.75f * t * t * lean) +
+                      wave);
     }
     stems.append(tube(curve, 0.0035f, 0.0012f, 8));
     for (std::size_t i = 9; i < curve.size(); ++i) {
@@ -121,18 +124,21 @@ void addMetals(GlbWriter& glb) {
                   placed(0.02f, -0.15f, kPlinthHeight + radius + swing + rope - 0.006f, 14.0f));
 
   const SurfaceMaps brush = brushedMetal(512, 0.40f);
-  const int copper = glb.addMaterial({.name = "brushed copper",
-                                      .baseColor = {0.95f, 0.56f, 0.38f, 1.0f},
-                                      .metallic = 1.0f,
-                                      .metallicRoughnessTexture = glb.addTexture("brush roughness", brush.metallicRoughness),
-                                      .normalTexture = glb.addTexture("brush normal", brush.normal)});
+  const int copper =
+      glb.addMaterial({.name = "brushed copper",
+                       .baseColor = {0.95f, 0.56f, 0.38f, 1.0f},
+                       .metallic = 1.0f,
+                       .metallicRoughnessTexture = glb.addTexture("brush roughness", brush.metallicRoughness),
+                       .normalTexture = glb.addTexture("brush normal", brush.normal)});
   TriangleMesh cushion = superellipsoid({0.082f, 0.075f, 0.082f}, 4.0f, 36);
   computeTangents(cushion);
-  glb.addInstance("cushion", glb.addMesh("cushion", cushion, copper), placed(-0.095f, 0.12f, kPlinthHeight + 0.075f, 24.0f));
+  glb.addInstance("cushion", glb.addMesh("cushion", cushion, copper),
+                  placed(-0.095f, 0.12f, kPlinthHeight + 0.075f, 24.0f));
 
   const int steel = glb.addMaterial(
       {.name = "polished steel", .baseColor = {0.80f, 0.80f, 0.81f, 1.0f}, .metallic = 1.0f, .roughness = 0.03f});
-  glb.addInstance("bearing", glb.addMesh("bearing", icosphere(0.030f, 4), steel), placed(0.065f, 0.275f, kPlinthHeight + 0.030f));
+  glb.addInstance("bearing", glb.addMesh("bearing", icosphere(0.030f, 4), steel),
+                  placed(0.065f, 0.275f, kPlinthHeight + 0.030f));
 }
 
 void addGlass(GlbWriter& glb) {
@@ -143,7 +149,8 @@ void addGlass(GlbWriter& glb) {
                                      .thickness = 0.2f,
                                      .attenuationColor = {0.78f, 0.93f, 0.91f},
                                      .attenuationDistance = 0.18f});
-  glb.addInstance("sphere", glb.addMesh("sphere", icosphere(0.098f, 5), clear), placed(0.185f, 0.115f, kPlinthHeight + 0.098f));
+  glb.addInstance("sphere", glb.addMesh("sphere", icosphere(0.098f, 5), clear),
+                  placed(0.185f, 0.115f, kPlinthHeight + 0.098f));
 
   const int amber = glb.addMaterial({.name = "amber glass",
                                      .roughness = 0.0f,
@@ -152,15 +159,20 @@ void addGlass(GlbWriter& glb) {
                                      .thickness = 0.1f,
                                      .attenuationColor = {0.95f, 0.62f, 0.28f},
                                      .attenuationDistance = 0.19f});
-  const PrismShape prism{.sides = 3, .radius = 0.098f, .rounding = 0.020f, .bevel = 0.007f, .height = 0.39f,
-                         .twist = 2.0f, .taper = 0.70f};
+  const PrismShape prism{.sides = 3,
+                         .radius = 0.098f,
+                         .rounding = 0.020f,
+                         .bevel = 0.007f,
+                         .height = 0.39f,
+                         .twist = 2.0f,
+                         .taper = 0.70f};
   glb.addInstance("prism", glb.addMesh("prism", twistedPrism(prism), amber), placed(0.325f, -0.13f));
 }
 
 void addStone(GlbWriter& glb) {
-  const int lapis = glb.addMaterial(
-      {.name = "lapis", .baseColor = {0.05f, 0.12f, 0.29f, 1.0f}, .roughness = 0.25f});
-  glb.addInstance("gem", glb.addMesh("gem", icosphere(0.058f, 1, true), lapis), placed(-0.32f, 0.17f, kPlinthHeight + 0.050f, 20.0f));
+  const int lapis = glb.addMaterial({.name = "lapis", .baseColor = {0.05f, 0.12f, 0.29f, 1.0f}, .roughness = 0.25f});
+  glb.addInstance("gem", glb.addMesh("gem", icosphere(0.058f, 1, true), lapis),
+                  placed(-0.32f, 0.17f, kPlinthHeight + 0.050f, 20.0f));
 }
 
 }  // namespace
@@ -180,7 +192,8 @@ std::vector<std::byte> stillLife(const StillLifeSettings& settings) {
 
 SkySettings stillLifeSky() {
   const float azimuth = glm::radians(160.0f), elevation = glm::radians(32.0f);  // azimuth from +x towards +z
-  return {.sunDirection = {std::cos(elevation) * std::cos(azimuth), std::sin(elevation), std::cos(elevation) * std::sin(azimuth)},
+  return {.sunDirection = {std::cos(elevation) * std::cos(azimuth), std::sin(elevation),
+                           std::cos(elevation) * std::sin(azimuth)},
           .turbidity = 2.0f,
           .skyIrradiance = 1.7f,
           .sunIrradiance = 2.8f,

@@ -16,8 +16,8 @@ inline constexpr float kPlaneAlbedo = 0.5f;
 // furnace.glb: a Lambert sphere of radius 1 around the origin.
 inline constexpr float kFurnaceAlbedo = 0.8f;
 
-std::vector<std::byte> cornell();     // closed box, coloured walls, light in the ceiling, a diffuse and a metal block
-std::vector<std::byte> glass();       // rough glass sphere and clear slab on a plane, three light panels
+std::vector<std::byte> cornell();  // closed box, coloured walls, light in the ceiling, a diffuse and a metal block
+std::vector<std::byte> glass();    // rough glass sphere and clear slab on a plane, three light panels
 std::vector<std::byte> furnace();
 std::vector<std::byte> manyLights();  // 400 emissive triangles of very different power, terrain, alpha-masked leaves
 std::vector<std::byte> bench();       // about 100 k triangles of terrain, 60 instances of three rocks

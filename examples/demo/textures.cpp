@@ -44,7 +44,8 @@ Texel oakBoard(const Board& board, float length) {
   const float phase = ring - std::floor(ring);
   const float late = glm::smoothstep(0.15f, 0.85f, phase) * (1.0f - glm::smoothstep(0.9f, 1.0f, phase));
   const float fibre = fbm(vec3(1.6f * board.along, 34.0f * board.across, 0.0f) + seed, 3, 21);
-  const float pores = glm::smoothstep(0.28f, 0.5f, noise(vec3(3.0f * board.along, 46.0f * board.across, 5.0f) + seed, 29));
+  const float pores =
+      glm::smoothstep(0.28f, 0.5f, noise(vec3(3.0f * board.along, 46.0f * board.across, 5.0f) + seed, 29));
 
   const vec3 early(0.60f, 0.405f, 0.240f), dark(0.44f, 0.275f, 0.150f);
   vec3 color = glm::mix(early, dark, 0.62f * late + 0.30f * fibre);
@@ -123,7 +124,8 @@ SurfaceMaps marble(std::uint32_t size) {
     const float clouds = 0.5f + 0.9f * field(q, 5, 59, 1);
     const float grain = field(p, 2, 61, 48);
 
-    vec3 color = glm::mix(vec3(0.82f, 0.795f, 0.755f), vec3(0.68f, 0.67f, 0.66f), glm::clamp(0.55f * clouds, 0.0f, 1.0f));
+    vec3 color =
+        glm::mix(vec3(0.82f, 0.795f, 0.755f), vec3(0.68f, 0.67f, 0.66f), glm::clamp(0.55f * clouds, 0.0f, 1.0f));
     color = glm::mix(color, vec3(0.26f, 0.27f, 0.295f), 0.95f * wide * where);
     color = glm::mix(color, vec3(0.42f, 0.385f, 0.34f), 0.80f * fine * (0.35f + 0.65f * where));
     color *= 1.0f + 0.03f * grain;
@@ -148,7 +150,8 @@ io::Image leafCutout(std::uint32_t size) {
       const float t = 2.0f * (static_cast<float>(x) + 0.5f) / static_cast<float>(size) - 1.0f;
       const float teeth = 0.05f * std::abs(std::sin(40.0f * s));
       const float inside = 0.9f * std::pow(std::sin(kPi * std::pow(s, 0.7f)), 0.8f) - teeth - std::abs(t);
-      const float vein = std::exp(-40.0f * std::abs(t)) + 0.5f * std::exp(-20.0f * std::abs(std::sin(18.0f * (s - 0.5f * std::abs(t)))));
+      const float vein = std::exp(-40.0f * std::abs(t)) +
+                         0.5f * std::exp(-20.0f * std::abs(std::sin(18.0f * (s - 0.5f * std::abs(t)))));
       const vec3 color = glm::mix(vec3(0.10f, 0.24f, 0.05f), vec3(0.30f, 0.42f, 0.14f), std::min(vein, 1.0f));
       const auto pixel = image.pixel<std::uint8_t>(x, y);
       for (unsigned c = 0; c < 3; ++c) pixel[c] = io::byteFromUnit(io::srgbFromLinear(color[c]));

@@ -43,7 +43,9 @@ Glb parse(std::span<const std::byte> file) {
 
 std::size_t componentSize(int type) { return type == 5126 || type == 5125 ? 4 : type == 5123 ? 2 : 0; }
 
-std::size_t componentCount(const std::string& type) { return type == "SCALAR" ? 1u : static_cast<std::size_t>(type.back() - '0'); }
+std::size_t componentCount(const std::string& type) {
+  return type == "SCALAR" ? 1u : static_cast<std::size_t>(type.back() - '0');
+}
 
 std::span<const std::byte> accessorBytes(const Glb& glb, const Json& accessor) {
   const Json& view = glb.json.at("bufferViews").at(accessor.at("bufferView").get<std::size_t>());
@@ -56,8 +58,8 @@ void checkAccessors(const Glb& glb) {
     EXPECT_LE(view.at("byteOffset").get<std::size_t>() + view.at("byteLength").get<std::size_t>(), glb.binary.size());
   }
   for (const Json& accessor : glb.json.at("accessors")) {
-    const std::size_t element = componentSize(accessor.at("componentType").get<int>()) *
-                                componentCount(accessor.at("type").get<std::string>());
+    const std::size_t element =
+        componentSize(accessor.at("componentType").get<int>()) * componentCount(accessor.at("type").get<std::string>());
     EXPECT_EQ(accessorBytes(glb, accessor).size(), accessor.at("count").get<std::size_t>() * element);
   }
 }
@@ -67,7 +69,8 @@ void checkPrimitive(const Glb& glb, const Json& primitive) {
   const Json& positions = accessors.at(primitive.at("attributes").at("POSITION").get<std::size_t>());
   const auto count = positions.at("count").get<std::size_t>();
   for (const auto& attribute : primitive.at("attributes").items()) {
-    EXPECT_EQ(accessors.at(attribute.value().get<std::size_t>()).at("count").get<std::size_t>(), count) << attribute.key();
+    EXPECT_EQ(accessors.at(attribute.value().get<std::size_t>()).at("count").get<std::size_t>(), count)
+        << attribute.key();
   }
   // min and max must be those of the data, to the bit.
   const std::span<const std::byte> bytes = accessorBytes(glb, positions);
@@ -114,7 +117,8 @@ std::size_t checkFile(std::span<const std::byte> file) {
     if (!node.contains("mesh")) continue;
     for (const Json& primitive : root.at("meshes").at(node.at("mesh").get<std::size_t>()).at("primitives")) {
       checkPrimitive(glb, primitive);
-      triangles += root.at("accessors").at(primitive.at("indices").get<std::size_t>()).at("count").get<std::size_t>() / 3;
+      triangles +=
+          root.at("accessors").at(primitive.at("indices").get<std::size_t>()).at("count").get<std::size_t>() / 3;
     }
   }
   for (const Json& image : root.value("images", Json::array())) {

@@ -12,14 +12,15 @@ namespace {
 struct Solid {
   std::string name;
   TriangleMesh mesh;
-  double volume;  // expected, m³
+  double volume;     // expected, m³
   double tolerance;  // relative: what tessellation may cost
 };
 
 std::vector<Solid> solids() {
   const std::array cup = {vec2(0, 0), vec2(0.5f, 0), vec2(0.5f, 1), vec2(0.4f, 1), vec2(0.4f, 0.1f), vec2(0, 0.1f)};
   const std::array line = {vec3(0, 0, 0), vec3(0, 0.5f, 0), vec3(0, 1, 0)};
-  const PrismShape straight{.sides = 4, .radius = 0.5f, .rounding = 0.01f, .bevel = 0.002f, .height = 1.0f, .twist = 0.0f};
+  const PrismShape straight{
+      .sides = 4, .radius = 0.5f, .rounding = 0.01f, .bevel = 0.002f, .height = 1.0f, .twist = 0.0f};
   PrismShape twisted = straight;
   twisted.twist = 1.2f;
   const double pi = glm::pi<double>();
@@ -69,7 +70,8 @@ TEST(Mesh, NormalsAreUnitAndFaceOutwards) {
     ASSERT_EQ(mesh.normals.size(), mesh.positions.size());
     for (const vec3& n : mesh.normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-5f);
     for (const uvec3& t : mesh.triangles) {
-      const vec3 face = glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
+      const vec3 face =
+          glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]);
       for (unsigned k = 0; k < 3; ++k) ASSERT_GT(glm::dot(face, mesh.normals[t[k]]), 0.0f);
     }
   }
