@@ -47,7 +47,9 @@ float bsdfPdf(Bsdf b, vec3 wo, vec3 wi) {
   float transmission = 0.0;
   if (kHasSolidTransmission) transmission = dielectricPdf(b.dielectric, wo, wi);
   if (kHasThinTransmission) transmission = b.refractive ? transmission : thinPdf(b.thin, wo, wi);
-  return dot(b.chance, vec4(coat, specular, diffusePdf(wi), b.transmissionDelta ? 0.0 : transmission));
+  float density = dot(b.chance, vec4(coat, specular, diffusePdf(wi), b.transmissionDelta ? 0.0 : transmission));
+  // Half vectors of no length (wi = -wo) give what a device likes: no density there.
+  return density > 0.0 && density < 1e30 ? density : 0.0;
 }
 
 // The weight of a delta at its direction: b.chance goes in at the caller.
