@@ -92,7 +92,6 @@ Picture renderPicture(const SceneBuilder& scene, const PictureOptions& options) 
   const render::RayCount count = renderer.rays();
   picture.rays = count.rays;
   picture.droppedSamples = count.droppedSamples;
-  if (getenv("TT")) { const auto& t = renderer.statistics(); fprintf(stderr, "compile %.2f pipe %.2f first %.2f render %.2f dev %.2f rays %.3fM\n", t.compileSeconds, t.pipelineSeconds, t.firstLaunchSeconds, t.renderSeconds, t.deviceSeconds, 1e-6*double(picture.rays)); }
   EXPECT_GT(picture.rays, 0u);
   EXPECT_EQ(picture.droppedSamples, 0u);
   return picture;
