@@ -18,6 +18,7 @@ namespace quintet {
 
 using glm::mat3;
 using glm::mat4;
+using glm::quat;
 using glm::uvec2;
 using glm::uvec3;
 using glm::uvec4;

@@ -1,6 +1,7 @@
 #include "program/link.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <chrono>
 
@@ -31,7 +32,18 @@ std::vector<std::string> usedFiles(const Program& program) {
   return files;
 }
 
-std::string_view className(GeometryClass geometry) { return geometry == GeometryClass::opaque ? "opaque" : "alpha"; }
+bool hasIntersection(const HitGroup& group) {
+  return std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
+}
+
+bool isBound(const HitGroup& group) { return !group.geometry.empty() || !group.material.empty() || !group.primitives.empty(); }
+
+bool names(const HitGroup& group, std::string_view what) { return group.geometry == what; }
+
+std::string_view kindName(GeometryKind kind) {
+  constexpr std::array<std::string_view, 4> kNames{"triangles", "solids", "csg", "custom"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
 
 }  // namespace
 
@@ -104,19 +116,30 @@ LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set,
   pipelineSeconds_ = secondsSince(start);
 }
 
-std::uint32_t LinkedProgram::hitGroupFor(GeometryClass geometry) const {
-  for (std::size_t i = 0; i < program_.hitGroups.size(); ++i)
-    if (program_.hitGroups[i].geometry == className(geometry)) return static_cast<std::uint32_t>(i);
+std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry) {
+  const auto first = [&](auto matches) -> std::optional<std::size_t> {
+    for (std::size_t i = 0; i < program.hitGroups.size(); ++i)
+      if (matches(program.hitGroups[i])) return i;
+    return {};
+  };
+  const bool boxes = geometry.procedural();
+  if (auto i = first([&](const HitGroup& g) { return !geometry.name.empty() && g.primitives == geometry.name; })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return !geometry.material.empty() && g.material == geometry.material && hasIntersection(g) == boxes; })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return names(g, kindName(geometry.kind)); })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return boxes && names(g, "procedural"); })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return hasIntersection(g) == boxes && names(g, geometry.alpha ? "alpha" : "opaque"); })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return !isBound(g) && hasIntersection(g) == boxes; })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return !isBound(g); })) return *i;
   return 0;
 }
 
-rt::ShaderBindingTable LinkedProgram::makeTable(std::span<const GeometryClass> geometries) const {
+rt::ShaderBindingTable LinkedProgram::makeTable(std::span<const GeometryFacts> geometries) const {
   rt::SbtContents contents;
   contents.rayGeneration.group = 0;
   for (std::uint32_t r = 0; r < rayTypeCount(); ++r) contents.miss.push_back({firstMissGroup_ + r, {}});
-  for (const GeometryClass geometry : geometries) {
+  for (const GeometryFacts& geometry : geometries) {
     for (std::uint32_t r = 0; r < rayTypeCount(); ++r) {
-      const std::uint32_t group = firstHitGroup_ + hitGroupFor(geometry) * rayTypeCount() + r;
+      const std::uint32_t group = firstHitGroup_ + static_cast<std::uint32_t>(hitGroupFor(program_, geometry)) * rayTypeCount() + r;
       contents.hit.push_back({program_.hitGroups.empty() ? rt::SbtRecord::kUnusedGroup : group, {}});
     }
   }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "program/program.h"
+#include "program/scene_facts.h"
 #include "rt/pipeline.h"
 
 namespace quintet::program {
@@ -30,8 +31,11 @@ struct CompiledProgram {
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
                         const std::vector<std::pair<std::string, std::string>>& defines);
 
-// What the scene gives to the link: the class of each geometry, in the order of hit records.
-enum class GeometryClass { opaque, alpha };
+// Index in program.hitGroups of the group that serves a geometry: the first one bound to its name
+// (HitGroup::primitives), else to its material, else to its kind, else to its class (opaque, alpha), else the
+// first one without a binding that fits (an intersection shader for boxes, none for triangles), else the first
+// without a binding, else 0.
+std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry);
 
 // A program on a device.
 class LinkedProgram {
@@ -46,10 +50,10 @@ class LinkedProgram {
   double pipelineSeconds() const { return pipelineSeconds_; }
 
   // Records: geometry k has records k · rayTypeCount … + rayTypeCount - 1, one per ray type.
-  rt::ShaderBindingTable makeTable(std::span<const GeometryClass> geometries) const;
+  rt::ShaderBindingTable makeTable(std::span<const GeometryFacts> geometries) const;
 
  private:
-  std::uint32_t hitGroupFor(GeometryClass) const;
+  
   gpu::Context& context_;
   Program program_;
   std::unique_ptr<rt::Pipeline> pipeline_;

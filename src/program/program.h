@@ -24,11 +24,12 @@ struct HitShaders {
   std::string intersection;
 };
 
-// A hit group is bound to a class of geometry: "opaque" (no alpha), "alpha" (mask or blend). The
-// first group also serves every class that no group names.
+// A hit group is bound to geometry by name; hitGroupFor (link.h) says which of several wins.
 struct HitGroup {
   std::string name;
-  std::string geometry;
+  std::string geometry;    // kind or class: "triangles", "solids", "csg", "custom", "procedural" (any boxes), "opaque", "alpha"
+  std::string material;    // name of a material
+  std::string primitives;  // name of a primitive set or mesh
   std::map<std::string, HitShaders> shaders;  // by ray type
 };
 
@@ -36,6 +37,12 @@ struct HitGroup {
 struct RayType {
   std::string name;
   std::string miss;  // file
+};
+
+// Who averages the samples of a pixel.
+enum class Accumulation {
+  film,     // an output is a sum over the samples of a batch; the film divides
+  program,  // each launch is a frame (frameID) and overwrites the pixel; the program may read the previous one
 };
 
 struct Program {
@@ -48,6 +55,8 @@ struct Program {
   std::vector<std::string> outputs;    // names; index = slot
   std::vector<Parameter> parameters;
   std::uint32_t maxRecursion = 1;      // nested traceRayEXT; 1: only ray generation traces
+  Accumulation accumulation = Accumulation::film;
+  bool keepsInstanceOrder = false;     // gl_InstanceID is the instance's index in the scene (costs speed on lavapipe)
   std::uint32_t samplesPerLaunch = 1;  // samples per pixel that the ray generation shader can loop over
 
   std::string origin;                        // folder, or "<programs/NAME>" when built in

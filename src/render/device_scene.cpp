@@ -8,6 +8,7 @@
 #include "render/albedo_tables.h"
 #include "render/light_table.h"
 #include "render/material_data.h"
+#include "render/scene_facts.h"
 #include "render/scene_features.h"
 #include "render/scene_upload.h"
 
@@ -54,12 +55,12 @@ struct DeviceScene::Impl {
   std::vector<std::uint32_t> firstGeometryOfInstance;
   std::unique_ptr<rt::Tlas> tlas;
   std::uint32_t rayTypeCount = 0;
-  std::vector<program::GeometryClass> classes;
+  program::SceneFacts facts;
   shared::Frame frame{};
   std::vector<std::pair<std::string, std::string>> defines;
 
   Impl(gpu::Context& gpuContext, const scene::Scene& scene, const scene::Environment& environment, const DeviceSceneOptions& sceneOptions)
-      : context(gpuContext), options(sceneOptions), bounds(scene::worldBounds(scene)) {
+      : context(gpuContext), options(sceneOptions), bounds(scene::worldBounds(scene)), facts(sceneFacts(scene)) {
     const auto start = std::chrono::steady_clock::now();
     gpu::Uploader uploader(context);
     geometry = uploadGeometries(context, uploader, scene);
@@ -70,11 +71,13 @@ struct DeviceScene::Impl {
     buildBottomLevel(scene);
     uploadTables(scene);
     defines = featureDefines(scene, environment);
-    if (context.info().quirks.corruptsHitAttributes && std::find(classes.begin(), classes.end(), program::GeometryClass::alpha) != classes.end())
+    if (context.info().quirks.corruptsHitAttributes && hasAlpha())
       defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
     statistics.geometryBytes = geometry.bytes;
     statistics.textureBytes = textures->bytes();
   }
+
+  bool hasAlpha() const { return std::ranges::any_of(facts.geometries, &program::GeometryFacts::alpha); }
 
   void uploadMaterials(const scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader) {
     textures.emplace(context, uploader, scene);
@@ -88,7 +91,6 @@ struct DeviceScene::Impl {
     std::size_t k = 0;
     for (const scene::Mesh& mesh : scene.meshes) {
       for (const scene::Geometry& g : mesh.geometries) {
-        classes.push_back(needsAlphaTest(scene, g) ? program::GeometryClass::alpha : program::GeometryClass::opaque);
         geometry.geometries[k++].material = g.material == scene::kNone ? static_cast<std::uint32_t>(scene.materials.size())
                                                                        : static_cast<std::uint32_t>(g.material);
       }
@@ -146,7 +148,7 @@ struct DeviceScene::Impl {
         rt::GeometryInput& part = input.geometries.emplace_back();
         part.positions = g.positions;
         part.triangles = g.triangles;
-        part.opaque = classes[k++] == program::GeometryClass::opaque;
+        part.opaque = !facts.geometries[k++].alpha;
       }
     }
     blas = rt::BlasBuilder(context).build(inputs, &statistics.build);
@@ -201,10 +203,8 @@ DeviceScene::~DeviceScene() = default;
 
 gpu::Context& DeviceScene::context() const { return impl_->context; }
 const gpu::BindlessSet& DeviceScene::set() const { return *impl_->set; }
-std::span<const program::GeometryClass> DeviceScene::geometryClasses() const { return impl_->classes; }
-bool DeviceScene::hasAlpha() const {
-  return std::find(impl_->classes.begin(), impl_->classes.end(), program::GeometryClass::alpha) != impl_->classes.end();
-}
+const program::SceneFacts& DeviceScene::facts() const { return impl_->facts; }
+bool DeviceScene::hasAlpha() const { return impl_->hasAlpha(); }
 const std::vector<std::pair<std::string, std::string>>& DeviceScene::defines() const { return impl_->defines; }
 const shared::Frame& DeviceScene::frameTemplate() const { return impl_->frame; }
 const DeviceSceneStatistics& DeviceScene::statistics() const { return impl_->statistics; }

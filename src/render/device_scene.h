@@ -43,9 +43,9 @@ class DeviceScene {
 
   gpu::Context& context() const;
   const gpu::BindlessSet& set() const;
-  // Classes of all geometries, in the order of hit records.
-  std::span<const program::GeometryClass> geometryClasses() const;
-  bool hasAlpha() const;  // any geometry of class alpha
+  // What the link needs to know; geometries in the order of hit records.
+  const program::SceneFacts& facts() const;
+  bool hasAlpha() const;  // any geometry whose material needs an alpha test
   // Preprocessor definitions for shaders: QUINTET_NO_… (quintet/features.glsl) and driver workarounds.
   const std::vector<std::pair<std::string, std::string>>& defines() const;
   // The frame's addresses and environment; camera, film and outputs are left for the renderer.

@@ -70,15 +70,31 @@ shared::MaterialData makeMaterial(const scene::Material& m, const TextureIndex& 
   return data;
 }
 
+namespace {
+
+bool canBeTransparent(const scene::Scene& scene, const scene::Material& m) {
+  if (m.alphaMode == scene::AlphaMode::opaque) return false;
+  if (m.baseColor.a < 1.0f) return true;
+  if (!m.baseColorTexture.used()) return false;
+  const int image = scene.textures[static_cast<std::size_t>(m.baseColorTexture.texture)].image;
+  return image != scene::kNone && scene.images[static_cast<std::size_t>(image)].image.hasAlpha();
+}
+
+}  // namespace
+
 bool needsAlphaTest(const scene::Scene& scene, const scene::Geometry& geometry) {
   if (geometry.material == scene::kNone) return false;
   const scene::Material& m = scene.materials[static_cast<std::size_t>(geometry.material)];
   if (m.alphaMode == scene::AlphaMode::opaque) return false;
-  if (m.baseColor.a < 1.0f) return true;
   if (std::any_of(geometry.colors.begin(), geometry.colors.end(), [](const vec4& c) { return c.a < 1.0f; })) return true;
-  if (!m.baseColorTexture.used()) return false;
-  const int image = scene.textures[static_cast<std::size_t>(m.baseColorTexture.texture)].image;
-  return image != scene::kNone && scene.images[static_cast<std::size_t>(image)].image.hasAlpha();
+  return canBeTransparent(scene, m);
+}
+
+bool needsAlphaTest(const scene::Scene& scene, const scene::PrimitiveSet& set) {
+  const auto transparent = [&](int material) {
+    return material != scene::kNone && canBeTransparent(scene, scene.materials[static_cast<std::size_t>(material)]);
+  };
+  return transparent(set.material) || std::ranges::any_of(set.primitives, transparent, &scene::Primitive::material);
 }
 
 }  // namespace quintet::render

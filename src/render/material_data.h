@@ -16,6 +16,7 @@ shared::MaterialData makeMaterial(const scene::Material& material, const Texture
 
 // True if some of the surface may be absent: mask or blend, with an alpha that can be below 1.
 bool needsAlphaTest(const scene::Scene& scene, const scene::Geometry& geometry);
+bool needsAlphaTest(const scene::Scene& scene, const scene::PrimitiveSet& set);
 
 }  // namespace quintet::render
 #endif

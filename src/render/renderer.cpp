@@ -80,7 +80,7 @@ struct Renderer::Impl {
     if (!compiled.ok) throw ProgramError(compiled.diagnostics);
     scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()));
     linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled, cache);
-    table.emplace(linked->makeTable(scene.geometryClasses()));
+    table.emplace(linked->makeTable(scene.facts().geometries));
     statistics.compileSeconds = compiled.seconds;
     statistics.pipelineSeconds = linked->pipelineSeconds();
   }

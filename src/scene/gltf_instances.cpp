@@ -92,7 +92,10 @@ void InstanceBuilder::addNode(int index) {
 void InstanceBuilder::addInstance(int index, int pose, const mat4& worldFromObject) {
   if (instances_.size() == kMaxInstances)
     document_.fail(fmt::format("/nodes/{}", index), fmt::format("more than {} instances", kMaxInstances));
-  instances_.push_back({document_.model.nodes[static_cast<std::size_t>(index)].name, pose, worldFromObject});
+  Instance& instance = instances_.emplace_back();
+  instance.name = document_.model.nodes[static_cast<std::size_t>(index)].name;
+  instance.mesh = pose;
+  instance.worldFromObject = worldFromObject;
 }
 
 // glTF 2.0 section 3.7.3.3: the node's own transform does not count, the joints' do.

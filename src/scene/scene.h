@@ -11,6 +11,7 @@
 
 #include "base/math.h"
 #include "io/image.h"
+#include "scene/procedural.h"
 
 namespace quintet::scene {
 
@@ -97,16 +98,40 @@ struct Geometry {
   std::vector<std::uint32_t> fileTriangles;
 };
 
-// One BLAS: the geometries of one glTF mesh.
+// One BLAS: the geometries of one glTF mesh, or sets of procedural primitives. Not both: Vulkan does not
+// mix triangles and boxes in a BLAS.
 struct Mesh {
   std::string name;
   std::vector<Geometry> geometries;
+  std::vector<PrimitiveSet> primitiveSets;
+  bool procedural() const { return !primitiveSets.empty(); }
+  // Hit records per ray type.
+  std::size_t geometryCount() const { return procedural() ? primitiveSets.size() : geometries.size(); }
+};
+
+// Bits of Instance::flags, as in VkGeometryInstanceFlagBitsKHR.
+inline constexpr std::uint32_t kInstanceCullDisable = 1;
+inline constexpr std::uint32_t kInstanceFlipFacing = 2;
+inline constexpr std::uint32_t kInstanceForceOpaque = 4;
+inline constexpr std::uint32_t kInstanceForceNoOpaque = 8;
+
+// Where an instance is at a frame of an animation; between keyframes translation and scale are
+// interpolated linearly, rotation spherically.
+struct Keyframe {
+  float frame = 0;
+  vec3 translation{0.0f};
+  quat rotation{1, 0, 0, 0};  // w, x, y, z; unit
+  vec3 scale{1.0f};
 };
 
 struct Instance {
   std::string name;  // the node's
   int mesh = kNone;
   mat4 worldFromObject{1.0f};  // affine; may mirror (negative determinant)
+  std::uint32_t mask = 0xFF;       // 8 bits, against the ray's cull mask
+  std::uint32_t flags = 0;         // kInstance…
+  std::uint32_t customIndex = 0;   // 24 bits, the user's own
+  std::vector<Keyframe> keyframes;  // ascending frames; empty: worldFromObject always. Else that is frame 0
 };
 
 struct Camera {

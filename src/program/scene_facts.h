@@ -1,0 +1,40 @@
+// What the link needs to know of a scene: no geometry, only what decides which shader runs. Made by
+// render::sceneFacts from a scene::Scene; a test writes it by hand.
+#ifndef QUINTET_PROGRAM_SCENE_FACTS_H
+#define QUINTET_PROGRAM_SCENE_FACTS_H
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace quintet::program {
+
+enum class GeometryKind { triangles, solids, csg, custom };
+
+// One geometry of a BLAS; its position in SceneFacts::geometries is its position in the hit records.
+struct GeometryFacts {
+  GeometryKind kind = GeometryKind::triangles;
+  bool alpha = false;    // its material needs an alpha test: built without the opaque flag
+  std::string name;      // of the primitive set or mesh; may be empty
+  std::string material;  // name; may be empty
+  bool procedural() const { return kind != GeometryKind::triangles; }
+};
+
+// One instance of the top level, with the geometries of its BLAS.
+struct InstanceFacts {
+  std::string name;
+  std::uint32_t firstGeometry = 0;  // in SceneFacts::geometries
+  std::uint32_t geometryCount = 1;
+  std::uint32_t mask = 0xFF;
+  bool forceOpaque = false;
+  bool forceNoOpaque = false;
+};
+
+struct SceneFacts {
+  std::string name;  // for messages: the file
+  std::vector<GeometryFacts> geometries;
+  std::vector<InstanceFacts> instances;
+};
+
+}  // namespace quintet::program
+#endif
