@@ -1,0 +1,79 @@
+// The catalogue of diagnostics: every id once, in order, with words and a page.
+#include "program/diagnostic_catalog.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace quintet::program {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const fs::path kRoot = QUINTET_SOURCE_ROOT;
+
+std::string textOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(DiagnosticCatalog, IdsAreSortedAndUnique) {
+  const auto all = allDiagnostics();
+  ASSERT_GT(all.size(), 40u);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_TRUE(std::regex_match(std::string(all[i].id), std::regex("Q[0-9]{3}"))) << all[i].id;
+    if (i > 0) {
+      EXPECT_LT(all[i - 1].id, all[i].id);
+    }
+  }
+}
+
+TEST(DiagnosticCatalog, EveryRowSaysWhatWhyAndHow) {
+  for (const DiagnosticInfo& info : allDiagnostics()) {
+    EXPECT_GT(info.title.size(), 10u) << info.id;
+    EXPECT_NE(info.title.back(), '.') << info.id;
+    EXPECT_GT(info.why.size(), 20u) << info.id;
+    EXPECT_EQ(info.why.back(), '.') << info.id;
+    EXPECT_GT(info.mend.size(), 10u) << info.id;
+    EXPECT_EQ(info.mend.back(), '.') << info.id;
+  }
+}
+
+TEST(DiagnosticCatalog, FindsAnIdInEitherCase) {
+  for (const DiagnosticInfo& info : allDiagnostics()) EXPECT_EQ(findDiagnostic(info.id), &info);
+  ASSERT_NE(findDiagnostic("q101"), nullptr);
+  EXPECT_EQ(findDiagnostic("q101")->id, "Q101");
+  EXPECT_EQ(findDiagnostic("q101")->severity, shader::Severity::error);
+  EXPECT_EQ(findDiagnostic("Q102")->severity, shader::Severity::note);
+  EXPECT_EQ(findDiagnostic("Q999"), nullptr);
+  EXPECT_EQ(findDiagnostic("Q10"), nullptr);
+  EXPECT_EQ(findDiagnostic("Q1011"), nullptr);
+  EXPECT_EQ(findDiagnostic(""), nullptr);
+}
+
+TEST(DiagnosticCatalog, NoIdOfTheSourceIsMissing) {
+  const std::regex literal("\"(Q[0-9]{3})\"");
+  std::set<std::string> used;
+  for (const char* folder : {"src", "apps"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      if (entry.path().extension() != ".cpp" && entry.path().extension() != ".h") continue;
+      const std::string text = textOf(entry.path());
+      for (std::sregex_iterator i(text.begin(), text.end(), literal), end; i != end; ++i) used.insert((*i)[1]);
+    }
+  }
+  ASSERT_TRUE(used.contains("Q101"));
+  for (const std::string& id : used) EXPECT_NE(findDiagnostic(id), nullptr) << id << " is reported, but not in the catalogue";
+}
+
+}  // namespace
+}  // namespace quintet::program
