@@ -188,6 +188,7 @@ const DiagnosticInfo* findDiagnostic(std::string_view id) {
 }
 
 std::string_view explanation(std::string_view id) {
+  if (findDiagnostic(id) == nullptr) return {};
   const std::string wanted = upper(id) + ".md";
   for (const EmbeddedFile& page : embeddedExplanations())
     if (page.path == wanted) return page.data;
