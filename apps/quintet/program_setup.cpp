@@ -48,13 +48,14 @@ std::string programHelp(const program::Program& program) {
   if (program.parameters.empty()) text += "  none\n";
   for (const program::Parameter& parameter : program.parameters) text += describe(parameter);
   text += "\nOutputs:\n";
-  for (const std::string& output : program.outputs) text += fmt::format("  {}\n", output);
+  for (const program::Output& output : program.outputs)
+    text += fmt::format("  {:<18}{}\n", output.name, output.help.empty() ? std::string(program::outputKindName(output.kind)) : output.help);
   return text;
 }
 
 render::ToneMap chooseToneMap(const program::Program& program, const RenderOptions& options) {
   if (options.toneMap) return *options.toneMap;
-  const bool isColor = !program.outputs.empty() && program.outputs.front() == "color";
+  const bool isColor = !program.outputs.empty() && program.outputs.front().kind == program::OutputKind::color;
   return isColor ? render::ToneMap::neutral : render::ToneMap::linear;
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "base/parallel.h"
+#include "program/generated.h"
 
 namespace quintet::program {
 namespace {
@@ -20,7 +21,7 @@ std::vector<std::string> usedFiles(const Program& program) {
     if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   };
   add(program.rayGeneration);
-  for (const RayType& ray : program.rays) add(ray.miss);
+  for (const MissShader& miss : missShaders(program)) add(miss.file);
   for (const HitGroup& group : program.hitGroups) {
     for (const auto& [ray, shaders] : group.shaders) {
       add(shaders.closestHit);
@@ -28,7 +29,7 @@ std::vector<std::string> usedFiles(const Program& program) {
       add(shaders.intersection);
     }
   }
-  for (const std::string& file : program.callables) add(file);
+  for (const Callable& callable : program.callables) add(callable.file);
   return files;
 }
 
@@ -38,7 +39,9 @@ bool hasIntersection(const HitGroup& group) {
 
 bool isBound(const HitGroup& group) { return !group.geometry.empty() || !group.material.empty() || !group.primitives.empty(); }
 
-bool names(const HitGroup& group, std::string_view what) { return group.geometry == what; }
+bool contains(const std::vector<std::string>& names, std::string_view name) {
+  return !name.empty() && std::find(names.begin(), names.end(), name) != names.end();
+}
 
 std::string_view kindName(GeometryKind kind) {
   constexpr std::array<std::string_view, 4> kNames{"triangles", "solids", "csg", "custom"};
@@ -57,8 +60,7 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
                         const std::vector<std::pair<std::string, std::string>>& defines) {
   const auto start = std::chrono::steady_clock::now();
   const std::vector<std::string> files = usedFiles(program);
-  std::map<std::string, std::string> virtualFiles;
-  virtualFiles["quintet/generated/program.glsl"] = generatedConstants(program);
+  std::map<std::string, std::string> virtualFiles = generatedFiles(program);
   for (const auto& [name, text] : program.files) virtualFiles[program.path(name)] = text;
 
   std::vector<shader::Result> results(files.size());
@@ -91,7 +93,7 @@ LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set,
   const auto start = std::chrono::steady_clock::now();
   rt::PipelineOptions options;
   options.name = program.name;
-  options.maxRecursionDepth = program.maxRecursion;
+  options.maxRecursionDepth = program.declaredRecursion.value_or(1);
   for (const CompiledProgram::Stage& stage : compiled.stages) options.stages.push_back({stage.kind, stage.spirv, program.path(stage.file)});
   const auto index = [&](const std::string& file) {
     return file.empty() ? rt::kNoStage : static_cast<int>(&compiled.stage(file) - compiled.stages.data());
@@ -100,7 +102,7 @@ LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set,
 
   options.groups.push_back({.general = index(program.rayGeneration)});
   firstMissGroup_ = groupCount();
-  for (const RayType& ray : program.rays) options.groups.push_back({.general = index(ray.miss)});
+  for (const MissShader& miss : missShaders(program)) options.groups.push_back({.general = index(miss.file)});
   firstHitGroup_ = groupCount();
   for (const HitGroup& group : program.hitGroups) {
     for (const RayType& ray : program.rays) {
@@ -110,7 +112,7 @@ LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set,
     }
   }
   firstCallableGroup_ = groupCount();
-  for (const std::string& file : program.callables) options.groups.push_back({.general = index(file)});
+  for (const Callable& callable : program.callables) options.groups.push_back({.general = index(callable.file)});
 
   pipeline_ = std::make_unique<rt::Pipeline>(context, set, options, cache);
   pipelineSeconds_ = secondsSince(start);
@@ -123,28 +125,45 @@ std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry) {
     return {};
   };
   const bool boxes = geometry.procedural();
-  if (auto i = first([&](const HitGroup& g) { return !geometry.name.empty() && g.primitives == geometry.name; })) return *i;
-  if (auto i = first([&](const HitGroup& g) { return !geometry.material.empty() && g.material == geometry.material && hasIntersection(g) == boxes; })) return *i;
-  if (auto i = first([&](const HitGroup& g) { return names(g, kindName(geometry.kind)); })) return *i;
-  if (auto i = first([&](const HitGroup& g) { return boxes && names(g, "procedural"); })) return *i;
-  if (auto i = first([&](const HitGroup& g) { return hasIntersection(g) == boxes && names(g, geometry.alpha ? "alpha" : "opaque"); })) return *i;
-  if (auto i = first([&](const HitGroup& g) { return !isBound(g) && hasIntersection(g) == boxes; })) return *i;
+  const auto fits = [&](const HitGroup& g) { return hasIntersection(g) == boxes; };
+  const std::string_view kind = kindName(geometry.kind), opacity = geometry.alpha ? "alpha" : "opaque";
+  if (auto i = first([&](const HitGroup& g) { return contains(g.primitives, geometry.name); })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return fits(g) && contains(g.material, geometry.material); })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return contains(g.geometry, kind); })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return boxes && contains(g.geometry, "procedural"); })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return fits(g) && contains(g.geometry, opacity); })) return *i;
+  if (auto i = first([&](const HitGroup& g) { return !isBound(g) && fits(g); })) return *i;
   if (auto i = first([&](const HitGroup& g) { return !isBound(g); })) return *i;
   return 0;
 }
 
+std::vector<std::byte> LinkedProgram::recordData(const RecordValues& values) const {
+  if (program_.record.empty()) return {};
+  ParameterValues data(program_.record);
+  if (!values.empty()) data.setAll(values);
+  return data.pack();
+}
+
 rt::ShaderBindingTable LinkedProgram::makeTable(std::span<const GeometryFacts> geometries) const {
   rt::SbtContents contents;
-  contents.rayGeneration.group = 0;
-  for (std::uint32_t r = 0; r < rayTypeCount(); ++r) contents.miss.push_back({firstMissGroup_ + r, {}});
+  contents.rayGeneration = {0, recordData(program_.rayGenerationRecord)};
+  std::uint32_t group = firstMissGroup_;
+  for (const MissShader& miss : missShaders(program_)) contents.miss.push_back({group++, recordData(miss.record)});
   for (const GeometryFacts& geometry : geometries) {
+    const std::size_t h = hitGroupFor(program_, geometry);
     for (std::uint32_t r = 0; r < rayTypeCount(); ++r) {
-      const std::uint32_t group = firstHitGroup_ + static_cast<std::uint32_t>(hitGroupFor(program_, geometry)) * rayTypeCount() + r;
-      contents.hit.push_back({program_.hitGroups.empty() ? rt::SbtRecord::kUnusedGroup : group, {}});
+      if (program_.hitGroups.empty()) {
+        contents.hit.push_back({rt::SbtRecord::kUnusedGroup, {}});
+        continue;
+      }
+      const auto& shaders = program_.hitGroups[h].shaders;
+      const auto found = shaders.find(program_.rays[r].name);
+      contents.hit.push_back({firstHitGroup_ + static_cast<std::uint32_t>(h) * rayTypeCount() + r,
+                              recordData(found == shaders.end() ? RecordValues{} : found->second.record)});
     }
   }
-  for (std::size_t i = 0; i < program_.callables.size(); ++i)
-    contents.callable.push_back({firstCallableGroup_ + static_cast<std::uint32_t>(i), {}});
+  group = firstCallableGroup_;
+  for (const Callable& callable : program_.callables) contents.callable.push_back({group++, recordData(callable.record)});
   return rt::ShaderBindingTable(context_, *pipeline_, contents, program_.name + " shader binding table");
 }
 

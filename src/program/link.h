@@ -32,9 +32,9 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
                         const std::vector<std::pair<std::string, std::string>>& defines);
 
 // Index in program.hitGroups of the group that serves a geometry: the first one bound to its name
-// (HitGroup::primitives), else to its material, else to its kind, else to its class (opaque, alpha), else the
-// first one without a binding that fits (an intersection shader for boxes, none for triangles), else the first
-// without a binding, else 0.
+// (HitGroup::primitives), else to its material (an intersection shader for boxes, none for triangles), else to
+// its kind, else "procedural", else to its class (opaque, alpha; fitting as above), else the first without a
+// binding that fits, else the first without a binding, else 0.
 std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry);
 
 // A program on a device.
@@ -53,7 +53,8 @@ class LinkedProgram {
   rt::ShaderBindingTable makeTable(std::span<const GeometryFacts> geometries) const;
 
  private:
-  
+  std::vector<std::byte> recordData(const RecordValues& values) const;
+
   gpu::Context& context_;
   Program program_;
   std::unique_ptr<rt::Pipeline> pipeline_;

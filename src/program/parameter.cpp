@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -91,6 +92,11 @@ void ParameterValues::setAssignment(const std::string& assignment) {
   if (equals == std::string::npos || equals == 0)
     throw UsageError(fmt::format("'{}' is not of the form name=value", assignment));
   set(assignment.substr(0, equals), assignment.substr(equals + 1));
+}
+
+void ParameterValues::setAll(const std::vector<ParameterValue>& values) {
+  assert(values.size() == parameters_.size());
+  values_ = values;
 }
 
 const ParameterValue& ParameterValues::get(const std::string& name) const {

@@ -29,6 +29,7 @@ struct Parameter {
   double max = 1e30;
   std::string unit;    // "m", "deg", …; may be empty
   std::string help;
+  int line = 0;        // of its declaration; 0: unknown
 };
 
 // The values of a program's parameters, starting with the defaults.
@@ -41,6 +42,9 @@ class ParameterValues {
   void set(const std::string& name, const std::string& text);
   // "name=value"
   void setAssignment(const std::string& assignment);
+
+  // One value per parameter, in their order, already checked.
+  void setAll(const std::vector<ParameterValue>& values);
 
   const ParameterValue& get(const std::string& name) const;
   const std::vector<Parameter>& parameters() const { return parameters_; }

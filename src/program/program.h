@@ -17,26 +17,65 @@ namespace quintet::program {
 // ("<quintet/stages/surface.rchit>").
 bool isLibraryStage(const std::string& file);
 
+// Values of the fields of the shader record (Program::record), one per field; empty: all defaults.
+using RecordValues = std::vector<ParameterValue>;
+
+// `line` in the structs below: where program.toml says it, 1-based; 0: not from a file.
+
 // Files of one hit group for one ray type; empty: that stage is absent.
 struct HitShaders {
   std::string closestHit;
   std::string anyHit;
   std::string intersection;
+  RecordValues record;
+  int line = 0;
 };
 
-// A hit group is bound to geometry by name; hitGroupFor (link.h) says which of several wins.
+// A hit group is bound to geometry by names; hitGroupFor (link.h) says which of several wins.
 struct HitGroup {
   std::string name;
-  std::string geometry;    // kind or class: "triangles", "solids", "csg", "custom", "procedural" (any boxes), "opaque", "alpha"
-  std::string material;    // name of a material
-  std::string primitives;  // name of a primitive set or mesh
+  std::vector<std::string> geometry;    // kinds or classes: geometryClasses()
+  std::vector<std::string> material;    // names of materials
+  std::vector<std::string> primitives;  // names of primitive sets or meshes
   std::map<std::string, HitShaders> shaders;  // by ray type
+  int line = 0;
 };
 
-// A ray type; its position is its offset in the shader binding table.
+// What HitGroup::geometry may name: "triangles", "solids", "csg", "custom", "procedural" (any boxes), "opaque", "alpha".
+const std::vector<std::string>& geometryClasses();
+
+// A ray type; its position is its offset in the shader binding table and the index of its miss shader.
 struct RayType {
   std::string name;
   std::string miss;  // file
+  RecordValues record;
+  int line = 0;
+};
+
+// A miss shader besides those of the ray types.
+struct MissShader {
+  std::string name;
+  std::string file;
+  RecordValues record;
+  int line = 0;
+};
+
+struct Callable {
+  std::string name;  // may be empty: no constant
+  std::string file;
+  RecordValues record;
+  int line = 0;
+};
+
+// What the numbers of an output are: how a picture of it is best shown.
+enum class OutputKind { color, linear, normal, depth, id };
+std::string_view outputKindName(OutputKind);  // as in program.toml
+
+struct Output {
+  std::string name;
+  OutputKind kind = OutputKind::color;
+  std::string help;
+  int line = 0;
 };
 
 // Who averages the samples of a pixel.
@@ -49,22 +88,32 @@ struct Program {
   std::string name;                // the folder's
   std::string description;
   std::string rayGeneration;       // file
+  RecordValues rayGenerationRecord;
+  int rayGenerationLine = 0;
   std::vector<RayType> rays;
+  std::vector<MissShader> misses;  // their indices follow those of `rays`: missShaders()
   std::vector<HitGroup> hitGroups;
-  std::vector<std::string> callables;  // files
-  std::vector<std::string> outputs;    // names; index = slot
+  std::vector<Callable> callables;
+  std::vector<Output> outputs;     // index = slot
   std::vector<Parameter> parameters;
-  std::uint32_t maxRecursion = 1;      // nested traceRayEXT; 1: only ray generation traces
+  std::vector<Parameter> record;   // fields of the shader record; empty: records carry no data
+  // Depth of nested traceRayEXT that the author promises not to exceed; 1: only ray generation traces.
+  std::optional<std::uint32_t> declaredRecursion;
   Accumulation accumulation = Accumulation::film;
   bool keepsInstanceOrder = false;     // gl_InstanceID is the instance's index in the scene (costs speed on lavapipe)
   std::uint32_t samplesPerLaunch = 1;  // samples per pixel that the ray generation shader can loop over
 
-  std::string origin;                        // folder, or "<programs/NAME>" when built in
-  std::map<std::string, std::string> files;  // every file of the folder: relative path → text
+  std::string origin;                             // folder, or "<programs/NAME>" when built in
+  std::string descriptionFile = "program.toml";   // the file of `line`s, relative to origin
+  std::map<std::string, std::string> files;       // every file of the folder: relative path → text
 
   // Path of a file as diagnostics show it.
   std::string path(const std::string& file) const { return isLibraryStage(file) ? file : origin + "/" + file; }
 };
+
+// Every miss shader in the order of the table: those of the ray types, then the others.
+std::vector<MissShader> missShaders(const Program& program);
+std::vector<std::string> outputNames(const Program& program);
 
 // `nameOrFolder`: a folder with program.toml (or that file itself), or the name of a built-in
 // program. Throws FileError (with line) for a description that is wrong, UsageError with the nearest
@@ -76,10 +125,6 @@ Program parseProgram(const std::string& toml, const std::string& name, const std
                      std::map<std::string, std::string> files);
 
 std::vector<std::string> builtInPrograms();
-
-// The GLSL that #include <quintet/generated/program.glsl> gives: ray types, strides, miss indices,
-// output slots, and `parameters`.
-std::string generatedConstants(const Program& program);
 
 }  // namespace quintet::program
 #endif

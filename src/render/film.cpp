@@ -10,7 +10,7 @@
 namespace quintet::render {
 namespace {
 
-static_assert(shared::kMaxOutputs == 16, "program.cpp refuses more outputs than this");
+static_assert(shared::kMaxOutputs == 16, "program_parser.cpp refuses more outputs than this");
 
 gpu::Buffer pixelBuffer(gpu::Context& context, VkDeviceSize bytes, const std::string& name) {
   gpu::BufferOptions options;

@@ -58,7 +58,7 @@ struct Renderer::Impl {
     const Region region = checkedRegion(settings);
     if (settings.timeoutSeconds <= 0) settings.timeoutSeconds = context.info().quirks.software ? 600 : 60;
     link(compiler, cache);
-    film = std::make_unique<Film>(context, scene.set(), compiler, region, program.outputs);
+    film = std::make_unique<Film>(context, scene.set(), compiler, region, program::outputNames(program));
 
     shared::Frame frame = scene.frameTemplate();
     frame.camera = makeCamera(settings.camera, settings.width, settings.height);

@@ -1,6 +1,7 @@
 // From a description to SPIR-V: generated constants, library stages, errors; every built-in program.
 #include <gmock/gmock.h>
 
+#include "program/generated.h"
 #include "program/link.h"
 #include "program_test_support.h"
 
@@ -99,7 +100,7 @@ TEST(BuiltInPrograms, ParseAndCompile) {
     EXPECT_EQ(p.origin, "<programs/" + name + ">");
     EXPECT_FALSE(p.description.empty());
     ASSERT_FALSE(p.outputs.empty());
-    EXPECT_EQ(p.outputs[0], "color");
+    EXPECT_EQ(p.outputs[0].name, "color");
     for (const Parameter& parameter : p.parameters) EXPECT_FALSE(parameter.help.empty()) << parameter.name;
     // Both ways to find a hit's barycentrics (link of a scene with alpha).
     for (const std::vector<std::pair<std::string, std::string>>& defines :

@@ -58,19 +58,21 @@ TEST(Program, ReadsEverything) {
   EXPECT_EQ(p.origin, "folder/demo");
   EXPECT_EQ(p.description, "all there is");
   EXPECT_EQ(p.rayGeneration, "main.rgen");
-  EXPECT_EQ(p.maxRecursion, 3u);
+  EXPECT_EQ(p.declaredRecursion, 3u);
   EXPECT_EQ(p.samplesPerLaunch, 16u);
-  EXPECT_EQ(p.callables, std::vector<std::string>{"noise.rcall"});
+  ASSERT_EQ(p.callables.size(), 1u);
+  EXPECT_EQ(p.callables[0].file, "noise.rcall");
+  EXPECT_EQ(p.callables[0].name, "noise");
   ASSERT_EQ(p.rays.size(), 2u);
   EXPECT_EQ(p.rays[0].name, "radiance");
   EXPECT_EQ(p.rays[1].miss, "<quintet/stages/shadow.rmiss>");
   ASSERT_EQ(p.hitGroups.size(), 2u);
-  EXPECT_EQ(p.hitGroups[0].geometry, "opaque");
+  EXPECT_EQ(p.hitGroups[0].geometry, std::vector<std::string>{"opaque"});
   EXPECT_EQ(p.hitGroups[0].shaders.at("radiance").closestHit, "hit.rchit");
   EXPECT_EQ(p.hitGroups[0].shaders.count("shadow"), 0u);
   EXPECT_EQ(p.hitGroups[1].shaders.at("radiance").intersection, "box.rint");
   EXPECT_EQ(p.hitGroups[1].shaders.at("shadow").anyHit, "alpha.rahit");
-  EXPECT_EQ(p.outputs, (std::vector<std::string>{"color", "depth"}));
+  EXPECT_EQ(outputNames(p), (std::vector<std::string>{"color", "depth"}));
   ASSERT_EQ(p.parameters.size(), 1u);
   const Parameter& tint = p.parameters[0];
   EXPECT_EQ(tint.type, ParameterType::color);
@@ -83,9 +85,11 @@ TEST(Program, ReadsEverything) {
 
 TEST(Program, FillsInDefaults) {
   const Program p = parse(kSmall);
-  EXPECT_EQ(p.maxRecursion, 1u);
+  EXPECT_FALSE(p.declaredRecursion.has_value());
+  EXPECT_EQ(p.accumulation, Accumulation::film);
+  EXPECT_FALSE(p.keepsInstanceOrder);
   EXPECT_EQ(p.samplesPerLaunch, 1u);
-  EXPECT_EQ(p.outputs, std::vector<std::string>{"color"});
+  EXPECT_EQ(outputNames(p), std::vector<std::string>{"color"});
   EXPECT_TRUE(p.hitGroups.empty());
   EXPECT_TRUE(p.parameters.empty());
 }
@@ -124,8 +128,8 @@ const WrongCase kWrong[] = {
     {"UnknownStage", "{ closest_hit", "{ closes_hit", "line 19: 'radiance' of [[hit_group]] has no key 'closes_hit'; did you mean 'closest_hit'?"},
     {"UnknownRay", "shadow = {", "shadows = {", "line 25: [[hit_group]] has no key 'shadows'; did you mean 'shadow'?"},
     {"UnknownKeyOfOutput", "name = \"depth\"", "name = \"depth\"\ntype = 1", "line 32: [[output]] has no key 'type'"},
-    {"MissingFile", "main.rgen", "mian.rgen", "line 3: there is no file 'mian.rgen' in folder/demo"},
-    {"MissingCallable", "noise.rcall", "none.rcall", "line 6: there is no file 'none.rcall' in folder/demo"},
+    {"MissingFile", "main.rgen", "mian.rgen", "line 3: there is no file 'mian.rgen' in folder/demo; did you mean 'main.rgen'?"},
+    {"MissingCallable", "noise.rcall", "none.rcall", "line 6: there is no file 'none.rcall' in folder/demo; did you mean 'noise.rcall'?"},
     {"WrongExtension", "closest_hit = \"hit.rchit\"", "closest_hit = \"alpha.rahit\"", "line 19: 'alpha.rahit' must end in .rchit"},
     {"WrongLibraryExtension", "shadow.rmiss", "surface.rchit", "line 14: '<quintet/stages/surface.rchit>' must end in .rmiss"},
     {"DuplicateRay", "name = \"shadow\"", "name = \"radiance\"", "line 13: 'radiance' is there twice"},
@@ -138,7 +142,7 @@ const WrongCase kWrong[] = {
     {"DefaultTooShort", "[0.5, 1, 0.25]", "[0.5, 1]", "line 36: the default of 'tint' needs 3 numbers"},
     {"DefaultNoList", "[0.5, 1, 0.25]", "0.5", "line 36: the default of 'tint' needs 3 numbers"},
     {"DefaultOutside", "0.25]", "3]", "line 36: the default of 'tint' is outside 0 … 2"},
-    {"DefaultNoNumber", "0.25]", "\"x\"]", "line 36: 'default' of [[parameter]] must be a number"},
+    {"DefaultNoNumber", "0.25]", "\"x\"]", "line 36: the default of 'tint' must be a number"},
     {"RecursionTooDeep", "max_recursion = 3", "max_recursion = 32", "line 4: 'max_recursion' of [program] must be an integer from 1 to 31"},
     {"CountNoInteger", "samples_per_launch = 16", "samples_per_launch = 1.5", "line 5: 'samples_per_launch' of [program] must be an integer from 1 to 4096"},
     {"TextNoString", "description = \"all there is\"", "description = 3", "line 2: 'description' of [program] must be a string"},
