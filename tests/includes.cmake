@@ -5,7 +5,7 @@
 #   cmake -DSELF_TEST=ON -P includes.cmake   checks small trees made for the purpose
 cmake_minimum_required(VERSION 3.25)
 
-set(layers base io gpu shader rt program scene render)
+set(layers base io gpu shader rt program scene render api)
 set(mayInclude_base base)
 set(mayInclude_io io base)
 set(mayInclude_gpu gpu base)
@@ -13,8 +13,9 @@ set(mayInclude_shader shader gpu base)
 set(mayInclude_rt rt shader gpu base)
 set(mayInclude_program program rt shader gpu base)
 set(mayInclude_scene scene io base)
-set(mayInclude_render ${layers})
-set(mayInclude_apps ${layers})
+set(mayInclude_render base io gpu shader rt program scene render)
+set(mayInclude_api ${layers})
+set(mayInclude_apps base io gpu shader rt program scene render)
 
 # Appends to OUT a line for each forbidden #include in FILE, a part of LAYER.
 function(check_file ROOT FILE LAYER OUT)

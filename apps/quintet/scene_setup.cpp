@@ -48,13 +48,7 @@ scene::Camera lookingCamera(const scene::Scene& scene, const CameraOptions& opti
   const vec3 way = target - eye;
   if (!(glm::length(way) > 0.0f)) throw UsageError("--look-from and --look-at are the same point");
   if (!(glm::length(options.up) > 0.0f)) throw UsageError("--up: the vector has no length");
-  vec3 up = glm::normalize(options.up);
-  // Straight up or down: any other direction serves as well.
-  if (glm::length(glm::cross(glm::normalize(way), up)) < 1e-5f) up = std::abs(up.z) < 0.9f ? vec3(0, 0, -1) : vec3(1, 0, 0);
-  scene::Camera camera;
-  camera.worldFromCamera = glm::inverse(glm::lookAtRH(eye, target, up));
-  camera.focusDistance = glm::length(way);
-  return camera;
+  return scene::lookAtCamera(eye, target, options.up, scene::Camera().verticalFov, 0.0f);
 }
 
 // In front of the camera, where the middle of the scene is.
@@ -120,18 +114,6 @@ uvec2 chooseSize(uvec2 asked, const scene::Camera& camera) {
                         : uvec2{rounded(kDefaultWidth * aspect), kDefaultWidth};
 }
 
-bool givesLight(const scene::Scene& scene) {
-  if (!scene.lights.empty()) return true;
-  for (const scene::Instance& instance : scene.instances) {
-    for (const scene::Geometry& geometry : scene.meshes[static_cast<std::size_t>(instance.mesh)].geometries) {
-      if (geometry.material == scene::kNone) continue;
-      const vec3& emissive = scene.materials[static_cast<std::size_t>(geometry.material)].emissive;
-      if (glm::any(glm::greaterThan(emissive, vec3(0.0f)))) return true;
-    }
-  }
-  return false;
-}
-
 ChosenEnvironment chooseEnvironment(const scene::Scene& scene, const EnvironmentOptions& options) {
   ChosenEnvironment chosen;
   if (options.source == "none") {
@@ -143,7 +125,7 @@ ChosenEnvironment chooseEnvironment(const scene::Scene& scene, const Environment
     chosen = {readEnvironment(options.source), options.source};
   } else if (scene.environment.present) {
     chosen = {scene.environment, "of the scene"};
-  } else if (!givesLight(scene)) {
+  } else if (!scene::givesLight(scene)) {
     chosen = {scene::defaultEnvironment(), "default", true};
   } else {
     chosen.description = "none";

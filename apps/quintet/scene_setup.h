@@ -48,8 +48,5 @@ struct ChosenEnvironment {
 // --env > the scene's > the default if nothing in the scene gives light > none. Throws FileError, UsageError.
 ChosenEnvironment chooseEnvironment(const scene::Scene& scene, const EnvironmentOptions& options);
 
-// Any light, or any visible surface that emits.
-bool givesLight(const scene::Scene& scene);
-
 }  // namespace quintet::app
 #endif

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "base/error.h"
+
 namespace quintet::scene {
 namespace {
 
@@ -99,6 +101,20 @@ Camera frameScene(const Bounds3& bounds, float aspect) {
   camera.worldFromCamera =
       mat4(vec4(vec3(axes[0]), 0.0f), vec4(vec3(axes[1]), 0.0f), vec4(vec3(axes[2]), 0.0f), vec4(position, 1.0f));
   camera.focusDistance = static_cast<float>(std::min(eye.z, limit.x));
+  return camera;
+}
+
+Camera lookAtCamera(const vec3& eye, const vec3& target, const vec3& up, float verticalFov, float apertureRadius) {
+  const vec3 way = target - eye;
+  if (!(glm::length(way) > 0.0f)) throw UsageError("the camera is at the point that it looks at");
+  if (!(glm::length(up) > 0.0f)) throw UsageError("the camera's up vector has no length");
+  vec3 upright = glm::normalize(up);
+  if (glm::length(glm::cross(glm::normalize(way), upright)) < 1e-5f) upright = std::abs(upright.z) < 0.9f ? vec3(0, 0, -1) : vec3(1, 0, 0);
+  Camera camera;
+  camera.worldFromCamera = glm::inverse(glm::lookAtRH(eye, target, upright));
+  camera.focusDistance = glm::length(way);
+  camera.verticalFov = verticalFov;
+  camera.apertureRadius = apertureRadius;
   return camera;
 }
 

@@ -12,5 +12,9 @@ namespace quintet::scene {
 // bounds; focused on the centre, pinhole.
 Camera frameScene(const Bounds3& bounds, float aspect);
 
+// At `eye`, looking at `target`, which is sharp; the image's vertical axis is as near to `up` as can be (any
+// direction if the view is along it). Throws UsageError if both points are the same or `up` has no length.
+Camera lookAtCamera(const vec3& eye, const vec3& target, const vec3& up, float verticalFov, float apertureRadius);
+
 }  // namespace quintet::scene
 #endif

@@ -15,5 +15,11 @@ namespace quintet::scene {
 // radiance 1 in each channel: objects are lit well and neutrally, from above, with soft shadows.
 Environment defaultEnvironment();
 
+// Any light, or any visible surface that emits.
+bool givesLight(const Scene& scene);
+
+// The scene's own environment; else the default one if nothing in the scene gives light; else none (black).
+Environment environmentInUse(const Scene& scene);
+
 }  // namespace quintet::scene
 #endif

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "scene/default_environment.h"
 
 namespace quintet::app {
 namespace {
@@ -111,13 +112,13 @@ TEST(ChooseSize, FollowsTheAspect) {
 
 TEST(GivesLight, LightsAndVisibleEmission) {
   scene::Scene scene = makeScene();
-  EXPECT_FALSE(givesLight(scene));
+  EXPECT_FALSE(scene::givesLight(scene));
   scene.materials[0].emissive = vec3(0, 1, 0);
-  EXPECT_TRUE(givesLight(scene));
+  EXPECT_TRUE(scene::givesLight(scene));
   scene.instances.clear();
-  EXPECT_FALSE(givesLight(scene));
+  EXPECT_FALSE(scene::givesLight(scene));
   scene.lights.resize(1);
-  EXPECT_TRUE(givesLight(scene));
+  EXPECT_TRUE(scene::givesLight(scene));
 }
 
 TEST(ChooseEnvironment, TheFirstThatIsGiven) {

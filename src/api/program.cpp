@@ -1,0 +1,36 @@
+#include <fmt/format.h>
+
+#include "api/impl.h"
+
+namespace quintet {
+namespace {
+
+std::string valueText(const program::Parameter& parameter) {
+  std::string text;
+  for (int i = 0; i < program::componentCount(parameter.type); ++i)
+    text += fmt::format("{}{}", i > 0 ? "," : "", parameter.defaultValue[static_cast<std::size_t>(i)]);
+  return text;
+}
+
+}  // namespace
+
+Program Program::load(const std::string& nameOrPath) {
+  Program result;
+  result.impl_ = std::make_shared<const Impl>(Impl{program::loadProgram(nameOrPath)});
+  return result;
+}
+
+std::vector<std::string> Program::builtIn() { return program::builtInPrograms(); }
+std::string Program::name() const { return impl_->program.name; }
+std::string Program::description() const { return impl_->program.description; }
+
+std::vector<ParameterInfo> Program::parameters() const {
+  std::vector<ParameterInfo> result;
+  for (const program::Parameter& p : impl_->program.parameters)
+    result.push_back({p.name, std::string(program::typeName(p.type)), valueText(p), p.min, p.max, p.unit, p.help});
+  return result;
+}
+
+std::vector<std::string> Program::outputs() const { return impl_->program.outputs; }
+
+}  // namespace quintet
