@@ -214,12 +214,11 @@ std::vector<std::byte> detail::runCompute(const ComputeCall& call) {
   return outputs.downloadAs<std::byte>(call.count * call.outputSize);
 }
 
-}  // namespace quintet::test
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  testing::AddGlobalTestEnvironment(new quintet::test::DeviceEnvironment);
+int runDeviceTests() {
+  testing::AddGlobalTestEnvironment(new DeviceEnvironment);
   const int result = RUN_ALL_TESTS();
   // A filter that matches nothing has shown nothing.
   return testing::UnitTest::GetInstance()->test_to_run_count() == 0 && !testing::GTEST_FLAG(list_tests) ? 1 : result;
 }
+
+}  // namespace quintet::test

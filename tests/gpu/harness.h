@@ -34,6 +34,9 @@ namespace quintet::test {
 // set. Throws NoDeviceError: the test fails. Its validation messages fail the run at the end.
 gpu::Context& testContext();
 
+// RUN_ALL_TESTS with the device torn down at the end; validation messages, or no test at all, are failures.
+int runDeviceTests();
+
 // The set that shaders run with unless they are given one: no TLAS, no textures, 128 bytes of constants.
 const gpu::BindlessSet& testSet();
 

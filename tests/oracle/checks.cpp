@@ -1,0 +1,50 @@
+#include "checks.h"
+
+#include <fmt/ranges.h>
+
+#include "harness.h"
+
+namespace quintet::oracle {
+
+Driver testDriver() {
+  VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+  properties.pNext = &driver;
+  vkGetPhysicalDeviceProperties2(test::testContext().physicalDevice(), &properties);
+  return {driver.driverID, properties.properties.driverVersion};
+}
+
+Verdict judge(const Driver& driver, const KnownQuirk* quirk, std::size_t wrong) {
+  const bool affected = quirk && quirk->driver == driver.id;
+  if (wrong > 0) return affected ? Verdict::knownQuirk : Verdict::fail;
+  return affected && !quirk->sporadic && driver.version >= quirk->version ? Verdict::mended : Verdict::pass;
+}
+
+Checks::~Checks() {
+  if (!finished_ && !std::uncaught_exceptions()) ADD_FAILURE() << "the test does not end with Checks::done()";
+}
+
+void Checks::finish(const KnownQuirk* quirk) {
+  finished_ = true;
+  const std::size_t total = hard_.total + soft_.total;
+  testing::Test::RecordProperty("values", fmt::format("{}", total));
+  if (quirk) testing::Test::RecordProperty("quirk", std::string(quirk->id));
+  if (total == 0) ADD_FAILURE() << "the test compares nothing";
+  if (hard_.wrong > 0)
+    ADD_FAILURE() << fmt::format("{} of {} values are wrong:\n  {}", hard_.wrong, hard_.total,
+                                 fmt::join(hard_.messages, "\n  "));
+  switch (judge(testDriver(), quirk, soft_.wrong)) {
+    case Verdict::pass: break;
+    case Verdict::knownQuirk: testing::Test::RecordProperty("wrong", fmt::format("{}", soft_.wrong)); break;
+    case Verdict::mended:
+      ADD_FAILURE() << fmt::format("mended: remove the workaround for '{}' ({}): docs/design/quirks.md", quirk->id,
+                                   quirk->text);
+      break;
+    case Verdict::fail:
+      ADD_FAILURE() << fmt::format("{} of {} values are wrong:\n  {}", soft_.wrong, soft_.total,
+                                   fmt::join(soft_.messages, "\n  "));
+      break;
+  }
+}
+
+}  // namespace quintet::oracle

@@ -1,0 +1,42 @@
+// What drivers are known to get wrong (docs/design/quirks.md). A test of the oracle that meets such a
+// defect names its entry: it passes while the driver is wrong as documented, and fails when a driver of
+// that version or newer has become right, so that the workaround goes. On every other driver the same
+// values have to be right.
+#ifndef QUINTET_TESTS_ORACLE_KNOWN_QUIRKS_H
+#define QUINTET_TESTS_ORACLE_KNOWN_QUIRKS_H
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "gpu/vulkan.h"
+
+namespace quintet::oracle {
+
+struct KnownQuirk {
+  std::string_view id;
+  std::string_view text;
+  // Some machines with this driver do not show it: right values are no news.
+  bool sporadic = false;
+  VkDriverId driver = VK_DRIVER_ID_MESA_LLVMPIPE;
+  std::uint32_t version = VK_MAKE_API_VERSION(0, 25, 0, 7);  // where it was seen
+};
+
+inline constexpr KnownQuirk kStaleBuiltIns{"stale-built-ins",
+                                           "built-ins read after a nested trace are those of the inner hit"};
+inline constexpr KnownQuirk kAllQuirks[] = {kStaleBuiltIns};
+
+struct Driver {
+  VkDriverId id = VK_DRIVER_ID_MAX_ENUM;
+  std::uint32_t version = 0;
+};
+Driver testDriver();  // of the device that the tests run on
+
+enum class Verdict { pass, knownQuirk, fail, mended };
+
+// `wrong`: values that are wrong in the way that `quirk` (null: none) describes.
+Verdict judge(const Driver& driver, const KnownQuirk* quirk, std::size_t wrong);
+
+}  // namespace quintet::oracle
+#endif

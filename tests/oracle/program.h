@@ -1,0 +1,96 @@
+// The tiny programs of the oracle: GLSL stages, a scene, one launch, an array of results.
+//
+// Before every stage comes a header: GL_EXT_ray_tracing and scalar layout, `tlas`, and the program's
+// `common` text, which declares `struct Input` and `struct Output`. Then every stage sees
+//   launch.inputs.at[i], launch.outputs.at[i], launch.user (uvec4), launch.address[0 … 3],
+//   uint launchIndex()      // of this invocation, x fastest
+// Shader texts that are equal become one stage.
+#ifndef QUINTET_TESTS_ORACLE_PROGRAM_H
+#define QUINTET_TESTS_ORACLE_PROGRAM_H
+
+#include <array>
+#include <cstring>
+#include <functional>
+#include <stdexcept>
+
+#include "rt/pipeline.h"
+#include "scene.h"
+
+namespace quintet::oracle {
+
+struct HitGroupText {
+  std::string closestHit = {}, anyHit = {}, intersection = {};  // empty: none
+};
+
+struct ProgramText {
+  std::string common;
+  std::string rayGeneration;
+  std::vector<std::string> miss;
+  std::vector<HitGroupText> hit;
+  std::vector<std::string> callable = {};
+  std::uint32_t recursion = 1;
+};
+
+// A record of the shader binding table: the number of a miss shader, hit group or callable shader of
+// the program, and its data.
+struct Record {
+  std::uint32_t shader = 0;
+  std::vector<std::byte> data = {};
+};
+template <class T>
+Record recordOf(std::uint32_t shader, const T& data) {
+  const auto bytes = std::as_bytes(std::span(&data, 1));
+  return {shader, {bytes.begin(), bytes.end()}};
+}
+
+struct Table {
+  std::vector<Record> miss, hit, callable = {};
+};
+
+class Program {
+ public:
+  explicit Program(const ProgramText& text);
+  const rt::Pipeline& pipeline() const { return *pipeline_; }
+  Table plainTable() const;  // each shader once, in order, without data
+  rt::SbtContents contents(const Table& table) const;
+  static gpu::BindlessSet& set();  // all programs' descriptors and push constants
+
+ private:
+  std::uint32_t missCount_, hitCount_, callableCount_;
+  std::unique_ptr<rt::Pipeline> pipeline_;
+};
+
+// Calls `destroy` after the last test, before the device goes; the last one registered first.
+void atEnd(std::function<void()> destroy);
+
+// SPIR-V of one stage with the header before it.
+std::vector<std::uint32_t> compileStage(shader::Stage stage, const std::string& common, const std::string& text);
+
+struct LaunchOptions {
+  uvec3 size{0};            // 0: one invocation for each input
+  std::size_t outputs = 0;  // 0: one for each invocation
+  uvec4 user{0};
+  std::array<VkDeviceAddress, 4> addresses{};
+  const Table* table = nullptr;  // null: plainTable()
+};
+
+namespace detail {
+std::vector<std::byte> launch(const Program& program, VkAccelerationStructureKHR tlas,
+                              std::span<const std::byte> inputs, std::size_t inputCount, std::size_t outputSize,
+                              const LaunchOptions& options);
+}  // namespace detail
+
+// The outputs are zero before the launch.
+template <class Out, class In>
+std::vector<Out> run(const Program& program, const Scene& scene, const std::vector<In>& inputs,
+                     const LaunchOptions& options = {}) {
+  static_assert(std::is_trivially_copyable_v<Out> && std::is_trivially_copyable_v<In>);
+  const std::vector<std::byte> bytes =
+      detail::launch(program, scene.handle(), std::as_bytes(std::span(inputs)), inputs.size(), sizeof(Out), options);
+  std::vector<Out> result(bytes.size() / sizeof(Out));
+  std::memcpy(result.data(), bytes.data(), bytes.size());
+  return result;
+}
+
+}  // namespace quintet::oracle
+#endif
