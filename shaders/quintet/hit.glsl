@@ -10,6 +10,9 @@ uint hitTriangle(GeometryData geometry) {
   return geometry.primitiveMap != 0ul ? UintArray(geometry.primitiveMap).at[gl_PrimitiveID] : uint(gl_PrimitiveID);
 }
 
+// The instance's own index of scenes (custom_index); gl_InstanceCustomIndexEXT is its position in the scene.
+uint instanceCustomIndex() { return InstanceArray(frame.instances).at[gl_InstanceCustomIndexEXT].customIndex; }
+
 GeometryData hitGeometry() {
   const uint first = InstanceArray(frame.instances).at[gl_InstanceCustomIndexEXT].firstGeometry;
   return GeometryArray(frame.geometries).at[first + uint(gl_GeometryIndexEXT)];

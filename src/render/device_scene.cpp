@@ -11,24 +11,13 @@
 #include "render/scene_facts.h"
 #include "render/scene_features.h"
 #include "render/scene_upload.h"
+#include "render/top_level.h"
 
 namespace quintet::render {
 namespace {
 
 double secondsSince(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-shared::InstanceData makeInstance(const scene::Instance& instance) {
-  shared::InstanceData data{};
-  const mat4 forward = glm::transpose(instance.worldFromObject);
-  const mat4 backward = glm::transpose(glm::inverse(instance.worldFromObject));
-  for (int i = 0; i < 3; ++i) {
-    data.worldFromObject[i] = forward[i];
-    data.objectFromWorld[i] = backward[i];
-  }
-  data.mirrored = glm::determinant(mat3(instance.worldFromObject)) < 0.0f ? 1 : 0;
-  return data;
 }
 
 // The environment's texels as the device may see them: finite, not negative.
@@ -48,13 +37,11 @@ struct DeviceScene::Impl {
   GeometryUpload geometry;
   std::optional<TextureUpload> textures;
   std::unique_ptr<gpu::BindlessSet> set;
-  gpu::Buffer geometryTable, instanceTable, materialTable, lights, lightTable, lightSlots, environmentTable, albedoTables;
+  gpu::Buffer geometryTable, materialTable, lights, lightTable, lightSlots, environmentTable, albedoTables;
   std::vector<rt::Blas> blas;                // one per used mesh
   std::vector<int> blasOfMesh;               // -1: no instance uses the mesh
-  std::vector<rt::InstanceInput> instances;  // recordOffset holds the first geometry until prepareFor
-  std::vector<std::uint32_t> firstGeometryOfInstance;
-  std::unique_ptr<rt::Tlas> tlas;
-  std::uint32_t rayTypeCount = 0;
+  std::uint64_t bottomLevelBytes = 0;
+  std::optional<TopLevel> topLevel;
   program::SceneFacts facts;
   shared::Frame frame{};
   std::vector<std::pair<std::string, std::string>> defines;
@@ -153,7 +140,7 @@ struct DeviceScene::Impl {
     }
     blas = rt::BlasBuilder(context).build(inputs, &statistics.build);
     for (std::size_t i = 0; i < blas.size(); ++i) {
-      statistics.accelerationBytes += blas[i].size();
+      bottomLevelBytes += blas[i].size();
       for (std::size_t g = 0; g < inputs[i].geometries.size(); ++g)
         geometry.geometries[geometry.firstGeometry[meshOfInput[i]] + g].primitiveMap = blas[i].primitiveMap(g);
     }
@@ -162,35 +149,20 @@ struct DeviceScene::Impl {
   void uploadTables(const scene::Scene& scene) {
     geometryTable = gpu::makeBufferOf(context, geometry.geometries, 0, "geometries");
     frame.geometries = geometryTable.address();
-    std::vector<shared::InstanceData> data;
+    std::vector<InstancePlace> places;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-      const scene::Instance& instance = scene.instances[i];
-      const auto mesh = static_cast<std::size_t>(instance.mesh);
-      shared::InstanceData& d = data.emplace_back(makeInstance(instance));
-      d.firstGeometry = geometry.firstGeometry[mesh];
-      d.firstLightSlot = firstLightSlots[i];
-      rt::InstanceInput& input = instances.emplace_back();
-      input.worldFromObject = instance.worldFromObject;
-      input.blas = &blas[static_cast<std::size_t>(blasOfMesh[mesh])];
-      input.customIndex = static_cast<std::uint32_t>(i);
-      firstGeometryOfInstance.push_back(d.firstGeometry);
+      const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
+      places.push_back({&blas[static_cast<std::size_t>(blasOfMesh[mesh])], geometry.firstGeometry[mesh], firstLightSlots[i]});
     }
-    instanceTable = gpu::makeBufferOf(context, data, 0, "instances");
-    frame.instances = instanceTable.address();
+    topLevel.emplace(context, scene, places);
+    frame.instances = topLevel->table();
   }
 
-  void prepareFor(std::uint32_t count) {
-    if (tlas && count == rayTypeCount) return;
+  void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder) {
     const auto start = std::chrono::steady_clock::now();
-    rayTypeCount = count;
-    for (std::size_t i = 0; i < instances.size(); ++i) instances[i].recordOffset = firstGeometryOfInstance[i] * count;
-    if (!tlas) {
-      tlas = std::make_unique<rt::Tlas>(context, static_cast<std::uint32_t>(instances.size()));
-      tlas->keepInputOrder(options.keepInputOrder);
-      statistics.accelerationBytes += tlas->size();
-    }
-    tlas->buildAndWait(instances);
-    set->setAccelerationStructure(tlas->handle());
+    if (!topLevel->prepareFor(rayTypeCount, keepInstanceOrder || options.keepInputOrder)) return;
+    set->setAccelerationStructure(topLevel->structure().handle());
+    statistics.accelerationBytes = bottomLevelBytes + topLevel->structure().size();
     statistics.topLevelSeconds = secondsSince(start);
   }
 
@@ -209,6 +181,8 @@ const std::vector<std::pair<std::string, std::string>>& DeviceScene::defines() c
 const shared::Frame& DeviceScene::frameTemplate() const { return impl_->frame; }
 const DeviceSceneStatistics& DeviceScene::statistics() const { return impl_->statistics; }
 const Bounds3& DeviceScene::bounds() const { return impl_->bounds; }
-void DeviceScene::prepareFor(std::uint32_t rayTypeCount) { impl_->prepareFor(rayTypeCount); }
+bool DeviceScene::animated() const { return impl_->topLevel->animated(); }
+void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder) { impl_->prepareFor(rayTypeCount, keepInstanceOrder); }
+void DeviceScene::setFrame(float frame) { impl_->topLevel->setFrame(frame); }
 
 }  // namespace quintet::render

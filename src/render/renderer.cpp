@@ -78,7 +78,7 @@ struct Renderer::Impl {
     defines.insert(defines.end(), scene.defines().begin(), scene.defines().end());
     const program::CompiledProgram compiled = program::compile(description, compiler, defines);
     if (!compiled.ok) throw ProgramError(compiled.diagnostics);
-    scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()));
+    scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder);
     linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled, cache);
     table.emplace(linked->makeTable(scene.facts().geometries));
     statistics.compileSeconds = compiled.seconds;

@@ -1,5 +1,6 @@
 #include "rt/instance_data.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -44,7 +45,34 @@ VkAccelerationStructureInstanceKHR packInstance(const InstanceInput& instance) {
   return packed;
 }
 
-std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances, bool order) {
+namespace {
+
+// Nothing that a ray could meet, in the place of an inactive instance. Its transform is plain, and its structure is
+// one with primitives: drivers exist that stumble over inactive instances in a build.
+VkAccelerationStructureInstanceKHR placeholder(const InstanceInput& active) {
+  InstanceInput hidden;
+  hidden.worldFromObject = active.worldFromObject;
+  hidden.blas = active.blas;
+  hidden.mask = 0;
+  return packInstance(hidden);
+}
+
+std::vector<VkAccelerationStructureInstanceKHR> packNumbered(std::span<const InstanceInput> instances) {
+  std::vector<VkAccelerationStructureInstanceKHR> packed;
+  const auto anyActive = std::ranges::find_if(instances, isActive);
+  for (const InstanceInput& instance : instances) {
+    packed.push_back(packInstance(instance));  // checks those that are left out, too
+    if (!isActive(instance) && anyActive != instances.end()) packed.back() = placeholder(*anyActive);
+  }
+  if (anyActive == instances.end()) packed.clear();
+  return packed;
+}
+
+}  // namespace
+
+std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances, InstanceOrder order) {
+  if (order == InstanceOrder::numbered) return packNumbered(instances);
+  const bool spatial = order == InstanceOrder::spatial;
   std::vector<VkAccelerationStructureInstanceKHR> packed;
   std::vector<Bounds3> bounds;
   packed.reserve(instances.size());
@@ -52,9 +80,9 @@ std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const In
     const VkAccelerationStructureInstanceKHR one = packInstance(instance);  // checks those that are left out, too
     if (!isActive(instance)) continue;
     packed.push_back(one);
-    if (order) bounds.push_back(instance.blas->bounds().transformed(instance.worldFromObject));
+    if (spatial) bounds.push_back(instance.blas->bounds().transformed(instance.worldFromObject));
   }
-  if (!order) return packed;
+  if (!spatial) return packed;
   std::vector<VkAccelerationStructureInstanceKHR> ordered;
   ordered.reserve(packed.size());
   for (const std::uint32_t k : spatialOrder(bounds)) ordered.push_back(packed[k]);

@@ -13,8 +13,10 @@ bool isActive(const InstanceInput& instance);
 // Throws UsageError if a field does not fit the bits that Vulkan has for it.
 VkAccelerationStructureInstanceKHR packInstance(const InstanceInput& instance);
 
-// The active instances, in spatial order if `order`.
-std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances, bool order);
+// spatial: the active instances in spatial order; given: the active ones as they come; numbered: all, each at its
+// place (so that gl_InstanceID is its index), the inactive ones with mask 0.
+enum class InstanceOrder { spatial, given, numbered };
+std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances, InstanceOrder order);
 
 }  // namespace quintet::rt
 #endif

@@ -39,7 +39,9 @@ Tlas::~Tlas() { retireStructure(context_, handle_); }
 void Tlas::build(gpu::Commands& commands, std::span<const InstanceInput> instances) {
   if (instances.size() > capacity_)
     throw UsageError(fmt::format("'{}' has room for {} instances, {} were given", name_, capacity_, instances.size()));
-  const bool order = context_.info().quirks.keepsPrimitiveOrder && !keepInputOrder_;
+  const InstanceOrder order = keepInputOrder_                              ? InstanceOrder::numbered
+                              : context_.info().quirks.keepsPrimitiveOrder ? InstanceOrder::spatial
+                                                                           : InstanceOrder::given;
   const std::vector<VkAccelerationStructureInstanceKHR> packed = packInstances(instances, order);
   const std::span<const std::byte> bytes = std::as_bytes(std::span(packed));
   // Freed when this submission has ended: no ring to run out of, whatever is in flight.

@@ -31,14 +31,15 @@ class Tlas {
 
   // Records a rebuild with these instances (0 … capacity) and the barriers around it. Instances
   // whose transform is not finite or not invertible, or whose BLAS is empty, are left out.
-  // gl_InstanceID is the position after spatial ordering: use gl_InstanceCustomIndexEXT to identify an
+  // gl_InstanceID is the position after spatial ordering (but see keepInputOrder): use gl_InstanceCustomIndexEXT to identify an
   // instance. Throws UsageError beyond the capacity and for fields that do not fit their bits.
   void build(gpu::Commands& commands, std::span<const InstanceInput> instances);
   void buildAndWait(std::span<const InstanceInput> instances);
 
   VkAccelerationStructureKHR handle() const { return handle_; }
   VkDeviceSize size() const { return storage_.size(); }
-  // For the benchmark only: do not order instances.
+  // gl_InstanceID is the position in the span of the next builds, on every device; inactive instances keep theirs.
+  // Costs speed where the driver keeps the order (docs/design/quirks.md).
   void keepInputOrder(bool keep) { keepInputOrder_ = keep; }
 
  private:

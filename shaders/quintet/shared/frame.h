@@ -16,7 +16,7 @@ struct InstanceData {
   uint firstGeometry;       // GeometryData of geometry g: firstGeometry + g
   uint firstLightSlot;      // light slot of geometry g: firstLightSlot + g (Frame::lightSlots)
   uint mirrored;            // 1: negative determinant (winding flips)
-  uint padding;
+  uint customIndex;         // the user's own: scene::Instance::customIndex
 };
 QT_SHARED_SIZE(InstanceData, 112);
 

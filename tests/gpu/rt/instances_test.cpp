@@ -66,11 +66,16 @@ TEST(RtInstances, UnusableOnesAreLeftOut) {
                                              {.worldFromObject = translation(0, -1), .blas = &empty},
                                              {.worldFromObject = translation(0, -7), .blas = &blas, .customIndex = 9}};
   Tlas tlas(context(), 5);
-  tlas.buildAndWait(instances);
   const SbtContents contents = contentsOf({hitRecord(kTriangleHit, {.map = blas.primitiveMap(0)})});
-  const auto hits = traceRays(tlas, contents, {{.origin = {0.5f, -0.25f, 0}}});
-  EXPECT_FLOAT_EQ(hits[0].t, 7.0f);
-  EXPECT_EQ(hits[0].custom, 9u);
+  for (const bool keepOrder : {false, true}) {
+    tlas.keepInputOrder(keepOrder);
+    tlas.buildAndWait(instances);
+    const auto hits = traceRays(tlas, contents, {{.origin = {0.5f, -0.25f, 0}}});
+    EXPECT_FLOAT_EQ(hits[0].t, 7.0f);
+    EXPECT_EQ(hits[0].custom, 9u);
+    tlas.buildAndWait(std::span(instances).first(4));
+    EXPECT_LT(traceRays(tlas, contents, {{.origin = {0.5f, -0.25f, 0}}})[0].t, 0.0f);
+  }
 }
 
 // Ten frames are recorded without waiting: each rebuilds the TLAS and traces into its own buffer.

@@ -94,7 +94,7 @@ GPU_FIELDS(MaterialData, baseColor, emissive, metallic, roughness, normalScale, 
 GPU_FIELDS(AliasEntry, keep, alias, probability);
 GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, padding);
 GPU_FIELDS(EnvironmentData, table, scale, texture, width, height, cosRotation, sinRotation);
-GPU_FIELDS(InstanceData, worldFromObject, objectFromWorld, firstGeometry, firstLightSlot, mirrored, padding);
+GPU_FIELDS(InstanceData, worldFromObject, objectFromWorld, firstGeometry, firstLightSlot, mirrored, customIndex);
 GPU_FIELDS(GeometryData, positions, triangles, normals, tangents, uvs, colors, primitiveMap, material, triangleCount);
 GPU_FIELDS(CameraData, worldFromCamera, halfSize, apertureRadius, focusDistance, orthographic, padding);
 GPU_FIELDS(RayRecord, origin, tmax, direction, kind);

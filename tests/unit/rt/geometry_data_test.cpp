@@ -114,9 +114,9 @@ TEST(InstanceData, MatricesAreRowMajor) {
 TEST(InstanceData, WhatDoesNotFitIsRefusedEvenIfInactive) {
   InstanceInput instance;  // no BLAS: inactive
   EXPECT_FALSE(isActive(instance));
-  EXPECT_TRUE(packInstances({&instance, 1}, true).empty());
+  EXPECT_TRUE(packInstances({&instance, 1}, InstanceOrder::spatial).empty());
   instance.customIndex = 1u << 24;
-  EXPECT_THROW(packInstances({&instance, 1}, true), UsageError);
+  EXPECT_THROW(packInstances({&instance, 1}, InstanceOrder::spatial), UsageError);
 }
 
 }  // namespace

@@ -1,0 +1,85 @@
+#include "render/top_level.h"
+
+#include <algorithm>
+
+namespace quintet::render {
+namespace {
+
+void place(shared::InstanceData& data, const mat4& worldFromObject) {
+  const mat4 forward = glm::transpose(worldFromObject);
+  const mat4 backward = glm::transpose(glm::inverse(worldFromObject));
+  for (int i = 0; i < 3; ++i) {
+    data.worldFromObject[i] = forward[i];
+    data.objectFromWorld[i] = backward[i];
+  }
+  data.mirrored = glm::determinant(mat3(worldFromObject)) < 0.0f ? 1 : 0;
+}
+
+mat4 matrixOf(const scene::Keyframe& key) {
+  return glm::translate(mat4(1.0f), key.translation) * glm::mat4_cast(glm::normalize(key.rotation)) * glm::scale(mat4(1.0f), key.scale);
+}
+
+mat4 worldFromObjectAt(const scene::Instance& instance, float frame) {
+  const std::vector<scene::Keyframe>& keys = instance.keyframes;
+  const auto next = std::ranges::upper_bound(keys, frame, {}, &scene::Keyframe::frame);
+  if (next == keys.begin()) return matrixOf(keys.front());
+  if (next == keys.end()) return matrixOf(keys.back());
+  const scene::Keyframe& a = *(next - 1);
+  const float t = (frame - a.frame) / (next->frame - a.frame);
+  return matrixOf({frame, glm::mix(a.translation, next->translation, t), glm::slerp(a.rotation, next->rotation, t), glm::mix(a.scale, next->scale, t)});
+}
+
+}  // namespace
+
+TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstancePlace> places) : context_(context) {
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Instance& instance = scene.instances[i];
+    const mat4 worldFromObject = instance.keyframes.empty() ? instance.worldFromObject : worldFromObjectAt(instance, 0.0f);
+    if (!instance.keyframes.empty()) {
+      moving_.push_back(instance);
+      movingIndex_.push_back(static_cast<std::uint32_t>(i));
+    }
+    shared::InstanceData& data = data_.emplace_back();
+    data.firstGeometry = places[i].firstGeometry;
+    data.firstLightSlot = places[i].firstLightSlot;
+    data.customIndex = instance.customIndex;
+    place(data, worldFromObject);
+    rt::InstanceInput& input = inputs_.emplace_back();
+    input.worldFromObject = worldFromObject;
+    input.blas = places[i].blas;
+    input.customIndex = static_cast<std::uint32_t>(i);
+    input.mask = instance.mask;
+    input.flags = instance.flags;
+  }
+  table_ = gpu::makeBufferOf(context, data_, 0, "instances");
+}
+
+bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder) {
+  if (tlas_ && rayTypeCount == rayTypeCount_ && keepOrder == keepOrder_) return false;
+  rayTypeCount_ = rayTypeCount;
+  keepOrder_ = keepOrder;
+  build();
+  return true;
+}
+
+bool TopLevel::setFrame(float frame) {
+  if (moving_.empty() || frame == frame_) return false;
+  frame_ = frame;
+  for (std::size_t k = 0; k < moving_.size(); ++k) {
+    const mat4 worldFromObject = worldFromObjectAt(moving_[k], frame);
+    place(data_[movingIndex_[k]], worldFromObject);
+    inputs_[movingIndex_[k]].worldFromObject = worldFromObject;
+  }
+  table_.upload(std::as_bytes(std::span(data_)));
+  if (tlas_) build();
+  return true;
+}
+
+void TopLevel::build() {
+  for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i].recordOffset = data_[i].firstGeometry * rayTypeCount_;
+  if (!tlas_) tlas_ = std::make_unique<rt::Tlas>(context_, static_cast<std::uint32_t>(inputs_.size()));
+  tlas_->keepInputOrder(keepOrder_);
+  tlas_->buildAndWait(inputs_);
+}
+
+}  // namespace quintet::render
