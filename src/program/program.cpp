@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "base/embedded.h"
@@ -71,7 +72,14 @@ Program parseProgram(const std::string& toml, const std::string& name, const std
     throw FileError(file, fmt::format("line {}", error.source().begin.line), std::string(error.description()));
   }
   parseTables(program, root, file);
+  chooseDefaultScene(program);
   return program;
+}
+
+void chooseDefaultScene(Program& program) {
+  if (!program.scene.empty()) return;
+  const auto isScene = [](const auto& file) { return file.first.ends_with(".scene.toml"); };
+  if (std::ranges::count_if(program.files, isScene) == 1) program.scene = std::ranges::find_if(program.files, isScene)->first;
 }
 
 std::vector<std::string> builtInPrograms() {

@@ -103,6 +103,10 @@ struct Program {
   bool keepsInstanceOrder = false;     // gl_InstanceID is the instance's index in the scene (costs speed on lavapipe)
   std::uint32_t samplesPerLaunch = 1;  // samples per pixel that the ray generation shader can loop over
 
+  // Default scene, a file of the program: what [program] or the lecture file's comment "// scene: FILE" names, else
+  // the folder's only *.scene.toml; empty: none.
+  std::string scene;
+
   std::string origin;                             // folder, or "<programs/NAME>" when built in
   std::string descriptionFile = "program.toml";   // the file of `line`s, relative to origin
   std::map<std::string, std::string> files;       // every file of the folder: relative path → text
@@ -114,6 +118,9 @@ struct Program {
 // Every miss shader in the order of the table: those of the ray types, then the others.
 std::vector<MissShader> missShaders(const Program& program);
 std::vector<std::string> outputNames(const Program& program);
+
+// Sets `program.scene` to the only *.scene.toml of its files if nothing else was named.
+void chooseDefaultScene(Program& program);
 
 // `nameOrFolder`: a folder with program.toml (or that file itself), or the name of a built-in
 // program. Throws FileError (with line) for a description that is wrong, UsageError with the nearest

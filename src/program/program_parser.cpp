@@ -52,6 +52,9 @@ class Parser {
   void parseHead(const toml::table& table) {
     TomlReader reader(table, "[program]", file_);
     program_.description = reader.text("description");
+    program_.scene = reader.text("scene");
+    if (!program_.scene.empty() && !program_.files.count(program_.scene))
+      reader.fail(reader.find("scene"), fmt::format("there is no file '{}' in {}", program_.scene, program_.origin));
     program_.rayGeneration = shaderFile(reader, "ray_generation", ".rgen", true);
     program_.rayGenerationLine = reader.line(reader.find("ray_generation"));
     program_.rayGenerationRecord = parseRecordValues(program_, reader, {}, file_);
