@@ -20,6 +20,7 @@ struct Command {
 std::span<const Command> commands();
 
 int renderCommand(Arguments);   // render.cpp
+int runCommand(Arguments);      // run.cpp
 int infoCommand(Arguments);     // info.cpp
 int compareCommand(Arguments);  // compare.cpp
 int benchCommand(Arguments);    // bench.cpp

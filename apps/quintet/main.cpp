@@ -33,6 +33,7 @@ std::string helpText() {
          "Examples:\n"
          "  quintet render scene.glb                          scene.png, 1280x720, 64 samples per pixel\n"
          "  quintet render scene.glb -o out.exr --time 60     as many samples as a minute allows\n"
+         "  quintet run ao                                    a program on the built-in scene\n"
          "  quintet info                                      which devices there are\n"
          "  quintet compare out.png reference.png             how far they are apart\n";
 }

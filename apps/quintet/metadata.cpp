@@ -24,6 +24,7 @@ io::Metadata metadata(const RenderRecord& record) {
       {"Environment", record.environment},
       {"Camera", record.camera},
       {"Program", record.program},
+      {"Output", record.outputName},
       {"Parameters", record.parameters},
       {"Seed", fmt::format("{}", record.seed)},
       {"Samples", fmt::format("{}", record.samples)},
@@ -47,7 +48,8 @@ std::string toJson(const RenderRecord& record) {
   const nlohmann::ordered_json json{
       {"version", QUINTET_VERSION},
       {"command", record.commandLine},
-      {"output", record.output},
+      {"output", record.files.empty() ? "" : record.files.back()},
+      {"files", record.files},
       {"scene", record.scene},
       {"sceneHash", record.sceneHash},
       {"environment", record.environment},
@@ -88,8 +90,9 @@ std::string toJson(const RenderRecord& record) {
 }
 
 std::string summary(const RenderRecord& record) {
-  return fmt::format("{}: {}x{}, {} samples per pixel, {}, {:.3g} Mrays/s{}",
-                     record.output == "-" ? "standard output" : record.output, record.region[2], record.region[3],
+  const std::string file = record.files.empty() ? "" : record.files.back();
+  return fmt::format("{}: {}x{}, {} samples per pixel, {}, {:.3g} Mrays/s{}", file == "-" ? "standard output" : file,
+                     record.region[2], record.region[3],
                      record.samples, durationText(record.renderSeconds), record.raysPerSecond() * 1e-6,
                      record.interrupted ? ", interrupted" : "");
 }

@@ -14,7 +14,8 @@ namespace quintet::app {
 // Everything that is known about a rendering when it has ended.
 struct RenderRecord {
   std::string commandLine;
-  std::string output;
+  std::vector<std::string> files;  // pictures written
+  std::string outputName;          // of the program, in the picture written last
   std::string scene;
   std::string sceneHash;
   std::string environment;

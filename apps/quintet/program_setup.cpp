@@ -5,33 +5,50 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/file.h"
 
 namespace quintet::app {
 namespace {
 
-constexpr double kNoLimit = 1e30;
+// "0.5,1,0" of [0.5, 1, 0]; numbers in the shortest form that reads back the same.
+std::string valueText(const nlohmann::json& value, const std::filesystem::path& file, const std::string& name) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean() || value.is_number()) return value.dump();
+  std::string text;
+  bool good = value.is_array() && !value.empty();
+  for (std::size_t i = 0; good && i < value.size(); ++i) {
+    good = value[i].is_number();
+    text += (i > 0 ? "," : "") + value[i].dump();
+  }
+  if (!good) throw FileError(file, "/" + name, "is not a number, true, false, a text, or a list of numbers");
+  return text;
+}
 
-std::string describe(const program::Parameter& parameter) {
-  std::string value;
-  for (int i = 0; i < program::componentCount(parameter.type); ++i)
-    value += fmt::format("{}{}", i > 0 ? "," : "", parameter.defaultValue[static_cast<std::size_t>(i)]);
-  if (parameter.type == program::ParameterType::boolean) value = parameter.defaultValue[0] != 0 ? "true" : "false";
-  std::string range;
-  if (parameter.min > -kNoLimit && parameter.type != program::ParameterType::boolean)
-    range += fmt::format(", at least {}", parameter.min);
-  if (parameter.max < kNoLimit && parameter.type != program::ParameterType::boolean)
-    range += fmt::format(", at most {}", parameter.max);
-  const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
-  return fmt::format("  {:<18}{}\n{:20}{}, default {}{}{}\n", parameter.name, parameter.help, "",
-                     program::typeName(parameter.type), value, unit, range);
+void setFromFile(program::ParameterValues& values, const std::filesystem::path& file) {
+  nlohmann::json json;
+  try {
+    json = nlohmann::json::parse(readTextFile(file));
+  } catch (const nlohmann::json::parse_error& error) {
+    throw FileError(file, fmt::format("byte {}", error.byte), "is not JSON");
+  }
+  if (!json.is_object()) throw FileError(file, "is not a JSON object of parameters");
+  for (const auto& [name, value] : json.items()) {
+    try {
+      values.set(name, valueText(value, file, name));
+    } catch (const UsageError& error) {
+      throw FileError(file, error.what());
+    }
+  }
 }
 
 }  // namespace
 
 program::ParameterValues parameterValues(const program::Program& program, const RenderOptions& options) {
   program::ParameterValues values(program.parameters);
+  if (!options.setFile.empty()) setFromFile(values, options.setFile);
   for (const std::string& assignment : options.assignments) values.setAssignment(assignment);
   for (const auto& [name, value] : {std::pair<std::string, std::optional<std::string>>{"bounces", options.bounces},
                                     std::pair<std::string, std::optional<std::string>>{"clamp", options.clamp}}) {
@@ -43,20 +60,9 @@ program::ParameterValues parameterValues(const program::Program& program, const 
   return values;
 }
 
-std::string programHelp(const program::Program& program) {
-  std::string text = fmt::format("{}: {}\n\nParameters (--set NAME=VALUE):\n", program.name, program.description);
-  if (program.parameters.empty()) text += "  none\n";
-  for (const program::Parameter& parameter : program.parameters) text += describe(parameter);
-  text += "\nOutputs:\n";
-  for (const program::Output& output : program.outputs)
-    text += fmt::format("  {:<18}{}\n", output.name, output.help.empty() ? std::string(program::outputKindName(output.kind)) : output.help);
-  return text;
-}
-
-render::ToneMap chooseToneMap(const program::Program& program, const RenderOptions& options) {
+render::ToneMap chooseToneMap(const program::Output& output, const RenderOptions& options) {
   if (options.toneMap) return *options.toneMap;
-  const bool isColor = !program.outputs.empty() && program.outputs.front().kind == program::OutputKind::color;
-  return isColor ? render::ToneMap::neutral : render::ToneMap::linear;
+  return output.kind == program::OutputKind::color ? render::ToneMap::neutral : render::ToneMap::linear;
 }
 
 }  // namespace quintet::app

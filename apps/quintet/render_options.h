@@ -1,4 +1,4 @@
-// The options of `quintet render`, checked as far as they can be without the scene.
+// The options of `quintet render`, which `quintet run` has, too; checked as far as they can be without the scene.
 #ifndef QUINTET_APP_RENDER_OPTIONS_H
 #define QUINTET_APP_RENDER_OPTIONS_H
 
@@ -16,7 +16,7 @@
 namespace quintet::app {
 
 struct RenderOptions {
-  std::filesystem::path scene;
+  std::filesystem::path scene;   // empty (run only): the program's own, else the built-in one
   std::filesystem::path output;  // "-": PNG to standard output
   uvec2 size{0};                 // 0: decided by the camera
   std::optional<std::uint64_t> samples;
@@ -29,6 +29,9 @@ struct RenderOptions {
   render::Region region;         // width 0: everything
   std::string program = "pathtracer";
   std::vector<std::string> assignments;  // name=value, in the order of the command line
+  std::filesystem::path setFile;         // JSON object of parameters, before the assignments; may be empty
+  std::string outputName;                // of the program; empty: its first
+  bool allOutputs = false;               // one file each
   std::optional<std::string> bounces;
   std::optional<std::string> clamp;
   bool programHelp = false;

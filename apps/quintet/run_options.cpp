@@ -1,0 +1,70 @@
+#include "run_options.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "option_groups.h"
+#include "values.h"
+
+namespace quintet::app {
+namespace {
+
+constexpr const char* kExamples =
+    "  quintet run --list                                 the built-in programs\n"
+    "  quintet run ao                                     a built-in program on the built-in scene: ao.png\n"
+    "  quintet run ao --help                              its parameters and outputs\n"
+    "  quintet run my_program/ scene.glb --set tint=1,0.5,0 --size 640x360 --spp 16\n"
+    "  quintet run my_program/ --set-file values.json --all-outputs -o out.exr\n";
+
+// A shader that does not end within this does not end at all: seconds.
+constexpr double kTimeout = 30.0;
+
+bool isHelp(const std::string& argument) { return argument == "-h" || argument == "--help"; }
+
+}  // namespace
+
+std::optional<RunOptions> parseRunOptions(Arguments arguments) {
+  CLI::App app("Runs a program: a folder with program.toml, or a built-in one by name.", "quintet run");
+  RunOptions options;
+  RenderOptions& render = options.render;
+  RawOptions raw;
+  render.program.clear();
+  app.add_option("PROGRAM", render.program, "Folder, or name of a built-in program (--list)")->type_name("");
+  app.add_option("SCENE", raw.scene, "The scene: .gltf or .glb (default: a small built-in one)")->type_name("");
+  app.add_option("-o", raw.output, ".png, .exr or .hdr; - is PNG on standard output (default: PROGRAM.png, here)")
+      ->type_name("FILE")
+      ->group("Image");
+  declareImage(app, raw, render);
+  declareQuality(app, raw, render);
+  declareView(app, raw, render);
+  declareProgram(app, raw, render);
+  app.add_option("--output", render.outputName, "The output to write (default: the program's first)")
+      ->type_name("NAME")
+      ->group("Program");
+  app.add_flag("--list", options.list, "List the built-in programs and leave")->group("Program");
+  declareProcess(app, raw, render, "A launch that takes longer hangs (default: 30)");
+  app.add_flag("--json", render.json, "At the end (or with --help, --list) JSON on standard output")->group("Run");
+  setUp(app, kExamples);
+
+  // --help with a program is about that program.
+  std::vector<std::string> given(arguments.begin(), arguments.end());
+  const bool help = std::erase_if(given, isHelp) > 0;
+  if (!parse(app, given)) return std::nullopt;
+  if (help && render.program.empty()) {
+    parse(app, std::vector<std::string>{"--help"});
+    return std::nullopt;
+  }
+  render.programHelp = help;
+  if (help || options.list) return options;
+  if (render.program.empty()) throw UsageError("no program given; 'quintet run --list' names the built-in ones");
+  render.commandLine = commandLine("run", arguments);
+  render.scene = raw.scene;
+  render.output = raw.output;
+  interpret(raw, render);
+  if (!render.timeout) render.timeout = kTimeout;
+  if (!render.outputName.empty() && render.allOutputs) throw UsageError("--output and --all-outputs exclude each other");
+  checkStandardOutput(render);
+  return options;
+}
+
+}  // namespace quintet::app

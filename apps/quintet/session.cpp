@@ -1,0 +1,208 @@
+#include "session.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "picture_names.h"
+#include "program_setup.h"
+#include "scene/content_hash.h"
+#include "values.h"
+
+namespace quintet::app {
+namespace {
+
+// Device memory of the film: the sums of a batch and of the total, RGBA floats.
+constexpr std::uint64_t kFilmBytes = 32;
+// Host memory of the finished picture: floats and display bytes.
+constexpr std::uint64_t kPictureBytes = 20;
+
+void checkMemory(const gpu::DeviceInfo& device, uvec2 size, std::size_t outputCount) {
+  const std::uint64_t pixels = std::uint64_t{size.x} * size.y;
+  const std::uint64_t film = pixels * kFilmBytes * std::max<std::size_t>(outputCount, 1);
+  const std::uint64_t needed = film + (device.quirks.software ? pixels * kPictureBytes : 0);
+  const std::uint64_t room = device.memoryBytes - device.memoryBytes / 16;
+  const bool tooLargeBuffer = device.maxBufferBytes > 0 && pixels * kFilmBytes / 2 > device.maxBufferBytes;
+  if (needed <= room && !tooLargeBuffer) return;
+  throw MemoryError(fmt::format("an image of {}x{} needs {} on {}, which has {} and buffers of at most {}; render parts "
+                                "of it with --region",
+                                size.x, size.y, bytesText(needed), device.name, bytesText(device.memoryBytes),
+                                bytesText(device.maxBufferBytes)));
+}
+
+}  // namespace
+
+Session::Session(const RenderOptions& options) : options_(options), progress_(options.quiet) {}
+
+void Session::prepare() {
+  program_ = program::loadProgram(options_.program);
+  parameters_ = parameterValues(program_, options_);
+  chosenOutputs();
+  checkOutput(options_.output);
+  sceneSource_ = chooseScene(options_.scene, program_);
+}
+
+void Session::openDevice() {
+  gpu::ContextOptions contextOptions;
+  contextOptions.device = options_.device;
+  contextOptions.log = [this](LogLevel level, const std::string& text) {
+    if (level == LogLevel::warning) warnings_.add(text);
+  };
+  context_ = std::make_unique<gpu::Context>(contextOptions);
+  record_.device = context_->info().name;
+  record_.driver = context_->info().driver;
+  record_.startSeconds = clock_.seconds();
+  checkMemory(context_->info(), picturePart(options_.size), program_.outputs.size());
+
+  const std::filesystem::path cache = cacheFolder();
+  const auto part = [&cache](const char* name) { return cache.empty() ? cache : cache / name; };
+  shader::CompilerOptions compilerOptions;
+  compilerOptions.cacheFolder = part("shaders");
+  compiler_ = std::make_unique<shader::Compiler>(compilerOptions);
+  pipelineCache_ = std::make_unique<gpu::PipelineCache>(*context_, part("pipelines"));
+}
+
+// The size of what is rendered, as far as it is known by then.
+uvec2 Session::picturePart(uvec2 size) const {
+  return options_.region.width > 0 ? uvec2{options_.region.width, options_.region.height} : size;
+}
+
+void Session::loadScene() {
+  progress_.stage("loading " + sceneSource_.name);
+  const Stopwatch watch;
+  SceneInfo info;
+  const scene::Scene scene = app::loadScene(sceneSource_, program_);
+  info.hash = scene::contentHash(scene).hex();
+  const uvec2 asked = options_.size;
+  const float aspect = asked.y > 0 ? static_cast<float>(asked.x) / static_cast<float>(asked.y) : 0.0f;
+  const ChosenCamera camera = chooseCamera(scene, options_.camera, aspect);
+  const ChosenEnvironment environment = chooseEnvironment(scene, options_.environment);
+  info.camera = camera.camera;
+  info.cameraDescription = camera.description;
+  info.environment = environment.description;
+  info.size = chooseSize(asked, camera.camera);
+  info.loadSeconds = watch.seconds();
+  checkMemory(context_->info(), picturePart(info.size), program_.outputs.size());
+  describe(scene, environment);
+
+  progress_.stage("building acceleration structures");
+  auto built = std::make_unique<render::DeviceScene>(*context_, scene, environment.environment);
+  renderer_.reset();
+  deviceScene_ = std::move(built);
+  sceneInfo_ = std::move(info);
+  record_.loadSeconds = sceneInfo_.loadSeconds;
+  record_.buildSeconds = watch.seconds() - sceneInfo_.loadSeconds;
+}
+
+void Session::describe(const scene::Scene& scene, const ChosenEnvironment& environment) {
+  const std::string& name = sceneSource_.name;
+  if (outputKind(options_.output) != OutputKind::png && (options_.toneMap || options_.exposure != 0))
+    progress_.note(fmt::format("{}: linear radiance, --exposure and --tonemap do not apply", options_.output.string()));
+  if (environment.isDefault)
+    progress_.note(fmt::format("{}: nothing gives light, taking the default environment (--env none for darkness)", name));
+  if (scene.instances.empty()) warnings_.add(fmt::format("{}: the scene shows no surface", name));
+  const scene::Report& report = scene.report;
+  const std::size_t ignored = report.ignored.size() + report.extensionsIgnored.size();
+  if (ignored + report.repaired.size() > 0)
+    progress_.note(fmt::format("{}: {} ignored, {} repaired; 'quintet info {}' says what", name, ignored,
+                               report.repaired.size(), shellQuoted(sceneSource_.file.string())));
+}
+
+void Session::link() {
+  progress_.stage("compiling shaders");
+  render::RenderSettings settings;
+  settings.width = sceneInfo_.size.x;
+  settings.height = sceneInfo_.size.y;
+  settings.region = options_.region;
+  settings.camera = sceneInfo_.camera;
+  settings.seed = options_.seed;
+  settings.transparent = options_.transparent;
+  settings.parameters = parameters_;
+  // On a CPU the first launch compiles, and other processes take their share.
+  settings.timeoutSeconds = options_.timeout.value_or(context_->info().quirks.software ? 600.0 : 60.0);
+  renderer_ = std::make_unique<render::Renderer>(*deviceScene_, program_, *compiler_, pipelineCache_.get(), settings);
+  startedRendering_ = clock_.seconds();
+}
+
+std::vector<std::size_t> Session::chosenOutputs() const {
+  const std::vector<std::string> names = program::outputNames(program_);
+  std::vector<std::size_t> chosen;
+  if (options_.allOutputs) {
+    for (std::size_t i = 0; i < names.size(); ++i) chosen.push_back(i);
+  } else if (options_.outputName.empty()) {
+    chosen.push_back(0);
+  } else {
+    const auto found = std::ranges::find(names, options_.outputName);
+    if (found == names.end())
+      throw UsageError(fmt::format("--output: the program '{}' has no output '{}'{}; there are {} (-o names the file)",
+                                   program_.name, options_.outputName, suggestion(options_.outputName, names),
+                                   fmt::join(names, ", ")));
+    chosen.push_back(static_cast<std::size_t>(found - names.begin()));
+  }
+  return chosen;
+}
+
+void Session::write(const RenderOutcome& outcome, std::optional<std::uint32_t> frame) {
+  progress_.stage("writing " + options_.output.string());
+  fillRecord(outcome);
+  record_.files.clear();
+  for (const std::size_t output : chosenOutputs()) {
+    const std::string& name = program_.outputs[output].name;
+    const std::filesystem::path file = pictureName(options_.output, options_.allOutputs ? name : "", frame);
+    const DisplayOptions display{chooseToneMap(program_.outputs[output], options_), options_.exposure, !options_.transparent};
+    const bool toned = outputKind(file) == OutputKind::png;
+    record_.toneMap = toned ? render::toneMapNames()[static_cast<std::size_t>(display.toneMap)] : "";
+    record_.outputName = name;
+    record_.files.push_back(file.string());
+    writePicture(file, renderer_->image(output), display, metadata(record_));
+  }
+  record_.totalSeconds = clock_.seconds();
+}
+
+void Session::report() {
+  if (record_.droppedSamples > 0)
+    warnings_.add(fmt::format("{} samples were not finite and left out", record_.droppedSamples));
+  record_.warnings = warnings_.take();
+  progress_.clear();
+  for (const std::string& warning : record_.warnings) fmt::print(stderr, "quintet: warning: {}\n", warning);
+  if (options_.json) writeFile("-", toJson(record_));
+  progress_.note(summary(record_));
+}
+
+void Session::fillRecord(const RenderOutcome& outcome) {
+  const render::RenderStatistics& statistics = renderer_->statistics();
+  const render::DeviceSceneStatistics& built = deviceScene_->statistics();
+  const render::RayCount rays = renderer_->rays();
+  const render::Region& region = renderer_->film().region();
+  record_.commandLine = options_.commandLine;
+  record_.scene = sceneSource_.file.empty() ? sceneSource_.name : sceneSource_.file.string();
+  record_.sceneHash = sceneInfo_.hash;
+  record_.camera = sceneInfo_.cameraDescription;
+  record_.environment = sceneInfo_.environment;
+  record_.program = program_.name;
+  record_.parameters = parameters_.describe();
+  record_.exposure = options_.exposure;
+  record_.transparent = options_.transparent;
+  record_.width = sceneInfo_.size.x;
+  record_.height = sceneInfo_.size.y;
+  record_.region = {region.x, region.y, region.width, region.height};
+  record_.seed = options_.seed;
+  record_.samples = statistics.samples;
+  record_.rays = rays.rays;
+  record_.droppedSamples = rays.droppedSamples;
+  record_.interrupted = outcome.interrupted;
+  record_.compileSeconds = statistics.compileSeconds;
+  record_.pipelineSeconds = statistics.pipelineSeconds;
+  record_.firstPixelSeconds = startedRendering_ + outcome.firstPixelSeconds;
+  record_.renderSeconds = outcome.seconds;
+  record_.deviceSeconds = statistics.deviceSeconds;
+  record_.geometryBytes = built.geometryBytes;
+  record_.textureBytes = built.textureBytes;
+  record_.accelerationBytes = built.accelerationBytes;
+  record_.filmBytes = renderer_->film().bytes();
+}
+
+}  // namespace quintet::app

@@ -1,0 +1,80 @@
+// The steps that `render` and `run` share, in their order. A step throws and leaves what was there; with
+// --watch the steps from the scene on are repeated.
+#ifndef QUINTET_APP_SESSION_H
+#define QUINTET_APP_SESSION_H
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gpu/context.h"
+#include "gpu/pipeline_cache.h"
+#include "metadata.h"
+#include "output.h"
+#include "progress.h"
+#include "render/renderer.h"
+#include "render_loop.h"
+#include "render_options.h"
+#include "scene_source.h"
+#include "shader/compiler.h"
+#include "warnings.h"
+
+namespace quintet::app {
+
+class Session {
+ public:
+  // `options` outlives the session.
+  explicit Session(const RenderOptions& options);
+
+  void prepare();     // the program, its parameters, the files: all that can be wrong without a device
+  void openDevice();
+  void loadScene();   // reads it, decides on camera, size and light, builds it on the device
+  void link();        // compiles and links the program into a renderer that has rendered nothing yet
+
+  // Writes the picture of each chosen output.
+  void write(const RenderOutcome& outcome, std::optional<std::uint32_t> frame = std::nullopt);
+  // Warnings, --json, and one line on what was written last.
+  void report();
+
+  render::Renderer& renderer() { return *renderer_; }
+  const program::Program& program() const { return program_; }
+  Progress& progress() { return progress_; }
+  Warnings& warnings() { return warnings_; }
+  const Stopwatch& clock() const { return clock_; }
+
+ private:
+  struct SceneInfo {
+    scene::Camera camera;
+    uvec2 size{0};
+    std::string cameraDescription;
+    std::string environment;
+    std::string hash;
+    double loadSeconds = 0;
+  };
+
+  uvec2 picturePart(uvec2 size) const;
+  void describe(const scene::Scene& scene, const ChosenEnvironment& environment);
+  void fillRecord(const RenderOutcome& outcome);
+  std::vector<std::size_t> chosenOutputs() const;
+
+  const RenderOptions& options_;
+  const Stopwatch clock_;
+  Progress progress_;
+  Warnings warnings_;
+  RenderRecord record_;
+  double startedRendering_ = 0;  // on clock_
+
+  program::Program program_;
+  SceneSource sceneSource_;
+  SceneInfo sceneInfo_;
+  program::ParameterValues parameters_{{}};
+  std::unique_ptr<gpu::Context> context_;  // outlives all that follows
+  std::unique_ptr<gpu::PipelineCache> pipelineCache_;
+  std::unique_ptr<shader::Compiler> compiler_;
+  std::unique_ptr<render::DeviceScene> deviceScene_;
+  std::unique_ptr<render::Renderer> renderer_;
+};
+
+}  // namespace quintet::app
+#endif

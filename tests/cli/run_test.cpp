@@ -1,0 +1,165 @@
+// `run`: programs by name and folder, what it says about them, outputs, parameters from a file.
+#include <gmock/gmock.h>
+
+#include "fixtures.h"
+#include "io/codec.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Two outputs, of which the shader writes the parameters.
+constexpr const char* kToml = R"([program]
+description = "Two flat colours"
+ray_generation = "flat.rgen"
+[[ray]]
+name = "primary"
+miss = "flat.rmiss"
+[[output]]
+name = "first"
+[[output]]
+name = "second"
+[[parameter]]
+name = "tint"
+type = "color"
+default = [1.0, 0.5, 0.25]
+min = 0.0
+max = 1.0
+help = "The colour"
+[[parameter]]
+name = "count"
+type = "int"
+default = 2
+unit = "pieces"
+help = "How many"
+[[parameter]]
+name = "on"
+type = "bool"
+default = true
+)";
+constexpr const char* kRgen = R"(#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/output.glsl>
+#include <quintet/generated/program.glsl>
+void main() {
+  const uvec2 pixel = launchPixel();
+  storeOutput(kOutput_first, pixel, loadOutput(kOutput_first, pixel) + vec4(parameters.tint, 1.0));
+  const float value = parameters.on != 0u ? float(parameters.count) / 8.0 : 0.0;
+  storeOutput(kOutput_second, pixel, loadOutput(kOutput_second, pixel) + vec4(vec3(value), 1.0));
+}
+)";
+constexpr const char* kMiss = "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n";
+
+class Run : public CliTest {
+ protected:
+  Run() {
+    std::filesystem::create_directory(folder_ / "flat");
+    write(folder_ / "flat" / "program.toml", kToml);
+    write(folder_ / "flat" / "flat.rgen", kRgen);
+    write(folder_ / "flat" / "flat.rmiss", kMiss);
+  }
+  RunResult flat(std::vector<std::string> more) {
+    std::vector<std::string> arguments{"run", "flat", "--size", "8x4", "--spp", "1", "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return quintet(arguments);
+  }
+  float red(const std::string& file) const { return picture(file).pixel<float>(3, 2)[0]; }
+};
+
+TEST_F(Run, WithoutASceneTakesTheBuiltInOne) {
+  const RunResult result = quintet({"run", "normals", "--size", "32x18", "--spp", "1"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("normals.png: 32x18"));
+  const io::Image image = picture("normals.png");
+  EXPECT_EQ(image.width, 32u);
+  // The floor at the bottom faces up: 0.5 + 0.5 n.
+  ASSERT_EQ(quintet({"run", "normals", "--size", "32x18", "--spp", "1", "-q", "-o", "n.exr"}).status, 0);
+  const io::Image exact = picture("n.exr");
+  EXPECT_NEAR(exact.pixel<float>(16, 17)[0], 0.5f, 1e-3f);
+  EXPECT_NEAR(exact.pixel<float>(16, 17)[1], 1.0f, 1e-3f);
+}
+
+TEST_F(Run, WithASceneIsLikeRender) {
+  const std::vector<std::string> more{"--size", "32x24", "--spp", "2", "-q", "-o"};
+  std::vector<std::string> run{"run", "normals", "scene.gltf"}, render{"render", "scene.gltf", "--program", "normals"};
+  run.insert(run.end(), more.begin(), more.end()), run.push_back("a.png");
+  render.insert(render.end(), more.begin(), more.end()), render.push_back("b.png");
+  ASSERT_EQ(quintet(run).status, 0);
+  ASSERT_EQ(quintet(render).status, 0);
+  EXPECT_EQ(picture("a.png").data, picture("b.png").data);
+}
+
+TEST_F(Run, ChoosesAmongOutputs) {
+  ASSERT_EQ(flat({"-o", "a.exr"}).status, 0);
+  EXPECT_NEAR(red("a.exr"), 1.0f, 1e-3f);
+  ASSERT_EQ(flat({"-o", "b.exr", "--output", "second"}).status, 0);
+  EXPECT_NEAR(red("b.exr"), 0.25f, 1e-3f);
+  ASSERT_EQ(flat({"-o", "c.exr", "--all-outputs"}).status, 0);
+  EXPECT_EQ(picture("c.first.exr").data, picture("a.exr").data);
+  EXPECT_EQ(picture("c.second.exr").data, picture("b.exr").data);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "c.exr"));
+  expectError(flat({"--output", "secnd"}), 2, {"'secnd'", "did you mean 'second'?"});
+  expectError(flat({"--output", "second", "--all-outputs"}), 2, {"exclude"});
+  expectError(flat({"-o", "-", "--all-outputs"}), 2, {"--all-outputs"});
+}
+
+TEST_F(Run, ParametersFromAFile) {
+  write(folder_ / "set.json", R"({"tint": [0.5, 0.25, 1], "count": 4, "on": true})");
+  ASSERT_EQ(flat({"--set-file", "set.json", "-o", "a.exr", "--all-outputs"}).status, 0);
+  EXPECT_NEAR(red("a.first.exr"), 0.5f, 1e-3f);
+  EXPECT_NEAR(red("a.second.exr"), 0.5f, 1e-3f);
+  // --set comes after the file.
+  ASSERT_EQ(flat({"--set-file", "set.json", "--set", "count=6", "-o", "b.exr", "--output", "second"}).status, 0);
+  EXPECT_NEAR(red("b.exr"), 0.75f, 1e-3f);
+  write(folder_ / "set.json", R"({"tnt": 1})");
+  expectError(flat({"--set-file", "set.json"}), 1, {"set.json", "'tnt'", "did you mean 'tint'?"});
+  write(folder_ / "set.json", R"({"tint": {"r": 1}})");
+  expectError(flat({"--set-file", "set.json"}), 1, {"set.json", "/tint"});
+  write(folder_ / "set.json", "[1]");
+  expectError(flat({"--set-file", "set.json"}), 1, {"set.json", "object"});
+  write(folder_ / "set.json", "{\"tint\": ");
+  expectError(flat({"--set-file", "set.json"}), 1, {"set.json", "JSON"});
+  expectError(flat({"--set-file", "none.json"}), 1, {"none.json", "No such file"});
+}
+
+TEST_F(Run, HelpOfAProgram) {
+  const RunResult text = quintet({"run", "flat", "--help"});
+  EXPECT_EQ(text.status, 0) << text.err;
+  for (const char* part : {"Two flat colours", "tint", "The colour", "color, default 1,0.5,0.25, at least 0, at most 1",
+                           "int, default 2 pieces\n", "bool, default true\n", "first", "second"})
+    EXPECT_THAT(text.out, HasSubstr(part));
+  const auto json = nlohmann::json::parse(quintet({"run", "flat", "--help", "--json"}).out);
+  EXPECT_EQ(json["name"], "flat");
+  EXPECT_EQ(json["outputs"].size(), 2u);
+  EXPECT_EQ(json["outputs"][1]["name"], "second");
+  EXPECT_EQ(json["parameters"][0]["default"], (nlohmann::json{1.0, 0.5, 0.25}));
+  EXPECT_EQ(json["parameters"][0]["max"], 1.0);
+  EXPECT_EQ(json["parameters"][1]["default"], 2);
+  EXPECT_EQ(json["parameters"][1]["unit"], "pieces");
+  EXPECT_TRUE(json["parameters"][1]["max"].is_null());
+  EXPECT_EQ(json["parameters"][2]["default"], true);
+  const RunResult general = quintet({"run", "--help"});
+  EXPECT_EQ(general.status, 0);
+  EXPECT_THAT(general.out, HasSubstr("Examples:"));
+}
+
+TEST_F(Run, ListOfPrograms) {
+  const RunResult text = quintet({"run", "--list"});
+  EXPECT_EQ(text.status, 0);
+  EXPECT_THAT(text.out, HasSubstr("pathtracer"));
+  const auto json = nlohmann::json::parse(quintet({"run", "--list", "--json"}).out);
+  EXPECT_EQ(static_cast<std::ptrdiff_t>(json.size()), std::count(text.out.begin(), text.out.end(), '\n'));
+  for (const auto& entry : json) EXPECT_FALSE(entry["description"].get<std::string>().empty()) << entry;
+}
+
+TEST_F(Run, WhatMakesNoSense) {
+  expectError(quintet({"run"}), 2, {"no program", "--list"});
+  expectError(quintet({"run", "pathtracr"}), 2, {"pathtracr", "did you mean 'pathtracer'?"});
+  expectError(quintet({"run", "flat", "--fraems", "3"}), 2, {"unknown option '--fraems'"});
+  expectError(quintet({"run", "flat", "no.glb"}), 1, {"no.glb"});
+  expectError(flat({"-o", "out.jpg"}), 2, {"out.jpg"});
+}
+
+}  // namespace
+}  // namespace quintet::test
