@@ -65,8 +65,8 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q203", kError, "hit attribute is larger than the device allows",
      "Every device has a limit (maxRayHitAttributeSize, 32 bytes on most); beyond it the pipeline is invalid.",
      "Pass only what cannot be computed again from the ray and t, e.g. a face index instead of a normal."},
-    {"Q204", kError, "hit attribute in a miss shader",
-     "Nothing was hit: a miss shader has no hit attributes to read.",
+    {"Q204", kError, "hit attribute in a stage that has no hit",
+     "Only intersection, any-hit and closest-hit shaders have a hit; in a miss shader nothing was hit.",
      "Return what is needed through the payload."},
 
     // Callable shaders.
@@ -141,7 +141,7 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q705", kWarning, "ray starts on a surface with tmin 0",
      "The rounding error of the origin puts it below the surface for half of the rays: acne.",
      "Offset the origin (offsetOrigin of <quintet/surface.glsl>), or give a tmin beyond the error."},
-    {"Q706", kError, "built-in is not readable in this stage",
+    {"Q706", kError, "built-in does not exist in this stage",
      "The value does not exist there, e.g. there is no hit in a miss shader.",
      "Pass it on through the payload from a stage that has it."},
 

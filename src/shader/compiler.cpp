@@ -13,6 +13,7 @@
 #include "shader/embedded_library.h"
 #include "shader/glslang_run.h"
 #include "shader/spirv_cache.h"
+#include "shader/stage_builtins.h"
 
 namespace quintet::shader {
 namespace {
@@ -141,6 +142,7 @@ Result Compiler::compile(const Source& source) const {
     result.spirv = std::move(run.spirv);
     result.diagnostics = std::move(run.diagnostics);
   }
+  explainMissingBuiltIns(result.diagnostics, source.stage);
   for (const SourceFile* file : files.files())
     if (file != &files.root() && !file->diskPath.empty()) result.files.push_back(file->diskPath);
   return result;
