@@ -14,7 +14,7 @@
 #include "cli.h"
 #include "program/program.h"
 #include "render/renderer.h"
-#include "scene/gltf.h"
+#include "scene/load.h"
 #include "scene_setup.h"
 #include "values.h"
 
@@ -45,7 +45,7 @@ struct Bench {
   shader::Compiler compiler;
 
   explicit Bench(const Options& o, bool software)
-      : options(o), scene(scene::loadGltf(o.scene)), compiler(compilerOptions()) {
+      : options(o), scene(scene::loadScene(o.scene)), compiler(compilerOptions()) {
     size = o.size.empty() ? (software ? uvec2(512, 512) : uvec2(1920, 1080)) : parseSize("--size", o.size);
     if (size.y == 0) size.y = size.x;
     camera = chooseCamera(scene, {}, static_cast<float>(size.x) / static_cast<float>(size.y)).camera;

@@ -7,7 +7,7 @@
 
 #include "info.h"
 #include "scene/content_hash.h"
-#include "scene/gltf.h"
+#include "scene/load.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -26,7 +26,7 @@ const char* typeName(scene::LightType type) {
 
 std::size_t geometryCount(const scene::Scene& scene) {
   std::size_t count = 0;
-  for (const scene::Mesh& mesh : scene.meshes) count += mesh.geometries.size();
+  for (const scene::Mesh& mesh : scene.meshes) count += mesh.geometryCount();
   return count;
 }
 
@@ -73,6 +73,35 @@ MaterialCounts countMaterials(const scene::Scene& scene) {
   return counts;
 }
 
+// Instances that are not plain: counts by what differs.
+struct InstanceCounts {
+  std::size_t procedural = 0, masked = 0, flagged = 0, indexed = 0, moving = 0;
+};
+InstanceCounts countInstances(const scene::Scene& scene) {
+  InstanceCounts counts;
+  for (const scene::Instance& instance : scene.instances) {
+    counts.procedural += scene.meshes[static_cast<std::size_t>(instance.mesh)].procedural();
+    counts.masked += instance.mask != 0xFF;
+    counts.flagged += instance.flags != 0;
+    counts.indexed += instance.customIndex != 0;
+    counts.moving += !instance.keyframes.empty();
+  }
+  return counts;
+}
+
+std::string describe(const InstanceCounts& counts, std::size_t total) {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? " (" : ", ", count, what);
+  };
+  add(counts.procedural, "procedural");
+  add(counts.masked, "with a mask");
+  add(counts.flagged, "with flags");
+  add(counts.indexed, "with a custom index");
+  add(counts.moving, "moving");
+  return fmt::format("{}{}{}", total, text, text.empty() ? "" : ")");
+}
+
 Json vectorJson(const vec3& v) { return {v.x, v.y, v.z}; }
 
 Json namedObjects(const scene::Scene& scene, const char* kind) {
@@ -95,6 +124,8 @@ Json namedObjects(const scene::Scene& scene, const char* kind) {
 Json toJson(const scene::Scene& scene, const std::string& file) {
   const Bounds3 bounds = scene::worldBounds(scene);
   const scene::TriangleCount triangles = scene::countTriangles(scene);
+  const scene::ProceduralCount procedural = scene::countProcedural(scene);
+  const InstanceCounts instances = countInstances(scene);
   const MaterialCounts materials = countMaterials(scene);
   return {{"file", file},
           {"kind", "scene"},
@@ -105,7 +136,11 @@ Json toJson(const scene::Scene& scene, const std::string& file) {
           {"meshes", scene.meshes.size()},
           {"geometries", geometryCount(scene)},
           {"triangles", {{"stored", triangles.stored}, {"instanced", triangles.instanced}}},
+          {"procedural", {{"sets", procedural.sets}, {"solids", procedural.solids}, {"trees", procedural.csgTrees},
+                          {"leaves", procedural.csgLeaves}, {"customBoxes", procedural.customBoxes}}},
           {"instances", scene.instances.size()},
+          {"instancesWith", {{"mask", instances.masked}, {"flags", instances.flagged}, {"customIndex", instances.indexed},
+                             {"keyframes", instances.moving}, {"procedural", instances.procedural}}},
           {"materials", {{"count", scene.materials.size()}, {"alpha", materials.alpha}, {"emissive", materials.emissive},
                          {"transmissive", materials.transmissive}, {"unlit", materials.unlit}}},
           {"textures", scene.textures.size()},
@@ -153,7 +188,11 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
   }
   line("meshes", fmt::format("{} with {} geometries", scene.meshes.size(), geometryCount(scene)));
   line("triangles", fmt::format("{} stored, {} in instances", triangles.stored, triangles.instanced));
-  line("instances", fmt::format("{}", scene.instances.size()));
+  const scene::ProceduralCount procedural = scene::countProcedural(scene);
+  if (procedural.sets > 0)
+    line("procedural", fmt::format("{} sets: {} solids, {} trees of {} leaves, {} custom boxes", procedural.sets, procedural.solids,
+                                   procedural.csgTrees, procedural.csgLeaves, procedural.customBoxes));
+  line("instances", describe(countInstances(scene), scene.instances.size()));
   line("materials", fmt::format("{} ({} with alpha, {} emissive, {} transmissive, {} unlit)", scene.materials.size(),
                                 materials.alpha, materials.emissive, materials.transmissive, materials.unlit));
   line("textures", fmt::format("{}", scene.textures.size()));
@@ -170,7 +209,7 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
 }  // namespace
 
 std::string sceneInfo(const std::filesystem::path& file, bool json) {
-  const scene::Scene scene = scene::loadGltf(file);
+  const scene::Scene scene = scene::loadScene(file);
   if (!json) return toText(scene, file.string());
   return toJson(scene, file.string()).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

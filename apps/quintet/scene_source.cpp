@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "scene/default_scene.h"
-#include "scene/gltf.h"
+#include "scene/load.h"
 
 namespace quintet::app {
 namespace {
@@ -31,7 +31,7 @@ SceneSource chooseScene(const std::filesystem::path& asked, const program::Progr
 }
 
 scene::Scene loadScene(const SceneSource& source, const program::Program& program) {
-  if (!source.file.empty()) return scene::loadGltf(source.file);
+  if (!source.file.empty()) return scene::loadScene(source.file);
   // What the program's hit groups can meet.
   scene::DefaultSceneOptions options;
   options.boxes = std::ranges::any_of(program.hitGroups, hasIntersection);

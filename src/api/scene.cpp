@@ -1,11 +1,11 @@
 #include "api/impl.h"
-#include "scene/gltf.h"
+#include "scene/load.h"
 
 namespace quintet {
 
 Scene Scene::load(const std::filesystem::path& file) {
   Scene result;
-  result.impl_ = std::make_shared<const Impl>(Impl{scene::loadGltf(file)});
+  result.impl_ = std::make_shared<const Impl>(Impl{scene::loadScene(file)});
   return result;
 }
 

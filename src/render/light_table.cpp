@@ -144,7 +144,7 @@ class Builder {
       const int mesh = scene_.instances[i].mesh;
       table_.firstSlots.push_back(static_cast<std::uint32_t>(table_.slots.size()));
       if (mesh == scene::kNone) continue;
-      for (std::size_t g = 0; g < scene_.meshes[mesh].geometries.size(); ++g) {
+      for (std::size_t g = 0; g < scene_.meshes[mesh].geometryCount(); ++g) {
         if (g < emitters[mesh].size() && !emitters[mesh][g].black)
           parts.push_back({i, g, table_.slots.size(), &emitters[mesh][g]});
         table_.slots.push_back(shared::kNoLight);

@@ -1,6 +1,6 @@
 #include "render/top_level.h"
 
-#include <algorithm>
+#include "scene/keyframes.h"
 
 namespace quintet::render {
 namespace {
@@ -15,26 +15,12 @@ void place(shared::InstanceData& data, const mat4& worldFromObject) {
   data.mirrored = glm::determinant(mat3(worldFromObject)) < 0.0f ? 1 : 0;
 }
 
-mat4 matrixOf(const scene::Keyframe& key) {
-  return glm::translate(mat4(1.0f), key.translation) * glm::mat4_cast(glm::normalize(key.rotation)) * glm::scale(mat4(1.0f), key.scale);
-}
-
-mat4 worldFromObjectAt(const scene::Instance& instance, float frame) {
-  const std::vector<scene::Keyframe>& keys = instance.keyframes;
-  const auto next = std::ranges::upper_bound(keys, frame, {}, &scene::Keyframe::frame);
-  if (next == keys.begin()) return matrixOf(keys.front());
-  if (next == keys.end()) return matrixOf(keys.back());
-  const scene::Keyframe& a = *(next - 1);
-  const float t = (frame - a.frame) / (next->frame - a.frame);
-  return matrixOf({frame, glm::mix(a.translation, next->translation, t), glm::slerp(a.rotation, next->rotation, t), glm::mix(a.scale, next->scale, t)});
-}
-
 }  // namespace
 
 TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstancePlace> places) : context_(context) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Instance& instance = scene.instances[i];
-    const mat4 worldFromObject = instance.keyframes.empty() ? instance.worldFromObject : worldFromObjectAt(instance, 0.0f);
+    const mat4 worldFromObject = scene::worldFromObjectAt(instance, 0.0f);
     if (!instance.keyframes.empty()) {
       moving_.push_back(instance);
       movingIndex_.push_back(static_cast<std::uint32_t>(i));
@@ -66,7 +52,7 @@ bool TopLevel::setFrame(float frame) {
   if (moving_.empty() || frame == frame_) return false;
   frame_ = frame;
   for (std::size_t k = 0; k < moving_.size(); ++k) {
-    const mat4 worldFromObject = worldFromObjectAt(moving_[k], frame);
+    const mat4 worldFromObject = scene::worldFromObjectAt(moving_[k], frame);
     place(data_[movingIndex_[k]], worldFromObject);
     inputs_[movingIndex_[k]].worldFromObject = worldFromObject;
   }

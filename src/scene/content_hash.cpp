@@ -5,6 +5,10 @@
 namespace quintet::scene {
 namespace {
 
+// Hashed as bytes: without padding.
+static_assert(sizeof(Primitive) == 3 * 4 + sizeof(mat4) && sizeof(CsgNode) == 8 && sizeof(CsgTree) == 8);
+static_assert(sizeof(Bounds3) == 24 && sizeof(Keyframe) == 44);
+
 // Feeds values field by field, because structs have padding. Vectors are preceded by their length.
 class Feeder {
  public:
@@ -56,8 +60,13 @@ class Feeder {
   void add(const Geometry& g) {
     (*this)(g.positions, g.triangles, g.normals, g.tangents, g.uvs, g.colors, g.material, g.fileTriangles);
   }
-  void add(const Mesh& m) { (*this)(m.name, m.geometries); }
-  void add(const Instance& i) { (*this)(i.name, i.mesh, i.worldFromObject); }
+  void add(const PrimitiveSet& s) {
+    (*this)(s.name, s.kind, s.primitives, s.nodes, s.trees, s.boxes, s.material);
+  }
+  void add(const Mesh& m) { (*this)(m.name, m.geometries, m.primitiveSets); }
+  void add(const Instance& i) {
+    (*this)(i.name, i.mesh, i.worldFromObject, i.mask, i.flags, i.customIndex, i.keyframes);
+  }
   void add(const Camera& c) {
     (*this)(c.name, c.orthographic, c.verticalFov, c.aspect, c.orthographicHalfSize, c.worldFromCamera,
             c.apertureRadius, c.focusDistance);

@@ -4,6 +4,7 @@
 #define QUINTET_SCENE_PROCEDURAL_H
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct CsgTree {
   std::uint32_t nodeCount = 0;  // leaves k, operations k - 1
 };
 
+// Solids that wait on the stack while a tree is evaluated in postfix order: what a shader may keep.
+inline constexpr std::uint32_t kMaxCsgStack = 32;
+
 // One geometry of boxes in a BLAS. What a box holds depends on the kind:
 //   solids   box i holds primitives[i]
 //   csg      box i holds trees[i]
@@ -59,6 +63,25 @@ inline std::size_t boxCount(const PrimitiveSet& set) {
          : set.kind == PrimitiveSetKind::csg  ? set.trees.size()
                                               : set.boxes.size();
 }
+
+// Tight boxes, rounded outwards, in the space that `m` takes the primitive's own object space to.
+// A tree: the boxes of its operands united, intersected or, for a difference, the left one; empty if an
+// intersection has nothing in common.
+Bounds3 boundsOf(const Primitive&, const mat4& m = mat4(1.0f));
+Bounds3 boundsOf(const PrimitiveSet&, const CsgTree&, const mat4& m = mat4(1.0f));
+Bounds3 boundsOf(const PrimitiveSet&, const mat4& m = mat4(1.0f));
+// What goes into the BLAS, in object space: boxCount() boxes. An empty tree becomes a point of its first leaf's
+// box, so that numbers stay.
+std::vector<Bounds3> boxesOf(const PrimitiveSet&);
+
+// What is wrong with the nodes of one tree (a leaf beyond `primitiveCount`, an operation without two operands,
+// more than one result, a stack beyond kMaxCsgStack), or nothing.
+std::string csgProblem(std::span<const CsgNode> nodes, std::size_t primitiveCount);
+// Largest number of solids on the stack while a well-formed tree is evaluated.
+std::uint32_t csgStackSize(std::span<const CsgNode> nodes);
+// The same solid with the smallest stack that swapping the operands of unite and intersect can give: the operand
+// that needs more comes first (Sethi and Ullman 1970). Of a well-formed tree.
+std::vector<CsgNode> orderForSmallStack(std::span<const CsgNode> nodes);
 
 }  // namespace quintet::scene
 #endif

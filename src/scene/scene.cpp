@@ -3,7 +3,7 @@
 namespace quintet::scene {
 namespace {
 
-// Up to so many instanced vertices the world's box is exact (a fraction of a second); beyond, it holds the boxes
+// Up to so many instanced vertices and primitives the world's box is exact (a fraction of a second); beyond, it holds the boxes
 // of the turned boxes.
 constexpr std::uint64_t kExactVertexCount = 20'000'000;
 
@@ -11,12 +11,14 @@ Bounds3 objectBounds(const Mesh& mesh) {
   Bounds3 bounds;
   for (const Geometry& geometry : mesh.geometries)
     for (const vec3& p : geometry.positions) bounds.extend(p);
+  for (const PrimitiveSet& set : mesh.primitiveSets) bounds.extend(boundsOf(set));
   return bounds;
 }
 
-std::uint64_t countVertices(const Mesh& mesh) {
+std::uint64_t countPoints(const Mesh& mesh) {
   std::uint64_t count = 0;
   for (const Geometry& geometry : mesh.geometries) count += geometry.positions.size();
+  for (const PrimitiveSet& set : mesh.primitiveSets) count += set.primitives.size() + set.nodes.size() + set.boxes.size();
   return count;
 }
 
@@ -26,9 +28,12 @@ const Mesh& meshOf(const Scene& scene, const Instance& instance) {
 
 Bounds3 exactBounds(const Scene& scene) {
   Bounds3 bounds;
-  for (const Instance& instance : scene.instances)
-    for (const Geometry& geometry : meshOf(scene, instance).geometries)
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = meshOf(scene, instance);
+    for (const Geometry& geometry : mesh.geometries)
       for (const vec3& p : geometry.positions) bounds.extend(vec3(instance.worldFromObject * vec4(p, 1.0f)));
+    for (const PrimitiveSet& set : mesh.primitiveSets) bounds.extend(boundsOf(set, instance.worldFromObject));
+  }
   return bounds;
 }
 
@@ -44,9 +49,9 @@ Bounds3 boundsOfBoxes(const Scene& scene) {
 }  // namespace
 
 Bounds3 worldBounds(const Scene& scene) {
-  std::uint64_t vertexCount = 0;
-  for (const Instance& instance : scene.instances) vertexCount += countVertices(meshOf(scene, instance));
-  return vertexCount <= kExactVertexCount ? exactBounds(scene) : boundsOfBoxes(scene);
+  std::uint64_t count = 0;
+  for (const Instance& instance : scene.instances) count += countPoints(meshOf(scene, instance));
+  return count <= kExactVertexCount ? exactBounds(scene) : boundsOfBoxes(scene);
 }
 
 TriangleCount countTriangles(const Scene& scene) {
@@ -60,6 +65,20 @@ TriangleCount countTriangles(const Scene& scene) {
   }
   for (const Instance& instance : scene.instances) result.instanced += counts[static_cast<std::size_t>(instance.mesh)];
   return result;
+}
+
+ProceduralCount countProcedural(const Scene& scene) {
+  ProceduralCount count;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const PrimitiveSet& set : mesh.primitiveSets) {
+      ++count.sets;
+      if (set.kind == PrimitiveSetKind::solids) count.solids += set.primitives.size();
+      if (set.kind == PrimitiveSetKind::csg) count.csgLeaves += set.primitives.size();
+      count.csgTrees += set.trees.size();
+      count.customBoxes += set.boxes.size();
+    }
+  }
+  return count;
 }
 
 }  // namespace quintet::scene

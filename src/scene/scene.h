@@ -206,6 +206,15 @@ struct TriangleCount {
   std::uint64_t instanced = 0;
 };
 TriangleCount countTriangles(const Scene&);
+// Primitive sets and what they hold, stored once.
+struct ProceduralCount {
+  std::uint64_t sets = 0;
+  std::uint64_t solids = 0;       // outside of trees
+  std::uint64_t csgTrees = 0;
+  std::uint64_t csgLeaves = 0;
+  std::uint64_t customBoxes = 0;
+};
+ProceduralCount countProcedural(const Scene&);
 
 }  // namespace quintet::scene
 #endif

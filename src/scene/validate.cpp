@@ -45,6 +45,79 @@ void checkGeometry(const Scene& scene, const Geometry& geometry, const std::stri
   if (wrong != geometry.positions.end()) fail("{}.positions[{}]: not finite", name, wrong - geometry.positions.begin());
 }
 
+// Affine, finite, with a finite inverse.
+void checkTransform(const mat4& m, const std::string& name) {
+  if (!isFinite(m)) fail("{}: not finite", name);
+  if (glm::vec4(m[0].w, m[1].w, m[2].w, m[3].w) != vec4(0, 0, 0, 1)) fail("{}: not affine", name);
+  const glm::dmat4 d(m);
+  if (glm::determinant(glm::dmat3(d)) == 0.0 || !isFinite(mat4(glm::inverse(d)))) fail("{}: no inverse", name);
+}
+
+void checkPrimitive(const Scene& scene, const Primitive& primitive, const std::string& name) {
+  if (primitive.type > PrimitiveType::torus) fail("{}.type: {}", name, static_cast<unsigned>(primitive.type));
+  checkTransform(primitive.objectFromPrimitive, name + ".objectFromPrimitive");
+  if (primitive.type == PrimitiveType::torus && !(primitive.parameter > 0.0f && primitive.parameter < 1.0f))
+    fail("{}.parameter: a torus's minor radius is between 0 and 1, not {}", name, primitive.parameter);
+  if (primitive.material != kNone && !inRange(primitive.material, scene.materials.size()))
+    fail("{}.material: {} of {}", name, primitive.material, scene.materials.size());
+}
+
+void checkTree(const PrimitiveSet& set, const CsgTree& tree, const std::string& name) {
+  if (tree.firstNode > set.nodes.size() || tree.nodeCount > set.nodes.size() - tree.firstNode)
+    fail("{}: nodes {} to {} of {}", name, tree.firstNode, std::uint64_t{tree.firstNode} + tree.nodeCount, set.nodes.size());
+  const auto nodes = std::span(set.nodes).subspan(tree.firstNode, tree.nodeCount);
+  if (const std::string problem = csgProblem(nodes, set.primitives.size()); !problem.empty()) fail("{}: {}", name, problem);
+}
+
+void checkPrimitiveSet(const Scene& scene, const PrimitiveSet& set, const std::string& name) {
+  const bool solids = set.kind == PrimitiveSetKind::solids, csg = set.kind == PrimitiveSetKind::csg;
+  if (set.kind > PrimitiveSetKind::custom) fail("{}.kind: {}", name, static_cast<unsigned>(set.kind));
+  if (!csg && (!set.trees.empty() || !set.nodes.empty())) fail("{}: trees in a set of another kind", name);
+  if ((solids || csg) ? !set.boxes.empty() : !set.primitives.empty()) fail("{}: boxes and primitives in one set", name);
+  if (set.material != kNone && !inRange(set.material, scene.materials.size()))
+    fail("{}.material: {} of {}", name, set.material, scene.materials.size());
+  for (std::size_t i = 0; i < set.primitives.size(); ++i)
+    checkPrimitive(scene, set.primitives[i], fmt::format("{}.primitives[{}]", name, i));
+  for (std::size_t i = 0; i < set.trees.size(); ++i) checkTree(set, set.trees[i], fmt::format("{}.trees[{}]", name, i));
+  for (std::size_t i = 0; i < set.boxes.size(); ++i) {
+    const Bounds3& box = set.boxes[i];
+    if (!quintet::isFinite(box.min) || !quintet::isFinite(box.max)) fail("{}.boxes[{}]: not finite", name, i);
+    if (box.empty()) fail("{}.boxes[{}]: its minimum is above its maximum", name, i);
+  }
+}
+
+void checkMesh(const Scene& scene, const Mesh& mesh, const std::string& name) {
+  if (!mesh.geometries.empty() && mesh.procedural()) fail("{}: triangles and primitive sets in one mesh", name);
+  for (std::size_t k = 0; k < mesh.geometries.size(); ++k)
+    checkGeometry(scene, mesh.geometries[k], fmt::format("{}.geometries[{}]", name, k));
+  for (std::size_t k = 0; k < mesh.primitiveSets.size(); ++k)
+    checkPrimitiveSet(scene, mesh.primitiveSets[k], fmt::format("{}.primitiveSets[{}]", name, k));
+}
+
+void checkKeyframes(const std::vector<Keyframe>& keys, const std::string& name) {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Keyframe& key = keys[i];
+    const glm::quat& q = key.rotation;
+    if (!std::isfinite(key.frame) || !quintet::isFinite(key.translation) || !quintet::isFinite(key.scale) ||
+        !(std::abs(glm::length(q) - 1.0f) < 1e-3f))
+      fail("{}[{}]: not finite, or the rotation is not of unit length", name, i);
+    if (i > 0 && !(key.frame > keys[i - 1].frame)) fail("{}[{}]: frames must ascend", name, i);
+    // A sign that changes between two keyframes passes through 0: no inverse there.
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(key.scale[axis] * keys[0].scale[axis] > 0.0f)) fail("{}[{}]: a scale is 0 or changes its sign", name, i);
+  }
+}
+
+void checkInstance(const Scene& scene, const Instance& instance, const std::string& name) {
+  if (!inRange(instance.mesh, scene.meshes.size())) fail("{}.mesh: {} of {}", name, instance.mesh, scene.meshes.size());
+  if (!isFinite(instance.worldFromObject)) fail("{}.worldFromObject: not finite", name);
+  if (glm::determinant(glm::dmat3(glm::mat3(instance.worldFromObject))) == 0.0) fail("{}.worldFromObject: no inverse", name);
+  if (instance.mask > 0xFF) fail("{}.mask: {} has more than 8 bits", name, instance.mask);
+  if (instance.flags > 0xF) fail("{}.flags: {} is unknown", name, instance.flags);
+  if (instance.customIndex > 0xFFFFFF) fail("{}.customIndex: {} has more than 24 bits", name, instance.customIndex);
+  checkKeyframes(instance.keyframes, name + ".keyframes");
+}
+
 void checkMaterial(const Scene& scene, const Material& material, const std::string& name) {
   for (const TextureUse* use : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
                                 &material.occlusionTexture, &material.emissiveTexture, &material.transmissionTexture,
@@ -67,17 +140,9 @@ void checkImage(const io::Image& image, const std::string& name) {
 }  // namespace
 
 void validate(const Scene& scene) {
-  for (std::size_t i = 0; i < scene.meshes.size(); ++i)
-    for (std::size_t k = 0; k < scene.meshes[i].geometries.size(); ++k)
-      checkGeometry(scene, scene.meshes[i].geometries[k], fmt::format("meshes[{}].geometries[{}]", i, k));
-  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    const Instance& instance = scene.instances[i];
-    if (!inRange(instance.mesh, scene.meshes.size()))
-      fail("instances[{}].mesh: {} of {}", i, instance.mesh, scene.meshes.size());
-    if (!isFinite(instance.worldFromObject)) fail("instances[{}].worldFromObject: not finite", i);
-    if (glm::determinant(glm::dmat3(glm::mat3(instance.worldFromObject))) == 0.0)
-      fail("instances[{}].worldFromObject: no inverse", i);
-  }
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) checkMesh(scene, scene.meshes[i], fmt::format("meshes[{}]", i));
+  for (std::size_t i = 0; i < scene.instances.size(); ++i)
+    checkInstance(scene, scene.instances[i], fmt::format("instances[{}]", i));
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     checkMaterial(scene, scene.materials[i], fmt::format("materials[{}]", i));
   for (std::size_t i = 0; i < scene.textures.size(); ++i)

@@ -84,6 +84,20 @@ TEST(Validate, NamesTheFirstFault) {
             "scene: instances[1].worldFromObject: not finite");
   EXPECT_EQ(faultOf([](auto& s) { s.instances[1].worldFromObject = mat4(0.0f); }),
             "scene: instances[1].worldFromObject: no inverse");
+  EXPECT_EQ(faultOf([](auto& s) { s.instances[0].mask = 256; }), "scene: instances[0].mask: 256 has more than 8 bits");
+  EXPECT_EQ(faultOf([](auto& s) { s.instances[0].flags = 16; }), "scene: instances[0].flags: 16 is unknown");
+  EXPECT_EQ(faultOf([](auto& s) { s.instances[0].customIndex = 1 << 24; }),
+            "scene: instances[0].customIndex: 16777216 has more than 24 bits");
+  EXPECT_EQ(faultOf([](auto& s) { s.instances[0].keyframes.resize(2); }),
+            "scene: instances[0].keyframes[1]: frames must ascend");
+  EXPECT_EQ(faultOf([](auto& s) {
+              s.instances[0].keyframes.resize(2);
+              s.instances[0].keyframes[1].frame = 1;
+              s.instances[0].keyframes[1].scale.y = -1;
+            }),
+            "scene: instances[0].keyframes[1]: a scale is 0 or changes its sign");
+  EXPECT_EQ(faultOf([](auto& s) { s.meshes[0].primitiveSets.emplace_back(); }),
+            "scene: meshes[0]: triangles and primitive sets in one mesh");
   EXPECT_EQ(faultOf([](auto& s) { s.materials[0].normalTexture.texture = 5; }), "scene: materials[0]: texture 5 of 1");
   EXPECT_EQ(faultOf([](auto& s) { s.materials[0].baseColorTexture.uvSet = 2; }),
             "scene: materials[0]: texture coordinate set 2 of 2");
@@ -111,6 +125,11 @@ TEST(ContentHash, SeesEveryChangeButNotTheReport) {
   EXPECT_TRUE(differs([](auto& s) { s.lights[0].range = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.environment.rotation = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.instances.pop_back(); }));
+  EXPECT_TRUE(differs([](auto& s) { s.instances[0].mask = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.instances[0].flags = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.instances[0].customIndex = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.instances[0].keyframes.resize(1); }));
+  EXPECT_TRUE(differs([](auto& s) { s.meshes[0].primitiveSets.emplace_back(); }));
   EXPECT_FALSE(differs([](auto& s) { s.report.ignored.push_back("x"); }));
   EXPECT_FALSE(differs([](auto& s) { s.name = "other"; }));
   EXPECT_FALSE(differs([](auto& s) { s.images[0].name = "other"; }));
