@@ -21,6 +21,8 @@ std::span<const Command> commands();
 
 int renderCommand(Arguments);   // render.cpp
 int runCommand(Arguments);      // run.cpp
+int checkCommand(Arguments);    // check.cpp
+int explainCommand(Arguments);  // explain.cpp
 int infoCommand(Arguments);     // info.cpp
 int compareCommand(Arguments);  // compare.cpp
 int benchCommand(Arguments);    // bench.cpp

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "diagnostics_view.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -85,6 +86,7 @@ std::string toJson(const RenderRecord& record) {
         {"accelerationStructures", record.accelerationBytes},
         {"film", record.filmBytes}}},
       {"warnings", record.warnings},
+      {"diagnostics", nlohmann::ordered_json::parse(diagnosticsJson(record.diagnostics))},
   };
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

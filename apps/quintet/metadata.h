@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/codec.h"
+#include "shader/compiler.h"
 
 namespace quintet::app {
 
@@ -54,6 +55,7 @@ struct RenderRecord {
   std::uint64_t filmBytes = 0;
 
   std::vector<std::string> warnings;
+  std::vector<shader::Diagnostic> diagnostics;  // warnings about the program
 
   bool cropped() const { return region[2] != width || region[3] != height; }
   double raysPerSecond() const { return renderSeconds > 0 ? static_cast<double>(rays) / renderSeconds : 0; }

@@ -75,6 +75,8 @@ std::string progressBar(const ProgressState& state, int width, bool color) {
 
 std::string progressLine(const ProgressState& state) { return figures(state, ", "); }
 
+bool colorOnStandardError() { return ::isatty(STDERR_FILENO) == 1 && wantsColor(); }
+
 Progress::Progress(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), color_(wantsColor()) {}
 
 void Progress::show(const std::string& line) {

@@ -35,6 +35,9 @@ std::string progressBar(const ProgressState& state, int width, bool color);
 // "32/64 samples, 12.3 Mrays/s, 5.0 s, 5.1 s left"
 std::string progressLine(const ProgressState& state);
 
+// A terminal, and neither NO_COLOR (no-color.org) nor TERM=dumb.
+bool colorOnStandardError();
+
 class Progress {
  public:
   explicit Progress(bool quiet);

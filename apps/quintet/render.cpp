@@ -5,6 +5,22 @@
 #include "session.h"
 
 namespace quintet::app {
+namespace {
+
+int render(Session& session, const RenderOptions& options) {
+  session.prepare();
+  session.openDevice();
+  session.loadScene();
+  session.link();
+  const GracefulStop stop;
+  const RenderOutcome outcome =
+      renderBatches(session.renderer(), {options.samples, options.seconds}, stop, session.progress());
+  session.write(outcome);
+  session.report();
+  return stop.exitStatus();
+}
+
+}  // namespace
 
 int renderCommand(Arguments arguments) {
   const std::optional<RenderOptions> options = parseRenderOptions(arguments);
@@ -14,16 +30,12 @@ int renderCommand(Arguments arguments) {
     return 0;
   }
   Session session(*options);
-  session.prepare();
-  session.openDevice();
-  session.loadScene();
-  session.link();
-  const GracefulStop stop;
-  const RenderOutcome outcome =
-      renderBatches(session.renderer(), {options->samples, options->seconds}, stop, session.progress());
-  session.write(outcome);
-  session.report();
-  return stop.exitStatus();
+  try {
+    return render(session, *options);
+  } catch (const render::ProgramError& error) {
+    session.tell(error.diagnostics());
+    return 1;
+  }
 }
 
 }  // namespace quintet::app

@@ -3,18 +3,13 @@
 
 #include "base/file.h"
 #include "commands.h"
+#include "diagnostics_view.h"
 #include "program_report.h"
 #include "run_options.h"
 #include "session.h"
 
 namespace quintet::app {
 namespace {
-
-int showProgram(const RenderOptions& options) {
-  const program::Program program = program::loadProgram(options.program);
-  writeFile("-", options.json ? programJson(program) : programHelp(program));
-  return 0;
-}
 
 // Here, and called like the program: "ao.png", "sphere.png" for lessons/sphere.rt.glsl.
 std::filesystem::path defaultOutput(const std::string& name) {
@@ -23,9 +18,7 @@ std::filesystem::path defaultOutput(const std::string& name) {
   return (stem.empty() ? "out" : stem) + ".png";
 }
 
-int render(RenderOptions& options) {
-  if (options.output.empty()) options.output = defaultOutput(program::loadProgram(options.program).name);
-  Session session(options);
+int render(Session& session, const RenderOptions& options) {
   session.prepare();
   session.openDevice();
   session.loadScene();
@@ -38,17 +31,39 @@ int render(RenderOptions& options) {
   return stop.exitStatus();
 }
 
+int runProgram(RenderOptions& options) {
+  try {
+    if (options.output.empty()) options.output = defaultOutput(program::loadProgram(options.program).name);
+    Session session(options);
+    try {
+      return render(session, options);
+    } catch (const render::ProgramError& error) {
+      session.tell(error.diagnostics());
+      return 1;
+    }
+  } catch (const FileError& error) {
+    // An editor reads the place; main says it in words.
+    if (options.json) writeFile("-", diagnosticsJson({asDiagnostic(error)}));
+    throw;
+  }
+}
+
 }  // namespace
 
 int runCommand(Arguments arguments) {
   std::optional<RunOptions> options = parseRunOptions(arguments);
   if (!options) return 0;
+  RenderOptions& render = options->render;
   if (options->list) {
-    writeFile("-", programList(options->render.json));
+    writeFile("-", programList(render.json));
     return 0;
   }
-  if (options->render.programHelp) return showProgram(options->render);
-  return render(options->render);
+  if (render.programHelp) {
+    const program::Program program = program::loadProgram(render.program);
+    writeFile("-", render.json ? programJson(program) : programHelp(program));
+    return 0;
+  }
+  return runProgram(render);
 }
 
 }  // namespace quintet::app

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "diagnostics_view.h"
 #include "picture_names.h"
 #include "program_setup.h"
 #include "scene/content_hash.h"
@@ -125,6 +126,21 @@ void Session::link() {
   settings.timeoutSeconds = options_.timeout.value_or(context_->info().quirks.software ? 600.0 : 60.0);
   renderer_ = std::make_unique<render::Renderer>(*deviceScene_, program_, *compiler_, pipelineCache_.get(), settings);
   startedRendering_ = clock_.seconds();
+  std::vector<shader::Diagnostic> found = renderer_->diagnostics();
+  std::erase_if(found, [](const shader::Diagnostic& d) { return d.severity == shader::Severity::note; });
+  record_.diagnostics = found;
+  if (!found.empty()) tell(found);
+}
+
+void Session::tell(const std::vector<shader::Diagnostic>& diagnostics) {
+  progress_.clear();
+  const bool failed = hasErrors(diagnostics);
+  if (failed && options_.json) {
+    writeFile("-", diagnosticsJson(diagnostics));
+  } else {
+    fmt::print(stderr, "{}", diagnosticsText(diagnostics, sourcesOf(program_), colorOnStandardError()));
+  }
+  if (failed) fmt::print(stderr, "quintet: {}: {}\n", plain(program_.name), countText(diagnostics));
 }
 
 std::vector<std::size_t> Session::chosenOutputs() const {

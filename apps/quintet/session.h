@@ -34,6 +34,9 @@ class Session {
 
   // Writes the picture of each chosen output.
   void write(const RenderOutcome& outcome, std::optional<std::uint32_t> frame = std::nullopt);
+  // Says what the compiler and the check of the link found: on standard error; with --json and an error among
+  // them as an array on standard output, too.
+  void tell(const std::vector<shader::Diagnostic>& diagnostics);
   // Warnings, --json, and one line on what was written last.
   void report();
 

@@ -48,6 +48,14 @@ std::string_view kindName(GeometryKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
+// The compiler knows the program's files in memory only and calls them "<folder/file>".
+std::string userName(const Program& program, const std::string& file) {
+  if (!isLibraryStage(file)) return file;
+  const std::string inside = file.substr(1, file.size() - 2);
+  const bool own = std::ranges::any_of(program.files, [&](const auto& entry) { return program.path(entry.first) == inside; });
+  return own ? inside : file;
+}
+
 }  // namespace
 
 const CompiledProgram::Stage& CompiledProgram::stage(const std::string& file) const {
@@ -81,7 +89,10 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
   for (std::size_t i = 0; i < files.size(); ++i) {
     compiled.ok = compiled.ok && !compiled.stages[i].spirv.empty();
     std::move(results[i].diagnostics.begin(), results[i].diagnostics.end(), std::back_inserter(compiled.diagnostics));
+    for (const std::filesystem::path& file : results[i].files)
+      if (std::ranges::find(compiled.files, file) == compiled.files.end()) compiled.files.push_back(file);
   }
+  for (shader::Diagnostic& d : compiled.diagnostics) d.file = userName(program, d.file);
   compiled.seconds = secondsSince(start);
   return compiled;
 }

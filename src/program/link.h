@@ -21,6 +21,7 @@ struct CompiledProgram {
   };
   std::vector<Stage> stages;  // one per file of the program that is used
   std::vector<shader::Diagnostic> diagnostics;
+  std::vector<std::filesystem::path> files;  // on disk, read besides Program::files: for --watch
   double seconds = 0;         // wall clock
   bool ok = false;
 

@@ -50,6 +50,8 @@ struct Renderer::Impl {
   gpu::Buffer parameterBuffer;
   gpu::Timer timer;
   RenderStatistics statistics;
+  std::vector<shader::Diagnostic> diagnostics;
+  std::vector<std::filesystem::path> files;
   double pixelSamplesPerSecond = 0;  // measured; 0: unknown yet
 
   Impl(DeviceScene& deviceScene, const program::Program& program, const shader::Compiler& compiler, const gpu::PipelineCache* cache,
@@ -78,6 +80,8 @@ struct Renderer::Impl {
     defines.insert(defines.end(), scene.defines().begin(), scene.defines().end());
     const program::CompiledProgram compiled = program::compile(description, compiler, defines);
     if (!compiled.ok) throw ProgramError(compiled.diagnostics);
+    diagnostics = compiled.diagnostics;
+    files = compiled.files;
     scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder);
     linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled, cache);
     table.emplace(linked->makeTable(scene.facts().geometries));
@@ -160,6 +164,8 @@ const Film& Renderer::film() const { return *impl_->film; }
 io::Image Renderer::image(std::size_t output) const { return impl_->film->download(output, impl_->statistics.samples); }
 RayCount Renderer::rays() const { return impl_->film->countRays(); }
 const RenderStatistics& Renderer::statistics() const { return impl_->statistics; }
+const std::vector<shader::Diagnostic>& Renderer::diagnostics() const { return impl_->diagnostics; }
+const std::vector<std::filesystem::path>& Renderer::files() const { return impl_->files; }
 const program::Program& Renderer::program() const { return impl_->description; }
 
 }  // namespace quintet::render

@@ -69,6 +69,10 @@ class Renderer {
   io::Image image(std::size_t output = 0) const;  // mean of all samples so far; linear, premultiplied RGBA
   RayCount rays() const;
   const RenderStatistics& statistics() const;
+  // Warnings and notes of the compiler.
+  const std::vector<shader::Diagnostic>& diagnostics() const;
+  // Files on disk that the shaders include from outside the program.
+  const std::vector<std::filesystem::path>& files() const;
   const program::Program& program() const;
 
  private:

@@ -111,7 +111,11 @@ name = "color"
 )");
   write(folder_ / "mine" / "mine.rgen", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {\n  undefined();\n}\n");
   write(folder_ / "mine" / "mine.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n");
-  expectError(quintet({"render", "scene.gltf", "--program", "mine", "--size", "8x8", "-q"}), 1, {"mine.rgen:4", "undefined"});
+  const RunResult result = quintet({"render", "scene.gltf", "--program", "mine", "--size", "8x8", "-q"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_TRUE(result.err.starts_with("mine/mine.rgen:4:")) << result.err;
+  EXPECT_NE(result.err.find("undefined"), std::string::npos);
+  EXPECT_TRUE(result.err.ends_with("quintet: mine: 1 error\n")) << result.err;
   write(folder_ / "mine" / "program.toml", "[program\n");
   expectError(quintet({"render", "scene.gltf", "--program", "mine", "--size", "8x8", "-q"}), 1, {"program.toml", "line 1"});
 }

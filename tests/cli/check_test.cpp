@@ -1,0 +1,149 @@
+// `check` and `explain`, and how `run` and `render` say that a program does not compile.
+#include <gmock/gmock.h>
+
+#include "fixtures.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Check : public CliTest {
+ protected:
+  Check() { writeProgram("good", "payload.color", "sky.rmiss"); }
+
+  void writeProgram(const std::string& name, const std::string& member, const std::string& miss) {
+    std::filesystem::create_directory(folder_ / name);
+    write(folder_ / name / "program.toml", "[program]\ndescription = \"sky\"\nray_generation = \"sky.rgen\"\n"
+                                           "[[ray]]\nname = \"primary\"\nmiss = \"" + miss + "\"\n");
+    write(folder_ / name / "payload.glsl", "struct Payload {\n  vec3 color;\n};\n");
+    write(folder_ / name / "sky.rgen", R"(#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/camera.glsl>
+#include <quintet/output.glsl>
+#include <quintet/generated/program.glsl>
+#include "payload.glsl"
+layout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT topLevelAS;
+layout(location = 0) rayPayloadEXT Payload payload;
+void main() {
+  const uvec2 pixel = launchPixel();
+  const Ray ray = cameraRay(vec2(pixel) + 0.5, vec2(0.5));
+  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, kRay_primary, kRayTypeCount, kMiss_primary,
+              ray.origin, 0.0, ray.direction, kInfinity, 0);
+  storeOutput(kOutput_color, pixel, loadOutput(kOutput_color, pixel) + vec4(payload.color, 1.0));
+}
+)");
+    write(folder_ / name / "sky.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\n#include \"payload.glsl\"\n"
+                                        "layout(location = 0) rayPayloadInEXT Payload payload;\n"
+                                        "void main() {\n  " + member + " = vec3(0.5);\n}\n");
+  }
+};
+
+constexpr const char* kShown =
+    "bad/sky.rmiss:6:11: error: 'colour' : no such field in structure 'payload' [GLSL]\n"
+    "    6 |   payload.colour = vec3(0.5);\n"
+    "      |           ^\n";
+
+TEST_F(Check, CleanProgramsOfAllKinds) {
+  const RunResult result = quintet({"check", "good", "ao", "pathtracer"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "good: clean\nao: clean\npathtracer: clean\n");
+  EXPECT_EQ(quintet({"check", "good", "scene.gltf", "--json"}).out, "[]\n");
+}
+
+TEST_F(Check, EveryBuiltInProgramIsClean) {
+  std::vector<std::string> arguments{"check", "--strict"};
+  for (const auto& entry : nlohmann::json::parse(quintet({"run", "--list", "--json"}).out)) arguments.push_back(entry["name"]);
+  const RunResult result = quintet(arguments);
+  EXPECT_EQ(result.status, 0) << result.err;
+}
+
+TEST_F(Check, ErrorsWithSourceAndCaret) {
+  writeProgram("bad", "payload.colour", "sky.rmiss");
+  const RunResult result = quintet({"check", "bad"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.err, std::string(kShown) + "bad: 1 error\n");
+  const RunResult json = quintet({"check", "bad", "good", "--json"});
+  EXPECT_EQ(json.status, 1);
+  EXPECT_EQ(json.err, "");
+  const auto array = nlohmann::json::parse(json.out);
+  ASSERT_EQ(array.size(), 1u);
+  EXPECT_EQ(array[0]["file"], "bad/sky.rmiss");
+  EXPECT_EQ(array[0]["line"], 6);
+  EXPECT_EQ(array[0]["column"], 11);
+  EXPECT_EQ(array[0]["severity"], "error");
+  EXPECT_EQ(array[0]["id"], "GLSL");
+}
+
+TEST_F(Check, RunAndRenderSayTheSameAndWriteNothing) {
+  writeProgram("bad", "payload.colour", "sky.rmiss");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"run", "bad", "--size", "8x8", "-o", "out.png"},
+        {"render", "scene.gltf", "--program", "bad", "--size", "8x8", "-q", "-o", "out.png"}}) {
+    const RunResult result = quintet(arguments);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err, std::string(kShown) + "quintet: bad: 1 error\n");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
+  }
+  const RunResult json = quintet({"run", "bad", "--size", "8x8", "--json", "-o", "out.png"});
+  EXPECT_EQ(json.status, 1);
+  EXPECT_EQ(nlohmann::json::parse(json.out)[0]["file"], "bad/sky.rmiss");
+}
+
+// An included file of the program is named as the user knows it, and shown.
+TEST_F(Check, ErrorsInIncludedFiles) {
+  writeProgram("bad", "payload.color", "sky.rmiss");
+  write(folder_ / "bad" / "payload.glsl", "struct Payload {\n  vec3 color;\n  vec5 more;\n};\n");
+  const RunResult result = quintet({"check", "bad"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("bad/payload.glsl:3"));
+  EXPECT_THAT(result.err, Not(HasSubstr("<bad")));
+  EXPECT_THAT(result.err, HasSubstr("    3 |   vec5 more;\n"));
+}
+
+TEST_F(Check, DescriptionsThatAreWrong) {
+  writeProgram("bad", "payload.color", "skyy.rmiss");
+  const RunResult result = quintet({"check", "bad"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("bad/program.toml:6: error: there is no file 'skyy.rmiss'"));
+  EXPECT_THAT(result.err, HasSubstr("    6 | miss = \"skyy.rmiss\"\n"));
+  const auto array = nlohmann::json::parse(quintet({"run", "bad", "--json"}).out);
+  EXPECT_EQ(array[0]["file"], "bad/program.toml");
+  EXPECT_EQ(array[0]["line"], 6);
+  const auto scene = nlohmann::json::parse(quintet({"check", "good", "none.glb", "--json"}).out);
+  EXPECT_EQ(scene[0]["file"], "none.glb");
+}
+
+TEST_F(Check, ColourOnATerminalOnly) {
+  writeProgram("bad", "payload.colour", "sky.rmiss");
+  TerminalRun terminal({"check", "bad"}, folder_.path());
+  EXPECT_THAT(terminal.finish().err, HasSubstr("\x1b[1;31merror: "));
+  EXPECT_THAT(quintet({"check", "bad"}).err, Not(HasSubstr("\x1b")));
+}
+
+TEST_F(Check, WhatMakesNoSense) {
+  expectError(quintet({"check"}), 2, {"no program"});
+  expectError(quintet({"check", "scene.gltf"}), 2, {"no program"});
+  expectError(quintet({"check", "pathtracr"}), 2, {"did you mean 'pathtracer'?"});
+  expectError(quintet({"check", "good", "--jsn"}), 2, {"did you mean '--json'?"});
+}
+
+TEST_F(Check, Explain) {
+  const RunResult list = quintet({"explain"});
+  EXPECT_EQ(list.status, 0);
+  EXPECT_THAT(list.out, HasSubstr("Q101  error    payload type differs"));
+  for (const auto& entry : nlohmann::json::parse(quintet({"explain", "--json"}).out)) {
+    const std::string id = entry["id"];
+    EXPECT_THAT(list.out, HasSubstr(id + "  "));
+    const RunResult page = quintet({"explain", id});
+    EXPECT_EQ(page.status, 0);
+    EXPECT_TRUE(page.out.starts_with("# " + id + ": ")) << page.out;
+  }
+  EXPECT_EQ(quintet({"explain", "q101"}).out, quintet({"explain", "Q101"}).out);
+  expectError(quintet({"explain", "Q1O1"}), 2, {"'Q1O1'", "did you mean 'Q101'?"});
+}
+
+}  // namespace
+}  // namespace quintet::test
