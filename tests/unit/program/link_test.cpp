@@ -77,7 +77,7 @@ TEST(ProgramLink, PointsAtTheErrorsOfEveryStage) {
   std::vector<std::string> places;
   for (const shader::Diagnostic& d : compiled.diagnostics) places.push_back(d.file + ":" + std::to_string(d.line));
   EXPECT_THAT(places, Contains("folder/demo/main.rgen:4")) << problems(compiled);
-  EXPECT_THAT(places, Contains(HasSubstr("broken.glsl>:3"))) << problems(compiled);
+  EXPECT_THAT(places, Contains(HasSubstr("broken.glsl:3"))) << problems(compiled);
 }
 
 TEST(ProgramLink, ReportsALibraryStageThatDoesNotExist) {
