@@ -1,17 +1,31 @@
 #include "checks.h"
 
+#include <cstdio>
+
 #include <fmt/ranges.h>
 
 #include "harness.h"
 
 namespace quintet::oracle {
 
+namespace {
+
+// "Mesa 25.0.7-2 (LLVM 15)", "580.159.04": the first numbers. (lavapipe's VkPhysicalDeviceProperties::driverVersion is 1.)
+std::uint32_t versionIn(const std::string& text) {
+  std::uint32_t numbers[3] = {};
+  const std::size_t first = text.find_first_of("0123456789");
+  if (first != std::string::npos) std::sscanf(text.c_str() + first, "%u.%u.%u", &numbers[0], &numbers[1], &numbers[2]);
+  return VK_MAKE_API_VERSION(0, numbers[0], numbers[1], numbers[2]);
+}
+
+}  // namespace
+
 Driver testDriver() {
   VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
   VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
   properties.pNext = &driver;
   vkGetPhysicalDeviceProperties2(test::testContext().physicalDevice(), &properties);
-  return {driver.driverID, properties.properties.driverVersion};
+  return {driver.driverID, versionIn(driver.driverInfo)};
 }
 
 Verdict judge(const Driver& driver, const KnownQuirk* quirk, std::size_t wrong) {

@@ -25,7 +25,10 @@ struct KnownQuirk {
 
 inline constexpr KnownQuirk kStaleBuiltIns{"stale-built-ins",
                                            "built-ins read after a nested trace are those of the inner hit"};
-inline constexpr KnownQuirk kAllQuirks[] = {kStaleBuiltIns};
+inline constexpr KnownQuirk kVertexLeaks{"vertex-leaks", "rays aimed exactly at a shared vertex fall through"};
+inline constexpr KnownQuirk kEdgesMeetTwice{
+    "edges-meet-twice", "a ray on a shared edge meets both triangles, also with NO_DUPLICATE_ANY_HIT"};
+inline constexpr KnownQuirk kAllQuirks[] = {kStaleBuiltIns, kVertexLeaks, kEdgesMeetTwice};
 
 struct Driver {
   VkDriverId id = VK_DRIVER_ID_MAX_ENUM;

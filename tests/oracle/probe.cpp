@@ -78,9 +78,13 @@ std::vector<ProbeHit> traceProbe(const Scene& scene, const std::vector<ProbeRay>
   return run<ProbeHit>(probe(), scene, rays, {.table = &table});
 }
 
-std::vector<ProbeHit> traceProbe(const Scene& scene, const std::vector<ProbeRay>& rays) {
+std::vector<ProbeHit> traceProbe(VkAccelerationStructureKHR tlas, const std::vector<ProbeRay>& rays) {
   const Table table{.miss = {recordOf(0, 0u)}, .hit = {recordOf(kProbeTriangles, 0u), recordOf(kProbeBoxes, 0u)}};
-  return traceProbe(scene, rays, table);
+  return run<ProbeHit>(probe(), tlas, rays, {.table = &table});
+}
+
+std::vector<ProbeHit> traceProbe(const Scene& scene, const std::vector<ProbeRay>& rays) {
+  return traceProbe(scene.handle(), rays);
 }
 
 }  // namespace quintet::oracle

@@ -58,6 +58,7 @@ enum ProbeGroup : std::uint32_t { kProbeTriangles = 0, kProbeBoxes = 1 };
 std::vector<ProbeHit> traceProbe(const Scene& scene, const std::vector<ProbeRay>& rays, const Table& table);
 // One hit record for each group and one miss record, with tags 0.
 std::vector<ProbeHit> traceProbe(const Scene& scene, const std::vector<ProbeRay>& rays);
+std::vector<ProbeHit> traceProbe(VkAccelerationStructureKHR tlas, const std::vector<ProbeRay>& rays);
 
 }  // namespace quintet::oracle
 #endif

@@ -82,14 +82,19 @@ std::vector<std::byte> launch(const Program& program, VkAccelerationStructureKHR
 
 // The outputs are zero before the launch.
 template <class Out, class In>
-std::vector<Out> run(const Program& program, const Scene& scene, const std::vector<In>& inputs,
+std::vector<Out> run(const Program& program, VkAccelerationStructureKHR tlas, const std::vector<In>& inputs,
                      const LaunchOptions& options = {}) {
   static_assert(std::is_trivially_copyable_v<Out> && std::is_trivially_copyable_v<In>);
   const std::vector<std::byte> bytes =
-      detail::launch(program, scene.handle(), std::as_bytes(std::span(inputs)), inputs.size(), sizeof(Out), options);
+      detail::launch(program, tlas, std::as_bytes(std::span(inputs)), inputs.size(), sizeof(Out), options);
   std::vector<Out> result(bytes.size() / sizeof(Out));
   std::memcpy(result.data(), bytes.data(), bytes.size());
   return result;
+}
+template <class Out, class In>
+std::vector<Out> run(const Program& program, const Scene& scene, const std::vector<In>& inputs,
+                     const LaunchOptions& options = {}) {
+  return run<Out>(program, scene.handle(), inputs, options);
 }
 
 }  // namespace quintet::oracle
