@@ -28,7 +28,24 @@ inline constexpr KnownQuirk kStaleBuiltIns{"stale-built-ins",
 inline constexpr KnownQuirk kVertexLeaks{"vertex-leaks", "rays aimed exactly at a shared vertex fall through"};
 inline constexpr KnownQuirk kEdgesMeetTwice{
     "edges-meet-twice", "a ray on a shared edge meets both triangles, also with NO_DUPLICATE_ANY_HIT"};
-inline constexpr KnownQuirk kAllQuirks[] = {kStaleBuiltIns, kVertexLeaks, kEdgesMeetTwice};
+inline constexpr KnownQuirk kLooseAttributes{
+    "loose-attributes", "hit attributes are not tied to the committed hit: a candidate rejected later overwrites them"};
+inline constexpr KnownQuirk kTmaxNotLowered{
+    "tmax-not-lowered", "gl_RayTmaxEXT is not lowered after an accepted report of the same invocation"};
+inline constexpr KnownQuirk kSharedArrays{
+    "shared-arrays", "dynamically indexed local arrays of an intersection shader and its any-hit shader share storage"};
+inline constexpr KnownQuirk kSharedAnyHit{
+    "shared-any-hit", "hit groups that share an intersection stage use the first group's any-hit shader"};
+inline constexpr KnownQuirk kFirstVertexTwice{"first-vertex-twice", "firstVertex of a build range is applied twice"};
+inline constexpr KnownQuirk kInactiveTakesOthers{"inactive-takes-others",
+                                                 "inactive primitives (NaN) make valid ones vanish"};
+inline constexpr KnownQuirk kNoCompaction{"no-compaction", "compaction returns the full size"};
+inline constexpr KnownQuirk kEmptyPipelineCache{"empty-pipeline-cache", "VkPipelineCache holds nothing"};
+inline constexpr KnownQuirk kLibrariesCrash{
+    "libraries-crash", "a pipeline whose stages all come from libraries and that has push constants crashes"};
+inline constexpr KnownQuirk kAllQuirks[] = {kStaleBuiltIns,       kVertexLeaks,  kEdgesMeetTwice,     kLooseAttributes,
+                                            kTmaxNotLowered,      kSharedArrays, kSharedAnyHit,       kFirstVertexTwice,
+                                            kInactiveTakesOthers, kNoCompaction, kEmptyPipelineCache, kLibrariesCrash};
 
 struct Driver {
   VkDriverId id = VK_DRIVER_ID_MAX_ENUM;

@@ -23,12 +23,6 @@ uint launchIndex() { return (gl_LaunchIDEXT.z * gl_LaunchSizeEXT.y + gl_LaunchID
 #line 1
 )";
 
-struct Constants {
-  VkDeviceAddress inputs, outputs;
-  std::array<VkDeviceAddress, 4> addresses;
-  uvec4 user;
-};
-
 std::unique_ptr<gpu::BindlessSet> sharedSet;
 
 // The stages and groups of a program: ray generation, miss, hit and callable groups, in this order.
@@ -143,7 +137,7 @@ std::vector<std::byte> detail::launch(const Program& program, VkAccelerationStru
                                      program.contents(options.table ? *options.table : program.plainTable()),
                                      "oracle table");
   Program::set().setAccelerationStructure(tlas);
-  const Constants constants{inputBuffer.address(), outputBuffer.address(), options.addresses, options.user};
+  const LaunchConstants constants{inputBuffer.address(), outputBuffer.address(), options.addresses, options.user};
   context.wait(context.submit([&](gpu::Commands& commands) {
     rt::trace(commands, program.pipeline(), table, std::as_bytes(std::span(&constants, 1)), size.x, size.y, size.z);
   }),

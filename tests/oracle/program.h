@@ -66,6 +66,13 @@ void atEnd(std::function<void()> destroy);
 // SPIR-V of one stage with the header before it.
 std::vector<std::uint32_t> compileStage(shader::Stage stage, const std::string& common, const std::string& text);
 
+// Push constants of all programs: `launch` in GLSL.
+struct LaunchConstants {
+  VkDeviceAddress inputs = 0, outputs = 0;
+  std::array<VkDeviceAddress, 4> addresses{};
+  uvec4 user{0};
+};
+
 struct LaunchOptions {
   uvec3 size{0};            // 0: one invocation for each input
   std::size_t outputs = 0;  // 0: one for each invocation
