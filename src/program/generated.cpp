@@ -16,6 +16,14 @@ std::string structOf(std::string_view name, const std::vector<Parameter>& fields
   return text + "};\n";
 }
 
+// kChoice_NAME_VALUE
+std::string choicesOf(std::string_view kind, const std::vector<Parameter>& fields) {
+  std::string text;
+  for (const Parameter& field : fields)
+    for (std::size_t i = 0; i < field.choices.size(); ++i) text += constant(kind, fmt::format("{}_{}", field.name, field.choices[i]), i);
+  return text;
+}
+
 }  // namespace
 
 std::string generatedConstants(const Program& program) {
@@ -29,6 +37,7 @@ std::string generatedConstants(const Program& program) {
   for (std::size_t i = 0; i < misses.size(); ++i) text += constant("Miss_", misses[i].name, i);
   for (std::size_t i = 0; i < program.callables.size(); ++i) text += constant("Callable_", program.callables[i].name, i);
   for (std::size_t i = 0; i < program.outputs.size(); ++i) text += constant("Output_", program.outputs[i].name, i);
+  text += choicesOf("Choice_", program.parameters);
   text += structOf("Parameters", program.parameters);
   text += "layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ParametersReference { Parameters value; };\n"
           "#define parameters ParametersReference(launch.parameters).value\n#endif\n";
@@ -40,7 +49,7 @@ std::string generatedRecord(const Program& program) {
   return "// Generated from program.toml: the data of this shader's record.\n"
          "#ifndef QUINTET_GENERATED_RECORD\n#define QUINTET_GENERATED_RECORD\n"
          "#extension GL_EXT_scalar_block_layout : require\n" +
-         structOf("Record", program.record) +
+         choicesOf("Record_", program.record) + structOf("Record", program.record) +
          "layout(shaderRecordEXT, scalar) buffer RecordBlock { Record record; };\n#endif\n";
 }
 

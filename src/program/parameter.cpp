@@ -14,7 +14,25 @@
 namespace quintet::program {
 namespace {
 
-bool isInteger(ParameterType type) { return type == ParameterType::boolean || type == ParameterType::integer; }
+struct TypeFacts {
+  std::string_view name;
+  std::string_view glsl;
+  int components;
+};
+
+const TypeFacts& facts(ParameterType type) {
+  static constexpr std::array<TypeFacts, kParameterTypeCount> kFacts{{{"bool", "uint", 1},
+                                                                      {"int", "int", 1},
+                                                                      {"float", "float", 1},
+                                                                      {"vec2", "vec2", 2},
+                                                                      {"vec3", "vec3", 3},
+                                                                      {"vec4", "vec4", 4},
+                                                                      {"color", "vec3", 3},
+                                                                      {"uint", "uint", 1},
+                                                                      {"choice", "uint", 1},
+                                                                      {"image", "uint", 1}}};
+  return kFacts[static_cast<std::size_t>(type)];
+}
 
 bool parseNumber(std::string_view text, double& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -35,56 +53,101 @@ bool parseNumbers(std::string_view text, std::vector<double>& values) {
 
 std::string formatValue(const Parameter& parameter, const ParameterValue& value) {
   if (parameter.type == ParameterType::boolean) return value[0] != 0 ? "true" : "false";
+  if (parameter.type == ParameterType::choice) return parameter.choices.at(static_cast<std::size_t>(value[0]));
   std::string text;
-  for (int i = 0; i < componentCount(parameter.type); ++i) text += fmt::format("{}{:g}", i ? "," : "", value[i]);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(componentCount(parameter.type)); ++i)
+    text += isWhole(parameter.type) ? fmt::format("{}", static_cast<std::int64_t>(value[i])) : fmt::format("{}{}", i ? "," : "", value[i]);
   return text;
 }
 
 }  // namespace
 
-std::string_view typeName(ParameterType type) {
-  constexpr std::string_view kNames[] = {"bool", "int", "float", "vec2", "vec3", "vec4", "color"};
-  return kNames[static_cast<int>(type)];
+std::string_view typeName(ParameterType type) { return facts(type).name; }
+std::string_view glslType(ParameterType type) { return facts(type).glsl; }
+int componentCount(ParameterType type) { return facts(type).components; }
+
+bool isWhole(ParameterType type) {
+  return type == ParameterType::boolean || type == ParameterType::integer || type == ParameterType::uinteger;
 }
 
-std::string_view glslType(ParameterType type) {
-  constexpr std::string_view kNames[] = {"uint", "int", "float", "vec2", "vec3", "vec4", "vec3"};
-  return kNames[static_cast<int>(type)];
+std::pair<double, double> typeRange(ParameterType type) {
+  switch (type) {
+    case ParameterType::boolean: return {0.0, 1.0};
+    case ParameterType::integer: return {-2147483648.0, 2147483647.0};
+    case ParameterType::uinteger: return {0.0, 4294967295.0};
+    default: return {-1e30, 1e30};
+  }
 }
 
-int componentCount(ParameterType type) {
-  constexpr int kCounts[] = {1, 1, 1, 2, 3, 4, 3};
-  return kCounts[static_cast<int>(type)];
+bool hasMin(const Parameter& parameter) { return parameter.min > typeRange(parameter.type).first; }
+bool hasMax(const Parameter& parameter) { return parameter.max < typeRange(parameter.type).second; }
+
+std::string formatDefault(const Parameter& parameter) {
+  return parameter.type == ParameterType::image ? parameter.defaultImage : formatValue(parameter, parameter.defaultValue);
 }
 
-ParameterValues::ParameterValues(const std::vector<Parameter>& parameters) : parameters_(parameters) {
+ParameterValues::ParameterValues(const std::vector<Parameter>& parameters) : parameters_(parameters), imageFiles_(parameters.size()) {
   for (const Parameter& parameter : parameters) values_.push_back(parameter.defaultValue);
 }
 
-void ParameterValues::set(const std::string& name, const std::string& text) {
+std::size_t ParameterValues::indexOf(const std::string& name) const {
   const auto found = std::find_if(parameters_.begin(), parameters_.end(), [&](const Parameter& p) { return p.name == name; });
-  if (found == parameters_.end()) {
-    std::vector<std::string> names;
-    for (const Parameter& parameter : parameters_) names.push_back(parameter.name);
-    const std::string nearest = nearestName(name, names);
-    throw UsageError(fmt::format("no parameter '{}'{}", name,
-                                 nearest.empty() ? fmt::format("; there are: {}", fmt::join(names, ", "))
+  if (found != parameters_.end()) return static_cast<std::size_t>(found - parameters_.begin());
+  std::vector<std::string> names;
+  for (const Parameter& parameter : parameters_) names.push_back(parameter.name);
+  const std::string nearest = nearestName(name, names);
+  throw UsageError(fmt::format("no parameter '{}'{}", name,
+                               names.empty()     ? "; the program has none"
+                               : nearest.empty() ? fmt::format("; there are: {}", fmt::join(names, ", "))
+                                                 : fmt::format("; did you mean '{}'?", nearest)));
+}
+
+void ParameterValues::failType(std::size_t parameter, const std::string& shown) const {
+  const Parameter& p = parameters_[parameter];
+  const int count = componentCount(p.type);
+  if (p.type == ParameterType::choice) {
+    const std::string nearest = nearestName(shown, p.choices);
+    throw UsageError(fmt::format("parameter '{}': there is no choice '{}'{}", p.name, shown,
+                                 nearest.empty() ? fmt::format("; there are: {}", fmt::join(p.choices, ", "))
                                                  : fmt::format("; did you mean '{}'?", nearest)));
   }
-  std::vector<double> numbers;
-  const std::string value = text == "true" ? "1" : text == "false" ? "0" : text;
-  const bool word = value != text;
-  const auto count = static_cast<std::size_t>(componentCount(found->type));
-  if ((word && found->type != ParameterType::boolean) || !parseNumbers(value, numbers) || numbers.size() != count ||
-      (isInteger(found->type) && numbers[0] != std::floor(numbers[0])))
-    throw UsageError(fmt::format("parameter '{}': '{}' is not a {}{}", name, text, typeName(found->type),
-                                 count > 1 ? fmt::format(" ({} numbers with commas)", count) : ""));
-  for (const double number : numbers) {
-    if (number < found->min || number > found->max)
-      throw UsageError(fmt::format("parameter '{}': {} is outside {} … {}", name, text, found->min, found->max));
+  const char* article = p.type == ParameterType::integer || p.type == ParameterType::image ? "an" : "a";
+  throw UsageError(fmt::format("parameter '{}': '{}' is not {} {}{}", p.name, shown, article, typeName(p.type),
+                               p.type == ParameterType::image ? " file's name"
+                               : count > 1                    ? fmt::format(" ({} numbers with commas)", count)
+                                                              : ""));
+}
+
+void ParameterValues::assign(std::size_t parameter, const std::vector<double>& numbers, const std::string& shown) {
+  const Parameter& p = parameters_[parameter];
+  if (p.type == ParameterType::choice || p.type == ParameterType::image || numbers.size() != static_cast<std::size_t>(componentCount(p.type)) ||
+      (isWhole(p.type) && numbers[0] != std::floor(numbers[0])))
+    failType(parameter, shown);
+  for (const double number : numbers)
+    if (!(number >= p.min && number <= p.max)) throw UsageError(fmt::format("parameter '{}': {} is outside {} … {}", p.name, shown, p.min, p.max));
+  std::copy(numbers.begin(), numbers.end(), values_[parameter].begin());
+}
+
+void ParameterValues::assignText(std::size_t parameter, const std::string& text) {
+  const Parameter& p = parameters_[parameter];
+  if (p.type == ParameterType::image) {
+    if (text.find('\0') != text.npos) failType(parameter, text);
+    imageFiles_[parameter] = text;
+    return;
   }
-  ParameterValue& target = values_[static_cast<std::size_t>(found - parameters_.begin())];
-  std::copy(numbers.begin(), numbers.end(), target.begin());
+  const auto found = std::find(p.choices.begin(), p.choices.end(), text);
+  if (p.type != ParameterType::choice || found == p.choices.end()) failType(parameter, text);
+  values_[parameter][0] = static_cast<double>(found - p.choices.begin());
+}
+
+void ParameterValues::set(const std::string& name, const std::string& text) {
+  const std::size_t parameter = indexOf(name);
+  const ParameterType type = parameters_[parameter].type;
+  if (type == ParameterType::image || type == ParameterType::choice) return assignText(parameter, text);
+  std::vector<double> numbers;
+  if (type == ParameterType::boolean && (text == "true" || text == "false")) numbers = {text == "true" ? 1.0 : 0.0};
+  else if (!parseNumbers(text, numbers)) failType(parameter, text);
+  assign(parameter, numbers, text);
 }
 
 void ParameterValues::setAssignment(const std::string& assignment) {
@@ -99,22 +162,37 @@ void ParameterValues::setAll(const std::vector<ParameterValue>& values) {
   values_ = values;
 }
 
-const ParameterValue& ParameterValues::get(const std::string& name) const {
-  for (std::size_t i = 0; i < parameters_.size(); ++i)
-    if (parameters_[i].name == name) return values_[i];
-  throw UsageError(fmt::format("no parameter '{}'", name));
+const ParameterValue& ParameterValues::get(const std::string& name) const { return values_[indexOf(name)]; }
+
+std::vector<ImageValue> ParameterValues::images() const {
+  std::vector<ImageValue> images;
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const Parameter& p = parameters_[i];
+    if (p.type != ParameterType::image) continue;
+    const bool isDefault = !imageFiles_[i].has_value();
+    images.push_back({p.name, isDefault ? p.defaultImage : *imageFiles_[i], isDefault && !p.defaultImage.empty(), p.sRgb});
+  }
+  return images;
 }
 
-std::vector<std::byte> ParameterValues::pack() const {
+std::vector<std::byte> ParameterValues::pack(std::span<const std::uint32_t> textures) const {
   std::vector<std::byte> bytes;
-  const auto append = [&](const auto& word) {
+  const auto append = [&](auto word) {
     static_assert(sizeof(word) == 4);
     const auto* first = reinterpret_cast<const std::byte*>(&word);
     bytes.insert(bytes.end(), first, first + 4);
   };
+  std::size_t image = 0;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    for (int c = 0; c < componentCount(parameters_[i].type); ++c) {
-      if (isInteger(parameters_[i].type)) append(static_cast<std::int32_t>(values_[i][c]));
+    const ParameterType type = parameters_[i].type;
+    if (type == ParameterType::image) {
+      append(image < textures.size() ? textures[image] : kNoParameterTexture);
+      ++image;
+      continue;
+    }
+    for (std::size_t c = 0; c < static_cast<std::size_t>(componentCount(type)); ++c) {
+      if (type == ParameterType::integer) append(static_cast<std::int32_t>(values_[i][c]));
+      else if (glslType(type) == "uint") append(static_cast<std::uint32_t>(values_[i][c]));
       else append(static_cast<float>(values_[i][c]));
     }
   }
@@ -124,8 +202,11 @@ std::vector<std::byte> ParameterValues::pack() const {
 
 std::string ParameterValues::describe() const {
   std::string text;
-  for (std::size_t i = 0; i < parameters_.size(); ++i)
-    text += fmt::format("{}{}={}", i ? " " : "", parameters_[i].name, formatValue(parameters_[i], values_[i]));
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const Parameter& p = parameters_[i];
+    const std::string value = p.type == ParameterType::image ? imageFiles_[i].value_or(p.defaultImage) : formatValue(p, values_[i]);
+    text += fmt::format("{}{}={}", i ? " " : "", p.name, value);
+  }
   return text;
 }
 

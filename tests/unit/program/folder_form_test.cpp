@@ -213,6 +213,44 @@ TEST(FolderForm, NamesOfParametersAreNotWordsOfGlsl) {
   for (const char* name : {"vec5", "texture0", "sampler1", "forward", "Frame", "mat", "record", "_"}) EXPECT_EQ(error(name), "") << name;
 }
 
+std::string parameterError(const std::string& keys, const char* table = "parameter") {
+  Files files = someFiles();
+  files["wood.png"] = "";
+  return errorOf(kSmallText + "[[" + table + "]]\nname = \"a\"\n" + keys, files);  // `keys` from line 10 on
+}
+
+TEST(FolderForm, ParametersCanBeChoicesImagesAndUnsigned) {
+  EXPECT_EQ(parameterError("type = \"choice\"\nchoices = [\"x\", \"y\"]\ndefault = \"y\"\n"), "");
+  EXPECT_EQ(parameterError("type = \"image\"\ndefault = \"wood.png\"\nencoding = \"linear\"\n"), "");
+  EXPECT_EQ(parameterError("type = \"image\"\ndefault = \"\"\n"), "");
+  EXPECT_EQ(parameterError("type = \"uint\"\ndefault = 4294967295\n"), "");
+  const Program p = parse(kSmallText + "[[parameter]]\nname = \"mode\"\ntype = \"choice\"\nchoices = [\"plain\", \"heat\"]\ndefault = \"heat\"\n");
+  EXPECT_EQ(p.parameters[0].defaultValue[0], 1);
+  EXPECT_THAT(generatedConstants(p), HasSubstr("const uint kChoice_mode_plain = 0u;\nconst uint kChoice_mode_heat = 1u;\n"));
+  EXPECT_THAT(generatedConstants(p), HasSubstr("  uint mode;\n"));
+}
+
+TEST(FolderForm, WrongParametersAreRefused) {
+  EXPECT_EQ(parameterError("type = \"choice\"\ndefault = \"y\"\n"), "line 8: [[parameter]] needs 'choices'");
+  EXPECT_EQ(parameterError("type = \"choice\"\nchoices = [\"x\", \"x\"]\ndefault = \"x\"\n"), "line 11: the choice 'x' is there twice");
+  EXPECT_EQ(parameterError("type = \"choice\"\nchoices = [\"x y\"]\ndefault = \"x\"\n"), "line 11: the choice 'x y' is not an identifier");
+  EXPECT_EQ(parameterError("type = \"choice\"\nchoices = [\"plain\", \"heat\"]\ndefault = \"haet\"\n"),
+            "line 12: the default of 'a' cannot be 'haet'; did you mean 'heat'?");
+  EXPECT_EQ(parameterError("type = \"choice\"\nchoices = [\"x\"]\ndefault = 0\n"), "line 12: the default of 'a' must be one of x");
+  EXPECT_EQ(parameterError("type = \"image\"\ndefault = \"wod.png\"\n"),
+            "line 11: there is no file 'wod.png' beside program.toml; did you mean 'wood.png'?");
+  EXPECT_EQ(parameterError("type = \"image\"\ndefault = 3\n"), "line 11: the default of 'a' must be the name of a file, or \"\"");
+  EXPECT_EQ(parameterError("type = \"image\"\ndefault = \"\"\nencoding = \"gamma\"\n"),
+            "line 12: 'encoding' of [[parameter]] cannot be 'gamma'; there are srgb, linear");
+  EXPECT_EQ(parameterError("type = \"image\"\ndefault = \"\"\nmin = 0\n"), "line 12: [[parameter]] has no key 'min'");
+  EXPECT_EQ(parameterError("type = \"uint\"\ndefault = -1\n"), "line 11: the default of 'a' is outside 0 … 4294967295");
+  EXPECT_EQ(parameterError("type = \"int\"\ndefault = 1\nmin = -1e300\nmax = 1e300\n"), "");
+  EXPECT_EQ(parameterError("type = \"int\"\ndefault = 1e299\nmin = -1e300\nmax = 1e300\n"),
+            "line 11: the default of 'a' is outside -2147483648 … 2147483647");
+  EXPECT_EQ(parameterError("type = \"float\"\ndefault = nan\n"), "line 11: the default of 'a' is outside -1e+30 … 1e+30");
+  EXPECT_EQ(parameterError("type = \"image\"\ndefault = \"\"\n", "record"), "line 10: a field cannot be an image: declare a parameter");
+}
+
 TEST(FolderForm, KeepsTheLines) {
   const Program p = parse(kRecord);
   EXPECT_EQ(p.descriptionFile, "program.toml");

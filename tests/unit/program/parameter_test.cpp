@@ -33,7 +33,8 @@ TEST(Parameter, NamesItsTypes) {
   for (const Row& row : std::initializer_list<Row>{{ParameterType::boolean, "bool", "uint", 1}, {ParameterType::integer, "int", "int", 1},
                                                    {ParameterType::real, "float", "float", 1}, {ParameterType::vec2, "vec2", "vec2", 2},
                                                    {ParameterType::vec3, "vec3", "vec3", 3}, {ParameterType::vec4, "vec4", "vec4", 4},
-                                                   {ParameterType::color, "color", "vec3", 3}}) {
+                                                   {ParameterType::color, "color", "vec3", 3}, {ParameterType::uinteger, "uint", "uint", 1},
+                                                   {ParameterType::choice, "choice", "uint", 1}, {ParameterType::image, "image", "uint", 1}}) {
     EXPECT_EQ(typeName(row.type), row.name);
     EXPECT_EQ(glslType(row.type), row.glsl);
     EXPECT_EQ(componentCount(row.type), row.count);
@@ -68,11 +69,11 @@ TEST(Parameter, SaysWhatIsWrong) {
   };
   EXPECT_EQ(message("bonces", "3"), "no parameter 'bonces'; did you mean 'bounces'?");
   EXPECT_EQ(message("qqqqqqqqqqqqqqq", "3"), "no parameter 'qqqqqqqqqqqqqqq'; there are: on, bounces, clamp, size, up, box, tint");
-  EXPECT_EQ(message("bounces", "3.5"), "parameter 'bounces': '3.5' is not a int");
-  EXPECT_EQ(message("bounces", "many"), "parameter 'bounces': 'many' is not a int");
-  EXPECT_EQ(message("bounces", "true"), "parameter 'bounces': 'true' is not a int");
-  EXPECT_EQ(message("bounces", ""), "parameter 'bounces': '' is not a int");
-  EXPECT_EQ(message("bounces", "3 "), "parameter 'bounces': '3 ' is not a int");
+  EXPECT_EQ(message("bounces", "3.5"), "parameter 'bounces': '3.5' is not an int");
+  EXPECT_EQ(message("bounces", "many"), "parameter 'bounces': 'many' is not an int");
+  EXPECT_EQ(message("bounces", "true"), "parameter 'bounces': 'true' is not an int");
+  EXPECT_EQ(message("bounces", ""), "parameter 'bounces': '' is not an int");
+  EXPECT_EQ(message("bounces", "3 "), "parameter 'bounces': '3 ' is not an int");
   EXPECT_EQ(message("bounces", "-1"), "parameter 'bounces': -1 is outside 0 … 65536");
   EXPECT_EQ(message("clamp", "nan"), "parameter 'clamp': 'nan' is not a float");
   EXPECT_EQ(message("clamp", "inf"), "parameter 'clamp': 'inf' is not a float");
@@ -86,6 +87,58 @@ TEST(Parameter, SaysWhatIsWrong) {
   EXPECT_THAT([&] { values.setAssignment("=3"); }, ThrowsMessage<UsageError>("'=3' is not of the form name=value"));
   // Nothing was changed by all that.
   EXPECT_EQ(values.describe(), ParameterValues(kAll).describe());
+}
+
+// A uint, a choice and two images.
+std::vector<Parameter> more() {
+  Parameter count = make("count", ParameterType::uinteger, {4294967295.0}, 0, 4294967295.0), mode = make("mode", ParameterType::choice, {1});
+  mode.choices = {"plain", "heat", "wire"};
+  Parameter wood = make("wood", ParameterType::image), map = make("map", ParameterType::image);
+  wood.defaultImage = "wood.png";
+  map.sRgb = false;
+  return {count, wood, mode, map};
+}
+
+TEST(Parameter, ChoicesAndImagesAreSetByText) {
+  ParameterValues values(more());
+  EXPECT_EQ(values.describe(), "count=4294967295 wood=wood.png mode=heat map=");
+  values.set("mode", "wire");
+  values.set("map", "a b/c=d,e.png");
+  EXPECT_EQ(values.describe(), "count=4294967295 wood=wood.png mode=wire map=a b/c=d,e.png");
+  EXPECT_EQ(values.get("mode")[0], 2);
+  const std::vector<ImageValue> images = values.images();
+  ASSERT_EQ(images.size(), 2u);
+  EXPECT_EQ(images[0].parameter, "wood");
+  EXPECT_EQ(images[0].file, "wood.png");
+  EXPECT_TRUE(images[0].ofProgram);
+  EXPECT_TRUE(images[0].sRgb);
+  EXPECT_EQ(images[1].file, "a b/c=d,e.png");
+  EXPECT_FALSE(images[1].ofProgram);
+  EXPECT_FALSE(images[1].sRgb);
+  values.set("wood", "");
+  EXPECT_EQ(values.images()[0].file, "");
+  EXPECT_FALSE(values.images()[0].ofProgram);
+  EXPECT_THAT([&] { values.set("mode", "haet"); }, ThrowsMessage<UsageError>("parameter 'mode': there is no choice 'haet'; did you mean 'heat'?"));
+  EXPECT_THAT([&] { values.set("mode", "1"); }, ThrowsMessage<UsageError>("parameter 'mode': there is no choice '1'; there are: plain, heat, wire"));
+  EXPECT_THAT([&] { values.set("count", "-1"); }, ThrowsMessage<UsageError>("parameter 'count': -1 is outside 0 … 4294967295"));
+  EXPECT_THAT([&] { values.set("count", "4294967296"); }, ThrowsMessage<UsageError>("parameter 'count': 4294967296 is outside 0 … 4294967295"));
+}
+
+TEST(Parameter, PacksTextureIndices) {
+  const std::vector<std::uint32_t> textures = {7, 9};
+  const std::vector<std::byte> bytes = ParameterValues(more()).pack(textures);
+  std::array<std::uint32_t, 4> words{};
+  ASSERT_EQ(bytes.size(), sizeof(words));
+  std::memcpy(words.data(), bytes.data(), sizeof(words));
+  EXPECT_EQ(words, (std::array<std::uint32_t, 4>{4294967295u, 7, 1, 9}));
+  const std::vector<std::byte> without = ParameterValues(more()).pack();
+  std::memcpy(words.data(), without.data(), sizeof(words));
+  EXPECT_EQ(words[1], kNoParameterTexture);
+}
+
+TEST(Parameter, SaysThatThereIsNone) {
+  ParameterValues none({});
+  EXPECT_THAT([&] { none.set("a", "1"); }, ThrowsMessage<UsageError>("no parameter 'a'; the program has none"));
 }
 
 TEST(Parameter, PacksAsScalarLayout) {

@@ -138,7 +138,7 @@ const WrongCase kWrong[] = {
     {"NoIdentifier", "name = \"depth\"", "name = \"depth of field\"", "line 31: 'depth of field' is not an identifier"},
     {"ReservedName", "name = \"tint\"", "name = \"gl_Tint\"", "line 34: 'gl_Tint' is not an identifier"},
     {"DigitFirst", "name = \"tint\"", "name = \"2tint\"", "line 34: '2tint' is not an identifier"},
-    {"UnknownType", "type = \"color\"", "type = \"colour\"", "line 35: 'colour' is no type; there are bool, int, float, vec2, vec3, vec4, color"},
+    {"UnknownType", "type = \"color\"", "type = \"colour\"", "line 35: 'colour' is no type; there are bool, int, float, vec2, vec3, vec4, color, uint, choice, image"},
     {"DefaultTooShort", "[0.5, 1, 0.25]", "[0.5, 1]", "line 36: the default of 'tint' needs 3 numbers"},
     {"DefaultNoList", "[0.5, 1, 0.25]", "0.5", "line 36: the default of 'tint' needs 3 numbers"},
     {"DefaultOutside", "0.25]", "3]", "line 36: the default of 'tint' is outside 0 … 2"},
