@@ -45,7 +45,7 @@ std::string generatedConstants(const Program& program) {
 }
 
 std::string generatedRecord(const Program& program) {
-  if (program.record.empty()) return "#error program.toml declares no [[record]], so there is no shader record\n";
+  if (program.record.empty()) return "#error the program declares no record, so its shaders cannot read one\n";
   return "// Generated from program.toml: the data of this shader's record.\n"
          "#ifndef QUINTET_GENERATED_RECORD\n#define QUINTET_GENERATED_RECORD\n"
          "#extension GL_EXT_scalar_block_layout : require\n" +

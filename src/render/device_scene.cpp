@@ -8,6 +8,7 @@
 #include "render/albedo_tables.h"
 #include "render/light_table.h"
 #include "render/material_data.h"
+#include "render/parameter_textures.h"
 #include "render/scene_facts.h"
 #include "render/scene_features.h"
 #include "render/scene_upload.h"
@@ -37,6 +38,7 @@ struct DeviceScene::Impl {
   GeometryUpload geometry;
   std::optional<TextureUpload> textures;
   std::unique_ptr<gpu::BindlessSet> set;
+  std::optional<TextureSlots> parameterSlots;
   gpu::Buffer geometryTable, materialTable, lights, lightTable, lightSlots, environmentTable, albedoTables;
   std::vector<rt::Blas> blas;                // one per used mesh
   std::vector<int> blasOfMesh;               // -1: no instance uses the mesh
@@ -89,7 +91,8 @@ struct DeviceScene::Impl {
     data.cosRotation = std::cos(environment.rotation);
     data.sinRotation = std::sin(environment.rotation);
 
-    set = std::make_unique<gpu::BindlessSet>(context, std::max(1u, textures->count()), static_cast<std::uint32_t>(sizeof(shared::Launch)));
+    set = std::make_unique<gpu::BindlessSet>(context, textures->count() + TextureSlots::kCount, static_cast<std::uint32_t>(sizeof(shared::Launch)));
+    parameterSlots.emplace(*set, textures->count(), TextureSlots::kCount);
     uploader.flush();
     textures->bind(*set);
   }
@@ -175,6 +178,7 @@ DeviceScene::~DeviceScene() = default;
 
 gpu::Context& DeviceScene::context() const { return impl_->context; }
 const gpu::BindlessSet& DeviceScene::set() const { return *impl_->set; }
+TextureSlots& DeviceScene::parameterSlots() { return *impl_->parameterSlots; }
 const program::SceneFacts& DeviceScene::facts() const { return impl_->facts; }
 bool DeviceScene::hasAlpha() const { return impl_->hasAlpha(); }
 const std::vector<std::pair<std::string, std::string>>& DeviceScene::defines() const { return impl_->defines; }

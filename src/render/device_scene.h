@@ -31,6 +31,8 @@ struct DeviceSceneStatistics {
   std::uint32_t lightCount = 0;
 };
 
+class TextureSlots;
+
 class DeviceScene {
  public:
   // `environment` is the one in use (the scene's own, the user's, or the default). `scene` is needed during
@@ -43,6 +45,7 @@ class DeviceScene {
 
   gpu::Context& context() const;
   const gpu::BindlessSet& set() const;
+  TextureSlots& parameterSlots();  // for the images of programs' parameters
   // What the link needs to know; geometries in the order of hit records.
   const program::SceneFacts& facts() const;
   bool hasAlpha() const;  // any geometry whose material needs an alpha test

@@ -9,6 +9,7 @@
 
 #include "gpu/timer.h"
 #include "io/codec.h"
+#include "render/parameter_textures.h"
 
 namespace quintet::render {
 namespace {
@@ -47,6 +48,7 @@ struct Renderer::Impl {
   std::optional<rt::ShaderBindingTable> table;
   std::unique_ptr<Film> film;
   gpu::Buffer frameBuffer;
+  std::optional<ParameterTextures> parameterTextures;
   gpu::Buffer parameterBuffer;
   gpu::Timer timer;
   RenderStatistics statistics;
@@ -72,7 +74,9 @@ struct Renderer::Impl {
     frame.rayRecordCapacity = settings.rayRecords ? settings.rayRecordCapacity : 0;
     film->describe(frame);
     frameBuffer = gpu::makeBuffer(context, std::as_bytes(std::span(&frame, 1)), 0, "frame");
-    parameterBuffer = gpu::makeBuffer(context, settings.parameters.pack(), 0, "parameters");
+    if (settings.parameters.parameters().empty()) settings.parameters = program::ParameterValues(description.parameters);
+    parameterTextures.emplace(context, scene.parameterSlots(), description, settings.parameters);
+    parameterBuffer = gpu::makeBuffer(context, settings.parameters.pack(parameterTextures->indices()), 0, "parameters");
   }
 
   void link(const shader::Compiler& compiler, const gpu::PipelineCache* cache) {

@@ -134,7 +134,8 @@ void TextureUpload::bind(gpu::BindlessSet& set) const {
   for (std::uint32_t i = 0; i < count(); ++i) set.setTexture(i, *entries_[i].image, *entries_[i].sampler);
 }
 
-const gpu::Image& TextureUpload::upload(const io::Image& source, bool sRgb, const std::string& name) {
+gpu::Image& addTexture(std::deque<gpu::Image>& textures, gpu::Context& context, gpu::Uploader& uploader, const io::Image& source, bool sRgb,
+                       const std::string& name) {
   // The device has no sRGB format of 16 bits: those are decoded here.
   io::Image image = sRgb && source.type == io::PixelType::u16 ? io::toFloat(source) : source;
   if (image.channels != 4) image = io::toChannels(image, 4);
@@ -143,10 +144,15 @@ const gpu::Image& TextureUpload::upload(const io::Image& source, bool sRgb, cons
   options.height = image.height;
   options.format = textureFormat(image.type, sRgb);
   options.name = name;
-  images_.emplace_back(context_, options);
-  uploader_.upload(images_.back(), image.data);
-  bytes_ += image.data.size();
-  return images_.back();
+  gpu::Image& texture = textures.emplace_back(context, options);
+  uploader.upload(texture, image.data);
+  return texture;
+}
+
+const gpu::Image& TextureUpload::upload(const io::Image& source, bool sRgb, const std::string& name) {
+  const gpu::Image& image = addTexture(images_, context_, uploader_, source, sRgb, name);
+  bytes_ += image.byteSize();
+  return image;
 }
 
 const gpu::Sampler& TextureUpload::sampler(const gpu::SamplerOptions& options) {

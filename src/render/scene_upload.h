@@ -24,6 +24,11 @@ struct GeometryUpload {
 };
 GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene);
 
+// Appends a picture of any type as a texture of 4 channels. `sRgb`: integer colours are decoded when they are read.
+// A deque: the uploader keeps the texture's address until it is flushed.
+gpu::Image& addTexture(std::deque<gpu::Image>& textures, gpu::Context& context, gpu::Uploader& uploader, const io::Image& image, bool sRgb,
+                       const std::string& name);
+
 // Textures on the device, one for each (image, encoding, sampler) that is asked for.
 class TextureUpload {
  public:
