@@ -27,6 +27,9 @@ struct Quirks {
   bool keepsPrimitiveOrder = false;   // builder halves the input order: sort primitives and instances first
   bool corruptsHitAttributes = false; // rejected candidates overwrite them: recompute in closest-hit
   bool noCompaction = false;          // compacted size equals the full size
+  bool changesNestedBuiltIns = false; // built-ins of a hit read after a nested trace are those of the inner hit
+  bool sharesAnyHit = false;          // hit groups that share an intersection stage run the first group's any-hit shader
+  bool sharesLocalArrays = false;     // indexed arrays of an intersection shader and its any-hit shader overlap
 };
 
 struct RayTracingLimits {

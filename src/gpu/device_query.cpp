@@ -65,6 +65,9 @@ Quirks quirksOf(VkDriverId driver) {
   quirks.keepsPrimitiveOrder = true;
   quirks.corruptsHitAttributes = true;
   quirks.noCompaction = true;
+  quirks.changesNestedBuiltIns = true;
+  quirks.sharesAnyHit = true;
+  quirks.sharesLocalArrays = true;
   return quirks;
 }
 

@@ -101,8 +101,7 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q504", kError, "miss index is beyond 16 bits",
      "Only the 16 low bits count, so another miss shader than the one meant runs, without a message.",
      "Keep it between 0 and 65535."},
-    {"Q505", kWarning, "cull mask is beyond 8 bits",
-     "Only the 8 low bits count: a mask of 0x100 sees nothing at all.",
+    {"Q505", kWarning, "cull mask is beyond 8 bits", "Only the 8 low bits count: a mask of 0x100 sees nothing at all.",
      "Use the bits 0x01 to 0x80; 0xFF sees every instance."},
     {"Q506", kWarning, "shadow ray uses a miss shader that is meant for radiance",
      "With closest-hit skipped the miss shader is the only answer, and this one writes a colour, not visibility.",
@@ -134,7 +133,8 @@ constexpr DiagnosticInfo kCatalog[] = {
      "Multiply from the left with world-to-object: normalize(vec3(normal * gl_WorldToObjectEXT))."},
     {"Q703", kWarning, "gl_InstanceID is used where the custom index is meant",
      "gl_InstanceID is the place in the built list, which Quintet may sort; another device gives another order.",
-     "Use gl_InstanceCustomIndexEXT, or the library's triangleHit()."},
+     "Use gl_InstanceCustomIndexEXT, the position in the scene, or instanceCustomIndex(), the number that the scene "
+     "gives."},
     {"Q704", kError, "descriptor is indexed by a hit-dependent value without nonuniformEXT",
      "The driver may take the index of one invocation for all of its group: wrong textures in blocks.",
      "Wrap the index: textures[nonuniformEXT(index)]."},
@@ -146,8 +146,7 @@ constexpr DiagnosticInfo kCatalog[] = {
      "Pass it on through the payload from a stage that has it."},
 
     // Parts that do nothing.
-    {"Q801", kWarning, "stage is reached by nobody",
-     "It costs compile time and suggests that it does something.",
+    {"Q801", kWarning, "stage is reached by nobody", "It costs compile time and suggests that it does something.",
      "Trace or call it, or remove it from program.toml."},
     {"Q802", kWarning, "hit group serves no geometry of the scene",
      "Its binding fits nothing here: a name is misspelt, or the scene is another.",
@@ -164,7 +163,7 @@ constexpr DiagnosticInfo kCatalog[] = {
      "Some drivers run the first group's any-hit shader for both (lavapipe).",
      "Nothing to do: Quintet gives each group a copy of the stage."},
     {"Q904", kWarning, "gl_RayTmaxEXT is read after a report of the same invocation",
-     "Some drivers do not lower it after an accepted report (lavapipe), so a farther hit replaces a nearer one.",
+     "It may have the value from before (by the optimizer, and on lavapipe), so a farther hit replaces a nearer one.",
      "Keep the nearest accepted t in a local."},
     {"Q905", kWarning, "dynamically indexed local array in an intersection shader that has an any-hit shader",
      "Some drivers let the two stages share that storage (lavapipe): the any-hit shader overwrites the array.",

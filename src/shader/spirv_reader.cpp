@@ -194,6 +194,11 @@ bool SpirvReader::readType(const SpirvInstruction& instruction) {
     case Op::OpTypePointer:
       type.kind = Kind::pointer, type.storage = instruction.at(0), type.element = instruction.at(1);
       break;
+    case Op::OpTypeForwardPointer:  // of a buffer reference that a structure holds; OpTypePointer follows
+      if (instruction.at(0) >= bound_) return fail("an id beyond the bound");
+      type.kind = Kind::pointer, type.storage = instruction.at(1);
+      m_.types_.add(instruction.at(0), std::move(type));
+      return true;
     case Op::OpTypeAccelerationStructureKHR: type.kind = Kind::accelerationStructure; break;
     case Op::OpTypeImage:
     case Op::OpTypeSampler:

@@ -95,14 +95,15 @@ void explainMissingBuiltIns(std::vector<Diagnostic>& diagnostics, Stage stage) {
     const std::string name(quotedName(d.text));
     if (name == "hitAttributeEXT") {
       d.id = "Q204";
-      d.text = "hitAttributeEXT in " + aShader(stage) + ": only intersection, any-hit and closest-hit shaders have a hit";
+      d.text =
+          "hitAttributeEXT in " + aShader(stage) + ": only intersection, any-hit and closest-hit shaders have a hit";
       continue;
     }
     const StageBuiltIn* builtIn = findStageBuiltIn(name);
     if (builtIn == nullptr || stage == Stage::compute || builtIn->availableIn(stage)) continue;
     d.id = "Q706";
-    d.text = name + (builtIn->function ? " cannot be used in " : " is not readable in ") + aShader(stage) + "; it is in " +
-             stagesWith(*builtIn) + " shaders";
+    d.text = name + (builtIn->function ? " cannot be used in " : " is not readable in ") + aShader(stage) +
+             "; it is in " + stagesWith(*builtIn) + " shaders";
   }
 }
 

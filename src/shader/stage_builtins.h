@@ -14,8 +14,8 @@ namespace quintet::shader {
 
 struct StageBuiltIn {
   std::string_view name;
-  unsigned stages = 0;      // bit 1u << Stage
-  bool function = false;    // or a statement such as ignoreIntersectionEXT
+  unsigned stages = 0;    // bit 1u << Stage
+  bool function = false;  // or a statement such as ignoreIntersectionEXT
   bool availableIn(Stage stage) const { return ((stages >> static_cast<unsigned>(stage)) & 1u) != 0; }
 };
 

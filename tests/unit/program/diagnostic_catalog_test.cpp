@@ -106,7 +106,8 @@ TEST(DiagnosticCatalog, NoIdOfTheSourceIsMissing) {
       for (std::sregex_iterator i(text.begin(), text.end(), literal), end; i != end; ++i) used.insert((*i)[1]);
     }
   }
-  for (const std::string& id : used) EXPECT_NE(findDiagnostic(id), nullptr) << id << " is reported, but not in the catalogue";
+  for (const std::string& id : used)
+    EXPECT_NE(findDiagnostic(id), nullptr) << id << " is reported, but not in the catalogue";
 }
 
 }  // namespace

@@ -266,5 +266,22 @@ TEST(SpirvModule, AnyWordsAreSafe) {
   for (std::size_t size = 0; size < 200; ++size) SpirvModule::read(std::vector<std::uint32_t>(size, 0x00010000u));
 }
 
+TEST(SpirvModule, StructureThatHoldsABufferReference) {
+  const SpirvModule module = readText(Stage::miss, R"(#extension GL_EXT_buffer_reference : require
+layout(buffer_reference) buffer Colors { vec4 at[4]; };
+layout(push_constant) uniform Push { uint first; Colors colors; } push;
+layout(location = 0) rayPayloadInEXT vec4 color;
+void main() { color = push.colors.at[push.first]; }
+)");
+  const auto push = std::ranges::find(module.variables(), spv::StorageClass::PushConstant, &SpirvVariable::storage);
+  ASSERT_NE(push, module.variables().end());
+  const SpirvType& block = module.types().get(push->type);
+  ASSERT_EQ(block.members.size(), 2u);
+  const SpirvType& reference = module.types().get(block.members[1]);
+  EXPECT_EQ(reference.kind, Kind::pointer);
+  EXPECT_EQ(reference.bytes, 8u);
+  EXPECT_EQ(module.types().get(reference.element).name, "Colors");
+}
+
 }  // namespace
 }  // namespace quintet::shader

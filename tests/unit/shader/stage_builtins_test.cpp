@@ -14,7 +14,8 @@ Result compileMain(Stage stage, const std::string& statement, const std::string&
   Source source;
   source.stage = stage;
   source.name = "test" + std::string(stageExtension(stage));
-  source.text = "#version 460\n#extension GL_EXT_ray_tracing : require\n" + globals + "\nvoid main() {\n" + statement + "\n}\n";
+  source.text =
+      "#version 460\n#extension GL_EXT_ray_tracing : require\n" + globals + "\nvoid main() {\n" + statement + "\n}\n";
   static const Compiler compiler({.libraryOverride = {}, .includeFolders = {}, .cacheFolder = {}, .optimize = false});
   return compiler.compile(source);
 }
@@ -39,11 +40,13 @@ TEST(StageBuiltIns, TableIsSorted) {
 }
 
 TEST(StageBuiltIns, TableAgreesWithTheCompiler) {
-  for (const Stage stage : {Stage::rayGeneration, Stage::intersection, Stage::anyHit, Stage::closestHit, Stage::miss, Stage::callable}) {
+  for (const Stage stage :
+       {Stage::rayGeneration, Stage::intersection, Stage::anyHit, Stage::closestHit, Stage::miss, Stage::callable}) {
     for (const StageBuiltIn& builtIn : stageBuiltIns()) {
       const auto [globals, statement] = useOf(builtIn, builtIn.availableIn(stage));
       const Result result = compileMain(stage, statement, globals);
-      EXPECT_EQ(result.ok(), builtIn.availableIn(stage)) << builtIn.name << " in " << stageName(stage) << "\n" << all(result);
+      EXPECT_EQ(result.ok(), builtIn.availableIn(stage)) << builtIn.name << " in " << stageName(stage) << "\n"
+                                                         << all(result);
       if (result.ok()) continue;
       EXPECT_EQ(result.diagnostics.at(0).id, "Q706") << all(result);
     }
@@ -54,7 +57,8 @@ TEST(StageBuiltIns, MessageNamesTheStagesThatHaveIt) {
   const Result result = compileMain(Stage::rayGeneration, "float x = gl_HitTEXT;");
   ASSERT_EQ(result.diagnostics.size(), 1u) << all(result);
   EXPECT_EQ(result.diagnostics[0].id, "Q706");
-  EXPECT_EQ(result.diagnostics[0].text, "gl_HitTEXT is not readable in a ray generation shader; it is in any-hit and closest-hit shaders");
+  EXPECT_EQ(result.diagnostics[0].text,
+            "gl_HitTEXT is not readable in a ray generation shader; it is in any-hit and closest-hit shaders");
   EXPECT_EQ(result.diagnostics[0].line, 5);
   EXPECT_EQ(result.diagnostics[0].column, 11);
 }
@@ -62,7 +66,8 @@ TEST(StageBuiltIns, MessageNamesTheStagesThatHaveIt) {
 TEST(StageBuiltIns, StatementOfAnotherStage) {
   const Result result = compileMain(Stage::closestHit, "ignoreIntersectionEXT;");
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.diagnostics.at(0).text, "ignoreIntersectionEXT cannot be used in a closest-hit shader; it is in any-hit shaders");
+  EXPECT_EQ(result.diagnostics.at(0).text,
+            "ignoreIntersectionEXT cannot be used in a closest-hit shader; it is in any-hit shaders");
 }
 
 TEST(StageBuiltIns, HitAttributeInAMiss) {

@@ -1,0 +1,108 @@
+// Q705: a ray with tmin 0 whose origin is just the hit position, without an offset.
+//
+// A hit position is recognised by how it is computed: origin + t * direction with the hit's t, in a hit shader or of a
+// ray that this shader has traced; or vertices interpolated by the hit's barycentrics and carried to world space.
+#include "program/check_shader_rules.h"
+
+namespace quintet::program {
+
+using shader::SpirvId;
+using shader::SpirvInstruction;
+using shader::SpirvModule;
+using spv::Op;
+
+namespace {
+
+// A scalar that is the hit's t: gl_HitTEXT, or a float of the payload of a ray that this shader traces.
+bool isHitT(const SpirvModule& module, SpirvId value) {
+  const SpirvInstruction* definition = module.definition(value);
+  if (!definition) return false;
+  if (loadsBuiltIn(module, *definition, spv::BuiltIn::RayTmaxKHR))
+    return module.stage() == spv::ExecutionModel::ClosestHitKHR;
+  while (definition && (definition->op == Op::OpCompositeExtract || definition->op == Op::OpCopyObject))
+    definition = module.definition(definition->at(0));
+  if (!definition || definition->op != Op::OpLoad) return false;
+  const shader::SpirvVariable* variable = module.variable(module.access(definition->at(0)).variable);
+  return variable && variable->storage == spv::StorageClass::RayPayloadKHR;
+}
+
+// d of d * t, where t is a hit's; 0: something else.
+SpirvId directionOfStep(const SpirvModule& module, SpirvId value) {
+  const SpirvInstruction* step = module.definition(value);
+  if (!step || step->op != Op::OpVectorTimesScalar || !isHitT(module, step->at(1))) return 0;
+  return step->at(0);
+}
+
+// Is it the direction that some trace of this shader takes, or that of the ray that arrived?
+bool isRayDirection(const SpirvModule& module, SpirvId direction) {
+  const SpirvInstruction* definition = module.definition(direction);
+  if (definition && loadsBuiltIn(module, *definition, spv::BuiltIn::WorldRayDirectionKHR)) return true;
+  for (const std::size_t user : module.users(direction)) {
+    const SpirvInstruction& i = module.instructions()[user];
+    if (i.op == Op::OpTraceRayKHR && i.at(8) == direction) return true;
+  }
+  return false;
+}
+
+// origin + t * direction, as a sum or as one fused multiply-add.
+bool isPointOnRay(const SpirvModule& module, const SpirvInstruction& value) {
+  if (value.op == Op::OpFAdd) {
+    const SpirvId a = directionOfStep(module, value.at(0)), b = directionOfStep(module, value.at(1));
+    return (a != 0 && isRayDirection(module, a)) || (b != 0 && isRayDirection(module, b));
+  }
+  return false;
+}
+
+// A sum of three vertices, weighted by the barycentrics; a vertex is what was loaded from memory.
+bool isInterpolation(const SpirvModule& module, SpirvId value, int depth = 0) {
+  const SpirvInstruction* i = module.definition(value);
+  if (!i || depth > 4) return false;
+  if (i->op == Op::OpFAdd)
+    return isInterpolation(module, i->at(0), depth + 1) && isInterpolation(module, i->at(1), depth + 1);
+  if (i->op != Op::OpVectorTimesScalar) return false;
+  const auto isAttribute = [&](const SpirvInstruction& part) {
+    if (part.op != Op::OpLoad) return false;
+    const shader::SpirvVariable* variable = module.variable(module.access(part.at(0)).variable);
+    return variable && variable->storage == spv::StorageClass::HitAttributeKHR;
+  };
+  return dependsOn(module, i->at(1), isAttribute);
+}
+
+// gl_ObjectToWorldEXT * vec4(interpolated vertices, 1).
+bool isTransformedInterpolation(const SpirvModule& module, const SpirvInstruction& value) {
+  if (value.op != Op::OpMatrixTimesVector) return false;
+  const SpirvInstruction* matrix = module.definition(value.at(0));
+  if (!matrix || !loadsBuiltIn(module, *matrix, spv::BuiltIn::ObjectToWorldKHR)) return false;
+  const SpirvInstruction* point = module.definition(value.at(1));
+  if (!point || point->op != Op::OpCompositeConstruct) return false;
+  SpirvId vertex = point->at(0);
+  const SpirvInstruction* part = module.definition(vertex);
+  if (part && part->op == Op::OpCompositeExtract) vertex = part->at(0);  // vec4(p.x, p.y, p.z, 1)
+  return isInterpolation(module, vertex);
+}
+
+// The first hit position among the values that the origin can have: through phi, select and locals.
+const SpirvInstruction* hitPosition(const SpirvModule& module, SpirvId origin) {
+  return findInSlice(
+      module, origin,
+      [&](const SpirvInstruction& i) { return isPointOnRay(module, i) || isTransformedInterpolation(module, i); },
+      [](const SpirvInstruction& i) {
+        return i.op != Op::OpPhi && i.op != Op::OpSelect && i.op != Op::OpCopyObject && i.op != Op::OpLoad &&
+               i.op != Op::OpStore;
+      });
+}
+
+}  // namespace
+
+void checkOrigins(const SpirvModule& module, Findings& findings) {
+  for (const SpirvInstruction& trace : module.instructions()) {
+    if (trace.op != Op::OpTraceRayKHR) continue;
+    const auto tmin = module.constantFloat(trace.at(7));
+    if (!tmin || *tmin != 0.0 || !hitPosition(module, trace.at(6))) continue;
+    findings.add("Q705", trace,
+                 "the ray starts at a hit position with tmin 0: by rounding it can hit the surface that it leaves",
+                 "traceRayEXT");
+  }
+}
+
+}  // namespace quintet::program

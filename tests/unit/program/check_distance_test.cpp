@@ -1,0 +1,102 @@
+// Q701: which t is a distance in object space, and which is not.
+#include <gmock/gmock.h>
+
+#include "check_shader_test_support.h"
+#include "program/ray_degree.h"
+
+namespace quintet::program {
+namespace {
+
+using shader::Stage;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// A sphere of radius 1 at the origin; `body` declares o and d, and computes t.
+std::vector<std::string> sphere(const std::string& body) {
+  return findingsOf(Stage::intersection, "void main() {\n" + body + "\nreportIntersectionEXT(t, 0u);\n}\n");
+}
+
+constexpr const char* kUnit = "vec3 o = gl_ObjectRayOriginEXT; vec3 d = normalize(gl_ObjectRayDirectionEXT);\n";
+constexpr const char* kPlain = "vec3 o = gl_ObjectRayOriginEXT; vec3 d = gl_ObjectRayDirectionEXT;\n";
+
+TEST(CheckDistance, UnitDirection) {
+  EXPECT_THAT(sphere(std::string(kUnit) + "float b = dot(o, d); float t = -b - sqrt(b * b - dot(o, o) + 1.0);"),
+              ElementsAre("Q701:4"));
+}
+
+TEST(CheckDistance, UnitDirectionDividedByItsLength) {
+  EXPECT_THAT(sphere(std::string(kUnit) + "float b = dot(o, d); float t = -b - sqrt(b * b - dot(o, o) + 1.0);\n"
+                                          "t /= length(gl_ObjectRayDirectionEXT);"),
+              IsEmpty());
+}
+
+TEST(CheckDistance, UnitDirectionTimesInverseLength) {
+  EXPECT_THAT(sphere(std::string(kUnit) + "float b = dot(o, d); float t = -b - sqrt(b * b - dot(o, o) + 1.0);\n"
+                                          "t *= inversesqrt(dot(gl_ObjectRayDirectionEXT, gl_ObjectRayDirectionEXT));"),
+              IsEmpty());
+}
+
+TEST(CheckDistance, PlainDirection) {
+  EXPECT_THAT(sphere(std::string(kPlain) + "float a = dot(d, d); float b = dot(o, d);\n"
+                                           "float t = (-b - sqrt(b * b - a * (dot(o, o) - 1.0))) / a;"),
+              IsEmpty());
+}
+
+TEST(CheckDistance, LengthByHand) {
+  EXPECT_THAT(sphere("vec3 o = gl_ObjectRayOriginEXT; float l = length(gl_ObjectRayDirectionEXT);\n"
+                     "vec3 d = gl_ObjectRayDirectionEXT / l;\nfloat t = -dot(o, d);"),
+              ElementsAre("Q701:4"));
+  EXPECT_THAT(sphere("vec3 o = gl_ObjectRayOriginEXT; vec3 d = gl_ObjectRayDirectionEXT;\n"
+                     "d *= inversesqrt(dot(d, d));\nfloat t = -dot(o, d);"),
+              ElementsAre("Q701:5"));
+}
+
+TEST(CheckDistance, ClampedByTheRaysRange) {
+  EXPECT_THAT(sphere(std::string(kUnit) + "float t = max(-dot(o, d), gl_RayTminEXT);"), ElementsAre("Q701:4"));
+  EXPECT_THAT(sphere(std::string(kPlain) + "float t = max(-dot(o, d) / dot(d, d), gl_RayTminEXT);"), IsEmpty());
+}
+
+TEST(CheckDistance, Slabs) {
+  const std::string slabs =
+      "vec3 a = (vec3(-1) - o) / d, b = (vec3(1) - o) / d; vec3 lo = min(a, b);\nfloat t = max(max(lo.x, lo.y), lo.z);";
+  EXPECT_THAT(sphere(kPlain + slabs), IsEmpty());
+  EXPECT_THAT(sphere(kUnit + slabs), ElementsAre("Q701:4"));
+}
+
+// The unit direction may be used for anything but t.
+TEST(CheckDistance, UnitDirectionForAnAttribute) {
+  EXPECT_THAT(findingsOf(Stage::intersection,
+                         "hitAttributeEXT vec3 view;\nvoid main() {\nview = normalize(gl_ObjectRayDirectionEXT);\n"
+                         "vec3 d = gl_ObjectRayDirectionEXT;\n"
+                         "reportIntersectionEXT(-dot(gl_ObjectRayOriginEXT, d) / dot(d, d), 0u);\n}\n"),
+              IsEmpty());
+}
+
+// Marching a distance field: steps are distances, so t has to be rescaled.
+TEST(CheckDistance, MarchedDistanceField) {
+  const std::string march = "float s = 0.0;\nfor (int i = 0; i < 64; ++i) s += length(o + s * d) - 1.0;\n";
+  EXPECT_THAT(sphere(kUnit + march + "float t = s;"), ElementsAre("Q701:4"));
+  EXPECT_THAT(sphere(kUnit + march + "float t = s / length(gl_ObjectRayDirectionEXT);"), IsEmpty());
+}
+
+TEST(CheckDistance, WorldSpaceIsTheTracersChoice) {
+  EXPECT_THAT(sphere("vec3 d = normalize(gl_WorldRayDirectionEXT);\nfloat t = -dot(gl_WorldRayOriginEXT, d);"),
+              IsEmpty());
+}
+
+TEST(CheckDistance, ConstantAndForeignT) {
+  EXPECT_THAT(sphere("float t = 1.0;"), IsEmpty());
+  EXPECT_THAT(sphere("float t = gl_ObjectRayOriginEXT.x * length(vec3(gl_PrimitiveID));"), IsEmpty());
+}
+
+// Two roots in an array, the nearer one chosen in a loop.
+TEST(CheckDistance, RootsInAnArray) {
+  const std::string roots =
+      "float ts[2]; float b = dot(o, d); float h = sqrt(b * b - dot(o, o) + 1.0);\n"
+      "ts[0] = -b - h; ts[1] = -b + h;\nfloat t = gl_RayTmaxEXT;\n"
+      "for (int i = 0; i < gl_PrimitiveID; ++i) if (ts[i & 1] > gl_RayTminEXT) t = min(t, ts[i & 1]);";
+  EXPECT_THAT(sphere(kUnit + roots), ElementsAre("Q701:4"));
+}
+
+}  // namespace
+}  // namespace quintet::program

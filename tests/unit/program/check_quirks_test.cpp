@@ -1,0 +1,91 @@
+// Q901, Q902, Q904, Q905: what a driver with that defect gets wrong, and silence on one without.
+#include <gmock/gmock.h>
+
+#include "check_shader_test_support.h"
+
+namespace quintet::program {
+namespace {
+
+using shader::Stage;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr const char* kTracer = R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT topLevelAS;
+layout(location = 0) rayPayloadInEXT vec3 color;
+layout(location = 1) rayPayloadEXT vec3 inner;
+void main() {
+traceRayEXT(topLevelAS, 0u, 255u, 0u, 1u, 0u, gl_WorldRayOriginEXT, 0.1, vec3(0, 1, 0), 1e30, 1);
+)";
+
+TEST(CheckQuirks, BuiltInAfterTraceIsMendedUnlessTheIndexIsComputed) {
+  const std::string computed = kTracer + std::string("color = inner * gl_ObjectToWorldEXT[int(inner.x) & 3];\n}\n");
+  EXPECT_THAT(findingsOf(Stage::closestHit, computed, defectiveDevice()), ElementsAre("Q901:8"));
+  EXPECT_THAT(findingsOf(Stage::closestHit, computed), IsEmpty());
+  for (const char* use : {"color = inner * float(gl_PrimitiveID);\n}\n", "color = inner * gl_ObjectToWorldEXT[2];\n}\n",
+                          "color = inner * gl_HitTEXT;\n}\n"})
+    EXPECT_THAT(findingsOf(Stage::closestHit, kTracer + std::string(use), defectiveDevice()), IsEmpty()) << use;
+}
+
+std::vector<std::string> intersection(const std::string& body, const ShaderSituation& situation = defectiveDevice()) {
+  return findingsOf(Stage::intersection,
+                    "hitAttributeEXT vec3 normal;\nvoid main() {\n"
+                    "float t = -gl_ObjectRayOriginEXT.y / gl_ObjectRayDirectionEXT.y;\n" +
+                        body + "\n}\n",
+                    situation);
+}
+
+TEST(CheckQuirks, AttributeWrittenBeforeTheComparison) {
+  const std::string unguarded = "normal = vec3(0, t, 0);\nreportIntersectionEXT(t, 0u);";
+  EXPECT_THAT(intersection(unguarded), ElementsAre("Q902:6"));
+  EXPECT_THAT(intersection(unguarded, {}), IsEmpty());
+  EXPECT_THAT(intersection("if (t > 0.0) {\nnormal = vec3(0, t, 0);\nreportIntersectionEXT(t, 0u);\n}"),
+              ElementsAre("Q902:7"));
+  EXPECT_THAT(intersection("if (t < gl_RayTmaxEXT) normal.x = 1.0;\nnormal.y = t;\nreportIntersectionEXT(t, 0u);"),
+              ElementsAre("Q902:7"));
+}
+
+TEST(CheckQuirks, GuardedAttributeIsRight) {
+  EXPECT_THAT(
+      intersection(
+          "if (gl_RayTminEXT <= t && t < gl_RayTmaxEXT) {\nnormal = vec3(0, t, 0);\nreportIntersectionEXT(t, 0u);\n}"),
+      IsEmpty());
+  EXPECT_THAT(intersection("if (t < gl_RayTminEXT || t >= gl_RayTmaxEXT) return;\nnormal = vec3(0, t, "
+                           "0);\nreportIntersectionEXT(t, 0u);"),
+              IsEmpty());
+  EXPECT_THAT(
+      intersection(
+          "float nearest = gl_RayTmaxEXT; bool hit = false;\nfor (int i = 0; i < gl_PrimitiveID; ++i)\n"
+          "if (t + float(i) < nearest) { nearest = t + float(i); hit = true; }\n"
+          "if (hit && nearest < gl_RayTmaxEXT) { normal = vec3(nearest); reportIntersectionEXT(nearest, 0u); }"),
+      IsEmpty());
+}
+
+TEST(CheckQuirks, RayTmaxAfterAReport) {
+  const std::string twice =
+      "if (t < gl_RayTmaxEXT) reportIntersectionEXT(t, 0u);\nif (2.0 * t < gl_RayTmaxEXT)\nreportIntersectionEXT(2.0 * "
+      "t, 0u);";
+  EXPECT_THAT(intersection(twice), ElementsAre("Q904:7"));
+  EXPECT_THAT(intersection(twice, {}), ElementsAre("Q904:7"));  // the optimizer merges the reads for every device
+  EXPECT_THAT(
+      intersection("float nearest = gl_RayTmaxEXT;\nif (t < nearest && reportIntersectionEXT(t, 0u)) nearest = t;\n"
+                   "if (2.0 * t < nearest) reportIntersectionEXT(2.0 * t, 0u);"),
+      IsEmpty());
+}
+
+TEST(CheckQuirks, LocalArray) {
+  const std::string body =
+      "float ts[8];\nfor (int i = 0; i < gl_PrimitiveID; ++i) ts[i & 7] = t * float(i);\n"
+      "for (int i = 0; i < gl_PrimitiveID; ++i)\nreportIntersectionEXT(ts[i & 7], 0u);";
+  EXPECT_EQ(intersection(body).size(), 1u);
+  EXPECT_EQ(intersection(body).at(0).substr(0, 4), "Q905");
+  EXPECT_THAT(intersection(body, {}), IsEmpty());
+  ShaderSituation alone = defectiveDevice();
+  alone.hasAnyHit = false;
+  EXPECT_THAT(intersection(body, alone), IsEmpty());
+  EXPECT_THAT(intersection("float ts[2]; ts[0] = t; ts[1] = 2.0 * t;\nreportIntersectionEXT(ts[0], 0u); "
+                           "reportIntersectionEXT(ts[1], 0u);"),
+              IsEmpty());
+}
+
+}  // namespace
+}  // namespace quintet::program
