@@ -33,6 +33,8 @@ const bool kHasEnvironment = false;  // it is black
 #else
 const bool kHasEnvironment = true;
 #endif
+// QUINTET_NO_PROCEDURALS (no solids, no trees), QUINTET_NO_CSG, QUINTET_NO_TORUS and QUINTET_NO_PROCEDURAL_ALPHA are
+// asked by #ifdef: they also take members and stages away.
 const bool kHasTransmission = kHasSolidTransmission || kHasThinTransmission;
 
 #endif

@@ -2,21 +2,8 @@
 #ifndef QUINTET_HIT_GLSL
 #define QUINTET_HIT_GLSL
 
-#include "frame.glsl"
+#include "hit_geometry.glsl"
 #include "payload.glsl"
-
-// Index of the triangle that the built-ins name, in the scene's order.
-uint hitTriangle(GeometryData geometry) {
-  return geometry.primitiveMap != 0ul ? UintArray(geometry.primitiveMap).at[gl_PrimitiveID] : uint(gl_PrimitiveID);
-}
-
-// The instance's own index of scenes (custom_index); gl_InstanceCustomIndexEXT is its position in the scene.
-uint instanceCustomIndex() { return InstanceArray(frame.instances).at[gl_InstanceCustomIndexEXT].customIndex; }
-
-GeometryData hitGeometry() {
-  const uint first = InstanceArray(frame.instances).at[gl_InstanceCustomIndexEXT].firstGeometry;
-  return GeometryArray(frame.geometries).at[first + uint(gl_GeometryIndexEXT)];
-}
 
 // Barycentrics of the ray's hit with the triangle, from the ray itself: drivers exist where a candidate
 // that any-hit has rejected overwrites the attributes of the committed hit (docs/design/quirks.md).
@@ -47,6 +34,9 @@ HitPayload triangleHit(vec2 attributes, uint seed) {
       barycentricsFromRay(gl_ObjectRayOriginEXT, gl_ObjectRayDirectionEXT, positions.at[v.x], positions.at[v.y], positions.at[v.z]);
 #else
   hit.barycentric = attributes;
+#endif
+#ifndef QUINTET_NO_PROCEDURALS
+  hit.part = 0u;
 #endif
   hit.seed = seed;
   return hit;

@@ -7,8 +7,11 @@ struct HitPayload {
   float t;           // ray parameter; < 0: miss
   uint instance;     // InstanceData index
   uint geometry;     // geometry index in the instance's mesh
-  uint primitive;    // triangle index in the scene's order
-  vec2 barycentric;  // weights of vertices 1 and 2
+  uint primitive;    // index of the triangle, the solid or the tree in the scene's order
+  vec2 barycentric;  // weights of vertices 1 and 2; solids: the point on the canonical solid (procedural/point.glsl)
+#ifndef QUINTET_NO_PROCEDURALS
+  uint part;         // solids: which one of a tree, face and side (procedural/point.glsl)
+#endif
   uint seed;         // in: random bits of this ray, for stochastic alpha
 };
 

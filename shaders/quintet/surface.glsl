@@ -12,7 +12,7 @@ struct Surface {
   vec3 shadingNormal;    // world, unit, interpolated, on the side of wo; not yet normal mapped
   vec3 tangent;          // world, unit, orthogonal to shadingNormal, for normal maps
   vec3 bitangent;
-  bool frontFace;        // wo is on the side from which the triangle is counter-clockwise
+  bool frontFace;        // wo is on the side from which the triangle is counter-clockwise; solids: outside
   uint material;
   vec4 color;            // vertex colour, 1 if absent
   vec2 uvs[2];
@@ -63,9 +63,16 @@ vec3 safeNormalize(vec3 v, vec3 fallback) {
   return squared > 1e-38 ? v * inversesqrt(squared) : fallback;
 }
 
+#ifndef QUINTET_NO_PROCEDURALS
+#include "procedural/surface.glsl"
+#endif
+
 Surface fetchSurface(HitPayload hit, vec3 wo) {
   const InstanceData instance = InstanceArray(frame.instances).at[hit.instance];
   const GeometryData geometry = GeometryArray(frame.geometries).at[instance.firstGeometry + hit.geometry];
+#ifndef QUINTET_NO_PROCEDURALS
+  if (geometry.kind != kGeometryTriangles) return fetchSolid(hit, instance, geometry, wo);
+#endif
   const uvec3 v = Uvec3Array(geometry.triangles).at[hit.primitive];
   const vec3 b = vec3(1.0 - hit.barycentric.x - hit.barycentric.y, hit.barycentric);
   Vec3Array positions = Vec3Array(geometry.positions);

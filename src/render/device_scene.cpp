@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <optional>
 
 #include "render/albedo_tables.h"
 #include "render/light_table.h"
 #include "render/material_data.h"
 #include "render/parameter_textures.h"
+#include "render/procedural_data.h"
 #include "render/scene_facts.h"
 #include "render/scene_features.h"
 #include "render/scene_upload.h"
@@ -77,14 +79,6 @@ struct DeviceScene::Impl {
     materialTable = gpu::makeBufferOf(context, materials, 0, "materials");
     frame.materials = materialTable.address();
 
-    std::size_t k = 0;
-    for (const scene::Mesh& mesh : scene.meshes) {
-      for (const scene::Geometry& g : mesh.geometries) {
-        geometry.geometries[k++].material = g.material == scene::kNone ? static_cast<std::uint32_t>(scene.materials.size())
-                                                                       : static_cast<std::uint32_t>(g.material);
-      }
-    }
-
     shared::EnvironmentData& data = frame.environment;
     data.scale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
     data.texture = environment.image.empty() ? shared::kNoTexture : textures->addEnvironment(cleanEnvironment(environment.image));
@@ -126,6 +120,7 @@ struct DeviceScene::Impl {
     for (const scene::Instance& instance : scene.instances) blasOfMesh[static_cast<std::size_t>(instance.mesh)] = 0;
     std::vector<rt::BlasInput> inputs;
     std::vector<std::size_t> meshOfInput;
+    std::deque<std::vector<Bounds3>> boxes;  // of primitive sets, until the build has ended
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
       if (blasOfMesh[m] < 0) continue;
       blasOfMesh[m] = static_cast<int>(inputs.size());
@@ -138,6 +133,12 @@ struct DeviceScene::Impl {
         rt::GeometryInput& part = input.geometries.emplace_back();
         part.positions = g.positions;
         part.triangles = g.triangles;
+        part.opaque = !facts.geometries[k++].alpha;
+      }
+      for (const scene::PrimitiveSet& primitives : scene.meshes[m].primitiveSets) {
+        rt::GeometryInput& part = input.geometries.emplace_back();
+        part.kind = rt::GeometryKind::boxes;
+        part.boxes = boxes.emplace_back(boxesForBuild(primitives));
         part.opaque = !facts.geometries[k++].alpha;
       }
     }

@@ -2,7 +2,33 @@
 
 #include <algorithm>
 
+#include "render/material_data.h"
+
 namespace quintet::render {
+namespace {
+
+// What any primitive set of the scene is or holds.
+struct ProceduralFeatures {
+  bool solids = false;  // or trees
+  bool csg = false;
+  bool torus = false;
+  bool alpha = false;
+};
+
+ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
+  ProceduralFeatures features;
+  for (const scene::Mesh& mesh : scene.meshes) {
+    for (const scene::PrimitiveSet& set : mesh.primitiveSets) {
+      features.solids |= set.kind != scene::PrimitiveSetKind::custom;
+      features.csg |= set.kind == scene::PrimitiveSetKind::csg;
+      features.torus |= std::ranges::count(set.primitives, scene::PrimitiveType::torus, &scene::Primitive::type) > 0;
+      features.alpha |= set.kind != scene::PrimitiveSetKind::custom && needsAlphaTest(scene, set);
+    }
+  }
+  return features;
+}
+
+}  // namespace
 
 std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Scene& scene, const scene::Environment& environment) {
   const auto any = [&](auto predicate) { return std::any_of(scene.materials.begin(), scene.materials.end(), predicate); };
@@ -19,6 +45,11 @@ std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Sce
   without("QUINTET_NO_TRIANGLE_LIGHTS", any(emits));
   without("QUINTET_NO_PUNCTUAL_LIGHTS", !scene.lights.empty());
   without("QUINTET_NO_ENVIRONMENT", glm::any(glm::greaterThan(environmentScale, vec3(0.0f))));
+  const ProceduralFeatures procedural = proceduralFeatures(scene);
+  without("QUINTET_NO_PROCEDURALS", procedural.solids);
+  without("QUINTET_NO_CSG", procedural.csg);
+  without("QUINTET_NO_TORUS", procedural.torus);
+  without("QUINTET_NO_PROCEDURAL_ALPHA", procedural.alpha);
   return defines;
 }
 

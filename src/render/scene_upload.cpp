@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "render/procedural_data.h"
+
 namespace quintet::render {
 namespace {
 
@@ -56,6 +58,47 @@ VkDeviceSize attributeBytes(const scene::Geometry& g) {
          aligned(g.uvs[0].size() * sizeof(vec2)) + aligned(g.uvs[1].size() * sizeof(vec2)) + aligned(g.colors.size() * sizeof(vec4));
 }
 
+VkDeviceSize attributeBytes(const scene::PrimitiveSet& set) {
+  return aligned(set.primitives.size() * sizeof(shared::PrimitiveData)) + aligned(set.nodes.size() * sizeof(shared::CsgNodeData)) +
+         aligned(set.trees.size() * sizeof(shared::CsgTreeData)) + aligned(scene::boxCount(set) * sizeof(shared::BoxData));
+}
+
+shared::GeometryData uploadTriangles(Arena& arena, const scene::Scene& scene, const scene::Geometry& g) {
+  shared::GeometryData data{};
+  data.positions = arena.add(g.positions);
+  data.triangles = arena.add(g.triangles);
+  data.normals = arena.add(g.normals);
+  data.tangents = arena.add(g.tangents);
+  data.uvs[0] = arena.add(g.uvs[0]);
+  data.uvs[1] = arena.add(g.uvs[1]);
+  data.colors = arena.add(g.colors);
+  data.material = materialIndex(scene, g.material);
+  data.triangleCount = static_cast<std::uint32_t>(g.triangles.size());
+  data.kind = shared::kGeometryTriangles;
+  return data;
+}
+
+std::uint32_t geometryKind(scene::PrimitiveSetKind kind) {
+  switch (kind) {
+    case scene::PrimitiveSetKind::solids: return shared::kGeometrySolids;
+    case scene::PrimitiveSetKind::csg: return shared::kGeometryCsg;
+    case scene::PrimitiveSetKind::custom: break;
+  }
+  return shared::kGeometryCustom;
+}
+
+shared::GeometryData uploadPrimitives(Arena& arena, const scene::Scene& scene, const scene::PrimitiveSet& set) {
+  shared::GeometryData data{};
+  data.boxes = arena.add(makeBoxes(set));
+  data.primitives = arena.add(makePrimitives(scene, set));
+  data.nodes = arena.add(makeNodes(set));
+  data.trees = arena.add(makeTrees(set));
+  data.material = materialIndex(scene, set.material);
+  data.triangleCount = static_cast<std::uint32_t>(scene::boxCount(set));
+  data.kind = geometryKind(set.kind);
+  return data;
+}
+
 VkSamplerAddressMode addressMode(scene::Wrap wrap) {
   switch (wrap) {
     case scene::Wrap::repeat: return VK_SAMPLER_ADDRESS_MODE_REPEAT;
@@ -78,25 +121,17 @@ VkFormat textureFormat(io::PixelType type, bool sRgb) {
 
 GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene) {
   VkDeviceSize total = 0;
-  for (const scene::Mesh& mesh : scene.meshes)
+  for (const scene::Mesh& mesh : scene.meshes) {
     for (const scene::Geometry& geometry : mesh.geometries) total += attributeBytes(geometry);
+    for (const scene::PrimitiveSet& set : mesh.primitiveSets) total += attributeBytes(set);
+  }
 
   GeometryUpload upload;
   Arena arena(context, uploader, upload, total);
   for (const scene::Mesh& mesh : scene.meshes) {
     upload.firstGeometry.push_back(static_cast<std::uint32_t>(upload.geometries.size()));
-    for (const scene::Geometry& g : mesh.geometries) {
-      shared::GeometryData data{};
-      data.positions = arena.add(g.positions);
-      data.triangles = arena.add(g.triangles);
-      data.normals = arena.add(g.normals);
-      data.tangents = arena.add(g.tangents);
-      data.uvs[0] = arena.add(g.uvs[0]);
-      data.uvs[1] = arena.add(g.uvs[1]);
-      data.colors = arena.add(g.colors);
-      data.triangleCount = static_cast<std::uint32_t>(g.triangles.size());
-      upload.geometries.push_back(data);
-    }
+    for (const scene::Geometry& g : mesh.geometries) upload.geometries.push_back(uploadTriangles(arena, scene, g));
+    for (const scene::PrimitiveSet& set : mesh.primitiveSets) upload.geometries.push_back(uploadPrimitives(arena, scene, set));
   }
   return upload;
 }

@@ -14,8 +14,8 @@
 
 namespace quintet::render {
 
-// Vertex attributes and triangles of all geometries, in the order of hit records. Addresses of
-// primitive maps and materials are left for the caller.
+// Vertex attributes and triangles of all geometries, and the arrays of all primitive sets, in the order of hit
+// records. Addresses of primitive maps are left for the caller.
 struct GeometryUpload {
   std::deque<gpu::Buffer> buffers;
   std::vector<shared::GeometryData> geometries;

@@ -5,6 +5,7 @@
 
 #include "lights.h"
 #include "material.h"
+#include "primitive.h"
 #include "types.h"
 
 QT_SHARED_BEGIN
@@ -20,7 +21,7 @@ struct InstanceData {
 };
 QT_SHARED_SIZE(InstanceData, 112);
 
-// One geometry of a mesh. Addresses of absent attributes are 0.
+// One geometry of a mesh: triangles, or boxes that hold something else. Addresses of absent attributes are 0.
 struct GeometryData {
   Address positions;     // vec3[]
   Address triangles;     // uvec3[], in the scene's order
@@ -28,11 +29,17 @@ struct GeometryData {
   Address tangents;      // vec4[]
   Address uvs[2];        // vec2[]
   Address colors;        // vec4[], linear
-  Address primitiveMap;  // uint[]: gl_PrimitiveID → index in triangles; 0: identity
-  uint material;
-  uint triangleCount;
+  Address primitiveMap;  // uint[]: gl_PrimitiveID → index in triangles, or boxes; 0: identity
+  Address boxes;         // BoxData[], kinds other than triangles, in the scene's order; as the scene says: not padded
+  Address primitives;    // PrimitiveData[]; solids: box i holds primitives[i]
+  Address nodes;         // CsgNodeData[]
+  Address trees;         // CsgTreeData[]; csg: box i holds trees[i]
+  uint material;         // triangles, custom; solids have their own
+  uint triangleCount;    // or boxes
+  uint kind;             // kGeometry…
+  uint padding;
 };
-QT_SHARED_SIZE(GeometryData, 72);
+QT_SHARED_SIZE(GeometryData, 112);
 
 // Pinhole, thin lens or orthographic; see quintet/camera.glsl.
 struct CameraData {

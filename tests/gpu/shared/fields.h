@@ -95,7 +95,12 @@ GPU_FIELDS(AliasEntry, keep, alias, probability);
 GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, padding);
 GPU_FIELDS(EnvironmentData, table, scale, texture, width, height, cosRotation, sinRotation);
 GPU_FIELDS(InstanceData, worldFromObject, objectFromWorld, firstGeometry, firstLightSlot, mirrored, customIndex);
-GPU_FIELDS(GeometryData, positions, triangles, normals, tangents, uvs, colors, primitiveMap, material, triangleCount);
+GPU_FIELDS(GeometryData, positions, triangles, normals, tangents, uvs, colors, primitiveMap, boxes, primitives, nodes, trees, material,
+           triangleCount, kind, padding);
+GPU_FIELDS(PrimitiveData, primitiveFromObject, objectFromPrimitive, type, parameter, material, padding);
+GPU_FIELDS(CsgNodeData, operation, operand);
+GPU_FIELDS(CsgTreeData, firstNode, nodeCount);
+GPU_FIELDS(BoxData, min, max);
 GPU_FIELDS(CameraData, worldFromCamera, halfSize, apertureRadius, focusDistance, orthographic, padding);
 GPU_FIELDS(RayRecord, origin, tmax, direction, kind);
 GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics, rayRecords,

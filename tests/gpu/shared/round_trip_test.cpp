@@ -44,7 +44,7 @@ class SharedStruct : public testing::Test {};
 
 using SharedStructs =
     testing::Types<shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::EnvironmentData,
-                   shared::InstanceData, shared::GeometryData, shared::CameraData, shared::RayRecord, shared::Frame, shared::FilmAdd, shared::Launch>;
+                   shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::Frame, shared::FilmAdd, shared::Launch>;
 
 struct StructNames {
   template <class T>

@@ -1,0 +1,40 @@
+// For closest-hit and any-hit shaders on solids and trees: which surface was met, and where. Everything is computed
+// again from the ray and t: hit attributes are not used, drivers exist that mix them up (docs/design/quirks.md).
+#ifndef QUINTET_PROCEDURAL_HIT_GLSL
+#define QUINTET_PROCEDURAL_HIT_GLSL
+
+#include "../hit.glsl"
+#include "point.glsl"
+#include "crossings.glsl"
+#ifndef QUINTET_NO_CSG
+#include "csg.glsl"
+#endif
+
+// The payload of the hit at gl_HitTEXT (in any-hit shaders: of the candidate); `seed` is kept.
+HitPayload solidHit(uint seed) {
+  const GeometryData geometry = hitGeometry();
+  HitPayload hit;
+  hit.t = gl_HitTEXT;
+  hit.instance = uint(gl_InstanceCustomIndexEXT);
+  hit.geometry = uint(gl_GeometryIndexEXT);
+  hit.primitive = hitTriangle(geometry);
+  hit.seed = seed;
+  const vec3 origin = gl_ObjectRayOriginEXT;
+  const vec3 direction = gl_ObjectRayDirectionEXT;
+  const bool front = gl_HitKindEXT == kHitEntering;
+  bool entering = front;
+  uint index = hit.primitive;
+#ifndef QUINTET_NO_CSG
+  if (geometry.kind == kGeometryCsg)
+    index = csgLeaf(geometry, CsgTreeArray(geometry.trees).at[hit.primitive], origin, direction, hit.t, entering);
+#endif
+  const PrimitiveData primitive = PrimitiveArray(geometry.primitives).at[index];
+  const vec3 d = primitiveVector(primitive.primitiveFromObject, direction);
+  const vec3 p = primitivePoint(primitive.primitiveFromObject, origin) + hit.t * d;
+  const uint face = nearestFace(primitive.type, p, d, entering);
+  hit.barycentric = pointCoordinates(primitive.type, face, p);
+  hit.part = index | (face << kPartFaceShift) | (front ? kPartFront : 0u) | (entering != front ? kPartFlipped : 0u);
+  return hit;
+}
+
+#endif

@@ -1,0 +1,211 @@
+// Each solid against the host's oracle: where, which way, which normal; and rays that leave a surface.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "../../unit/scene/csg_oracle.h"
+#include "probe.h"
+
+namespace quintet::test {
+namespace {
+
+using oracle::dmat4;
+using oracle::dvec3;
+using scene::Primitive;
+using scene::PrimitiveType;
+
+constexpr std::array kTypes{PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone, PrimitiveType::torus};
+const char* nameOf(PrimitiveType type) {
+  constexpr std::array kNames{"sphere", "box", "cylinder", "cone", "torus"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+// What the oracle knows of a ray: its hit, and whether a rounding could make another one of it.
+struct Expected {
+  std::optional<oracle::Crossing> hit;
+  bool doubtful = false;
+};
+
+oracle::Ray toObject(const ProbeRay& ray, const mat4& worldFromObject) {
+  const dmat4 objectFromWorld = glm::inverse(dmat4(worldFromObject));
+  return {dvec3(objectFromWorld * glm::dvec4(dvec3(ray.origin), 1.0)), dvec3(objectFromWorld * glm::dvec4(dvec3(ray.direction), 0.0))};
+}
+
+Expected expect(const Primitive& primitive, const ProbeRay& ray, const mat4& worldFromObject) {
+  const oracle::Ray local = toObject(ray, worldFromObject);
+  Expected result{oracle::firstHit(oracle::crossings(primitive, local), ray.tmin, ray.tmax), false};
+  // Moved sideways by a few roundings, the ray must tell the same story.
+  const double e = 4e-6 * (glm::length(local.origin) + 4.0);
+  for (int k = 0; k < 6; ++k) {
+    dvec3 by(0.0);
+    by[k / 2] = k % 2 ? e : -e;
+    const auto moved = oracle::firstHit(oracle::crossings(primitive, {local.origin + by, local.direction}), ray.tmin, ray.tmax);
+    if (moved.has_value() != result.hit.has_value() ||
+        (moved && (moved->entering != result.hit->entering || glm::dot(moved->normal, result.hit->normal) < 0.99 ||
+                   std::abs(moved->t - result.hit->t) * glm::length(local.direction) > 0.1)))
+      result.doubtful = true;
+  }
+  return result;
+}
+
+// Rays from around, from inside, along an axis of the solid, with limits; directions of any length.
+std::vector<ProbeRay> raysAround(Random& random, std::size_t count, const mat4& worldFromPrimitive) {
+  std::vector<ProbeRay> rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    const vec3 from = i % 4 == 0 ? random.inBox(1.2f) : random.onSphere() * random.uniform(1.5f, i % 4 == 1 ? 50.0f : 4.0f);
+    vec3 along = random.inBox(1.3f) - from;
+    if (i % 11 == 0) along = vec3(glm::equal(glm::uvec3(0, 1, 2), glm::uvec3(random.below(3)))) * (random.below(2) == 1 ? 1.0f : -1.0f);
+    along *= std::exp(random.uniform(-3.0f, 3.0f));
+    ProbeRay ray;
+    ray.origin = worldFromPrimitive * vec4(from, 1.0f);
+    ray.direction = worldFromPrimitive * vec4(along, 0.0f);
+    const float unit = 1.0f / glm::length(along);
+    if (i % 3 == 0) ray.tmin = random.uniform(0.0f, 1.0f) * glm::length(from) * unit;
+    if (i % 7 == 0) ray.tmax = ray.tmin + random.uniform(0.0f, 2.0f) * unit;
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+Primitive randomPrimitive(Random& random, PrimitiveType type, float stretch) {
+  Primitive primitive;
+  primitive.type = type;
+  primitive.objectFromPrimitive = random.affine(stretch, 3.0f);
+  primitive.parameter = random.uniform(0.02f, 0.95f);
+  return primitive;
+}
+
+struct Agreement {
+  std::size_t hits = 0, doubtful = 0;
+};
+
+void compare(const ProbeHit& hit, const ProbeRay& ray, const Expected& expected, const Primitive& primitive, const mat4& worldFromObject) {
+  ASSERT_EQ(hit.t >= 0.0f, expected.hit.has_value()) << "t " << hit.t << " instead of " << (expected.hit ? expected.hit->t : -1.0);
+  EXPECT_EQ(hit.visible, !expected.hit.has_value());
+  if (!expected.hit) return;
+  // Roundings of the way there count as a length; a ray that grazes turns it into a longer way.
+  const dvec3 d(ray.direction);
+  const dvec3 normal = glm::normalize(glm::transpose(glm::inverse(oracle::dmat3(dmat4(worldFromObject)))) * expected.hit->normal);
+  const double length = glm::length(d), cosine = std::abs(glm::dot(normal, d)) / length;
+  const double scale = glm::length(dvec3(ray.origin)) + std::abs(expected.hit->t) * length + glm::length(dvec3(hit.position));
+  EXPECT_NEAR(hit.t, expected.hit->t, 4e-6 * scale / length / std::max(cosine, 0.01));
+  EXPECT_EQ(hit.front, expected.hit->entering);
+  EXPECT_FALSE(hit.flipped);
+  // On the side of the ray; the oracle's points out.
+  EXPECT_GT(glm::dot(dvec3(hit.normal), hit.front ? normal : -normal), 0.999);
+  EXPECT_NEAR(glm::length(hit.normal), 1.0f, 1e-5f);
+  const dvec3 point = dvec3(ray.origin) + static_cast<double>(hit.t) * d;
+  EXPECT_LT(glm::length(dvec3(hit.position) - point), 1e-5 * scale / std::max(cosine, 0.01));
+  // The point itself, from wherever the ray came, lies on the surface.
+  const dmat4 worldFromPrimitive = dmat4(worldFromObject) * dmat4(primitive.objectFromPrimitive);
+  const auto fromPoint = oracle::crossings(primitive, toObject({.origin = hit.position, .direction = hit.normal}, worldFromObject));
+  double nearest = 1e30;
+  for (const oracle::Crossing& crossing : fromPoint) nearest = std::min(nearest, std::abs(crossing.t));
+  EXPECT_LT(nearest, static_cast<double>(hit.error)) << "error bound " << hit.error;
+  EXPECT_LT(hit.error, 3e-5 * (glm::length(dvec3(worldFromPrimitive[3])) + glm::length(dvec3(hit.position)) + 1.0));
+}
+
+class Solids : public testing::TestWithParam<PrimitiveType> {};
+
+TEST_P(Solids, AgreeWithTheOracle) {
+  Random random(100 + static_cast<std::uint32_t>(GetParam()));
+  Agreement agreement;
+  std::size_t count = 0;
+  for (int round = 0; round < 6; ++round) {
+    const float stretch = round < 2 ? 1.0f : 3.0f;
+    const Primitive primitive = randomPrimitive(random, GetParam(), stretch);
+    const mat4 worldFromObject = round % 2 ? random.affine(stretch, 5.0f) : mat4(1.0f);
+    const std::vector<ProbeRay> rays = raysAround(random, 2000, worldFromObject * primitive.objectFromPrimitive);
+    const std::vector<ProbeHit> hits = probe(sceneOf(solidsOf({primitive}), worldFromObject), rays);
+    for (std::size_t i = 0; i < rays.size(); ++i, ++count) {
+      const Expected expected = expect(primitive, rays[i], worldFromObject);
+      agreement.doubtful += expected.doubtful;
+      if (expected.doubtful) continue;
+      agreement.hits += expected.hit.has_value();
+      SCOPED_TRACE(testing::Message() << nameOf(GetParam()) << " " << round << " ray " << i);
+      compare(hits[i], rays[i], expected, primitive, worldFromObject);
+      if (HasFatalFailure()) return;
+    }
+  }
+  std::printf("%zu rays: %zu hits, %zu doubtful\n", count, agreement.hits, agreement.doubtful);
+  EXPECT_GT(agreement.hits, count / 4);
+  EXPECT_LT(agreement.doubtful, count / 100);
+}
+
+// How a ray leaves: steeply, and so flat that the offset is all that keeps it off the surface.
+constexpr std::array kCosines{1.0f, 0.3f, 1e-2f, 1e-4f, 1e-6f};
+
+vec3 flatDirection(Random& random, const vec3& normal, float cosine) {
+  const vec3 along = glm::normalize(glm::cross(normal, random.onSphere()));
+  return cosine * normal + std::sqrt(1.0f - cosine * cosine) * along;
+}
+
+struct Place {
+  const char* name;
+  mat4 worldFromObject;
+  mat4 objectFromPrimitive;
+};
+
+std::vector<Place> places(Random& random) {
+  const mat4 one(1.0f);
+  return {{"as it is", one, one},
+          {"small", one, glm::scale(one, vec3(1e-3f))},
+          {"large", glm::scale(one, vec3(1e4f)), one},
+          {"far off in its object", one, glm::translate(one, vec3(700, -500, 510))},
+          {"far off in the world", glm::translate(one, vec3(700, -500, 510)), one},
+          {"turned and stretched", random.affine(3.0f, 5.0f), random.affine(3.0f, 5.0f)},
+          {"flat", one, random.rotation() * glm::scale(one, vec3(1, 0.02f, 1))},
+          {"flat in the world", random.rotation() * glm::scale(one, vec3(1, 1, 0.02f)), random.rotation()}};
+}
+
+// From a point on a convex solid, nothing of it lies outside; and whoever goes inside comes out again.
+TEST_P(Solids, AreNotMetByRaysThatLeaveThem) {
+  Random random(200 + static_cast<std::uint32_t>(GetParam()));
+  for (const Place& place : places(random)) {
+    SCOPED_TRACE(testing::Message() << nameOf(GetParam()) << " " << place.name);
+    Primitive primitive;
+    primitive.type = GetParam();
+    primitive.objectFromPrimitive = place.objectFromPrimitive;
+    const scene::Scene scene = sceneOf(solidsOf({primitive}), place.worldFromObject);
+    const mat4 worldFromPrimitive = place.worldFromObject * place.objectFromPrimitive;
+    std::vector<ProbeRay> rays = raysAround(random, 2500, worldFromPrimitive), second;
+    for (ProbeRay& ray : rays) ray.tmin = 0.0f, ray.tmax = 1e30f;
+    const std::vector<ProbeHit> first = probe(scene, rays);
+    std::vector<const ProbeHit*> from;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      if (first[i].t < 0.0f) continue;
+      for (const float sign : {1.0f, -1.0f}) {
+        const vec3 direction = flatDirection(random, sign * first[i].normal, kCosines[i % kCosines.size()]);
+        second.push_back({.origin = leave(first[i], direction), .direction = direction});
+        from.push_back(&first[i]);
+      }
+    }
+    const std::vector<ProbeHit> hits = probe(scene, second);
+    std::size_t outside = 0, inside = 0, wrongOutside = 0, wrongInside = 0, pastEdge = 0;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const oracle::Ray local = toObject(second[i], place.worldFromObject);
+      // first[i].normal is on the ray's side: sign +1 and front means outside.
+      const bool goesOutside = from[i]->front == (i % 2 == 0);
+      if (goesOutside) {
+        ++outside;
+        // The torus may be met again: where its exact double says so.
+        const bool again = GetParam() == PrimitiveType::torus && oracle::firstHit(oracle::crossings(primitive, local), 0.0, 1e30);
+        wrongOutside += hits[i].t >= 0.0f && !(again && hits[i].front);
+      } else if (!oracle::inside(primitive, local.origin)) {
+        ++pastEdge;  // from the very edge of a face, or an apex
+      } else {
+        ++inside;
+        wrongInside += hits[i].t < 0.0f || hits[i].front;
+      }
+    }
+    EXPECT_EQ(wrongOutside, 0u) << "of " << outside;
+    EXPECT_EQ(wrongInside, 0u) << "of " << inside;
+    EXPECT_GT(outside, 300u);
+    EXPECT_LE(pastEdge, inside / 300);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Solids, testing::ValuesIn(kTypes), [](const auto& type) { return std::string(nameOf(type.param)); });
+
+}  // namespace
+}  // namespace quintet::test
