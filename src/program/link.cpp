@@ -67,6 +67,8 @@ const CompiledProgram::Stage& CompiledProgram::stage(const std::string& file) co
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
                         const std::vector<std::pair<std::string, std::string>>& defines) {
   const auto start = std::chrono::steady_clock::now();
+  const auto isError = [](const shader::Diagnostic& d) { return d.severity == shader::Severity::error; };
+  if (std::ranges::any_of(program.diagnostics, isError)) return {.stages = {}, .diagnostics = program.diagnostics};
   const std::vector<std::string> files = usedFiles(program);
   std::map<std::string, std::string> virtualFiles = generatedFiles(program);
   for (const auto& [name, text] : program.files) virtualFiles[program.path(name)] = text;
@@ -86,9 +88,15 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
     compiled.stages[i] = {files[i], source.stage, std::move(results[i].spirv)};
   });
   compiled.ok = true;
+  compiled.diagnostics = program.diagnostics;
   for (std::size_t i = 0; i < files.size(); ++i) {
     compiled.ok = compiled.ok && !compiled.stages[i].spirv.empty();
-    std::move(results[i].diagnostics.begin(), results[i].diagnostics.end(), std::back_inserter(compiled.diagnostics));
+    // What stages share (common text, an included file) says the same in each of them.
+    for (shader::Diagnostic& d : results[i].diagnostics) {
+      const std::string line = d.format();
+      if (std::ranges::none_of(compiled.diagnostics, [&](const shader::Diagnostic& known) { return known.format() == line; }))
+        compiled.diagnostics.push_back(std::move(d));
+    }
     for (const std::filesystem::path& file : results[i].files)
       if (std::ranges::find(compiled.files, file) == compiled.files.end()) compiled.files.push_back(file);
   }

@@ -9,6 +9,7 @@
 #include "base/embedded.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "program/lecture.h"
 #include "program/program_parser.h"
 
 namespace quintet {
@@ -42,7 +43,7 @@ const std::vector<std::string>& geometryClasses() {
 }
 
 std::string_view outputKindName(OutputKind kind) {
-  constexpr std::array<std::string_view, 5> kNames{"color", "linear", "normal", "depth", "id"};
+  constexpr std::array<std::string_view, 6> kNames{"color", "linear", "normal", "depth", "id", "display"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -87,10 +88,13 @@ std::vector<std::string> builtInPrograms() {
   constexpr std::string_view kEnd = "/program.toml";
   for (const EmbeddedFile& file : embeddedPrograms())
     if (file.path.ends_with(kEnd)) names.emplace_back(file.path.substr(0, file.path.size() - kEnd.size()));
+  std::ranges::copy(builtInLectures(), std::back_inserter(names));
+  std::ranges::sort(names);
   return names;
 }
 
 Program loadProgram(const std::string& nameOrFolder) {
+  if (std::optional<Program> lecture = findLecture(nameOrFolder)) return std::move(*lecture);
   std::error_code ignored;
   fs::path path = nameOrFolder;
   if (path.filename() == "program.toml" && fs::is_regular_file(path, ignored)) path = path.has_parent_path() ? path.parent_path() : ".";

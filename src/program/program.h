@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "program/parameter.h"
+#include "shader/compiler.h"
 
 namespace quintet::program {
 
@@ -67,8 +68,9 @@ struct Callable {
   int line = 0;
 };
 
-// What the numbers of an output are: how a picture of it is best shown.
-enum class OutputKind { color, linear, normal, depth, id };
+// What the numbers of an output are: how a picture of it is best shown. display: sRGB-encoded, as a screen shows them;
+// all others are linear.
+enum class OutputKind { color, linear, normal, depth, id, display };
 std::string_view outputKindName(OutputKind);  // as in program.toml
 
 struct Output {
@@ -103,6 +105,9 @@ struct Program {
   bool keepsInstanceOrder = false;     // gl_InstanceID is the instance's index in the scene (costs speed on lavapipe)
   std::uint32_t samplesPerLaunch = 1;  // samples per pixel that the ray generation shader can loop over
 
+  // What a front end found (lecture.h): an error here is a program that does not compile.
+  std::vector<shader::Diagnostic> diagnostics;
+
   // Default scene, a file of the program: what [program] or the lecture file's comment "// scene: FILE" names, else
   // the folder's only *.scene.toml; empty: none.
   std::string scene;
@@ -112,7 +117,7 @@ struct Program {
   std::map<std::string, std::string> files;       // every file of the folder: relative path → text
 
   // Path of a file as diagnostics show it.
-  std::string path(const std::string& file) const { return isLibraryStage(file) ? file : origin + "/" + file; }
+  std::string path(const std::string& file) const { return isLibraryStage(file) || origin.empty() ? file : origin + "/" + file; }
 };
 
 // Every miss shader in the order of the table: those of the ray types, then the others.
@@ -122,8 +127,8 @@ std::vector<std::string> outputNames(const Program& program);
 // Sets `program.scene` to the only *.scene.toml of its files if nothing else was named.
 void chooseDefaultScene(Program& program);
 
-// `nameOrFolder`: a folder with program.toml (or that file itself), or the name of a built-in
-// program. Throws FileError (with line) for a description that is wrong, UsageError with the nearest
+// `nameOrFolder`: a folder with program.toml (or that file itself), a file NAME.rt.glsl (lecture.h), or the name of
+// a built-in program. Throws FileError (with line) for a description that is wrong, UsageError with the nearest
 // name for a program that does not exist.
 Program loadProgram(const std::string& nameOrFolder);
 

@@ -62,8 +62,10 @@ struct DeviceScene::Impl {
     buildBottomLevel(scene);
     uploadTables(scene);
     defines = featureDefines(scene, environment);
-    if (context.info().quirks.corruptsHitAttributes && hasAlpha())
-      defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
+    if (context.info().quirks.corruptsHitAttributes) {
+      defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
+      if (hasAlpha()) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
+    }
     statistics.geometryBytes = geometry.bytes;
     statistics.textureBytes = textures->bytes();
   }
@@ -160,6 +162,7 @@ struct DeviceScene::Impl {
     }
     topLevel.emplace(context, scene, places);
     frame.instances = topLevel->table();
+    frame.instanceCount = static_cast<std::uint32_t>(scene.instances.size());
   }
 
   void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder) {

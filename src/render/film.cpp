@@ -32,8 +32,8 @@ std::unique_ptr<gpu::ComputePipeline> makeAddPipeline(gpu::Context& context, con
 }  // namespace
 
 Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler, Region region,
-           const std::vector<std::string>& outputs)
-    : context_(context), region_(region), outputs_(outputs), add_(makeAddPipeline(context, set, compiler)) {
+           const std::vector<std::string>& outputs, program::Accumulation accumulation)
+    : context_(context), region_(region), outputs_(outputs), accumulation_(accumulation), add_(makeAddPipeline(context, set, compiler)) {
   const VkDeviceSize pixels = VkDeviceSize{region.width} * region.height;
   if (outputs.size() > shared::kMaxOutputs) throw UsageError(fmt::format("{} outputs: at most {} are possible", outputs.size(), shared::kMaxOutputs));
   for (const std::string& name : outputs) {
@@ -58,7 +58,10 @@ void Film::describe(shared::Frame& frame) const {
   frame.filmWidth = region_.width;
   frame.filmHeight = region_.height;
   frame.statistics = statistics_.address();
-  for (std::size_t i = 0; i < batch_.size(); ++i) frame.outputs[i] = batch_[i].address();
+  for (std::size_t i = 0; i < batch_.size(); ++i) {
+    frame.outputs[i] = batch_[i].address();
+    if (accumulation_ == program::Accumulation::program) frame.previousOutputs[i] = total_[i].address();
+  }
 }
 
 void Film::beginBatch(gpu::Commands& commands) {
@@ -68,6 +71,12 @@ void Film::beginBatch(gpu::Commands& commands) {
 }
 
 void Film::endBatch(gpu::Commands& commands) {
+  if (accumulation_ == program::Accumulation::program) {
+    commands.barrier(gpu::Stage::rayTracing, gpu::Stage::transfer);
+    for (std::size_t i = 0; i < batch_.size(); ++i) commands.copy(batch_[i], total_[i], total_[i].size());
+    commands.barrier(gpu::Stage::transfer, gpu::Stage::all);
+    return;
+  }
   commands.barrier(gpu::Stage::rayTracing, gpu::Stage::compute);
   for (std::size_t i = 0; i < batch_.size(); ++i) {
     shared::FilmAdd pass{};
@@ -86,6 +95,7 @@ io::Image Film::download(std::size_t output, std::uint64_t sampleCount) const {
   io::Image image = io::makeImage(region_.width, region_.height, 4, io::PixelType::f32, io::ColorEncoding::linear);
   image.premultiplied = true;
   total_[output].download(image.data);
+  if (accumulation_ == program::Accumulation::program) return image;
   const float scale = sampleCount ? 1.0f / static_cast<float>(sampleCount) : 0.0f;
   for (float& value : image.samples<float>()) value *= scale;
   return image;

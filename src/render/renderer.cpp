@@ -9,6 +9,7 @@
 
 #include "gpu/timer.h"
 #include "io/codec.h"
+#include "io/color.h"
 #include "render/parameter_textures.h"
 
 namespace quintet::render {
@@ -33,6 +34,16 @@ std::string firstError(const std::vector<shader::Diagnostic>& diagnostics) {
   for (const shader::Diagnostic& d : diagnostics)
     if (d.severity == shader::Severity::error) return d.format();
   return "the program does not compile";
+}
+
+// Display values (sRGB) to linear light. The program's alpha counts where a transparent picture is wanted.
+void decodeDisplay(io::Image& image, bool transparent) {
+  const std::span<float> values = image.samples<float>();
+  for (std::size_t i = 0; i + 3 < values.size(); i += 4) {
+    const float alpha = transparent ? std::clamp(values[i + 3], 0.0f, 1.0f) : 1.0f;
+    for (std::size_t c = i; c < i + 3; ++c) values[c] = alpha * io::linearFromSrgb(values[c]);
+    values[i + 3] = alpha;
+  }
 }
 
 }  // namespace
@@ -62,13 +73,14 @@ struct Renderer::Impl {
     const Region region = checkedRegion(settings);
     if (settings.timeoutSeconds <= 0) settings.timeoutSeconds = context.info().quirks.software ? 600 : 60;
     link(compiler, cache);
-    film = std::make_unique<Film>(context, scene.set(), compiler, region, program::outputNames(program));
+    film = std::make_unique<Film>(context, scene.set(), compiler, region, program::outputNames(program), program.accumulation);
 
     shared::Frame frame = scene.frameTemplate();
     frame.camera = makeCamera(settings.camera, settings.width, settings.height);
     frame.width = settings.width;
     frame.height = settings.height;
     frame.seed = settings.seed;
+    frame.frameCount = settings.frameCount;
     frame.flags = settings.transparent ? shared::kFrameTransparent : 0;
     frame.rayRecords = settings.rayRecords ? settings.rayRecords->address() : 0;
     frame.rayRecordCapacity = settings.rayRecords ? settings.rayRecordCapacity : 0;
@@ -135,7 +147,41 @@ struct Renderer::Impl {
     pixelSamplesPerSecond = pixelSamplesPerSecond > 0 ? std::min(rate, 2.0 * pixelSamplesPerSecond) : 0.25 * rate;
   }
 
+  bool accumulates() const { return description.accumulation == program::Accumulation::program; }
+
+  bool renderFrames(std::uint32_t count, const BatchProgress& progress) {
+    bool goOn = true;
+    for (std::uint32_t i = 0; i < count && goOn; ++i) {
+      const BatchProgress part = [&](double fraction) { return goOn = !progress || progress((i + fraction) / count); };
+      if (!renderFrame(static_cast<std::uint32_t>(statistics.samples), part)) return false;
+    }
+    return goOn;
+  }
+
+  bool renderFrame(std::uint32_t index, const BatchProgress& progress) {
+    assert(accumulates());
+    const auto start = Clock::now();
+    const std::uint32_t height = film->region().height;
+    for (std::uint32_t row = 0; row < height;) {
+      const std::uint32_t rows = launchRows(height - row, 1);
+      launch(row, rows, index, 1, row == 0, row + rows == height);
+      row += rows;
+      if (progress && !progress(static_cast<double>(row) / height) && row < height) return false;
+    }
+    statistics.batches++;
+    statistics.samples++;
+    statistics.renderSeconds += secondsSince(start);
+    return true;
+  }
+
+  io::Image image(std::size_t output) const {
+    io::Image result = film->download(output, statistics.samples);
+    if (description.outputs[output].kind == program::OutputKind::display) decodeDisplay(result, settings.transparent);
+    return result;
+  }
+
   bool renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) {
+    if (accumulates()) return renderFrames(sampleCount, progress);
     assert(sampleCount >= 1 && sampleCount <= kBatchSamples);
     const auto start = Clock::now();
     const std::uint32_t height = film->region().height;
@@ -165,7 +211,8 @@ Renderer::~Renderer() = default;
 
 bool Renderer::renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) { return impl_->renderBatch(sampleCount, progress); }
 const Film& Renderer::film() const { return *impl_->film; }
-io::Image Renderer::image(std::size_t output) const { return impl_->film->download(output, impl_->statistics.samples); }
+bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) { return impl_->renderFrame(index, progress); }
+io::Image Renderer::image(std::size_t output) const { return impl_->image(output); }
 RayCount Renderer::rays() const { return impl_->film->countRays(); }
 const RenderStatistics& Renderer::statistics() const { return impl_->statistics; }
 const std::vector<shader::Diagnostic>& Renderer::diagnostics() const { return impl_->diagnostics; }

@@ -24,6 +24,7 @@ struct RenderSettings {
   std::vector<std::pair<std::string, std::string>> defines;  // for all shaders of the program
   const gpu::Buffer* rayRecords = nullptr;  // shared::RayRecord, rayRecordCapacity per pixel: for benchmarks
   std::uint32_t rayRecordCapacity = 0;
+  std::uint32_t frameCount = 0;  // frames of this run, for programs that accumulate (frameSize); 0: it has no end
   double launchSeconds = 0.25;  // a launch is cut so that it takes about this long
   // A launch that takes longer: gpu::DeviceLostError. 0: 60, or 600 on a CPU, whose first launch compiles.
   double timeoutSeconds = 0;
@@ -45,7 +46,7 @@ struct RenderStatistics {
   double firstLaunchSeconds = 0; // first launch, with what the driver still compiles in it
   double renderSeconds = 0;      // wall clock of all batches
   double deviceSeconds = 0;      // timestamps around all launches
-  std::uint64_t samples = 0;     // per pixel
+  std::uint64_t samples = 0;     // per pixel; frames, where the program accumulates
   std::uint64_t batches = 0;
 };
 
@@ -63,10 +64,16 @@ class Renderer {
   Renderer& operator=(const Renderer&) = delete;
 
   // Renders the next batch of kBatchSamples samples per pixel, or fewer for the last one. False: given up.
+  // Of a program that accumulates (program::Accumulation): the next frames, one launch of the picture each.
   bool renderBatch(std::uint32_t sampleCount = kBatchSamples, const BatchProgress& progress = {});
+  // For programs that accumulate: the frame with this index, frameID for the program. False: given up, the picture
+  // remains the frame before.
+  bool renderFrame(std::uint32_t index, const BatchProgress& progress = {});
 
   const Film& film() const;
-  io::Image image(std::size_t output = 0) const;  // mean of all samples so far; linear, premultiplied RGBA
+  // Mean of all samples so far, or the last frame; linear, premultiplied RGBA. An output of display values
+  // (program::Program) is decoded, so that a picture file of 8 bits holds what the program wrote.
+  io::Image image(std::size_t output = 0) const;
   RayCount rays() const;
   const RenderStatistics& statistics() const;
   // Warnings and notes of the compiler.

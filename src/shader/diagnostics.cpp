@@ -133,8 +133,7 @@ std::vector<Diagnostic> parseMessages(std::string_view messages, const IncludeRe
     Diagnostic diagnostic;
     diagnostic.id = kCompilerId;
     if (parseMessage(message, known, diagnostic)) {
-      if (const SourceFile* file = files.find(diagnostic.file))
-        diagnostic.column = columnOfToken(file->text, diagnostic.line, diagnostic.text);
+      diagnostic.column = columnOfToken(files.textOf(diagnostic.file), diagnostic.line, diagnostic.text);
       if (!isNoise(diagnostic)) diagnostics.push_back(std::move(diagnostic));
     } else if (diagnostics.empty()) {
       diagnostic.file = files.root().name;

@@ -125,6 +125,12 @@ const SourceFile* IncludeResolver::find(std::string_view name) const {
   return at == files_.end() ? nullptr : &at->second;
 }
 
+std::string_view IncludeResolver::textOf(std::string_view name) const {
+  if (const SourceFile* file = find(name)) return file->text;
+  const auto at = source_.virtualFiles.find(std::string(name));
+  return at == source_.virtualFiles.end() ? std::string_view() : std::string_view(at->second);
+}
+
 std::vector<const SourceFile*> IncludeResolver::files() const {
   std::vector<const SourceFile*> all{&root_};
   for (const auto& [name, file] : files_) all.push_back(&file);

@@ -40,6 +40,9 @@ class IncludeResolver {
   const SourceFile* resolve(const SourceFile& from, const IncludeDirective& include);
   // The file that diagnostics call `name`; null: none.
   const SourceFile* find(std::string_view name) const;
+  // The text of the file that diagnostics call `name`: one of those, or a virtual file that the source names by
+  // #line "name"; empty: none.
+  std::string_view textOf(std::string_view name) const;
   // Every file found so far and the root.
   std::vector<const SourceFile*> files() const;
   // Where resolve looks, in order, for an error message.

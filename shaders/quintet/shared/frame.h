@@ -83,6 +83,7 @@ struct Frame {
   Address statistics;   // uvec2[filmWidth · filmHeight]: rays traced, samples dropped; 0: do not count
   Address rayRecords;   // RayRecord[filmWidth · filmHeight · rayRecordCapacity], for benchmarks; else 0
   Address outputs[kMaxOutputs];  // vec4[filmWidth · filmHeight]: sums of this batch, rows top to bottom
+  Address previousOutputs[kMaxOutputs];  // vec4[…]: the frame before, where the program accumulates; 0: there is none
   EnvironmentData environment;
   CameraData camera;
   uint width;           // pixels of the whole image
@@ -95,9 +96,11 @@ struct Frame {
   uint seed;
   uint flags;           // kFrame…
   uint rayRecordCapacity;  // records per pixel
+  uint instanceCount;
+  uint frameCount;      // frames of this run, where the program accumulates; 0: it has no end
   uint padding;
 };
-QT_SHARED_SIZE(Frame, 8 * 9 + 8 * 16 + 40 + 72 + 48);
+QT_SHARED_SIZE(Frame, 8 * 9 + 2 * 8 * 16 + 40 + 72 + 56);
 
 // Push constants of the pass that adds a batch to the total; its workgroups form rows of kFilmAddColumns.
 QT_CONSTANT kFilmAddGroupSize = 64;
@@ -115,7 +118,7 @@ struct Launch {
   Address frame;        // Frame
   Address parameters;   // the program's parameter block (generated struct Parameters)
   uvec2 offset;         // pixel of launch invocation (0,0)
-  uint firstSample;     // index of the first sample of this launch
+  uint firstSample;     // index of the first sample of this launch; of the frame, where the program accumulates
   uint sampleCount;     // samples to take per pixel in this launch
 };
 QT_SHARED_SIZE(Launch, 32);

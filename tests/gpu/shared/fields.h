@@ -104,8 +104,8 @@ GPU_FIELDS(BoxData, min, max);
 GPU_FIELDS(CameraData, worldFromCamera, halfSize, apertureRadius, focusDistance, orthographic, padding);
 GPU_FIELDS(RayRecord, origin, tmax, direction, kind);
 GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics, rayRecords,
-           outputs, environment, camera, width, height, filmOffset, filmWidth, filmHeight, lightCount, environmentLight,
-           seed, flags, rayRecordCapacity, padding);
+           outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth, filmHeight, lightCount,
+           environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount, padding);
 GPU_FIELDS(FilmAdd, total, batch, count, padding);
 GPU_FIELDS(Launch, frame, parameters, offset, firstSample, sampleCount);
 

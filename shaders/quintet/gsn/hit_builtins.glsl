@@ -1,0 +1,80 @@
+// The built-ins of a hit, copied when the shader begins: drivers exist where a nested trace overwrites them
+// (docs/design/quirks.md). Primitives and instances are named by their index in the scene, whatever order the
+// acceleration structure has.
+uint gsnPrimitive_;
+uint gsnInstance_;
+uint gsnGeometryIndex_;
+int gsnCustomIndex_;
+mat4x3 gsnObjectToWorld_;
+mat4x3 gsnWorldToObject_;
+int gsnPrimitive() { return int(gsnPrimitive_); }
+int gsnInstance() { return int(gsnInstance_); }
+int gsnGeometryIndex() { return int(gsnGeometryIndex_); }
+int gsnCustomIndex() { return gsnCustomIndex_; }
+mat4x3 gsnObjectToWorld() { return gsnObjectToWorld_; }
+mat4x3 gsnWorldToObject() { return gsnWorldToObject_; }
+mat3x4 gsnObjectToWorld3x4() { return transpose(gsnObjectToWorld_); }
+mat3x4 gsnWorldToObject3x4() { return transpose(gsnWorldToObject_); }
+#ifndef QUINTET_GSN_INTERSECTION
+uint gsnHitKind_;
+uint gsnHitKind() { return gsnHitKind_; }
+#endif
+
+GeometryData gsnHitGeometry_() {
+  return GeometryArray(frame.geometries).at[InstanceArray(frame.instances).at[gsnInstance_].firstGeometry + gsnGeometryIndex_];
+}
+
+#if defined(QUINTET_GSN_TRIANGLES)
+hitAttributeEXT vec2 gsnBaryAttribute_;
+vec2 baryCoord;
+
+// By Cramer's rule from the ray, where the attribute may be that of a candidate that was rejected later.
+vec2 gsnBaryFromRay_(GeometryData geometry) {
+  const uvec3 v = Uvec3Array(geometry.triangles).at[gsnPrimitive_];
+  Vec3Array positions = Vec3Array(geometry.positions);
+  const vec3 a = positions.at[v.x];
+  const vec3 i = positions.at[v.y] - a;
+  const vec3 j = positions.at[v.z] - a;
+  const vec3 k = gl_ObjectRayOriginEXT - a;
+  const vec3 rxj = cross(gl_ObjectRayDirectionEXT, j);
+  const float determinant = dot(rxj, i);
+  const vec2 uv = vec2(dot(rxj, k), dot(cross(k, i), gl_ObjectRayDirectionEXT)) * (determinant != 0.0 ? 1.0 / determinant : 0.0);
+  const vec2 b = clamp(uv, 0.0, 1.0);
+  return b / max(1.0, b.x + b.y);
+}
+#elif !defined(QUINTET_GSN_INTERSECTION)
+const vec2 baryCoord = vec2(0.0);
+#endif
+
+#ifdef QUINTET_GSN_INTERSECTION
+#ifdef QUINTET_CORRUPTS_HIT_ATTRIBUTES
+const bool gsnCorruptsAttributes_ = true;
+#else
+const bool gsnCorruptsAttributes_ = false;
+#endif
+float gsnNearest_;  // the closest hit so far, with those that this invocation has reported
+bool gsnInRange_(float t) { return t >= gl_RayTminEXT && t <= gsnNearest_; }
+bool gsnReportRaw_(float t, uint hitKind) { return reportIntersectionEXT(t, hitKind); }
+#endif
+
+void gsnLoadHit_() {
+  gsnInstance_ = uint(gl_InstanceCustomIndexEXT);
+  gsnCustomIndex_ = int(InstanceArray(frame.instances).at[gsnInstance_].customIndex);
+  gsnGeometryIndex_ = uint(gl_GeometryIndexEXT);
+  gsnObjectToWorld_ = gl_ObjectToWorldEXT;
+  gsnWorldToObject_ = gl_WorldToObjectEXT;
+  const GeometryData geometry = gsnHitGeometry_();
+  gsnPrimitive_ = geometry.primitiveMap != 0ul ? UintArray(geometry.primitiveMap).at[gl_PrimitiveID] : uint(gl_PrimitiveID);
+#ifdef QUINTET_GSN_INTERSECTION
+  gsnNearest_ = gl_RayTmaxEXT;
+#else
+  gsnHitKind_ = gl_HitKindEXT;
+#endif
+#ifdef QUINTET_GSN_TRIANGLES
+#if defined(QUINTET_CORRUPTS_HIT_ATTRIBUTES) && defined(QUINTET_GSN_CANDIDATES) && defined(QUINTET_GSN_CLOSEST_HIT)
+  baryCoord = gsnBaryFromRay_(geometry);
+#else
+  baryCoord = gsnBaryAttribute_;
+#endif
+#endif
+}

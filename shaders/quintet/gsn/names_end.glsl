@@ -1,0 +1,58 @@
+// Takes the renaming back, and puts the program's view over the built-ins that differ between drivers, strips and
+// orders of primitives: from here on gl_PrimitiveID is the index in the scene's own order, and so on.
+#ifndef QUINTET_GSN_OPEN
+#undef AliasArray
+#undef AliasEntry
+#undef CameraData
+#undef EnvironmentData
+#undef FilmAdd
+#undef FloatArray
+#undef Frame
+#undef FrameReference
+#undef GeometryArray
+#undef GeometryData
+#undef InstanceArray
+#undef InstanceData
+#undef Launch
+#undef LaunchBlock
+#undef LightArray
+#undef LightData
+#undef MaterialArray
+#undef MaterialData
+#undef OutputArray
+#undef Parameters
+#undef ParametersReference
+#undef RayRecord
+#undef TextureData
+#undef UintArray
+#undef Uvec3Array
+#undef Vec2Array
+#undef Vec3Array
+#undef Vec4Array
+#undef kInfinity
+#undef kPi
+#undef launch
+#undef luminance
+#undef maxComponent
+#undef textures
+#undef Address
+#undef frame
+#undef parameters
+#endif
+
+#define gl_LaunchIDEXT gsnLaunchID()
+#define gl_LaunchSizeEXT gsnLaunchSize()
+#ifdef QUINTET_GSN_HIT
+#define gl_PrimitiveID gsnPrimitive()
+#define gl_InstanceID gsnInstance()
+#define gl_InstanceCustomIndexEXT gsnCustomIndex()
+#define gl_GeometryIndexEXT gsnGeometryIndex()
+#define gl_ObjectToWorldEXT gsnObjectToWorld()
+#define gl_WorldToObjectEXT gsnWorldToObject()
+#define gl_ObjectToWorld3x4EXT gsnObjectToWorld3x4()
+#define gl_WorldToObject3x4EXT gsnWorldToObject3x4()
+#ifndef QUINTET_GSN_INTERSECTION
+#define gl_HitKindEXT gsnHitKind()
+#endif
+#endif
+#define sampler2D gsnImage

@@ -1,0 +1,296 @@
+#include "program/lecture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <deque>
+
+#include "base/embedded.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "program/glsl_names.h"
+#include "program/lecture_stage.h"
+#include "shader/include_resolver.h"
+
+namespace quintet {
+std::span<const EmbeddedFile> embeddedPrograms();
+}
+
+namespace quintet::program {
+namespace {
+
+namespace fs = std::filesystem;
+using shader::Stage;
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxIncludes = 64;
+constexpr const char* kRay = "ray";
+constexpr std::array<std::string_view, 3> kUserTypes{"RayPayloadType", "HitAttributeType", "CallableDataType"};
+
+// A name that can stand in #line "…".
+std::string quotable(std::string name) {
+  for (char& c : name)
+    if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = '_';
+  return name;
+}
+
+bool definesType(const LectureText& source, std::string_view name) {
+  for (std::size_t i = 0; i < source.tokens.size(); ++i) {
+    const Token& token = source.tokens[i];
+    if (token.dead || token.kind != TokenKind::word || textOf(source.text, token) != "struct") continue;
+    const std::size_t next = nextCode(source.tokens, i + 1);
+    if (next < source.tokens.size() && textOf(source.text, source.tokens[next]) == name) return true;
+  }
+  return source.declares(name);
+}
+
+class Builder {
+ public:
+  Builder(Program& program, const std::string& text) : program_(program), errors_(text, source_.file) { source_.text = text; }
+
+  void build(const std::string& file) {
+    source_.file = quotable(program_.path(file));
+    errors_ = LectureErrors(source_.text, program_.path(file));
+    source_.tokens = tokenize(source_.text);
+    source_.split = splitLecture(source_.text, source_.tokens, errors_);
+    source_.uniforms = findUniforms(source_.text, source_.tokens, errors_);
+    lookIntoIncludes();
+    findImplicitNames();
+    addParameters();
+    const auto& mains = source_.split.mains;
+    source_.hasCandidates = std::ranges::any_of(mains, [](const LectureMain& m) { return m.stage == Stage::anyHit || m.stage == Stage::intersection; });
+    program_.diagnostics = errors_.all();
+    if (program_.diagnostics.empty()) addStages(file);
+  }
+
+ private:
+  // What included files tell: types of the user's, names, and whether the library is wanted.
+  void lookIntoIncludes() {
+    for (const auto& [name, text] : program_.files) includes_.push_back({text, tokenize(text)});
+    for (std::size_t i = 0; i < source_.tokens.size(); ++i) {
+      const Token& token = source_.tokens[i];
+      if (token.kind != TokenKind::directive || token.dead) continue;
+      const std::string_view line = textOf(source_.text, token);
+      if (directiveOf(line).name != "include") continue;
+      for (const std::string_view type : kUserTypes)
+        if (std::ranges::any_of(reachable(std::string(line)), [&](const LectureText* text) { return definesType(*text, type); }))
+          source_.includedTypes.emplace_back(i, type);
+    }
+    source_.opensLibrary = includesLibrary(source_.text) || std::ranges::any_of(includes_, [](const LectureText& t) { return includesLibrary(t.text); });
+  }
+
+  static bool includesLibrary(std::string_view text) {
+    return std::ranges::any_of(shader::findIncludes(text), [](const shader::IncludeDirective& include) { return include.name.starts_with("quintet/"); });
+  }
+
+  // The included files that the text's includes lead to.
+  std::vector<const LectureText*> reachable(const std::string& line) const {
+    std::vector<const LectureText*> found;
+    std::deque<std::string_view> open{line};
+    while (!open.empty()) {
+      const std::string_view text = open.front();
+      open.pop_front();
+      for (const shader::IncludeDirective& include : shader::findIncludes(text)) {
+        const auto file = program_.files.find(fs::path(include.name).lexically_normal().generic_string());
+        if (file == program_.files.end()) continue;
+        const auto known = std::ranges::find_if(includes_, [&](const LectureText& t) { return t.text.data() == file->second.data(); });
+        if (known == includes_.end() || std::ranges::find(found, &*known) != found.end()) continue;
+        found.push_back(&*known);
+        open.push_back(known->text);
+      }
+    }
+    return found;
+  }
+
+  bool isDeclared(std::string_view name) const {
+    return source_.declares(name) || std::ranges::any_of(includes_, [&](const LectureText& t) { return t.declares(name); });
+  }
+
+  void findImplicitNames() {
+    std::set<std::string_view> words = source_.words();
+    for (const LectureText& include : includes_) words.merge(include.words());
+    for (const std::string_view word : words)
+      if (const auto uniform = implicitUniform(word); uniform && !isDeclared(word)) source_.implicit.push_back(*uniform);
+    source_.givesPi = words.count("PI") > 0 && !isDeclared("PI");
+  }
+
+  void addParameters() {
+    std::vector<const LectureUniform*> taken;
+    const auto add = [&](const LectureUniform& uniform) {
+      const std::string& name = uniform.parameter.name;
+      if (isLectureName(name)) return;
+      if (!isIdentifier(name) || isReservedWord(name)) {
+        errors_.add("Q015", uniform.begin, fmt::format("'{}' cannot be the name of a uniform", name));
+        return;
+      }
+      for (const LectureUniform* other : taken) {
+        if (other->parameter.name != name) continue;
+        if (other->image != uniform.image || other->parameter.type != uniform.parameter.type)
+          errors_.add("Q015", uniform.begin, fmt::format("the uniform '{}' is there twice, with two types", name));
+        return;
+      }
+      taken.push_back(&uniform);
+      if (!uniform.image) program_.parameters.push_back(uniform.parameter);
+    };
+    for (const LectureUniform& uniform : source_.uniforms) add(uniform);
+    for (const LectureUniform& uniform : source_.implicit) add(uniform);
+  }
+
+  std::string addFile(const std::string& name, std::string text) {
+    program_.files[name] = std::move(text);
+    return name;
+  }
+
+  // "recursion: N" of // gsnShaderOptions; else as deep as any device goes if a hit or miss shader may trace.
+  std::uint32_t recursion() const {
+    constexpr std::string_view kOptions = "gsnShaderOptions", kRecursion = "recursion:";
+    const auto traces = [&](const LectureMain& main) {
+      const std::string_view body = source_.text.substr(main.begin, main.end - main.begin);
+      return main.stage != Stage::rayGeneration && body.find("traceRayEXT") != body.npos;
+    };
+    if (std::ranges::none_of(source_.split.mains, traces)) return 1;
+    for (const Token& token : source_.tokens) {
+      if (token.kind != TokenKind::comment) continue;
+      const std::string_view comment = textOf(source_.text, token);
+      const std::size_t at = comment.find(kOptions) == comment.npos ? comment.npos : comment.find(kRecursion);
+      if (at == comment.npos) continue;
+      const int depth = std::atoi(std::string(comment.substr(at + kRecursion.size(), 8)).c_str());
+      return static_cast<std::uint32_t>(std::clamp(depth, 2, 31));
+    }
+    return 31;
+  }
+
+  void addStages(const std::string& file) {
+    program_.declaredRecursion = recursion();
+    RayType ray;
+    ray.name = kRay;
+    HitShaders triangles, boxes;
+    const auto& mains = source_.split.mains;
+    std::size_t callables = 0;
+    for (std::size_t i = 0; i < mains.size(); ++i) {
+      const Stage stage = mains[i].stage;
+      const std::string extension(shader::stageExtension(stage));
+      const auto add = [&](const std::string& variant, bool forBoxes) {
+        return addFile(file + variant + extension, lectureStage(source_, i, forBoxes));
+      };
+      switch (stage) {
+        case Stage::rayGeneration: program_.rayGeneration = add("", false); break;
+        case Stage::miss: ray.miss = add("", false); break;
+        case Stage::intersection: boxes.intersection = add("", true); break;
+        case Stage::closestHit: triangles.closestHit = add(".triangles", false); boxes.closestHit = add(".boxes", true); break;
+        case Stage::anyHit: triangles.anyHit = add(".triangles", false); boxes.anyHit = add(".boxes", true); break;
+        case Stage::callable: program_.callables.push_back({"", add(fmt::format(".{}", callables++), false), {}, 0}); break;
+        case Stage::compute: break;
+      }
+    }
+    if (ray.miss.empty())
+      ray.miss = addFile(file + ".none.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n");
+    program_.rays = {ray};
+    HitGroup& first = program_.hitGroups.emplace_back();
+    first.name = "triangles";
+    first.geometry = {first.name};
+    first.shaders[kRay] = triangles;
+    if (boxes.intersection.empty()) return;
+    HitGroup& second = program_.hitGroups.emplace_back();
+    second.name = "procedural";
+    second.geometry = {second.name};
+    second.shaders[kRay] = boxes;
+  }
+
+  Program& program_;
+  LectureSource source_;
+  LectureErrors errors_;
+  std::vector<LectureText> includes_;
+};
+
+// The files that `text` includes by quoted names, below the folder, and what those include.
+std::map<std::string, std::string> readIncludes(const fs::path& folder, const std::string& text) {
+  std::map<std::string, std::string> files;
+  std::deque<std::string> open{text};
+  while (!open.empty()) {
+    const std::string current = std::move(open.front());
+    open.pop_front();
+    for (const shader::IncludeDirective& include : shader::findIncludes(current)) {
+      if (!include.quoted || files.size() == kMaxIncludes || include.name.find('\0') != include.name.npos) continue;
+      const fs::path path = folder / include.name;
+      const std::string name = fs::path(include.name).lexically_normal().generic_string();
+      std::error_code failed;
+      if (files.count(name) || !fs::is_regular_file(path, failed) || fs::file_size(path, failed) > kMaxBytes || failed) continue;
+      open.push_back(files[name] = readTextFile(path));
+    }
+  }
+  return files;
+}
+
+Program load(const fs::path& file) {
+  std::error_code failed;
+  if (fs::file_size(file, failed) > (1u << 24) && !failed) throw FileError(file, "is larger than 16 MiB");
+  const std::string text = readTextFile(file);
+  return parseLecture(text, file.filename().string(), file.parent_path().string(), readIncludes(file.parent_path(), text));
+}
+
+// The folder's lecture file, if it is the only one and there is no program.toml.
+std::optional<Program> loadOnly(const fs::path& folder) {
+  std::optional<fs::path> only;
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+    if (entry.path().filename() == "program.toml") return {};
+    if (!entry.path().filename().string().ends_with(kLectureExtension)) continue;
+    if (only) return {};
+    only = entry.path();
+  }
+  if (!only) return {};
+  return load(*only);
+}
+
+std::optional<Program> builtIn(const std::string& name) {
+  const std::string path = name.ends_with(kLectureExtension) ? name : name + std::string(kLectureExtension);
+  const auto all = embeddedPrograms();
+  const auto found = std::ranges::find(all, std::string_view(path), &EmbeddedFile::path);
+  if (found == all.end()) return {};
+  const fs::path folder = fs::path(path).parent_path();
+  std::map<std::string, std::string> beside;
+  for (const EmbeddedFile& file : all)
+    if (fs::path(file.path).parent_path() == folder && file.path.ends_with(".glsl") && !file.path.ends_with(kLectureExtension))
+      beside.emplace(fs::path(file.path).filename().string(), file.data);
+  return parseLecture(std::string(found->data), fs::path(path).filename().string(), "<programs/" + folder.string() + ">", std::move(beside));
+}
+
+}  // namespace
+
+Program parseLecture(const std::string& text, const std::string& file, const std::string& origin, std::map<std::string, std::string> included) {
+  Program program;
+  program.name = file.ends_with(kLectureExtension) ? file.substr(0, file.size() - kLectureExtension.size()) : file;
+  program.origin = origin;
+  program.accumulation = Accumulation::program;
+  program.descriptionFile = file;
+  program.outputs = {{"picture", OutputKind::display, "what gsnSetPixel writes", 0}};
+  program.files = std::move(included);
+  const std::string body = text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+  if (body.size() > kMaxBytes) {
+    program.diagnostics.push_back({shader::Severity::error, program.path(file), 0, 0, "Q016", "the file is larger than 1 MiB"});
+  } else {
+    Builder(program, body).build(file);
+  }
+  program.files[file] = body;
+  return program;
+}
+
+std::vector<std::string> builtInLectures() {
+  std::vector<std::string> names;
+  for (const EmbeddedFile& file : embeddedPrograms())
+    if (file.path.ends_with(kLectureExtension)) names.emplace_back(file.path.substr(0, file.path.size() - kLectureExtension.size()));
+  return names;
+}
+
+std::optional<Program> findLecture(const std::string& nameOrPath) {
+  std::error_code ignored;
+  const fs::path path(nameOrPath);
+  if (nameOrPath.ends_with(kLectureExtension) && fs::exists(path, ignored)) return load(path);
+  if (fs::is_directory(path, ignored)) return loadOnly(path);
+  if (nameOrPath.ends_with(kLectureExtension) && path.has_parent_path()) throw FileError(path, "does not exist");
+  return builtIn(nameOrPath);
+}
+
+}  // namespace quintet::program

@@ -1,0 +1,266 @@
+#include "program/lecture_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace quintet::program {
+namespace {
+
+using shader::Stage;
+
+constexpr std::size_t kMaxExtensions = 64;
+constexpr std::string_view kPi = "const float PI = 3.14159265358979323846;\n";
+
+// A text that keeps its line breaks while parts of it are blanked and words are put in.
+class Patch {
+ public:
+  explicit Patch(std::string_view text) : text_(text) {}
+  void blank(std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < std::min(end, text_.size()); ++i)
+      if (text_[i] != '\n' && text_[i] != '\r') text_[i] = ' ';
+  }
+  void restore(std::string_view original, std::size_t begin, std::size_t end) { text_.replace(begin, end - begin, original.substr(begin, end - begin)); }
+  void insert(std::size_t at, std::string words) { insertions_.emplace_back(at, std::move(words)); }
+  std::string finish() {
+    std::ranges::stable_sort(insertions_, {}, [](const auto& entry) { return entry.first; });
+    std::string result;
+    std::size_t done = 0;
+    for (const auto& [at, words] : insertions_) {
+      result.append(text_, done, at - done).append(words);
+      done = at;
+    }
+    return result.append(text_, done);
+  }
+
+ private:
+  std::string text_;
+  std::vector<std::pair<std::size_t, std::string>> insertions_;
+};
+
+class StageWriter {
+ public:
+  StageWriter(const LectureSource& source, std::size_t main, bool boxes)
+      : s_(source), index_(static_cast<int>(main)), main_(source.split.mains[main]), boxes_(boxes), patch_(source.text) {}
+
+  std::string write() {
+    blankOthers();
+    moveDirectives();
+    for (const LectureUniform& uniform : s_.uniforms) patch_.blank(uniform.begin, uniform.end);
+    declareTypes();
+    if (main_.stage == Stage::intersection && hasHitAttribute_) macros_ = "#define reportIntersectionEXT(t, kind) gsnReport_(t, kind)\n";
+    patch_.insert(main_.body, " gsnBegin_();");
+    return prelude() + fmt::format("#line 1 \"{}\"\n", s_.file) + patch_.finish() + "\n";
+  }
+
+ private:
+  bool kept(std::size_t offset) const {
+    const int owner = s_.split.ownerOf(offset);
+    return owner == kCommonText || owner == index_;
+  }
+  bool isHit() const { return main_.stage == Stage::closestHit || main_.stage == Stage::anyHit; }
+  bool traces() const { return main_.stage == Stage::rayGeneration || main_.stage == Stage::closestHit || main_.stage == Stage::miss; }
+
+  void blankOthers() {
+    for (const LectureRegion& region : s_.split.regions)
+      if (region.owner != kCommonText && region.owner != index_) patch_.blank(region.begin, region.end);
+    restoreConditionals();
+  }
+
+  // A conditional that spans several regions stays whole, or #if and #endif would not match.
+  void restoreConditionals() {
+    std::vector<std::vector<std::size_t>> open;
+    const auto close = [&](const std::vector<std::size_t>& group) {
+      const auto region = [&](std::size_t token) {
+        return std::ranges::upper_bound(s_.split.regions, s_.tokens[token].begin, {}, &LectureRegion::begin);
+      };
+      if (std::ranges::all_of(group, [&](std::size_t token) { return region(token) == region(group.front()); })) return;
+      for (const std::size_t token : group) patch_.restore(s_.text, s_.tokens[token].begin, s_.tokens[token].end);
+    };
+    for (std::size_t i = 0; i < s_.tokens.size(); ++i) {
+      if (s_.tokens[i].kind != TokenKind::directive) continue;
+      const std::string_view name = directiveOf(textOf(s_.text, s_.tokens[i])).name;
+      if (name.starts_with("if")) open.emplace_back();
+      else if (name != "else" && name != "elif" && name != "endif") continue;
+      if (open.empty()) continue;
+      open.back().push_back(i);
+      if (name != "endif") continue;
+      close(open.back());
+      open.pop_back();
+    }
+  }
+
+  // #version is ours; extensions must stand before everything else.
+  void moveDirectives() {
+    for (const Token& token : s_.tokens) {
+      if (token.kind != TokenKind::directive || !kept(token.begin)) continue;
+      const std::string_view line = textOf(s_.text, token);
+      const std::string_view name = directiveOf(line).name;
+      if (name != "version" && name != "extension") continue;
+      if (name == "extension" && !token.dead && line.find('\n') == line.npos && extensionCount_++ < kMaxExtensions)
+        extensions_ += fmt::format("#line {} \"{}\"\n{}\n", placeOf(s_.text, token.begin).line, s_.file, line);
+      patch_.blank(token.begin, token.end);
+    }
+  }
+
+  // Behind each definition of RayPayloadType and its like, in the same line, what the form promises of it.
+  void declareTypes() {
+    for (const auto& [type, words] : {std::pair<std::string_view, std::string>{"RayPayloadType", payload()},
+                                      {"HitAttributeType", hitAttribute()}, {"CallableDataType", callableData()}}) {
+      if (words.empty()) continue;
+      std::vector<std::size_t> places = definitions(type);
+      for (const auto& [token, name] : s_.includedTypes)
+        if (name == type && kept(s_.tokens[token].begin)) places.push_back(nextLine(s_.tokens[token].end));
+      for (const std::size_t place : places) patch_.insert(place, words);
+      if (type == "HitAttributeType") hasHitAttribute_ = !places.empty();
+    }
+  }
+
+  std::size_t nextLine(std::size_t offset) const {
+    const std::size_t newline = s_.text.find('\n', offset);
+    return newline == s_.text.npos ? s_.text.size() : newline + 1;
+  }
+
+  // Behind "struct NAME { … };" and behind the line "#define NAME …".
+  std::vector<std::size_t> definitions(std::string_view name) const {
+    std::vector<std::size_t> result;
+    const auto& tokens = s_.tokens;
+    for (std::size_t i = 0; i < tokens.size(); ++i) {
+      if (tokens[i].dead || !kept(tokens[i].begin)) continue;
+      if (tokens[i].kind == TokenKind::directive) {
+        const Directive line = directiveOf(textOf(s_.text, tokens[i]));
+        if (line.name != "define" || !line.rest.starts_with(name)) continue;
+        const std::string_view rest = line.rest.substr(name.size());
+        if (!rest.empty() && (rest[0] == ' ' || rest[0] == '\t')) result.push_back(nextLine(tokens[i].end));
+      } else if (tokens[i].kind == TokenKind::word && textOf(s_.text, tokens[i]) == "struct" && tokens[i].braces == 0) {
+        std::size_t at = nextCode(tokens, i + 1);
+        if (at == tokens.size() || textOf(s_.text, tokens[at]) != name) continue;
+        while (at < tokens.size() && !(textOf(s_.text, tokens[at]) == ";" && tokens[at].braces == 0)) at = nextCode(tokens, at + 1);
+        if (at == tokens.size()) break;
+        result.push_back(tokens[at].end);
+      }
+    }
+    return result;
+  }
+
+  std::string payload() const {
+    switch (main_.stage) {
+      case Stage::rayGeneration: return " layout(location = 0) rayPayloadEXT RayPayloadType payload;";
+      case Stage::closestHit:
+      case Stage::anyHit:
+      case Stage::miss: return " layout(location = 0) rayPayloadInEXT RayPayloadType payload;";
+      default: return {};
+    }
+  }
+
+  // Of an intersection shader, `hit` becomes the attribute only with the report, and on drivers where a rejected
+  // report overwrites the attribute of the hit so far (docs/design/quirks.md), only if it is accepted.
+  std::string hitAttribute() const {
+    if (main_.stage == Stage::intersection)
+      return " HitAttributeType hit = {}; hitAttributeEXT HitAttributeType gsnHitAttribute_;"
+             " bool gsnReport_(float t, uint hitKind) {"
+             " if (!gsnCorruptsAttributes_) { gsnHitAttribute_ = hit; return gsnReportRaw_(t, hitKind); }"
+             " if (!gsnInRange_(t)) return false;"
+             " const HitAttributeType old = gsnHitAttribute_; gsnHitAttribute_ = hit;"
+             " const bool accepted = gsnReportRaw_(t, hitKind);"
+             " if (accepted) gsnNearest_ = t; else gsnHitAttribute_ = old;"
+             " return accepted; }";
+    if (!isHit()) return {};
+    return boxes_ ? " hitAttributeEXT HitAttributeType hit;" : " HitAttributeType hit = {};";
+  }
+
+  std::string callableData() const {
+    if (main_.stage == Stage::callable) return " layout(location = 0) callableDataInEXT CallableDataType callableData;";
+    return traces() ? " layout(location = 0) callableDataEXT CallableDataType callableData;" : "";
+  }
+
+  std::string prelude() const {
+    std::string text =
+        "#version 460\n"
+        "#extension GL_EXT_ray_tracing : require\n"
+        "#extension GL_EXT_ray_flags_primitive_culling : require\n"
+        "#extension GL_EXT_null_initializer : require\n"
+        "#extension GL_GOOGLE_cpp_style_line_directive : require\n" +
+        extensions_;
+    for (const auto& [name, wanted] : {std::pair<std::string_view, bool>{"OPEN", s_.opensLibrary},
+                                       {"TRACES", traces()},
+                                       {"HIT", isHit() || main_.stage == Stage::intersection},
+                                       {"CANDIDATES", s_.hasCandidates},
+                                       {"TRIANGLES", isHit() && !boxes_},
+                                       {"RAY_GENERATION", main_.stage == Stage::rayGeneration},
+                                       {"CLOSEST_HIT", main_.stage == Stage::closestHit},
+                                       {"INTERSECTION", main_.stage == Stage::intersection}})
+      if (wanted) text += fmt::format("#define QUINTET_GSN_{} 1\n", name);
+    text += "#include <quintet/gsn.glsl>\n#include <quintet/generated/program.glsl>\n";
+    return text + inputs();
+  }
+
+  // Uniforms and implicit inputs as variables, which gsnBegin_ fills.
+  std::string inputs() const {
+    std::string getters, variables, loads;
+    int count = 0;
+    std::set<std::string_view> names;
+    const auto add = [&](const LectureUniform& uniform) {
+      const Parameter& p = uniform.parameter;
+      const std::string_view type = uniform.image                               ? "gsnImage"
+                                    : p.type == ParameterType::boolean ? "bool"
+                                                                       : glslType(p.type);
+      const std::string value = uniform.image ? "gsnImage(kNoTexture)"
+                                : p.type == ParameterType::boolean ? fmt::format("parameters.{} != 0u", p.name)
+                                                                   : fmt::format("parameters.{}", p.name);
+      getters += fmt::format("{} gsnInput{}_() {{ return {}; }}\n", type, count, value);
+      variables += fmt::format("{} {};\n", type, p.name);
+      loads += fmt::format(" {} = gsnInput{}_();", p.name, count++);
+    };
+    for (const LectureUniform& uniform : s_.uniforms)
+      if (kept(uniform.begin) && !isLectureName(uniform.parameter.name) && names.insert(uniform.parameter.name).second) add(uniform);
+    for (const LectureUniform& uniform : s_.implicit) add(uniform);
+    if (s_.givesPi) variables += kPi;
+    return getters + "#include <quintet/gsn/names_end.glsl>\n" + macros_ + variables + "void gsnBegin_() { gsnLoadBuiltIns_();" + loads + " }\n";
+  }
+
+  const LectureSource& s_;
+  const int index_;
+  const LectureMain& main_;
+  const bool boxes_;
+  Patch patch_;
+  std::string extensions_;
+  std::size_t extensionCount_ = 0;
+  bool hasHitAttribute_ = false;
+  std::string macros_;
+};
+
+}  // namespace
+
+std::string lectureStage(const LectureSource& source, std::size_t main, bool boxes) { return StageWriter(source, main, boxes).write(); }
+
+bool isLectureName(std::string_view name) { return name == "frameID" || name == "frameSize"; }
+
+std::set<std::string_view> LectureText::words() const {
+  std::set<std::string_view> words;
+  for (const Token& token : tokens)
+    if (token.kind == TokenKind::word && !token.dead) words.insert(textOf(text, token));
+  return words;
+}
+
+bool LectureText::declares(std::string_view name) const {
+  std::size_t before = tokens.size();  // the code token before
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    const Token& token = tokens[i];
+    if (token.dead || token.kind == TokenKind::comment) continue;
+    if (token.kind == TokenKind::directive) {
+      const Directive line = directiveOf(textOf(text, token));
+      if (line.name == "define" && line.rest.substr(0, line.rest.find_first_of(" \t(")) == name) return true;
+      continue;
+    }
+    // A declarator outside functions follows its type, or a comma.
+    if (token.kind == TokenKind::word && token.braces == 0 && token.parens == 0 && textOf(text, token) == name && before < tokens.size() &&
+        (tokens[before].kind == TokenKind::word || textOf(text, tokens[before]) == ","))
+      return true;
+    before = i;
+  }
+  return false;
+}
+
+}  // namespace quintet::program
