@@ -67,7 +67,8 @@ class Builder {
  private:
   // What included files tell: types of the user's, names, and whether the library is wanted.
   void lookIntoIncludes() {
-    for (const auto& [name, text] : program_.files) includes_.push_back({text, tokenize(text)});
+    for (const auto& [name, text] : program_.files)
+      if (!name.ends_with(".toml")) includes_.push_back({text, tokenize(text)});
     for (std::size_t i = 0; i < source_.tokens.size(); ++i) {
       const Token& token = source_.tokens[i];
       if (token.kind != TokenKind::directive || token.dead) continue;
@@ -204,6 +205,22 @@ class Builder {
   std::vector<LectureText> includes_;
 };
 
+// What a comment "// scene: FILE" says, if the file is there.
+std::string sceneNamedIn(const std::string& text, const std::map<std::string, std::string>& files) {
+  constexpr std::string_view kScene = "scene:";
+  for (const Token& token : tokenize(text)) {
+    if (token.kind != TokenKind::comment) continue;
+    std::string_view words = textOf(text, token).substr(2);
+    words.remove_prefix(std::min(words.find_first_not_of(" \t*"), words.size()));
+    if (!words.starts_with(kScene)) continue;
+    words.remove_prefix(kScene.size());
+    words.remove_prefix(std::min(words.find_first_not_of(" \t"), words.size()));
+    const std::string name(words.substr(0, words.find_first_of(" \t\r\n*")));
+    if (files.count(name)) return name;
+  }
+  return {};
+}
+
 // The files that `text` includes by quoted names, below the folder, and what those include.
 std::map<std::string, std::string> readIncludes(const fs::path& folder, const std::string& text) {
   std::map<std::string, std::string> files;
@@ -227,7 +244,13 @@ Program load(const fs::path& file) {
   std::error_code failed;
   if (fs::file_size(file, failed) > (1u << 24) && !failed) throw FileError(file, "is larger than 16 MiB");
   const std::string text = readTextFile(file);
-  return parseLecture(text, file.filename().string(), file.parent_path().string(), readIncludes(file.parent_path(), text));
+  const fs::path folder = file.parent_path();
+  std::map<std::string, std::string> files = readIncludes(folder, text);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, failed)) {
+    const std::string name = entry.path().filename().string();
+    if (name.ends_with(".scene.toml") && entry.is_regular_file(failed) && entry.file_size(failed) <= kMaxBytes) files[name] = readTextFile(entry.path());
+  }
+  return parseLecture(text, file.filename().string(), folder.string(), std::move(files));
 }
 
 // The folder's lecture file, if it is the only one and there is no program.toml.
@@ -252,7 +275,7 @@ std::optional<Program> builtIn(const std::string& name) {
   const fs::path folder = fs::path(path).parent_path();
   std::map<std::string, std::string> beside;
   for (const EmbeddedFile& file : all)
-    if (fs::path(file.path).parent_path() == folder && file.path.ends_with(".glsl") && !file.path.ends_with(kLectureExtension))
+    if (fs::path(file.path).parent_path() == folder && !file.path.ends_with(kLectureExtension))
       beside.emplace(fs::path(file.path).filename().string(), file.data);
   return parseLecture(std::string(found->data), fs::path(path).filename().string(), "<programs/" + folder.string() + ">", std::move(beside));
 }
@@ -274,6 +297,9 @@ Program parseLecture(const std::string& text, const std::string& file, const std
     Builder(program, body).build(file);
   }
   program.files[file] = body;
+  program.scene = sceneNamedIn(body, program.files);
+  if (const std::string own = program.name + ".scene.toml"; program.scene.empty() && program.files.count(own)) program.scene = own;
+  chooseDefaultScene(program);
   return program;
 }
 

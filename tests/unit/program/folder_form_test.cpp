@@ -85,7 +85,7 @@ name = "other"
   EXPECT_EQ(errorOf(kSmallText + "[[output]]\nname = \"a\"\nkind = \"depht\"\n"),
             "line 10: 'kind' of [[output]] cannot be 'depht'; did you mean 'depth'?");
   EXPECT_EQ(errorOf(kSmallText + "[[output]]\nname = \"a\"\nkind = \"motion vectors\"\n"),
-            "line 10: 'kind' of [[output]] cannot be 'motion vectors'; there are color, linear, normal, depth, id");
+            "line 10: 'kind' of [[output]] cannot be 'motion vectors'; there are color, linear, normal, depth, id, display");
 }
 
 TEST(FolderForm, ReadsHowSamplesAndInstancesAreTreated) {
