@@ -188,8 +188,9 @@ Place SpirvModule::place(const SpirvInstruction& instruction, std::string_view t
 }
 
 std::string_view SpirvModule::source(const std::string& file) const {
-  const auto found = sources_.find(file);
-  return found == sources_.end() ? std::string_view() : std::string_view(found->second);
+  for (const auto* texts : {&sources_, &otherSources_})
+    if (const auto found = texts->find(file); found != texts->end()) return found->second;
+  return {};
 }
 
 }  // namespace quintet::shader

@@ -115,6 +115,8 @@ class SpirvModule {
   // Text of a file that the module was made from, as given to the compiler; empty: not there.
   std::string_view source(const std::string& file) const;
   const std::map<std::string, std::string>& sources() const { return sources_; }
+  // The text of a file that the module knows by name only (from #line "name"); kept if there is none yet.
+  void addSource(const std::string& file, const std::string& text) { otherSources_.emplace(file, text); }
 
  private:
   SpirvModule() = default;
@@ -136,6 +138,7 @@ class SpirvModule {
   std::map<std::pair<SpirvId, std::uint32_t>, std::uint32_t> decorations_;
   std::vector<SpirvVariable> variables_;
   std::map<std::string, std::string> sources_;
+  std::map<std::string, std::string> otherSources_;  // that the module does not have itself
 };
 
 // The operands of an instruction that are ids of values (not of types, not literals), in their order.

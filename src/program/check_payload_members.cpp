@@ -1,0 +1,207 @@
+// Q104: a member is read after a trace, but not everything that the trace runs writes it. Q105: a nested trace with
+// the incoming payload overwrites what is read afterwards.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "program/check_parts.h"
+#include "shader/spirv_flow.h"
+
+namespace quintet::program {
+namespace {
+
+using shader::StageFacts;
+using spv::StorageClass;
+
+class Members {
+ public:
+  Members(const LinkModel& model, Report& report) : model_(model), report_(report) {}
+
+  void check(const TraceSite& site) {
+    const StageFacts& tracer = factsOf(site.stage);
+    const shader::SharedVariable* payload = tracer.variable(site.trace->payload);
+    if (!payload || hasWrongQualifier(site)) return;
+    for (std::uint32_t member = 0; member < tracer.memberCount(payload->id); ++member) {
+      const std::string name = memberText(tracer, *payload, member);
+      const std::vector<std::size_t> all = tracer.readsAfter(*site.trace, member);
+      if (all.empty()) continue;
+      if (!writtenBefore(site, *payload, member))
+        reportUnwritten(site, member, name);
+      else
+        reportStale(site, *payload, member, name, all);
+      if (payload->storage == StorageClass::IncomingRayPayloadKHR) reportOverwritten(site, *payload, member, name, all);
+    }
+  }
+
+ private:
+  const StageFacts& factsOf(std::size_t stage) const { return *model_.stages[stage].facts; }
+
+  static std::string memberText(const StageFacts& tracer, const shader::SharedVariable& payload, std::uint32_t member) {
+    const shader::SpirvType& type = tracer.module().types().get(payload.type);
+    if (type.kind != shader::SpirvType::Kind::structure) return fmt::format("'{}'", payload.name);
+    return fmt::format("'{}.{}'", payload.name,
+                       type.memberNames[member].empty() ? fmt::format("member {}", member) : type.memberNames[member]);
+  }
+
+  // Q103 says more: such a stage does not see the payload at all.
+  bool hasWrongQualifier(const TraceSite& site) const {
+    return std::ranges::any_of(site.edges, [&](const Edge& edge) {
+      const StageFacts& facts = factsOf(edge.stage);
+      return edge.role != Role::intersection && !facts.incoming(StorageClass::IncomingRayPayloadKHR) &&
+             std::ranges::any_of(facts.variables(), [&](const auto& v) {
+               return v.storage == StorageClass::RayPayloadKHR && v.used &&
+                      std::ranges::none_of(facts.traces(), [&](const auto& t) { return t.payload == v.id; });
+             });
+    });
+  }
+
+  // By the tracer, or, for the payload that it got, by whoever traced before.
+  bool writtenBefore(const TraceSite& site, const shader::SharedVariable& payload, std::uint32_t member) const {
+    if (factsOf(site.stage).writtenBefore(payload.id, member, site.trace->instruction)) return true;
+    if (payload.storage != StorageClass::IncomingRayPayloadKHR) return false;
+    return std::ranges::any_of(model_.traces, [&](const TraceSite& other) {
+      const bool reaches = std::ranges::any_of(
+          other.edges, [&](const Edge& e) { return e.stage == site.stage && e.role != Role::intersection; });
+      const auto& accesses = factsOf(other.stage).accesses();
+      return reaches && std::ranges::any_of(accesses, [&](const auto& a) {
+               return a.writes && a.variable == other.trace->payload &&
+                      (a.member == member || a.member == shader::kWholeValue);
+             });
+    });
+  }
+
+  bool writes(const Edge& edge, std::uint32_t member, bool always) const {
+    const StageFacts& facts = factsOf(edge.stage);
+    const shader::SharedVariable* payload = facts.incoming(StorageClass::IncomingRayPayloadKHR);
+    return payload && (always ? facts.writesAlways(payload->id, member) : facts.writes(payload->id, member));
+  }
+
+  bool anyHitWrites(const TraceSite& site, HitRow row, std::uint32_t member) const {
+    return std::ranges::any_of(site.edges, [&](const Edge& edge) {
+      return edge.role == Role::anyHit && edge.row.group == row.group && edge.row.ray == row.ray &&
+             writes(edge, member, false);
+    });
+  }
+
+  // What can end the trace without a write of the member, in words.
+  std::vector<std::string> silent(const TraceSite& site, std::uint32_t member) const {
+    std::vector<std::string> who;
+    for (const Edge& edge : site.edges) {
+      if (edge.role != Role::miss && edge.role != Role::closestHit) continue;
+      if (writes(edge, member, true) || (edge.role == Role::closestHit && anyHitWrites(site, edge.row, member)))
+        continue;
+      who.push_back(
+          fmt::format("the {}{}", model_.describe(edge), writes(edge, member, false) ? ", on some path," : ""));
+    }
+    for (const HitRow row : site.hits) {
+      if (anyHitWrites(site, row, member)) continue;
+      if (site.skipsClosestHit()) {
+        who.push_back("a hit (closest-hit shaders are skipped)");
+        break;
+      }
+      if (model_.shaders(row).closestHit.empty())
+        who.push_back(fmt::format("a hit without closest-hit shader ({})", model_.describe(row)));
+    }
+    if (model_.program.hitGroups.empty()) who.push_back("a hit (the program has no hit groups)");
+    constexpr std::size_t kMaxNamed = 3;
+    if (who.size() > kMaxNamed) who.resize(kMaxNamed);
+    return who;
+  }
+
+  void reportUnwritten(const TraceSite& site, std::uint32_t member, const std::string& name) {
+    const StageFacts& tracer = factsOf(site.stage);
+    const std::vector<std::size_t> reads = tracer.unguardedReads(*site.trace, member);
+    if (reads.empty()) return;
+    const std::vector<std::string> who = silent(site, member);
+    if (who.empty()) return;
+    report_.add(
+        "Q104", placeOf(site),
+        fmt::format("{} is read after this trace{}, but {} does not write it, and it was not set before the trace",
+                    name, lineText(tracer, reads.front(), site), fmt::join(who, " and ")));
+  }
+
+  // Set to a constant, never written by anybody, and then read: the trace tells nothing.
+  void reportStale(const TraceSite& site, const shader::SharedVariable& payload, std::uint32_t member,
+                   const std::string& name, const std::vector<std::size_t>& reads) {
+    const StageFacts& tracer = factsOf(site.stage);
+    if (payload.storage != StorageClass::RayPayloadKHR) return;
+    std::size_t callees = 0;
+    for (const Edge& edge : site.edges) {
+      if (edge.role == Role::intersection) continue;
+      if (!edge.exact || writes(edge, member, false)) return;
+      ++callees;
+    }
+    if (callees == 0 || !onlyConstantsWritten(tracer, payload.id, member)) return;
+    report_.add(
+        "Q104", placeOf(site),
+        fmt::format("{} is read after this trace{}, but no shader that the trace can run writes it: it still has the "
+                    "constant that was set before",
+                    name, lineText(tracer, reads.front(), site)));
+  }
+
+  static bool onlyConstantsWritten(const StageFacts& tracer, shader::SpirvId payload, std::uint32_t member) {
+    return std::ranges::all_of(tracer.accesses(), [&](const shader::AccessFacts& a) {
+      if (!a.writes || a.variable != payload || (a.member != member && a.member != shader::kWholeValue)) return true;
+      return isConstantStore(tracer, a);
+    });
+  }
+
+  static bool isConstantStore(const StageFacts& facts, const shader::AccessFacts& access) {
+    const shader::SpirvInstruction& store = facts.module().instructions()[access.instruction];
+    if (store.op != spv::Op::OpStore) return false;
+    const shader::SpirvInstruction* value = facts.module().definition(store.at(1));
+    if (value && value->op == spv::Op::OpCompositeConstruct && access.member < value->operands.size() &&
+        facts.module().access(store.at(0)).indices.empty())
+      return facts.module().isConstant(value->at(access.member));
+    return facts.module().isConstant(store.at(1));
+  }
+
+  void reportOverwritten(const TraceSite& site, const shader::SharedVariable& payload, std::uint32_t member,
+                         const std::string& name, const std::vector<std::size_t>& reads) {
+    const StageFacts& tracer = factsOf(site.stage);
+    const Edge* writer = nullptr;
+    for (const Edge& edge : site.edges) {
+      const shader::SharedVariable* received = factsOf(edge.stage).incoming(StorageClass::IncomingRayPayloadKHR);
+      if (edge.role == Role::intersection || !received) continue;
+      if (factsOf(edge.stage).takes(received->id, member)) return;  // what was written is an input of the inner ray
+      if (!writer && factsOf(edge.stage).writes(received->id, member)) writer = &edge;
+    }
+    if (!writer) return;
+    for (const shader::AccessFacts& a : tracer.accesses()) {
+      const bool lost = a.writes && a.variable == payload.id &&
+                        (a.member == member || a.member == shader::kWholeValue) && !isConstantStore(tracer, a) &&
+                        shader::mayRunAfter(tracer.module(), site.trace->instruction, a.instruction);
+      if (!lost) continue;
+      const shader::Place written = tracer.module().place(tracer.module().instructions()[a.instruction]);
+      report_.add("Q105", placeOf(site),
+                  fmt::format("this trace uses the incoming payload: {}, written at line {}, is overwritten by the {} "
+                              "before it is read{}",
+                              name, written.line, model_.describe(*writer), lineText(tracer, reads.front(), site)));
+      return;
+    }
+  }
+
+  shader::Place placeOf(const TraceSite& site) const { return model_.at(model_.stages[site.stage], site.trace->place); }
+
+  // " (line 12)" of a read.
+  std::string lineText(const StageFacts& tracer, std::size_t access, const TraceSite& site) const {
+    const shader::Place place =
+        tracer.module().place(tracer.module().instructions()[tracer.accesses()[access].instruction]);
+    if (place.line == 0) return {};
+    return place.file == site.trace->place.file ? fmt::format(" (line {})", place.line)
+                                                : fmt::format(" ({}:{})", place.file, place.line);
+  }
+
+  const LinkModel& model_;
+  Report& report_;
+};
+
+}  // namespace
+
+void checkPayloadMembers(const CheckInput& input, Report& report) {
+  Members members(input.model, report);
+  for (const TraceSite& site : input.model.traces) members.check(site);
+}
+
+}  // namespace quintet::program

@@ -1,0 +1,35 @@
+// No diagnostic on what Quintet ships, and the check is quick.
+#include <cstdio>
+
+#include "check_test_support.h"
+
+namespace quintet::program {
+namespace {
+
+TEST(CheckBuiltIn, NothingIsReported) {
+  for (const std::string& name : builtInPrograms()) {
+    const CheckResult result = check(loadProgram(name), checkCompiler(), nullptr, {});
+    EXPECT_EQ(textOf(result), "") << name;
+    EXPECT_EQ(result.recursionDepth, 1u) << name;
+  }
+}
+
+TEST(CheckBuiltIn, NothingIsReportedWithAScene) {
+  SceneFacts scene =
+      sceneWith({{GeometryKind::triangles, false, "mesh", "stone"}, {GeometryKind::triangles, true, "mesh", "leaf"}});
+  for (const std::string& name : builtInPrograms())
+    EXPECT_EQ(textOf(check(loadProgram(name), checkCompiler(), &scene, {})), "") << name;
+}
+
+// It runs at every start: the check itself, without compilation, takes some ten milliseconds.
+TEST(CheckBuiltIn, IsQuick) {
+  const Program program = loadProgram("pathtracer");
+  const CompiledProgram compiled = compile(program, checkCompiler(), {});
+  const CheckResult result = check(program, compiled, nullptr, {});
+  EXPECT_LT(result.seconds - compiled.seconds, 0.5);
+  RecordProperty("milliseconds", static_cast<int>(1000 * (result.seconds - compiled.seconds)));
+  std::printf("check of pathtracer: %.1f ms\n", 1000 * (result.seconds - compiled.seconds));
+}
+
+}  // namespace
+}  // namespace quintet::program
