@@ -28,7 +28,7 @@ TEST(CheckBuiltIn, IsQuick) {
   const CheckResult result = check(program, compiled, nullptr, {});
   EXPECT_LT(result.seconds - compiled.seconds, 0.5);
   RecordProperty("milliseconds", static_cast<int>(1000 * (result.seconds - compiled.seconds)));
-  std::printf("check of pathtracer: %.1f ms\n", 1000 * (result.seconds - compiled.seconds));
+
 }
 
 }  // namespace
