@@ -28,7 +28,8 @@ std::string choicesOf(std::string_view kind, const std::vector<Parameter>& field
 
 std::string generatedConstants(const Program& program) {
   const std::vector<MissShader> misses = missShaders(program);
-  std::string text = "// Generated from program.toml.\n#ifndef QUINTET_GENERATED_PROGRAM\n#define QUINTET_GENERATED_PROGRAM\n";
+  std::string text = "// Generated from program.toml.\n#ifndef QUINTET_GENERATED_PROGRAM\n#define QUINTET_GENERATED_PROGRAM\n"
+                     "#extension GL_EXT_scalar_block_layout : require\n#extension GL_EXT_buffer_reference : require\n";
   text += constant("", "RayTypeCount", program.rays.size());
   text += constant("", "MissCount", misses.size());
   text += constant("", "CallableCount", program.callables.size());

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "base/parallel.h"
+#include "program/device_stages.h"
 #include "program/generated.h"
 
 namespace quintet::program {
@@ -113,26 +114,26 @@ LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set,
   rt::PipelineOptions options;
   options.name = program.name;
   options.maxRecursionDepth = program.declaredRecursion.value_or(1);
-  for (const CompiledProgram::Stage& stage : compiled.stages) options.stages.push_back({stage.kind, stage.spirv, program.path(stage.file)});
-  const auto index = [&](const std::string& file) {
-    return file.empty() ? rt::kNoStage : static_cast<int>(&compiled.stage(file) - compiled.stages.data());
-  };
+  DeviceStages stages(program, compiled, context.info().quirks);
   const auto groupCount = [&] { return static_cast<std::uint32_t>(options.groups.size()); };
 
-  options.groups.push_back({.general = index(program.rayGeneration)});
+  options.groups.push_back({.general = stages.index(program.rayGeneration)});
   firstMissGroup_ = groupCount();
-  for (const MissShader& miss : missShaders(program)) options.groups.push_back({.general = index(miss.file)});
+  for (const MissShader& miss : missShaders(program)) options.groups.push_back({.general = stages.index(miss.file)});
   firstHitGroup_ = groupCount();
   for (const HitGroup& group : program.hitGroups) {
     for (const RayType& ray : program.rays) {
       const auto found = group.shaders.find(ray.name);
       const HitShaders shaders = found == group.shaders.end() ? HitShaders{} : found->second;
-      options.groups.push_back({.closestHit = index(shaders.closestHit), .anyHit = index(shaders.anyHit), .intersection = index(shaders.intersection)});
+      options.groups.push_back({.closestHit = stages.index(shaders.closestHit),
+                                .anyHit = stages.index(shaders.anyHit),
+                                .intersection = stages.intersection(shaders.intersection, shaders.anyHit)});
     }
   }
   firstCallableGroup_ = groupCount();
-  for (const Callable& callable : program.callables) options.groups.push_back({.general = index(callable.file)});
+  for (const Callable& callable : program.callables) options.groups.push_back({.general = stages.index(callable.file)});
 
+  options.stages = stages.stages();
   pipeline_ = std::make_unique<rt::Pipeline>(context, set, options, cache);
   pipelineSeconds_ = secondsSince(start);
 }
