@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 using shader::Stage;
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxImageBytes = std::size_t{1} << 26;
 constexpr std::size_t kMaxIncludes = 64;
 constexpr const char* kRay = "ray";
 constexpr std::array<std::string_view, 3> kUserTypes{"RayPayloadType", "HitAttributeType", "CallableDataType"};
@@ -33,6 +34,11 @@ std::string quotable(std::string name) {
   for (char& c : name)
     if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = '_';
   return name;
+}
+
+// Beside the program's text lie scenes and pictures, too.
+bool isShaderText(const std::string& name, const std::string& text) {
+  return !name.ends_with(".toml") && text.size() <= kMaxBytes && text.find('\0') == text.npos;
 }
 
 bool definesType(const LectureText& source, std::string_view name) {
@@ -68,7 +74,7 @@ class Builder {
   // What included files tell: types of the user's, names, and whether the library is wanted.
   void lookIntoIncludes() {
     for (const auto& [name, text] : program_.files)
-      if (!name.ends_with(".toml")) includes_.push_back({text, tokenize(text)});
+      if (isShaderText(name, text)) includes_.push_back({text, tokenize(text)});
     for (std::size_t i = 0; i < source_.tokens.size(); ++i) {
       const Token& token = source_.tokens[i];
       if (token.kind != TokenKind::directive || token.dead) continue;
@@ -127,12 +133,17 @@ class Builder {
       }
       for (const LectureUniform* other : taken) {
         if (other->parameter.name != name) continue;
-        if (other->image != uniform.image || other->parameter.type != uniform.parameter.type)
+        if (other->parameter.type != uniform.parameter.type)
           errors_.add("Q015", uniform.begin, fmt::format("the uniform '{}' is there twice, with two types", name));
         return;
       }
+      const std::string& image = uniform.parameter.defaultImage;
+      if (!image.empty() && !program_.files.count(image)) {
+        errors_.add("Q015", uniform.begin, fmt::format("there is no file '{}' beside {}", image, program_.descriptionFile));
+        return;
+      }
       taken.push_back(&uniform);
-      if (!uniform.image) program_.parameters.push_back(uniform.parameter);
+      program_.parameters.push_back(uniform.parameter);
     };
     for (const LectureUniform& uniform : source_.uniforms) add(uniform);
     for (const LectureUniform& uniform : source_.implicit) add(uniform);
@@ -221,6 +232,19 @@ std::string sceneNamedIn(const std::string& text, const std::map<std::string, st
   return {};
 }
 
+// Pictures that a uniform's comment names as its default.
+void readImages(const fs::path& folder, const std::string& text, std::map<std::string, std::string>& files) {
+  const std::vector<Token> tokens = tokenize(text);
+  LectureErrors ignored(text, {});
+  for (const LectureUniform& uniform : findUniforms(text, tokens, ignored)) {
+    const std::string& image = uniform.parameter.defaultImage;
+    std::error_code failed;
+    if (image.empty() || image.find('\0') != image.npos || files.count(image)) continue;
+    if (fs::is_regular_file(folder / image, failed) && fs::file_size(folder / image, failed) <= kMaxImageBytes && !failed)
+      files[image] = readTextFile(folder / image);
+  }
+}
+
 // The files that `text` includes by quoted names, below the folder, and what those include.
 std::map<std::string, std::string> readIncludes(const fs::path& folder, const std::string& text) {
   std::map<std::string, std::string> files;
@@ -250,6 +274,7 @@ Program load(const fs::path& file) {
     const std::string name = entry.path().filename().string();
     if (name.ends_with(".scene.toml") && entry.is_regular_file(failed) && entry.file_size(failed) <= kMaxBytes) files[name] = readTextFile(entry.path());
   }
+  readImages(folder, text, files);
   return parseLecture(text, file.filename().string(), folder.string(), std::move(files));
 }
 

@@ -203,12 +203,9 @@ class StageWriter {
     std::set<std::string_view> names;
     const auto add = [&](const LectureUniform& uniform) {
       const Parameter& p = uniform.parameter;
-      const std::string_view type = uniform.image                               ? "gsnImage"
-                                    : p.type == ParameterType::boolean ? "bool"
-                                                                       : glslType(p.type);
-      const std::string value = uniform.image ? "gsnImage(kNoTexture)"
-                                : p.type == ParameterType::boolean ? fmt::format("parameters.{} != 0u", p.name)
-                                                                   : fmt::format("parameters.{}", p.name);
+      const bool image = p.type == ParameterType::image, boolean = p.type == ParameterType::boolean;
+      const std::string_view type = image ? "gsnImage" : boolean ? "bool" : glslType(p.type);
+      const std::string value = (image ? "gsnImage(parameters." : "parameters.") + p.name + (image ? ")" : boolean ? " != 0u" : "");
       getters += fmt::format("{} gsnInput{}_() {{ return {}; }}\n", type, count, value);
       variables += fmt::format("{} {};\n", type, p.name);
       loads += fmt::format(" {} = gsnInput{}_();", p.name, count++);
@@ -234,8 +231,6 @@ class StageWriter {
 }  // namespace
 
 std::string lectureStage(const LectureSource& source, std::size_t main, bool boxes) { return StageWriter(source, main, boxes).write(); }
-
-bool isLectureName(std::string_view name) { return name == "frameID" || name == "frameSize"; }
 
 std::set<std::string_view> LectureText::words() const {
   std::set<std::string_view> words;

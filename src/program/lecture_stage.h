@@ -38,9 +38,6 @@ struct LectureSource : LectureText {
   bool hasCandidates = false;  // there is an any-hit or an intersection shader
 };
 
-// Names that the form gives and that a uniform may declare once more.
-bool isLectureName(std::string_view name);
-
 // `boxes`: the variant of a hit shader for procedural primitives, else for triangles.
 std::string lectureStage(const LectureSource& source, std::size_t main, bool boxes);
 

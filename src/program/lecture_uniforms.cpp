@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 namespace quintet::program {
 namespace {
@@ -76,26 +77,23 @@ std::map<std::string, std::string> attributesOf(std::string_view comment) {
   return result;
 }
 
-constexpr std::array<std::pair<std::string_view, ParameterType>, 6> kTypes{{{"float", ParameterType::real},
+constexpr std::array<std::pair<std::string_view, ParameterType>, 8> kTypes{{{"float", ParameterType::real},
+                                                                           {"uint", ParameterType::uinteger},
+                                                                           {"sampler2D", ParameterType::image},
                                                                            {"vec2", ParameterType::vec2},
                                                                            {"vec3", ParameterType::vec3},
                                                                            {"vec4", ParameterType::vec4},
                                                                            {"int", ParameterType::integer},
                                                                            {"bool", ParameterType::boolean}}};
 
-bool setType(LectureUniform& uniform, std::string_view type) {
-  uniform.image = type == "sampler2D";
+bool setType(Parameter& parameter, std::string_view type) {
   for (const auto& [name, value] : kTypes) {
     if (type != name) continue;
-    uniform.parameter.type = value;
+    parameter.type = value;
+    parameter.sRgb = false;  // images hold what is shown, like the picture
     return true;
   }
-  return uniform.image;
-}
-
-void setRange(Parameter& parameter) {
-  if (parameter.type == ParameterType::boolean) parameter.min = 0, parameter.max = 1;
-  if (parameter.type == ParameterType::integer) parameter.min = -2147483648.0, parameter.max = 2147483647.0;
+  return false;
 }
 
 // Reads one declaration, from the token "uniform" on.
@@ -148,16 +146,18 @@ class Declaration {
     Parameter& parameter = uniform.parameter;
     if (name >= end || tokens_[name].kind != TokenKind::word)
       return fail(type, "a uniform is declared as 'uniform TYPE NAME;' (blocks of uniforms are not known)");
-    if (!setType(uniform, word(type)))
-      return fail(type, fmt::format("'{}' is no type of a uniform; there are float, vec2, vec3, vec4, int, bool and sampler2D", word(type)));
+    if (!setType(parameter, word(type)))
+      return fail(type, fmt::format("'{}' is no type of a uniform; there are float, vec2, vec3, vec4, int, uint, bool and sampler2D", word(type)));
     parameter.name = word(name);
-    setRange(parameter);
+    parameter.line = placeOf(text_, tokens_[name].begin).line;
+    std::tie(parameter.min, parameter.max) = typeRange(parameter.type);
     std::string_view value;
     const std::size_t after = nextCode(tokens_, name + 1);
     if (after < end && isMark(after, '[')) return fail(after, fmt::format("the uniform '{}' must not be an array", parameter.name));
     if (after < end && isMark(after, '=')) value = text_.substr(tokens_[after].end, tokens_[end].begin - tokens_[after].end);
     else if (after < end) return fail(after, "';' or '=' is missing here");
-    return uniform.image || (readRange(parameter, name) && readDefault(parameter, name, value));
+    if (parameter.type == ParameterType::image) parameter.defaultImage = attribute({"defaultval", "default"});
+    return readRange(parameter, name) && (parameter.type == ParameterType::image || readDefault(parameter, name, value));
   }
 
   std::string attribute(std::initializer_list<const char*> names) const {
@@ -194,7 +194,7 @@ class Declaration {
         return fail(token, fmt::format("the default of '{}' must be {}", parameter.name, count == 1 ? "a number" : fmt::format("{} numbers", count)));
       numbers = parsed->size() == count ? *parsed : std::vector<double>(count, parsed->front());
     }
-    const bool whole = parameter.type == ParameterType::integer || parameter.type == ParameterType::boolean;
+    const bool whole = isWhole(parameter.type);
     for (std::size_t i = 0; i < count; ++i) {
       if (whole && numbers[i] != std::floor(numbers[i])) return fail(token, fmt::format("the default of '{}' must be a whole number", parameter.name));
       if (!(numbers[i] >= parameter.min && numbers[i] <= parameter.max))
@@ -223,11 +223,13 @@ std::vector<LectureUniform> findUniforms(std::string_view text, const std::vecto
   return uniforms;
 }
 
+bool isLectureName(std::string_view name) { return name == "frameID" || name == "frameSize"; }
+
 std::optional<LectureUniform> implicitUniform(std::string_view name) {
   LectureUniform uniform;
   uniform.parameter.name = name;
   if (name.size() == 10 && name.starts_with("userParam") && name[9] >= '0' && name[9] <= '2') return uniform;
-  uniform.image = true;
+  setType(uniform.parameter, "sampler2D");
   if (name.size() == 8 && name.starts_with("texture") && name[7] >= '0' && name[7] <= '4') return uniform;
   return {};
 }

@@ -12,10 +12,8 @@
 
 namespace quintet::program {
 
-// What a uniform is in GLSL; `image` is a sampler2D.
 struct LectureUniform {
   Parameter parameter;
-  bool image = false;
   std::size_t begin = 0;  // of the declaration, the ';' included
   std::size_t end = 0;
 };
@@ -23,6 +21,9 @@ struct LectureUniform {
 // Declarations "uniform TYPE NAME = VALUE; // defaultval="…" min="…" …" outside functions. Names that the library
 // gives (frameID, …) are found, too, so that their declarations can be taken away.
 std::vector<LectureUniform> findUniforms(std::string_view text, const std::vector<Token>& tokens, LectureErrors& errors);
+
+// Names that the form gives and that a uniform may declare once more.
+bool isLectureName(std::string_view name);
 
 // userParam0 … 2 (float) and texture0 … 4 (image); nothing for other names.
 std::optional<LectureUniform> implicitUniform(std::string_view name);

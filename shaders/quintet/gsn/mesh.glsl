@@ -53,16 +53,26 @@ void gsnGetNormals(int inst, int prim, out vec3 n0, out vec3 n1, out vec3 n2) {
   n2 = normals.at[v.z];
 }
 
-// The first set; zeros where the mesh has none.
+// The first set, t upwards; zeros where the mesh has none.
 void gsnGetTexCoords(int inst, int prim, out vec2 t0, out vec2 t1, out vec2 t2) {
   t0 = t1 = t2 = vec2(0.0);
   GeometryData geometry;
   uvec3 v;
   if (!gsnTriangleAt_(inst, prim, geometry, v) || geometry.uvs[0] == 0ul) return;
   Vec2Array uvs = Vec2Array(geometry.uvs[0]);
-  t0 = uvs.at[v.x];
-  t1 = uvs.at[v.y];
-  t2 = uvs.at[v.z];
+  t0 = vec2(uvs.at[v.x].x, 1.0 - uvs.at[v.x].y);
+  t1 = vec2(uvs.at[v.y].x, 1.0 - uvs.at[v.y].y);
+  t2 = vec2(uvs.at[v.z].x, 1.0 - uvs.at[v.z].y);
+}
+
+// The box of a procedural primitive in object space.
+void gsnGetIntersectionBox(int inst, int prim, out vec3 aabbMin, out vec3 aabbMax) {
+  aabbMin = aabbMax = vec3(0.0);
+  GeometryData geometry;
+  if (!gsnGeometryAt_(inst, prim, geometry) || geometry.boxes == 0ul) return;
+  const BoxData box = BoxArray(geometry.boxes).at[prim];
+  aabbMin = box.min;
+  aabbMax = box.max;
 }
 
 // mat3(transpose(inverse(objectToWorld))): takes normals from object to world space.

@@ -1,7 +1,13 @@
 // Names of the library that a program of the lecture form may want for itself: renamed from here to names_end.glsl.
 #define AliasArray gsnAliasArray_
 #define AliasEntry gsnAliasEntry_
+#define BoxArray gsnBoxArray_
+#define BoxData gsnBoxData_
 #define CameraData gsnCameraData_
+#define CsgNodeArray gsnCsgNodeArray_
+#define CsgNodeData gsnCsgNodeData_
+#define CsgTreeArray gsnCsgTreeArray_
+#define CsgTreeData gsnCsgTreeData_
 #define EnvironmentData gsnEnvironmentData_
 #define FilmAdd gsnFilmAdd_
 #define FloatArray gsnFloatArray_
@@ -20,6 +26,8 @@
 #define OutputArray gsnOutputArray_
 #define Parameters gsnParameters_
 #define ParametersReference gsnParametersReference_
+#define PrimitiveArray gsnPrimitiveArray_
+#define PrimitiveData gsnPrimitiveData_
 #define RayRecord gsnRayRecord_
 #define TextureData gsnTextureData_
 #define UintArray gsnUintArray_

@@ -3,7 +3,13 @@
 #ifndef QUINTET_GSN_OPEN
 #undef AliasArray
 #undef AliasEntry
+#undef BoxArray
+#undef BoxData
 #undef CameraData
+#undef CsgNodeArray
+#undef CsgNodeData
+#undef CsgTreeArray
+#undef CsgTreeData
 #undef EnvironmentData
 #undef FilmAdd
 #undef FloatArray
@@ -22,6 +28,8 @@
 #undef OutputArray
 #undef Parameters
 #undef ParametersReference
+#undef PrimitiveArray
+#undef PrimitiveData
 #undef RayRecord
 #undef TextureData
 #undef UintArray
