@@ -68,7 +68,7 @@ std::vector<Diagnostic> check(const program::Program& program, const shader::Com
   std::vector<std::pair<std::string, std::string>> defines;
   const SceneSource source = chooseScene(options.scene, program);
   if (!source.file.empty()) {
-    const scene::Scene scene = loadScene(source, program);
+    const scene::Scene scene = loadScene(source);
     defines = render::featureDefines(scene, chooseEnvironment(scene, {}).environment);
   }
   return program::compile(program, compiler, defines).diagnostics;

@@ -93,9 +93,9 @@ std::string toJson(const RenderRecord& record) {
 
 std::string summary(const RenderRecord& record) {
   const std::string file = record.files.empty() ? "" : record.files.back();
-  return fmt::format("{}: {}x{}, {} samples per pixel, {}, {:.3g} Mrays/s{}", file == "-" ? "standard output" : file,
-                     record.region[2], record.region[3],
-                     record.samples, durationText(record.renderSeconds), record.raysPerSecond() * 1e-6,
+  const std::string rate = record.rays > 0 ? fmt::format(", {:.3g} Mrays/s", record.raysPerSecond() * 1e-6) : "";
+  return fmt::format("{}: {}x{}, {} samples per pixel, {}{}{}", file == "-" ? "standard output" : file,
+                     record.region[2], record.region[3], record.samples, durationText(record.renderSeconds), rate,
                      record.interrupted ? ", interrupted" : "");
 }
 

@@ -10,7 +10,7 @@ constexpr double kCountSeconds = 1.0;  // reading the ray counter waits for the 
 }  // namespace
 
 RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limits, const GracefulStop& stop,
-                            Progress& progress) {
+                            Progress& progress, const RenderHooks& hooks) {
   RenderOutcome outcome;
   const Stopwatch clock;
   ProgressState state;
@@ -33,12 +33,15 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
       state.samples = static_cast<double>(done) + fraction * count;
       state.seconds = clock.seconds();
       progress.update(state);
-      return true;
+      outcome.abandoned = hooks.abandon && hooks.abandon();
+      return !outcome.abandoned;
     });
+    if (outcome.abandoned) return outcome;
     done += count;
     const double now = clock.seconds();
     if (outcome.firstPixelSeconds == 0) outcome.firstPixelSeconds = now;
     outcome.seconds = now;
+    if (done == count && hooks.firstBatch) hooks.firstBatch(outcome);
     if (stop.requested()) {
       outcome.interrupted = !limits.samples || done < *limits.samples;
       break;

@@ -3,6 +3,7 @@
 #define QUINTET_APP_RENDER_LOOP_H
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "progress.h"
@@ -17,15 +18,22 @@ struct RenderLimits {
 };
 
 struct RenderOutcome {
-  bool interrupted = false;
+  bool interrupted = false;      // by a signal, before the limits
+  bool abandoned = false;        // RenderHooks::abandon said so
   double seconds = 0;            // wall clock of all batches
   double firstPixelSeconds = 0;  // from the start of the loop until the first launch is done
+};
+
+// What --watch adds; each may be empty.
+struct RenderHooks {
+  std::function<bool()> abandon;                          // asked between launches: give up, the picture is of no use
+  std::function<void(const RenderOutcome&)> firstBatch;   // the first batch is complete
 };
 
 // At least one batch is rendered. A batch is begun only if at least half of it is likely to fit into
 // the time that is left.
 RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limits, const GracefulStop& stop,
-                            Progress& progress);
+                            Progress& progress, const RenderHooks& hooks = {});
 
 }  // namespace quintet::app
 #endif

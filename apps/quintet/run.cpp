@@ -6,6 +6,8 @@
 #include "diagnostics_view.h"
 #include "program_report.h"
 #include "run_options.h"
+#include "run_pictures.h"
+#include "run_watch.h"
 #include "session.h"
 
 namespace quintet::app {
@@ -18,25 +20,24 @@ std::filesystem::path defaultOutput(const std::string& name) {
   return (stem.empty() ? "out" : stem) + ".png";
 }
 
-int render(Session& session, const RenderOptions& options) {
+int draw(Session& session, const RunOptions& options) {
   session.prepare();
   session.openDevice();
   session.loadScene();
   session.link();
   const GracefulStop stop;
-  const RenderOutcome outcome =
-      renderBatches(session.renderer(), {options.samples, options.seconds}, stop, session.progress());
-  session.write(outcome);
+  drawPictures(session, options, stop);
   session.report();
   return stop.exitStatus();
 }
 
-int runProgram(RenderOptions& options) {
+int runProgram(RunOptions& all) {
+  RenderOptions& options = all.render;
   try {
     if (options.output.empty()) options.output = defaultOutput(program::loadProgram(options.program).name);
     Session session(options);
     try {
-      return render(session, options);
+      return all.watch ? watchProgram(session, all) : draw(session, all);
     } catch (const render::ProgramError& error) {
       session.tell(error.diagnostics());
       return 1;
@@ -63,7 +64,7 @@ int runCommand(Arguments arguments) {
     writeFile("-", render.json ? programJson(program) : programHelp(program));
     return 0;
   }
-  return runProgram(render);
+  return runProgram(*options);
 }
 
 }  // namespace quintet::app

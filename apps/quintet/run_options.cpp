@@ -14,6 +14,7 @@ constexpr const char* kExamples =
     "  quintet run ao                                     a built-in program on the built-in scene: ao.png\n"
     "  quintet run ao --help                              its parameters and outputs\n"
     "  quintet run my_program/ scene.glb --set tint=1,0.5,0 --size 640x360 --spp 16\n"
+    "  quintet run my_program/ --watch                    again whenever a file is saved\n"
     "  quintet run my_program/ --set-file values.json --all-outputs -o out.exr\n";
 
 // A shader that does not end within this does not end at all: seconds.
@@ -42,6 +43,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
       ->type_name("NAME")
       ->group("Program");
   app.add_flag("--list", options.list, "List the built-in programs and leave")->group("Program");
+  app.add_flag("--watch", options.watch, "Keep running: render again whenever a file is saved")->group("Run");
   declareProcess(app, raw, render, "A launch that takes longer hangs (default: 30)");
   app.add_flag("--json", render.json, "At the end (or with --help, --list) JSON on standard output")->group("Run");
   setUp(app, kExamples);
@@ -64,6 +66,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   if (!render.timeout) render.timeout = kTimeout;
   if (!render.outputName.empty() && render.allOutputs) throw UsageError("--output and --all-outputs exclude each other");
   checkStandardOutput(render);
+  if (options.watch && render.output == "-") throw UsageError("--watch writes a file again and again: -o - takes one picture");
   return options;
 }
 

@@ -9,6 +9,7 @@ namespace quintet::app {
 struct RunOptions {
   RenderOptions render;
   bool list = false;   // the built-in programs
+  bool watch = false;  // render again whenever a file is saved
 };
 
 // Nothing: help was printed. Throws UsageError. `render.output` is empty unless -o was given;

@@ -24,19 +24,19 @@ bool hasIntersection(const program::HitGroup& group) {
 
 }  // namespace
 
-SceneSource chooseScene(const std::filesystem::path& asked, const program::Program&) {
-  if (asked.empty()) return {{}, "default scene"};
-  checkReadable(asked);
-  return {asked, asked.filename().string()};
+SceneSource chooseScene(const std::filesystem::path& asked, const program::Program& program) {
+  if (!asked.empty()) {
+    checkReadable(asked);
+    return {asked, asked.filename().string(), {}};
+  }
+  SceneSource source{{}, "default scene", {}};
+  source.builtIn.boxes = std::ranges::any_of(program.hitGroups, hasIntersection);
+  source.builtIn.triangles = !source.builtIn.boxes || !std::ranges::all_of(program.hitGroups, hasIntersection);
+  return source;
 }
 
-scene::Scene loadScene(const SceneSource& source, const program::Program& program) {
-  if (!source.file.empty()) return scene::loadScene(source.file);
-  // What the program's hit groups can meet.
-  scene::DefaultSceneOptions options;
-  options.boxes = std::ranges::any_of(program.hitGroups, hasIntersection);
-  options.triangles = !options.boxes || !std::ranges::all_of(program.hitGroups, hasIntersection);
-  return scene::defaultScene(options);
+scene::Scene loadScene(const SceneSource& source) {
+  return source.file.empty() ? scene::defaultScene(source.builtIn) : scene::loadScene(source.file);
 }
 
 std::vector<std::filesystem::path> sceneFiles(const SceneSource& source) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "program/program.h"
+#include "scene/default_scene.h"
 #include "scene/scene.h"
 
 namespace quintet::app {
@@ -14,13 +15,15 @@ namespace quintet::app {
 struct SceneSource {
   std::filesystem::path file;  // empty: the built-in scene
   std::string name;            // for messages and metadata
+  scene::DefaultSceneOptions builtIn;  // what of it the program's hit groups can meet
+  bool operator==(const SceneSource&) const = default;
 };
 
 // `asked`, or the scene that the program names, or the built-in one. Throws FileError if it cannot be read.
 SceneSource chooseScene(const std::filesystem::path& asked, const program::Program& program);
 
 // Throws FileError, UsageError.
-scene::Scene loadScene(const SceneSource& source, const program::Program& program);
+scene::Scene loadScene(const SceneSource& source);
 
 // Every file on disk that loadScene reads, for --watch; those that cannot be found are left out.
 std::vector<std::filesystem::path> sceneFiles(const SceneSource& source);

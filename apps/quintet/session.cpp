@@ -43,7 +43,9 @@ void Session::prepare() {
   parameters_ = parameterValues(program_, options_);
   chosenOutputs();
   checkOutput(options_.output);
-  sceneSource_ = chooseScene(options_.scene, program_);
+  SceneSource source = chooseScene(options_.scene, program_);
+  if (source != sceneSource_) sceneLoaded_ = false;
+  sceneSource_ = std::move(source);
 }
 
 void Session::openDevice() {
@@ -75,7 +77,7 @@ void Session::loadScene() {
   progress_.stage("loading " + sceneSource_.name);
   const Stopwatch watch;
   SceneInfo info;
-  const scene::Scene scene = app::loadScene(sceneSource_, program_);
+  const scene::Scene scene = app::loadScene(sceneSource_);
   info.hash = scene::contentHash(scene).hex();
   const uvec2 asked = options_.size;
   const float aspect = asked.y > 0 ? static_cast<float>(asked.x) / static_cast<float>(asked.y) : 0.0f;
@@ -94,6 +96,7 @@ void Session::loadScene() {
   renderer_.reset();
   deviceScene_ = std::move(built);
   sceneInfo_ = std::move(info);
+  sceneLoaded_ = true;
   record_.loadSeconds = sceneInfo_.loadSeconds;
   record_.buildSeconds = watch.seconds() - sceneInfo_.loadSeconds;
 }
@@ -141,6 +144,15 @@ void Session::tell(const std::vector<shader::Diagnostic>& diagnostics) {
     fmt::print(stderr, "{}", diagnosticsText(diagnostics, sourcesOf(program_), colorOnStandardError()));
   }
   if (failed) fmt::print(stderr, "quintet: {}: {}\n", plain(program_.name), countText(diagnostics));
+}
+
+std::vector<std::filesystem::path> Session::files() const {
+  std::vector<std::filesystem::path> files = sceneFiles();
+  for (const auto& [name, text] : program_.files) files.emplace_back(program_.path(name));
+  if (!options_.setFile.empty()) files.push_back(options_.setFile);
+  if (renderer_) files.insert(files.end(), renderer_->files().begin(), renderer_->files().end());
+  std::erase_if(files, [](const auto& file) { return file.string().starts_with('<'); });  // in memory
+  return files;
 }
 
 std::vector<std::size_t> Session::chosenOutputs() const {

@@ -32,8 +32,14 @@ class Session {
   void loadScene();   // reads it, decides on camera, size and light, builds it on the device
   void link();        // compiles and links the program into a renderer that has rendered nothing yet
 
+  // For --watch: whether prepare() still wants the scene that loadScene() built, and every file on disk that was read.
+  bool sceneLoaded() const { return sceneLoaded_; }
+  std::vector<std::filesystem::path> files() const;
+  std::vector<std::filesystem::path> sceneFiles() const { return app::sceneFiles(sceneSource_); }
+
   // Writes the picture of each chosen output.
   void write(const RenderOutcome& outcome, std::optional<std::uint32_t> frame = std::nullopt);
+  std::string written() const { return record_.files.empty() ? "" : record_.files.back(); }  // last
   // Says what the compiler and the check of the link found: on standard error; with --json and an error among
   // them as an array on standard output, too.
   void tell(const std::vector<shader::Diagnostic>& diagnostics);
@@ -71,6 +77,7 @@ class Session {
   program::Program program_;
   SceneSource sceneSource_;
   SceneInfo sceneInfo_;
+  bool sceneLoaded_ = false;
   program::ParameterValues parameters_{{}};
   std::unique_ptr<gpu::Context> context_;  // outlives all that follows
   std::unique_ptr<gpu::PipelineCache> pipelineCache_;

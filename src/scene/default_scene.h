@@ -10,6 +10,7 @@ namespace quintet::scene {
 struct DefaultSceneOptions {
   bool triangles = true;  // a floor of 8 x 8 m, a sphere, a cube and a mirror ball of triangles
   bool boxes = false;     // one custom box [-1,1]³ named "boxes", for a program's own intersection shader
+  bool operator==(const DefaultSceneOptions&) const = default;
 };
 
 // Small (about 3,000 triangles), with a camera, a sun and the default environment at 0.6.

@@ -102,12 +102,20 @@ const SourceFile* IncludeResolver::inLibrary(const std::string& name) {
   return nullptr;
 }
 
+// A virtual file is named by where it would be: a program's file may include what lies outside of its folder.
+std::optional<fs::path> IncludeResolver::folderOnDisk(const SourceFile& from) const {
+  if (!from.diskPath.empty()) return from.diskPath.parent_path();
+  if (from.libraryPath.empty() || !source_.virtualFiles.contains(from.libraryPath)) return std::nullopt;
+  return fs::path(from.libraryPath).parent_path();
+}
+
 const SourceFile* IncludeResolver::resolve(const SourceFile& from, const IncludeDirective& include) {
   if (include.name.empty() || include.name.find('\0') != include.name.npos) return nullptr;
   const fs::path name(include.name);
   if (include.quoted && !name.is_absolute()) {
     const std::string inLibraryPath = from.libraryPath.empty() ? "" : normalized(fs::path(from.libraryPath).parent_path() / name);
-    const std::string besideOnDisk = from.diskPath.empty() ? "" : normalized(from.diskPath.parent_path() / name);
+    const std::optional<fs::path> folder = folderOnDisk(from);
+    const std::string besideOnDisk = folder ? normalized(*folder / name) : "";
     for (const std::string& candidate : {inLibraryPath, besideOnDisk})
       if (!candidate.empty())
         if (const SourceFile* file = inVirtualFiles(candidate)) return file;
@@ -139,9 +147,9 @@ std::vector<const SourceFile*> IncludeResolver::files() const {
 
 std::vector<std::string> IncludeResolver::searchedPlaces(const SourceFile& from, bool quoted) const {
   std::vector<std::string> places;
-  if (quoted && !from.diskPath.empty()) {
-    const std::string folder = normalized(from.diskPath.parent_path());
-    places.push_back(folder.empty() ? "." : folder);
+  if (const std::optional<fs::path> folder = folderOnDisk(from); quoted && folder) {
+    const std::string name = normalized(*folder);
+    places.push_back(name.empty() ? "." : name);
   }
   if (!options_.libraryOverride.empty()) places.push_back(options_.libraryOverride.generic_string());
   places.push_back(library_.empty() ? "the built-in library (empty)" : "the built-in library");

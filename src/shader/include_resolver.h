@@ -49,6 +49,8 @@ class IncludeResolver {
   std::vector<std::string> searchedPlaces(const SourceFile& from, bool quoted) const;
 
  private:
+  // Where a quoted include is looked for on disk; nothing: nowhere.
+  std::optional<std::filesystem::path> folderOnDisk(const SourceFile& from) const;
   const SourceFile* inVirtualFiles(const std::string& name);
   const SourceFile* inLibrary(const std::string& name);
   const SourceFile* onDisk(const std::filesystem::path& path, const std::string& libraryPath);

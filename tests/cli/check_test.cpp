@@ -1,7 +1,7 @@
 // `check` and `explain`, and how `run` and `render` say that a program does not compile.
 #include <gmock/gmock.h>
 
-#include "fixtures.h"
+#include "sky_program.h"
 
 namespace quintet::test {
 namespace {
@@ -14,29 +14,8 @@ class Check : public CliTest {
   Check() { writeProgram("good", "payload.color", "sky.rmiss"); }
 
   void writeProgram(const std::string& name, const std::string& member, const std::string& miss) {
-    std::filesystem::create_directory(folder_ / name);
-    write(folder_ / name / "program.toml", "[program]\ndescription = \"sky\"\nray_generation = \"sky.rgen\"\n"
-                                           "[[ray]]\nname = \"primary\"\nmiss = \"" + miss + "\"\n");
-    write(folder_ / name / "payload.glsl", "struct Payload {\n  vec3 color;\n};\n");
-    write(folder_ / name / "sky.rgen", R"(#version 460
-#extension GL_EXT_ray_tracing : require
-#include <quintet/camera.glsl>
-#include <quintet/output.glsl>
-#include <quintet/generated/program.glsl>
-#include "payload.glsl"
-layout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT topLevelAS;
-layout(location = 0) rayPayloadEXT Payload payload;
-void main() {
-  const uvec2 pixel = launchPixel();
-  const Ray ray = cameraRay(vec2(pixel) + 0.5, vec2(0.5));
-  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, kRay_primary, kRayTypeCount, kMiss_primary,
-              ray.origin, 0.0, ray.direction, kInfinity, 0);
-  storeOutput(kOutput_color, pixel, loadOutput(kOutput_color, pixel) + vec4(payload.color, 1.0));
-}
-)");
-    write(folder_ / name / "sky.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\n#include \"payload.glsl\"\n"
-                                        "layout(location = 0) rayPayloadInEXT Payload payload;\n"
-                                        "void main() {\n  " + member + " = vec3(0.5);\n}\n");
+    writeSkyProgram(folder_ / name, member + " = vec3(0.5);");
+    write(folder_ / name / "program.toml", skyToml(miss));
   }
 };
 

@@ -164,6 +164,14 @@ bool TerminalRun::waitFor(const std::string& text) {
   return true;
 }
 
+bool TerminalRun::waitForNext(const std::string& text) {
+  std::size_t found = text_.find(text, seen_);
+  for (; found == std::string::npos; found = text_.find(text, seen_))
+    if (!readSome()) return false;
+  seen_ = found + text.size();
+  return true;
+}
+
 void TerminalRun::signal(int number) { ::kill(process_, number); }
 
 RunResult TerminalRun::finish() {

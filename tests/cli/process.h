@@ -36,6 +36,8 @@ class TerminalRun {
 
   // Reads until `text` has been written; false if the process ended before.
   bool waitFor(const std::string& text);
+  // The same, but only in what comes after the last match of this function.
+  bool waitForNext(const std::string& text);
   void signal(int number);
   RunResult finish();  // waits for the end; `err` holds everything written to the terminal
 
@@ -44,6 +46,7 @@ class TerminalRun {
   pid_t process_ = -1;
   int terminal_ = -1;
   std::string text_;
+  std::size_t seen_ = 0;  // end of the last match of waitForNext
 };
 
 }  // namespace quintet::test

@@ -30,6 +30,19 @@ TEST(Include, RelativeAmongVirtualFiles) {
   EXPECT_TRUE(result.files.empty());
 }
 
+// A file of a program's folder, held in memory, includes one that lies outside of the folder.
+TEST(Include, FromAVirtualFileToTheDisk) {
+  const TemporaryFolder folder;
+  const auto outside = folder.write("outside.glsl", "int two() { return 2; }\n");
+  const std::string inside = (folder.path() / "program" / "inside.glsl").string();
+  Source source = computeSource("#include \"inside.glsl\"", "b.x = two();", (folder.path() / "program" / "main.comp").string());
+  source.virtualFiles[inside] = "#include \"../outside.glsl\"\n";
+  const Result result = Compiler({}).compile(source);
+  EXPECT_TRUE(result.ok()) << all(result);
+  ASSERT_EQ(result.files.size(), 1u);
+  EXPECT_EQ(result.files[0], outside);
+}
+
 TEST(Include, QuotedFilesAreFoundBesideTheIncludingFile) {
   const TemporaryFolder folder;
   const auto main = folder.path() / "main.comp";

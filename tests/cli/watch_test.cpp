@@ -1,0 +1,150 @@
+// `run --watch` as a real process: save, see the new picture, break it, see the diagnostics, mend it.
+#include <csignal>
+
+#include <gmock/gmock.h>
+
+#include "base/math.h"
+#include "io/codec.h"
+#include "sky_program.h"
+
+namespace quintet::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class Watch : public CliTest {
+ protected:
+  Watch() { writeSkyProgram(folder_ / "sky", "payload.color = vec3(0.5);"); }
+
+  // As editors do: a new file, renamed over the old one.
+  void save(const std::string& file, const std::string& text) {
+    write(folder_ / (file + "~"), text);
+    fs::rename(folder_ / (file + "~"), folder_ / file);
+  }
+  void saveSky(const std::string& line) { save("sky/sky.rmiss", skyMiss(line)); }
+
+  static std::vector<std::string> watch(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"run", "sky", "--watch", "--size", "32x24", "--spp", "4", "-o", "out.exr"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  // The colour in a corner, where the default scene has no surface.
+  vec3 sky() const {
+    const io::Image image = picture("out.exr");
+    const auto pixel = image.pixel<float>(1, 1);
+    return {pixel[0], pixel[1], pixel[2]};
+  }
+  void expectSky(vec3 expected) const {
+    const vec3 color = sky();
+    for (glm::length_t i = 0; i < 3; ++i) EXPECT_NEAR(color[i], expected[i], 1e-3f);
+  }
+};
+
+TEST_F(Watch, SaveBreakMend) {
+  TerminalRun process(watch(), folder_.path());
+  ASSERT_TRUE(process.waitForNext("watching"));
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  expectSky({0.5f, 0.5f, 0.5f});
+
+  saveSky("payload.color = vec3(1.0, 0.25, 0.0);");
+  ASSERT_TRUE(process.waitForNext("sky.rmiss saved: out.exr after "));
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  expectSky({1.0f, 0.25f, 0.0f});
+
+  saveSky("payload.colour = vec3(0.0);");
+  ASSERT_TRUE(process.waitForNext("sky/sky.rmiss:6:11: "));
+  ASSERT_TRUE(process.waitForNext("no such field"));
+  ASSERT_TRUE(process.waitForNext("sky: 1 error"));
+  expectSky({1.0f, 0.25f, 0.0f});
+
+  save("sky/program.toml", skyToml("nothing.rmiss"));
+  ASSERT_TRUE(process.waitForNext("no file 'nothing.rmiss'"));
+  save("sky/program.toml", skyToml("sky.rmiss"));
+  ASSERT_TRUE(process.waitForNext("sky: 1 error"));
+
+  // In place this time.
+  write(folder_ / "sky" / "sky.rmiss", skyMiss("payload.color = vec3(0.0, 0.0, 0.75);"));
+  ASSERT_TRUE(process.waitForNext("sky.rmiss saved"));
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  expectSky({0.0f, 0.0f, 0.75f});
+
+  process.signal(SIGINT);
+  const RunResult result = process.finish();
+  EXPECT_EQ(result.status, 0) << result.err;
+  expectSky({0.0f, 0.0f, 0.75f});
+}
+
+TEST_F(Watch, StartsBroken) {
+  saveSky("nonsense;");
+  TerminalRun process(watch(), folder_.path());
+  ASSERT_TRUE(process.waitForNext("sky: 1 error"));
+  ASSERT_TRUE(process.waitForNext("watching"));
+  EXPECT_FALSE(fs::exists(folder_ / "out.exr"));
+  saveSky("payload.color = vec3(0.125);");
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  expectSky({0.125f, 0.125f, 0.125f});
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.finish().status, 0);
+}
+
+// The file that another file includes, a new file, and a file outside of the program's folder.
+TEST_F(Watch, IncludedFiles) {
+  write(folder_ / "shared.glsl", "const vec3 kColor = vec3(0.25);\n");
+  saveSky("payload.color = kColor;");
+  save("sky/payload.glsl", "#include \"../shared.glsl\"\nstruct Payload {\n  vec3 color;\n};\n");
+  TerminalRun process(watch(), folder_.path());
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  expectSky({0.25f, 0.25f, 0.25f});
+  save("shared.glsl", "const vec3 kColor = vec3(0.75);\n");
+  ASSERT_TRUE(process.waitForNext("shared.glsl saved: "));
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  expectSky({0.75f, 0.75f, 0.75f});
+  save("sky/payload.glsl", "#include \"more.glsl\"\nstruct Payload {\n  vec3 color;\n};\n");
+  ASSERT_TRUE(process.waitForNext("more.glsl"));
+  write(folder_ / "sky" / "more.glsl", "const vec3 kColor = vec3(1.0);\n");
+  ASSERT_TRUE(process.waitForNext("more.glsl saved: "));
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  expectSky({1.0f, 1.0f, 1.0f});
+}
+
+TEST_F(Watch, TheSceneToo) {
+  // normals.exr shows the quad's normal (0, 0, 1) as (0.5, 0.5, 1) until the node is turned.
+  TerminalRun process({"run", "normals", "scene.gltf", "--watch", "--size", "32x24", "--spp", "4", "-o", "out.exr"}, folder_.path());
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
+  nlohmann::json json = quadScene();
+  json["nodes"][0]["rotation"] = {0.0, 0.38268343, 0.0, 0.92387953};  // 45 degrees about y
+  save("scene.gltf", json.dump());
+  ASSERT_TRUE(process.waitForNext("scene.gltf saved: "));
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 0.5f + 0.5f * 0.70710678f, 0.01f);
+  save("scene.gltf", "{");
+  ASSERT_TRUE(process.waitForNext("scene.gltf"));
+  ASSERT_TRUE(process.waitForNext("1 error"));
+  save("scene.gltf", quadScene().dump());
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
+}
+
+// A save during a long rendering starts over at once.
+TEST_F(Watch, SavesWhileItRenders) {
+  TerminalRun process({"run", "sky", "--watch", "--size", "400x300", "--time", "100000", "-o", "out.exr"}, folder_.path());
+  ASSERT_TRUE(process.waitForNext(" left"));
+  saveSky("payload.color = vec3(0.0, 1.0, 0.0);");
+  ASSERT_TRUE(process.waitForNext("sky.rmiss saved: out.exr after "));
+  expectSky({0.0f, 1.0f, 0.0f});
+  process.signal(SIGINT);
+  const RunResult result = process.finish();
+  EXPECT_EQ(result.status, 130);
+  EXPECT_THAT(result.err, HasSubstr("interrupted"));
+  expectSky({0.0f, 1.0f, 0.0f});
+}
+
+TEST_F(Watch, WhatMakesNoSense) {
+  expectError(quintet({"run", "sky", "--watch", "-o", "-"}), 2, {"--watch"});
+  expectError(quintet({"run", "nothing", "--watch"}), 2, {"no program 'nothing'"});
+}
+
+}  // namespace
+}  // namespace quintet::test
