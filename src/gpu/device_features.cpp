@@ -46,6 +46,7 @@ const Feature kNeededFeatures[] = {
 };
 const Feature kOptionalFeatures[] = {
     QUINTET_FEATURE(rayTracingPipeline, rayTraversalPrimitiveCulling),
+    QUINTET_FEATURE(rayTracingPipeline, rayTracingPipelineTraceRaysIndirect),  // launch sizes from memory
     QUINTET_FEATURE(rayTracingMaintenance1, rayTracingMaintenance1),
 };
 #undef QUINTET_FEATURE

@@ -185,7 +185,8 @@ void checkTriangleBeforeBox(Source source, const KnownQuirk* quirk) {
     for (const bool second : {false, true}) scene.add(blas[second != boxFirst], {.recordOffset = second != boxFirst});
     std::vector<Ray> rays;
     for (int k = 0; k < 64; ++k)
-      rays.push_back({{0.2f - 0.05f * static_cast<float>(k % 8), 0.03f * static_cast<float>(k / 8 - 4), 2}, {0, 0, -1}});
+      rays.push_back(
+          {{0.2f - 0.05f * static_cast<float>(k % 8), 0.03f * static_cast<float>(k / 8 - 4), 2}, {0, 0, -1}});
     const auto results = run<Result>(program(), scene, rays, {.addresses = {vertices.address()}});
     for (std::size_t k = 0; k < rays.size(); ++k) {
       checks.near(results[k].t, 1.75f - 1.25f * rays[k].origin.x, 1e-5f, "ray {}: t", k);

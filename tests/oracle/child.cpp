@@ -12,14 +12,15 @@ namespace quintet::oracle {
 namespace {
 
 // This process's environment with some variables replaced.
-std::vector<std::string> environmentWith(const std::vector<std::pair<std::string, std::string>>& changes) {
+std::vector<std::string> environmentWith(const Variables& changes) {
   std::vector<std::string> result;
   for (char** entry = ::environ; *entry; ++entry) {
     const std::string text = *entry;
     const bool changed = std::ranges::any_of(changes, [&](const auto& c) { return text.starts_with(c.first + "="); });
     if (!changed) result.push_back(text);
   }
-  for (const auto& [name, value] : changes) result.push_back(name + "=" + value);
+  for (const auto& [name, value] : changes)
+    if (value) result.push_back(name + "=" + *value);
   return result;
 }
 
@@ -32,7 +33,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 
 }  // namespace
 
-ChildEnd runInChild(const std::string& test, const std::vector<std::pair<std::string, std::string>>& environment) {
+ChildEnd runInChild(const std::string& test, const Variables& environment) {
   std::vector<std::string> arguments = {"quintet_oracle_tests", "--gtest_also_run_disabled_tests",
                                         "--gtest_filter=" + test};
   std::vector<std::string> variables = environmentWith(environment);

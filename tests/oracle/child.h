@@ -2,6 +2,7 @@
 #ifndef QUINTET_TESTS_ORACLE_CHILD_H
 #define QUINTET_TESTS_ORACLE_CHILD_H
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,8 +11,9 @@ namespace quintet::oracle {
 
 enum class ChildEnd { passed, failed, crashed };
 
-// `test`: "Suite.DISABLED_Name". `environment`: variables to set.
-ChildEnd runInChild(const std::string& test, const std::vector<std::pair<std::string, std::string>>& environment = {});
+// `test`: "Suite.DISABLED_Name". `environment`: variables to set, or to unset (no value).
+using Variables = std::vector<std::pair<std::string, std::optional<std::string>>>;
+ChildEnd runInChild(const std::string& test, const Variables& environment = {});
 
 }  // namespace quintet::oracle
 #endif

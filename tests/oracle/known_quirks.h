@@ -43,9 +43,12 @@ inline constexpr KnownQuirk kNoCompaction{"no-compaction", "compaction returns t
 inline constexpr KnownQuirk kEmptyPipelineCache{"empty-pipeline-cache", "VkPipelineCache holds nothing"};
 inline constexpr KnownQuirk kLibrariesCrash{
     "libraries-crash", "a pipeline whose stages all come from libraries and that has push constants crashes"};
+inline constexpr KnownQuirk kIntegerMasks{
+    "integer-masks", "LLVM 15 miscompiles integer code for some CPUs with AVX-512", /*sporadic=*/true};
 inline constexpr KnownQuirk kAllQuirks[] = {kStaleBuiltIns,       kVertexLeaks,  kEdgesMeetTwice,     kLooseAttributes,
                                             kTmaxNotLowered,      kSharedArrays, kSharedAnyHit,       kFirstVertexTwice,
-                                            kInactiveTakesOthers, kNoCompaction, kEmptyPipelineCache, kLibrariesCrash};
+                                            kInactiveTakesOthers, kNoCompaction, kEmptyPipelineCache, kLibrariesCrash,
+                                            kIntegerMasks};
 
 struct Driver {
   VkDriverId id = VK_DRIVER_ID_MAX_ENUM;
