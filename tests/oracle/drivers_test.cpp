@@ -1,6 +1,8 @@
 // What drivers make of acceleration structures, without the workarounds of rt::BlasBuilder (suite BareDriver), and with
 // them (suite Workarounds). Pipeline caches, too.
+#include <algorithm>
 #include <limits>
+#include <random>
 
 #include "bare.h"
 #include "checks.h"
@@ -143,6 +145,66 @@ TEST(BareDriver, InactiveInstances) {
     if (!inactive(k)) checks.equal(hits[k].instance, k, "instance {}", k);
   }
   checks.done();
+}
+
+// ---- The order of primitives. All boxes lie on one ray and are ignored, so that each is a candidate; they are met
+// from the root of the tree down, the nearer child first. That shows which boxes share a node.
+
+constexpr std::uint32_t kMostBoxes = 12, kRoom = 64;
+struct Order {
+  std::uint32_t count;
+  std::uint32_t primitives[kRoom];
+};
+constexpr char kOrderCommon[] = "struct Input { float z; }; struct Output { uint count; uint primitives[64]; };\n";
+constexpr char kOrderRayGeneration[] = R"(
+layout(location = 0) rayPayloadEXT uint nothing;
+void main() { traceRayEXT(tlas, 0u, 0xFFu, 0u, 0u, 0u, vec3(0.0, 0.0, 200.0), 0.0, vec3(0.0, 0.0, -1.0), 1000.0, 0); }
+)";
+constexpr char kOrderIntersection[] = R"(
+void main() {
+  uint n = launch.outputs.at[launchIndex()].count++;
+  if (n < 64u) launch.outputs.at[launchIndex()].primitives[n] = gl_PrimitiveID;
+}
+)";
+
+// The order in which a tree that halves the range [first, last] meets them, by their distances.
+void meetHalves(const std::vector<float>& distances, std::size_t first, std::size_t last,
+                std::vector<std::uint32_t>& order) {
+  if (first == last) return order.push_back(static_cast<std::uint32_t>(first));
+  const std::size_t middle = (first + last) / 2;  // of the left half
+  const auto at = distances.begin();
+  const bool leftFirst =
+      *std::min_element(at + first, at + middle + 1) < *std::min_element(at + middle + 1, at + last + 1);
+  if (leftFirst) meetHalves(distances, first, middle, order);
+  meetHalves(distances, middle + 1, last, order);
+  if (!leftFirst) meetHalves(distances, first, middle, order);
+}
+
+TEST(BareDriver, TheBuilderFindsAnOrderOfItsOwn) {
+  const Program program({.common = kOrderCommon,
+                         .rayGeneration = kOrderRayGeneration,
+                         .miss = {"void main() {}"},
+                         .hit = {{.intersection = kOrderIntersection}}});
+  std::mt19937 random(11);
+  std::size_t asHalved = 0, cases = 0;
+  Checks checks;
+  for (std::uint32_t n = 3; n <= kMostBoxes; ++n)
+    for (int repeat = 0; repeat < 4; ++repeat, ++cases) {
+      std::vector<float> distances(n);
+      for (std::uint32_t k = 0; k < n; ++k) distances[k] = static_cast<float>(10 * k);
+      std::ranges::shuffle(distances, random);
+      BareGeometry boxes{.primitiveCount = n};
+      for (const float distance : distances) boxes.boxes.push_back({{-1, -1, 98 - distance}, {1, 1, 100 - distance}});
+      const BareStructure blas({boxes}), tlas({bareInstance(blas.address())});
+      const Order order = run<Order>(program, tlas.handle(), std::vector<float>{0})[0];
+      std::vector<std::uint32_t> met(order.primitives, order.primitives + std::min(order.count, kRoom)), halves;
+      meetHalves(distances, 0, n - 1, halves);
+      asHalved += met == halves;
+      for (std::uint32_t k = 0; k < n; ++k)
+        checks.that(std::ranges::count(met, k) >= 1, "{} boxes: box {} is a candidate", n, k);
+    }
+  checks.quirkThat(asHalved < cases, "{} of {} orders are those of a tree that halves the input", asHalved, cases);
+  checks.done(kKeepsOrder);
 }
 
 // ---- Sizes.

@@ -1,4 +1,4 @@
-// Intersection shaders: what reportIntersectionEXT returns, gl_RayTmaxEXT around it, and local arrays across it.
+// Intersection shaders: what reportIntersectionEXT returns, and gl_RayTmaxEXT and the attributes around it.
 #include "checks.h"
 #include "probe.h"
 
@@ -45,6 +45,27 @@ void main() {
     bool accepted = reportIntersectionEXT(t, k);
     launch.outputs.at[i].returned[k] = accepted ? 2u : 1u;
     launch.outputs.at[i].tMaxAfter[k] = gl_RayTmaxEXT;
+  }
+}
+)";
+// The workaround: reports only what is nearer than all that were accepted, and tracks that itself.
+constexpr char kTrackingIntersection[] = R"(
+hitAttributeEXT vec2 attributes;
+void main() {
+  uint i = launchIndex();
+  float nearest = gl_RayTmaxEXT;
+  for (uint k = 0u; k < 6u; ++k) {
+    float t = launch.inputs.at[i].t[k];
+    if (t < 0.0) break;
+    launch.outputs.at[i].tMaxBefore[k] = nearest;
+    bool accepted = false;
+    if (t >= gl_RayTminEXT && t <= nearest) {
+      attributes = vec2(t, float(k));
+      accepted = reportIntersectionEXT(t, k);
+    }
+    if (accepted) nearest = t;
+    launch.outputs.at[i].returned[k] = accepted ? 2u : 1u;
+    launch.outputs.at[i].tMaxAfter[k] = nearest;
   }
 }
 )";
@@ -109,19 +130,14 @@ Result expectedOf(const Script& script) {
   return r;
 }
 
-std::vector<Result> runScripts(const std::vector<Script>& inputs) {
-  static std::unique_ptr<Program> program;
-  if (!program) {
-    program = std::make_unique<Program>(
-        ProgramText{.common = kCommon,
-                    .rayGeneration = kRayGeneration,
-                    .miss = {kMiss},
-                    .hit = {{.closestHit = kClosestHit, .anyHit = kAnyHit, .intersection = kIntersection}}});
-    atEnd([] { program.reset(); });
-  }
+std::vector<Result> runScripts(const std::vector<Script>& inputs, const char* intersection = kIntersection) {
+  const Program program({.common = kCommon,
+                         .rayGeneration = kRayGeneration,
+                         .miss = {kMiss},
+                         .hit = {{.closestHit = kClosestHit, .anyHit = kAnyHit, .intersection = intersection}}});
   Scene scene;
   scene.add(scene.addBlas({Boxes{{boxAt({0, 0, 0}, 10)}, false, true}}));
-  return run<Result>(*program, scene, inputs);
+  return run<Result>(program, scene, inputs);
 }
 
 TEST(Intersection, ReportsTellWhetherTheyCount) {
@@ -164,6 +180,26 @@ TEST(Intersection, TmaxIsTheNearestAcceptedReport) {
   checks.done(kTmaxNotLowered);
 }
 
+TEST(Intersection, TmaxTrackedByTheShader) {
+  const auto inputs = scripts();
+  const auto results = runScripts(inputs, kTrackingIntersection);
+  Checks checks;
+  for (std::size_t s = 0; s < inputs.size(); ++s) {
+    const Result expected = expectedOf(inputs[s]);
+    const Result& r = results[s];
+    checks.equal(r.end, expected.end, "script {}: end", s);
+    if (expected.end == 1) checks.equal(r.t, expected.t, "script {}: t", s);
+    if (inputs[s].flags & kTerminateOnFirstHit) continue;
+    for (std::uint32_t k = 0; k < kReports; ++k) {
+      checks.equal(r.returned[k], expected.returned[k], "script {}, report {}", s, k);
+      if (expected.returned[k] == 0) continue;
+      checks.equal(r.tMaxBefore[k], expected.tMaxBefore[k], "script {}, before report {}", s, k);
+      checks.equal(r.tMaxAfter[k], expected.tMaxAfter[k], "script {}, after report {}", s, k);
+    }
+  }
+  checks.done();
+}
+
 TEST(Intersection, AttributesAreThoseOfTheCommittedReport) {
   const auto inputs = scripts();
   const auto results = runScripts(inputs);
@@ -178,96 +214,6 @@ TEST(Intersection, AttributesAreThoseOfTheCommittedReport) {
   }
   checks.done(kLooseAttributes);
 }
-
-// Local arrays with dynamic indices, in use across reports, while the any-hit shader has such an array too.
-struct Stack {
-  std::uint32_t seed = 0, accept = 0;
-};
-struct StackResult {
-  std::uint32_t wrong, anyHitWrong, anyHits, reports;
-};
-constexpr char kStackCommon[] = R"(
-struct Input { uint seed; uint accepted; };
-struct Output { uint wrong; uint anyHitWrong; uint anyHits; uint reports; };
-)";
-constexpr char kStackRayGeneration[] = R"(
-layout(location = 0) rayPayloadEXT uint nothing;
-void main() { traceRayEXT(tlas, 0u, 0xFFu, 0u, 0u, 0u, vec3(0.0, 0.0, 9.0), 0.0, vec3(0.0, 0.0, -1.0), 100.0, 0); }
-)";
-constexpr char kStackIntersection[] = R"(
-hitAttributeEXT vec2 attributes;
-void main() {
-  uint i = launchIndex(), seed = launch.inputs.at[i].seed, wrong = 0u;
-  uint stack[16];
-  for (uint k = 0u; k < 16u; ++k) stack[(k * 5u + seed) & 15u] = seed * 100u + k;
-  attributes = vec2(0.0);
-  for (uint r = 0u; r < 4u; ++r) {
-    reportIntersectionEXT(8.0 - float(r), r);
-    launch.outputs.at[i].reports++;
-    for (uint k = 0u; k < 16u; ++k) wrong += stack[(k * 5u + seed) & 15u] == seed * 100u + k ? 0u : 1u;
-  }
-  launch.outputs.at[i].wrong = wrong;
-}
-)";
-// The workaround: the same values in vectors, reached by constant indices.
-constexpr char kVectorIntersection[] = R"(
-hitAttributeEXT vec2 attributes;
-uvec4 a, b, c, d;
-uint at(uint i) {
-  uvec4 v = i < 4u ? a : i < 8u ? b : i < 12u ? c : d;
-  uint k = i & 3u;
-  return k == 0u ? v.x : k == 1u ? v.y : k == 2u ? v.z : v.w;
-}
-void main() {
-  uint i = launchIndex(), seed = launch.inputs.at[i].seed, wrong = 0u;
-  uvec4 step = uvec4(0u, 1u, 2u, 3u) + seed * 100u;
-  a = step; b = step + 4u; c = step + 8u; d = step + 12u;
-  attributes = vec2(0.0);
-  for (uint r = 0u; r < 4u; ++r) {
-    reportIntersectionEXT(8.0 - float(r), r);
-    launch.outputs.at[i].reports++;
-    for (uint k = 0u; k < 16u; ++k) wrong += at((k * 5u + seed) & 15u) == seed * 100u + ((k * 5u + seed) & 15u) ? 0u : 1u;
-  }
-  launch.outputs.at[i].wrong = wrong;
-}
-)";
-constexpr char kStackAnyHit[] = R"(
-void main() {
-  uint i = launchIndex(), seed = launch.inputs.at[i].seed, wrong = 0u;
-  uint other[16];
-  for (uint k = 0u; k < 16u; ++k) other[(k * 3u + seed) & 15u] = 7000u + k;
-  for (uint k = 0u; k < 16u; ++k) wrong += other[(k * 3u + seed) & 15u] == 7000u + k ? 0u : 1u;
-  launch.outputs.at[i].anyHitWrong += wrong;
-  launch.outputs.at[i].anyHits++;
-  if ((launch.inputs.at[i].accepted >> gl_HitKindEXT & 1u) == 0u) ignoreIntersectionEXT;
-}
-)";
-
-void checkStacks(const char* intersection, const KnownQuirk* quirk) {
-  const Program program({.common = kStackCommon,
-                         .rayGeneration = kStackRayGeneration,
-                         .miss = {"void main() {}"},
-                         .hit = {{.anyHit = kStackAnyHit, .intersection = intersection}}});
-  Scene scene;
-  scene.add(scene.addBlas({Boxes{{boxAt({0, 0, 0}, 10)}, false, true}}));
-  std::vector<Stack> inputs;
-  for (std::uint32_t k = 0; k < 64; ++k) inputs.push_back({k * 7, k & 15});
-  const auto results = run<StackResult>(program, scene, inputs);
-  Checks checks;
-  for (std::size_t k = 0; k < inputs.size(); ++k) {
-    const StackResult& r = results[k];
-    checks.equal(uvec2(r.reports, r.anyHits), uvec2(4, 4), "ray {}: reports and any-hit calls", k);
-    checks.equal(r.anyHitWrong, 0u, "ray {}: array of the any-hit shader", k);
-    if (quirk)
-      checks.quirkThat(r.wrong == 0, "ray {}: {} values of the intersection shader's array", k, r.wrong);
-    else
-      checks.equal(r.wrong, 0u, "ray {}: values of the intersection shader", k);
-  }
-  quirk ? checks.done(*quirk) : checks.done();
-}
-
-TEST(Intersection, LocalArraysOutliveReports) { checkStacks(kStackIntersection, &kSharedArrays); }
-TEST(Intersection, LocalVectorsOutliveReports) { checkStacks(kVectorIntersection, nullptr); }
 
 }  // namespace
 }  // namespace quintet::oracle

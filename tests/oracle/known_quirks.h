@@ -45,10 +45,12 @@ inline constexpr KnownQuirk kLibrariesCrash{
     "libraries-crash", "a pipeline whose stages all come from libraries and that has push constants crashes"};
 inline constexpr KnownQuirk kIntegerMasks{
     "integer-masks", "LLVM 15 miscompiles integer code for some CPUs with AVX-512", /*sporadic=*/true};
+inline constexpr KnownQuirk kKeepsOrder{
+    "keeps-order", "the builder halves the input order (the left half has ceil(n/2)), however bad it is"};
 inline constexpr KnownQuirk kAllQuirks[] = {kStaleBuiltIns,       kVertexLeaks,  kEdgesMeetTwice,     kLooseAttributes,
                                             kTmaxNotLowered,      kSharedArrays, kSharedAnyHit,       kFirstVertexTwice,
                                             kInactiveTakesOthers, kNoCompaction, kEmptyPipelineCache, kLibrariesCrash,
-                                            kIntegerMasks};
+                                            kIntegerMasks,        kKeepsOrder};
 
 struct Driver {
   VkDriverId id = VK_DRIVER_ID_MAX_ENUM;

@@ -133,6 +133,27 @@ TEST(Rays, EmptyScenesMiss) {
   checks.done();
 }
 
+// Boxes without volume may be met or not; those beside them are.
+TEST(Rays, FlatBoxesDisturbNoOthers) {
+  Scene scene;
+  Boxes boxes;
+  for (std::uint32_t k = 0; k < 24; ++k) {
+    boxes.boxes.push_back(boxAt({3.0f * static_cast<float>(k), 0, 0}));
+    if (k % 3 == 1) boxes.boxes.back().min.z = boxes.boxes.back().max.z = 0;
+    if (k % 3 == 2) boxes.boxes.back().max = boxes.boxes.back().min;
+  }
+  scene.add(scene.addBlas({boxes}), {.recordOffset = 1});
+  std::vector<ProbeRay> rays;
+  for (std::uint32_t k = 0; k < 24; ++k) rays.push_back({.origin = {3.0f * static_cast<float>(k), 0.1f, 2}});
+  const auto hits = traceProbe(scene, rays);
+  Checks checks;
+  for (std::uint32_t k = 0; k < 24; k += 3) {
+    checks.equal(hits[k].end, kHit, "box {}", k);
+    checks.equal(hits[k].primitive, k, "box {}: primitive id", k);
+  }
+  checks.done();
+}
+
 // The nearest of many layers is the closest hit, in whatever order they were built.
 TEST(Rays, TheNearestHitWins) {
   Scene scene;

@@ -10,12 +10,13 @@
 namespace quintet::oracle {
 namespace {
 
-// "SkipsTheClosestHit" → "skips the closest hit"
+// "SkipsTheClosestHit" → "skips the closest hit"; "Has24Bits" → "has 24 bits"
 std::string words(const std::string& name) {
   std::string text;
   for (const char c : name) {
     const auto u = static_cast<unsigned char>(c);
-    if (std::isupper(u) && !text.empty()) text += ' ';
+    const bool inNumber = !text.empty() && std::isdigit(static_cast<unsigned char>(text.back()));
+    if (!text.empty() && (std::isupper(u) || (std::isdigit(u) && !inNumber))) text += ' ';
     text += static_cast<char>(std::tolower(u));
   }
   return text;
