@@ -15,7 +15,8 @@ void parseParameter(Program& program, const toml::table& table, const std::strin
 void parseRecordField(Program& program, const toml::table& table, const std::string& file);
 
 // The value of `record` in the reader's table over `base` (empty: the fields' defaults).
-RecordValues parseRecordValues(const Program& program, TomlReader& reader, const RecordValues& base, const std::string& file);
+RecordValues parseRecordValues(const Program& program, TomlReader& reader, const RecordValues& base,
+                               const std::string& file);
 
 // The table's `name`, an identifier that is not in `taken`.
 std::string parseName(TomlReader& reader, const std::vector<std::string>& taken);

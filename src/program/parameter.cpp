@@ -56,7 +56,8 @@ std::string formatValue(const Parameter& parameter, const ParameterValue& value)
   if (parameter.type == ParameterType::choice) return parameter.choices.at(static_cast<std::size_t>(value[0]));
   std::string text;
   for (std::size_t i = 0; i < static_cast<std::size_t>(componentCount(parameter.type)); ++i)
-    text += isWhole(parameter.type) ? fmt::format("{}", static_cast<std::int64_t>(value[i])) : fmt::format("{}{}", i ? "," : "", value[i]);
+    text += isWhole(parameter.type) ? fmt::format("{}", static_cast<std::int64_t>(value[i]))
+                                    : fmt::format("{}{}", i ? "," : "", value[i]);
   return text;
 }
 
@@ -83,15 +84,18 @@ bool hasMin(const Parameter& parameter) { return parameter.min > typeRange(param
 bool hasMax(const Parameter& parameter) { return parameter.max < typeRange(parameter.type).second; }
 
 std::string formatDefault(const Parameter& parameter) {
-  return parameter.type == ParameterType::image ? parameter.defaultImage : formatValue(parameter, parameter.defaultValue);
+  return parameter.type == ParameterType::image ? parameter.defaultImage
+                                                : formatValue(parameter, parameter.defaultValue);
 }
 
-ParameterValues::ParameterValues(const std::vector<Parameter>& parameters) : parameters_(parameters), imageFiles_(parameters.size()) {
+ParameterValues::ParameterValues(const std::vector<Parameter>& parameters)
+    : parameters_(parameters), imageFiles_(parameters.size()) {
   for (const Parameter& parameter : parameters) values_.push_back(parameter.defaultValue);
 }
 
 std::size_t ParameterValues::indexOf(const std::string& name) const {
-  const auto found = std::find_if(parameters_.begin(), parameters_.end(), [&](const Parameter& p) { return p.name == name; });
+  const auto found =
+      std::find_if(parameters_.begin(), parameters_.end(), [&](const Parameter& p) { return p.name == name; });
   if (found != parameters_.end()) return static_cast<std::size_t>(found - parameters_.begin());
   std::vector<std::string> names;
   for (const Parameter& parameter : parameters_) names.push_back(parameter.name);
@@ -120,11 +124,13 @@ void ParameterValues::failType(std::size_t parameter, const std::string& shown) 
 
 void ParameterValues::assign(std::size_t parameter, const std::vector<double>& numbers, const std::string& shown) {
   const Parameter& p = parameters_[parameter];
-  if (p.type == ParameterType::choice || p.type == ParameterType::image || numbers.size() != static_cast<std::size_t>(componentCount(p.type)) ||
+  if (p.type == ParameterType::choice || p.type == ParameterType::image ||
+      numbers.size() != static_cast<std::size_t>(componentCount(p.type)) ||
       (isWhole(p.type) && numbers[0] != std::floor(numbers[0])))
     failType(parameter, shown);
   for (const double number : numbers)
-    if (!(number >= p.min && number <= p.max)) throw UsageError(fmt::format("parameter '{}': {} is outside {} … {}", p.name, shown, p.min, p.max));
+    if (!(number >= p.min && number <= p.max))
+      throw UsageError(fmt::format("parameter '{}': {} is outside {} … {}", p.name, shown, p.min, p.max));
   std::copy(numbers.begin(), numbers.end(), values_[parameter].begin());
 }
 
@@ -145,8 +151,10 @@ void ParameterValues::set(const std::string& name, const std::string& text) {
   const ParameterType type = parameters_[parameter].type;
   if (type == ParameterType::image || type == ParameterType::choice) return assignText(parameter, text);
   std::vector<double> numbers;
-  if (type == ParameterType::boolean && (text == "true" || text == "false")) numbers = {text == "true" ? 1.0 : 0.0};
-  else if (!parseNumbers(text, numbers)) failType(parameter, text);
+  if (type == ParameterType::boolean && (text == "true" || text == "false"))
+    numbers = {text == "true" ? 1.0 : 0.0};
+  else if (!parseNumbers(text, numbers))
+    failType(parameter, text);
   assign(parameter, numbers, text);
 }
 
@@ -170,7 +178,8 @@ std::vector<ImageValue> ParameterValues::images() const {
     const Parameter& p = parameters_[i];
     if (p.type != ParameterType::image) continue;
     const bool isDefault = !imageFiles_[i].has_value();
-    images.push_back({p.name, isDefault ? p.defaultImage : *imageFiles_[i], isDefault && !p.defaultImage.empty(), p.sRgb});
+    images.push_back(
+        {p.name, isDefault ? p.defaultImage : *imageFiles_[i], isDefault && !p.defaultImage.empty(), p.sRgb});
   }
   return images;
 }
@@ -191,9 +200,12 @@ std::vector<std::byte> ParameterValues::pack(std::span<const std::uint32_t> text
       continue;
     }
     for (std::size_t c = 0; c < static_cast<std::size_t>(componentCount(type)); ++c) {
-      if (type == ParameterType::integer) append(static_cast<std::int32_t>(values_[i][c]));
-      else if (glslType(type) == "uint") append(static_cast<std::uint32_t>(values_[i][c]));
-      else append(static_cast<float>(values_[i][c]));
+      if (type == ParameterType::integer)
+        append(static_cast<std::int32_t>(values_[i][c]));
+      else if (glslType(type) == "uint")
+        append(static_cast<std::uint32_t>(values_[i][c]));
+      else
+        append(static_cast<float>(values_[i][c]));
     }
   }
   if (bytes.empty()) bytes.resize(4);
@@ -204,7 +216,8 @@ std::string ParameterValues::describe() const {
   std::string text;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const Parameter& p = parameters_[i];
-    const std::string value = p.type == ParameterType::image ? imageFiles_[i].value_or(p.defaultImage) : formatValue(p, values_[i]);
+    const std::string value =
+        p.type == ParameterType::image ? imageFiles_[i].value_or(p.defaultImage) : formatValue(p, values_[i]);
     text += fmt::format("{}{}={}", i ? " " : "", p.name, value);
   }
   return text;

@@ -20,7 +20,7 @@ inline constexpr int kParameterTypeCount = 10;
 std::string_view typeName(ParameterType);  // as in program.toml: "bool", "int", "float", …, "uint", "choice", "image"
 std::string_view glslType(ParameterType);  // bool is a uint of 0 or 1, choice and image are uint
 int componentCount(ParameterType);
-bool isWhole(ParameterType);               // bool, int, uint
+bool isWhole(ParameterType);                         // bool, int, uint
 std::pair<double, double> typeRange(ParameterType);  // the numbers that it can hold at all
 
 // A value of any type; unused components are 0. Colours are linear Rec. 709. A choice is its index.
@@ -32,9 +32,9 @@ struct Parameter {
   ParameterValue defaultValue{};
   double min = -1e30;  // each component, inclusive
   double max = 1e30;
-  std::string unit;    // "m", "deg", …; may be empty
+  std::string unit;  // "m", "deg", …; may be empty
   std::string help;
-  int line = 0;        // of its declaration; 0: unknown
+  int line = 0;  // of its declaration; 0: unknown
 
   std::vector<std::string> choices;  // of a choice: the values by name
   std::string defaultImage;          // of an image: a file of the program's folder; empty: white

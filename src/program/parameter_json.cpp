@@ -20,8 +20,10 @@ std::string shown(const Json& value) {
   constexpr std::size_t kLongest = 60, kMostElements = 8;
   if (value.is_object()) return "{…}";
   // No deeper: writing is recursive.
-  if (value.is_array() && (value.size() > kMostElements || std::ranges::any_of(value, &Json::is_structured))) return "[…]";
-  const std::string text = value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (value.is_array() && (value.size() > kMostElements || std::ranges::any_of(value, &Json::is_structured)))
+    return "[…]";
+  const std::string text =
+      value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "…";
 }
 
@@ -47,7 +49,8 @@ std::string pointer(const std::string& key) {
 }
 
 Json parse(const std::string& text, const std::string& file) {
-  if (text.size() > kMaxJsonBytes) throw FileError(file, fmt::format("has {} bytes, more than the 16 MiB that values can have", text.size()));
+  if (text.size() > kMaxJsonBytes)
+    throw FileError(file, fmt::format("has {} bytes, more than the 16 MiB that values can have", text.size()));
   try {
     return Json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {
@@ -61,7 +64,8 @@ Json parse(const std::string& text, const std::string& file) {
 
 void ParameterValues::setFromJson(const std::string& json, const std::string& file) {
   const Json root = parse(json, file);
-  if (!root.is_object()) throw FileError(file, "the values of parameters are an object such as {\"tint\": [1, 0.5, 0]}");
+  if (!root.is_object())
+    throw FileError(file, "the values of parameters are an object such as {\"tint\": [1, 0.5, 0]}");
   ParameterValues values = *this;
   for (const auto& [name, value] : root.items()) {
     try {
@@ -91,9 +95,12 @@ std::string ParameterValues::toJson() const {
     const Parameter& p = parameters_[i];
     Json values = Json::array();
     const auto number = [&](double value) {
-      return p.type == ParameterType::boolean ? Json(value != 0) : isWhole(p.type) ? Json(static_cast<std::int64_t>(value)) : Json(value);
+      return p.type == ParameterType::boolean ? Json(value != 0)
+             : isWhole(p.type)                ? Json(static_cast<std::int64_t>(value))
+                                              : Json(value);
     };
-    for (std::size_t c = 0; c < static_cast<std::size_t>(componentCount(p.type)); ++c) values.push_back(number(values_[i][c]));
+    for (std::size_t c = 0; c < static_cast<std::size_t>(componentCount(p.type)); ++c)
+      values.push_back(number(values_[i][c]));
     if (p.type == ParameterType::image) {
       if (imageFiles_[i]) root[p.name] = *imageFiles_[i];  // the default image has no path outside the program
     } else if (p.type == ParameterType::choice) {

@@ -21,10 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::ptrdiff_t kMaxDots = 10000;
+
 Program loadFolder(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() && entry.file_size() <= (1u << 24)) files[entry.path().filename().string()] = readTextFile(entry.path());
+    if (entry.is_regular_file() && entry.file_size() <= (1u << 24))
+      files[entry.path().filename().string()] = readTextFile(entry.path());
   const auto toml = files.find("program.toml");
   if (toml == files.end()) throw FileError(folder, "has no program.toml");
   const std::string text = toml->second;
@@ -38,7 +41,8 @@ Program loadFolder(const fs::path& folder) {
 bool isLibraryStage(const std::string& file) { return file.size() > 2 && file.front() == '<' && file.back() == '>'; }
 
 const std::vector<std::string>& geometryClasses() {
-  static const std::vector<std::string> kClasses{"triangles", "solids", "csg", "custom", "procedural", "opaque", "alpha"};
+  static const std::vector<std::string> kClasses{"triangles",  "solids", "csg",  "custom",
+                                                 "procedural", "opaque", "alpha"};
   return kClasses;
 }
 
@@ -60,12 +64,17 @@ std::vector<std::string> outputNames(const Program& program) {
   return names;
 }
 
-Program parseProgram(const std::string& toml, const std::string& name, const std::string& origin, std::map<std::string, std::string> files) {
+Program parseProgram(const std::string& toml, const std::string& name, const std::string& origin,
+                     std::map<std::string, std::string> files) {
   Program program;
   program.name = name;
   program.origin = origin;
   program.files = std::move(files);
   const std::string file = program.path(program.descriptionFile);
+  // toml++ (3.x) frees tables recursively: 100,000 levels "a.a.a.…" would overflow the stack. A level takes a dot, or is
+  // one of the 256 nested values that it allows.
+  if (std::count(toml.begin(), toml.end(), '.') > kMaxDots)
+    throw FileError(file, fmt::format("has more than {} dots: this cannot be a program's description", kMaxDots));
   toml::table root;
   try {
     root = toml::parse(toml, file);
@@ -80,7 +89,8 @@ Program parseProgram(const std::string& toml, const std::string& name, const std
 void chooseDefaultScene(Program& program) {
   if (!program.scene.empty()) return;
   const auto isScene = [](const auto& file) { return file.first.ends_with(".scene.toml"); };
-  if (std::ranges::count_if(program.files, isScene) == 1) program.scene = std::ranges::find_if(program.files, isScene)->first;
+  if (std::ranges::count_if(program.files, isScene) == 1)
+    program.scene = std::ranges::find_if(program.files, isScene)->first;
 }
 
 std::vector<std::string> builtInPrograms() {
@@ -97,7 +107,8 @@ Program loadProgram(const std::string& nameOrFolder) {
   if (std::optional<Program> lecture = findLecture(nameOrFolder)) return std::move(*lecture);
   std::error_code ignored;
   fs::path path = nameOrFolder;
-  if (path.filename() == "program.toml" && fs::is_regular_file(path, ignored)) path = path.has_parent_path() ? path.parent_path() : ".";
+  if (path.filename() == "program.toml" && fs::is_regular_file(path, ignored))
+    path = path.has_parent_path() ? path.parent_path() : ".";
   if (fs::is_directory(path, ignored) && fs::exists(path / "program.toml", ignored)) return loadFolder(path);
 
   std::map<std::string, std::string> files;
@@ -111,7 +122,8 @@ Program loadProgram(const std::string& nameOrFolder) {
   if (fs::is_directory(path, ignored)) throw FileError(path, "has no program.toml");
   const std::string nearest = nearestName(nameOrFolder, builtInPrograms());
   throw UsageError(fmt::format("no program '{}': neither a folder with program.toml nor one of {}{}", nameOrFolder,
-                               fmt::join(builtInPrograms(), ", "), nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+                               fmt::join(builtInPrograms(), ", "),
+                               nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
 }
 
 }  // namespace quintet::program

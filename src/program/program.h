@@ -35,9 +35,9 @@ struct HitShaders {
 // A hit group is bound to geometry by names; hitGroupFor (link.h) says which of several wins.
 struct HitGroup {
   std::string name;
-  std::vector<std::string> geometry;    // kinds or classes: geometryClasses()
-  std::vector<std::string> material;    // names of materials
-  std::vector<std::string> primitives;  // names of primitive sets or meshes
+  std::vector<std::string> geometry;          // kinds or classes: geometryClasses()
+  std::vector<std::string> material;          // names of materials
+  std::vector<std::string> primitives;        // names of primitive sets or meshes
   std::map<std::string, HitShaders> shaders;  // by ray type
   int line = 0;
 };
@@ -87,18 +87,18 @@ enum class Accumulation {
 };
 
 struct Program {
-  std::string name;                // the folder's
+  std::string name;  // the folder's
   std::string description;
-  std::string rayGeneration;       // file
+  std::string rayGeneration;  // file
   RecordValues rayGenerationRecord;
   int rayGenerationLine = 0;
   std::vector<RayType> rays;
   std::vector<MissShader> misses;  // their indices follow those of `rays`: missShaders()
   std::vector<HitGroup> hitGroups;
   std::vector<Callable> callables;
-  std::vector<Output> outputs;     // index = slot
+  std::vector<Output> outputs;  // index = slot
   std::vector<Parameter> parameters;
-  std::vector<Parameter> record;   // fields of the shader record; empty: records carry no data
+  std::vector<Parameter> record;  // fields of the shader record; empty: records carry no data
   // Depth of nested traceRayEXT that the author promises not to exceed; 1: only ray generation traces.
   std::optional<std::uint32_t> declaredRecursion;
   Accumulation accumulation = Accumulation::film;
@@ -112,12 +112,14 @@ struct Program {
   // the folder's only *.scene.toml; empty: none.
   std::string scene;
 
-  std::string origin;                             // folder, or "<programs/NAME>" when built in
-  std::string descriptionFile = "program.toml";   // the file of `line`s, relative to origin
-  std::map<std::string, std::string> files;       // every file of the folder: relative path → text
+  std::string origin;                            // folder, or "<programs/NAME>" when built in
+  std::string descriptionFile = "program.toml";  // the file of `line`s, relative to origin
+  std::map<std::string, std::string> files;      // every file of the folder: relative path → text
 
   // Path of a file as diagnostics show it.
-  std::string path(const std::string& file) const { return isLibraryStage(file) || origin.empty() ? file : origin + "/" + file; }
+  std::string path(const std::string& file) const {
+    return isLibraryStage(file) || origin.empty() ? file : origin + "/" + file;
+  }
 };
 
 // Every miss shader in the order of the table: those of the ray types, then the others.

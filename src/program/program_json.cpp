@@ -14,7 +14,8 @@ Json number(ParameterType type, double value) {
 }
 
 Json defaultOf(const Parameter& parameter) {
-  if (parameter.type == ParameterType::image || parameter.type == ParameterType::choice) return formatDefault(parameter);
+  if (parameter.type == ParameterType::image || parameter.type == ParameterType::choice)
+    return formatDefault(parameter);
   Json values = Json::array();
   for (std::size_t i = 0; i < static_cast<std::size_t>(componentCount(parameter.type)); ++i)
     values.push_back(number(parameter.type, parameter.defaultValue[i]));
@@ -41,7 +42,8 @@ Json describe(const Parameter& parameter) {
 std::string describeAsJson(const Program& program) {
   Json rays = Json::array(), outputs = Json::array(), parameters = Json::array();
   for (const RayType& ray : program.rays) rays.push_back(ray.name);
-  for (const Output& output : program.outputs) outputs.push_back({{"name", output.name}, {"kind", outputKindName(output.kind)}, {"help", output.help}});
+  for (const Output& output : program.outputs)
+    outputs.push_back({{"name", output.name}, {"kind", outputKindName(output.kind)}, {"help", output.help}});
   for (const Parameter& parameter : program.parameters) parameters.push_back(describe(parameter));
   const Json json{{"name", program.name},
                   {"description", program.description},

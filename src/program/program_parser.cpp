@@ -90,11 +90,13 @@ class Parser {
     ray.line = reader.line();
     ray.name = parseName(reader, namesOf(program_.rays));
     if (std::find(kHitGroupKeys.begin(), kHitGroupKeys.end(), ray.name) != kHitGroupKeys.end())
-      reader.fail(reader.find("name"), fmt::format("'{}' cannot be a ray's name: it is a key of [[hit_group]]", ray.name));
+      reader.fail(reader.find("name"),
+                  fmt::format("'{}' cannot be a ray's name: it is a key of [[hit_group]]", ray.name));
     ray.miss = shaderFile(reader, "miss", ".rmiss", true);
     ray.record = parseRecordValues(program_, reader, {}, file_);
     reader.refuseOthers();
-    if (program_.rays.size() == kMaxRayTypes) reader.fail(nullptr, "more than 15 ray types do not fit the 4-bit stride");
+    if (program_.rays.size() == kMaxRayTypes)
+      reader.fail(nullptr, "more than 15 ray types do not fit the 4-bit stride");
     program_.rays.push_back(std::move(ray));
   }
 
@@ -106,7 +108,8 @@ class Parser {
     miss.file = shaderFile(reader, "file", ".rmiss", true);
     miss.record = parseRecordValues(program_, reader, {}, file_);
     reader.refuseOthers();
-    if (program_.rays.size() + program_.misses.size() == kMaxMisses) reader.fail(nullptr, "more than 65536 miss shaders do not fit the 16-bit index");
+    if (program_.rays.size() + program_.misses.size() == kMaxMisses)
+      reader.fail(nullptr, "more than 65536 miss shaders do not fit the 16-bit index");
     program_.misses.push_back(std::move(miss));
   }
 
@@ -142,8 +145,9 @@ class Parser {
   void checkClass(TomlReader& reader, const std::string& name) const {
     const std::vector<std::string>& classes = geometryClasses();
     if (std::find(classes.begin(), classes.end(), name) != classes.end()) return;
-    reader.fail(reader.find("geometry"), fmt::format("'{}' is no class of geometry{}", name,
-                                                     didYouMean(name, classes, fmt::format("; there are {}", fmt::join(classes, ", ")))));
+    reader.fail(reader.find("geometry"),
+                fmt::format("'{}' is no class of geometry{}", name,
+                            didYouMean(name, classes, fmt::format("; there are {}", fmt::join(classes, ", ")))));
   }
 
   HitShaders parseStages(const toml::table& table, const std::string& ray, const RecordValues& record) {
@@ -164,23 +168,27 @@ class Parser {
     output.line = reader.line();
     output.name = parseName(reader, namesOf(program_.outputs));
     std::vector<std::string> kinds;
-    for (int i = 0; i <= static_cast<int>(OutputKind::display); ++i) kinds.emplace_back(outputKindName(static_cast<OutputKind>(i)));
+    for (int i = 0; i <= static_cast<int>(OutputKind::display); ++i)
+      kinds.emplace_back(outputKindName(static_cast<OutputKind>(i)));
     const OutputKind usual = output.name == "color" ? OutputKind::color : OutputKind::linear;
     output.kind = static_cast<OutputKind>(reader.choice("kind", kinds, static_cast<std::size_t>(usual)));
     output.help = reader.text("help");
     reader.refuseOthers();
-    if (program_.outputs.size() == kMaxOutputs) reader.fail(nullptr, fmt::format("more than {} outputs are not possible", kMaxOutputs));
+    if (program_.outputs.size() == kMaxOutputs)
+      reader.fail(nullptr, fmt::format("more than {} outputs are not possible", kMaxOutputs));
     program_.outputs.push_back(std::move(output));
   }
 
   // An absent file that is not required gives an empty name.
-  std::string shaderFile(TomlReader& reader, const std::string& key, const std::string& extension, bool required) const {
+  std::string shaderFile(TomlReader& reader, const std::string& key, const std::string& extension,
+                         bool required) const {
     const std::string name = required ? reader.neededText(key) : reader.text(key);
     const toml::node* node = reader.find(key);
     return node ? checkFile(reader, *node, name, extension) : name;
   }
 
-  std::string checkFile(const TomlReader& reader, const toml::node& node, const std::string& name, const std::string& extension) const {
+  std::string checkFile(const TomlReader& reader, const toml::node& node, const std::string& name,
+                        const std::string& extension) const {
     const bool library = isLibraryStage(name);
     if (fs::path(library ? name.substr(1, name.size() - 2) : name).extension() != extension)
       reader.fail(&node, fmt::format("'{}' must end in {}", name, extension));
@@ -197,6 +205,8 @@ class Parser {
 
 }  // namespace
 
-void parseTables(Program& program, const toml::table& root, const std::string& file) { Parser(program, file).parse(root); }
+void parseTables(Program& program, const toml::table& root, const std::string& file) {
+  Parser(program, file).parse(root);
+}
 
 }  // namespace quintet::program

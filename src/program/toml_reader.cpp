@@ -48,7 +48,8 @@ std::vector<std::string> TomlReader::texts(const std::string& key) {
   if (!node) return {};
   std::vector<std::string> result;
   const auto add = [&](const toml::node& element) {
-    if (!element.is_string()) fail(&element, fmt::format("'{}' of {} must be a string or a list of strings", key, what_));
+    if (!element.is_string())
+      fail(&element, fmt::format("'{}' of {} must be a string or a list of strings", key, what_));
     result.push_back(**element.as_string());
     if (result.back().empty()) fail(&element, fmt::format("'{}' of {} has an empty name", key, what_));
   };
@@ -124,7 +125,8 @@ void TomlReader::refuseOthers() const {
   }
 }
 
-std::string didYouMean(const std::string& name, const std::vector<std::string>& candidates, const std::string& fallback) {
+std::string didYouMean(const std::string& name, const std::vector<std::string>& candidates,
+                       const std::string& fallback) {
   const std::string nearest = nearestName(name, candidates);
   return nearest.empty() ? fallback : fmt::format("; did you mean '{}'?", nearest);
 }

@@ -57,7 +57,8 @@ class TomlReader {
 };
 
 // "; did you mean 'x'?", or the fallback if no candidate is near.
-std::string didYouMean(const std::string& name, const std::vector<std::string>& candidates, const std::string& fallback = {});
+std::string didYouMean(const std::string& name, const std::vector<std::string>& candidates,
+                       const std::string& fallback = {});
 
 }  // namespace quintet::program
 #endif

@@ -29,13 +29,16 @@ TextureSlots::TextureSlots(gpu::BindlessSet& set, std::uint32_t first, std::uint
 }
 
 std::vector<std::uint32_t> TextureSlots::take(std::size_t count) {
-  if (count > free_.size()) throw UsageError(fmt::format("{} image parameters: the scene has room for {} more", count, free_.size()));
+  if (count > free_.size())
+    throw UsageError(fmt::format("{} image parameters: the scene has room for {} more", count, free_.size()));
   const std::vector<std::uint32_t> slots(free_.rbegin(), free_.rbegin() + static_cast<std::ptrdiff_t>(count));
   free_.resize(free_.size() - count);
   return slots;
 }
 
-void TextureSlots::giveBack(std::span<const std::uint32_t> slots) { free_.insert(free_.end(), slots.rbegin(), slots.rend()); }
+void TextureSlots::giveBack(std::span<const std::uint32_t> slots) {
+  free_.insert(free_.end(), slots.rbegin(), slots.rend());
+}
 
 ParameterTextures::ParameterTextures(gpu::Context& context, TextureSlots& slots, const program::Program& program,
                                      const program::ParameterValues& values)

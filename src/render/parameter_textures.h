@@ -34,7 +34,8 @@ class TextureSlots {
 class ParameterTextures {
  public:
   // Reads and uploads the pictures. Throws FileError (missing or broken picture), UsageError (too many).
-  ParameterTextures(gpu::Context& context, TextureSlots& slots, const program::Program& program, const program::ParameterValues& values);
+  ParameterTextures(gpu::Context& context, TextureSlots& slots, const program::Program& program,
+                    const program::ParameterValues& values);
   ~ParameterTextures();
   ParameterTextures(const ParameterTextures&) = delete;
   ParameterTextures& operator=(const ParameterTextures&) = delete;

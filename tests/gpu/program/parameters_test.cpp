@@ -65,7 +65,8 @@ void main() {
   storeOutput(kOutput_c, launchPixel(), parameters.quad + vec4(0.0, 0.0, 0.0, float(parameters.size)));
 }
 )"}};
-  const Outputs outputs = runProgram(toml, files, namedSquares({"a"}), 1, {"count=-7", "size=3000000000", "mode=blue", "quad=1,2,3,0"});
+  const Outputs outputs =
+      runProgram(toml, files, namedSquares({"a"}), 1, {"count=-7", "size=3000000000", "mode=blue", "quad=1,2,3,0"});
   EXPECT_EQ(outputs[0][0], vec4(1, 2, 3, 1));
   EXPECT_EQ(outputs[1][0], vec4(4, 5, -7, 50));
   EXPECT_EQ(outputs[2][0], vec4(1, 2, 3, 3e9f));
@@ -104,7 +105,9 @@ name = "texels"
 name = "other"
 )";
 
-const Files kImageFiles = {{"four.png", bytesOf(fourTexels())}, {"m.rmiss", "void main() {}\n"}, {"main.rgen", R"(#include <quintet/output.glsl>
+const Files kImageFiles = {{"four.png", bytesOf(fourTexels())},
+                           {"m.rmiss", "void main() {}\n"},
+                           {"main.rgen", R"(#include <quintet/output.glsl>
 #include <quintet/texture.glsl>
 #include <quintet/generated/program.glsl>
 void main() {
@@ -154,7 +157,8 @@ TEST(Parameters, ImagesAreSetByPath) {
   EXPECT_EQ(outputs[1][0], vec4(8.0f, 0.0f, 0.5f, 1.0f));
   EXPECT_EQ(outputs[0][0], vec4(1.0f)) << "emptied: white";
   writeFile(folder + "/broken.png", std::string_view("no picture"));
-  EXPECT_THROW(runProgram(kImages, kImageFiles, namedSquares({"a"}), 1, {"other=" + folder + "/broken.png"}), FileError);
+  EXPECT_THROW(runProgram(kImages, kImageFiles, namedSquares({"a"}), 1, {"other=" + folder + "/broken.png"}),
+               FileError);
   EXPECT_THROW(runProgram(kImages, kImageFiles, namedSquares({"a"}), 1, {"other=" + folder + "/none.png"}), FileError);
   std::filesystem::remove_all(folder);
 }

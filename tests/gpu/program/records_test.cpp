@@ -110,10 +110,15 @@ void fill(inout Data data) {
 const Files kFiles = {
     {"data.glsl", "struct Data { vec4 tint, numbers, vectors, quad; float anyHit; };\n"},
     {"fill.glsl", kFill},
-    {"fill.rchit", "#include \"fill.glsl\"\nlayout(location = 0) rayPayloadInEXT Data data;\nvoid main() { fill(data); }\n"},
-    {"touch.rahit", "#include \"fill.glsl\"\nlayout(location = 0) rayPayloadInEXT Data data;\nvoid main() { data.anyHit = record.weight; }\n"},
-    {"fill.rmiss", "#include \"fill.glsl\"\nlayout(location = 0) rayPayloadInEXT Data data;\nvoid main() { fill(data); }\n"},
-    {"fill.rcall", "#include \"fill.glsl\"\nlayout(location = 0) callableDataInEXT Data data;\nvoid main() { fill(data); }\n"},
+    {"fill.rchit",
+     "#include \"fill.glsl\"\nlayout(location = 0) rayPayloadInEXT Data data;\nvoid main() { fill(data); }\n"},
+    {"touch.rahit",
+     "#include \"fill.glsl\"\nlayout(location = 0) rayPayloadInEXT Data data;\nvoid main() { data.anyHit = "
+     "record.weight; }\n"},
+    {"fill.rmiss",
+     "#include \"fill.glsl\"\nlayout(location = 0) rayPayloadInEXT Data data;\nvoid main() { fill(data); }\n"},
+    {"fill.rcall",
+     "#include \"fill.glsl\"\nlayout(location = 0) callableDataInEXT Data data;\nvoid main() { fill(data); }\n"},
     {"main.rgen", R"(#include <quintet/output.glsl>
 #include <quintet/generated/program.glsl>
 #include "fill.glsl"
@@ -146,10 +151,10 @@ void main() {
 
 struct Expected {
   const char* what;
-  vec4 tint{0.5f, 0.5f, 0.5f, 1};     // tint, weight
-  vec4 numbers{0, 7, 3, 0};           // on, count, size, mode
-  vec4 vectors{10, 11, 13, 14};       // uv, axis.yz
-  vec4 quad{15, 16, 17, 18 + 12};     // quad, + axis.x in w
+  vec4 tint{0.5f, 0.5f, 0.5f, 1};  // tint, weight
+  vec4 numbers{0, 7, 3, 0};        // on, count, size, mode
+  vec4 vectors{10, 11, 13, 14};    // uv, axis.yz
+  vec4 quad{15, 16, 17, 18 + 12};  // quad, + axis.x in w
   float anyHit = 0;
 };
 
@@ -179,7 +184,8 @@ TEST(ShaderRecords, ArriveInEveryStage) {
 
 TEST(ShaderRecords, WithoutADeclarationTheIncludeSaysSo) {
   const std::string toml = "[program]\nray_generation = \"main.rgen\"\n[[ray]]\nname = \"r\"\nmiss = \"m.rmiss\"\n";
-  const Files files = {{"main.rgen", "void main() {}\n"}, {"m.rmiss", "#include <quintet/generated/record.glsl>\nvoid main() {}\n"}};
+  const Files files = {{"main.rgen", "void main() {}\n"},
+                       {"m.rmiss", "#include <quintet/generated/record.glsl>\nvoid main() {}\n"}};
   try {
     runProgram(toml, files, namedSquares({"a"}), 1);
     FAIL();

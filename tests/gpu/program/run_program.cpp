@@ -16,7 +16,8 @@ Outputs runProgram(const std::string& toml, const Files& files, const SceneBuild
   options.width = pixels;
   options.height = 1;
   render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  render::Renderer renderer(device, options.program, testCompiler(), nullptr, settingsFor(scene.scene.cameras[0], options));
+  render::Renderer renderer(device, options.program, testCompiler(), nullptr,
+                            settingsFor(scene.scene.cameras[0], options));
   renderer.renderBatch(1);
   Outputs outputs;
   for (std::size_t i = 0; i < options.program.outputs.size(); ++i) {

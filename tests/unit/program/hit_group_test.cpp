@@ -13,17 +13,24 @@ HitGroup group(const std::string& name, bool boxes) {
 }
 
 // The name of the group that serves the geometry.
-std::string serving(const Program& program, const GeometryFacts& geometry) { return program.hitGroups.at(hitGroupFor(program, geometry)).name; }
+std::string serving(const Program& program, const GeometryFacts& geometry) {
+  return program.hitGroups.at(hitGroupFor(program, geometry)).name;
+}
 
-GeometryFacts triangles(const std::string& material = {}, bool alpha = false) { return {GeometryKind::triangles, alpha, "mesh", material}; }
-GeometryFacts boxes(GeometryKind kind, const std::string& material = {}, const std::string& name = "set", bool alpha = false) {
+GeometryFacts triangles(const std::string& material = {}, bool alpha = false) {
+  return {GeometryKind::triangles, alpha, "mesh", material};
+}
+GeometryFacts boxes(GeometryKind kind, const std::string& material = {}, const std::string& name = "set",
+                    bool alpha = false) {
   return {kind, alpha, name, material};
 }
 
 // One group of every rank, the weakest first, so that the order in the file cannot help.
 Program everyRank() {
   Program p;
-  const auto add = [&](const std::string& name, bool box, auto bind) { bind(p.hitGroups.emplace_back(group(name, box))); };
+  const auto add = [&](const std::string& name, bool box, auto bind) {
+    bind(p.hitGroups.emplace_back(group(name, box)));
+  };
   add("any boxes", true, [](HitGroup&) {});
   add("any triangles", false, [](HitGroup&) {});
   add("alpha triangles", false, [](HitGroup& g) { g.geometry = {"alpha"}; });
@@ -68,7 +75,8 @@ TEST(HitGroup, WithoutAFittingGroupOneWithoutBindingServes) {
   Program p;
   p.hitGroups.emplace_back(group("glass", false)).material = {"glass"};
   p.hitGroups.emplace_back(group("any", false));
-  EXPECT_EQ(serving(p, boxes(GeometryKind::custom, "glass")), "any") << "a triangle group does not serve boxes by material";
+  EXPECT_EQ(serving(p, boxes(GeometryKind::custom, "glass")), "any")
+      << "a triangle group does not serve boxes by material";
   p.hitGroups.pop_back();
   EXPECT_EQ(serving(p, triangles("wood")), "glass") << "the last resort is the first group";
 }
@@ -94,7 +102,8 @@ TEST(HitGroup, TrianglesAndKindsCanBeListed) {
 const std::string kGroup = std::string(kSmall) + "\n[[hit_group]]\nname = \"g\"\n";  // its keys from line 11 on
 
 TEST(HitGroup, BindingsAreANameOrAListOfNames) {
-  const Program p = parse(kGroup + "geometry = [\"csg\", \"custom\"]\nmaterial = [\"glass\", \"ice\"]\nprimitives = \"balls\"\n");
+  const Program p =
+      parse(kGroup + "geometry = [\"csg\", \"custom\"]\nmaterial = [\"glass\", \"ice\"]\nprimitives = \"balls\"\n");
   ASSERT_EQ(p.hitGroups.size(), 1u);
   EXPECT_EQ(p.hitGroups[0].geometry, (std::vector<std::string>{"csg", "custom"}));
   EXPECT_EQ(p.hitGroups[0].material, (std::vector<std::string>{"glass", "ice"}));
@@ -102,11 +111,15 @@ TEST(HitGroup, BindingsAreANameOrAListOfNames) {
 }
 
 TEST(HitGroup, WrongBindingsAreRefused) {
-  EXPECT_EQ(errorOf(kGroup + "geometry = \"triangle\"\n"), "line 11: 'triangle' is no class of geometry; did you mean 'triangles'?");
+  EXPECT_EQ(errorOf(kGroup + "geometry = \"triangle\"\n"),
+            "line 11: 'triangle' is no class of geometry; did you mean 'triangles'?");
   EXPECT_EQ(errorOf(kGroup + "geometry = \"zzzzzzzzzzzzzzz\"\n"),
-            "line 11: 'zzzzzzzzzzzzzzz' is no class of geometry; there are triangles, solids, csg, custom, procedural, opaque, alpha");
-  EXPECT_EQ(errorOf(kGroup + "material = 3\n"), "line 11: 'material' of [[hit_group]] must be a string or a list of strings");
-  EXPECT_EQ(errorOf(kGroup + "material = [\"a\", 3]\n"), "line 11: 'material' of [[hit_group]] must be a string or a list of strings");
+            "line 11: 'zzzzzzzzzzzzzzz' is no class of geometry; there are triangles, solids, csg, custom, procedural, "
+            "opaque, alpha");
+  EXPECT_EQ(errorOf(kGroup + "material = 3\n"),
+            "line 11: 'material' of [[hit_group]] must be a string or a list of strings");
+  EXPECT_EQ(errorOf(kGroup + "material = [\"a\", 3]\n"),
+            "line 11: 'material' of [[hit_group]] must be a string or a list of strings");
   EXPECT_EQ(errorOf(kGroup + "primitives = []\n"), "line 11: 'primitives' of [[hit_group]] is an empty list");
   EXPECT_EQ(errorOf(kGroup + "primitives = \"\"\n"), "line 11: 'primitives' of [[hit_group]] has an empty name");
   for (const char* name : {"name", "geometry", "material", "primitives", "record"})

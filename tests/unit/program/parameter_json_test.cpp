@@ -82,9 +82,11 @@ std::string problem(const std::string& json) {
 
 TEST(ParameterJson, SetsEveryType) {
   ParameterValues v = values();
-  v.setFromJson(R"({"on": false, "bounces": 3.0, "count": 4294967295, "far": 2.5, "tint": [0, 0.125, 1], "mode": "plain", "wood": "a.png", "map": ""})",
-                "folder/values.json");
-  EXPECT_EQ(v.describe(), "on=false bounces=3 count=4294967295 far=2.5 tint=0,0.125,1 mode=plain wood=folder/a.png map=");
+  v.setFromJson(
+      R"({"on": false, "bounces": 3.0, "count": 4294967295, "far": 2.5, "tint": [0, 0.125, 1], "mode": "plain", "wood": "a.png", "map": ""})",
+      "folder/values.json");
+  EXPECT_EQ(v.describe(),
+            "on=false bounces=3 count=4294967295 far=2.5 tint=0,0.125,1 mode=plain wood=folder/a.png map=");
   v.setFromJson(R"({"wood": "/abs/b.png"})", "folder/values.json");
   EXPECT_EQ(v.images()[0].file, "/abs/b.png");
   v.setFromJson("{}", "x");
@@ -118,7 +120,8 @@ TEST(ParameterJson, SaysWhatIsWrong) {
   EXPECT_EQ(problem(R"({"far": -1})"), "/far: parameter 'far': -1 is outside 0 … 1e+30");
   EXPECT_EQ(problem(R"({"far": 1e300})"), "/far: parameter 'far': 1e+300 is outside 0 … 1e+30");
   EXPECT_EQ(problem(R"({"tint": [1, 1]})"), "/tint: parameter 'tint': '[1,1]' is not a color (3 numbers with commas)");
-  EXPECT_EQ(problem(R"({"tint": [1, "1", 1]})"), "/tint: parameter 'tint': '[1,\"1\",1]' is not a color (3 numbers with commas)");
+  EXPECT_EQ(problem(R"({"tint": [1, "1", 1]})"),
+            "/tint: parameter 'tint': '[1,\"1\",1]' is not a color (3 numbers with commas)");
   EXPECT_EQ(problem(R"({"tint": {"r": 1}})"), "/tint: parameter 'tint': '{…}' is not a color (3 numbers with commas)");
   EXPECT_EQ(problem(R"({"tint": [1, 1, 2]})"), "/tint: parameter 'tint': [1,1,2] is outside -1e+30 … 1");
   EXPECT_EQ(problem(R"({"mode": "haet"})"), "/mode: parameter 'mode': there is no choice 'haet'; did you mean 'heat'?");
@@ -147,12 +150,19 @@ TEST(ProgramJson, DescribesWhatThereIs) {
   EXPECT_EQ(json["outputs"][1], nlohmann::json::parse(R"({"name":"where","kind":"normal","help":"the normal"})"));
   const auto& p = json["parameters"];
   ASSERT_EQ(p.size(), 8u);
-  EXPECT_EQ(p[0], nlohmann::json::parse(R"({"name":"on","type":"bool","default":true,"min":null,"max":null,"unit":"","help":""})"));
-  EXPECT_EQ(p[1], nlohmann::json::parse(R"({"name":"bounces","type":"int","default":12,"min":0,"max":64,"unit":"","help":"how often"})"));
-  EXPECT_EQ(p[3], nlohmann::json::parse(R"({"name":"far","type":"float","default":0.1,"min":0.0,"max":null,"unit":"m","help":""})"));
+  EXPECT_EQ(p[0], nlohmann::json::parse(
+                      R"({"name":"on","type":"bool","default":true,"min":null,"max":null,"unit":"","help":""})"));
+  EXPECT_EQ(p[1], nlohmann::json::parse(
+                      R"({"name":"bounces","type":"int","default":12,"min":0,"max":64,"unit":"","help":"how often"})"));
+  EXPECT_EQ(p[3], nlohmann::json::parse(
+                      R"({"name":"far","type":"float","default":0.1,"min":0.0,"max":null,"unit":"m","help":""})"));
   EXPECT_EQ(p[4]["default"], nlohmann::json::parse("[1.0,0.5,0.25]"));
-  EXPECT_EQ(p[5], nlohmann::json::parse(R"({"name":"mode","type":"choice","default":"heat","choices":["plain","heat"],"unit":"","help":""})"));
-  EXPECT_EQ(p[6], nlohmann::json::parse(R"({"name":"wood","type":"image","default":"wood.png","encoding":"linear","unit":"","help":""})"));
+  EXPECT_EQ(p[5],
+            nlohmann::json::parse(
+                R"({"name":"mode","type":"choice","default":"heat","choices":["plain","heat"],"unit":"","help":""})"));
+  EXPECT_EQ(p[6],
+            nlohmann::json::parse(
+                R"({"name":"wood","type":"image","default":"wood.png","encoding":"linear","unit":"","help":""})"));
   EXPECT_EQ(p[7]["encoding"], "srgb");
 }
 

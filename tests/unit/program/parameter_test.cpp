@@ -12,7 +12,8 @@ namespace {
 
 using testing::ThrowsMessage;
 
-Parameter make(const std::string& name, ParameterType type, ParameterValue value = {}, double min = -1e30, double max = 1e30) {
+Parameter make(const std::string& name, ParameterType type, ParameterValue value = {}, double min = -1e30,
+               double max = 1e30) {
   Parameter p;
   p.name = name;
   p.type = type;
@@ -22,19 +23,31 @@ Parameter make(const std::string& name, ParameterType type, ParameterValue value
   return p;
 }
 
-const std::vector<Parameter> kAll = {
-    make("on", ParameterType::boolean, {1}, 0, 1),     make("bounces", ParameterType::integer, {12}, 0, 65536),
-    make("clamp", ParameterType::real, {0.5}, 0, 10),  make("size", ParameterType::vec2, {1, 2}),
-    make("up", ParameterType::vec3, {0, 1, 0}),        make("box", ParameterType::vec4, {1, 2, 3, 4}),
-    make("tint", ParameterType::color, {1, 0.5, 0.25}, 0, 1)};
+const std::vector<Parameter> kAll = {make("on", ParameterType::boolean, {1}, 0, 1),
+                                     make("bounces", ParameterType::integer, {12}, 0, 65536),
+                                     make("clamp", ParameterType::real, {0.5}, 0, 10),
+                                     make("size", ParameterType::vec2, {1, 2}),
+                                     make("up", ParameterType::vec3, {0, 1, 0}),
+                                     make("box", ParameterType::vec4, {1, 2, 3, 4}),
+                                     make("tint", ParameterType::color, {1, 0.5, 0.25}, 0, 1)};
 
 TEST(Parameter, NamesItsTypes) {
-  struct Row { ParameterType type; const char* name; const char* glsl; int count; };
-  for (const Row& row : std::initializer_list<Row>{{ParameterType::boolean, "bool", "uint", 1}, {ParameterType::integer, "int", "int", 1},
-                                                   {ParameterType::real, "float", "float", 1}, {ParameterType::vec2, "vec2", "vec2", 2},
-                                                   {ParameterType::vec3, "vec3", "vec3", 3}, {ParameterType::vec4, "vec4", "vec4", 4},
-                                                   {ParameterType::color, "color", "vec3", 3}, {ParameterType::uinteger, "uint", "uint", 1},
-                                                   {ParameterType::choice, "choice", "uint", 1}, {ParameterType::image, "image", "uint", 1}}) {
+  struct Row {
+    ParameterType type;
+    const char* name;
+    const char* glsl;
+    int count;
+  };
+  for (const Row& row : std::initializer_list<Row>{{ParameterType::boolean, "bool", "uint", 1},
+                                                   {ParameterType::integer, "int", "int", 1},
+                                                   {ParameterType::real, "float", "float", 1},
+                                                   {ParameterType::vec2, "vec2", "vec2", 2},
+                                                   {ParameterType::vec3, "vec3", "vec3", 3},
+                                                   {ParameterType::vec4, "vec4", "vec4", 4},
+                                                   {ParameterType::color, "color", "vec3", 3},
+                                                   {ParameterType::uinteger, "uint", "uint", 1},
+                                                   {ParameterType::choice, "choice", "uint", 1},
+                                                   {ParameterType::image, "image", "uint", 1}}) {
     EXPECT_EQ(typeName(row.type), row.name);
     EXPECT_EQ(glslType(row.type), row.glsl);
     EXPECT_EQ(componentCount(row.type), row.count);
@@ -68,7 +81,8 @@ TEST(Parameter, SaysWhatIsWrong) {
     return std::string();
   };
   EXPECT_EQ(message("bonces", "3"), "no parameter 'bonces'; did you mean 'bounces'?");
-  EXPECT_EQ(message("qqqqqqqqqqqqqqq", "3"), "no parameter 'qqqqqqqqqqqqqqq'; there are: on, bounces, clamp, size, up, box, tint");
+  EXPECT_EQ(message("qqqqqqqqqqqqqqq", "3"),
+            "no parameter 'qqqqqqqqqqqqqqq'; there are: on, bounces, clamp, size, up, box, tint");
   EXPECT_EQ(message("bounces", "3.5"), "parameter 'bounces': '3.5' is not an int");
   EXPECT_EQ(message("bounces", "many"), "parameter 'bounces': 'many' is not an int");
   EXPECT_EQ(message("bounces", "true"), "parameter 'bounces': 'true' is not an int");
@@ -83,7 +97,8 @@ TEST(Parameter, SaysWhatIsWrong) {
   EXPECT_EQ(message("size", "1,"), "parameter 'size': '1,' is not a vec2 (2 numbers with commas)");
   EXPECT_EQ(message("tint", "0,0,2"), "parameter 'tint': 0,0,2 is outside 0 … 1");
   EXPECT_EQ(message("on", "2"), "parameter 'on': 2 is outside 0 … 1");
-  EXPECT_THAT([&] { values.setAssignment("bounces"); }, ThrowsMessage<UsageError>("'bounces' is not of the form name=value"));
+  EXPECT_THAT([&] { values.setAssignment("bounces"); },
+              ThrowsMessage<UsageError>("'bounces' is not of the form name=value"));
   EXPECT_THAT([&] { values.setAssignment("=3"); }, ThrowsMessage<UsageError>("'=3' is not of the form name=value"));
   // Nothing was changed by all that.
   EXPECT_EQ(values.describe(), ParameterValues(kAll).describe());
@@ -91,7 +106,8 @@ TEST(Parameter, SaysWhatIsWrong) {
 
 // A uint, a choice and two images.
 std::vector<Parameter> more() {
-  Parameter count = make("count", ParameterType::uinteger, {4294967295.0}, 0, 4294967295.0), mode = make("mode", ParameterType::choice, {1});
+  Parameter count = make("count", ParameterType::uinteger, {4294967295.0}, 0, 4294967295.0),
+            mode = make("mode", ParameterType::choice, {1});
   mode.choices = {"plain", "heat", "wire"};
   Parameter wood = make("wood", ParameterType::image), map = make("map", ParameterType::image);
   wood.defaultImage = "wood.png";
@@ -118,10 +134,14 @@ TEST(Parameter, ChoicesAndImagesAreSetByText) {
   values.set("wood", "");
   EXPECT_EQ(values.images()[0].file, "");
   EXPECT_FALSE(values.images()[0].ofProgram);
-  EXPECT_THAT([&] { values.set("mode", "haet"); }, ThrowsMessage<UsageError>("parameter 'mode': there is no choice 'haet'; did you mean 'heat'?"));
-  EXPECT_THAT([&] { values.set("mode", "1"); }, ThrowsMessage<UsageError>("parameter 'mode': there is no choice '1'; there are: plain, heat, wire"));
-  EXPECT_THAT([&] { values.set("count", "-1"); }, ThrowsMessage<UsageError>("parameter 'count': -1 is outside 0 … 4294967295"));
-  EXPECT_THAT([&] { values.set("count", "4294967296"); }, ThrowsMessage<UsageError>("parameter 'count': 4294967296 is outside 0 … 4294967295"));
+  EXPECT_THAT([&] { values.set("mode", "haet"); },
+              ThrowsMessage<UsageError>("parameter 'mode': there is no choice 'haet'; did you mean 'heat'?"));
+  EXPECT_THAT([&] { values.set("mode", "1"); },
+              ThrowsMessage<UsageError>("parameter 'mode': there is no choice '1'; there are: plain, heat, wire"));
+  EXPECT_THAT([&] { values.set("count", "-1"); },
+              ThrowsMessage<UsageError>("parameter 'count': -1 is outside 0 … 4294967295"));
+  EXPECT_THAT([&] { values.set("count", "4294967296"); },
+              ThrowsMessage<UsageError>("parameter 'count': 4294967296 is outside 0 … 4294967295"));
 }
 
 TEST(Parameter, PacksTextureIndices) {

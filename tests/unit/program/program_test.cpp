@@ -121,47 +121,64 @@ TEST_P(ProgramErrors, NameTheLineAndTheProblem) {
 }
 
 const WrongCase kWrong[] = {
-    {"UnknownKeyOfProgram", "max_recursion", "max_recursoin", "line 4: [program] has no key 'max_recursoin'; did you mean 'max_recursion'?"},
-    {"UnknownKeyOfRay", "miss = \"sky.rmiss\"", "miss = \"sky.rmiss\"\nmis = 1", "line 11: [[ray]] has no key 'mis'; did you mean 'miss'?"},
+    {"UnknownKeyOfProgram", "max_recursion", "max_recursoin",
+     "line 4: [program] has no key 'max_recursoin'; did you mean 'max_recursion'?"},
+    {"UnknownKeyOfRay", "miss = \"sky.rmiss\"", "miss = \"sky.rmiss\"\nmis = 1",
+     "line 11: [[ray]] has no key 'mis'; did you mean 'miss'?"},
     {"UnknownKeyWithoutHint", "unit", "zzzzzzzzzzzzzzzz", "line 39: [[parameter]] has no key 'zzzzzzzzzzzzzzzz'"},
-    {"UnknownKeyAtTheTop", "[[output]]", "[[outputs]]", "line 27: program.toml has no key 'outputs'; did you mean 'output'?"},
-    {"UnknownStage", "{ closest_hit", "{ closes_hit", "line 19: 'radiance' of [[hit_group]] has no key 'closes_hit'; did you mean 'closest_hit'?"},
+    {"UnknownKeyAtTheTop", "[[output]]", "[[outputs]]",
+     "line 27: program.toml has no key 'outputs'; did you mean 'output'?"},
+    {"UnknownStage", "{ closest_hit", "{ closes_hit",
+     "line 19: 'radiance' of [[hit_group]] has no key 'closes_hit'; did you mean 'closest_hit'?"},
     {"UnknownRay", "shadow = {", "shadows = {", "line 25: [[hit_group]] has no key 'shadows'; did you mean 'shadow'?"},
     {"UnknownKeyOfOutput", "name = \"depth\"", "name = \"depth\"\ntype = 1", "line 32: [[output]] has no key 'type'"},
-    {"MissingFile", "main.rgen", "mian.rgen", "line 3: there is no file 'mian.rgen' in folder/demo; did you mean 'main.rgen'?"},
-    {"MissingCallable", "noise.rcall", "none.rcall", "line 6: there is no file 'none.rcall' in folder/demo; did you mean 'noise.rcall'?"},
-    {"WrongExtension", "closest_hit = \"hit.rchit\"", "closest_hit = \"alpha.rahit\"", "line 19: 'alpha.rahit' must end in .rchit"},
-    {"WrongLibraryExtension", "shadow.rmiss", "surface.rchit", "line 14: '<quintet/stages/surface.rchit>' must end in .rmiss"},
+    {"MissingFile", "main.rgen", "mian.rgen",
+     "line 3: there is no file 'mian.rgen' in folder/demo; did you mean 'main.rgen'?"},
+    {"MissingCallable", "noise.rcall", "none.rcall",
+     "line 6: there is no file 'none.rcall' in folder/demo; did you mean 'noise.rcall'?"},
+    {"WrongExtension", "closest_hit = \"hit.rchit\"", "closest_hit = \"alpha.rahit\"",
+     "line 19: 'alpha.rahit' must end in .rchit"},
+    {"WrongLibraryExtension", "shadow.rmiss", "surface.rchit",
+     "line 14: '<quintet/stages/surface.rchit>' must end in .rmiss"},
     {"DuplicateRay", "name = \"shadow\"", "name = \"radiance\"", "line 13: 'radiance' is there twice"},
     {"DuplicateHitGroup", "name = \"boxes\"", "name = \"solid\"", "line 22: 'solid' is there twice"},
     {"DuplicateOutput", "name = \"depth\"", "name = \"color\"", "line 31: 'color' is there twice"},
     {"NoIdentifier", "name = \"depth\"", "name = \"depth of field\"", "line 31: 'depth of field' is not an identifier"},
     {"ReservedName", "name = \"tint\"", "name = \"gl_Tint\"", "line 34: 'gl_Tint' is not an identifier"},
     {"DigitFirst", "name = \"tint\"", "name = \"2tint\"", "line 34: '2tint' is not an identifier"},
-    {"UnknownType", "type = \"color\"", "type = \"colour\"", "line 35: 'colour' is no type; there are bool, int, float, vec2, vec3, vec4, color, uint, choice, image"},
+    {"UnknownType", "type = \"color\"", "type = \"colour\"",
+     "line 35: 'colour' is no type; there are bool, int, float, vec2, vec3, vec4, color, uint, choice, image"},
     {"DefaultTooShort", "[0.5, 1, 0.25]", "[0.5, 1]", "line 36: the default of 'tint' needs 3 numbers"},
     {"DefaultNoList", "[0.5, 1, 0.25]", "0.5", "line 36: the default of 'tint' needs 3 numbers"},
     {"DefaultOutside", "0.25]", "3]", "line 36: the default of 'tint' is outside 0 … 2"},
     {"DefaultNoNumber", "0.25]", "\"x\"]", "line 36: the default of 'tint' must be a number"},
-    {"RecursionTooDeep", "max_recursion = 3", "max_recursion = 32", "line 4: 'max_recursion' of [program] must be an integer from 1 to 31"},
-    {"CountNoInteger", "samples_per_launch = 16", "samples_per_launch = 1.5", "line 5: 'samples_per_launch' of [program] must be an integer from 1 to 4096"},
-    {"TextNoString", "description = \"all there is\"", "description = 3", "line 2: 'description' of [program] must be a string"},
+    {"RecursionTooDeep", "max_recursion = 3", "max_recursion = 32",
+     "line 4: 'max_recursion' of [program] must be an integer from 1 to 31"},
+    {"CountNoInteger", "samples_per_launch = 16", "samples_per_launch = 1.5",
+     "line 5: 'samples_per_launch' of [program] must be an integer from 1 to 4096"},
+    {"TextNoString", "description = \"all there is\"", "description = 3",
+     "line 2: 'description' of [program] must be a string"},
     {"CallablesNoList", "[\"noise.rcall\"]", "\"noise.rcall\"", "line 6: 'callables' must be a list of files"},
     {"CallablesNoNames", "[\"noise.rcall\"]", "[1]", "line 6: 'callables' must be a list of files"},
-    {"StagesNoTable", "{ closest_hit = \"hit.rchit\" }", "\"hit.rchit\"", "line 19: 'radiance' must be a table such as { closest_hit = \"a.rchit\" }"},
+    {"StagesNoTable", "{ closest_hit = \"hit.rchit\" }", "\"hit.rchit\"",
+     "line 19: 'radiance' must be a table such as { closest_hit = \"a.rchit\" }"},
 };
 
-INSTANTIATE_TEST_SUITE_P(Each, ProgramErrors, testing::ValuesIn(kWrong), [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Each, ProgramErrors, testing::ValuesIn(kWrong),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Program, NeedsWhatItNeeds) {
   EXPECT_EQ(errorOf("x = 1\n"), "line 1: [program] is missing");
-  EXPECT_EQ(errorOf(changed(kSmall, "ray_generation = \"main.rgen\"\n", "")), "line 1: [program] needs 'ray_generation'");
+  EXPECT_EQ(errorOf(changed(kSmall, "ray_generation = \"main.rgen\"\n", "")),
+            "line 1: [program] needs 'ray_generation'");
   EXPECT_EQ(errorOf(changed(kSmall, "miss = \"sky.rmiss\"", "")), "line 5: [[ray]] needs 'miss'");
   EXPECT_EQ(errorOf(changed(kSmall, "name = \"radiance\"", "")), "line 5: [[ray]] needs 'name'");
   EXPECT_EQ(errorOf("[program]\nray_generation = \"main.rgen\"\n"), "line 1: at least one [[ray]] is needed");
-  EXPECT_EQ(errorOf(std::string(kSmall) + "[[parameter]]\nname = \"a\"\ntype = \"int\"\n"), "line 8: parameter 'a' needs a default");
+  EXPECT_EQ(errorOf(std::string(kSmall) + "[[parameter]]\nname = \"a\"\ntype = \"int\"\n"),
+            "line 8: parameter 'a' needs a default");
   EXPECT_EQ(errorOf(std::string(kSmall) + "[[parameter]]\nname = \"a\"\n"), "line 8: [[parameter]] needs 'type'");
-  EXPECT_EQ(errorOf(std::string(kSmall) + "[output]\nname = \"a\"\n"), "line 8: 'output' must be written as [[output]]");
+  EXPECT_EQ(errorOf(std::string(kSmall) + "[output]\nname = \"a\"\n"),
+            "line 8: 'output' must be written as [[output]]");
 }
 
 TEST(Program, ReportsBrokenToml) {
