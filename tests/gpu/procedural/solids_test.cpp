@@ -3,14 +3,11 @@
 
 #include <cstdio>
 
-#include "../../unit/scene/csg_oracle.h"
-#include "probe.h"
+#include "expectation.h"
 
 namespace quintet::test {
 namespace {
 
-using oracle::dmat4;
-using oracle::dvec3;
 using scene::Primitive;
 using scene::PrimitiveType;
 
@@ -18,34 +15,6 @@ constexpr std::array kTypes{PrimitiveType::sphere, PrimitiveType::box, Primitive
 const char* nameOf(PrimitiveType type) {
   constexpr std::array kNames{"sphere", "box", "cylinder", "cone", "torus"};
   return kNames[static_cast<std::size_t>(type)];
-}
-
-// What the oracle knows of a ray: its hit, and whether a rounding could make another one of it.
-struct Expected {
-  std::optional<oracle::Crossing> hit;
-  bool doubtful = false;
-};
-
-oracle::Ray toObject(const ProbeRay& ray, const mat4& worldFromObject) {
-  const dmat4 objectFromWorld = glm::inverse(dmat4(worldFromObject));
-  return {dvec3(objectFromWorld * glm::dvec4(dvec3(ray.origin), 1.0)), dvec3(objectFromWorld * glm::dvec4(dvec3(ray.direction), 0.0))};
-}
-
-Expected expect(const Primitive& primitive, const ProbeRay& ray, const mat4& worldFromObject) {
-  const oracle::Ray local = toObject(ray, worldFromObject);
-  Expected result{oracle::firstHit(oracle::crossings(primitive, local), ray.tmin, ray.tmax), false};
-  // Moved sideways by a few roundings, the ray must tell the same story.
-  const double e = 4e-6 * (glm::length(local.origin) + 4.0);
-  for (int k = 0; k < 6; ++k) {
-    dvec3 by(0.0);
-    by[k / 2] = k % 2 ? e : -e;
-    const auto moved = oracle::firstHit(oracle::crossings(primitive, {local.origin + by, local.direction}), ray.tmin, ray.tmax);
-    if (moved.has_value() != result.hit.has_value() ||
-        (moved && (moved->entering != result.hit->entering || glm::dot(moved->normal, result.hit->normal) < 0.99 ||
-                   std::abs(moved->t - result.hit->t) * glm::length(local.direction) > 0.1)))
-      result.doubtful = true;
-  }
-  return result;
 }
 
 // Rays from around, from inside, along an axis of the solid, with limits; directions of any length.
@@ -80,22 +49,8 @@ struct Agreement {
 };
 
 void compare(const ProbeHit& hit, const ProbeRay& ray, const Expected& expected, const Primitive& primitive, const mat4& worldFromObject) {
-  ASSERT_EQ(hit.t >= 0.0f, expected.hit.has_value()) << "t " << hit.t << " instead of " << (expected.hit ? expected.hit->t : -1.0);
-  EXPECT_EQ(hit.visible, !expected.hit.has_value());
-  if (!expected.hit) return;
-  // Roundings of the way there count as a length; a ray that grazes turns it into a longer way.
-  const dvec3 d(ray.direction);
-  const dvec3 normal = glm::normalize(glm::transpose(glm::inverse(oracle::dmat3(dmat4(worldFromObject)))) * expected.hit->normal);
-  const double length = glm::length(d), cosine = std::abs(glm::dot(normal, d)) / length;
-  const double scale = glm::length(dvec3(ray.origin)) + std::abs(expected.hit->t) * length + glm::length(dvec3(hit.position));
-  EXPECT_NEAR(hit.t, expected.hit->t, 4e-6 * scale / length / std::max(cosine, 0.01));
-  EXPECT_EQ(hit.front, expected.hit->entering);
-  EXPECT_FALSE(hit.flipped);
-  // On the side of the ray; the oracle's points out.
-  EXPECT_GT(glm::dot(dvec3(hit.normal), hit.front ? normal : -normal), 0.999);
-  EXPECT_NEAR(glm::length(hit.normal), 1.0f, 1e-5f);
-  const dvec3 point = dvec3(ray.origin) + static_cast<double>(hit.t) * d;
-  EXPECT_LT(glm::length(dvec3(hit.position) - point), 1e-5 * scale / std::max(cosine, 0.01));
+  compareHit(hit, ray, expected, worldFromObject);
+  if (!expected.hit || hit.t < 0.0f) return;
   // The point itself, from wherever the ray came, lies on the surface.
   const dmat4 worldFromPrimitive = dmat4(worldFromObject) * dmat4(primitive.objectFromPrimitive);
   const auto fromPoint = oracle::crossings(primitive, toObject({.origin = hit.position, .direction = hit.normal}, worldFromObject));
@@ -118,13 +73,14 @@ TEST_P(Solids, AgreeWithTheOracle) {
     const std::vector<ProbeRay> rays = raysAround(random, 2000, worldFromObject * primitive.objectFromPrimitive);
     const std::vector<ProbeHit> hits = probe(sceneOf(solidsOf({primitive}), worldFromObject), rays);
     for (std::size_t i = 0; i < rays.size(); ++i, ++count) {
-      const Expected expected = expect(primitive, rays[i], worldFromObject);
+      const auto crossings = [&](const oracle::Ray& ray) { return oracle::crossings(primitive, ray); };
+      const Expected expected = expectHit(crossings, rays[i], worldFromObject);
       agreement.doubtful += expected.doubtful;
       if (expected.doubtful) continue;
       agreement.hits += expected.hit.has_value();
       SCOPED_TRACE(testing::Message() << nameOf(GetParam()) << " " << round << " ray " << i);
       compare(hits[i], rays[i], expected, primitive, worldFromObject);
-      if (HasFatalFailure()) return;
+      if (HasFailure()) return;
     }
   }
   std::printf("%zu rays: %zu hits, %zu doubtful\n", count, agreement.hits, agreement.doubtful);
