@@ -6,7 +6,7 @@ namespace quintet::app {
 
 std::span<const Command> commands() {
   static constexpr std::array kCommands{
-      Command{"render", "make a picture of a glTF scene", renderCommand},
+      Command{"render", "make a picture of a scene", renderCommand},
       Command{"run", "run a program: your own or a built-in one", runCommand},
       Command{"check", "compile and check programs, without rendering", checkCommand},
       Command{"explain", "say what a diagnostic means and how to mend it", explainCommand},

@@ -22,7 +22,7 @@ int infoCommand(Arguments arguments) {
   CLI::App app("Describes the Vulkan devices, or a scene, or a picture.", "quintet info");
   std::string file;
   bool json = false;
-  app.add_option("FILE", file, "A glTF scene or a picture; none: the devices")->type_name("");
+  app.add_option("FILE", file, "A scene or a picture; none: the devices")->type_name("");
   app.add_flag("--json", json, "One JSON object instead of text");
   setUp(app, kExamples);
   if (!parse(app, arguments)) return 0;

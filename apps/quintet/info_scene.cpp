@@ -172,7 +172,7 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
   const MaterialCounts materials = countMaterials(scene);
   const auto describeAny = [](const auto& element) { return describe(element); };
   const auto itself = [](const std::string& line) { return plain(line); };
-  std::string text = fmt::format("{}: glTF scene\n", plain(file));
+  std::string text = fmt::format("{}: {}\n", plain(file), scene::sceneFormat(file, {}) == scene::SceneFormat::toml ? "scene" : "glTF scene");
   const auto line = [&text](const char* label, const std::string& value) {
     if (!value.empty()) text += fmt::format("   {:<12}{}\n", label, value);
   };

@@ -19,10 +19,10 @@ constexpr const char* kExamples =
 }  // namespace
 
 std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
-  CLI::App app("Renders a glTF scene with the path tracer, or with another program.", "quintet render");
+  CLI::App app("Renders a scene with the path tracer, or with another program.", "quintet render");
   RenderOptions options;
   RawOptions raw;
-  app.add_option("SCENE", raw.scene, "The scene: .gltf or .glb")->type_name("");
+  app.add_option("SCENE", raw.scene, "The scene: .gltf, .glb or .scene.toml")->type_name("");
   app.add_option("-o,--output", raw.output, ".png, .exr or .hdr; - is PNG on standard output (default: SCENE.png, here)")
       ->type_name("FILE")
       ->group("Image");

@@ -31,7 +31,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   RawOptions raw;
   render.program.clear();
   app.add_option("PROGRAM", render.program, "Folder, or name of a built-in program (--list)")->type_name("");
-  app.add_option("SCENE", raw.scene, "The scene: .gltf or .glb (default: a small built-in one)")->type_name("");
+  app.add_option("SCENE", raw.scene, "The scene: .gltf, .glb or .scene.toml (default: a small built-in one)")->type_name("");
   app.add_option("-o", raw.output, ".png, .exr or .hdr; - is PNG on standard output (default: PROGRAM.png, here)")
       ->type_name("FILE")
       ->group("Image");

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/nearest_name.h"
+
 namespace quintet::program {
 
 enum class ParameterType { boolean, integer, real, vec2, vec3, vec4, color, uinteger, choice, image };
@@ -97,8 +99,7 @@ class ParameterValues {
   std::vector<std::optional<std::string>> imageFiles_;  // nothing: the default
 };
 
-// The candidate with the smallest edit distance to `name`, or empty if none is near.
-std::string nearestName(const std::string& name, const std::vector<std::string>& candidates);
+using quintet::nearestName;
 
 }  // namespace quintet::program
 #endif

@@ -65,7 +65,7 @@ class Feeder {
   }
   void add(const Mesh& m) { (*this)(m.name, m.geometries, m.primitiveSets); }
   void add(const Instance& i) {
-    (*this)(i.name, i.mesh, i.worldFromObject, i.mask, i.flags, i.customIndex, i.keyframes);
+    (*this)(i.name, i.mesh, i.worldFromObject, i.mask, i.flags, i.customIndex, i.keyframes, i.keyframeFromObject);
   }
   void add(const Camera& c) {
     (*this)(c.name, c.orthographic, c.verticalFov, c.aspect, c.orthographicHalfSize, c.worldFromCamera,

@@ -51,15 +51,6 @@ void repair(Geometry& geometry, const std::string& place, GeometryResult& result
   note(repairTangents(geometry), "tangents without a direction replaced");
 }
 
-// Normal maps need a frame. The clear coat's map shares that of the base.
-void addTangents(Geometry& geometry, const Material& material) {
-  const TextureUse& use = material.normalTexture.used() ? material.normalTexture : material.clearcoatNormalTexture;
-  if (!use.used() || !geometry.tangents.empty()) return;
-  if (geometry.uvs[static_cast<std::size_t>(use.uvSet)].empty()) return;
-  if (geometry.normals.empty()) splitIntoFlatTriangles(geometry);
-  generateTangents(geometry, use);
-}
-
 const char* modeName(int mode) {
   constexpr const char* kNames[] = {"POINTS", "LINES", "LINE_LOOP", "LINE_STRIP"};
   return kNames[mode];

@@ -15,13 +15,15 @@ mat4 worldFromObjectAt(const Instance& instance, float frame) {
   const std::vector<Keyframe>& keys = instance.keyframes;
   if (keys.empty()) return instance.worldFromObject;
   const auto next = std::ranges::upper_bound(keys, frame, {}, &Keyframe::frame);
-  if (next == keys.begin()) return matrixOf(keys.front());
-  if (next == keys.end()) return matrixOf(keys.back());
+  if (next == keys.begin()) return matrixOf(keys.front()) * instance.keyframeFromObject;
+  if (next == keys.end()) return matrixOf(keys.back()) * instance.keyframeFromObject;
   const Keyframe& a = *(next - 1);
   const Keyframe& b = *next;
   const float t = (frame - a.frame) / (b.frame - a.frame);
-  return matrixOf({frame, glm::mix(a.translation, b.translation, t),
-                   glm::slerp(glm::normalize(a.rotation), glm::normalize(b.rotation), t), glm::mix(a.scale, b.scale, t)});
+  const Keyframe between{frame, glm::mix(a.translation, b.translation, t),
+                         glm::slerp(glm::normalize(a.rotation), glm::normalize(b.rotation), t),
+                         glm::mix(a.scale, b.scale, t)};
+  return matrixOf(between) * instance.keyframeFromObject;
 }
 
 float lastKeyframe(const Scene& scene) {

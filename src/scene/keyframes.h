@@ -9,7 +9,7 @@ namespace quintet::scene {
 // translate · rotate · scale.
 mat4 matrixOf(const Keyframe&);
 
-// Translation and scale linear, rotation spherical on the shorter way; before the first keyframe and after the last
+// The keyframes' matrix · keyframeFromObject: translation and scale linear, rotation spherical on the shorter way; before the first keyframe and after the last
 // one the instance stands still. Without keyframes: worldFromObject.
 mat4 worldFromObjectAt(const Instance&, float frame);
 

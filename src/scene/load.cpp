@@ -4,15 +4,16 @@
 #include <cctype>
 #include <string_view>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "scene/gltf.h"
+#include "scene/scene_toml.h"
 
 namespace quintet::scene {
 
 SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::byte> content) {
   std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".gltf" || extension == ".glb") return SceneFormat::gltf;
   if (extension == ".toml") return SceneFormat::toml;
   const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
@@ -27,7 +28,7 @@ Scene loadScene(const std::filesystem::path& file) {
   // Only a name that says nothing needs a look inside.
   SceneFormat format = sceneFormat(file, {});
   if (format == SceneFormat::none) format = sceneFormat(file, readFile(file));
-  if (format == SceneFormat::toml) throw FileError(file, "scenes in TOML cannot be read yet");
+  if (format == SceneFormat::toml) return loadSceneToml(file);
   return loadGltf(file);  // also says what is wrong with a file of no format
 }
 

@@ -132,7 +132,8 @@ std::string csgProblem(std::span<const CsgNode> nodes, std::size_t primitiveCoun
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const CsgNode& node = nodes[i];
     if (node.operation == CsgOperation::leaf) {
-      if (node.primitive >= primitiveCount) return fmt::format("node {}: primitive {} of {}", i, node.primitive, primitiveCount);
+      if (node.primitive >= primitiveCount)
+        return fmt::format("node {}: primitive {} of {}", i, node.primitive, primitiveCount);
       ++depth;
     } else {
       if (node.operation > CsgOperation::subtract) return fmt::format("node {}: unknown operation", i);
@@ -167,7 +168,8 @@ std::vector<CsgNode> orderForSmallStack(std::span<const CsgNode> nodes) {
     reversed.push_back(nodes[i]);
     if (nodes[i].operation == CsgOperation::leaf) continue;
     std::size_t first = leftOf(subtrees, i), second = rightOf(i);
-    if (nodes[i].operation != CsgOperation::subtract && subtrees[second].stack > subtrees[first].stack) std::swap(first, second);
+    if (nodes[i].operation != CsgOperation::subtract && subtrees[second].stack > subtrees[first].stack)
+      std::swap(first, second);
     waiting.push_back(first);
     waiting.push_back(second);
   }

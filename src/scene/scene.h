@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -132,6 +133,7 @@ struct Instance {
   std::uint32_t flags = 0;         // kInstance…
   std::uint32_t customIndex = 0;   // 24 bits, the user's own
   std::vector<Keyframe> keyframes;  // ascending frames; empty: worldFromObject always. Else that is frame 0
+  mat4 keyframeFromObject{1.0f};   // with keyframes: where the object is in the frame that they move (keyframes.h)
 };
 
 struct Camera {
@@ -183,6 +185,7 @@ struct Report {
   std::vector<std::string> repaired;  // "/meshes/0/primitives/0: 3 triangles with non-finite vertices dropped"
   std::string generator;              // asset.generator
   std::string copyright;              // asset.copyright
+  std::vector<std::filesystem::path> files;  // a scene file's: itself, its glTF files and images
 };
 
 struct Scene {

@@ -130,4 +130,12 @@ void generateTangents(Geometry& geometry, const TextureUse& use) {
   }
 }
 
+void addTangents(Geometry& geometry, const Material& material) {
+  const TextureUse& use = material.normalTexture.used() ? material.normalTexture : material.clearcoatNormalTexture;
+  if (!use.used() || !geometry.tangents.empty()) return;
+  if (geometry.uvs[static_cast<std::size_t>(use.uvSet)].empty()) return;
+  if (geometry.normals.empty()) splitIntoFlatTriangles(geometry);
+  generateTangents(geometry, use);
+}
+
 }  // namespace quintet::scene

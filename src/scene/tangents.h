@@ -15,6 +15,9 @@ namespace quintet::scene {
 // the mapping (a mirrored seam) is duplicated.
 void generateTangents(Geometry&, const TextureUse& use);
 
+// What a material's normal map needs, if the geometry lacks it; the clear coat's map shares the frame of the base's.
+void addTangents(Geometry&, const Material&);
+
 // Three vertices of its own for each triangle, with the face normal: what flat shading and a normal map need together.
 void splitIntoFlatTriangles(Geometry&);
 

@@ -42,6 +42,21 @@ TEST_F(Info, SceneAsJson) {
   EXPECT_EQ(json["hash"].get<std::string>().size(), 32u);
 }
 
+TEST_F(Info, SceneFile) {
+  write(folder_ / "s.scene.toml",
+        "[[spheres]]\nitems = [{}, {}]\n[[csg]]\ntree = { intersection = [{ box = {} }, { sphere = { center = [9, 0, 0] } }] }\n"
+        "[[mesh]]\nname = 'm'\nshape = 'cube'\n[[instance]]\nof = 'm'\nmask = 1\n");
+  const RunResult text = quintet({"info", "s.scene.toml"});
+  EXPECT_EQ(text.status, 0);
+  for (const char* part : {"s.scene.toml: scene\n", "2 sets: 2 solids, 1 trees of 2 leaves, 0 custom boxes",
+                           "3 (2 procedural, 1 with a mask)", "line 4: 'tree' of [[csg]] is empty"})
+    EXPECT_THAT(text.out, HasSubstr(part));
+  const auto json = nlohmann::json::parse(quintet({"info", "s.scene.toml", "--json"}).out);
+  EXPECT_EQ(json["procedural"]["trees"], 1);
+  EXPECT_EQ(json["instancesWith"]["mask"], 1);
+  EXPECT_EQ(json["bounds"]["max"][0], 1.0);
+}
+
 TEST_F(Info, IgnoredAndRepaired) {
   nlohmann::json json = quadScene();
   json["extensionsUsed"] = {"EXT_of_nobody"};

@@ -36,6 +36,11 @@ TEST_F(Input, BrokenJson) {
   expectRefused("bad.gltf", {"bad.gltf", "line 3"});
 }
 
+TEST_F(Input, BrokenSceneFile) {
+  write(folder_ / "bad.scene.toml", "[[material]]\nname = 'm'\nrougness = 1\n");
+  expectRefused("bad.scene.toml", {"bad.scene.toml: line 3", "did you mean 'roughness'"});
+}
+
 TEST_F(Input, NeitherSceneNorPicture) {
   write(folder_ / "text.txt", "some text");
   expectError(quintet({"info", "text.txt"}), 1, {"text.txt"});

@@ -29,10 +29,10 @@ struct Ray {
 // One point where a line enters or leaves a solid.
 struct Crossing {
   double t = 0.0;
-  dvec3 normal{0.0};           // object space, unit, out of the solid (of a tree: out of the result)
+  dvec3 normal{0.0};            // object space, unit, out of the solid (of a tree: out of the result)
   std::uint32_t primitive = 0;  // index in PrimitiveSet::primitives: whose surface it is
   bool entering = true;
-  bool flipped = false;        // surface of a subtrahend: the normal points into that primitive
+  bool flipped = false;  // surface of a subtrahend: the normal points into that primitive
 };
 using Crossings = std::vector<Crossing>;  // ascending t, entering and leaving in turn
 
@@ -168,7 +168,8 @@ inline std::vector<Boundary> cone(const Ray& r) {
   const dvec3 &o = r.origin, &d = r.direction;
   const double h = 0.5 * (1.0 - o.y), k = -0.5 * d.y;
   std::vector<Boundary> stops;
-  for (const double t : quadratic(d.x * d.x + d.z * d.z - k * k, 2.0 * (o.x * d.x + o.z * d.z - h * k), o.x * o.x + o.z * o.z - h * h)) {
+  for (const double t :
+       quadratic(d.x * d.x + d.z * d.z - k * k, 2.0 * (o.x * d.x + o.z * d.z - h * k), o.x * o.x + o.z * o.z - h * h)) {
     const dvec3 p = r.at(t);
     stops.push_back({t, {p.x, 0.25 * (1.0 - p.y), p.z}});
   }
@@ -178,8 +179,10 @@ inline std::vector<Boundary> cone(const Ray& r) {
   std::vector<Boundary> interval;
   for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
     if (!insideCanonical(scene::PrimitiveType::cone, 0.0, r.at(0.5 * (stops[i].t + stops[i + 1].t)))) continue;
-    if (interval.empty()) interval.push_back(stops[i]), interval.push_back(stops[i + 1]);
-    else interval[1] = stops[i + 1];
+    if (interval.empty())
+      interval.push_back(stops[i]), interval.push_back(stops[i + 1]);
+    else
+      interval[1] = stops[i + 1];
   }
   return interval;
 }

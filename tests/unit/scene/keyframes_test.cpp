@@ -22,7 +22,8 @@ TEST(Keyframes, AStillInstanceStaysWhereItIs) {
 
 TEST(Keyframes, InterpolatesEachPart) {
   scene::Instance instance;
-  instance.keyframes = {{10, vec3(0), turn(0), vec3(1)}, {20, vec3(10, 0, 0), turn(90), vec3(3, 1, 1)},
+  instance.keyframes = {{10, vec3(0), turn(0), vec3(1)},
+                        {20, vec3(10, 0, 0), turn(90), vec3(3, 1, 1)},
                         {40, vec3(10, 4, 0), turn(90), vec3(1)}};
   expectNear(scene::worldFromObjectAt(instance, 0), mat4(1));
   expectNear(scene::worldFromObjectAt(instance, 10), mat4(1));

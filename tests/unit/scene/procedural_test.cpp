@@ -27,10 +27,14 @@ using scene::PrimitiveType;
 std::vector<CsgNode> nodes(const std::string& postfix) {  // letters: leaves by number; + * -
   std::vector<CsgNode> result;
   for (const char c : postfix) {
-    if (c == '+') result.push_back({CsgOperation::unite});
-    else if (c == '*') result.push_back({CsgOperation::intersect});
-    else if (c == '-') result.push_back({CsgOperation::subtract});
-    else result.push_back({CsgOperation::leaf, static_cast<std::uint32_t>(c - 'a')});
+    if (c == '+')
+      result.push_back({CsgOperation::unite});
+    else if (c == '*')
+      result.push_back({CsgOperation::intersect});
+    else if (c == '-')
+      result.push_back({CsgOperation::subtract});
+    else
+      result.push_back({CsgOperation::leaf, static_cast<std::uint32_t>(c - 'a')});
   }
   return result;
 }
@@ -223,7 +227,10 @@ TEST(Procedural, ValidationNamesTheFirstFault) {
             at + "[0].primitives[0].objectFromPrimitive: not finite");
   EXPECT_EQ(faultOf([](auto& s) { s[0].primitives[0].material = 0; }), at + "[0].primitives[0].material: 0 of 0");
   EXPECT_EQ(faultOf([](auto& s) { s[1].nodes.pop_back(); }), at + "[1].trees[0]: nodes 0 to 5 of 4");
-  EXPECT_EQ(faultOf([](auto& s) { s[1].trees[0].nodeCount = 0xFFFFFFFF; s[1].trees[0].firstNode = 1; }),
+  EXPECT_EQ(faultOf([](auto& s) {
+              s[1].trees[0].nodeCount = 0xFFFFFFFF;
+              s[1].trees[0].firstNode = 1;
+            }),
             at + "[1].trees[0]: nodes 1 to 4294967296 of 5");
   EXPECT_EQ(faultOf([](auto& s) { s[1].trees[0].nodeCount = 4; }), at + "[1].trees[0]: 2 results instead of one");
   EXPECT_EQ(faultOf([](auto& s) { s[2].boxes[0].max.y = -1; }), at + "[2].boxes[0]: its minimum is above its maximum");
