@@ -60,6 +60,7 @@ class Builder {
     errors_ = LectureErrors(source_.text, program_.path(file));
     source_.tokens = tokenize(source_.text);
     source_.split = splitLecture(source_.text, source_.tokens, errors_);
+    source_.unused = unusedFunctions(source_.text, source_.tokens, source_.split);
     source_.uniforms = findUniforms(source_.text, source_.tokens, errors_);
     lookIntoIncludes();
     findImplicitNames();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 namespace quintet::program {
@@ -12,6 +13,11 @@ using shader::Stage;
 
 constexpr std::size_t kMaxExtensions = 64;
 constexpr std::string_view kPi = "const float PI = 3.14159265358979323846;\n";
+
+bool isConditional(std::string_view name) {
+  constexpr std::array<std::string_view, 6> kNames{"if", "ifdef", "ifndef", "elif", "else", "endif"};
+  return std::ranges::find(kNames, name) != kNames.end();
+}
 
 // A text that keeps its line breaks while parts of it are blanked and words are put in.
 class Patch {
@@ -66,6 +72,11 @@ class StageWriter {
     for (const LectureRegion& region : s_.split.regions)
       if (region.owner != kCommonText && region.owner != index_) patch_.blank(region.begin, region.end);
     restoreConditionals();
+    for (const auto& [begin, end] : s_.unused[static_cast<std::size_t>(index_)]) {
+      patch_.blank(begin, end);
+      for (auto at = std::ranges::lower_bound(s_.tokens, begin, {}, &Token::begin); at != s_.tokens.end() && at->begin < end; ++at)
+        if (at->kind == TokenKind::directive && isConditional(directiveOf(textOf(s_.text, *at)).name)) patch_.restore(s_.text, at->begin, at->end);
+    }
   }
 
   // A conditional that spans several regions stays whole, or #if and #endif would not match.
@@ -81,8 +92,8 @@ class StageWriter {
     for (std::size_t i = 0; i < s_.tokens.size(); ++i) {
       if (s_.tokens[i].kind != TokenKind::directive) continue;
       const std::string_view name = directiveOf(textOf(s_.text, s_.tokens[i])).name;
+      if (!isConditional(name)) continue;
       if (name.starts_with("if")) open.emplace_back();
-      else if (name != "else" && name != "elif" && name != "endif") continue;
       if (open.empty()) continue;
       open.back().push_back(i);
       if (name != "endif") continue;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "program/lecture_functions.h"
 #include "program/lecture_split.h"
 #include "program/lecture_uniforms.h"
 
@@ -29,6 +30,7 @@ struct LectureText {
 struct LectureSource : LectureText {
   std::string file;  // as diagnostics name it
   LectureSplit split;
+  std::vector<std::vector<TextRange>> unused;  // by main: common functions that it does not need
   std::vector<LectureUniform> uniforms;
   std::vector<LectureUniform> implicit;  // userParam0 and its like, as far as they are used
   // Include lines of the file behind which a type of the user's is known: (token, "RayPayloadType").

@@ -150,6 +150,20 @@ TEST(Lecture, HelpersBelongToTheStageThatFollows) {
   EXPECT_THAT(problems(std::string(kCommon) + kRayGeneration + late + hit + "void main() { /**** MISS SHADER ****/ payload.color = late(); }\n"), IsEmpty());
 }
 
+TEST(Lecture, CommonFunctionsAreGivenToTheStagesThatUseThem) {
+  // shadow() traces, depth() reads a built-in of hits: neither compiles in every stage, and `payload` is not everywhere.
+  const std::string common = std::string(kCommon) +
+                             "bool shadow(vec3 o) {\n  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, o, 0.0, vec3(1.0), 1.0, 0);\n"
+                             "  return payload.color.x > 0.0;\n}\n#define SHADOW shadow(vec3(0.0))\nfloat depth() { return gl_HitTEXT; }\n"
+                             "vec3 both() { return vec3(SHADOW ? depth() : 0.0); }\n" + kRayGeneration;
+  const std::string stages =
+      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = both(); }\nvoid main() { /**** INTERSECTION SHADER ****/ reportIntersectionEXT(1.0, 1u); }\n";
+  EXPECT_THAT(problems(common + stages), IsEmpty());
+  EXPECT_THAT(problems(common + stages + "void main() { /**** MISS SHADER ****/ payload.color = vec3(depth()); }\n"), Contains(HasSubstr("gl_HitTEXT is not readable in a miss shader")));
+  // What nobody uses is seen by the compiler all the same.
+  EXPECT_THAT(problems(std::string(kCommon) + "float unused() { return missing; }\n" + kRayGeneration), Contains(HasSubstr("demo.rt.glsl:6:25: error: 'missing'")));
+}
+
 TEST(Lecture, ConditionalsAndExtensionsMayStandAnywhere) {
   EXPECT_THAT(problems("#version 460\n#extension GL_EXT_ray_tracing : require\n" + std::string(kCommon) + "#define WITH_MISS\n" + kRayGeneration +
                        "#ifdef WITH_MISS\n#extension GL_EXT_debug_printf : enable\nvoid main() { /**** MISS SHADER ****/ payload.color = vec3(1.0); }\n#else\n#endif\n"
