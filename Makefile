@@ -19,7 +19,7 @@ RENDER_FLAGS ?= --size 800x450 --time 50
 BENCH_FLAGS  ?=
 
 .DEFAULT_GOAL := build
-.PHONY: demo test build setup bench reference lint clean help configure
+.PHONY: demo test build setup bench lessons reference lint clean help configure
 # One step after the other; each of them runs in parallel by itself.
 .NOTPARALLEL:
 
@@ -43,6 +43,9 @@ setup: ## Install the packages that are missing (scripts/setup.sh --plan: only s
 bench: build ## Measure rays per second against the device's own ceiling (BENCH_FLAGS)
 	@$(BUILD)/bin/quintet_make_scenes $(SCENES)
 	@$(BUILD)/bin/quintet bench $(SCENES)/bench.glb $(BENCH_FLAGS)
+
+lessons: build ## Render the picture of every lesson's page (docs/lessons)
+	@bash scripts/lessons.sh $(BUILD)/bin/quintet
 
 reference: build ## Compare with the reference images and values (tests/reference/run)
 	@QUINTET=$(CURDIR)/$(BUILD)/bin/quintet tests/reference/run

@@ -1,0 +1,36 @@
+// Lesson 01: the first ray. What does the camera see? Red where a ray meets a surface, black where none is met.
+// scene: first_ray.scene.toml
+/**** COMMON START ****/
+struct RayPayloadType {
+  vec3 color;  // what the shaders along the ray hand back to the ray generation shader
+};
+
+uniform float fieldOfView; // defaultval="45" min="1" max="179" unit="deg" help="Vertical field of view"
+uniform vec3 hitColor;     // defaultval="1, 0, 0" type="color" help="Where a surface is"
+/**** COMMON END ****/
+
+// The direction of the ray through `point` of the image plane ((0, 0) bottom left, (1, 1) top right), for a camera at
+// the origin that looks along -z. The plane is 1 away and reaches from -tan(fov / 2) to tan(fov / 2) in y.
+vec3 cameraDirection(vec2 point, float aspect) {
+  float halfHeight = tan(0.5 * radians(fieldOfView));
+  vec2 plane = (2.0 * point - 1.0) * vec2(aspect, 1.0) * halfHeight;
+  return normalize(vec3(plane, -1.0));
+}
+
+void main() { /**** RAY GENERATION SHADER ****/
+  // The middle of the pixel: + 0.5.
+  vec2 point = (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy);
+  float aspect = float(gl_LaunchSizeEXT.x) / float(gl_LaunchSizeEXT.y);
+
+  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u,  // flags, mask, hit offset, hit stride, miss index
+              vec3(0.0), 0.001, cameraDirection(point, aspect), 1000.0, 0);
+  gsnSetPixel(vec4(payload.color, 1.0));
+}
+
+void main() { /**** CLOSEST-HIT SHADER ****/
+  payload.color = hitColor;
+}
+
+void main() { /**** MISS SHADER ****/
+  payload.color = vec3(0.0);
+}

@@ -1,0 +1,91 @@
+// Lesson 08: refraction. Rays bend where they enter and leave a sphere (Snell's law); where they cannot leave, they
+// are reflected inside (total internal reflection). Two media: `inside` and `outside` of the sphere.
+// scene: refraction.scene.toml
+/**** COMMON START ****/
+struct RayPayloadType {
+  vec3 color;          // what ends the path
+  vec3 nextOrigin;
+  vec3 nextDirection;  // zero: the path ends here
+};
+struct HitAttributeType {
+  vec3 normal;         // outward, object space
+};
+
+uniform float inside;   // defaultval="1.5" min="1" max="3" help="Index of refraction of the sphere"
+uniform float outside;  // defaultval="1.0" min="1" max="3" help="Index of refraction of what surrounds it"
+uniform int maxLevel;   // defaultval="8" min="1" max="32" help="Rays of a path"
+
+const uint kindEntering = 1u;
+const uint kindLeaving = 2u;
+/**** COMMON END ****/
+
+void main() { /**** RAY GENERATION SHADER ****/
+  vec2 ndc = 2.0 * (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy) - 1.0;
+  float aspect = float(gl_LaunchSizeEXT.x) / float(gl_LaunchSizeEXT.y);
+  vec3 origin = vec3(0.0, 1.5, 6.0);
+  vec3 direction = normalize(vec3(ndc * vec2(aspect, 1.0) * tan(0.5 * radians(35.0)), -1.0));
+  vec3 color = vec3(0.0);
+  for (int level = 0; level < maxLevel; ++level) {
+    traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, origin, 0.0, direction, 1000.0, 0);
+    color = payload.color;
+    if (payload.nextDirection == vec3(0.0)) break;
+    origin = payload.nextOrigin;
+    direction = payload.nextDirection;
+  }
+  gsnSetPixel(vec4(color, 1.0));
+}
+
+void main() { /**** INTERSECTION SHADER ****/
+  vec3 boxMin, boxMax;
+  gsnGetIntersectionBox(gl_InstanceID, gl_PrimitiveID, boxMin, boxMax);
+  vec3 center = 0.5 * (boxMin + boxMax);
+  float radius = 0.5 * (boxMax.x - boxMin.x);
+
+  // |o + t d|² = r² in object space; the direction keeps its length, so t is that of the world.
+  vec3 o = gl_ObjectRayOriginEXT - center;
+  vec3 d = gl_ObjectRayDirectionEXT;
+  float a = dot(d, d);
+  float b = dot(o, d);
+  vec3 nearest = o - (b / a) * d;  // of the ray to the centre: this way little is lost to rounding
+  float discriminant = a * (radius * radius - dot(nearest, nearest));
+  if (discriminant < 0.0) return;
+  float q = sqrt(discriminant);
+  float tIn = (-b - q) / a;
+  float tOut = (-b + q) / a;
+  float t = tIn >= gl_RayTminEXT ? tIn : tOut;
+  if (t < gl_RayTminEXT || t > gl_RayTmaxEXT) return;
+  hit.normal = (o + t * d) / radius;
+  reportIntersectionEXT(t, t == tIn ? kindEntering : kindLeaving);
+}
+
+void main() { /**** CLOSEST-HIT SHADER ****/
+  vec3 position = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;
+  if (gl_HitKindEXT == gl_HitKindFrontFacingTriangleEXT || gl_HitKindEXT == gl_HitKindBackFacingTriangleEXT) {
+    // The floor: a chessboard with fields of 0.5 m.
+    bool dark = (int(floor(2.0 * position.x)) + int(floor(2.0 * position.z)) & 1) != 0;
+    payload.color = dark ? vec3(0.1, 0.15, 0.2) : vec3(0.85, 0.8, 0.7);
+    payload.nextDirection = vec3(0.0);
+    return;
+  }
+  vec3 direction = normalize(gl_WorldRayDirectionEXT);
+  mat3 normalMatrix;
+  gsnGetNormal3x3Matrix(gl_InstanceID, normalMatrix);
+  vec3 normal = normalize(normalMatrix * hit.normal);
+  bool entering = gl_HitKindEXT == kindEntering;
+  if (!entering) normal = -normal;
+
+  // Snell's law: sin(refracted) = eta · sin(incoming). No solution: refract() gives zero.
+  float eta = entering ? outside / inside : inside / outside;
+  vec3 next = refract(direction, normal, eta);
+  bool reflected = next == vec3(0.0);
+  if (reflected) next = reflect(direction, normal);
+  payload.color = vec3(0.0);  // if the path is cut off here
+  payload.nextOrigin = position + (reflected ? 1e-4 : -1e-4) * normal;
+  payload.nextDirection = next;
+}
+
+void main() { /**** MISS SHADER ****/
+  float height = 0.5 + 0.5 * normalize(gl_WorldRayDirectionEXT).y;
+  payload.color = mix(vec3(0.9, 0.75, 0.6), vec3(0.25, 0.45, 0.8), height);
+  payload.nextDirection = vec3(0.0);
+}

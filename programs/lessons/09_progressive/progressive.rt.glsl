@@ -1,0 +1,48 @@
+// Lesson 09: smooth edges, frame by frame. Each frame takes one sample somewhere in the pixel, by the Halton
+// sequence in the bases 2 and 3; the picture is the average of all frames so far.
+// scene: progressive.scene.toml
+/**** COMMON START ****/
+struct RayPayloadType {
+  vec3 color;
+};
+
+uniform bool jitter;  // defaultval="true" help="Sample all over the pixel; else always its middle"
+/**** COMMON END ****/
+
+// The radical inverse: the digits of `index` in this base, mirrored at the point (Halton 1960).
+float halton(int index, int base) {
+  float value = 0.0;
+  float digit = 1.0;
+  for (int i = index; i > 0; i /= base) {
+    digit /= float(base);
+    value += digit * float(i % base);
+  }
+  return value;
+}
+
+void main() { /**** RAY GENERATION SHADER ****/
+  // From index 1: index 0 would give the pixel's corner.
+  vec2 offset = jitter ? vec2(halton(frameID + 1, 2), halton(frameID + 1, 3)) : vec2(0.5);
+  vec2 ndc = 2.0 * (vec2(gl_LaunchIDEXT.xy) + offset) / vec2(gl_LaunchSizeEXT.xy) - 1.0;
+  float aspect = float(gl_LaunchSizeEXT.x) / float(gl_LaunchSizeEXT.y);
+  vec3 direction = normalize(vec3(ndc * vec2(aspect, 1.0) * tan(0.5 * radians(30.0)), -1.0));
+  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, vec3(0.0, 1.0, 6.0), 0.001, direction, 1000.0, 0);
+
+  // The mean of n + 1 frames from the mean of n.
+  vec3 mean = gsnGetPreviousPixel().rgb;
+  mean += (payload.color - mean) / float(frameID + 1);
+  gsnSetPixel(vec4(mean, 1.0));
+}
+
+void main() { /**** CLOSEST-HIT SHADER ****/
+  vec3 p0, p1, p2;
+  gsnGetPositions(gl_InstanceID, gl_PrimitiveID, p0, p1, p2);
+  mat3 normalMatrix;
+  gsnGetNormal3x3Matrix(gl_InstanceID, normalMatrix);
+  vec3 normal = normalize(normalMatrix * cross(p1 - p0, p2 - p0));
+  payload.color = vec3(0.9, 0.6, 0.3) * (0.3 + 0.7 * abs(dot(normal, normalize(vec3(0.4, 0.7, 1.0)))));
+}
+
+void main() { /**** MISS SHADER ****/
+  payload.color = vec3(0.05, 0.07, 0.1);
+}

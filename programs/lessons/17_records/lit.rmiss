@@ -1,0 +1,7 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#include "payloads.glsl"
+
+layout(location = 1) rayPayloadInEXT Transmittance transmittance;
+
+void main() { transmittance.reachedLight = true; }

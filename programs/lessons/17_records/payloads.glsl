@@ -1,0 +1,12 @@
+// One payload per ray type, each at its own location.
+struct Radiance {
+  vec3 color;
+  float free;  // metres
+};
+struct Transmittance {
+  vec3 value;
+  bool reachedLight;
+};
+struct Distance {
+  float t;
+};

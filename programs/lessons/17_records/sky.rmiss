@@ -1,0 +1,10 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/frame.glsl>
+#include <quintet/generated/record.glsl>
+#include "payloads.glsl"
+
+layout(location = 0) rayPayloadInEXT Radiance radiance;
+
+// The record of this ray type's miss shader has the colour.
+void main() { radiance = Radiance(record.tint, 0.0); }

@@ -1,0 +1,80 @@
+// Runs a lesson as `quintet run` does, small, and hands back what its ray generation shader wrote; and the host's
+// own geometry, in double precision, to compare with.
+#ifndef QUINTET_TESTS_LESSON_H
+#define QUINTET_TESTS_LESSON_H
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/image.h"
+#include "program/program.h"
+#include "render/renderer.h"
+#include "scene/scene.h"
+
+namespace quintet::test {
+
+using glm::dmat3;
+using glm::dvec2;
+using glm::dvec3;
+
+struct LessonOptions {
+  std::uint32_t width = 48;
+  std::uint32_t height = 32;
+  std::uint32_t frames = 1;  // of a lecture program; samples per pixel of others
+  std::uint32_t seed = 0;
+  std::vector<std::pair<std::string, std::string>> set;  // parameters
+  std::optional<scene::Scene> scene;                     // instead of the lesson's own
+  std::optional<scene::Camera> camera;                   // for programs that use the scene's camera
+};
+
+struct LessonPicture {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<io::Image> outputs;
+  // As the shader counts: (0, 0) is the bottom left pixel, as gl_LaunchIDEXT in a lecture program.
+  vec4 at(std::uint32_t x, std::uint32_t y, std::size_t output = 0) const;
+  // (0, 0) is the top left pixel.
+  vec4 fromTop(std::uint32_t x, std::uint32_t y, std::size_t output = 0) const;
+};
+
+program::Program lesson(const std::string& name);      // "01_first_ray"
+scene::Scene lessonScene(const std::string& name);
+LessonPicture renderLesson(const std::string& name, const LessonOptions& options = {});
+
+struct HostRay {
+  dvec3 origin;
+  dvec3 direction;
+};
+// Camera at `eye` looking along `forward` (unit) with `up`; `point` in [0,1]², (0,0) at the bottom left.
+HostRay cameraRay(const dvec3& eye, const dvec3& lookAt, const dvec3& up, double fieldOfViewYDegrees, double aspect, const dvec2& point);
+
+struct HostHit {
+  double t = -1;  // < 0: none
+  int instance = -1;
+  int geometry = -1;
+  int primitive = -1;
+  dvec2 barycentric{0};  // weights of vertices 1 and 2
+  double margin = 1e30;  // smallest distance, in barycentric units, of any edge test from its decision along the ray
+};
+// Every triangle of every instance, one after the other (Möller and Trumbore 1997).
+HostHit closestTriangle(const scene::Scene& scene, const HostRay& ray, double tmin = 1e-6, double tmax = 1e30);
+
+// What the hit's mesh says there; world space.
+struct HostSurface {
+  dvec3 position;
+  dvec3 normal;      // interpolated, unit
+  dvec3 faceNormal;  // unit
+  dvec2 texCoord{0};
+};
+HostSurface surfaceAt(const scene::Scene& scene, const HostHit& hit);
+
+// Every pixel against expected(point), point in [0,1]² from the bottom left; a result whose w is 0 is undecided (an
+// edge is too near) and left out, which at most `undecided` of all pixels may be.
+void expectPixels(const LessonPicture& picture, const std::function<glm::dvec4(dvec2)>& expected, double tolerance,
+                  double undecided = 0.05, std::size_t output = 0);
+
+}  // namespace quintet::test
+#endif

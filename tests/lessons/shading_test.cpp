@@ -1,0 +1,116 @@
+// Lessons 04 to 07: light, shadow and reflection, computed again on the host.
+#include <gtest/gtest.h>
+
+#include "lesson.h"
+
+namespace quintet::test {
+namespace {
+
+constexpr double kUndecided = 2e-4;
+const dvec3 kEye(2, 3, 6);
+const dvec3 kTarget(0, 0.7, 0);
+const dvec3 kBackground(0.3, 0.35, 0.45);
+const dvec3 kAmbient(0.1, 0.1, 0.12);
+
+HostRay eyeRay(dvec2 point, double aspect) { return cameraRay(kEye, kTarget, {0, 1, 0}, 35, aspect, point); }
+
+// Is the lamp seen from just above the surface? `decided` is cleared where an edge is too near.
+bool seesLamp(const scene::Scene& scene, const dvec3& position, const dvec3& lamp, bool& decided) {
+  const double distance = glm::length(lamp - position);
+  const HostHit hit = closestTriangle(scene, {position, (lamp - position) / distance}, 0, distance);
+  decided = decided && hit.margin > kUndecided;
+  return hit.t < 0;
+}
+
+TEST(LessonDiffuse, FollowsLambert) {
+  const scene::Scene scene = lessonScene("04_diffuse");
+  const LessonPicture picture = renderLesson("04_diffuse");
+  expectPixels(picture, [&](dvec2 point) {
+    const HostHit hit = closestTriangle(scene, eyeRay(point, 1.5), 0.001, 1000);
+    if (hit.margin < kUndecided) return glm::dvec4(0);
+    if (hit.t < 0) return glm::dvec4(kBackground, 1);
+    const HostSurface s = surfaceAt(scene, hit);
+    const double cosine = std::max(0.0, glm::dot(s.normal, glm::normalize(dvec3(3, 5, 3) - s.position)));
+    return glm::dvec4(kAmbient + dvec3(0.8, 0.7, 0.55) * cosine, 1);
+  }, 2e-5);
+}
+
+void expectShadow(std::uint32_t frame) {
+  const scene::Scene scene = lessonScene("05_shadow");
+  LessonOptions options;
+  options.frames = frame + 1;
+  const double turn = 2 * glm::pi<double>() * (frame % 45) / 45.0;
+  const dvec3 lamp(4 * std::cos(turn), 5, 4 * std::sin(turn));
+  int lit = 0, dark = 0;
+  expectPixels(renderLesson("05_shadow", options), [&](dvec2 point) {
+    const HostRay ray = eyeRay(point, 1.5);
+    const HostHit hit = closestTriangle(scene, ray, 0.001, 1000);
+    if (hit.margin < kUndecided) return glm::dvec4(0);
+    if (hit.t < 0) return glm::dvec4(kBackground, 1);
+    const HostSurface s = surfaceAt(scene, hit);
+    const dvec3 side = glm::dot(s.normal, ray.direction) < 0 ? s.normal : -s.normal;
+    bool decided = true;
+    const bool seen = seesLamp(scene, s.position + 0.001 * side, lamp, decided);
+    if (!decided) return glm::dvec4(0);
+    (seen ? lit : dark)++;
+    const double cosine = std::max(0.0, glm::dot(s.normal, glm::normalize(lamp - s.position)));
+    return glm::dvec4(kAmbient + dvec3(0.8, 0.7, 0.55) * (seen ? cosine : 0.0), 1);
+  }, 3e-5, 0.1);
+  EXPECT_GT(lit, 200);
+  EXPECT_GT(dark, 100);
+}
+
+TEST(LessonShadow, FirstFrame) { expectShadow(0); }
+TEST(LessonShadow, TheLampHasMoved) { expectShadow(16); }
+TEST(LessonShadow, AfterAWholeTurn) {
+  LessonOptions options;
+  options.width = 24;
+  options.height = 16;
+  const LessonPicture first = renderLesson("05_shadow", options);
+  options.frames = 46;
+  EXPECT_EQ(renderLesson("05_shadow", options).outputs[0].data, first.outputs[0].data);
+}
+
+// The mirror path of lessons 06 and 07.
+glm::dvec4 mirrorColor(const scene::Scene& scene, HostRay ray, double reflectance, int maxLevel) {
+  const dvec3 lamp(3, 5, 3);
+  const dvec3 base[3] = {{0.55, 0.55, 0.5}, {0.15, 0.3, 0.6}, {0.7, 0.35, 0.1}};
+  dvec3 color(0);
+  double contribution = 1;
+  bool decided = true;
+  for (int level = 0; level < maxLevel && contribution > 0.001; ++level) {
+    const HostHit hit = closestTriangle(scene, ray, 0, 1000);
+    if (hit.margin < kUndecided) return glm::dvec4(0);
+    if (hit.t < 0) return glm::dvec4(color + contribution * kBackground, decided ? 1 : 0);
+    const HostSurface s = surfaceAt(scene, hit);
+    const dvec3 normal = glm::dot(s.normal, ray.direction) > 0 ? -s.normal : s.normal;
+    const dvec3 position = s.position + 0.001 * normal;
+    dvec3 light = kAmbient;
+    if (seesLamp(scene, position, lamp, decided)) light += std::max(0.0, glm::dot(normal, glm::normalize(lamp - position)));
+    color += contribution * base[hit.instance] * light;
+    contribution *= reflectance;
+    ray = {position, glm::reflect(ray.direction, normal)};
+  }
+  return glm::dvec4(color, decided ? 1 : 0);
+}
+
+void expectMirrors(const std::string& name, double reflectance) {
+  const scene::Scene scene = lessonScene(name);
+  LessonOptions options;
+  options.set = {{"reflectance", std::to_string(reflectance)}};
+  expectPixels(renderLesson(name, options), [&](dvec2 point) { return mirrorColor(scene, eyeRay(point, 1.5), reflectance, 5); }, 2e-4, 0.25);
+}
+
+TEST(LessonMirrorLoop, FollowsTheReflections) { expectMirrors("06_mirror_loop", 0.4); }
+TEST(LessonMirrorLoop, StopsWhereNothingIsLeft) { expectMirrors("06_mirror_loop", 0.0); }
+TEST(LessonMirrorRecursion, FollowsTheReflections) { expectMirrors("07_mirror_recursion", 0.4); }
+TEST(LessonMirrorRecursion, IsThePictureOfTheLoop) {
+  const LessonPicture loop = renderLesson("06_mirror_loop"), recursion = renderLesson("07_mirror_recursion");
+  double worst = 0;
+  for (std::uint32_t y = 0; y < loop.height; ++y)
+    for (std::uint32_t x = 0; x < loop.width; ++x) worst = std::max<double>(worst, glm::length(loop.at(x, y) - recursion.at(x, y)));
+  EXPECT_LT(worst, 1e-4);
+}
+
+}  // namespace
+}  // namespace quintet::test
