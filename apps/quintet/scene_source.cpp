@@ -2,13 +2,13 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
 #include "base/error.h"
-#include "scene/default_scene.h"
+#include "render/program_scene.h"
 #include "scene/load.h"
+#include "scene/scene_toml.h"
 
 namespace quintet::app {
 namespace {
@@ -18,30 +18,27 @@ void checkReadable(const std::filesystem::path& file) {
     throw FileError(file, "cannot be read: " + std::generic_category().message(errno));
 }
 
-bool hasIntersection(const program::HitGroup& group) {
-  return std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
-}
-
 }  // namespace
 
 SceneSource chooseScene(const std::filesystem::path& asked, const program::Program& program) {
   if (!asked.empty()) {
     checkReadable(asked);
-    return {asked, asked.filename().string(), {}};
+    return {asked, asked.filename().string(), {}, {}};
   }
-  SceneSource source{{}, "default scene", {}};
-  source.builtIn.boxes = std::ranges::any_of(program.hitGroups, hasIntersection);
-  source.builtIn.triangles = !source.builtIn.boxes || !std::ranges::all_of(program.hitGroups, hasIntersection);
-  return source;
+  if (!program.scene.empty()) return {{}, program.path(program.scene), program.files.at(program.scene), {}};
+  return {{}, "default scene", {}, render::defaultSceneOptions(program)};
 }
 
 scene::Scene loadScene(const SceneSource& source) {
-  return source.file.empty() ? scene::defaultScene(source.builtIn) : scene::loadScene(source.file);
+  if (!source.file.empty()) return scene::loadScene(source.file);
+  return source.text.empty() ? scene::defaultScene(source.builtIn) : scene::parseSceneToml(source.text, source.name);
 }
 
 std::vector<std::filesystem::path> sceneFiles(const SceneSource& source) {
-  if (source.file.empty()) return {};
-  return {source.file};
+  const std::filesystem::path file = source.text.empty() ? source.file : std::filesystem::path(source.name);
+  std::error_code ignored;
+  if (file.empty() || !std::filesystem::exists(file, ignored)) return {};
+  return {file};
 }
 
 }  // namespace quintet::app

@@ -4,12 +4,12 @@
 
 #include <quintet/quintet.h>
 
-int main(int argc, char** argv) try {
-  if (argc != 3) return std::fprintf(stderr, "usage: first_ray PROGRAM SCENE\n"), 2;
+int main() try {
   quintet::Device device;
-  const auto program = quintet::Program::load(argv[1]);
-  const auto scene = quintet::Scene::load(argv[2]);
-  quintet::Renderer renderer(device, scene, program, {.width = 320, .height = 240});
+  const auto program = quintet::Program::load("lessons/01_first_ray");
+  for (const auto& diagnostic : quintet::check(program)) std::puts(diagnostic.format().c_str());
+
+  quintet::Renderer renderer(device, quintet::Scene::of(program), program, {.width = 480, .height = 320});
   renderer.render(1);
   renderer.picture().write("first_ray.png");
   std::printf("first_ray.png, rendered on %s\n", device.name().c_str());

@@ -70,10 +70,14 @@ class Device {
   std::unique_ptr<Impl> impl_;
 };
 
+class Program;
+
 // A scene in host memory: glTF (.gltf, .glb) or .scene.toml. Copies share their data.
 class Scene {
  public:
   static Scene load(const std::filesystem::path& file);  // throws FileError
+  // The scene that the program brings, else a small built-in one that its shaders can meet.
+  static Scene of(const Program& program);
   std::string name() const;                              // the file's
   std::size_t instanceCount() const;
   std::size_t cameraCount() const;
@@ -81,6 +85,7 @@ class Scene {
 
  private:
   friend class Renderer;
+  friend std::vector<Diagnostic> check(const Program&, const Scene*);
   struct Impl;
   std::shared_ptr<const Impl> impl_;
 };
@@ -107,9 +112,15 @@ class Program {
 
  private:
   friend class Renderer;
+  friend class Scene;
+  friend std::vector<Diagnostic> check(const Program&, const Scene*);
   struct Impl;
   std::shared_ptr<const Impl> impl_;
 };
+
+// Compiles and links without a device: everything that does not fit together, by the ids of docs/diagnostics. With a
+// scene also what depends on it. A Renderer does the same, and refuses a program with errors.
+std::vector<Diagnostic> check(const Program& program, const Scene* scene = nullptr);
 
 struct Camera {
   std::array<float, 3> lookFrom{0, 0, 5};  // world, metres
@@ -132,7 +143,7 @@ struct Picture {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<float> pixels;  // 4 · width · height
-  bool display = false;       // values are meant for a display as they are: no tone map, no sRGB curve
+  bool toneMap = true;        // .png: Khronos PBR neutral before the sRGB curve; false where values are not radiance
   std::array<float, 4> at(std::uint32_t x, std::uint32_t y) const;  // (0, 0): top left
   // .png (sRGB, 8 bits), .exr (half, linear) or .hdr. Throws FileError, UsageError; never half a file.
   void write(const std::filesystem::path& file) const;

@@ -21,17 +21,6 @@ io::Image toImage(const Picture& picture) {
   return image;
 }
 
-// Display values as they are; else tone mapped and under the sRGB curve.
-io::Image displayImage(const Picture& picture) {
-  const io::Image image = toImage(picture);
-  if (!picture.display) return render::toDisplay(image, render::ToneMap::neutral, 0.0f, false);
-  io::Image bytes = io::makeImage(picture.width, picture.height, 4, io::PixelType::u8, io::ColorEncoding::sRgb);
-  std::ranges::transform(picture.pixels, bytes.samples<std::uint8_t>().begin(), [](float v) {
-    return v > 0.0f ? static_cast<std::uint8_t>(std::min(v, 1.0f) * 255.0f + 0.5f) : std::uint8_t{0};
-  });
-  return bytes;
-}
-
 }  // namespace
 
 std::array<float, 4> Picture::at(std::uint32_t x, std::uint32_t y) const {
@@ -43,7 +32,7 @@ std::array<float, 4> Picture::at(std::uint32_t x, std::uint32_t y) const {
 void Picture::write(const std::filesystem::path& file) const {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".png") return writeFile(file, io::encodePng(displayImage(*this), {}));
+  if (extension == ".png") return writeFile(file, io::encodePng(render::toDisplay(toImage(*this), toneMap ? render::ToneMap::neutral : render::ToneMap::linear, 0.0f, true), {}));
   if (extension == ".exr") return writeFile(file, io::encodeExr(toImage(*this), {}));
   if (extension == ".hdr") return writeFile(file, io::encodeHdr(toImage(*this)));
   throw UsageError(fmt::format("{}: the extension must be .png, .exr or .hdr", file.string()));

@@ -31,6 +31,6 @@ std::vector<ParameterInfo> Program::parameters() const {
   return result;
 }
 
-std::vector<std::string> Program::outputs() const { return impl_->program.outputs; }
+std::vector<std::string> Program::outputs() const { return program::outputNames(impl_->program); }
 
 }  // namespace quintet

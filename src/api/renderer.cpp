@@ -63,13 +63,14 @@ void Renderer::render(std::uint32_t count) {
 std::uint64_t Renderer::sampleCount() const { return impl_->renderer->statistics().samples; }
 
 Picture Renderer::picture(const std::string& output) const {
-  const std::vector<std::string>& outputs = impl_->renderer->program().outputs;
+  const program::Program& program = impl_->renderer->program();
+  const std::vector<std::string> outputs = program::outputNames(program);
   const auto found = output.empty() ? outputs.begin() : std::ranges::find(outputs, output);
   if (found == outputs.end()) throw UsageError(fmt::format("no output '{}'; there are {}", output, fmt::join(outputs, ", ")));
   const io::Image image = impl_->renderer->image(static_cast<std::size_t>(found - outputs.begin()));
   const std::span<const float> samples = image.samples<float>();
-  Picture picture{image.width, image.height, {samples.begin(), samples.end()}, false};
-  return picture;
+  const bool isColor = program.outputs[static_cast<std::size_t>(found - outputs.begin())].kind == program::OutputKind::color;
+  return {image.width, image.height, {samples.begin(), samples.end()}, isColor};
 }
 
 }  // namespace quintet

@@ -1,4 +1,5 @@
 #include "api/impl.h"
+#include "render/program_scene.h"
 #include "scene/load.h"
 
 namespace quintet {
@@ -6,6 +7,12 @@ namespace quintet {
 Scene Scene::load(const std::filesystem::path& file) {
   Scene result;
   result.impl_ = std::make_shared<const Impl>(Impl{scene::loadScene(file)});
+  return result;
+}
+
+Scene Scene::of(const Program& program) {
+  Scene result;
+  result.impl_ = std::make_shared<const Impl>(Impl{render::programScene(program.impl_->program)});
   return result;
 }
 
