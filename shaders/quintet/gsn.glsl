@@ -9,6 +9,9 @@
 #include "gsn/names_begin.glsl"
 #endif
 #include "frame.glsl"
+#ifdef QUINTET_INSTRUMENT
+#include "instrument.glsl"
+#endif
 #ifdef QUINTET_GSN_OPEN
 #include "output.glsl"
 #include "payload.glsl"

@@ -82,6 +82,7 @@ struct Frame {
   Address albedoTables; // quintet/bsdf/albedo.glsl
   Address statistics;   // uvec2[filmWidth · filmHeight]: rays traced, samples dropped; 0: do not count
   Address rayRecords;   // RayRecord[filmWidth · filmHeight · rayRecordCapacity], for benchmarks; else 0
+  Address instrument;   // Instrument and its pixels (shared/instrument.h); 0: not instrumented
   Address outputs[kMaxOutputs];  // vec4[filmWidth · filmHeight]: sums of this batch, rows top to bottom
   Address previousOutputs[kMaxOutputs];  // vec4[…]: the frame before, where the program accumulates; 0: there is none
   EnvironmentData environment;
@@ -100,7 +101,7 @@ struct Frame {
   uint frameCount;      // frames of this run, where the program accumulates; 0: it has no end
   uint padding;
 };
-QT_SHARED_SIZE(Frame, 8 * 9 + 2 * 8 * 16 + 40 + 72 + 56);
+QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 16 + 40 + 72 + 56);
 
 // Push constants of the pass that adds a batch to the total; its workgroups form rows of kFilmAddColumns.
 QT_CONSTANT kFilmAddGroupSize = 64;

@@ -1,0 +1,98 @@
+// Checks at run time (quintet check --instrument). program::instrumentStage puts this file before a stage and a main()
+// of its own behind it, and defines QUINTET_INSTRUMENT_STAGE and QUINTET_INSTRUMENT_KIND (0 ray generation, 1 closest
+// hit, 2 any-hit, 3 other). It replaces traceRayEXT by a macro that looks at the arguments first.
+#ifndef QUINTET_INSTRUMENT_GLSL
+#define QUINTET_INSTRUMENT_GLSL
+
+#include "frame.glsl"
+#include "shared/instrument.h"
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer InstrumentReference {
+  Instrument value;
+  InstrumentPixel pixels[];
+};
+
+#define instrument_ InstrumentReference(frame.instrument)
+uint instrumentPixel_() {
+  const uvec2 film = gl_LaunchIDEXT.xy + launch.offset - frame.filmOffset;
+  return film.y * frame.filmWidth + film.x;
+}
+
+void instrumentReport_(uint kind, uint line, uint depth, float value, vec3 origin, vec3 direction) {
+  const uint slot = atomicAdd(instrument_.value.reportCount, 1u);
+  if (slot >= kInstrumentReports) return;
+  InstrumentReport report;
+  report.kind = kind;
+  report.stage = QUINTET_INSTRUMENT_STAGE;
+  report.line = line;
+  report.depth = depth;
+  report.pixel = gl_LaunchIDEXT.xy + launch.offset;
+  report.value = value;
+  report.padding = 0u;
+  report.origin = origin;
+  report.direction = direction;
+  instrument_.value.reports[slot] = report;
+}
+
+#if QUINTET_INSTRUMENT_KIND != 2
+bool instrumentBad_(vec3 v) { return any(isnan(v)) || any(isinf(v)); }
+
+// Before a trace; false: it must not be executed.
+bool instrumentTrace_(uint offset, uint stride, uint miss, vec3 origin, float tmin, vec3 direction, float tmax, uint line) {
+  const uint pixel = instrumentPixel_();
+  const uint depth = ++instrument_.pixels[pixel].depth;
+  atomicAdd(instrument_.value.traceCount, 1u);
+  atomicMax(instrument_.value.deepest, depth);
+  atomicMax(instrument_.value.largestMiss, miss & 0xFFFFu);
+  const uint pair = (offset & 15u) + 16u * (stride & 15u);
+  atomicOr(instrument_.value.recordPairs[pair / 32u], 1u << (pair % 32u));
+  if (instrumentBad_(origin) || instrumentBad_(direction) || direction == vec3(0.0) || isnan(tmin) || isnan(tmax) || tmin < 0.0 || tmax < tmin) {
+    instrumentReport_(kReportRay, line, depth, 0.0, origin, direction);
+    return false;
+  }
+  if (depth > instrument_.value.depthLimit) {
+    instrumentReport_(kReportDepth, line, depth, 0.0, origin, direction);
+    return false;
+  }
+  return true;
+}
+void instrumentAfter_() { instrument_.pixels[instrumentPixel_()].depth--; }
+
+// The arguments are evaluated once.
+#define traceRayEXT(as_, flags_, mask_, offset_, stride_, miss_, origin_, tmin_, direction_, tmax_, location_)              \
+  do {                                                                                                                     \
+    const uint iFlags_ = (flags_), iMask_ = (mask_), iOffset_ = (offset_), iStride_ = (stride_), iMiss_ = (miss_);         \
+    const vec3 iOrigin_ = (origin_), iDirection_ = (direction_);                                                           \
+    const float iTmin_ = (tmin_), iTmax_ = (tmax_);                                                                        \
+    if (instrumentTrace_(iOffset_, iStride_, iMiss_, iOrigin_, iTmin_, iDirection_, iTmax_, uint(__LINE__))) {             \
+      traceRayEXT(as_, iFlags_, iMask_, iOffset_, iStride_, iMiss_, iOrigin_, iTmin_, iDirection_, iTmax_, location_);     \
+    }                                                                                                                      \
+    instrumentAfter_();                                                                                                    \
+  } while (false)
+#endif
+
+void instrumentBegin_() {
+  const uint pixel = instrumentPixel_();
+#if QUINTET_INSTRUMENT_KIND == 0
+  instrument_.pixels[pixel].depth = 0u;
+#elif QUINTET_INSTRUMENT_KIND == 1
+  // The primitive of the closest hit before, met again within the rounding error of the coordinates (64 roundings).
+  const uint instance = uint(gl_InstanceCustomIndexEXT) + 1u;
+  const InstrumentPixel last = instrument_.pixels[pixel];
+  const vec3 size = abs(gl_WorldRayOriginEXT);
+  const float error = 64.0 * 5.9604645e-8 * max(maxComponent(size), 1e-30);
+  const float distance = gl_HitTEXT * length(gl_WorldRayDirectionEXT);
+  if (last.instance == instance && last.geometry == uint(gl_GeometryIndexEXT) && last.primitive == uint(gl_PrimitiveID) && distance < error)
+    instrumentReport_(kReportSelfHit, 0u, last.depth, distance, gl_WorldRayOriginEXT, gl_WorldRayDirectionEXT);
+  instrument_.pixels[pixel].instance = instance;
+  instrument_.pixels[pixel].geometry = uint(gl_GeometryIndexEXT);
+  instrument_.pixels[pixel].primitive = uint(gl_PrimitiveID);
+#elif QUINTET_INSTRUMENT_KIND == 2
+  atomicAdd(instrument_.value.anyHitCount, 1u);
+  atomicMax(instrument_.value.mostAnyHits, ++instrument_.pixels[pixel].anyHits);
+#endif
+}
+
+#define main instrumentedMain_
+
+#endif

@@ -1,0 +1,71 @@
+#include "program/instrument.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace quintet::program {
+namespace {
+
+int kindOf(shader::Stage stage) {
+  switch (stage) {
+    case shader::Stage::rayGeneration: return 0;
+    case shader::Stage::closestHit: return 1;
+    case shader::Stage::anyHit: return 2;
+    default: return 3;
+  }
+}
+
+std::string_view trimmed(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t\r");
+  return first == line.npos ? std::string_view() : line.substr(first);
+}
+
+// Where the lines end that must stay first: #version, #extension, comments and blank lines before the last of them.
+struct Head {
+  std::size_t bytes = 0;
+  int lines = 0;
+};
+
+Head findHead(std::string_view source) {
+  Head head;
+  bool inComment = false;
+  std::size_t at = 0;
+  for (int line = 1; at < source.size(); ++line) {
+    const std::size_t newline = source.find('\n', at);
+    const std::size_t end = newline == source.npos ? source.size() : newline + 1;
+    const std::string_view text = trimmed(source.substr(at, end - at));
+    at = end;
+    if (inComment) {
+      inComment = text.find("*/") == text.npos;
+      continue;
+    }
+    if (text.empty() || text == "\n" || text.starts_with("//")) continue;
+    if (text.starts_with("/*")) {
+      inComment = text.find("*/", 2) == text.npos;
+      continue;
+    }
+    if (!text.starts_with("#version") && !text.starts_with("#extension")) break;
+    head = {end, line};
+  }
+  return head;
+}
+
+}  // namespace
+
+bool isInstrumented(shader::Stage stage) { return stage != shader::Stage::intersection && stage != shader::Stage::callable; }
+
+std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index) {
+  if (!isInstrumented(stage)) return source;
+  const Head head = findHead(source);
+  const bool lecture = source.find("#include <quintet/gsn.glsl>") != source.npos;
+  std::string result = source.substr(0, head.bytes);
+  if (!result.empty() && result.back() != '\n') result += '\n';
+  result += fmt::format("#define QUINTET_INSTRUMENT 1\n#define QUINTET_INSTRUMENT_STAGE {}u\n#define QUINTET_INSTRUMENT_KIND {}\n", index, kindOf(stage));
+  if (!lecture) result += "#include <quintet/instrument.glsl>\n";
+  result += fmt::format("#line {}\n", head.lines + 1);
+  result += source.substr(head.bytes);
+  return result + "\n#undef main\nvoid main() {\n  instrumentBegin_();\n  instrumentedMain_();\n}\n";
+}
+
+}  // namespace quintet::program

@@ -1,0 +1,30 @@
+// The device's notes of an instrumented program, and what they mean.
+#ifndef QUINTET_RENDER_INSTRUMENT_H
+#define QUINTET_RENDER_INSTRUMENT_H
+
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "program/link.h"
+#include "quintet/shared/instrument.h"
+
+namespace quintet::render {
+
+class InstrumentBuffer {
+ public:
+  // For a film of `pixels` pixels and a pipeline of this depth.
+  InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit);
+  shared::Address address() const { return buffer_.address(); }
+  shared::Instrument download() const;  // blocks
+
+ private:
+  gpu::Buffer buffer_;
+};
+
+// Diagnostics Q001, Q003 … Q006; Q004 by the scene's table: records that no instance has, misses that are not there.
+// Several reports of one place are one diagnostic with their number and the first pixel.
+std::vector<shader::Diagnostic> instrumentDiagnostics(const shared::Instrument& notes, const program::Program& program,
+                                                      const program::CompiledProgram& compiled, const program::SceneFacts& facts);
+
+}  // namespace quintet::render
+#endif
