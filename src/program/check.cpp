@@ -49,7 +49,8 @@ CheckResult check(const Program& program, const CompiledProgram& compiled, const
   result.recursionDepth = program.declaredRecursion.value_or(1);
   if (compiled.ok) {
     const LinkModel model(program, compiled);
-    const CheckInput input{model, scene, limits, featureDefines};
+    const std::optional<SceneFacts> opened = scene ? std::optional(factsFor(program, *scene)) : std::nullopt;
+    const CheckInput input{model, opened ? &*opened : nullptr, limits, featureDefines};
     Report report;
     checkPayloads(input, report);
     checkPayloadMembers(input, report);

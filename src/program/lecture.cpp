@@ -155,14 +155,15 @@ class Builder {
     return name;
   }
 
-  // "recursion: N" of // gsnShaderOptions; else as deep as any device goes if a hit or miss shader may trace.
-  std::uint32_t recursion() const {
+  // "recursion: N" of // gsnShaderOptions: the bound of programs whose hit or miss shaders trace rays that come back to
+  // them. What follows from the shaders themselves is derived (check.h).
+  std::optional<std::uint32_t> recursion() const {
     constexpr std::string_view kOptions = "gsnShaderOptions", kRecursion = "recursion:";
     const auto traces = [&](const LectureMain& main) {
       const std::string_view body = source_.text.substr(main.begin, main.end - main.begin);
       return main.stage != Stage::rayGeneration && body.find("traceRayEXT") != body.npos;
     };
-    if (std::ranges::none_of(source_.split.mains, traces)) return 1;
+    if (std::ranges::none_of(source_.split.mains, traces)) return {};
     for (const Token& token : source_.tokens) {
       if (token.kind != TokenKind::comment) continue;
       const std::string_view comment = textOf(source_.text, token);
@@ -171,7 +172,7 @@ class Builder {
       const int depth = std::atoi(std::string(comment.substr(at + kRecursion.size(), 8)).c_str());
       return static_cast<std::uint32_t>(std::clamp(depth, 2, 31));
     }
-    return 31;
+    return {};
   }
 
   void addStages(const std::string& file) {
@@ -192,7 +193,7 @@ class Builder {
         case Stage::miss: ray.miss = add("", false); break;
         case Stage::intersection: boxes.intersection = add("", true); break;
         case Stage::closestHit: triangles.closestHit = add(".triangles", false); boxes.closestHit = add(".boxes", true); break;
-        case Stage::anyHit: triangles.anyHit = add(".triangles", false); boxes.anyHit = add(".boxes", true); break;
+        case Stage::anyHit: program_.anyHitForAll = true; triangles.anyHit = add(".triangles", false); boxes.anyHit = add(".boxes", true); break;
         case Stage::callable: program_.callables.push_back({"", add(fmt::format(".{}", callables++), false), {}, 0}); break;
         case Stage::compute: break;
       }
@@ -293,17 +294,56 @@ std::optional<Program> loadOnly(const fs::path& folder) {
   return load(*only);
 }
 
+bool isLecture(const EmbeddedFile& file) { return file.path.ends_with(kLectureExtension); }
+std::string folderOf(const EmbeddedFile& file) { return fs::path(file.path).parent_path().string(); }
+
+// Is it the only lecture file of its folder, and is the folder no folder program? Then the folder's name is its name.
+bool isAlone(const EmbeddedFile& file) {
+  const std::string folder = folderOf(file);
+  const auto rival = [&](const EmbeddedFile& other) {
+    return other.path != file.path && folderOf(other) == folder && (isLecture(other) || other.path.ends_with("/program.toml"));
+  };
+  return !folder.empty() && std::ranges::none_of(embeddedPrograms(), rival);
+}
+
+std::string builtInName(const EmbeddedFile& file) {
+  return isAlone(file) ? folderOf(file) : std::string(file.path.substr(0, file.path.size() - kLectureExtension.size()));
+}
+
+// `name`: as builtInLectures lists it, or the path with or without its extension.
 std::optional<Program> builtIn(const std::string& name) {
-  const std::string path = name.ends_with(kLectureExtension) ? name : name + std::string(kLectureExtension);
   const auto all = embeddedPrograms();
-  const auto found = std::ranges::find(all, std::string_view(path), &EmbeddedFile::path);
+  const auto found = std::ranges::find_if(all, [&](const EmbeddedFile& file) {
+    return isLecture(file) && (file.path == name || file.path == name + std::string(kLectureExtension) || builtInName(file) == name);
+  });
   if (found == all.end()) return {};
+  const std::string path(found->path);
   const fs::path folder = fs::path(path).parent_path();
   std::map<std::string, std::string> beside;
   for (const EmbeddedFile& file : all)
     if (fs::path(file.path).parent_path() == folder && !file.path.ends_with(kLectureExtension))
       beside.emplace(fs::path(file.path).filename().string(), file.data);
-  return parseLecture(std::string(found->data), fs::path(path).filename().string(), "<programs/" + folder.string() + ">", std::move(beside));
+  Program program =
+      parseLecture(std::string(found->data), fs::path(path).filename().string(), "<programs/" + folder.string() + ">", std::move(beside));
+  program.name = builtInName(*found);
+  return program;
+}
+
+// The first sentence of the comment at the beginning: "Lesson 05: shadow." of "// Lesson 05: shadow. At each …"
+std::string descriptionOf(const std::string& text) {
+  std::string words;
+  for (const Token& token : tokenize(text)) {
+    if (token.kind != TokenKind::comment) break;
+    std::string_view comment = textOf(text, token);
+    if (comment.find("gsnShaderOptions") != comment.npos) continue;
+    if (!comment.starts_with("//") || comment.find("scene:") != comment.npos) break;
+    comment.remove_prefix(std::min(comment.size(), std::size_t{3}));
+    words.append(words.empty() ? "" : " ").append(comment);
+  }
+  std::size_t end = words.find(". ");
+  // "Lesson 05: shadow. At each surface …": a title of few words takes the sentence after it along.
+  if (end != words.npos && end < 40) end = words.find(". ", end + 1);
+  return words.substr(0, end);
 }
 
 }  // namespace
@@ -312,6 +352,7 @@ Program parseLecture(const std::string& text, const std::string& file, const std
   Program program;
   program.name = file.ends_with(kLectureExtension) ? file.substr(0, file.size() - kLectureExtension.size()) : file;
   program.origin = origin;
+  program.description = descriptionOf(text);
   program.accumulation = Accumulation::program;
   program.descriptionFile = file;
   program.outputs = {{"picture", OutputKind::display, "what gsnSetPixel writes", 0}};
@@ -332,7 +373,7 @@ Program parseLecture(const std::string& text, const std::string& file, const std
 std::vector<std::string> builtInLectures() {
   std::vector<std::string> names;
   for (const EmbeddedFile& file : embeddedPrograms())
-    if (file.path.ends_with(kLectureExtension)) names.emplace_back(file.path.substr(0, file.path.size() - kLectureExtension.size()));
+    if (isLecture(file)) names.push_back(builtInName(file));
   return names;
 }
 

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "program/device_stages.h"
 #include "program/generated.h"
+#include "program/instrument.h"
 
 namespace quintet::program {
 namespace {
@@ -66,7 +67,7 @@ const CompiledProgram::Stage& CompiledProgram::stage(const std::string& file) co
 }
 
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
-                        const std::vector<std::pair<std::string, std::string>>& defines) {
+                        const std::vector<std::pair<std::string, std::string>>& defines, bool instrument) {
   const auto start = std::chrono::steady_clock::now();
   const auto isError = [](const shader::Diagnostic& d) { return d.severity == shader::Severity::error; };
   if (std::ranges::any_of(program.diagnostics, isError)) return {.stages = {}, .diagnostics = program.diagnostics};
@@ -82,6 +83,7 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
     const bool library = isLibraryStage(files[i]);
     source.stage = *shader::stageOfFile(library ? files[i].substr(1, files[i].size() - 2) : files[i]);
     source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + files[i] + "\n" : program.files.at(files[i]);
+    if (instrument) source.text = instrumentStage(source.text, source.stage, i);
     source.name = program.path(files[i]);
     source.defines = defines;
     source.virtualFiles = virtualFiles;
@@ -107,13 +109,13 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
 }
 
 LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set, const Program& program,
-                             const CompiledProgram& compiled, const gpu::PipelineCache* cache)
-    : context_(context), program_(program) {
+                             const CompiledProgram& compiled, std::uint32_t recursionDepth, const gpu::PipelineCache* cache)
+    : context_(context), program_(program), recursionDepth_(recursionDepth) {
   assert(compiled.ok);
   const auto start = std::chrono::steady_clock::now();
   rt::PipelineOptions options;
   options.name = program.name;
-  options.maxRecursionDepth = program.declaredRecursion.value_or(1);
+  options.maxRecursionDepth = std::max(1u, recursionDepth);
   DeviceStages stages(program, compiled, context.info().quirks);
   const auto groupCount = [&] { return static_cast<std::uint32_t>(options.groups.size()); };
 

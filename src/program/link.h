@@ -28,9 +28,9 @@ struct CompiledProgram {
   const Stage& stage(const std::string& file) const;
 };
 
-// `defines`: for all stages (features of the scene and the device).
+// `defines`: for all stages (features of the scene and the device). `instrument`: with the checks of instrument.h.
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
-                        const std::vector<std::pair<std::string, std::string>>& defines);
+                        const std::vector<std::pair<std::string, std::string>>& defines, bool instrument = false);
 
 // Index in program.hitGroups of the group that serves a geometry: the first one bound to its name
 // (HitGroup::primitives), else to its material (an intersection shader for boxes, none for triangles), else to
@@ -41,14 +41,15 @@ std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry);
 // A program on a device.
 class LinkedProgram {
  public:
-  // `compiled.ok` must hold.
+  // `compiled.ok` must hold. `recursionDepth`: of nested traces, as check() derives it.
   LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set, const Program& program, const CompiledProgram& compiled,
-                const gpu::PipelineCache* cache);
+                std::uint32_t recursionDepth, const gpu::PipelineCache* cache);
 
   const Program& program() const { return program_; }
   const rt::Pipeline& pipeline() const { return *pipeline_; }
   std::uint32_t rayTypeCount() const { return static_cast<std::uint32_t>(program_.rays.size()); }
   double pipelineSeconds() const { return pipelineSeconds_; }
+  std::uint32_t recursionDepth() const { return recursionDepth_; }  // of the pipeline
 
   // Records: geometry k has records k · rayTypeCount … + rayTypeCount - 1, one per ray type.
   rt::ShaderBindingTable makeTable(std::span<const GeometryFacts> geometries) const;
@@ -63,6 +64,7 @@ class LinkedProgram {
   std::uint32_t firstHitGroup_ = 0;  // group of hit group h and ray r: first + h · rayTypeCount + r
   std::uint32_t firstCallableGroup_ = 0;
   double pipelineSeconds_ = 0;
+  std::uint32_t recursionDepth_ = 1;
 };
 
 }  // namespace quintet::program

@@ -62,6 +62,7 @@ class Parser {
     program_.samplesPerLaunch = reader.count("samples_per_launch", 1, 4096, 1);
     program_.accumulation = static_cast<Accumulation>(reader.choice("accumulation", {"film", "program"}, 0));
     program_.keepsInstanceOrder = reader.flag("keeps_instance_order", false);
+    program_.anyHitForAll = reader.flag("any_hit_for_all", false);
     parseCallableList(reader);
     reader.refuseOthers();
   }

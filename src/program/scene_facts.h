@@ -30,11 +30,16 @@ struct InstanceFacts {
   bool forceNoOpaque = false;
 };
 
+struct Program;
+
 struct SceneFacts {
   std::string name;  // for messages: the file
   std::vector<GeometryFacts> geometries;
   std::vector<InstanceFacts> instances;
 };
+
+// The scene as this program has it: with Program::anyHitForAll no instance is opaque unless it is forced to be.
+SceneFacts factsFor(const Program& program, SceneFacts facts);
 
 }  // namespace quintet::program
 #endif

@@ -165,9 +165,9 @@ struct DeviceScene::Impl {
     frame.instanceCount = static_cast<std::uint32_t>(scene.instances.size());
   }
 
-  void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder) {
+  void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder, bool anyHitForAll) {
     const auto start = std::chrono::steady_clock::now();
-    if (!topLevel->prepareFor(rayTypeCount, keepInstanceOrder || options.keepInputOrder)) return;
+    if (!topLevel->prepareFor(rayTypeCount, keepInstanceOrder || options.keepInputOrder, anyHitForAll)) return;
     set->setAccelerationStructure(topLevel->structure().handle());
     statistics.accelerationBytes = bottomLevelBytes + topLevel->structure().size();
     statistics.topLevelSeconds = secondsSince(start);
@@ -190,7 +190,9 @@ const shared::Frame& DeviceScene::frameTemplate() const { return impl_->frame; }
 const DeviceSceneStatistics& DeviceScene::statistics() const { return impl_->statistics; }
 const Bounds3& DeviceScene::bounds() const { return impl_->bounds; }
 bool DeviceScene::animated() const { return impl_->topLevel->animated(); }
-void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder) { impl_->prepareFor(rayTypeCount, keepInstanceOrder); }
+void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder, bool anyHitForAll) {
+  impl_->prepareFor(rayTypeCount, keepInstanceOrder, anyHitForAll);
+}
 void DeviceScene::setFrame(float frame) { impl_->topLevel->setFrame(frame); }
 
 }  // namespace quintet::render

@@ -58,7 +58,7 @@ class DeviceScene {
 
   // Makes the TLAS fit programs with this many ray types (hit record offsets depend on it). keepInstanceOrder:
   // gl_InstanceID is the instance's index in the scene, at some cost in speed (docs/design/quirks.md).
-  void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder = false);
+  void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder = false, bool anyHitForAll = false);
 
   // Moves the instances that have keyframes (scene.h) to where they are at `frame`: instance table and TLAS. Nothing
   // else changes, frameTemplate() neither. Blocks; no launch may be under way. At first it is frame 0.

@@ -9,6 +9,8 @@
 
 #include "gpu/timer.h"
 #include "io/codec.h"
+#include "program/check.h"
+#include "render/instrument.h"
 #include "io/color.h"
 #include "render/parameter_textures.h"
 
@@ -65,6 +67,8 @@ struct Renderer::Impl {
   RenderStatistics statistics;
   std::vector<shader::Diagnostic> diagnostics;
   std::vector<std::filesystem::path> files;
+  std::optional<InstrumentBuffer> instrument;
+  program::CompiledProgram instrumented;  // file names of stages, for notes
   double pixelSamplesPerSecond = 0;  // measured; 0: unknown yet
 
   Impl(DeviceScene& deviceScene, const program::Program& program, const shader::Compiler& compiler, const gpu::PipelineCache* cache,
@@ -85,6 +89,10 @@ struct Renderer::Impl {
     frame.rayRecords = settings.rayRecords ? settings.rayRecords->address() : 0;
     frame.rayRecordCapacity = settings.rayRecords ? settings.rayRecordCapacity : 0;
     film->describe(frame);
+    if (settings.instrument) {
+      instrument.emplace(context, std::uint64_t{region.width} * region.height, linked->recursionDepth());
+      frame.instrument = instrument->address();
+    }
     frameBuffer = gpu::makeBuffer(context, std::as_bytes(std::span(&frame, 1)), 0, "frame");
     if (settings.parameters.parameters().empty()) settings.parameters = program::ParameterValues(description.parameters);
     parameterTextures.emplace(context, scene.parameterSlots(), description, settings.parameters);
@@ -94,14 +102,17 @@ struct Renderer::Impl {
   void link(const shader::Compiler& compiler, const gpu::PipelineCache* cache) {
     std::vector<std::pair<std::string, std::string>> defines = settings.defines;
     defines.insert(defines.end(), scene.defines().begin(), scene.defines().end());
-    const program::CompiledProgram compiled = program::compile(description, compiler, defines);
+    const program::CompiledProgram compiled = program::compile(description, compiler, defines, settings.instrument);
     if (!compiled.ok) throw ProgramError(compiled.diagnostics);
-    diagnostics = compiled.diagnostics;
+    const program::CheckResult checked = program::check(description, compiled, &scene.facts(), program::deviceLimits(context), true);
+    if (!checked.ok()) throw ProgramError(checked.diagnostics);
+    diagnostics = checked.diagnostics;
     files = compiled.files;
-    scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder);
-    linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled, cache);
+    scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder, description.anyHitForAll);
+    linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled, checked.recursionDepth, cache);
     table.emplace(linked->makeTable(scene.facts().geometries));
     statistics.compileSeconds = compiled.seconds;
+    if (settings.instrument) instrumented = compiled;
     statistics.pipelineSeconds = linked->pipelineSeconds();
   }
 
@@ -202,6 +213,31 @@ struct Renderer::Impl {
     statistics.renderSeconds += secondsSince(start);
     return true;
   }
+
+  std::vector<shader::Diagnostic> notes() const {
+    if (!instrument) return {};
+    std::vector<shader::Diagnostic> result = instrumentDiagnostics(instrument->download(), description, instrumented, scene.facts());
+    addBadOutputs(result);
+    return result;
+  }
+
+  // Q002: values of the film, and samples that the program itself has left out.
+  void addBadOutputs(std::vector<shader::Diagnostic>& result) const {
+    const std::string file = description.path(description.rayGeneration);
+    for (std::size_t output = 0; output < description.outputs.size(); ++output) {
+      const io::Image image = film->download(output, std::max<std::uint64_t>(1, statistics.samples));
+      const std::span<const float> values = image.samples<float>();
+      const auto bad = std::ranges::find_if_not(values, [](float v) { return std::isfinite(v); });
+      if (bad == values.end()) continue;
+      const auto count = std::ranges::count_if(values, [](float v) { return !std::isfinite(v); });
+      const auto pixel = static_cast<std::uint64_t>(bad - values.begin()) / 4;
+      result.push_back({shader::Severity::error, file, 0, 0, "Q002",
+                        fmt::format("output '{}' is {} at pixel {}, {}; {} values are not finite", description.outputs[output].name, *bad,
+                                    film->region().x + pixel % image.width, film->region().y + pixel / image.width, count)});
+    }
+    if (const std::uint64_t dropped = film->countRays().droppedSamples; dropped > 0)
+      result.push_back({shader::Severity::error, file, 0, 0, "Q002", fmt::format("{} samples were not finite; the program left them out", dropped)});
+  }
 };
 
 Renderer::Renderer(DeviceScene& scene, const program::Program& program, const shader::Compiler& compiler, const gpu::PipelineCache* cache,
@@ -217,6 +253,7 @@ RayCount Renderer::rays() const { return impl_->film->countRays(); }
 const RenderStatistics& Renderer::statistics() const { return impl_->statistics; }
 const std::vector<shader::Diagnostic>& Renderer::diagnostics() const { return impl_->diagnostics; }
 const std::vector<std::filesystem::path>& Renderer::files() const { return impl_->files; }
+std::vector<shader::Diagnostic> Renderer::notes() const { return impl_->notes(); }
 const program::Program& Renderer::program() const { return impl_->description; }
 
 }  // namespace quintet::render

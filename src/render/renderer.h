@@ -25,6 +25,7 @@ struct RenderSettings {
   const gpu::Buffer* rayRecords = nullptr;  // shared::RayRecord, rayRecordCapacity per pixel: for benchmarks
   std::uint32_t rayRecordCapacity = 0;
   std::uint32_t frameCount = 0;  // frames of this run, for programs that accumulate (frameSize); 0: it has no end
+  bool instrument = false;      // checks at run time, slow: Renderer::notes
   double launchSeconds = 0.25;  // a launch is cut so that it takes about this long
   // A launch that takes longer: gpu::DeviceLostError. 0: 60, or 600 on a CPU, whose first launch compiles.
   double timeoutSeconds = 0;
@@ -76,6 +77,8 @@ class Renderer {
   io::Image image(std::size_t output = 0) const;
   RayCount rays() const;
   const RenderStatistics& statistics() const;
+  // What the checks of RenderSettings::instrument have found so far (ids Q001 … Q006). Blocks.
+  std::vector<shader::Diagnostic> notes() const;
   // Warnings and notes of the compiler.
   const std::vector<shader::Diagnostic>& diagnostics() const;
   // Files on disk that the shaders include from outside the program.

@@ -40,9 +40,10 @@ TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<c
   table_ = gpu::makeBufferOf(context, data_, 0, "instances");
 }
 
-bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder) {
-  if (tlas_ && rayTypeCount == rayTypeCount_ && keepOrder == keepOrder_) return false;
+bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHitForAll) {
+  if (tlas_ && rayTypeCount == rayTypeCount_ && keepOrder == keepOrder_ && anyHitForAll == anyHitForAll_) return false;
   rayTypeCount_ = rayTypeCount;
+  anyHitForAll_ = anyHitForAll;
   keepOrder_ = keepOrder;
   build();
   return true;
@@ -65,7 +66,10 @@ void TopLevel::build() {
   for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i].recordOffset = data_[i].firstGeometry * rayTypeCount_;
   if (!tlas_) tlas_ = std::make_unique<rt::Tlas>(context_, static_cast<std::uint32_t>(inputs_.size()));
   tlas_->keepInputOrder(keepOrder_);
-  tlas_->buildAndWait(inputs_);
+  std::vector<rt::InstanceInput> inputs = inputs_;
+  for (rt::InstanceInput& input : inputs)
+    if (anyHitForAll_ && (input.flags & scene::kInstanceForceOpaque) == 0) input.flags |= scene::kInstanceForceNoOpaque;
+  tlas_->buildAndWait(inputs);
 }
 
 }  // namespace quintet::render

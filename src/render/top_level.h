@@ -29,8 +29,9 @@ class TopLevel {
   bool animated() const { return !moving_.empty(); }
 
   // Hit record of geometry k and ray type r: k · rayTypeCount + r. keepOrder: gl_InstanceID is the instance's index in
-  // the scene. Blocks; returns false if nothing had to be done.
-  bool prepareFor(std::uint32_t rayTypeCount, bool keepOrder);
+  // the scene. anyHitForAll: no instance is opaque unless it is forced to be. Blocks; returns false if nothing had to
+  // be done.
+  bool prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHitForAll);
   // Moves what has keyframes. Blocks; the device must not be tracing. False: it was there already.
   bool setFrame(float frame);
 
@@ -48,6 +49,7 @@ class TopLevel {
   std::unique_ptr<rt::Tlas> tlas_;
   std::uint32_t rayTypeCount_ = 0;
   bool keepOrder_ = false;
+  bool anyHitForAll_ = false;
   float frame_ = 0.0f;
 };
 

@@ -58,7 +58,7 @@ struct CompilerOptions {
   std::vector<std::filesystem::path> includeFolders;  // further folders for #include <…>
   std::filesystem::path cacheFolder;                  // empty: no disk cache
   bool optimize = true;                               // spirv-opt for speed
-  bool debugInfo = false;                             // line tables in the SPIR-V
+  bool debugInfo = true;                              // line tables in the SPIR-V: for the link's diagnostics
 };
 
 class Compiler {

@@ -199,11 +199,11 @@ TEST(Lecture, TheLibraryCanBeIncluded) {
               IsEmpty());
 }
 
-TEST(Lecture, RecursionIsAsDeepAsNeeded) {
+TEST(Lecture, RecursionIsDerivedUnlessDeclared) {
   const std::string trace = "traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(0.0), 0.0, vec3(1.0), 1.0, 0);";
-  EXPECT_EQ(lecture(std::string(kCommon) + kRayGeneration).declaredRecursion, 1u);
+  EXPECT_EQ(lecture(std::string(kCommon) + kRayGeneration).declaredRecursion, std::nullopt);
   const std::string hit = "void main() { /**** CLOSEST-HIT SHADER ****/ " + trace + " }\n";
-  EXPECT_EQ(lecture(std::string(kCommon) + kRayGeneration + hit).declaredRecursion, 31u);
+  EXPECT_EQ(lecture(std::string(kCommon) + kRayGeneration + hit).declaredRecursion, std::nullopt);
   const std::string options = "// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: 5, app: 1\"\n";
   EXPECT_EQ(lecture(options + kCommon + kRayGeneration + hit).declaredRecursion, 5u);
 }

@@ -98,9 +98,10 @@ TEST(BuiltInPrograms, ParseAndCompile) {
     const Program p = loadProgram(name);
     EXPECT_EQ(p.name, name);
     EXPECT_EQ(p.origin, "<programs/" + name + ">");
+    const bool isLecture = p.accumulation == Accumulation::program;
     EXPECT_FALSE(p.description.empty());
     ASSERT_FALSE(p.outputs.empty());
-    EXPECT_EQ(p.outputs[0].name, "color");
+    EXPECT_EQ(p.outputs[0].name, isLecture ? "picture" : "color");
     for (const Parameter& parameter : p.parameters) EXPECT_FALSE(parameter.help.empty()) << parameter.name;
     // Both ways to find a hit's barycentrics (link of a scene with alpha).
     for (const std::vector<std::pair<std::string, std::string>>& defines :
