@@ -18,7 +18,7 @@ uint instrumentPixel_() {
   return film.y * frame.filmWidth + film.x;
 }
 
-void instrumentReport_(uint kind, uint line, uint depth, float value, vec3 origin, vec3 direction) {
+void instrumentReport_(uint kind, uint line, uint depth, float value, uint index, vec3 origin, vec3 direction) {
   const uint slot = atomicAdd(instrument_.value.reportCount, 1u);
   if (slot >= kInstrumentReports) return;
   InstrumentReport report;
@@ -28,7 +28,7 @@ void instrumentReport_(uint kind, uint line, uint depth, float value, vec3 origi
   report.depth = depth;
   report.pixel = gl_LaunchIDEXT.xy + launch.offset;
   report.value = value;
-  report.padding = 0u;
+  report.index = index;
   report.origin = origin;
   report.direction = direction;
   instrument_.value.reports[slot] = report;
@@ -43,15 +43,18 @@ bool instrumentTrace_(uint offset, uint stride, uint miss, vec3 origin, float tm
   const uint depth = ++instrument_.pixels[pixel].depth;
   atomicAdd(instrument_.value.traceCount, 1u);
   atomicMax(instrument_.value.deepest, depth);
-  atomicMax(instrument_.value.largestMiss, miss & 0xFFFFu);
   const uint pair = (offset & 15u) + 16u * (stride & 15u);
   atomicOr(instrument_.value.recordPairs[pair / 32u], 1u << (pair % 32u));
   if (instrumentBad_(origin) || instrumentBad_(direction) || direction == vec3(0.0) || isnan(tmin) || isnan(tmax) || tmin < 0.0 || tmax < tmin) {
-    instrumentReport_(kReportRay, line, depth, 0.0, origin, direction);
+    instrumentReport_(kReportRay, line, depth, 0.0, 0u, origin, direction);
     return false;
   }
   if (depth > instrument_.value.depthLimit) {
-    instrumentReport_(kReportDepth, line, depth, 0.0, origin, direction);
+    instrumentReport_(kReportDepth, line, depth, 0.0, 0u, origin, direction);
+    return false;
+  }
+  if ((miss & 0xFFFFu) >= instrument_.value.missCount) {
+    instrumentReport_(kReportMiss, line, depth, 0.0, miss, origin, direction);
     return false;
   }
   return true;
@@ -83,7 +86,7 @@ void instrumentBegin_() {
   const float error = 64.0 * 5.9604645e-8 * max(maxComponent(size), 1e-30);
   const float distance = gl_HitTEXT * length(gl_WorldRayDirectionEXT);
   if (last.instance == instance && last.geometry == uint(gl_GeometryIndexEXT) && last.primitive == uint(gl_PrimitiveID) && distance < error)
-    instrumentReport_(kReportSelfHit, 0u, last.depth, distance, gl_WorldRayOriginEXT, gl_WorldRayDirectionEXT);
+    instrumentReport_(kReportSelfHit, 0u, last.depth, distance, 0u, gl_WorldRayOriginEXT, gl_WorldRayDirectionEXT);
   instrument_.pixels[pixel].instance = instance;
   instrument_.pixels[pixel].geometry = uint(gl_GeometryIndexEXT);
   instrument_.pixels[pixel].primitive = uint(gl_PrimitiveID);

@@ -24,11 +24,13 @@ int traceLine(const program::Program& program, const std::string& file, std::uin
   return text.find("traceRayEXT") != std::string::npos || text.find(')') != std::string::npos ? static_cast<int>(line) : 0;
 }
 
-std::string describe(const shared::InstrumentReport& report) {
+std::string describe(const shared::InstrumentReport& report, std::size_t missCount) {
   const std::string where = fmt::format("pixel {}, {}, depth {}", report.pixel.x, report.pixel.y, report.depth);
   switch (report.kind) {
     case shared::kReportRay:
       return fmt::format("the ray is not valid: origin {}, direction {} ({})", vectorText(report.origin), vectorText(report.direction), where);
+    case shared::kReportMiss:
+      return fmt::format("miss index {} is beyond the table, which has {}; the trace was not executed ({})", report.index, missCount, where);
     case shared::kReportDepth:
       return fmt::format("this trace is deeper than the pipeline was made for; it was not executed ({})", where);
     default:
@@ -41,7 +43,7 @@ void addRecords(const shared::Instrument& notes, const program::Program& program
                 std::vector<shader::Diagnostic>& result) {
   const auto rays = static_cast<std::uint32_t>(program.rays.size());
   const std::uint64_t records = std::uint64_t{facts.geometries.size()} * rays;
-  const std::string file = program.path(program.rayGeneration);
+  const std::string file = program.path(sourceFile(program, program.rayGeneration));
   for (std::uint32_t pair = 0; pair < 256; ++pair) {
     if ((notes.recordPairs[pair / 32] >> (pair % 32) & 1u) == 0) continue;
     const std::uint32_t offset = pair % 16, stride = pair / 16;
@@ -55,19 +57,20 @@ void addRecords(const shared::Instrument& notes, const program::Program& program
       break;
     }
   }
-  const std::size_t misses = program::missShaders(program).size();
-  if (notes.traceCount > 0 && notes.largestMiss >= misses)
-    result.push_back({shader::Severity::error, file, 0, 0, "Q004",
-                      fmt::format("a trace used miss index {}; the table has {}", notes.largestMiss, misses)});
 }
 
 }  // namespace
 
-InstrumentBuffer::InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit) {
+std::string sourceFile(const program::Program& program, const std::string& stage) {
+  return stage.starts_with(program.descriptionFile + ".") ? program.descriptionFile : stage;
+}
+
+InstrumentBuffer::InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit, std::size_t missCount) {
   std::vector<std::byte> bytes(sizeof(shared::Instrument) + pixels * sizeof(shared::InstrumentPixel));
   auto& header = *reinterpret_cast<shared::Instrument*>(bytes.data());
   header.pixelCount = static_cast<std::uint32_t>(pixels);
   header.depthLimit = depthLimit;
+  header.missCount = static_cast<std::uint32_t>(missCount);
   buffer_ = gpu::makeBuffer(context, bytes, 0, "instrument");
 }
 
@@ -91,19 +94,16 @@ std::vector<shader::Diagnostic> instrumentDiagnostics(const shared::Instrument& 
     if (place.count++ == 0) place.first = report;
   }
   for (const auto& [key, place] : places) {
-    const std::string file = place.first.stage < compiled.stages.size() ? compiled.stages[place.first.stage].file : program.rayGeneration;
+    const std::string file = sourceFile(program, place.first.stage < compiled.stages.size() ? compiled.stages[place.first.stage].file : program.rayGeneration);
     const bool selfHit = place.first.kind == shared::kReportSelfHit;
-    std::string text = describe(place.first);
-    if (place.count > 1) text += fmt::format("; {} such", place.count);
+    std::string text = describe(place.first, notes.missCount);
+    if (place.count > 1) text += fmt::format("; {} such{}", place.count, notes.reportCount > shared::kInstrumentReports ? " or more" : "");
     result.push_back({selfHit ? shader::Severity::warning : shader::Severity::error, program.path(file), traceLine(program, file, place.first.line), 0,
                       fmt::format("Q00{}", place.first.kind), text});
   }
-  if (notes.reportCount > shared::kInstrumentReports)
-    result.push_back({shader::Severity::note, program.path(program.rayGeneration), 0, 0, "Q001",
-                      fmt::format("{} reports in all; the first {} are told", notes.reportCount, shared::kInstrumentReports)});
   addRecords(notes, program, facts, result);
   if (notes.anyHitCount > 0)
-    result.push_back({shader::Severity::note, program.path(program.rayGeneration), 0, 0, "Q006",
+    result.push_back({shader::Severity::note, program.path(sourceFile(program, program.rayGeneration)), 0, 0, "Q006",
                       fmt::format("{} calls of any-hit shaders for {} traces; {:.2f} per pixel, {} in the one with most", notes.anyHitCount,
                                   notes.traceCount, static_cast<double>(notes.anyHitCount) / std::max(1u, notes.pixelCount), notes.mostAnyHits)});
   return result;

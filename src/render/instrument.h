@@ -12,14 +12,17 @@ namespace quintet::render {
 
 class InstrumentBuffer {
  public:
-  // For a film of `pixels` pixels and a pipeline of this depth.
-  InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit);
+  // For a film of `pixels` pixels, a pipeline of this depth and a table with so many miss shaders.
+  InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit, std::size_t missCount);
   shared::Address address() const { return buffer_.address(); }
   shared::Instrument download() const;  // blocks
 
  private:
   gpu::Buffer buffer_;
 };
+
+// The file of a stage that its author knows: the one file of the lecture form for all its stages.
+std::string sourceFile(const program::Program& program, const std::string& stage);
 
 // Diagnostics Q001, Q003 … Q006; Q004 by the scene's table: records that no instance has, misses that are not there.
 // Several reports of one place are one diagnostic with their number and the first pixel.

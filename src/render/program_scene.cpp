@@ -2,21 +2,26 @@
 
 #include <algorithm>
 
+#include "program/link.h"
 #include "scene/scene_toml.h"
 
 namespace quintet::render {
 namespace {
 
-bool hasIntersection(const program::HitGroup& group) {
-  return std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
+// Is there a hit group that serves such geometry, with an intersection shader for boxes and none for triangles?
+bool serves(const program::Program& program, program::GeometryKind kind) {
+  if (program.hitGroups.empty()) return kind == program::GeometryKind::triangles;
+  const program::HitGroup& group = program.hitGroups[program::hitGroupFor(program, {kind, false, {}, {}})];
+  const bool intersects = std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
+  return intersects == (kind != program::GeometryKind::triangles);
 }
 
 }  // namespace
 
 scene::DefaultSceneOptions defaultSceneOptions(const program::Program& program) {
   scene::DefaultSceneOptions options;
-  options.boxes = std::ranges::any_of(program.hitGroups, hasIntersection);
-  options.triangles = !options.boxes || !std::ranges::all_of(program.hitGroups, hasIntersection);
+  options.boxes = serves(program, program::GeometryKind::custom);
+  options.triangles = serves(program, program::GeometryKind::triangles) || !options.boxes;
   return options;
 }
 

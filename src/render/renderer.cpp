@@ -90,7 +90,7 @@ struct Renderer::Impl {
     frame.rayRecordCapacity = settings.rayRecords ? settings.rayRecordCapacity : 0;
     film->describe(frame);
     if (settings.instrument) {
-      instrument.emplace(context, std::uint64_t{region.width} * region.height, linked->recursionDepth());
+      instrument.emplace(context, std::uint64_t{region.width} * region.height, linked->recursionDepth(), program::missShaders(description).size());
       frame.instrument = instrument->address();
     }
     frameBuffer = gpu::makeBuffer(context, std::as_bytes(std::span(&frame, 1)), 0, "frame");
@@ -223,7 +223,7 @@ struct Renderer::Impl {
 
   // Q002: values of the film, and samples that the program itself has left out.
   void addBadOutputs(std::vector<shader::Diagnostic>& result) const {
-    const std::string file = description.path(description.rayGeneration);
+    const std::string file = description.path(sourceFile(description, description.rayGeneration));
     for (std::size_t output = 0; output < description.outputs.size(); ++output) {
       const io::Image image = film->download(output, std::max<std::uint64_t>(1, statistics.samples));
       const std::span<const float> values = image.samples<float>();

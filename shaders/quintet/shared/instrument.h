@@ -10,6 +10,7 @@ QT_SHARED_BEGIN
 // InstrumentReport::kind: what was wrong, by the digits of its diagnostic.
 QT_CONSTANT kReportRay = 1u;      // Q001: origin, direction, tmin or tmax not finite, or no direction
 QT_CONSTANT kReportDepth = 3u;    // Q003: a trace deeper than the pipeline was made for (not executed)
+QT_CONSTANT kReportMiss = 4u;     // Q004: a miss index beyond the table (the trace is not executed)
 QT_CONSTANT kReportSelfHit = 5u;  // Q005: a hit on the primitive just left, closer than the rounding error
 
 QT_CONSTANT kInstrumentReports = 64u;  // kept; the others are only counted
@@ -21,7 +22,7 @@ struct InstrumentReport {
   uint depth;   // of nested traces there; 1: by the ray generation shader
   uvec2 pixel;
   float value;  // Q005: distance
-  uint padding;
+  uint index;   // Q004: of the miss shader
   vec3 origin;
   vec3 direction;
 };
@@ -34,7 +35,7 @@ struct Instrument {
   uint mostAnyHits;    // of one pixel
   uint deepest;        // nested traces
   uint pixelCount;
-  uint largestMiss;    // largest miss index that a trace used
+  uint missCount;      // in: miss shaders of the table
   uint depthLimit;     // in: of the pipeline
   uint recordPairs[8];  // bit offset + 16 · stride: used by a trace (both taken modulo 16, as Vulkan does)
   InstrumentReport reports[kInstrumentReports];

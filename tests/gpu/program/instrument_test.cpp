@@ -1,0 +1,108 @@
+// Checks that only running can make: each mistake is found at its place, and nothing is found where there is none.
+#include <gtest/gtest.h>
+
+#include "harness.h"
+#include "program/lecture.h"
+#include "render/picture.h"
+#include "render/program_scene.h"
+#include "scene/auto_camera.h"
+#include "scene/default_environment.h"
+
+namespace quintet::test {
+namespace {
+
+const std::string kCommon = "struct RayPayloadType { vec3 color; int level; };\n";
+const std::string kMiss = "void main() { /**** MISS SHADER ****/ payload.color = vec3(0.0); }\n";
+const std::string kHit = "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = vec3(1.0); }\n";
+
+// Lines: 1 common, 2 ray generation.
+std::string rayGeneration(const std::string& body) {
+  return "void main() { /**** RAY GENERATION SHADER ****/ vec2 p = (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy); "
+         "vec3 eye = vec3(0.0, 1.0, 6.0); vec3 d = normalize(vec3(p - 0.5, -1.0)); " +
+         body + " gsnSetPixel(vec4(payload.color, 1.0)); }\n";
+}
+std::string trace(const std::string& origin, const std::string& direction, const std::string& miss = "0u") {
+  return "traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, " + miss + ", " + origin + ", 0.0, " + direction + ", 100.0, 0);";
+}
+
+std::vector<shader::Diagnostic> notesOf(const program::Program& program, const scene::Scene& scene, std::uint32_t size = 16) {
+  render::DeviceScene deviceScene(testContext(), scene, scene::environmentInUse(scene));
+  render::RenderSettings settings;
+  settings.width = settings.height = size;
+  settings.camera = scene.cameras.empty() ? scene::frameScene(scene::worldBounds(scene), 1.0f) : scene.cameras.front();
+  settings.instrument = true;
+  render::Renderer renderer(deviceScene, program, testCompiler(), nullptr, settings);
+  renderer.renderBatch(1);
+  return renderer.notes();
+}
+
+std::vector<shader::Diagnostic> notesOf(const std::string& text) {
+  const program::Program program = program::parseLecture(text, "demo.rt.glsl", "here");
+  return notesOf(program, render::programScene(program));
+}
+
+std::string idsOf(const std::vector<shader::Diagnostic>& notes) {
+  std::string ids;
+  for (const shader::Diagnostic& d : notes) ids += (ids.empty() ? "" : " ") + d.id + ":" + std::to_string(d.line);
+  return ids;
+}
+
+TEST(Instrument, NothingWhereNothingIsWrong) {
+  EXPECT_EQ(idsOf(notesOf(kCommon + rayGeneration(trace("eye", "d")) + kHit + kMiss)), "");
+}
+
+TEST(Instrument, BuiltInProgramsAreRight) {
+  for (const char* name : {"pathtracer", "ao", "lessons/07_mirror_recursion", "lessons/10_sphere", "lessons/17_records"}) {
+    const program::Program program = program::loadProgram(name);
+    std::vector<shader::Diagnostic> notes = notesOf(program, render::programScene(program), 12);
+    std::erase_if(notes, [](const shader::Diagnostic& d) { return d.severity == shader::Severity::note; });
+    EXPECT_EQ(idsOf(notes), "") << name << (notes.empty() ? "" : ": " + notes.front().text);
+  }
+}
+
+TEST(Instrument, ARayThatIsNotFinite) {
+  const auto notes = notesOf(kCommon + rayGeneration("if (gl_LaunchIDEXT.x == 3u) d.y = sqrt(-p.x);\n" + trace("eye", "d")) + kHit + kMiss);
+  EXPECT_EQ(idsOf(notes), "Q001:3");
+  EXPECT_EQ(notes[0].severity, shader::Severity::error);
+  EXPECT_NE(notes[0].text.find("pixel 3, "), std::string::npos) << notes[0].text;
+  EXPECT_NE(notes[0].text.find("16 such"), std::string::npos) << notes[0].text;
+}
+
+TEST(Instrument, ARayWithoutDirection) {
+  EXPECT_EQ(idsOf(notesOf(kCommon + rayGeneration(trace("eye", "0.0 * d")) + kHit + kMiss)), "Q001:2");
+}
+
+TEST(Instrument, AnOutputThatIsNotFinite) {
+  const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "d") + " if (gl_LaunchIDEXT.y == 4u) payload.color = vec3(uintBitsToFloat(0x7FC00000u + gl_LaunchIDEXT.x));") + kHit + kMiss);
+  EXPECT_EQ(idsOf(notes), "Q002:0");
+}
+
+TEST(Instrument, RecursionDeeperThanDeclared) {
+  const std::string options = "// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: 3\"\n";
+  const std::string hit = "void main() { /**** CLOSEST-HIT SHADER ****/ vec3 o = gl_WorldRayOriginEXT; vec3 d = gl_WorldRayDirectionEXT;\n" +
+                          trace("o", "d") + " payload.color += vec3(0.1); }\n";
+  EXPECT_EQ(idsOf(notesOf(options + kCommon + rayGeneration(trace("eye", "d")) + hit + kMiss)), "Q003:5");
+}
+
+TEST(Instrument, AMissShaderThatIsNotThere) {
+  const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" + rayGeneration(trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
+  EXPECT_EQ(idsOf(notes), "Q004:3");
+}
+
+TEST(Instrument, AHitOnThePrimitiveJustLeft) {
+  // The second ray starts on the surface and goes back into it.
+  const std::string hit = "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT; payload.level = 1; }\n";
+  const std::string miss = "void main() { /**** MISS SHADER ****/ payload.color = vec3(0.0); payload.level = 0; }\n";
+  const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "d") + " if (payload.level == 1) { vec3 o = payload.color - 1e-7 * d;\n" + trace("o", "d") + " }") + hit + miss);
+  EXPECT_EQ(idsOf(notes), "Q005:0");
+}
+
+TEST(Instrument, AnyHitCallsAreCounted) {
+  const std::string anyHit = "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitTEXT < 3.0) ignoreIntersectionEXT; }\n";
+  const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "d")) + anyHit + kHit + kMiss);
+  EXPECT_EQ(idsOf(notes), "Q006:0");
+  EXPECT_NE(notes[0].text.find("for 256 traces"), std::string::npos) << notes[0].text;
+}
+
+}  // namespace
+}  // namespace quintet::test
