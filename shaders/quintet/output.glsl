@@ -1,4 +1,4 @@
-// Writing results. Outputs are sums over the samples of a batch; the film divides later. A program loads
+// Writing results. Where the film averages (the default), outputs are sums over the samples of a batch; the film divides later. A program loads
 // the sum, adds its samples one by one in sample order and stores it, so that the bytes do not depend
 // on how many samples a launch takes.
 #ifndef QUINTET_OUTPUT_GLSL
@@ -17,6 +17,14 @@ uint pixelIndex(uvec2 pixel) {
 // `slot`: kOutput_… of the generated program constants.
 vec4 loadOutput(uint slot, uvec2 pixel) { return OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)]; }
 void storeOutput(uint slot, uvec2 pixel, vec4 sum) { OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] = sum; }
+
+// Of a program that averages itself (accumulation = "program"): the number of the frame, and what the frame before
+// stored; 0 in the first frame, and always 0 where the film averages.
+uint launchFrame() { return launch.firstSample; }
+vec4 loadPrevious(uint slot, uvec2 pixel) {
+  const Address previous = frame.previousOutputs[slot];
+  return previous != 0ul ? OutputArray(previous).at[pixelIndex(pixel)] : vec4(0.0);
+}
 
 // Non-finite samples are left out and counted: `quintet render` reports them as the defect that they are.
 bool isFinite(vec4 value) { return !(any(isnan(value)) || any(isinf(value))); }

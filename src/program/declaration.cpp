@@ -109,7 +109,10 @@ Parameter parseDeclaration(TomlReader& reader, const std::vector<Parameter>& oth
   const std::string type = reader.neededText("type");
   const auto found = std::find(typeNames().begin(), typeNames().end(), type);
   if (found == typeNames().end())
-    reader.fail(reader.find("type"), fmt::format("'{}' is no type; there are {}", type, fmt::join(typeNames(), ", ")));
+    reader.fail(
+        reader.find("type"),
+        fmt::format("'{}' is no type{}", type,
+                    didYouMean(type, typeNames(), fmt::format("; there are {}", fmt::join(typeNames(), ", ")))));
   parameter.type = static_cast<ParameterType>(found - typeNames().begin());
   if (parameter.type == ParameterType::choice)
     parseChoices(reader, parameter);

@@ -18,8 +18,9 @@ io::Image white() {
 io::Image load(const program::Program& program, const program::ImageValue& value) {
   if (value.file.empty()) return white();
   if (!value.ofProgram) return io::readImage(value.file);
-  const std::string& bytes = program.files.at(value.file);
-  return io::decodeImage(std::as_bytes(std::span(bytes)), program.path(value.file));
+  const auto own = program.files.find(value.file);
+  if (own == program.files.end()) return io::readImage(program.path(value.file));
+  return io::decodeImage(std::as_bytes(std::span(own->second)), program.path(value.file));
 }
 
 }  // namespace

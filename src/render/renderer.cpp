@@ -95,6 +95,8 @@ struct Renderer::Impl {
     }
     frameBuffer = gpu::makeBuffer(context, std::as_bytes(std::span(&frame, 1)), 0, "frame");
     if (settings.parameters.parameters().empty()) settings.parameters = program::ParameterValues(description.parameters);
+    for (const program::ImageValue& image : settings.parameters.images())
+      if (!image.file.empty() && !image.ofProgram) files.emplace_back(image.file);
     parameterTextures.emplace(context, scene.parameterSlots(), description, settings.parameters);
     parameterBuffer = gpu::makeBuffer(context, settings.parameters.pack(parameterTextures->indices()), 0, "parameters");
   }

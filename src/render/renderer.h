@@ -81,7 +81,7 @@ class Renderer {
   std::vector<shader::Diagnostic> notes() const;
   // Warnings and notes of the compiler.
   const std::vector<shader::Diagnostic>& diagnostics() const;
-  // Files on disk that the shaders include from outside the program.
+  // Files on disk from outside the program: what its shaders include, and pictures of its parameters.
   const std::vector<std::filesystem::path>& files() const;
   const program::Program& program() const;
 
