@@ -50,12 +50,12 @@ void act(uint action) {
 }
 void main() {
   result.before++;
-  launch.outputs.at[launchIndex()].bufferBefore++;
+  atomicAdd(launch.outputs.at[launchIndex()].bufferBefore, 1u);
   if (gl_InstanceCustomIndexEXT == 1) ignoreIntersectionEXT;
   if (gl_InstanceCustomIndexEXT == 2) terminateRayEXT;
   act(gl_InstanceCustomIndexEXT);
   result.after++;
-  launch.outputs.at[launchIndex()].bufferAfter++;
+  atomicAdd(launch.outputs.at[launchIndex()].bufferAfter, 1u);
 }
 )";
 constexpr char kClosestHit[] = R"(

@@ -214,10 +214,10 @@ void checkRay(Checks& checks, const BuiltIns& b, std::size_t k, const RayArgumen
   checks.equal(b.written, 1u, "ray {}, {}: called", k, stage);
   checks.equal(b.launchId, uvec3(index % 11, index / 11 % 3, index / 33), "ray {}, {}: launch id", k, stage);
   checks.equal(b.launchSize.x * 100 + b.launchSize.y, 1103u, "ray {}, {}: launch size", k, stage);
-  checks.equal(b.worldOrigin, ray.origin, "ray {}, {}: world origin", k, stage);
-  checks.equal(b.worldDirection, ray.direction, "ray {}, {}: world direction", k, stage);
+  checks.near(b.worldOrigin, ray.origin, 1e-4f, "ray {}, {}: world origin", k, stage);
+  checks.near(b.worldDirection, ray.direction, 1e-6f, "ray {}, {}: world direction", k, stage);
   checks.equal(b.tMin, ray.tMin, "ray {}, {}: tmin", k, stage);
-  checks.near(b.tMax, tMax, 1e-4f, "ray {}, {}: tmax", k, stage);
+  checks.near(b.tMax, tMax, 5e-4f, "ray {}, {}: tmax", k, stage);
   checks.equal(b.flags, ray.flags, "ray {}, {}: flags", k, stage);
 }
 
@@ -275,7 +275,7 @@ void checkAll(Checks& checks, const Experiment& e, bool after) {
       const Target* inner = any || !after ? nullptr : &e.inner[k];
       checkRay(checks, b, k, ray, hitTOf(target), stage);
       checkObject(checks, b, k, target, inner, stage);
-      checks.near(b.hitT, hitTOf(target), 1e-4f, "ray {}, {}: hit t", k, stage);
+      checks.near(b.hitT, hitTOf(target), 5e-4f, "ray {}, {}: hit t", k, stage);
       checks.quirk(b.kind, kindOf(target), inner && !inner->none ? kindOf(*inner) : kindOf(target),
                    "ray {}, {}: hit kind", k, stage);
     }

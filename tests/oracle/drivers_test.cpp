@@ -162,7 +162,7 @@ void main() { traceRayEXT(tlas, 0u, 0xFFu, 0u, 0u, 0u, vec3(0.0, 0.0, 200.0), 0.
 )";
 constexpr char kOrderIntersection[] = R"(
 void main() {
-  uint n = launch.outputs.at[launchIndex()].count++;
+  uint n = atomicAdd(launch.outputs.at[launchIndex()].count, 1u);
   if (n < 64u) launch.outputs.at[launchIndex()].primitives[n] = gl_PrimitiveID;
 }
 )";

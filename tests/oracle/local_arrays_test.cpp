@@ -28,7 +28,7 @@ void main() {
   attributes = vec2(0.0);
   for (uint r = 0u; r < 4u; ++r) {
     reportIntersectionEXT(8.0 - float(r), r);
-    launch.outputs.at[i].reports++;
+    atomicAdd(launch.outputs.at[i].reports, 1u);
     for (uint k = 0u; k < 16u; ++k) wrong += stack[(k * 5u + seed) & 15u] == seed * 100u + k ? 0u : 1u;
   }
   launch.outputs.at[i].wrong = wrong;
@@ -50,7 +50,7 @@ void main() {
   attributes = vec2(0.0);
   for (uint r = 0u; r < 4u; ++r) {
     reportIntersectionEXT(8.0 - float(r), r);
-    launch.outputs.at[i].reports++;
+    atomicAdd(launch.outputs.at[i].reports, 1u);
     for (uint k = 0u; k < 16u; ++k) wrong += at((k * 5u + seed) & 15u) == seed * 100u + ((k * 5u + seed) & 15u) ? 0u : 1u;
   }
   launch.outputs.at[i].wrong = wrong;
@@ -62,8 +62,8 @@ void main() {
   uint other[16];
   for (uint k = 0u; k < 16u; ++k) other[(k * 3u + seed) & 15u] = 7000u + k;
   for (uint k = 0u; k < 16u; ++k) wrong += other[(k * 3u + seed) & 15u] == 7000u + k ? 0u : 1u;
-  launch.outputs.at[i].anyHitWrong += wrong;
-  launch.outputs.at[i].anyHits++;
+  atomicAdd(launch.outputs.at[i].anyHitWrong, wrong);
+  atomicAdd(launch.outputs.at[i].anyHits, 1u);
   if ((launch.inputs.at[i].accepted >> gl_HitKindEXT & 1u) == 0u) ignoreIntersectionEXT;
 }
 )";

@@ -158,7 +158,7 @@ void note(uint kind, float before, float t, uint accepted);
 )";
 constexpr char kLogFunction[] = R"(
 void note(uint kind, float before, float t, uint accepted) {
-  uint n = launch.outputs.at[launchIndex()].count++;
+  uint n = atomicAdd(launch.outputs.at[launchIndex()].count, 1u);
   if (n < 32u) launch.outputs.at[launchIndex()].events[n] = Event(kind, before, t, accepted);
 }
 )";
