@@ -65,8 +65,9 @@ class Builder {
     lookIntoIncludes();
     findImplicitNames();
     addParameters();
-    const auto& mains = source_.split.mains;
-    source_.hasCandidates = std::ranges::any_of(mains, [](const LectureMain& m) { return m.stage == Stage::anyHit || m.stage == Stage::intersection; });
+    const auto has = [&](Stage stage) { return std::ranges::find(source_.split.mains, stage, &LectureMain::stage) != source_.split.mains.end(); };
+    source_.hasAnyHit = has(Stage::anyHit);
+    source_.hasIntersection = has(Stage::intersection);
     program_.diagnostics = errors_.all();
     if (program_.diagnostics.empty()) addStages(file);
   }

@@ -37,7 +37,8 @@ struct LectureSource : LectureText {
   std::vector<std::pair<std::size_t, std::string>> includedTypes;
   bool givesPi = false;        // PI is used and not declared
   bool opensLibrary = false;   // the program includes <quintet/…> itself
-  bool hasCandidates = false;  // there is an any-hit or an intersection shader
+  bool hasAnyHit = false;
+  bool hasIntersection = false;
 };
 
 // `boxes`: the variant of a hit shader for procedural primitives, else for triangles.
