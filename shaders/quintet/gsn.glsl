@@ -24,10 +24,6 @@
 layout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT topLevelAS;
 #endif
 
-// A program with an any-hit shader wants it called, also for geometry that was built as opaque: unless the ray's own
-// flags speak of opacity.
-uint gsnRayFlags_(uint flags) { return (flags & 0xC3u) == 0u ? flags | gl_RayFlagsNoOpaqueEXT : flags; }
-
 int frameID;    // index of the frame, from 0
 int frameSize;  // frames of this run; 0: it has no end
 

@@ -198,7 +198,6 @@ class StageWriter {
                                        {"TRACES", traces()},
                                        {"HIT", isHit() || main_.stage == Stage::intersection},
                                        {"CANDIDATES", s_.hasAnyHit || s_.hasIntersection},
-                                       {"ANY_HIT", s_.hasAnyHit && traces()},
                                        {"TRIANGLES", isHit() && !boxes_},
                                        {"RAY_GENERATION", main_.stage == Stage::rayGeneration},
                                        {"CLOSEST_HIT", main_.stage == Stage::closestHit},

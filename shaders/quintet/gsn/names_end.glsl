@@ -64,7 +64,3 @@
 #endif
 #endif
 #define sampler2D gsnImage
-#ifdef QUINTET_GSN_ANY_HIT
-#define traceRayEXT(as, flags, mask, offset, stride, miss, origin, tmin, direction, tmax, location) \
-  traceRayEXT(as, gsnRayFlags_(flags), mask, offset, stride, miss, origin, tmin, direction, tmax, location)
-#endif
