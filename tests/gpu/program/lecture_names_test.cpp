@@ -150,7 +150,7 @@ TEST(LectureNames, MeshDataInTheRayGenerationShader) {
 
 // All built-ins of a hit, after a trace that hit something else.
 TEST(LectureNames, BuiltInsSurviveANestedTrace) {
-  const std::string text = closestHit(R"(
+  const std::string text = "// gsnShaderOptions: precompiler=\"recursion: 2\"\n" + closestHit(R"(
   if (payload.depth > 0) { payload.value = vec4(gl_PrimitiveID); return; }
   payload.depth = 1;
   traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, vec3(6.3, 2.2, 10.0), 0.0, vec3(0.0, 0.0, -1.0), 50.0, 0);
