@@ -166,6 +166,24 @@ TEST(SceneTomlErrors, AbsurdSizesAreRefusedBeforeTheyAreMade) {
   EXPECT_THAT(errorOf(text), testing::HasSubstr("a tree has at most 65536 nodes"));
 }
 
+TEST(SceneTomlErrors, KeysThatWouldOverflowTheStackAreRefused) {
+  std::string dots;
+  for (int i = 0; i < 200000; ++i) dots += ".a";
+  EXPECT_EQ(errorOf("# x\na" + dots + " = 1\n"), "s.toml: line 2: a dotted key of more than 16 levels");
+  EXPECT_EQ(errorOf("[a" + dots + "]\n"), "s.toml: line 1: a dotted key of more than 16 levels");
+  EXPECT_EQ(errorOf("[[a" + dots + "]]\n"), "s.toml: line 1: a dotted key of more than 16 levels");
+  EXPECT_EQ(errorOf("a = [\n'''it's\n''', { \"a\"" + dots + " = 1 } ]\n"),
+            "s.toml: line 3: a dotted key of more than 16 levels");
+  EXPECT_EQ(errorOf("a = \"\\\"\"\nb" + dots + " = 2\n"), "s.toml: line 2: a dotted key of more than 16 levels");
+  // The deepest that is let through.
+  std::string nested = "1";
+  for (int i = 0; i < 250; ++i) nested = "{ a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a = " + nested + " }";
+  EXPECT_EQ(errorOf("b = " + nested + "\n"), "s.toml: line 1: the scene has no key 'b'");
+  // Dots in strings, comments and numbers are no keys.
+  EXPECT_EQ(errorOf("# " + dots + "\n[[mesh]]\nshape = 'quad'\nname = '" + dots + "'\ntranslate = [1.5, 2.5, 3.5]\n"),
+            "none");
+}
+
 // Swaps, drops and doubles of bytes, words and lines, and numbers replaced by nasty ones.
 std::string mutated(std::string text, std::mt19937& random) {
   static const char* const kTokens[] = {"0",
