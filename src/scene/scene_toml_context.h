@@ -23,11 +23,10 @@ struct InstanceTarget {
   bool placedAlone = true;  // once at the origin if no [[instance]] does so
 };
 
-// Where a named CSG tree is: the only one of its set.
+// A CSG tree that others can use: the only one of its set, before solids without a material got the default.
 struct NamedTree {
-  int mesh = kNone;
-  std::size_t set = 0;
-  std::string target;  // SceneTomlContext::targets
+  PrimitiveSet set;
+  std::string target;  // SceneTomlContext::targets; empty: part of an object
 };
 
 struct SceneTomlContext {

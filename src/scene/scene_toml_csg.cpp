@@ -41,7 +41,7 @@ class TreeReader {
     for (std::size_t i = 0; i < kOperations.size(); ++i)
       if (reader.find(kOperations[i]))
         return addOperation(*content, kOperations[i], static_cast<CsgOperation>(i + 1), transform, material);
-    addNamed(reader, *content, transform);
+    addNamed(reader, *content, transform, material);
   }
 
  private:
@@ -68,7 +68,7 @@ class TreeReader {
   }
 
   // A copy of an earlier tree.
-  void addNamed(const TomlReader& reader, const TomlValue& value, const mat4& transform) {
+  void addNamed(const TomlReader& reader, const TomlValue& value, const mat4& transform, int material) {
     const std::string name = reader.toText(value, "csg");
     const auto found = context_.trees.find(name);
     if (found == context_.trees.end()) {
@@ -77,12 +77,12 @@ class TreeReader {
       context_.fail(value,
                     fmt::format("there is no [[csg]] '{}' with one tree above{}", name, didYouMean(name, names)));
     }
-    context_.targets.at(found->second.target).placedAlone = false;
-    const PrimitiveSet& other =
-        context_.scene.meshes[static_cast<std::size_t>(found->second.mesh)].primitiveSets[found->second.set];
+    const auto& [other, target] = found->second;
+    if (!target.empty()) context_.targets.at(target).placedAlone = false;
     for (CsgNode node : other.nodes) {
       if (node.operation == CsgOperation::leaf) {
         Primitive primitive = other.primitives[node.primitive];
+        if (primitive.material == kNone) primitive.material = material;
         primitive.objectFromPrimitive = transform * primitive.objectFromPrimitive;
         checkInvertible(reader, value, primitive.objectFromPrimitive);
         node.primitive = static_cast<std::uint32_t>(set_.primitives.size());
@@ -141,13 +141,12 @@ void readCsg(SceneTomlContext& context, const TomlValue& table) {
       readTree(context, tree, fmt::format("trees[{}] of {}", index++, reader.what()), outer, material, set);
     if (set.trees.empty()) reader.fail(*content, fmt::format("'trees' of {} is empty", reader.what()));
   }
-  context.fillMaterials(set);
-  const int mesh = context.meshFor(reader, set.name, true);
+  const auto mesh = static_cast<std::size_t>(context.meshFor(reader, set.name, true));
   reader.finish();
-  std::vector<PrimitiveSet>& sets = context.scene.meshes[static_cast<std::size_t>(mesh)].primitiveSets;
   if (!set.name.empty() && set.trees.size() == 1)
-    context.trees.emplace(set.name, NamedTree{mesh, sets.size(), reader.text("object", set.name)});
-  sets.push_back(std::move(set));
+    context.trees.emplace(set.name, NamedTree{set, reader.has("object") ? std::string() : set.name});
+  context.fillMaterials(set);
+  context.scene.meshes[mesh].primitiveSets.push_back(std::move(set));
 }
 
 }  // namespace quintet::scene

@@ -173,7 +173,7 @@ tree = { difference = [
   std::multiset<std::string> materials;
   for (const scene::Primitive& p : set.primitives)
     materials.insert(s.materials[static_cast<std::size_t>(p.material)].name);
-  EXPECT_EQ(materials, (std::multiset<std::string>{"outer", "inner", "default", "default"}));
+  EXPECT_EQ(materials, (std::multiset<std::string>{"outer", "inner", "outer", "outer"}));
 }
 
 TEST(SceneToml, SeveralTreesInOneSet) {
