@@ -60,6 +60,7 @@ CheckResult check(const Program& program, const CompiledProgram& compiled, const
     checkTable(input, report);
     checkFlags(input, report);
     checkGeometry(input, report);
+    checkStages(input, report);
     checkUnused(input, report, result);
     std::ranges::move(report.take(), std::back_inserter(result.diagnostics));
   }

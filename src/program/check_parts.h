@@ -33,6 +33,7 @@ void checkRecursion(const CheckInput& input, Report& report, CheckResult& result
 void checkTable(const CheckInput& input, Report& report);                           // Q501 ... Q506
 void checkFlags(const CheckInput& input, Report& report);                           // Q605
 void checkGeometry(const CheckInput& input, Report& report);                        // Q601 ... Q604
+void checkStages(const CheckInput& input, Report& report);                          // Q701 ... Q705, Q901 ... Q905
 void checkUnused(const CheckInput& input, Report& report, CheckResult& result);     // Q801, Q802, reached
 
 }  // namespace quintet::program

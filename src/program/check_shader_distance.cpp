@@ -11,13 +11,13 @@ using shader::SpirvModule;
 namespace {
 
 // normalize(d), length(d) or inversesqrt(dot(d, d)), of something that the object-space direction is part of.
-bool takesLength(const SpirvModule& module, const SpirvInstruction& instruction, RayDegrees& degrees) {
+bool takesLength(const SpirvModule& module, const SpirvInstruction& instruction, const RayDegrees& degrees) {
   using namespace glsl450;
   if (!isExtended(module, instruction, kNormalize) && !isExtended(module, instruction, kLength) &&
       !isExtended(module, instruction, kInverseSqrt))
     return false;
   const shader::SpirvId argument = instruction.at(2);
-  const RayDegree degree = degrees.of(argument);
+  const RayDegree degree = degrees.met(argument);
   if (degree.unknown || degree.constant() || degree.is(0.0)) return false;
   return dependsOn(module, argument, [&](const SpirvInstruction& i) {
     return loadsBuiltIn(module, i, spv::BuiltIn::ObjectRayDirectionKHR);

@@ -1,7 +1,8 @@
 // Q705: a ray with tmin 0 whose origin is just the hit position, without an offset.
 //
 // A hit position is recognised by how it is computed: origin + t * direction with the hit's t, in a hit shader or of a
-// ray that this shader has traced; or vertices interpolated by the hit's barycentrics and carried to world space.
+// ray that this shader has traced; or vertices interpolated by the hit's barycentrics and carried to world space. One
+// that a closest-hit shader hands over in the payload is found by check_stages.cpp.
 #include "program/check_shader_rules.h"
 
 namespace quintet::program {
@@ -81,28 +82,76 @@ bool isTransformedInterpolation(const SpirvModule& module, const SpirvInstructio
   return isInterpolation(module, vertex);
 }
 
-// The first hit position among the values that the origin can have: through phi, select and locals.
-const SpirvInstruction* hitPosition(const SpirvModule& module, SpirvId origin) {
-  return findInSlice(
-      module, origin,
-      [&](const SpirvInstruction& i) { return isPointOnRay(module, i) || isTransformedInterpolation(module, i); },
-      [](const SpirvInstruction& i) {
-        return i.op != Op::OpPhi && i.op != Op::OpSelect && i.op != Op::OpCopyObject && i.op != Op::OpLoad &&
-               i.op != Op::OpStore;
-      });
+// Chooses among values, but computes nothing.
+bool chooses(Op op) {
+  return op == Op::OpPhi || op == Op::OpSelect || op == Op::OpCopyObject || op == Op::OpLoad || op == Op::OpStore;
+}
+
+// The first value for which `test` holds among those that `value` can be: through phi, select and locals.
+const SpirvInstruction* findChoice(const SpirvModule& module, SpirvId value, const shader::InstructionTest& test) {
+  return findInSlice(module, value, test, [](const SpirvInstruction& i) { return !chooses(i.op); });
+}
+
+bool canBeHitPosition(const SpirvModule& module, SpirvId value) {
+  return findChoice(module, value, [&](const SpirvInstruction& i) {
+    return isPointOnRay(module, i) || isTransformedInterpolation(module, i);
+  });
+}
+
+bool startsAtZero(const SpirvModule& module, const SpirvInstruction& trace) {
+  const auto tmin = module.constantFloat(trace.at(7));
+  return tmin && *tmin == 0.0;
+}
+
+const shader::SpirvVariable* storedIn(const SpirvModule& module, SpirvId pointer, spv::StorageClass storage) {
+  const shader::SpirvVariable* variable = module.variable(module.access(pointer).variable);
+  return variable && variable->storage == storage ? variable : nullptr;
 }
 
 }  // namespace
 
 void checkOrigins(const SpirvModule& module, Findings& findings) {
   for (const SpirvInstruction& trace : module.instructions()) {
-    if (trace.op != Op::OpTraceRayKHR) continue;
-    const auto tmin = module.constantFloat(trace.at(7));
-    if (!tmin || *tmin != 0.0 || !hitPosition(module, trace.at(6))) continue;
+    if (trace.op != Op::OpTraceRayKHR || !startsAtZero(module, trace) || !canBeHitPosition(module, trace.at(6)))
+      continue;
     findings.add("Q705", trace,
                  "the ray starts at a hit position with tmin 0: by rounding it can hit the surface that it leaves",
                  "traceRayEXT");
   }
+}
+
+std::vector<PayloadOrigin> payloadOrigins(const SpirvModule& module) {
+  std::vector<PayloadOrigin> result;
+  for (std::size_t i = 0; i < module.instructions().size(); ++i) {
+    const SpirvInstruction& trace = module.instructions()[i];
+    if (trace.op != Op::OpTraceRayKHR || !startsAtZero(module, trace)) continue;
+    const auto isMember = [&](const SpirvInstruction& value) {
+      return value.op == Op::OpLoad && storedIn(module, value.at(0), spv::StorageClass::RayPayloadKHR);
+    };
+    const SpirvInstruction* load = findChoice(module, trace.at(6), isMember);
+    if (!load) continue;
+    const shader::SpirvAccess access = module.access(load->at(0));
+    if (!access.indices.empty() && !access.indices[0]) continue;
+    result.push_back({i, access.variable, access.indices.empty() ? 0 : *access.indices[0]});
+  }
+  return result;
+}
+
+bool storesHitPosition(const SpirvModule& module, std::uint32_t member) {
+  for (const SpirvInstruction& store : module.instructions()) {
+    if (store.op != Op::OpStore || !storedIn(module, store.at(0), spv::StorageClass::IncomingRayPayloadKHR)) continue;
+    const shader::SpirvAccess access = module.access(store.at(0));
+    SpirvId value = store.at(1);
+    if (access.indices.empty()) {  // the whole payload, or one that is no structure
+      const SpirvInstruction* whole = module.definition(value);
+      const bool structure = whole && module.types().get(whole->type).kind == shader::SpirvType::Kind::structure;
+      if (structure && whole->op == Op::OpCompositeConstruct) value = whole->at(member);
+    } else if (access.indices[0] != member) {
+      continue;
+    }
+    if (canBeHitPosition(module, value)) return true;
+  }
+  return false;
 }
 
 }  // namespace quintet::program

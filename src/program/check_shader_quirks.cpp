@@ -62,6 +62,17 @@ bool guardedByTmax(const SpirvModule& module, std::size_t instruction) {
   return false;
 }
 
+// Is it a part of a local array, chosen by an index that is computed?
+bool indexesLocalArray(const SpirvModule& module, const SpirvInstruction& chain) {
+  if (chain.op != Op::OpAccessChain && chain.op != Op::OpInBoundsAccessChain) return false;
+  const shader::SpirvAccess access = module.access(chain.result);
+  const SpirvInstruction* variable = module.definition(access.variable);
+  if (!variable || variable->op != Op::OpVariable) return false;
+  const auto storage = static_cast<spv::StorageClass>(variable->at(0));
+  if (storage != spv::StorageClass::Function && storage != spv::StorageClass::Private) return false;
+  return std::ranges::any_of(access.indices, [](const auto& index) { return !index.has_value(); });
+}
+
 }  // namespace
 
 void checkNestedBuiltIns(const SpirvModule& module, Findings& findings) {
@@ -116,24 +127,21 @@ void checkRayTmaxReads(const SpirvModule& module, Findings& findings) {
   }
 }
 
+// One message for a stage: the mend is the same for all arrays.
 void checkLocalArrays(const SpirvModule& module, Findings& findings) {
+  const SpirvInstruction* found = nullptr;
   for (const SpirvInstruction& chain : module.instructions()) {
-    if (chain.op != Op::OpAccessChain && chain.op != Op::OpInBoundsAccessChain) continue;
-    const shader::SpirvAccess access = module.access(chain.result);
-    const SpirvInstruction* variable = module.definition(access.variable);
-    if (!variable || variable->op != Op::OpVariable) continue;
-    const auto storage = static_cast<spv::StorageClass>(variable->at(0));
-    if (storage != spv::StorageClass::Function && storage != spv::StorageClass::Private) continue;
-    const bool dynamic = std::ranges::any_of(access.indices, [](const auto& index) { return !index.has_value(); });
-    if (!dynamic) continue;
-    const std::string name = module.name(access.variable);
-    findings.add("Q905", chain,
-                 (name.empty() ? std::string("a local array") : "the local array '" + name + "'") +
-                     " is indexed by a variable, and an any-hit shader runs for this hit group: on this device they "
-                     "share the storage",
-                 name);
-    return;  // one is enough: the mend is the same for all
+    if (!indexesLocalArray(module, chain)) continue;
+    // The optimizer leaves some chains without a line.
+    if (!found || (found->line == 0 && chain.line > 0)) found = &chain;
   }
+  if (!found) return;
+  const std::string name = module.name(module.access(found->result).variable);
+  findings.add("Q905", *found,
+               (name.empty() ? std::string("a local array") : "the local array '" + name + "'") +
+                   " is indexed by a variable, and an any-hit shader runs for this hit group: on this device they "
+                   "share the storage",
+               name);
 }
 
 }  // namespace quintet::program

@@ -66,10 +66,20 @@ void checkNormals(const shader::SpirvModule& module, Findings& findings);       
 void checkInstanceIndex(const shader::SpirvModule& module, Findings& findings);      // Q703
 void checkDescriptorIndices(const shader::SpirvModule& module, Findings& findings);  // Q704
 void checkOrigins(const shader::SpirvModule& module, Findings& findings);            // Q705
-void checkNestedBuiltIns(const shader::SpirvModule& module, Findings& findings);     // Q901
-void checkAttributeWrites(const shader::SpirvModule& module, Findings& findings);    // Q902
-void checkRayTmaxReads(const shader::SpirvModule& module, Findings& findings);       // Q904
-void checkLocalArrays(const shader::SpirvModule& module, Findings& findings);        // Q905
+// A trace with tmin 0 whose origin is a member of a payload that the shader has traced with (0 of what is no structure).
+struct PayloadOrigin {
+  std::size_t trace = 0;  // instruction
+  shader::SpirvId payload = 0;
+  std::uint32_t member = 0;
+};
+std::vector<PayloadOrigin> payloadOrigins(const shader::SpirvModule& module);
+// Does a closest-hit shader write the position of its hit, without an offset, into that member of its payload?
+bool storesHitPosition(const shader::SpirvModule& module, std::uint32_t member);
+
+void checkNestedBuiltIns(const shader::SpirvModule& module, Findings& findings);   // Q901
+void checkAttributeWrites(const shader::SpirvModule& module, Findings& findings);  // Q902
+void checkRayTmaxReads(const shader::SpirvModule& module, Findings& findings);     // Q904
+void checkLocalArrays(const shader::SpirvModule& module, Findings& findings);      // Q905
 
 }  // namespace quintet::program
 #endif

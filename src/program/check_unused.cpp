@@ -98,11 +98,14 @@ void checkUnused(const CheckInput& input, Report& report, CheckResult& result) {
   const LinkModel& model = input.model;
   if (model.problem.empty()) {
     const std::set<std::size_t> reached = reachedStages(model);
+    // What a wrong index misses follows from that mistake.
+    constexpr std::string_view kWrongIndex[] = {"Q302", "Q501", "Q502", "Q503", "Q504", "Q506"};
+    const bool follows = std::ranges::any_of(kWrongIndex, [&](std::string_view id) { return report.has(id); });
     for (std::size_t i = 0; i < model.stages.size(); ++i) {
       const LinkStage& stage = model.stages[i];
       if (reached.contains(i))
         result.reached.push_back(stage.file);
-      else if (!input.featureDefines)
+      else if (!input.featureDefines && !follows)
         report.add(
             "Q801", model.at(lineOf(model.program, stage.file)),
             fmt::format("no trace or call can run the {} shader '{}'", shader::stageName(stage.kind), stage.file));

@@ -5,9 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace quintet::gpu {
-class Context;
-}
+#include "gpu/context.h"
 
 namespace quintet::program {
 
@@ -16,7 +14,7 @@ struct DeviceLimits {
   std::uint32_t maxRecursion = 31;          // maxRayRecursionDepth
   std::uint32_t maxHitAttributeBytes = 32;  // maxRayHitAttributeSize
   std::uint32_t handleBytes = 32;           // shaderGroupHandleSize
-  bool rayTracingQuirks = false;            // lavapipe's defects (docs/design/quirks.md, "Ray tracing")
+  gpu::Quirks quirks;                       // defects of its driver (docs/design/quirks.md); default: none
 };
 
 DeviceLimits deviceLimits(const gpu::Context& context);

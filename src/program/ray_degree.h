@@ -27,6 +27,8 @@ class RayDegrees {
  public:
   explicit RayDegrees(const shader::SpirvModule& module) : module_(module) {}
   RayDegree of(shader::SpirvId value);
+  // Of a value that the last of() has met on its way.
+  RayDegree met(shader::SpirvId value) const { return get(value); }
 
  private:
   std::vector<std::size_t> slice(std::size_t start) const;

@@ -1,0 +1,15 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#include "payload.glsl"
+
+layout(location = 0) rayPayloadInEXT Payload payload;
+struct Other {
+  vec2 uv;
+  vec3 normal;
+};
+hitAttributeEXT Other hit;  // EXPECT Q201
+
+void main() {
+  payload.color = 0.5 + 0.5 * hit.normal;
+  payload.t = gl_HitTEXT;
+}

@@ -1,0 +1,10 @@
+struct Payload {
+  vec3 color;
+  float t;  // negative: nothing was hit
+};
+
+struct BallHit {
+  vec3 normal;
+  vec3 position;
+  vec3 tangent;
+};

@@ -1,0 +1,12 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/texture.glsl>
+#include "payload.glsl"
+
+layout(location = 0) rayPayloadInEXT Payload payload;
+hitAttributeEXT vec2 baryCoord;
+
+void main() {
+  payload.color = textureLod(textures[nonuniformEXT(gl_InstanceCustomIndexEXT)], baryCoord, 0.0).rgb;
+  payload.t = gl_HitTEXT;
+}
