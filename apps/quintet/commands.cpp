@@ -8,6 +8,7 @@ std::span<const Command> commands() {
   static constexpr std::array kCommands{
       Command{"render", "make a picture of a scene", renderCommand},
       Command{"run", "run a program: your own or a built-in one", runCommand},
+      Command{"new", "begin a program that renders at once", newCommand},
       Command{"check", "compile and check programs, without rendering", checkCommand},
       Command{"explain", "say what a diagnostic means and how to mend it", explainCommand},
       Command{"info", "say what a device can do, or what is in a scene or picture", infoCommand},

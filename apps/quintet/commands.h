@@ -21,6 +21,7 @@ std::span<const Command> commands();
 
 int renderCommand(Arguments);   // render.cpp
 int runCommand(Arguments);      // run.cpp
+int newCommand(Arguments);      // new.cpp
 int checkCommand(Arguments);    // check.cpp
 int explainCommand(Arguments);  // explain.cpp
 int infoCommand(Arguments);     // info.cpp

@@ -31,6 +31,7 @@ io::Metadata metadata(const RenderRecord& record) {
       {"Samples", fmt::format("{}", record.samples)},
       {"Size", fmt::format("{}x{}", record.width, record.height)},
   };
+  if (record.frame) data.emplace_back("Frame", fmt::format("{}", *record.frame));
   if (record.cropped()) data.emplace_back("Region", regionText(record));
   if (!record.toneMap.empty()) {
     data.emplace_back("ToneMap", record.toneMap);
@@ -64,6 +65,7 @@ std::string toJson(const RenderRecord& record) {
       {"exposure", record.exposure},
       {"seed", record.seed},
       {"samples", record.samples},
+      {"frame", record.frame ? nlohmann::ordered_json(*record.frame) : nlohmann::ordered_json()},
       {"rays", record.rays},
       {"raysPerSecond", record.raysPerSecond()},
       {"droppedSamples", record.droppedSamples},
@@ -94,8 +96,12 @@ std::string toJson(const RenderRecord& record) {
 std::string summary(const RenderRecord& record) {
   const std::string file = record.files.empty() ? "" : record.files.back();
   const std::string rate = record.rays > 0 ? fmt::format(", {:.3g} Mrays/s", record.raysPerSecond() * 1e-6) : "";
-  return fmt::format("{}: {}x{}, {} samples per pixel, {}{}{}", file == "-" ? "standard output" : file,
-                     record.region[2], record.region[3], record.samples, durationText(record.renderSeconds), rate,
+  return fmt::format("{}: {}x{}, {} {}, {}{}{}", file == "-" ? "standard output" : file,
+                     record.region[2], record.region[3], record.samples,
+                     !record.accumulates   ? "samples per pixel"
+                     : record.samples == 1 ? "frame"
+                                           : "frames",
+                     durationText(record.renderSeconds), rate,
                      record.interrupted ? ", interrupted" : "");
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct RenderRecord {
   std::uint64_t samples = 0;
   std::uint64_t rays = 0;
   std::uint64_t droppedSamples = 0;
+  bool accumulates = false;             // the program draws frames: `samples` counts them
+  std::optional<std::uint32_t> frame;   // of an animation
   bool interrupted = false;
 
   // Seconds.

@@ -36,7 +36,7 @@ int terminalWidth() {
 std::string figures(const ProgressState& state, std::string_view gap) {
   std::string text = fmt::format("{}", static_cast<std::uint64_t>(state.samples));
   if (state.sampleLimit) text += fmt::format("/{}", *state.sampleLimit);
-  text += " samples";
+  text += fmt::format(" {}", state.unit);
   if (state.raysPerSecond > 0) text += fmt::format("{}{:.3g} Mrays/s", gap, state.raysPerSecond * 1e-6);
   text += fmt::format("{}{}", gap, durationText(state.seconds));
   if (const double left = state.secondsLeft(); left < kUnknown) text += fmt::format("{}{} left", gap, durationText(left));

@@ -24,6 +24,7 @@ struct ProgressState {
   double seconds = 0;                         // since rendering began
   double raysPerSecond = 0;                   // 0: not known yet
   std::optional<std::uint64_t> sampleLimit;
+  const char* unit = "samples";               // or "frames"
   std::optional<double> secondLimit;
 
   double fraction() const;     // of the limit that is reached first, [0,1]

@@ -20,6 +20,7 @@ struct RenderLimits {
 struct RenderOutcome {
   bool interrupted = false;      // by a signal, before the limits
   bool abandoned = false;        // RenderHooks::abandon said so
+  std::optional<std::uint32_t> frame;  // of an animation: the one rendered last
   double seconds = 0;            // wall clock of all batches
   double firstPixelSeconds = 0;  // from the start of the loop until the first launch is done
 };

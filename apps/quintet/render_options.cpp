@@ -46,6 +46,7 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
                                              : options.scene.filename().replace_extension(".png");
   checkStandardOutput(options);
   interpret(raw, options);
+  if (options.samples) options.drawnFrames = static_cast<std::uint32_t>(*options.samples);
   return options;
 }
 

@@ -21,6 +21,9 @@ struct RenderOptions {
   uvec2 size{0};                 // 0: decided by the camera
   std::optional<std::uint64_t> samples;
   std::optional<double> seconds;
+  std::optional<std::uint32_t> frames;       // as asked for
+  // Of a program that draws frame after frame; nothing: until the time is over.
+  std::optional<std::uint32_t> drawnFrames;
   CameraOptions camera;
   EnvironmentOptions environment;
   float exposure = 0.0f;         // stops

@@ -9,6 +9,7 @@ namespace quintet::app {
 struct RunOptions {
   RenderOptions render;
   bool list = false;   // the built-in programs
+  bool allFrames = false;  // write each, not only the last one
   bool watch = false;  // render again whenever a file is saved
 };
 

@@ -125,6 +125,7 @@ void Session::link() {
   settings.seed = options_.seed;
   settings.transparent = options_.transparent;
   settings.parameters = parameters_;
+  settings.frameCount = options_.drawnFrames.value_or(0);
   // On a CPU the first launch compiles, and other processes take their share.
   settings.timeoutSeconds = options_.timeout.value_or(context_->info().quirks.software ? 600.0 : 60.0);
   renderer_ = std::make_unique<render::Renderer>(*deviceScene_, program_, *compiler_, pipelineCache_.get(), settings);
@@ -144,6 +145,11 @@ void Session::tell(const std::vector<shader::Diagnostic>& diagnostics) {
     fmt::print(stderr, "{}", diagnosticsText(diagnostics, sourcesOf(program_), colorOnStandardError()));
   }
   if (failed) fmt::print(stderr, "quintet: {}: {}\n", plain(program_.name), countText(diagnostics));
+}
+
+void Session::beginFrame(std::uint32_t frame) {
+  if (deviceScene_->animated()) deviceScene_->setFrame(static_cast<float>(frame));
+  if (program_.accumulation == program::Accumulation::film) renderer_->restart();
 }
 
 std::vector<std::filesystem::path> Session::files() const {
@@ -176,6 +182,7 @@ std::vector<std::size_t> Session::chosenOutputs() const {
 void Session::write(const RenderOutcome& outcome, std::optional<std::uint32_t> frame) {
   progress_.stage("writing " + options_.output.string());
   fillRecord(outcome);
+  record_.frame = frame ? frame : outcome.frame;
   record_.files.clear();
   for (const std::size_t output : chosenOutputs()) {
     const std::string& name = program_.outputs[output].name;
@@ -219,6 +226,7 @@ void Session::fillRecord(const RenderOutcome& outcome) {
   record_.region = {region.x, region.y, region.width, region.height};
   record_.seed = options_.seed;
   record_.samples = statistics.samples;
+  record_.accumulates = program_.accumulation == program::Accumulation::program;
   record_.rays = rays.rays;
   record_.droppedSamples = rays.droppedSamples;
   record_.interrupted = outcome.interrupted;

@@ -37,6 +37,10 @@ class Session {
   std::vector<std::filesystem::path> files() const;
   std::vector<std::filesystem::path> sceneFiles() const { return app::sceneFiles(sceneSource_); }
 
+  // Moves the scene's instances and empties the film: what is rendered next is this frame of an animation.
+  void beginFrame(std::uint32_t frame);
+  bool animated() const { return deviceScene_->animated(); }
+
   // Writes the picture of each chosen output.
   void write(const RenderOutcome& outcome, std::optional<std::uint32_t> frame = std::nullopt);
   std::string written() const { return record_.files.empty() ? "" : record_.files.back(); }  // last

@@ -384,6 +384,7 @@ std::optional<Program> findLecture(const std::string& nameOrPath) {
   if (nameOrPath.ends_with(kLectureExtension) && fs::exists(path, ignored)) return load(path);
   if (fs::is_directory(path, ignored)) return loadOnly(path);
   if (nameOrPath.ends_with(kLectureExtension) && path.has_parent_path()) throw FileError(path, "does not exist");
+  if (const fs::path file = nameOrPath + std::string(kLectureExtension); fs::is_regular_file(file, ignored)) return load(file);
   return builtIn(nameOrPath);
 }
 

@@ -19,7 +19,7 @@ inline constexpr std::string_view kLectureExtension = ".rt.glsl";
 Program parseLecture(const std::string& text, const std::string& file, const std::string& origin,
                      std::map<std::string, std::string> included = {});
 
-// A file NAME.rt.glsl, a folder whose only program is such a file, or a built-in program of that form by its name;
+// A file NAME.rt.glsl (the extension may be left out), a folder whose only program is such a file, or a built-in program of that form by its name;
 // nothing if it is none of these. Throws FileError for files that cannot be read.
 std::optional<Program> findLecture(const std::string& nameOrPath);
 

@@ -41,7 +41,11 @@ Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Com
     total_.push_back(pixelBuffer(context, pixels * sizeof(vec4), "film total " + name));
   }
   statistics_ = pixelBuffer(context, pixels * sizeof(uvec2), "film statistics");
-  context.submit([&](gpu::Commands& commands) {
+  clear();
+}
+
+void Film::clear() {
+  context_.submit([&](gpu::Commands& commands) {
     for (const gpu::Buffer& buffer : total_) commands.fill(buffer, 0);
     commands.fill(statistics_, 0);
   });

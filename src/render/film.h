@@ -41,6 +41,9 @@ class Film {
   // Fills the frame's film fields.
   void describe(shared::Frame& frame) const;
 
+  // Everything as at the beginning: no sample, no ray.
+  void clear();
+
   // Recorded around the launches of a batch or frame: empties the batch sums; adds them to the total, or puts them
   // in its place.
   void beginBatch(gpu::Commands& commands);

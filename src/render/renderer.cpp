@@ -248,6 +248,12 @@ Renderer::Renderer(DeviceScene& scene, const program::Program& program, const sh
 Renderer::~Renderer() = default;
 
 bool Renderer::renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) { return impl_->renderBatch(sampleCount, progress); }
+void Renderer::restart() {
+  impl_->film->clear();
+  impl_->statistics.samples = 0;
+  impl_->statistics.batches = 0;
+}
+
 const Film& Renderer::film() const { return *impl_->film; }
 bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) { return impl_->renderFrame(index, progress); }
 io::Image Renderer::image(std::size_t output) const { return impl_->image(output); }

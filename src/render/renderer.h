@@ -71,6 +71,9 @@ class Renderer {
   // remains the frame before.
   bool renderFrame(std::uint32_t index, const BatchProgress& progress = {});
 
+  // Forgets all samples or frames: the next one is the first. For the next frame of an animation.
+  void restart();
+
   const Film& film() const;
   // Mean of all samples so far, or the last frame; linear, premultiplied RGBA. An output of display values
   // (program::Program) is decoded, so that a picture file of 8 bits holds what the program wrote.

@@ -1,0 +1,116 @@
+// `run` with programs that draw frame after frame: how many, which are written, under which names.
+#include <csignal>
+
+#include <gmock/gmock.h>
+
+#include "fixtures.h"
+#include "base/file.h"
+#include "io/codec.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// Red: this frame; green: the mean of 16 · frameID so far, by the previous pixel; blue: the number of frames.
+constexpr const char* kProgram = R"(
+void main() { /**** RAY GENERATION SHADER ****/
+  float sum = gsnGetPreviousPixel().g * 255.0 * float(frameID) + 16.0 * float(frameID);
+  gsnSetPixel(vec4(float(frameID) * 16.0 / 255.0, sum / float(frameID + 1) / 255.0, float(frameSize) / 255.0, 1.0));
+}
+)";
+
+class Frames : public CliTest {
+ protected:
+  Frames() { write(folder_ / "count.rt.glsl", kProgram); }
+  RunResult count(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"run", "count.rt.glsl", "--size", "8x8"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return quintet(arguments);
+  }
+  std::vector<int> pixel(const std::string& file) const {
+    const auto bytes = picture(file).pixel<std::uint8_t>(3, 5);
+    return {bytes[0], bytes[1], bytes[2]};
+  }
+};
+
+TEST_F(Frames, OneByDefault) {
+  const RunResult result = count({});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("count.png: 8x8, 1 frame, "));
+  EXPECT_THAT(pixel("count.png"), ElementsAre(0, 0, 1));
+}
+
+TEST_F(Frames, TheLastOneIsWritten) {
+  const RunResult result = count({"--frames", "5"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("count.png: 8x8, 5 frames, "));
+  EXPECT_THAT(pixel("count.png"), ElementsAre(64, 32, 5));
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"count.png", "count.rt.glsl", "scene.gltf"}));
+  ASSERT_EQ(count({"--spp", "3", "-q"}).status, 0);  // the same as --frames
+  EXPECT_THAT(pixel("count.png"), ElementsAre(32, 16, 3));
+}
+
+TEST_F(Frames, EachIsWritten) {
+  ASSERT_EQ(count({"--frames", "3", "-o", "a_%02d.png", "-q"}).status, 0);
+  ASSERT_EQ(count({"--frames", "2", "--all-frames", "-o", "b.png", "-q"}).status, 0);
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"a_00.png", "a_01.png", "a_02.png", "b.0000.png", "b.0001.png", "count.rt.glsl", "scene.gltf"}));
+  EXPECT_THAT(pixel("a_00.png"), ElementsAre(0, 0, 3));
+  EXPECT_THAT(pixel("a_02.png"), ElementsAre(32, 16, 3));
+  EXPECT_THAT(pixel("b.0001.png"), ElementsAre(16, 8, 2));
+  const auto data = io::readMetadata(readFile(folder_ / "a_01.png"), "a_01.png");
+  EXPECT_NE(std::ranges::find(data, std::pair<std::string, std::string>("Frame", "1")), data.end());
+}
+
+TEST_F(Frames, RenderDrawsSppOfThem) {
+  const RunResult result = quintet({"render", "scene.gltf", "--program", "count.rt.glsl", "--spp", "5", "--size", "8x8", "-q"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(pixel("scene.png"), ElementsAre(64, 32, 5));
+}
+
+TEST_F(Frames, UntilTheTimeIsOver) {
+  const RunResult result = count({"--time", "0.2", "-q", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_GE(nlohmann::json::parse(result.out)["samples"], 2);
+  EXPECT_EQ(pixel("count.png")[2], 0);  // no end known
+}
+
+TEST_F(Frames, InterruptedWritesWhatThereIs) {
+  TerminalRun process({"run", "count.rt.glsl", "--size", "64x64", "--time", "100000"}, folder_.path());
+  ASSERT_TRUE(process.waitFor(" left"));
+  process.signal(SIGINT);
+  const RunResult result = process.finish();
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("interrupted"));
+  EXPECT_EQ(picture("count.png").width, 64u);
+}
+
+// An edit begins the animation anew.
+TEST_F(Frames, WatchRestarts) {
+  TerminalRun process({"run", "count.rt.glsl", "--size", "8x8", "--frames", "4", "--watch"}, folder_.path());
+  ASSERT_TRUE(process.waitForNext("4 frames"));
+  EXPECT_THAT(pixel("count.png"), ElementsAre(48, 24, 4));
+  std::string text = kProgram;
+  text.replace(text.find("float(frameSize)"), 16, "200.0");
+  write(folder_ / "count.rt.glsl", text);
+  ASSERT_TRUE(process.waitForNext("count.rt.glsl saved: "));
+  ASSERT_TRUE(process.waitForNext("4 frames"));
+  EXPECT_THAT(pixel("count.png"), ElementsAre(48, 24, 200));
+  text.replace(text.find("200.0"), 5, "nothing");
+  write(folder_ / "count.rt.glsl", text);
+  ASSERT_TRUE(process.waitForNext("count.rt.glsl:4:"));
+  process.signal(SIGINT);
+  EXPECT_EQ(process.finish().status, 0);
+}
+
+TEST_F(Frames, WhatMakesNoSense) {
+  expectError(count({"--frames", "0"}), 2, {"--frames"});
+  expectError(count({"--frames", "1.5"}), 2, {"--frames", "whole"});
+  expectError(count({"-o", "%d_%d.png", "--frames", "2"}), 2, {"%d_%d.png"});
+  expectError(count({"--all-frames", "-o", "-"}), 2, {"--all-frames"});
+  expectError(quintet({"run", "normals", "scene.gltf", "--frames", "2", "--size", "8x8", "-q", "--env", "none"}), 2, {"--frames", "same"});
+}
+
+}  // namespace
+}  // namespace quintet::test

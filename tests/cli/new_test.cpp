@@ -1,0 +1,105 @@
+// `new`: what it makes renders at once and is clean; nothing is overwritten.
+#include <gmock/gmock.h>
+
+#include "base/file.h"
+#include "fixtures.h"
+#include "io/codec.h"
+
+namespace quintet::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class New : public CliTest {
+ protected:
+  // It renders, shows something, and the check has nothing to say.
+  void expectWorks(const std::string& name, const std::string& picture) {
+    const RunResult check = quintet({"check", name, "--strict"});
+    EXPECT_EQ(check.status, 0) << check.err;
+    const RunResult run = quintet({"run", name, "--size", "48x32", "--spp", "4", "-q", "-o", picture});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+    const io::Image image = this->picture(picture);
+    const auto top = image.pixel<std::uint8_t>(1, 1), bottom = image.pixel<std::uint8_t>(24, 30);
+    EXPECT_NE((std::vector(top.begin(), top.end())), (std::vector(bottom.begin(), bottom.end())));
+  }
+};
+
+TEST_F(New, OneFile) {
+  const RunResult made = quintet({"new", "first"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_THAT(made.out, HasSubstr("quintet run first.rt.glsl --watch"));
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"first.rt.glsl", "scene.gltf"}));
+  expectWorks("first.rt.glsl", "a.png");
+  expectWorks("first", "b.png");
+  EXPECT_EQ(picture("a.png").data, picture("b.png").data);
+  EXPECT_THAT(quintet({"run", "first", "--help"}).out, HasSubstr("lampDirection"));
+}
+
+TEST_F(New, AFolder) {
+  const RunResult made = quintet({"new", "second", "--folder"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_TRUE(fs::exists(folder_ / "second" / "program.toml"));
+  expectWorks("second", "a.png");
+  EXPECT_EQ(quintet({"run", "second", "--set", "ambient=0.5", "--size", "8x8", "-q"}).status, 0);
+}
+
+TEST_F(New, NamesWithPaths) {
+  ASSERT_EQ(quintet({"new", "a/b/deep.rt.glsl"}).status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "a" / "b" / "deep.rt.glsl"));
+  expectWorks("a/b/deep.rt.glsl", "a.png");
+  ASSERT_EQ(quintet({"new", "a/c d/", "--folder"}).status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "a" / "c d" / "program.toml"));
+  const RunResult quoted = quintet({"new", "a/e f"});
+  EXPECT_THAT(quoted.out, HasSubstr("quintet run 'a/e f.rt.glsl' --watch"));
+  ASSERT_EQ(quintet({"new", (folder_ / "absolute").string()}).status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "absolute.rt.glsl"));
+}
+
+TEST_F(New, CopiesOfPrograms) {
+  ASSERT_EQ(quintet({"new", "mine", "--from", "ao"}).status, 0);
+  expectWorks("mine", "a.png");
+  ASSERT_EQ(quintet({"new", "again", "--from", "mine"}).status, 0);
+  EXPECT_EQ(readTextFile(folder_ / "mine" / "ao.rgen"), readTextFile(folder_ / "again" / "ao.rgen"));
+}
+
+TEST_F(New, CopiesOfLecturesWithWhatTheyNeed) {
+  ASSERT_EQ(quintet({"new", "first"}).status, 0);
+  std::string text = readTextFile(folder_ / "first.rt.glsl");
+  text.insert(text.find("vec3 color;"), "vec2 unused;\n  ");
+  text.insert(text.find("struct RayPayloadType"), "#include \"common.glsl\"\n");
+  write(folder_ / "first.rt.glsl", text);
+  write(folder_ / "common.glsl", "const float kHalf = 0.5;\n");
+  write(folder_ / "other.glsl", "nobody needs this\n");
+  ASSERT_EQ(quintet({"new", "copies/second", "--from", "first.rt.glsl"}).status, 0);
+  EXPECT_EQ(readTextFile(folder_ / "copies" / "second.rt.glsl"), text);
+  EXPECT_TRUE(fs::exists(folder_ / "copies" / "common.glsl"));
+  EXPECT_FALSE(fs::exists(folder_ / "copies" / "other.glsl"));
+  EXPECT_EQ(quintet({"run", "copies/second.rt.glsl", "--size", "8x8", "-q"}).status, 0);
+  ASSERT_EQ(quintet({"new", "third", "--from", "first", "--folder"}).status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "third" / "third.rt.glsl"));
+  EXPECT_EQ(quintet({"run", "third", "--size", "8x8", "-q"}).status, 0);
+}
+
+TEST_F(New, OverwritesNothing) {
+  write(folder_ / "first.rt.glsl", "mine");
+  expectError(quintet({"new", "first"}), 1, {"first.rt.glsl", "exists already"});
+  EXPECT_EQ(readTextFile(folder_ / "first.rt.glsl"), "mine");
+  fs::create_directory(folder_ / "second");
+  expectError(quintet({"new", "second", "--folder"}), 1, {"second", "exists already"});
+  expectError(quintet({"new", "second"}), 1, {"second", "is a folder"});
+  expectError(quintet({"new", "second", "--from", "ao"}), 1, {"second", "exists already"});
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"first.rt.glsl", "scene.gltf", "second"}));
+}
+
+TEST_F(New, WhatMakesNoSense) {
+  expectError(quintet({"new"}), 2, {"no name"});
+  expectError(quintet({"new", ".."}), 2, {"'..'"});
+  expectError(quintet({"new", "x", "--from", "pathtracr"}), 2, {"did you mean 'pathtracer'?"});
+  expectError(quintet({"new", "scene.gltf/x"}), 1, {"scene.gltf"});
+  EXPECT_EQ(fileNames(), std::vector<std::string>{"scene.gltf"});
+}
+
+}  // namespace
+}  // namespace quintet::test
