@@ -1,5 +1,8 @@
-// `quintet check`: compiles programs and checks how their shaders fit together, on a scene; renders nothing.
+// `quintet check`: compiles programs and checks how their shaders fit together, on a scene. Without --instrument it needs
+// no device and renders nothing.
 #include <algorithm>
+#include <iterator>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -7,10 +10,10 @@
 #include "base/file.h"
 #include "cli.h"
 #include "diagnostics_view.h"
-#include "program/link.h"
+#include "instrument.h"
+#include "program/check.h"
 #include "progress.h"
-#include "render/scene_features.h"
-#include "scene_setup.h"
+#include "render/scene_facts.h"
 #include "scene_source.h"
 #include "values.h"
 
@@ -23,13 +26,16 @@ constexpr const char* kExamples =
     "  quintet check my_program/                  its shaders, and how they fit together\n"
     "  quintet check my_program/ scene.glb        and whether they fit this scene\n"
     "  quintet check my_program/ --json           for editors: an array of diagnostics\n"
-    "  quintet check programs/* --strict          several; a warning is a failure, too\n";
+    "  quintet check programs/* --strict          several; a warning is a failure, too\n"
+    "  quintet check my_program/ --instrument     and look for NaN, wrong records and self-intersections while it runs\n";
 
 struct Options {
   std::vector<std::string> programs;
   std::filesystem::path scene;
   bool json = false;
   bool strict = false;
+  bool instrument = false;
+  std::string device;
 };
 
 bool looksLikeScene(const std::filesystem::path& file) {
@@ -47,6 +53,8 @@ std::optional<Options> parseOptions(Arguments arguments) {
       ->type_name("");
   app.add_flag("--json", options.json, "An array of diagnostics on standard output");
   app.add_flag("--strict", options.strict, "Warnings count as errors for the exit status");
+  app.add_flag("--instrument", options.instrument, "Also run a small picture with checks in the shaders (Q001 to Q006)");
+  app.add_option("--device", options.device, "The device that --instrument runs on: index or part of the name")->type_name("NAME");
   setUp(app, kExamples);
   if (!parse(app, arguments)) return std::nullopt;
   if (!positional.empty() && looksLikeScene(positional.back())) {
@@ -64,14 +72,18 @@ shader::Compiler makeCompiler() {
   return shader::Compiler(options);
 }
 
+// With the scene that was asked for or that the program brings; without any, what holds for every scene.
 std::vector<Diagnostic> check(const program::Program& program, const shader::Compiler& compiler, const Options& options) {
-  std::vector<std::pair<std::string, std::string>> defines;
   const SceneSource source = chooseScene(options.scene, program);
-  if (!source.file.empty()) {
-    const scene::Scene scene = loadScene(source);
-    defines = render::featureDefines(scene, chooseEnvironment(scene, {}).environment);
-  }
-  return program::compile(program, compiler, defines).diagnostics;
+  const bool hasScene = !options.scene.empty() || !program.scene.empty();
+  std::optional<scene::Scene> scene;
+  std::optional<program::SceneFacts> facts;
+  if (hasScene || options.instrument) scene = loadScene(source);
+  if (hasScene) facts = render::sceneFacts(*scene);
+  std::vector<Diagnostic> found = program::check(program, compiler, facts ? &*facts : nullptr, program::DeviceLimits{}).diagnostics;
+  if (!options.instrument || hasErrors(found)) return found;
+  std::ranges::move(runInstrumented(program, *scene, compiler, options.device), std::back_inserter(found));
+  return found;
 }
 
 }  // namespace
