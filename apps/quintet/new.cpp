@@ -107,6 +107,7 @@ void create(const NewProgram& made, const Options& options) {
   const bool single = made.program != made.folder && !options.folder;
   const fs::path stem = fs::path(options.name).lexically_normal();
   if (single && fs::is_directory(stem, failed)) throw FileError(stem, "is a folder; take another name");
+  failed.clear();
   if (!made.folder.empty()) fs::create_directories(made.folder, failed);
   if (failed) throw FileError(made.folder, "cannot be made: " + failed.message());
   for (const auto& [name, text] : made.files) {

@@ -57,7 +57,7 @@ TEST_F(ShaderCache, KeyCoversSourceStageDefinesIncludesAndOptions) {
   EXPECT_TRUE(misses());
   options.optimize = false;
   EXPECT_TRUE(misses());
-  options.debugInfo = true;
+  options.debugInfo = false;
   EXPECT_TRUE(misses());
   source.name = "other.comp";
   EXPECT_TRUE(misses());
