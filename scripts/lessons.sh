@@ -38,5 +38,5 @@ lesson 17_records --spp 1
 lesson 18_instances
 lesson 19_dynamic --frames 14
 lesson 20_lambert --spp 1
-lesson 21_one_weekend --frames 8
-lesson 22_path_tracer --frames 16
+lesson 21_one_weekend --frames 16
+lesson 22_path_tracer --frames 32
