@@ -9,6 +9,7 @@
 #include "base/embedded.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/toml_depth.h"
 #include "program/lecture.h"
 #include "program/program_parser.h"
 
@@ -20,8 +21,6 @@ namespace quintet::program {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::ptrdiff_t kMaxDots = 10000;
 
 Program loadFolder(const fs::path& folder) {
   std::map<std::string, std::string> files;
@@ -71,10 +70,8 @@ Program parseProgram(const std::string& toml, const std::string& name, const std
   program.origin = origin;
   program.files = std::move(files);
   const std::string file = program.path(program.descriptionFile);
-  // toml++ (3.x) frees tables recursively: 100,000 levels "a.a.a.…" would overflow the stack. A level takes a dot, or is
-  // one of the 256 nested values that it allows.
-  if (std::count(toml.begin(), toml.end(), '.') > kMaxDots)
-    throw FileError(file, fmt::format("has more than {} dots: this cannot be a program's description", kMaxDots));
+  if (const int line = deepTomlKey(toml); line > 0)
+    throw FileError(file, fmt::format("line {}", line), fmt::format("a dotted key of more than {} levels", kMaxTomlKeyDots));
   toml::table root;
   try {
     root = toml::parse(toml, file);

@@ -9,48 +9,11 @@
 #include <toml++/toml.h>
 
 #include "base/error.h"
+#include "base/toml_depth.h"
 #include "scene/printable.h"
 
 namespace quintet::scene {
 namespace {
-
-// Dots between two punctuation marks: as many levels has a dotted key.
-constexpr unsigned kMaxDots = 16;
-
-// Past the string that begins at `i` (TOML 1.0, "String"). A string of one line ends at its end in any case.
-std::size_t skipString(std::string_view text, std::size_t i) {
-  const char quote = text[i];
-  const std::string three(3, quote);
-  const bool multiLine = text.substr(i, 3) == three;
-  for (i += multiLine ? 3 : 1; i < text.size(); ++i) {
-    if (quote == '"' && text[i] == '\\')
-      ++i;
-    else if (multiLine && text.substr(i, 3) == three)
-      return i + 3;
-    else if (!multiLine && (text[i] == quote || text[i] == '\n'))
-      return i + 1;
-  }
-  return text.size();
-}
-
-// toml++ (3.3) makes and frees tables recursively: a key a.a.a... of 100,000 levels would overflow the stack. Values in
-// brackets it counts itself (256 levels).
-void refuseEndlessKeys(std::string_view text, const std::filesystem::path& file) {
-  unsigned dots = 0;
-  std::size_t i = 0;
-  while (i < text.size()) {
-    const char c = text[i];
-    if (c == '"' || c == '\'') {
-      i = skipString(text, i);
-      continue;
-    }
-    if (c == '.' && ++dots > kMaxDots)
-      throw FileError(file, fmt::format("line {}", 1 + std::ranges::count(text.substr(0, i), '\n')),
-                      fmt::format("a dotted key of more than {} levels", kMaxDots));
-    if (std::string_view(",=[]{}\n#").find(c) != std::string_view::npos) dots = 0;
-    i = c == '#' ? std::min(text.find('\n', i), text.size()) : i + 1;
-  }
-}
 
 class Converter {
  public:
@@ -101,7 +64,8 @@ const TomlValue* TomlValue::find(std::string_view key) const {
 }
 
 TomlValue parseToml(std::string_view text, const std::filesystem::path& file) {
-  refuseEndlessKeys(text, file);
+  if (const int line = deepTomlKey(text); line > 0)
+    throw FileError(file, fmt::format("line {}", line), fmt::format("a dotted key of more than {} levels", kMaxTomlKeyDots));
   try {
     return Converter(file)(toml::parse(text), 1);
   } catch (const toml::parse_error& error) {

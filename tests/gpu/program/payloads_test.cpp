@@ -87,7 +87,7 @@ void main() {
     probe.far = 0x100000001ul;
     probe.inner.a = vec2(1.0, 2.0);
     probe.inner.m = mat2(1.0, 2.0, 3.0, 4.0);
-    traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_probe, vec3(0, 100, 0), 0.0, vec3(0, 1, 0), 50.0, 7);
+    traceRayEXT(topLevelAS, gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_probe, vec3(0, 100, 0), 0.0, vec3(0, 1, 0), 50.0, 7);
     color = vec4(probe.inner.m[0], probe.inner.m[1]);
     more = vec4(probe.inner.a, float(uint(probe.far >> 32)), float(uint(probe.far)));
   } else {

@@ -175,7 +175,7 @@ TEST(ProgramFuzz, DepthIsRefused) {
   };
   EXPECT_THROW(parse(kSmall + keys(1u << 20) + " = 1\n"), FileError);
   EXPECT_THROW(parse(kSmall + ("[" + keys(1u << 20)) + "]\n"), FileError);
-  EXPECT_THROW(parse(kSmall + keys(9000) + " = 1\n"), FileError);
+  EXPECT_EQ(errorOf(kSmall + keys(17) + " = 1\n"), "line 8: a dotted key of more than 16 levels");
   EXPECT_THROW(parse(kSmall + ("x = " + std::string(1u << 20, '['))), FileError);
   std::string tables = "x = ";
   for (int i = 0; i < (1 << 18); ++i) tables += "{a=";
