@@ -79,6 +79,7 @@ void Session::loadScene() {
   SceneInfo info;
   const scene::Scene scene = app::loadScene(sceneSource_);
   info.hash = scene::contentHash(scene).hex();
+  info.files = scene.report.files;
   const uvec2 asked = options_.size;
   const float aspect = asked.y > 0 ? static_cast<float>(asked.x) / static_cast<float>(asked.y) : 0.0f;
   const ChosenCamera camera = chooseCamera(scene, options_.camera, aspect);
@@ -150,6 +151,13 @@ void Session::tell(const std::vector<shader::Diagnostic>& diagnostics) {
 void Session::beginFrame(std::uint32_t frame) {
   if (deviceScene_->animated()) deviceScene_->setFrame(static_cast<float>(frame));
   if (program_.accumulation == program::Accumulation::film) renderer_->restart();
+}
+
+std::vector<std::filesystem::path> Session::sceneFiles() const {
+  std::vector<std::filesystem::path> files = app::sceneFiles(sceneSource_);
+  for (const std::filesystem::path& file : sceneInfo_.files)
+    if (std::ranges::find(files, file) == files.end()) files.push_back(file);
+  return files;
 }
 
 std::vector<std::filesystem::path> Session::files() const {

@@ -35,7 +35,7 @@ class Session {
   // For --watch: whether prepare() still wants the scene that loadScene() built, and every file on disk that was read.
   bool sceneLoaded() const { return sceneLoaded_; }
   std::vector<std::filesystem::path> files() const;
-  std::vector<std::filesystem::path> sceneFiles() const { return app::sceneFiles(sceneSource_); }
+  std::vector<std::filesystem::path> sceneFiles() const;  // of the latter, those that are the scene's
 
   // Moves the scene's instances and empties the film: what is rendered next is this frame of an animation.
   void beginFrame(std::uint32_t frame);
@@ -63,6 +63,7 @@ class Session {
     std::string cameraDescription;
     std::string environment;
     std::string hash;
+    std::vector<std::filesystem::path> files;  // that a scene file names
     double loadSeconds = 0;
   };
 

@@ -127,6 +127,19 @@ TEST_F(Watch, TheSceneToo) {
   EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
 }
 
+TEST_F(Watch, TheFilesOfASceneFile) {
+  write(folder_ / "s.scene.toml", "[[file]]\nname = 'quad'\npath = 'scene.gltf'\n");
+  TerminalRun process({"run", "normals", "s.scene.toml", "--watch", "--size", "32x24", "--spp", "4", "-o", "out.exr"}, folder_.path());
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
+  nlohmann::json json = quadScene();
+  json["nodes"][0]["rotation"] = {0.0, 0.38268343, 0.0, 0.92387953};
+  save("scene.gltf", json.dump());
+  ASSERT_TRUE(process.waitForNext("scene.gltf saved: "));
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 0.5f + 0.5f * 0.70710678f, 0.01f);
+}
+
 // A save during a long rendering starts over at once.
 TEST_F(Watch, SavesWhileItRenders) {
   TerminalRun process({"run", "sky", "--watch", "--size", "400x300", "--time", "100000", "-o", "out.exr"}, folder_.path());
