@@ -7,7 +7,6 @@ namespace {
 
 const std::string kToml = R"([program]
 ray_generation = "main.rgen"
-max_recursion = 2
 
 [[ray]]
 name = "radiance"
