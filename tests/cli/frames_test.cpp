@@ -89,13 +89,13 @@ TEST_F(Frames, InterruptedWritesWhatThereIs) {
 // An edit begins the animation anew.
 TEST_F(Frames, WatchRestarts) {
   TerminalRun process({"run", "count.rt.glsl", "--size", "8x8", "--frames", "4", "--watch"}, folder_.path());
-  ASSERT_TRUE(process.waitForNext("4 frames"));
+  ASSERT_TRUE(process.waitForNext("8x8, 4 frames"));
   EXPECT_THAT(pixel("count.png"), ElementsAre(48, 24, 4));
   std::string text = kProgram;
   text.replace(text.find("float(frameSize)"), 16, "200.0");
   write(folder_ / "count.rt.glsl", text);
   ASSERT_TRUE(process.waitForNext("count.rt.glsl saved: "));
-  ASSERT_TRUE(process.waitForNext("4 frames"));
+  ASSERT_TRUE(process.waitForNext("8x8, 4 frames"));
   EXPECT_THAT(pixel("count.png"), ElementsAre(48, 24, 200));
   text.replace(text.find("200.0"), 5, "nothing");
   write(folder_ / "count.rt.glsl", text);
