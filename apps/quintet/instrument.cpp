@@ -1,6 +1,7 @@
 #include "instrument.h"
 
 #include "gpu/context.h"
+#include "hang.h"
 #include "render/renderer.h"
 #include "scene_setup.h"
 
@@ -26,11 +27,13 @@ std::vector<shader::Diagnostic> runInstrumented(const program::Program& program,
   settings.instrument = true;
   settings.timeoutSeconds = kTimeout;
   render::Renderer renderer(deviceScene, program, compiler, nullptr, settings);
-  if (program.accumulation == program::Accumulation::program) {
-    for (std::uint32_t frame = 0; frame < kFrames; ++frame) renderer.renderBatch(1);
-  } else {
-    renderer.renderBatch();
-  }
+  withoutHanging(program, false, [&] {
+    if (program.accumulation == program::Accumulation::program) {
+      for (std::uint32_t frame = 0; frame < kFrames; ++frame) renderer.renderBatch(1);
+    } else {
+      renderer.renderBatch();
+    }
+  });
   return renderer.notes();
 }
 

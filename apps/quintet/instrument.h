@@ -12,7 +12,7 @@
 namespace quintet::app {
 
 // Renders 96 x 64 pixels, one batch or two frames, and returns what the checks found (docs/diagnostics, Q001 … Q006).
-// A launch that hangs ends in gpu::DeviceLostError after 20 s. Throws what gpu and render throw.
+// A launch that hangs ends the process after 20 s (hang.h). Throws what gpu and render throw.
 std::vector<shader::Diagnostic> runInstrumented(const program::Program& program, const scene::Scene& scene,
                                                 const shader::Compiler& compiler, const std::string& device);
 

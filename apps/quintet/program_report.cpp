@@ -24,6 +24,15 @@ std::string describe(const program::Parameter& parameter) {
                      program::typeName(parameter.type), value, unit, range);
 }
 
+// At most a line of it.
+std::string firstSentence(const std::string& text) {
+  constexpr std::size_t kMost = 90;
+  const std::string sentence = text.substr(0, text.find(". "));
+  if (sentence.size() <= kMost) return sentence;
+  const std::size_t space = sentence.rfind(' ', kMost);
+  return sentence.substr(0, space == sentence.npos ? kMost : space) + " ...";
+}
+
 std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 }  // namespace
@@ -50,7 +59,7 @@ std::string programList(bool json) {
   for (const std::string& name : program::builtInPrograms()) width = std::max(width, name.size());
   for (const std::string& name : program::builtInPrograms()) {
     const program::Program program = program::loadProgram(name);
-    text += fmt::format("{:<{}}  {}\n", name, width, program.description);
+    text += fmt::format("{:<{}}  {}\n", name, width, firstSentence(program.description));
     list.push_back({{"name", name}, {"description", program.description}});
   }
   return json ? oneLine(list) : text;

@@ -1,6 +1,7 @@
 // `quintet render`: options, device, scene, program, batches, picture, report.
 #include "base/file.h"
 #include "commands.h"
+#include "hang.h"
 #include "program_report.h"
 #include "session.h"
 
@@ -13,8 +14,10 @@ int render(Session& session, const RenderOptions& options) {
   session.loadScene();
   session.link();
   const GracefulStop stop;
-  const RenderOutcome outcome =
-      renderBatches(session.renderer(), {options.samples, options.seconds}, stop, session.progress());
+  RenderOutcome outcome;
+  withoutHanging(session.program(), options.json, [&] {
+    outcome = renderBatches(session.renderer(), {options.samples, options.seconds}, stop, session.progress());
+  });
   session.write(outcome);
   session.report();
   return stop.exitStatus();

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "commands.h"
 #include "diagnostics_view.h"
+#include "hang.h"
 #include "program_report.h"
 #include "run_options.h"
 #include "run_pictures.h"
@@ -26,7 +27,7 @@ int draw(Session& session, const RunOptions& options) {
   session.loadScene();
   session.link();
   const GracefulStop stop;
-  drawPictures(session, options, stop);
+  withoutHanging(session.program(), options.render.json, [&] { drawPictures(session, options, stop); });
   session.report();
   return stop.exitStatus();
 }

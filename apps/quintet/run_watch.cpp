@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "diagnostics_view.h"
+#include "hang.h"
 #include "run_pictures.h"
 #include "shader/watch.h"
 #include "signals.h"
@@ -117,7 +118,9 @@ class Watching {
     PictureHooks hooks;
     hooks.abandon = [this] { return watcher_.pending(); };
     hooks.firstPicture = [this](const std::string& file) { firstPicture(file); };
-    const PictureEnd end = drawPictures(session_, options_, stop, hooks);
+    PictureEnd end = PictureEnd::complete;
+    withoutHanging(session_.program(), options_.render.json,
+                   [&] { end = drawPictures(session_, options_, stop, hooks); });
     if (end == PictureEnd::abandoned) return;
     interrupted_ = end == PictureEnd::interrupted;
     session_.report();

@@ -110,7 +110,7 @@ class Context {
   // Records and submits; returns the timeline value that marks the end of this work.
   // Submissions execute in order; memory is made visible between them.
   std::uint64_t submit(const std::function<void(Commands&)>& record);
-  // Blocks until `value` is reached. Throws DeviceLostError after timeoutSeconds (≤ 0: no limit).
+  // Blocks until `value` is reached. Throws TimeoutError after timeoutSeconds (≤ 0: no limit).
   void wait(std::uint64_t value, double timeoutSeconds = 0.0);
   void submitAndWait(const std::function<void(Commands&)>& record) { wait(submit(record)); }
   std::uint64_t completed() const;   // last timeline value that has been reached

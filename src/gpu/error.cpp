@@ -16,6 +16,9 @@ std::string describe(VkResult result, std::string_view operation, std::string_vi
 VulkanError::VulkanError(VkResult result, std::string_view operation, std::string_view object)
     : Error(describe(result, operation, object)), result_(result) {}
 
+TimeoutError::TimeoutError(double seconds)
+    : DeviceLostError(fmt::format("the device did not finish within {:g} s", seconds)), seconds_(seconds) {}
+
 std::string_view resultName(VkResult result) {
 #define QUINTET_NAME(name) \
   case name: return #name

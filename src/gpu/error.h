@@ -31,6 +31,16 @@ class DeviceLostError : public Error {
   using Error::Error;
 };
 
+// It did not finish in time, and still works on it: what it uses must not be destroyed.
+class TimeoutError : public DeviceLostError {
+ public:
+  explicit TimeoutError(double seconds);
+  double seconds() const { return seconds_; }
+
+ private:
+  double seconds_;
+};
+
 std::string_view resultName(VkResult result);
 
 // Throws unless result >= 0: MemoryError for exhausted memory, DeviceLostError for a lost device,

@@ -143,7 +143,7 @@ void Submissions::wait(std::uint64_t value, double timeoutSeconds) {
   assert(value <= submitted());
   if (!reached(value, timeoutSeconds)) {
     longestTimeout_.store(std::max(longestTimeout_.load(), timeoutSeconds));
-    throw DeviceLostError(fmt::format("the device did not finish within {:g} s", timeoutSeconds));
+    throw TimeoutError(timeoutSeconds);
   }
   collect();
 }

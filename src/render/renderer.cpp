@@ -203,7 +203,8 @@ struct Renderer::Impl {
       // Where even one row is too long, its samples are launched one by one: same sums, same order.
       const std::uint32_t rows = launchRows(height - row, sampleCount);
       const double predicted = static_cast<double>(rows) * film->region().width * sampleCount;
-      const bool whole = pixelSamplesPerSecond == 0 || predicted <= 2.0 * settings.launchSeconds * pixelSamplesPerSecond;
+      // So it is as long as the rate is not known: a shader that is slow, or never ends, is found out soon.
+      const bool whole = predicted <= 2.0 * settings.launchSeconds * pixelSamplesPerSecond;
       const std::uint32_t step = whole ? sampleCount : 1;
       for (std::uint32_t s = 0; s < sampleCount; s += step)
         launch(row, rows, first + s, std::min(step, sampleCount - s), row == 0 && s == 0, row + rows == height && s + step >= sampleCount);

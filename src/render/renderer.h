@@ -27,7 +27,7 @@ struct RenderSettings {
   std::uint32_t frameCount = 0;  // frames of this run, for programs that accumulate (frameSize); 0: it has no end
   bool instrument = false;      // checks at run time, slow: Renderer::notes
   double launchSeconds = 0.25;  // a launch is cut so that it takes about this long
-  // A launch that takes longer: gpu::DeviceLostError. 0: 60, or 600 on a CPU, whose first launch compiles.
+  // A launch that takes longer: gpu::TimeoutError. 0: 60, or 600 on a CPU, whose first launch compiles.
   double timeoutSeconds = 0;
 };
 
