@@ -22,12 +22,6 @@ using Files = std::vector<fs::path>;
 
 constexpr double kSignalSeconds = 0.25;  // a signal that comes just before the wait is seen so soon
 
-// What a program's folder may consist of; not the pictures that are written there.
-bool isSource(const fs::path& name) {
-  constexpr std::string_view kExtensions[] = {".toml", ".glsl", ".h", ".rgen", ".rint", ".rahit", ".rchit", ".rmiss", ".rcall"};
-  return !name.string().starts_with('.') && std::ranges::find(kExtensions, name.extension().string()) != std::end(kExtensions);
-}
-
 // Seconds since the latest of the files was written; 0 if they are gone or their times make no sense.
 double secondsSinceSave(const Files& files) {
   constexpr double kPlausible = 600;
@@ -109,7 +103,7 @@ class Watching {
     if (program.filename() == "program.toml") folders.push_back(program.has_parent_path() ? program.parent_path() : ".");
     Files files = session_.files();
     if (fs::is_regular_file(program, ignored)) files.push_back(program);
-    watcher_.watch(files, folders, isSource);
+    watcher_.watch(files, folders, isProgramSource);
     if (!told_) session_.progress().note(fmt::format("watching {} files; Ctrl-C ends", files.size()));
     told_ = true;
   }

@@ -1,6 +1,8 @@
 #include "session.h"
 
 #include <algorithm>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -35,6 +37,11 @@ void checkMemory(const gpu::DeviceInfo& device, uvec2 size, std::size_t outputCo
 }
 
 }  // namespace
+
+bool isProgramSource(const std::filesystem::path& name) {
+  constexpr std::string_view kExtensions[] = {".toml", ".glsl", ".h", ".rgen", ".rint", ".rahit", ".rchit", ".rmiss", ".rcall"};
+  return !name.string().starts_with('.') && std::ranges::find(kExtensions, name.extension().string()) != std::end(kExtensions);
+}
 
 Session::Session(const RenderOptions& options) : options_(options), progress_(options.quiet) {}
 
@@ -162,7 +169,10 @@ std::vector<std::filesystem::path> Session::sceneFiles() const {
 
 std::vector<std::filesystem::path> Session::files() const {
   std::vector<std::filesystem::path> files = sceneFiles();
-  for (const auto& [name, text] : program_.files) files.emplace_back(program_.path(name));
+  for (const auto& [name, text] : program_.files)
+    if (isProgramSource(name)) files.emplace_back(program_.path(name));
+  for (const program::ImageValue& image : parameters_.images())
+    if (!image.file.empty()) files.emplace_back(image.ofProgram ? program_.path(image.file) : image.file);
   if (!options_.setFile.empty()) files.push_back(options_.setFile);
   if (renderer_) files.insert(files.end(), renderer_->files().begin(), renderer_->files().end());
   std::erase_if(files, [](const auto& file) { return file.string().starts_with('<'); });  // in memory

@@ -22,6 +22,10 @@
 
 namespace quintet::app {
 
+// A file by whose name a program's folder may be watched: shaders and descriptions, not the pictures that are
+// written there.
+bool isProgramSource(const std::filesystem::path& name);
+
 class Session {
  public:
   // `options` outlives the session.

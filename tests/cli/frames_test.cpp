@@ -104,6 +104,25 @@ TEST_F(Frames, WatchRestarts) {
   EXPECT_EQ(process.finish().status, 0);
 }
 
+// An animation of a film program: a quad that moves past the camera.
+TEST_F(Frames, MovingScenes) {
+  write(folder_ / "moving.scene.toml", "[[file]]\nname = \"quad\"\npath = \"scene.gltf\"\n"
+                                       "[[instance]]\nof = \"quad\"\n"
+                                       "keyframes = [{ frame = 0 }, { frame = 2, translate = [8.0, 0.0, 0.0] }]\n"
+                                       "[[camera]]\nlook_from = [0, 0, 4]\nlook_at = [0, 0, 0]\n");
+  const std::vector<std::string> run{"run", "normals", "moving.scene.toml", "--size", "16x12", "--spp", "4", "-q", "--env", "none"};
+  auto all = run, last = run;
+  all.insert(all.end(), {"--frames", "3", "-o", "m.%d.exr"});
+  last.insert(last.end(), {"--frames", "3", "-o", "last.exr"});
+  const RunResult result = quintet(all);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NEAR(picture("m.0.exr").pixel<float>(8, 6)[2], 1.0f, 0.01f);  // the quad faces the camera
+  EXPECT_NEAR(picture("m.2.exr").pixel<float>(8, 6)[2], 0.0f, 0.01f);  // gone
+  EXPECT_NE(picture("m.1.exr").data, picture("m.0.exr").data);
+  ASSERT_EQ(quintet(last).status, 0);
+  EXPECT_EQ(picture("last.exr").data, picture("m.2.exr").data);
+}
+
 TEST_F(Frames, WhatMakesNoSense) {
   expectError(count({"--frames", "0"}), 2, {"--frames"});
   expectError(count({"--frames", "1.5"}), 2, {"--frames", "whole"});

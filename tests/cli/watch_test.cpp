@@ -1,5 +1,7 @@
 // `run --watch` as a real process: save, see the new picture, break it, see the diagnostics, mend it.
+#include <chrono>
 #include <csignal>
+#include <thread>
 
 #include <gmock/gmock.h>
 
@@ -152,6 +154,42 @@ TEST_F(Watch, SavesWhileItRenders) {
   EXPECT_EQ(result.status, 130);
   EXPECT_THAT(result.err, HasSubstr("interrupted"));
   expectSky({0.0f, 1.0f, 0.0f});
+}
+
+// The picture lies in the program's folder: writing it is no edit.
+TEST_F(Watch, PicturesInTheFolderDoNotMatter) {
+  TerminalRun process({"run", "sky", "--watch", "--size", "16x16", "--spp", "1", "-o", "sky/out.exr"}, folder_.path());
+  ASSERT_TRUE(process.waitForNext("out.exr: 16x16"));
+  saveSky("payload.color = vec3(0.25);");
+  ASSERT_TRUE(process.waitForNext("sky.rmiss saved"));
+  ASSERT_TRUE(process.waitForNext("out.exr: 16x16"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  process.signal(SIGINT);
+  const RunResult result = process.finish();
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err.find("out.exr saved"), std::string::npos) << result.err;
+  const std::size_t first = result.err.find("out.exr: 16x16"), second = result.err.find("out.exr: 16x16", first + 1);
+  EXPECT_EQ(result.err.find("out.exr: 16x16", second + 1), std::string::npos) << result.err;
+}
+
+// The picture that a parameter names.
+TEST_F(Watch, ImagesOfParameters) {
+  write(folder_ / "image.rt.glsl",
+        "uniform sampler2D picture;\nvoid main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(texture(picture, vec2(0.5))); }\n");
+  io::Image flat = io::makeImage(2, 2, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
+  const auto save = [&](std::uint8_t value) {
+    for (auto& sample : flat.samples<std::uint8_t>()) sample = value;
+    write(folder_ / "new.png", io::encodePng(flat));
+    fs::rename(folder_ / "new.png", folder_ / "flat.png");
+  };
+  save(0);
+  TerminalRun process({"run", "image", "--watch", "--size", "8x8", "--set", "picture=flat.png", "-o", "out.png"}, folder_.path());
+  ASSERT_TRUE(process.waitForNext("out.png: 8x8"));
+  EXPECT_EQ(picture("out.png").pixel<std::uint8_t>(1, 1)[0], 0);
+  save(255);
+  ASSERT_TRUE(process.waitForNext("flat.png saved: "));
+  ASSERT_TRUE(process.waitForNext("out.png: 8x8"));
+  EXPECT_EQ(picture("out.png").pixel<std::uint8_t>(1, 1)[0], 255);
 }
 
 TEST_F(Watch, WhatMakesNoSense) {
