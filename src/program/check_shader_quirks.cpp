@@ -1,8 +1,10 @@
 // What the specification allows, and drivers or the optimizer get wrong (docs/design/quirks.md): Q901, Q902, Q904,
 // Q905.
 #include <algorithm>
+#include <set>
 
 #include "program/check_shader_rules.h"
+#include "shader/control_flow.h"
 #include "shader/mend_builtins.h"
 
 namespace quintet::program {
@@ -14,6 +16,9 @@ using shader::SpirvModule;
 using spv::Op;
 
 namespace {
+
+// The lecture form writes it within its own reportIntersectionEXT, which takes care of such devices.
+constexpr std::string_view kLectureAttribute = "gsnHitAttribute_";
 
 std::vector<std::size_t> all(const SpirvModule& module, Op op) {
   std::vector<std::size_t> result;
@@ -44,18 +49,36 @@ bool reachableWithout(const SpirvFunction& function, std::size_t target, std::si
   return false;
 }
 
+// Does gl_RayTmaxEXT have a part in the value: as an operand, or in a branch that decides what a phi on the way takes?
+bool dependsOnTmax(const SpirvModule& module, const shader::ControlFlow& flow, SpirvId value) {
+  std::set<SpirvId> seen{value};
+  std::vector<SpirvId> open{value};
+  while (!open.empty()) {
+    const SpirvId next = open.back();
+    open.pop_back();
+    const bool found = dependsOn(module, next, [&](const SpirvInstruction& i) {
+      if (loadsBuiltIn(module, i, spv::BuiltIn::RayTmaxKHR)) return true;
+      const auto at = i.op == Op::OpPhi ? module.position(module.definitionIndex(i.result)) : std::nullopt;
+      if (at && &module.functions()[at->function] == &flow.function())
+        for (const SpirvId condition : flow.phiConditions(at->block))
+          if (seen.insert(condition).second) open.push_back(condition);
+      return false;
+    });
+    if (found) return true;
+  }
+  return false;
+}
+
 // Does a comparison with gl_RayTmaxEXT decide whether the instruction runs?
 bool guardedByTmax(const SpirvModule& module, std::size_t instruction) {
   const auto at = module.position(instruction);
   if (!at) return false;
-  const SpirvFunction& function = module.functions()[at->function];
+  const shader::ControlFlow flow(module, at->function);
+  const SpirvFunction& function = flow.function();
   for (std::size_t b = 0; b < function.blocks.size(); ++b) {
     const SpirvInstruction& branch = module.instructions()[function.blocks[b].end - 1];
     if (branch.op != Op::OpBranchConditional) continue;
-    const bool tmax = dependsOn(module, branch.at(0), [&](const SpirvInstruction& i) {
-      return loadsBuiltIn(module, i, spv::BuiltIn::RayTmaxKHR);
-    });
-    if (!tmax) continue;
+    if (!dependsOnTmax(module, flow, branch.at(0))) continue;
     for (const std::size_t successor : function.blocks[b].successors)
       if (!reachableWithout(function, at->block, b, successor)) return true;
   }
@@ -94,6 +117,7 @@ void checkAttributeWrites(const SpirvModule& module, Findings& findings) {
     const SpirvInstruction& instruction = module.instructions()[store];
     const shader::SpirvVariable* variable = module.variable(module.access(instruction.at(0)).variable);
     if (!variable || variable->storage != spv::StorageClass::HitAttributeKHR) continue;
+    if (variable->name == kLectureAttribute) continue;
     const bool reported = std::ranges::any_of(reports, [&](std::size_t r) { return mayRunAfter(module, r, store); });
     if (!reported || guardedByTmax(module, store)) continue;
     findings.add(

@@ -86,7 +86,7 @@ void checkSharedIntersections(const CheckInput& input, Report& report) {
   const LinkModel& model = input.model;
   for (const HitGroup& group : model.program.hitGroups) {
     for (const auto& [ray, shaders] : group.shaders) {
-      if (shaders.intersection.empty() || shaders.anyHit.empty()) continue;
+      if (shaders.intersection.empty() || shaders.anyHit.empty() || isLibraryStage(shaders.intersection)) continue;
       const auto [known, isNew] = first.try_emplace(shaders.intersection, Use{&group, &shaders});
       if (isNew || known->second.shaders->anyHit == shaders.anyHit) continue;
       report.add(

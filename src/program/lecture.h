@@ -23,6 +23,9 @@ Program parseLecture(const std::string& text, const std::string& file, const std
 // nothing if it is none of these. Throws FileError for files that cannot be read.
 std::optional<Program> findLecture(const std::string& nameOrPath);
 
+// Says of `hit` and `baryCoord` that the stage has no hit (Q204), where the compiler says that they are undeclared.
+void explainLectureNames(std::vector<shader::Diagnostic>& diagnostics, shader::Stage stage);
+
 // Names of the built-in programs of this form: the path below programs/ without .rt.glsl.
 std::vector<std::string> builtInLectures();
 

@@ -9,6 +9,7 @@
 #include "program/device_stages.h"
 #include "program/generated.h"
 #include "program/instrument.h"
+#include "program/lecture.h"
 
 namespace quintet::program {
 namespace {
@@ -88,6 +89,7 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
     source.defines = defines;
     source.virtualFiles = virtualFiles;
     results[i] = compiler.compile(source);
+    if (program.descriptionFile.ends_with(kLectureExtension)) explainLectureNames(results[i].diagnostics, source.stage);
     compiled.stages[i] = {files[i], source.stage, std::move(results[i].spirv)};
   });
   compiled.ok = true;

@@ -27,6 +27,15 @@ TEST(CheckBuiltIn, NothingIsReportedWithAScene) {
   }
 }
 
+// A device with every defect of docs/design/quirks.md, as lavapipe is.
+TEST(CheckBuiltIn, NothingIsReportedOnADefectiveDevice) {
+  DeviceLimits limits;
+  limits.quirks.changesNestedBuiltIns = limits.quirks.corruptsHitAttributes = true;
+  limits.quirks.sharesAnyHit = limits.quirks.sharesLocalArrays = true;
+  for (const std::string& name : builtInPrograms())
+    EXPECT_EQ(textOf(check(loadProgram(name), checkCompiler(), nullptr, limits)), "") << name;
+}
+
 // It runs at every start: the check itself, without compilation, takes some ten milliseconds.
 TEST(CheckBuiltIn, IsQuick) {
   const Program program = loadProgram("pathtracer");
@@ -34,7 +43,6 @@ TEST(CheckBuiltIn, IsQuick) {
   const CheckResult result = check(program, compiled, nullptr, {});
   EXPECT_LT(result.seconds - compiled.seconds, 0.5);
   RecordProperty("milliseconds", static_cast<int>(1000 * (result.seconds - compiled.seconds)));
-
 }
 
 }  // namespace

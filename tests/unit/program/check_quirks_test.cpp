@@ -60,6 +60,15 @@ TEST(CheckQuirks, GuardedAttributeIsRight) {
       IsEmpty());
 }
 
+// The comparison decides which candidate is kept, and that decides whether there is a report.
+TEST(CheckQuirks, CandidateChosenByTheComparison) {
+  EXPECT_THAT(
+      intersection("float nearest = 1e30;\nfor (int i = 0; i < gl_PrimitiveID; ++i) {\nfloat c = t * float(i);\n"
+                   "if (!(c >= gl_RayTminEXT && c <= gl_RayTmaxEXT && c < nearest)) continue;\nnearest = c;\n}\n"
+                   "if (nearest >= 1e30) return;\nnormal = vec3(nearest);\nreportIntersectionEXT(nearest, 0u);"),
+      IsEmpty());
+}
+
 TEST(CheckQuirks, RayTmaxAfterAReport) {
   const std::string twice =
       "if (t < gl_RayTmaxEXT) reportIntersectionEXT(t, 0u);\nif (2.0 * t < gl_RayTmaxEXT)\nreportIntersectionEXT(2.0 * "
