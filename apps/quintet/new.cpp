@@ -38,20 +38,6 @@ struct NewProgram {
 
 bool isLecture(const program::Program& program) { return program.descriptionFile.ends_with(program::kLectureExtension); }
 
-// "first_ray" also finds the built-in "lessons/01_first_ray".
-program::Program loadSource(const std::string& name) {
-  const std::vector<std::string> all = program::builtInPrograms();
-  if (fs::exists(name) || std::ranges::find(all, name) != all.end()) return program::loadProgram(name);
-  const auto isShortFor = [&](const std::string& full) {
-    std::string last = fs::path(full).filename().string();
-    if (last == name) return true;
-    last.erase(0, last.find_first_not_of("0123456789_"));
-    return last == name;
-  };
-  const auto found = std::ranges::find_if(all, isShortFor);
-  return program::loadProgram(found == all.end() ? name : *found);
-}
-
 // The lecture file under its new name and what it needs: files whose names stand in those that are copied.
 Files copyOfLecture(const program::Program& source, const std::string& stem) {
   const std::string& main = source.descriptionFile;
@@ -90,7 +76,7 @@ NewProgram plan(const Options& options) {
   if (options.from.empty())
     return options.folder ? NewProgram{folder, folderTemplate(), folder}
                           : NewProgram{path.parent_path(), lectureTemplate(file), path.parent_path() / file};
-  const program::Program source = loadSource(options.from);
+  const program::Program source = program::loadProgram(options.from);
   if (!isLecture(source)) return {folder, source.files, folder};
   const fs::path home = options.folder ? folder : path.parent_path();
   return {home, copyOfLecture(source, stem), home / file};

@@ -100,6 +100,36 @@ std::vector<std::string> builtInPrograms() {
   return names;
 }
 
+namespace {
+
+// "lessons/05_shadow" is also called "05_shadow" and "shadow".
+std::map<std::string, std::string> shortNames() {
+  std::map<std::string, std::string> names;
+  for (const std::string& full : builtInPrograms()) {
+    std::string last = full.substr(full.rfind('/') + 1);
+    for (int i = 0; i < 2; ++i) {
+      const bool isNew = names.emplace(last, full).second;
+      if (!isNew && names[last] != full) names[last].clear();  // two of them: none
+      last.erase(0, last.find_first_not_of("0123456789_"));
+    }
+  }
+  std::erase_if(names, [](const auto& entry) { return entry.second.empty() || entry.first.empty(); });
+  return names;
+}
+
+[[noreturn]] void failUnknown(const std::string& name) {
+  const std::map<std::string, std::string> known = shortNames();
+  std::vector<std::string> candidates = builtInPrograms();
+  for (const auto& [shortName, full] : known) candidates.push_back(shortName);
+  const std::string nearest = nearestName(name, candidates);
+  const auto found = known.find(nearest);
+  const std::string full = found == known.end() ? nearest : found->second;
+  throw UsageError(fmt::format("no program '{}': neither a folder with program.toml, nor a file {}.rt.glsl, nor a built-in one{}",
+                               name, name, full.empty() ? "" : fmt::format("; did you mean '{}'?", full)));
+}
+
+}  // namespace
+
 Program loadProgram(const std::string& nameOrFolder) {
   if (std::optional<Program> lecture = findLecture(nameOrFolder)) return std::move(*lecture);
   std::error_code ignored;
@@ -117,10 +147,10 @@ Program loadProgram(const std::string& nameOrFolder) {
     return parseProgram(text, nameOrFolder, "<programs/" + nameOrFolder + ">", std::move(files));
   }
   if (fs::is_directory(path, ignored)) throw FileError(path, "has no program.toml");
-  const std::string nearest = nearestName(nameOrFolder, builtInPrograms());
-  throw UsageError(fmt::format("no program '{}': neither a folder with program.toml nor one of {}{}", nameOrFolder,
-                               fmt::join(builtInPrograms(), ", "),
-                               nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+  const std::map<std::string, std::string> known = shortNames();
+  const auto found = known.find(nameOrFolder);
+  if (found != known.end() && found->second != nameOrFolder) return loadProgram(found->second);
+  failUnknown(nameOrFolder);
 }
 
 }  // namespace quintet::program

@@ -132,7 +132,7 @@ std::vector<std::string> outputNames(const Program& program);
 void chooseDefaultScene(Program& program);
 
 // `nameOrFolder`: a folder with program.toml (or that file itself), a file NAME.rt.glsl (lecture.h), or the name of
-// a built-in program. Throws FileError (with line) for a description that is wrong, UsageError with the nearest
+// a built-in program ("lessons/05_shadow"; "05_shadow" and "shadow" do where only one fits). Throws FileError (with line) for a description that is wrong, UsageError with the nearest
 // name for a program that does not exist.
 Program loadProgram(const std::string& nameOrFolder);
 

@@ -64,6 +64,16 @@ TEST_F(New, CopiesOfPrograms) {
   EXPECT_EQ(readTextFile(folder_ / "mine" / "ao.rgen"), readTextFile(folder_ / "again" / "ao.rgen"));
 }
 
+TEST_F(New, CopiesOfLessons) {
+  ASSERT_EQ(quintet({"new", "mine", "--from", "first_ray"}).status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "mine.rt.glsl"));
+  const RunResult own = quintet({"run", "mine", "--size", "32x18", "-q", "-o", "a.png"});
+  ASSERT_EQ(own.status, 0) << own.err;
+  ASSERT_EQ(quintet({"run", "lessons/01_first_ray", "--size", "32x18", "-q", "-o", "b.png"}).status, 0);
+  EXPECT_EQ(picture("a.png").data, picture("b.png").data);
+  EXPECT_EQ(quintet({"check", "mine", "--strict"}).status, 0);
+}
+
 TEST_F(New, CopiesOfLecturesWithWhatTheyNeed) {
   ASSERT_EQ(quintet({"new", "first"}).status, 0);
   std::string text = readTextFile(folder_ / "first.rt.glsl");

@@ -214,6 +214,23 @@ TEST(Program, LoadsAFolder) {
   }
 }
 
+TEST(Program, LessonsHaveShortNames) {
+  const std::string full = "lessons/05_shadow";
+  const Program program = loadProgram(full);
+  for (const char* name : {"05_shadow", "shadow"}) {
+    EXPECT_EQ(loadProgram(name).origin, program.origin);
+    EXPECT_EQ(loadProgram(name).files, program.files);
+  }
+  EXPECT_EQ(loadProgram("ao").name, "ao");
+  EXPECT_THROW(loadProgram("lessons"), UsageError);
+  try {
+    loadProgram("shadw");
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean 'lessons/05_shadow'?"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Program, NamesTheNearestBuiltIn) {
   try {
     loadProgram("pathtrace");
