@@ -1,6 +1,7 @@
 // `quintet check`: compiles programs and checks how their shaders fit together, on a scene. Without --instrument it needs
 // no device and renders nothing.
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
 #include <optional>
 
@@ -10,6 +11,7 @@
 #include "base/file.h"
 #include "cli.h"
 #include "diagnostics_view.h"
+#include "gpu/device_choice.h"
 #include "instrument.h"
 #include "program/check.h"
 #include "progress.h"
@@ -32,10 +34,10 @@ constexpr const char* kExamples =
 struct Options {
   std::vector<std::string> programs;
   std::filesystem::path scene;
+  std::string device;
   bool json = false;
   bool strict = false;
   bool instrument = false;
-  std::string device;
 };
 
 bool looksLikeScene(const std::filesystem::path& file) {
@@ -54,7 +56,7 @@ std::optional<Options> parseOptions(Arguments arguments) {
   app.add_flag("--json", options.json, "An array of diagnostics on standard output");
   app.add_flag("--strict", options.strict, "Warnings count as errors for the exit status");
   app.add_flag("--instrument", options.instrument, "Also run a small picture with checks in the shaders (Q001 to Q006)");
-  app.add_option("--device", options.device, "The device that --instrument runs on: index or part of the name")->type_name("NAME");
+  app.add_option("--device", options.device, "Whose limits and defects count, and what --instrument runs on: index or\npart of the name; none: no device's")->type_name("NAME");
   setUp(app, kExamples);
   if (!parse(app, arguments)) return std::nullopt;
   if (!positional.empty() && looksLikeScene(positional.back())) {
@@ -72,15 +74,26 @@ shader::Compiler makeCompiler() {
   return shader::Compiler(options);
 }
 
+// Of the device that `render` would take; without any device what the tested ones have in common.
+program::DeviceLimits chooseLimits(const Options& options) {
+  if (options.device == "none") return {};
+  const std::vector<gpu::DeviceInfo> devices = gpu::Context::devices();
+  const char* wanted = std::getenv("QUINTET_DEVICE");
+  const std::string request = !options.device.empty() || !wanted ? options.device : wanted;
+  if (request.empty() && std::ranges::none_of(devices, &gpu::DeviceInfo::usable)) return {};
+  return program::deviceLimits(devices[gpu::chooseDevice(devices, request)]);
+}
+
 // With the scene that was asked for or that the program brings; without any, what holds for every scene.
-std::vector<Diagnostic> check(const program::Program& program, const shader::Compiler& compiler, const Options& options) {
+std::vector<Diagnostic> check(const program::Program& program, const shader::Compiler& compiler, const Options& options,
+                              const program::DeviceLimits& limits) {
   const SceneSource source = chooseScene(options.scene, program);
   const bool hasScene = !options.scene.empty() || !program.scene.empty();
   std::optional<scene::Scene> scene;
   std::optional<program::SceneFacts> facts;
   if (hasScene || options.instrument) scene = loadScene(source);
   if (hasScene) facts = render::sceneFacts(*scene);
-  std::vector<Diagnostic> found = program::check(program, compiler, facts ? &*facts : nullptr, program::DeviceLimits{}).diagnostics;
+  std::vector<Diagnostic> found = program::check(program, compiler, facts ? &*facts : nullptr, limits).diagnostics;
   if (!options.instrument || hasErrors(found)) return found;
   std::ranges::move(runInstrumented(program, *scene, compiler, options.device), std::back_inserter(found));
   return found;
@@ -92,12 +105,13 @@ int checkCommand(Arguments arguments) {
   const std::optional<Options> options = parseOptions(arguments);
   if (!options) return 0;
   const shader::Compiler compiler = makeCompiler();
+  const program::DeviceLimits limits = chooseLimits(*options);
   std::vector<Diagnostic> all;
   for (const std::string& name : options->programs) {
     std::vector<Diagnostic> found;
     try {
       const program::Program program = program::loadProgram(name);
-      found = check(program, compiler, *options);
+      found = check(program, compiler, *options, limits);
       if (!options->json) fmt::print(stderr, "{}", diagnosticsText(found, sourcesOf(program), colorOnStandardError()));
     } catch (const FileError& error) {
       found = {asDiagnostic(error)};

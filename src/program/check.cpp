@@ -62,7 +62,10 @@ CheckResult check(const Program& program, const CompiledProgram& compiled, const
     checkGeometry(input, report);
     checkStages(input, report);
     checkUnused(input, report, result);
-    std::ranges::move(report.take(), std::back_inserter(result.diagnostics));
+    for (shader::Diagnostic& d : report.take()) {
+      d.file = userFile(program, d.file);
+      result.diagnostics.push_back(std::move(d));
+    }
   }
   result.seconds = compiled.seconds + secondsSince(start);
   return result;

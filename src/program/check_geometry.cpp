@@ -118,7 +118,7 @@ class Geometry {
     static const GeometryFacts kOpaque, kAlpha{GeometryKind::triangles, true, {}, {}};
     for (const TraceSite& site : model_.traces) {
       for (const HitRow row : site.hits) {
-        const bool alpha = !bindsOnly(groupOf(row), "opaque");
+        const bool alpha = model_.program.anyHitForAll || !bindsOnly(groupOf(row), "opaque");
         const shader::ArgumentValues& flags = site.trace->flags;
         Meeting meeting{&site, &kInstance, alpha ? &kAlpha : &kOpaque, row, false, false};
         meeting.opaque = flags.must(kFlagOpaque) || (!alpha && !flags.may(kFlagNoOpaque));

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "program/check_parts.h"
 #include "shader/spirv_flow.h"
@@ -121,40 +122,65 @@ class Members {
                     name, lineText(tracer, reads.front(), site), fmt::join(who, " and ")));
   }
 
-  // Set to a constant, never written by anybody, and then read: the trace tells nothing.
+  // Everything that anybody writes there is one constant: the trace tells nothing.
   void reportStale(const TraceSite& site, const shader::SharedVariable& payload, std::uint32_t member,
                    const std::string& name, const std::vector<std::size_t>& reads) {
     const StageFacts& tracer = factsOf(site.stage);
     if (payload.storage != StorageClass::RayPayloadKHR) return;
-    std::size_t callees = 0;
+    std::set<std::string> constants;
+    bool known = addConstants(tracer, payload.id, member, constants);
+    std::size_t callees = 0, writers = 0;
     for (const Edge& edge : site.edges) {
       if (edge.role == Role::intersection) continue;
-      if (!edge.exact || writes(edge, member, false)) return;
+      const shader::SharedVariable* received = factsOf(edge.stage).incoming(StorageClass::IncomingRayPayloadKHR);
+      known = known && edge.exact && (!received || addConstants(factsOf(edge.stage), received->id, member, constants));
       ++callees;
+      writers += writes(edge, member, false) ? 1 : 0;
     }
-    if (callees == 0 || !onlyConstantsWritten(tracer, payload.id, member)) return;
+    if (!known || callees == 0 || constants.size() != 1) return;
     report_.add(
         "Q104", placeOf(site),
-        fmt::format("{} is read after this trace{}, but no shader that the trace can run writes it: it still has the "
-                    "constant that was set before",
-                    name, lineText(tracer, reads.front(), site)));
+        fmt::format("{} is read after this trace{}, but {}", name, lineText(tracer, reads.front(), site),
+                    writers == 0
+                        ? "no shader that the trace can run writes it: it still has the constant that was set before"
+                        : "all that the trace can run writes the constant that was set before: it tells nothing"));
   }
 
-  static bool onlyConstantsWritten(const StageFacts& tracer, shader::SpirvId payload, std::uint32_t member) {
-    return std::ranges::all_of(tracer.accesses(), [&](const shader::AccessFacts& a) {
-      if (!a.writes || a.variable != payload || (a.member != member && a.member != shader::kWholeValue)) return true;
-      return isConstantStore(tracer, a);
-    });
+  // Adds what the stage writes there; false if one of its writes is no constant.
+  static bool addConstants(const StageFacts& facts, shader::SpirvId payload, std::uint32_t member,
+                           std::set<std::string>& constants) {
+    for (const shader::AccessFacts& a : facts.accesses()) {
+      if (!a.writes || a.variable != payload || (a.member != member && a.member != shader::kWholeValue)) continue;
+      const shader::SpirvId value = storedValue(facts, a);
+      if (!facts.module().isConstant(value)) return false;
+      constants.insert(
+          constantText(facts.module(), value, a.member == shader::kWholeValue ? member : shader::kWholeValue));
+    }
+    return true;
   }
 
-  static bool isConstantStore(const StageFacts& facts, const shader::AccessFacts& access) {
+  // What a store puts into the member, or into all of them; 0: unknown.
+  static shader::SpirvId storedValue(const StageFacts& facts, const shader::AccessFacts& access) {
     const shader::SpirvInstruction& store = facts.module().instructions()[access.instruction];
-    if (store.op != spv::Op::OpStore) return false;
+    if (store.op != spv::Op::OpStore) return 0;
     const shader::SpirvInstruction* value = facts.module().definition(store.at(1));
-    if (value && value->op == spv::Op::OpCompositeConstruct && access.member < value->operands.size() &&
-        facts.module().access(store.at(0)).indices.empty())
-      return facts.module().isConstant(value->at(access.member));
-    return facts.module().isConstant(store.at(1));
+    const bool made = value && value->op == spv::Op::OpCompositeConstruct && access.member < value->operands.size();
+    return made && facts.module().access(store.at(0)).indices.empty() ? value->at(access.member) : store.at(1);
+  }
+
+  // The words of a constant, the same for the same value in any module; of one of its parts, if `part` is given.
+  static std::string constantText(const shader::SpirvModule& module, shader::SpirvId id, std::uint32_t part,
+                                  int depth = 0) {
+    const shader::SpirvInstruction* value = module.definition(id);
+    if (!value || depth > 8) return "?";
+    if (value->op == spv::Op::OpConstantComposite) {
+      if (part < value->operands.size()) return constantText(module, value->at(part), shader::kWholeValue, depth + 1);
+      std::string text = "(";
+      for (const shader::SpirvId element : value->operands)
+        text += constantText(module, element, shader::kWholeValue, depth + 1) + " ";
+      return text + ")";
+    }
+    return fmt::format("{} {}", static_cast<int>(value->op), fmt::join(value->operands, " "));
   }
 
   void reportOverwritten(const TraceSite& site, const shader::SharedVariable& payload, std::uint32_t member,
@@ -170,7 +196,8 @@ class Members {
     if (!writer) return;
     for (const shader::AccessFacts& a : tracer.accesses()) {
       const bool lost = a.writes && a.variable == payload.id &&
-                        (a.member == member || a.member == shader::kWholeValue) && !isConstantStore(tracer, a) &&
+                        (a.member == member || a.member == shader::kWholeValue) &&
+                        !tracer.module().isConstant(storedValue(tracer, a)) &&
                         shader::mayRunAfter(tracer.module(), site.trace->instruction, a.instruction);
       if (!lost) continue;
       const shader::Place written = tracer.module().place(tracer.module().instructions()[a.instruction]);

@@ -2,10 +2,9 @@
 
 namespace quintet::program {
 
-DeviceLimits deviceLimits(const gpu::Context& context) {
-  const gpu::DeviceInfo& info = context.info();
-  return {info.name, info.limits.maxRecursionDepth, info.limits.maxHitAttributeSize, info.limits.handleSize,
-          info.quirks};
+DeviceLimits deviceLimits(const gpu::DeviceInfo& device) {
+  return {device.name, device.limits.maxRecursionDepth, device.limits.maxHitAttributeSize, device.limits.handleSize,
+          device.quirks};
 }
 
 }  // namespace quintet::program

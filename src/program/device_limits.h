@@ -17,7 +17,7 @@ struct DeviceLimits {
   gpu::Quirks quirks;                       // defects of its driver (docs/design/quirks.md); default: none
 };
 
-DeviceLimits deviceLimits(const gpu::Context& context);
+DeviceLimits deviceLimits(const gpu::DeviceInfo& device);
 
 }  // namespace quintet::program
 #endif

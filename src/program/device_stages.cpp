@@ -1,16 +1,17 @@
 #include "program/device_stages.h"
 
 #include "shader/mend_builtins.h"
+#include "shader/spirv_module.h"
 
 namespace quintet::program {
 
 DeviceStages::DeviceStages(const Program& program, const CompiledProgram& compiled, const gpu::Quirks& quirks)
     : compiled_(compiled), copies_(quirks.sharesAnyHit) {
-  mended_.reserve(compiled.stages.size());  // stages_ points into its elements
+  own_.reserve(compiled.stages.size());  // stages_ points into its elements
   for (const CompiledProgram::Stage& stage : compiled.stages) {
-    std::span<const std::uint32_t> spirv = stage.spirv;
+    std::vector<std::uint32_t>& spirv = own_.emplace_back(shader::withoutDebugInfo(stage.spirv));
     if (quirks.changesNestedBuiltIns && stage.kind == shader::Stage::closestHit)
-      spirv = mended_.emplace_back(shader::mendNestedBuiltIns(stage.spirv));
+      spirv = shader::mendNestedBuiltIns(spirv);
     stages_.push_back({stage.kind, spirv, program.path(stage.file)});
   }
 }

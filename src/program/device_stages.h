@@ -27,7 +27,7 @@ class DeviceStages {
  private:
   const CompiledProgram& compiled_;
   bool copies_;
-  std::vector<std::vector<std::uint32_t>> mended_;              // SPIR-V that is not the compiler's
+  std::vector<std::vector<std::uint32_t>> own_;                 // SPIR-V, without sources, lines and names
   std::vector<rt::PipelineStage> stages_;                       // those of `compiled` first, in its order
   std::map<std::string, std::map<std::string, int>> byAnyHit_;  // intersection -> any-hit -> stage
 };

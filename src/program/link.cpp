@@ -51,15 +51,14 @@ std::string_view kindName(GeometryKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-// The compiler knows the program's files in memory only and calls them "<folder/file>".
-std::string userName(const Program& program, const std::string& file) {
+}  // namespace
+
+std::string userFile(const Program& program, const std::string& file) {
   if (!isLibraryStage(file)) return file;
   const std::string inside = file.substr(1, file.size() - 2);
   const bool own = std::ranges::any_of(program.files, [&](const auto& entry) { return program.path(entry.first) == inside; });
   return own ? inside : file;
 }
-
-}  // namespace
 
 const CompiledProgram::Stage& CompiledProgram::stage(const std::string& file) const {
   const auto found = std::find_if(stages.begin(), stages.end(), [&](const Stage& stage) { return stage.file == file; });
@@ -105,7 +104,7 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
     for (const std::filesystem::path& file : results[i].files)
       if (std::ranges::find(compiled.files, file) == compiled.files.end()) compiled.files.push_back(file);
   }
-  for (shader::Diagnostic& d : compiled.diagnostics) d.file = userName(program, d.file);
+  for (shader::Diagnostic& d : compiled.diagnostics) d.file = userFile(program, d.file);
   compiled.seconds = secondsSince(start);
   return compiled;
 }

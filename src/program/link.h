@@ -28,6 +28,9 @@ struct CompiledProgram {
   const Stage& stage(const std::string& file) const;
 };
 
+// A file as the user knows it: the compiler has the program's own in memory only and calls them "<folder/file>".
+std::string userFile(const Program& program, const std::string& file);
+
 // `defines`: for all stages (features of the scene and the device). `instrument`: with the checks of instrument.h.
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
                         const std::vector<std::pair<std::string, std::string>>& defines, bool instrument = false);
@@ -41,7 +44,7 @@ std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry);
 // A program on a device.
 class LinkedProgram {
  public:
-  // `compiled.ok` must hold. `recursionDepth`: of nested traces, as check() derives it.
+  // `compiled.ok` must hold. `recursionDepth`: of nested traces, as check() derives it (check.h).
   LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set, const Program& program, const CompiledProgram& compiled,
                 std::uint32_t recursionDepth, const gpu::PipelineCache* cache);
 

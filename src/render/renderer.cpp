@@ -106,7 +106,7 @@ struct Renderer::Impl {
     defines.insert(defines.end(), scene.defines().begin(), scene.defines().end());
     const program::CompiledProgram compiled = program::compile(description, compiler, defines, settings.instrument);
     if (!compiled.ok) throw ProgramError(compiled.diagnostics);
-    const program::CheckResult checked = program::check(description, compiled, &scene.facts(), program::deviceLimits(context), true);
+    const program::CheckResult checked = program::check(description, compiled, &scene.facts(), program::deviceLimits(context.info()), true);
     if (!checked.ok()) throw ProgramError(checked.diagnostics);
     diagnostics = checked.diagnostics;
     files = compiled.files;

@@ -31,7 +31,7 @@ struct RenderSettings {
   double timeoutSeconds = 0;
 };
 
-// A program whose shaders do not compile; what() is the first error's line.
+// A program whose shaders do not compile or do not fit together (program/check.h); what() is the first error's line.
 class ProgramError : public Error {
  public:
   explicit ProgramError(std::vector<shader::Diagnostic> diagnostics);
@@ -82,7 +82,7 @@ class Renderer {
   const RenderStatistics& statistics() const;
   // What the checks of RenderSettings::instrument have found so far (ids Q001 … Q006). Blocks.
   std::vector<shader::Diagnostic> notes() const;
-  // Warnings and notes of the compiler.
+  // Warnings and notes of the compiler and of the check.
   const std::vector<shader::Diagnostic>& diagnostics() const;
   // Files on disk from outside the program: what its shaders include, and pictures of its parameters.
   const std::vector<std::filesystem::path>& files() const;

@@ -114,6 +114,7 @@ PathsAfter::PathsAfter(const SpirvModule& module, const ControlFlow& flow, std::
   block_ = position.block;
   function_ = position.function;
   blockCount_ = flow.function().blocks.size();
+  after_ = from(blockCount_, kNone);
 }
 
 std::size_t PathsAfter::nodeOf(std::size_t instruction) const {
@@ -122,8 +123,9 @@ std::size_t PathsAfter::nodeOf(std::size_t instruction) const {
   return position->block == block_ && instruction > instruction_ ? blockCount_ : position->block;
 }
 
-std::vector<std::size_t> PathsAfter::successors(std::size_t node) const {
-  if (node == block_) return {};  // the trace runs again
+const std::vector<std::size_t>& PathsAfter::successors(std::size_t node) const {
+  static const std::vector<std::size_t> kNowhere;
+  if (node == block_) return kNowhere;  // the trace runs again
   return flow_->function().blocks[blockOf(node)].successors;
 }
 
@@ -161,17 +163,24 @@ bool PathsAfter::reaches(std::size_t i, const std::vector<std::size_t>& kills) c
   return false;
 }
 
-std::vector<std::size_t> PathsAfter::guards(std::size_t instruction) const {
+const std::vector<std::size_t>& PathsAfter::guards(std::size_t instruction) const {
   const std::size_t goal = nodeOf(instruction);
+  const auto [found, isNew] = guards_.try_emplace(goal);
+  if (isNew && goal != kNone) found->second = findGuards(goal);
+  return found->second;
+}
+
+std::vector<std::size_t> PathsAfter::findGuards(std::size_t goal) const {
   std::vector<std::size_t> result;
-  if (goal == kNone) return result;
-  const std::vector<bool> after = from(blockCount_, kNone);
   for (std::size_t node = 0; node <= blockCount_; ++node) {
-    if (!after[node] || node == goal || successors(node).size() < 2) continue;
-    if (node != blockCount_ && from(blockCount_, node)[goal]) continue;  // there is a way around it
+    if (!after_[node] || node == goal || successors(node).size() < 2) continue;
+    if (node != blockCount_) {
+      const auto [around, isNew] = around_.try_emplace(node);
+      if (isNew) around->second = from(blockCount_, node);
+      if (around->second[goal]) continue;
+    }
     const auto leads = [&](std::size_t next) { return next != node && from(next, node)[goal]; };
-    const auto next = successors(node);
-    if (!std::ranges::all_of(next, leads)) result.push_back(blockOf(node));
+    if (!std::ranges::all_of(successors(node), leads)) result.push_back(blockOf(node));
   }
   return result;
 }

@@ -38,17 +38,21 @@ class PathsAfter {
   // itself ends every path.
   bool reaches(std::size_t i, const std::vector<std::size_t>& kills) const;
   // Branches that lie on every path from the trace to block `block` and can lead elsewhere.
-  std::vector<std::size_t> guards(std::size_t instruction) const;
+  const std::vector<std::size_t>& guards(std::size_t instruction) const;
 
  private:
   std::size_t nodeOf(std::size_t instruction) const;  // block index; the part after the trace is node blockCount
-  std::vector<std::size_t> successors(std::size_t node) const;
+  const std::vector<std::size_t>& successors(std::size_t node) const;
+  std::vector<std::size_t> findGuards(std::size_t goal) const;
   std::vector<bool> from(std::size_t node, std::size_t without) const;
   std::size_t blockOf(std::size_t node) const { return node == blockCount_ ? block_ : node; }
 
   const SpirvModule* module_;
   const ControlFlow* flow_;
   std::size_t instruction_, block_ = 0, function_ = 0, blockCount_ = 0;
+  std::vector<bool> after_;                                         // nodes that can run after the trace
+  mutable std::map<std::size_t, std::vector<std::size_t>> guards_;  // by node, found on demand
+  mutable std::map<std::size_t, std::vector<bool>> around_;         // what the trace reaches without a node
 };
 
 }  // namespace quintet::shader

@@ -73,6 +73,7 @@ struct SharedVariable {
   bool used = false;            // read or written, or named by a trace, call or report
 };
 
+// Not for two threads at once: some answers are kept.
 class StageFacts {
  public:
   explicit StageFacts(SpirvModule module);
@@ -126,6 +127,7 @@ class StageFacts {
   std::vector<std::size_t> readsAfter(const PathsAfter& paths, const TraceFacts& trace, std::uint32_t member) const;
   bool runsAlwaysBefore(std::vector<std::size_t> marks, std::size_t instruction) const;
   bool dependsOnPayload(SpirvId value, SpirvId payload) const;
+  bool findPayload(SpirvId value, SpirvId payload) const;
   bool guarded(const PathsAfter& paths, std::size_t instruction, SpirvId payload) const;
   bool usedUnguarded(const PathsAfter& paths, const AccessFacts& read) const;
   bool choosesByPayload(const SpirvInstruction& use, SpirvId value, const AccessFacts& read) const;
@@ -140,6 +142,7 @@ class StageFacts {
   std::vector<SharedVariable> variables_;
   bool ignores_ = false;
   bool terminates_ = false;
+  mutable std::map<std::pair<SpirvId, SpirvId>, bool> dependsOnPayload_;  // by value and payload, found on demand
 };
 
 }  // namespace quintet::shader

@@ -168,6 +168,12 @@ std::vector<std::size_t> StageFacts::unguardedReads(const TraceFacts& trace, std
 
 // Through values, local variables, and through the conditions that choose between the values of a phi.
 bool StageFacts::dependsOnPayload(SpirvId value, SpirvId payload) const {
+  const auto [found, isNew] = dependsOnPayload_.try_emplace({value, payload}, false);
+  if (isNew) found->second = findPayload(value, payload);
+  return found->second;
+}
+
+bool StageFacts::findPayload(SpirvId value, SpirvId payload) const {
   std::vector<SpirvId> open{value};
   std::unordered_set<SpirvId> seen{value};
   std::vector<SpirvId> phis;

@@ -99,6 +99,16 @@ TEST(CheckPayload, Q104NobodyWrites) {
             "constant that was set before\n");
 }
 
+// Hits look like misses: what the closest-hit shader forgets was set before, to what the miss shader writes.
+TEST(CheckPayload, Q104EverybodyWritesOneConstant) {
+  const Files files = edited(cleanFiles(), "main.rgen", "  traceRayEXT", "  payload.t = -1.0;\n  traceRayEXT");
+  ASSERT_EQ(textOf(checkFiles(files)), "");
+  EXPECT_EQ(checkEdited(files, "surface.rchit", "  payload.t = gl_HitTEXT;\n", ""),
+            "Q104 main.rgen:11:3 'payload.t' is read after this trace (line 13), but all that the trace can run writes "
+            "the constant that was set "
+            "before: it tells nothing\n");
+}
+
 TEST(CheckPayload, Q104NotReportedWhereThePayloadTells) {
   const Files files = edited(cleanFiles(), "sky.rmiss", "payload.color = gl_WorldRayDirectionEXT;", "");
   EXPECT_THAT(textOf(checkFiles(files)), HasSubstr("Q104 main.rgen:10:3 'payload.color'"));
