@@ -49,36 +49,20 @@ bool reachableWithout(const SpirvFunction& function, std::size_t target, std::si
   return false;
 }
 
-// Does gl_RayTmaxEXT have a part in the value: as an operand, or in a branch that decides what a phi on the way takes?
-bool dependsOnTmax(const SpirvModule& module, const shader::ControlFlow& flow, SpirvId value) {
-  std::set<SpirvId> seen{value};
-  std::vector<SpirvId> open{value};
-  while (!open.empty()) {
-    const SpirvId next = open.back();
-    open.pop_back();
-    const bool found = dependsOn(module, next, [&](const SpirvInstruction& i) {
-      if (loadsBuiltIn(module, i, spv::BuiltIn::RayTmaxKHR)) return true;
-      const auto at = i.op == Op::OpPhi ? module.position(module.definitionIndex(i.result)) : std::nullopt;
-      if (at && &module.functions()[at->function] == &flow.function())
-        for (const SpirvId condition : flow.phiConditions(at->block))
-          if (seen.insert(condition).second) open.push_back(condition);
-      return false;
-    });
-    if (found) return true;
-  }
-  return false;
-}
-
 // Does a comparison with gl_RayTmaxEXT decide whether the instruction runs?
 bool guardedByTmax(const SpirvModule& module, std::size_t instruction) {
   const auto at = module.position(instruction);
   if (!at) return false;
+  const SpirvFunction& function = module.functions()[at->function];
   const shader::ControlFlow flow(module, at->function);
-  const SpirvFunction& function = flow.function();
   for (std::size_t b = 0; b < function.blocks.size(); ++b) {
     const SpirvInstruction& branch = module.instructions()[function.blocks[b].end - 1];
     if (branch.op != Op::OpBranchConditional) continue;
-    if (!dependsOnTmax(module, flow, branch.at(0))) continue;
+    // Also through choices: `t = never; if (candidate < gl_RayTmaxEXT) t = candidate;` before `if (t == never) return`.
+    const bool tmax = dependsWithChoices(module, flow, branch.at(0), [&](const SpirvInstruction& i) {
+      return loadsBuiltIn(module, i, spv::BuiltIn::RayTmaxKHR);
+    });
+    if (!tmax) continue;
     for (const std::size_t successor : function.blocks[b].successors)
       if (!reachableWithout(function, at->block, b, successor)) return true;
   }

@@ -1,6 +1,7 @@
 #include "shader/control_flow.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace quintet::shader {
 namespace {
@@ -106,6 +107,29 @@ std::vector<SpirvId> ControlFlow::phiConditions(std::size_t block) const {
     open.insert(open.end(), blocks[next].predecessors.begin(), blocks[next].predecessors.end());
   }
   return conditions;
+}
+
+bool dependsWithChoices(const SpirvModule& module, const ControlFlow& flow, SpirvId value,
+                        const InstructionTest& test) {
+  std::vector<SpirvId> open{value}, phis;
+  std::unordered_set<SpirvId> seen{value};
+  const auto visit = [&](const SpirvInstruction& i) {
+    if (i.op == spv::Op::OpPhi && seen.insert(i.result).second) phis.push_back(i.result);
+    return test(i);
+  };
+  while (!open.empty()) {
+    const SpirvId next = open.back();
+    open.pop_back();
+    if (dependsOn(module, next, visit)) return true;
+    for (const SpirvId phi : phis) {
+      const auto position = module.position(module.definitionIndex(phi));
+      if (!position || position->function != flow.functionIndex()) continue;
+      for (const SpirvId condition : flow.phiConditions(position->block))
+        if (seen.insert(condition).second) open.push_back(condition);
+    }
+    phis.clear();
+  }
+  return false;
 }
 
 PathsAfter::PathsAfter(const SpirvModule& module, const ControlFlow& flow, std::size_t instruction)

@@ -3,7 +3,7 @@
 #ifndef QUINTET_SHADER_CONTROL_FLOW_H
 #define QUINTET_SHADER_CONTROL_FLOW_H
 
-#include "shader/spirv_module.h"
+#include "shader/spirv_flow.h"
 
 namespace quintet::shader {
 
@@ -12,6 +12,7 @@ class ControlFlow {
   ControlFlow(const SpirvModule& module, std::size_t function);
 
   const SpirvFunction& function() const { return module_->functions()[function_]; }
+  std::size_t functionIndex() const { return function_; }
   bool reachable(std::size_t block) const;
   std::size_t dominator(std::size_t block) const;  // the immediate one; kNone for the entry and what is unreachable
   bool dominates(std::size_t above, std::size_t block) const;  // also itself
@@ -28,6 +29,10 @@ class ControlFlow {
   std::vector<std::size_t> order_;  // position in reverse post-order; kNone: unreachable
   std::vector<std::size_t> dominator_;
 };
+
+// dependsOn (spirv_flow.h), and also through the conditions that choose between the values of a phi of this function:
+// in `t = -1; if (hit) t = x;` t depends on `hit`.
+bool dependsWithChoices(const SpirvModule& module, const ControlFlow& flow, SpirvId value, const InstructionTest& test);
 
 // The blocks that can run after an instruction (a trace) and before that instruction runs again.
 class PathsAfter {

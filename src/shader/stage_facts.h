@@ -127,7 +127,6 @@ class StageFacts {
   std::vector<std::size_t> readsAfter(const PathsAfter& paths, const TraceFacts& trace, std::uint32_t member) const;
   bool runsAlwaysBefore(std::vector<std::size_t> marks, std::size_t instruction) const;
   bool dependsOnPayload(SpirvId value, SpirvId payload) const;
-  bool findPayload(SpirvId value, SpirvId payload) const;
   bool guarded(const PathsAfter& paths, std::size_t instruction, SpirvId payload) const;
   bool usedUnguarded(const PathsAfter& paths, const AccessFacts& read) const;
   bool choosesByPayload(const SpirvInstruction& use, SpirvId value, const AccessFacts& read) const;

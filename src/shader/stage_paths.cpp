@@ -166,34 +166,16 @@ std::vector<std::size_t> StageFacts::unguardedReads(const TraceFacts& trace, std
   return result;
 }
 
-// Through values, local variables, and through the conditions that choose between the values of a phi.
 bool StageFacts::dependsOnPayload(SpirvId value, SpirvId payload) const {
   const auto [found, isNew] = dependsOnPayload_.try_emplace({value, payload}, false);
-  if (isNew) found->second = findPayload(value, payload);
-  return found->second;
-}
-
-bool StageFacts::findPayload(SpirvId value, SpirvId payload) const {
-  std::vector<SpirvId> open{value};
-  std::unordered_set<SpirvId> seen{value};
-  std::vector<SpirvId> phis;
-  const auto test = [&](const SpirvInstruction& i) {
-    if (i.op == Op::OpPhi && seen.insert(i.result).second) phis.push_back(i.result);
+  if (!isNew) return found->second;
+  const auto position = module_.position(module_.definitionIndex(value));
+  if (!position) return false;  // a constant
+  const auto loads = [&](const SpirvInstruction& i) {
     return i.op == Op::OpLoad && module_.access(i.at(0)).variable == payload;
   };
-  while (!open.empty()) {
-    const SpirvId next = open.back();
-    open.pop_back();
-    if (dependsOn(module_, next, test)) return true;
-    for (const SpirvId phi : phis) {
-      const auto position = module_.position(module_.definitionIndex(phi));
-      if (!position) continue;
-      for (const SpirvId condition : flows_[position->function].phiConditions(position->block))
-        if (seen.insert(condition).second) open.push_back(condition);
-    }
-    phis.clear();
-  }
-  return false;
+  found->second = dependsWithChoices(module_, flows_[position->function], value, loads);
+  return found->second;
 }
 
 bool StageFacts::guarded(const PathsAfter& paths, std::size_t instruction, SpirvId payload) const {
