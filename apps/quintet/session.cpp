@@ -164,6 +164,9 @@ std::vector<std::filesystem::path> Session::sceneFiles() const {
   std::vector<std::filesystem::path> files = app::sceneFiles(sceneSource_);
   for (const std::filesystem::path& file : sceneInfo_.files)
     if (std::ranges::find(files, file) == files.end()) files.push_back(file);
+  std::error_code ignored;
+  const std::filesystem::path environment = options_.environment.source;
+  if (std::filesystem::is_regular_file(environment, ignored)) files.push_back(environment);
   return files;
 }
 

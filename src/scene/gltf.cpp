@@ -30,6 +30,7 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
   scene.name = file.filename().string();
   scene.report.generator = document.model.asset.generator;
   scene.report.copyright = document.model.asset.copyright;
+  scene.report.files = document.files;
   reportExtensions(document, scene.report);
   if (document.animationCount > 0)
     scene.report.ignored.push_back(fmt::format("/animations: {}, the rest pose is shown", document.animationCount));

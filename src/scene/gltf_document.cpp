@@ -129,6 +129,7 @@ std::vector<std::span<const std::byte>> loadBuffers(Document& document, const js
     if (buffer.contains("uri")) {
       const auto& uri = buffer["uri"].get_ref<const std::string&>();
       data = document.storage.emplace_back(loadUri(document, uri, place + "/uri"));
+      if (!isDataUri(uri)) document.files.push_back(pathOfUri(document, uri));
     } else if (i == 0 && container.binary.data()) {
       data = container.binary;
     } else {
@@ -177,6 +178,7 @@ std::span<const std::byte> Document::view(int bufferView) const {
 Document readDocument(const std::filesystem::path& file) {
   Document document;
   document.file = file;
+  document.files.push_back(file);
   const std::vector<std::byte>& bytes = document.storage.emplace_back(readFile(file));
   const Container container = splitContainer(file, bytes);
   json root = parseJson(file, container.json);
@@ -190,6 +192,8 @@ Document readDocument(const std::filesystem::path& file) {
   const json buffers = std::exchange(checked["buffers"], json::array());
   const json images = std::exchange(checked["images"], json::array());
   document.images = readImageSources(document, images);
+  for (const ImageSource& image : document.images)
+    if (!image.uri.empty() && !isDataUri(image.uri)) document.files.push_back(pathOfUri(document, image.uri));
   document.model = parseModel(document, checked);
   resolveBufferViews(document, buffers, loadBuffers(document, buffers, container));
   checkAccessors(document);

@@ -33,6 +33,7 @@ struct Document {
   // to its surroundings (no uri, no BIN chunk): legal as long as nobody reads it.
   std::vector<std::span<const std::byte>> bufferViews;
   std::size_t animationCount = 0;
+  std::vector<std::filesystem::path> files;  // itself, and the files that its buffers and images name
 
   // What the spans point into. A deque: its elements stay where they are.
   std::deque<std::vector<std::byte>> storage;
@@ -56,6 +57,7 @@ Container splitContainer(const std::filesystem::path& file, std::span<const std:
 // gltf_uri.cpp: the bytes behind a URI of the file: a data URI, or a relative path beside it.
 std::vector<std::byte> loadUri(const Document&, std::string_view uri, std::string_view place);
 bool isDataUri(std::string_view uri);
+std::filesystem::path pathOfUri(const Document&, std::string_view uri);  // of one that is no data URI
 std::string percentDecode(std::string_view text);
 
 }  // namespace quintet::scene

@@ -90,6 +90,10 @@ std::string percentDecode(std::string_view text) {
 
 bool isDataUri(std::string_view uri) { return uri.starts_with("data:"); }
 
+std::filesystem::path pathOfUri(const Document& document, std::string_view uri) {
+  return document.file.parent_path() / percentDecode(uri);
+}
+
 std::vector<std::byte> loadUri(const Document& document, std::string_view uri, std::string_view place) {
   if (isDataUri(uri)) return decodeDataUri(document, uri, place);
   if (hasScheme(uri)) document.fail(place, "only data URIs and relative file names are read");

@@ -185,7 +185,7 @@ struct Report {
   std::vector<std::string> repaired;  // "/meshes/0/primitives/0: 3 triangles with non-finite vertices dropped"
   std::string generator;              // asset.generator
   std::string copyright;              // asset.copyright
-  std::vector<std::filesystem::path> files;  // a scene file's: itself, its glTF files and images
+  std::vector<std::filesystem::path> files;  // that were read: the scene file, glTF files, their buffers and images
 };
 
 struct Scene {

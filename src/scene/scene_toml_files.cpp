@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include "scene/gltf.h"
@@ -89,7 +90,7 @@ void readFile(SceneTomlContext& context, const TomlValue& table) {
   reader.finish();
 
   Scene part = loadGltf(path);
-  context.scene.report.files.push_back(path);
+  std::ranges::copy(part.report.files, std::back_inserter(context.scene.report.files));
   Scene& scene = context.scene;
   const std::size_t firstMaterial = scene.materials.size(), firstMesh = scene.meshes.size();
   for (Instance& instance : part.instances) shift(instance.mesh, firstMesh);

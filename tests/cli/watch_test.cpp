@@ -142,6 +142,33 @@ TEST_F(Watch, TheFilesOfASceneFile) {
   EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 0.5f + 0.5f * 0.70710678f, 0.01f);
 }
 
+// A buffer that a glTF file names, and the picture of --env.
+TEST_F(Watch, FilesThatTheSceneNeeds) {
+  nlohmann::json json = quadScene();
+  json["buffers"][0]["uri"] = "quad.bin";
+  save("scene.gltf", json.dump());
+  const auto quad = [](float z) {
+    const float positions[] = {-1, -1, z, 1, -1, z, 1, 1, z, -1, 1, z}, uvs[] = {0, 1, 1, 1, 1, 0, 0, 0};
+    const std::uint16_t indices[] = {0, 1, 2, 0, 2, 3};
+    std::string bytes(reinterpret_cast<const char*>(positions), sizeof positions);
+    bytes.append(reinterpret_cast<const char*>(uvs), sizeof uvs);
+    return bytes.append(reinterpret_cast<const char*>(indices), sizeof indices);
+  };
+  save("quad.bin", quad(0.0f));
+  write(folder_ / "sky.png", io::encodePng(testImage(8, 4)));
+  TerminalRun process({"run", "normals", "scene.gltf", "--watch", "--size", "32x24", "--spp", "4", "--env", "sky.png", "-o", "out.exr"},
+                      folder_.path());
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
+  save("quad.bin", quad(9.0f));  // behind the camera
+  ASSERT_TRUE(process.waitForNext("quad.bin saved: "));
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  EXPECT_LT(picture("out.exr").pixel<float>(16, 12)[2], 0.9f);
+  write(folder_ / "sky.png", io::encodePng(testImage(16, 8)));
+  ASSERT_TRUE(process.waitForNext("sky.png saved: "));
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+}
+
 // A save during a long rendering starts over at once.
 TEST_F(Watch, SavesWhileItRenders) {
   TerminalRun process({"run", "sky", "--watch", "--size", "400x300", "--time", "100000", "-o", "out.exr"}, folder_.path());
