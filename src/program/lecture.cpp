@@ -6,16 +6,9 @@
 #include <array>
 #include <deque>
 
-#include "base/embedded.h"
-#include "base/error.h"
-#include "base/file.h"
 #include "program/glsl_names.h"
 #include "program/lecture_stage.h"
 #include "shader/include_resolver.h"
-
-namespace quintet {
-std::span<const EmbeddedFile> embeddedPrograms();
-}
 
 namespace quintet::program {
 namespace {
@@ -23,9 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using shader::Stage;
 
-constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
-constexpr std::size_t kMaxImageBytes = std::size_t{1} << 26;
-constexpr std::size_t kMaxIncludes = 64;
+constexpr std::size_t kMaxBytes = kMaxLectureBytes;
 constexpr const char* kRay = "ray";
 constexpr std::array<std::string_view, 3> kUserTypes{"RayPayloadType", "HitAttributeType", "CallableDataType"};
 
@@ -53,7 +44,9 @@ bool definesType(const LectureText& source, std::string_view name) {
 
 class Builder {
  public:
-  Builder(Program& program, const std::string& text) : program_(program), errors_(text, source_.file) { source_.text = text; }
+  Builder(Program& program, const std::string& text) : program_(program), errors_(text, source_.file) {
+    source_.text = text;
+  }
 
   void build(const std::string& file) {
     source_.file = quotable(program_.path(file));
@@ -65,7 +58,9 @@ class Builder {
     lookIntoIncludes();
     findImplicitNames();
     addParameters();
-    const auto has = [&](Stage stage) { return std::ranges::find(source_.split.mains, stage, &LectureMain::stage) != source_.split.mains.end(); };
+    const auto has = [&](Stage stage) {
+      return std::ranges::find(source_.split.mains, stage, &LectureMain::stage) != source_.split.mains.end();
+    };
     source_.hasAnyHit = has(Stage::anyHit);
     source_.hasIntersection = has(Stage::intersection);
     program_.diagnostics = errors_.all();
@@ -83,14 +78,18 @@ class Builder {
       const std::string_view line = textOf(source_.text, token);
       if (directiveOf(line).name != "include") continue;
       for (const std::string_view type : kUserTypes)
-        if (std::ranges::any_of(reachable(std::string(line)), [&](const LectureText* text) { return definesType(*text, type); }))
+        if (std::ranges::any_of(reachable(std::string(line)),
+                                [&](const LectureText* text) { return definesType(*text, type); }))
           source_.includedTypes.emplace_back(i, type);
     }
-    source_.opensLibrary = includesLibrary(source_.text) || std::ranges::any_of(includes_, [](const LectureText& t) { return includesLibrary(t.text); });
+    source_.opensLibrary = includesLibrary(source_.text) ||
+                           std::ranges::any_of(includes_, [](const LectureText& t) { return includesLibrary(t.text); });
   }
 
   static bool includesLibrary(std::string_view text) {
-    return std::ranges::any_of(shader::findIncludes(text), [](const shader::IncludeDirective& include) { return include.name.starts_with("quintet/"); });
+    return std::ranges::any_of(shader::findIncludes(text), [](const shader::IncludeDirective& include) {
+      return include.name.starts_with("quintet/");
+    });
   }
 
   // The included files that the text's includes lead to.
@@ -103,7 +102,8 @@ class Builder {
       for (const shader::IncludeDirective& include : shader::findIncludes(text)) {
         const auto file = program_.files.find(fs::path(include.name).lexically_normal().generic_string());
         if (file == program_.files.end()) continue;
-        const auto known = std::ranges::find_if(includes_, [&](const LectureText& t) { return t.text.data() == file->second.data(); });
+        const auto known =
+            std::ranges::find_if(includes_, [&](const LectureText& t) { return t.text.data() == file->second.data(); });
         if (known == includes_.end() || std::ranges::find(found, &*known) != found.end()) continue;
         found.push_back(&*known);
         open.push_back(known->text);
@@ -113,14 +113,16 @@ class Builder {
   }
 
   bool isDeclared(std::string_view name) const {
-    return source_.declares(name) || std::ranges::any_of(includes_, [&](const LectureText& t) { return t.declares(name); });
+    return source_.declares(name) ||
+           std::ranges::any_of(includes_, [&](const LectureText& t) { return t.declares(name); });
   }
 
   void findImplicitNames() {
     std::set<std::string_view> words = source_.words();
     for (const LectureText& include : includes_) words.merge(include.words());
     for (const std::string_view word : words)
-      if (const auto uniform = implicitUniform(word); uniform && !isDeclared(word)) source_.implicit.push_back(*uniform);
+      if (const auto uniform = implicitUniform(word); uniform && !isDeclared(word))
+        source_.implicit.push_back(*uniform);
     source_.givesPi = words.count("PI") > 0 && !isDeclared("PI");
   }
 
@@ -141,7 +143,8 @@ class Builder {
       }
       const std::string& image = uniform.parameter.defaultImage;
       if (!image.empty() && !program_.files.count(image)) {
-        errors_.add("Q015", uniform.begin, fmt::format("there is no file '{}' beside {}", image, program_.descriptionFile));
+        errors_.add("Q015", uniform.begin,
+                    fmt::format("there is no file '{}' beside {}", image, program_.descriptionFile));
         return;
       }
       taken.push_back(&uniform);
@@ -193,14 +196,24 @@ class Builder {
         case Stage::rayGeneration: program_.rayGeneration = add("", false); break;
         case Stage::miss: ray.miss = add("", false); break;
         case Stage::intersection: boxes.intersection = add("", true); break;
-        case Stage::closestHit: triangles.closestHit = add(".triangles", false); boxes.closestHit = add(".boxes", true); break;
-        case Stage::anyHit: program_.anyHitForAll = true; triangles.anyHit = add(".triangles", false); boxes.anyHit = add(".boxes", true); break;
-        case Stage::callable: program_.callables.push_back({"", add(fmt::format(".{}", callables++), false), {}, 0}); break;
+        case Stage::closestHit:
+          triangles.closestHit = add(".triangles", false);
+          boxes.closestHit = add(".boxes", true);
+          break;
+        case Stage::anyHit:
+          program_.anyHitForAll = true;
+          triangles.anyHit = add(".triangles", false);
+          boxes.anyHit = add(".boxes", true);
+          break;
+        case Stage::callable:
+          program_.callables.push_back({"", add(fmt::format(".{}", callables++), false), {}, 0});
+          break;
         case Stage::compute: break;
       }
     }
     if (ray.miss.empty())
-      ray.miss = addFile(file + ".none.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n");
+      ray.miss =
+          addFile(file + ".none.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n");
     program_.rays = {ray};
     HitGroup& first = program_.hitGroups.emplace_back();
     first.name = "triangles";
@@ -235,101 +248,6 @@ std::string sceneNamedIn(const std::string& text, const std::map<std::string, st
   return {};
 }
 
-// Pictures that a uniform's comment names as its default.
-void readImages(const fs::path& folder, const std::string& text, std::map<std::string, std::string>& files) {
-  const std::vector<Token> tokens = tokenize(text);
-  LectureErrors ignored(text, {});
-  for (const LectureUniform& uniform : findUniforms(text, tokens, ignored)) {
-    const std::string& image = uniform.parameter.defaultImage;
-    std::error_code failed;
-    if (image.empty() || image.find('\0') != image.npos || files.count(image)) continue;
-    if (fs::is_regular_file(folder / image, failed) && fs::file_size(folder / image, failed) <= kMaxImageBytes && !failed)
-      files[image] = readTextFile(folder / image);
-  }
-}
-
-// The files that `text` includes by quoted names, below the folder, and what those include.
-std::map<std::string, std::string> readIncludes(const fs::path& folder, const std::string& text) {
-  std::map<std::string, std::string> files;
-  std::deque<std::string> open{text};
-  while (!open.empty()) {
-    const std::string current = std::move(open.front());
-    open.pop_front();
-    for (const shader::IncludeDirective& include : shader::findIncludes(current)) {
-      if (!include.quoted || files.size() == kMaxIncludes || include.name.find('\0') != include.name.npos) continue;
-      const fs::path path = folder / include.name;
-      const std::string name = fs::path(include.name).lexically_normal().generic_string();
-      std::error_code failed;
-      if (files.count(name) || !fs::is_regular_file(path, failed) || fs::file_size(path, failed) > kMaxBytes || failed) continue;
-      open.push_back(files[name] = readTextFile(path));
-    }
-  }
-  return files;
-}
-
-Program load(const fs::path& file) {
-  std::error_code failed;
-  if (fs::file_size(file, failed) > (1u << 24) && !failed) throw FileError(file, "is larger than 16 MiB");
-  const std::string text = readTextFile(file);
-  const fs::path folder = file.parent_path();
-  std::map<std::string, std::string> files = readIncludes(folder, text);
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, failed)) {
-    const std::string name = entry.path().filename().string();
-    if (name.ends_with(".scene.toml") && entry.is_regular_file(failed) && entry.file_size(failed) <= kMaxBytes) files[name] = readTextFile(entry.path());
-  }
-  readImages(folder, text, files);
-  return parseLecture(text, file.filename().string(), folder.string(), std::move(files));
-}
-
-// The folder's lecture file, if it is the only one and there is no program.toml.
-std::optional<Program> loadOnly(const fs::path& folder) {
-  std::optional<fs::path> only;
-  std::error_code failed;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
-    if (entry.path().filename() == "program.toml") return {};
-    if (!entry.path().filename().string().ends_with(kLectureExtension)) continue;
-    if (only) return {};
-    only = entry.path();
-  }
-  if (!only) return {};
-  return load(*only);
-}
-
-bool isLecture(const EmbeddedFile& file) { return file.path.ends_with(kLectureExtension); }
-std::string folderOf(const EmbeddedFile& file) { return fs::path(file.path).parent_path().string(); }
-
-// Is it the only lecture file of its folder, and is the folder no folder program? Then the folder's name is its name.
-bool isAlone(const EmbeddedFile& file) {
-  const std::string folder = folderOf(file);
-  const auto rival = [&](const EmbeddedFile& other) {
-    return other.path != file.path && folderOf(other) == folder && (isLecture(other) || other.path.ends_with("/program.toml"));
-  };
-  return !folder.empty() && std::ranges::none_of(embeddedPrograms(), rival);
-}
-
-std::string builtInName(const EmbeddedFile& file) {
-  return isAlone(file) ? folderOf(file) : std::string(file.path.substr(0, file.path.size() - kLectureExtension.size()));
-}
-
-// `name`: as builtInLectures lists it, or the path with or without its extension.
-std::optional<Program> builtIn(const std::string& name) {
-  const auto all = embeddedPrograms();
-  const auto found = std::ranges::find_if(all, [&](const EmbeddedFile& file) {
-    return isLecture(file) && (file.path == name || file.path == name + std::string(kLectureExtension) || builtInName(file) == name);
-  });
-  if (found == all.end()) return {};
-  const std::string path(found->path);
-  const fs::path folder = fs::path(path).parent_path();
-  std::map<std::string, std::string> beside;
-  for (const EmbeddedFile& file : all)
-    if (fs::path(file.path).parent_path() == folder && !file.path.ends_with(kLectureExtension))
-      beside.emplace(fs::path(file.path).filename().string(), file.data);
-  Program program =
-      parseLecture(std::string(found->data), fs::path(path).filename().string(), "<programs/" + folder.string() + ">", std::move(beside));
-  program.name = builtInName(*found);
-  return program;
-}
-
 // The first sentence of the comment at the beginning: "Lesson 05: shadow." of "// Lesson 05: shadow. At each …"
 std::string descriptionOf(const std::string& text) {
   std::string words;
@@ -349,7 +267,8 @@ std::string descriptionOf(const std::string& text) {
 
 }  // namespace
 
-Program parseLecture(const std::string& text, const std::string& file, const std::string& origin, std::map<std::string, std::string> included) {
+Program parseLecture(const std::string& text, const std::string& file, const std::string& origin,
+                     std::map<std::string, std::string> included) {
   Program program;
   program.name = file.ends_with(kLectureExtension) ? file.substr(0, file.size() - kLectureExtension.size()) : file;
   program.origin = origin;
@@ -360,32 +279,17 @@ Program parseLecture(const std::string& text, const std::string& file, const std
   program.files = std::move(included);
   const std::string body = text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
   if (body.size() > kMaxBytes) {
-    program.diagnostics.push_back({shader::Severity::error, program.path(file), 0, 0, "Q016", "the file is larger than 1 MiB"});
+    program.diagnostics.push_back(
+        {shader::Severity::error, program.path(file), 0, 0, "Q016", "the file is larger than 1 MiB"});
   } else {
     Builder(program, body).build(file);
   }
   program.files[file] = body;
   program.scene = sceneNamedIn(body, program.files);
-  if (const std::string own = program.name + ".scene.toml"; program.scene.empty() && program.files.count(own)) program.scene = own;
+  if (const std::string own = program.name + ".scene.toml"; program.scene.empty() && program.files.count(own))
+    program.scene = own;
   chooseDefaultScene(program);
   return program;
-}
-
-std::vector<std::string> builtInLectures() {
-  std::vector<std::string> names;
-  for (const EmbeddedFile& file : embeddedPrograms())
-    if (isLecture(file)) names.push_back(builtInName(file));
-  return names;
-}
-
-std::optional<Program> findLecture(const std::string& nameOrPath) {
-  std::error_code ignored;
-  const fs::path path(nameOrPath);
-  if (nameOrPath.ends_with(kLectureExtension) && fs::exists(path, ignored)) return load(path);
-  if (fs::is_directory(path, ignored)) return loadOnly(path);
-  if (nameOrPath.ends_with(kLectureExtension) && path.has_parent_path()) throw FileError(path, "does not exist");
-  if (const fs::path file = nameOrPath + std::string(kLectureExtension); fs::is_regular_file(file, ignored)) return load(file);
-  return builtIn(nameOrPath);
 }
 
 }  // namespace quintet::program

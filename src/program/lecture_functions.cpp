@@ -17,7 +17,8 @@ struct Function {
 
 class Reader {
  public:
-  Reader(std::string_view text, const std::vector<Token>& tokens, const LectureSplit& split) : text_(text), tokens_(tokens), split_(split) {}
+  Reader(std::string_view text, const std::vector<Token>& tokens, const LectureSplit& split)
+      : text_(text), tokens_(tokens), split_(split) {}
 
   // Definitions at the outermost level of the common text: a ')' followed by a '{', and what is around them.
   std::vector<Function> functions() const {
@@ -29,9 +30,11 @@ class Reader {
       const Token& token = tokens_[i];
       if (token.braces == 0 && start == kNone) start = i;
       if (token.braces == 0 && token.parens == 0 && isMark(i, '(') && name == kNone) name = previous;
-      if (token.braces == 0 && isMark(i, '{') && isMark(previous, ')') && name != kNone && isCommon(start)) open(found, start, name);
+      if (token.braces == 0 && isMark(i, '{') && isMark(previous, ')') && name != kNone && isCommon(start))
+        open(found, start, name);
       const bool ends = (token.braces == 0 && isMark(i, ';')) || (token.braces == 1 && isMark(i, '}'));
-      if (ends && token.braces == 1 && !found.empty() && found.back().range.second == 0) found.back().range.second = token.end;
+      if (ends && token.braces == 1 && !found.empty() && found.back().range.second == 0)
+        found.back().range.second = token.end;
       if (ends) start = name = kNone;
       previous = i;
     }
@@ -42,7 +45,8 @@ class Reader {
 
   Words words(const TextRange& range) const {
     Words result;
-    for (auto at = std::ranges::lower_bound(tokens_, range.first, {}, &Token::begin); at != tokens_.end() && at->begin < range.second; ++at)
+    for (auto at = std::ranges::lower_bound(tokens_, range.first, {}, &Token::begin);
+         at != tokens_.end() && at->begin < range.second; ++at)
       addWords(*at, result);
     return result;
   }
@@ -50,7 +54,8 @@ class Reader {
   // Of conditionals, too.
   void addWords(const Token& token, Words& words) const {
     if (token.kind == TokenKind::word) words.insert(textOf(text_, token));
-    if (token.kind == TokenKind::directive && directiveOf(textOf(text_, token)).name != "define") words.merge(wordsOfLine(textOf(text_, token)));
+    if (token.kind == TokenKind::directive && directiveOf(textOf(text_, token)).name != "define")
+      words.merge(wordsOfLine(textOf(text_, token)));
   }
 
   // A macro is as good as a function that names what its line names.
@@ -75,11 +80,14 @@ class Reader {
       if (part.kind == TokenKind::word) words.insert(textOf(line, part));
     return words;
   }
-  bool isMark(std::size_t i, char c) const { return i < tokens_.size() && tokens_[i].kind == TokenKind::mark && text_[tokens_[i].begin] == c; }
+  bool isMark(std::size_t i, char c) const {
+    return i < tokens_.size() && tokens_[i].kind == TokenKind::mark && text_[tokens_[i].begin] == c;
+  }
   bool isCommon(std::size_t i) const { return split_.ownerOf(tokens_[i].begin) == kCommonText; }
 
   void open(std::vector<Function>& found, std::size_t start, std::size_t name) const {
-    if (tokens_[name].kind == TokenKind::word) found.push_back({textOf(text_, tokens_[name]), {tokens_[start].begin, 0}, {}});
+    if (tokens_[name].kind == TokenKind::word)
+      found.push_back({textOf(text_, tokens_[name]), {tokens_[start].begin, 0}, {}});
   }
 
   std::string_view text_;
@@ -103,7 +111,8 @@ Words closure(Words words, const std::multimap<std::string_view, const Function*
 
 }  // namespace
 
-std::vector<std::vector<TextRange>> unusedFunctions(std::string_view text, const std::vector<Token>& tokens, const LectureSplit& split) {
+std::vector<std::vector<TextRange>> unusedFunctions(std::string_view text, const std::vector<Token>& tokens,
+                                                    const LectureSplit& split) {
   const Reader reader(text, tokens, split);
   const std::vector<Function> functions = reader.functions();
   std::multimap<std::string_view, const Function*> byName;

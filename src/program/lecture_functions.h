@@ -15,7 +15,8 @@ using TextRange = std::pair<std::size_t, std::size_t>;  // begin, end
 
 // For each main, the definitions of common functions that neither it nor anything it uses names. One that no stage uses
 // is left to the ray generation shader alone, so that the compiler has seen it.
-std::vector<std::vector<TextRange>> unusedFunctions(std::string_view text, const std::vector<Token>& tokens, const LectureSplit& split);
+std::vector<std::vector<TextRange>> unusedFunctions(std::string_view text, const std::vector<Token>& tokens,
+                                                    const LectureSplit& split);
 
 }  // namespace quintet::program
 #endif

@@ -12,8 +12,9 @@ void explainLectureNames(std::vector<shader::Diagnostic>& diagnostics, shader::S
     for (const std::string_view name : {"hit", "baryCoord"}) {
       if (d.text != fmt::format("'{}' : undeclared identifier", name)) continue;
       d.id = "Q204";
-      d.text = fmt::format("'{}' is not there in a {} shader: only intersection, any-hit and closest-hit shaders have a hit",
-                           name, shader::stageName(stage));
+      d.text =
+          fmt::format("'{}' is not there in a {} shader: only intersection, any-hit and closest-hit shaders have a hit",
+                      name, shader::stageName(stage));
     }
   }
 }

@@ -23,9 +23,12 @@ struct Marker {
   Stage stage;
 };
 constexpr Marker kMarkers[] = {
-    {"RAY GENERATION SHADER", "RAYGENERATION", Stage::rayGeneration}, {"RAYGEN SHADER", "RAYGEN", Stage::rayGeneration},
-    {"CLOSEST-HIT SHADER", "CLOSESTHIT", Stage::closestHit},          {"MISS SHADER", "MISS", Stage::miss},
-    {"INTERSECTION SHADER", "INTERSECTION", Stage::intersection},     {"ANY-HIT SHADER", "ANYHIT", Stage::anyHit},
+    {"RAY GENERATION SHADER", "RAYGENERATION", Stage::rayGeneration},
+    {"RAYGEN SHADER", "RAYGEN", Stage::rayGeneration},
+    {"CLOSEST-HIT SHADER", "CLOSESTHIT", Stage::closestHit},
+    {"MISS SHADER", "MISS", Stage::miss},
+    {"INTERSECTION SHADER", "INTERSECTION", Stage::intersection},
+    {"ANY-HIT SHADER", "ANYHIT", Stage::anyHit},
     {"CALLABLE SHADER", "CALLABLE", Stage::callable},
 };
 
@@ -61,7 +64,8 @@ Comment readComment(std::string_view text, const Token& token) {
 
 class Splitter {
  public:
-  Splitter(std::string_view text, const std::vector<Token>& tokens, LectureErrors& errors) : text_(text), tokens_(tokens), errors_(errors) {}
+  Splitter(std::string_view text, const std::vector<Token>& tokens, LectureErrors& errors)
+      : text_(text), tokens_(tokens), errors_(errors) {}
 
   LectureSplit split() {
     if (findMains()) {
@@ -108,7 +112,9 @@ class Splitter {
       const Token& token = tokens_[i];
       const std::size_t open = mainAt(i);
       if (open < tokens_.size() && token.braces > 0 && outermost != kNone) {
-        errors_.add("Q014", tokens_[outermost].begin, fmt::format("this '{{' has no '}}' before the main() in line {}", placeOf(text_, token.begin).line));
+        errors_.add(
+            "Q014", tokens_[outermost].begin,
+            fmt::format("this '{{' has no '}}' before the main() in line {}", placeOf(text_, token.begin).line));
         return false;
       }
       if (open < tokens_.size()) found_.push_back({i, open, tokens_.size()});
@@ -163,7 +169,8 @@ class Splitter {
         return;
       }
     }
-    errors_.add("Q011", stage.begin, "this main() has no marker that says its stage, such as /**** CLOSEST-HIT SHADER ****/");
+    errors_.add("Q011", stage.begin,
+                "this main() has no marker that says its stage, such as /**** CLOSEST-HIT SHADER ****/");
     add(stage, false);
   }
 
@@ -190,7 +197,9 @@ class Splitter {
       if (!known_[i] || mains[i].stage == Stage::callable) continue;
       for (std::size_t k = 0; k < i; ++k) {
         if (!known_[k] || mains[k].stage != mains[i].stage) continue;
-        errors_.add("Q013", mains[i].begin, fmt::format("a second {} shader; the first is in line {}", shader::stageName(mains[i].stage), placeOf(text_, mains[k].begin).line));
+        errors_.add("Q013", mains[i].begin,
+                    fmt::format("a second {} shader; the first is in line {}", shader::stageName(mains[i].stage),
+                                placeOf(text_, mains[k].begin).line));
         break;
       }
     }
@@ -205,7 +214,8 @@ class Splitter {
   // The text between mains, with the COMMON sections cut out of it.
   void addBetween(std::size_t begin, std::size_t end, int owner) {
     std::size_t start = kNone;  // of the COMMON section that is open
-    for (auto at = std::ranges::lower_bound(tokens_, begin, {}, &Token::begin); at != tokens_.end() && at->end <= end; ++at) {
+    for (auto at = std::ranges::lower_bound(tokens_, begin, {}, &Token::begin); at != tokens_.end() && at->end <= end;
+         ++at) {
       const Token& token = *at;
       if (token.kind != TokenKind::comment || token.dead) continue;
       const std::string key = readComment(text_, token).key;
@@ -225,13 +235,17 @@ class Splitter {
     std::size_t at = 0;
     const auto& mains = result_.mains;
     for (std::size_t i = 0; i < mains.size(); ++i) {
-      if (i == 0) addRegion(0, mains[0].begin, kCommonText);
-      else addBetween(at, mains[i].begin, static_cast<int>(i));
+      if (i == 0)
+        addRegion(0, mains[0].begin, kCommonText);
+      else
+        addBetween(at, mains[i].begin, static_cast<int>(i));
       addRegion(mains[i].begin, mains[i].end, static_cast<int>(i));
       at = mains[i].end;
     }
-    if (mains.empty()) addRegion(0, text_.size(), kCommonText);
-    else addBetween(at, text_.size(), static_cast<int>(mains.size()) - 1);
+    if (mains.empty())
+      addRegion(0, text_.size(), kCommonText);
+    else
+      addBetween(at, text_.size(), static_cast<int>(mains.size()) - 1);
   }
 
   std::string_view text_;

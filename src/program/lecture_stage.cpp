@@ -27,7 +27,9 @@ class Patch {
     for (std::size_t i = begin; i < std::min(end, text_.size()); ++i)
       if (text_[i] != '\n' && text_[i] != '\r') text_[i] = ' ';
   }
-  void restore(std::string_view original, std::size_t begin, std::size_t end) { text_.replace(begin, end - begin, original.substr(begin, end - begin)); }
+  void restore(std::string_view original, std::size_t begin, std::size_t end) {
+    text_.replace(begin, end - begin, original.substr(begin, end - begin));
+  }
   void insert(std::size_t at, std::string words) { insertions_.emplace_back(at, std::move(words)); }
   std::string finish() {
     std::ranges::stable_sort(insertions_, {}, [](const auto& entry) { return entry.first; });
@@ -48,14 +50,19 @@ class Patch {
 class StageWriter {
  public:
   StageWriter(const LectureSource& source, std::size_t main, bool boxes)
-      : s_(source), index_(static_cast<int>(main)), main_(source.split.mains[main]), boxes_(boxes), patch_(source.text) {}
+      : s_(source),
+        index_(static_cast<int>(main)),
+        main_(source.split.mains[main]),
+        boxes_(boxes),
+        patch_(source.text) {}
 
   std::string write() {
     blankOthers();
     moveDirectives();
     for (const LectureUniform& uniform : s_.uniforms) patch_.blank(uniform.begin, uniform.end);
     declareTypes();
-    if (main_.stage == Stage::intersection && hasHitAttribute_) macros_ = "#define reportIntersectionEXT(t, kind) gsnReport_(t, kind)\n";
+    if (main_.stage == Stage::intersection && hasHitAttribute_)
+      macros_ = "#define reportIntersectionEXT(t, kind) gsnReport_(t, kind)\n";
     patch_.insert(main_.body, " gsnBegin_();");
     return prelude() + fmt::format("#line 1 \"{}\"\n", s_.file) + patch_.finish() + "\n";
   }
@@ -66,7 +73,9 @@ class StageWriter {
     return owner == kCommonText || owner == index_;
   }
   bool isHit() const { return main_.stage == Stage::closestHit || main_.stage == Stage::anyHit; }
-  bool traces() const { return main_.stage == Stage::rayGeneration || main_.stage == Stage::closestHit || main_.stage == Stage::miss; }
+  bool traces() const {
+    return main_.stage == Stage::rayGeneration || main_.stage == Stage::closestHit || main_.stage == Stage::miss;
+  }
 
   void blankOthers() {
     for (const LectureRegion& region : s_.split.regions)
@@ -74,8 +83,10 @@ class StageWriter {
     restoreConditionals();
     for (const auto& [begin, end] : s_.unused[static_cast<std::size_t>(index_)]) {
       patch_.blank(begin, end);
-      for (auto at = std::ranges::lower_bound(s_.tokens, begin, {}, &Token::begin); at != s_.tokens.end() && at->begin < end; ++at)
-        if (at->kind == TokenKind::directive && isConditional(directiveOf(textOf(s_.text, *at)).name)) patch_.restore(s_.text, at->begin, at->end);
+      for (auto at = std::ranges::lower_bound(s_.tokens, begin, {}, &Token::begin);
+           at != s_.tokens.end() && at->begin < end; ++at)
+        if (at->kind == TokenKind::directive && isConditional(directiveOf(textOf(s_.text, *at)).name))
+          patch_.restore(s_.text, at->begin, at->end);
     }
   }
 
@@ -118,7 +129,8 @@ class StageWriter {
   // Behind each definition of RayPayloadType and its like, in the same line, what the form promises of it.
   void declareTypes() {
     for (const auto& [type, words] : {std::pair<std::string_view, std::string>{"RayPayloadType", payload()},
-                                      {"HitAttributeType", hitAttribute()}, {"CallableDataType", callableData()}}) {
+                                      {"HitAttributeType", hitAttribute()},
+                                      {"CallableDataType", callableData()}}) {
       if (words.empty()) continue;
       std::vector<std::size_t> places = definitions(type);
       for (const auto& [token, name] : s_.includedTypes)
@@ -147,7 +159,8 @@ class StageWriter {
       } else if (tokens[i].kind == TokenKind::word && textOf(s_.text, tokens[i]) == "struct" && tokens[i].braces == 0) {
         std::size_t at = nextCode(tokens, i + 1);
         if (at == tokens.size() || textOf(s_.text, tokens[at]) != name) continue;
-        while (at < tokens.size() && !(textOf(s_.text, tokens[at]) == ";" && tokens[at].braces == 0)) at = nextCode(tokens, at + 1);
+        while (at < tokens.size() && !(textOf(s_.text, tokens[at]) == ";" && tokens[at].braces == 0))
+          at = nextCode(tokens, at + 1);
         if (at == tokens.size()) break;
         result.push_back(tokens[at].end);
       }
@@ -216,16 +229,21 @@ class StageWriter {
       const Parameter& p = uniform.parameter;
       const bool image = p.type == ParameterType::image, boolean = p.type == ParameterType::boolean;
       const std::string_view type = image ? "gsnImage" : boolean ? "bool" : glslType(p.type);
-      const std::string value = (image ? "gsnImage(parameters." : "parameters.") + p.name + (image ? ")" : boolean ? " != 0u" : "");
+      const std::string value = (image ? "gsnImage(parameters." : "parameters.") + p.name +
+                                (image     ? ")"
+                                 : boolean ? " != 0u"
+                                           : "");
       getters += fmt::format("{} gsnInput{}_() {{ return {}; }}\n", type, count, value);
       variables += fmt::format("{} {};\n", type, p.name);
       loads += fmt::format(" {} = gsnInput{}_();", p.name, count++);
     };
     for (const LectureUniform& uniform : s_.uniforms)
-      if (kept(uniform.begin) && !isLectureName(uniform.parameter.name) && names.insert(uniform.parameter.name).second) add(uniform);
+      if (kept(uniform.begin) && !isLectureName(uniform.parameter.name) && names.insert(uniform.parameter.name).second)
+        add(uniform);
     for (const LectureUniform& uniform : s_.implicit) add(uniform);
     if (s_.givesPi) variables += kPi;
-    return getters + "#include <quintet/gsn/names_end.glsl>\n" + macros_ + variables + "void gsnBegin_() { gsnLoadBuiltIns_();" + loads + " }\n";
+    return getters + "#include <quintet/gsn/names_end.glsl>\n" + macros_ + variables +
+           "void gsnBegin_() { gsnLoadBuiltIns_();" + loads + " }\n";
   }
 
   const LectureSource& s_;
@@ -241,7 +259,9 @@ class StageWriter {
 
 }  // namespace
 
-std::string lectureStage(const LectureSource& source, std::size_t main, bool boxes) { return StageWriter(source, main, boxes).write(); }
+std::string lectureStage(const LectureSource& source, std::size_t main, bool boxes) {
+  return StageWriter(source, main, boxes).write();
+}
 
 std::set<std::string_view> LectureText::words() const {
   std::set<std::string_view> words;
@@ -261,8 +281,8 @@ bool LectureText::declares(std::string_view name) const {
       continue;
     }
     // A declarator outside functions follows its type, or a comma.
-    if (token.kind == TokenKind::word && token.braces == 0 && token.parens == 0 && textOf(text, token) == name && before < tokens.size() &&
-        (tokens[before].kind == TokenKind::word || textOf(text, tokens[before]) == ","))
+    if (token.kind == TokenKind::word && token.braces == 0 && token.parens == 0 && textOf(text, token) == name &&
+        before < tokens.size() && (tokens[before].kind == TokenKind::word || textOf(text, tokens[before]) == ","))
       return true;
     before = i;
   }

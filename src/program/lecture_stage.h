@@ -35,8 +35,8 @@ struct LectureSource : LectureText {
   std::vector<LectureUniform> implicit;  // userParam0 and its like, as far as they are used
   // Include lines of the file behind which a type of the user's is known: (token, "RayPayloadType").
   std::vector<std::pair<std::size_t, std::string>> includedTypes;
-  bool givesPi = false;        // PI is used and not declared
-  bool opensLibrary = false;   // the program includes <quintet/…> itself
+  bool givesPi = false;       // PI is used and not declared
+  bool opensLibrary = false;  // the program includes <quintet/…> itself
   bool hasAnyHit = false;
   bool hasIntersection = false;
 };

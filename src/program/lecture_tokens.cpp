@@ -55,8 +55,10 @@ class Conditionals {
     if (line.name == "if" || line.name == "ifdef" || line.name == "ifndef") {
       const bool zero = line.name == "if" && line.rest == "0";
       open_.push_back({braces, parens, zero});
+      deadCount_ += zero ? 1 : 0;
     } else if ((line.name == "else" || line.name == "elif") && !open_.empty()) {
       Branch& branch = open_.back();
+      deadCount_ -= branch.dead ? 1 : 0;
       branch.dead = false;
       braces = branch.braces;
       parens = branch.parens;
@@ -64,13 +66,12 @@ class Conditionals {
       if (open_.back().dead) {
         braces = open_.back().braces;
         parens = open_.back().parens;
+        --deadCount_;
       }
       open_.pop_back();
     }
   }
-  bool dead() const {
-    return std::ranges::any_of(open_, [](const Branch& branch) { return branch.dead; });
-  }
+  bool dead() const { return deadCount_ > 0; }
 
  private:
   struct Branch {
@@ -79,6 +80,7 @@ class Conditionals {
     bool dead;
   };
   std::vector<Branch> open_;
+  std::size_t deadCount_ = 0;
 };
 
 }  // namespace
@@ -135,7 +137,8 @@ std::vector<Token> tokenize(std::string_view text) {
 }
 
 std::size_t nextCode(const std::vector<Token>& tokens, std::size_t from) {
-  while (from < tokens.size() && (tokens[from].dead || tokens[from].kind == TokenKind::comment || tokens[from].kind == TokenKind::directive))
+  while (from < tokens.size() &&
+         (tokens[from].dead || tokens[from].kind == TokenKind::comment || tokens[from].kind == TokenKind::directive))
     ++from;
   return std::min(from, tokens.size());
 }

@@ -21,7 +21,7 @@ struct Token {
   TokenKind kind = TokenKind::mark;
   std::size_t begin = 0;  // offsets in the text; end is one past the last byte
   std::size_t end = 0;
-  bool dead = false;      // between #if 0 and its #else or #endif
+  bool dead = false;  // between #if 0 and its #else or #endif
   // Before the token: how many { and ( are open. Of several branches of a conditional the last one counts.
   int braces = 0;
   int parens = 0;

@@ -13,6 +13,8 @@
 namespace quintet::program {
 namespace {
 
+constexpr std::size_t kMaxUniforms = 256;
+
 std::string_view trimmed(std::string_view text) {
   const auto blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
@@ -70,7 +72,8 @@ std::map<std::string, std::string> attributesOf(std::string_view comment) {
     std::size_t end = equals;
     while (end > 0 && (comment[end - 1] == ' ' || comment[end - 1] == '\t')) --end;
     std::size_t begin = end;
-    while (begin > 0 && (std::isalnum(static_cast<unsigned char>(comment[begin - 1])) || comment[begin - 1] == '_')) --begin;
+    while (begin > 0 && (std::isalnum(static_cast<unsigned char>(comment[begin - 1])) || comment[begin - 1] == '_'))
+      --begin;
     if (begin < end) result[lower(comment.substr(begin, end - begin))] = comment.substr(first + 1, close - first - 1);
     equals = close;
   }
@@ -78,13 +81,13 @@ std::map<std::string, std::string> attributesOf(std::string_view comment) {
 }
 
 constexpr std::array<std::pair<std::string_view, ParameterType>, 8> kTypes{{{"float", ParameterType::real},
-                                                                           {"uint", ParameterType::uinteger},
-                                                                           {"sampler2D", ParameterType::image},
-                                                                           {"vec2", ParameterType::vec2},
-                                                                           {"vec3", ParameterType::vec3},
-                                                                           {"vec4", ParameterType::vec4},
-                                                                           {"int", ParameterType::integer},
-                                                                           {"bool", ParameterType::boolean}}};
+                                                                            {"uint", ParameterType::uinteger},
+                                                                            {"sampler2D", ParameterType::image},
+                                                                            {"vec2", ParameterType::vec2},
+                                                                            {"vec3", ParameterType::vec3},
+                                                                            {"vec4", ParameterType::vec4},
+                                                                            {"int", ParameterType::integer},
+                                                                            {"bool", ParameterType::boolean}}};
 
 bool setType(Parameter& parameter, std::string_view type) {
   for (const auto& [name, value] : kTypes) {
@@ -99,33 +102,41 @@ bool setType(Parameter& parameter, std::string_view type) {
 // Reads one declaration, from the token "uniform" on.
 class Declaration {
  public:
-  Declaration(std::string_view text, const std::vector<Token>& tokens, LectureErrors& errors) : text_(text), tokens_(tokens), errors_(errors) {}
+  Declaration(std::string_view text, const std::vector<Token>& tokens, LectureErrors& errors)
+      : text_(text), tokens_(tokens), errors_(errors) {}
 
   // Appends its uniforms; returns the token of its end.
   std::size_t read(std::size_t first, std::vector<LectureUniform>& uniforms) {
     std::size_t last = first;
-    while (last < tokens_.size() && !(isMark(last, ';') && tokens_[last].braces == 0)) last = nextCode(tokens_, last + 1);
+    while (last < tokens_.size() && !(isMark(last, ';') && tokens_[last].braces == 0))
+      last = nextCode(tokens_, last + 1);
     if (last == tokens_.size()) return last;  // the compiler says it
     std::size_t at = nextCode(tokens_, first + 1);
-    while (at < last && (word(at) == "highp" || word(at) == "mediump" || word(at) == "lowp")) at = nextCode(tokens_, at + 1);
+    while (at < last && (word(at) == "highp" || word(at) == "mediump" || word(at) == "lowp"))
+      at = nextCode(tokens_, at + 1);
     const std::size_t typeToken = at;
     readAttributes(last);
     while (at < last) {
       const std::size_t name = nextCode(tokens_, at + 1);
       std::size_t end = name;
-      while (end < last && !(isMark(end, ',') && tokens_[end].parens == tokens_[name].parens)) end = nextCode(tokens_, end + 1);
+      while (end < last && !(isMark(end, ',') && tokens_[end].parens == tokens_[name].parens))
+        end = nextCode(tokens_, end + 1);
       LectureUniform uniform;
       uniform.begin = tokens_[first].begin;
       uniform.end = tokens_[last].end;
-      if (readOne(uniform, typeToken, name, end)) uniforms.push_back(std::move(uniform));
-      else break;
+      if (readOne(uniform, typeToken, name, end))
+        uniforms.push_back(std::move(uniform));
+      else
+        break;
       at = end;
     }
     return last;
   }
 
  private:
-  bool isMark(std::size_t i, char c) const { return tokens_[i].kind == TokenKind::mark && text_[tokens_[i].begin] == c; }
+  bool isMark(std::size_t i, char c) const {
+    return tokens_[i].kind == TokenKind::mark && text_[tokens_[i].begin] == c;
+  }
   std::string_view word(std::size_t i) const { return textOf(text_, tokens_[i]); }
 
   // The comment behind the declaration, in the same line.
@@ -147,17 +158,24 @@ class Declaration {
     if (name >= end || tokens_[name].kind != TokenKind::word)
       return fail(type, "a uniform is declared as 'uniform TYPE NAME;' (blocks of uniforms are not known)");
     if (!setType(parameter, word(type)))
-      return fail(type, fmt::format("'{}' is no type of a uniform; there are float, vec2, vec3, vec4, int, uint, bool and sampler2D", word(type)));
+      return fail(
+          type,
+          fmt::format("'{}' is no type of a uniform; there are float, vec2, vec3, vec4, int, uint, bool and sampler2D",
+                      word(type)));
     parameter.name = word(name);
     parameter.line = placeOf(text_, tokens_[name].begin).line;
     std::tie(parameter.min, parameter.max) = typeRange(parameter.type);
     std::string_view value;
     const std::size_t after = nextCode(tokens_, name + 1);
-    if (after < end && isMark(after, '[')) return fail(after, fmt::format("the uniform '{}' must not be an array", parameter.name));
-    if (after < end && isMark(after, '=')) value = text_.substr(tokens_[after].end, tokens_[end].begin - tokens_[after].end);
-    else if (after < end) return fail(after, "';' or '=' is missing here");
+    if (after < end && isMark(after, '['))
+      return fail(after, fmt::format("the uniform '{}' must not be an array", parameter.name));
+    if (after < end && isMark(after, '='))
+      value = text_.substr(tokens_[after].end, tokens_[end].begin - tokens_[after].end);
+    else if (after < end)
+      return fail(after, "';' or '=' is missing here");
     if (parameter.type == ParameterType::image) parameter.defaultImage = attribute({"defaultval", "default"});
-    return readRange(parameter, name) && (parameter.type == ParameterType::image || readDefault(parameter, name, value));
+    return readRange(parameter, name) &&
+           (parameter.type == ParameterType::image || readDefault(parameter, name, value));
   }
 
   std::string attribute(std::initializer_list<const char*> names) const {
@@ -167,8 +185,9 @@ class Declaration {
   }
 
   bool readRange(Parameter& parameter, std::size_t token) {
-    if (parameter.type == ParameterType::vec3 && (lower(parameter.name).find("color") != std::string::npos ||
-                                                  lower(parameter.name).find("colour") != std::string::npos || lower(attribute({"type"})) == "color"))
+    if (parameter.type == ParameterType::vec3 &&
+        (lower(parameter.name).find("color") != std::string::npos ||
+         lower(parameter.name).find("colour") != std::string::npos || lower(attribute({"type"})) == "color"))
       parameter.type = ParameterType::color;
     parameter.unit = attribute({"unit"});
     parameter.help = attribute({"help", "description", "label"});
@@ -176,7 +195,8 @@ class Declaration {
       const std::string text = attribute({name});
       if (text.empty()) continue;
       const std::optional<double> number = numberOf(text);
-      if (!number) return fail(token, fmt::format("the {} of '{}' is no number: {}", name, parameter.name, text.substr(0, 40)));
+      if (!number)
+        return fail(token, fmt::format("the {} of '{}' is no number: {}", name, parameter.name, text.substr(0, 40)));
       (*name == 'm' && name[1] == 'i' ? parameter.min : parameter.max) = *number;
     }
     return true;
@@ -191,14 +211,17 @@ class Declaration {
     if (!trimmed(text).empty()) {
       const auto parsed = numbersOf(text);
       if (!parsed || (parsed->size() != count && parsed->size() != 1))
-        return fail(token, fmt::format("the default of '{}' must be {}", parameter.name, count == 1 ? "a number" : fmt::format("{} numbers", count)));
+        return fail(token, fmt::format("the default of '{}' must be {}", parameter.name,
+                                       count == 1 ? "a number" : fmt::format("{} numbers", count)));
       numbers = parsed->size() == count ? *parsed : std::vector<double>(count, parsed->front());
     }
     const bool whole = isWhole(parameter.type);
     for (std::size_t i = 0; i < count; ++i) {
-      if (whole && numbers[i] != std::floor(numbers[i])) return fail(token, fmt::format("the default of '{}' must be a whole number", parameter.name));
+      if (whole && numbers[i] != std::floor(numbers[i]))
+        return fail(token, fmt::format("the default of '{}' must be a whole number", parameter.name));
       if (!(numbers[i] >= parameter.min && numbers[i] <= parameter.max))
-        return fail(token, fmt::format("the default of '{}' is outside {} … {}", parameter.name, parameter.min, parameter.max));
+        return fail(
+            token, fmt::format("the default of '{}' is outside {} … {}", parameter.name, parameter.min, parameter.max));
       parameter.defaultValue[i] = numbers[i];
     }
     return true;
@@ -212,13 +235,19 @@ class Declaration {
 
 }  // namespace
 
-std::vector<LectureUniform> findUniforms(std::string_view text, const std::vector<Token>& tokens, LectureErrors& errors) {
+std::vector<LectureUniform> findUniforms(std::string_view text, const std::vector<Token>& tokens,
+                                         LectureErrors& errors) {
   std::vector<LectureUniform> uniforms;
   Declaration declaration(text, tokens, errors);
   for (std::size_t i = nextCode(tokens, 0); i < tokens.size(); i = nextCode(tokens, i + 1)) {
-    if (tokens[i].kind != TokenKind::word || tokens[i].braces != 0 || tokens[i].parens != 0 || textOf(text, tokens[i]) != "uniform") continue;
+    if (tokens[i].kind != TokenKind::word || tokens[i].braces != 0 || tokens[i].parens != 0 ||
+        textOf(text, tokens[i]) != "uniform")
+      continue;
     i = declaration.read(i, uniforms);
     if (i >= tokens.size()) break;
+    if (uniforms.size() <= kMaxUniforms) continue;
+    errors.add("Q015", tokens[i].begin, fmt::format("more than {} uniforms are no program", kMaxUniforms));
+    break;
   }
   return uniforms;
 }

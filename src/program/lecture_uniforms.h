@@ -20,7 +20,8 @@ struct LectureUniform {
 
 // Declarations "uniform TYPE NAME = VALUE; // defaultval="…" min="…" …" outside functions. Names that the library
 // gives (frameID, …) are found, too, so that their declarations can be taken away.
-std::vector<LectureUniform> findUniforms(std::string_view text, const std::vector<Token>& tokens, LectureErrors& errors);
+std::vector<LectureUniform> findUniforms(std::string_view text, const std::vector<Token>& tokens,
+                                         LectureErrors& errors);
 
 // Names that the form gives and that a uniform may declare once more.
 bool isLectureName(std::string_view name);

@@ -45,9 +45,13 @@ TEST(LectureBoxes, HaveTheScenesIdsAndBoxes) {
   scene::Scene scene;
   addBoxes(scene, row());
   addBoxes(scene, row(), glm::translate(mat4(1.0f), vec3(0, 1, -2)) * glm::scale(mat4(1.0f), vec3(1, 1, 2)));
-  const std::string hit = "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = what == 0 ? vec4(hit.id, gl_PrimitiveID, gl_InstanceID, gl_HitTEXT)"
-                          " : what == 1 ? vec4(hit.point, gl_HitKindEXT) : vec4(baryCoord, gl_GeometryIndexEXT, 0.0); }\n";
-  const auto run = [&](int what) { return runLecture(kHead + kTop + hit, scene, {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}}); };
+  const std::string hit =
+      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = what == 0 ? vec4(hit.id, gl_PrimitiveID, "
+      "gl_InstanceID, gl_HitTEXT)"
+      " : what == 1 ? vec4(hit.point, gl_HitKindEXT) : vec4(baryCoord, gl_GeometryIndexEXT, 0.0); }\n";
+  const auto run = [&](int what) {
+    return runLecture(kHead + kTop + hit, scene, {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}});
+  };
   const LecturePicture ids = run(0), points = run(1), rest = run(2);
   for (int i = 0; i < 8; ++i) {
     const auto x = static_cast<std::uint32_t>(5 * i % 8);
@@ -80,13 +84,18 @@ TEST(LectureBoxes, AttributesAreThoseOfTheHit) {
       // Two equal ones: either may win, so leave no doubt.
       if (a == b && a < 3) boxes.back() = {vec3(x, 0, -2), vec3(x + 1, 1, -1)};
       const bool equal = a == b && a < 3;
-      expected.push_back(firstCounts || equal ? static_cast<float>(first) : b < 3 ? static_cast<float>(first + 1) : -1.0f);
+      expected.push_back(firstCounts || equal ? static_cast<float>(first)
+                         : b < 3              ? static_cast<float>(first + 1)
+                                              : -1.0f);
     }
   }
   scene::Scene scene;
   addBoxes(scene, boxes);
-  const std::string stages = "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = vec4(hit.id, hit.point.z, gl_PrimitiveID, gl_HitTEXT); }\n"
-                             "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitKindEXT == 9u && hit.id == float(gl_PrimitiveID)) ignoreIntersectionEXT; }\n";
+  const std::string stages =
+      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = vec4(hit.id, hit.point.z, gl_PrimitiveID, "
+      "gl_HitTEXT); }\n"
+      "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitKindEXT == 9u && hit.id == float(gl_PrimitiveID)) "
+      "ignoreIntersectionEXT; }\n";
   const auto width = static_cast<std::uint32_t>(expected.size());
   const LecturePicture picture = runLecture(kHead + kTop + stages, scene, {.width = width});
   for (std::uint32_t x = 0; x < width; ++x) {
@@ -104,8 +113,9 @@ TEST(LectureBoxes, TrianglesKeepTheirBarycentrics) {
   scene.meshes.emplace_back().geometries = {quad({0, 0, 2}, {4, 0, 0}, {0, 1, 0})};
   scene.instances.emplace_back().mesh = 0;
   addBoxes(scene, {{vec3(1, 0, 0), vec3(2, 1, 1)}, {vec3(2, 0, 0), vec3(3, 1, 2.5f)}, {vec3(3, 0, 0), vec3(4, 1, 3)}});
-  const std::string stages = "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = vec4(baryCoord, hit.id, gl_HitTEXT); }\n"
-                             "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitKindEXT == 9u) ignoreIntersectionEXT; }\n";
+  const std::string stages =
+      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = vec4(baryCoord, hit.id, gl_HitTEXT); }\n"
+      "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitKindEXT == 9u) ignoreIntersectionEXT; }\n";
   const LecturePicture picture = runLecture(kHead + kTop + stages, scene, {.width = 4});
   for (std::uint32_t x = 0; x < 3; ++x) {
     // The lower right triangle (0,0), (4,0), (4,1) at (x + 0.3, 0.2), or the upper left one (0,0), (4,1), (0,1).
@@ -123,12 +133,15 @@ TEST(LectureBoxes, TrianglesKeepTheirBarycentrics) {
 TEST(LectureBoxes, NeedNoAttribute) {
   scene::Scene scene;
   addBoxes(scene, row());
-  const std::string text = "struct RayPayloadType { vec4 value; };\nvoid main() { /**** RAY GENERATION SHADER ****/\n"
-                           "traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(vec2(gl_LaunchIDEXT.xy) + 0.5, 10.0), 0.0, vec3(0.0, 0.0, -1.0), 50.0, 0);\n"
-                           "gsnSetPixel(payload.value); }\n"
-                           "void main() { /**** MISS SHADER ****/ payload.value = vec4(-1.0); }\n"
-                           "void main() { /**** INTERSECTION SHADER ****/ reportIntersectionEXT(8.5, 3u); }\n"
-                           "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = vec4(gl_HitTEXT, gl_HitKindEXT, gl_PrimitiveID, 0.0); }\n";
+  const std::string text =
+      "struct RayPayloadType { vec4 value; };\nvoid main() { /**** RAY GENERATION SHADER ****/\n"
+      "traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(vec2(gl_LaunchIDEXT.xy) + 0.5, 10.0), 0.0, vec3(0.0, 0.0, "
+      "-1.0), 50.0, 0);\n"
+      "gsnSetPixel(payload.value); }\n"
+      "void main() { /**** MISS SHADER ****/ payload.value = vec4(-1.0); }\n"
+      "void main() { /**** INTERSECTION SHADER ****/ reportIntersectionEXT(8.5, 3u); }\n"
+      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = vec4(gl_HitTEXT, gl_HitKindEXT, gl_PrimitiveID, "
+      "0.0); }\n";
   const LecturePicture picture = runLecture(text, scene, {.width = 9});
   EXPECT_EQ(picture.at(5), vec4(8.5f, 3, 1, 0));
   EXPECT_EQ(picture.at(8), vec4(-1));

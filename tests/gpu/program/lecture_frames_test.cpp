@@ -11,7 +11,9 @@
 namespace quintet::test {
 namespace {
 
-std::string rayGeneration(const std::string& body) { return "void main() { /**** RAY GENERATION SHADER ****/\n" + body + "\n}\n"; }
+std::string rayGeneration(const std::string& body) {
+  return "void main() { /**** RAY GENERATION SHADER ****/\n" + body + "\n}\n";
+}
 
 scene::Scene oneSquare() {
   scene::Scene scene;
@@ -24,7 +26,8 @@ const std::string kLaunch = rayGeneration("gsnSetPixel(vec4(gl_LaunchIDEXT.xy, g
 
 TEST(LectureFrames, LaunchCountsFromTheLowerLeft) {
   for (const double seconds : {0.25, 1e-9}) {  // the second cuts into strips of one row
-    const LecturePicture picture = runLecture(kLaunch, oneSquare(), {.width = 5, .height = 7, .frames = 2, .launchSeconds = seconds});
+    const LecturePicture picture =
+        runLecture(kLaunch, oneSquare(), {.width = 5, .height = 7, .frames = 2, .launchSeconds = seconds});
     for (std::uint32_t row = 0; row < 7; ++row)
       for (std::uint32_t x = 0; x < 5; ++x) EXPECT_EQ(picture.at(x, row), vec4(x, row, 5, 7));
   }
@@ -59,9 +62,11 @@ TEST(LectureFrames, FramesFollowEachOther) {
   if (gl_LaunchIDEXT.x == 3u) return;
   vec4 before = gsnGetPreviousPixel();
   gsnSetPixel(before + vec4(1.0, frameID, frameSize, before.x));)");
-  const LecturePicture one = runLecture(text, oneSquare(), {.width = 4, .height = 2, .frames = 1, .launchSeconds = 1e-9});
+  const LecturePicture one =
+      runLecture(text, oneSquare(), {.width = 4, .height = 2, .frames = 1, .launchSeconds = 1e-9});
   EXPECT_EQ(one.at(0), vec4(1, 0, 1, 0));
-  const LecturePicture four = runLecture(text, oneSquare(), {.width = 4, .height = 2, .frames = 4, .launchSeconds = 1e-9});
+  const LecturePicture four =
+      runLecture(text, oneSquare(), {.width = 4, .height = 2, .frames = 4, .launchSeconds = 1e-9});
   EXPECT_EQ(four.at(2, 1), vec4(4, 0 + 1 + 2 + 3, 4 * 4, 0 + 1 + 2 + 3));
   EXPECT_EQ(four.at(3, 1), vec4(0));  // a pixel that is not set is 0
 }
@@ -142,7 +147,8 @@ float twice(float a) { return 2.0 * a; }
   EXPECT_EQ(given.at(1), vec4(0, 1, 5, 4));
   EXPECT_EQ(given.at(2), vec4(1));
   EXPECT_EQ(given.at(3), vec4(6, 7, 0, 0));
-  const LecturePicture set = runLecture(text, oneSquare(), {.set = {"a=0.5", "b=4,5,6", "c=-3", "d=false", "userParam1=0.75"}});
+  const LecturePicture set =
+      runLecture(text, oneSquare(), {.set = {"a=0.5", "b=4,5,6", "c=-3", "d=false", "userParam1=0.75"}});
   EXPECT_EQ(set.at(0), vec4(0.5f, 4, 5, 6));
   EXPECT_EQ(set.at(1), vec4(-3, 0, 5, 4));
   EXPECT_EQ(set.at(3), vec4(6, 7, 0, 0.75f));

@@ -19,7 +19,9 @@ void main() { /**** RAY GENERATION SHADER ****/
 void main() { /**** MISS SHADER ****/ payload.value = vec4(-1.0); }
 )";
 
-std::string closestHit(const std::string& body) { return kHead + "void main() { /**** CLOSEST-HIT SHADER ****/\n" + body + "\n}\n"; }
+std::string closestHit(const std::string& body) {
+  return kHead + "void main() { /**** CLOSEST-HIT SHADER ****/\n" + body + "\n}\n";
+}
 
 // A row of 8 unit squares from (0, y, 0), two triangles each, stored in a scrambled order: square s is at place 5 s mod 8.
 scene::Geometry squares(float y, bool attributes) {
@@ -52,16 +54,18 @@ scene::Scene grid() {
   scene.instances[1].mesh = 1;
   scene.instances[1].customIndex = 5;
   // Seen from above, squares of 2 x 3 scaled to 1 x 1, mirrored in x: square s lies at column 7 - s.
-  scene.instances[1].worldFromObject = glm::translate(mat4(1.0f), vec3(8, 2, -1)) * glm::scale(mat4(1.0f), vec3(-1, 1, 3));
+  scene.instances[1].worldFromObject =
+      glm::translate(mat4(1.0f), vec3(8, 2, -1)) * glm::scale(mat4(1.0f), vec3(-1, 1, 3));
   return scene;
 }
 
 int place(std::uint32_t square, bool second = false) { return static_cast<int>(5 * square % 8 * 2 + (second ? 1 : 0)); }
 
 TEST(LectureNames, IdsAreTheScenesOwn) {
-  const LecturePicture picture =
-      runLecture(closestHit("payload.value = vec4(gl_PrimitiveID, gl_InstanceID, gl_GeometryIndexEXT, gl_InstanceCustomIndexEXT);"), grid(),
-                 {.width = 8, .height = 4});
+  const LecturePicture picture = runLecture(
+      closestHit(
+          "payload.value = vec4(gl_PrimitiveID, gl_InstanceID, gl_GeometryIndexEXT, gl_InstanceCustomIndexEXT);"),
+      grid(), {.width = 8, .height = 4});
   for (std::uint32_t x = 0; x < 8; ++x) {
     EXPECT_EQ(picture.at(x, 0), vec4(place(x), 0, 0, 7)) << x;
     EXPECT_EQ(picture.at(x, 1), vec4(place(x), 0, 1, 7)) << x;
@@ -90,7 +94,8 @@ TEST(LectureNames, MeshDataAreThoseOfTheTriangle) {
   const scene::Scene scene = grid();
   const std::string text = closestHit(kMeshData);
   for (int what = 0; what < 9; ++what) {
-    const LecturePicture picture = runLecture(text, scene, {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}});
+    const LecturePicture picture =
+        runLecture(text, scene, {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}});
     for (std::uint32_t row = 0; row < 3; ++row) {
       const scene::Geometry& g = row < 2 ? scene.meshes[0].geometries[row] : scene.meshes[1].geometries[0];
       for (std::uint32_t x = 0; x < 8; ++x) {
@@ -99,7 +104,8 @@ TEST(LectureNames, MeshDataAreThoseOfTheTriangle) {
         const vec3 exact = what < 3   ? g.positions[v]
                            : what < 6 ? (g.normals.empty() ? vec3(0, 0, 1) : g.normals[v])
                                       : (g.uvs[0].empty() ? vec3(0) : vec3(g.uvs[0][v].x, 1.0f - g.uvs[0][v].y, 0));
-        expectNear(picture.at(x, row), exact, "what " + std::to_string(what) + " at " + std::to_string(x) + "," + std::to_string(row));
+        expectNear(picture.at(x, row), exact,
+                   "what " + std::to_string(what) + " at " + std::to_string(x) + "," + std::to_string(row));
       }
     }
   }
@@ -108,7 +114,8 @@ TEST(LectureNames, MeshDataAreThoseOfTheTriangle) {
 TEST(LectureNames, NormalMatrixAndBarycentrics) {
   const scene::Scene scene = grid();
   for (int what = 9; what < 13; ++what) {
-    const LecturePicture picture = runLecture(closestHit(kMeshData), scene, {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}});
+    const LecturePicture picture =
+        runLecture(closestHit(kMeshData), scene, {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}});
     for (std::uint32_t row = 0; row < 3; ++row) {
       const mat3 m = glm::transpose(glm::inverse(mat3(scene.instances[row < 2 ? 0 : 1].worldFromObject)));
       // Corners (0,0), (1,0), (1,1): the point (u, v) has weights u - v of the second and v of the third.

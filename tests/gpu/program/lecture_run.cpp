@@ -8,7 +8,8 @@ namespace quintet::test {
 
 std::string lectureProblems(const program::Program& program) {
   std::string text;
-  for (const shader::Diagnostic& d : program::compile(program, testCompiler(), {}).diagnostics) text += d.format() + "\n";
+  for (const shader::Diagnostic& d : program::compile(program, testCompiler(), {}).diagnostics)
+    text += d.format() + "\n";
   return text;
 }
 
@@ -33,7 +34,8 @@ LecturePicture runLecture(const program::Program& program, const scene::Scene& s
   picture.width = image.width;
   picture.height = image.height;
   const std::span<const float> values = image.samples<float>();
-  for (std::size_t i = 0; i < values.size(); i += 4) picture.pixels.emplace_back(values[i], values[i + 1], values[i + 2], values[i + 3]);
+  for (std::size_t i = 0; i < values.size(); i += 4)
+    picture.pixels.emplace_back(values[i], values[i + 1], values[i + 2], values[i + 3]);
   return picture;
 }
 

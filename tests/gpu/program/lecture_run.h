@@ -25,10 +25,13 @@ struct LecturePicture {
   std::uint32_t height = 0;
   std::vector<vec4> pixels;
   // `row` counts from the bottom, like gl_LaunchIDEXT.y.
-  const vec4& at(std::uint32_t x, std::uint32_t row = 0) const { return pixels[std::size_t{height - 1 - row} * width + x]; }
+  const vec4& at(std::uint32_t x, std::uint32_t row = 0) const {
+    return pixels[std::size_t{height - 1 - row} * width + x];
+  }
 };
 
-LecturePicture runLecture(const program::Program& program, const scene::Scene& scene, const LectureOptions& options = {});
+LecturePicture runLecture(const program::Program& program, const scene::Scene& scene,
+                          const LectureOptions& options = {});
 // `included`: files beside it.
 LecturePicture runLecture(const std::string& text, const scene::Scene& scene, const LectureOptions& options = {},
                           const std::map<std::string, std::string>& included = {});

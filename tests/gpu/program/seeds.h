@@ -12,8 +12,8 @@ namespace quintet::test {
 // The text of the document whose file name begins with `prefix` ("002"); empty: it is not there.
 std::string seedDocument(const std::string& prefix);
 
-#define QUINTET_NEED_SEED(variable, prefix)               \
-  const std::string variable = seedDocument(prefix);      \
+#define QUINTET_NEED_SEED(variable, prefix)          \
+  const std::string variable = seedDocument(prefix); \
   if (variable.empty()) GTEST_SKIP() << "document " prefix " is not there"
 
 // From the `which`-th (from 0) occurrence of `from` up to and with the end of the next `void main` whose body begins with

@@ -53,7 +53,8 @@ using Surface = std::function<Expected(const RayD&, const Bounds3&)>;
 
 Expected nearest(const Case& scene, const RayD& world, const Surface& surface) {
   const dmat4 objectFromWorld = glm::inverse(dmat4(scene.worldFromObject));
-  const RayD ray{dvec3(objectFromWorld * glm::dvec4(world.origin, 1)), dvec3(objectFromWorld * glm::dvec4(world.direction, 0))};
+  const RayD ray{dvec3(objectFromWorld * glm::dvec4(world.origin, 1)),
+                 dvec3(objectFromWorld * glm::dvec4(world.direction, 0))};
   Expected best;
   for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
     Expected e = surface(ray, scene.boxes[i]);
@@ -64,7 +65,8 @@ Expected nearest(const Case& scene, const RayD& world, const Surface& surface) {
 }
 
 // Renders and compares; pixels where the reference jumps nearby are left out. Returns how many hits were compared.
-int expectSurface(const std::string& text, const Case& test, const Surface& surface, const std::vector<std::string>& set = {}) {
+int expectSurface(const std::string& text, const Case& test, const Surface& surface,
+                  const std::vector<std::string>& set = {}) {
   scene::Scene scene;
   addBoxes(scene, test.boxes, test.worldFromObject);
   LectureOptions options{.width = 40, .height = 30};
@@ -77,13 +79,16 @@ int expectSurface(const std::string& text, const Case& test, const Surface& surf
   for (std::uint32_t row = 0; row < options.height; ++row) {
     for (std::uint32_t x = 0; x < options.width; ++x) {
       const auto at = [&](double dx, double dy) {
-        return nearest(test, {dvec3(0), cameraDirection(60, 4.0 / 3.0, dvec2((x + 0.5 + dx) / 40, (row + 0.5 + dy) / 30))}, surface);
+        return nearest(test,
+                       {dvec3(0), cameraDirection(60, 4.0 / 3.0, dvec2((x + 0.5 + dx) / 40, (row + 0.5 + dy) / 30))},
+                       surface);
       };
       const Expected exact = at(0, 0);
       bool steady = true;
       for (const dvec2& d : {dvec2(0.02, 0), dvec2(-0.02, 0), dvec2(0, 0.02), dvec2(0, -0.02)}) {
         const Expected other = at(d.x, d.y);
-        steady = steady && other.primitive == exact.primitive && other.kind == exact.kind && std::abs(other.t - exact.t) < 0.05 * std::abs(exact.t) &&
+        steady = steady && other.primitive == exact.primitive && other.kind == exact.kind &&
+                 std::abs(other.t - exact.t) < 0.05 * std::abs(exact.t) &&
                  glm::distance(other.texCoord, exact.texCoord) < 0.5 && glm::distance(other.normal, exact.normal) < 0.5;
       }
       if (!steady) continue;
@@ -104,7 +109,8 @@ int expectSurface(const std::string& text, const Case& test, const Surface& surf
 // Entry and exit of a sphere.
 std::optional<dvec2> sphereInterval(const RayD& ray, const dvec3& center, double radius) {
   const dvec3 k = ray.origin - center;
-  const double a = glm::dot(ray.direction, ray.direction), b = glm::dot(k, ray.direction), c = glm::dot(k, k) - radius * radius;
+  const double a = glm::dot(ray.direction, ray.direction), b = glm::dot(k, ray.direction),
+               c = glm::dot(k, k) - radius * radius;
   if (b * b - a * c < 0) return {};
   const double root = std::sqrt(b * b - a * c);
   return dvec2((-b - root) / a, (-b + root) / a);
@@ -128,7 +134,8 @@ Case cubes(const mat4& worldFromObject) {
   Case test;
   test.worldFromObject = worldFromObject;
   const auto cube = [](const vec3& c, float r) { return Bounds3{c - r, c + r}; };
-  test.boxes = {cube({-1.5f, 0.5f, -6}, 1), cube({1, -0.6f, -5}, 1.2f), cube({0.4f, 1.4f, -7}, 0.8f), cube({0, 0, 0}, 20)};
+  test.boxes = {cube({-1.5f, 0.5f, -6}, 1), cube({1, -0.6f, -5}, 1.2f), cube({0.4f, 1.4f, -7}, 0.8f),
+                cube({0, 0, 0}, 20)};
   return test;
 }
 
@@ -149,7 +156,8 @@ TEST(Seed003, SphereInObjectSpace) {
   const std::string program = cutProgram(document, "struct HitAttributeType {", 1, "/**** INTERSECTION SHADER ****/");
   ASSERT_NE(program.find("ray-sphere intersection in object space"), std::string::npos);
   const std::string text = supplied(program, around(cutBlock(other, "// Returns a camera ray")));
-  const Case test = cubes(glm::rotate(mat4(1.0f), 0.3f, vec3(0, 1, 0)) * glm::scale(mat4(1.0f), vec3(1.3f, 0.7f, 1.1f)));
+  const Case test =
+      cubes(glm::rotate(mat4(1.0f), 0.3f, vec3(0, 1, 0)) * glm::scale(mat4(1.0f), vec3(1.3f, 0.7f, 1.1f)));
   EXPECT_GT(expectSurface(text, test, sphereIn), 1000);
 }
 
@@ -162,7 +170,8 @@ TEST(Seed003, Box) {
   // One cube about the object's origin: its shader finds the face by the largest coordinate from the centre.
   Case test;
   test.boxes = {{vec3(-1), vec3(1)}};
-  test.worldFromObject = glm::translate(mat4(1.0f), vec3(0.3f, -0.2f, -5)) * glm::rotate(mat4(1.0f), 0.7f, vec3(1, 2, 0.5f)) * glm::scale(mat4(1.0f), vec3(2, 1, 1.2f));
+  test.worldFromObject = glm::translate(mat4(1.0f), vec3(0.3f, -0.2f, -5)) *
+                         glm::rotate(mat4(1.0f), 0.7f, vec3(1, 2, 0.5f)) * glm::scale(mat4(1.0f), vec3(2, 1, 1.2f));
   const Surface surface = [](const RayD& ray, const Bounds3&) {
     Expected e;
     for (glm::length_t axis = 0; axis < 3; ++axis) {
@@ -210,7 +219,8 @@ TEST(Seed003, Triangle) {
   Case test;
   test.boxes = {{vec3(-2, -1, -5), vec3(1, 1.5f, -4)}, {vec3(-0.5f, -1.5f, -7), vec3(2.5f, 2, -6)}};
   EXPECT_GT(expectSurface(text, test, surface), 150);
-  test.worldFromObject = glm::rotate(mat4(1.0f), glm::radians(170.0f), vec3(0, 1, 0)) * glm::translate(mat4(1.0f), vec3(0, 0, 10));
+  test.worldFromObject =
+      glm::rotate(mat4(1.0f), glm::radians(170.0f), vec3(0, 1, 0)) * glm::translate(mat4(1.0f), vec3(0, 0, 10));
   EXPECT_GT(expectSurface(text, test, surface), 150);
   // hit.baryCoord is the weight of b and c.
   const std::string shown = "vec4(hit.texCoord, gl_HitKindEXT, gl_PrimitiveID)";
@@ -266,7 +276,8 @@ vec2 sphereInterval(vec3 center, float radius) {
 TEST(Seed003, CsgOfTwoSpheres) {
   QUINTET_NEED_SEED(document, "003");
   QUINTET_NEED_SEED(other, "002");
-  const std::string functions = cutBlock(document, "bool computeCsgUnion(") + "\n" + cutBlock(document, "bool computeCsgIntersection(") + "\n" +
+  const std::string functions = cutBlock(document, "bool computeCsgUnion(") + "\n" +
+                                cutBlock(document, "bool computeCsgIntersection(") + "\n" +
                                 cutBlock(document, "bool computeCsgDifference(") + "\n";
   const std::string text = kIntervals + functions + around(cutBlock(other, "// Returns a camera ray")) + kCsgMain;
   Case test;
@@ -286,7 +297,8 @@ TEST(Seed003, CsgOfTwoSpheres) {
       }
       std::ranges::sort(crossings);
       const auto inside = [&](double t) {
-        const bool a = intervals[0] && t > intervals[0]->x && t < intervals[0]->y, b = intervals[1] && t > intervals[1]->x && t < intervals[1]->y;
+        const bool a = intervals[0] && t > intervals[0]->x && t < intervals[0]->y,
+                   b = intervals[1] && t > intervals[1]->x && t < intervals[1]->y;
         return operation == 0 ? a || b : operation == 1 ? a && b : a && !b;
       };
       for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {

@@ -32,7 +32,8 @@ std::optional<HitD> closest(const std::vector<Plate>& plates, const RayD& ray, d
   std::optional<HitD> best;
   for (const Plate& p : plates) {
     const double t = hitParallelogram(ray, p.corner, p.a, p.b);
-    if (t >= tmin && t <= tmax && (!best || t < best->t)) best = HitD{t, ray.origin + t * ray.direction, glm::normalize(glm::cross(p.a, p.b))};
+    if (t >= tmin && t <= tmax && (!best || t < best->t))
+      best = HitD{t, ray.origin + t * ray.direction, glm::normalize(glm::cross(p.a, p.b))};
   }
   return best;
 }
@@ -44,7 +45,9 @@ int expectPicture(const LecturePicture& picture, double tolerance, const Referen
   int compared = 0;
   for (std::uint32_t row = 0; row < picture.height; ++row) {
     for (std::uint32_t x = 0; x < picture.width; ++x) {
-      const auto at = [&](double dx, double dy) { return reference(dvec2((x + 0.5 + dx) / picture.width, (row + 0.5 + dy) / picture.height)); };
+      const auto at = [&](double dx, double dy) {
+        return reference(dvec2((x + 0.5 + dx) / picture.width, (row + 0.5 + dy) / picture.height));
+      };
       const dvec3 exact = at(0, 0);
       bool steady = true;
       for (const dvec2& d : {dvec2(0.01, 0), dvec2(-0.01, 0), dvec2(0, 0.01), dvec2(0, -0.01)})
@@ -53,7 +56,8 @@ int expectPicture(const LecturePicture& picture, double tolerance, const Referen
       ++compared;
       const vec4& seen = picture.at(x, row);
       EXPECT_LT(glm::distance(dvec3(seen), exact), tolerance)
-          << "pixel " << x << "," << row << ": " << seen.x << " " << seen.y << " " << seen.z << " instead of " << exact.x << " " << exact.y << " " << exact.z;
+          << "pixel " << x << "," << row << ": " << seen.x << " " << seen.y << " " << seen.z << " instead of "
+          << exact.x << " " << exact.y << " " << exact.z;
     }
   }
   return compared;
@@ -75,16 +79,21 @@ constexpr const char* kTraceAndSet = R"(
 }
 )";
 
-std::string cameraOf(const std::string& document) { return cutBlock(document, "// Returns a camera ray for a camera at the origin"); }
+std::string cameraOf(const std::string& document) {
+  return cutBlock(document, "// Returns a camera ray for a camera at the origin");
+}
 
 std::string firstRay(const std::string& document) {
-  return "struct RayPayloadType {\n  vec3 color;\n};\n" + cutBetween(document, "// Returns a camera ray for a camera", "...");
+  return "struct RayPayloadType {\n  vec3 color;\n};\n" +
+         cutBetween(document, "// Returns a camera ray for a camera", "...");
 }
 
 TEST(Seed002, FirstRayIsARedSilhouette) {
   QUINTET_NEED_SEED(document, "002");
-  const std::vector<Plate> plates{{{-1.5, -0.5, -5}, {2, 0, 0}, {0, 1.5, 0}}, {{1, -1.5, -6}, {1.5, 0.5, 0}, {-0.5, 1, 1}}};
-  const LecturePicture picture = runLecture(firstRay(document) + kTraceAndSet + kRedOnBlack, sceneOf(plates), {.width = 48, .height = 32});
+  const std::vector<Plate> plates{{{-1.5, -0.5, -5}, {2, 0, 0}, {0, 1.5, 0}},
+                                  {{1, -1.5, -6}, {1.5, 0.5, 0}, {-0.5, 1, 1}}};
+  const LecturePicture picture =
+      runLecture(firstRay(document) + kTraceAndSet + kRedOnBlack, sceneOf(plates), {.width = 48, .height = 32});
   const int compared = expectPicture(picture, 1e-6, [&](const dvec2& point) {
     const bool hit = closest(plates, {dvec3(0), cameraDirection(45, 1.5, point)}, 0.001, 1e4).has_value();
     return dvec3(hit ? 1.0 : 0.0, 0.0, 0.0);
@@ -93,7 +102,9 @@ TEST(Seed002, FirstRayIsARedSilhouette) {
 }
 
 // The stage of a light that turns, over a floor with a plate above it.
-const std::vector<Plate> kStage{{{-3, -1, -9}, {0, 0, 6}, {6, 0, 0}}, {{-1, 0.5, -7}, {0, 0, 1.5}, {1.5, 0, 0}}, {{-3, -1, -9}, {6, 0, 0}, {0, 4, 0}}};
+const std::vector<Plate> kStage{{{-3, -1, -9}, {0, 0, 6}, {6, 0, 0}},
+                                {{-1, 0.5, -7}, {0, 0, 1.5}, {1.5, 0, 0}},
+                                {{-3, -1, -9}, {6, 0, 0}, {0, 4, 0}}};
 const dvec3 kBaseColor(0.8, 0.6, 0.4), kAmbient(0.1, 0.1, 0.15);
 
 // Diffuse light with a shadow ray, as the slide's closest-hit shader computes it.
@@ -109,12 +120,16 @@ TEST(Seed002, ShadowOfALightThatMoves) {
   QUINTET_NEED_SEED(document, "002");
   const std::string program = cutProgram(document, "struct RayPayloadType {", 0, "/**** MISS SHADER ****/");
   ASSERT_NE(program.find("bool shadowRayMiss"), std::string::npos);
-  const std::string elided = "uniform vec3 baseColor; // defaultval=\"0.8, 0.6, 0.4\"\nuniform vec3 ambientColor; // defaultval=\"0.1, 0.1, 0.15\"\n" +
-                             cameraOf(document) + cutBetween(document, "void main() { /**** RAY GENERATION SHADER ****/", "...") + kTraceAndSet;
+  const std::string elided =
+      "uniform vec3 baseColor; // defaultval=\"0.8, 0.6, 0.4\"\nuniform vec3 ambientColor; // defaultval=\"0.1, 0.1, "
+      "0.15\"\n" +
+      cameraOf(document) + cutBetween(document, "void main() { /**** RAY GENERATION SHADER ****/", "...") +
+      kTraceAndSet;
   const scene::Scene scene = sceneOf(kStage);
   int shadowed = 0;
   for (const std::uint32_t frames : {1u, 13u}) {
-    const LecturePicture picture = runLecture(supplied(program, elided), scene, {.width = 48, .height = 36, .frames = frames});
+    const LecturePicture picture =
+        runLecture(supplied(program, elided), scene, {.width = 48, .height = 36, .frames = frames});
     const double t = (frames - 1) / 45.0;
     const dvec3 light(5 * std::sin(2 * glm::pi<double>() * t), 5 * std::cos(2 * glm::pi<double>() * t), 5);
     const int compared = expectPicture(picture, 2e-4, [&](const dvec2& point) {
@@ -142,7 +157,8 @@ vec3 getCameraRayLookAt(float fieldOfViewY, float aspectRatio, vec3 eye, vec3 lo
 }
 )";
   const LecturePicture picture = runLecture(supplied(program, elided), sceneOf(kStage), {.width = 48, .height = 36});
-  const dvec3 eye(1, 1.5, 8), back = glm::normalize(eye - dvec3(0, -0.5, -6)), right = glm::normalize(glm::cross(dvec3(0, 1, 0), back));
+  const dvec3 eye(1, 1.5, 8), back = glm::normalize(eye - dvec3(0, -0.5, -6)),
+                              right = glm::normalize(glm::cross(dvec3(0, 1, 0), back));
   int reflected = 0;
   const int compared = expectPicture(picture, 5e-4, [&](const dvec2& point) {
     const dvec3 c = cameraDirection(20, 4.0 / 3.0, point);
@@ -164,7 +180,8 @@ vec3 getCameraRayLookAt(float fieldOfViewY, float aspectRatio, vec3 eye, vec3 lo
 
 TEST(Seed002, ProgressiveAverageOfHaltonFrames) {
   QUINTET_NEED_SEED(document, "002");
-  const std::string average = cutBetween(document, "vec4 previousAverage", "vec4(newAverage, 1.0));") + "vec4(newAverage, 1.0));";
+  const std::string average =
+      cutBetween(document, "vec4 previousAverage", "vec4(newAverage, 1.0));") + "vec4(newAverage, 1.0));";
   std::string head = firstRay(document);
   // Anti-aliasing moves the point within the pixel.
   const std::size_t half = head.find("+ 0.5)");
@@ -176,7 +193,9 @@ TEST(Seed002, ProgressiveAverageOfHaltonFrames) {
   return value;
 }
 )";
-  const std::string text = sequence + head + "\n  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, rayOrigin, 0.001, rayDirection, 10000.0, 0);\n  " +
+  const std::string text = sequence + head +
+                           "\n  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, rayOrigin, 0.001, "
+                           "rayDirection, 10000.0, 0);\n  " +
                            average + "\n}\n" + kRedOnBlack;
   const std::vector<Plate> plates{{{-1.5, -0.7, -5}, {2.3, 0.4, 0}, {-0.3, 1.5, 0}}};
   constexpr int kFrames = 16;

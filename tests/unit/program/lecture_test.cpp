@@ -23,7 +23,9 @@ const shader::Compiler& compiler() {
   return kCompiler;
 }
 
-Program lecture(const std::string& text, Files included = {}) { return parseLecture(text, "demo.rt.glsl", "here", std::move(included)); }
+Program lecture(const std::string& text, Files included = {}) {
+  return parseLecture(text, "demo.rt.glsl", "here", std::move(included));
+}
 
 std::vector<std::string> messages(const std::vector<shader::Diagnostic>& diagnostics) {
   std::vector<std::string> lines;
@@ -52,14 +54,28 @@ constexpr const char* kRayGeneration = R"(void main() { /**** RAY GENERATION SHA
 // A whole program with `line` put into one of its parts: 0 common, then the stages in order.
 std::string wholeProgram(int part, const std::string& line) {
   const auto at = [&](int i) { return i == part ? line : std::string(); };
-  return "// first line\n/**** COMMON START ****/\nstruct RayPayloadType { vec3 color; };\nstruct HitAttributeType { vec3 normal; };\n"
-         "struct CallableDataType { float x; };\n" + at(0) + "\n/**** COMMON END ****/\n"
-         "void main() { /**** RAY GENERATION SHADER ****/\n" + at(1) + "\ngsnSetPixel(vec4(0.0));\n}\n"
-         "void main() { /**** CLOSEST-HIT SHADER ****/\n" + at(2) + "\npayload.color = hit.normal;\n}\n"
-         "void main() { /**** MISS SHADER ****/\n" + at(3) + "\npayload.color = vec3(0.0);\n}\n"
-         "void main() { /**** INTERSECTION SHADER ****/\n" + at(4) + "\nhit.normal = vec3(1.0); reportIntersectionEXT(1.0, 1u);\n}\n"
-         "void main() { /**** ANY-HIT SHADER ****/\n" + at(5) + "\nif (baryCoord.x > 0.5) ignoreIntersectionEXT;\n}\n"
-         "void main() { /**** CALLABLE SHADER ****/\n" + at(6) + "\ncallableData.x = 1.0;\n}\n";
+  return "// first line\n/**** COMMON START ****/\nstruct RayPayloadType { vec3 color; };\nstruct HitAttributeType { "
+         "vec3 normal; };\n"
+         "struct CallableDataType { float x; };\n" +
+         at(0) +
+         "\n/**** COMMON END ****/\n"
+         "void main() { /**** RAY GENERATION SHADER ****/\n" +
+         at(1) +
+         "\ngsnSetPixel(vec4(0.0));\n}\n"
+         "void main() { /**** CLOSEST-HIT SHADER ****/\n" +
+         at(2) +
+         "\npayload.color = hit.normal;\n}\n"
+         "void main() { /**** MISS SHADER ****/\n" +
+         at(3) +
+         "\npayload.color = vec3(0.0);\n}\n"
+         "void main() { /**** INTERSECTION SHADER ****/\n" +
+         at(4) +
+         "\nhit.normal = vec3(1.0); reportIntersectionEXT(1.0, 1u);\n}\n"
+         "void main() { /**** ANY-HIT SHADER ****/\n" +
+         at(5) +
+         "\nif (baryCoord.x > 0.5) ignoreIntersectionEXT;\n}\n"
+         "void main() { /**** CALLABLE SHADER ****/\n" +
+         at(6) + "\ncallableData.x = 1.0;\n}\n";
 }
 
 TEST(Lecture, BecomesAProgram) {
@@ -91,22 +107,27 @@ TEST(Lecture, AnErrorIsAtItsLineAndColumn) {
   for (int part = 0; part <= 6; ++part) {
     const std::string line = part == 0 ? "float wrong() { return missing; }" : "  float wrong = missing;";
     const std::string broken = wholeProgram(part, line);
-    const auto place = std::count(broken.begin(), broken.begin() + static_cast<std::ptrdiff_t>(broken.find(line)), '\n') + 1;
-    EXPECT_EQ(problems(broken), std::vector<std::string>{fmt::format("here/demo.rt.glsl:{}:{}: error: 'missing' : undeclared identifier [GLSL]",
-                                                                     place, line.find("missing") + 1)})
+    const auto place =
+        std::count(broken.begin(), broken.begin() + static_cast<std::ptrdiff_t>(broken.find(line)), '\n') + 1;
+    EXPECT_EQ(problems(broken), std::vector<std::string>{fmt::format(
+                                    "here/demo.rt.glsl:{}:{}: error: 'missing' : undeclared identifier [GLSL]", place,
+                                    line.find("missing") + 1)})
         << "part " << part;
   }
 }
 
 TEST(Lecture, WithoutCommonSection) {
-  EXPECT_THAT(problems(std::string("struct RayPayloadType { vec3 color; };\nvec3 red() { return vec3(1.0, 0.0, 0.0); }\n") + kRayGeneration +
-                       "void main()\n{\n  /* Miss Shader */\n  payload.color = red();\n}\n"),
-              IsEmpty());
+  EXPECT_THAT(
+      problems(std::string("struct RayPayloadType { vec3 color; };\nvec3 red() { return vec3(1.0, 0.0, 0.0); }\n") +
+               kRayGeneration + "void main()\n{\n  /* Miss Shader */\n  payload.color = red();\n}\n"),
+      IsEmpty());
 }
 
 TEST(Lecture, MarkersMayVary) {
-  for (const char* head : {"void main() { /**** RAY GENERATION SHADER ****/", "void main(void)\n{\n  /* ray-generation shader */", "/*** Raygen Shader ***/\nvoid main() {",
-                           "// RAY GENERATION SHADER\nvoid  main ( ) {", "void main() /**RAY_GENERATION SHADER**/ {", "void main() { int i = 0; /**** RAY GENERATION SHADER ****/"}) {
+  for (const char* head :
+       {"void main() { /**** RAY GENERATION SHADER ****/", "void main(void)\n{\n  /* ray-generation shader */",
+        "/*** Raygen Shader ***/\nvoid main() {", "// RAY GENERATION SHADER\nvoid  main ( ) {",
+        "void main() /**RAY_GENERATION SHADER**/ {", "void main() { int i = 0; /**** RAY GENERATION SHADER ****/"}) {
     const Program p = lecture(std::string(kCommon) + head + " gsnSetPixel(vec4(1.0)); }\n");
     EXPECT_THAT(messages(p.diagnostics), IsEmpty()) << head;
     EXPECT_THAT(p.rayGeneration, HasSubstr(".rgen"));
@@ -123,73 +144,102 @@ TEST(Lecture, RefusesWhatIsNoProgram) {
   EXPECT_THAT(refusal(""), Contains(HasSubstr("here/demo.rt.glsl:1:1: error: there is no ray generation shader")));
   EXPECT_THAT(refusal("void main() { /**** MISS SHADER ****/ }"), Contains(HasSubstr("[Q010]")));
   EXPECT_EQ(refusal(std::string(kRayGeneration) + "\n void main() { }").back(),
-            "here/demo.rt.glsl:6:2: error: this main() has no marker that says its stage, such as /**** CLOSEST-HIT SHADER ****/ [Q011]");
-  EXPECT_EQ(refusal(std::string(kRayGeneration) + "void main() { /**** CLOSEST-HITT SHADER ****/ }").back(),
-            "here/demo.rt.glsl:5:15: error: this marker names no stage; did you mean /**** CLOSEST-HIT SHADER ****/? [Q012]");
-  EXPECT_THAT(refusal(std::string(kRayGeneration) + "void main() { /**** XYZZY ****/ }").back(), HasSubstr("there are RAY GENERATION"));
-  EXPECT_EQ(refusal(std::string(kRayGeneration) + "void main() { /**** MISS SHADER ****/ }\nvoid main() { /**** MISS SHADER ****/ }").back(),
+            "here/demo.rt.glsl:6:2: error: this main() has no marker that says its stage, such as /**** CLOSEST-HIT "
+            "SHADER ****/ [Q011]");
+  EXPECT_EQ(
+      refusal(std::string(kRayGeneration) + "void main() { /**** CLOSEST-HITT SHADER ****/ }").back(),
+      "here/demo.rt.glsl:5:15: error: this marker names no stage; did you mean /**** CLOSEST-HIT SHADER ****/? [Q012]");
+  EXPECT_THAT(refusal(std::string(kRayGeneration) + "void main() { /**** XYZZY ****/ }").back(),
+              HasSubstr("there are RAY GENERATION"));
+  EXPECT_EQ(refusal(std::string(kRayGeneration) +
+                    "void main() { /**** MISS SHADER ****/ }\nvoid main() { /**** MISS SHADER ****/ }")
+                .back(),
             "here/demo.rt.glsl:6:1: error: a second miss shader; the first is in line 5 [Q013]");
 }
 
 TEST(Lecture, FindsTheBraceThatDoesNotMatch) {
-  EXPECT_EQ(refusal("void main() { /**** RAY GENERATION SHADER ****/\n  if (true) {\n}\nvoid main() { /**** MISS SHADER ****/ }\n"),
-            std::vector<std::string>{"here/demo.rt.glsl:1:13: error: this '{' has no '}' before the main() in line 4 [Q014]"});
-  EXPECT_EQ(refusal("struct A {\n  int b; };\n};\n"), std::vector<std::string>{"here/demo.rt.glsl:3:1: error: this '}' has no '{' [Q014]"});
-  EXPECT_EQ(refusal("int f() {\n"), std::vector<std::string>{"here/demo.rt.glsl:1:9: error: this '{' has no '}' [Q014]"});
+  EXPECT_EQ(refusal("void main() { /**** RAY GENERATION SHADER ****/\n  if (true) {\n}\nvoid main() { /**** MISS "
+                    "SHADER ****/ }\n"),
+            std::vector<std::string>{
+                "here/demo.rt.glsl:1:13: error: this '{' has no '}' before the main() in line 4 [Q014]"});
+  EXPECT_EQ(refusal("struct A {\n  int b; };\n};\n"),
+            std::vector<std::string>{"here/demo.rt.glsl:3:1: error: this '}' has no '{' [Q014]"});
+  EXPECT_EQ(refusal("int f() {\n"),
+            std::vector<std::string>{"here/demo.rt.glsl:1:9: error: this '{' has no '}' [Q014]"});
   // Braces in comments and in branches of a conditional do not count.
-  const std::string branches = "#ifdef A\nvoid f() { // {\n#else\nvoid f() { /* { */\n#endif\n}\n#if 0\n}}} void main() {\n#endif\n";
+  const std::string branches =
+      "#ifdef A\nvoid f() { // {\n#else\nvoid f() { /* { */\n#endif\n}\n#if 0\n}}} void main() {\n#endif\n";
   EXPECT_THAT(problems(std::string(kCommon) + branches + kRayGeneration), IsEmpty());
 }
 
 TEST(Lecture, HelpersBelongToTheStageThatFollows) {
-  const std::string hit = "vec3 shade() { return vec3(gl_HitTEXT); }\nvoid main() { /**** CLOSEST-HIT SHADER ****/ payload.color = shade(); }\n";
-  const std::string miss = "vec3 shade() { return vec3(0.5); }\nvoid main() { /**** MISS SHADER ****/ payload.color = shade(); }\n";
+  const std::string hit =
+      "vec3 shade() { return vec3(gl_HitTEXT); }\nvoid main() { /**** CLOSEST-HIT SHADER ****/ payload.color = "
+      "shade(); }\n";
+  const std::string miss =
+      "vec3 shade() { return vec3(0.5); }\nvoid main() { /**** MISS SHADER ****/ payload.color = shade(); }\n";
   EXPECT_THAT(problems(std::string(kCommon) + kRayGeneration + hit + miss), IsEmpty());
   // A COMMON section may stand anywhere.
   const std::string late = "/**** COMMON START ****/\nvec3 late() { return vec3(0.1); }\n/**** COMMON END ****/\n";
-  EXPECT_THAT(problems(std::string(kCommon) + kRayGeneration + late + hit + "void main() { /**** MISS SHADER ****/ payload.color = late(); }\n"), IsEmpty());
+  EXPECT_THAT(problems(std::string(kCommon) + kRayGeneration + late + hit +
+                       "void main() { /**** MISS SHADER ****/ payload.color = late(); }\n"),
+              IsEmpty());
 }
 
 TEST(Lecture, CommonFunctionsAreGivenToTheStagesThatUseThem) {
   // shadow() traces, depth() reads a built-in of hits: neither compiles in every stage, and `payload` is not everywhere.
-  const std::string common = std::string(kCommon) +
-                             "bool shadow(vec3 o) {\n  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, o, 0.0, vec3(1.0), 1.0, 0);\n"
-                             "  return payload.color.x > 0.0;\n}\n#define SHADOW shadow(vec3(0.0))\nfloat depth() { return gl_HitTEXT; }\n"
-                             "vec3 both() { return vec3(SHADOW ? depth() : 0.0); }\n" + kRayGeneration;
+  const std::string common =
+      std::string(kCommon) +
+      "bool shadow(vec3 o) {\n  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, o, 0.0, vec3(1.0), 1.0, "
+      "0);\n"
+      "  return payload.color.x > 0.0;\n}\n#define SHADOW shadow(vec3(0.0))\nfloat depth() { return gl_HitTEXT; }\n"
+      "vec3 both() { return vec3(SHADOW ? depth() : 0.0); }\n" +
+      kRayGeneration;
   const std::string stages =
-      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = both(); }\nvoid main() { /**** INTERSECTION SHADER ****/ reportIntersectionEXT(1.0, 1u); }\n";
+      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = both(); }\nvoid main() { /**** INTERSECTION SHADER "
+      "****/ reportIntersectionEXT(1.0, 1u); }\n";
   EXPECT_THAT(problems(common + stages), IsEmpty());
-  EXPECT_THAT(problems(common + stages + "void main() { /**** MISS SHADER ****/ payload.color = vec3(depth()); }\n"), Contains(HasSubstr("gl_HitTEXT is not readable in a miss shader")));
+  EXPECT_THAT(problems(common + stages + "void main() { /**** MISS SHADER ****/ payload.color = vec3(depth()); }\n"),
+              Contains(HasSubstr("gl_HitTEXT is not readable in a miss shader")));
   // What nobody uses is seen by the compiler all the same.
-  EXPECT_THAT(problems(std::string(kCommon) + "float unused() { return missing; }\n" + kRayGeneration), Contains(HasSubstr("demo.rt.glsl:6:25: error: 'missing'")));
+  EXPECT_THAT(problems(std::string(kCommon) + "float unused() { return missing; }\n" + kRayGeneration),
+              Contains(HasSubstr("demo.rt.glsl:6:25: error: 'missing'")));
 }
 
 TEST(Lecture, ConditionalsAndExtensionsMayStandAnywhere) {
-  EXPECT_THAT(problems("#version 460\n#extension GL_EXT_ray_tracing : require\n" + std::string(kCommon) + "#define WITH_MISS\n" + kRayGeneration +
-                       "#ifdef WITH_MISS\n#extension GL_EXT_debug_printf : enable\nvoid main() { /**** MISS SHADER ****/ payload.color = vec3(1.0); }\n#else\n#endif\n"
+  EXPECT_THAT(problems("#version 460\n#extension GL_EXT_ray_tracing : require\n" + std::string(kCommon) +
+                       "#define WITH_MISS\n" + kRayGeneration +
+                       "#ifdef WITH_MISS\n#extension GL_EXT_debug_printf : enable\nvoid main() { /**** MISS SHADER "
+                       "****/ payload.color = vec3(1.0); }\n#else\n#endif\n"
                        "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = vec3(1.0); }\n"),
               IsEmpty());
 }
 
 TEST(Lecture, NamesOfTheLibraryAreFree) {
   EXPECT_THAT(problems(std::string(kCommon) +
-                       "struct Ray { vec3 o; }; struct Frame { int x; }; struct Launch { int x; }; float luminance(vec3 c) { return c.x; }\n"
-                       "const float kPi = 3.0; int launch = 3; int frame = 4; int parameters = 5; int textures = 6; struct InstanceData { int x; };\n" +
+                       "struct Ray { vec3 o; }; struct Frame { int x; }; struct Launch { int x; }; float "
+                       "luminance(vec3 c) { return c.x; }\n"
+                       "const float kPi = 3.0; int launch = 3; int frame = 4; int parameters = 5; int textures = 6; "
+                       "struct InstanceData { int x; };\n" +
                        kRayGeneration),
               IsEmpty());
 }
 
 TEST(Lecture, PiIsThereUnlessDeclared) {
   const std::string use = "void main() { /**** MISS SHADER ****/ payload.color = vec3(PI); }\n";
-  for (const char* declaration : {"", "#define PI 3.14159\n", "const float PI = 3.14159;\n", "const float TAU = 6.28, PI = 3.14159;\n"})
+  for (const char* declaration :
+       {"", "#define PI 3.14159\n", "const float PI = 3.14159;\n", "const float TAU = 6.28, PI = 3.14159;\n"})
     EXPECT_THAT(problems(std::string(kCommon) + declaration + kRayGeneration + use), IsEmpty()) << declaration;
 }
 
 TEST(Lecture, IncludesFilesBesideIt) {
-  EXPECT_THAT(problems("#include \"types.glsl\"\n" + std::string(kRayGeneration) + "void main() { /**** MISS SHADER ****/ payload.color = grey(); }\n",
-                       {{"types.glsl", "struct RayPayloadType { vec3 color; };\nvec3 grey() { return vec3(0.5) * userParam0; }\n"}}),
+  EXPECT_THAT(problems("#include \"types.glsl\"\n" + std::string(kRayGeneration) +
+                           "void main() { /**** MISS SHADER ****/ payload.color = grey(); }\n",
+                       {{"types.glsl",
+                         "struct RayPayloadType { vec3 color; };\nvec3 grey() { return vec3(0.5) * userParam0; }\n"}}),
               IsEmpty());
-  EXPECT_THAT(problems("#include \"types.glsl\"\n" + std::string(kRayGeneration), {{"types.glsl", "struct RayPayloadType { vec3 color; };\nfloat f() { return missing; }\n"}}),
+  EXPECT_THAT(problems("#include \"types.glsl\"\n" + std::string(kRayGeneration),
+                       {{"types.glsl", "struct RayPayloadType { vec3 color; };\nfloat f() { return missing; }\n"}}),
               Contains("here/types.glsl:2:20: error: 'missing' : undeclared identifier [GLSL]"));
 }
 
