@@ -21,7 +21,8 @@ uint gsnHitKind() { return gsnHitKind_; }
 #endif
 
 GeometryData gsnHitGeometry_() {
-  return GeometryArray(frame.geometries).at[InstanceArray(frame.instances).at[gsnInstance_].firstGeometry + gsnGeometryIndex_];
+  const uint first = InstanceArray(frame.instances).at[gsnInstance_].firstGeometry;
+  return GeometryArray(frame.geometries).at[first + gsnGeometryIndex_];
 }
 
 #if defined(QUINTET_GSN_TRIANGLES)
@@ -38,8 +39,8 @@ vec2 gsnBaryFromRay_(GeometryData geometry) {
   const vec3 k = gl_ObjectRayOriginEXT - a;
   const vec3 rxj = cross(gl_ObjectRayDirectionEXT, j);
   const float determinant = dot(rxj, i);
-  const vec2 uv = vec2(dot(rxj, k), dot(cross(k, i), gl_ObjectRayDirectionEXT)) * (determinant != 0.0 ? 1.0 / determinant : 0.0);
-  const vec2 b = clamp(uv, 0.0, 1.0);
+  const vec2 uv = vec2(dot(rxj, k), dot(cross(k, i), gl_ObjectRayDirectionEXT));
+  const vec2 b = clamp(uv * (determinant != 0.0 ? 1.0 / determinant : 0.0), 0.0, 1.0);
   return b / max(1.0, b.x + b.y);
 }
 #elif !defined(QUINTET_GSN_INTERSECTION)
@@ -64,7 +65,8 @@ void gsnLoadHit_() {
   gsnObjectToWorld_ = gl_ObjectToWorldEXT;
   gsnWorldToObject_ = gl_WorldToObjectEXT;
   const GeometryData geometry = gsnHitGeometry_();
-  gsnPrimitive_ = geometry.primitiveMap != 0ul ? UintArray(geometry.primitiveMap).at[gl_PrimitiveID] : uint(gl_PrimitiveID);
+  gsnPrimitive_ = uint(gl_PrimitiveID);
+  if (geometry.primitiveMap != 0ul) gsnPrimitive_ = UintArray(geometry.primitiveMap).at[gl_PrimitiveID];
 #ifdef QUINTET_GSN_INTERSECTION
   gsnNearest_ = gl_RayTmaxEXT;
 #else
