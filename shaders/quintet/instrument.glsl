@@ -9,6 +9,7 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer InstrumentReference {
   Instrument value;
+  InstrumentReport reports[kInstrumentReports];
   InstrumentPixel pixels[];
 };
 
@@ -31,7 +32,7 @@ void instrumentReport_(uint kind, uint line, uint depth, float value, uint index
   report.index = index;
   report.origin = origin;
   report.direction = direction;
-  instrument_.value.reports[slot] = report;
+  instrument_.reports[slot] = report;
 }
 
 #if QUINTET_INSTRUMENT_KIND != 2

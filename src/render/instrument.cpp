@@ -66,7 +66,7 @@ std::string sourceFile(const program::Program& program, const std::string& stage
 }
 
 InstrumentBuffer::InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit, std::size_t missCount) {
-  std::vector<std::byte> bytes(sizeof(shared::Instrument) + pixels * sizeof(shared::InstrumentPixel));
+  std::vector<std::byte> bytes(sizeof(InstrumentNotes) + pixels * sizeof(shared::InstrumentPixel));
   auto& header = *reinterpret_cast<shared::Instrument*>(bytes.data());
   header.pixelCount = static_cast<std::uint32_t>(pixels);
   header.depthLimit = depthLimit;
@@ -74,22 +74,23 @@ InstrumentBuffer::InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, 
   buffer_ = gpu::makeBuffer(context, bytes, 0, "instrument");
 }
 
-shared::Instrument InstrumentBuffer::download() const {
-  shared::Instrument notes;
+InstrumentNotes InstrumentBuffer::download() const {
+  InstrumentNotes notes;
   buffer_.download(std::as_writable_bytes(std::span(&notes, 1)));
   return notes;
 }
 
-std::vector<shader::Diagnostic> instrumentDiagnostics(const shared::Instrument& notes, const program::Program& program,
+std::vector<shader::Diagnostic> instrumentDiagnostics(const InstrumentNotes& written, const program::Program& program,
                                                       const program::CompiledProgram& compiled, const program::SceneFacts& facts) {
   std::vector<shader::Diagnostic> result;
+  const shared::Instrument& notes = written.counts;
   struct Place {
     std::uint32_t count = 0;
     shared::InstrumentReport first;
   };
   std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, Place> places;
   for (std::uint32_t i = 0; i < std::min(notes.reportCount, shared::kInstrumentReports); ++i) {
-    const shared::InstrumentReport& report = notes.reports[i];
+    const shared::InstrumentReport& report = written.reports[i];
     Place& place = places[{report.kind, report.stage, report.line}];
     if (place.count++ == 0) place.first = report;
   }

@@ -15,7 +15,7 @@ void expectData(int show, const std::function<dvec3(const HostHit&, const HostSu
     const HostHit hit = closestTriangle(scene, cameraRay({0, 1.5, 5}, {0, 1.5, 0}, {0, 1, 0}, 40, aspect, point), 0.001, 1000);
     if (hit.margin < 1e-3) return glm::dvec4(0);
     return glm::dvec4(hit.t > 0 ? color(hit, surfaceAt(scene, hit)) : dvec3(0), 1);
-  }, 2e-5, 0.2);
+  }, 1e-4, 0.2);
 }
 
 TEST(LessonMeshData, Positions) {

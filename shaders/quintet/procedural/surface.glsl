@@ -5,7 +5,8 @@
 #include "point.glsl"
 
 // As surfaceError, of a point of a solid: p in the canonical space, which adds a transform each way; `largest`: the
-// largest magnitudes of object-space coordinates in reach of the solid.
+// largest magnitudes of object-space coordinates in reach of the solid. 32 roundings in canonical space, whose coordinates
+// are 1 at most: square roots and quotients of the point and of the intersection, which Vulkan allows 2.5 roundings each.
 float solidError(InstanceData instance, PrimitiveData primitive, vec3 p, vec3 largest, vec3 world, vec3 n) {
   const float e = 5.9604645e-8;
   const vec3 objectNormal = abs(transposeTimesVector(instance.worldFromObject, n));
@@ -20,7 +21,7 @@ float solidError(InstanceData instance, PrimitiveData primitive, vec3 p, vec3 la
     const vec4 toObject = abs(instance.objectFromWorld[i]);
     worldSize[i] += 4.0 * (dot(fromObject.xyz, largest) + fromObject.w);
     objectSize[i] = 4.0 * (dot(fromPrimitive.xyz, abs(p)) + fromPrimitive.w + dot(toObject.xyz, abs(world)) + toObject.w) + 8.0 * largest[i];
-    primitiveSize[i] = 16.0 + 5.0 * (dot(toPrimitive.xyz, largest) + toPrimitive.w);
+    primitiveSize[i] = 32.0 + 5.0 * (dot(toPrimitive.xyz, largest) + toPrimitive.w);
   }
   return 2.0 * e * (dot(abs(n), worldSize) + dot(objectNormal, objectSize) + dot(primitiveNormal, primitiveSize));
 }

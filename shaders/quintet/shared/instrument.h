@@ -1,5 +1,5 @@
-// What an instrumented program (quintet check --instrument) writes: one Instrument, then one InstrumentPixel per pixel
-// of the film. Frame::instrument is its address.
+// What an instrumented program (quintet check --instrument) writes at Frame::instrument: one Instrument, then
+// kInstrumentReports InstrumentReport, then one InstrumentPixel per pixel of the film.
 #ifndef QUINTET_SHARED_INSTRUMENT_H
 #define QUINTET_SHARED_INSTRUMENT_H
 
@@ -38,9 +38,8 @@ struct Instrument {
   uint missCount;      // in: miss shaders of the table
   uint depthLimit;     // in: of the pipeline
   uint recordPairs[8];  // bit offset + 16 · stride: used by a trace (both taken modulo 16, as Vulkan does)
-  InstrumentReport reports[kInstrumentReports];
 };
-QT_SHARED_SIZE(Instrument, 64 + kInstrumentReports * 56);
+QT_SHARED_SIZE(Instrument, 64);
 
 struct InstrumentPixel {
   uint depth;      // of the traces that are running

@@ -80,7 +80,7 @@ TEST(Instrument, AnOutputThatIsNotFinite) {
 TEST(Instrument, RecursionDeeperThanDeclared) {
   const std::string options = "// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: 3\"\n";
   const std::string hit = "void main() { /**** CLOSEST-HIT SHADER ****/ vec3 o = gl_WorldRayOriginEXT; vec3 d = gl_WorldRayDirectionEXT;\n" +
-                          trace("o", "d") + " payload.color += vec3(0.1); }\n";
+                          trace("o", "d") + " payload.color = vec3(0.1); }\n";
   EXPECT_EQ(idsOf(notesOf(options + kCommon + rayGeneration(trace("eye", "d")) + hit + kMiss)), "Q003:5");
 }
 

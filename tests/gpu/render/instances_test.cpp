@@ -109,7 +109,7 @@ TEST(Instances, HideFromRaysOfAnotherMask) {
 TEST(Instances, FollowTheirKeyframes) {
   SceneBuilder scene = row();
   EXPECT_FALSE(render::DeviceScene(testContext(), scene.scene, scene.environment).animated());
-  // Instance 4 starts far away, passes its place at frame 10, and turns its back (edge on) at frame 20.
+  // Instance 4 starts far away, passes its place at frame 10, and turns its back from frame 20 on.
   const auto at = [](float frame, float x, float angle) {
     return scene::Keyframe{frame, vec3(x, 0, 0), glm::angleAxis(angle, vec3(0, 1, 0)), vec3(1.0f)};
   };
@@ -118,7 +118,7 @@ TEST(Instances, FollowTheirKeyframes) {
   render::DeviceScene device(testContext(), scene.scene, scene.environment);
   EXPECT_TRUE(device.animated());
   const program::Program program = indexProgram(false);
-  for (const auto& [frame, visible] : {std::pair(0.0f, false), {10.0f, true}, {12.0f, false}, {20.0f, true}, {25.0f, false}, {99.0f, true}, {-3.0f, false}}) {
+  for (const auto& [frame, visible] : {std::pair(0.0f, false), {10.0f, true}, {12.0f, false}, {20.0f, true}, {99.0f, true}, {-3.0f, false}}) {
     device.setFrame(frame);
     const std::vector<vec4> pixels = lookAtRow(device, scene.scene, program);
     for (std::uint32_t i = 0; i < kSquares; ++i)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "quintet/shared/frame.h"
+#include "quintet/shared/instrument.h"
 
 namespace quintet::test {
 
@@ -43,6 +44,7 @@ void put(vec2 v) { put(v.x); put(v.y); }
 void put(vec3 v) { put(v.xy); put(v.z); }
 void put(vec4 v) { put(v.xyz); put(v.w); }
 void put(vec4 v[3]) { for (int i = 0; i < 3; ++i) put(v[i]); }
+void put(uint v[8]) { for (int i = 0; i < 8; ++i) put(v[i]); }
 void put(uint64_t v[2]) { for (int i = 0; i < 2; ++i) put(v[i]); }
 void put(uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) put(v[i]); }
 uint nextWord() { return words[wordCount++]; }
@@ -54,6 +56,7 @@ void take(out vec2 v) { take(v.x); take(v.y); }
 void take(out vec3 v) { take(v.x); take(v.y); take(v.z); }
 void take(out vec4 v) { take(v.x); take(v.y); take(v.z); take(v.w); }
 void take(out vec4 v[3]) { for (int i = 0; i < 3; ++i) take(v[i]); }
+void take(out uint v[8]) { for (int i = 0; i < 8; ++i) take(v[i]); }
 void take(out uint64_t v[2]) { for (int i = 0; i < 2; ++i) take(v[i]); }
 void take(out uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) take(v[i]); }
 )";
@@ -106,6 +109,9 @@ GPU_FIELDS(RayRecord, origin, tmax, direction, kind);
 GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics, rayRecords, instrument,
            outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth, filmHeight, lightCount,
            environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount, padding);
+GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, value, index, origin, direction);
+GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
+GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, depthLimit, recordPairs);
 GPU_FIELDS(FilmAdd, total, batch, count, padding);
 GPU_FIELDS(Launch, frame, parameters, offset, firstSample, sampleCount);
 

@@ -33,7 +33,7 @@ struct AllWords {
 // The body's start: all structs, and put and take for T and the structs in it.
 template <class T>
 std::string glslFor() {
-  return std::string("#include <quintet/shared/frame.h>\n") + kGlslWords + Fields<shared::TextureData>::glsl() +
+  return std::string("#include <quintet/shared/frame.h>\n#include <quintet/shared/instrument.h>\n") + kGlslWords + Fields<shared::TextureData>::glsl() +
          Fields<shared::EnvironmentData>::glsl() + Fields<shared::CameraData>::glsl() +
          (std::set<std::string>{"TextureData", "EnvironmentData", "CameraData"}.contains(Fields<T>::kName) ? "" : Fields<T>::glsl()) +
          "struct AllWords { uint at[128]; };\n";
@@ -44,7 +44,8 @@ class SharedStruct : public testing::Test {};
 
 using SharedStructs =
     testing::Types<shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::EnvironmentData,
-                   shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::Frame, shared::FilmAdd, shared::Launch>;
+                   shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::Frame, shared::FilmAdd, shared::Launch,
+                   shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel>;
 
 struct StructNames {
   template <class T>
