@@ -7,6 +7,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "scene/auto_camera.h"
+#include "scene/keyframes.h"
 #include "scene/load.h"
 #include "scene/scene_toml.h"
 #include "scene/validate.h"
@@ -235,6 +237,19 @@ std::string mutated(std::string text, std::mt19937& random) {
   return text;
 }
 
+// What a renderer asks of a scene on the host.
+void useEverything(const scene::Scene& s) {
+  const Bounds3 bounds = scene::worldBounds(s);
+  EXPECT_TRUE(bounds.empty() || (isFinite(bounds.min) && isFinite(bounds.max)));
+  for (const scene::Mesh& mesh : s.meshes)
+    for (const scene::PrimitiveSet& set : mesh.primitiveSets)
+      for (const Bounds3& box : scene::boxesOf(set)) EXPECT_FALSE(box.empty());
+  for (const scene::Instance& instance : s.instances)
+    for (const float frame : {0.0f, 7.5f, 1e6f})
+      EXPECT_NE(glm::determinant(glm::dmat3(glm::dmat4(scene::worldFromObjectAt(instance, frame)))), 0.0);
+  scene::frameScene(bounds, 1.5f);
+}
+
 TEST(SceneTomlFuzz, MutatedScenesLoadOrSayWhy) {
   const std::filesystem::path folder = std::filesystem::path(QUINTET_SOURCE_ROOT) / "examples/scenes";
   std::mt19937 random(20261121);
@@ -244,7 +259,10 @@ TEST(SceneTomlFuzz, MutatedScenesLoadOrSayWhy) {
     EXPECT_NO_THROW(scene::validate(scene::loadScene(folder / name))) << name;
     for (int i = 0; i < 400; ++i) {
       try {
-        scene::validate(scene::parseSceneToml(mutated(original, random), folder / name, {std::size_t{4} << 20}));
+        const scene::Scene loadedScene =
+            scene::parseSceneToml(mutated(original, random), folder / name, {std::size_t{4} << 20});
+        scene::validate(loadedScene);
+        useEverything(loadedScene);
         ++loaded;
       } catch (const Error& error) {
         const std::string message = error.what();
