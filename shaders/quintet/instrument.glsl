@@ -19,7 +19,7 @@ uint instrumentPixel_() {
   return film.y * frame.filmWidth + film.x;
 }
 
-void instrumentReport_(uint kind, uint line, uint depth, float value, uint index, vec3 origin, vec3 direction) {
+void instrumentReport_(uint kind, uint line, uint depth, float distance, uint index, vec3 origin, vec3 direction) {
   const uint slot = atomicAdd(instrument_.value.reportCount, 1u);
   if (slot >= kInstrumentReports) return;
   InstrumentReport report;
@@ -28,7 +28,7 @@ void instrumentReport_(uint kind, uint line, uint depth, float value, uint index
   report.line = line;
   report.depth = depth;
   report.pixel = gl_LaunchIDEXT.xy + launch.offset;
-  report.value = value;
+  report.distance = distance;
   report.index = index;
   report.origin = origin;
   report.direction = direction;

@@ -35,7 +35,7 @@ std::string describe(const shared::InstrumentReport& report, std::size_t missCou
       return fmt::format("this trace is deeper than the pipeline was made for; it was not executed ({})", where);
     default:
       return fmt::format("the ray meets the primitive that it has just left, {:.3g} away: less than the rounding error of its origin {} ({})",
-                         report.value, vectorText(report.origin), where);
+                         report.distance, vectorText(report.origin), where);
   }
 }
 

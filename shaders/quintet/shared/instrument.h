@@ -21,7 +21,7 @@ struct InstrumentReport {
   uint line;    // of the trace in that stage's file or in what it includes; 0: not at a trace
   uint depth;   // of nested traces there; 1: by the ray generation shader
   uvec2 pixel;
-  float value;  // Q005: distance
+  float distance;  // Q005
   uint index;   // Q004: of the miss shader
   vec3 origin;
   vec3 direction;
