@@ -39,7 +39,7 @@ TEST(DeviceStages, EachAnyHitShaderGetsAnIntersectionStageOfItsOwn) {
   EXPECT_EQ(stages.intersection("", "b.rahit"), rt::kNoStage);
   ASSERT_EQ(stages.stages().size(), 6u);
   EXPECT_EQ(stages.stages()[4].stage, shader::Stage::intersection);
-  EXPECT_EQ(stages.stages()[4].spirv.data(), program.stages[1].spirv.data());
+  EXPECT_EQ(stages.stages()[4].spirv.data(), stages.stages()[1].spirv.data());
 }
 
 }  // namespace
