@@ -95,9 +95,6 @@ void checkNestedBuiltIns(const SpirvModule& module, Findings& findings) {
   }
 }
 
-// The lecture form writes its attribute with the report, and takes it back if that is rejected (lecture_stage.cpp).
-constexpr std::string_view kLectureAttribute = "gsnHitAttribute_";
-
 void checkAttributeWrites(const SpirvModule& module, Findings& findings) {
   const std::vector<std::size_t> reports = all(module, Op::OpReportIntersectionKHR);
   for (const std::size_t store : all(module, Op::OpStore)) {
