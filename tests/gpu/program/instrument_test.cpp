@@ -85,7 +85,7 @@ TEST(Instrument, RecursionDeeperThanDeclared) {
 }
 
 TEST(Instrument, AMissShaderThatIsNotThere) {
-  const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" + rayGeneration(trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
+  const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" + rayGeneration("payload.color = vec3(0.0); " + trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q004:3");
 }
 
