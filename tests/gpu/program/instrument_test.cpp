@@ -18,7 +18,7 @@ const std::string kHit = "void main() { /**** CLOSEST-HIT SHADER ****/ payload.c
 // Lines: 1 common, 2 ray generation.
 std::string rayGeneration(const std::string& body) {
   return "void main() { /**** RAY GENERATION SHADER ****/ vec2 p = (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy); "
-         "vec3 eye = vec3(0.0, 1.0, 6.0); vec3 d = normalize(vec3(p - 0.5, -1.0)); " +
+         "vec3 eye = vec3(0.0, 1.0, 6.0); vec3 d = normalize(vec3(p - 0.5, -1.0)); payload.color = vec3(0.0); " +
          body + " gsnSetPixel(vec4(payload.color, 1.0)); }\n";
 }
 std::string trace(const std::string& origin, const std::string& direction, const std::string& miss = "0u") {
@@ -85,7 +85,7 @@ TEST(Instrument, RecursionDeeperThanDeclared) {
 }
 
 TEST(Instrument, AMissShaderThatIsNotThere) {
-  const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" + rayGeneration("payload.color = vec3(0.0); " + trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
+  const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" + rayGeneration(trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q004:3");
 }
 
