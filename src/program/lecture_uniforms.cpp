@@ -122,7 +122,7 @@ class Declaration {
       while (end < last && !(isMark(end, ',') && tokens_[end].parens == tokens_[name].parens))
         end = nextCode(tokens_, end + 1);
       LectureUniform uniform;
-      uniform.begin = tokens_[first].begin;
+      uniform.begin = tokens_[layoutBefore(first)].begin;
       uniform.end = tokens_[last].end;
       if (readOne(uniform, typeToken, name, end))
         uniforms.push_back(std::move(uniform));
@@ -138,6 +138,17 @@ class Declaration {
     return tokens_[i].kind == TokenKind::mark && text_[tokens_[i].begin] == c;
   }
   std::string_view word(std::size_t i) const { return textOf(text_, tokens_[i]); }
+
+  // The token "layout" of "layout(…) uniform", or `first` itself.
+  std::size_t layoutBefore(std::size_t first) const {
+    constexpr std::size_t kLongest = 16;  // layout ( set = 0 , binding = 3 )
+    for (std::size_t back = 1; back <= std::min(first, kLongest); ++back) {
+      const std::size_t i = first - back;
+      if (back == 1 && !isMark(i, ')')) break;
+      if (tokens_[i].parens == 0) return i > 0 && word(i - 1) == "layout" ? i - 1 : first;  // i: the '('
+    }
+    return first;
+  }
 
   // The comment behind the declaration, in the same line.
   void readAttributes(std::size_t last) {

@@ -232,6 +232,62 @@ TEST(Lecture, PiIsThereUnlessDeclared) {
     EXPECT_THAT(problems(std::string(kCommon) + declaration + kRayGeneration + use), IsEmpty()) << declaration;
 }
 
+TEST(Lecture, LinesEndInAnyWay) {
+  std::string text = wholeProgram(3, "  float wrong = missing;");
+  const auto place =
+      std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("missing")), '\n') + 1;
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, "\r");
+  EXPECT_EQ(problems("\xEF\xBB\xBF" + text),
+            std::vector<std::string>{
+                fmt::format("here/demo.rt.glsl:{}:17: error: 'missing' : undeclared identifier [GLSL]", place)});
+}
+
+TEST(Lecture, AnyFileNameWillDo) {
+  const Program program =
+      parseLecture(std::string(kRayGeneration) + "int x = missing;\n", "a \"b\\ : 3.rt.glsl", "c'd");
+  const std::vector<std::string> lines = messages(compile(program, compiler(), {}).diagnostics);
+  EXPECT_THAT(lines, Contains(HasSubstr(":5:")));
+}
+
+TEST(Lecture, UniformsBecomeParameters) {
+  const Program p =
+      lecture(std::string(kCommon) +
+              "layout(binding = 3) uniform float a; // defaultval=\"0.5\" min=\"0\" max=\"2\" unit=\"m\" "
+              "help=\"Height\"\n"
+              "uniform vec3 wallColour, up = vec3(0, 1, 0);\nuniform bool on = true; // a comment\n"
+              "uniform sampler2D wood;\n" +
+              kRayGeneration + "void main() { /**** MISS SHADER ****/ payload.color = vec3(a + userParam2); }\n");
+  EXPECT_THAT(messages(compile(p, compiler(), {}).diagnostics), IsEmpty());
+  ASSERT_EQ(p.parameters.size(), 6u);
+  EXPECT_EQ(p.parameters[0].defaultValue[0], 0.5);
+  EXPECT_EQ(p.parameters[0].max, 2.0);
+  EXPECT_EQ(p.parameters[0].unit, "m");
+  EXPECT_EQ(p.parameters[0].help, "Height");
+  EXPECT_EQ(p.parameters[0].line, 6);
+  EXPECT_EQ(p.parameters[1].type, ParameterType::color);
+  EXPECT_EQ(p.parameters[2].defaultValue[1], 1.0);
+  EXPECT_EQ(p.parameters[3].type, ParameterType::boolean);
+  EXPECT_EQ(p.parameters[4].type, ParameterType::image);
+  EXPECT_EQ(p.parameters[5].name, "userParam2");
+}
+
+TEST(Lecture, RefusesUniformsThatAreNoParameters) {
+  for (const auto& [line, message] :
+       {std::pair<const char*, const char*>{"uniform mat4 m;", "1:9: error: 'mat4' is no type of a uniform"},
+        {"uniform float a[3];", "1:16: error: the uniform 'a' must not be an array"},
+        {"uniform Block { float a; };", "a uniform is declared as 'uniform TYPE NAME;'"},
+        {"uniform float a; // defaultval=\"x\"", "1:15: error: the default of 'a' must be a number"},
+        {"uniform vec3 a; // defaultval=\"1, 2\"", "the default of 'a' must be 3 numbers"},
+        {"uniform int a; // defaultval=\"0.5\"", "must be a whole number"},
+        {"uniform float a; // min=\"1\" defaultval=\"0\"", "is outside 1"},
+        {"uniform float frame;", "'frame' cannot be the name of a uniform"},
+        {"uniform float a; uniform int a;", "the uniform 'a' is there twice, with two types"},
+        {"uniform sampler2D a; // defaultval=\"none.png\"", "there is no file 'none.png' beside demo.rt.glsl"}})
+    EXPECT_THAT(problems(line + std::string("\n") + kRayGeneration),
+                Contains(testing::AllOf(HasSubstr(message), HasSubstr("[Q015]"))))
+        << line;
+}
+
 TEST(Lecture, IncludesFilesBesideIt) {
   EXPECT_THAT(problems("#include \"types.glsl\"\n" + std::string(kRayGeneration) +
                            "void main() { /**** MISS SHADER ****/ payload.color = grey(); }\n",
