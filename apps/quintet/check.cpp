@@ -1,5 +1,5 @@
-// `quintet check`: compiles programs and checks how their shaders fit together, on a scene. Without --instrument it needs
-// no device and renders nothing.
+// `quintet check`: compiles programs and checks how their shaders fit together, on a scene. Without --instrument it
+// needs no device and renders nothing.
 #include <algorithm>
 #include <cstdlib>
 #include <iterator>
@@ -29,7 +29,8 @@ constexpr const char* kExamples =
     "  quintet check my_program/ scene.glb        and whether they fit this scene\n"
     "  quintet check my_program/ --json           for editors: an array of diagnostics\n"
     "  quintet check programs/* --strict          several; a warning is a failure, too\n"
-    "  quintet check my_program/ --instrument     and look for NaN, wrong records and self-intersections while it runs\n";
+    "  quintet check my_program/ --instrument     and look for NaN, wrong records and self-intersections while it "
+    "runs\n";
 
 struct Options {
   std::vector<std::string> programs;
@@ -50,13 +51,18 @@ std::optional<Options> parseOptions(Arguments arguments) {
                "quintet check");
   Options options;
   std::vector<std::string> positional;
-  app.add_option("PROGRAM", positional, "One or more folders or built-in names; last, optionally, a scene: .gltf, .glb or\n"
-                                        ".scene.toml (default: each program's own)")
+  app.add_option("PROGRAM", positional,
+                 "One or more folders or built-in names; last, optionally, a scene: .gltf, .glb or\n"
+                 ".scene.toml (default: each program's own)")
       ->type_name("");
   app.add_flag("--json", options.json, "An array of diagnostics on standard output");
   app.add_flag("--strict", options.strict, "Warnings count as errors for the exit status");
-  app.add_flag("--instrument", options.instrument, "Also run a small picture with checks in the shaders (Q001 to Q006)");
-  app.add_option("--device", options.device, "Whose limits and defects count, and what --instrument runs on: index or\npart of the name; none: no device's")->type_name("NAME");
+  app.add_flag("--instrument", options.instrument,
+               "Also run a small picture with checks in the shaders (Q001 to Q006)");
+  app.add_option(
+         "--device", options.device,
+         "Whose limits and defects count, and what --instrument runs on: index or\npart of the name; none: no device's")
+      ->type_name("NAME");
   setUp(app, kExamples);
   if (!parse(app, arguments)) return std::nullopt;
   if (!positional.empty() && looksLikeScene(positional.back())) {
@@ -122,7 +128,8 @@ int checkCommand(Arguments arguments) {
     all.insert(all.end(), found.begin(), found.end());
   }
   if (options->json) writeFile("-", diagnosticsJson(all));
-  const bool warned = std::ranges::any_of(all, [](const Diagnostic& d) { return d.severity == shader::Severity::warning; });
+  const bool warned =
+      std::ranges::any_of(all, [](const Diagnostic& d) { return d.severity == shader::Severity::warning; });
   return hasErrors(all) || (options->strict && warned) ? 1 : 0;
 }
 

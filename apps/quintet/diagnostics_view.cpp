@@ -120,7 +120,8 @@ std::string diagnosticsText(std::vector<Diagnostic> diagnostics, const SourceLoo
     if (d.line <= 0) continue;
     if (const std::optional<std::string> source = sources(d.file)) text += excerpt(d, *source, color);
   }
-  if (diagnostics.size() > kMaxDiagnostics) text += fmt::format("... and {} more\n", diagnostics.size() - kMaxDiagnostics);
+  if (diagnostics.size() > kMaxDiagnostics)
+    text += fmt::format("... and {} more\n", diagnostics.size() - kMaxDiagnostics);
   return text;
 }
 
@@ -128,8 +129,12 @@ std::string diagnosticsJson(const std::vector<Diagnostic>& diagnostics) {
   using Json = nlohmann::ordered_json;
   Json array = Json::array();
   for (const Diagnostic& d : diagnostics) {
-    Json entry{{"severity", severityName(d.severity)}, {"file", d.file}, {"line", d.line}, {"column", d.column},
-               {"id", d.id}, {"text", d.text}};
+    Json entry{{"severity", severityName(d.severity)},
+               {"file", d.file},
+               {"line", d.line},
+               {"column", d.column},
+               {"id", d.id},
+               {"text", d.text}};
     if (const program::DiagnosticInfo* info = program::findDiagnostic(d.id)) {
       entry["why"] = info->why;
       entry["mend"] = info->mend;

@@ -28,7 +28,10 @@ std::string listText() {
 }
 
 nlohmann::ordered_json toJson(const program::DiagnosticInfo& info) {
-  return {{"id", info.id}, {"severity", severityName(info.severity)}, {"title", info.title}, {"why", info.why},
+  return {{"id", info.id},
+          {"severity", severityName(info.severity)},
+          {"title", info.title},
+          {"why", info.why},
           {"mend", info.mend}};
 }
 

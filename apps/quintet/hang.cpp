@@ -18,10 +18,12 @@ void withoutHanging(const program::Program& program, bool json, const std::funct
     launches();
   } catch (const gpu::TimeoutError& error) {
     const std::string text = fmt::format(
-        "the launch did not end within {:g} s: does a shader loop for ever? (--timeout SECONDS lets it run longer)", error.seconds());
+        "the launch did not end within {:g} s: does a shader loop for ever? (--timeout SECONDS lets it run longer)",
+        error.seconds());
     if (json) {
       try {
-        writeFile("-", diagnosticsJson({{shader::Severity::error, program.path(program.rayGeneration), 0, 0, "HANG", text}}));
+        writeFile(
+            "-", diagnosticsJson({{shader::Severity::error, program.path(program.rayGeneration), 0, 0, "HANG", text}}));
       } catch (const Error&) {  // nobody reads
       }
     }

@@ -36,7 +36,9 @@ struct NewProgram {
   fs::path program;
 };
 
-bool isLecture(const program::Program& program) { return program.descriptionFile.ends_with(program::kLectureExtension); }
+bool isLecture(const program::Program& program) {
+  return program.descriptionFile.ends_with(program::kLectureExtension);
+}
 
 // The lecture file under its new name and what it needs: files whose names stand in those that are copied.
 Files copyOfLecture(const program::Program& source, const std::string& stem) {
@@ -70,7 +72,8 @@ NewProgram plan(const Options& options) {
   if (!path.has_filename()) path = path.parent_path();
   std::string stem = path.filename().string();
   if (stem.ends_with(program::kLectureExtension)) stem.resize(stem.size() - program::kLectureExtension.size());
-  if (stem.empty() || stem == "." || stem == "..") throw UsageError(fmt::format("'{}' is not a name for a program", options.name));
+  if (stem.empty() || stem == "." || stem == "..")
+    throw UsageError(fmt::format("'{}' is not a name for a program", options.name));
   const fs::path folder = path.parent_path() / stem;
   const std::string file = stem + std::string(program::kLectureExtension);
   if (options.from.empty())
@@ -88,7 +91,8 @@ void create(const NewProgram& made, const Options& options) {
   if (made.program == made.folder && fs::exists(made.folder, failed))
     throw FileError(made.folder, "exists already; take another name");
   for (const auto& [name, text] : made.files)
-    if (fs::exists(made.folder / name, failed)) throw FileError(made.folder / name, "exists already; take another name");
+    if (fs::exists(made.folder / name, failed))
+      throw FileError(made.folder / name, "exists already; take another name");
   // `quintet run NAME` must mean the new program.
   const bool single = made.program != made.folder && !options.folder;
   const fs::path stem = fs::path(options.name).lexically_normal();
@@ -109,7 +113,8 @@ int newCommand(Arguments arguments) {
   CLI::App app("Begins a program that renders at once: one file, or a folder.", "quintet new");
   Options options;
   app.add_option("NAME", options.name, "Of the program; folders in front of it are made")->type_name("");
-  app.add_option("--from", options.from, "Begin with a copy of this program: a lesson, another built-in one, or a path")->type_name("PROGRAM");
+  app.add_option("--from", options.from, "Begin with a copy of this program: a lesson, another built-in one, or a path")
+      ->type_name("PROGRAM");
   app.add_flag("--folder", options.folder, "A folder with program.toml instead of one file");
   setUp(app, kExamples);
   if (!parse(app, arguments)) return 0;
@@ -120,8 +125,10 @@ int newCommand(Arguments arguments) {
   const std::string name = shellQuoted(made.program.string());
   std::string text = fmt::format("{}: made", plain(made.program.string()));
   if (made.files.size() > 1) text += fmt::format(", {} files", made.files.size());
-  text += fmt::format("\n\nNext:\n  quintet run {} --watch    render it, and again whenever you save\n"
-                      "  quintet run {} --help     its parameters\n", name, name);
+  text += fmt::format(
+      "\n\nNext:\n  quintet run {} --watch    render it, and again whenever you save\n"
+      "  quintet run {} --help     its parameters\n",
+      name, name);
   writeFile("-", text);
   return 0;
 }

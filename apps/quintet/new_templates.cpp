@@ -3,8 +3,8 @@
 namespace quintet::app {
 namespace {
 
-constexpr const char* kLecture = R"(// Diffuse surfaces under a lamp, before a sky. All shaders of the program are in this file; a comment with stars
-// says which stage a main() is. `quintet explain` and docs/lecture-form.md say more.
+constexpr const char* kLecture = R"(// Diffuse surfaces under a lamp, before a sky.
+// All shaders of the program are in this file; a comment with stars says which stage a main() is.
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;  // what the ray sees; every closest-hit and miss shader writes it
@@ -93,7 +93,8 @@ max = 1.0
 help = "Light from everywhere"
 )";
 
-constexpr const char* kPayload = R"(// What a ray brings back. Every shader that meets at run time must have the same type: so they all include it.
+constexpr const char* kPayload = R"(// What a ray brings back.
+// Shaders that meet at run time must have the same type: so all of them include it.
 struct Payload {
   vec3 color;  // linear radiance
 };

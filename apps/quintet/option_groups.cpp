@@ -27,7 +27,8 @@ std::optional<float> real(const std::string& option, const std::string& text, do
 }
 std::optional<std::uint64_t> whole(const std::string& option, const std::string& text, double min, double max) {
   const auto value = number(option, text, min, max);
-  if (value && std::floor(*value) != *value) throw UsageError(fmt::format("{}: '{}' is not a whole number", option, text));
+  if (value && std::floor(*value) != *value)
+    throw UsageError(fmt::format("{}: '{}' is not a whole number", option, text));
   return value ? std::optional(static_cast<std::uint64_t>(*value)) : std::nullopt;
 }
 std::optional<vec3> point(const std::string& option, const std::string& text) {
@@ -72,7 +73,8 @@ void declareImage(CLI::App& app, RawOptions& raw, RenderOptions& options) {
   };
   add("--size", raw.size, "WxH", "Pixels; or W alone (default: 1280x720, or 1280 on the camera's longer side)");
   add("--region", raw.region, "X,Y,W,H", "Render and write only this part, in pixels from the top left");
-  app.add_flag("--transparent", options.transparent, "Alpha 0 where nothing is, instead of the environment")->group("Image");
+  app.add_flag("--transparent", options.transparent, "Alpha 0 where nothing is, instead of the environment")
+      ->group("Image");
   add("--exposure", raw.exposure, "STOPS", "Multiply by 2^STOPS (PNG only; default: 0)");
   add("--tonemap", raw.toneMap, "NAME", "linear, aces, agx or neutral (PNG only; default: neutral for colour)");
 }
@@ -92,7 +94,8 @@ void declareView(CLI::App& app, RawOptions& raw, RenderOptions& options) {
   const auto add = [&app](const char* group, const char* name, std::string& value, const char* form, const char* help) {
     app.add_option(name, value, help)->type_name(form)->group(group);
   };
-  add("Camera", "--camera", options.camera.camera, "NAME", "Index or name in the file (default: the first, else automatic)");
+  add("Camera", "--camera", options.camera.camera, "NAME",
+      "Index or name in the file (default: the first, else automatic)");
   add("Camera", "--look-from", raw.lookFrom, "X,Y,Z", "The eye, metres");
   add("Camera", "--look-at", raw.lookAt, "X,Y,Z", "The point looked at (default: the middle of the scene)");
   add("Camera", "--up", raw.up, "X,Y,Z", "What is up in the image (default: 0,1,0)");
@@ -113,7 +116,9 @@ void declareProgram(CLI::App& app, RawOptions& raw, RenderOptions& options) {
       ->take_all()
       ->type_name("NAME=VALUE")
       ->group(group);
-  app.add_option("--set-file", raw.setFile, "Parameters as a JSON object; --set wins")->type_name("FILE.json")->group(group);
+  app.add_option("--set-file", raw.setFile, "Parameters as a JSON object; --set wins")
+      ->type_name("FILE.json")
+      ->group(group);
   app.add_flag("--all-outputs", options.allOutputs, "Write every output of the program: out.NAME.png")->group(group);
 }
 

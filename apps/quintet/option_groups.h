@@ -15,7 +15,7 @@ struct RawOptions {
       exposure, toneMap, seed, region, timeout, setFile;
 };
 
-void declareImage(CLI::App& app, RawOptions& raw, RenderOptions& options);    // all but the output file
+void declareImage(CLI::App& app, RawOptions& raw, RenderOptions& options);  // all but the output file
 void declareQuality(CLI::App& app, RawOptions& raw, RenderOptions& options);
 void declareView(CLI::App& app, RawOptions& raw, RenderOptions& options);     // camera and light
 void declareProgram(CLI::App& app, RawOptions& raw, RenderOptions& options);  // parameters and outputs

@@ -23,7 +23,8 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   RenderOptions options;
   RawOptions raw;
   app.add_option("SCENE", raw.scene, "The scene: .gltf, .glb or .scene.toml")->type_name("");
-  app.add_option("-o,--output", raw.output, ".png, .exr or .hdr; - is PNG on standard output (default: SCENE.png, here)")
+  app.add_option("-o,--output", raw.output,
+                 ".png, .exr or .hdr; - is PNG on standard output (default: SCENE.png, here)")
       ->type_name("FILE")
       ->group("Image");
   declareImage(app, raw, options);

@@ -21,15 +21,15 @@ struct RenderOptions {
   uvec2 size{0};                 // 0: decided by the camera
   std::optional<std::uint64_t> samples;
   std::optional<double> seconds;
-  std::optional<std::uint32_t> frames;       // as asked for
+  std::optional<std::uint32_t> frames;  // as asked for
   // Of a program that draws frame after frame; nothing: until the time is over.
   std::optional<std::uint32_t> drawnFrames;
   CameraOptions camera;
   EnvironmentOptions environment;
-  float exposure = 0.0f;         // stops
+  float exposure = 0.0f;  // stops
   std::optional<render::ToneMap> toneMap;
   std::uint32_t seed = 0;
-  render::Region region;         // width 0: everything
+  render::Region region;  // width 0: everything
   std::string program = "pathtracer";
   std::vector<std::string> assignments;  // name=value, in the order of the command line
   std::filesystem::path setFile;         // JSON object of parameters, before the assignments; may be empty
@@ -39,7 +39,7 @@ struct RenderOptions {
   std::optional<std::string> clamp;
   bool programHelp = false;
   std::string device;
-  std::optional<double> timeout; // seconds of one launch
+  std::optional<double> timeout;  // seconds of one launch
   bool quiet = false;
   bool json = false;
   bool transparent = false;

@@ -43,15 +43,18 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   std::string frames;
   render.program.clear();
   app.add_option("PROGRAM", render.program, "Folder, or name of a built-in program (--list)")->type_name("");
-  app.add_option("SCENE", raw.scene, "The scene: .gltf, .glb or .scene.toml (default: a small built-in one)")->type_name("");
+  app.add_option("SCENE", raw.scene, "The scene: .gltf, .glb or .scene.toml (default: a small built-in one)")
+      ->type_name("");
   app.add_option("-o", raw.output, ".png, .exr or .hdr; - is PNG on standard output (default: PROGRAM.png, here)")
       ->type_name("FILE")
       ->group("Image");
   declareImage(app, raw, render);
-  app.add_option("--frames", frames, "Frames: of a program that draws frame after frame, or of a scene that moves\n(default: 1)")
+  app.add_option("--frames", frames,
+                 "Frames: of a program that draws frame after frame, or of a scene that moves\n(default: 1)")
       ->type_name("N")
       ->group("Image");
-  app.add_flag("--all-frames", options.allFrames, "Write each frame: out.0000.png (so does a name with %04d)")->group("Image");
+  app.add_flag("--all-frames", options.allFrames, "Write each frame: out.0000.png (so does a name with %04d)")
+      ->group("Image");
   declareQuality(app, raw, render);
   declareView(app, raw, render);
   declareProgram(app, raw, render);
@@ -85,10 +88,13 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   if (!render.drawnFrames && !render.seconds) render.drawnFrames = 1;
   options.allFrames = options.allFrames || hasFramePlace(render.output);
   if (!render.timeout) render.timeout = kTimeout;
-  if (!render.outputName.empty() && render.allOutputs) throw UsageError("--output and --all-outputs exclude each other");
+  if (!render.outputName.empty() && render.allOutputs)
+    throw UsageError("--output and --all-outputs exclude each other");
   checkStandardOutput(render);
-  if (options.allFrames && render.output == "-") throw UsageError("--all-frames writes several files: -o - takes one picture");
-  if (options.watch && render.output == "-") throw UsageError("--watch writes a file again and again: -o - takes one picture");
+  if (options.allFrames && render.output == "-")
+    throw UsageError("--all-frames writes several files: -o - takes one picture");
+  if (options.watch && render.output == "-")
+    throw UsageError("--watch writes a file again and again: -o - takes one picture");
   return options;
 }
 

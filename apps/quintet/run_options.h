@@ -8,9 +8,9 @@ namespace quintet::app {
 
 struct RunOptions {
   RenderOptions render;
-  bool list = false;   // the built-in programs
+  bool list = false;       // the built-in programs
   bool allFrames = false;  // write each, not only the last one
-  bool watch = false;  // render again whenever a file is saved
+  bool watch = false;      // render again whenever a file is saved
 };
 
 // Nothing: help was printed. Throws UsageError. `render.output` is empty unless -o was given;

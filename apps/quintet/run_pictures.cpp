@@ -11,12 +11,14 @@ constexpr double kRefreshSeconds = 1.0;  // with --watch, the picture of a long 
 
 bool accumulates(const Session& session) { return session.program().accumulation == program::Accumulation::program; }
 
-RenderOutcome renderFilm(Session& session, const RenderOptions& options, const GracefulStop& stop, const RenderHooks& hooks) {
+RenderOutcome renderFilm(Session& session, const RenderOptions& options, const GracefulStop& stop,
+                         const RenderHooks& hooks) {
   return renderBatches(session.renderer(), {options.samples, options.seconds}, stop, session.progress(), hooks);
 }
 
 // With --watch the first batch is shown at once, and the picture again when it is complete.
-PictureEnd drawFilm(Session& session, const RenderOptions& options, const GracefulStop& stop, const PictureHooks& hooks) {
+PictureEnd drawFilm(Session& session, const RenderOptions& options, const GracefulStop& stop,
+                    const PictureHooks& hooks) {
   RenderHooks inner;
   inner.abandon = hooks.abandon;
   if (hooks.firstPicture) {
@@ -32,7 +34,8 @@ PictureEnd drawFilm(Session& session, const RenderOptions& options, const Gracef
 }
 
 // Each frame is a picture of its own; where only the last one is written, only that one is rendered.
-PictureEnd drawMovingScene(Session& session, const RunOptions& options, const GracefulStop& stop, const PictureHooks& hooks) {
+PictureEnd drawMovingScene(Session& session, const RunOptions& options, const GracefulStop& stop,
+                           const PictureHooks& hooks) {
   const std::uint32_t count = *options.render.frames;
   double seconds = 0, firstPixelSeconds = 0;
   for (std::uint32_t frame = options.allFrames ? 0 : count - 1; frame < count; ++frame) {
@@ -92,10 +95,13 @@ class FrameLoop {
 
   bool isLast(std::uint32_t frame) const {
     const RenderOptions& render = options_.render;
-    return (render.drawnFrames && frame + 1 >= *render.drawnFrames) || (render.seconds && clock_.seconds() >= *render.seconds);
+    return (render.drawnFrames && frame + 1 >= *render.drawnFrames) ||
+           (render.seconds && clock_.seconds() >= *render.seconds);
   }
 
-  bool wantsRefresh() const { return hooks_.firstPicture && (!written_ || clock_.seconds() - lastWritten_ >= kRefreshSeconds); }
+  bool wantsRefresh() const {
+    return hooks_.firstPicture && (!written_ || clock_.seconds() - lastWritten_ >= kRefreshSeconds);
+  }
 
   void write(std::uint32_t frame) {
     session_.write(outcome_, options_.allFrames ? std::optional(frame) : std::nullopt);
@@ -117,11 +123,14 @@ class FrameLoop {
 
 }  // namespace
 
-PictureEnd drawPictures(Session& session, const RunOptions& options, const GracefulStop& stop, const PictureHooks& hooks) {
+PictureEnd drawPictures(Session& session, const RunOptions& options, const GracefulStop& stop,
+                        const PictureHooks& hooks) {
   if (accumulates(session)) return FrameLoop(session, options, stop, hooks).run();
   const bool several = options.render.frames.value_or(1) > 1;
   if (several && !session.animated())
-    throw UsageError("--frames: the program averages its samples itself and nothing in the scene moves: all frames would be the same");
+    throw UsageError(
+        "--frames: the program averages its samples itself and nothing in the scene moves: all frames would be the "
+        "same");
   if (several || (options.allFrames && session.animated())) {
     RunOptions frames = options;
     frames.render.frames = options.render.frames.value_or(1);

@@ -13,14 +13,15 @@ namespace quintet::app {
 
 // What --watch adds; each may be empty.
 struct PictureHooks {
-  std::function<bool()> abandon;                        // asked between launches: nothing more is written
+  std::function<bool()> abandon;                         // asked between launches: nothing more is written
   std::function<void(const std::string&)> firstPicture;  // the first picture is written, perhaps a rough one
 };
 
 enum class PictureEnd { complete, interrupted, abandoned };
 
 // Draws with session.renderer(), which has drawn nothing yet, and writes the files; the report is left.
-PictureEnd drawPictures(Session& session, const RunOptions& options, const GracefulStop& stop, const PictureHooks& hooks = {});
+PictureEnd drawPictures(Session& session, const RunOptions& options, const GracefulStop& stop,
+                        const PictureHooks& hooks = {});
 
 }  // namespace quintet::app
 #endif

@@ -100,7 +100,8 @@ class Watching {
     Files folders;
     const fs::path program = options_.render.program;
     if (fs::is_directory(program, ignored)) folders.push_back(program);
-    if (program.filename() == "program.toml") folders.push_back(program.has_parent_path() ? program.parent_path() : ".");
+    if (program.filename() == "program.toml")
+      folders.push_back(program.has_parent_path() ? program.parent_path() : ".");
     Files files = session_.files();
     if (fs::is_regular_file(program, ignored)) files.push_back(program);
     watcher_.watch(files, folders, isProgramSource);
@@ -123,7 +124,8 @@ class Watching {
   void firstPicture(const std::string& file) {
     hasPicture_ = true;
     if (saved_.empty()) return;
-    session_.progress().note(fmt::format("{} saved: {} after {:.2f} s", namesOf(saved_), plain(file), savedSeconds_ + sinceSave_.seconds()));
+    session_.progress().note(
+        fmt::format("{} saved: {} after {:.2f} s", namesOf(saved_), plain(file), savedSeconds_ + sinceSave_.seconds()));
     saved_.clear();
   }
 

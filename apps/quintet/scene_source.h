@@ -13,9 +13,9 @@
 namespace quintet::app {
 
 struct SceneSource {
-  std::filesystem::path file;  // empty: the program's own, else the built-in scene
-  std::string name;            // for messages and metadata; the path of the program's own
-  std::string text;            // of the program's own (.scene.toml); empty: it has none
+  std::filesystem::path file;          // empty: the program's own, else the built-in scene
+  std::string name;                    // for messages and metadata; the path of the program's own
+  std::string text;                    // of the program's own (.scene.toml); empty: it has none
   scene::DefaultSceneOptions builtIn;  // what of it the program's hit groups can meet
   bool operator==(const SceneSource&) const = default;
 };

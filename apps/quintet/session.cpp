@@ -30,17 +30,19 @@ void checkMemory(const gpu::DeviceInfo& device, uvec2 size, std::size_t outputCo
   const std::uint64_t room = device.memoryBytes - device.memoryBytes / 16;
   const bool tooLargeBuffer = device.maxBufferBytes > 0 && pixels * kFilmBytes / 2 > device.maxBufferBytes;
   if (needed <= room && !tooLargeBuffer) return;
-  throw MemoryError(fmt::format("an image of {}x{} needs {} on {}, which has {} and buffers of at most {}; render parts "
-                                "of it with --region",
-                                size.x, size.y, bytesText(needed), device.name, bytesText(device.memoryBytes),
-                                bytesText(device.maxBufferBytes)));
+  throw MemoryError(fmt::format(
+      "an image of {}x{} needs {} on {}, which has {} and buffers of at most {}; render parts "
+      "of it with --region",
+      size.x, size.y, bytesText(needed), device.name, bytesText(device.memoryBytes), bytesText(device.maxBufferBytes)));
 }
 
 }  // namespace
 
 bool isProgramSource(const std::filesystem::path& name) {
-  constexpr std::string_view kExtensions[] = {".toml", ".glsl", ".h", ".rgen", ".rint", ".rahit", ".rchit", ".rmiss", ".rcall"};
-  return !name.string().starts_with('.') && std::ranges::find(kExtensions, name.extension().string()) != std::end(kExtensions);
+  constexpr std::string_view kExtensions[] = {".toml",  ".glsl",  ".h",     ".rgen", ".rint",
+                                              ".rahit", ".rchit", ".rmiss", ".rcall"};
+  return !name.string().starts_with('.') &&
+         std::ranges::find(kExtensions, name.extension().string()) != std::end(kExtensions);
 }
 
 Session::Session(const RenderOptions& options) : options_(options), progress_(options.quiet) {}
@@ -114,7 +116,8 @@ void Session::describe(const scene::Scene& scene, const ChosenEnvironment& envir
   if (outputKind(options_.output) != OutputKind::png && (options_.toneMap || options_.exposure != 0))
     progress_.note(fmt::format("{}: linear radiance, --exposure and --tonemap do not apply", options_.output.string()));
   if (environment.isDefault)
-    progress_.note(fmt::format("{}: nothing gives light, taking the default environment (--env none for darkness)", name));
+    progress_.note(
+        fmt::format("{}: nothing gives light, taking the default environment (--env none for darkness)", name));
   if (scene.instances.empty()) warnings_.add(fmt::format("{}: the scene shows no surface", name));
   const scene::Report& report = scene.report;
   const std::size_t ignored = report.ignored.size() + report.extensionsIgnored.size();
@@ -208,7 +211,8 @@ void Session::write(const RenderOutcome& outcome, std::optional<std::uint32_t> f
   for (const std::size_t output : chosenOutputs()) {
     const std::string& name = program_.outputs[output].name;
     const std::filesystem::path file = pictureName(options_.output, options_.allOutputs ? name : "", frame);
-    const DisplayOptions display{chooseToneMap(program_.outputs[output], options_), options_.exposure, !options_.transparent};
+    const DisplayOptions display{chooseToneMap(program_.outputs[output], options_), options_.exposure,
+                                 !options_.transparent};
     const bool toned = outputKind(file) == OutputKind::png;
     record_.toneMap = toned ? render::toneMapNames()[static_cast<std::size_t>(display.toneMap)] : "";
     record_.outputName = name;

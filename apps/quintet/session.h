@@ -31,10 +31,10 @@ class Session {
   // `options` outlives the session.
   explicit Session(const RenderOptions& options);
 
-  void prepare();     // the program, its parameters, the files: all that can be wrong without a device
+  void prepare();  // the program, its parameters, the files: all that can be wrong without a device
   void openDevice();
-  void loadScene();   // reads it, decides on camera, size and light, builds it on the device
-  void link();        // compiles and links the program into a renderer that has rendered nothing yet
+  void loadScene();  // reads it, decides on camera, size and light, builds it on the device
+  void link();       // compiles and links the program into a renderer that has rendered nothing yet
 
   // For --watch: whether prepare() still wants the scene that loadScene() built, and every file on disk that was read.
   bool sceneLoaded() const { return sceneLoaded_; }

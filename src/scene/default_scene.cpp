@@ -32,7 +32,8 @@ void addInstance(Scene& scene, const char* name, int mesh, vec3 position, float 
   Instance instance;
   instance.name = name;
   instance.mesh = mesh;
-  instance.worldFromObject = glm::scale(glm::rotate(glm::translate(mat4(1.0f), position), turn, vec3(0, 1, 0)), vec3(scale));
+  instance.worldFromObject =
+      glm::scale(glm::rotate(glm::translate(mat4(1.0f), position), turn, vec3(0, 1, 0)), vec3(scale));
   instance.customIndex = static_cast<std::uint32_t>(scene.instances.size());
   scene.instances.push_back(instance);
 }

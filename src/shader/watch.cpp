@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kEvents =
     IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_CREATE | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
-constexpr int kSettleMilliseconds = 15;   // between the steps of an editor that saves
+constexpr int kSettleMilliseconds = 15;    // between the steps of an editor that saves
 constexpr int kReplaceMilliseconds = 150;  // a file that went away may come back
 constexpr int kFolderMilliseconds = 250;   // a folder that is not there is looked for this often
 

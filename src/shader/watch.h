@@ -38,19 +38,19 @@ class FileWatcher {
   std::vector<std::filesystem::path> wait(double seconds);
 
  private:
-  void read();                    // moves the system's events to changed_
+  void read();  // moves the system's events to changed_
   void handle(const inotify_event& event);
   void note(const std::filesystem::path& place);
-  void addFolders(bool tell);     // watches those that exist by now
-  bool poll(int milliseconds);    // events are there
-  void settle();                  // until nothing more happens
+  void addFolders(bool tell);   // watches those that exist by now
+  bool poll(int milliseconds);  // events are there
+  void settle();                // until nothing more happens
 
   int inotify_ = -1;
-  std::map<std::filesystem::path, std::set<std::filesystem::path>> places_;  // absolute place -> names as given
+  std::map<std::filesystem::path, std::set<std::filesystem::path>> places_;    // absolute place -> names as given
   std::map<std::filesystem::path, std::set<std::filesystem::path>> filtered_;  // absolute folder -> names as given
   Filter filter_;
-  std::map<std::filesystem::path, int> folders_;                             // folder -> watch; -1: not there yet
-  std::set<std::filesystem::path> changed_;                                  // names as given
+  std::map<std::filesystem::path, int> folders_;  // folder -> watch; -1: not there yet
+  std::set<std::filesystem::path> changed_;       // names as given
 };
 
 }  // namespace quintet::shader

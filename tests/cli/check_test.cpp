@@ -33,7 +33,8 @@ TEST_F(Check, CleanProgramsOfAllKinds) {
 
 TEST_F(Check, EveryBuiltInProgramIsClean) {
   std::vector<std::string> arguments{"check", "--strict"};
-  for (const auto& entry : nlohmann::json::parse(quintet({"run", "--list", "--json"}).out)) arguments.push_back(entry["name"]);
+  for (const auto& entry : nlohmann::json::parse(quintet({"run", "--list", "--json"}).out))
+    arguments.push_back(entry["name"]);
   const RunResult result = quintet(arguments);
   EXPECT_EQ(result.status, 0) << result.err;
 }
@@ -85,11 +86,13 @@ TEST_F(Check, ErrorsInIncludedFiles) {
 // What no compiler sees: two shaders that meet at run time and differ in their payload.
 TEST_F(Check, TheLinkIsCheckedBeforeTheFirstRay) {
   writeProgram("bad", "payload.color", "sky.rmiss");
-  write(folder_ / "bad" / "sky.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\n"
-                                       "struct Payload { vec4 color; };\nlayout(location = 0) rayPayloadInEXT Payload payload;\n"
-                                       "void main() { payload.color = vec4(0.5); }\n");
+  write(folder_ / "bad" / "sky.rmiss",
+        "#version 460\n#extension GL_EXT_ray_tracing : require\n"
+        "struct Payload { vec4 color; };\nlayout(location = 0) rayPayloadInEXT Payload payload;\n"
+        "void main() { payload.color = vec4(0.5); }\n");
   for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"check", "bad"}, {"run", "bad", "--size", "8x8", "-o", "out.png"},
+       {std::vector<std::string>{"check", "bad"},
+        {"run", "bad", "--size", "8x8", "-o", "out.png"},
         {"render", "scene.gltf", "--program", "bad", "--size", "8x8", "-o", "out.png"}}) {
     const RunResult result = quintet(arguments);
     EXPECT_EQ(result.status, 1) << result.err;
@@ -102,12 +105,14 @@ TEST_F(Check, TheLinkIsCheckedBeforeTheFirstRay) {
 // A warning is told and does not stop `run`; --strict makes `check` fail.
 TEST_F(Check, WarningsAreToldOnce) {
   writeProgram("odd", "payload.color", "sky.rmiss");
-  write(folder_ / "odd" / "unused.rchit", "#version 460\n#extension GL_EXT_ray_tracing : require\n"
-                                          "#include \"payload.glsl\"\nlayout(location = 0) rayPayloadInEXT Payload payload;\n"
-                                          "void main() { payload.color = vec3(1.0); }\n");
+  write(folder_ / "odd" / "unused.rchit",
+        "#version 460\n#extension GL_EXT_ray_tracing : require\n"
+        "#include \"payload.glsl\"\nlayout(location = 0) rayPayloadInEXT Payload payload;\n"
+        "void main() { payload.color = vec3(1.0); }\n");
   write(folder_ / "odd" / "program.toml", skyToml("sky.rmiss") +
-        "[[hit_group]]\nname = \"surface\"\nprimitives = \"nobody has this name\"\nprimary = { closest_hit = \"unused.rchit\" }\n"
-        "[[hit_group]]\nname = \"rest\"\nprimary = { }\n");
+                                              "[[hit_group]]\nname = \"surface\"\nprimitives = \"nobody has this "
+                                              "name\"\nprimary = { closest_hit = \"unused.rchit\" }\n"
+                                              "[[hit_group]]\nname = \"rest\"\nprimary = { }\n");
   EXPECT_EQ(quintet({"check", "odd", "scene.gltf"}).status, 0);
   EXPECT_EQ(quintet({"check", "odd", "scene.gltf", "--strict"}).status, 1);
   const RunResult result = quintet({"run", "odd", "scene.gltf", "--size", "8x8", "--json", "-o", "out.png"});

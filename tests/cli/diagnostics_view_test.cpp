@@ -42,10 +42,12 @@ TEST(DiagnosticsView, CaretBehindUmlauts) {
 
 TEST(DiagnosticsView, PlacesThatDoNotExist) {
   const SourceLookup sources = oneFile("one\n");
-  for (const Diagnostic& d : {Diagnostic{Severity::error, "a.rgen", 7, 1, "", "x"}, Diagnostic{Severity::error, "b.rgen", 1, 1, "", "x"},
-                              Diagnostic{Severity::error, "a.rgen", 0, 0, "", "x"}, Diagnostic{Severity::error, "", 0, 0, "", "x"}})
+  for (const Diagnostic& d :
+       {Diagnostic{Severity::error, "a.rgen", 7, 1, "", "x"}, Diagnostic{Severity::error, "b.rgen", 1, 1, "", "x"},
+        Diagnostic{Severity::error, "a.rgen", 0, 0, "", "x"}, Diagnostic{Severity::error, "", 0, 0, "", "x"}})
     EXPECT_EQ(diagnosticsText({d}, sources, false), d.format() + "\n");
-  EXPECT_EQ(diagnosticsText({{Severity::error, "a.rgen", 1, 99, "", "x"}}, sources, false), "a.rgen:1:99: error: x\n    1 | one\n");
+  EXPECT_EQ(diagnosticsText({{Severity::error, "a.rgen", 1, 99, "", "x"}}, sources, false),
+            "a.rgen:1:99: error: x\n    1 | one\n");
 }
 
 TEST(DiagnosticsView, ErrorsFirstAndTwentyOfThem) {
@@ -61,12 +63,13 @@ TEST(DiagnosticsView, ColourOnlyWhenAsked) {
   const std::vector<Diagnostic> one{{Severity::error, "a.rgen", 1, 1, "GLSL", "error: error: twice"}};
   EXPECT_EQ(diagnosticsText(one, oneFile("x"), false).find('\x1b'), std::string::npos);
   const std::string colored = diagnosticsText(one, oneFile("x"), true);
-  EXPECT_TRUE(colored.starts_with("\x1b[1ma.rgen:1:1: \x1b[0m\x1b[1;31merror: \x1b[0merror: error: twice [GLSL]\n")) << colored;
+  EXPECT_TRUE(colored.starts_with("\x1b[1ma.rgen:1:1: \x1b[0m\x1b[1;31merror: \x1b[0merror: error: twice [GLSL]\n"))
+      << colored;
 }
 
 TEST(DiagnosticsView, Json) {
-  const auto json = nlohmann::json::parse(
-      diagnosticsJson({{Severity::error, "a.rgen", 2, 3, "Q101", "bad \"thing\""}, {Severity::note, "", 0, 0, "GLSL", "x"}}));
+  const auto json = nlohmann::json::parse(diagnosticsJson(
+      {{Severity::error, "a.rgen", 2, 3, "Q101", "bad \"thing\""}, {Severity::note, "", 0, 0, "GLSL", "x"}}));
   ASSERT_EQ(json.size(), 2u);
   EXPECT_EQ(json[0]["severity"], "error");
   EXPECT_EQ(json[0]["file"], "a.rgen");
@@ -87,7 +90,8 @@ TEST(DiagnosticsView, FileErrors) {
 }
 
 TEST(DiagnosticsView, Counts) {
-  const Diagnostic e{Severity::error, "", 0, 0, "", ""}, w{Severity::warning, "", 0, 0, "", ""}, n{Severity::note, "", 0, 0, "", ""};
+  const Diagnostic e{Severity::error, "", 0, 0, "", ""}, w{Severity::warning, "", 0, 0, "", ""},
+      n{Severity::note, "", 0, 0, "", ""};
   EXPECT_EQ(countText({e, w, w, n}), "1 error, 2 warnings");
   EXPECT_EQ(countText({w}), "1 warning");
   EXPECT_EQ(countText({n}), "");

@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "fixtures.h"
 #include "base/file.h"
+#include "fixtures.h"
 #include "io/codec.h"
 
 namespace quintet::test {
@@ -55,7 +55,8 @@ TEST_F(Frames, TheLastOneIsWritten) {
 TEST_F(Frames, EachIsWritten) {
   ASSERT_EQ(count({"--frames", "3", "-o", "a_%02d.png", "-q"}).status, 0);
   ASSERT_EQ(count({"--frames", "2", "--all-frames", "-o", "b.png", "-q"}).status, 0);
-  EXPECT_EQ(fileNames(), (std::vector<std::string>{"a_00.png", "a_01.png", "a_02.png", "b.0000.png", "b.0001.png", "count.rt.glsl", "scene.gltf"}));
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"a_00.png", "a_01.png", "a_02.png", "b.0000.png", "b.0001.png",
+                                                   "count.rt.glsl", "scene.gltf"}));
   EXPECT_THAT(pixel("a_00.png"), ElementsAre(0, 0, 3));
   EXPECT_THAT(pixel("a_02.png"), ElementsAre(32, 16, 3));
   EXPECT_THAT(pixel("b.0001.png"), ElementsAre(16, 8, 2));
@@ -64,7 +65,8 @@ TEST_F(Frames, EachIsWritten) {
 }
 
 TEST_F(Frames, RenderDrawsSppOfThem) {
-  const RunResult result = quintet({"render", "scene.gltf", "--program", "count.rt.glsl", "--spp", "5", "--size", "8x8", "-q"});
+  const RunResult result =
+      quintet({"render", "scene.gltf", "--program", "count.rt.glsl", "--spp", "5", "--size", "8x8", "-q"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(pixel("scene.png"), ElementsAre(64, 32, 5));
 }
@@ -106,11 +108,13 @@ TEST_F(Frames, WatchRestarts) {
 
 // An animation of a film program: a quad that moves past the camera.
 TEST_F(Frames, MovingScenes) {
-  write(folder_ / "moving.scene.toml", "[[file]]\nname = \"quad\"\npath = \"scene.gltf\"\n"
-                                       "[[instance]]\nof = \"quad\"\n"
-                                       "keyframes = [{ frame = 0 }, { frame = 2, translate = [8.0, 0.0, 0.0] }]\n"
-                                       "[[camera]]\nlook_from = [0, 0, 4]\nlook_at = [0, 0, 0]\n");
-  const std::vector<std::string> run{"run", "normals", "moving.scene.toml", "--size", "16x12", "--spp", "4", "-q", "--env", "none"};
+  write(folder_ / "moving.scene.toml",
+        "[[file]]\nname = \"quad\"\npath = \"scene.gltf\"\n"
+        "[[instance]]\nof = \"quad\"\n"
+        "keyframes = [{ frame = 0 }, { frame = 2, translate = [8.0, 0.0, 0.0] }]\n"
+        "[[camera]]\nlook_from = [0, 0, 4]\nlook_at = [0, 0, 0]\n");
+  const std::vector<std::string> run{"run",   "normals", "moving.scene.toml", "--size", "16x12", "--spp", "4", "-q",
+                                     "--env", "none"};
   auto all = run, last = run;
   all.insert(all.end(), {"--frames", "3", "-o", "m.%d.exr"});
   last.insert(last.end(), {"--frames", "3", "-o", "last.exr"});
@@ -128,7 +132,8 @@ TEST_F(Frames, WhatMakesNoSense) {
   expectError(count({"--frames", "1.5"}), 2, {"--frames", "whole"});
   expectError(count({"-o", "%d_%d.png", "--frames", "2"}), 2, {"%d_%d.png"});
   expectError(count({"--all-frames", "-o", "-"}), 2, {"--all-frames"});
-  expectError(quintet({"run", "normals", "scene.gltf", "--frames", "2", "--size", "8x8", "-q", "--env", "none"}), 2, {"--frames", "same"});
+  expectError(quintet({"run", "normals", "scene.gltf", "--frames", "2", "--size", "8x8", "-q", "--env", "none"}), 2,
+              {"--frames", "same"});
 }
 
 }  // namespace

@@ -9,12 +9,14 @@ namespace quintet::test {
 // The miss shader; `line` is its line 6: "payload.color = vec3(0.5);".
 inline std::string skyMiss(const std::string& line) {
   return "#version 460\n#extension GL_EXT_ray_tracing : require\n#include \"payload.glsl\"\n"
-         "layout(location = 0) rayPayloadInEXT Payload payload;\nvoid main() {\n  " + line + "\n}\n";
+         "layout(location = 0) rayPayloadInEXT Payload payload;\nvoid main() {\n  " +
+         line + "\n}\n";
 }
 
 inline std::string skyToml(const std::string& miss) {
   return "[program]\ndescription = \"sky\"\nray_generation = \"sky.rgen\"\n"
-         "[[ray]]\nname = \"primary\"\nmiss = \"" + miss + "\"\n";
+         "[[ray]]\nname = \"primary\"\nmiss = \"" +
+         miss + "\"\n";
 }
 
 inline void writeSkyProgram(const std::filesystem::path& folder, const std::string& line) {

@@ -38,7 +38,8 @@ class Timeout : public CliTest {
     const RunResult result = quintet(arguments);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     EXPECT_EQ(result.status, 1) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("quintet: loop: the launch did not end within 2 s: does a shader loop for ever?"));
+    EXPECT_THAT(result.err,
+                HasSubstr("quintet: loop: the launch did not end within 2 s: does a shader loop for ever?"));
     EXPECT_TRUE(result.err.ends_with(")\n")) << result.err;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
     return seconds;
@@ -48,7 +49,9 @@ class Timeout : public CliTest {
 TEST_F(Timeout, RunAndRenderEndInTime) {
   // The launch's two seconds, and what comes before it: starting a device, compiling, on a busy machine.
   EXPECT_LT(expectHang({"run", "loop", "--timeout", "2", "--size", "64x64", "-q", "-o", "out.png"}), 20.0);
-  EXPECT_LT(expectHang({"render", "scene.gltf", "--program", "loop", "--timeout", "2", "--size", "64x64", "-q", "-o", "out.png"}), 20.0);
+  EXPECT_LT(expectHang({"render", "scene.gltf", "--program", "loop", "--timeout", "2", "--size", "64x64", "-q", "-o",
+                        "out.png"}),
+            20.0);
 }
 
 TEST_F(Timeout, JsonToo) {
@@ -60,7 +63,8 @@ TEST_F(Timeout, JsonToo) {
 }
 
 TEST_F(Timeout, WatchLeavesWithTheLastGoodPicture) {
-  TerminalRun process({"run", "good", "--watch", "--timeout", "2", "--size", "16x16", "--spp", "1", "-o", "out.png"}, folder_.path());
+  TerminalRun process({"run", "good", "--watch", "--timeout", "2", "--size", "16x16", "--spp", "1", "-o", "out.png"},
+                      folder_.path());
   ASSERT_TRUE(process.waitForNext("out.png: 16x16"));
   write(folder_ / "good" / "sky.rgen", kEndless);
   ASSERT_TRUE(process.waitForNext("did not end within 2 s"));

@@ -112,7 +112,8 @@ TEST_F(Watch, IncludedFiles) {
 
 TEST_F(Watch, TheSceneToo) {
   // normals.exr shows the quad's normal (0, 0, 1) as (0.5, 0.5, 1) until the node is turned.
-  TerminalRun process({"run", "normals", "scene.gltf", "--watch", "--size", "32x24", "--spp", "4", "-o", "out.exr"}, folder_.path());
+  TerminalRun process({"run", "normals", "scene.gltf", "--watch", "--size", "32x24", "--spp", "4", "-o", "out.exr"},
+                      folder_.path());
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
   EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
   nlohmann::json json = quadScene();
@@ -131,7 +132,8 @@ TEST_F(Watch, TheSceneToo) {
 
 TEST_F(Watch, TheFilesOfASceneFile) {
   write(folder_ / "s.scene.toml", "[[file]]\nname = 'quad'\npath = 'scene.gltf'\n");
-  TerminalRun process({"run", "normals", "s.scene.toml", "--watch", "--size", "32x24", "--spp", "4", "-o", "out.exr"}, folder_.path());
+  TerminalRun process({"run", "normals", "s.scene.toml", "--watch", "--size", "32x24", "--spp", "4", "-o", "out.exr"},
+                      folder_.path());
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
   EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
   nlohmann::json json = quadScene();
@@ -156,8 +158,9 @@ TEST_F(Watch, FilesThatTheSceneNeeds) {
   };
   save("quad.bin", quad(0.0f));
   write(folder_ / "sky.png", io::encodePng(testImage(8, 4)));
-  TerminalRun process({"run", "normals", "scene.gltf", "--watch", "--size", "32x24", "--spp", "4", "--env", "sky.png", "-o", "out.exr"},
-                      folder_.path());
+  TerminalRun process(
+      {"run", "normals", "scene.gltf", "--watch", "--size", "32x24", "--spp", "4", "--env", "sky.png", "-o", "out.exr"},
+      folder_.path());
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
   EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
   save("quad.bin", quad(9.0f));  // behind the camera
@@ -171,7 +174,8 @@ TEST_F(Watch, FilesThatTheSceneNeeds) {
 
 // A save during a long rendering starts over at once.
 TEST_F(Watch, SavesWhileItRenders) {
-  TerminalRun process({"run", "sky", "--watch", "--size", "400x300", "--time", "100000", "-o", "out.exr"}, folder_.path());
+  TerminalRun process({"run", "sky", "--watch", "--size", "400x300", "--time", "100000", "-o", "out.exr"},
+                      folder_.path());
   ASSERT_TRUE(process.waitForNext(" left"));
   saveSky("payload.color = vec3(0.0, 1.0, 0.0);");
   ASSERT_TRUE(process.waitForNext("sky.rmiss saved: out.exr after "));
@@ -202,7 +206,8 @@ TEST_F(Watch, PicturesInTheFolderDoNotMatter) {
 // The picture that a parameter names.
 TEST_F(Watch, ImagesOfParameters) {
   write(folder_ / "image.rt.glsl",
-        "uniform sampler2D picture;\nvoid main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(texture(picture, vec2(0.5))); }\n");
+        "uniform sampler2D picture;\nvoid main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(texture(picture, "
+        "vec2(0.5))); }\n");
   io::Image flat = io::makeImage(2, 2, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
   const auto save = [&](std::uint8_t value) {
     for (auto& sample : flat.samples<std::uint8_t>()) sample = value;
@@ -210,7 +215,8 @@ TEST_F(Watch, ImagesOfParameters) {
     fs::rename(folder_ / "new.png", folder_ / "flat.png");
   };
   save(0);
-  TerminalRun process({"run", "image", "--watch", "--size", "8x8", "--set", "picture=flat.png", "-o", "out.png"}, folder_.path());
+  TerminalRun process({"run", "image", "--watch", "--size", "8x8", "--set", "picture=flat.png", "-o", "out.png"},
+                      folder_.path());
   ASSERT_TRUE(process.waitForNext("out.png: 8x8"));
   EXPECT_EQ(picture("out.png").pixel<std::uint8_t>(1, 1)[0], 0);
   save(255);

@@ -15,8 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 
-constexpr double kLong = 10.0;   // for what must happen
-constexpr double kShort = 0.3;   // for what must not
+constexpr double kLong = 10.0;  // for what must happen
+constexpr double kShort = 0.3;  // for what must not
 
 void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
 
