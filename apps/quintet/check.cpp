@@ -14,6 +14,7 @@
 #include "gpu/device_choice.h"
 #include "instrument.h"
 #include "program/check.h"
+#include "program/lecture.h"
 #include "progress.h"
 #include "render/scene_facts.h"
 #include "scene_source.h"
@@ -28,7 +29,7 @@ constexpr const char* kExamples =
     "  quintet check my_program/                  its shaders, and how they fit together\n"
     "  quintet check my_program/ scene.glb        and whether they fit this scene\n"
     "  quintet check my_program/ --json           for editors: an array of diagnostics\n"
-    "  quintet check programs/* --strict          several; a warning is a failure, too\n"
+    "  quintet check programs/ --strict           all in a folder; a warning is a failure, too\n"
     "  quintet check my_program/ --instrument     and look for NaN, wrong records and self-intersections while it "
     "runs\n";
 
@@ -46,14 +47,39 @@ bool looksLikeScene(const std::filesystem::path& file) {
   return extension == ".gltf" || extension == ".glb" || (extension == ".toml" && file.filename() != "program.toml");
 }
 
+// The programs in a folder and in those below it.
+void collectPrograms(const std::filesystem::path& folder, std::vector<std::string>& found) {
+  std::error_code failed;
+  if (std::filesystem::exists(folder / "program.toml", failed)) {
+    found.push_back(folder.string());
+    return;
+  }
+  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder, failed)) {
+    const std::filesystem::path& path = entry.path();
+    if (path.filename().string().starts_with('.')) continue;
+    if (path.string().ends_with(program::kLectureExtension)) found.push_back(path.string());
+    if (entry.is_directory(failed) && !entry.is_symlink(failed)) collectPrograms(path, found);
+  }
+}
+
+// A folder stands for the programs in it; any other name for itself.
+std::vector<std::string> programsOf(const std::string& name) {
+  std::vector<std::string> found;
+  std::error_code failed;
+  if (std::filesystem::is_directory(name, failed)) collectPrograms(name, found);
+  std::ranges::sort(found);
+  return found.empty() ? std::vector{name} : found;
+}
+
 std::optional<Options> parseOptions(Arguments arguments) {
   CLI::App app("Compiles programs and checks how their shaders fit together and to a scene, without rendering.",
                "quintet check");
   Options options;
   std::vector<std::string> positional;
-  app.add_option("PROGRAM", positional,
-                 "One or more folders or built-in names; last, optionally, a scene: .gltf, .glb or\n"
-                 ".scene.toml (default: each program's own)")
+  app.add_option(
+         "PROGRAM", positional,
+         "One or more programs, folders of programs, or built-in names; last, optionally, a scene: .gltf, .glb or\n"
+         ".scene.toml (default: each program's own)")
       ->type_name("");
   app.add_flag("--json", options.json, "An array of diagnostics on standard output");
   app.add_flag("--strict", options.strict, "Warnings count as errors for the exit status");
@@ -70,7 +96,7 @@ std::optional<Options> parseOptions(Arguments arguments) {
     positional.pop_back();
   }
   if (positional.empty()) throw UsageError("no program given; see 'quintet check --help'");
-  options.programs = std::move(positional);
+  for (const std::string& name : positional) std::ranges::move(programsOf(name), std::back_inserter(options.programs));
   return options;
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "program/check_parts.h"
+#include "program/lecture.h"
 
 namespace quintet::program {
 namespace {
@@ -105,7 +106,7 @@ void checkUnused(const CheckInput& input, Report& report, CheckResult& result) {
       const LinkStage& stage = model.stages[i];
       if (reached.contains(i))
         result.reached.push_back(stage.file);
-      else if (!input.featureDefines && !follows)
+      else if (!input.featureDefines && !follows && !stage.file.ends_with(kStubMissExtension))
         report.add(
             "Q801", model.at(lineOf(model.program, stage.file)),
             fmt::format("no trace or call can run the {} shader '{}'", shader::stageName(stage.kind), stage.file));

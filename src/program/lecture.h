@@ -13,6 +13,8 @@
 namespace quintet::program {
 
 inline constexpr std::string_view kLectureExtension = ".rt.glsl";
+// Appended to the file's name: the empty miss shader of a file that has none.
+inline constexpr std::string_view kStubMissExtension = ".none.rmiss";
 inline constexpr std::size_t kMaxLectureBytes = std::size_t{1} << 20;  // of the file, and of each that it includes
 
 // Never throws for what the text says: errors are in Program::diagnostics. `file` is the name of the text

@@ -39,6 +39,19 @@ TEST_F(Check, EveryBuiltInProgramIsClean) {
   EXPECT_EQ(result.status, 0) << result.err;
 }
 
+TEST_F(Check, FoldersOfPrograms) {
+  writeProgram("all/one", "payload.color", "sky.rmiss");
+  writeProgram("all/deep/two", "payload.color", "sky.rmiss");
+  write(folder_ / "all" / "three.rt.glsl", "void main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(vec4(1.0)); }\n");
+  const RunResult result = quintet({"check", "all", "--strict"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "all/deep/two: clean\nall/one: clean\nall/three.rt.glsl: clean\n");
+  std::filesystem::create_directory(folder_ / "empty");
+  const RunResult empty = quintet({"check", "empty"});
+  EXPECT_EQ(empty.status, 1);
+  EXPECT_THAT(empty.err, HasSubstr("has no program.toml"));
+}
+
 TEST_F(Check, ErrorsWithSourceAndCaret) {
   writeProgram("bad", "payload.colour", "sky.rmiss");
   const RunResult result = quintet({"check", "bad"});
