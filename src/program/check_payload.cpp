@@ -38,6 +38,13 @@ bool countsAsError(const std::vector<Pair>& pairs, const Pair& pair) {
   return !calleeFits || !siteFits;
 }
 
+// A stage that is called itself cannot send at the location where it receives: then another one is no mistake.
+bool locationsDiffer(const StageFacts& sender, const SharedVariable& sent, const SharedVariable& received) {
+  if (!sent.location || !received.location || sent.location == received.location) return false;
+  const SharedVariable* own = sender.incoming(received.storage);
+  return !own || own->location != received.location;
+}
+
 void checkQualifiers(const LinkModel& model, Report& report) {
   for (const LinkStage& stage : model.stages) {
     const bool called = stage.kind == shader::Stage::closestHit || stage.kind == shader::Stage::miss ||
@@ -84,8 +91,7 @@ void checkPayloads(const CheckInput& input, Report& report) {
                  fmt::format("the payload of this trace is {}; the {} that it reaches has {}: {}",
                              tracer.module().types().describe(sent.type), model.describe(*pair.edge),
                              callee.module().types().describe(received.type), *pair.difference));
-    } else if (!pair.difference && pair.edge->exact && sent.location && received.location &&
-               sent.location != received.location) {
+    } else if (!pair.difference && pair.edge->exact && locationsDiffer(tracer, sent, received)) {
       report.add("Q102", model.at(model.stages[pair.edge->stage], received.place),
                  fmt::format("'{}' is at location {} here; the trace at {}:{} that runs this shader sends location {}",
                              received.name, *received.location, place.file, place.line, *sent.location));
@@ -128,8 +134,7 @@ void checkCallables(const CheckInput& input, Report& report) {
                  fmt::format("the data of this call is {}; the {} that it reaches has {}: {}",
                              caller.module().types().describe(sent.type), model.describe(*pair.edge),
                              callee.module().types().describe(received.type), *pair.difference));
-    } else if (!pair.difference && pair.edge->exact && sent.location && received.location &&
-               sent.location != received.location) {
+    } else if (!pair.difference && pair.edge->exact && locationsDiffer(caller, sent, received)) {
       report.add("Q303", model.at(model.stages[pair.edge->stage], received.place),
                  fmt::format("'{}' is at location {} here; the call at {}:{} sends location {}", received.name,
                              *received.location, place.file, place.line, *sent.location));

@@ -112,6 +112,45 @@ std::string cycleText(const LinkModel& model, const Chains::Cycle& cycle) {
   return fmt::format("this trace closes a cycle: {} -> {}", fmt::join(names, " -> "), names.front());
 }
 
+// Calls of callable shaders from callable shaders. The stack that Vulkan gives a pipeline has room for two of them
+// ("Ray Tracing Pipeline Stack" in the specification).
+class Calls {
+ public:
+  Calls(const LinkModel& model, Report& report) : model_(model), report_(report), depth_(model.stages.size(), -1) {
+    for (std::size_t i = 0; i < model.stages.size(); ++i) visit(i);
+  }
+
+ private:
+  static constexpr int kOpen = -2, kMaxDepth = 2;
+
+  // How deep calls nest below a stage; as deep as there are stages.
+  int visit(std::size_t stage) {
+    if (depth_[stage] != -1) return depth_[stage];
+    depth_[stage] = kOpen;
+    int depth = 0;
+    for (const CallSite& site : model_.calls) {
+      if (site.stage != stage) continue;
+      const shader::Place place = model_.at(model_.stages[stage], site.call->place);
+      for (const Edge& edge : site.edges) {
+        const int below = visit(edge.stage);
+        if (below == kOpen)
+          report_.add("Q401", place,
+                      fmt::format("this call closes a cycle: the {} can call itself again", model_.describe(edge)));
+        if (below == kMaxDepth)
+          report_.add("Q402", place,
+                      fmt::format("calls nest {} deep from here, over the {}; the stack has room for {}", below + 1,
+                                  model_.describe(edge), kMaxDepth));
+        depth = std::max(depth, below + 1);
+      }
+    }
+    return depth_[stage] = depth;
+  }
+
+  const LinkModel& model_;
+  Report& report_;
+  std::vector<int> depth_;  // -1: not seen
+};
+
 }  // namespace
 
 void checkRecursion(const CheckInput& input, Report& report, CheckResult& result) {
@@ -119,6 +158,7 @@ void checkRecursion(const CheckInput& input, Report& report, CheckResult& result
   const LinkStage* start = model.stage(model.program.rayGeneration);
   if (!start || !start->facts) return;
   const Chains chains(model);
+  Calls(model, report);
   const auto stage = static_cast<std::size_t>(start - model.stages.data());
   const std::uint32_t derived = std::max(1u, chains.depth(stage));
   const auto& declared = model.program.declaredRecursion;
@@ -135,11 +175,11 @@ void checkRecursion(const CheckInput& input, Report& report, CheckResult& result
     }
   } else {
     result.recursionDepth = derived;
-    if (declared && *declared < derived)
-      report.add("Q402", chains.lastTrace(stage),
-                 fmt::format("traces nest {} deep ({}), but the program declares {}", derived, chains.chain(stage),
-                             *declared));
   }
+  if (declared && *declared < derived)
+    report.add(
+        "Q402", chains.lastTrace(stage),
+        fmt::format("traces nest {} deep ({}), but the program declares {}", derived, chains.chain(stage), *declared));
   if ((chains.cycles().empty() || declared) && result.recursionDepth > input.limits.maxRecursion)
     report.add(
         "Q402", chains.lastTrace(stage),

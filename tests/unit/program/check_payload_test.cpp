@@ -58,6 +58,15 @@ TEST(CheckPayload, Q102LocationDiffers) {
             "this shader sends location 1\n");
 }
 
+// A stage that traces cannot use the location at which it receives.
+TEST(CheckPayload, Q102NotForNestedTraces) {
+  Files files = edited(cleanFiles(), "surface.rchit", "location = 1", "location = 5");
+  files["surface.rchit"] = changed(files["surface.rchit"], "1e30, 1)", "1e30, 5)");
+  for (const char* file : {"lit.rmiss", "cut_shadow.rahit"})
+    files[file] = changed(files[file], "location = 1", "location = 0");
+  EXPECT_EQ(textOf(checkFiles(files)), "");
+}
+
 TEST(CheckPayload, Q103WrongQualifier) {
   EXPECT_THAT(checkEdited(cleanFiles(), "sky.rmiss", "rayPayloadInEXT", "rayPayloadEXT"),
               StartsWith("Q103 sky.rmiss:6:44 'payload' is a rayPayloadEXT that no trace of this miss shader uses"));

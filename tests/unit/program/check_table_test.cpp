@@ -84,6 +84,37 @@ TEST(CheckRecursion, Q402DeeperThanDeclaredOrPossible) {
             "allows 1\n");
 }
 
+// Callable shaders c0 to c3; each calls the next one of `calls`.
+std::string callChain(const std::string& calls) {
+  Files files = callFiles();
+  files["program.toml"] =
+      changed(files["program.toml"], "\"tint.rcall\"", "\"c0.rcall\", \"c1.rcall\", \"c2.rcall\", \"c3.rcall\"");
+  for (std::size_t i = 0; i < 4; ++i) {
+    const bool last = calls[i] == '.';
+    files["c" + std::to_string(i) + ".rcall"] =
+        kHead +
+        std::string(
+            "layout(location = 0) callableDataInEXT vec4 data;\nlayout(location = 1) callableDataEXT vec4 next;\n") +
+        "void main() {\n  next = data;\n" + (last ? "" : std::string("  executeCallableEXT(") + calls[i] + "u, 1);\n") +
+        "  data += next;\n}\n";
+  }
+  std::string text = program::textOf(checkFiles(files)), result;
+  for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1)
+    if (!text.substr(at).starts_with("Q801") && !text.substr(at).starts_with("Q104"))
+      result += text.substr(at, text.find('\n', at) + 1 - at);
+  return result;
+}
+
+TEST(CheckRecursion, CallsNestTwoDeep) {
+  EXPECT_EQ(callChain("1..."), "");
+  EXPECT_EQ(callChain("12.."),
+            "Q402 main.rgen:12:3 calls nest 3 deep from here, over the callable shader 'c0.rcall' (callable index 0); "
+            "the stack has room for 2\n");
+  EXPECT_EQ(callChain("10.."),
+            "Q401 c1.rcall:10:3 this call closes a cycle: the callable shader 'c0.rcall' (callable index 0) can call "
+            "itself again\n");
+}
+
 TEST(CheckTable, Q501OffsetBeyondTheRecords) {
   EXPECT_THAT(traceWith("0xFFu, kRay_primary", "0xFFu, 2u"),
               HasSubstr("Q501 main.rgen:10:3 the offset of this trace is 2, but each geometry has 2 records (one for "
