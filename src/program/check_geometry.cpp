@@ -199,6 +199,8 @@ class Geometry {
           continue;
         const bool byFlags = std::ranges::all_of(
             meetings_, [&](const Meeting& m) { return !here(m) || m.site->trace->flags.must(kFlagOpaque); });
+        // The library's serve every scene, with or without alpha.
+        if (input_.scene && !byFlags && isLibraryStage(file)) continue;
         report_.add(
             "Q603", at(row),
             fmt::format("any-hit shader '{}' of {} never runs: {}", file, model_.describe(row),
