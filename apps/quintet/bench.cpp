@@ -255,7 +255,7 @@ Json measure(const Options& options) {
 int benchCommand(Arguments arguments) {
   CLI::App app("Measures rays per second against the device's own ceiling for the same rays.", "quintet bench");
   Options options;
-  app.add_option("SCENE", options.scene, "A scene without alpha (replay does not test it)")->required();
+  app.add_option("SCENE", options.scene, "A scene of triangles without alpha (replay knows no other)")->required();
   app.add_option("--device", options.device, "Index or part of the name");
   app.add_option("--env", options.environment, "Environment, as in `quintet render`");
   app.add_option("--size", options.size, "WxH; default 512x512 on a CPU, else 1920x1080");

@@ -15,23 +15,28 @@
 namespace quintet::scene {
 namespace {
 
+// Deeper than the parser allows in brackets, less deep than dotted keys could add to that.
+constexpr int kMaxDepth = 300;
+
 class Converter {
  public:
   explicit Converter(const std::filesystem::path& file) : file_(file) {}
 
-  TomlValue operator()(const toml::node& node, unsigned lineAbove) const {
+  TomlValue operator()(const toml::node& node, unsigned lineAbove, int depth = 0) const {
     TomlValue value;
     // Tables that a header only implies have no line of their own.
     value.line = node.source().begin.line ? node.source().begin.line : lineAbove;
+    if (depth > kMaxDepth)
+      throw FileError(file_, fmt::format("line {}", value.line), fmt::format("nested more than {} deep", kMaxDepth));
     if (const toml::table* table = node.as_table()) {
       value.kind = TomlValue::Kind::table;
       for (const auto& [key, member] : *table)
-        value.members.emplace_back(std::string(key.str()), (*this)(member, value.line));
+        value.members.emplace_back(std::string(key.str()), (*this)(member, value.line, depth + 1));
       std::ranges::sort(value.members, {}, &std::pair<std::string, TomlValue>::first);
     } else if (const toml::array* array = node.as_array()) {
       value.kind = TomlValue::Kind::array;
       value.elements.reserve(array->size());
-      for (const toml::node& element : *array) value.elements.push_back((*this)(element, value.line));
+      for (const toml::node& element : *array) value.elements.push_back((*this)(element, value.line, depth + 1));
     } else if (const auto* text = node.as_string()) {
       value.kind = TomlValue::Kind::text;
       value.text = **text;
@@ -65,7 +70,8 @@ const TomlValue* TomlValue::find(std::string_view key) const {
 
 TomlValue parseToml(std::string_view text, const std::filesystem::path& file) {
   if (const int line = deepTomlKey(text); line > 0)
-    throw FileError(file, fmt::format("line {}", line), fmt::format("a dotted key of more than {} levels", kMaxTomlKeyDots));
+    throw FileError(file, fmt::format("line {}", line),
+                    fmt::format("a dotted key of more than {} levels", kMaxTomlKeyDots));
   try {
     return Converter(file)(toml::parse(text), 1);
   } catch (const toml::parse_error& error) {
