@@ -24,21 +24,33 @@ bool takesLength(const SpirvModule& module, const SpirvInstruction& instruction,
   });
 }
 
+// The instruction that makes `t` a distance, if it is one by the degrees of the last evaluation.
+const SpirvInstruction* causeOf(const SpirvModule& module, shader::SpirvId t, const RayDegree& degree,
+                                const RayDegrees& degrees) {
+  if (!degree.may(0.0)) return nullptr;
+  const auto find = [&](std::uint32_t number) {
+    return findInSlice(module, t, [&](const SpirvInstruction& i) {
+      return (number == 0 || isExtended(module, i, number)) && takesLength(module, i, degrees);
+    });
+  };
+  const SpirvInstruction* cause = find(glsl450::kNormalize);
+  // length() only if it is so on every path: a value of another origin is no alarm.
+  return cause || !degree.is(0.0) ? cause : find(0);
+}
+
 }  // namespace
 
 void checkDistance(const SpirvModule& module, Findings& findings) {
   RayDegrees degrees(module);
   for (const SpirvInstruction& report : module.instructions()) {
     if (report.op != spv::Op::OpReportIntersectionKHR) continue;
-    const RayDegree degree = degrees.of(report.at(0));
-    if (!degree.may(0.0)) continue;
-    const auto find = [&](std::uint32_t number) {
-      return findInSlice(module, report.at(0), [&](const SpirvInstruction& i) {
-        return (number == 0 || isExtended(module, i, number)) && takesLength(module, i, degrees);
+    const shader::SpirvId t = report.at(0);
+    const RayDegree degree = degrees.of(t);
+    const SpirvInstruction* cause = causeOf(module, t, degree, degrees);
+    if (degree.unknown)
+      degrees.alternatives(t, [&](const RayDegree& side) {
+        if (!cause && side.is(0.0)) cause = causeOf(module, t, side, degrees);
       });
-    };
-    const SpirvInstruction* cause = find(glsl450::kNormalize);
-    if (!cause && degree.is(0.0)) cause = find(0);  // on every path, so that a value of another origin is no alarm
     if (!cause) continue;
     findings.add("Q701", *cause,
                  "the reported t is computed with the normalized gl_ObjectRayDirectionEXT: it is a distance in object "

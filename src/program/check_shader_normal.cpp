@@ -1,6 +1,6 @@
 // Q702: a normal that is carried to world space like a direction, by gl_ObjectToWorldEXT. That a vector is a normal,
-// only its name says: of the member or variable that it was loaded from, or in the line of the multiplication.
-#include <cctype>
+// only names say: of the member or variable that it was loaded from, or in the line of the multiplication.
+#include <algorithm>
 #include <regex>
 
 #include "program/check_shader_rules.h"
@@ -102,15 +102,43 @@ bool loadsNormal(const SpirvModule& module, const SpirvInstruction& load) {
   return false;
 }
 
-// Does the line multiply something by a name of a normal: "* vec4(hit.normal, 0.0)", "* normalize(n)"?
-bool lineMultipliesNormal(std::string_view line) {
-  static const std::regex kFactor(R"(\*\s*(?:vec4\s*\(\s*)?(?:normalize\s*\(\s*)?-?\s*([A-Za-z_][\w.]*))");
-  const std::string text(line.substr(0, line.find("//")));
-  for (std::sregex_iterator i(text.begin(), text.end(), kFactor), end; i != end; ++i) {
-    const std::string name = (*i)[1];
-    if (isNormalName(name.substr(name.rfind('.') + 1))) return true;
-  }
+std::string lastPart(const std::string& name) { return name.substr(name.rfind('.') + 1); }
+
+// Does the line multiply something by a name of a normal: "* vec4(hit.normal, 0.0)", "* normalize(n)", "* (n0 * b.x"?
+bool multipliesNormal(const std::string& line) {
+  static const std::regex kFactor(R"(\*\s*(?:vec4\s*\(\s*)?(?:normalize\s*\(\s*)?\(*\s*-?\s*([A-Za-z_][\w.]*))");
+  for (std::sregex_iterator i(line.begin(), line.end(), kFactor), end; i != end; ++i)
+    if (isNormalName(lastPart((*i)[1]))) return true;
   return false;
+}
+
+// "vec3 worldNormal = ...", "payload.normal = ...".
+bool assignsNormal(const std::string& line) {
+  static const std::regex kAssignment(R"(^\s*(?:const\s+)?(?:vec3\s+)?([A-Za-z_][\w.]*)\s*=[^=])");
+  std::smatch match;
+  return std::regex_search(line, match, kAssignment) && isNormalName(lastPart(match[1]));
+}
+
+// Edges are carried to world space like directions, and their cross product is a normal: that is right.
+bool isEdge(const SpirvModule& module, const SpirvInstruction& product) {
+  const auto& users = module.users(product.result);
+  return std::ranges::any_of(
+      users, [&](std::size_t user) { return isExtended(module, module.instructions()[user], glsl450::kCross); });
+}
+
+// The line of the instruction, without a comment.
+std::string sourceLine(const SpirvModule& module, const SpirvInstruction& instruction) {
+  const shader::Place place = module.place(instruction);
+  const std::string line(lineOf(module.source(place.file), place.line));
+  return line.substr(0, line.find("//"));
+}
+
+bool isNormal(const SpirvModule& module, const SpirvInstruction& product, SpirvId direction) {
+  const auto isLoad = [&](const SpirvInstruction& i) { return loadsNormal(module, i); };
+  const auto leaves = [&](const SpirvInstruction& i) { return !keepsNormal(module, i); };
+  if (dependsOn(module, direction, isLoad, leaves)) return true;
+  const std::string line = sourceLine(module, product);
+  return multipliesNormal(line) || (assignsNormal(line) && !isEdge(module, product));
 }
 
 }  // namespace
@@ -119,17 +147,12 @@ void checkNormals(const SpirvModule& module, Findings& findings) {
   for (const SpirvInstruction& product : module.instructions()) {
     if (product.op != Op::OpMatrixTimesVector || !isObjectToWorld(module, product.at(0))) continue;
     const SpirvId direction = directionOf(module, product.at(1));
-    if (direction == 0) continue;
-    const auto isLoad = [&](const SpirvInstruction& i) { return loadsNormal(module, i); };
-    const auto leaves = [&](const SpirvInstruction& i) { return !keepsNormal(module, i); };
-    const shader::Place place = module.place(product);
-    if (!dependsOn(module, direction, isLoad, leaves) &&
-        !lineMultipliesNormal(lineOf(module.source(place.file), place.line)))
-      continue;
-    findings.add("Q702", product,
-                 "a normal is multiplied by gl_ObjectToWorldEXT: under a scale that differs by axis it is no longer "
-                 "perpendicular to the surface",
-                 "gl_ObjectToWorldEXT");
+    if (direction == 0 || !isNormal(module, product, direction)) continue;
+    findings.add(
+        "Q702", product,
+        "a normal is multiplied by gl_ObjectToWorldEXT: under a scale that differs by axis it is no longer "
+        "perpendicular to the surface",
+        sourceLine(module, product).find("gl_ObjectToWorldEXT") != std::string::npos ? "gl_ObjectToWorldEXT" : "");
   }
 }
 

@@ -54,23 +54,23 @@ bool isPointOnRay(const SpirvModule& module, const SpirvInstruction& value) {
   return false;
 }
 
-// A sum of three vertices, weighted by the barycentrics; a vertex is what was loaded from memory.
+// A sum of vertices, each loaded from a buffer and weighted by something that is no constant.
 bool isInterpolation(const SpirvModule& module, SpirvId value, int depth = 0) {
   const SpirvInstruction* i = module.definition(value);
   if (!i || depth > 4) return false;
   if (i->op == Op::OpFAdd)
     return isInterpolation(module, i->at(0), depth + 1) && isInterpolation(module, i->at(1), depth + 1);
-  if (i->op != Op::OpVectorTimesScalar) return false;
-  const auto isAttribute = [&](const SpirvInstruction& part) {
-    if (part.op != Op::OpLoad) return false;
-    const shader::SpirvVariable* variable = module.variable(module.access(part.at(0)).variable);
-    return variable && variable->storage == spv::StorageClass::HitAttributeKHR;
-  };
-  return dependsOn(module, i->at(1), isAttribute);
+  if (depth == 0 || i->op != Op::OpVectorTimesScalar || module.isConstant(i->at(1))) return false;
+  const SpirvInstruction* vertex = module.definition(i->at(0));
+  if (!vertex || vertex->op != Op::OpLoad) return false;
+  const SpirvInstruction* pointer = module.definition(vertex->at(0));
+  const auto storage =
+      pointer ? static_cast<spv::StorageClass>(module.types().get(pointer->type).storage) : spv::StorageClass::Max;
+  return storage == spv::StorageClass::PhysicalStorageBuffer || storage == spv::StorageClass::StorageBuffer;
 }
 
 // gl_ObjectToWorldEXT * vec4(interpolated vertices, 1).
-bool isTransformedInterpolation(const SpirvModule& module, const SpirvInstruction& value) {
+bool isPointByMatrix(const SpirvModule& module, const SpirvInstruction& value) {
   if (value.op != Op::OpMatrixTimesVector) return false;
   const SpirvInstruction* matrix = module.definition(value.at(0));
   if (!matrix || !loadsBuiltIn(module, *matrix, spv::BuiltIn::ObjectToWorldKHR)) return false;
@@ -80,6 +80,23 @@ bool isTransformedInterpolation(const SpirvModule& module, const SpirvInstructio
   const SpirvInstruction* part = module.definition(vertex);
   if (part && part->op == Op::OpCompositeExtract) vertex = part->at(0);  // vec4(p.x, p.y, p.z, 1)
   return isInterpolation(module, vertex);
+}
+
+// The same by rows, as the library does: vec3(dot(row.xyz, p) + row.w, ...).
+bool isPointByRows(const SpirvModule& module, const SpirvInstruction& value) {
+  if (value.op != Op::OpCompositeConstruct || value.operands.size() != 3) return false;
+  for (const SpirvId component : value.operands) {
+    const SpirvInstruction* sum = module.definition(component);
+    if (!sum || sum->op != Op::OpFAdd) return false;
+    const SpirvInstruction* product = module.definition(sum->at(0));
+    if (!product || product->op != Op::OpDot) return false;
+    if (!isInterpolation(module, product->at(0)) && !isInterpolation(module, product->at(1))) return false;
+  }
+  return true;
+}
+
+bool isTransformedInterpolation(const SpirvModule& module, const SpirvInstruction& value) {
+  return isPointByMatrix(module, value) || isPointByRows(module, value);
 }
 
 // Chooses among values, but computes nothing.

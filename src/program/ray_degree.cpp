@@ -1,14 +1,15 @@
 #include "program/ray_degree.h"
 
 #include <algorithm>
+#include <map>
 #include <unordered_set>
 
 #include "program/check_shader_rules.h"
+#include "program/stored_values.h"
 
 namespace quintet::program {
 namespace {
 
-using shader::SpirvAccess;
 using shader::SpirvId;
 using shader::SpirvInstruction;
 using shader::SpirvModule;
@@ -16,6 +17,7 @@ using spv::Op;
 
 constexpr std::size_t kMaxDegrees = 6;
 constexpr int kMaxRounds = 24;
+constexpr std::size_t kMaxBranches = 16;  // of which alternatives are tried
 
 const RayDegree kUnknown{true, {}};
 const RayDegree kConstant{};
@@ -61,56 +63,9 @@ RayDegree power(const RayDegree& a, double exponent) {
 // Of any other function: fine for what does not depend on the direction's length.
 RayDegree onlyZero(const RayDegree& a) { return a.constant() || a.is(0.0) ? a : kUnknown; }
 
-// Stores into the variable, or into parts of it.
-void addStores(const SpirvModule& module, SpirvId pointer, std::vector<const SpirvInstruction*>& stores, bool& lost) {
-  for (const std::size_t user : module.users(pointer)) {
-    const SpirvInstruction& instruction = module.instructions()[user];
-    if (instruction.op == Op::OpStore && instruction.at(0) == pointer)
-      stores.push_back(&instruction);
-    else if (instruction.op == Op::OpAccessChain || instruction.op == Op::OpInBoundsAccessChain)
-      addStores(module, instruction.result, stores, lost);
-    else if (instruction.op != Op::OpLoad)
-      lost = true;  // handed to a function, copied
-  }
-}
-
-bool isLocal(const SpirvModule& module, SpirvId variable) {
-  const SpirvInstruction* definition = module.definition(variable);
-  if (!definition || definition->op != Op::OpVariable) return false;
-  const auto storage = static_cast<spv::StorageClass>(definition->at(0));
-  return storage == spv::StorageClass::Function || storage == spv::StorageClass::Private;
-}
-
-bool overlap(const SpirvAccess& a, const SpirvAccess& b) {
-  for (std::size_t i = 0; i < std::min(a.indices.size(), b.indices.size()); ++i)
-    if (a.indices[i] && b.indices[i] && *a.indices[i] != *b.indices[i]) return false;
-  return true;
-}
-
-// The part of a stored value that a load of something smaller sees.
-SpirvId partOf(const SpirvModule& module, SpirvId value, const SpirvAccess& store, const SpirvAccess& load) {
-  for (std::size_t i = store.indices.size(); i < load.indices.size(); ++i) {
-    const SpirvInstruction* definition = module.definition(value);
-    if (!definition || definition->op != Op::OpCompositeConstruct || !load.indices[i]) break;
-    if (*load.indices[i] >= definition->operands.size()) break;
-    value = definition->at(*load.indices[i]);
-  }
-  return value;
-}
-
-// Values that a load of a local variable can see. Empty value: not known.
-std::optional<std::vector<SpirvId>> storedValues(const SpirvModule& module, const SpirvInstruction& load) {
-  const SpirvAccess access = module.access(load.at(0));
-  std::vector<const SpirvInstruction*> stores;
-  bool lost = false;
-  addStores(module, access.variable, stores, lost);
-  if (lost) return {};
-  std::vector<SpirvId> values;
-  for (const SpirvInstruction* store : stores) {
-    const SpirvAccess target = module.access(store->at(0));
-    if (overlap(target, access)) values.push_back(partOf(module, store->at(1), target, access));
-  }
-  return values;
+SpirvId labelOf(const SpirvModule& module, const SpirvInstruction& phi) {
+  const auto at = module.position(module.definitionIndex(phi.result));
+  return at ? module.functions()[at->function].blocks[at->block].label : 0;
 }
 
 }  // namespace
@@ -123,7 +78,16 @@ RayDegree RayDegrees::get(SpirvId value) const {
   return found == degrees_.end() ? kUnknown : found->second;
 }
 
+std::optional<SpirvId> RayDegrees::chosen(const SpirvInstruction& instruction) const {
+  if (choice_.key == 0) return {};
+  if (instruction.op == Op::OpSelect && instruction.at(0) == choice_.key) return instruction.at(1 + choice_.side);
+  if (instruction.op == Op::OpPhi && labelOf(module_, instruction) == choice_.key)
+    return instruction.at(2 * choice_.side);
+  return {};
+}
+
 std::vector<SpirvId> RayDegrees::sources(const SpirvInstruction& instruction) const {
+  if (const auto only = chosen(instruction)) return {*only};
   if (instruction.op == Op::OpLoad) {
     if (!isLocal(module_, module_.access(instruction.at(0)).variable)) return {};
     return storedValues(module_, instruction).value_or(std::vector<SpirvId>{});
@@ -145,6 +109,25 @@ std::vector<std::size_t> RayDegrees::slice(std::size_t start) const {
   }
   std::ranges::sort(result);
   return result;
+}
+
+void RayDegrees::alternatives(SpirvId value, const std::function<void(const RayDegree&)>& visit) {
+  const std::size_t start = module_.definitionIndex(value);
+  if (start == SpirvModule::kNone) return;
+  std::map<SpirvId, std::size_t> sides;  // key of a choice -> sides
+  for (const std::size_t i : slice(start)) {
+    const SpirvInstruction& instruction = module_.instructions()[i];
+    if (instruction.op == Op::OpSelect) sides[instruction.at(0)] = 2;
+    if (instruction.op == Op::OpPhi) sides[labelOf(module_, instruction)] = instruction.operands.size() / 2;
+  }
+  if (sides.size() > kMaxBranches) return;
+  for (const auto& [key, count] : sides) {
+    for (std::size_t side = 0; side < count; ++side) {
+      choice_ = {key, side};
+      visit(of(value));
+    }
+  }
+  choice_ = {};
 }
 
 RayDegree RayDegrees::of(SpirvId value) {
@@ -205,9 +188,15 @@ RayDegree RayDegrees::evaluate(const SpirvInstruction& instruction) const {
     }
     case Op::OpCompositeConstruct:
     case Op::OpVectorShuffle:
-    case Op::OpCompositeInsert:
-    case Op::OpPhi: return allOf(either, kConstant);
-    case Op::OpSelect: return either(operand(1), operand(2));
+    case Op::OpCompositeInsert: return allOf(either, kConstant);
+    case Op::OpPhi: {
+      const auto only = chosen(instruction);
+      return only ? get(*only) : allOf(either, kConstant);
+    }
+    case Op::OpSelect: {
+      const auto only = chosen(instruction);
+      return only ? get(*only) : either(operand(1), operand(2));
+    }
     case Op::OpFAdd:
     case Op::OpFSub: return sum(operand(0), operand(1));
     case Op::OpFMul:

@@ -4,6 +4,8 @@
 #ifndef QUINTET_PROGRAM_RAY_DEGREE_H
 #define QUINTET_PROGRAM_RAY_DEGREE_H
 
+#include <functional>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -27,6 +29,10 @@ class RayDegrees {
  public:
   explicit RayDegrees(const shader::SpirvModule& module) : module_(module) {}
   RayDegree of(shader::SpirvId value);
+  // The same if, of everything that one branch decides, only one side is taken: for a value that is computed in either
+  // of two ways, whose degrees would otherwise mix. Calls `visit` for each side of each branch on the way; met() then
+  // belongs to that side.
+  void alternatives(shader::SpirvId value, const std::function<void(const RayDegree&)>& visit);
   // Of a value that the last of() has met on its way.
   RayDegree met(shader::SpirvId value) const { return get(value); }
 
@@ -38,7 +44,15 @@ class RayDegrees {
   RayDegree evaluateLoad(const shader::SpirvInstruction& instruction) const;
   std::vector<shader::SpirvId> sources(const shader::SpirvInstruction& instruction) const;
 
+  // The operand of a phi or select that is taken for certain; empty: any.
+  std::optional<shader::SpirvId> chosen(const shader::SpirvInstruction& instruction) const;
+
   const shader::SpirvModule& module_;
+  // Of phis in this block (by its label), or of selects with this condition: the position of the operand.
+  struct Choice {
+    shader::SpirvId key = 0;
+    std::size_t side = 0;
+  } choice_;
   std::unordered_map<shader::SpirvId, RayDegree> degrees_;
 };
 

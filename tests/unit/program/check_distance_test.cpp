@@ -84,6 +84,20 @@ TEST(CheckDistance, WorldSpaceIsTheTracersChoice) {
               IsEmpty());
 }
 
+// One of two ways to the ray is wrong; their degrees do not mix.
+TEST(CheckDistance, OneOfTwoBranches) {
+  const std::string rest =
+      "float a = dot(d, d), b = dot(o, d);\nfloat t = (-b - sqrt(b * b - a * (dot(o, o) - 1.0))) / a;";
+  const std::string branch =
+      "vec3 o, d;\nif (gl_GeometryIndexEXT == 0) { o = gl_WorldRayOriginEXT; d = gl_WorldRayDirectionEXT; }\n"
+      "else { o = gl_ObjectRayOriginEXT; d = %; }\n";
+  const auto with = [&](const std::string& direction) {
+    return sphere(std::string(branch).replace(branch.find('%'), 1, direction) + rest);
+  };
+  EXPECT_THAT(with("gl_ObjectRayDirectionEXT"), IsEmpty());
+  EXPECT_THAT(with("normalize(gl_ObjectRayDirectionEXT)"), ElementsAre("Q701:6"));
+}
+
 TEST(CheckDistance, ConstantAndForeignT) {
   EXPECT_THAT(sphere("float t = 1.0;"), IsEmpty());
   EXPECT_THAT(sphere("float t = gl_ObjectRayOriginEXT.x * length(vec3(gl_PrimitiveID));"), IsEmpty());

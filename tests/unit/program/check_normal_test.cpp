@@ -57,6 +57,22 @@ TEST(CheckNormals, ThroughAFunction) {
               ElementsAre(found(kFirst - 1)));
 }
 
+TEST(CheckNormals, SumInParenthesesAndAssignment) {
+  EXPECT_THAT(closestHit("vec3 n0 = vec3(1), n1 = gl_ObjectRayOriginEXT;\nmat3 m = mat3(gl_ObjectToWorldEXT);\n"
+                         "payload.color = normalize(m * (n0 * hit.uv.x + n1 * hit.uv.y));"),
+              ElementsAre(found(kFirst + 2)));
+  EXPECT_THAT(closestHit("vec3 e = hit.position;\n"
+                         "vec3 worldNormal = normalize(mat3(gl_ObjectToWorldEXT) * cross(e, e.yzx));\n"
+                         "payload.color = worldNormal;"),
+              ElementsAre(found(kFirst + 1)));
+}
+
+TEST(CheckNormals, CrossProductOfWorldEdgesIsRight) {
+  EXPECT_THAT(closestHit("vec3 e = hit.position;\nmat3 m = mat3(gl_ObjectToWorldEXT);\n"
+                         "vec3 normal = normalize(cross(m * e, m * e.yzx));\npayload.color = normal;"),
+              IsEmpty());
+}
+
 TEST(CheckNormals, InverseTransposeIsRight) {
   EXPECT_THAT(closestHit("payload.color = normalize(vec3(hit.normal * gl_WorldToObjectEXT));"), IsEmpty());
   EXPECT_THAT(closestHit("payload.color = normalize(transpose(mat3(gl_WorldToObjectEXT)) * hit.normal);"), IsEmpty());
