@@ -56,6 +56,15 @@ std::map<std::string, std::string> readIncludes(const fs::path& folder, const st
   return files;
 }
 
+// Of another lecture file beside this one; one that the text names serves both.
+bool isOfAnother(const fs::path& scene, const fs::path& file, const std::string& text) {
+  const std::string name = scene.filename().string();
+  const std::string stem = name.substr(0, name.size() - std::string_view(".scene.toml").size());
+  const std::string owner = stem + std::string(kLectureExtension);
+  std::error_code ignored;
+  return owner != file.filename() && fs::exists(scene.parent_path() / owner, ignored) && text.find(name) == text.npos;
+}
+
 Program load(const fs::path& file) {
   std::error_code failed;
   if (fs::file_size(file, failed) > (1u << 24) && !failed) throw FileError(file, "is larger than 16 MiB");
@@ -64,7 +73,8 @@ Program load(const fs::path& file) {
   std::map<std::string, std::string> files = readIncludes(folder, text);
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, failed)) {
     const std::string name = entry.path().filename().string();
-    if (name.ends_with(".scene.toml") && entry.is_regular_file(failed) && entry.file_size(failed) <= kMaxLectureBytes)
+    if (name.ends_with(".scene.toml") && entry.is_regular_file(failed) &&
+        entry.file_size(failed) <= kMaxLectureBytes && !isOfAnother(entry.path(), file, text))
       files[name] = readTextFile(entry.path());
   }
   readImages(folder, text, files);

@@ -74,6 +74,20 @@ TEST_F(New, CopiesOfLessons) {
   EXPECT_EQ(quintet({"check", "mine", "--strict"}).status, 0);
 }
 
+// The scene that came with another lesson is not taken for a new one.
+TEST_F(New, NeighboursKeepTheirScenes) {
+  ASSERT_EQ(quintet({"new", "copy", "--from", "first_ray"}).status, 0);
+  ASSERT_TRUE(fs::exists(folder_ / "copy.scene.toml"));
+  ASSERT_EQ(quintet({"new", "fresh"}).status, 0);
+  const auto scene = [&](const char* name) {
+    const RunResult result = quintet({"run", name, "--size", "8x8", "-q", "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out)["scene"].get<std::string>();
+  };
+  EXPECT_EQ(scene("fresh"), "default scene");
+  EXPECT_NE(scene("copy").find("copy.scene.toml"), std::string::npos);
+}
+
 TEST_F(New, CopiesOfLecturesWithWhatTheyNeed) {
   ASSERT_EQ(quintet({"new", "first"}).status, 0);
   std::string text = readTextFile(folder_ / "first.rt.glsl");
