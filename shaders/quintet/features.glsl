@@ -23,6 +23,11 @@ const bool kHasTriangleLights = false;
 #else
 const bool kHasTriangleLights = true;
 #endif
+#ifdef QUINTET_NO_SOLID_LIGHTS
+const bool kHasSolidLights = false;
+#else
+const bool kHasSolidLights = true;
+#endif
 #ifdef QUINTET_NO_PUNCTUAL_LIGHTS
 const bool kHasPunctualLights = false;
 #else

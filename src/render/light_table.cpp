@@ -9,6 +9,7 @@
 #include "render/alias_table.h"
 #include "render/emission_map.h"
 #include "render/luminance.h"
+#include "render/solid_area.h"
 
 namespace quintet::render {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kPiDouble = glm::pi<double>();
 constexpr std::size_t kTrianglesPerTask = 4096;
 
 // The classes that share the samples (kMinimumClassShare).
-enum class LightClass { local, directional, triangles, environment };
+enum class LightClass { local, directional, surfaces, environment };
 
 template <class Body>
 void forTriangles(std::size_t count, const Body& body) {
@@ -35,7 +36,7 @@ double worldArea(const scene::Geometry& geometry, const uvec3& t, const glm::dma
   return std::isfinite(area) ? area : 0.0;
 }
 
-// An emissive geometry of a mesh: mean luminance of each triangle, the same for all instances.
+// An emissive geometry of a mesh: mean luminance of each triangle or solid, the same for all instances.
 struct Emitter {
   std::vector<float> luminance;
   bool black = true;
@@ -52,6 +53,19 @@ Emitter makeEmitter(const scene::Geometry& geometry, const EmissionMap& map) {
   });
   emitter.black = std::ranges::all_of(emitter.luminance, [](float l) { return l <= 0.0f; });
   return emitter;
+}
+
+bool uses(const scene::PrimitiveSet& set, int material) {
+  return std::ranges::find(set.primitives, material, &scene::Primitive::material) != set.primitives.end();
+}
+
+// The solids of one material; those of others keep what they have.
+void addSolids(Emitter& emitter, const scene::PrimitiveSet& set, int material, const EmissionMap& map) {
+  emitter.luminance.resize(set.primitives.size(), 0.0f);
+  const float mean = 0.5f * (map.meanOver({0, 0}, {1, 0}, {1, 1}) + map.meanOver({0, 0}, {1, 1}, {0, 1}));
+  for (std::size_t i = 0; i < set.primitives.size(); ++i)
+    if (set.primitives[i].material == material) emitter.luminance[i] = mean;
+  emitter.black = emitter.black && mean <= 0.0f;
 }
 
 class Builder {
@@ -111,13 +125,19 @@ class Builder {
 
   // Means of all emissive geometries, by mesh and geometry; one map of a material at a time.
   std::vector<std::vector<Emitter>> makeEmitters() const {
-    std::vector<std::vector<const scene::Geometry*>> byMaterial(scene_.materials.size());
     std::vector<std::vector<Emitter>> emitters(scene_.meshes.size());
     for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
       const scene::Material& material = scene_.materials[m];
       if (material.unlit || lightLuminance(material.emissive) <= 0.0f) continue;
       std::optional<EmissionMap> map;
       for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
+        const std::vector<scene::PrimitiveSet>& sets = scene_.meshes[i].primitiveSets;
+        for (std::size_t g = 0; g < sets.size(); ++g) {
+          if (sets[g].kind != scene::PrimitiveSetKind::solids || !uses(sets[g], static_cast<int>(m))) continue;
+          if (!map) map.emplace(scene_, material);
+          emitters[i].resize(sets.size());
+          addSolids(emitters[i][g], sets[g], static_cast<int>(m), *map);
+        }
         const std::vector<scene::Geometry>& geometries = scene_.meshes[i].geometries;
         for (std::size_t g = 0; g < geometries.size(); ++g) {
           if (geometries[g].material != static_cast<int>(m)) continue;
@@ -168,26 +188,33 @@ class Builder {
 
   void addPart(const Part& part) {
     const scene::Instance& instance = scene_.instances[part.instance];
-    const scene::Geometry& geometry = scene_.meshes[instance.mesh].geometries[part.geometry];
+    const scene::Mesh& mesh = scene_.meshes[instance.mesh];
     const glm::dmat3 linear{glm::mat3(instance.worldFromObject)};
-    const std::size_t first = table_.lights.size();
+    const std::size_t first = table_.lights.size(), count = part.emitter->luminance.size();
     table_.slots[part.slot] = static_cast<std::uint32_t>(first);
     shared::LightData light{};
-    light.type = shared::kLightTriangle;
+    light.type = mesh.procedural() ? shared::kLightSolid : shared::kLightTriangle;
     light.instance = static_cast<shared::uint>(part.instance);
     light.geometry = static_cast<shared::uint>(part.geometry);
-    table_.lights.resize(first + geometry.triangles.size(), light);
+    table_.lights.resize(first + count, light);
     powers_.resize(table_.lights.size());
-    forTriangles(geometry.triangles.size(), [&](std::size_t t) {
-      table_.lights[first + t].primitive = static_cast<shared::uint>(t);
-      powers_[first + t] = kPiDouble * worldArea(geometry, geometry.triangles[t], linear) * part.emitter->luminance[t];
+    const auto area = [&](std::size_t i) {
+      if (mesh.procedural()) return solidArea(mesh.primitiveSets[part.geometry].primitives[i], linear);
+      const scene::Geometry& geometry = mesh.geometries[part.geometry];
+      return worldArea(geometry, geometry.triangles[i], linear);
+    };
+    forTriangles(count, [&](std::size_t i) {
+      table_.lights[first + i].primitive = static_cast<shared::uint>(i);
+      const float luminance = part.emitter->luminance[i];
+      powers_[first + i] = luminance > 0.0f ? kPiDouble * area(i) * luminance : 0.0;
     });
   }
 
   static LightClass classOf(const shared::LightData& light) {
     switch (light.type) {
       case shared::kLightDirectional: return LightClass::directional;
-      case shared::kLightTriangle: return LightClass::triangles;
+      case shared::kLightTriangle:
+      case shared::kLightSolid: return LightClass::surfaces;
       case shared::kLightEnvironment: return LightClass::environment;
       default: return LightClass::local;
     }

@@ -13,7 +13,10 @@ struct ProceduralFeatures {
   bool csg = false;
   bool torus = false;
   bool alpha = false;
+  bool lights = false;  // solids, not trees
 };
+
+bool emits(const scene::Material& m) { return glm::any(glm::greaterThan(m.emissive, vec3(0.0f))); }
 
 ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
   ProceduralFeatures features;
@@ -22,6 +25,9 @@ ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
       features.solids |= set.kind != scene::PrimitiveSetKind::custom;
       features.csg |= set.kind == scene::PrimitiveSetKind::csg;
       features.torus |= std::ranges::count(set.primitives, scene::PrimitiveType::torus, &scene::Primitive::type) > 0;
+      features.lights |= set.kind == scene::PrimitiveSetKind::solids && std::ranges::any_of(set.primitives, [&](const scene::Primitive& p) {
+        return p.material != scene::kNone && emits(scene.materials[static_cast<std::size_t>(p.material)]);
+      });
       features.alpha |= set.kind != scene::PrimitiveSetKind::custom && needsAlphaTest(scene, set);
     }
   }
@@ -32,7 +38,6 @@ ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
 
 std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Scene& scene, const scene::Environment& environment) {
   const auto any = [&](auto predicate) { return std::any_of(scene.materials.begin(), scene.materials.end(), predicate); };
-  const auto emits = [](const scene::Material& m) { return glm::any(glm::greaterThan(m.emissive, vec3(0.0f))); };
   const vec3 environmentScale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
 
   std::vector<std::pair<std::string, std::string>> defines;
@@ -50,6 +55,7 @@ std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Sce
   without("QUINTET_NO_CSG", procedural.csg);
   without("QUINTET_NO_TORUS", procedural.torus);
   without("QUINTET_NO_PROCEDURAL_ALPHA", procedural.alpha);
+  without("QUINTET_NO_SOLID_LIGHTS", procedural.lights);
   return defines;
 }
 

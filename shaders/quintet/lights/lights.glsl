@@ -9,6 +9,7 @@
 #include "directional.glsl"
 #include "environment.glsl"
 #include "point.glsl"
+#include "solid.glsl"
 #include "spot.glsl"
 #include "triangle.glsl"
 
@@ -29,6 +30,9 @@ bool sampleLight(vec3 position, float uLight, vec2 u, out LightSample s) {
   else if (kHasPunctualLights && light.type == kLightPoint) useful = samplePointLight(light, position, s);
   else if (kHasPunctualLights && light.type == kLightSpot) useful = sampleSpotLight(light, position, s);
   else if (kHasPunctualLights && light.type == kLightDirectional) useful = sampleDirectionalLight(light, s);
+#ifndef QUINTET_NO_PROCEDURALS
+  else if (kHasSolidLights && light.type == kLightSolid) useful = sampleSolidLight(light, position, u, s);
+#endif
   s.pdf *= probability;
   return useful && s.pdf > 0.0;
 }
@@ -44,6 +48,24 @@ float pdfLightTriangle(uint instanceIndex, uint geometryIndex, uint primitive, f
   if (probability == 0.0) return 0.0;
   const GeometryData geometry = GeometryArray(frame.geometries).at[instance.firstGeometry + geometryIndex];
   return probability * pdfTriangle(fetchLightTriangle(instance, geometry, primitive).area, distance, cosine);
+}
+
+// The same for any surface that a ray from `origin` has met after `distance`: triangle or solid.
+float pdfLightHit(HitPayload hit, vec3 origin, float distance, float cosine) {
+#ifndef QUINTET_NO_PROCEDURALS
+  const InstanceData instance = InstanceArray(frame.instances).at[hit.instance];
+  const GeometryData geometry = GeometryArray(frame.geometries).at[instance.firstGeometry + hit.geometry];
+  if (geometry.kind != kGeometryTriangles) {
+    if (!kHasSolidLights) return 0.0;
+    const uint slot = UintArray(frame.lightSlots).at[instance.firstLightSlot + hit.geometry];
+    if (slot == kNoLight) return 0.0;
+    const float probability = AliasArray(frame.lightTable).at[slot + hit.primitive].probability;
+    const PrimitiveData primitive = PrimitiveArray(geometry.primitives).at[hit.primitive];
+    const uint face = (hit.part >> kPartFaceShift) & 7u;
+    return probability > 0.0 ? probability * pdfSolid(instance, primitive, face, hit.barycentric, origin, distance, cosine) : 0.0;
+  }
+#endif
+  return pdfLightTriangle(hit.instance, hit.geometry, hit.primitive, distance, cosine);
 }
 
 // Density with which sampleLight finds the direction of a BSDF-sampled ray that has left the scene.

@@ -31,23 +31,26 @@ LightTriangle fetchLightTriangle(InstanceData instance, GeometryData geometry, u
   return t;
 }
 
-// What the surface emits at barycentrics b, times the probability that alpha mask or blend leaves it there:
-// an any-hit shader does not see the end of a shadow ray.
-vec3 lightTriangleEmission(GeometryData geometry, uvec3 v, vec3 b) {
-  const MaterialData m = MaterialArray(frame.materials).at[geometry.material];
+// What a surface of this material emits, times the probability that alpha mask or blend leaves it there: an any-hit
+// shader does not see the end of a shadow ray. `alpha`: of the vertex colour.
+vec3 surfaceEmission(uint material, float alpha, vec2 uv0, vec2 uv1) {
+  const MaterialData m = MaterialArray(frame.materials).at[material];
   vec3 emission = m.emissive;
-  if (m.emissiveTexture.index != kNoTexture)
-    emission *= sampleTexture(m.emissiveTexture, interpolateUv(geometry, v, b, m.emissiveTexture.uvSet)).rgb;
+  if (m.emissiveTexture.index != kNoTexture) emission *= sampleTexture(m.emissiveTexture, m.emissiveTexture.uvSet == 0u ? uv0 : uv1).rgb;
   if ((m.flags & (kMaterialMask | kMaterialBlend)) == 0u) return emission;
-  float alpha = m.baseColor.a;
-  if (geometry.colors != 0ul) {
-    Vec4Array colors = Vec4Array(geometry.colors);
-    alpha *= dot(b, vec3(colors.at[v.x].a, colors.at[v.y].a, colors.at[v.z].a));
-  }
-  if (m.baseColorTexture.index != kNoTexture)
-    alpha *= sampleTexture(m.baseColorTexture, interpolateUv(geometry, v, b, m.baseColorTexture.uvSet)).a;
+  alpha *= m.baseColor.a;
+  if (m.baseColorTexture.index != kNoTexture) alpha *= sampleTexture(m.baseColorTexture, m.baseColorTexture.uvSet == 0u ? uv0 : uv1).a;
   if ((m.flags & kMaterialMask) != 0u) return alpha < m.alphaCutoff ? vec3(0.0) : emission;
   return clamp(alpha, 0.0, 1.0) * emission;
+}
+
+vec3 lightTriangleEmission(GeometryData geometry, uvec3 v, vec3 b) {
+  float alpha = 1.0;
+  if (geometry.colors != 0ul) {
+    Vec4Array colors = Vec4Array(geometry.colors);
+    alpha = dot(b, vec3(colors.at[v.x].a, colors.at[v.y].a, colors.at[v.z].a));
+  }
+  return surfaceEmission(geometry.material, alpha, interpolateUv(geometry, v, b, 0u), interpolateUv(geometry, v, b, 1u));
 }
 
 // Density per solid angle of a uniform point on the triangle, at distance d along a unit ray with

@@ -20,17 +20,18 @@ QT_CONSTANT kLightSpot = 1u;
 QT_CONSTANT kLightDirectional = 2u;
 QT_CONSTANT kLightTriangle = 3u;     // emissive triangle of an instance
 QT_CONSTANT kLightEnvironment = 4u;  // the whole environment; its direction comes from its own table
+QT_CONSTANT kLightSolid = 5u;        // emissive sphere, box, cylinder, cone or torus of an instance
 
 struct LightData {
   vec3 intensity;   // point, spot: W/sr; directional: W/m²; others unused
   uint type;
   vec3 position;    // world; point, spot
-  uint instance;    // triangle
+  uint instance;    // triangle, solid
   vec3 direction;   // world, unit, the way the light travels; spot, directional
-  uint geometry;    // triangle: geometry index in the instance's mesh
+  uint geometry;    // triangle, solid: geometry index in the instance's mesh
   float cosInner;   // spot
   float cosOuter;   // spot
-  uint primitive;   // triangle: original index in the geometry
+  uint primitive;   // triangle, solid: original index in the geometry
   uint padding;
 };
 QT_SHARED_SIZE(LightData, 64);

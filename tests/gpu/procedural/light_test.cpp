@@ -60,6 +60,15 @@ PictureOptions with(std::vector<std::string> set, std::uint32_t batches = 16, co
 
 constexpr std::array kConvex{PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone};
 
+void expectSame(const Picture& a, const Picture& b, double part) {
+  const std::size_t tests = std::size_t{3} * a.width() * a.height();
+  for (std::uint32_t y = 0; y < a.height(); ++y)
+    for (std::uint32_t x = 0; x < a.width(); ++x)
+      for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_GE(pValue(a.at(x, y, c), b.at(x, y, c), part * b.at(x, y, c).mean()), sidak(0.01, tests))
+            << x << "," << y << ": " << a.at(x, y, c).mean() << " instead of " << b.at(x, y, c).mean();
+}
+
 // All convex solids side by side, and what shows of them fills the image.
 PrimitiveSet convexSolids() {
   return solidsOf({solid(PrimitiveType::sphere, moved(-1, 0, 1)), solid(PrimitiveType::box, moved(1, 0, 1)),
@@ -151,6 +160,25 @@ TEST(SolidLight, BallsLightAPlane) {
   }
 }
 
+// Lamps of every shape, stretched, over a plane and beside a mirror: light samples and BSDF samples, weighted, against
+// BSDF samples alone.
+TEST(SolidLight, LampsOfEveryShapeAgreeWithBruteForce) {
+  const mat4 turn = glm::rotate(mat4(1.0f), 0.8f, glm::normalize(vec3(1, 2, 0.5f)));
+  for (const PrimitiveType type : {PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone, PrimitiveType::torus}) {
+    SCOPED_TRACE(static_cast<int>(type));
+    SceneBuilder scene;
+    scene::Material floor = lambert(kAlbedo);
+    floor.specular = 1.0f;
+    floor.roughness = 0.3f;
+    add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(3, 1, 3))}), floor);
+    add(scene, solidsOf({solid(type, turn * scaled(0.9f, 0.4f, 0.6f))}), emitter({4.0f, 2.0f, 1.0f}), moved(0, 1.2f, 0) * scaled(1, 1, -1));
+    scene.camera(perspective({0, 1.5f, 4.0f}, {0, 0.2f, 0}, 30.0f));
+    const Picture direct = renderPicture(scene, with({"bounces=2"}, 32));
+    const Picture naive = renderPicture(scene, with({"bounces=2"}, 192, "naive"));
+    expectSame(direct, naive, 1e-4);
+  }
+}
+
 // A lamp behind a solid gives no light: the umbra of a point light is black.
 TEST(SolidLight, SolidsAndTreesCastShadows) {
   scene::Light lamp;
@@ -170,15 +198,6 @@ TEST(SolidLight, SolidsAndTreesCastShadows) {
 }
 
 // ---- glass ----
-
-void expectSame(const Picture& a, const Picture& b, double part) {
-  const std::size_t tests = std::size_t{3} * a.width() * a.height();
-  for (std::uint32_t y = 0; y < a.height(); ++y)
-    for (std::uint32_t x = 0; x < a.width(); ++x)
-      for (std::size_t c = 0; c < 3; ++c)
-        EXPECT_GE(pValue(a.at(x, y, c), b.at(x, y, c), part * b.at(x, y, c).mean()), sidak(0.01, tests))
-            << x << "," << y << ": " << a.at(x, y, c).mean() << " instead of " << b.at(x, y, c).mean();
-}
 
 scene::Material glass() {
   scene::Material m = clearGlass(1.5f, 1.0f);

@@ -1,0 +1,150 @@
+// Emissive sphere, box, cylinder, cone or torus; emits the material's emission on both sides. A ball that is round in
+// the world, from outside: uniform over the cone in which it is seen (Shirley et al. 1996, "Monte Carlo Techniques for
+// Direct Lighting Calculations"). All else: a point of the surface, with the density that its transform leaves.
+#ifndef QUINTET_LIGHTS_SOLID_GLSL
+#define QUINTET_LIGHTS_SOLID_GLSL
+
+#include "../sampling/warp.glsl"
+#include "../surface.glsl"
+#include "light_sample.glsl"
+#include "triangle.glsl"
+
+#ifndef QUINTET_NO_PROCEDURALS
+
+// Columns of the linear part of worldFromPrimitive.
+mat3 worldFromPrimitive(InstanceData instance, PrimitiveData primitive) {
+  mat3 m;
+  for (int i = 0; i < 3; ++i) {
+    const vec3 column = vec3(primitive.objectFromPrimitive[0][i], primitive.objectFromPrimitive[1][i], primitive.objectFromPrimitive[2][i]);
+    m[i] = rowsTimesVector(instance.worldFromObject, column);
+  }
+  return m;
+}
+
+vec3 solidCenter(InstanceData instance, PrimitiveData primitive) {
+  const vec3 center = vec3(primitive.objectFromPrimitive[0].w, primitive.objectFromPrimitive[1].w, primitive.objectFromPrimitive[2].w);
+  return rowsTimesPoint(instance.worldFromObject, center);
+}
+
+// World radius of a sphere; 0 if the transform makes an ellipsoid of it, or for other solids.
+float ballRadius(uint type, mat3 m) {
+  const vec3 squares = vec3(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]));
+  const vec3 mixed = abs(vec3(dot(m[0], m[1]), dot(m[1], m[2]), dot(m[2], m[0])));
+  const bool ball = type == kPrimitiveSphere && maxComponent(max(abs(squares - squares.x), mixed)) <= 2e-5 * squares.x;
+  return ball ? sqrt(squares.x) : 0.0;
+}
+
+// Area vector that m makes of a unit of area with normal n (cofactors): its length is the stretch.
+vec3 areaVector(mat3 m, vec3 n) { return n.x * cross(m[1], m[2]) + n.y * cross(m[2], m[0]) + n.z * cross(m[0], m[1]); }
+
+// World areas of the box's faces along each axis, as parts of 1.
+vec3 boxFaceParts(mat3 m) {
+  const vec3 areas = vec3(length(cross(m[1], m[2])), length(cross(m[2], m[0])), length(cross(m[0], m[1])));
+  return areas / (areas.x + areas.y + areas.z);
+}
+
+// Density of canonicalPoint per canonical area; `p` is on the surface.
+float canonicalDensity(uint type, float parameter, mat3 m, uint face, vec3 p) {
+  if (type == kPrimitiveSphere) return 1.0 / (4.0 * kPi);
+  if (type == kPrimitiveBox) return 0.125 * boxFaceParts(m)[face >> 1];
+  if (type == kPrimitiveCylinder) return 1.0 / (6.0 * kPi);
+  if (type == kPrimitiveCone) return 1.0 / (kPi * 3.2360679775);  // base 1, side √5
+  return 1.0 / (4.0 * kPi * kPi * parameter * length(p.xz));
+}
+
+// A point of the canonical surface by two numbers.
+vec3 canonicalPoint(uint type, float parameter, mat3 m, vec2 u, out uint face) {
+  face = kFaceSide;
+  if (type == kPrimitiveSphere) return sampleSphere(u);
+  if (type == kPrimitiveTorus) {
+    const float ring = 1.0 + parameter * cos(2.0 * kPi * u.y);
+    return vec3(ring * sin(2.0 * kPi * u.x), parameter * sin(2.0 * kPi * u.y), ring * cos(2.0 * kPi * u.x));
+  }
+  if (type == kPrimitiveBox) {
+    const vec3 parts = boxFaceParts(m);
+    const int axis = u.x < parts.x ? 0 : u.x < parts.x + parts.y ? 1 : 2;
+    const float before = axis == 0 ? 0.0 : axis == 1 ? parts.x : parts.x + parts.y;
+    const float w = clamp(2.0 * (u.x - before) / parts[axis], 0.0, 1.9999999);
+    const bool positive = w >= 1.0;
+    face = uint(2 * axis) + (positive ? 1u : 0u);
+    vec3 p;
+    p[axis] = positive ? 1.0 : -1.0;
+    p[(axis + 1) % 3] = 2.0 * (positive ? w - 1.0 : w) - 1.0;
+    p[(axis + 2) % 3] = 2.0 * u.y - 1.0;
+    return p;
+  }
+  const float phi = 2.0 * kPi * u.y;
+  const vec2 around = vec2(sin(phi), cos(phi));
+  if (type == kPrimitiveCylinder) {
+    if (u.x < 4.0 / 6.0) return vec3(around.x, 3.0 * u.x - 1.0, around.y);
+    const bool top = u.x >= 5.0 / 6.0;
+    face = top ? kFaceTop : kFaceBottom;
+    const float radius = sqrt(clamp(6.0 * u.x - (top ? 5.0 : 4.0), 0.0, 1.0));
+    return vec3(radius * around.x, top ? 1.0 : -1.0, radius * around.y);
+  }
+  const float basePart = 0.30901699437;  // 1 / (1 + √5)
+  const bool base = u.x < basePart;
+  if (base) face = kFaceBottom;
+  const float radius = sqrt(base ? u.x / basePart : clamp((u.x - basePart) / (1.0 - basePart), 0.0, 1.0));
+  return vec3(radius * around.x, base ? -1.0 : 1.0 - 2.0 * radius, radius * around.y);
+}
+
+// Density per solid angle of sampleSolidLight for the point of the hit, met from `receiver` at `distance` along a unit
+// ray with cosine = |ray · normal|.
+float pdfSolid(InstanceData instance, PrimitiveData primitive, uint face, vec2 coordinates, vec3 receiver, float distance, float cosine) {
+  const mat3 m = worldFromPrimitive(instance, primitive);
+  const float radius = ballRadius(primitive.type, m);
+  const vec3 toCenter = solidCenter(instance, primitive) - receiver;
+  const float sineSquared = radius * radius / dot(toCenter, toCenter);
+  if (radius > 0.0 && sineSquared < 1.0) return (1.0 + sqrt(1.0 - sineSquared)) / (2.0 * kPi * sineSquared);
+  const SolidPoint point = solidPoint(primitive.type, primitive.parameter, face, coordinates);
+  const float stretch = length(areaVector(m, normalize(point.normal)));
+  const float density = canonicalDensity(primitive.type, primitive.parameter, m, face, point.position);
+  const float pdf = density * distance * distance / (stretch * cosine);
+  return stretch * cosine > 0.0 && !isinf(pdf) ? pdf : 0.0;
+}
+
+// A point of a ball around the origin seen from -toCenter, uniform over the cone of its directions.
+vec3 sampleBall(vec3 toCenter, float radius, vec2 u) {
+  const float sineSquaredMax = radius * radius / dot(toCenter, toCenter);
+  const float h = u.x * sineSquaredMax / (1.0 + sqrt(1.0 - sineSquaredMax));  // 1 - cos of the direction
+  const float sineSquared = h * (2.0 - h);
+  // The near crossing as an angle at the ball's centre (pbrt-v4, section 6.2.4), its sine by the way there: close to
+  // the ball the angle is small.
+  const float rest = sqrt(max(0.0, 1.0 - sineSquared / sineSquaredMax));
+  const float sineMax = sqrt(sineSquaredMax);
+  const float cosine = sineSquared / sineMax + (1.0 - h) * rest;
+  const float way = (1.0 / sineSquaredMax - 1.0) / ((1.0 - h) / sineMax + rest);  // in radii
+  const float sine = min(way * sqrt(sineSquared), 1.0);
+  const vec3 z = -normalize(toCenter);
+  const vec3 x = anyTangent(z);
+  const float phi = 2.0 * kPi * u.y;
+  return radius * (sine * cos(phi) * x + sine * sin(phi) * cross(z, x) + cosine * z);
+}
+
+bool sampleSolidLight(LightData light, vec3 position, vec2 u, inout LightSample s) {
+  const InstanceData instance = InstanceArray(frame.instances).at[light.instance];
+  const GeometryData geometry = GeometryArray(frame.geometries).at[instance.firstGeometry + light.geometry];
+  const PrimitiveData primitive = PrimitiveArray(geometry.primitives).at[light.primitive];
+  const mat3 m = worldFromPrimitive(instance, primitive);
+  const vec3 toCenter = solidCenter(instance, primitive) - position;
+  const float radius = ballRadius(primitive.type, m);
+  uint face = kFaceSide;
+  vec3 p;
+  if (radius > 0.0 && radius * radius < dot(toCenter, toCenter)) p = transpose(m) * sampleBall(toCenter, radius, u);
+  else p = canonicalPoint(primitive.type, primitive.parameter, m, u, face);
+  const vec2 coordinates = pointCoordinates(primitive.type, face, p);
+  const SolidPoint point = solidPoint(primitive.type, primitive.parameter, face, coordinates);
+  const vec3 world = rowsTimesPoint(instance.worldFromObject, rowsTimesPoint(primitive.objectFromPrimitive, point.position));
+  lightFromPoint(world, vec3(1.0), position, s);
+  s.radiance = surfaceEmission(primitive.material, 1.0, point.uv, point.uv);
+  s.normal = safeNormalize(areaVector(m, point.normal) / maxComponent(abs(areaVector(m, point.normal))), s.wi);
+  s.pdf = pdfSolid(instance, primitive, face, coordinates, position, s.distance, abs(dot(s.normal, s.wi)));
+  const BoxData box = BoxArray(geometry.boxes).at[light.primitive];
+  s.error = solidError(instance, primitive, point.position, max(abs(box.min), abs(box.max)), world, s.normal);
+  s.delta = false;
+  return s.pdf > 0.0 && maxComponent(s.radiance) > 0.0;
+}
+
+#endif
+#endif
