@@ -34,6 +34,9 @@ float ballRadius(uint type, mat3 m) {
   return ball ? sqrt(squares.x) : 0.0;
 }
 
+// Is a receiver outside the ball, and not on its surface, where rounding decides?
+bool seesBallFromOutside(float radius, vec3 toCenter) { return radius > 0.0 && 1.001 * radius * radius < dot(toCenter, toCenter); }
+
 // Area vector that m makes of a unit of area with normal n (cofactors): its length is the stretch.
 vec3 areaVector(mat3 m, vec3 n) { return n.x * cross(m[1], m[2]) + n.y * cross(m[2], m[0]) + n.z * cross(m[0], m[1]); }
 
@@ -96,7 +99,7 @@ float pdfSolid(InstanceData instance, PrimitiveData primitive, uint face, vec2 c
   const float radius = ballRadius(primitive.type, m);
   const vec3 toCenter = solidCenter(instance, primitive) - receiver;
   const float sineSquared = radius * radius / dot(toCenter, toCenter);
-  if (radius > 0.0 && sineSquared < 1.0) return (1.0 + sqrt(1.0 - sineSquared)) / (2.0 * kPi * sineSquared);
+  if (seesBallFromOutside(radius, toCenter)) return (1.0 + sqrt(1.0 - sineSquared)) / (2.0 * kPi * sineSquared);
   const SolidPoint point = solidPoint(primitive.type, primitive.parameter, face, coordinates);
   const float stretch = length(areaVector(m, normalize(point.normal)));
   const float density = canonicalDensity(primitive.type, primitive.parameter, m, face, point.position);
@@ -131,7 +134,7 @@ bool sampleSolidLight(LightData light, vec3 position, vec2 u, inout LightSample 
   const float radius = ballRadius(primitive.type, m);
   uint face = kFaceSide;
   vec3 p;
-  if (radius > 0.0 && radius * radius < dot(toCenter, toCenter)) p = transpose(m) * sampleBall(toCenter, radius, u);
+  if (seesBallFromOutside(radius, toCenter)) p = transpose(m) * sampleBall(toCenter, radius, u);
   else p = canonicalPoint(primitive.type, primitive.parameter, m, u, face);
   const vec2 coordinates = pointCoordinates(primitive.type, face, p);
   const SolidPoint point = solidPoint(primitive.type, primitive.parameter, face, coordinates);
