@@ -35,7 +35,7 @@ float ballRadius(uint type, mat3 m) {
 }
 
 // Is a receiver outside the ball, and not on its surface, where rounding decides?
-bool seesBallFromOutside(float radius, vec3 toCenter) { return radius > 0.0 && 1.001 * radius * radius < dot(toCenter, toCenter); }
+bool seesBallFromOutside(float radius, vec3 toCenter) { return radius > 0.0 && 1.00002 * radius * radius < dot(toCenter, toCenter); }
 
 // Area vector that m makes of a unit of area with normal n (cofactors): its length is the stretch.
 vec3 areaVector(mat3 m, vec3 n) { return n.x * cross(m[1], m[2]) + n.y * cross(m[2], m[0]) + n.z * cross(m[0], m[1]); }
