@@ -17,12 +17,13 @@ using spv::StorageClass;
 
 class Members {
  public:
-  Members(const LinkModel& model, Report& report) : model_(model), report_(report) {}
+  Members(const CheckInput& input, Report& report) : input_(input), model_(input.model), report_(report) {}
 
   void check(const TraceSite& site) {
     const StageFacts& tracer = factsOf(site.stage);
     const shader::SharedVariable* payload = tracer.variable(site.trace->payload);
     if (!payload || hasWrongQualifier(site)) return;
+    reportSilentHits(site, *payload);
     for (std::uint32_t member = 0; member < tracer.memberCount(payload->id); ++member) {
       const std::string name = memberText(tracer, *payload, member);
       const std::vector<std::size_t> all = tracer.readsAfter(*site.trace, member);
@@ -108,6 +109,46 @@ class Members {
     constexpr std::size_t kMaxNamed = 3;
     if (who.size() > kMaxNamed) who.resize(kMaxNamed);
     return who;
+  }
+
+  // A closest-hit shader that writes nothing of what is read afterwards, and does nothing else that anybody could see.
+  void reportSilentHits(const TraceSite& site, const shader::SharedVariable& payload) {
+    const StageFacts& tracer = factsOf(site.stage);
+    std::vector<std::uint32_t> read;
+    for (std::uint32_t member = 0; member < tracer.memberCount(payload.id); ++member)
+      if (!tracer.readsAfter(*site.trace, member).empty()) read.push_back(member);
+    if (read.empty() || input_.featureDefines) return;
+    for (const Edge& edge : site.edges) {
+      const auto written = [&](std::uint32_t member) {
+        return writes(edge, member, false) || anyHitWrites(site, edge.row, member);
+      };
+      if (edge.role != Role::closestHit || !edge.exact || std::ranges::any_of(read, written) ||
+          hasEffects(factsOf(edge.stage)))
+        continue;
+      report_.add(
+          "Q104", placeOf(site),
+          fmt::format(
+              "the payload is read after this trace, but the {} writes nothing that is read: its hits leave no trace",
+              model_.describe(edge)));
+    }
+  }
+
+  // Writes to memory or pictures, traces or calls.
+  static bool hasEffects(const StageFacts& facts) {
+    if (!facts.traces().empty() || !facts.calls().empty()) return true;
+    const shader::SpirvModule& module = facts.module();
+    return std::ranges::any_of(module.instructions(), [&](const shader::SpirvInstruction& i) {
+      if (i.op >= spv::Op::OpAtomicStore && i.op <= spv::Op::OpAtomicXor) return true;
+      if (i.op == spv::Op::OpImageWrite || i.op == spv::Op::OpFunctionCall) return true;
+      if (i.op != spv::Op::OpStore) return false;
+      const shader::SpirvId variable = module.access(i.at(0)).variable;
+      const shader::SpirvInstruction* definition = module.definition(variable);
+      const auto storage = definition && definition->op == spv::Op::OpVariable
+                               ? static_cast<spv::StorageClass>(definition->at(0))
+                               : spv::StorageClass::Max;
+      return storage != spv::StorageClass::Function && storage != spv::StorageClass::Private &&
+             !facts.variable(variable);
+    });
   }
 
   void reportUnwritten(const TraceSite& site, std::uint32_t member, const std::string& name) {
@@ -220,6 +261,7 @@ class Members {
                                                 : fmt::format(" ({}:{})", place.file, place.line);
   }
 
+  const CheckInput& input_;
   const LinkModel& model_;
   Report& report_;
 };
@@ -227,7 +269,7 @@ class Members {
 }  // namespace
 
 void checkPayloadMembers(const CheckInput& input, Report& report) {
-  Members members(input.model, report);
+  Members members(input, report);
   for (const TraceSite& site : input.model.traces) members.check(site);
 }
 

@@ -10,6 +10,7 @@
 
 #include <shaderc/shaderc.hpp>
 
+#include "shader/diagnostics.h"
 #include "shader/embedded_library.h"
 #include "shader/glslang_run.h"
 #include "shader/spirv_cache.h"
@@ -143,6 +144,7 @@ Result Compiler::compile(const Source& source) const {
     result.diagnostics = std::move(run.diagnostics);
   }
   explainMissingBuiltIns(result.diagnostics, source.stage);
+  explainPayloadOfAnotherStage(result.diagnostics, source.stage, files);
   for (const SourceFile* file : files.files())
     if (file != &files.root() && !file->diskPath.empty()) result.files.push_back(file->diskPath);
   return result;

@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "shader/glsl_declaration.h"
+
 namespace quintet::shader {
 namespace {
 
@@ -156,6 +158,22 @@ void dropConsequences(std::vector<Diagnostic>& diagnostics) {
   std::erase_if(diagnostics, [&](const Diagnostic& d) {
     return d.severity == Severity::error && d.line > 0 && !seen.emplace(d.file, d.line).second;
   });
+}
+
+void explainPayloadOfAnotherStage(std::vector<Diagnostic>& diagnostics, Stage stage, const IncludeResolver& files) {
+  for (Diagnostic& d : diagnostics) {
+    if (d.text.find("RayPayloadKHR Storage Class is limited") == d.text.npos) continue;
+    d.id = "Q103";
+    d.text = "rayPayloadEXT in the " + std::string(stageName(stage)) + " shader, which cannot trace: the payload of the ray that runs it is rayPayloadInEXT";
+    for (const SourceFile* file : files.files()) {
+      const auto found = findWord(file->text, "rayPayloadEXT");
+      if (!found) continue;
+      d.file = found->file.empty() ? file->name : found->file;
+      d.line = found->line;
+      d.column = found->column;
+      break;
+    }
+  }
 }
 
 }  // namespace quintet::shader

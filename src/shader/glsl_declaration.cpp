@@ -26,7 +26,7 @@ std::string withoutComments(std::string_view text) {
   return result;
 }
 
-std::size_t findWord(std::string_view text, std::string_view word, std::size_t from) {
+std::size_t wordAt(std::string_view text, std::string_view word, std::size_t from) {
   for (std::size_t at = text.find(word, from); at != text.npos; at = text.find(word, at + 1)) {
     const std::size_t end = at + word.size();
     if ((at == 0 || !isWord(text[at - 1])) && (end >= text.size() || !isWord(text[end]))) return at;
@@ -59,7 +59,7 @@ std::size_t lastWord(std::string_view text, std::size_t begin, std::size_t end) 
 }
 
 std::optional<int> locationIn(std::string_view qualifiers) {
-  std::size_t at = findWord(qualifiers, "location", 0);
+  std::size_t at = wordAt(qualifiers, "location", 0);
   if (at == qualifiers.npos) return {};
   at = qualifiers.find_first_not_of(" \t\n=", at + 8);
   if (at == qualifiers.npos) return {};
@@ -69,8 +69,10 @@ std::optional<int> locationIn(std::string_view qualifiers) {
   return failed == std::errc{} && whole ? std::optional(value) : std::nullopt;
 }
 
-// Line of a position, and the file, as #line directives have them.
+// Line and column of a position, and the file, as #line directives have them.
 void place(std::string_view text, std::size_t position, GlslDeclaration& result) {
+  const std::size_t lineStart = text.substr(0, position).rfind('\n');
+  result.column = static_cast<int>(position - (lineStart == text.npos ? 0 : lineStart + 1)) + 1;
   result.line = 1;
   for (std::size_t begin = 0; begin < position;) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -95,21 +97,28 @@ std::optional<GlslDeclaration> findDeclaration(std::string_view source, std::str
                                                std::string_view name) {
   if (source.find(keyword) == source.npos) return {};
   const std::string text = withoutComments(source);
-  for (std::size_t at = findWord(text, keyword, 0); at != text.npos; at = findWord(text, keyword, at + 1)) {
+  for (std::size_t at = wordAt(text, keyword, 0); at != text.npos; at = wordAt(text, keyword, at + 1)) {
     const std::size_t end = endOf(text, at);
     if (end == text.npos) return {};
     const std::size_t word = lastWord(text, at + keyword.size(), end);
     if (word == text.npos || text.compare(word, name.size(), name) != 0 || isWord(text[word + name.size()])) continue;
     GlslDeclaration result;
     place(text, word, result);
-    const std::size_t lineStart = text.rfind('\n', word);
-    result.column = static_cast<int>(word - (lineStart == text.npos ? 0 : lineStart + 1)) + 1;
     const std::size_t before = text.find_last_of(";}", at);
     const std::size_t begin = before == text.npos ? 0 : before + 1;
     result.location = locationIn(std::string_view(text).substr(begin, word - begin));
     return result;
   }
   return {};
+}
+
+std::optional<GlslDeclaration> findWord(std::string_view source, std::string_view word) {
+  const std::string text = withoutComments(source);
+  const std::size_t at = wordAt(text, word, 0);
+  if (at == text.npos) return {};
+  GlslDeclaration result;
+  place(text, at, result);
+  return result;
 }
 
 }  // namespace quintet::shader

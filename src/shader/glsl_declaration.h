@@ -20,5 +20,8 @@ struct GlslDeclaration {
 // what the preprocessor leaves out does.
 std::optional<GlslDeclaration> findDeclaration(std::string_view text, std::string_view keyword, std::string_view name);
 
+// The first place of a word in `text`; comments do not count.
+std::optional<GlslDeclaration> findWord(std::string_view text, std::string_view word);
+
 }  // namespace quintet::shader
 #endif

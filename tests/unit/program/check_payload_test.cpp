@@ -74,6 +74,29 @@ TEST(CheckPayload, Q103WrongQualifier) {
               HasSubstr("Q103 surface.rchit:7:"));
 }
 
+// The compiler refuses it in a stage that cannot trace.
+TEST(CheckPayload, Q103InAnAnyHitShader) {
+  const Files files = edited(cleanFiles(), "cut.rahit", "attribs.x < 0.5", "attribs.x < payload.t");
+  EXPECT_EQ(checkEdited(files, "cut.rahit", "rayPayloadInEXT", "rayPayloadEXT"),
+            "Q103 cut.rahit:6:22 rayPayloadEXT in the any-hit shader, which cannot trace: the payload of the ray that "
+            "runs it is rayPayloadInEXT\n");
+}
+
+TEST(CheckPayload, Q104HitsLeaveNoTrace) {
+  const Files files =
+      edited(cleanFiles(), "main.rgen", "  traceRayEXT", "  payload = Payload(vec3(0.0), -1.0);\n  traceRayEXT");
+  Files silent = files;
+  silent["surface.rchit"] = kHead + std::string("void main() {}\n");
+  silent["program.toml"] =
+      changed(silent["program.toml"], "shadow = { any_hit", "shadow = { closest_hit = \"other.rchit\", any_hit");
+  silent["other.rchit"] = files.at("surface.rchit");
+  EXPECT_THAT(
+      textOf(checkFiles(silent)),
+      HasSubstr(
+          "Q104 main.rgen:11:3 the payload is read after this trace, but the closest-hit shader 'surface.rchit' (hit "
+          "group 'surface', ray type 'primary') writes nothing that is read: its hits leave no trace\n"));
+}
+
 TEST(CheckPayload, Q104MissForgetsAMember) {
   EXPECT_EQ(checkEdited(cleanFiles(), "sky.rmiss", "payload.t = -1.0;", ""),
             "Q104 main.rgen:10:3 'payload.t' is read after this trace (line 12), but the miss shader 'sky.rmiss' (miss "
