@@ -40,10 +40,15 @@ bool isLecture(const program::Program& program) {
   return program.descriptionFile.ends_with(program::kLectureExtension);
 }
 
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); !from.empty() && at != text.npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
 // The lecture file under its new name and what it needs: files whose names stand in those that are copied.
 Files copyOfLecture(const program::Program& source, const std::string& stem) {
   const std::string& main = source.descriptionFile;
-  const std::string ownScene = source.name + ".scene.toml";
   std::vector<std::string> open{main}, taken{main};
   if (!source.scene.empty()) open.push_back(source.scene), taken.push_back(source.scene);
   while (!open.empty()) {
@@ -56,13 +61,15 @@ Files copyOfLecture(const program::Program& source, const std::string& stem) {
       taken.push_back(name);
     }
   }
+  // The scene is called like its program, also where the text names it.
+  const std::string ownScene = stem + ".scene.toml";
   Files files;
   for (const std::string& name : taken) {
-    std::string renamed = name;
-    if (name == main) renamed = stem + std::string(program::kLectureExtension);
-    // Found by its name unless the file names it.
-    if (name == ownScene && source.files.at(main).find(ownScene) == std::string::npos) renamed = stem + ".scene.toml";
-    files[renamed] = source.files.at(name);
+    const bool isMain = name == main, isScene = name == source.scene;
+    const std::string& text = source.files.at(name);
+    files[isMain    ? stem + std::string(program::kLectureExtension)
+          : isScene ? ownScene
+                    : name] = isMain ? replaced(text, source.scene, ownScene) : text;
   }
   return files;
 }
