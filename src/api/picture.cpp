@@ -32,7 +32,8 @@ std::array<float, 4> Picture::at(std::uint32_t x, std::uint32_t y) const {
 void Picture::write(const std::filesystem::path& file) const {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".png") return writeFile(file, io::encodePng(render::toDisplay(toImage(*this), toneMap ? render::ToneMap::neutral : render::ToneMap::linear, 0.0f, true), {}));
+  const render::ToneMap operation = toneMap ? render::ToneMap::neutral : render::ToneMap::linear;
+  if (extension == ".png") return writeFile(file, io::encodePng(render::toDisplay(toImage(*this), operation, 0.0f, true), {}));
   if (extension == ".exr") return writeFile(file, io::encodeExr(toImage(*this), {}));
   if (extension == ".hdr") return writeFile(file, io::encodeHdr(toImage(*this)));
   throw UsageError(fmt::format("{}: the extension must be .png, .exr or .hdr", file.string()));

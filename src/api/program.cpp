@@ -1,18 +1,6 @@
-#include <fmt/format.h>
-
 #include "api/impl.h"
 
 namespace quintet {
-namespace {
-
-std::string valueText(const program::Parameter& parameter) {
-  std::string text;
-  for (int i = 0; i < program::componentCount(parameter.type); ++i)
-    text += fmt::format("{}{}", i > 0 ? "," : "", parameter.defaultValue[static_cast<std::size_t>(i)]);
-  return text;
-}
-
-}  // namespace
 
 Program Program::load(const std::string& nameOrPath) {
   Program result;
@@ -27,7 +15,7 @@ std::string Program::description() const { return impl_->program.description; }
 std::vector<ParameterInfo> Program::parameters() const {
   std::vector<ParameterInfo> result;
   for (const program::Parameter& p : impl_->program.parameters)
-    result.push_back({p.name, std::string(program::typeName(p.type)), valueText(p), p.min, p.max, p.unit, p.help});
+    result.push_back({p.name, std::string(program::typeName(p.type)), program::formatDefault(p), p.min, p.max, p.unit, p.help});
   return result;
 }
 

@@ -55,7 +55,12 @@ Renderer::~Renderer() = default;
 void Renderer::render(std::uint32_t count) {
   while (count > 0) {
     const std::uint32_t part = std::min(count, impl_->framewise ? 1u : render::kBatchSamples);
-    impl_->renderer->renderBatch(part);
+    if (impl_->framewise) {
+      impl_->scene->setFrame(static_cast<float>(sampleCount()));
+      impl_->renderer->renderFrame(static_cast<std::uint32_t>(sampleCount()));
+    } else {
+      impl_->renderer->renderBatch(part);
+    }
     count -= part;
   }
 }

@@ -20,3 +20,10 @@ run(${work}/prefix/bin/quintet info first_ray.png)
 # The same picture as the command's.
 run(${work}/prefix/bin/quintet run lessons/01_first_ray -o command.png --size 480x320)
 run(${work}/prefix/bin/quintet compare first_ray.png command.png --max 0)
+
+# The rest of the API, from outside.
+run(${CMAKE_COMMAND} -S ${SOURCE}/tests/install/consumer -B ${work}/consumer -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=Release)
+run(${CMAKE_COMMAND} --build ${work}/consumer)
+run(${work}/consumer/consumer)
+run(${work}/prefix/bin/quintet run lessons/19_dynamic -o frames.png --size 96x64 --frames 14)
+run(${work}/prefix/bin/quintet compare animation.png frames.png --max 0)
