@@ -10,18 +10,22 @@ namespace {
 
 std::string vectorText(const vec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
 
-// Line `line` of the stage's file, if a trace stands there; else the trace is in an included file, and no line is said.
+// `line` of the stage's file if a trace stands there, with its last line at the latest; else the trace is in an included
+// file, whose lines are not the stage's, and no line is said.
 int traceLine(const program::Program& program, const std::string& file, std::uint32_t line) {
   const auto found = program.files.find(file);
   if (found == program.files.end() || line == 0) return 0;
-  std::size_t at = 0;
+  const std::string& text = found->second;
+  std::size_t begin = 0;
   for (std::uint32_t k = 1; k < line; ++k) {
-    at = found->second.find('\n', at);
-    if (at == std::string::npos) return 0;
-    ++at;
+    begin = text.find('\n', begin);
+    if (begin == std::string::npos) return 0;
+    ++begin;
   }
-  const std::string text = found->second.substr(at, found->second.find('\n', at) - at);
-  return text.find("traceRayEXT") != std::string::npos || text.find(')') != std::string::npos ? static_cast<int>(line) : 0;
+  const std::size_t trace = text.rfind("traceRayEXT", text.find('\n', begin));
+  if (trace == std::string::npos) return 0;
+  const bool endsBefore = trace < begin && text.find(';', trace) < begin;
+  return endsBefore ? 0 : static_cast<int>(line);
 }
 
 std::string describe(const shared::InstrumentReport& report, std::size_t missCount) {

@@ -68,6 +68,14 @@ TEST(Instrument, ARayThatIsNotFinite) {
   EXPECT_NE(notes[0].text.find("16 such"), std::string::npos) << notes[0].text;
 }
 
+// A trace in an included file has a line of that file, which is none of the program's: here line 2 of both.
+TEST(Instrument, ATraceInAnIncludedFileHasNoLine) {
+  const std::string text = kCommon + "void side() { vec2 unused = vec2(0.0); }\n#include \"far.glsl\"\n" + rayGeneration("far(eye, 0.0 * d);") + kHit + kMiss;
+  const std::string far = "void far(vec3 o, vec3 d) {\n" + trace("o", "d") + " }\n";
+  const program::Program program = program::parseLecture(text, "demo.rt.glsl", "here", {{"far.glsl", far}});
+  EXPECT_EQ(idsOf(notesOf(program, render::programScene(program))), "Q001:0");
+}
+
 TEST(Instrument, ARayWithoutDirection) {
   EXPECT_EQ(idsOf(notesOf(kCommon + rayGeneration(trace("eye", "0.0 * d")) + kHit + kMiss)), "Q001:2");
 }
