@@ -115,7 +115,8 @@ void Session::describe(const scene::Scene& scene, const ChosenEnvironment& envir
   const std::string& name = sceneSource_.name;
   if (outputKind(options_.output) != OutputKind::png && (options_.toneMap || options_.exposure != 0))
     progress_.note(fmt::format("{}: linear radiance, --exposure and --tonemap do not apply", options_.output.string()));
-  if (environment.isDefault)
+  const bool usesLight = program_.accumulation == program::Accumulation::film;  // lecture programs bring their own
+  if (environment.isDefault && usesLight)
     progress_.note(
         fmt::format("{}: nothing gives light, taking the default environment (--env none for darkness)", name));
   if (scene.instances.empty()) warnings_.add(fmt::format("{}: the scene shows no surface", name));

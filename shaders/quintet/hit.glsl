@@ -19,14 +19,25 @@ vec2 barycentricsFromRay(vec3 origin, vec3 direction, vec3 p0, vec3 p1, vec3 p2)
   return b / max(1.0, b.x + b.y);
 }
 
-// The payload of a committed triangle hit; `seed` is kept.
-HitPayload triangleHit(vec2 attributes, uint seed) {
-  const GeometryData geometry = hitGeometry();
+// What a payload holds of any hit: where it is in the scene and on the ray. `seed` is kept.
+HitPayload hitOf(GeometryData geometry, uint seed) {
   HitPayload hit;
   hit.t = gl_HitTEXT;
   hit.instance = uint(gl_InstanceCustomIndexEXT);
   hit.geometry = uint(gl_GeometryIndexEXT);
   hit.primitive = hitTriangle(geometry);
+  hit.barycentric = vec2(0.0);
+#ifndef QUINTET_NO_PROCEDURALS
+  hit.part = 0u;
+#endif
+  hit.seed = seed;
+  return hit;
+}
+
+// The payload of a committed triangle hit; `seed` is kept.
+HitPayload triangleHit(vec2 attributes, uint seed) {
+  const GeometryData geometry = hitGeometry();
+  HitPayload hit = hitOf(geometry, seed);
 #ifdef QUINTET_RECOMPUTE_BARYCENTRICS
   const uvec3 v = Uvec3Array(geometry.triangles).at[hit.primitive];
   Vec3Array positions = Vec3Array(geometry.positions);
@@ -35,10 +46,6 @@ HitPayload triangleHit(vec2 attributes, uint seed) {
 #else
   hit.barycentric = attributes;
 #endif
-#ifndef QUINTET_NO_PROCEDURALS
-  hit.part = 0u;
-#endif
-  hit.seed = seed;
   return hit;
 }
 

@@ -13,12 +13,7 @@
 // The payload of the hit at gl_HitTEXT (in any-hit shaders: of the candidate); `seed` is kept.
 HitPayload solidHit(uint seed) {
   const GeometryData geometry = hitGeometry();
-  HitPayload hit;
-  hit.t = gl_HitTEXT;
-  hit.instance = uint(gl_InstanceCustomIndexEXT);
-  hit.geometry = uint(gl_GeometryIndexEXT);
-  hit.primitive = hitTriangle(geometry);
-  hit.seed = seed;
+  HitPayload hit = hitOf(geometry, seed);
   const vec3 origin = gl_ObjectRayOriginEXT;
   const vec3 direction = gl_ObjectRayDirectionEXT;
   const bool front = gl_HitKindEXT == kHitEntering;
