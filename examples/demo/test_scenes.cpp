@@ -2,46 +2,10 @@
 
 #include <array>
 
-#include "demo/glb_writer.h"
-#include "demo/mesh_builder.h"
-#include "demo/noise.h"
+#include "demo/scene_parts.h"
 #include "demo/textures.h"
 
 namespace quintet::demo {
-namespace {
-
-constexpr float kWide = 16.0f / 9.0f;
-
-int addDiffuse(GlbWriter& glb, const char* name, vec3 albedo) {
-  return glb.addMaterial({.name = name, .baseColor = vec4(albedo, 1.0f), .specular = 0.0f});
-}
-
-int addLight(GlbWriter& glb, const char* name, vec3 radiance) {
-  return glb.addMaterial({.name = name, .baseColor = {0, 0, 0, 1}, .emissive = radiance, .specular = 0.0f});
-}
-
-// A square of hilly ground around the origin; `cells` along each side.
-TriangleMesh terrain(float side, int cells, float roughness, std::uint32_t seed) {
-  TriangleMesh mesh = parametric(cells, cells, false, false, [&](float u, float v) {
-    const float x = side * (u - 0.5f), z = side * (0.5f - v);
-    return vec3(x, roughness * fbm(vec3(x, z, 0.5f), 6, seed), z);
-  });
-  computeNormals(mesh);
-  return mesh;
-}
-
-float terrainHeight(float x, float z, float roughness, std::uint32_t seed) {
-  return roughness * fbm(vec3(x, z, 0.5f), 6, seed);
-}
-
-mat4 turned(vec3 position, float degrees, float scale = 1.0f) {
-  mat4 m = glm::translate(mat4(1.0f), position);
-  m = glm::rotate(m, glm::radians(degrees), vec3(0, 1, 0));
-  return glm::scale(m, vec3(scale));
-}
-
-}  // namespace
-
 std::vector<std::byte> cornell() {
   GlbWriter glb;
   const int white = addDiffuse(glb, "white", vec3(0.73f));
@@ -110,13 +74,13 @@ std::vector<std::byte> manyLights() {
     const float x = random(-0.47f, 0.47f) * kSide, z = random(-0.47f, 0.47f) * kSide;
     return vec3(x, terrainHeight(x, z, kHills, 7) + random(low, high), z);
   };
-  const auto anywhere = [&] { return glm::normalize(vec3(random(-1, 1), random(-1, 1), random(-1, 1)) + 1e-3f); };
   for (int c = 0; c < kColors; ++c) {
     const vec3 hue = glm::mix(vec3(1.0f), vec3(random(), random(), random()), 0.7f);
     const int light = addLight(glb, "light", hue * std::exp2(static_cast<float>(c) - 1.0f));  // 0.5 … 64
     TriangleMesh mesh;
     for (int i = 0; i < kLightsPerColor; ++i) {
-      const vec3 p = somewhere(0.10f, 0.60f), a = anywhere(), b = glm::normalize(glm::cross(a, anywhere()));
+      const vec3 p = somewhere(0.10f, 0.60f), a = anyDirection(random),
+                 b = glm::normalize(glm::cross(a, anyDirection(random)));
       const float size = random(0.015f, 0.07f);
       TriangleMesh triangle = quad(p, size * a, size * b);
       triangle.triangles.pop_back();
@@ -178,7 +142,9 @@ std::vector<std::byte> planeLight() {
 
 std::span<const TestScene> testScenes() {
   static constexpr TestScene kScenes[] = {{"cornell", cornell},        {"glass", glass}, {"furnace", furnace},
-                                          {"many_lights", manyLights}, {"bench", bench}, {"plane_light", planeLight}};
+                                          {"many_lights", manyLights}, {"bench", bench}, {"plane_light", planeLight},
+                                          {"lanterns", lanterns},      {"panes", panes}, {"window", window},
+                                          {"foliage", foliage}};
   return kScenes;
 }
 

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "demo/sky.h"
+
 namespace quintet::demo {
 
 // plane_light.glb: a square light facing down, centred over the origin of the plane y = 0.
@@ -22,6 +24,15 @@ std::vector<std::byte> furnace();
 std::vector<std::byte> manyLights();  // 400 emissive triangles of very different power, terrain, alpha-masked leaves
 std::vector<std::byte> bench();       // about 100 k triangles of terrain, 60 instances of three rocks
 std::vector<std::byte> planeLight();
+
+// hard_scenes.cpp: what is hard to sample. The last two are meant for testSky().
+inline constexpr std::size_t kLanterns = 10'000;
+std::vector<std::byte> lanterns();  // 10,000 emissive triangles of very different power between low walls
+std::vector<std::byte> panes();     // thin panes, clear, tinted and frosted, and solids of glass under light panels
+std::vector<std::byte> window();    // a room with one opening
+std::vector<std::byte> foliage();   // alpha-masked leaves on stems over hilly ground
+
+SkySettings testSky();  // clear, with a low sun of 1.5 degrees that shines into `window`
 
 struct TestScene {
   const char* name;  // of the file, without ".glb"
