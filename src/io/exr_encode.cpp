@@ -1,45 +1,92 @@
-// Writing OpenEXR: scan lines, ZIP, into memory.
+// Writing OpenEXR into memory: scan lines or tiles, one part, or two where colours may lose bits and data may not.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
-#include <ImfOutputFile.h>
-#include <ImfStringAttribute.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfTiledOutputPart.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <half.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <new>
 
 #include "base/error.h"
 #include "io/exr.h"
-#include "io/formats.h"
+#include "io/exr_attributes.h"
+#include "io/exr_check.h"
+#include "io/exr_stream.h"
 
 namespace quintet::io {
 namespace {
 
-class MemoryStream : public Imf::OStream {
- public:
-  MemoryStream() : Imf::OStream("memory") {}
+constexpr std::uint32_t kBlockRows = 256;  // converted at a time; a multiple of what every compression takes together
 
-  void write(const char from[], int count) override {
-    const auto size = static_cast<std::size_t>(count);
-    if (at_ + size > bytes_.size()) bytes_.resize(at_ + size);
-    std::memcpy(bytes_.data() + at_, from, size);
-    at_ += size;
-  }
-  std::uint64_t tellp() override { return at_; }
-  void seekp(std::uint64_t position) override { at_ = position; }
-  std::vector<std::byte> take() { return std::move(bytes_); }
+using Channels = std::vector<const ExrChannel*>;
 
- private:
-  std::vector<std::byte> bytes_;
-  std::size_t at_ = 0;
+struct Part {
+  std::string name;
+  Channels channels;
+  ExrCompression compression;
+  std::optional<float> level;
 };
+
+bool isLossy(ExrCompression compression) {
+  return compression == ExrCompression::dwaa || compression == ExrCompression::dwab;
+}
+
+// What a lossy compression must not touch goes to a part of its own.
+std::vector<Part> splitParts(const ExrPicture& picture, const ExrOptions& options) {
+  Part all{"rgba", {}, options.compression, options.level};
+  Part data{"data", {}, ExrCompression::zip, std::nullopt};
+  for (const ExrChannel& channel : picture.channels)
+    (isLossy(options.compression) && channel.exact ? data : all).channels.push_back(&channel);
+  std::vector<Part> parts;
+  for (Part& part : {std::ref(all), std::ref(data)})
+    if (!part.channels.empty()) parts.push_back(std::move(part));
+  return parts;
+}
+
+Imf::Compression compressionOf(ExrCompression compression) {
+  switch (compression) {
+    case ExrCompression::none: return Imf::NO_COMPRESSION;
+    case ExrCompression::rle: return Imf::RLE_COMPRESSION;
+    case ExrCompression::zips: return Imf::ZIPS_COMPRESSION;
+    case ExrCompression::zip: return Imf::ZIP_COMPRESSION;
+    case ExrCompression::piz: return Imf::PIZ_COMPRESSION;
+    case ExrCompression::dwaa: return Imf::DWAA_COMPRESSION;
+    case ExrCompression::dwab: return Imf::DWAB_COMPRESSION;
+  }
+  return Imf::ZIP_COMPRESSION;
+}
 
 Imf::PixelType pixelType(ExrType type) {
   return type == ExrType::half ? Imf::HALF : type == ExrType::u32 ? Imf::UINT : Imf::FLOAT;
+}
+
+Imath::Box2i box(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) {
+  return {{static_cast<int>(x), static_cast<int>(y)},
+          {static_cast<int>(x + width) - 1, static_cast<int>(y + height) - 1}};
+}
+
+Imf::Header makeHeader(const ExrPicture& picture, const Part& part, const ExrOptions& options, bool several) {
+  const ExrPlace place = wholePlace(picture);
+  Imf::Header header(box(0, 0, place.width, place.height), box(place.x, place.y, picture.width, picture.height));
+  header.compression() = compressionOf(part.compression);
+  if (part.level && isLossy(part.compression)) header.dwaCompressionLevel() = *part.level;
+  if (part.level && !isLossy(part.compression)) header.zipCompressionLevel() = static_cast<int>(*part.level);
+  for (const ExrChannel* channel : part.channels)
+    header.channels().insert(channel->name, Imf::Channel(pixelType(channel->type)));
+  if (options.tileSize > 0) header.setTileDescription(Imf::TileDescription(options.tileSize, options.tileSize));
+  if (several) header.setName(part.name);
+  header.setType(options.tileSize > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+  addMetadata(header, picture.metadata);
+  addAttributes(header, picture.attributes);
+  return header;
 }
 
 half toHalf(float value) {
@@ -53,72 +100,85 @@ std::uint32_t toUnsigned(float value) {
                                 : static_cast<std::uint32_t>(std::floor(static_cast<double>(value) + 0.5));
 }
 
-// The samples as the file stores them: OpenEXR converts when it reads, not when it writes.
 template <class Stored, class Convert>
-std::vector<char> convertSamples(const std::vector<float>& samples, Convert&& convert) {
-  std::vector<char> bytes(samples.size() * sizeof(Stored));
+void convertInto(std::vector<char>& bytes, std::span<const float> samples, Convert&& convert) {
+  bytes.resize(samples.size() * sizeof(Stored));
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Stored value = convert(samples[i]);
     std::memcpy(bytes.data() + i * sizeof(Stored), &value, sizeof(Stored));
   }
-  return bytes;
 }
 
-void checkPicture(const ExrPicture& picture) {
-  const std::size_t pixels = std::size_t{picture.width} * picture.height;
-  if (pixels == 0 || picture.channels.empty()) throw UsageError("an image without pixels cannot be written as OpenEXR");
-  std::vector<std::string> names;
-  for (const ExrChannel& channel : picture.channels) {
-    if (channel.samples.size() != pixels)
-      throw UsageError(fmt::format("the OpenEXR channel '{}' has {} samples for {} x {} pixels", channel.name,
-                                   channel.samples.size(), picture.width, picture.height));
-    names.push_back(channel.name);
-    if (channel.name.empty() || channel.name.size() > 255 || channel.name.find('\0') != std::string::npos)
-      throw UsageError(fmt::format("'{}' cannot be the name of an OpenEXR channel", channel.name));
-  }
-  std::ranges::sort(names);
-  if (const auto twice = std::ranges::adjacent_find(names); twice != names.end())
-    throw UsageError(fmt::format("the OpenEXR channel '{}' is given twice", *twice));
+// Rows of one channel as the file stores them: OpenEXR converts when it reads, not when it writes.
+const void* storedRows(const ExrChannel& channel, std::size_t first, std::size_t count, std::vector<char>& scratch) {
+  if (channel.type == ExrType::u32 && !channel.integers.empty()) return channel.integers.data() + first;
+  const std::span<const float> samples = std::span(channel.samples).subspan(first, count);
+  if (channel.type == ExrType::f32) return samples.data();
+  if (channel.type == ExrType::half)
+    convertInto<half>(scratch, samples, toHalf);
+  else
+    convertInto<std::uint32_t>(scratch, samples, toUnsigned);
+  return scratch.data();
 }
 
-Imf::Header makeHeader(const ExrPicture& picture) {
-  Imf::Header header(static_cast<int>(picture.width), static_cast<int>(picture.height));
-  header.compression() = Imf::ZIP_COMPRESSION;
-  for (const ExrChannel& channel : picture.channels)
-    header.channels().insert(channel.name, Imf::Channel(pixelType(channel.type)));
-  constexpr std::string_view kReserved[]{"type", "name", "view", "version", "chunkCount", "tiles", "preview"};
-  checkMetadata(picture.metadata);
-  for (const auto& [key, text] : picture.metadata) {
-    if (header.find(key) != header.end() || std::ranges::find(kReserved, key) != std::end(kReserved))
-      throw UsageError(fmt::format("the metadata keyword '{}' is given twice or has a meaning in OpenEXR", key));
-    header.insert(key, Imf::StringAttribute(text));
+// Writes a part block by block, so that converted samples take little memory.
+class PartWriter {
+ public:
+  PartWriter(const ExrPicture& picture, const Part& part, std::uint32_t tileSize)
+      : picture_(picture), part_(part), tileSize_(tileSize), scratch_(part.channels.size()) {}
+
+  void write(Imf::MultiPartOutputFile& file, int index) {
+    if (tileSize_ > 0) {
+      Imf::TiledOutputPart out(file, index);
+      for (std::uint32_t y = 0; y < picture_.height; y += tileSize_) {
+        out.setFrameBuffer(rows(y, tileSize_));
+        const int row = static_cast<int>(y / tileSize_);
+        out.writeTiles(0, out.numXTiles() - 1, row, row);
+      }
+    } else {
+      Imf::OutputPart out(file, index);
+      for (std::uint32_t y = 0; y < picture_.height; y += kBlockRows) {
+        out.setFrameBuffer(rows(y, kBlockRows));
+        out.writePixels(static_cast<int>(std::min(kBlockRows, picture_.height - y)));
+      }
+    }
   }
-  return header;
-}
+
+ private:
+  Imf::FrameBuffer rows(std::uint32_t y, std::uint32_t count) {
+    count = std::min(count, picture_.height - y);
+    const std::size_t width = picture_.width;
+    Imf::FrameBuffer buffers;
+    for (std::size_t c = 0; c < part_.channels.size(); ++c) {
+      const ExrChannel& channel = *part_.channels[c];
+      const void* stored = storedRows(channel, y * width, count * width, scratch_[c]);
+      buffers.insert(channel.name,
+                     Imf::Slice::Make(pixelType(channel.type), stored,
+                                      box(picture_.place.x, picture_.place.y + y, picture_.width, count)));
+    }
+    return buffers;
+  }
+
+  const ExrPicture& picture_;
+  const Part& part_;
+  const std::uint32_t tileSize_;
+  std::vector<std::vector<char>> scratch_;
+};
 
 }  // namespace
 
-std::vector<std::byte> encodeExr(const ExrPicture& picture) {
-  checkPicture(picture);
-  const Imf::Header header = makeHeader(picture);
+std::vector<std::byte> encodeExr(const ExrPicture& picture, const ExrOptions& options) {
+  checkExrPicture(picture);
+  checkExrOptions(picture, options);
+  const std::vector<Part> parts = splitParts(picture, options);
+  std::vector<Imf::Header> headers;
+  for (const Part& part : parts) headers.push_back(makeHeader(picture, part, options, parts.size() > 1));
 
-  std::vector<std::vector<char>> converted;
-  converted.reserve(picture.channels.size());
-  Imf::FrameBuffer buffers;
-  for (const ExrChannel& channel : picture.channels) {
-    const void* samples = channel.samples.data();
-    if (channel.type == ExrType::half)
-      samples = converted.emplace_back(convertSamples<half>(channel.samples, toHalf)).data();
-    if (channel.type == ExrType::u32)
-      samples = converted.emplace_back(convertSamples<std::uint32_t>(channel.samples, toUnsigned)).data();
-    buffers.insert(channel.name, Imf::Slice::Make(pixelType(channel.type), samples, header.dataWindow()));
-  }
-
-  MemoryStream stream;
+  ExrWriteStream stream;
   try {
-    Imf::OutputFile file(stream, header, 0);
-    file.setFrameBuffer(buffers);
-    file.writePixels(static_cast<int>(picture.height));
+    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      PartWriter(picture, parts[i], options.tileSize).write(file, static_cast<int>(i));
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
