@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "diagnostics_view.h"
@@ -14,7 +15,22 @@ std::string regionText(const RenderRecord& record) {
   return fmt::format("{},{},{},{}", record.region[0], record.region[1], record.region[2], record.region[3]);
 }
 
+nlohmann::ordered_json memoryJson(const MemoryUse& memory) {
+  return {{"peakHostBytes", memory.peakHost},
+          {"peakDeviceBytes", memory.peakDevice},
+          {"deviceIsHost", memory.deviceIsHost},
+          {"geometryBytes", memory.geometry},
+          {"textureBytes", memory.textures},
+          {"accelerationBytes", memory.acceleration},
+          {"ratio", memory.ratio()}};
+}
+
 }  // namespace
+
+double MemoryUse::ratio() const {
+  const std::uint64_t needed = geometry + textures + acceleration;
+  return needed > 0 ? static_cast<double>(std::max(peakHost, peakDevice)) / static_cast<double>(needed) : 0.0;
+}
 
 io::Metadata metadata(const RenderRecord& record) {
   io::Metadata data{
@@ -47,6 +63,8 @@ io::Metadata metadata(const RenderRecord& record) {
 }
 
 std::string toJson(const RenderRecord& record) {
+  nlohmann::ordered_json stages = nlohmann::ordered_json::object();
+  for (const auto& [name, seconds] : record.stages) stages[name] = seconds;
   const nlohmann::ordered_json json{
       {"version", QUINTET_VERSION},
       {"command", record.commandLine},
@@ -82,11 +100,13 @@ std::string toJson(const RenderRecord& record) {
         {"render", record.renderSeconds},
         {"device", record.deviceSeconds},
         {"total", record.totalSeconds}}},
+      {"stages", std::move(stages)},
       {"bytes",
        {{"geometry", record.geometryBytes},
         {"textures", record.textureBytes},
         {"accelerationStructures", record.accelerationBytes},
         {"film", record.filmBytes}}},
+      {"memory", memoryJson(record.memory)},
       {"warnings", record.warnings},
       {"diagnostics", nlohmann::ordered_json::parse(diagnosticsJson(record.diagnostics))},
   };

@@ -6,12 +6,25 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/codec.h"
 #include "shader/compiler.h"
 
 namespace quintet::app {
+
+// What the process and the device held, and what a scene needs at least; bytes.
+struct MemoryUse {
+  std::uint64_t peakHost = 0;      // resident, by the end of the rendering
+  std::uint64_t peakDevice = 0;    // asked of the driver
+  std::uint64_t geometry = 0;
+  std::uint64_t textures = 0;
+  std::uint64_t acceleration = 0;  // with the maps of primitives
+  bool deviceIsHost = false;       // a CPU: what the device holds is part of what the process holds
+  // Of the larger peak to the three together: what the device holds is counted once.
+  double ratio() const;
+};
 
 // Everything that is known about a rendering when it has ended.
 struct RenderRecord {
@@ -59,6 +72,8 @@ struct RenderRecord {
 
   std::vector<std::string> warnings;
   std::vector<shader::Diagnostic> diagnostics;  // warnings about the program
+  std::vector<std::pair<std::string, double>> stages;  // seconds from the start to the first pixel, in more detail
+  MemoryUse memory;
 
   bool cropped() const { return region[2] != width || region[3] != height; }
   double raysPerSecond() const { return renderSeconds > 0 ? static_cast<double>(rays) / renderSeconds : 0; }

@@ -3,21 +3,13 @@
 #ifndef QUINTET_APP_PROGRESS_H
 #define QUINTET_APP_PROGRESS_H
 
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "base/stopwatch.h"
+
 namespace quintet::app {
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
 
 struct ProgressState {
   double samples = 0;                         // per pixel, with the done part of the running batch

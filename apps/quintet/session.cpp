@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "diagnostics_view.h"
 #include "picture_names.h"
 #include "program_setup.h"
@@ -84,10 +85,13 @@ uvec2 Session::picturePart(uvec2 size) const {
 
 void Session::loadScene() {
   progress_.stage("loading " + sceneSource_.name);
-  const Stopwatch watch;
+  Stopwatch watch;
   SceneInfo info;
   const scene::Scene scene = app::loadScene(sceneSource_);
+  info.import = scene.seconds;
+  watch.lap();
   info.hash = scene::contentHash(scene).hex();
+  info.hashSeconds = watch.lap();
   info.files = scene.report.files;
   const uvec2 asked = options_.size;
   const float aspect = asked.y > 0 ? static_cast<float>(asked.x) / static_cast<float>(asked.y) : 0.0f;
@@ -97,6 +101,7 @@ void Session::loadScene() {
   info.cameraDescription = camera.description;
   info.environment = environment.description;
   info.size = chooseSize(asked, camera.camera);
+  info.viewSeconds = watch.lap();
   info.loadSeconds = watch.seconds();
   checkMemory(context_->info(), picturePart(info.size), program_.outputs.size());
   describe(scene, environment);
@@ -265,6 +270,32 @@ void Session::fillRecord(const RenderOutcome& outcome) {
   record_.textureBytes = built.textureBytes;
   record_.accelerationBytes = built.accelerationBytes;
   record_.filmBytes = renderer_->film().bytes();
+  fillLoading();
+}
+
+void Session::fillLoading() {
+  const render::DeviceSceneStatistics& built = deviceScene_->statistics();
+  record_.stages = {{"start", record_.startSeconds},
+                    {"document", sceneInfo_.import.document},
+                    {"meshes", sceneInfo_.import.meshes},
+                    {"images", sceneInfo_.import.images},
+                    {"hash", sceneInfo_.hashSeconds},
+                    {"view", sceneInfo_.viewSeconds},
+                    {"lights", built.lightSeconds},
+                    {"upload", built.uploadSeconds - built.lightSeconds},
+                    {"order", built.build.orderSeconds},
+                    {"bottomLevel", built.build.buildSeconds},
+                    {"topLevel", built.topLevelSeconds},
+                    {"compile", record_.compileSeconds},
+                    {"pipeline", record_.pipelineSeconds},
+                    {"firstLaunch", renderer_->statistics().firstLaunchSeconds}};
+  MemoryUse& memory = record_.memory;
+  memory.peakHost = peakResidentBytes();
+  memory.peakDevice = context_->memory().peak;
+  memory.deviceIsHost = context_->info().quirks.software;
+  memory.geometry = built.geometryBytes;
+  memory.textures = built.textureBytes;
+  memory.acceleration = built.accelerationBytes + built.primitiveMapBytes;
 }
 
 }  // namespace quintet::app

@@ -69,11 +69,15 @@ class Session {
     std::string hash;
     std::vector<std::filesystem::path> files;  // that a scene file names
     double loadSeconds = 0;
+    scene::ImportSeconds import;
+    double hashSeconds = 0;
+    double viewSeconds = 0;  // camera, size and light decided
   };
 
   uvec2 picturePart(uvec2 size) const;
   void describe(const scene::Scene& scene, const ChosenEnvironment& environment);
   void fillRecord(const RenderOutcome& outcome);
+  void fillLoading();  // stages and memory
   std::vector<std::size_t> chosenOutputs() const;
 
   const RenderOptions& options_;

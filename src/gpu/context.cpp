@@ -1,5 +1,6 @@
 #include "gpu/context.h"
 
+#include <atomic>
 #include <cstdlib>
 #include <optional>
 
@@ -58,8 +59,26 @@ struct Device {
   VkQueue queue = VK_NULL_HANDLE;
 };
 
+// Counts what VMA takes from the driver; from any thread.
+struct MemoryCounter {
+  void add(VkDeviceSize size) {
+    const std::uint64_t sum = now.fetch_add(size) + size;
+    std::uint64_t known = peak.load();
+    while (known < sum && !peak.compare_exchange_weak(known, sum)) {}
+  }
+  std::atomic<std::uint64_t> now{0}, peak{0};
+};
+
 struct Allocator {
   Allocator(VkInstance instance, const FoundDevice& found, VkDevice device) {
+    VmaDeviceMemoryCallbacks callbacks{};
+    callbacks.pUserData = &counter;
+    callbacks.pfnAllocate = [](VmaAllocator, std::uint32_t, VkDeviceMemory, VkDeviceSize size, void* user) {
+      static_cast<MemoryCounter*>(user)->add(size);
+    };
+    callbacks.pfnFree = [](VmaAllocator, std::uint32_t, VkDeviceMemory, VkDeviceSize size, void* user) {
+      static_cast<MemoryCounter*>(user)->now -= size;
+    };
     VmaVulkanFunctions functions{};
     functions.vkGetInstanceProcAddr = vkGetInstanceProcAddr;
     functions.vkGetDeviceProcAddr = vkGetDeviceProcAddr;
@@ -72,12 +91,14 @@ struct Allocator {
     info.instance = instance;
     info.pVulkanFunctions = &functions;
     info.vulkanApiVersion = VK_API_VERSION_1_3;
+    info.pDeviceMemoryCallbacks = &callbacks;
     check(vmaCreateAllocator(&info, &handle), "create the memory allocator");
   }
   ~Allocator() { vmaDestroyAllocator(handle); }
   Allocator(const Allocator&) = delete;
   Allocator& operator=(const Allocator&) = delete;
 
+  MemoryCounter counter;
   VmaAllocator handle = VK_NULL_HANDLE;
 };
 
@@ -135,6 +156,7 @@ VmaAllocator Context::allocator() const { return impl_->allocator.handle; }
 VkQueue Context::queue() const { return impl_->device.queue; }
 std::uint32_t Context::queueFamily() const { return impl_->found.queueFamily; }
 const LogSink& Context::log() const { return impl_->log; }
+DeviceMemory Context::memory() const { return {impl_->allocator.counter.now, impl_->allocator.counter.peak}; }
 
 std::uint32_t Context::validationMessageCount() const { return impl_->sink.count(); }
 std::vector<std::string> Context::validationMessages() const { return impl_->sink.messages(); }

@@ -69,6 +69,12 @@ struct DeviceInfo {
   bool usable() const { return refusal.empty(); }
 };
 
+// Memory that was asked of the driver, in blocks from which buffers and images are cut; bytes.
+struct DeviceMemory {
+  std::uint64_t now = 0;
+  std::uint64_t peak = 0;  // the most since the context was made
+};
+
 struct ContextOptions {
   // Empty: the first usable device, real GPUs before CPUs. Otherwise an index ("1") or a part of the
   // name or driver, without regard to case ("h200", "lavapipe", "cpu", "gpu"). $QUINTET_DEVICE is used when empty.
@@ -102,6 +108,7 @@ class Context {
   VkQueue queue() const;
   std::uint32_t queueFamily() const;
   const LogSink& log() const;
+  DeviceMemory memory() const;
 
   // Validation messages so far, known false alarms left out (context_validation.cpp lists them).
   std::uint32_t validationMessageCount() const;

@@ -1,11 +1,11 @@
 #include "render/device_scene.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <deque>
 #include <optional>
 
+#include "base/stopwatch.h"
 #include "render/albedo_tables.h"
 #include "render/light_table.h"
 #include "render/material_data.h"
@@ -18,10 +18,6 @@
 
 namespace quintet::render {
 namespace {
-
-double secondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // The environment's texels as the device may see them: finite, not negative.
 io::Image cleanEnvironment(const io::Image& image) {
@@ -52,13 +48,15 @@ struct DeviceScene::Impl {
 
   Impl(gpu::Context& gpuContext, const scene::Scene& scene, const scene::Environment& environment, const DeviceSceneOptions& sceneOptions)
       : context(gpuContext), options(sceneOptions), bounds(scene::worldBounds(scene)), facts(sceneFacts(scene)) {
-    const auto start = std::chrono::steady_clock::now();
+    Stopwatch watch;
     gpu::Uploader uploader(context);
     geometry = uploadGeometries(context, uploader, scene);
     uploadMaterials(scene, environment, uploader);
+    const double beforeLights = watch.seconds();
     uploadLights(scene, environment);
+    statistics.lightSeconds = watch.seconds() - beforeLights;
     uploader.flush();
-    statistics.uploadSeconds = secondsSince(start);
+    statistics.uploadSeconds = watch.seconds();
     buildBottomLevel(scene);
     uploadTables(scene);
     defines = featureDefines(scene, environment);
@@ -147,6 +145,7 @@ struct DeviceScene::Impl {
     blas = rt::BlasBuilder(context).build(inputs, &statistics.build);
     for (std::size_t i = 0; i < blas.size(); ++i) {
       bottomLevelBytes += blas[i].size();
+      statistics.primitiveMapBytes += blas[i].mapBytes();
       for (std::size_t g = 0; g < inputs[i].geometries.size(); ++g)
         geometry.geometries[geometry.firstGeometry[meshOfInput[i]] + g].primitiveMap = blas[i].primitiveMap(g);
     }
@@ -166,11 +165,11 @@ struct DeviceScene::Impl {
   }
 
   void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder, bool anyHitForAll) {
-    const auto start = std::chrono::steady_clock::now();
+    Stopwatch watch;
     if (!topLevel->prepareFor(rayTypeCount, keepInstanceOrder || options.keepInputOrder, anyHitForAll)) return;
     set->setAccelerationStructure(topLevel->structure().handle());
     statistics.accelerationBytes = bottomLevelBytes + topLevel->structure().size();
-    statistics.topLevelSeconds = secondsSince(start);
+    statistics.topLevelSeconds = watch.seconds();
   }
 
   std::vector<std::uint32_t> firstLightSlots;

@@ -25,9 +25,11 @@ struct DeviceSceneStatistics {
   double uploadSeconds = 0;     // attributes, textures, light tables
   rt::BuildStatistics build;    // bottom level
   double topLevelSeconds = 0;
+  double lightSeconds = 0;      // of uploadSeconds: light, environment and albedo tables
   std::uint64_t geometryBytes = 0;
   std::uint64_t textureBytes = 0;
   std::uint64_t accelerationBytes = 0;  // bottom and top level
+  std::uint64_t primitiveMapBytes = 0;  // where the driver keeps the input order (quirks.md)
   std::uint32_t lightCount = 0;
 };
 

@@ -1,12 +1,12 @@
 // Blas, and the plan by which BlasBuilder cuts its inputs into batches.
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "rt/blas_batch.h"
 
 namespace quintet::rt {
@@ -16,14 +16,6 @@ namespace {
 constexpr VkDeviceSize kInputBudget = VkDeviceSize{256} << 20;
 // Inputs with more primitives are prepared one after the other, each on all cores.
 constexpr std::size_t kManyPrimitives = 65536;
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 std::size_t primitiveCount(const BlasInput& input) {
   std::size_t count = 0;

@@ -54,6 +54,7 @@ class Blas {
   VkDeviceAddress address() const { return address_; }
   VkDeviceSize size() const { return storage_.size(); }   // bytes after compaction
   VkDeviceSize builtSize() const { return builtSize_; }    // bytes before compaction
+  VkDeviceSize mapBytes() const { return mapStorage_.size(); }  // of the primitive maps
   const Bounds3& bounds() const { return bounds_; }        // object space, of all geometries
   // For geometry g: device address of a uint per built primitive: gl_PrimitiveID → index in the
   // input; 0 where both are the same.

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "base/error.h"
+#include "base/stopwatch.h"
 #include "scene/gltf_extensions.h"
 #include "scene/gltf_instances.h"
 #include "scene/gltf_material.h"
@@ -25,6 +26,7 @@ void makePrintable(Report& report) {
 }
 
 Scene load(const std::filesystem::path& file, const LoadOptions& options) {
+  Stopwatch watch;
   const Document document = readDocument(file);
   Scene scene;
   scene.name = file.filename().string();
@@ -48,8 +50,11 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
       placeLight(document, indexOf(*light, "light"), node, tree.worldFromNode[i], scene);
   }
   MemoryBudget budget(file);
+  scene.seconds.document = watch.lap();
   instances.finish(scene, budget);
+  scene.seconds.meshes = watch.lap();
   textures.finish(scene, budget);
+  scene.seconds.images = watch.lap();
   makePrintable(scene.report);
   return scene;
 }

@@ -134,6 +134,27 @@ TEST_F(Render, JsonSaysTheSame) {
   EXPECT_EQ(json["interrupted"], false);
 }
 
+TEST_F(Render, JsonSaysWhatWasHeldInMemory) {
+  const RunResult result = quintet(quick({"-o", "out.png", "--json"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  const auto& memory = json["memory"];
+  const auto bytes = [&](const char* key) { return memory[key].get<std::uint64_t>(); };
+  EXPECT_EQ(bytes("textureBytes"), json["bytes"]["textures"]);
+  EXPECT_EQ(bytes("geometryBytes"), json["bytes"]["geometry"]);
+  EXPECT_GE(bytes("accelerationBytes"), json["bytes"]["accelerationStructures"].get<std::uint64_t>());
+  const std::uint64_t needed = bytes("geometryBytes") + bytes("textureBytes") + bytes("accelerationBytes");
+  EXPECT_GE(bytes("peakDeviceBytes"), needed + json["bytes"]["film"].get<std::uint64_t>());
+  EXPECT_GT(bytes("peakHostBytes"), 0u);
+  const double larger = static_cast<double>(std::max(bytes("peakHostBytes"), bytes("peakDeviceBytes")));
+  EXPECT_NEAR(memory["ratio"].get<double>(), larger / static_cast<double>(needed), 1e-6 * larger / static_cast<double>(needed));
+  double known = 0;
+  for (const char* stage : {"document", "meshes", "images", "hash", "view"}) known += json["stages"][stage].get<double>();
+  EXPECT_LE(known, json["seconds"]["load"].get<double>() + 1e-3);
+  for (const char* stage : {"lights", "upload", "order", "bottomLevel", "topLevel", "firstLaunch"})
+    EXPECT_GE(json["stages"][stage].get<double>(), 0.0) << stage;
+}
+
 TEST_F(Render, TheDefaultEnvironmentIsSaid) {
   const std::vector<std::string> arguments{"render", "scene.gltf", "--program", "normals", "--size", "8x8", "--spp", "1"};
   const RunResult told = quintet(arguments);

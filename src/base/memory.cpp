@@ -1,0 +1,29 @@
+#include "base/memory.h"
+
+#include <charconv>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace quintet {
+namespace {
+
+// A line of /proc/self/status: "VmHWM:     12345 kB". getrusage would do, but its peak is inherited across exec.
+std::uint64_t statusBytes(std::string_view key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (!line.starts_with(key)) continue;
+    const std::size_t digit = line.find_first_of("0123456789");
+    std::uint64_t kibibytes = 0;
+    if (digit != std::string::npos) std::from_chars(line.data() + digit, line.data() + line.size(), kibibytes);
+    return kibibytes << 10;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::uint64_t residentBytes() { return statusBytes("VmRSS:"); }
+std::uint64_t peakResidentBytes() { return statusBytes("VmHWM:"); }
+
+}  // namespace quintet

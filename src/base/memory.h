@@ -1,0 +1,15 @@
+// How much memory this process holds, as the system counts it.
+#ifndef QUINTET_BASE_MEMORY_H
+#define QUINTET_BASE_MEMORY_H
+
+#include <cstdint>
+
+namespace quintet {
+
+// Bytes in physical memory, mapped files that were read included. 0 where the system does not tell.
+std::uint64_t residentBytes();
+// The most that it ever was since the process began.
+std::uint64_t peakResidentBytes();
+
+}  // namespace quintet
+#endif

@@ -1,0 +1,25 @@
+// Wall clock since it was made, or since it was last asked for a lap.
+#ifndef QUINTET_BASE_STOPWATCH_H
+#define QUINTET_BASE_STOPWATCH_H
+
+#include <chrono>
+#include <utility>
+
+namespace quintet {
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  // Seconds since the last lap, or since the start.
+  double lap() {
+    const Clock::time_point now = Clock::now();
+    return std::chrono::duration<double>(now - std::exchange(lapStart_, now)).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now(), lapStart_ = start_;
+};
+
+}  // namespace quintet
+#endif

@@ -1,0 +1,27 @@
+// What the process holds grows with what it touches, and the peak stays.
+#include "base/memory.h"
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+
+#include <cstring>
+
+namespace quintet {
+namespace {
+
+TEST(ProcessMemory, FollowsWhatIsTouched) {
+  constexpr std::size_t kBytes = std::size_t{64} << 20, kSlack = std::size_t{8} << 20;
+  const std::uint64_t before = residentBytes();
+  ASSERT_GT(before, 0u);
+  void* memory = ::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(memory, MAP_FAILED);
+  EXPECT_LT(residentBytes(), before + kSlack);  // promised, not touched
+  std::memset(memory, 1, kBytes);
+  EXPECT_GE(residentBytes() + kSlack, before + kBytes);
+  ::munmap(memory, kBytes);
+  EXPECT_LT(residentBytes(), before + kSlack);
+  EXPECT_GE(peakResidentBytes() + kSlack, before + kBytes);
+}
+
+}  // namespace
+}  // namespace quintet
