@@ -16,6 +16,7 @@
 #include "io/codec.h"
 #include "io/color.h"
 #include "io/compare.h"
+#include "io/exr.h"
 #include "output.h"
 #include "side_by_side.h"
 #include "signals.h"
@@ -28,10 +29,12 @@ constexpr const char* kExamples =
     "  quintet compare out.png reference.png\n"
     "  quintet compare out.png reference.png --max 2            status 1 if mae8 is more than 2\n"
     "  quintet compare out.exr big.exr --resize --metric flip --max 0.05 -o difference.png\n"
+    "  quintet compare a.exr b.exr --layer normal --metric rmse --max 1e-3\n"
     "  quintet compare out.png reference.png --json | jq .psnr\n";
 
 struct Options {
   std::string a, b, output, sideBySide, metric = "mae8", max, gammaB;
+  std::optional<std::string> layer;
   bool resize = false;
   bool json = false;
 };
@@ -66,6 +69,8 @@ std::optional<Options> parseOptions(Arguments arguments) {
   add("--max", options.max, "VALUE", "Exit with status 1 if the metric is beyond this (psnr: below)");
   add("--metric", options.metric, "NAME", "For --max: mae8, max8, rmse, relmse, psnr, flip, alpha8 (default: mae8)");
   app.add_flag("--resize", options.resize, "Bring pictures of different sizes to the smaller size (box filter)");
+  app.add_option("--layer", options.layer, "A layer of both OpenEXR files (beauty, normal), or one channel (depth.Z)")
+      ->type_name("NAME");
   add("--gamma-b", options.gammaB, "X", "B is encoded by this power instead of the sRGB curve");
   app.add_flag("--json", options.json, "One JSON object instead of text");
   setUp(app, kExamples);
@@ -82,6 +87,11 @@ const Measure& findMeasure(const std::array<Measure, 7>& all, const std::string&
   }
   throw UsageError(fmt::format("--metric: there is no '{}'{}; there are {}", plain(name), suggestion(name, names),
                                fmt::join(names, ", ")));
+}
+
+io::Image readPicture(const std::string& file, const std::optional<std::string>& layer) {
+  if (!layer) return io::readImage(file);
+  return io::decodeExrLayer(readFile(file), file, *layer);
 }
 
 // Display values of a pure power, as linear light.
@@ -145,8 +155,8 @@ int compareCommand(Arguments arguments) {
   checkPicture("-o", options->output);
   checkPicture("--side-by-side", options->sideBySide);
 
-  io::Image a = io::readImage(options->a);
-  io::Image b = io::readImage(options->b);
+  io::Image a = readPicture(options->a, options->layer);
+  io::Image b = readPicture(options->b, options->layer);
   if (!options->gammaB.empty())
     b = fromGamma(std::move(b), static_cast<float>(parseNumber("--gamma-b", options->gammaB, 0.1, 10.0)));
   if (options->resize) bringToOneSize(a, b);

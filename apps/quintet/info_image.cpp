@@ -4,6 +4,7 @@
 
 #include "info.h"
 #include "io/codec.h"
+#include "io/exr.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -21,6 +22,7 @@ const char* typeText(io::PixelType type) {
 }  // namespace
 
 std::string imageInfo(const std::filesystem::path& file, std::span<const std::byte> bytes, bool json) {
+  if (io::isOpenExr(bytes)) return exrInfo(file, bytes, json);  // its layers need not make a picture
   const io::ImageInfo info = io::probeImage(bytes, file.string());
   const io::Metadata metadata = io::readMetadata(bytes, file.string());
   if (json) {

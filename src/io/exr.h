@@ -75,6 +75,8 @@ std::vector<std::byte> encodeExr(const ExrPicture& picture, const ExrOptions& op
 // Throws FileError, also for subsampled channels and deep data.
 ExrPicture decodeExr(std::span<const std::byte> bytes, const std::string& nameForErrors);
 
+bool isOpenExr(std::span<const std::byte> bytes);  // by its first bytes
+
 struct ExrPartInfo {
   struct Channel {
     std::string name;
@@ -102,7 +104,7 @@ std::vector<ExrPartInfo> inspectExr(std::span<const std::byte> bytes, const std:
 // "normal" of "normal.X"; empty for "R".
 std::string_view exrLayerOf(std::string_view channel);
 
-// One layer as linear floats: "" is R, G, B, A (or Y); "normal" is normal.X, .Y, .Z; "depth.Z" that channel alone.
+// One layer as linear floats: "" or "beauty" is R, G, B, A (or Y); "normal" is normal.X, .Y, .Z; "depth.Z" that channel alone.
 // Two channels become three with a last one of 0, as a picture of two is grey and alpha. Throws UsageError with the
 // nearest name for a layer that is not there, FileError as decodeExr.
 Image decodeExrLayer(std::span<const std::byte> bytes, const std::string& nameForErrors, const std::string& layer);

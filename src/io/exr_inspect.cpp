@@ -15,6 +15,8 @@
 namespace quintet::io {
 namespace {
 
+const std::string kBeauty = "beauty";  // how people call the channels without a layer
+
 std::string compressionText(const Imf::Header& header) {
   switch (header.compression()) {
     case Imf::NO_COMPRESSION: return "none";
@@ -72,8 +74,8 @@ std::string fullName(const Imf::Header& header, int part, const std::string& cha
   return part > 0 && bare && header.hasName() ? header.name() + "." + channel : channel;
 }
 
-Layer findLayer(const Source& source, Imf::MultiPartInputFile& file, const std::string& wanted) {
-  std::vector<std::string> layers;
+// The channels of the part that has them; `layers` collects what there is.
+Layer collectLayer(Imf::MultiPartInputFile& file, const std::string& wanted, std::vector<std::string>& layers) {
   Layer found;
   for (int part = 0; part < file.parts() && found.channels.empty(); ++part) {
     const Imf::Header& header = file.header(part);
@@ -83,12 +85,21 @@ Layer findLayer(const Source& source, Imf::MultiPartInputFile& file, const std::
       if (name == wanted) return {part, {channel}};
       const std::string layer(exrLayerOf(name));
       if (layer == wanted) found.channels.push_back(channel), found.part = part;
-      if (!layer.empty() && std::ranges::find(layers, layer) == layers.end()) layers.push_back(layer);
+      const std::string shown = layer.empty() ? kBeauty : layer;
+      if (std::ranges::find(layers, shown) == layers.end()) layers.push_back(shown);
     }
   }
+  return found;
+}
+
+Layer findLayer(const Source& source, Imf::MultiPartInputFile& file, const std::string& wanted) {
+  std::vector<std::string> layers;
+  Layer found = collectLayer(file, wanted, layers);
+  if (found.channels.empty() && wanted == kBeauty) found = collectLayer(file, "", layers);
   if (found.channels.empty()) {
     const std::string nearest = nearestName(wanted, layers);
-    throw UsageError(fmt::format("{}: there is no layer '{}'{}; there are {}", source.name, wanted,
+    throw UsageError(fmt::format("{}: there is no layer '{}'{}; there are {}", source.name,
+                                 wanted.empty() ? kBeauty : wanted,
                                  nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest),
                                  fmt::join(layers, ", ")));
   }
@@ -124,6 +135,11 @@ std::string_view exrLayerOf(std::string_view channel) {
   return dot == channel.npos ? std::string_view{} : channel.substr(0, dot);
 }
 
+bool isOpenExr(std::span<const std::byte> bytes) {
+  const std::string name;
+  return isExr({bytes, name});
+}
+
 std::vector<ExrPartInfo> inspectExr(std::span<const std::byte> bytes, const std::string& nameForErrors) {
   const Source source{bytes, nameForErrors};
   if (!isExr(source)) source.fail("not an OpenEXR file");
@@ -140,7 +156,7 @@ Image decodeExrLayer(std::span<const std::byte> bytes, const std::string& nameFo
   try {
     return withExrFile(source, [&](Imf::MultiPartInputFile& file) {
       Layer found = findLayer(source, file, layer);
-      if (layer.empty()) keepColours(found.channels);
+      keepColours(found.channels);
       if (found.channels.size() > 4)
         source.fail(fmt::format("the layer '{}' has {} channels: name one ('{}')", layer, found.channels.size(),
                                 found.channels.front()));
