@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "output.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -79,6 +80,17 @@ void declareImage(CLI::App& app, RawOptions& raw, RenderOptions& options) {
   add("--tonemap", raw.toneMap, "NAME", "linear, aces, agx or neutral (PNG only; default: neutral for colour)");
 }
 
+void declareExr(CLI::App& app, RawOptions& raw) {
+  const auto add = [&app](const char* name, std::string& value, const char* form, const char* help) {
+    app.add_option(name, value, help)->type_name(form)->group("OpenEXR");
+  };
+  add("--exr-type", raw.exrType, "half|float", "Of colours (default: half); data are floats always");
+  add("--exr-compression", raw.exrCompression, "NAME[:LEVEL]",
+      "none, rle, zips, zip, piz, dwaa or dwab (default: zip); zip:1 to 9,\n"
+      "dwaa:45 (lossy, colours only)");
+  add("--exr-tiles", raw.exrTiles, "N", "Tiles of N x N pixels (default: scan lines)");
+}
+
 void declareQuality(CLI::App& app, RawOptions& raw, RenderOptions& options) {
   const auto add = [&app](const char* name, auto& value, const char* form, const char* help) {
     app.add_option(name, value, help)->type_name(form)->group("Quality");
@@ -133,8 +145,20 @@ void declareProcess(CLI::App& app, RawOptions& raw, RenderOptions& options, cons
 
 void interpret(const RawOptions& raw, RenderOptions& options) {
   options.setFile = raw.setFile;
+  if (!raw.exrType.empty()) options.exr.colors = parseExrType(raw.exrType);
+  if (!raw.exrCompression.empty()) parseExrCompression(raw.exrCompression, options.exr.options);
+  if (!raw.exrTiles.empty()) options.exr.options.tileSize = parseExrTiles(raw.exrTiles);
   interpretImage(raw, options);
   interpretView(raw, options);
+}
+
+void checkExrOptions(const RawOptions& raw, const RenderOptions& options) {
+  const char* given = !raw.exrType.empty()          ? "--exr-type"
+                      : !raw.exrCompression.empty() ? "--exr-compression"
+                      : !raw.exrTiles.empty()       ? "--exr-tiles"
+                                                    : nullptr;
+  if (!given || (!options.output.empty() && outputKind(options.output) == OutputKind::exr)) return;
+  throw UsageError(fmt::format("{} is for OpenEXR files: -o must name a .exr file", given));
 }
 
 void checkStandardOutput(const RenderOptions& options) {

@@ -12,7 +12,7 @@ namespace quintet::app {
 // Options as text, before their values are looked at.
 struct RawOptions {
   std::string scene, output, size, spp, time, lookFrom, lookAt, up, fov, aperture, focus, envIntensity, envRotation,
-      exposure, toneMap, seed, region, timeout, setFile;
+      exposure, toneMap, seed, region, timeout, setFile, exrType, exrCompression, exrTiles;
 };
 
 void declareImage(CLI::App& app, RawOptions& raw, RenderOptions& options);  // all but the output file
@@ -21,8 +21,13 @@ void declareView(CLI::App& app, RawOptions& raw, RenderOptions& options);     //
 void declareProgram(CLI::App& app, RawOptions& raw, RenderOptions& options);  // parameters and outputs
 void declareProcess(CLI::App& app, RawOptions& raw, RenderOptions& options, const std::string& timeoutHelp);
 
+void declareExr(CLI::App& app, RawOptions& raw);
+
 // Fills `options` with the values of all texts but the scene and the output file. Throws UsageError.
 void interpret(const RawOptions& raw, RenderOptions& options);
+
+// What the kind of the output file forbids, after its name is known: options of OpenEXR for another file. Throws UsageError.
+void checkExrOptions(const RawOptions& raw, const RenderOptions& options);
 
 // What --json and -o - forbid. Throws UsageError.
 void checkStandardOutput(const RenderOptions& options);

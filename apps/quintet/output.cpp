@@ -34,15 +34,13 @@ void checkOutput(const std::filesystem::path& file) {
 
 void writePicture(const std::filesystem::path& file, const io::Image& image, const DisplayOptions& display,
                   const io::Metadata& metadata) {
-  const OutputKind kind = outputKind(file);
-  std::vector<std::byte> bytes;
-  if (kind == OutputKind::png) {
-    bytes = io::encodePng(render::toDisplay(image, display.toneMap, display.exposure, display.opaque), metadata);
-  } else if (kind == OutputKind::exr) {
-    bytes = io::encodeExr(display.opaque ? io::toChannels(image, 3) : image, metadata);
-  } else {
-    bytes = io::encodeHdr(image);
-  }
+  if (outputKind(file) == OutputKind::png)
+    writeBytes(file, io::encodePng(render::toDisplay(image, display.toneMap, display.exposure, display.opaque), metadata));
+  else
+    writeBytes(file, io::encodeHdr(image));
+}
+
+void writeBytes(const std::filesystem::path& file, std::span<const std::byte> bytes) {
   if (file == "-") {
     writeFile(file, bytes);  // no temporary file: nothing to protect
   } else {

@@ -2,7 +2,9 @@
 #ifndef QUINTET_APP_OUTPUT_H
 #define QUINTET_APP_OUTPUT_H
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 
 #include "io/codec.h"
 #include "render/tone_map.h"
@@ -23,9 +25,12 @@ struct DisplayOptions {
   bool opaque = true;
 };
 
-// `image`: linear premultiplied RGBA. PNG is tone mapped; OpenEXR and Radiance HDR get the linear values.
+// PNG or Radiance HDR. `image`: linear premultiplied RGBA. PNG is tone mapped, Radiance HDR gets the linear values.
 void writePicture(const std::filesystem::path& file, const io::Image& image, const DisplayOptions& display,
                   const io::Metadata& metadata);
+
+// Replaces `file` in one step, while no signal ends the process; "-" is the standard output.
+void writeBytes(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
 }  // namespace quintet::app
 #endif

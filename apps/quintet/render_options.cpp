@@ -28,6 +28,7 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
       ->type_name("FILE")
       ->group("Image");
   declareImage(app, raw, options);
+  declareExr(app, raw);
   declareQuality(app, raw, options);
   declareView(app, raw, options);
   app.add_option("--program", options.program, "Built-in program, or folder of one (default: pathtracer)")
@@ -47,6 +48,7 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
                                              : options.scene.filename().replace_extension(".png");
   checkStandardOutput(options);
   interpret(raw, options);
+  checkExrOptions(raw, options);
   if (options.samples) options.drawnFrames = static_cast<std::uint32_t>(*options.samples);
   return options;
 }

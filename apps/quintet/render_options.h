@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "exr_output.h"
 #include "render/film.h"
 #include "render/tone_map.h"
 #include "scene_setup.h"
@@ -44,6 +45,7 @@ struct RenderOptions {
   bool json = false;
   bool transparent = false;
   std::string commandLine;
+  ExrFormat exr;
 };
 
 // Nothing: help was printed. Throws UsageError.

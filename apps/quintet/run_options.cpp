@@ -55,6 +55,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
       ->group("Image");
   app.add_flag("--all-frames", options.allFrames, "Write each frame: out.0000.png (so does a name with %04d)")
       ->group("Image");
+  declareExr(app, raw);
   declareQuality(app, raw, render);
   declareView(app, raw, render);
   declareProgram(app, raw, render);
@@ -82,6 +83,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   render.scene = raw.scene;
   render.output = raw.output;
   interpret(raw, render);
+  checkExrOptions(raw, render);
   if (!frames.empty()) render.frames = parseFrames(frames);
   render.drawnFrames = render.frames;
   if (!render.frames && !raw.spp.empty()) render.drawnFrames = static_cast<std::uint32_t>(*render.samples);

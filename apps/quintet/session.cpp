@@ -223,9 +223,21 @@ void Session::write(const RenderOutcome& outcome, std::optional<std::uint32_t> f
     record_.toneMap = toned ? render::toneMapNames()[static_cast<std::size_t>(display.toneMap)] : "";
     record_.outputName = name;
     record_.files.push_back(file.string());
-    writePicture(file, renderer_->image(output), display, metadata(record_));
+    if (outputKind(file) == OutputKind::exr)
+      writeBytes(file, exrFile(output));
+    else
+      writePicture(file, renderer_->image(output), display, metadata(record_));
   }
   record_.totalSeconds = clock_.seconds();
+}
+
+std::vector<std::byte> Session::exrFile(std::size_t output) const {
+  io::ExrPicture picture =
+      exrPicture(renderer_->film().region(), sceneInfo_.size.x, sceneInfo_.size.y, metadata(record_));
+  const program::OutputKind kind = program_.outputs[output].kind;
+  const bool isColor = kind == program::OutputKind::color || kind == program::OutputKind::display;
+  addBeauty(picture, renderer_->image(output), options_.transparent, options_.exr.colors, !isColor);
+  return io::encodeExr(picture, options_.exr.options);
 }
 
 void Session::report() {

@@ -79,6 +79,7 @@ class Session {
   void fillRecord(const RenderOutcome& outcome);
   void fillLoading();  // stages and memory
   std::vector<std::size_t> chosenOutputs() const;
+  std::vector<std::byte> exrFile(std::size_t output) const;
 
   const RenderOptions& options_;
   const Stopwatch clock_;

@@ -1,8 +1,10 @@
 // Layers of OpenEXR files: `info` shows them, `compare` takes one.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "base/file.h"
 #include "fixtures.h"
 #include "io/cryptomatte.h"
 #include "io/exr.h"
@@ -17,7 +19,8 @@ class Layers : public CliTest {
   // 4x2: beauty, normal and depth; `normalY` in normal.Y.
   io::ExrPicture layers(float normalY) {
     io::ExrPicture picture{4, 2, {}};
-    for (const char* name : {"R", "G", "B", "A"}) picture.channels.push_back({name, io::ExrType::half, std::vector(8, 0.5f)});
+    for (const char* name : {"R", "G", "B", "A"})
+      picture.channels.push_back({name, io::ExrType::half, std::vector(8, 0.5f)});
     for (const char* name : {"normal.X", "normal.Y", "normal.Z", "depth.Z"})
       picture.channels.push_back({name, io::ExrType::f32, std::vector(8, name[7] == 'Y' ? normalY : 0.25f), true});
     return picture;
@@ -73,6 +76,68 @@ TEST_F(Layers, CompareTakesOne) {
               {"a.exr", "'nornal' (did you mean 'normal'?)", "beauty, depth, normal"});
   write(folder_ / "a.png", std::string_view("?"));
   expectError(quintet({"compare", "a.png", "b.exr", "--layer", "normal"}), 1, {"a.png", "not an OpenEXR file"});
+}
+
+std::vector<io::ExrPartInfo> inspect(const std::filesystem::path& file) {
+  return io::inspectExr(readFile(file), file.string());
+}
+
+TEST_F(Layers, RenderWritesTypesCompressionsAndTiles) {
+  const auto rendered = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"-o", "out.exr"});
+    const RunResult result = quintet(quick(more));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return inspect(folder_ / "out.exr").at(0);
+  };
+  const io::ExrPartInfo usual = rendered({});
+  EXPECT_EQ(usual.compression, "zip");
+  EXPECT_EQ(usual.tileWidth, 0u);
+  ASSERT_EQ(usual.channels.size(), 3u);
+  EXPECT_EQ(usual.channels[0].type, io::ExrType::half);
+  const io::ExrPartInfo other = rendered({"--exr-type", "float", "--exr-compression", "piz", "--exr-tiles", "16"});
+  EXPECT_EQ(other.compression, "piz");
+  EXPECT_EQ(other.tileWidth, 16u);
+  EXPECT_EQ(other.channels[0].type, io::ExrType::f32);
+  EXPECT_EQ(rendered({"--exr-compression", "dwab:80.5"}).compression, "dwab");
+  EXPECT_EQ(rendered({"--exr-compression", "zips:9", "--transparent"}).channels.size(), 4u);
+}
+
+TEST_F(Layers, RegionStandsInTheWholePicture) {
+  ASSERT_EQ(quintet(quick({"-o", "all.exr"})).status, 0);
+  ASSERT_EQ(quintet(quick({"-o", "part.exr", "--region", "5,7,19,11"})).status, 0);
+  const io::ExrPartInfo info = inspect(folder_ / "part.exr").at(0);
+  EXPECT_EQ(info.data.x, 5);
+  EXPECT_EQ(info.data.y, 7);
+  EXPECT_EQ(info.data.width, 19u);
+  EXPECT_EQ(info.data.height, 11u);
+  const io::Image whole = picture("all.exr"), part = picture("part.exr");
+  ASSERT_EQ(part.width, whole.width);
+  ASSERT_EQ(part.height, whole.height);
+  for (std::uint32_t y = 0; y < whole.height; ++y)
+    for (std::uint32_t x = 0; x < whole.width; ++x) {
+      const bool inside = x >= 5 && x < 24 && y >= 7 && y < 18;
+      for (std::size_t c = 0; c < 3; ++c)
+        ASSERT_EQ(part.pixel<float>(x, y)[c], inside ? whole.pixel<float>(x, y)[c] : 0.0f) << x << ' ' << y;
+    }
+}
+
+TEST_F(Layers, BadOptionsOfOpenExr) {
+  const auto refused = [&](std::vector<std::string> more, const std::vector<std::string>& parts) {
+    if (std::ranges::find(more, "-o") == more.end()) more.insert(more.end(), {"-o", "out.exr"});
+    expectError(quintet(quick(more)), 2, parts);
+  };
+  refused({"--exr-type", "haf"}, {"--exr-type: there is no 'haf' (did you mean 'half'?)"});
+  refused({"--exr-compression", "dwa"}, {"--exr-compression: there is no 'dwa' (did you mean 'dwaa'?)", "zips"});
+  refused({"--exr-compression", "dwaa:-1"}, {"--exr-compression"});
+  refused({"--exr-compression", "dwaa:"}, {"--exr-compression"});
+  refused({"--exr-compression", "zip:10"}, {"--exr-compression"});
+  refused({"--exr-compression", "zip:1.5"}, {"not a whole number"});
+  refused({"--exr-compression", "piz:1"}, {"piz has no level"});
+  refused({"--exr-tiles", "0"}, {"--exr-tiles"});
+  refused({"--exr-tiles", "5000"}, {"--exr-tiles"});
+  refused({"--exr-type", "half", "-o", "out.png"}, {"--exr-type is for OpenEXR files"});
+  refused({"--exr-tiles", "16", "-o", "-"}, {"--exr-tiles is for OpenEXR files"});
+  EXPECT_EQ(fileNames(), std::vector<std::string>{"scene.gltf"});
 }
 
 }  // namespace
