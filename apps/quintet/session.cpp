@@ -19,17 +19,17 @@
 namespace quintet::app {
 namespace {
 
-// Device memory of the film: the sums of a batch and of the total, RGBA floats.
-constexpr std::uint64_t kFilmBytes = 32;
+// Device memory of the largest buffer of a film: sums of four channels.
+constexpr std::uint64_t kSumBytes = 4 * sizeof(shared::FixedSum);
 // Host memory of the finished picture: floats and display bytes.
 constexpr std::uint64_t kPictureBytes = 20;
 
-void checkMemory(const gpu::DeviceInfo& device, uvec2 size, std::size_t outputCount) {
+void checkMemory(const gpu::DeviceInfo& device, uvec2 size, std::uint64_t filmBytesPerPixel) {
   const std::uint64_t pixels = std::uint64_t{size.x} * size.y;
-  const std::uint64_t film = pixels * kFilmBytes * std::max<std::size_t>(outputCount, 1);
+  const std::uint64_t film = pixels * filmBytesPerPixel;
   const std::uint64_t needed = film + (device.quirks.software ? pixels * kPictureBytes : 0);
   const std::uint64_t room = device.memoryBytes - device.memoryBytes / 16;
-  const bool tooLargeBuffer = device.maxBufferBytes > 0 && pixels * kFilmBytes / 2 > device.maxBufferBytes;
+  const bool tooLargeBuffer = device.maxBufferBytes > 0 && pixels * kSumBytes > device.maxBufferBytes;
   if (needed <= room && !tooLargeBuffer) return;
   throw MemoryError(fmt::format(
       "an image of {}x{} needs {} on {}, which has {} and buffers of at most {}; render parts "
@@ -68,7 +68,7 @@ void Session::openDevice() {
   record_.device = context_->info().name;
   record_.driver = context_->info().driver;
   record_.startSeconds = clock_.seconds();
-  checkMemory(context_->info(), picturePart(options_.size), program_.outputs.size());
+  checkMemory(context_->info(), picturePart(options_.size), render::Film::bytesPerPixel(program_, {}));
 
   const std::filesystem::path cache = cacheFolder();
   const auto part = [&cache](const char* name) { return cache.empty() ? cache : cache / name; };
@@ -103,7 +103,7 @@ void Session::loadScene() {
   info.size = chooseSize(asked, camera.camera);
   info.viewSeconds = watch.lap();
   info.loadSeconds = watch.seconds();
-  checkMemory(context_->info(), picturePart(info.size), program_.outputs.size());
+  checkMemory(context_->info(), picturePart(info.size), render::Film::bytesPerPixel(program_, {}));
   describe(scene, environment);
 
   progress_.stage("building acceleration structures");

@@ -8,7 +8,32 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer StatisticsArray { uvec2 at[]; };
 
-uvec2 launchPixel() { return gl_LaunchIDEXT.xy + launch.offset; }
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TileArray { FilmTile at[]; };
+
+// Every second bit, starting with the lowest.
+uint evenBits(uint x) {
+  x &= 0x55555555u;
+  x = (x | x >> 1) & 0x33333333u;
+  x = (x | x >> 2) & 0x0F0F0F0Fu;
+  return (x | x >> 4) & 0x00FF00FFu;
+}
+
+// The pixel of this invocation. Where the launch covers tiles, each row of it is one tile, its pixels in Morton order.
+uvec2 launchPixel() {
+  if (launch.tiles == 0ul) return gl_LaunchIDEXT.xy + launch.offset;
+  const FilmTile tile = TileArray(launch.tiles).at[gl_LaunchIDEXT.y + launch.offset.y];
+  return frame.filmOffset + uvec2(tile.x, tile.y) + uvec2(evenBits(gl_LaunchIDEXT.x), evenBits(gl_LaunchIDEXT.x >> 1));
+}
+
+// Of a program with adaptive = true: whether this pixel takes part in the batch; false: leave it alone.
+bool launchActive(uvec2 pixel) {
+  if (launch.tiles == 0ul) return true;
+  const uvec2 film = pixel - frame.filmOffset;
+  if (film.x >= frame.filmWidth || film.y >= frame.filmHeight) return false;
+  const uint cell = (film.x + film.y) & 1u;
+  return TileArray(launch.tiles).at[gl_LaunchIDEXT.y + launch.offset.y].drawn[cell] != 0u;
+}
+
 uint pixelIndex(uvec2 pixel) {
   const uvec2 film = pixel - frame.filmOffset;
   return film.y * frame.filmWidth + film.x;

@@ -275,7 +275,7 @@ Program parseLecture(const std::string& text, const std::string& file, const std
   program.description = descriptionOf(text);
   program.accumulation = Accumulation::program;
   program.descriptionFile = file;
-  program.outputs = {{"picture", OutputKind::display, "what gsnSetPixel writes", 0}};
+  program.outputs = {{.name = "picture", .kind = OutputKind::display, .help = "what gsnSetPixel writes"}};
   program.files = std::move(included);
   const std::string body = text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
   if (body.size() > kMaxBytes) {

@@ -50,6 +50,11 @@ std::string_view outputKindName(OutputKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
+std::string_view outputPixelName(OutputPixel pixel) {
+  constexpr std::array<std::string_view, 3> kNames{"mean", "center", "coverage"};
+  return kNames[static_cast<std::size_t>(pixel)];
+}
+
 std::vector<MissShader> missShaders(const Program& program) {
   std::vector<MissShader> all;
   for (const RayType& ray : program.rays) all.push_back({ray.name, ray.miss, ray.record, ray.line});

@@ -73,10 +73,20 @@ struct Callable {
 enum class OutputKind { color, linear, normal, depth, id, display };
 std::string_view outputKindName(OutputKind);  // as in program.toml
 
+// What a pixel's samples become, where the film accumulates.
+enum class OutputPixel {
+  mean,      // the average of all samples: the program adds each to the sum
+  center,    // one value: the program stores it with sample 0, of the ray through the pixel's centre
+  coverage,  // how many samples met which id: the program stores the id (not 0) of sample s in word s % kBatchSamples
+};
+std::string_view outputPixelName(OutputPixel);  // as in program.toml
+
 struct Output {
   std::string name;
   OutputKind kind = OutputKind::color;
   std::string help;
+  OutputPixel pixel = OutputPixel::mean;
+  bool optional = false;  // made only when asked for: then QUINTET_OUTPUT_name is defined
   int line = 0;
 };
 
@@ -106,6 +116,7 @@ struct Program {
   // Any-hit shaders are asked about geometry without alpha, too; not about instances forced to be opaque.
   bool anyHitForAll = false;
   std::uint32_t samplesPerLaunch = 1;  // samples per pixel that the ray generation shader can loop over
+  bool adaptive = false;  // the ray generation shader asks launchPixel() and launchActive(): pixels may differ in samples
 
   // What a front end found (lecture.h): an error here is a program that does not compile.
   std::vector<shader::Diagnostic> diagnostics;

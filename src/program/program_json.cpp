@@ -43,7 +43,11 @@ std::string describeAsJson(const Program& program) {
   Json rays = Json::array(), outputs = Json::array(), parameters = Json::array();
   for (const RayType& ray : program.rays) rays.push_back(ray.name);
   for (const Output& output : program.outputs)
-    outputs.push_back({{"name", output.name}, {"kind", outputKindName(output.kind)}, {"help", output.help}});
+    outputs.push_back({{"name", output.name},
+                       {"kind", outputKindName(output.kind)},
+                       {"pixel", outputPixelName(output.pixel)},
+                       {"optional", output.optional},
+                       {"help", output.help}});
   for (const Parameter& parameter : program.parameters) parameters.push_back(describe(parameter));
   const Json json{{"name", program.name},
                   {"description", program.description},

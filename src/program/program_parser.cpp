@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxOutputs = 16;    // shared::kMaxOutputs, as a static_assert in render/film.cpp says
+constexpr std::size_t kMaxOutputs = 32;    // shared::kMaxOutputs, as a static_assert in render/film.cpp says
 constexpr std::size_t kMaxRayTypes = 15;   // sbtRecordStride of traceRayEXT has 4 bits
 constexpr std::size_t kMaxMisses = 65536;  // missIndex has 16
 constexpr const char* kStagesExample = "{ closest_hit = \"a.rchit\" }";
@@ -63,6 +63,7 @@ class Parser {
     program_.accumulation = static_cast<Accumulation>(reader.choice("accumulation", {"film", "program"}, 0));
     program_.keepsInstanceOrder = reader.flag("keeps_instance_order", false);
     program_.anyHitForAll = reader.flag("any_hit_for_all", false);
+    program_.adaptive = reader.flag("adaptive", false);
     parseCallableList(reader);
     reader.refuseOthers();
   }
@@ -174,6 +175,15 @@ class Parser {
     const OutputKind usual = output.name == "color" ? OutputKind::color : OutputKind::linear;
     output.kind = static_cast<OutputKind>(reader.choice("kind", kinds, static_cast<std::size_t>(usual)));
     output.help = reader.text("help");
+    std::vector<std::string> pixels;
+    for (int i = 0; i <= static_cast<int>(OutputPixel::coverage); ++i)
+      pixels.emplace_back(outputPixelName(static_cast<OutputPixel>(i)));
+    output.pixel = static_cast<OutputPixel>(reader.choice("pixel", pixels, 0));
+    output.optional = reader.flag("optional", false);
+    if (program_.accumulation == Accumulation::program && (output.optional || output.pixel != OutputPixel::mean))
+      reader.fail(nullptr, "accumulation = \"program\": outputs are neither optional nor anything but mean");
+    if (program_.outputs.empty() && (output.optional || output.pixel != OutputPixel::mean))
+      reader.fail(nullptr, "the first output is the picture: it can be neither optional nor anything but mean");
     reader.refuseOthers();
     if (program_.outputs.size() == kMaxOutputs)
       reader.fail(nullptr, fmt::format("more than {} outputs are not possible", kMaxOutputs));

@@ -10,50 +10,94 @@
 namespace quintet::render {
 namespace {
 
-static_assert(shared::kMaxOutputs == 16, "program_parser.cpp refuses more outputs than this");
+static_assert(shared::kMaxOutputs == 32, "program_parser.cpp refuses more outputs than this");
 
-gpu::Buffer pixelBuffer(gpu::Context& context, VkDeviceSize bytes, const std::string& name) {
-  gpu::BufferOptions options;
-  options.size = bytes;
-  options.name = name;
-  return gpu::Buffer(context, options);
-}
+using program::Accumulation;
+using program::OutputPixel;
 
-std::unique_ptr<gpu::ComputePipeline> makeAddPipeline(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler) {
+std::unique_ptr<gpu::ComputePipeline> makePass(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler,
+                                               const std::string& name) {
   shader::Source source;
   source.stage = shader::Stage::compute;
-  source.name = "film_add.comp";
-  source.text = "#version 460\n#include <quintet/passes/film_add.glsl>\n";
+  source.name = name + ".comp";
+  source.text = fmt::format("#version 460\n#include <quintet/passes/{}.glsl>\n", name);
   const shader::Result result = compiler.compile(source);
-  if (!result.ok()) throw Error(result.diagnostics.empty() ? "film_add.comp does not compile" : result.diagnostics[0].format());
-  return std::make_unique<gpu::ComputePipeline>(context, set, result.spirv, VK_NULL_HANDLE, "film add");
+  if (!result.ok()) throw Error(result.diagnostics.empty() ? source.name + " does not compile" : result.diagnostics[0].format());
+  return std::make_unique<gpu::ComputePipeline>(context, set, result.spirv, VK_NULL_HANDLE, name);
 }
+
+void dispatch(const gpu::ComputePipeline& pass, gpu::Commands& commands, std::span<const std::byte> constants, std::uint32_t pixels) {
+  const std::uint32_t groups = (pixels + shared::kFilmGroupSize - 1) / shared::kFilmGroupSize;
+  const std::uint32_t columns = std::min(groups, shared::kFilmColumns);
+  pass.dispatch(commands, constants, columns, (groups + columns - 1) / columns);
+}
+
+bool isStored(const program::Output& output, const std::vector<std::string>& wanted) {
+  return !output.optional || std::ranges::find(wanted, output.name) != wanted.end();
+}
+
+std::uint64_t totalBytes(OutputPixel pixel, Accumulation accumulation) {
+  if (accumulation == Accumulation::program || pixel == OutputPixel::center) return sizeof(vec4);
+  return pixel == OutputPixel::mean ? 4 * sizeof(shared::FixedSum) : shared::kCoverageSlots * sizeof(shared::CoverageSlot);
+}
+
+bool keepsSquares(std::size_t output, Accumulation accumulation) { return output == 0 && accumulation == Accumulation::film; }
 
 }  // namespace
 
 Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler, Region region,
-           const std::vector<std::string>& outputs, program::Accumulation accumulation)
-    : context_(context), region_(region), outputs_(outputs), accumulation_(accumulation), add_(makeAddPipeline(context, set, compiler)) {
+           const program::Program& program, const std::vector<std::string>& wanted)
+    : context_(context), region_(region), accumulation_(program.accumulation), add_(makePass(context, set, compiler, "film_add")) {
+  const std::vector<std::string> names = program::outputNames(program);
+  for (const std::string& name : wanted)
+    if (std::ranges::find(names, name) == names.end()) throw UsageError(fmt::format("the program '{}' has no output '{}'", program.name, name));
   const VkDeviceSize pixels = VkDeviceSize{region.width} * region.height;
-  if (outputs.size() > shared::kMaxOutputs) throw UsageError(fmt::format("{} outputs: at most {} are possible", outputs.size(), shared::kMaxOutputs));
-  for (const std::string& name : outputs) {
-    batch_.push_back(pixelBuffer(context, pixels * sizeof(vec4), "film batch " + name));
-    total_.push_back(pixelBuffer(context, pixels * sizeof(vec4), "film total " + name));
+  const auto buffer = [&](std::uint64_t bytesPerPixel, const std::string& name) {
+    gpu::BufferOptions options;
+    options.size = pixels * bytesPerPixel;
+    options.name = name;
+    return gpu::Buffer(context, options);
+  };
+  for (std::size_t i = 0; i < program.outputs.size(); ++i) {
+    const program::Output& output = program.outputs[i];
+    Output& made = outputs_.emplace_back();
+    made.name = output.name;
+    made.pixel = output.pixel;
+    if (!isStored(output, wanted)) continue;
+    made.batch = buffer(sizeof(vec4), "film batch " + output.name);
+    made.total = buffer(totalBytes(output.pixel, accumulation_), "film total " + output.name);
+    if (keepsSquares(i, accumulation_)) made.squares = buffer(4 * sizeof(shared::FixedSum), "film squares " + output.name);
+    if (output.pixel == OutputPixel::coverage && !coverage_) coverage_ = makePass(context, set, compiler, "film_coverage");
   }
-  statistics_ = pixelBuffer(context, pixels * sizeof(uvec2), "film statistics");
+  statistics_ = buffer(sizeof(uvec2), "film statistics");
   clear();
 }
 
 void Film::clear() {
+  counts_ = {};
   context_.submit([&](gpu::Commands& commands) {
-    for (const gpu::Buffer& buffer : total_) commands.fill(buffer, 0);
+    for (const Output& output : outputs_) {
+      if (output.total) commands.fill(output.total, 0);
+      if (output.squares) commands.fill(output.squares, 0);
+    }
     commands.fill(statistics_, 0);
   });
 }
 
 std::uint64_t Film::bytes() const {
   std::uint64_t sum = statistics_.size();
-  for (std::size_t i = 0; i < batch_.size(); ++i) sum += batch_[i].size() + total_[i].size();
+  for (const Output& output : outputs_)
+    if (output.total) sum += output.batch.size() + output.total.size() + (output.squares ? output.squares.size() : 0);
+  return sum;
+}
+
+std::uint64_t Film::bytesPerPixel(const program::Program& program, const std::vector<std::string>& wanted) {
+  std::uint64_t sum = sizeof(uvec2);
+  for (std::size_t i = 0; i < program.outputs.size(); ++i) {
+    if (!isStored(program.outputs[i], wanted)) continue;
+    sum += sizeof(vec4) + totalBytes(program.outputs[i].pixel, program.accumulation);
+    if (keepsSquares(i, program.accumulation)) sum += 4 * sizeof(shared::FixedSum);
+  }
   return sum;
 }
 
@@ -62,51 +106,99 @@ void Film::describe(shared::Frame& frame) const {
   frame.filmWidth = region_.width;
   frame.filmHeight = region_.height;
   frame.statistics = statistics_.address();
-  for (std::size_t i = 0; i < batch_.size(); ++i) {
-    frame.outputs[i] = batch_[i].address();
-    if (accumulation_ == program::Accumulation::program) frame.previousOutputs[i] = total_[i].address();
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    if (!outputs_[i].total) continue;
+    frame.outputs[i] = outputs_[i].batch.address();
+    if (accumulation_ == Accumulation::program) frame.previousOutputs[i] = outputs_[i].total.address();
   }
 }
 
 void Film::beginBatch(gpu::Commands& commands) {
   commands.barrier(gpu::Stage::all, gpu::Stage::transfer);
-  for (const gpu::Buffer& buffer : batch_) commands.fill(buffer, 0);
+  for (const Output& output : outputs_)
+    if (output.total) commands.fill(output.batch, 0);
   commands.barrier(gpu::Stage::transfer, gpu::Stage::rayTracing);
 }
 
-void Film::endBatch(gpu::Commands& commands) {
-  if (accumulation_ == program::Accumulation::program) {
-    commands.barrier(gpu::Stage::rayTracing, gpu::Stage::transfer);
-    for (std::size_t i = 0; i < batch_.size(); ++i) commands.copy(batch_[i], total_[i], total_[i].size());
-    commands.barrier(gpu::Stage::transfer, gpu::Stage::all);
-    return;
+void Film::endBatch(gpu::Commands& commands, SampleRange samples) {
+  addBatch(commands, samples);
+  if (accumulation_ == Accumulation::film) counts_.add(samples);
+}
+
+void Film::endAdaptiveBatch(gpu::Commands& commands, SampleRange samples, const std::vector<std::uint32_t>& cellBatches) {
+  assert(accumulation_ == Accumulation::film && cellBatches.size() == 2 * std::size_t{tileCount(region_)});
+  addBatch(commands, samples);
+  counts_.cellBatches = cellBatches;
+}
+
+void Film::addBatch(gpu::Commands& commands, SampleRange samples) {
+  commands.barrier(gpu::Stage::rayTracing, gpu::Stage::all);
+  for (const Output& output : outputs_) {
+    if (!output.total) continue;
+    const std::uint32_t pixels = region_.width * region_.height;
+    if (accumulation_ == Accumulation::program) {
+      commands.copy(output.batch, output.total, output.total.size());
+    } else if (output.pixel == OutputPixel::center) {
+      if (samples.begin == 0) commands.copy(output.batch, output.total, output.total.size());
+    } else if (output.pixel == OutputPixel::coverage) {
+      const shared::FilmCoverage pass{output.total.address(), output.batch.address(), pixels, 0};
+      dispatch(*coverage_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+    } else {
+      const shared::FilmAdd pass{output.total.address(), output.squares ? output.squares.address() : 0, output.batch.address(), pixels,
+                                 1.0f / static_cast<float>(samples.end - samples.begin)};
+      dispatch(*add_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+    }
   }
-  commands.barrier(gpu::Stage::rayTracing, gpu::Stage::compute);
-  for (std::size_t i = 0; i < batch_.size(); ++i) {
-    shared::FilmAdd pass{};
-    pass.total = total_[i].address();
-    pass.batch = batch_[i].address();
-    pass.count = region_.width * region_.height;
-    // Rows of workgroups: one dimension alone would exceed the limit for large images.
-    const std::uint32_t groups = (pass.count + shared::kFilmAddGroupSize - 1) / shared::kFilmAddGroupSize;
-    const std::uint32_t columns = std::min(groups, shared::kFilmAddColumns);
-    add_->dispatch(commands, std::as_bytes(std::span(&pass, 1)), columns, (groups + columns - 1) / columns);
+  commands.barrier(gpu::Stage::all, gpu::Stage::all);
+}
+
+FilmPlane Film::plane(const Output& output) const {
+  FilmPlane plane;
+  plane.name = output.name;
+  plane.pixel = output.pixel;
+  if (!output.total) return plane;
+  const std::size_t pixels = std::size_t{region_.width} * region_.height;
+  if (accumulation_ == Accumulation::program || output.pixel == OutputPixel::center) plane.values = output.total.downloadAs<vec4>(pixels);
+  else if (output.pixel == OutputPixel::mean) plane.sums = output.total.downloadAs<shared::FixedSum>(4 * pixels);
+  else plane.coverage = output.total.downloadAs<shared::CoverageSlot>(shared::kCoverageSlots * pixels);
+  if (output.squares) plane.squares = output.squares.downloadAs<shared::FixedSum>(4 * pixels);
+  return plane;
+}
+
+FilmState Film::save() const {
+  FilmState state{region_, counts_, {}, statistics_.downloadAs<uvec2>(std::size_t{region_.width} * region_.height)};
+  for (const Output& output : outputs_) state.planes.push_back(plane(output));
+  return state;
+}
+
+FilmState Film::saveFirst() const {
+  FilmState state{region_, counts_, {}, {}};
+  state.planes.push_back(plane(outputs_[0]));
+  return state;
+}
+
+void Film::restore(const FilmState& state) {
+  assert(state.region == region_ && state.planes.size() == outputs_.size());
+  counts_ = state.counts;
+  statistics_.uploadAs(std::span<const uvec2>(state.statistics));
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    Output& output = outputs_[i];
+    const FilmPlane& plane = state.planes[i];
+    if (!plane.sums.empty()) output.total.uploadAs(std::span<const shared::FixedSum>(plane.sums));
+    if (!plane.values.empty()) output.total.uploadAs(std::span<const vec4>(plane.values));
+    if (!plane.coverage.empty()) output.total.uploadAs(std::span<const shared::CoverageSlot>(plane.coverage));
+    if (!plane.squares.empty()) output.squares.uploadAs(std::span<const shared::FixedSum>(plane.squares));
   }
 }
 
-io::Image Film::download(std::size_t output, std::uint64_t sampleCount) const {
-  assert(output < total_.size());
-  io::Image image = io::makeImage(region_.width, region_.height, 4, io::PixelType::f32, io::ColorEncoding::linear);
-  image.premultiplied = true;
-  total_[output].download(image.data);
-  if (accumulation_ == program::Accumulation::program) return image;
-  const float scale = sampleCount ? 1.0f / static_cast<float>(sampleCount) : 0.0f;
-  for (float& value : image.samples<float>()) value *= scale;
-  return image;
+io::Image Film::download(std::size_t output) const {
+  FilmState state{region_, counts_, {}, {}};
+  state.planes.push_back(plane(outputs_.at(output)));
+  return planeImage(state, 0);
 }
 
 std::vector<vec4> Film::downloadBatch(std::size_t output) const {
-  return batch_[output].downloadAs<vec4>(std::size_t{region_.width} * region_.height);
+  return outputs_.at(output).batch.downloadAs<vec4>(std::size_t{region_.width} * region_.height);
 }
 
 RayCount Film::countRays() const {

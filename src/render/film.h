@@ -1,30 +1,20 @@
-// The image while it is being made. Samples are summed in float32 in fixed batches: a batch holds samples
-// [k · kBatchSamples, (k+1) · kBatchSamples) of every pixel, added in sample order; batch sums are added to
-// the total in batch order. So the bytes do not depend on launch sizes, nor on which device renders which batch.
+// The image while it is being made. A batch holds samples [k · kBatchSamples, (k+1) · kBatchSamples) of every pixel,
+// summed in float32 in sample order by the program; batch sums are added to the totals in fixed point
+// (shared::FixedSum), which is exact whatever the order. So the bytes depend neither on launch sizes, nor on the order of
+// batches, nor on how many processes shared them. The first output keeps the squares of its batch sums, too: its variance.
 // Where the program accumulates, a batch is one frame, which then replaces the total: the frame before.
 #ifndef QUINTET_RENDER_FILM_H
 #define QUINTET_RENDER_FILM_H
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "gpu/compute.h"
-#include "io/image.h"
-#include "program/program.h"
-#include "quintet/shared/frame.h"
+#include "render/film_state.h"
 #include "shader/compiler.h"
 
 namespace quintet::render {
-
-inline constexpr std::uint32_t kBatchSamples = 4;
-
-// Part of an image in pixels from the top left corner.
-struct Region {
-  std::uint32_t x = 0;
-  std::uint32_t y = 0;
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-};
 
 struct RayCount {
   std::uint64_t rays = 0;
@@ -33,11 +23,16 @@ struct RayCount {
 
 class Film {
  public:
+  // Of the program's optional outputs only those in `wanted` are kept; unknown names: UsageError.
   Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler, Region region,
-       const std::vector<std::string>& outputs, program::Accumulation accumulation = program::Accumulation::film);
+       const program::Program& program, const std::vector<std::string>& wanted = {});
 
   const Region& region() const { return region_; }
+  const SampleCounts& counts() const { return counts_; }
+  bool stores(std::size_t output) const { return static_cast<bool>(outputs_[output].total); }
   std::uint64_t bytes() const;  // device memory
+  // Of a film per pixel, for the same program and wish.
+  static std::uint64_t bytesPerPixel(const program::Program& program, const std::vector<std::string>& wanted);
   // Fills the frame's film fields.
   void describe(shared::Frame& frame) const;
 
@@ -45,25 +40,40 @@ class Film {
   void clear();
 
   // Recorded around the launches of a batch or frame: empties the batch sums; adds them to the total, or puts them
-  // in its place.
+  // in its place. `cells`: the cells that took part, of an adaptive batch (SampleCounts::cellBatches after it).
   void beginBatch(gpu::Commands& commands);
-  void endBatch(gpu::Commands& commands);
+  void endBatch(gpu::Commands& commands, SampleRange samples);
+  void endAdaptiveBatch(gpu::Commands& commands, SampleRange samples, const std::vector<std::uint32_t>& cellBatches);
 
-  // RGBA linear floats, premultiplied: total / sampleCount; the last frame as it is where the program accumulates. Blocks.
-  io::Image download(std::size_t output, std::uint64_t sampleCount) const;
+  // planeImage of what is there now. Blocks.
+  io::Image download(std::size_t output) const;
   // Sums of the batch that ended last, RGBA per pixel, rows from the top. Blocks.
   std::vector<vec4> downloadBatch(std::size_t output) const;
   RayCount countRays() const;  // blocks
 
+  // All of it, or only the first output (what an error estimate needs). Blocks.
+  FilmState save() const;
+  FilmState saveFirst() const;
+  // Goes on from a state of the same program, outputs and region.
+  void restore(const FilmState& state);
+
  private:
+  struct Output {
+    std::string name;
+    program::OutputPixel pixel = program::OutputPixel::mean;
+    gpu::Buffer batch, total, squares;  // total empty: not stored
+  };
+  void addBatch(gpu::Commands& commands, SampleRange samples);
+  FilmPlane plane(const Output& output) const;
+
   gpu::Context& context_;
   Region region_;
-  std::vector<std::string> outputs_;
   program::Accumulation accumulation_;
-  std::vector<gpu::Buffer> batch_;
-  std::vector<gpu::Buffer> total_;
+  std::vector<Output> outputs_;
   gpu::Buffer statistics_;
+  SampleCounts counts_;
   std::unique_ptr<gpu::ComputePipeline> add_;
+  std::unique_ptr<gpu::ComputePipeline> coverage_;
 };
 
 }  // namespace quintet::render

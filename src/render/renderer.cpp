@@ -6,6 +6,7 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "gpu/timer.h"
 #include "io/codec.h"
@@ -18,6 +19,7 @@ namespace quintet::render {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using Record = std::function<void(gpu::Commands&)>;
 
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -61,6 +63,7 @@ struct Renderer::Impl {
   std::optional<rt::ShaderBindingTable> table;
   std::unique_ptr<Film> film;
   gpu::Buffer frameBuffer;
+  gpu::Buffer tileBuffer;  // of the last adaptive batch
   std::optional<ParameterTextures> parameterTextures;
   gpu::Buffer parameterBuffer;
   gpu::Timer timer;
@@ -70,6 +73,7 @@ struct Renderer::Impl {
   std::optional<InstrumentBuffer> instrument;
   program::CompiledProgram instrumented;  // file names of stages, for notes
   double pixelSamplesPerSecond = 0;  // measured; 0: unknown yet
+  std::uint64_t nextBatch = 0;
 
   Impl(DeviceScene& deviceScene, const program::Program& program, const shader::Compiler& compiler, const gpu::PipelineCache* cache,
        const RenderSettings& renderSettings)
@@ -77,7 +81,7 @@ struct Renderer::Impl {
     const Region region = checkedRegion(settings);
     if (settings.timeoutSeconds <= 0) settings.timeoutSeconds = context.info().quirks.software ? 600 : 60;
     link(compiler, cache);
-    film = std::make_unique<Film>(context, scene.set(), compiler, region, program::outputNames(program), program.accumulation);
+    film = std::make_unique<Film>(context, scene.set(), compiler, region, program, settings.outputs);
 
     shared::Frame frame = scene.frameTemplate();
     frame.camera = makeCamera(settings.camera, settings.width, settings.height);
@@ -104,6 +108,7 @@ struct Renderer::Impl {
   void link(const shader::Compiler& compiler, const gpu::PipelineCache* cache) {
     std::vector<std::pair<std::string, std::string>> defines = settings.defines;
     defines.insert(defines.end(), scene.defines().begin(), scene.defines().end());
+    for (const std::string& output : settings.outputs) defines.emplace_back("QUINTET_OUTPUT_" + output, "1");
     const program::CompiledProgram compiled = program::compile(description, compiler, defines, settings.instrument);
     if (!compiled.ok) throw ProgramError(compiled.diagnostics);
     const program::CheckResult checked = program::check(description, compiled, &scene.facts(), program::deviceLimits(context.info()), true);
@@ -120,42 +125,55 @@ struct Renderer::Impl {
 
   // Rows of the next launch, so that `samples` samples of each pixel take about launchSeconds. What is
   // chosen changes nothing in the image.
-  std::uint32_t launchRows(std::uint32_t rowsLeft, std::uint32_t samples) const {
-    const double width = film->region().width;
+  std::uint32_t launchRows(double width, std::uint32_t rowsLeft, std::uint32_t samples) const {
     const auto limit = static_cast<double>(context.info().limits.maxLaunchInvocations);
     double rows = pixelSamplesPerSecond > 0 ? settings.launchSeconds * pixelSamplesPerSecond / (width * samples) : 16384.0 / width;
     rows = std::clamp(rows, 1.0, std::max(1.0, limit / width));
     return std::min(rowsLeft, static_cast<std::uint32_t>(rows));
   }
 
-  // Launches a strip with `count` samples from `first` on and waits.
-  void launch(std::uint32_t row, std::uint32_t rows, std::uint32_t first, std::uint32_t count, bool begins, bool ends) {
-    const auto start = Clock::now();
+  // What a launch covers: rows of the region, or tiles, one a row.
+  struct Target {
+    std::uint32_t width = 0;   // invocations in a row
+    std::uint32_t height = 0;  // rows
+    uvec2 offset{0};           // of row 0
+    shared::Address tiles = 0;
+  };
+
+  Target wholeRegion() const {
     const Region& region = film->region();
+    return {region.width, region.height, {region.x, region.y}, 0};
+  }
+
+  // Launches a strip with `count` samples from `first` on and waits.
+  void launch(const Target& target, std::uint32_t row, std::uint32_t rows, std::uint32_t first, std::uint32_t count, const Record& before,
+              const Record& after) {
+    const auto start = Clock::now();
     const std::uint64_t value = context.submit([&](gpu::Commands& commands) {
-      if (begins) film->beginBatch(commands);
+      if (before) before(commands);
       timer.reset(commands);
       timer.mark(commands, 0);
       for (std::uint32_t done = 0; done < count;) {
         shared::Launch constants{};
         constants.frame = frameBuffer.address();
         constants.parameters = parameterBuffer.address();
-        constants.offset = {region.x, region.y + row};
+        constants.offset = target.offset + uvec2(0, row);
         constants.firstSample = first + done;
         constants.sampleCount = std::min(count - done, description.samplesPerLaunch);
+        constants.tiles = target.tiles;
         if (done > 0) commands.barrier(gpu::Stage::rayTracing, gpu::Stage::rayTracing);
-        rt::trace(commands, linked->pipeline(), *table, std::as_bytes(std::span(&constants, 1)), region.width, rows);
+        rt::trace(commands, linked->pipeline(), *table, std::as_bytes(std::span(&constants, 1)), target.width, rows);
         done += constants.sampleCount;
       }
       timer.mark(commands, 1);
-      if (ends) film->endBatch(commands);
+      if (after) after(commands);
     });
     context.wait(value, settings.timeoutSeconds);
     const double wall = secondsSince(start);
     if (statistics.firstLaunchSeconds == 0) statistics.firstLaunchSeconds = wall;
     const double device = timer.seconds(0, 1);
     statistics.deviceSeconds += device;
-    const double rate = static_cast<double>(region.width) * rows * count / std::max(1e-6, device > 0 ? device : wall);
+    const double rate = static_cast<double>(target.width) * rows * count / std::max(1e-6, device > 0 ? device : wall);
     // Strips differ in cost: follow slowly upwards, at once downwards.
     pixelSamplesPerSecond = pixelSamplesPerSecond > 0 ? std::min(rate, 2.0 * pixelSamplesPerSecond) : 0.25 * rate;
   }
@@ -176,8 +194,10 @@ struct Renderer::Impl {
     const auto start = Clock::now();
     const std::uint32_t height = film->region().height;
     for (std::uint32_t row = 0; row < height;) {
-      const std::uint32_t rows = launchRows(height - row, 1);
-      launch(row, rows, index, 1, row == 0, row + rows == height);
+      const Target target = wholeRegion();
+      const std::uint32_t rows = launchRows(target.width, height - row, 1);
+      const Record end = [&](gpu::Commands& commands) { film->endBatch(commands, {index, index + 1}); };
+      launch(target, row, rows, index, 1, row == 0 ? begin() : Record(), row + rows == height ? end : Record());
       row += rows;
       if (progress && !progress(static_cast<double>(row) / height) && row < height) return false;
     }
@@ -188,7 +208,7 @@ struct Renderer::Impl {
   }
 
   io::Image image(std::size_t output) const {
-    io::Image result = film->download(output, statistics.samples);
+    io::Image result = film->download(output);
     if (description.outputs[output].kind == program::OutputKind::display) decodeDisplay(result, settings.transparent);
     return result;
   }
@@ -196,25 +216,69 @@ struct Renderer::Impl {
   bool renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) {
     if (accumulates()) return renderFrames(sampleCount, progress);
     assert(sampleCount >= 1 && sampleCount <= kBatchSamples);
+    const SampleRange samples = batchSamples(nextBatch, sampleCount);
+    const Record end = [&](gpu::Commands& commands) { film->endBatch(commands, samples); };
+    if (!renderSamples(wholeRegion(), samples, end, progress)) return false;
+    ++nextBatch;
+    return true;
+  }
+
+  static SampleRange batchSamples(std::uint64_t batch, std::uint32_t count) {
+    const auto first = static_cast<std::uint32_t>(batch * kBatchSamples);
+    return {first, first + count};
+  }
+
+  Record begin() {
+    return [this](gpu::Commands& commands) { film->beginBatch(commands); };
+  }
+
+  // A batch in strips.
+  bool renderSamples(const Target& target, SampleRange samples, const Record& end, const BatchProgress& progress) {
     const auto start = Clock::now();
-    const std::uint32_t height = film->region().height;
-    const auto first = static_cast<std::uint32_t>(statistics.batches * kBatchSamples);
-    for (std::uint32_t row = 0; row < height;) {
+    const std::uint32_t count = samples.end - samples.begin;
+    for (std::uint32_t row = 0; row < target.height;) {
       // Where even one row is too long, its samples are launched one by one: same sums, same order.
-      const std::uint32_t rows = launchRows(height - row, sampleCount);
-      const double predicted = static_cast<double>(rows) * film->region().width * sampleCount;
+      const std::uint32_t rows = launchRows(target.width, target.height - row, count);
+      const double predicted = static_cast<double>(rows) * target.width * count;
       // So it is as long as the rate is not known: a shader that is slow, or never ends, is found out soon.
       const bool whole = predicted <= 2.0 * settings.launchSeconds * pixelSamplesPerSecond;
-      const std::uint32_t step = whole ? sampleCount : 1;
-      for (std::uint32_t s = 0; s < sampleCount; s += step)
-        launch(row, rows, first + s, std::min(step, sampleCount - s), row == 0 && s == 0, row + rows == height && s + step >= sampleCount);
+      const std::uint32_t step = whole ? count : 1;
+      for (std::uint32_t s = 0; s < count; s += step) {
+        const bool first = row == 0 && s == 0, last = row + rows == target.height && s + step >= count;
+        launch(target, row, rows, samples.begin + s, std::min(step, count - s), first ? begin() : Record(), last ? end : Record());
+      }
       row += rows;
-      if (progress && !progress(static_cast<double>(row) / height)) return false;
+      if (progress && !progress(static_cast<double>(row) / target.height)) return false;
     }
     statistics.batches++;
-    statistics.samples += sampleCount;
+    statistics.samples = film->counts().samples();
     statistics.renderSeconds += secondsSince(start);
     return true;
+  }
+
+  bool renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress) {
+    assert(description.adaptive && limits.size() == 2 * std::size_t{tileCount(film->region())});
+    std::vector<std::uint32_t> counts = film->counts().cellBatches;
+    if (counts.empty()) counts.assign(limits.size(), static_cast<std::uint32_t>(film->counts().batches()));
+    std::uint32_t batch = std::numeric_limits<std::uint32_t>::max();
+    for (std::size_t c = 0; c < limits.size(); ++c)
+      if (counts[c] < limits[c]) batch = std::min(batch, counts[c]);
+    std::vector<shared::FilmTile> tiles;
+    const std::uint32_t columns = tileColumns(film->region().width);
+    for (std::uint32_t t = 0; t < limits.size() / 2; ++t) {
+      shared::FilmTile tile{t % columns * shared::kTileSize, t / columns * shared::kTileSize, {}};
+      for (std::uint32_t c = 0; c < 2; ++c) {
+        tile.drawn[c] = counts[2 * t + c] == batch && batch < limits[2 * t + c] ? 1 : 0;
+        counts[2 * t + c] += tile.drawn[c];
+      }
+      if (tile.drawn[0] + tile.drawn[1] > 0) tiles.push_back(tile);
+    }
+    assert(!tiles.empty());
+    tileBuffer = gpu::makeBufferOf(context, tiles, 0, "film tiles");
+    const Target target{shared::kTileSize * shared::kTileSize, static_cast<std::uint32_t>(tiles.size()), {0, 0}, tileBuffer.address()};
+    const SampleRange samples = batchSamples(batch, kBatchSamples);
+    const Record end = [&](gpu::Commands& commands) { film->endAdaptiveBatch(commands, samples, counts); };
+    return renderSamples(target, samples, end, progress);
   }
 
   std::vector<shader::Diagnostic> notes() const {
@@ -228,7 +292,8 @@ struct Renderer::Impl {
   void addBadOutputs(std::vector<shader::Diagnostic>& result) const {
     const std::string file = description.path(sourceFile(description, description.rayGeneration));
     for (std::size_t output = 0; output < description.outputs.size(); ++output) {
-      const io::Image image = film->download(output, std::max<std::uint64_t>(1, statistics.samples));
+      if (!film->stores(output) || description.outputs[output].pixel == program::OutputPixel::coverage) continue;
+      const io::Image image = film->download(output);
       const std::span<const float> values = image.samples<float>();
       const auto bad = std::ranges::find_if_not(values, [](float v) { return std::isfinite(v); });
       if (bad == values.end()) continue;
@@ -253,6 +318,16 @@ void Renderer::restart() {
   impl_->film->clear();
   impl_->statistics.samples = 0;
   impl_->statistics.batches = 0;
+  impl_->nextBatch = 0;
+}
+bool Renderer::renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress) { return impl_->renderCells(limits, progress); }
+void Renderer::startAt(std::uint64_t batch) { impl_->nextBatch = batch; }
+FilmState Renderer::saveFilm() const { return impl_->film->save(); }
+void Renderer::restoreFilm(const FilmState& state) {
+  impl_->film->restore(state);
+  impl_->statistics.samples = state.counts.samples();
+  impl_->statistics.batches = state.counts.batches();
+  impl_->nextBatch = state.counts.ranges.empty() ? 0 : (state.counts.ranges.back().end + kBatchSamples - 1) / kBatchSamples;
 }
 
 const Film& Renderer::film() const { return *impl_->film; }

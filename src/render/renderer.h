@@ -21,6 +21,7 @@ struct RenderSettings {
   std::uint32_t seed = 0;
   bool transparent = false;     // background: alpha 0 instead of the environment
   program::ParameterValues parameters{{}};
+  std::vector<std::string> outputs;  // of the program's optional ones, those to make
   std::vector<std::pair<std::string, std::string>> defines;  // for all shaders of the program
   const gpu::Buffer* rayRecords = nullptr;  // shared::RayRecord, rayRecordCapacity per pixel: for benchmarks
   std::uint32_t rayRecordCapacity = 0;
@@ -70,6 +71,17 @@ class Renderer {
   // For programs that accumulate: the frame with this index, frameID for the program. False: given up, the picture
   // remains the frame before.
   bool renderFrame(std::uint32_t index, const BatchProgress& progress = {});
+
+  // Adaptive sampling, for programs that allow it (Program::adaptive): the next batch of those cells
+  // (SampleCounts::cellBatches) that have fewer batches than `limits` says and, of them, the fewest. False: given up.
+  // Asserts that some cell is to be rendered.
+  bool renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress = {});
+
+  // The batch that renderBatch() renders next, instead of the one after the last: for parts of a rendering.
+  void startAt(std::uint64_t batch);
+  // The film as it is, and to go on from one of the same program, outputs and region. Block.
+  FilmState saveFilm() const;
+  void restoreFilm(const FilmState& state);
 
   // Forgets all samples or frames: the next one is the first. For the next frame of an animation.
   void restart();

@@ -9,7 +9,7 @@
 #define CsgTreeArray gsnCsgTreeArray_
 #define CsgTreeData gsnCsgTreeData_
 #define EnvironmentData gsnEnvironmentData_
-#define FilmAdd gsnFilmAdd_
+#define FilmTile gsnFilmTile_
 #define FloatArray gsnFloatArray_
 #define Frame gsnFrame_
 #define FrameReference gsnFrameReference_

@@ -11,7 +11,7 @@
 #undef CsgTreeArray
 #undef CsgTreeData
 #undef EnvironmentData
-#undef FilmAdd
+#undef FilmTile
 #undef FloatArray
 #undef Frame
 #undef FrameReference

@@ -1,12 +1,23 @@
-// total += batch, one invocation per pixel. Compute main; see src/render/film.h for why the order matters.
+// total += batch, squares += batch² / samples; one invocation per pixel. Compute main; see src/render/film.h.
 #extension GL_EXT_scalar_block_layout : require
-#include <quintet/shared/frame.h>
+#include <quintet/passes/fixed_sum.glsl>
 
-layout(local_size_x = kFilmAddGroupSize) in;
+layout(local_size_x = kFilmGroupSize) in;
 layout(push_constant, scalar) uniform FilmAddBlock { FilmAdd pass; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PixelArray { vec4 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer PixelArray { vec4 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FixedSumArray { FixedSum at[]; };
+
+void add(Address sums, uint index, float value) {
+  FixedSumArray(sums).at[index] = addFixed(FixedSumArray(sums).at[index], fixedFromFloat(value));
+}
 
 void main() {
-  const uint i = gl_GlobalInvocationID.y * (kFilmAddColumns * kFilmAddGroupSize) + gl_GlobalInvocationID.x;
-  if (i < pass.count) PixelArray(pass.total).at[i] += PixelArray(pass.batch).at[i];
+  const uint i = gl_GlobalInvocationID.y * (kFilmColumns * kFilmGroupSize) + gl_GlobalInvocationID.x;
+  if (i >= pass.count) return;
+  const vec4 batch = PixelArray(pass.batch).at[i];
+  if (batch == vec4(0.0)) return;  // as adaptive sampling leaves it
+  for (uint c = 0u; c < 4u; ++c) {
+    add(pass.total, 4u * i + c, batch[c]);
+    if (pass.squares != 0ul) add(pass.squares, 4u * i + c, batch[c] * batch[c] * pass.inverseSamples);
+  }
 }

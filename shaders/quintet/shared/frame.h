@@ -55,7 +55,9 @@ QT_SHARED_SIZE(CameraData, 72);
 // Frame::flags
 QT_CONSTANT kFrameTransparent = 1u;  // camera rays that leave the scene give 0 with alpha 0
 
-QT_CONSTANT kMaxOutputs = 16u;
+QT_CONSTANT kMaxOutputs = 32u;
+// Samples of a batch: every pixel's samples [k · kBatchSamples, (k+1) · kBatchSamples).
+QT_CONSTANT kBatchSamples = 4u;
 // RayRecord::kind
 QT_CONSTANT kRecordEnd = 0u;      // no further ray of this pixel
 QT_CONSTANT kRecordClosest = 1u;
@@ -83,7 +85,9 @@ struct Frame {
   Address statistics;   // uvec2[filmWidth · filmHeight]: rays traced, samples dropped; 0: do not count
   Address rayRecords;   // RayRecord[filmWidth · filmHeight · rayRecordCapacity], for benchmarks; else 0
   Address instrument;   // Instrument and its pixels (shared/instrument.h); 0: not instrumented
-  Address outputs[kMaxOutputs];  // vec4[filmWidth · filmHeight]: sums of this batch, rows top to bottom
+  // vec4[filmWidth · filmHeight], rows top to bottom: sums of this batch, or as the output's rule says
+  // (program::OutputPixel); 0: an optional output that nobody asked for.
+  Address outputs[kMaxOutputs];
   Address previousOutputs[kMaxOutputs];  // vec4[…]: the frame before, where the program accumulates; 0: there is none
   EnvironmentData environment;
   CameraData camera;
@@ -101,18 +105,17 @@ struct Frame {
   uint frameCount;      // frames of this run, where the program accumulates; 0: it has no end
   uint padding;
 };
-QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 16 + 40 + 72 + 56);
+QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56);
 
-// Push constants of the pass that adds a batch to the total; its workgroups form rows of kFilmAddColumns.
-QT_CONSTANT kFilmAddGroupSize = 64;
-QT_CONSTANT kFilmAddColumns = 32768;
-struct FilmAdd {
-  Address total;  // vec4[count]
-  Address batch;  // vec4[count]
-  uint count;
-  uint padding;
+// Adaptive sampling: the image is cut in squares of kTileSize pixels from the film's first one on. Each has two cells, the
+// pixels with an even and with an odd x + y, which get samples of their own number.
+QT_CONSTANT kTileSize = 32u;
+struct FilmTile {
+  uint x;            // of its first pixel, relative to the film
+  uint y;
+  uint drawn[2];     // 1: the cell takes part in this batch
 };
-QT_SHARED_SIZE(FilmAdd, 24);
+QT_SHARED_SIZE(FilmTile, 16);
 
 // Push constants of every ray tracing program.
 struct Launch {
@@ -121,8 +124,9 @@ struct Launch {
   uvec2 offset;         // pixel of launch invocation (0,0)
   uint firstSample;     // index of the first sample of this launch; of the frame, where the program accumulates
   uint sampleCount;     // samples to take per pixel in this launch
+  Address tiles;        // FilmTile[]: the launch covers these, one a row; 0: a rectangle of pixels
 };
-QT_SHARED_SIZE(Launch, 32);
+QT_SHARED_SIZE(Launch, 40);
 
 QT_SHARED_END
 

@@ -90,11 +90,11 @@ TEST(LectureFrames, AFrameHasTheIndexThatIsAskedFor) {
   render::Renderer renderer = r.make(rayGeneration("gsnSetPixel(gsnGetPreviousPixel() * 100.0 + float(frameID));"));
   renderer.renderFrame(7);
   renderer.renderFrame(3);
-  EXPECT_EQ(renderer.film().download(0, 1).pixel<float>(0, 0)[0], 703.0f);
+  EXPECT_EQ(renderer.film().download(0).pixel<float>(0, 0)[0], 703.0f);
   // renderBatch draws the next frames, however many.
   renderer.renderBatch(2);
   EXPECT_EQ(renderer.statistics().samples, 4u);
-  EXPECT_EQ(renderer.film().download(0, 1).pixel<float>(0, 0)[0], 7030203.0f);
+  EXPECT_EQ(renderer.film().download(0).pixel<float>(0, 0)[0], 7030203.0f);
 }
 
 TEST(LectureFrames, AFrameThatIsGivenUpLeavesTheOneBefore) {
@@ -104,9 +104,9 @@ TEST(LectureFrames, AFrameThatIsGivenUpLeavesTheOneBefore) {
   EXPECT_TRUE(renderer.renderFrame(0));
   EXPECT_FALSE(renderer.renderFrame(1, [](double done) { return done < 0.5; }));
   EXPECT_EQ(renderer.statistics().samples, 1u);
-  EXPECT_EQ(renderer.film().download(0, 1).pixel<float>(0, 0)[0], 1.0f);
+  EXPECT_EQ(renderer.film().download(0).pixel<float>(0, 0)[0], 1.0f);
   EXPECT_TRUE(renderer.renderFrame(1));
-  EXPECT_EQ(renderer.film().download(0, 1).pixel<float>(0, 7)[0], 2.0f);
+  EXPECT_EQ(renderer.film().download(0).pixel<float>(0, 7)[0], 2.0f);
 }
 
 // The byte in the picture file is the value times 255: no tone curve, no second sRGB curve.

@@ -30,7 +30,7 @@ LecturePicture runLecture(const program::Program& program, const scene::Scene& s
   for (const std::string& assignment : options.set) settings.parameters.setAssignment(assignment);
   render::Renderer renderer(device, program, testCompiler(), nullptr, settings);
   for (std::uint32_t i = 0; i < options.frames; ++i) EXPECT_TRUE(renderer.renderFrame(i));
-  const io::Image image = renderer.film().download(0, renderer.statistics().samples);
+  const io::Image image = renderer.film().download(0);
   picture.width = image.width;
   picture.height = image.height;
   const std::span<const float> values = image.samples<float>();

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "quintet/shared/frame.h"
+#include "quintet/shared/film.h"
 #include "quintet/shared/instrument.h"
 
 namespace quintet::test {
@@ -34,7 +34,7 @@ void appendWords(Words& words, const T (&values)[n]) {
 
 // GLSL of the same, in both directions; functions for a struct S are made from its list by glslOf.
 inline constexpr const char* kGlslWords = R"(
-uint words[128];
+uint words[256];
 uint wordCount = 0u;
 void put(uint v) { words[wordCount++] = v; }
 void put(float v) { put(floatBitsToUint(v)); }
@@ -44,6 +44,8 @@ void put(vec2 v) { put(v.x); put(v.y); }
 void put(vec3 v) { put(v.xy); put(v.z); }
 void put(vec4 v) { put(v.xyz); put(v.w); }
 void put(vec4 v[3]) { for (int i = 0; i < 3; ++i) put(v[i]); }
+void put(uint v[4]) { for (int i = 0; i < 4; ++i) put(v[i]); }
+void put(uint v[2]) { for (int i = 0; i < 2; ++i) put(v[i]); }
 void put(uint v[8]) { for (int i = 0; i < 8; ++i) put(v[i]); }
 void put(uint64_t v[2]) { for (int i = 0; i < 2; ++i) put(v[i]); }
 void put(uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) put(v[i]); }
@@ -56,6 +58,8 @@ void take(out vec2 v) { take(v.x); take(v.y); }
 void take(out vec3 v) { take(v.x); take(v.y); take(v.z); }
 void take(out vec4 v) { take(v.x); take(v.y); take(v.z); take(v.w); }
 void take(out vec4 v[3]) { for (int i = 0; i < 3; ++i) take(v[i]); }
+void take(out uint v[4]) { for (int i = 0; i < 4; ++i) take(v[i]); }
+void take(out uint v[2]) { for (int i = 0; i < 2; ++i) take(v[i]); }
 void take(out uint v[8]) { for (int i = 0; i < 8; ++i) take(v[i]); }
 void take(out uint64_t v[2]) { for (int i = 0; i < 2; ++i) take(v[i]); }
 void take(out uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) take(v[i]); }
@@ -112,8 +116,12 @@ GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlo
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, depthLimit, recordPairs);
-GPU_FIELDS(FilmAdd, total, batch, count, padding);
-GPU_FIELDS(Launch, frame, parameters, offset, firstSample, sampleCount);
+GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
+GPU_FIELDS(FilmCoverage, total, batch, count, padding);
+GPU_FIELDS(FixedSum, word);
+GPU_FIELDS(CoverageSlot, id, samples);
+GPU_FIELDS(FilmTile, x, y, drawn);
+GPU_FIELDS(Launch, frame, parameters, offset, firstSample, sampleCount, tiles);
 
 #undef GPU_FIELDS
 

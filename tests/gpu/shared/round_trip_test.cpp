@@ -9,6 +9,7 @@
 #include "fields.h"
 #include "harness.h"
 #include "quintet/shared/albedo.h"
+#include "quintet/shared/film.h"
 #include "shader/embedded_library.h"
 
 namespace quintet::test {
@@ -27,16 +28,16 @@ T filled() {
 }
 
 struct AllWords {
-  std::uint32_t at[128];
+  std::uint32_t at[256];
 };
 
 // The body's start: all structs, and put and take for T and the structs in it.
 template <class T>
 std::string glslFor() {
-  return std::string("#include <quintet/shared/frame.h>\n#include <quintet/shared/instrument.h>\n") + kGlslWords + Fields<shared::TextureData>::glsl() +
+  return std::string("#include <quintet/shared/film.h>\n#include <quintet/shared/instrument.h>\n") + kGlslWords + Fields<shared::TextureData>::glsl() +
          Fields<shared::EnvironmentData>::glsl() + Fields<shared::CameraData>::glsl() +
          (std::set<std::string>{"TextureData", "EnvironmentData", "CameraData"}.contains(Fields<T>::kName) ? "" : Fields<T>::glsl()) +
-         "struct AllWords { uint at[128]; };\n";
+         "struct AllWords { uint at[256]; };\n";
 }
 
 template <class T>
@@ -44,7 +45,7 @@ class SharedStruct : public testing::Test {};
 
 using SharedStructs =
     testing::Types<shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::EnvironmentData,
-                   shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::Frame, shared::FilmAdd, shared::Launch,
+                   shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::FilmTile, shared::FixedSum, shared::CoverageSlot, shared::Launch,
                    shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel>;
 
 struct StructNames {
@@ -102,15 +103,15 @@ TEST(SharedHeaders, HaveNoUntestedStruct) {
 TEST(SharedHeaders, AgreeOnConstants) {
   const auto seen = runCompute<std::array<std::uint32_t, 8>>(R"(
     #include <quintet/shared/albedo.h>
-    #include <quintet/shared/frame.h>
+    #include <quintet/shared/film.h>
     struct Out { uint at[8]; };
     Out run(uint index) {
-      return Out(uint[8](kAlbedoAverageOffset, kGlassOffset, kAlbedoFloatCount, kNoTexture, kNoLight, kMaxOutputs, kFilmAddColumns,
+      return Out(uint[8](kAlbedoAverageOffset, kGlassOffset, kAlbedoFloatCount, kNoTexture, kNoLight, kMaxOutputs, kFilmColumns,
                          kMaterialTextureOffset));
     }
   )", 1)[0];
   EXPECT_EQ(seen, (std::array<std::uint32_t, 8>{shared::kAlbedoAverageOffset, shared::kGlassOffset, shared::kAlbedoFloatCount,
-                                                shared::kNoTexture, shared::kNoLight, shared::kMaxOutputs, shared::kFilmAddColumns,
+                                                shared::kNoTexture, shared::kNoLight, shared::kMaxOutputs, shared::kFilmColumns,
                                                 shared::kMaterialTextureOffset}));
 }
 

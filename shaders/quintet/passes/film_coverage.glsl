@@ -1,0 +1,31 @@
+// Counts the ids of a batch's samples; one invocation per pixel. Compute main.
+#extension GL_EXT_scalar_block_layout : require
+#include <quintet/shared/film.h>
+
+layout(local_size_x = kFilmGroupSize) in;
+layout(push_constant, scalar) uniform FilmCoverageBlock { FilmCoverage pass; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer IdArray { uint at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SlotArray { CoverageSlot at[]; };
+
+// Keeps the slots sorted by id, empty ones last. Of more ids than slots the smallest stay: that rule alone
+// gives the same slots whatever the order of the samples and the number of parts.
+void count(SlotArray slots, uint first, uint id) {
+  uint slot = 0u;
+  while (slot < kCoverageSlots && slots.at[first + slot].samples > 0u && slots.at[first + slot].id < id) ++slot;
+  if (slot == kCoverageSlots) return;
+  if (slots.at[first + slot].samples > 0u && slots.at[first + slot].id == id) {
+    slots.at[first + slot].samples += 1u;
+    return;
+  }
+  for (uint i = kCoverageSlots - 1u; i > slot; --i) slots.at[first + i] = slots.at[first + i - 1u];
+  slots.at[first + slot] = CoverageSlot(id, 1u);
+}
+
+void main() {
+  const uint i = gl_GlobalInvocationID.y * (kFilmColumns * kFilmGroupSize) + gl_GlobalInvocationID.x;
+  if (i >= pass.count) return;
+  for (uint s = 0u; s < kBatchSamples; ++s) {
+    const uint id = IdArray(pass.batch).at[kBatchSamples * i + s];
+    if (id != 0u) count(SlotArray(pass.total), kCoverageSlots * i, id);
+  }
+}

@@ -1,0 +1,54 @@
+// Arithmetic of FixedSum (quintet/shared/film.h); src/render/fixed_sum.h is the same on the host.
+#ifndef QUINTET_PASSES_FIXED_SUM_GLSL
+#define QUINTET_PASSES_FIXED_SUM_GLSL
+
+#include "../shared/film.h"
+
+// To the nearest unit of 2^-64; beyond ±2^62: that. Not finite: the value that says so.
+FixedSum fixedFromFloat(float value) {
+  const uint bits = floatBitsToUint(value);
+  const uint exponent = (bits >> 23) & 0xFFu;
+  FixedSum sum = FixedSum(uint[4](0u, 0u, 0u, 0u));
+  if (exponent == 255u) {
+    sum.word[3] = kNotFiniteWord;
+    return sum;
+  }
+  uint mantissa = (bits & 0x7FFFFFu) | 0x800000u;
+  // value = mantissa · 2^(exponent - 150), so the unit's number is mantissa · 2^shift.
+  int shift = int(exponent) - 86;
+  if (shift > 102) {
+    mantissa = 0x800000u;
+    shift = 103;
+  }
+  if (shift < 0) {
+    if (shift < -24) return sum;
+    mantissa = (mantissa + (1u << uint(-shift - 1))) >> uint(-shift);
+    shift = 0;
+  }
+  const uint first = uint(shift) >> 5;
+  const uint offset = uint(shift) & 31u;
+  const uint low = mantissa << offset;
+  const uint high = offset > 8u ? mantissa >> (32u - offset) : 0u;
+  for (uint i = 0u; i < 4u; ++i) sum.word[i] = i == first ? low : i == first + 1u ? high : 0u;
+  if ((bits >> 31) == 0u) return sum;
+  uint carry = 1u;
+  for (uint i = 0u; i < 4u; ++i) sum.word[i] = uaddCarry(~sum.word[i], carry, carry);
+  return sum;
+}
+
+bool isNotFinite(FixedSum sum) { return sum.word[3] == kNotFiniteWord && (sum.word[0] | sum.word[1] | sum.word[2]) == 0u; }
+
+FixedSum addFixed(FixedSum a, FixedSum b) {
+  if (isNotFinite(a)) return a;
+  if (isNotFinite(b)) return b;
+  uint carry = 0u;
+  for (uint i = 0u; i < 4u; ++i) {
+    uint first, second;
+    a.word[i] = uaddCarry(a.word[i], carry, first);
+    a.word[i] = uaddCarry(a.word[i], b.word[i], second);
+    carry = first + second;
+  }
+  return a;
+}
+
+#endif

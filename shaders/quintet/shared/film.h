@@ -1,0 +1,50 @@
+// The film's memory and the push constants of its passes (src/render/film.h says what they are for).
+#ifndef QUINTET_SHARED_FILM_H
+#define QUINTET_SHARED_FILM_H
+
+#include "frame.h"
+
+QT_SHARED_BEGIN
+
+// A sum that does not depend on the order of its terms: a signed integer of 128 bits in units of 2^-64, two's complement,
+// lowest word first. Its most negative value stands for "a term was not finite" and stays.
+struct FixedSum {
+  uint word[4];
+};
+QT_SHARED_SIZE(FixedSum, 16);
+QT_CONSTANT kNotFiniteWord = 0x80000000u;  // word[3] of that value
+
+// Workgroups of a film pass form rows of kFilmColumns: one dimension alone would exceed the limit for large images.
+QT_CONSTANT kFilmGroupSize = 64;
+QT_CONSTANT kFilmColumns = 32768;
+
+// Push constants of the pass that adds the sums of a batch to the totals.
+struct FilmAdd {
+  Address total;         // FixedSum[4 · count]: += batch
+  Address squares;       // FixedSum[4 · count]: += batch² · inverseSamples; 0: not kept
+  Address batch;         // vec4[count]
+  uint count;            // pixels
+  float inverseSamples;  // 1 / samples of the batch
+};
+QT_SHARED_SIZE(FilmAdd, 32);
+
+// One id and how many samples met it. 0 samples: an empty slot.
+struct CoverageSlot {
+  uint id;
+  uint samples;
+};
+QT_SHARED_SIZE(CoverageSlot, 8);
+QT_CONSTANT kCoverageSlots = 12u;  // per pixel, sorted by id; of more ids the smallest stay
+
+// Push constants of the pass that counts the ids of a batch.
+struct FilmCoverage {
+  Address total;     // CoverageSlot[kCoverageSlots · count]
+  Address batch;     // uint[kBatchSamples · count]; 0: nothing
+  uint count;        // pixels
+  uint padding;
+};
+QT_SHARED_SIZE(FilmCoverage, 24);
+
+QT_SHARED_END
+
+#endif

@@ -1,0 +1,211 @@
+// The film on the device: sums as the host makes them, optional outputs, centres, ids, cells of their own number of samples,
+// and parts that are the whole.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "../program/run_program.h"
+#include "harness.h"
+#include "render/fixed_sum.h"
+
+namespace quintet::test {
+namespace {
+
+TEST(FilmPasses, SumAsTheHostDoes) {
+  struct In {
+    float a, b;
+  };
+  std::mt19937 random(5);
+  std::vector<In> inputs;
+  for (int i = 0; i < 4000; ++i) {
+    const auto draw = [&]() -> float {
+      const auto word = static_cast<std::uint32_t>(random());
+      const auto exponent = static_cast<std::uint32_t>(60 + random() % 70);
+      return std::bit_cast<float>(i % 4 ? (word & 0x807FFFFFu) | exponent << 23 : word);
+    };
+    inputs.push_back({draw(), i % 5 ? draw() : 0.0f});
+    if (i % 7 == 0) inputs.back().b = -inputs.back().a;
+  }
+  const auto seen = runCompute<std::array<std::uint32_t, 4>>(R"(
+    #include <quintet/passes/fixed_sum.glsl>
+    struct In { float a; float b; };
+    struct Out { FixedSum sum; };
+    Out run(uint index, In value) { return Out(addFixed(fixedFromFloat(value.a), fixedFromFloat(value.b))); }
+  )", inputs, inputs.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const shared::FixedSum expected = render::addFixed(render::fixedFromFloat(inputs[i].a), render::fixedFromFloat(inputs[i].b));
+    ASSERT_EQ(std::memcmp(&expected, seen[i].data(), 16), 0) << inputs[i].a << " + " << inputs[i].b;
+  }
+}
+
+// What each sample stores is known: the mean's term, the centre, and the id of a sample.
+const Files kFiles = {{"m.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n"},
+                      {"main.rgen", R"(#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/output.glsl>
+#include <quintet/generated/program.glsl>
+void main() {
+  const uvec2 pixel = launchPixel();
+  if (!launchActive(pixel)) return;
+  vec4 sum = loadOutput(kOutput_color, pixel);
+#ifdef QUINTET_OUTPUT_ids
+  vec4 ids = loadOutput(kOutput_ids, pixel);
+#endif
+  for (uint i = 0u; i < launch.sampleCount; ++i) {
+    const uint s = launch.firstSample + i;
+    sum += vec4(0.1 * float(s) + float(pixel.x), float(s * s), -1.0, 1.0);
+#ifdef QUINTET_OUTPUT_depth
+    if (s == 0u) storeOutput(kOutput_depth, pixel, vec4(7.0 + float(pixel.y)));
+#endif
+#ifdef QUINTET_OUTPUT_ids
+    ids[s % kBatchSamples] = uintBitsToFloat(s < 2u ? 0u : 0x3F800000u + s % 3u);
+#endif
+  }
+  storeOutput(kOutput_color, pixel, sum);
+#ifdef QUINTET_OUTPUT_ids
+  storeOutput(kOutput_ids, pixel, ids);
+#endif
+  countRays(pixel, launch.sampleCount, 0u);
+}
+)"}};
+
+constexpr const char* kToml = R"([program]
+ray_generation = "main.rgen"
+samples_per_launch = 4
+adaptive = true
+[[ray]]
+name = "r"
+miss = "m.rmiss"
+[[output]]
+name = "color"
+[[output]]
+name = "depth"
+pixel = "center"
+optional = true
+[[output]]
+name = "ids"
+kind = "id"
+pixel = "coverage"
+optional = true
+)";
+
+struct FilmTest : testing::Test {
+  PictureOptions options;
+  SceneBuilder scene = namedSquares({"a"});
+  render::DeviceScene device{testContext(), scene.scene, scene.environment};
+
+  FilmTest() {
+    options.program = program::parseProgram(kToml, "test", "<test>", kFiles);
+    options.width = 37;
+    options.height = 5;
+  }
+  render::Renderer renderer(const std::vector<std::string>& outputs) {
+    render::RenderSettings settings = settingsFor(scene.scene.cameras[0], options);
+    settings.outputs = outputs;
+    return render::Renderer(device, options.program, testCompiler(), nullptr, settings);
+  }
+};
+
+double meanOf(std::uint32_t samples, const auto& value) {
+  double sum = 0;
+  for (std::uint32_t s = 0; s < samples; ++s) sum += value(s);
+  return sum / samples;
+}
+
+TEST_F(FilmTest, MakesWhatIsAskedFor) {
+  render::Renderer plain = renderer({});
+  EXPECT_TRUE(plain.film().stores(0));
+  EXPECT_FALSE(plain.film().stores(1));
+  plain.renderBatch();
+  EXPECT_THROW(plain.image(1), UsageError);
+  EXPECT_THROW(renderer({"colour"}), UsageError);
+  EXPECT_GT(renderer({"depth"}).film().bytes(), plain.film().bytes());
+  EXPECT_EQ(plain.film().bytes(), render::Film::bytesPerPixel(options.program, {}) * 37 * 5);
+}
+
+TEST_F(FilmTest, KeepsMeansCentresAndIds) {
+  render::Renderer r = renderer({"depth", "ids"});
+  for (const std::uint32_t count : {4u, 4u, 3u}) r.renderBatch(count);
+  const io::Image color = r.image(0), depth = r.image(1);
+  EXPECT_NEAR(color.pixel<float>(36, 4)[0], meanOf(11, [](double s) { return 0.1 * s + 36; }), 1e-5);
+  EXPECT_NEAR(color.pixel<float>(0, 0)[1], meanOf(11, [](double s) { return s * s; }), 1e-4);
+  EXPECT_EQ(color.pixel<float>(3, 3)[2], -1.0f);
+  EXPECT_EQ(depth.pixel<float>(3, 2)[0], 9.0f) << "of sample 0, not a mean";
+  const std::vector<shared::CoverageSlot> slots = r.saveFilm().planes[2].coverage;
+  std::vector<std::uint32_t> counts(3);
+  for (std::uint32_t s = 2; s < 11; ++s) ++counts[s % 3];
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(slots[i].id, 0x3F800000u + i);
+    EXPECT_EQ(slots[i].samples, counts[i]);
+  }
+  EXPECT_EQ(slots[3].samples, 0u);
+}
+
+TEST_F(FilmTest, GivesTheVarianceOfItsBatches) {
+  render::Renderer r = renderer({});
+  for (int b = 0; b < 6; ++b) r.renderBatch();
+  const io::Image variance = render::varianceImage(r.saveFilm());
+  double mean = 0, spread = 0;
+  const auto batchMean = [](int b) { return meanOf(4, [&](double s) { return (4 * b + s) * (4 * b + s); }); };
+  for (int b = 0; b < 6; ++b) mean += batchMean(b) / 6;
+  for (int b = 0; b < 6; ++b) spread += (batchMean(b) - mean) * (batchMean(b) - mean);
+  EXPECT_NEAR(variance.pixel<float>(5, 1)[1] / (spread / 5 / 6), 1.0, 1e-5);
+  EXPECT_EQ(variance.pixel<float>(5, 1)[2], 0.0f);
+}
+
+bool sameBytes(const render::FilmState& a, const render::FilmState& b) {
+  const auto same = [](const auto& x, const auto& y) { return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0); };
+  bool result = a.counts == b.counts && same(a.statistics, b.statistics);
+  for (std::size_t p = 0; p < a.planes.size(); ++p)
+    result = result && same(a.planes[p].sums, b.planes[p].sums) && same(a.planes[p].squares, b.planes[p].squares) &&
+             same(a.planes[p].values, b.planes[p].values) && same(a.planes[p].coverage, b.planes[p].coverage);
+  return result;
+}
+
+TEST_F(FilmTest, PartsAndInterruptionsAreTheWhole) {
+  const std::vector<std::string> outputs{"depth", "ids"};
+  render::Renderer whole = renderer(outputs);
+  for (const std::uint32_t count : {4u, 4u, 4u, 2u}) whole.renderBatch(count);
+
+  render::Renderer second = renderer(outputs), first = renderer(outputs);
+  second.startAt(2);
+  second.renderBatch(4);
+  second.renderBatch(2);
+  first.renderBatch();
+  first.renderBatch();
+  render::FilmState joined = second.saveFilm();
+  render::mergeFilm(joined, first.saveFilm());
+  EXPECT_TRUE(sameBytes(joined, whole.saveFilm()));
+
+  render::Renderer resumed = renderer(outputs);
+  resumed.renderBatch();
+  resumed.restoreFilm(first.saveFilm());
+  resumed.renderBatch(4);
+  resumed.renderBatch(2);
+  EXPECT_TRUE(sameBytes(resumed.saveFilm(), whole.saveFilm()));
+  EXPECT_EQ(resumed.statistics().samples, 14u);
+}
+
+TEST_F(FilmTest, CellsTakeTheirOwnNumberOfBatches) {
+  render::Renderer r = renderer({});
+  r.renderBatch();
+  ASSERT_EQ(render::tileCount(r.film().region()), 2u);
+  const std::vector<std::uint32_t> limits{1, 3, 2, 0};
+  while (r.film().counts().cellBatches != std::vector<std::uint32_t>{1, 3, 2, 1}) ASSERT_TRUE(r.renderCells(limits));
+  const io::Image color = r.image();
+  for (std::uint32_t y = 0; y < 5; ++y)
+    for (std::uint32_t x = 0; x < 37; ++x) {
+      const std::uint32_t batches = std::array{1, 3, 2, 1}[2 * (x / 32) + (x + y) % 2];
+      ASSERT_NEAR(color.pixel<float>(x, y)[1], meanOf(4 * batches, [](double s) { return s * s; }), 1e-4) << x << ", " << y;
+    }
+  std::uint64_t rays = 0;
+  for (std::uint32_t y = 0; y < 5; ++y)
+    for (std::uint32_t x = 0; x < 37; ++x) rays += 4u * std::array{1u, 3u, 2u, 1u}[2 * (x / 32) + (x + y) % 2];
+  EXPECT_EQ(r.rays().rays, rays);
+}
+
+}  // namespace
+}  // namespace quintet::test
