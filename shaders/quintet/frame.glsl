@@ -18,6 +18,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Csg
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer CsgTreeArray { CsgTreeData at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BoxArray { BoxData at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LightArray { LightData at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LightNodeArray { LightNode at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer AliasArray { AliasEntry at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer UintArray { uint at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FloatArray { float at[]; };

@@ -15,6 +15,7 @@
 #include "render/scene_features.h"
 #include "render/scene_upload.h"
 #include "render/top_level.h"
+#include "scene/keyframes.h"
 
 namespace quintet::render {
 namespace {
@@ -37,7 +38,7 @@ struct DeviceScene::Impl {
   std::optional<TextureUpload> textures;
   std::unique_ptr<gpu::BindlessSet> set;
   std::optional<TextureSlots> parameterSlots;
-  gpu::Buffer geometryTable, materialTable, lights, lightTable, lightSlots, environmentTable, albedoTables;
+  gpu::Buffer geometryTable, materialTable, lights, lightTable, lightNodes, lightSlots, environmentTable, albedoTables;
   std::vector<rt::Blas> blas;                // one per used mesh
   std::vector<int> blasOfMesh;               // -1: no instance uses the mesh
   std::uint64_t bottomLevelBytes = 0;
@@ -92,12 +93,25 @@ struct DeviceScene::Impl {
   }
 
   void uploadLights(const scene::Scene& scene, const scene::Environment& environment) {
-    const LightTable table = buildLightTable(scene, environment);
+    LightTableBuilder builder(scene, environment);
+    std::vector<mat4> places;
+    for (const scene::Instance& instance : scene.instances) places.push_back(scene::worldFromObjectAt(instance, 0.0f));
+    LightTable table = builder.build(places);
+    table.environment = std::move(builder.environment());
+    if (builder.moves()) {
+      makeRoom(table);
+      builder.keep();
+      movingLights = std::move(builder);
+    } else if (table.dark()) {
+      table.clear();
+    }
     lights = gpu::makeBufferOf(context, table.lights, 0, "lights");
     lightTable = gpu::makeBufferOf(context, table.entries, 0, "light table");
+    lightNodes = gpu::makeBufferOf(context, table.nodes, 0, "light nodes");
     lightSlots = gpu::makeBufferOf(context, table.slots, 0, "light slots");
     frame.lights = lights.address();
     frame.lightTable = lightTable.address();
+    frame.lightNodes = lightNodes.address();
     frame.lightSlots = lightSlots.address();
     frame.lightCount = static_cast<std::uint32_t>(table.entries.size());
     frame.environmentLight = table.environmentLight;
@@ -113,6 +127,21 @@ struct DeviceScene::Impl {
     static const std::vector<float> kAlbedoTables = computeAlbedoTables();
     albedoTables = gpu::makeBufferOf(context, kAlbedoTables, 0, "albedo tables");
     frame.albedoTables = albedoTables.address();
+  }
+
+  // Of moving lights some may have no power at a frame, and others none at another: the buffers hold all of them.
+  static void makeRoom(LightTable& table) {
+    table.entries.resize(table.lights.size(), shared::AliasEntry{1.0f, 0, 0.0f});
+    table.nodes.resize(std::max(table.nodes.size(), 2 * table.lights.size()));
+  }
+
+  void setFrame(float newFrame) {
+    if (!topLevel->setFrame(newFrame) || !movingLights) return;
+    LightTable table = movingLights->build(topLevel->places());
+    makeRoom(table);
+    lights.uploadAs(std::span<const shared::LightData>(table.lights));
+    lightTable.uploadAs(std::span<const shared::AliasEntry>(table.entries));
+    lightNodes.uploadAs(std::span<const shared::LightNode>(table.nodes));
   }
 
   void buildBottomLevel(const scene::Scene& scene) {
@@ -173,6 +202,7 @@ struct DeviceScene::Impl {
   }
 
   std::vector<std::uint32_t> firstLightSlots;
+  std::optional<LightTableBuilder> movingLights;  // only if an instance with keyframes has lights
 };
 
 DeviceScene::DeviceScene(gpu::Context& context, const scene::Scene& scene, const scene::Environment& environment, const DeviceSceneOptions& options)
@@ -192,6 +222,6 @@ bool DeviceScene::animated() const { return impl_->topLevel->animated(); }
 void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder, bool anyHitForAll) {
   impl_->prepareFor(rayTypeCount, keepInstanceOrder, anyHitForAll);
 }
-void DeviceScene::setFrame(float frame) { impl_->topLevel->setFrame(frame); }
+void DeviceScene::setFrame(float frame) { impl_->setFrame(frame); }
 
 }  // namespace quintet::render

@@ -62,8 +62,9 @@ class DeviceScene {
   // gl_InstanceID is the instance's index in the scene, at some cost in speed (docs/design/quirks.md).
   void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder = false, bool anyHitForAll = false);
 
-  // Moves the instances that have keyframes (scene.h) to where they are at `frame`: instance table and TLAS. Nothing
-  // else changes, frameTemplate() neither. Blocks; no launch may be under way. At first it is frame 0.
+  // Moves the instances that have keyframes (scene.h) to where they are at `frame`: instance table, TLAS, and the
+  // tables of lights if any of them emits. Addresses stay: frameTemplate() does not change. Blocks; no launch may be
+  // under way. At first it is frame 0.
   void setFrame(float frame);
   bool animated() const;  // any instance has keyframes
 

@@ -62,6 +62,12 @@ bool TopLevel::setFrame(float frame) {
   return true;
 }
 
+std::vector<mat4> TopLevel::places() const {
+  std::vector<mat4> result;
+  for (const rt::InstanceInput& input : inputs_) result.push_back(input.worldFromObject);
+  return result;
+}
+
 void TopLevel::build() {
   for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i].recordOffset = data_[i].firstGeometry * rayTypeCount_;
   if (!tlas_) tlas_ = std::make_unique<rt::Tlas>(context_, static_cast<std::uint32_t>(inputs_.size()));

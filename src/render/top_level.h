@@ -26,6 +26,7 @@ class TopLevel {
   TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstancePlace> places);
 
   shared::Address table() const { return table_.address(); }  // shared::InstanceData[]; the same for all frames
+  std::vector<mat4> places() const;  // world from object of each instance, at the present frame
   bool animated() const { return !moving_.empty(); }
 
   // Hit record of geometry k and ray type r: k · rayTypeCount + r. keepOrder: gl_InstanceID is the instance's index in

@@ -31,7 +31,6 @@
 #undef PrimitiveArray
 #undef PrimitiveData
 #undef RayRecord
-#undef RayKinds
 #undef TextureData
 #undef UintArray
 #undef Uvec3Array

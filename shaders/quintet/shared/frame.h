@@ -72,17 +72,6 @@ struct RayRecord {
 };
 QT_SHARED_SIZE(RayRecord, 32);
 
-// Before the records: all rays by kind, also those for which there was no room.
-struct RayKinds {
-  uint camera;             // the first ray of each pixel
-  uint cameraHits;
-  uint continuation;       // other rays that look for the closest surface
-  uint continuationHits;
-  uint shadow;
-  uint shadowHits;         // something lies in between
-};
-QT_SHARED_SIZE(RayKinds, 24);
-
 QT_CONSTANT kNoLight = 0xFFFFFFFFu;
 
 struct Frame {
@@ -94,7 +83,7 @@ struct Frame {
   Address lightSlots;   // uint[]: first LightData of an instance's geometry (+ primitive), or kNoLight
   Address albedoTables; // quintet/bsdf/albedo.glsl
   Address statistics;   // uvec2[filmWidth · filmHeight]: rays traced, samples dropped; 0: do not count
-  Address rayRecords;   // RayKinds, then RayRecord[filmWidth · filmHeight · rayRecordCapacity], for benchmarks; else 0
+  Address rayRecords;   // RayRecord[filmWidth · filmHeight · rayRecordCapacity], for benchmarks; else 0
   Address instrument;   // Instrument and its pixels (shared/instrument.h); 0: not instrumented
   // vec4[filmWidth · filmHeight], rows top to bottom: sums of this batch, or as the output's rule says
   // (program::OutputPixel); 0: an optional output that nobody asked for.
@@ -115,8 +104,9 @@ struct Frame {
   uint instanceCount;
   uint frameCount;      // frames of this run, where the program accumulates; 0: it has no end
   uint padding;
+  Address lightNodes;   // LightNode[]: the tree from which lights are drawn
 };
-QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56);
+QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 8);
 
 // Adaptive sampling: the image is cut in squares of kTileSize pixels from the film's first one on. Each has two cells, the
 // pixels with an even and with an odd x + y, which get samples of their own number.

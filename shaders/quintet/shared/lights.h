@@ -32,9 +32,29 @@ struct LightData {
   float cosInner;   // spot
   float cosOuter;   // spot
   uint primitive;   // triangle, solid: original index in the geometry
-  uint padding;
+  uint leaf;        // its LightNode, or kNoLight: never drawn
 };
 QT_SHARED_SIZE(LightData, 64);
+
+// LightNode::link
+QT_CONSTANT kLightNodeLeaf = 0x80000000u;       // the index is that of a light, not of the first child
+QT_CONSTANT kLightNodeInfinite = 0x40000000u;   // directional lights, environment
+QT_CONSTANT kLightNodeBothSides = 0x20000000u;  // the cone holds lines rather than directions
+QT_CONSTANT kLightNodeShare = 0x10000000u;      // first child: it and the second get kLightShare of the draws at least
+QT_CONSTANT kLightNodeIndex = 0x0FFFFFFFu;
+
+// A node of the tree of lights (quintet/lights/tree.glsl; built by src/render/light_tree.h): bounds of the lights below
+// it. Node 0 is the root; the two children of a node lie side by side, and all that is below the first child lies
+// before all that is below the second.
+struct LightNode {
+  vec3 center;      // world, of a ball that holds the lights; infinite: unused
+  float radius;     // metres
+  float intensity;  // sum of their largest radiant intensities, as luminance; infinite: irradiance instead. Scaled
+  uint axis;        // octahedral, 2 x snorm 16: axis of a cone of their normals; infinite: of the directions to them
+  uint cone;        // 2 x snorm 16: cosine of its half angle, and of the angle beyond it within which light leaves
+  uint link;        // flags and index of the first child or the light
+};
+QT_SHARED_SIZE(LightNode, 32);
 
 // Equirectangular environment (scene::Environment): u = atan2(d.z, d.x)/2π + 0.5, v = acos(d.y)/π after
 // rotating d by -rotation about y. Radiance = scale · texel.

@@ -11,11 +11,15 @@
 #include "bsdf/chi_square.h"
 #include "harness.h"
 #include "render/device_scene.h"
+#include "lights/tree_oracle.h"
 #include "render/light_table.h"
 
 namespace quintet::test {
 
 inline constexpr double kPiDouble = glm::pi<double>();
+
+// The choice by one table of powers instead of the tree.
+inline const Defines kByPower{{"QUINTET_LIGHTS_BY_POWER", "1"}};
 
 class LightScene {
  public:
@@ -32,7 +36,15 @@ class LightScene {
     return result;
   }
 
-  const render::LightTable table;  // the same that the device has
+  // Of each light, for a receiver without a surface.
+  std::vector<double> probabilities(const vec3& position) const { return probabilities(Receiver{position}); }
+  std::vector<double> probabilities(const Receiver& receiver) const {
+    return oracleProbabilities(table.nodes, table.lights.size(), receiver);
+  }
+
+  void setFrame(float frame) { device_.setFrame(frame); }
+
+  const render::LightTable table;  // the same that the device has at frame 0
 
  private:
   render::DeviceScene device_;

@@ -73,8 +73,8 @@ TEST(DirectionalLight, SameEverywhere) {
   }
 }
 
-// Lights are drawn as the table says; each is recognised by its place.
-TEST(Lights, SelectionFollowsTheTable) {
+// By power, lights are drawn as the table says; each is recognised by its place.
+TEST(Lights, SelectionByPowerFollowsTheTable) {
   constexpr int kCount = 300;
   scene::Scene scene;
   for (int i = 0; i < kCount; ++i) {
@@ -84,7 +84,7 @@ TEST(Lights, SelectionFollowsTheTable) {
     scene.lights.push_back(light);
   }
   const LightScene onDevice(scene, {});
-  const std::vector<LightOut> samples = sampleLights(onDevice, vec3(0.0f), 400'000);
+  const std::vector<LightOut> samples = sampleLights(onDevice, vec3(0.0f), 400'000, kByPower);
   std::vector<double> observed(kCount, 0.0), expected, uniform(kCount, 400'000.0 / kCount);
   for (const shared::AliasEntry& entry : onDevice.table.entries) expected.push_back(400'000.0 * entry.probability);
   for (const LightOut& s : samples) {

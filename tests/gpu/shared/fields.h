@@ -99,7 +99,8 @@ GPU_FIELDS(MaterialData, baseColor, emissive, metallic, roughness, normalScale, 
            metallicRoughnessTexture, normalTexture, emissiveTexture, transmissionTexture, specularTexture,
            specularColorTexture, clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture);
 GPU_FIELDS(AliasEntry, keep, alias, probability);
-GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, padding);
+GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, leaf);
+GPU_FIELDS(LightNode, center, radius, intensity, axis, cone, link);
 GPU_FIELDS(EnvironmentData, table, scale, texture, width, height, cosRotation, sinRotation);
 GPU_FIELDS(InstanceData, worldFromObject, objectFromWorld, firstGeometry, firstLightSlot, mirrored, customIndex);
 GPU_FIELDS(GeometryData, positions, triangles, normals, tangents, uvs, colors, primitiveMap, boxes, primitives, nodes, trees, material,
@@ -110,10 +111,9 @@ GPU_FIELDS(CsgTreeData, firstNode, nodeCount);
 GPU_FIELDS(BoxData, min, max);
 GPU_FIELDS(CameraData, worldFromCamera, halfSize, apertureRadius, focusDistance, orthographic, padding);
 GPU_FIELDS(RayRecord, origin, tmax, direction, kind);
-GPU_FIELDS(RayKinds, camera, cameraHits, continuation, continuationHits, shadow, shadowHits);
 GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics, rayRecords, instrument,
            outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth, filmHeight, lightCount,
-           environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount, padding);
+           environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount, padding, lightNodes);
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, depthLimit, recordPairs);

@@ -1,0 +1,263 @@
+#include "render/light_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <glm/gtc/packing.hpp>
+
+#include "base/parallel.h"
+
+namespace quintet::render {
+namespace {
+
+constexpr std::size_t kBins = 12;
+constexpr std::size_t kChunk = 16384;     // lights binned by one task
+constexpr std::size_t kSubtree = 32768;   // at most so many lights are built into a subtree by one task
+constexpr int kDeepest = 64;              // from here on by halves, so that no recursion is deep
+
+using Lights = std::span<LightTreeInput>;
+
+struct Bin {
+  LightBounds bounds;
+  std::size_t count = 0;
+
+  void add(const LightBounds& more, std::size_t n) {
+    bounds = count == 0 ? more : unite(bounds, more);
+    count += n;
+  }
+};
+using Bins = std::array<std::array<Bin, kBins>, 3>;
+
+double cost(const LightBounds& b) {
+  const vec3 extent = b.box.extent();
+  return static_cast<double>(b.intensity) * glm::dot(extent, extent) * orientationMeasure(b);
+}
+
+// Where to part a range: after lights whose centre falls in a bin up to `bin` along `axis`; axis 3: in the middle.
+struct Split {
+  glm::length_t axis = 3;
+  std::size_t bin = 0;
+};
+
+struct Binning {
+  vec3 low, scale;
+  explicit Binning(const Bounds3& centers) : low(centers.min) {
+    const vec3 extent = centers.extent();
+    for (glm::length_t i = 0; i < 3; ++i) scale[i] = extent[i] > 0.0f ? static_cast<float>(kBins) / extent[i] : 0.0f;
+  }
+  std::size_t of(const LightBounds& b, glm::length_t axis) const {
+    const float at = (b.box.center()[axis] - low[axis]) * scale[axis];
+    return std::min(kBins - 1, static_cast<std::size_t>(std::max(0.0f, at)));
+  }
+};
+
+Bins fillBins(Lights lights, const Binning& binning) {
+  std::vector<Bins> parts((lights.size() + kChunk - 1) / kChunk);
+  parallelFor(parts.size(), [&](std::size_t part) {
+    const std::size_t end = std::min(lights.size(), (part + 1) * kChunk);
+    for (std::size_t i = part * kChunk; i < end; ++i)
+      for (glm::length_t axis = 0; axis < 3; ++axis)
+        if (binning.scale[axis] > 0.0f)
+          parts[part][static_cast<std::size_t>(axis)][binning.of(lights[i].bounds, axis)].add(lights[i].bounds, 1);
+  });
+  Bins bins = parts[0];
+  for (std::size_t part = 1; part < parts.size(); ++part)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t bin = 0; bin < kBins; ++bin) {
+        const Bin& more = parts[part][axis][bin];
+        if (more.count > 0) bins[axis][bin].add(more.bounds, more.count);
+      }
+  return bins;
+}
+
+// The cheapest border between bins: equation 2, regularised by the extents.
+Split cheapest(const Bins& bins, const vec3& extent) {
+  const float longest = std::max({extent.x, extent.y, extent.z});
+  Split best;
+  double least = std::numeric_limits<double>::infinity();
+  for (glm::length_t axis = 0; axis < 3; ++axis) {
+    if (!(extent[axis] > 0.0f)) continue;
+    const std::array<Bin, kBins>& row = bins[static_cast<std::size_t>(axis)];
+    std::array<double, kBins> above{};  // of bins from i on
+    Bin right, left;
+    for (std::size_t i = kBins; i-- > 1;) {
+      if (row[i].count > 0) right.add(row[i].bounds, row[i].count);
+      above[i] = right.count > 0 ? cost(right.bounds) : -1.0;
+    }
+    const double regular = static_cast<double>(longest) / extent[axis];
+    for (std::size_t i = 0; i + 1 < kBins; ++i) {
+      if (row[i].count > 0) left.add(row[i].bounds, row[i].count);
+      else continue;  // the border after an empty bin is the one before it
+      if (above[i + 1] < 0.0) break;
+      const double sum = regular * (cost(left.bounds) + above[i + 1]);
+      if (sum < least) {
+        least = sum;
+        best = {axis, i};
+      }
+    }
+  }
+  return best;
+}
+
+class Builder {
+ public:
+  Builder(Lights lights, std::vector<shared::LightNode>& nodes) : lights_(lights), nodes_(nodes) {
+    environments_ = countReach(LightReach::environment);
+    infinite_ = environments_ + countReach(LightReach::directional);
+  }
+
+  void run() {
+    nodes_.resize(2 * lights_.size());
+    const Range all{0, lights_.size(), 0, 2, 0};
+    plan(all);
+    parallelFor(subtrees_.size(), [&](std::size_t i) { subtreeBounds_[i] = build(subtrees_[i]); });
+    nextSubtree_ = 0;
+    nextPlanned_ = 0;
+    finish(all);
+  }
+
+ private:
+  struct Range {
+    std::size_t first, count;
+    std::size_t node;   // its own
+    std::size_t below;  // where its children are, and then all below them
+    int depth;
+  };
+  struct Planned {
+    std::size_t count;  // of the first child
+  };
+
+  std::size_t countReach(LightReach reach) const {
+    return static_cast<std::size_t>(std::ranges::count(lights_, reach, &LightTreeInput::reach));
+  }
+
+  static Range firstChild(const Range& r, std::size_t count) { return {r.first, count, r.below, r.below + 2, r.depth + 1}; }
+  static Range secondChild(const Range& r, std::size_t count) {
+    return {r.first + count, r.count - count, r.below + 1, r.below + 2 * count, r.depth + 1};
+  }
+
+  // Lights of different reach part first.
+  bool partsReach(const Range& r) const { return reachBorder(r) > 0; }
+  std::size_t reachBorder(const Range& r) const {
+    for (const std::size_t border : {infinite_, environments_})
+      if (r.first < border && border < r.first + r.count) return border - r.first;
+    return 0;
+  }
+
+  // Sorts the range into two parts; the size of the first.
+  std::size_t split(const Range& r) {
+    if (const std::size_t border = reachBorder(r)) return border;
+    if (r.depth >= kDeepest || r.count <= 2) return r.count / 2;
+    const Lights lights = lights_.subspan(r.first, r.count);
+    Bounds3 centers;
+    for (const LightTreeInput& light : lights) centers.extend(light.bounds.box.center());
+    const Binning binning(centers);
+    const Split best = cheapest(fillBins(lights, binning), centers.extent());
+    if (best.axis == 3) return r.count / 2;
+    const auto isFirst = [&](const LightTreeInput& light) { return binning.of(light.bounds, best.axis) <= best.bin; };
+    return static_cast<std::size_t>(std::partition(lights.begin(), lights.end(), isFirst) - lights.begin());
+  }
+
+  // Splits large ranges one after the other, each by all cores; what is small enough becomes a task.
+  void plan(const Range& r) {
+    if (r.count <= kSubtree && !partsReach(r)) {
+      subtrees_.push_back(r);
+      subtreeBounds_.emplace_back();
+      return;
+    }
+    const std::size_t count = split(r);
+    planned_.push_back({count});
+    plan(firstChild(r, count));
+    plan(secondChild(r, count));
+  }
+
+  LightBounds build(const Range& r) {
+    if (r.count == 1) return write(r, lights_[r.first].bounds, shared::kLightNodeLeaf | lights_[r.first].light);
+    const std::size_t count = split(r);
+    const LightBounds first = build(firstChild(r, count));
+    const LightBounds second = build(secondChild(r, count));
+    return write(r, unite(first, second), static_cast<std::uint32_t>(r.below));
+  }
+
+  // The nodes above the subtrees, in the order in which they were planned.
+  LightBounds finish(const Range& r) {
+    if (nextSubtree_ < subtrees_.size() && subtrees_[nextSubtree_].node == r.node) return subtreeBounds_[nextSubtree_++];
+    const std::size_t count = planned_[nextPlanned_++].count;
+    const LightBounds first = finish(firstChild(r, count));
+    const LightBounds second = finish(secondChild(r, count));
+    if (partsReach(r)) nodes_[r.below].link |= shared::kLightNodeShare;
+    return write(r, unite(first, second), static_cast<std::uint32_t>(r.below));
+  }
+
+  LightBounds write(const Range& r, const LightBounds& bounds, std::uint32_t link) {
+    shared::LightNode& node = nodes_[r.node];
+    node = packLightNode(bounds);
+    node.link |= link;
+    if (r.first < infinite_) node.link |= shared::kLightNodeInfinite;
+    return bounds;
+  }
+
+  Lights lights_;
+  std::vector<shared::LightNode>& nodes_;
+  std::size_t environments_ = 0;  // these come first
+  std::size_t infinite_ = 0;      // then directional lights
+  std::vector<Range> subtrees_;
+  std::vector<LightBounds> subtreeBounds_;
+  std::vector<Planned> planned_;
+  std::size_t nextSubtree_ = 0;
+  std::size_t nextPlanned_ = 0;
+};
+
+std::uint32_t packAxis(const vec3& n) {
+  vec2 v = vec2(n) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+  if (n.z < 0.0f) v = vec2((1.0f - std::abs(v.y)) * (v.x >= 0.0f ? 1.0f : -1.0f), (1.0f - std::abs(v.x)) * (v.y >= 0.0f ? 1.0f : -1.0f));
+  return glm::packSnorm2x16(v);
+}
+
+// Snorm of 16 bits that is not above the cosine.
+std::uint32_t packCosine(double cosine) {
+  const auto steps = static_cast<int>(std::floor(std::clamp(cosine, -1.0, 1.0) * 32767.0));
+  return static_cast<std::uint16_t>(static_cast<std::int16_t>(steps));
+}
+
+}  // namespace
+
+vec3 unpackLightAxis(std::uint32_t axis) {
+  const vec2 v = glm::unpackSnorm2x16(axis);
+  const float z = 1.0f - std::abs(v.x) - std::abs(v.y), fold = std::max(-z, 0.0f);
+  return glm::normalize(vec3(v.x + (v.x >= 0.0f ? -fold : fold), v.y + (v.y >= 0.0f ? -fold : fold), z));
+}
+
+shared::LightNode packLightNode(const LightBounds& bounds) {
+  shared::LightNode node{};
+  node.center = bounds.box.center();
+  node.radius = bounds.radius * (1.0f + 1e-5f) + 4e-7f * (std::abs(node.center.x) + std::abs(node.center.y) + std::abs(node.center.z));
+  node.intensity = bounds.intensity;
+  node.axis = packAxis(bounds.axis);
+  // Wider by the coding of the axis and what the unions have rounded.
+  const vec3 coded = unpackLightAxis(node.axis);
+  const double spread = bounds.spread + 2e-4 + std::asin(std::min(1.0f, glm::length(glm::cross(coded, bounds.axis))));
+  const double full = bounds.bothSides ? 0.5 * glm::pi<double>() : glm::pi<double>();
+  node.cone = packCosine(spread >= full ? -1.0 : std::cos(spread)) | packCosine(std::cos(bounds.beyond)) << 16;
+  if (bounds.bothSides) node.link |= shared::kLightNodeBothSides;
+  return node;
+}
+
+LightTree buildLightTree(std::vector<LightTreeInput> lights, std::size_t lightCount) {
+  std::erase_if(lights, [](const LightTreeInput& l) { return !(l.bounds.intensity > 0.0f); });
+  std::ranges::stable_sort(lights, std::ranges::greater{}, &LightTreeInput::reach);
+  LightTree tree;
+  tree.leaves.assign(lightCount, shared::kNoLight);
+  if (lights.empty()) {
+    tree.nodes.resize(2);
+    tree.nodes[0].link = shared::kLightNodeLeaf;
+    return tree;
+  }
+  Builder(lights, tree.nodes).run();
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    const std::uint32_t link = tree.nodes[i].link;
+    if (i != 1 && (link & shared::kLightNodeLeaf) != 0) tree.leaves[link & shared::kLightNodeIndex] = static_cast<std::uint32_t>(i);
+  }
+  return tree;
+}
+
+}  // namespace quintet::render
