@@ -11,78 +11,19 @@
 
 #include "base/file.h"
 #include "base/parallel.h"
+#include "bench.h"
 #include "cli.h"
 #include "program/program.h"
-#include "render/renderer.h"
-#include "scene/load.h"
-#include "scene_setup.h"
-#include "values.h"
 
 namespace quintet::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = Bench::Json;
 
 constexpr const char* kExamples =
     "  quintet bench scene.glb                        a table\n"
-    "  quintet bench scene.glb --json --repeat 9      the same as JSON, medians of nine\n";
-
-struct Options {
-  std::string scene;
-  std::string device;
-  std::string environment;
-  std::string size;
-  int repeat = 5;
-  bool json = false;
-};
-
-struct Bench {
-  const Options& options;
-  scene::Scene scene;
-  scene::Environment environment;
-  scene::Camera camera;
-  uvec2 size;
-  shader::Compiler compiler;
-
-  explicit Bench(const Options& o, bool software)
-      : options(o), scene(scene::loadScene(o.scene)), compiler(compilerOptions()) {
-    size = o.size.empty() ? (software ? uvec2(512, 512) : uvec2(1920, 1080)) : parseSize("--size", o.size);
-    if (size.y == 0) size.y = size.x;
-    camera = chooseCamera(scene, {}, static_cast<float>(size.x) / static_cast<float>(size.y)).camera;
-    EnvironmentOptions environmentOptions;
-    environmentOptions.source = o.environment;
-    environment = chooseEnvironment(scene, environmentOptions).environment;
-  }
-
-  static shader::CompilerOptions compilerOptions() {
-    shader::CompilerOptions compiler;
-    if (!cacheFolder().empty()) compiler.cacheFolder = cacheFolder() / "shaders";
-    return compiler;
-  }
-
-  render::RenderSettings settings(const program::Program& program, uvec2 pixels) const {
-    render::RenderSettings settings;
-    settings.width = pixels.x;
-    settings.height = pixels.y;
-    settings.camera = camera;
-    settings.parameters = program::ParameterValues(program.parameters);
-    settings.launchSeconds = 1.0;
-    settings.timeoutSeconds = 300;
-    return settings;
-  }
-};
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-// Seconds of the device for one more sample per pixel.
-double sampleSeconds(render::Renderer& renderer) {
-  const double before = renderer.statistics().deviceSeconds;
-  renderer.renderBatch(1);
-  return renderer.statistics().deviceSeconds - before;
-}
+    "  quintet bench scene.glb --json --repeat 9      the same as JSON, medians of nine\n"
+    "  quintet bench scene.glb --profile              time by pass, rays by kind, launches, registers\n";
 
 double medianSampleSeconds(render::Renderer& renderer, int repeat) {
   sampleSeconds(renderer);  // what the driver compiles at the first launch
@@ -93,56 +34,6 @@ double medianSampleSeconds(render::Renderer& renderer, int repeat) {
 
 // Rays of the batches so far per batch.
 std::uint64_t raysPerSample(const render::Renderer& renderer) { return renderer.rays().rays / std::max<std::uint64_t>(1, renderer.statistics().samples); }
-
-// Path tracer against the replay of its own rays. Batches differ in their samples; the recorded one is the first, and
-// the path tracer's time is of the same sample: each measurement takes a fresh renderer's first batch.
-Json pathTracerRatio(const Bench& bench, render::DeviceScene& scene) {
-  gpu::Context& context = scene.context();
-  const program::Program pathTracer = program::loadProgram("pathtracer");
-  const program::Program replay = program::loadProgram("replay");
-  constexpr std::uint32_t kCapacity = 32;
-  gpu::BufferOptions recordOptions;
-  recordOptions.size = VkDeviceSize{bench.size.x} * bench.size.y * kCapacity * sizeof(shared::RayRecord);
-  recordOptions.name = "ray records";
-  const gpu::Buffer records(context, recordOptions);
-  context.submitAndWait([&](gpu::Commands& commands) { commands.fill(records, 0); });
-
-  render::RenderSettings recording = bench.settings(pathTracer, bench.size);
-  recording.defines.emplace_back("QUINTET_RECORD_RAYS", "1");
-  recording.rayRecords = &records;
-  recording.rayRecordCapacity = kCapacity;
-  render::Renderer recorder(scene, pathTracer, bench.compiler, nullptr, recording);
-  recorder.renderBatch(1);
-  const std::uint64_t rays = raysPerSample(recorder);
-
-  render::Renderer tracer(scene, pathTracer, bench.compiler, nullptr, bench.settings(pathTracer, bench.size));
-  render::RenderSettings replaying = bench.settings(replay, bench.size);
-  replaying.rayRecords = &records;
-  replaying.rayRecordCapacity = kCapacity;
-  render::Renderer replayer(scene, replay, bench.compiler, nullptr, replaying);
-
-  sampleSeconds(tracer);
-  sampleSeconds(replayer);
-  const std::uint64_t replayedRays = raysPerSample(replayer);
-  // In turns, so that both see the same machine.
-  std::vector<double> tracerRates, replayRates;
-  for (int i = 0; i < bench.options.repeat; ++i) {
-    const std::uint64_t before = tracer.rays().rays;
-    const double seconds = sampleSeconds(tracer);
-    tracerRates.push_back(static_cast<double>(tracer.rays().rays - before) / seconds);
-    replayRates.push_back(static_cast<double>(replayedRays) / sampleSeconds(replayer));
-  }
-  const double tracerRate = median(tracerRates);
-  const double replayRate = median(replayRates);
-  return {{"raysPerSample", rays},
-          {"replayedRays", replayedRays},
-          {"pathTracerMraysPerSecond", tracerRate * 1e-6},
-          {"minimalMraysPerSecond", replayRate * 1e-6},
-          {"ratio", tracerRate / replayRate},
-          {"compileSeconds", tracer.statistics().compileSeconds},
-          {"pipelineSeconds", tracer.statistics().pipelineSeconds},
-          {"firstLaunchSeconds", tracer.statistics().firstLaunchSeconds}};
-}
 
 // Mrays/s of one ambient occlusion sample (a primary and a secondary ray per pixel) on this scene.
 double occlusionRate(const Bench& bench, gpu::Context& context, const scene::Scene& scene, bool keepInputOrder, uvec2 pixels) {
@@ -210,7 +101,7 @@ std::string asTable(const Json& json, const std::string& prefix = {}) {
   return text;
 }
 
-Json measure(const Options& options) {
+Json measure(const BenchOptions& options) {
   gpu::ContextOptions contextOptions;
   contextOptions.device = options.device;
   gpu::Context context(contextOptions);
@@ -229,6 +120,7 @@ Json measure(const Options& options) {
   {
     render::DeviceScene scene(context, bench.scene, bench.environment);
     result["pathTracer"] = pathTracerRatio(bench, scene);
+    if (options.profile) result["profile"] = profile(bench, scene);
     const render::DeviceSceneStatistics& s = scene.statistics();
     result["accelerationStructures"] = {{"orderSeconds", s.build.orderSeconds},
                                         {"buildSeconds", s.build.buildSeconds},
@@ -237,10 +129,11 @@ Json measure(const Options& options) {
                                         {"bytesPerTriangle", static_cast<double>(s.accelerationBytes) / static_cast<double>(std::max<std::uint64_t>(1, triangles.stored))}};
     result["uploadSeconds"] = s.uploadSeconds;
   }
+  if (options.profile) return result;
   const auto again = std::chrono::steady_clock::now();
   {
     render::DeviceScene scene(context, bench.scene, bench.environment);
-    const program::Program program = program::loadProgram("pathtracer");
+    const program::Program program = program::loadProgram(options.program);
     render::Renderer renderer(scene, program, bench.compiler, nullptr, bench.settings(program, bench.size));
     renderer.renderBatch(1);
   }
@@ -254,12 +147,14 @@ Json measure(const Options& options) {
 
 int benchCommand(Arguments arguments) {
   CLI::App app("Measures rays per second against the device's own ceiling for the same rays.", "quintet bench");
-  Options options;
+  BenchOptions options;
   app.add_option("SCENE", options.scene, "A scene of triangles without alpha (replay knows no other)")->required();
   app.add_option("--device", options.device, "Index or part of the name");
   app.add_option("--env", options.environment, "Environment, as in `quintet render`");
   app.add_option("--size", options.size, "WxH; default 512x512 on a CPU, else 1920x1080");
   app.add_option("--repeat", options.repeat, "Measurements; the median counts")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--program", options.program, "What is measured; its rays go through traceClosest and traceVisible")->capture_default_str();
+  app.add_flag("--profile", options.profile, "Where the time goes, instead of what order and balance gain");
   app.add_flag("--json", options.json, "One JSON object instead of a table");
   setUp(app, kExamples);
   if (!parse(app, arguments)) return 0;

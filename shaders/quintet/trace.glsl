@@ -12,27 +12,38 @@ layout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT topLeve
 layout(location = 0) rayPayloadEXT HitPayload hitPayload;
 
 #ifdef QUINTET_RECORD_RAYS
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayRecordArray { RayRecord at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayRecordArray { RayKinds kinds; RayRecord at[]; };
 uint recordedRays = 0u;
 
-// Keeps the ray for the program `replay`; rays beyond the capacity are left out.
-void recordRay(vec3 origin, vec3 direction, float tmax, uint kind) {
+// Counts the traced ray by its kind and keeps it for the program `replay`; rays beyond the capacity are only counted.
+void recordRay(vec3 origin, vec3 direction, float tmax, uint kind, bool hit) {
+  RayRecordArray records = RayRecordArray(frame.rayRecords);
+  if (kind == kRecordShadow) {
+    atomicAdd(records.kinds.shadow, 1u);
+    if (hit) atomicAdd(records.kinds.shadowHits, 1u);
+  } else if (recordedRays == 0u) {
+    atomicAdd(records.kinds.camera, 1u);
+    if (hit) atomicAdd(records.kinds.cameraHits, 1u);
+  } else {
+    atomicAdd(records.kinds.continuation, 1u);
+    if (hit) atomicAdd(records.kinds.continuationHits, 1u);
+  }
   if (recordedRays >= frame.rayRecordCapacity) return;
   const uvec2 pixel = gl_LaunchIDEXT.xy + launch.offset - frame.filmOffset;
   const uint first = (pixel.y * frame.filmWidth + pixel.x) * frame.rayRecordCapacity;
-  RayRecordArray(frame.rayRecords).at[first + recordedRays++] = RayRecord(origin, tmax, direction, kind);
+  records.at[first + recordedRays++] = RayRecord(origin, tmax, direction, kind);
 }
 #endif
 
 // The closest surface along origin + t · direction, t in (0, tmax). `seed` decides stochastic alpha.
 HitPayload traceClosest(vec3 origin, vec3 direction, float tmax, uint seed) {
-#ifdef QUINTET_RECORD_RAYS
-  recordRay(origin, direction, tmax, kRecordClosest);
-#endif
   hitPayload.t = -1.0;
   hitPayload.seed = seed;
   traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_radiance, origin, 0.0, direction,
               tmax, 0);
+#ifdef QUINTET_RECORD_RAYS
+  recordRay(origin, direction, tmax, kRecordClosest, hitPayload.t >= 0.0);
+#endif
   return hitPayload;
 }
 
@@ -41,13 +52,13 @@ layout(location = 1) rayPayloadEXT ShadowPayload shadowPayload;
 
 // True if nothing (alpha decided by `seed`) lies between t = 0 and tmax.
 bool traceVisible(vec3 origin, vec3 direction, float tmax, uint seed) {
-#ifdef QUINTET_RECORD_RAYS
-  recordRay(origin, direction, tmax, kRecordShadow);
-#endif
   shadowPayload.visible = 0u;
   shadowPayload.seed = seed;
   traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, kRay_shadow,
               kRayTypeCount, kMiss_shadow, origin, 0.0, direction, tmax, 1);
+#ifdef QUINTET_RECORD_RAYS
+  recordRay(origin, direction, tmax, kRecordShadow, shadowPayload.visible == 0u);
+#endif
   return shadowPayload.visible != 0u;
 }
 #endif

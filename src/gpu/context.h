@@ -61,6 +61,7 @@ struct DeviceInfo {
   RayTracingLimits limits;      // zero when ray tracing is absent
   bool rayQuery = false;
   bool positionFetch = false;
+  bool pipelineStatistics = false;  // rt::pipelineStatistics has something to tell
   float timestampPeriod = 0.0f;  // nanoseconds per tick; 0: no timestamps
   std::uint32_t timestampBits = 0;  // valid low bits of a timestamp
   std::uint32_t subgroupSize = 0;

@@ -19,6 +19,7 @@ constexpr const char* kOptionalExtensions[] = {
     VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME,  // copies of acceleration structures, SBT access bit
     VK_KHR_PIPELINE_LIBRARY_EXTENSION_NAME,           // hit groups compiled on their own
     VK_EXT_MEMORY_BUDGET_EXTENSION_NAME,              // exhausted memory is an error, not the system's OOM killer
+    VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME,  // registers, stack: what the driver tells of a pipeline
 };
 
 // One feature: its member of DeviceFeatures and its name in a refusal.
@@ -48,6 +49,7 @@ const Feature kOptionalFeatures[] = {
     QUINTET_FEATURE(rayTracingPipeline, rayTraversalPrimitiveCulling),
     QUINTET_FEATURE(rayTracingPipeline, rayTracingPipelineTraceRaysIndirect),  // launch sizes from memory
     QUINTET_FEATURE(rayTracingMaintenance1, rayTracingMaintenance1),
+    QUINTET_FEATURE(pipelineExecutables, pipelineExecutableInfo),
 };
 #undef QUINTET_FEATURE
 
@@ -69,6 +71,7 @@ VkPhysicalDeviceFeatures2* DeviceFeatures::chain(const std::vector<std::string>&
   if (contains(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME)) append(accelerationStructure);
   if (contains(extensions, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME)) append(rayTracingPipeline);
   if (contains(extensions, VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME)) append(rayTracingMaintenance1);
+  if (contains(extensions, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) append(pipelineExecutables);
   return &core;
 }
 

@@ -125,6 +125,7 @@ DeviceInfo describe(VkPhysicalDevice device, const Capabilities& capabilities, s
   info.refusal = refusalReason(capabilities);
   info.limits = properties.rayTracingLimits();
   info.rayQuery = capabilities.has(VK_KHR_RAY_QUERY_EXTENSION_NAME);
+  info.pipelineStatistics = capabilities.features.pipelineExecutables.pipelineExecutableInfo == VK_TRUE;
   info.positionFetch = capabilities.has("VK_KHR_ray_tracing_position_fetch");
   info.timestampPeriod = timestampBits ? core.limits.timestampPeriod : 0.0f;
   info.timestampBits = timestampBits;

@@ -31,16 +31,23 @@ void Timer::mark(Commands& commands, std::uint32_t index) {
     context_.vk().vkCmdWriteTimestamp2(commands.handle(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, index);
 }
 
+std::uint64_t Timer::ticks(std::uint32_t index) const {
+  std::uint64_t value = 0;
+  check(context_.vk().vkGetQueryPoolResults(context_.device(), pool_, index, 1, sizeof value, &value, sizeof value,
+                                            VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+        "read the timer");
+  return value;
+}
+
+double Timer::stamp(std::uint32_t index) const {
+  assert(index < count_);
+  if (!pool_) return 0.0;
+  return static_cast<double>(ticks(index)) * static_cast<double>(context_.info().timestampPeriod) * 1e-9;
+}
+
 double Timer::seconds(std::uint32_t first, std::uint32_t second) const {
   assert(first < count_ && second < count_);
   if (!pool_) return 0.0;
-  const auto ticks = [&](std::uint32_t index) {
-    std::uint64_t value = 0;
-    check(context_.vk().vkGetQueryPoolResults(context_.device(), pool_, index, 1, sizeof value, &value, sizeof value,
-                                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-          "read the timer");
-    return value;
-  };
   // The counter wraps at its valid bits; so does the difference.
   const std::uint32_t bits = context_.info().timestampBits;
   const std::uint64_t mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;

@@ -110,19 +110,21 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
 }
 
 LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set, const Program& program,
-                             const CompiledProgram& compiled, std::uint32_t recursionDepth, const gpu::PipelineCache* cache)
+                             const CompiledProgram& compiled, std::uint32_t recursionDepth, const gpu::PipelineCache* cache,
+                             bool captureStatistics)
     : context_(context), program_(program), recursionDepth_(recursionDepth) {
   assert(compiled.ok);
   const auto start = std::chrono::steady_clock::now();
   rt::PipelineOptions options;
   options.name = program.name;
+  options.captureStatistics = captureStatistics;
   options.maxRecursionDepth = std::max(1u, recursionDepth);
   DeviceStages stages(program, compiled, context.info().quirks);
   const auto groupCount = [&] { return static_cast<std::uint32_t>(options.groups.size()); };
 
-  options.groups.push_back({.general = stages.index(program.rayGeneration)});
+  options.groups.push_back({.general = stages.index(program.rayGeneration), .name = "ray generation"});
   firstMissGroup_ = groupCount();
-  for (const MissShader& miss : missShaders(program)) options.groups.push_back({.general = stages.index(miss.file)});
+  for (const MissShader& miss : missShaders(program)) options.groups.push_back({.general = stages.index(miss.file), .name = "miss " + miss.file});
   firstHitGroup_ = groupCount();
   for (const HitGroup& group : program.hitGroups) {
     for (const RayType& ray : program.rays) {
@@ -130,11 +132,12 @@ LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set,
       const HitShaders shaders = found == group.shaders.end() ? HitShaders{} : found->second;
       options.groups.push_back({.closestHit = stages.index(shaders.closestHit),
                                 .anyHit = stages.index(shaders.anyHit),
-                                .intersection = stages.intersection(shaders.intersection, shaders.anyHit)});
+                                .intersection = stages.intersection(shaders.intersection, shaders.anyHit),
+                                .name = "hit " + group.name + ", " + ray.name});
     }
   }
   firstCallableGroup_ = groupCount();
-  for (const Callable& callable : program.callables) options.groups.push_back({.general = stages.index(callable.file)});
+  for (const Callable& callable : program.callables) options.groups.push_back({.general = stages.index(callable.file), .name = "callable " + callable.file});
 
   options.stages = stages.stages();
   pipeline_ = std::make_unique<rt::Pipeline>(context, set, options, cache);

@@ -46,7 +46,7 @@ class LinkedProgram {
  public:
   // `compiled.ok` must hold. `recursionDepth`: of nested traces, as check() derives it (check.h).
   LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set, const Program& program, const CompiledProgram& compiled,
-                std::uint32_t recursionDepth, const gpu::PipelineCache* cache);
+                std::uint32_t recursionDepth, const gpu::PipelineCache* cache, bool captureStatistics = false);
 
   const Program& program() const { return program_; }
   const rt::Pipeline& pipeline() const { return *pipeline_; }

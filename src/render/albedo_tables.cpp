@@ -63,10 +63,22 @@ float stretch(float cosine, float alpha) {
   return std::sqrt(cosine * cosine + alpha * alpha * std::max(1.0f - cosine * cosine, 0.0f));
 }
 
-// Cosine or alpha of a node. At 0, a grazing direction or a mirror, stands the limit.
-float squared(std::size_t index, uint count) {
-  const float x = std::max(static_cast<float>(index) / static_cast<float>(count - 1), 1e-3f);
-  return x * x;
+float fourth(float x) { return x * x * x * x; }
+
+float position(std::size_t index, uint count) { return static_cast<float>(index) / static_cast<float>(count - 1); }
+
+// Cosine of a node. At 0 stands the limit.
+float cosineOf(std::size_t index, uint count) { return fourth(std::max(position(index, count), 0.01f)); }
+
+// Inside of glass, with total reflection below the cosine `edge`.
+float cosineInside(std::size_t index, float edge) {
+  const float x = 2.0f * position(index, kGlassCosines);
+  return x <= 1.0f ? edge * fourth(std::max(x, 0.01f)) : edge + (1.0f - edge) * (x - 1.0f) * (x - 1.0f);
+}
+
+float alphaOf(std::size_t index, uint count) {
+  constexpr float kFirst = 0.14953488f;  // kDeltaAlpha^(1/4)
+  return fourth(kFirst + (1.0f - kFirst) * position(index, count));
 }
 
 // The mean of value(wo.m, m.z) over the micronormals visible from wo.
@@ -101,7 +113,8 @@ vec2 schlickAlbedo(const Outgoing& wo, const Quadrature& quadrature) {
   return meanOverVisible(wo, quadrature, [&](float cosine, float normalZ) {
     const float x = std::max(1.0f - cosine, 0.0f);
     const float weight = x * x * x * x * x;
-    return reflectedShadowing(wo, cosine, normalZ) * vec2(1.0f - weight, weight);
+    const float shadowing = std::min(reflectedShadowing(wo, cosine, normalZ), 1.0f);
+    return vec2(1.0f - shadowing, shadowing * weight);
   });
 }
 
@@ -122,17 +135,16 @@ vec2 glassAlbedo(const Outgoing& wo, float eta, const Quadrature& quadrature) {
   });
 }
 
-// Averages over one row of (A, B) as the shader interpolates it: ∫ 4 x³ … dx over x = sqrt(cos theta).
-vec4 averageRow(const vec2* row) {
+// Average of one row of (L, B) as the shader interpolates it: ∫ 8 x⁷ … dx over x = cos^(1/4).
+vec2 averageRow(const vec2* row) {
   constexpr int kPoints = 8;  // of the midpoint rule in each cell
   constexpr uint kCells = kAlbedoCosines - 1;
-  vec4 sum(0.0f);
+  vec2 sum(0.0f);
   for (uint cell = 0; cell < kCells; ++cell) {
     for (int i = 0; i < kPoints; ++i) {
       const float t = (static_cast<float>(i) + 0.5f) / kPoints;
       const float x = (static_cast<float>(cell) + t) / kCells;
-      const vec2 ab = glm::mix(row[cell], row[cell + 1], t);
-      sum += vec4(ab, ab * (1.0f / (ab.x + ab.y) - 1.0f)) * (4.0f * x * x * x);
+      sum += glm::mix(row[cell], row[cell + 1], t) * (8.0f * fourth(x) * x * x * x);
     }
   }
   return sum / static_cast<float>(kCells * kPoints);
@@ -142,28 +154,29 @@ vec4 averageRow(const vec2* row) {
 
 std::vector<float> computeAlbedoTables() {
   std::vector<float> table(kAlbedoFloatCount);
-  // For relative errors of 0.001, 0.001 and 0.004: the edge of total reflection is a kink.
-  const Quadrature smooth(24, 8), outside(8, 8), inside(12, 16);
+  // The edge of total reflection is a kink.
+  const Quadrature smooth(24, 8), outside(8, 8), inside(32, 16);
   parallelFor(kAlbedoRoughnesses, [&](std::size_t row) {
-    const float alpha = squared(row, kAlbedoRoughnesses);
+    const float alpha = alphaOf(row, kAlbedoRoughnesses);
     vec2 cells[kAlbedoCosines];
     for (uint i = 0; i < kAlbedoCosines; ++i) {
-      const float cosine = squared(i, kAlbedoCosines);
+      const float cosine = cosineOf(i, kAlbedoCosines);
       cells[i] = schlickAlbedo({cosine, alpha, stretch(cosine, alpha)}, smooth);
     }
     std::copy_n(&cells[0].x, kAlbedoCosines * 2, table.begin() + row * kAlbedoCosines * 2);
-    const vec4 average = averageRow(cells);
-    std::copy_n(&average.x, 4, table.begin() + kAlbedoAverageOffset + row * 4);
+    const vec2 average = averageRow(cells);
+    std::copy_n(&average.x, 2, table.begin() + kAlbedoAverageOffset + row * 2);
   });
   parallelFor(2 * kGlassIors * kGlassRoughnesses, [&](std::size_t row) {
     const std::size_t layer = row / kGlassRoughnesses;
     const float x = static_cast<float>(layer % kGlassIors) / (kGlassIors - 1);
     const float r = 0.5f * x * x;  // (ior - 1) / (ior + 1)
     const float eta = layer < kGlassIors ? (1.0f + r) / (1.0f - r) : (1.0f - r) / (1.0f + r);
-    const float alpha = squared(row % kGlassRoughnesses, kGlassRoughnesses);
+    const float alpha = alphaOf(row % kGlassRoughnesses, kGlassRoughnesses);
+    const float edge = std::sqrt(std::max(1.0f - eta * eta, 1e-6f));
     float* cells = table.data() + kGlassOffset + row * kGlassCosines * 2;
     for (uint i = 0; i < kGlassCosines; ++i) {
-      const float cosine = squared(i, kGlassCosines);
+      const float cosine = eta < 1.0f ? cosineInside(i, edge) : cosineOf(i, kGlassCosines);
       const vec2 glass = glassAlbedo({cosine, alpha, stretch(cosine, alpha)}, eta, eta < 1.0f ? inside : outside);
       cells[2 * i] = glass.x;
       cells[2 * i + 1] = glass.y;

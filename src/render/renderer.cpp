@@ -72,12 +72,14 @@ struct Renderer::Impl {
   std::vector<std::filesystem::path> files;
   std::optional<InstrumentBuffer> instrument;
   program::CompiledProgram instrumented;  // file names of stages, for notes
+  std::vector<LaunchTiming> launches;
+  double lastStamp = 0;  // of the device, when the launch before ended
   double pixelSamplesPerSecond = 0;  // measured; 0: unknown yet
   std::uint64_t nextBatch = 0;
 
   Impl(DeviceScene& deviceScene, const program::Program& program, const shader::Compiler& compiler, const gpu::PipelineCache* cache,
        const RenderSettings& renderSettings)
-      : scene(deviceScene), context(deviceScene.context()), description(program), settings(renderSettings), timer(context, 2) {
+      : scene(deviceScene), context(deviceScene.context()), description(program), settings(renderSettings), timer(context, 4) {
     const Region region = checkedRegion(settings);
     if (settings.timeoutSeconds <= 0) settings.timeoutSeconds = context.info().quirks.software ? 600 : 60;
     link(compiler, cache);
@@ -116,7 +118,7 @@ struct Renderer::Impl {
     diagnostics = checked.diagnostics;
     files = compiled.files;
     scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder, description.anyHitForAll);
-    linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled, checked.recursionDepth, cache);
+    linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled, checked.recursionDepth, cache, settings.profile);
     table.emplace(linked->makeTable(scene.facts().geometries));
     statistics.compileSeconds = compiled.seconds;
     if (settings.instrument) instrumented = compiled;
@@ -150,9 +152,10 @@ struct Renderer::Impl {
               const Record& after) {
     const auto start = Clock::now();
     const std::uint64_t value = context.submit([&](gpu::Commands& commands) {
-      if (before) before(commands);
       timer.reset(commands);
       timer.mark(commands, 0);
+      if (before) before(commands);
+      timer.mark(commands, 1);
       for (std::uint32_t done = 0; done < count;) {
         shared::Launch constants{};
         constants.frame = frameBuffer.address();
@@ -165,17 +168,25 @@ struct Renderer::Impl {
         rt::trace(commands, linked->pipeline(), *table, std::as_bytes(std::span(&constants, 1)), target.width, rows);
         done += constants.sampleCount;
       }
-      timer.mark(commands, 1);
+      timer.mark(commands, 2);
       if (after) after(commands);
+      timer.mark(commands, 3);
     });
     context.wait(value, settings.timeoutSeconds);
     const double wall = secondsSince(start);
     if (statistics.firstLaunchSeconds == 0) statistics.firstLaunchSeconds = wall;
-    const double device = timer.seconds(0, 1);
+    const double device = timer.seconds(1, 2);
+    if (settings.profile) noteLaunch(rows, count, wall);
     statistics.deviceSeconds += device;
     const double rate = static_cast<double>(target.width) * rows * count / std::max(1e-6, device > 0 ? device : wall);
     // Strips differ in cost: follow slowly upwards, at once downwards.
     pixelSamplesPerSecond = pixelSamplesPerSecond > 0 ? std::min(rate, 2.0 * pixelSamplesPerSecond) : 0.25 * rate;
+  }
+
+  void noteLaunch(std::uint32_t rows, std::uint32_t samples, double wall) {
+    const double idle = launches.empty() ? 0.0 : std::max(0.0, timer.stamp(0) - lastStamp);
+    launches.push_back({rows, samples, timer.seconds(0, 1), timer.seconds(1, 2), timer.seconds(2, 3), idle, wall});
+    lastStamp = timer.stamp(3);
   }
 
   bool accumulates() const { return description.accumulation == program::Accumulation::program; }
@@ -335,6 +346,8 @@ bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) {
 io::Image Renderer::image(std::size_t output) const { return impl_->image(output); }
 RayCount Renderer::rays() const { return impl_->film->countRays(); }
 const RenderStatistics& Renderer::statistics() const { return impl_->statistics; }
+const std::vector<LaunchTiming>& Renderer::launches() const { return impl_->launches; }
+const program::LinkedProgram& Renderer::linked() const { return *impl_->linked; }
 const std::vector<shader::Diagnostic>& Renderer::diagnostics() const { return impl_->diagnostics; }
 const std::vector<std::filesystem::path>& Renderer::files() const { return impl_->files; }
 std::vector<shader::Diagnostic> Renderer::notes() const { return impl_->notes(); }

@@ -23,13 +23,14 @@ struct RenderSettings {
   program::ParameterValues parameters{{}};
   std::vector<std::string> outputs;  // of the program's optional ones, those to make
   std::vector<std::pair<std::string, std::string>> defines;  // for all shaders of the program
-  const gpu::Buffer* rayRecords = nullptr;  // shared::RayRecord, rayRecordCapacity per pixel: for benchmarks
+  const gpu::Buffer* rayRecords = nullptr;  // shared::RayKinds, then RayRecords, rayRecordCapacity per pixel: for benchmarks
   std::uint32_t rayRecordCapacity = 0;
   std::uint32_t frameCount = 0;  // frames of this run, for programs that accumulate (frameSize); 0: it has no end
   bool instrument = false;      // checks at run time, slow: Renderer::notes
   double launchSeconds = 0.25;  // a launch is cut so that it takes about this long
   // A launch that takes longer: gpu::TimeoutError. 0: 60, or 600 on a CPU, whose first launch compiles.
   double timeoutSeconds = 0;
+  bool profile = false;  // Renderer::launches; keeps what the driver tells of the pipeline (rt::pipelineStatistics)
 };
 
 // A program whose shaders do not compile or do not fit together (program/check.h); what() is the first error's line.
@@ -50,6 +51,17 @@ struct RenderStatistics {
   double deviceSeconds = 0;      // timestamps around all launches
   std::uint64_t samples = 0;     // per pixel; frames, where the program accumulates
   std::uint64_t batches = 0;
+};
+
+// One launch of a profiled renderer: seconds of the device, but where it says otherwise.
+struct LaunchTiming {
+  std::uint32_t rows = 0;
+  std::uint32_t samples = 0;  // per pixel
+  double beginSeconds = 0;    // emptying the batch
+  double traceSeconds = 0;
+  double endSeconds = 0;      // adding the batch to the total
+  double idleSeconds = 0;     // of the device, since the launch before; 0 for the first one
+  double wallSeconds = 0;     // of the host, from recording to the end of the wait
 };
 
 // Called between launches with the fraction of the current batch that is done; false: give the batch up
@@ -92,6 +104,9 @@ class Renderer {
   io::Image image(std::size_t output = 0) const;
   RayCount rays() const;
   const RenderStatistics& statistics() const;
+  // Of RenderSettings::profile.
+  const std::vector<LaunchTiming>& launches() const;
+  const program::LinkedProgram& linked() const;
   // What the checks of RenderSettings::instrument have found so far (ids Q001 … Q006). Blocks.
   std::vector<shader::Diagnostic> notes() const;
   // Warnings and notes of the compiler and of the check.

@@ -124,7 +124,8 @@ void checkOptions(const gpu::RayTracingLimits& limits, const PipelineOptions& op
 
 Pipeline::Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const PipelineOptions& options,
                    const gpu::PipelineCache* cache)
-    : context_(context), set_(set) {
+    : context_(context), set_(set), groups_(options.groups),
+      keepsStatistics_(options.captureStatistics && context.info().pipelineStatistics) {
   const gpu::RayTracingLimits& limits = context.info().limits;
   checkOptions(limits, options);
   const Modules modules(context, options.stages);
@@ -137,6 +138,7 @@ Pipeline::Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const Pip
   info.pGroups = groups.groups().data();
   info.maxPipelineRayRecursionDepth = options.maxRecursionDepth;
   info.layout = set.pipelineLayout();
+  if (keepsStatistics_) info.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
   gpu::check(context.vk().vkCreateRayTracingPipelinesKHR(context.device(), VK_NULL_HANDLE,
                                                          cache ? cache->handle() : VK_NULL_HANDLE, 1, &info, nullptr, &handle_),
              "create the ray tracing pipeline", options.name);

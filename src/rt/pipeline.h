@@ -30,6 +30,7 @@ struct PipelineGroup {
   int closestHit = kNoStage;
   int anyHit = kNoStage;
   int intersection = kNoStage;  // set: a procedural hit group
+  std::string name = {};        // for groupStackSizes
 };
 
 struct PipelineOptions {
@@ -37,6 +38,7 @@ struct PipelineOptions {
   std::vector<PipelineGroup> groups;
   std::uint32_t maxRecursionDepth = 1;
   std::string name;
+  bool captureStatistics = false;  // for pipelineStatistics; where the driver can
 };
 
 class Pipeline {
@@ -50,12 +52,17 @@ class Pipeline {
   VkPipeline handle() const { return handle_; }
   const gpu::BindlessSet& set() const { return set_; }
   std::span<const std::byte> groupHandles() const { return handles_; }
+  const std::vector<PipelineGroup>& groups() const { return groups_; }
+  gpu::Context& context() const { return context_; }
+  bool keepsStatistics() const { return keepsStatistics_; }  // for pipelineStatistics
 
  private:
   gpu::Context& context_;
   const gpu::BindlessSet& set_;
   VkPipeline handle_ = VK_NULL_HANDLE;
   std::vector<std::byte> handles_;
+  std::vector<PipelineGroup> groups_;
+  bool keepsStatistics_ = false;
 };
 
 // The table on the device.

@@ -30,11 +30,12 @@ bool bsdfHasSmooth(Bsdf b) {
 }
 
 vec3 bsdfEval(Bsdf b, vec3 wo, vec3 wi) {
+  vec2 lb = albedoSchlick(b.row, abs(wi.z));
   vec3 transmission = vec3(0.0);
   if (kHasSolidTransmission) transmission = dielectricEval(b.dielectric, wo, wi);
-  if (kHasThinTransmission) transmission = b.refractive ? transmission : thinEval(b.thin, wo, wi);
-  vec3 base = diffuseEval(b.diffuse, wi);
-  base += b.specularDelta ? vec3(0.0) : specularEval(b.specular, wo, wi);
+  if (kHasThinTransmission) transmission = b.refractive ? transmission : thinEval(b.thin, wo, wi, lb);
+  vec3 base = diffuseEval(b.diffuse, wi, lb);
+  base += b.specularDelta ? vec3(0.0) : specularEval(b.specular, wo, wi, lb);
   if (kHasTransmission) base += b.transmissionDelta ? vec3(0.0) : transmission;
   if (!kHasClearcoat) return base;
   float coat = b.clearcoatDelta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatEval(b.clearcoat, wo, wi);
@@ -79,8 +80,11 @@ bool bsdfSampleDirection(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s)
   float bound = transmits && b.refractive ? 1.0 : ggxBound(o.z, alpha);
   vec3 m = s.delta ? normal : basis * ggxSample(o, alpha, bound, u);
 
-  if (transmits) s.wi = b.refractive ? dielectricSample(b.dielectric, wo, m, (uLobe - edge.z) / b.chance.w) : thinSample(wo, m);
-  else s.wi = lobe == 2 ? diffuseSample(u) : specularSample(wo, m);
+  // Where in the lobe's share uLobe is: chooses within the lobe.
+  float uPart = lobe == 3 ? (uLobe - edge.z) / b.chance.w : (uLobe - edge.x) / b.chance.y;
+  if (transmits) s.wi = b.refractive ? dielectricSample(b.dielectric, wo, m, uPart) : thinSample(b.thin, wo, m, uPart, u);
+  else if (coat) s.wi = clearcoatSample(b.clearcoat, wo, m);
+  else s.wi = lobe == 2 ? diffuseSample(u) : specularSample(b.specular, wo, m, uPart, u);
   s.transmitted = transmits && (!b.refractive || dot(s.wi, m) < 0.0);
   s.pdf = 0.0;
   s.weight = s.delta ? bsdfDeltaWeight(b, lobe, dot(wo, m), s.transmitted) / b.chance[lobe] : vec3(0.0);

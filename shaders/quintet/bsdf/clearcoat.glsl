@@ -16,14 +16,15 @@ struct ClearcoatLobe {
   float alpha;
 };
 
-// The part of light from wo that the coat reflects.
-float clearcoatAlbedo(ClearcoatLobe lobe, vec3 wo) {
-  vec2 ab = albedoSchlick(albedoRow(lobe.alpha), dot(wo, lobe.normal));
-  return lobe.weight * (kClearcoatF0 * ab.x + ab.y);
-}
-
 float clearcoatFresnel(ClearcoatLobe lobe, float cosine) {
   return lobe.weight * mix(kClearcoatF0, 1.0, schlickWeight(cosine));
+}
+
+// The part of light from wo that the coat reflects.
+float clearcoatAlbedo(ClearcoatLobe lobe, vec3 wo, bool delta) {
+  float cosine = dot(wo, lobe.normal);
+  vec2 lb = albedoSchlick(albedoRow(lobe.alpha), cosine);
+  return delta ? clearcoatFresnel(lobe, cosine) : lobe.weight * albedoSingle(vec3(kClearcoatF0), 1.0, lb).x;
 }
 
 float clearcoatDistribution(ClearcoatLobe lobe, vec3 h) {

@@ -31,6 +31,7 @@ struct Bsdf {
   ThinLobe thin;
   DielectricLobe dielectric;
   ClearcoatLobe clearcoat;
+  AlbedoCell row;          // of the specular layer's roughness
   vec4 chance;             // of sampling coat, specular, diffuse, transmission: their sum is 1, or 0 for black
   float underCoat;         // passed by the clearcoat; also for the light that the surface emits
   bool refractive;         // transmission is `dielectric`, not `thin`
@@ -56,24 +57,38 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   vec3 clearF0 = min(reflectanceFromIor(p.ior) * p.specularColor, 1.0);
   vec3 colorF0 = p.specular * clearF0;
   float f0 = maxComponent(colorF0);
-  AlbedoCell row = albedoRow(p.alpha);
-  vec2 ab = albedoSchlick(row, wo.z);
+  b.row = albedoRow(p.alpha);
+  float schlick = schlickWeight(wo.z);
+  vec2 lb = b.specularDelta ? vec2(0.0, schlick) : albedoSchlick(b.row, wo.z);
+  vec2 average = albedoAverage(b.row);
 
   // The metal and all of the dielectric that `dielectric` does not reflect itself.
   float reflecting = b.refractive ? opaque : dielectric;
-  vec3 metalGain = p.metallic * albedoGain(baseColor, ab);
-  vec3 dielectricGain = reflecting * albedoGain(colorF0, ab);
-  b.specular.f0 = metalGain * baseColor + dielectricGain * colorF0;
-  b.specular.f90 = metalGain + dielectricGain * p.specular;
+  b.specular.f0 = p.metallic * baseColor + reflecting * colorF0;
+  b.specular.f90 = p.metallic + reflecting * p.specular;
   b.specular.alpha = alpha;
 
-  b.diffuse = makeDiffuse(opaque * baseColor, f0, p.specular, row, ab);
-  b.thin = makeThin(clear * baseColor, f0, p.specular, alpha, ab);
+  // Multiple scattering in both, and how the layer of the dielectric is coupled to what lies below.
+  vec3 colorMultiple = multipleFactor(colorF0, p.specular, average.x);
+  vec3 multiple = lb.x * (p.metallic * multipleFactor(baseColor, 1.0, average.x) + reflecting * colorMultiple);
+  vec3 single = albedoSingle(b.specular.f0, b.specular.f90, lb);
+  b.specular.multiple = multiple / average.x;
+  b.specular.multipleChance = luminance(multiple) / max(luminance(single + multiple), 1e-20);
+
+  float layerMultiple = maxComponent(colorMultiple);
+  vec3 passing = layerPassing(f0, p.specular, layerMultiple);
+  float passed = layerPassed(passing, lb);
+  b.diffuse.color = opaque * baseColor * (passed / max(layerPassed(passing, average), 1e-4));
+  b.diffuse.passing = passing;
+
+  vec3 clearColor = clear * baseColor;
+  float through = lb.x * (1.0 - layerMultiple);
+  b.thin = ThinLobe(clearColor, f0, p.specular, alpha, through / average.x * clearColor, min(through / max(passed, 1e-20), 1.0));
 
   // Where the indices nearly match, refraction is too narrow for its half vector: straight on. So for ior 0.
   float ior = max(p.ior, 1.0);
   b.transmissionDelta = b.specularDelta || (b.refractive && (ior < 1.01 || p.alpha * (ior - 1.0) < 1e-5));
-  vec2 glass = b.refractive ? albedoGlass(wo.z, b.transmissionDelta ? 0.0 : p.alpha, ior, p.entering) : vec2(1.0);
+  vec2 glass = b.refractive && !b.transmissionDelta ? albedoGlass(wo.z, p.alpha, ior, p.entering) : vec2(1.0);
   b.dielectric.compensation = clear / mix(glass.y, glass.x, p.specular);
   b.dielectric.color = b.dielectric.compensation * baseColor;
   b.dielectric.f0 = clearF0;
@@ -84,13 +99,12 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   // The coat of a solid is on its outside only.
   bool coated = dot(wo, p.clearcoatNormal) > 0.0 && (p.entering || !b.refractive);
   b.clearcoat = ClearcoatLobe(p.clearcoatNormal, coated ? p.clearcoat : 0.0, max(p.clearcoatAlpha, kDeltaAlpha));
-  float coat = kHasClearcoat ? clearcoatAlbedo(b.clearcoat, wo) : 0.0;
+  float coat = kHasClearcoat ? clearcoatAlbedo(b.clearcoat, wo, b.clearcoatDelta) : 0.0;
   b.underCoat = 1.0 - coat;
 
-  float passed = max(1.0 - albedoCompensated(f0, p.specular, ab), 0.0);
   float tint = luminance(baseColor);
   float glassAlbedo = mix(tint, 1.0, max(fresnelDielectric(wo.z, b.dielectric.eta), 0.1));
-  b.chance = vec4(coat, b.underCoat * luminance(b.specular.f0 * ab.x + b.specular.f90 * ab.y),
+  b.chance = vec4(coat, b.underCoat * luminance(single + multiple),
                   b.underCoat * opaque * tint * passed,
                   kHasTransmission ? b.underCoat * clear * (b.refractive ? glassAlbedo : tint * passed) : 0.0);
   float sum = b.chance.x + b.chance.y + b.chance.z + b.chance.w;

@@ -1,48 +1,44 @@
 // Transmission through a thin wall: straight on, roughened like the reflection. The lobe is the base's GGX
 // reflection mirrored at the surface, times 1 - F per micronormal (KHR_materials_transmission, "Implementation
-// notes": one interface). Scaled so that reflection and transmission of a white wall sum to 1 (as Turquin
-// 2019); therefore not reciprocal. No radiance scaling: both sides are the same medium.
+// notes": one interface). What of multiple scattering is not reflected is transmitted, so that reflection and
+// transmission of a white wall sum to 1. No radiance scaling: both sides are the same medium.
 #ifndef QUINTET_BSDF_THIN_GLSL
 #define QUINTET_BSDF_THIN_GLSL
 
-#include "albedo.glsl"
 #include "specular.glsl"
 
 struct ThinLobe {
-  vec3 color;  // tint times compensation
+  vec3 color;            // tint
   float f0;
   float f90;
   float alpha;
+  vec3 multiple;         // all of multiple scattering but multipleEval
+  float multipleChance;  // of sampling it
 };
-
-// `ab`: the layer's albedoSchlick at wo.
-ThinLobe makeThin(vec3 color, float f0, float f90, float alpha, vec2 ab) {
-  float passed = 1.0 - albedoCompensated(f0, f90, ab);
-  float single = (1.0 - f0) * ab.x + (1.0 - f90) * ab.y;
-  return ThinLobe(color * clamp(passed / max(single, 1e-4), 0.0, 4.0), f0, f90, alpha);
-}
 
 vec3 thinTransmittance(ThinLobe lobe, float cosine) {
   return lobe.color * (1.0 - mix(lobe.f0, lobe.f90, schlickWeight(cosine)));
 }
 
-vec3 thinEval(ThinLobe lobe, vec3 wo, vec3 wi) {
+// `lb`: the layer's albedoSchlick at |wi.z|.
+vec3 thinEval(ThinLobe lobe, vec3 wo, vec3 wi, vec2 lb) {
   vec3 h = wo + vec3(wi.xy, -wi.z);
   float d = ggxDistribution(h.z * h.z, dot(h.xy, h.xy), lobe.alpha);
-  float f = ggxReflection(d, wo.z, -wi.z, lobe.alpha);
-  return wi.z < 0.0 ? f * thinTransmittance(lobe, 0.5 * length(h)) : vec3(0.0);
+  vec3 single = ggxReflection(d, wo.z, -wi.z, lobe.alpha) * thinTransmittance(lobe, 0.5 * length(h));
+  return wi.z < 0.0 ? single + lobe.multiple * multipleEval(wi, lb) : vec3(0.0);
 }
 
-// m: drawn by ggxSample with the bound ggxBound.
-vec3 thinSample(vec3 wo, vec3 m) {
-  vec3 r = reflect(-wo, m);
+// m: drawn by ggxSample with the bound ggxBound; uPart chooses between single and multiple scattering.
+vec3 thinSample(ThinLobe lobe, vec3 wo, vec3 m, float uPart, vec2 u) {
+  vec3 r = uPart < lobe.multipleChance ? multipleSample(lobe.alpha, u) : reflect(-wo, m);
   return vec3(r.xy, -r.z);
 }
 
 float thinPdf(ThinLobe lobe, vec3 wo, vec3 wi) {
   vec3 h = wo + vec3(wi.xy, -wi.z);
   float d = ggxDistribution(h.z * h.z, dot(h.xy, h.xy), lobe.alpha);
-  return wi.z < 0.0 ? ggxReflectionPdf(d, wo.z, lobe.alpha, ggxBound(wo.z, lobe.alpha)) : 0.0;
+  float single = ggxReflectionPdf(d, wo.z, lobe.alpha, ggxBound(wo.z, lobe.alpha));
+  return wi.z < 0.0 ? mix(single, multiplePdf(wi, lobe.alpha), lobe.multipleChance) : 0.0;
 }
 
 #endif

@@ -29,6 +29,7 @@
 #define PrimitiveArray gsnPrimitiveArray_
 #define PrimitiveData gsnPrimitiveData_
 #define RayRecord gsnRayRecord_
+#define RayKinds gsnRayKinds_
 #define TextureData gsnTextureData_
 #define UintArray gsnUintArray_
 #define Uvec3Array gsnUvec3Array_

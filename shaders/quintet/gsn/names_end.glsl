@@ -31,6 +31,7 @@
 #undef PrimitiveArray
 #undef PrimitiveData
 #undef RayRecord
+#undef RayKinds
 #undef TextureData
 #undef UintArray
 #undef Uvec3Array

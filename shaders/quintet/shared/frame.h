@@ -72,6 +72,17 @@ struct RayRecord {
 };
 QT_SHARED_SIZE(RayRecord, 32);
 
+// Before the records: all rays by kind, also those for which there was no room.
+struct RayKinds {
+  uint camera;             // the first ray of each pixel
+  uint cameraHits;
+  uint continuation;       // other rays that look for the closest surface
+  uint continuationHits;
+  uint shadow;
+  uint shadowHits;         // something lies in between
+};
+QT_SHARED_SIZE(RayKinds, 24);
+
 QT_CONSTANT kNoLight = 0xFFFFFFFFu;
 
 struct Frame {
@@ -83,7 +94,7 @@ struct Frame {
   Address lightSlots;   // uint[]: first LightData of an instance's geometry (+ primitive), or kNoLight
   Address albedoTables; // quintet/bsdf/albedo.glsl
   Address statistics;   // uvec2[filmWidth · filmHeight]: rays traced, samples dropped; 0: do not count
-  Address rayRecords;   // RayRecord[filmWidth · filmHeight · rayRecordCapacity], for benchmarks; else 0
+  Address rayRecords;   // RayKinds, then RayRecord[filmWidth · filmHeight · rayRecordCapacity], for benchmarks; else 0
   Address instrument;   // Instrument and its pixels (shared/instrument.h); 0: not instrumented
   // vec4[filmWidth · filmHeight], rows top to bottom: sums of this batch, or as the output's rule says
   // (program::OutputPixel); 0: an optional output that nobody asked for.

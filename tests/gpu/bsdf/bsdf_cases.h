@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,6 +38,50 @@ struct BsdfCase {
 inline vec3 directionAt(float cosine, float azimuth = 0.7f) {
   const float sine = std::sqrt(1.0f - cosine * cosine);
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
+}
+
+// What every test goes through: the narrowest lobe that is no delta to the roughest, straight on to grazing.
+inline const std::vector<float> kRoughAlphas = {0.0005f, 0.003f, 0.02f, 0.1f, 0.4f, 1.0f};
+inline const std::vector<float> kCosines = {1.0f, 0.75f, 0.3f, 0.05f, 0.001f};
+
+struct NamedCase {
+  std::string name;
+  BsdfCase material;
+};
+
+// Every lobe alone, as far as a material can have it alone, and mixtures of them; all with roughness `alpha`.
+inline std::vector<NamedCase> materialsAt(float alpha, const vec3& wo) {
+  BsdfCase base;
+  base.alpha = alpha;
+  base.wo = wo;
+  base.baseColor = {0.9f, 0.5f, 0.2f};
+  std::vector<NamedCase> cases;
+  const auto add = [&](const char* name, auto change) {
+    cases.push_back({name, base});
+    change(cases.back().material);
+    char text[64];
+    std::snprintf(text, sizeof text, ", alpha %g, cosine %g", static_cast<double>(alpha), static_cast<double>(wo.z));
+    cases.back().name += text;
+  };
+  const auto coat = [](BsdfCase& c) {
+    c.clearcoat = 0.8f, c.clearcoatAlpha = 0.2f;
+    c.clearcoatNormal = glm::normalize(vec3(0.1f, -0.05f, 1.0f));
+  };
+  const auto mix = [&](BsdfCase& c) { c.metallic = 0.3f, c.transmission = 0.5f, c.specular = 0.7f, coat(c); };
+  add("metal", [](BsdfCase& c) { c.metallic = 1.0f; });
+  add("dielectric", [](BsdfCase&) {});
+  add("dielectric, ior 2.4", [](BsdfCase& c) { c.ior = 2.4f, c.specularColor = {0.5f, 1.0f, 0.8f}; });
+  add("thin wall", [](BsdfCase& c) { c.transmission = 1.0f, c.thin = 1; });
+  for (const bool outside : {true, false}) {
+    const auto glass = [&](BsdfCase& c) { c.transmission = 1.0f, c.entering = outside; };
+    add(outside ? "glass outside" : "glass inside", glass);
+    add(outside ? "glass 1.15 outside" : "glass 1.15 inside", [&](BsdfCase& c) { glass(c), c.ior = 1.15f, c.specular = 0.5f; });
+    add(outside ? "mixture, solid outside" : "mixture, solid inside", [&](BsdfCase& c) { mix(c), c.entering = outside; });
+  }
+  add("coat", [&](BsdfCase& c) { coat(c), c.clearcoatAlpha = alpha, c.alpha = 0.3f; });
+  add("mixture, thin", [&](BsdfCase& c) { mix(c), c.thin = 1; });
+  add("mixture, opaque", [&](BsdfCase& c) { mix(c), c.transmission = 0.0f; });
+  return cases;
 }
 
 // One sample of a lobe or of the mixture, as the shader's struct Sample below.

@@ -36,81 +36,91 @@ TEST_F(BsdfLobes, WeightIsEvalOverPdf) {
     }
   )";
   std::vector<BsdfCase> cases;
-  for (const float cosine : {1.0f, 0.6f, 0.2f, 0.02f}) {
-    for (const float alpha : {0.001f, 0.02f, 0.1f, 0.4f, 1.0f}) {
-      BsdfCase c;
-      c.wo = directionAt(cosine);
-      c.alpha = alpha;
-      c.baseColor = {0.9f, 0.5f, 0.2f};
-      c.metallic = 0.3f;
-      c.transmission = 0.5f;
-      c.clearcoat = 0.5f;
-      c.clearcoatAlpha = alpha;
-      cases.push_back(c);
-      c.thin = 1;
-      cases.push_back(c);
-    }
-  }
+  for (const float alpha : kRoughAlphas)
+    for (const float cosine : kCosines)
+      for (const NamedCase& named : materialsAt(alpha, directionAt(cosine))) cases.push_back(named.material);
   std::size_t valid = 0;
-  for (const Out& out : runCases<Out>(body, cases, cases.size() * 4096)) {
+  for (const Out& out : runCases<Out>(body, cases, cases.size() * 1000)) {
     if (out.pdf == 0.0f) continue;
     ++valid;
     ASSERT_LE(std::abs(out.pdf - out.evaluatedPdf), 1e-3f * out.pdf);
     ASSERT_LE(relativeDifference(out.weight * out.pdf, out.value), 2e-3);
   }
-  EXPECT_GT(valid, cases.size() * 4000);
+  EXPECT_GT(valid, cases.size() * 850);
 }
 
-// f(wo, wi) = f(wi, wo), for the diffuse lobe as it is, for the others without the compensation and the
-// coupling, which are factors of wo; f / (index at wo)^2 for refraction (Veach 1997, eq. 5.14).
+// f(wo, wi) = f(wi, wo) for all materials, without two factors of wo alone: that of glass for multiple scattering and
+// that of the coat for what lies below it. f / (index at wo)^2 for refraction (Veach 1997, eq. 5.14). The coat has the
+// surface's normal: where they differ, f carries one cosine and the light another.
+const std::string kBothWays = kBsdfPrelude + R"(
+  struct Out_ { vec3 forward; vec3 backward; };
+  #define In Case
+  #define Out Out_
+  vec3 evalOf(Case c, vec3 wo, vec3 wi) {
+    c.wo = wo;
+    c.clearcoatNormal = vec3(0.0, 0.0, 1.0);
+    Bsdf b = makeBsdfOf(c);
+  #ifndef AS_IT_IS
+    b.underCoat = 1.0;
+    b.dielectric.color /= max(b.dielectric.compensation, 1e-20);
+    b.dielectric.compensation = 1.0;
+  #endif
+    return bsdfEval(b, wo, wi) / (abs(wi.z) * (b.refractive && c.entering == 0u ? c.ior * c.ior : 1.0));
+  }
+  Out run(uint index, In c) {
+    vec3 wo = uniformDirection(randomAt(index, 3u).xy);
+    wo.z = max(abs(wo.z), 0.01);
+    wo = normalize(wo);
+    vec3 wi = uniformDirection(randomAt(index, 4u).xy);
+    if (abs(wi.z) < 0.01) wi = vec3(0.0, 0.0, 1.0);
+    vec3 forward = evalOf(c, wo, wi);
+    if (wi.z > 0.0) return Out(forward, evalOf(c, wi, wo));
+    if (c.thin == 0u) c.entering = 1u - c.entering;  // seen from the other side, upside down
+    return Out(forward, evalOf(c, wi * vec3(1.0, 1.0, -1.0), wo * vec3(1.0, 1.0, -1.0)));
+  }
+)";
+struct BothWays { vec3 forward; vec3 backward; };
+
 TEST_F(BsdfLobes, Reciprocity) {
-  struct Out { vec3 forward; vec3 backward; };
-  const std::string body = kBsdfPrelude + R"(
-    struct Out_ { vec3 forward; vec3 backward; };
-    #define In Case
-    #define Out Out_
-    vec3 evalOf(Case c, vec3 wo, vec3 wi, int lobe) {
-      c.wo = wo;
-      Bsdf b = makeBsdfOf(c);
-      b.specular.f0 = vec3(0.3, 0.5, 0.7);
-      b.specular.f90 = vec3(1.0);
-      b.thin.color = vec3(0.3, 0.5, 0.7);
-      b.dielectric.color = vec3(0.3, 0.5, 0.7);
-      b.dielectric.compensation = 1.0;
-      float scale = c.entering != 0u ? 1.0 : c.ior * c.ior;
-      return (lobe == 0 ? diffuseEval(b.diffuse, wi) : lobe == 1 ? specularEval(b.specular, wo, wi)
-            : lobe == 2 ? thinEval(b.thin, wo, wi) : lobe == 3 ? dielectricEval(b.dielectric, wo, wi) / scale
-            : vec3(clearcoatEval(b.clearcoat, wo, wi))) / abs(wi.z);
+  for (const float alpha : kRoughAlphas) {
+    for (NamedCase& named : materialsAt(alpha, vec3(0.0f, 0.0f, 1.0f))) {
+      // The coat covers solids on one side only.
+      if (named.material.transmission > 0.0f && !named.material.thin) named.material.clearcoat = 0.0f;
+      std::size_t compared = 0;
+      for (const BothWays& out : runCases<BothWays>(kBothWays, {named.material}, 20'000)) {
+        const double size = std::max(glm::length(out.forward), glm::length(out.backward));
+        if (size < 1e-3) continue;  // far off the peak of a narrow lobe float has few digits left
+        ++compared;
+        ASSERT_LE(relativeDifference(out.forward, out.backward), 2e-3) << named.name;
+      }
+      EXPECT_GT(compared, alpha < 0.1f ? 5u : 2000u) << named.name;
     }
-    Out run(uint index, In c) {
-      int lobe = int(index) % 5;
-      vec3 u = randomAt(index, 3u);
-      vec3 wo = uniformDirection(u.xy);
-      wo.z = max(abs(wo.z), 0.01);
-      wo = normalize(wo);
-      vec3 wi = uniformDirection(randomAt(index, 4u).xy);
-      if (abs(wi.z) < 0.01) wi = vec3(0.0, 0.0, 1.0);
-      vec3 forward = evalOf(c, wo, wi, lobe);
-      if (wi.z > 0.0) return Out(forward, evalOf(c, wi, wo, lobe));
-      if (c.thin == 0u) c.entering = 1u - c.entering;  // seen from the other side, upside down
-      if (lobe == 4) return Out(vec3(0.0), vec3(0.0));
-      return Out(forward, evalOf(c, wi * vec3(1.0, 1.0, -1.0), wo * vec3(1.0, 1.0, -1.0), lobe));
+  }
+}
+
+// What is not reciprocal, and by how much: stated, so that it does not grow. Glass: its multiple scattering is put back
+// by one factor of wo (Turquin 2019), since a reciprocal lobe would need tables of four dimensions. Coat: what lies
+// below is dimmed on the way out only, as KHR_materials_clearcoat says.
+TEST_F(BsdfLobes, GlassAndCoatAreReciprocalUpToAFactor) {
+  struct Limit { const char* name; double ratio; BsdfCase material; };
+  std::vector<Limit> limits;
+  BsdfCase glass, coat;
+  glass.transmission = 1.0f;
+  for (const auto& [alpha, ratio] : {std::pair{0.02f, 1.3}, {0.1f, 1.6}, {0.4f, 2.0}, {1.0f, 3.0}}) {
+    glass.alpha = alpha;
+    limits.push_back({"glass", ratio, glass});
+  }
+  coat.clearcoat = 1.0f;
+  limits.push_back({"coat", 10.0, coat});
+  for (const Limit& limit : limits) {
+    double largest = 1.0;
+    for (const BothWays& out : runCases<BothWays>(kBothWays, {limit.material}, 20'000, {{"AS_IT_IS", "1"}})) {
+      const double forward = glm::length(out.forward), backward = glm::length(out.backward);
+      if (std::max(forward, backward) > 1e-3) largest = std::max({largest, forward / backward, backward / forward});
     }
-  )";
-  for (const float alpha : {0.05f, 0.3f, 1.0f}) {
-    BsdfCase c;
-    c.alpha = alpha;
-    c.transmission = 0.5f;
-    c.clearcoat = 1.0f;
-    c.clearcoatAlpha = alpha;
-    std::size_t compared = 0;
-    for (const Out& out : runCases<Out>(body, {c}, 100'000)) {
-      const double size = std::max(glm::length(out.forward), glm::length(out.backward));
-      if (size < 1e-3) continue;  // far off the peak of a narrow lobe float has few digits left
-      ++compared;
-      ASSERT_LE(relativeDifference(out.forward, out.backward), 2e-3);
-    }
-    EXPECT_GT(compared, 30'000u);
+    EXPECT_LE(largest, limit.ratio) << limit.name << ", alpha " << limit.material.alpha;
+    EXPECT_GT(largest, 1.01) << limit.name << " has become reciprocal: say so";
+    std::printf("  %s, alpha %g: f(wo, wi) / f(wi, wo) up to %.2f\n", limit.name, static_cast<double>(limit.material.alpha), largest);
   }
 }
 

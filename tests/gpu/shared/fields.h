@@ -111,6 +111,7 @@ GPU_FIELDS(CsgTreeData, firstNode, nodeCount);
 GPU_FIELDS(BoxData, min, max);
 GPU_FIELDS(CameraData, worldFromCamera, halfSize, apertureRadius, focusDistance, orthographic, padding);
 GPU_FIELDS(RayRecord, origin, tmax, direction, kind);
+GPU_FIELDS(RayKinds, camera, cameraHits, continuation, continuationHits, shadow, shadowHits);
 GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics, rayRecords, instrument,
            outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth, filmHeight, lightCount,
            environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount, padding, lightNodes);

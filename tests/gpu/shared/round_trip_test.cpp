@@ -45,7 +45,7 @@ class SharedStruct : public testing::Test {};
 
 using SharedStructs =
     testing::Types<shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::LightNode, shared::EnvironmentData,
-                   shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::FilmTile, shared::FixedSum, shared::CoverageSlot, shared::Launch,
+                   shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::RayKinds, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::FilmTile, shared::FixedSum, shared::CoverageSlot, shared::Launch,
                    shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel>;
 
 struct StructNames {
