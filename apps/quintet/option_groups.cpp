@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -84,12 +85,20 @@ void declareExr(CLI::App& app, RawOptions& raw) {
   const auto add = [&app](const char* name, std::string& value, const char* form, const char* help) {
     app.add_option(name, value, help)->type_name(form)->group("OpenEXR");
   };
+  app.add_option("--aov", raw.aovs, "Layers to write beside the picture, all of them, or print what there are;\nmay be repeated")
+      ->expected(1)
+      ->take_all()
+      ->delimiter(',')
+      ->type_name("NAMES|all|list")
+      ->group("OpenEXR");
   add("--exr-type", raw.exrType, "half|float", "Of colours (default: half); data are floats always");
   add("--exr-compression", raw.exrCompression, "NAME[:LEVEL]",
       "none, rle, zips, zip, piz, dwaa or dwab (default: zip); zip:1 to 9,\n"
       "dwaa:45 (lossy, colours only)");
   add("--exr-tiles", raw.exrTiles, "N", "Tiles of N x N pixels (default: scan lines)");
 }
+
+bool asksForAovList(const RawOptions& raw) { return std::ranges::find(raw.aovs, "list") != raw.aovs.end(); }
 
 void declareQuality(CLI::App& app, RawOptions& raw, RenderOptions& options) {
   const auto add = [&app](const char* name, auto& value, const char* form, const char* help) {
@@ -145,6 +154,7 @@ void declareProcess(CLI::App& app, RawOptions& raw, RenderOptions& options, cons
 
 void interpret(const RawOptions& raw, RenderOptions& options) {
   options.setFile = raw.setFile;
+  options.aovs = raw.aovs;
   if (!raw.exrType.empty()) options.exr.colors = parseExrType(raw.exrType);
   if (!raw.exrCompression.empty()) parseExrCompression(raw.exrCompression, options.exr.options);
   if (!raw.exrTiles.empty()) options.exr.options.tileSize = parseExrTiles(raw.exrTiles);
@@ -153,7 +163,12 @@ void interpret(const RawOptions& raw, RenderOptions& options) {
 }
 
 void checkExrOptions(const RawOptions& raw, const RenderOptions& options) {
-  const char* given = !raw.exrType.empty()          ? "--exr-type"
+  if (!options.aovs.empty() && options.allOutputs)
+    throw UsageError("--aov writes one file of layers, --all-outputs one file each: they exclude each other");
+  if (!options.aovs.empty() && !options.outputName.empty())
+    throw UsageError("--aov adds to the program's first output: --output cannot choose another");
+  const char* given = !raw.aovs.empty()             ? "--aov"
+                      : !raw.exrType.empty()        ? "--exr-type"
                       : !raw.exrCompression.empty() ? "--exr-compression"
                       : !raw.exrTiles.empty()       ? "--exr-tiles"
                                                     : nullptr;

@@ -3,6 +3,7 @@
 #define QUINTET_APP_OPTION_GROUPS_H
 
 #include <string>
+#include <vector>
 
 #include "cli.h"
 #include "render_options.h"
@@ -13,6 +14,7 @@ namespace quintet::app {
 struct RawOptions {
   std::string scene, output, size, spp, time, lookFrom, lookAt, up, fov, aperture, focus, envIntensity, envRotation,
       exposure, toneMap, seed, region, timeout, setFile, exrType, exrCompression, exrTiles;
+  std::vector<std::string> aovs;
 };
 
 void declareImage(CLI::App& app, RawOptions& raw, RenderOptions& options);  // all but the output file
@@ -22,11 +24,12 @@ void declareProgram(CLI::App& app, RawOptions& raw, RenderOptions& options);  //
 void declareProcess(CLI::App& app, RawOptions& raw, RenderOptions& options, const std::string& timeoutHelp);
 
 void declareExr(CLI::App& app, RawOptions& raw);
+bool asksForAovList(const RawOptions& raw);
 
 // Fills `options` with the values of all texts but the scene and the output file. Throws UsageError.
 void interpret(const RawOptions& raw, RenderOptions& options);
 
-// What the kind of the output file forbids, after its name is known: options of OpenEXR for another file. Throws UsageError.
+// Options of OpenEXR for another file, when its name is known. Throws UsageError.
 void checkExrOptions(const RawOptions& raw, const RenderOptions& options);
 
 // What --json and -o - forbid. Throws UsageError.

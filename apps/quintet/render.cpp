@@ -1,4 +1,5 @@
 // `quintet render`: options, device, scene, program, batches, picture, report.
+#include "aov.h"
 #include "base/file.h"
 #include "commands.h"
 #include "hang.h"
@@ -30,6 +31,10 @@ int renderCommand(Arguments arguments) {
   if (!options) return 0;
   if (options->programHelp) {
     writeFile("-", programHelp(program::loadProgram(options->program)));
+    return 0;
+  }
+  if (options->aovList) {
+    writeFile("-", aovList(program::loadProgram(options->program)));
     return 0;
   }
   Session session(*options);

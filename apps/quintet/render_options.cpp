@@ -10,6 +10,7 @@ namespace {
 constexpr const char* kExamples =
     "  quintet render scene.glb                                scene.png\n"
     "  quintet render scene.glb -o out.exr --size 1920x1080 --spp 256\n"
+    "  quintet render scene.glb -o out.exr --aov albedo,normal  layers besides the picture; --aov list names them\n"
     "  quintet render scene.glb --time 60 --env sky.hdr        as many samples as a minute allows\n"
     "  quintet render scene.glb --look-from 2,1,3 --look-at 0,0.5,0 --fov 35\n"
     "  quintet render scene.glb --program ao --set distance=0.5  another program with a parameter\n"
@@ -41,7 +42,8 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   setUp(app, kExamples);
   if (!parse(app, arguments)) return std::nullopt;
   options.commandLine = commandLine("render", arguments);
-  if (options.programHelp) return options;
+  options.aovList = asksForAovList(raw);
+  if (options.programHelp || options.aovList) return options;
   if (raw.scene.empty()) throw UsageError("no scene given; see 'quintet render --help'");
   options.scene = raw.scene;
   options.output = app.count("--output") > 0 ? std::filesystem::path(raw.output)

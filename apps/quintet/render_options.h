@@ -46,6 +46,8 @@ struct RenderOptions {
   bool transparent = false;
   std::string commandLine;
   ExrFormat exr;
+  std::vector<std::string> aovs;  // layers besides the picture, or "all"
+  bool aovList = false;           // print what there are
 };
 
 // Nothing: help was printed. Throws UsageError.

@@ -1,6 +1,7 @@
 // `quintet run`: a program of the user's or a built-in one, on a scene or on the built-in one.
 #include <fmt/format.h>
 
+#include "aov.h"
 #include "base/file.h"
 #include "commands.h"
 #include "diagnostics_view.h"
@@ -63,6 +64,10 @@ int runCommand(Arguments arguments) {
   if (render.programHelp) {
     const program::Program program = program::loadProgram(render.program);
     writeFile("-", render.json ? programJson(program) : programHelp(program));
+    return 0;
+  }
+  if (render.aovList) {
+    writeFile("-", aovList(program::loadProgram(render.program)));
     return 0;
   }
   return runProgram(*options);

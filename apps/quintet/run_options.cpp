@@ -78,7 +78,9 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   }
   render.programHelp = help;
   if (help || options.list) return options;
+  render.aovList = asksForAovList(raw);
   if (render.program.empty()) throw UsageError("no program given; 'quintet run --list' names the built-in ones");
+  if (render.aovList) return options;
   render.commandLine = commandLine("run", arguments);
   render.scene = raw.scene;
   render.output = raw.output;

@@ -14,6 +14,7 @@
 #include "picture_names.h"
 #include "program_setup.h"
 #include "scene/content_hash.h"
+#include "scene/names.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -52,6 +53,7 @@ void Session::prepare() {
   program_ = program::loadProgram(options_.program);
   parameters_ = parameterValues(program_, options_);
   chosenOutputs();
+  aovs_ = chooseAovs(program_, options_.aovs);
   checkOutput(options_.output);
   SceneSource source = chooseScene(options_.scene, program_);
   if (source != sceneSource_) sceneLoaded_ = false;
@@ -68,7 +70,7 @@ void Session::openDevice() {
   record_.device = context_->info().name;
   record_.driver = context_->info().driver;
   record_.startSeconds = clock_.seconds();
-  checkMemory(context_->info(), picturePart(options_.size), render::Film::bytesPerPixel(program_, {}));
+  checkSizes(picturePart(options_.size));
 
   const std::filesystem::path cache = cacheFolder();
   const auto part = [&cache](const char* name) { return cache.empty() ? cache : cache / name; };
@@ -76,6 +78,12 @@ void Session::openDevice() {
   compilerOptions.cacheFolder = part("shaders");
   compiler_ = std::make_unique<shader::Compiler>(compilerOptions);
   pipelineCache_ = std::make_unique<gpu::PipelineCache>(*context_, part("pipelines"));
+}
+
+void Session::checkSizes(uvec2 size) const {
+  checkMemory(context_->info(), size, render::Film::bytesPerPixel(program_, wantedOutputs()));
+  if (outputKind(options_.output) == OutputKind::exr)
+    io::checkExrSize(size.x, size.y, channelCount(aovs_, 4), options_.exr.options.tileSize);
 }
 
 // The size of what is rendered, as far as it is known by then.
@@ -103,7 +111,8 @@ void Session::loadScene() {
   info.size = chooseSize(asked, camera.camera);
   info.viewSeconds = watch.lap();
   info.loadSeconds = watch.seconds();
-  checkMemory(context_->info(), picturePart(info.size), render::Film::bytesPerPixel(program_, {}));
+  checkSizes(picturePart(info.size));
+  if (!aovs_.empty()) info.names = {scene::instanceNames(scene), scene::materialNames(scene)};
   describe(scene, environment);
 
   progress_.stage("building acceleration structures");
@@ -142,6 +151,7 @@ void Session::link() {
   settings.seed = options_.seed;
   settings.transparent = options_.transparent;
   settings.parameters = parameters_;
+  settings.outputs = wantedOutputs();
   settings.frameCount = options_.drawnFrames.value_or(0);
   // On a CPU the first launch compiles, and other processes take their share.
   settings.timeoutSeconds = options_.timeout.value_or(context_->info().quirks.software ? 600.0 : 60.0);
@@ -195,7 +205,8 @@ std::vector<std::size_t> Session::chosenOutputs() const {
   const std::vector<std::string> names = program::outputNames(program_);
   std::vector<std::size_t> chosen;
   if (options_.allOutputs) {
-    for (std::size_t i = 0; i < names.size(); ++i) chosen.push_back(i);
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (program_.outputs[i].pixel != program::OutputPixel::coverage) chosen.push_back(i);
   } else if (options_.outputName.empty()) {
     chosen.push_back(0);
   } else {
@@ -205,8 +216,20 @@ std::vector<std::size_t> Session::chosenOutputs() const {
                                    program_.name, options_.outputName, suggestion(options_.outputName, names),
                                    fmt::join(names, ", ")));
     chosen.push_back(static_cast<std::size_t>(found - names.begin()));
+    if (program_.outputs[chosen.back()].pixel == program::OutputPixel::coverage)
+      throw UsageError(fmt::format("--output: '{}' counts ids and is no picture: use --aov {}", options_.outputName,
+                                   options_.outputName));
   }
   return chosen;
+}
+
+std::vector<std::string> Session::wantedOutputs() const {
+  std::vector<std::size_t> wanted = chosenOutputs();
+  for (const AovLayer& layer : aovs_) wanted.push_back(layer.output);
+  std::vector<std::string> names;
+  for (const std::size_t output : wanted)
+    if (program_.outputs[output].optional) names.push_back(program_.outputs[output].name);
+  return names;
 }
 
 void Session::write(const RenderOutcome& outcome, std::optional<std::uint32_t> frame) {
@@ -234,9 +257,9 @@ void Session::write(const RenderOutcome& outcome, std::optional<std::uint32_t> f
 std::vector<std::byte> Session::exrFile(std::size_t output) const {
   io::ExrPicture picture =
       exrPicture(renderer_->film().region(), sceneInfo_.size.x, sceneInfo_.size.y, metadata(record_));
-  const program::OutputKind kind = program_.outputs[output].kind;
-  const bool isColor = kind == program::OutputKind::color || kind == program::OutputKind::display;
-  addBeauty(picture, renderer_->image(output), options_.transparent, options_.exr.colors, !isColor);
+  const bool exact = !program::holdsColor(program_.outputs[output]);
+  addBeauty(picture, renderer_->image(output), options_.transparent, options_.exr.colors, exact);
+  for (const AovLayer& layer : aovs_) addAov(picture, layer, *renderer_, sceneInfo_.names, options_.exr.colors);
   return io::encodeExr(picture, options_.exr.options);
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "aov.h"
 #include "gpu/context.h"
 #include "gpu/pipeline_cache.h"
 #include "metadata.h"
@@ -68,6 +69,7 @@ class Session {
     std::string environment;
     std::string hash;
     std::vector<std::filesystem::path> files;  // that a scene file names
+    CoverageNames names;                       // with --aov only
     double loadSeconds = 0;
     scene::ImportSeconds import;
     double hashSeconds = 0;
@@ -79,6 +81,8 @@ class Session {
   void fillRecord(const RenderOutcome& outcome);
   void fillLoading();  // stages and memory
   std::vector<std::size_t> chosenOutputs() const;
+  std::vector<std::string> wantedOutputs() const;  // of the optional ones
+  void checkSizes(uvec2 size) const;               // of film and file, as far as the size is known
   std::vector<std::byte> exrFile(std::size_t output) const;
 
   const RenderOptions& options_;
@@ -89,6 +93,7 @@ class Session {
   double startedRendering_ = 0;  // on clock_
 
   program::Program program_;
+  std::vector<AovLayer> aovs_;
   SceneSource sceneSource_;
   SceneInfo sceneInfo_;
   bool sceneLoaded_ = false;

@@ -70,6 +70,9 @@ struct ExrOptions {
 // that do not exist, more than a reader takes). To a file: writeFile (base/file.h), which replaces it in one step.
 std::vector<std::byte> encodeExr(const ExrPicture& picture, const ExrOptions& options = {});
 
+// Throws the UsageError that encodeExr would: lets a long job fail before it starts.
+void checkExrSize(std::uint32_t width, std::uint32_t height, std::size_t channels, std::uint32_t tileSize = 0);
+
 // Every channel of the flat parts, cropped and padded with 0 to the display window, which must be the same for all;
 // alphabetical within a part. A channel without a layer in a later, named part takes the part's name as its layer.
 // Throws FileError, also for subsampled channels and deep data.

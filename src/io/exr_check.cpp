@@ -44,12 +44,11 @@ void checkPlace(const ExrPicture& picture) {
 }
 
 // OpenEXR counts the bytes of a tile as int.
-void checkTiles(const ExrPicture& picture, std::uint32_t size) {
+void checkTiles(std::size_t channels, std::uint32_t size) {
   if (size > kMaxExrTile)
     throw UsageError(fmt::format("OpenEXR tiles of {} pixels are too large; at most {}", size, kMaxExrTile));
-  if (std::uint64_t{size} * size * picture.channels.size() * sizeof(float) > std::numeric_limits<std::int32_t>::max())
-    throw UsageError(fmt::format("OpenEXR tiles of {} pixels and {} channels are too large together", size,
-                                 picture.channels.size()));
+  if (std::uint64_t{size} * size * channels * sizeof(float) > std::numeric_limits<std::int32_t>::max())
+    throw UsageError(fmt::format("OpenEXR tiles of {} pixels and {} channels are too large together", size, channels));
 }
 
 }  // namespace
@@ -59,16 +58,20 @@ ExrPlace wholePlace(const ExrPicture& picture) {
   return {picture.place.x, picture.place.y, picture.place.x + picture.width, picture.place.y + picture.height};
 }
 
+void checkExrSize(std::uint32_t width, std::uint32_t height, std::size_t channels, std::uint32_t tileSize) {
+  if (channels > kMaxExrChannels)
+    throw UsageError(fmt::format("{} channels are too many for an OpenEXR file; at most {}", channels, kMaxExrChannels));
+  if (std::uint64_t{width} * height * channels * sizeof(float) > kMaxPictureBytes)
+    throw UsageError(fmt::format("{} channels of {} x {} pixels are too large for one OpenEXR file ({} GiB at most)",
+                                 channels, width, height, kMaxPictureBytes >> 30));
+  checkTiles(channels, tileSize);
+}
+
 void checkExrPicture(const ExrPicture& picture) {
   const std::uint64_t pixels = std::uint64_t{picture.width} * picture.height;
   if (pixels == 0 || picture.channels.empty()) throw UsageError("an image without pixels cannot be written as OpenEXR");
   checkPlace(picture);
-  if (picture.channels.size() > kMaxExrChannels)
-    throw UsageError(fmt::format("{} channels are too many for an OpenEXR file; at most {}", picture.channels.size(),
-                                 kMaxExrChannels));
-  if (pixels * picture.channels.size() * sizeof(float) > kMaxPictureBytes)
-    throw UsageError(fmt::format("{} channels of {} x {} pixels are too large for one OpenEXR file ({} GiB at most)",
-                                 picture.channels.size(), picture.width, picture.height, kMaxPictureBytes >> 30));
+  checkExrSize(picture.width, picture.height, picture.channels.size());
   std::vector<std::string> names;
   for (const ExrChannel& channel : picture.channels) {
     checkChannel(channel, pixels, picture);
@@ -83,7 +86,7 @@ void checkExrOptions(const ExrPicture& picture, const ExrOptions& options) {
   const auto index = static_cast<std::size_t>(options.compression);
   if (index >= exrCompressionNames().size()) throw UsageError("there is no such compression of OpenEXR");
   const std::string& name = exrCompressionNames()[index];
-  checkTiles(picture, options.tileSize);
+  checkTiles(picture.channels.size(), options.tileSize);
   if (!options.level) return;
   const float level = *options.level;
   switch (options.compression) {

@@ -55,6 +55,25 @@ std::string_view outputPixelName(OutputPixel pixel) {
   return kNames[static_cast<std::size_t>(pixel)];
 }
 
+std::vector<std::string> outputChannels(const Output& output) {
+  if (!output.channels.empty()) return output.channels;
+  switch (output.kind) {
+    case OutputKind::color:
+    case OutputKind::display: return {"R", "G", "B"};
+    case OutputKind::linear:
+    case OutputKind::normal: return {"X", "Y", "Z"};
+    case OutputKind::depth: return {"Z"};
+    case OutputKind::id: return {"X"};
+  }
+  return {};
+}
+
+bool holdsColor(const Output& output) {
+  const std::vector<std::string> channels = outputChannels(output);
+  const std::vector<std::string> colors{"R", "G", "B"};
+  return channels.size() >= 3 && std::equal(colors.begin(), colors.end(), channels.begin());
+}
+
 std::vector<MissShader> missShaders(const Program& program) {
   std::vector<MissShader> all;
   for (const RayType& ray : program.rays) all.push_back({ray.name, ray.miss, ray.record, ray.line});

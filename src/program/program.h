@@ -88,7 +88,14 @@ struct Output {
   OutputPixel pixel = OutputPixel::mean;
   bool optional = false;  // made only when asked for: then QUINTET_OUTPUT_name is defined
   int line = 0;
+  std::vector<std::string> channels;  // names of its components in a file of layers; empty: outputChannels()
 };
+
+// Its channels: as program.toml says, else R, G, B for colours, X, Y, Z for normals and other quantities, Z for depth,
+// X for ids.
+std::vector<std::string> outputChannels(const Output& output);
+// Channels R, G and B hold a colour: it may be stored with few bits. All else is data.
+bool holdsColor(const Output& output);
 
 // Who averages the samples of a pixel.
 enum class Accumulation {

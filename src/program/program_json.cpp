@@ -47,6 +47,7 @@ std::string describeAsJson(const Program& program) {
                        {"kind", outputKindName(output.kind)},
                        {"pixel", outputPixelName(output.pixel)},
                        {"optional", output.optional},
+                       {"channels", outputChannels(output)},
                        {"help", output.help}});
   for (const Parameter& parameter : program.parameters) parameters.push_back(describe(parameter));
   const Json json{{"name", program.name},

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <set>
 
 #include "program/declaration.h"
 #include "program/glsl_names.h"
@@ -180,6 +182,7 @@ class Parser {
       pixels.emplace_back(outputPixelName(static_cast<OutputPixel>(i)));
     output.pixel = static_cast<OutputPixel>(reader.choice("pixel", pixels, 0));
     output.optional = reader.flag("optional", false);
+    output.channels = parseChannels(reader);
     if (program_.accumulation == Accumulation::program && (output.optional || output.pixel != OutputPixel::mean))
       reader.fail(nullptr, "accumulation = \"program\": outputs are neither optional nor anything but mean");
     if (program_.outputs.empty() && (output.optional || output.pixel != OutputPixel::mean))
@@ -188,6 +191,17 @@ class Parser {
     if (program_.outputs.size() == kMaxOutputs)
       reader.fail(nullptr, fmt::format("more than {} outputs are not possible", kMaxOutputs));
     program_.outputs.push_back(std::move(output));
+  }
+
+  std::vector<std::string> parseChannels(TomlReader& reader) const {
+    std::vector<std::string> channels = reader.texts("channels");
+    const auto good = [](const std::string& name) {
+      return name.size() <= 32 && std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+    };
+    const bool twice = std::set<std::string>(channels.begin(), channels.end()).size() != channels.size();
+    if (channels.size() > 4 || twice || !std::ranges::all_of(channels, good))
+      reader.fail(reader.find("channels"), "'channels' are one to four different names of letters, digits and _");
+    return channels;
   }
 
   // An absent file that is not required gives an empty name.

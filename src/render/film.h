@@ -45,6 +45,8 @@ class Film {
   void endBatch(gpu::Commands& commands, SampleRange samples);
   void endAdaptiveBatch(gpu::Commands& commands, SampleRange samples, const std::vector<std::uint32_t>& cellBatches);
 
+  // What one output holds now. Blocks.
+  FilmPlane plane(std::size_t output) const { return plane(outputs_.at(output)); }
   // planeImage of what is there now. Blocks.
   io::Image download(std::size_t output) const;
   // Sums of the batch that ended last, RGBA per pixel, rows from the top. Blocks.

@@ -94,6 +94,24 @@ TEST(Program, FillsInDefaults) {
   EXPECT_TRUE(p.parameters.empty());
 }
 
+TEST(Program, ChannelsFollowFromTheKind) {
+  using Names = std::vector<std::string>;
+  const auto output = [](const std::string& keys) {
+    return parse(std::string(kSmall) + "\n[[output]]\nname = \"a\"\n" + keys + "\n").outputs.at(0);
+  };
+  EXPECT_EQ(outputChannels(output("kind = \"color\"")), (Names{"R", "G", "B"}));
+  EXPECT_TRUE(holdsColor(output("kind = \"color\"")));
+  EXPECT_EQ(outputChannels(output("kind = \"linear\"")), (Names{"X", "Y", "Z"}));
+  EXPECT_EQ(outputChannels(output("kind = \"normal\"")), (Names{"X", "Y", "Z"}));
+  EXPECT_EQ(outputChannels(output("kind = \"depth\"")), (Names{"Z"}));
+  EXPECT_EQ(outputChannels(output("kind = \"id\"")), (Names{"X"}));
+  EXPECT_FALSE(holdsColor(output("kind = \"id\"")));
+  const Output said = output("channels = [\"R\", \"G\", \"B\", \"A\"]");
+  EXPECT_EQ(outputChannels(said), (Names{"R", "G", "B", "A"}));
+  EXPECT_TRUE(holdsColor(said));
+  EXPECT_FALSE(holdsColor(output("channels = [\"R\", \"G\"]")));
+}
+
 TEST(Program, TellsLibraryStages) {
   EXPECT_TRUE(isLibraryStage("<quintet/stages/surface.rchit>"));
   EXPECT_FALSE(isLibraryStage("surface.rchit"));
@@ -132,6 +150,12 @@ const WrongCase kWrong[] = {
      "line 19: 'radiance' of [[hit_group]] has no key 'closes_hit'; did you mean 'closest_hit'?"},
     {"UnknownRay", "shadow = {", "shadows = {", "line 25: [[hit_group]] has no key 'shadows'; did you mean 'shadow'?"},
     {"UnknownKeyOfOutput", "name = \"depth\"", "name = \"depth\"\ntype = 1", "line 32: [[output]] has no key 'type'"},
+    {"ChannelTwice", "name = \"depth\"", "name = \"depth\"\nchannels = [\"X\", \"X\"]",
+     "line 32: 'channels' are one to four different names of letters, digits and _"},
+    {"ChannelWithDot", "name = \"depth\"", "name = \"depth\"\nchannels = \"a.R\"",
+     "line 32: 'channels' are one to four different names of letters, digits and _"},
+    {"TooManyChannels", "name = \"depth\"", "name = \"depth\"\nchannels = [\"A\", \"B\", \"C\", \"D\", \"E\"]",
+     "line 32: 'channels' are one to four different names of letters, digits and _"},
     {"MissingFile", "main.rgen", "mian.rgen",
      "line 3: there is no file 'mian.rgen' in folder/demo; did you mean 'main.rgen'?"},
     {"MissingCallable", "noise.rcall", "none.rcall",

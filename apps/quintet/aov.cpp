@@ -1,0 +1,112 @@
+#include "aov.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "aov_cryptomatte.h"
+#include "base/error.h"
+#include "exr_output.h"
+#include "values.h"
+
+namespace quintet::app {
+namespace {
+
+using program::OutputPixel;
+
+AovLayer layerOf(const program::Program& program, std::size_t output) {
+  const program::Output& description = program.outputs[output];
+  AovLayer layer{
+      description.name, description.help, program::outputChannels(description), true, AovLayer::Source::output, output};
+  layer.exact = !program::holdsColor(description);
+  if (description.pixel == OutputPixel::coverage) {
+    layer.source = AovLayer::Source::coverage;
+    layer.channels = {cryptomatteType(description.name) + "00-" + fmt::format("{:02}", kCryptomatteLayers - 1), "RGBA"};
+    layer.exact = true;
+  }
+  return layer;
+}
+
+std::vector<std::string> namesOf(const std::vector<AovLayer>& layers) {
+  std::vector<std::string> names;
+  for (const AovLayer& layer : layers) names.push_back(layer.name);
+  return names;
+}
+
+// Per pixel and channel, of the mean that the picture shows.
+io::Image varianceOf(const render::Renderer& renderer) { return render::varianceImage(renderer.film().saveFirst()); }
+
+io::Image sampleCounts(const render::Film& film) {
+  const render::Region& region = film.region();
+  io::Image image = io::makeImage(region.width, region.height, 1, io::PixelType::f32, io::ColorEncoding::linear);
+  const std::span<float> values = image.samples<float>();
+  render::FilmState cells;
+  cells.region = region;
+  for (std::uint32_t y = 0; y < region.height; ++y)
+    for (std::uint32_t x = 0; x < region.width; ++x)
+      values[std::size_t{y} * region.width + x] = static_cast<float>(film.counts().samplesOf(cells.cellOf(x, y)));
+  return image;
+}
+
+}  // namespace
+
+std::vector<AovLayer> aovLayers(const program::Program& program) {
+  std::vector<AovLayer> layers;
+  for (std::size_t output = 1; output < program.outputs.size(); ++output) layers.push_back(layerOf(program, output));
+  if (program.accumulation != program::Accumulation::film) return layers;
+  const auto offer = [&](const char* name, const char* help, std::vector<std::string> channels,
+                         AovLayer::Source source) {
+    const bool taken = std::ranges::any_of(program.outputs, [&](const program::Output& o) { return o.name == name; });
+    if (!taken) layers.push_back({name, help, std::move(channels), true, source, 0});
+  };
+  offer("variance", "Of the picture's mean, per channel; infinite below two batches", {"R", "G", "B"},
+        AovLayer::Source::variance);
+  offer("sample_count", "Samples of the pixel", {"X"}, AovLayer::Source::sampleCount);
+  return layers;
+}
+
+std::vector<AovLayer> chooseAovs(const program::Program& program, const std::vector<std::string>& names) {
+  const std::vector<AovLayer> layers = aovLayers(program);
+  if (std::ranges::find(names, "all") != names.end()) return layers;
+  std::vector<AovLayer> chosen;
+  for (const AovLayer& layer : layers)
+    if (std::ranges::find(names, layer.name) != names.end()) chosen.push_back(layer);
+  const std::vector<std::string> known = namesOf(layers);
+  for (const std::string& name : names)
+    if (std::ranges::find(known, name) == known.end())
+      throw UsageError(fmt::format("--aov: the program '{}' has no layer '{}'{}; there are {} (--aov list)",
+                                   program.name, plain(name), suggestion(name, known), fmt::join(known, ", ")));
+  return chosen;
+}
+
+std::string aovList(const program::Program& program) {
+  std::string text;
+  for (const AovLayer& layer : aovLayers(program))
+    text +=
+        fmt::format("{:<22} {:<26} {}\n", layer.name, fmt::format("{}", fmt::join(layer.channels, " ")), layer.help);
+  return text;
+}
+
+std::size_t channelCount(const std::vector<AovLayer>& layers, std::size_t first) {
+  std::size_t count = first;
+  for (const AovLayer& layer : layers)
+    count += layer.source == AovLayer::Source::coverage ? 4 * kCryptomatteLayers : layer.channels.size();
+  return count;
+}
+
+void addAov(io::ExrPicture& picture, const AovLayer& layer, const render::Renderer& renderer,
+            const CoverageNames& names, io::ExrType colors) {
+  switch (layer.source) {
+    case AovLayer::Source::output:
+      return addLayer(picture, layer.name, layer.channels, renderer.image(layer.output), colors, layer.exact);
+    case AovLayer::Source::variance:
+      return addLayer(picture, layer.name, layer.channels, varianceOf(renderer), colors, true);
+    case AovLayer::Source::sampleCount:
+      return addLayer(picture, layer.name, layer.channels, sampleCounts(renderer.film()), colors, true);
+    case AovLayer::Source::coverage:
+      return addCryptomatte(picture, layer.name, renderer.film(), renderer.film().plane(layer.output), names);
+  }
+}
+
+}  // namespace quintet::app

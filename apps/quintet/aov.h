@@ -1,0 +1,47 @@
+// Layers besides the picture (--aov): what a program offers, which were chosen, and how they get into an OpenEXR file.
+// docs/aov.md has the table of the path tracer's.
+#ifndef QUINTET_APP_AOV_H
+#define QUINTET_APP_AOV_H
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "io/exr.h"
+#include "program/program.h"
+#include "render/renderer.h"
+
+namespace quintet::app {
+
+struct AovLayer {
+  enum class Source { output, coverage, variance, sampleCount };
+
+  std::string name;  // on the command line; in the file, too, but of coverage
+  std::string help;
+  std::vector<std::string> channels;
+  bool exact = true;  // data; false: colours
+  Source source = Source::output;
+  std::size_t output = 0;  // of the program
+};
+
+// All outputs of the program but the first, and what the film knows of the first.
+std::vector<AovLayer> aovLayers(const program::Program& program);
+// "all" or names. Throws UsageError with the nearest name.
+std::vector<AovLayer> chooseAovs(const program::Program& program, const std::vector<std::string>& names);
+// One line each, for --aov list.
+std::string aovList(const program::Program& program);
+
+// Names of what coverage counts, by index (scene/names.h).
+struct CoverageNames {
+  std::vector<std::string> instances;
+  std::vector<std::string> materials;
+};
+
+// Channels that a file with these layers has; `first`: those of the picture.
+std::size_t channelCount(const std::vector<AovLayer>& layers, std::size_t first);
+
+void addAov(io::ExrPicture& picture, const AovLayer& layer, const render::Renderer& renderer,
+            const CoverageNames& names, io::ExrType colors);
+
+}  // namespace quintet::app
+#endif

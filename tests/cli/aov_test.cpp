@@ -1,0 +1,212 @@
+// --aov: one OpenEXR file of layers, whose values are known for a program that stores what it is asked for.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "base/file.h"
+#include "fixtures.h"
+#include "io/cryptomatte.h"
+#include "io/exr.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kToml = R"([program]
+description = "layers"
+ray_generation = "main.rgen"
+samples_per_launch = 4
+[[ray]]
+name = "primary"
+miss = "main.rmiss"
+[[output]]
+name = "color"
+[[output]]
+name = "position"
+pixel = "center"
+optional = true
+help = "Where it is"
+[[output]]
+name = "uv"
+channels = ["U", "V"]
+optional = true
+[[output]]
+name = "tint"
+kind = "color"
+optional = true
+[[output]]
+name = "cryptomatte_object"
+kind = "id"
+pixel = "coverage"
+optional = true
+)";
+
+// Pixel (x, y): colour (x, y, 1) / 8, position (x, y, 1e6 + sample 0), uv the mean of (s, s²), tint 0.25; and of four
+// samples the first meets instance 1, the others instance 0, but none in the first column.
+constexpr const char* kRayGeneration = R"(#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/output.glsl>
+#include <quintet/generated/program.glsl>
+void main() {
+  const uvec2 pixel = launchPixel();
+  for (uint i = 0u; i < launch.sampleCount; ++i) {
+    const uint s = launch.firstSample + i;
+    storeOutput(kOutput_color, pixel, loadOutput(kOutput_color, pixel) + vec4(vec2(pixel), 1.0, 8.0) / 8.0);
+#ifdef QUINTET_OUTPUT_position
+    if (s == 0u) storeOutput(kOutput_position, pixel, vec4(vec2(pixel), 1000001.0, 1.0));
+#endif
+#ifdef QUINTET_OUTPUT_uv
+    storeOutput(kOutput_uv, pixel, loadOutput(kOutput_uv, pixel) + vec4(float(s), float(s * s), 0.0, 1.0));
+#endif
+#ifdef QUINTET_OUTPUT_tint
+    storeOutput(kOutput_tint, pixel, loadOutput(kOutput_tint, pixel) + vec4(0.25));
+#endif
+#ifdef QUINTET_OUTPUT_cryptomatte_object
+    vec4 ids = loadOutput(kOutput_cryptomatte_object, pixel);
+    ids[s % 4u] = pixel.x == 0u ? 0.0 : uintBitsToFloat(0x3F800000u + (s == 0u ? 1u : 0u));
+    storeOutput(kOutput_cryptomatte_object, pixel, ids);
+#endif
+  }
+}
+)";
+
+class Aov : public CliTest {
+ protected:
+  Aov() {
+    std::filesystem::create_directories(folder_ / "layers");
+    write(folder_ / "layers/program.toml", kToml);
+    write(folder_ / "layers/main.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n");
+    write(folder_ / "layers/main.rgen", kRayGeneration);
+    nlohmann::json scene = quadScene();  // two instances of the quad: "left", and one with the same name
+    for (auto& node : scene["nodes"])
+      if (node.contains("mesh")) node["name"] = "left";
+    scene["nodes"].push_back({{"mesh", 0}, {"name", "left"}});
+    scene["scenes"][0]["nodes"].push_back(scene["nodes"].size() - 1);
+    write(folder_ / "two.gltf", scene.dump());
+  }
+
+  static std::vector<std::string> layers(const std::vector<std::string>& more) {
+    std::vector<std::string> all{"render", "two.gltf", "--program", "layers", "-q", "--size", "6x4"};
+    const auto has = [&more](const char* name) { return std::ranges::find(more, name) != more.end(); };
+    if (!has("--spp")) all.insert(all.end(), {"--spp", "4"});
+    if (!has("-o")) all.insert(all.end(), {"-o", "out.exr"});
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  io::ExrPicture render(const std::vector<std::string>& more) {
+    const RunResult result = quintet(layers(more));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return io::decodeExr(readFile(folder_ / "out.exr"), "out.exr");
+  }
+  static const io::ExrChannel& find(const io::ExrPicture& picture, const std::string& name) {
+    const auto at = std::ranges::find(picture.channels, name, &io::ExrChannel::name);
+    if (at == picture.channels.end()) throw std::runtime_error("no channel " + name);
+    return *at;
+  }
+  static std::vector<std::string> channelNames(const io::ExrPicture& picture) {
+    std::vector<std::string> names;
+    for (const io::ExrChannel& channel : picture.channels) names.push_back(channel.name);
+    return names;
+  }
+  static std::string attribute(const io::ExrPicture& picture, const std::string& key) {
+    for (const auto& [name, text] : picture.metadata)
+      if (name == key) return text;
+    return "";
+  }
+};
+
+TEST_F(Aov, WritesTheLayersThatWereAskedFor) {
+  const io::ExrPicture picture = render({"--aov", "position,uv", "--aov", "tint"});
+  EXPECT_THAT(channelNames(picture),
+              ::testing::UnorderedElementsAre("R", "G", "B", "position.X", "position.Y", "position.Z", "uv.U", "uv.V",
+                                              "tint.R", "tint.G", "tint.B"));
+  EXPECT_EQ(find(picture, "R").type, io::ExrType::half);
+  EXPECT_EQ(find(picture, "tint.R").type, io::ExrType::half);
+  EXPECT_EQ(find(picture, "position.Z").type, io::ExrType::f32);
+  for (std::size_t i = 0; i < 24; ++i) {
+    EXPECT_EQ(find(picture, "R").samples[i], static_cast<float>(i % 6) / 8);
+    EXPECT_EQ(find(picture, "position.X").samples[i], static_cast<float>(i % 6));
+    EXPECT_EQ(find(picture, "position.Y").samples[i], static_cast<float>(i / 6));
+    EXPECT_EQ(find(picture, "position.Z").samples[i], 1000001.0f);  // stored once, whole
+    EXPECT_EQ(find(picture, "uv.U").samples[i], 1.5f);
+    EXPECT_EQ(find(picture, "uv.V").samples[i], 3.5f);
+    EXPECT_EQ(find(picture, "tint.G").samples[i], 0.25f);
+  }
+  EXPECT_EQ(attribute(picture, "Samples"), "4");
+  EXPECT_EQ(channelNames(render({})), (std::vector<std::string>{"B", "G", "R"}));
+}
+
+TEST_F(Aov, CryptomatteSaysWhatCoversAPixel) {
+  const io::ExrPicture picture = render({"--aov", "cryptomatte_object"});
+  ASSERT_EQ(picture.channels.size(), 3u + 12u);
+  const float first = io::cryptomatteId("left"), second = io::cryptomatteId("left#2");
+  for (std::size_t i = 0; i < 24; ++i) {
+    const bool seen = i % 6 > 0;
+    EXPECT_EQ(find(picture, "CryptoObject00.R").samples[i], seen ? first : 0.0f);
+    EXPECT_EQ(find(picture, "CryptoObject00.G").samples[i], seen ? 0.75f : 0.0f);
+    EXPECT_EQ(find(picture, "CryptoObject00.B").samples[i], seen ? second : 0.0f);
+    EXPECT_EQ(find(picture, "CryptoObject00.A").samples[i], seen ? 0.25f : 0.0f);
+    EXPECT_EQ(find(picture, "CryptoObject02.A").samples[i], 0.0f);
+  }
+  EXPECT_EQ(attribute(picture, "cryptomatte/3ae39a5/name"), "CryptoObject");
+  EXPECT_EQ(nlohmann::json::parse(attribute(picture, "cryptomatte/3ae39a5/manifest")),
+            nlohmann::json({{"left", io::cryptomatteHex(first)}, {"left#2", io::cryptomatteHex(second)}}));
+}
+
+TEST_F(Aov, AllOfThemUnderDwaInARegion) {
+  const io::ExrPicture whole = render({"--aov", "all", "--exr-type", "float", "--spp", "8"});
+  EXPECT_EQ(find(whole, "R").type, io::ExrType::f32);
+  EXPECT_EQ(find(whole, "sample_count.X").samples, std::vector<float>(24, 8.0f));
+  EXPECT_EQ(find(whole, "variance.R").samples, std::vector<float>(24, 0.0f));  // all samples are alike
+  const io::ExrPicture part = render(
+      {"--aov", "all", "--spp", "8", "--region", "2,1,3,2", "--exr-compression", "dwab:30", "--exr-tiles", "16"});
+  ASSERT_EQ(part.width, 6u);
+  for (const io::ExrChannel& channel : part.channels) {
+    if (channel.type == io::ExrType::half) continue;
+    for (std::size_t i = 0; i < 24; ++i) {
+      const bool inside = i % 6 >= 2 && i % 6 < 5 && i / 6 >= 1 && i / 6 < 3;
+      EXPECT_EQ(channel.samples[i], inside ? find(whole, channel.name).samples[i] : 0.0f) << channel.name << ' ' << i;
+    }
+  }
+}
+
+TEST_F(Aov, ListsWhatThereIs) {
+  const RunResult result = quintet({"render", "--program", "layers", "--aov", "list"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("position +X Y Z +Where it is\n"));
+  EXPECT_THAT(result.out, ::testing::ContainsRegex("uv +U V"));
+  for (const char* name : {"tint", "cryptomatte_object", "variance", "sample_count"})
+    EXPECT_THAT(result.out, HasSubstr(name));
+  EXPECT_EQ(quintet({"run", "layers", "--aov", "list"}).out, result.out);
+}
+
+TEST_F(Aov, BadRequests) {
+  const auto refused = [&](const std::vector<std::string>& more, const std::vector<std::string>& parts) {
+    expectError(quintet(layers(more)), 2, parts);
+  };
+  refused({"--aov", "positon"},
+          {"--aov: the program 'layers' has no layer 'positon' (did you mean 'position'?)", "--aov list"});
+  refused({"--aov", "color"}, {"no layer 'color'"});
+  refused({"--aov", "uv", "-o", "out.png"}, {"--aov is for OpenEXR files: -o must name a .exr file"});
+  refused({"--aov", "uv", "--all-outputs"}, {"exclude each other"});
+  expectError(
+      quintet({"run", "layers", "two.gltf", "-q", "--size", "6x4", "-o", "a.exr", "--output", "cryptomatte_object"}), 2,
+      {"'cryptomatte_object' counts ids", "--aov"});
+  expectError(quintet({"run", "layers", "two.gltf", "-q", "--aov", "uv"}), 2, {"-o must name a .exr file"});
+  for (const std::string& name : fileNames()) EXPECT_FALSE(name.ends_with(".exr") || name.ends_with(".png")) << name;
+}
+
+TEST_F(Aov, OneOptionalOutputAlone) {
+  const RunResult result = quintet(
+      {"run", "layers", "two.gltf", "-q", "--size", "6x4", "--spp", "4", "-o", "a.exr", "--output", "position"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const io::ExrPicture picture = io::decodeExr(readFile(folder_ / "a.exr"), "a.exr");
+  EXPECT_EQ(find(picture, "B").samples[0], 1000001.0f);
+  ASSERT_EQ(quintet(layers({"-o", "x.exr", "--all-outputs"})).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "x.uv.exr"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x.cryptomatte_object.exr"));
+}
+
+}  // namespace
+}  // namespace quintet::test
