@@ -29,7 +29,8 @@ nlohmann::ordered_json memoryJson(const MemoryUse& memory) {
 
 double MemoryUse::ratio() const {
   const std::uint64_t needed = geometry + textures + acceleration;
-  return needed > 0 ? static_cast<double>(std::max(peakHost, peakDevice)) / static_cast<double>(needed) : 0.0;
+  const std::uint64_t peak = deviceIsHost ? peakHost : std::max(peakHost, peakDevice);
+  return needed > 0 ? static_cast<double>(peak) / static_cast<double>(needed) : 0.0;
 }
 
 io::Metadata metadata(const RenderRecord& record) {

@@ -22,7 +22,8 @@ struct MemoryUse {
   std::uint64_t textures = 0;
   std::uint64_t acceleration = 0;  // with the maps of primitives
   bool deviceIsHost = false;       // a CPU: what the device holds is part of what the process holds
-  // Of the larger peak to the three together: what the device holds is counted once.
+  // Of the peak to the three together. On a CPU the process's peak: what was asked for and never touched is in no
+  // memory. Else the larger of the two: each memory by itself.
   double ratio() const;
 };
 

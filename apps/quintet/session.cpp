@@ -95,7 +95,7 @@ void Session::loadScene() {
   progress_.stage("loading " + sceneSource_.name);
   Stopwatch watch;
   SceneInfo info;
-  const scene::Scene scene = app::loadScene(sceneSource_);
+  scene::Scene scene = app::loadScene(sceneSource_);
   info.import = scene.seconds;
   watch.lap();
   info.hash = scene::contentHash(scene).hex();
@@ -116,7 +116,7 @@ void Session::loadScene() {
   describe(scene, environment);
 
   progress_.stage("building acceleration structures");
-  auto built = std::make_unique<render::DeviceScene>(*context_, scene, environment.environment);
+  auto built = std::make_unique<render::DeviceScene>(*context_, std::move(scene), environment.environment);
   renderer_.reset();
   deviceScene_ = std::move(built);
   sceneInfo_ = std::move(info);

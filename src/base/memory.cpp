@@ -1,5 +1,7 @@
 #include "base/memory.h"
 
+#include <malloc.h>
+
 #include <charconv>
 #include <fstream>
 #include <string>
@@ -25,5 +27,11 @@ std::uint64_t statusBytes(std::string_view key) {
 
 std::uint64_t residentBytes() { return statusBytes("VmRSS:"); }
 std::uint64_t peakResidentBytes() { return statusBytes("VmHWM:"); }
+
+void returnFreedMemory() {
+#if defined(__GLIBC__)
+  ::malloc_trim(0);
+#endif
+}
 
 }  // namespace quintet

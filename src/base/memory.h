@@ -11,5 +11,8 @@ std::uint64_t residentBytes();
 // The most that it ever was since the process began.
 std::uint64_t peakResidentBytes();
 
+// Gives memory that was freed, but kept for later, back to the system.
+void returnFreedMemory();
+
 }  // namespace quintet
 #endif

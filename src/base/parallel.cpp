@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -55,6 +56,7 @@ unsigned hardwareThreads() {
 }
 
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
+  if (count == 1) return body(0);  // a loop inside of it may have the other cores
   Loop loop(count, body);
   std::vector<std::jthread> helpers;
   // A loop inside a loop runs on the thread that it is on: the others are busy already.
@@ -70,6 +72,14 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
   loop.work();
   helpers.clear();  // joins
   loop.rethrow();
+}
+
+void parallelCopy(std::byte* to, std::span<const std::byte> from) {
+  constexpr std::size_t kPart = std::size_t{4} << 20;
+  parallelFor((from.size() + kPart - 1) / kPart, [&](std::size_t part) {
+    const std::size_t first = part * kPart;
+    std::memcpy(to + first, from.data() + first, std::min(kPart, from.size() - first));
+  });
 }
 
 }  // namespace quintet

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 
 namespace quintet {
 
@@ -11,8 +12,12 @@ namespace quintet {
 unsigned hardwareThreads();
 
 // Calls body(i) once for each i in [0, count), in any order, on all cores; returns when all have
-// ended. The first exception thrown by a body is rethrown here; the remaining calls are skipped.
+// ended. The first exception thrown by a body is rethrown here; the remaining calls are skipped. A loop inside a body
+// runs on that body's core, unless the outer loop has one body only.
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body);
+
+// memcpy on all cores: first writes to new memory are page faults, and those are what takes the time.
+void parallelCopy(std::byte* to, std::span<const std::byte> from);
 
 }  // namespace quintet
 #endif

@@ -5,6 +5,7 @@
 #include <deque>
 #include <optional>
 
+#include "base/memory.h"
 #include "base/stopwatch.h"
 #include "render/albedo_tables.h"
 #include "render/light_table.h"
@@ -47,32 +48,42 @@ struct DeviceScene::Impl {
   shared::Frame frame{};
   std::vector<std::pair<std::string, std::string>> defines;
 
-  Impl(gpu::Context& gpuContext, const scene::Scene& scene, const scene::Environment& environment, const DeviceSceneOptions& sceneOptions)
+  // `emptied`: null, or the same scene.
+  Impl(gpu::Context& gpuContext, const scene::Scene& scene, scene::Scene* emptied, const scene::Environment& environment,
+       const DeviceSceneOptions& sceneOptions)
       : context(gpuContext), options(sceneOptions), bounds(scene::worldBounds(scene)), facts(sceneFacts(scene)) {
-    Stopwatch watch;
-    gpu::Uploader uploader(context);
-    geometry = uploadGeometries(context, uploader, scene);
-    uploadMaterials(scene, environment, uploader);
-    const double beforeLights = watch.seconds();
-    uploadLights(scene, environment);
-    statistics.lightSeconds = watch.seconds() - beforeLights;
-    uploader.flush();
-    statistics.uploadSeconds = watch.seconds();
-    buildBottomLevel(scene);
-    uploadTables(scene);
+    const Stopwatch watch;
     defines = featureDefines(scene, environment);
     if (context.info().quirks.corruptsHitAttributes) {
       defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
       if (hasAlpha()) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
     }
+    uploadLights(scene, environment);  // first: it reads what is given up below
+    statistics.lightSeconds = watch.seconds();
+    {
+      // A CPU copies at once: a large ring would only be memory.
+      gpu::Uploader uploader(context, VkDeviceSize{context.info().quirks.software ? 8u : 64u} << 20);
+      uploadMaterials(scene, emptied, environment, uploader);
+      geometry = uploadGeometries(context, uploader, scene, emptied);
+      uploader.flush();
+    }
+    if (emptied) returnFreedMemory();
+    statistics.uploadSeconds = watch.seconds();
+    buildBottomLevel(scene);
+    uploadTables(scene);
     statistics.geometryBytes = geometry.bytes;
     statistics.textureBytes = textures->bytes();
   }
 
   bool hasAlpha() const { return std::ranges::any_of(facts.geometries, &program::GeometryFacts::alpha); }
 
-  void uploadMaterials(const scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader) {
+  void uploadMaterials(const scene::Scene& scene, scene::Scene* emptied, const scene::Environment& environment, gpu::Uploader& uploader) {
     textures.emplace(context, uploader, scene);
+    if (emptied) {
+      textures->empty(*emptied);
+      const TextureIndex expect = [&](int texture, bool sRgb) { return textures->expect(texture, sRgb), 0u; };
+      for (const scene::Material& material : scene.materials) makeMaterial(material, expect);
+    }
     std::vector<shared::MaterialData> materials;
     const TextureIndex textureIndex = [&](int texture, bool sRgb) { return textures->index(texture, sRgb); };
     for (const scene::Material& material : scene.materials) materials.push_back(makeMaterial(material, textureIndex));
@@ -158,10 +169,12 @@ struct DeviceScene::Impl {
       input.options.name = scene.meshes[m].name;
       input.options.keepInputOrder = options.keepInputOrder;
       std::size_t k = geometry.firstGeometry[m];
-      for (const scene::Geometry& g : scene.meshes[m].geometries) {
+      for (std::size_t g = 0; g < scene.meshes[m].geometries.size(); ++g) {
         rt::GeometryInput& part = input.geometries.emplace_back();
-        part.positions = g.positions;
-        part.triangles = g.triangles;
+        part.positions = geometry.arrays[k].positions;
+        part.triangles = geometry.arrays[k].triangles;
+        part.positionsAddress = geometry.geometries[k].positions;
+        part.trianglesAddress = geometry.geometries[k].triangles;
         part.opaque = !facts.geometries[k++].alpha;
       }
       for (const scene::PrimitiveSet& primitives : scene.meshes[m].primitiveSets) {
@@ -206,7 +219,9 @@ struct DeviceScene::Impl {
 };
 
 DeviceScene::DeviceScene(gpu::Context& context, const scene::Scene& scene, const scene::Environment& environment, const DeviceSceneOptions& options)
-    : impl_(std::make_unique<Impl>(context, scene, environment, options)) {}
+    : impl_(std::make_unique<Impl>(context, scene, nullptr, environment, options)) {}
+DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scene::Environment& environment, const DeviceSceneOptions& options)
+    : impl_(std::make_unique<Impl>(context, scene, &scene, environment, options)) {}
 DeviceScene::~DeviceScene() = default;
 
 gpu::Context& DeviceScene::context() const { return impl_->context; }

@@ -41,6 +41,10 @@ class DeviceScene {
   // construction only.
   DeviceScene(gpu::Context& context, const scene::Scene& scene, const scene::Environment& environment,
               const DeviceSceneOptions& options = {});
+  // The same, and frees the scene's attributes and pictures as soon as the device has them: a large scene is in
+  // memory once. What is left of `scene` is of no use.
+  DeviceScene(gpu::Context& context, scene::Scene&& scene, const scene::Environment& environment,
+              const DeviceSceneOptions& options = {});
   ~DeviceScene();
   DeviceScene(const DeviceScene&) = delete;
   DeviceScene& operator=(const DeviceScene&) = delete;

@@ -1,7 +1,9 @@
 #include "render/scene_upload.h"
 
 #include <algorithm>
+#include <cassert>
 
+#include "base/parallel.h"
 #include "render/procedural_data.h"
 
 namespace quintet::render {
@@ -12,30 +14,51 @@ constexpr VkDeviceSize kArenaBytes = VkDeviceSize{256} << 20;
 
 VkDeviceSize aligned(VkDeviceSize size) { return (size + kAlignment - 1) / kAlignment * kAlignment; }
 
-// Hands out parts of a few large buffers.
+template <class T>
+void clear(std::vector<T>& values) {
+  std::vector<T>().swap(values);
+}
+
+// An array on the device, and where the host can read it: there, or where it came from.
+template <class T>
+struct Placed {
+  shared::Address address = 0;
+  std::span<const T> host;
+};
+
+// Hands out parts of a few large buffers, in the order of `sizes`, which are aligned and not 0. On a CPU they are
+// mapped and written directly.
 class Arena {
  public:
-  Arena(gpu::Context& context, gpu::Uploader& uploader, GeometryUpload& target, VkDeviceSize totalBytes)
-      : context_(context), uploader_(uploader), target_(target), remaining_(totalBytes) {}
+  Arena(gpu::Context& context, gpu::Uploader& uploader, GeometryUpload& target, std::vector<VkDeviceSize> sizes)
+      : context_(context), uploader_(uploader), target_(target), sizes_(std::move(sizes)) {}
 
-  // Uploads the array and returns its address; 0 for an empty one.
+  // Uploads the array; address 0 for an empty one.
   template <class T>
-  shared::Address add(const std::vector<T>& data) {
-    if (data.empty()) return 0;
-    const VkDeviceSize size = aligned(data.size() * sizeof(T));
-    if (used_ + size > capacity_) grow(size);
+  Placed<T> add(const std::vector<T>& data) {
+    if (data.empty()) return {};
+    if (used_ == capacity_) grow();
     gpu::Buffer& buffer = target_.buffers.back();
-    uploader_.upload(buffer, std::as_bytes(std::span(data)), used_);
-    const shared::Address address = buffer.address() + used_;
-    used_ += size;
-    remaining_ -= std::min(remaining_, size);
-    return address;
+    Placed<T> placed{buffer.address() + used_, data};
+    if (std::byte* mapped = buffer.mapped()) {
+      parallelCopy(mapped + used_, std::as_bytes(std::span(data)));
+      placed.host = {reinterpret_cast<const T*>(mapped + used_), data.size()};
+    } else {
+      uploader_.upload(buffer, std::as_bytes(std::span(data)), used_);
+    }
+    used_ += aligned(data.size() * sizeof(T));
+    assert(used_ <= capacity_);
+    ++next_;
+    return placed;
   }
 
  private:
-  void grow(VkDeviceSize least) {
+  // A buffer that the next arrays fill exactly.
+  void grow() {
     gpu::BufferOptions options;
-    options.size = std::max(least, std::min(remaining_, kArenaBytes));
+    for (std::size_t i = next_; i < sizes_.size() && (i == next_ || options.size + sizes_[i] <= kArenaBytes); ++i) options.size += sizes_[i];
+    options.memory = context_.info().quirks.software ? gpu::Memory::upload : gpu::Memory::device;
+    options.usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
     options.alignment = kAlignment;
     options.name = "geometry attributes";
     target_.buffers.emplace_back(context_, options);
@@ -47,35 +70,64 @@ class Arena {
   gpu::Context& context_;
   gpu::Uploader& uploader_;
   GeometryUpload& target_;
-  VkDeviceSize remaining_;
+  std::vector<VkDeviceSize> sizes_;
+  std::size_t next_ = 0;  // in sizes_
   VkDeviceSize capacity_ = 0;
   VkDeviceSize used_ = 0;
 };
 
-VkDeviceSize attributeBytes(const scene::Geometry& g) {
-  return aligned(g.positions.size() * sizeof(vec3)) + aligned(g.triangles.size() * sizeof(uvec3)) +
-         aligned(g.normals.size() * sizeof(vec3)) + aligned(g.tangents.size() * sizeof(vec4)) +
-         aligned(g.uvs[0].size() * sizeof(vec2)) + aligned(g.uvs[1].size() * sizeof(vec2)) + aligned(g.colors.size() * sizeof(vec4));
+// Calls visit(values) for each array in the order in which it is uploaded.
+template <class Geometry, class Visit>
+void forArrays(Geometry& g, const Visit& visit) {
+  visit(g.positions), visit(g.triangles), visit(g.normals), visit(g.tangents);
+  visit(g.uvs[0]), visit(g.uvs[1]), visit(g.colors);
 }
 
-VkDeviceSize attributeBytes(const scene::PrimitiveSet& set) {
-  return aligned(set.primitives.size() * sizeof(shared::PrimitiveData)) + aligned(set.nodes.size() * sizeof(shared::CsgNodeData)) +
-         aligned(set.trees.size() * sizeof(shared::CsgTreeData)) + aligned(scene::boxCount(set) * sizeof(shared::BoxData));
+// Of all arrays, in the order in which they are uploaded.
+std::vector<VkDeviceSize> arraySizes(const scene::Scene& scene) {
+  std::vector<VkDeviceSize> sizes;
+  const auto add = [&](VkDeviceSize size) {
+    if (size > 0) sizes.push_back(aligned(size));
+  };
+  for (const scene::Mesh& mesh : scene.meshes) {
+    for (const scene::Geometry& geometry : mesh.geometries)
+      forArrays(geometry, [&](const auto& values) { add(values.size() * sizeof(values[0])); });
+    for (const scene::PrimitiveSet& set : mesh.primitiveSets) {
+      add(scene::boxCount(set) * sizeof(shared::BoxData));
+      add(set.primitives.size() * sizeof(shared::PrimitiveData));
+      add(set.nodes.size() * sizeof(shared::CsgNodeData));
+      add(set.trees.size() * sizeof(shared::CsgTreeData));
+    }
+  }
+  return sizes;
 }
 
-shared::GeometryData uploadTriangles(Arena& arena, const scene::Scene& scene, const scene::Geometry& g) {
+shared::GeometryData uploadTriangles(Arena& arena, const scene::Scene& scene, const scene::Geometry& g, GeometryArrays& arrays) {
   shared::GeometryData data{};
-  data.positions = arena.add(g.positions);
-  data.triangles = arena.add(g.triangles);
-  data.normals = arena.add(g.normals);
-  data.tangents = arena.add(g.tangents);
-  data.uvs[0] = arena.add(g.uvs[0]);
-  data.uvs[1] = arena.add(g.uvs[1]);
-  data.colors = arena.add(g.colors);
+  const Placed<vec3> positions = arena.add(g.positions);
+  const Placed<uvec3> triangles = arena.add(g.triangles);
+  arrays = {positions.host, triangles.host};
+  data.positions = positions.address;
+  data.triangles = triangles.address;
+  data.normals = arena.add(g.normals).address;
+  data.tangents = arena.add(g.tangents).address;
+  data.uvs[0] = arena.add(g.uvs[0]).address;
+  data.uvs[1] = arena.add(g.uvs[1]).address;
+  data.colors = arena.add(g.colors).address;
   data.material = materialIndex(scene, g.material);
   data.triangleCount = static_cast<std::uint32_t>(g.triangles.size());
   data.kind = shared::kGeometryTriangles;
   return data;
+}
+
+// What the device has now; the arrays that are still read stay.
+void giveUp(scene::Geometry& g, const GeometryArrays& arrays) {
+  const bool positions = arrays.positions.data() == g.positions.data(), triangles = arrays.triangles.data() == g.triangles.data();
+  forArrays(g, [&](auto& values) {
+    const void* own = values.data();
+    if ((positions && own == arrays.positions.data()) || (triangles && own == arrays.triangles.data())) return;
+    clear(values);
+  });
 }
 
 std::uint32_t geometryKind(scene::PrimitiveSetKind kind) {
@@ -89,10 +141,10 @@ std::uint32_t geometryKind(scene::PrimitiveSetKind kind) {
 
 shared::GeometryData uploadPrimitives(Arena& arena, const scene::Scene& scene, const scene::PrimitiveSet& set) {
   shared::GeometryData data{};
-  data.boxes = arena.add(makeBoxes(set));
-  data.primitives = arena.add(makePrimitives(scene, set));
-  data.nodes = arena.add(makeNodes(set));
-  data.trees = arena.add(makeTrees(set));
+  data.boxes = arena.add(makeBoxes(set)).address;
+  data.primitives = arena.add(makePrimitives(scene, set)).address;
+  data.nodes = arena.add(makeNodes(set)).address;
+  data.trees = arena.add(makeTrees(set)).address;
   data.material = materialIndex(scene, set.material);
   data.triangleCount = static_cast<std::uint32_t>(scene::boxCount(set));
   data.kind = geometryKind(set.kind);
@@ -119,25 +171,37 @@ VkFormat textureFormat(io::PixelType type, bool sRgb) {
 
 }  // namespace
 
-GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene) {
-  VkDeviceSize total = 0;
-  for (const scene::Mesh& mesh : scene.meshes) {
-    for (const scene::Geometry& geometry : mesh.geometries) total += attributeBytes(geometry);
-    for (const scene::PrimitiveSet& set : mesh.primitiveSets) total += attributeBytes(set);
-  }
-
+GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene, scene::Scene* emptied) {
   GeometryUpload upload;
-  Arena arena(context, uploader, upload, total);
-  for (const scene::Mesh& mesh : scene.meshes) {
+  Arena arena(context, uploader, upload, arraySizes(scene));
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const scene::Mesh& mesh = scene.meshes[m];
     upload.firstGeometry.push_back(static_cast<std::uint32_t>(upload.geometries.size()));
-    for (const scene::Geometry& g : mesh.geometries) upload.geometries.push_back(uploadTriangles(arena, scene, g));
-    for (const scene::PrimitiveSet& set : mesh.primitiveSets) upload.geometries.push_back(uploadPrimitives(arena, scene, set));
+    for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
+      GeometryArrays& arrays = upload.arrays.emplace_back();
+      upload.geometries.push_back(uploadTriangles(arena, scene, mesh.geometries[g], arrays));
+      if (emptied) giveUp(emptied->meshes[m].geometries[g], arrays);
+    }
+    for (const scene::PrimitiveSet& set : mesh.primitiveSets) {
+      upload.arrays.emplace_back();
+      upload.geometries.push_back(uploadPrimitives(arena, scene, set));
+    }
   }
   return upload;
 }
 
 TextureUpload::TextureUpload(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene)
     : context_(context), uploader_(uploader), scene_(scene) {}
+
+void TextureUpload::expect(int texture, bool sRgb) {
+  const int image = scene_.textures[static_cast<std::size_t>(texture)].image;
+  if (image != scene::kNone) expected_.insert({image, sRgb});
+}
+
+void TextureUpload::giveUp(int image, bool sRgb) {
+  expected_.erase({image, sRgb});
+  if (emptied_ && !expected_.contains({image, !sRgb})) clear(emptied_->images[static_cast<std::size_t>(image)].image.data);
+}
 
 std::uint32_t TextureUpload::index(int texture, bool sRgb) {
   const auto known = indexByTexture_.find({texture, sRgb});
@@ -149,6 +213,7 @@ std::uint32_t TextureUpload::index(int texture, bool sRgb) {
     const scene::NamedImage& source = scene_.images[static_cast<std::size_t>(t.image)];
     if (source.image.empty()) return shared::kNoTexture;
     image = &upload(source.image, sRgb, source.name);
+    giveUp(t.image, sRgb);
   }
   gpu::SamplerOptions options;
   options.filter = t.sampler.filter == scene::Filter::nearest ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
@@ -172,8 +237,11 @@ void TextureUpload::bind(gpu::BindlessSet& set) const {
 gpu::Image& addTexture(std::deque<gpu::Image>& textures, gpu::Context& context, gpu::Uploader& uploader, const io::Image& source, bool sRgb,
                        const std::string& name) {
   // The device has no sRGB format of 16 bits: those are decoded here.
-  io::Image image = sRgb && source.type == io::PixelType::u16 ? io::toFloat(source) : source;
-  if (image.channels != 4) image = io::toChannels(image, 4);
+  const bool decoded = sRgb && source.type == io::PixelType::u16;
+  io::Image converted;
+  if (decoded) converted = io::toFloat(source);
+  if (source.channels != 4) converted = io::toChannels(decoded ? converted : source, 4);
+  const io::Image& image = converted.empty() ? source : converted;
   gpu::ImageOptions options;
   options.width = image.width;
   options.height = image.height;

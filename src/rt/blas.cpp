@@ -14,6 +14,9 @@ namespace {
 
 // Vertices, indices and boxes of one batch: bounds the host's and the device's temporary memory.
 constexpr VkDeviceSize kInputBudget = VkDeviceSize{256} << 20;
+// Structures of one batch as built: so much, or this share of all.
+constexpr VkDeviceSize kCompactionBytes = VkDeviceSize{32} << 20;
+constexpr VkDeviceSize kCompactionShare = 8;
 // Inputs with more primitives are prepared one after the other, each on all cores.
 constexpr std::size_t kManyPrimitives = 65536;
 
@@ -23,18 +26,26 @@ std::size_t primitiveCount(const BlasInput& input) {
   return count;
 }
 
-VkDeviceSize inputBytes(const BlasInput& input) {
+bool isOrdered(const gpu::Context& context, const BlasInput& input) {
+  return context.info().quirks.keepsPrimitiveOrder && !input.options.keepInputOrder;
+}
+
+// What has to be uploaded for the build.
+VkDeviceSize inputBytes(const gpu::Context& context, const BlasInput& input) {
+  const bool indices = isOrdered(context, input);  // in their own order
   VkDeviceSize bytes = 0;
-  for (const GeometryInput& g : input.geometries)
-    bytes += g.positions.size_bytes() + g.triangles.size_bytes() + g.boxes.size_bytes();
+  for (const GeometryInput& g : input.geometries) {
+    if (!g.positionsAddress) bytes += g.positions.size_bytes();
+    if (!g.trianglesAddress || indices) bytes += g.triangles.size_bytes();
+    bytes += g.boxes.size_bytes();
+  }
   return bytes;
 }
 
 std::vector<BlasData> prepare(const gpu::Context& context, std::span<const BlasInput> inputs) {
   std::vector<BlasData> data(inputs.size());
   const auto prepareOne = [&](std::size_t k) {
-    const bool order = context.info().quirks.keepsPrimitiveOrder && !inputs[k].options.keepInputOrder;
-    data[k] = prepareBlas(inputs[k], order);
+    data[k] = prepareBlas(inputs[k], isOrdered(context, inputs[k]));
   };
   std::vector<std::size_t> small;
   for (std::size_t k = 0; k < inputs.size(); ++k) {
@@ -48,22 +59,38 @@ std::vector<BlasData> prepare(const gpu::Context& context, std::span<const BlasI
   return data;
 }
 
-// Lengths of consecutive runs of inputs that fit the budgets together.
-std::vector<std::size_t> planBatches(gpu::Context& context, std::span<const BlasInput> inputs, VkDeviceSize scratchBudget) {
-  std::vector<std::size_t> lengths;
-  VkDeviceSize scratch = 0, bytes = 0;
+struct Plan {
+  std::vector<std::size_t> lengths;   // of consecutive runs of inputs that fit the budgets together
+  std::vector<BlasOptions> options;   // one per input
+};
+
+// Compaction needs the old and the new structure at once, and wins a sixth: a batch must be small against the whole,
+// and a structure that is most of the whole stays as it was built.
+Plan planBatches(gpu::Context& context, std::span<const BlasInput> inputs, VkDeviceSize scratchBudget) {
+  Plan plan;
+  std::vector<VkAccelerationStructureBuildSizesInfoKHR> sizes;
+  VkDeviceSize total = 0;
   for (const BlasInput& input : inputs) {
-    const auto sizes = describeForSizes(context, input).sizes(context, input.options.name);
-    const VkDeviceSize ownScratch = sizes.buildScratchSize + context.info().limits.scratchAlignment, ownBytes = inputBytes(input);
-    if (lengths.empty() || scratch + ownScratch > scratchBudget || bytes + ownBytes > kInputBudget) {
-      lengths.push_back(0);
-      scratch = bytes = 0;
+    sizes.push_back(describeForSizes(context, input).sizes(context, input.options.name));
+    total += sizes.back().accelerationStructureSize;
+  }
+  const VkDeviceSize builtBudget = std::max(kCompactionBytes, total / kCompactionShare);
+  VkDeviceSize scratch = 0, bytes = 0, built = 0;
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    BlasOptions& options = plan.options.emplace_back(inputs[k].options);
+    const VkDeviceSize ownScratch = sizes[k].buildScratchSize + context.info().limits.scratchAlignment;
+    const VkDeviceSize ownBytes = inputBytes(context, inputs[k]), ownBuilt = sizes[k].accelerationStructureSize;
+    if (ownBuilt > builtBudget) options.compact = false;
+    if (plan.lengths.empty() || scratch + ownScratch > scratchBudget || bytes + ownBytes > kInputBudget || built + ownBuilt > builtBudget) {
+      plan.lengths.push_back(0);
+      scratch = bytes = built = 0;
     }
-    ++lengths.back();
+    ++plan.lengths.back();
     scratch += ownScratch;
     bytes += ownBytes;
+    built += ownBuilt;
   }
-  return lengths;
+  return plan;
 }
 
 }  // namespace
@@ -99,15 +126,17 @@ std::vector<Blas> BlasBuilder::build(std::span<const BlasInput> inputs, BuildSta
   BuildStatistics own;
   std::vector<Blas> results;
   results.reserve(inputs.size());
-  for (const std::size_t length : planBatches(context_, inputs, scratchBudget_)) {
+  const Plan plan = planBatches(context_, inputs, scratchBudget_);
+  for (const std::size_t length : plan.lengths) {
     const std::span<const BlasInput> part = inputs.subspan(results.size(), length);
+    const std::span<const BlasOptions> options = std::span(plan.options).subspan(results.size(), length);
     const Stopwatch ordering;
-    const std::vector<BlasData> data = prepare(context_, part);
+    std::vector<BlasData> data = prepare(context_, part);
     own.orderSeconds += ordering.seconds();
 
     const Stopwatch building;
     BlasBatch batch(context_);
-    for (std::size_t k = 0; k < length; ++k) batch.add(part[k].options, data[k]);
+    for (std::size_t k = 0; k < length; ++k) batch.add(options[k], data[k]);
     std::vector<Blas> built = batch.run();
     own.buildSeconds += building.seconds();
     own.peakScratchBytes = std::max(own.peakScratchBytes, batch.scratchBytes());
@@ -126,7 +155,7 @@ std::vector<Blas> BlasBuilder::build(std::span<const BlasInput> inputs, BuildSta
 void BlasBuilder::remember(Blas& blas, const BlasInput& input, const BlasData& data) {
   for (std::size_t g = 0; g < data.geometries.size(); ++g) {
     const GeometryData& built = data.geometries[g];
-    blas.built_.push_back({built.kind, built.positions.size(), rt::primitiveCount(input.geometries[g]), built.count(), built.map});
+    blas.built_.push_back({built.input.kind, built.input.positions.size(), rt::primitiveCount(input.geometries[g]), built.count, built.map});
   }
 }
 

@@ -26,6 +26,10 @@ struct GeometryInput {
   std::span<const Bounds3> boxes;    // boxes
   bool opaque = true;                // no any-hit shader is called
   bool singleAnyHit = false;         // NO_DUPLICATE_ANY_HIT_INVOCATION
+  // Where the device has the same arrays already, in buffers of usage ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY; 0:
+  // they are uploaded for the build.
+  VkDeviceAddress positionsAddress = 0;
+  VkDeviceAddress trianglesAddress = 0;
 };
 
 struct BlasOptions {

@@ -14,20 +14,37 @@ std::span<const std::byte> bytesOf(std::span<const T> data) { return std::as_byt
 
 }  // namespace
 
-void BlasBatch::add(const BlasOptions& options, const BlasData& data) { addJob(options, data, nullptr); }
-void BlasBatch::addRefit(Blas& target, const BlasData& data) { addJob(target.options_, data, &target); }
+void BlasBatch::add(const BlasOptions& options, BlasData& data) { addJob(options, data, nullptr); }
+void BlasBatch::addRefit(Blas& target, BlasData& data) { addJob(target.options_, data, &target); }
 
-VkDeviceSize BlasBatch::place(HostBytes data) {
+BlasBatch::Place BlasBatch::place(VkDeviceAddress known, HostBytes data) {
+  if (known) return {known, 0};
   const auto [at, isNew] = places_.try_emplace({data.data(), data.size()}, inputBytes_);
   if (isNew) inputBytes_ = alignUp(inputBytes_ + data.size(), kInputAlignment);
-  return at->second;
+  return {0, at->second};
 }
 
-void BlasBatch::addJob(const BlasOptions& options, const BlasData& data, Blas* refitted) {
-  Job job{&options, &data, refitted != nullptr, refitted, {}, {}, scratchBytes_};
+BlasBatch::GeometryPlaces BlasBatch::placesOf(const GeometryData& geometry) {
+  const GeometryInput& input = geometry.input;
+  const bool triangles = input.kind == GeometryKind::triangles;
+  GeometryPlaces places;
+  if (triangles) places.points = place(input.positionsAddress, bytesOf(input.positions));
+  Place& primitives = triangles ? places.indices : places.points;
+  if (geometry.map.empty()) {
+    primitives = triangles ? place(input.trianglesAddress, bytesOf(input.triangles)) : place(0, bytesOf(input.boxes));
+  } else {
+    primitives = {0, inputBytes_};
+    gathered_.emplace_back(&geometry, inputBytes_);
+    inputBytes_ = alignUp(inputBytes_ + geometry.primitiveBytes(), kInputAlignment);
+  }
+  return places;
+}
+
+void BlasBatch::addJob(const BlasOptions& options, BlasData& data, Blas* refitted) {
+  Job job{&options, &data, refitted != nullptr, refitted, {}, {}, scratchBytes_, {}};
   job.description.flags = buildFlags(context_, options);
   for (const GeometryData& geometry : data.geometries) {
-    for (const HostBytes bytes : {bytesOf(geometry.positions), bytesOf(geometry.triangles), bytesOf(geometry.boxes)}) place(bytes);
+    job.places.push_back(placesOf(geometry));
     job.description.add(geometry, 0, 0);
   }
   job.sizes = job.description.sizes(context_, options.name);
@@ -41,18 +58,29 @@ void BlasBatch::uploadInputs() {
   inputs_ = filler_->make(std::max<VkDeviceSize>(inputBytes_, 64),
                           VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, "BLAS inputs");
   for (const auto& [data, offset] : places_) filler_->write(inputs_, offset, HostBytes(data.first, data.second));
+  for (const auto& [geometry, offset] : gathered_) {
+    const auto size = static_cast<std::size_t>(geometry->primitiveBytes());
+    if (inputs_.mapped()) {
+      geometry->gather({inputs_.mapped() + offset, size});
+    } else {
+      std::vector<std::byte> primitives(size);
+      geometry->gather(primitives);
+      filler_->write(inputs_, offset, primitives);
+    }
+  }
 }
 
 // Now that the input buffer has an address.
 void BlasBatch::describe(Job& job) {
   job.description.geometries.clear();
   job.description.ranges.clear();
-  for (const GeometryData& geometry : job.data->geometries) {
-    const bool triangles = geometry.kind == GeometryKind::triangles;
-    const VkDeviceSize points = place(triangles ? bytesOf(geometry.positions) : bytesOf(geometry.boxes));
-    const VkDeviceSize indices = place(bytesOf(geometry.triangles));
-    const bool none = geometry.count() == 0;
-    job.description.add(geometry, inputs_.address() + (none ? 0 : points), inputs_.address() + (none ? 0 : indices));
+  for (std::size_t g = 0; g < job.places.size(); ++g) {
+    const GeometryData& geometry = job.data->geometries[g];
+    const auto address = [&](const Place& place) {
+      if (geometry.count == 0) return inputs_.address();
+      return place.address ? place.address : inputs_.address() + place.offset;
+    };
+    job.description.add(geometry, address(job.places[g].points), address(job.places[g].indices));
   }
 }
 
@@ -115,6 +143,9 @@ std::vector<Blas> BlasBatch::run() {
     if (compacts(context_, *job.options)) compactable.push_back(job.target);
   }
   filler_->flush();
+  for (const Job& job : jobs_)
+    if (!job.options->allowUpdate)
+      for (GeometryData& geometry : job.data->geometries) geometry.map = {};  // the device has it
   context_.submitAndWait([&](gpu::Commands& commands) { recordBuilds(commands); });
   inputs_ = {};
   scratch_ = {};

@@ -15,28 +15,40 @@ class BlasBatch {
  public:
   explicit BlasBatch(gpu::Context& context) : context_(context) {}
 
-  // A new BLAS; `options` and `data` must outlive run().
-  void add(const BlasOptions& options, const BlasData& data);
+  // A new BLAS; `options` and `data` must outlive run(), which empties the maps of `data` unless the BLAS may be
+  // updated.
+  void add(const BlasOptions& options, BlasData& data);
   // An update of `target` in place.
-  void addRefit(Blas& target, const BlasData& data);
+  void addRefit(Blas& target, BlasData& data);
   // Uploads, builds, compacts and waits. Result k belongs to the k-th add.
   std::vector<Blas> run();
   VkDeviceSize scratchBytes() const { return scratchBytes_; }
 
  private:
+  // On the device already (an address), or at an offset of the input buffer.
+  struct Place {
+    VkDeviceAddress address = 0;
+    VkDeviceSize offset = 0;
+  };
+  struct GeometryPlaces {
+    Place points;   // or boxes
+    Place indices;
+  };
   struct Job {
     const BlasOptions* options;
-    const BlasData* data;
+    BlasData* data;
     bool refit;
     Blas* target;  // of a build: set by run()
     BuildDescription description;
     VkAccelerationStructureBuildSizesInfoKHR sizes;
     VkDeviceSize scratchOffset;
+    std::vector<GeometryPlaces> places;  // one per geometry
   };
   using HostBytes = std::span<const std::byte>;
 
-  void addJob(const BlasOptions& options, const BlasData& data, Blas* refitted);
-  VkDeviceSize place(HostBytes data);
+  void addJob(const BlasOptions& options, BlasData& data, Blas* refitted);
+  Place place(VkDeviceAddress known, HostBytes data);
+  GeometryPlaces placesOf(const GeometryData& geometry);
   void uploadInputs();
   void describe(Job& job);
   Blas create(const Job& job);
@@ -49,6 +61,7 @@ class BlasBatch {
   gpu::Context& context_;
   std::vector<Job> jobs_;
   std::map<std::pair<const std::byte*, std::size_t>, VkDeviceSize> places_;  // byte in the input buffer
+  std::vector<std::pair<const GeometryData*, VkDeviceSize>> gathered_;       // primitives in their own order, and where
   VkDeviceSize inputBytes_ = 0;
   VkDeviceSize scratchBytes_ = 0;
   std::optional<BufferFiller> filler_;

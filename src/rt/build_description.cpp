@@ -14,14 +14,15 @@ static_assert(sizeof(Bounds3) == sizeof(VkAabbPositionsKHR) && sizeof(vec3) == 1
 void BuildDescription::add(const GeometryData& data, VkDeviceAddress points, VkDeviceAddress triangles) {
   VkAccelerationStructureGeometryKHR geometry{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR};
   geometry.flags = data.flags;
-  if (data.kind == GeometryKind::triangles) {
+  const std::span<const vec3> positions = data.input.positions;
+  if (data.input.kind == GeometryKind::triangles) {
     geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
     auto& out = geometry.geometry.triangles;
     out.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
     out.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
     out.vertexData.deviceAddress = points;
     out.vertexStride = sizeof(vec3);
-    out.maxVertex = data.positions.empty() ? 0 : static_cast<std::uint32_t>(data.positions.size() - 1);
+    out.maxVertex = positions.empty() ? 0 : static_cast<std::uint32_t>(positions.size() - 1);
     out.indexType = VK_INDEX_TYPE_UINT32;
     out.indexData.deviceAddress = triangles;
   } else {
@@ -33,7 +34,7 @@ void BuildDescription::add(const GeometryData& data, VkDeviceAddress points, VkD
   }
   geometries.push_back(geometry);
   // firstVertex stays 0: lavapipe applies it twice. Offsets are part of the addresses.
-  ranges.push_back({.primitiveCount = data.count(), .primitiveOffset = 0, .firstVertex = 0, .transformOffset = 0});
+  ranges.push_back({.primitiveCount = data.count, .primitiveOffset = 0, .firstVertex = 0, .transformOffset = 0});
 }
 
 VkAccelerationStructureBuildGeometryInfoKHR BuildDescription::info(VkBuildAccelerationStructureModeKHR mode) const {

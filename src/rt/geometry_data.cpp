@@ -1,7 +1,10 @@
 #include "rt/geometry_data.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
+#include <cstring>
+#include <optional>
 
 #include "base/parallel.h"
 #include "rt/spatial_order.h"
@@ -11,13 +14,37 @@ namespace {
 
 constexpr std::size_t kChunk = 32768;  // primitives per parallel step
 
+// Calls body(first, last) for consecutive parts of [0, count), in parallel.
+template <class Body>
+void forChunks(std::size_t count, const Body& body) {
+  parallelFor((count + kChunk - 1) / kChunk, [&](std::size_t chunk) { body(chunk * kChunk, std::min(count, (chunk + 1) * kChunk)); });
+}
+
 std::vector<Bounds3> boundsOf(const GeometryInput& input) {
   std::vector<Bounds3> bounds(primitiveCount(input));
-  parallelFor((bounds.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
-    const std::size_t end = std::min(bounds.size(), (chunk + 1) * kChunk);
-    for (std::size_t k = chunk * kChunk; k < end; ++k) bounds[k] = primitiveBounds(input, k);
+  forChunks(bounds.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) bounds[k] = primitiveBounds(input, k);
   });
   return bounds;
+}
+
+// The union of all boxes; nothing if a primitive is inactive: then it takes a list of them.
+std::optional<Bounds3> wholeBounds(const GeometryInput& input) {
+  const std::size_t count = primitiveCount(input);
+  std::vector<Bounds3> parts((count + kChunk - 1) / kChunk);
+  std::atomic<bool> active = true;
+  forChunks(count, [&](std::size_t first, std::size_t last) {
+    Bounds3& part = parts[first / kChunk];
+    for (std::size_t k = first; k < last; ++k) {
+      const Bounds3 bounds = primitiveBounds(input, k);
+      if (bounds.empty()) active = false;
+      part.extend(bounds);
+    }
+  });
+  if (!active) return {};
+  Bounds3 whole;
+  for (const Bounds3& part : parts) whole.extend(part);
+  return whole;
 }
 
 // Removes empty bounds; returns the indices of those that stay, or nothing if all do.
@@ -80,31 +107,48 @@ Bounds3 primitiveBounds(const GeometryInput& input, std::size_t primitive) {
   return bounds;
 }
 
-GeometryData applyMap(const GeometryInput& input, const std::vector<std::uint32_t>& map, std::size_t count) {
-  GeometryData data;
-  data.kind = input.kind;
+GeometryData applyMap(const GeometryInput& input, std::vector<std::uint32_t> map, std::size_t count) {
+  GeometryData data{.input = input, .flags = 0, .map = std::move(map), .count = static_cast<std::uint32_t>(count)};
   if (input.opaque) data.flags |= VK_GEOMETRY_OPAQUE_BIT_KHR;
   if (input.singleAnyHit) data.flags |= VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR;
-  data.positions = input.positions;
-  data.map = map;
-  if (map.empty()) {
-    if (input.kind == GeometryKind::triangles) data.triangles = input.triangles.first(count);
-    if (input.kind == GeometryKind::boxes) data.boxes = input.boxes.first(count);
-    return data;
-  }
-  if (input.kind == GeometryKind::triangles) {
-    data.orderedTriangles.reserve(map.size());
-    for (const std::uint32_t k : map) data.orderedTriangles.push_back(input.triangles[k]);
-    data.triangles = data.orderedTriangles;
-  } else {
-    data.orderedBoxes.reserve(map.size());
-    for (const std::uint32_t k : map) data.orderedBoxes.push_back(input.boxes[k]);
-    data.boxes = data.orderedBoxes;
+  return data;
+}
+
+VkDeviceSize GeometryData::primitiveBytes() const {
+  return VkDeviceSize{count} * (input.kind == GeometryKind::triangles ? sizeof(uvec3) : sizeof(Bounds3));
+}
+
+void GeometryData::gather(std::span<std::byte> out) const {
+  const auto copy = [&](const auto& primitives) {
+    using Primitive = typename std::decay_t<decltype(primitives)>::value_type;
+    forChunks(count, [&](std::size_t first, std::size_t last) {
+      for (std::size_t k = first; k < last; ++k)
+        std::memcpy(out.data() + k * sizeof(Primitive), &primitives[map.empty() ? k : map[k]], sizeof(Primitive));
+    });
+  };
+  if (input.kind == GeometryKind::triangles) copy(input.triangles);
+  else copy(input.boxes);
+}
+
+namespace {
+
+// In the input's order, with all primitives; nothing if some are inactive.
+std::optional<BlasData> asGiven(const BlasInput& input) {
+  BlasData data;
+  for (const GeometryInput& geometry : input.geometries) {
+    const std::optional<Bounds3> bounds = wholeBounds(geometry);
+    if (!bounds) return {};
+    data.bounds.extend(*bounds);
+    data.geometries.push_back(applyMap(geometry, {}, primitiveCount(geometry)));
   }
   return data;
 }
 
+}  // namespace
+
 BlasData prepareBlas(const BlasInput& input, bool order) {
+  if (!order)
+    if (std::optional<BlasData> data = asGiven(input)) return *std::move(data);
   Active active = findActive(input);
   BlasData data;
   for (const Bounds3& bounds : active.bounds) data.bounds.extend(bounds);
@@ -125,7 +169,7 @@ BlasData prepareBlas(const BlasInput& input, bool order) {
       map = std::move(ordered);
       if (count == inputCount && isIdentity(map)) map.clear();
     }
-    data.geometries.push_back(applyMap(input.geometries[g], map, count));
+    data.geometries.push_back(applyMap(input.geometries[g], std::move(map), count));
     first += count;
   }
   return data;

@@ -6,19 +6,15 @@
 
 namespace quintet::rt {
 
-// What the device builds from. Spans point into the input or into the storage below them.
+// What the device builds from: the input's arrays and a choice of their primitives.
 struct GeometryData {
-  GeometryKind kind = GeometryKind::triangles;
+  GeometryInput input;
   VkGeometryFlagsKHR flags = 0;
-  std::span<const vec3> positions;
-  std::span<const uvec3> triangles;
-  std::span<const Bounds3> boxes;
-  std::vector<std::uint32_t> map;  // built primitive → input primitive; empty: identity
-  std::vector<uvec3> orderedTriangles;
-  std::vector<Bounds3> orderedBoxes;
-  std::uint32_t count() const {
-    return static_cast<std::uint32_t>(kind == GeometryKind::triangles ? triangles.size() : boxes.size());
-  }
+  std::vector<std::uint32_t> map;  // built primitive → input primitive; empty: the first `count`
+  std::uint32_t count = 0;         // built primitives
+  VkDeviceSize primitiveBytes() const;
+  // Triangles or boxes in the order of the build; `out` has primitiveBytes().
+  void gather(std::span<std::byte> out) const;
 };
 
 struct BlasData {
@@ -31,7 +27,7 @@ struct BlasData {
 BlasData prepareBlas(const BlasInput& input, bool order);
 
 // The `count` primitives that `map` lists; an empty map stands for the identity.
-GeometryData applyMap(const GeometryInput& input, const std::vector<std::uint32_t>& map, std::size_t count);
+GeometryData applyMap(const GeometryInput& input, std::vector<std::uint32_t> map, std::size_t count);
 
 // Box of one primitive; empty: it is inactive.
 Bounds3 primitiveBounds(const GeometryInput& input, std::size_t primitive);

@@ -31,8 +31,8 @@ TEST(GeometryData, WithoutOrderNothingIsCopied) {
   const BlasData data = prepareBlas({.geometries = {mesh.geometry()}, .options = {}}, false);
   ASSERT_EQ(data.geometries.size(), 1u);
   EXPECT_TRUE(data.geometries[0].map.empty());
-  EXPECT_EQ(data.geometries[0].triangles.data(), mesh.triangles.data());
-  EXPECT_EQ(data.geometries[0].count(), 10u);
+  EXPECT_EQ(data.geometries[0].input.triangles.data(), mesh.triangles.data());
+  EXPECT_EQ(data.geometries[0].count, 10u);
   EXPECT_EQ(data.inactiveCount, 0u);
   EXPECT_FALSE(data.bounds.empty());
 }
@@ -46,13 +46,16 @@ TEST(GeometryData, MapLeadsBackToTheInput) {
     const BlasInput input{.geometries = {first.geometry(), second.geometry()}, .options = {}};
     const BlasData data = prepareBlas(input, order);
     EXPECT_EQ(data.inactiveCount, 3u);
-    EXPECT_EQ(data.geometries[0].count(), 498u);
-    EXPECT_EQ(data.geometries[1].count(), 299u);
+    EXPECT_EQ(data.geometries[0].count, 498u);
+    EXPECT_EQ(data.geometries[1].count, 299u);
     for (std::size_t g = 0; g < 2; ++g) {
       const GeometryData& geometry = data.geometries[g];
-      ASSERT_EQ(geometry.map.size(), geometry.count());
-      for (std::size_t k = 0; k < geometry.count(); ++k)
-        EXPECT_EQ(geometry.triangles[k], input.geometries[g].triangles[geometry.map[k]]);
+      ASSERT_EQ(geometry.map.size(), geometry.count);
+      std::vector<uvec3> built(geometry.count);
+      ASSERT_EQ(geometry.primitiveBytes(), built.size() * sizeof(uvec3));
+      geometry.gather(std::as_writable_bytes(std::span(built)));
+      for (std::size_t k = 0; k < geometry.count; ++k)
+        EXPECT_EQ(built[k], input.geometries[g].triangles[geometry.map[k]]);
       std::vector<std::uint32_t> sorted = geometry.map;
       std::ranges::sort(sorted);
       EXPECT_EQ(std::ranges::adjacent_find(sorted), sorted.end());
@@ -67,9 +70,9 @@ TEST(GeometryData, GeometriesWithoutPrimitivesKeepTheirPlace) {
   const Mesh none(0), good(5);
   const BlasData data = prepareBlas({.geometries = {none.geometry(), broken.geometry(), good.geometry()}, .options = {}}, true);
   ASSERT_EQ(data.geometries.size(), 3u);
-  EXPECT_EQ(data.geometries[0].count(), 0u);
-  EXPECT_EQ(data.geometries[1].count(), 0u);
-  EXPECT_EQ(data.geometries[2].count(), 5u);
+  EXPECT_EQ(data.geometries[0].count, 0u);
+  EXPECT_EQ(data.geometries[1].count, 0u);
+  EXPECT_EQ(data.geometries[2].count, 5u);
   EXPECT_EQ(data.inactiveCount, 3u);
 }
 
