@@ -17,9 +17,11 @@ SCENES := build/scenes
 # How the demo is rendered: 50 seconds, as many samples as fit.
 RENDER_FLAGS ?= --size 800x450 --time 50
 BENCH_FLAGS  ?=
+# --only NAME, --fast, --list
+MUTATION_FLAGS ?=
 
 .DEFAULT_GOAL := build
-.PHONY: demo test build setup bench lessons reference lint clean help configure
+.PHONY: demo test build setup bench lessons reference mutation lint clean help configure
 # One step after the other; each of them runs in parallel by itself.
 .NOTPARALLEL:
 
@@ -50,6 +52,9 @@ lessons: build ## Render the picture of every lesson's page (docs/lessons)
 reference: build ## Compare with the reference images and values (tests/reference/run)
 	@QUINTET=$(CURDIR)/$(BUILD)/bin/quintet tests/reference/run
 
+mutation: build ## Seed bugs one at a time and see that the tests notice (tests/mutation/run)
+	@tests/mutation/run $(BUILD)/bin --jobs $(JOBS) $(MUTATION_FLAGS)
+
 # The headers below shaders/ are read by C++ too, and formatted by hand, side by side with their GLSL.
 lint: ## Check the layout of C++ (clang-format) and the scripts (shellcheck), where these are installed
 	@if command -v clang-format >/dev/null && [ -e .clang-format ]; then \
@@ -58,7 +63,7 @@ lint: ## Check the layout of C++ (clang-format) and the scripts (shellcheck), wh
 	        | xargs -0 -r clang-format --dry-run -Werror && echo "lint: C++ is fine"; \
 	else echo "lint: no clang-format or no .clang-format, C++ not checked"; fi
 	@if command -v shellcheck >/dev/null; then \
-	    shellcheck -x scripts/*.sh tests/setup/*.sh .ci/run && echo "lint: scripts are fine"; \
+	    shellcheck -x scripts/*.sh tests/setup/*.sh tests/mutation/run .ci/run && echo "lint: scripts are fine"; \
 	else echo "lint: no shellcheck here, scripts not checked"; fi
 
 clean: ## Remove everything that was built

@@ -261,14 +261,24 @@ std::vector<Named> lobeCases() {
   return cases;
 }
 
-TEST_F(BsdfSampling, FollowsThePdf) {
+// All cases of one lobe. The levels are those for all lobes' tests together.
+template <class Test>
+void expectFollowsThePdf(int lobe, const Test& test) {
   const std::vector<Named> cases = lobeCases();
   const double level = sidak(0.01, cases.size());
   for (const Named& named : cases) {
+    if (named.lobe != lobe) continue;
     const ChiSquare result = test(named);
     EXPECT_GE(result.pValue, level) << named.name << ": chi-square " << result.statistic << " with " << result.freedom << " degrees";
   }
 }
+
+TEST_F(BsdfSampling, DiffuseFollowsThePdf) { expectFollowsThePdf(0, [](const Named& n) { return test(n); }); }
+TEST_F(BsdfSampling, SpecularFollowsThePdf) { expectFollowsThePdf(1, [](const Named& n) { return test(n); }); }
+TEST_F(BsdfSampling, ThinFollowsThePdf) { expectFollowsThePdf(2, [](const Named& n) { return test(n); }); }
+TEST_F(BsdfSampling, DielectricFollowsThePdf) { expectFollowsThePdf(3, [](const Named& n) { return test(n); }); }
+TEST_F(BsdfSampling, ClearcoatFollowsThePdf) { expectFollowsThePdf(4, [](const Named& n) { return test(n); }); }
+TEST_F(BsdfSampling, MixturesFollowThePdf) { expectFollowsThePdf(5, [](const Named& n) { return test(n); }); }
 
 // cos^2 has the distribution ln(1 + x / a^2) / ln(1 + 1 / a^2), a^2 = 2 alpha^2.
 TEST_F(BsdfSampling, MultipleScatteringFollowsItsPdf) {

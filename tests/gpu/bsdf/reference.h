@@ -1,0 +1,29 @@
+// The material's BSDF once more, in double precision and in the form of the papers: normalised half vectors, tangents,
+// Smith's Lambda, polarised Fresnel. Shares only the albedo tables with the shader, which have tests of their own
+// (albedo_test.cpp).
+#ifndef QUINTET_TESTS_GPU_BSDF_REFERENCE_H
+#define QUINTET_TESTS_GPU_BSDF_REFERENCE_H
+
+#include <vector>
+
+#include "bsdf/bsdf_cases.h"
+
+namespace quintet::test {
+
+class ReferenceBsdf {
+ public:
+  // f(wo, wi) |cos wi| of all lobes that are no deltas; wo is the material's.
+  glm::dvec3 eval(const BsdfCase& c, const glm::dvec3& wi) const;
+
+ private:
+  struct Layer { double lost, schlick; };
+  Layer layer(double alpha, double cosine) const;
+  Layer averages(double alpha) const;
+  glm::dvec2 glass(const BsdfCase& c, double cosine) const;
+  glm::dvec3 refractive(const BsdfCase& c, const glm::dvec3& wo, const glm::dvec3& wi) const;
+
+  std::vector<float> tables_ = render::computeAlbedoTables();
+};
+
+}  // namespace quintet::test
+#endif

@@ -1,0 +1,67 @@
+// bsdfEval against the same model written a second time on the host, for every material, roughness and angle.
+#include "bsdf/reference.h"
+
+#include <gtest/gtest.h>
+
+namespace quintet::test {
+namespace {
+
+struct Answer { vec3 wi; vec3 value; };
+
+// Directions of the sampler, where the lobes are, and uniform ones.
+const std::string kEvaluation = kBsdfPrelude + R"(
+  struct Answer { vec3 wi; vec3 value; };
+  #define In Case
+  #define Out Answer
+  Out run(uint index, In c) {
+    Bsdf b = makeBsdfOf(c);
+    BsdfSample s;
+    vec3 u = randomAt(index, 21u);
+    bool valid = bsdfSample(b, c.wo, u.z, u.xy, s);
+    vec3 wi = valid && randomAt(index, 22u).z < 0.6 ? s.wi : uniformDirection(randomAt(index, 22u).xy);
+    return Out(wi, bsdfEval(b, c.wo, wi));
+  }
+)";
+
+class BsdfReference : public BsdfTest {
+ protected:
+  // The tolerance allows for what float leaves of half vectors: their error is 1e-7 over the length of the part across
+  // the normal, relative to alpha.
+  static void compare(const std::vector<NamedCase>& cases, double tolerance, int perCase) {
+    const ReferenceBsdf reference;
+    std::vector<BsdfCase> materials;
+    for (const NamedCase& named : cases) materials.push_back(named.material);
+    const std::vector<Answer> answers = runCases<Answer>(kEvaluation, materials, materials.size() * static_cast<std::size_t>(perCase));
+    std::size_t compared = 0;
+    for (std::size_t k = 0; k < answers.size(); ++k) {
+      const NamedCase& named = cases[k % cases.size()];
+      if (std::abs(answers[k].wi.z) < 1e-3f) continue;
+      const glm::dvec3 expected = reference.eval(named.material, glm::normalize(glm::dvec3(answers[k].wi)));
+      const glm::dvec3 value = answers[k].value;
+      ++compared;
+      ASSERT_LE(glm::length(value - expected), tolerance * glm::length(expected) + 1e-5)
+          << named.name << ": " << value.x << ", " << value.y << ", " << value.z << " instead of " << expected.x << ", " << expected.y
+          << ", " << expected.z << " at wi = " << answers[k].wi.x << ", " << answers[k].wi.y << ", " << answers[k].wi.z;
+    }
+    EXPECT_GT(compared, answers.size() * 9 / 10);
+  }
+};
+
+TEST_F(BsdfReference, RoughMaterials) {
+  std::vector<NamedCase> cases;
+  for (const float alpha : {0.1f, 0.4f, 1.0f})
+    for (const float cosine : kCosines)
+      for (const NamedCase& named : materialsAt(alpha, directionAt(cosine))) cases.push_back(named);
+  compare(cases, 2e-3, 200);
+}
+
+TEST_F(BsdfReference, NarrowLobes) {
+  std::vector<NamedCase> cases;
+  for (const float alpha : {0.003f, 0.02f})
+    for (const float cosine : {1.0f, 0.75f, 0.3f})
+      for (const NamedCase& named : materialsAt(alpha, directionAt(cosine))) cases.push_back(named);
+  compare(cases, 0.02, 200);
+}
+
+}  // namespace
+}  // namespace quintet::test
