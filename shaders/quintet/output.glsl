@@ -42,6 +42,11 @@ uint pixelIndex(uvec2 pixel) {
 // `slot`: kOutput_… of the generated program constants.
 vec4 loadOutput(uint slot, uvec2 pixel) { return OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)]; }
 void storeOutput(uint slot, uvec2 pixel, vec4 sum) { OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] = sum; }
+void addOutput(uint slot, uvec2 pixel, vec4 sample_) { OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] += sample_; }
+// Of an output that counts ids (pixel = "coverage"): what sample `index` of the pixel has met; 0: nothing.
+void storeCoverage(uint slot, uvec2 pixel, uint index, uint id) {
+  OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)][index % kBatchSamples] = uintBitsToFloat(id);
+}
 
 // Of a program that averages itself (accumulation = "program"): the number of the frame, and what the frame before
 // stored; 0 in the first frame, and always 0 where the film averages.

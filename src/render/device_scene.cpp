@@ -203,6 +203,7 @@ struct DeviceScene::Impl {
     }
     topLevel.emplace(context, scene, places);
     frame.instances = topLevel->table();
+    frame.previousInstances = topLevel->previousTable();
     frame.instanceCount = static_cast<std::uint32_t>(scene.instances.size());
   }
 

@@ -1,5 +1,7 @@
 #include "render/top_level.h"
 
+#include <algorithm>
+
 #include "scene/keyframes.h"
 
 namespace quintet::render {
@@ -38,6 +40,7 @@ TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<c
     input.flags = instance.flags;
   }
   table_ = gpu::makeBufferOf(context, data_, 0, "instances");
+  if (animated()) previousTable_ = gpu::makeBufferOf(context, data_, 0, "instances before");
 }
 
 bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHitForAll) {
@@ -52,12 +55,15 @@ bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHi
 bool TopLevel::setFrame(float frame) {
   if (moving_.empty() || frame == frame_) return false;
   frame_ = frame;
+  std::vector<shared::InstanceData> before = data_;
   for (std::size_t k = 0; k < moving_.size(); ++k) {
+    place(before[movingIndex_[k]], scene::worldFromObjectAt(moving_[k], std::max(0.0f, frame - 1.0f)));
     const mat4 worldFromObject = scene::worldFromObjectAt(moving_[k], frame);
     place(data_[movingIndex_[k]], worldFromObject);
     inputs_[movingIndex_[k]].worldFromObject = worldFromObject;
   }
   table_.upload(std::as_bytes(std::span(data_)));
+  previousTable_.upload(std::as_bytes(std::span(before)));
   if (tlas_) build();
   return true;
 }

@@ -27,6 +27,8 @@ class TopLevel {
 
   shared::Address table() const { return table_.address(); }  // shared::InstanceData[]; the same for all frames
   std::vector<mat4> places() const;  // world from object of each instance, at the present frame
+  // The table of the frame before the one that was set last (frame 0: itself); 0: nothing has keyframes.
+  shared::Address previousTable() const { return animated() ? previousTable_.address() : 0; }
   bool animated() const { return !moving_.empty(); }
 
   // Hit record of geometry k and ray type r: k · rayTypeCount + r. keepOrder: gl_InstanceID is the instance's index in
@@ -46,7 +48,7 @@ class TopLevel {
   std::vector<std::uint32_t> movingIndex_;     // their indices in the scene
   std::vector<shared::InstanceData> data_;
   std::vector<rt::InstanceInput> inputs_;
-  gpu::Buffer table_;
+  gpu::Buffer table_, previousTable_;
   std::unique_ptr<rt::Tlas> tlas_;
   std::uint32_t rayTypeCount_ = 0;
   bool keepOrder_ = false;

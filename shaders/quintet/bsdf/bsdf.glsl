@@ -42,6 +42,9 @@ vec3 bsdfEval(Bsdf b, vec3 wo, vec3 wi) {
   return vec3(coat) + b.underCoat * base;
 }
 
+// The part of bsdfEval that the diffuse lobe gives.
+vec3 bsdfEvalDiffuse(Bsdf b, vec3 wi) { return b.underCoat * diffuseEval(b.diffuse, wi, albedoSchlick(b.row, abs(wi.z))); }
+
 float bsdfPdf(Bsdf b, vec3 wo, vec3 wi) {
   float coat = !kHasClearcoat || b.clearcoatDelta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatPdf(b.clearcoat, wo, wi);
   float specular = b.specularDelta ? 0.0 : specularPdf(b.specular, wo, wi);

@@ -85,6 +85,9 @@ QT_SHARED_SIZE(RayKinds, 24);
 
 QT_CONSTANT kNoLight = 0xFFFFFFFFu;
 
+// Ids that pathtracer counts (pixel = "coverage"): this + index. A bit pattern of a usual float, which no device alters.
+QT_CONSTANT kCoverageId = 0x3F800000u;
+
 struct Frame {
   Address instances;    // InstanceData[]
   Address geometries;   // GeometryData[]
@@ -116,8 +119,9 @@ struct Frame {
   uint frameCount;      // frames of this run, where the program accumulates; 0: it has no end
   uint padding;
   Address lightNodes;   // LightNode[]: the tree from which lights are drawn
+  Address previousInstances;  // InstanceData[] of the frame before, of an animation; 0: nothing moves
 };
-QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 8);
+QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 16);
 
 // Adaptive sampling: the image is cut in squares of kTileSize pixels from the film's first one on. Each has two cells, the
 // pixels with an even and with an odd x + y, which get samples of their own number.

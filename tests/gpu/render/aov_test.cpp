@@ -1,0 +1,170 @@
+// The path tracer's layers: the parts of the light add up to the picture, and what is known of the first surface is right.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/error.h"
+#include "harness.h"
+#include "picture.h"
+
+namespace quintet::test {
+namespace {
+
+std::vector<std::string> optionalOutputs(const program::Program& program) {
+  std::vector<std::string> names;
+  for (const program::Output& output : program.outputs)
+    if (output.optional) names.push_back(output.name);
+  return names;
+}
+
+struct Layers {
+  program::Program program = program::loadProgram("pathtracer");
+  std::map<std::string, io::Image> images;
+  render::FilmState film;
+
+  Layers(render::DeviceScene& device, const scene::Camera& camera, PictureOptions options, const std::vector<std::string>& outputs) {
+    render::RenderSettings settings = settingsFor(camera, options);
+    settings.outputs = outputs;
+    render::Renderer renderer(device, program, testCompiler(), nullptr, settings);
+    for (std::uint32_t b = 0; b < options.batches; ++b) renderer.renderBatch();
+    film = renderer.saveFilm();
+    for (std::size_t i = 0; i < program.outputs.size(); ++i)
+      if (film.planes[i].stored() && film.planes[i].coverage.empty()) images.emplace(program.outputs[i].name, renderer.image(i));
+  }
+  std::span<const float> at(const std::string& name, std::uint32_t x, std::uint32_t y) const { return images.at(name).pixel<float>(x, y); }
+  const render::FilmPlane& plane(const std::string& name) const {
+    return *std::ranges::find(film.planes, name, &render::FilmPlane::name);
+  }
+};
+
+// Everything that scatters: diffuse, metal, coat, glass, thin glass, two lights, the sky.
+SceneBuilder mixed() {
+  SceneBuilder scene;
+  scene::Material metal, coated = lambert({0.7f, 0.2f, 0.1f}), plastic;
+  metal.roughness = 0.3f;
+  coated.clearcoat = 1.0f;
+  plastic.metallic = 0.0f;
+  plastic.roughness = 0.5f;
+  plastic.baseColor = {0.1f, 0.5f, 0.2f, 1.0f};
+  scene.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), plastic);
+  scene.add(sphere({-1.0f, 0.5f, 0}, 0.5f, 2), metal).add(sphere({0.1f, 0.5f, 0}, 0.5f, 2), clearGlass(1.5f, 1.0f));
+  scene.add(sphere({1.1f, 0.5f, 0}, 0.4f, 2), coated).add(quad({-0.3f, 0.1f, 1}, {0.9f, 0, 0}, {0, 0.9f, 0}), clearGlass(1.5f, 0.0f));
+  scene.add(quad({-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}), emitter(vec3(8.0f)));
+  scene::Light lamp;
+  lamp.position = {1.0f, 2.0f, 1.0f};
+  scene.light(lamp).sky(vec3(0.3f)).camera(perspective({0.5f, 1.0f, 3.5f}, {0, 0.5f, 0}, 45.0f));
+  return scene;
+}
+
+TEST(Aov, PartsOfTheLightAddUpToThePicture) {
+  const SceneBuilder scene = mixed();
+  render::DeviceScene device(testContext(), scene.scene, scene.environment);
+  PictureOptions options;
+  options.width = 24;
+  options.height = 16;
+  options.batches = 4;
+  const program::Program program = program::loadProgram("pathtracer");
+  const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program));
+  const Layers plain(device, scene.scene.cameras[0], options, {});
+  const std::vector<std::string> parts{"emission", "background", "direct_diffuse", "direct_specular", "direct_transmission",
+                                       "indirect_diffuse", "indirect_specular", "indirect_transmission"};
+  std::map<std::string, double> totals;
+  for (std::uint32_t y = 0; y < 16; ++y)
+    for (std::uint32_t x = 0; x < 24; ++x)
+      for (std::size_t c = 0; c < 3; ++c) {
+        double sum = 0;
+        for (const std::string& part : parts) {
+          sum += layers.at(part, x, y)[c];
+          totals[part] += layers.at(part, x, y)[c];
+          ASSERT_GE(layers.at(part, x, y)[c], 0.0f) << part;
+        }
+        ASSERT_NEAR(sum, layers.at("color", x, y)[c], 1e-4 * (1 + sum)) << x << ", " << y;
+        ASSERT_NEAR(layers.at("color", x, y)[c], plain.at("color", x, y)[c], 1e-5 * (1 + sum)) << "layers change the picture";
+      }
+  for (const std::string& part : parts) EXPECT_GT(totals[part], 0.0) << part;
+}
+
+TEST(Aov, LightIsSortedByTheFirstScattering) {
+  // Lambert under a lamp in the dark: direct and diffuse only. The same in a mirror: once more, indirect and specular.
+  SceneBuilder scene;
+  scene::Light lamp;
+  lamp.position = {0, 1, 0};
+  scene.add(quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}), lambert(vec3(0.5f))).light(lamp).camera(perspective({0, 1, 2}, {0, 0, 0}, 30.0f));
+  render::DeviceScene device(testContext(), scene.scene, scene.environment);
+  PictureOptions options;
+  options.batches = 1;
+  const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
+  EXPECT_GT(layers.at("direct_diffuse", 4, 4)[0], 0.01f);
+  EXPECT_EQ(layers.at("direct_diffuse", 4, 4)[0], layers.at("color", 4, 4)[0]);
+  for (const char* other : {"emission", "background", "direct_specular", "direct_transmission", "indirect_diffuse", "indirect_specular"})
+    EXPECT_EQ(layers.at(other, 4, 4)[0], 0.0f) << other;
+
+  SceneBuilder mirrored = scene;
+  mirrored.scene.cameras.clear();
+  scene::Material mirror;
+  mirror.roughness = 0.0f;
+  mirrored.add(quad({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}), mirror).camera(perspective({0, 1, 2}, {0, 1, 3}, 30.0f));
+  render::DeviceScene second(testContext(), mirrored.scene, mirrored.environment);
+  const Layers seen(second, mirrored.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
+  EXPECT_GT(seen.at("indirect_specular", 4, 6)[0], 0.001f);
+  EXPECT_NEAR(seen.at("indirect_specular", 4, 6)[0], seen.at("color", 4, 6)[0], 1e-6);
+}
+
+TEST(Aov, FirstSurfaceIsWhatTheCameraSees) {
+  // A wall that faces the camera, two units away, red on the left half and green on the right, sky above.
+  SceneBuilder scene;
+  scene.add(quad({-2, -2, 0}, {2, 0, 0}, {0, 2.5f, 0}), lambert({0.8f, 0, 0})).add(quad({0, -2, 0}, {2, 0, 0}, {0, 2.5f, 0}), lambert({0, 0.6f, 0}));
+  scene.sky(vec3(1.0f)).camera(perspective({0, 0, 2}, {0, 0, 0}, 90.0f));
+  render::DeviceScene device(testContext(), scene.scene, scene.environment);
+  PictureOptions options;
+  options.width = options.height = 16;
+  options.batches = 2;
+  const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
+  const auto where = [](std::uint32_t x, std::uint32_t y) { return vec2(-2 + 4 * (x + 0.5) / 16, 2 - 4 * (y + 0.5) / 16); };
+  for (const uvec2 p : {uvec2(2, 12), uvec2(13, 9), uvec2(7, 15)}) {
+    const vec2 at = where(p.x, p.y);
+    const bool left = at.x < 0;
+    EXPECT_NEAR(layers.at("position", p.x, p.y)[0], at.x, 1e-5);
+    EXPECT_NEAR(layers.at("position", p.x, p.y)[1], at.y, 1e-5);
+    EXPECT_NEAR(layers.at("depth", p.x, p.y)[0], 2.0, 1e-5);
+    EXPECT_NEAR(layers.at("distance", p.x, p.y)[0], std::sqrt(4.0 + dot(at, at)), 1e-5);
+    EXPECT_NEAR(layers.at("normal", p.x, p.y)[2], 1.0, 1e-5);
+    EXPECT_NEAR(layers.at("albedo", p.x, p.y)[left ? 0 : 1], left ? 0.8 : 0.6, 1e-6);
+    EXPECT_EQ(layers.at("instance_id", p.x, p.y)[0], left ? 1.0f : 2.0f);
+    EXPECT_EQ(layers.at("material_id", p.x, p.y)[0], left ? 1.0f : 2.0f);
+    EXPECT_LE(layers.at("primitive_id", p.x, p.y)[0], 2.0f);
+    EXPECT_EQ(layers.at("motion", p.x, p.y)[0], 0.0f);
+    const shared::CoverageSlot* slots = &layers.plane("cryptomatte_object").coverage[shared::kCoverageSlots * (p.y * 16 + p.x)];
+    EXPECT_EQ(slots[0].id, shared::kCoverageId + (left ? 0 : 1));
+    EXPECT_EQ(slots[0].samples, 8u);
+  }
+  EXPECT_EQ(layers.at("depth", 3, 1)[0], 1e10f);
+  EXPECT_EQ(layers.at("instance_id", 3, 1)[0], 0.0f);
+  EXPECT_EQ(layers.plane("cryptomatte_material").coverage[shared::kCoverageSlots * (16 + 3)].samples, 0u);
+  // At the seam colours mix and ids do not.
+  const float red = layers.at("albedo", 8, 12)[0];
+  EXPECT_GT(red, 0.0f);
+  EXPECT_LT(red, 0.8f);
+  EXPECT_EQ(layers.at("instance_id", 8, 12)[0], 2.0f);
+}
+
+TEST(Aov, MotionIsInPixelsOfThePictureBefore) {
+  SceneBuilder scene;
+  scene.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), lambert(vec3(0.5f)));
+  scene.scene.instances[0].keyframes = {{0, vec3(0), quat(1, 0, 0, 0), vec3(1)}, {10, vec3(1, 0.5f, 0), quat(1, 0, 0, 0), vec3(1)}};
+  scene.camera(perspective({0, 0, 2}, {0, 0, 0}, 90.0f));
+  render::DeviceScene device(testContext(), scene.scene, scene.environment);
+  device.setFrame(5);
+  PictureOptions options;
+  options.width = options.height = 16;
+  options.batches = 1;
+  const Layers layers(device, scene.scene.cameras[0], options, {"motion"});
+  EXPECT_NEAR(layers.at("motion", 9, 7)[0], 0.1 * 4, 1e-4);  // 4 pixels a metre
+  EXPECT_NEAR(layers.at("motion", 9, 7)[1], 0.05 * 4, 1e-4);
+  EXPECT_EQ(layers.at("motion", 0, 0)[0], 0.0f);
+}
+
+}  // namespace
+}  // namespace quintet::test
