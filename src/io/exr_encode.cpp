@@ -5,6 +5,7 @@
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfThreading.h>
 #include <ImfTiledOutputPart.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <thread>
 
 #include "base/error.h"
 #include "io/exr.h"
@@ -24,7 +26,9 @@
 namespace quintet::io {
 namespace {
 
-constexpr std::uint32_t kBlockRows = 256;  // converted at a time; a multiple of what every compression takes together
+constexpr std::uint32_t kBlockRows = 256;  // a multiple of what every compression takes together
+constexpr std::uint64_t kScratchBytes = std::uint64_t{256} << 20;  // of samples converted at a time
+constexpr std::uint64_t kLargeSamples = std::uint64_t{1} << 21;    // from here on threads are worth their start
 
 using Channels = std::vector<const ExrChannel*>;
 
@@ -121,6 +125,24 @@ const void* storedRows(const ExrChannel& channel, std::size_t first, std::size_t
   return scratch.data();
 }
 
+// Threads that compress; started with the first large picture and kept. The bytes do not depend on them.
+int threadsFor(const ExrPicture& picture) {
+  const std::uint64_t samples = std::uint64_t{picture.width} * picture.height * picture.channels.size();
+  if (samples < kLargeSamples) return 0;
+  static const int kThreads = [] {
+    const int count = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 16u));
+    Imf::setGlobalThreadCount(count);
+    return count;
+  }();
+  return kThreads;
+}
+
+// Rows to convert at a time: all of them, or as many as scratch memory allows.
+std::uint32_t blockRows(const ExrPicture& picture, std::size_t channels) {
+  const std::uint64_t rows = kScratchBytes / (std::uint64_t{picture.width} * channels * sizeof(float));
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(rows / kBlockRows * kBlockRows, kBlockRows, 1u << 20));
+}
+
 // Writes a part block by block, so that converted samples take little memory.
 class PartWriter {
  public:
@@ -137,9 +159,10 @@ class PartWriter {
       }
     } else {
       Imf::OutputPart out(file, index);
-      for (std::uint32_t y = 0; y < picture_.height; y += kBlockRows) {
-        out.setFrameBuffer(rows(y, kBlockRows));
-        out.writePixels(static_cast<int>(std::min(kBlockRows, picture_.height - y)));
+      const std::uint32_t block = blockRows(picture_, part_.channels.size());
+      for (std::uint32_t y = 0; y < picture_.height; y += block) {
+        out.setFrameBuffer(rows(y, block));
+        out.writePixels(static_cast<int>(std::min(block, picture_.height - y)));
       }
     }
   }
@@ -176,7 +199,7 @@ std::vector<std::byte> encodeExr(const ExrPicture& picture, const ExrOptions& op
 
   ExrWriteStream stream;
   try {
-    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
+    Imf::MultiPartOutputFile file(stream, headers.data(), static_cast<int>(headers.size()), false, threadsFor(picture));
     for (std::size_t i = 0; i < parts.size(); ++i)
       PartWriter(picture, parts[i], options.tileSize).write(file, static_cast<int>(i));
   } catch (const std::bad_alloc&) {

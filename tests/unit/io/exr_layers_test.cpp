@@ -292,5 +292,19 @@ TEST(ExrLayersTest, SamePictureSameBytes) {
     EXPECT_EQ(encodeExr(picture, {compression}), encodeExr(picture, {compression}));
 }
 
+// Large enough to be compressed by several threads, in blocks of rows.
+TEST(ExrLayersTest, LargePicturesComeBack) {
+  for (const ExrCompression compression : {ExrCompression::zip, ExrCompression::dwab}) {
+    ExrPicture picture = layeredPicture(640, 600);
+    const auto bytes = encodeExr(picture, {compression});
+    EXPECT_EQ(bytes, encodeExr(picture, {compression}));
+    const ExrPicture back = decodeExr(bytes, "a");
+    for (const ExrChannel& channel : picture.channels) {
+      if (!channel.exact || !channel.integers.empty()) continue;
+      EXPECT_TRUE(sameBits(find(back, channel.name).samples, channel.samples)) << channel.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace quintet::io
