@@ -16,9 +16,8 @@ namespace quintet::app {
 namespace {
 
 using shared::CoverageSlot;
+using shared::kCoverageId;
 using shared::kCoverageSlots;
-
-constexpr std::uint32_t kCoverageId = 0x3F800000u;  // of index 0
 
 constexpr std::size_t kRanks = 2 * kCryptomatteLayers;
 constexpr std::string_view kPrefix = "cryptomatte_";

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 
 #include "base/file.h"
 #include "fixtures.h"
@@ -206,6 +208,78 @@ TEST_F(Aov, OneOptionalOutputAlone) {
   ASSERT_EQ(quintet(layers({"-o", "x.exr", "--all-outputs"})).status, 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "x.uv.exr"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.cryptomatte_object.exr"));
+}
+
+// The path tracer's own, on a quad at z = 0 before a camera on the z axis.
+class PathTracerAov : public Aov {
+ protected:
+  io::ExrPicture renderQuad(const std::vector<std::string>& more) {
+    std::vector<std::string> all{"render", "scene.gltf", "-q",      "--size", "16x12", "--spp",
+                                 "8",      "-o",         "out.exr", "--aov",  "all"};
+    all.insert(all.end(), more.begin(), more.end());
+    const RunResult result = quintet(all);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return io::decodeExr(readFile(folder_ / "out.exr"), "out.exr");
+  }
+};
+
+TEST_F(PathTracerAov, AllOfThem) {
+  const io::ExrPicture picture = renderQuad({"--exr-type", "float"});
+  const std::size_t middle = 6 * 16 + 8;
+  const auto at = [&](const std::string& name) { return find(picture, name).samples[middle]; };
+  EXPECT_NEAR(at("normal.Z"), 1.0f, 1e-6f);
+  EXPECT_NEAR(at("position.Z"), 0.0f, 1e-5f);
+  EXPECT_GT(at("depth.Z"), 0.0f);
+  EXPECT_GE(at("distance.X"), at("depth.Z"));
+  EXPECT_EQ(at("instance_id.X"), 1.0f);
+  EXPECT_GE(at("material_id.X"), 1.0f);
+  EXPECT_EQ(at("sample_count.X"), 8.0f);
+  EXPECT_EQ(at("motion.X"), 0.0f);
+  EXPECT_EQ(at("CryptoObject00.G"), 1.0f);
+  EXPECT_EQ(at("CryptoMaterial00.G"), 1.0f);
+  EXPECT_EQ(find(picture, "depth.Z").samples[0], 1e10f);  // beside the quad
+  EXPECT_EQ(find(picture, "CryptoObject00.R").samples[0], 0.0f);
+  // The parts of the light are the picture.
+  for (const char* c : {"R", "G", "B"})
+    for (std::size_t i = 0; i < 192; ++i) {
+      float sum = 0;
+      for (const char* layer : {"emission", "background", "direct_diffuse", "direct_specular", "direct_transmission",
+                                "indirect_diffuse", "indirect_specular", "indirect_transmission"})
+        sum += find(picture, std::string(layer) + "." + c).samples[i];
+      EXPECT_NEAR(sum, find(picture, c).samples[i], 1e-5f * (1 + std::abs(sum))) << c << ' ' << i;
+    }
+  // The manifest's name of what is seen.
+  const auto manifest = nlohmann::json::parse(attribute(picture, "cryptomatte/3ae39a5/manifest"));
+  EXPECT_TRUE(
+      std::ranges::any_of(manifest, [&](const auto& id) { return id == io::cryptomatteHex(at("CryptoObject00.R")); }));
+}
+
+TEST_F(PathTracerAov, DoNotChangeThePicture) {
+  const io::ExrPicture with = renderQuad({"--exr-type", "float"});
+  const RunResult plain = quintet(
+      {"render", "scene.gltf", "-q", "--size", "16x12", "--spp", "8", "-o", "plain.exr", "--exr-type", "float"});
+  ASSERT_EQ(plain.status, 0) << plain.err;
+  const io::ExrPicture without = io::decodeExr(readFile(folder_ / "plain.exr"), "plain.exr");
+  for (const io::ExrChannel& channel : without.channels)
+    EXPECT_EQ(channel.samples, find(with, channel.name).samples) << channel.name;
+}
+
+// oiiotool sees every layer in every compression. Fails where it is not installed ('make setup').
+TEST_F(PathTracerAov, OiiotoolReadsTheFiles) {
+  for (const std::vector<std::string>& more :
+       std::vector<std::vector<std::string>>{{"--exr-compression", "piz"},
+                                             {"--exr-compression", "dwaa:60", "--exr-tiles", "16"},
+                                             {"--exr-tiles", "32"}}) {
+    const io::ExrPicture picture = renderQuad(more);
+    const std::string command =
+        "oiiotool --info -v -a " + (folder_ / "out.exr").string() + " > " + (folder_ / "info.txt").string() + " 2>&1";
+    const int status = std::system(command.c_str());
+    const std::string info = readTextFile(folder_ / "info.txt");
+    ASSERT_EQ(status, 0) << info << "\n(package openimageio-tools: make setup)";
+    for (const io::ExrChannel& channel : picture.channels) EXPECT_THAT(info, HasSubstr(channel.name));
+    EXPECT_THAT(info, HasSubstr("cryptomatte/3ae39a5/conversion: \"uint32_to_float32\""));
+    EXPECT_THAT(info, HasSubstr("CryptoMaterial02.A"));
+  }
 }
 
 }  // namespace
