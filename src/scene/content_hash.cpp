@@ -88,4 +88,10 @@ Hash contentHash(const Scene& scene) {
   return feed.finish();
 }
 
+Hash contentHash(const Environment& environment) {
+  Feeder feed;
+  feed(environment);
+  return feed.finish();
+}
+
 }  // namespace quintet::scene

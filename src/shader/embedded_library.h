@@ -3,11 +3,17 @@
 #define QUINTET_SHADER_EMBEDDED_LIBRARY_H
 
 #include "base/embedded.h"
+#include "base/hash.h"
 
 namespace quintet {
 
 // Sorted by path; paths as in #include <…>: "quintet/bsdf/ggx.glsl". Empty while the library has no files.
 std::span<const EmbeddedFile> embeddedShaderLibrary();
+
+namespace shader {
+// Names the library's content: two binaries of the same version may hold different ones.
+Hash libraryHash();
+}  // namespace shader
 
 }  // namespace quintet
 #endif
