@@ -7,6 +7,7 @@ namespace quintet::app {
 std::span<const Command> commands() {
   static constexpr std::array kCommands{
       Command{"render", "make a picture of a scene", renderCommand},
+      Command{"merge", "join parts of a rendering", mergeCommand},
       Command{"run", "run a program: your own or a built-in one", runCommand},
       Command{"new", "begin a program that renders at once", newCommand},
       Command{"check", "compile and check programs, without rendering", checkCommand},

@@ -20,6 +20,7 @@ struct Command {
 std::span<const Command> commands();
 
 int renderCommand(Arguments);   // render.cpp
+int mergeCommand(Arguments);    // merge.cpp
 int runCommand(Arguments);      // run.cpp
 int newCommand(Arguments);      // new.cpp
 int checkCommand(Arguments);    // check.cpp

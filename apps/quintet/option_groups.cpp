@@ -59,12 +59,7 @@ void interpretImage(const RawOptions& raw, RenderOptions& options) {
   options.exposure = real("--exposure", raw.exposure, -100.0, 100.0).value_or(0.0f);
   options.seed = static_cast<std::uint32_t>(whole("--seed", raw.seed, 0, 4294967295.0).value_or(0));
   options.timeout = number("--timeout", raw.timeout, 0.001, kUnlimited);
-  if (raw.toneMap.empty()) return;
-  options.toneMap = render::toneMapByName(raw.toneMap);
-  if (!options.toneMap)
-    throw UsageError(fmt::format("--tonemap: there is no '{}'{}; there are {}", raw.toneMap,
-                                 suggestion(raw.toneMap, render::toneMapNames()),
-                                 fmt::join(render::toneMapNames(), ", ")));
+  if (!raw.toneMap.empty()) options.toneMap = parseToneMap("--tonemap", raw.toneMap);
 }
 
 }  // namespace
@@ -176,10 +171,10 @@ void checkExrOptions(const RawOptions& raw, const RenderOptions& options) {
   throw UsageError(fmt::format("{} is for OpenEXR files: -o must name a .exr file", given));
 }
 
-void checkStandardOutput(const RenderOptions& options) {
-  if (options.output != "-") return;
-  if (options.json) throw UsageError("--json and -o - both want the standard output");
-  if (options.allOutputs) throw UsageError("--all-outputs writes several files: -o - takes one picture");
+void checkStandardOutput(const std::filesystem::path& output, bool json, bool allOutputs) {
+  if (output != "-") return;
+  if (json) throw UsageError("--json and -o - both want the standard output");
+  if (allOutputs) throw UsageError("--all-outputs writes several files: -o - takes one picture");
   if (::isatty(STDOUT_FILENO) == 1)
     throw UsageError("-o -: the standard output is a terminal; send it to a file or a program");
 }

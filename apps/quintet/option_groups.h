@@ -32,8 +32,8 @@ void interpret(const RawOptions& raw, RenderOptions& options);
 // Options of OpenEXR for another file, when its name is known. Throws UsageError.
 void checkExrOptions(const RawOptions& raw, const RenderOptions& options);
 
-// What --json and -o - forbid. Throws UsageError.
-void checkStandardOutput(const RenderOptions& options);
+// What --json and --all-outputs forbid with -o -. Throws UsageError.
+void checkStandardOutput(const std::filesystem::path& output, bool json, bool allOutputs);
 
 }  // namespace quintet::app
 #endif

@@ -1,6 +1,7 @@
 #include "output.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cctype>
 #include <string>
 
@@ -8,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "render/film_file.h"
 #include "signals.h"
 
 namespace quintet::app {
@@ -19,12 +21,13 @@ OutputKind outputKind(const std::filesystem::path& file) {
   if (extension == ".png") return OutputKind::png;
   if (extension == ".exr") return OutputKind::exr;
   if (extension == ".hdr") return OutputKind::hdr;
+  if (extension == render::kFilmExtension) return OutputKind::film;
   // Devices have no extension: /dev/null, /dev/stdout, a pipe.
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
   if (extension.empty() && std::filesystem::is_other(status)) return OutputKind::png;
   if (std::filesystem::is_directory(status)) checkWritable(file);  // the clearer message
-  throw UsageError(fmt::format("{}: the extension must be .png, .exr or .hdr", file.string()));
+  throw UsageError(fmt::format("{}: the extension must be .png, .exr, .hdr or .qfilm", file.string()));
 }
 
 void checkOutput(const std::filesystem::path& file) {
@@ -34,7 +37,9 @@ void checkOutput(const std::filesystem::path& file) {
 
 void writePicture(const std::filesystem::path& file, const io::Image& image, const DisplayOptions& display,
                   const io::Metadata& metadata) {
-  if (outputKind(file) == OutputKind::png)
+  const OutputKind kind = outputKind(file);
+  assert(kind == OutputKind::png || kind == OutputKind::hdr);
+  if (kind == OutputKind::png)
     writeBytes(file, io::encodePng(render::toDisplay(image, display.toneMap, display.exposure, display.opaque), metadata));
   else
     writeBytes(file, io::encodeHdr(image));

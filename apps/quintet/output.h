@@ -11,7 +11,8 @@
 
 namespace quintet::app {
 
-enum class OutputKind { png, exr, hdr };
+// film: render/film_file.h
+enum class OutputKind { png, exr, hdr, film };
 
 // By the extension, any case; "-" is PNG. Throws UsageError.
 OutputKind outputKind(const std::filesystem::path& file);

@@ -1,6 +1,8 @@
 // `quintet render`: options, device, scene, program, batches, picture, report.
 #include "aov.h"
+#include "base/error.h"
 #include "base/file.h"
+#include "checkpoint.h"
 #include "commands.h"
 #include "hang.h"
 #include "program_report.h"
@@ -15,11 +17,22 @@ int render(Session& session, const RenderOptions& options) {
   session.loadScene();
   session.link();
   const GracefulStop stop;
+  Checkpoint checkpoint(session, options);
+  const RenderLimits limits = checkpoint.begin();
+  RenderHooks hooks;
+  hooks.afterBatch = [&](const RenderOutcome& outcome) { checkpoint.afterBatch(outcome); };
   RenderOutcome outcome;
   withoutHanging(session.program(), options.json, [&] {
-    outcome = renderBatches(session.renderer(), {options.samples, options.seconds}, stop, session.progress());
+    outcome = renderBatches(session.renderer(), limits, stop, session.progress(), hooks);
   });
-  session.write(outcome);
+  checkpoint.afterRendering(outcome);
+  try {
+    session.write(outcome);
+  } catch (const FileError&) {
+    checkpoint.keep(outcome);
+    throw;
+  }
+  checkpoint.afterPicture(outcome);
   session.report();
   return stop.exitStatus();
 }

@@ -15,7 +15,10 @@ constexpr const char* kExamples =
     "  quintet render scene.glb --look-from 2,1,3 --look-at 0,0.5,0 --fov 35\n"
     "  quintet render scene.glb --program ao --set distance=0.5  another program with a parameter\n"
     "  quintet render --program pathtracer --help-program      what parameters it has\n"
-    "  quintet render scene.glb -o - --quiet | display         PNG on standard output\n";
+    "  quintet render scene.glb -o - --quiet | display         PNG on standard output\n"
+    "  quintet render scene.glb --spp 4096 --checkpoint 60 --resume  go on where it was killed\n"
+    "  quintet render scene.glb --spp 64 --batches 0-7 -o a.qfilm    half of it; batches 8-15 elsewhere, then\n"
+    "  quintet merge a.qfilm b.qfilm -o scene.png                    the same bytes as all at once\n";
 
 }  // namespace
 
@@ -25,7 +28,7 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   RawOptions raw;
   app.add_option("SCENE", raw.scene, "The scene: .gltf, .glb or .scene.toml")->type_name("");
   app.add_option("-o,--output", raw.output,
-                 ".png, .exr or .hdr; - is PNG on standard output (default: SCENE.png, here)")
+                 ".png, .exr, .hdr or .qfilm (all of the film, for 'quintet merge'); - is PNG on\nstandard output (default: SCENE.png, here)")
       ->type_name("FILE")
       ->group("Image");
   declareImage(app, raw, options);
@@ -39,6 +42,7 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   app.add_flag("--help-program", options.programHelp, "Print the program's parameters and leave")->group("Program");
   declareProcess(app, raw, options, "A launch that takes longer hangs (default: 60; on a CPU 600)");
   app.add_flag("--json", options.json, "At the end, one JSON object on standard output")->group("Run");
+  declareFarm(app, options.farm);
   setUp(app, kExamples);
   if (!parse(app, arguments)) return std::nullopt;
   options.commandLine = commandLine("render", arguments);
@@ -48,9 +52,10 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   options.scene = raw.scene;
   options.output = app.count("--output") > 0 ? std::filesystem::path(raw.output)
                                              : options.scene.filename().replace_extension(".png");
-  checkStandardOutput(options);
+  checkStandardOutput(options.output, options.json, options.allOutputs);
   interpret(raw, options);
   checkExrOptions(raw, options);
+  interpretFarm(options);
   if (options.samples) options.drawnFrames = static_cast<std::uint32_t>(*options.samples);
   return options;
 }

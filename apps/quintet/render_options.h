@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "exr_output.h"
+#include "farm_options.h"
 #include "render/film.h"
 #include "render/tone_map.h"
 #include "scene_setup.h"
@@ -44,6 +45,7 @@ struct RenderOptions {
   bool quiet = false;
   bool json = false;
   bool transparent = false;
+  FarmOptions farm;
   std::string commandLine;
   ExrFormat exr;
   std::vector<std::string> aovs;  // layers besides the picture, or "all"

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "option_groups.h"
+#include "output.h"
 #include "picture_names.h"
 #include "values.h"
 
@@ -94,7 +95,9 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   if (!render.timeout) render.timeout = kTimeout;
   if (!render.outputName.empty() && render.allOutputs)
     throw UsageError("--output and --all-outputs exclude each other");
-  checkStandardOutput(render);
+  checkStandardOutput(render.output, render.json, render.allOutputs);
+  if (!render.output.empty() && outputKind(render.output) == OutputKind::film)
+    throw UsageError(fmt::format("{}: run writes pictures; films are for render", render.output.string()));
   if (options.allFrames && render.output == "-")
     throw UsageError("--all-frames writes several files: -o - takes one picture");
   if (options.watch && render.output == "-")

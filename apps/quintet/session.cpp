@@ -47,7 +47,7 @@ bool isProgramSource(const std::filesystem::path& name) {
          std::ranges::find(kExtensions, name.extension().string()) != std::end(kExtensions);
 }
 
-Session::Session(const RenderOptions& options) : options_(options), progress_(options.quiet) {}
+Session::Session(const RenderOptions& options) : options_(options), progress_(options.quiet || options.farm.jsonProgress) {}
 
 void Session::prepare() {
   program_ = program::loadProgram(options_.program);
@@ -108,6 +108,7 @@ void Session::loadScene() {
   info.camera = camera.camera;
   info.cameraDescription = camera.description;
   info.environment = environment.description;
+  info.environmentHash = scene::contentHash(environment.environment).hex();
   info.size = chooseSize(asked, camera.camera);
   info.viewSeconds = watch.lap();
   info.loadSeconds = watch.seconds();
@@ -157,6 +158,7 @@ void Session::link() {
   settings.timeoutSeconds = options_.timeout.value_or(context_->info().quirks.software ? 600.0 : 60.0);
   renderer_ = std::make_unique<render::Renderer>(*deviceScene_, program_, *compiler_, pipelineCache_.get(), settings);
   startedRendering_ = clock_.seconds();
+  identity_.clear();
   std::vector<shader::Diagnostic> found = renderer_->diagnostics();
   std::erase_if(found, [](const shader::Diagnostic& d) { return d.severity == shader::Severity::note; });
   record_.diagnostics = found;
@@ -233,6 +235,7 @@ std::vector<std::string> Session::wantedOutputs() const {
 }
 
 void Session::write(const RenderOutcome& outcome, std::optional<std::uint32_t> frame) {
+  if (outputKind(options_.output) == OutputKind::film) return writeFilm(outcome);
   progress_.stage("writing " + options_.output.string());
   fillRecord(outcome);
   record_.frame = frame ? frame : outcome.frame;

@@ -14,6 +14,7 @@
 #include "metadata.h"
 #include "output.h"
 #include "progress.h"
+#include "render/film_file.h"
 #include "render/renderer.h"
 #include "render_loop.h"
 #include "render_options.h"
@@ -46,7 +47,7 @@ class Session {
   void beginFrame(std::uint32_t frame);
   bool animated() const { return deviceScene_->animated(); }
 
-  // Writes the picture of each chosen output.
+  // Writes the picture of each chosen output, or the film.
   void write(const RenderOutcome& outcome, std::optional<std::uint32_t> frame = std::nullopt);
   std::string written() const { return record_.files.empty() ? "" : record_.files.back(); }  // last
   // Says what the compiler and the check of the link found: on standard error; with --json and an error among
@@ -55,7 +56,12 @@ class Session {
   // Warnings, --json, and one line on what was written last.
   void report();
 
+  // The film as it is, with what is known about it; and of that, what other films of this rendering say alike.
+  render::FilmFile film(const RenderOutcome& outcome);
+  const render::FilmFacts& identity();
+
   render::Renderer& renderer() { return *renderer_; }
+  const std::string& deviceName() const { return record_.device; }
   const program::Program& program() const { return program_; }
   Progress& progress() { return progress_; }
   Warnings& warnings() { return warnings_; }
@@ -67,7 +73,7 @@ class Session {
     uvec2 size{0};
     std::string cameraDescription;
     std::string environment;
-    std::string hash;
+    std::string hash, environmentHash;
     std::vector<std::filesystem::path> files;  // that a scene file names
     CoverageNames names;                       // with --aov only
     double loadSeconds = 0;
@@ -79,6 +85,7 @@ class Session {
   uvec2 picturePart(uvec2 size) const;
   void describe(const scene::Scene& scene, const ChosenEnvironment& environment);
   void fillRecord(const RenderOutcome& outcome);
+  void writeFilm(const RenderOutcome& outcome);
   void fillLoading();  // stages and memory
   std::vector<std::size_t> chosenOutputs() const;
   std::vector<std::string> wantedOutputs() const;  // of the optional ones
@@ -98,6 +105,7 @@ class Session {
   SceneInfo sceneInfo_;
   bool sceneLoaded_ = false;
   program::ParameterValues parameters_{{}};
+  render::FilmFacts identity_;  // empty: not asked for yet
   std::unique_ptr<gpu::Context> context_;  // outlives all that follows
   std::unique_ptr<gpu::PipelineCache> pipelineCache_;
   std::unique_ptr<shader::Compiler> compiler_;

@@ -83,6 +83,15 @@ vec3 parseVec3(const std::string& option, const std::string& text) {
   return result;
 }
 
+render::ToneMap parseToneMap(const std::string& option, const std::string& name) {
+  const std::vector<std::string> names = render::toneMapNames();
+  const auto toneMap = render::toneMapByName(name);
+  if (!toneMap)
+    throw UsageError(
+        fmt::format("{}: there is no '{}'{}; there are {}", option, name, suggestion(name, names), fmt::join(names, ", ")));
+  return *toneMap;
+}
+
 double parseNumber(const std::string& option, const std::string& text, double min, double max) {
   const auto value = number<double>(text);
   if (!value || !std::isfinite(*value)) fail(option, text, "is not a number");

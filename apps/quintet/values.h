@@ -10,6 +10,7 @@
 
 #include "base/math.h"
 #include "render/film.h"
+#include "render/tone_map.h"
 
 namespace quintet::app {
 
@@ -21,6 +22,7 @@ uvec2 parseSize(const std::string& option, const std::string& text);
 render::Region parseRegion(const std::string& option, const std::string& text);
 // "1,2.5,-3", finite.
 vec3 parseVec3(const std::string& option, const std::string& text);
+render::ToneMap parseToneMap(const std::string& option, const std::string& name);
 // Not a number, or outside [min, max]: UsageError.
 double parseNumber(const std::string& option, const std::string& text, double min, double max);
 

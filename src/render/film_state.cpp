@@ -118,8 +118,16 @@ io::Image varianceImage(const FilmState& film, std::size_t output) {
   return image;
 }
 
+bool sameArrays(const FilmState& a, const FilmState& b) {
+  const auto alike = [](const FilmPlane& p, const FilmPlane& q) {
+    return p.name == q.name && p.pixel == q.pixel && p.sums.size() == q.sums.size() && p.squares.size() == q.squares.size() &&
+           p.values.size() == q.values.size() && p.coverage.size() == q.coverage.size();
+  };
+  return a.region == b.region && a.statistics.size() == b.statistics.size() && std::ranges::equal(a.planes, b.planes, alike);
+}
+
 void mergeFilm(FilmState& film, const FilmState& part) {
-  assert(film.region == part.region && film.planes.size() == part.planes.size());
+  assert(sameArrays(film, part));
   if (!film.counts.cellBatches.empty() || !part.counts.cellBatches.empty())
     throw UsageError("parts whose pixels have different numbers of samples cannot be joined");
   SampleCounts counts = film.counts;
@@ -129,7 +137,6 @@ void mergeFilm(FilmState& film, const FilmState& part) {
   for (std::size_t p = 0; p < film.planes.size(); ++p) {
     FilmPlane& into = film.planes[p];
     const FilmPlane& from = part.planes[p];
-    assert(into.sums.size() == from.sums.size() && into.squares.size() == from.squares.size());
     for (std::size_t i = 0; i < into.sums.size(); ++i) into.sums[i] = addFixed(into.sums[i], from.sums[i]);
     for (std::size_t i = 0; i < into.squares.size(); ++i) into.squares[i] = addFixed(into.squares[i], from.squares[i]);
     for (std::size_t i = 0; i < into.coverage.size(); i += shared::kCoverageSlots) mergeCoverage(&into.coverage[i], &from.coverage[i]);

@@ -80,6 +80,9 @@ io::Image planeImage(const FilmState& film, std::size_t output);
 // Q = Σ sᵦ²/nᵦ, S = Σ sᵦ, N = Σ nᵦ over B batches: (Q - S²/N) / ((B - 1) N).
 io::Image varianceImage(const FilmState& film, std::size_t output = 0);
 
+// The same region, outputs and arrays: one may stand for the other, or join it.
+bool sameArrays(const FilmState& a, const FilmState& b);
+
 // `part` joins `film`: sums add up, coverage is counted together, centres come from the part that has sample 0. Throws
 // UsageError where both have the same samples, and for adaptive parts; asserts that planes and region agree.
 void mergeFilm(FilmState& film, const FilmState& part);

@@ -12,8 +12,8 @@
 #include "io/codec.h"
 #include "program/check.h"
 #include "render/instrument.h"
-#include "io/color.h"
 #include "render/parameter_textures.h"
+#include "render/tone_map.h"
 
 namespace quintet::render {
 namespace {
@@ -38,16 +38,6 @@ std::string firstError(const std::vector<shader::Diagnostic>& diagnostics) {
   for (const shader::Diagnostic& d : diagnostics)
     if (d.severity == shader::Severity::error) return d.format();
   return "the program does not compile";
-}
-
-// Display values (sRGB) to linear light. The program's alpha counts where a transparent picture is wanted.
-void decodeDisplay(io::Image& image, bool transparent) {
-  const std::span<float> values = image.samples<float>();
-  for (std::size_t i = 0; i + 3 < values.size(); i += 4) {
-    const float alpha = transparent ? std::clamp(values[i + 3], 0.0f, 1.0f) : 1.0f;
-    for (std::size_t c = i; c < i + 3; ++c) values[c] = alpha * io::linearFromSrgb(values[c]);
-    values[i + 3] = alpha;
-  }
 }
 
 }  // namespace

@@ -124,4 +124,13 @@ io::Image toDisplay(const io::Image& image, ToneMap operation, float exposure, b
   return result;
 }
 
+void decodeDisplay(io::Image& image, bool transparent) {
+  const std::span<float> values = image.samples<float>();
+  for (std::size_t i = 0; i + 3 < values.size(); i += 4) {
+    const float alpha = transparent ? std::clamp(values[i + 3], 0.0f, 1.0f) : 1.0f;
+    for (std::size_t c = i; c < i + 3; ++c) values[c] = alpha * io::linearFromSrgb(values[c]);
+    values[i + 3] = alpha;
+  }
+}
+
 }  // namespace quintet::render

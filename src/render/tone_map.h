@@ -23,5 +23,8 @@ vec3 toneMap(ToneMap operation, vec3 color);
 // straight RGBA, or RGB if `opaque`. `image`: linear premultiplied float RGBA.
 io::Image toDisplay(const io::Image& image, ToneMap operation, float exposure, bool opaque);
 
+// Display values (sRGB-encoded, straight) to linear light. Their alpha counts where a transparent picture is wanted.
+void decodeDisplay(io::Image& image, bool transparent);
+
 }  // namespace quintet::render
 #endif

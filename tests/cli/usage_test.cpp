@@ -114,7 +114,7 @@ TEST_F(Usage, SetMayBeRepeated) {
 }
 
 TEST_F(Usage, OutputsThatMakeNoSense) {
-  expectError(quintet(quick({"-o", "out.jpg"})), 2, {"out.jpg", ".png, .exr or .hdr"});
+  expectError(quintet(quick({"-o", "out.jpg"})), 2, {"out.jpg", ".png, .exr, .hdr or .qfilm"});
   expectError(quintet(quick({"-o", "out"})), 2, {"extension"});
   expectError(quintet(quick({"-o", "-", "--json"})), 2, {"--json"});
   EXPECT_EQ(fileNames(), std::vector<std::string>{"scene.gltf"});

@@ -1,0 +1,132 @@
+#include "checkpoint.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "film_facts.h"
+#include "film_guard.h"
+#include "output.h"
+#include "values.h"
+
+namespace quintet::app {
+
+using render::FilmFile;
+using render::kBatchSamples;
+using render::SampleRange;
+
+Checkpoint::Checkpoint(Session& session, const RenderOptions& options) : session_(session), options_(options) {}
+
+RenderLimits Checkpoint::begin() {
+  RenderLimits limits{options_.samples, options_.seconds};
+  const FarmOptions& farm = options_.farm;
+  if (farm.batches) {
+    limits.begin = limits.done = farm.batches->first * kBatchSamples;
+    limits.samples = std::min(*options_.samples, (farm.batches->last + 1) * kBatchSamples);
+    session_.renderer().startAt(farm.batches->first);
+  }
+  const bool film = outputKind(options_.output) == OutputKind::film;
+  if (!active() && !film) return limits;
+  if (session_.program().accumulation == program::Accumulation::program)
+    throw UsageError(fmt::format("the program '{}' averages its samples itself: there are no checkpoints and films of it",
+                                 session_.program().name));
+  const auto end = static_cast<std::uint32_t>(limits.samples.value_or(0));
+  if (film && !farm.force)
+    refuseLoss(options_.output, session_.identity(), {{static_cast<std::uint32_t>(limits.begin), end}});
+  if (active()) {
+    checkOutput(farm.checkpointFile);
+    resume(limits);
+  }
+  return limits;
+}
+
+void Checkpoint::resume(RenderLimits& limits) {
+  const FarmOptions& farm = options_.farm;
+  const std::filesystem::path& path = farm.checkpointFile;
+  if (!std::filesystem::exists(path)) {
+    if (farm.resume) session_.progress().note(fmt::format("{}: there is no checkpoint, beginning", path.string()));
+    return;
+  }
+  FilmFile file;
+  try {
+    file = render::readFilm(path);
+    refuseOther(file.identity, session_.identity(),
+                {path, "in the checkpoint", "here", "is of another rendering; --force begins anew"});
+    checkPlace(file, limits);
+  } catch (const FileError& error) {
+    if (!farm.force) throw;
+    session_.progress().note(fmt::format("{}; beginning anew", error.what()));
+    return;
+  }
+  if (!farm.resume) {
+    if (farm.force) return;
+    throw FileError(path, fmt::format("holds {} samples of this rendering; --resume goes on from them, --force begins anew",
+                                      file.film.counts.samples()));
+  }
+  if (file.film.counts.ranges.empty()) return;
+  const std::string* device = render::findFact(file.notes, "device");
+  if (device && *device != session_.deviceName())
+    session_.progress().note(fmt::format("{}: was begun on {}, goes on on {}", path.string(), *device, session_.deviceName()));
+  session_.renderer().restoreFilm(file.film);
+  limits.done = file.film.counts.ranges.back().end;
+  if (const std::string* seconds = render::findFact(file.notes, "seconds"))
+    limits.secondsBefore = parseNumber(path.string(), *seconds, 0.0, 1e12);
+  savedSamples_ = limits.done - limits.begin;
+  session_.progress().note(fmt::format("{}: going on after {} samples", path.string(), savedSamples_));
+}
+
+void Checkpoint::checkPlace(const FilmFile& file, const RenderLimits& limits) const {
+  const std::filesystem::path& path = options_.farm.checkpointFile;
+  if (!render::sameArrays(file.film, session_.renderer().saveFilm())) throw FileError(path, "its outputs are not those of the program");
+  const std::vector<SampleRange>& ranges = file.film.counts.ranges;
+  if (ranges.empty()) return;
+  const SampleRange range = ranges.front();
+  if (ranges.size() > 1 || range.begin != limits.begin)
+    throw FileError(path, fmt::format("holds samples {}; those from {} on are wanted", rangesText(ranges), limits.begin));
+  if (!limits.samples || range.end == *limits.samples) return;
+  if (range.end > *limits.samples)
+    throw FileError(path, fmt::format("holds samples {}; only those up to {} are wanted", rangesText(ranges), *limits.samples - 1));
+  if (range.end % kBatchSamples != 0)
+    throw FileError(path, fmt::format("ends within a batch of {} samples, with {}: nothing can follow", kBatchSamples, range.end));
+}
+
+void Checkpoint::save(const RenderOutcome& outcome) {
+  session_.progress().stage("writing " + options_.farm.checkpointFile.string());
+  try {
+    writeBytes(options_.farm.checkpointFile, render::encodeFilm(session_.film(outcome)));
+    savedSamples_ = outcome.samples;
+  } catch (const FileError& error) {  // the one before is still there: rendering goes on
+    if (!warned_) session_.warnings().add(error.what());
+    warned_ = true;
+  }
+  lastWritten_ = clock_.seconds();
+}
+
+void Checkpoint::afterBatch(const RenderOutcome& outcome) {
+  if (active() && clock_.seconds() - lastWritten_ >= *options_.farm.checkpointSeconds) save(outcome);
+  if (!options_.farm.jsonProgress) return;
+  nlohmann::ordered_json line{{"samples", outcome.samples}, {"seconds", outcome.seconds}};
+  if (active()) line["checkpoint"] = savedSamples_;
+  fmt::print(stderr, "{}\n", line.dump());
+  std::fflush(stderr);
+}
+
+void Checkpoint::afterRendering(const RenderOutcome& outcome) {
+  if (outcome.interrupted || options_.farm.keepCheckpoint) keep(outcome);
+}
+
+void Checkpoint::keep(const RenderOutcome& outcome) {
+  if (active() && savedSamples_ != outcome.samples) save(outcome);
+}
+
+void Checkpoint::afterPicture(const RenderOutcome& outcome) {
+  if (!active() || outcome.interrupted || options_.farm.keepCheckpoint) return;
+  std::error_code failed;
+  std::filesystem::remove(options_.farm.checkpointFile, failed);
+  if (failed) session_.warnings().add(fmt::format("{}: cannot be removed: {}", options_.farm.checkpointFile.string(), failed.message()));
+}
+
+}  // namespace quintet::app

@@ -1,0 +1,175 @@
+#include "film_facts.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "base/hash.h"
+#include "session.h"
+#include "shader/embedded_library.h"
+#include "values.h"
+
+namespace quintet::app {
+namespace {
+
+using render::FilmFacts;
+
+constexpr std::size_t kShownDigits = 12;  // of a hash
+
+// Whatever the files' names: farms have the same files in other folders.
+std::string hashOfFiles(const FilmSource& source) {
+  Hasher hasher;
+  for (const auto& [name, text] : source.program.files)
+    if (isProgramSource(name) && !name.ends_with(".scene.toml")) hasher.add(name).add(text);
+  std::vector<Hash> others;
+  for (const std::filesystem::path& file : source.shaderFiles) {
+    const std::vector<std::byte> bytes = readFile(file);
+    others.push_back(Hasher().add(std::span<const std::byte>(bytes)).finish());
+  }
+  std::ranges::sort(others);
+  for (const Hash& hash : others) hasher.add(hash.high).add(hash.low);
+  return hasher.finish().hex();
+}
+
+// A picture is its content; where it lies does not matter.
+std::string imageText(const program::Program& program, const program::ImageValue& image) {
+  if (image.file.empty()) return "none";
+  Hasher hasher;
+  if (image.ofProgram) hasher.add(program.files.at(image.file));
+  else hasher.add(readTextFile(image.file));
+  return hasher.finish().hex();
+}
+
+void addParameters(FilmFacts& facts, const FilmSource& source) {
+  const nlohmann::ordered_json values = nlohmann::ordered_json::parse(source.parameters.toJson());
+  const std::vector<program::ImageValue> images = source.parameters.images();
+  for (const program::Parameter& parameter : source.parameters.parameters()) {
+    const auto image = std::ranges::find(images, parameter.name, &program::ImageValue::parameter);
+    facts.emplace_back("parameter " + parameter.name, image != images.end() ? imageText(source.program, *image)
+                                                                            : values.at(parameter.name).dump());
+  }
+}
+
+std::string cameraText(const scene::Camera& camera) {
+  return camera.orthographic
+             ? fmt::format("orthographic {} x {}", camera.orthographicHalfSize.x, camera.orthographicHalfSize.y)
+             : fmt::format("perspective, {} rad", camera.verticalFov);
+}
+
+std::string vectorText(const vec4& v) { return fmt::format("{},{},{}", v.x, v.y, v.z); }
+
+void addCamera(FilmFacts& facts, const scene::Camera& camera) {
+  const mat4& m = camera.worldFromCamera;
+  facts.emplace_back("camera", cameraText(camera));
+  facts.emplace_back("camera position", vectorText(m[3]));
+  facts.emplace_back("camera axes", fmt::format("{} {} {}", vectorText(m[0]), vectorText(m[1]), vectorText(m[2])));
+  facts.emplace_back("camera lens", fmt::format("{} m, sharp at {} m", camera.apertureRadius, camera.focusDistance));
+}
+
+bool isHash(const std::string& text) {
+  return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == text.npos;
+}
+
+std::string shown(const std::string* value, const std::string& where) {
+  if (!value) return "unknown " + where;
+  return fmt::format("{} {}", isHash(*value) ? value->substr(0, kShownDigits) : *value, where);
+}
+
+}  // namespace
+
+FilmFacts filmIdentity(const FilmSource& source, const RenderOptions& options) {
+  std::vector<std::string> outputs;
+  for (std::size_t i = 0; i < source.program.outputs.size(); ++i)
+    if (source.film.stores(i)) outputs.push_back(source.program.outputs[i].name);
+  const render::Region& region = source.film.region();
+  FilmFacts facts{{"quintet", QUINTET_VERSION},
+                  {"scene", source.sceneHash},
+                  {"environment", source.environmentHash},
+                  {"program", source.program.name},
+                  {"program files", hashOfFiles(source)},
+                  {"shader library", shader::libraryHash().hex()}};
+  addParameters(facts, source);
+  addCamera(facts, source.camera);
+  facts.emplace_back("size", fmt::format("{}x{}", source.size.x, source.size.y));
+  facts.emplace_back("region", fmt::format("{},{},{},{}", region.x, region.y, region.width, region.height));
+  facts.emplace_back("seed", fmt::format("{}", options.seed));
+  facts.emplace_back("transparent", options.transparent ? "yes" : "no");
+  facts.emplace_back("outputs", fmt::format("{}", fmt::join(outputs, ", ")));
+  return facts;
+}
+
+FilmFacts filmNotes(const program::Program& program, const RenderOptions& options, const RenderRecord& record) {
+  FilmFacts facts{{"samples planned", options.samples ? fmt::format("{}", *options.samples) : ""},
+                  {"command", record.commandLine},
+                  {"scene", record.scene},
+                  {"environment", record.environment},
+                  {"camera", record.camera},
+                  {"parameters", record.parameters},
+                  {"device", record.device},
+                  {"driver", record.driver},
+                  {"seconds", fmt::format("{:.3f}", record.renderSeconds)},
+                  {"exposure", fmt::format("{}", options.exposure)},
+                  {"tone map", options.toneMap ? render::toneMapNames()[static_cast<std::size_t>(*options.toneMap)] : ""},
+                  {"all outputs", options.allOutputs ? "yes" : "no"}};
+  for (const program::Output& output : program.outputs)
+    facts.emplace_back("kind of " + output.name, std::string(program::outputKindName(output.kind)));
+  return facts;
+}
+
+std::string factText(const FilmFacts& facts, const std::string& name) {
+  const std::string* found = render::findFact(facts, name);
+  return found ? *found : std::string();
+}
+
+void fillRecord(RenderRecord& record, const render::FilmFile& file) {
+  const auto note = [&](const char* name) { return factText(file.notes, name); };
+  const auto fact = [&](const char* name) { return factText(file.identity, name); };
+  const render::Region& region = file.film.region;
+  const uvec2 size = parseSize("size", fact("size"));
+  record.scene = note("scene");
+  record.sceneHash = fact("scene");
+  record.environment = note("environment");
+  record.camera = note("camera");
+  record.program = fact("program");
+  record.parameters = note("parameters");
+  record.device = note("device");
+  record.driver = note("driver");
+  record.transparent = fact("transparent") == "yes";
+  record.width = size.x;
+  record.height = size.y;
+  record.region = {region.x, region.y, region.width, region.height};
+  record.seed = static_cast<std::uint32_t>(parseNumber("seed", fact("seed"), 0, 4294967295.0));
+  record.samples = file.film.counts.samples();
+  record.renderSeconds = parseNumber("seconds", note("seconds"), 0, 1e12);
+  for (const uvec2& pixel : file.film.statistics) {
+    record.rays += pixel.x;
+    record.droppedSamples += pixel.y;
+  }
+}
+
+std::optional<std::uint64_t> plannedSamples(const render::FilmFile& file) {
+  const std::string* text = render::findFact(file.notes, "samples planned");
+  if (!text || text->empty() || text->size() > 9 || text->find_first_not_of("0123456789") != text->npos)
+    return std::nullopt;
+  return std::stoull(*text);
+}
+
+std::vector<std::string> differenceLines(const std::vector<render::FactDifference>& differences,
+                                         const std::string& left, const std::string& right) {
+  std::vector<std::string> lines;
+  for (const render::FactDifference& d : differences)
+    lines.push_back(fmt::format("{}: {}, {}", d.name, shown(d.left, left), shown(d.right, right)));
+  return lines;
+}
+
+std::string rangesText(const std::vector<render::SampleRange>& ranges) {
+  std::vector<std::string> texts;
+  for (const render::SampleRange& range : ranges) texts.push_back(fmt::format("{} to {}", range.begin, range.end - 1));
+  return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, " and "));
+}
+
+}  // namespace quintet::app

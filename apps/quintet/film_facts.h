@@ -1,0 +1,53 @@
+// What a film file says about its rendering (render/film_file.h): the facts that films must share to belong together,
+// and notes from which a picture's metadata is made again.
+#ifndef QUINTET_APP_FILM_FACTS_H
+#define QUINTET_APP_FILM_FACTS_H
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "metadata.h"
+#include "program/program.h"
+#include "render/film_file.h"
+#include "render_options.h"
+#include "scene/scene.h"
+
+namespace quintet::app {
+
+// Of a linked rendering.
+struct FilmSource {
+  const program::Program& program;
+  const program::ParameterValues& parameters;
+  std::vector<std::filesystem::path> shaderFiles;  // on disk, outside the program
+  std::string sceneHash;
+  std::string environmentHash;
+  const scene::Camera& camera;
+  uvec2 size{0};  // of the whole image
+  const render::Film& film;
+};
+
+// Equal for renderings that give the same samples. Reads the files that are named. Throws FileError.
+render::FilmFacts filmIdentity(const FilmSource& source, const RenderOptions& options);
+
+// Everything else. `record` is filled.
+render::FilmFacts filmNotes(const program::Program& program, const RenderOptions& options, const RenderRecord& record);
+
+// Empty where there is none.
+std::string factText(const render::FilmFacts& facts, const std::string& name);
+
+// Fills in what filmNotes and filmIdentity told, and what the film counts.
+void fillRecord(RenderRecord& record, const render::FilmFile& file);
+
+// Samples per pixel that the rendering is to have in the end; nothing: as many as time allows.
+std::optional<std::uint64_t> plannedSamples(const render::FilmFile& file);
+
+// "seed: 3 in the checkpoint, 4 here", one line for each difference; `left` is "in the checkpoint", `right` "here".
+std::vector<std::string> differenceLines(const std::vector<render::FactDifference>& differences,
+                                         const std::string& left, const std::string& right);
+
+// "0 to 15", "0 to 15 and 32 to 63"; "none"
+std::string rangesText(const std::vector<render::SampleRange>& ranges);
+
+}  // namespace quintet::app
+#endif

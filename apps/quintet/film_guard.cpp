@@ -1,0 +1,42 @@
+#include "film_guard.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "film_facts.h"
+#include "values.h"
+
+namespace quintet::app {
+
+using render::SampleRange;
+
+void refuseOther(const render::FilmFacts& found, const render::FilmFacts& identity, const IdentityCheck& check) {
+  const std::vector<render::FactDifference> different = render::differences(found, identity);
+  if (different.empty()) return;
+  for (const std::string& line : differenceLines(different, check.where, check.here))
+    fmt::print(stderr, "quintet: {}: {}\n", plain(check.file.string()), plain(line));
+  throw FileError(check.file, check.problem);
+}
+
+void refuseLoss(const std::filesystem::path& file, const render::FilmFacts& identity,
+                const std::vector<SampleRange>& samples) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return;
+  render::FilmFile found;
+  try {
+    found = render::readFilm(file);
+  } catch (const FileError& error) {
+    throw FileError(file, error.place(), error.problem() + "; --force overwrites it");
+  }
+  refuseOther(found.identity, identity,
+              {file, "in the file", "here", "holds another rendering, which would be lost; --force overwrites it"});
+  for (const SampleRange& held : found.film.counts.ranges)
+    if (std::ranges::none_of(samples, [&](const SampleRange& s) { return s.begin <= held.begin && held.end <= s.end; }))
+      throw FileError(file, fmt::format("holds samples {} to {} of this rendering, which would be lost; --force "
+                                        "overwrites it",
+                                        held.begin, held.end - 1));
+}
+
+}  // namespace quintet::app

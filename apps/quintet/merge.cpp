@@ -1,0 +1,162 @@
+// `quintet merge`: parts of a rendering become the picture, or the film, that one rendering would have given.
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+
+#include "base/error.h"
+#include "base/file.h"
+#include "commands.h"
+#include "film_facts.h"
+#include "film_guard.h"
+#include "film_pictures.h"
+#include "merge_options.h"
+#include "metadata.h"
+#include "output.h"
+#include "progress.h"
+#include "values.h"
+
+namespace quintet::app {
+namespace {
+
+using render::FilmFile;
+using render::SampleRange;
+
+void setNote(FilmFile& file, const std::string& name, const std::string& value) {
+  for (auto& [noteName, noteValue] : file.notes)
+    if (noteName == name) noteValue = value;
+}
+
+// Parts joined one after the other, so that only two of them are in memory.
+class Merger {
+ public:
+  explicit Merger(Progress& progress) : progress_(progress) {}
+
+  void add(const std::string& path) {
+    FilmFile part = render::readFilm(path);
+    try {
+      RenderRecord unused;
+      fillRecord(unused, part);
+    } catch (const UsageError& error) {
+      throw FileError(path, "header", error.what());
+    }
+    parts_.push_back({path, part.film.counts.ranges});
+    if (parts_.size() == 1) {
+      whole_ = std::move(part);
+      return;
+    }
+    refuseDifferences(part);
+    refuseOverlap();
+    if (!render::sameArrays(whole_.film, part.film)) throw FileError(path, "its outputs are not those of " + first());
+    try {
+      render::mergeFilm(whole_.film, part.film);
+    } catch (const UsageError& error) {
+      throw FileError(path, error.what());
+    }
+    joinNotes(part);
+  }
+
+  FilmFile& whole() { return whole_; }
+
+ private:
+  struct Part {
+    std::string path;
+    std::vector<SampleRange> ranges;
+  };
+  const std::string& first() const { return parts_.front().path; }
+  const std::string& last() const { return parts_.back().path; }
+
+  void refuseDifferences(const FilmFile& part) const {
+    refuseOther(whole_.identity, part.identity,
+                {last(), "in " + first(), "in " + last(), fmt::format("is of another rendering than {}", first())});
+  }
+
+  void refuseOverlap() const {
+    for (std::size_t i = 0; i + 1 < parts_.size(); ++i)
+      for (const SampleRange& a : parts_[i].ranges)
+        for (const SampleRange& b : parts_.back().ranges)
+          if (a.begin < b.end && b.begin < a.end)
+            throw FileError(last(), fmt::format("samples {} to {} are in {}, too", std::max(a.begin, b.begin),
+                                                std::min(a.end, b.end) - 1, parts_[i].path));
+  }
+
+  void joinNotes(const FilmFile& part) {
+    for (const char* name : {"device", "driver"}) {
+      const std::string mine = factText(whole_.notes, name), other = factText(part.notes, name);
+      if (mine.find(other) != mine.npos) continue;
+      setNote(whole_, name, mine + "; " + other);
+      progress_.note(fmt::format("{}: {} {}, other parts: {}", last(), name, other, mine));
+    }
+    const auto seconds = [](const FilmFile& file) {
+      return parseNumber("seconds", factText(file.notes, "seconds"), 0.0, 1e12);
+    };
+    setNote(whole_, "seconds", fmt::format("{:.3f}", seconds(whole_) + seconds(part)));
+    if (plannedSamples(part) > plannedSamples(whole_))
+      setNote(whole_, "samples planned", fmt::format("{}", *plannedSamples(part)));
+  }
+
+  Progress& progress_;
+  FilmFile whole_;
+  std::vector<Part> parts_;
+};
+
+// Samples that the rendering was to have, and has not.
+std::vector<SampleRange> missingSamples(const FilmFile& file) {
+  if (!file.film.counts.cellBatches.empty()) return {};  // each cell has its own number
+  std::vector<SampleRange> missing;
+  std::uint32_t next = 0;
+  for (const SampleRange& range : file.film.counts.ranges) {
+    if (range.begin > next) missing.push_back({next, range.begin});
+    next = range.end;
+  }
+  const auto planned = static_cast<std::uint32_t>(plannedSamples(file).value_or(next));
+  if (planned > next) missing.push_back({next, planned});
+  return missing;
+}
+
+void tellMissing(const FilmFile& file, const MergeOptions& options, Progress& progress) {
+  const std::vector<SampleRange> missing = missingSamples(file);
+  if (missing.empty()) return;
+  const std::string text = fmt::format("samples {} are missing", rangesText(missing));
+  if (file.film.counts.ranges.empty()) throw Error("there are no samples in these films");
+  if (outputKind(options.render.output) != OutputKind::film && !options.partial)
+    throw Error(text + "; --partial makes the picture without them");
+  progress.note(text);
+}
+
+}  // namespace
+
+int mergeCommand(Arguments arguments) {
+  const std::optional<MergeOptions> options = parseMergeOptions(arguments);
+  if (!options) return 0;
+  const Stopwatch clock;
+  Progress progress(options->render.quiet);
+  Merger merger(progress);
+  for (const std::string& part : options->parts) {
+    progress.stage("reading " + part);
+    merger.add(part);
+  }
+  FilmFile& whole = merger.whole();
+  tellMissing(whole, *options, progress);
+  RenderRecord record;
+  record.commandLine = options->render.commandLine;
+  fillRecord(record, whole);
+  progress.stage("writing " + options->render.output.string());
+  if (outputKind(options->render.output) == OutputKind::film) {
+    if (!options->render.farm.force) refuseLoss(options->render.output, whole.identity, whole.film.counts.ranges);
+    writeBytes(options->render.output, render::encodeFilm(whole));
+    record.files.push_back(options->render.output.string());
+  } else {
+    writePictures(whole, *options, record);
+  }
+  record.totalSeconds = clock.seconds();
+  progress.clear();
+  if (options->render.json) writeFile("-", toJson(record));
+  progress.note(summary(record));
+  return 0;
+}
+
+}  // namespace quintet::app

@@ -1,0 +1,27 @@
+// The session's rendering as a film file: checkpoints and parts.
+#include "film_facts.h"
+#include "session.h"
+
+namespace quintet::app {
+
+const render::FilmFacts& Session::identity() {
+  if (identity_.empty())
+    identity_ = filmIdentity({program_, parameters_, renderer_->files(), sceneInfo_.hash, sceneInfo_.environmentHash,
+                              sceneInfo_.camera, sceneInfo_.size, renderer_->film()},
+                             options_);
+  return identity_;
+}
+
+render::FilmFile Session::film(const RenderOutcome& outcome) {
+  fillRecord(outcome);
+  return {identity(), filmNotes(program_, options_, record_), renderer_->saveFilm()};
+}
+
+void Session::writeFilm(const RenderOutcome& outcome) {
+  progress_.stage("writing " + options_.output.string());
+  writeBytes(options_.output, render::encodeFilm(film(outcome)));
+  record_.files = {options_.output.string()};
+  record_.totalSeconds = clock_.seconds();
+}
+
+}  // namespace quintet::app

@@ -1,0 +1,224 @@
+// Parts of a rendering: joined in any way they give the bytes of one rendering; what does not belong together is refused.
+#include <algorithm>
+
+#include "base/file.h"
+#include "fixtures.h"
+#include "render/film_file.h"
+
+namespace quintet::test {
+namespace {
+
+class Merge : public CliTest {
+ protected:
+  // 30 samples: 8 batches, the last one of 2.
+  static std::vector<std::string> command(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--size", "40x30", "--spp", "30"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return quick(arguments);
+  }
+  void part(const std::string& batches, const std::string& name, std::vector<std::string> more = {}) {
+    more.insert(more.end(), {"--batches", batches, "-o", name});
+    const RunResult result = quintet(command(more));
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  RunResult merge(std::vector<std::string> parts, const std::string& output, const std::vector<std::string>& more = {"-q"}) {
+    parts.insert(parts.begin(), "merge");
+    parts.insert(parts.end(), {"-o", output});
+    parts.insert(parts.end(), more.begin(), more.end());
+    return quintet(parts);
+  }
+  void expectMerged(const std::vector<std::string>& parts, const std::string& output, const std::vector<std::string>& more = {"-q"}) {
+    const RunResult result = merge(parts, output, more);
+    EXPECT_EQ(result.status, 0) << result.err;
+  }
+};
+
+TEST_F(Merge, AnyOrderAndNumberGiveTheBytesOfOneRendering) {
+  for (const char* name : {"whole.png", "whole.exr", "whole.hdr", "whole.qfilm"})
+    ASSERT_EQ(quintet(command({"-o", name})).status, 0);
+  part("0-2", "a.qfilm");
+  part("3", "b.qfilm");
+  part("4-5", "c.qfilm");
+  part("6-7", "d.qfilm");
+  std::vector<std::string> parts{"a.qfilm", "b.qfilm", "c.qfilm", "d.qfilm"};
+  do {
+    expectMerged(parts, "m.png");
+    ASSERT_EQ(picture("m.png").data, picture("whole.png").data) << parts[0] << parts[1] << parts[2];
+  } while (std::next_permutation(parts.begin(), parts.end()));
+  expectMerged(parts, "m.exr");
+  expectMerged(parts, "m.hdr");
+  EXPECT_EQ(picture("m.exr").data, picture("whole.exr").data);
+  EXPECT_EQ(picture("m.hdr").data, picture("whole.hdr").data);
+  expectMerged({"whole.qfilm"}, "m.png");
+  EXPECT_EQ(picture("m.png").data, picture("whole.png").data);
+  // In two steps.
+  expectMerged({"d.qfilm", "b.qfilm"}, "bd.qfilm");
+  expectMerged({"bd.qfilm", "c.qfilm", "a.qfilm"}, "m.png");
+  EXPECT_EQ(picture("m.png").data, picture("whole.png").data);
+}
+
+TEST_F(Merge, HowThePictureIsShownComesFromTheRenderingOrTheOptions) {
+  const std::vector<std::string> shown{"--exposure", "1.5", "--tonemap", "aces"};
+  ASSERT_EQ(quintet(command({"-o", "whole.png", "--exposure", "1.5", "--tonemap", "aces", "--transparent"})).status, 0);
+  part("0-7", "a.qfilm", {"--exposure", "1.5", "--tonemap", "aces", "--transparent"});
+  part("0-7", "b.qfilm", {"--transparent"});
+  expectMerged({"a.qfilm"}, "a.png");
+  expectMerged({"b.qfilm"}, "b.png", {"-q", "--exposure", "1.5", "--tonemap", "aces"});
+  EXPECT_EQ(picture("a.png").data, picture("whole.png").data);
+  EXPECT_EQ(picture("b.png").data, picture("whole.png").data);
+  EXPECT_EQ(picture("b.png").channels, 4u);
+}
+
+TEST_F(Merge, RegionsAndSeveralOutputs) {
+  const std::vector<std::string> region{"--region", "5,6,20,10"};
+  ASSERT_EQ(quintet(command({"-o", "whole.exr", "--region", "5,6,20,10", "--all-outputs"})).status, 0);
+  part("5-7", "b.qfilm", {"--region", "5,6,20,10", "--all-outputs"});
+  part("0-4", "a.qfilm", {"--region", "5,6,20,10", "--all-outputs"});
+  expectMerged({"b.qfilm", "a.qfilm"}, "m.exr");
+  std::size_t outputs = 0;
+  for (const std::string& name : fileNames()) {
+    if (!name.starts_with("whole.")) continue;
+    EXPECT_EQ(picture("m." + name.substr(6)).data, picture(name).data);
+    ++outputs;
+  }
+  EXPECT_GE(outputs, 1u);
+}
+
+TEST_F(Merge, SaysHowThePictureWasMade) {
+  part("0-3", "a.qfilm");
+  part("4-7", "b.qfilm");
+  const RunResult result = merge({"a.qfilm", "b.qfilm"}, "m.png", {"--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["samples"], 30);
+  EXPECT_EQ(json["program"], "normals");
+  EXPECT_EQ(json["size"], (nlohmann::json{40, 30}));
+  EXPECT_EQ(json["output"], "m.png");
+  EXPECT_EQ(json["rays"], 40 * 30 * 30);
+  EXPECT_GT(json["seconds"]["render"], 0.0);
+  EXPECT_NE(result.err.find("m.png: 40x30, 30 samples per pixel"), std::string::npos) << result.err;
+  const RunResult info = quintet({"info", "m.png"});
+  for (const char* text : {"30", "quintet merge a.qfilm b.qfilm -o m.png --json", "scene.gltf"})
+    EXPECT_NE(info.out.find(text), std::string::npos) << info.out;
+}
+
+TEST_F(Merge, MissingSamplesAreNamed) {
+  part("0-2", "a.qfilm");
+  part("4-5", "c.qfilm");
+  expectError(merge({"a.qfilm", "c.qfilm"}, "m.png"), 1, {"samples 12 to 15 and 24 to 29 are missing", "--partial"});
+  expectError(merge({"c.qfilm"}, "m.png"), 1, {"samples 0 to 15 and 24 to 29 are missing"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "m.png"));
+  const RunResult film = merge({"a.qfilm", "c.qfilm"}, "m.qfilm", {});
+  EXPECT_EQ(film.status, 0);
+  EXPECT_NE(film.err.find("samples 12 to 15 and 24 to 29 are missing"), std::string::npos) << film.err;
+  const RunResult partial = merge({"a.qfilm"}, "m.png", {"--partial"});
+  EXPECT_EQ(partial.status, 0);
+  EXPECT_NE(partial.err.find("samples 12 to 29 are missing"), std::string::npos) << partial.err;
+  ASSERT_EQ(quintet(quick({"--size", "40x30", "--spp", "12", "-o", "whole.png"})).status, 0);
+  EXPECT_EQ(picture("m.png").data, picture("whole.png").data);
+}
+
+TEST_F(Merge, RefusesPartsThatDoNotBelongTogether) {
+  part("0-3", "a.qfilm");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases{
+      {{"--seed", "4"}, "seed: 0 in a.qfilm, 4 in b.qfilm"},
+      {{"--size", "40x31"}, "size: 40x30 in a.qfilm, 40x31 in b.qfilm"},
+      {{"--region", "0,0,3,4"}, "region: 0,0,40,30 in a.qfilm, 0,0,3,4 in b.qfilm"},
+      {{"--camera", "side"}, "camera position: 0,0,4 in a.qfilm, 4,0,0 in b.qfilm"},
+      {{"--program", "ao"}, "program: normals in a.qfilm, ao in b.qfilm"}};
+  for (const auto& [more, text] : cases) {
+    std::vector<std::string> arguments{"render", "scene.gltf", "-q", "--spp", "30", "--batches", "4-7", "-o", "b.qfilm", "--force"};
+    if (more[0] != "--size") arguments.insert(arguments.end(), {"--size", "40x30"});
+    if (more[0] != "--program") arguments.insert(arguments.end(), {"--program", "normals"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult rendered = quintet(arguments);
+    ASSERT_EQ(rendered.status, 0) << rendered.err;
+    const RunResult result = merge({"a.qfilm", "b.qfilm"}, "m.png");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.err.find("quintet: b.qfilm: " + text + "\n"), std::string::npos) << result.err;
+    EXPECT_TRUE(result.err.ends_with("quintet: b.qfilm: is of another rendering than a.qfilm\n")) << result.err;
+  }
+  render::FilmFile file = render::readFilm(folder_ / "a.qfilm");
+  file.identity[0].second = "0.0.9";
+  render::writeFilm(folder_ / "b.qfilm", file);
+  const RunResult result = merge({"a.qfilm", "b.qfilm"}, "m.png");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("in a.qfilm, 0.0.9 in b.qfilm"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "m.png"));
+}
+
+TEST_F(Merge, RefusesWhatIsThereTwice) {
+  part("0-3", "a.qfilm");
+  part("2-7", "b.qfilm");
+  expectError(merge({"a.qfilm", "b.qfilm"}, "m.png"), 1, {"b.qfilm: samples 8 to 15 are in a.qfilm, too"});
+  expectError(merge({"a.qfilm", "a.qfilm"}, "m.png"), 1, {"a.qfilm: samples 0 to 15 are in a.qfilm, too"});
+}
+
+TEST_F(Merge, RefusesBrokenFiles) {
+  part("0-3", "a.qfilm");
+  part("4-7", "b.qfilm");
+  const std::vector<std::byte> bytes = readFile(folder_ / "b.qfilm");
+  for (const std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{20}, std::size_t{100}, bytes.size() / 2, bytes.size() - 1}) {
+    write(folder_ / "b.qfilm", std::span(bytes).first(size));
+    expectError(merge({"a.qfilm", "b.qfilm"}, "m.png"), 1, {"b.qfilm: is ", size == 0 ? "empty" : "truncated after " + std::to_string(size)});
+  }
+  std::vector<std::byte> damaged = bytes;
+  damaged[bytes.size() / 2] ^= std::byte{4};
+  write(folder_ / "b.qfilm", damaged);
+  expectError(merge({"a.qfilm", "b.qfilm"}, "m.png"), 1, {"b.qfilm: is damaged"});
+  expectError(merge({"a.qfilm", "scene.gltf"}, "m.png"), 1, {"scene.gltf: is not a film file"});
+  expectError(merge({"a.qfilm", "none.qfilm"}, "m.png"), 1, {"none.qfilm: cannot be read"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "m.png"));
+}
+
+TEST_F(Merge, FilmsAreNotLostUnasked) {
+  part("0-3", "a.qfilm");
+  part("4-7", "b.qfilm");
+  part("0-3", "other.qfilm", {"--seed", "1"});
+  const auto bytesOf = [&](const char* name) { return readFile(folder_ / name); };
+  const std::vector<std::byte> other = bytesOf("other.qfilm");
+  const RunResult result = merge({"a.qfilm", "b.qfilm"}, "other.qfilm");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("quintet: other.qfilm: seed: 1 in the file, 0 here\n"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("--force"), std::string::npos) << result.err;
+  expectError(merge({"a.qfilm"}, "b.qfilm"), 1, {"b.qfilm: holds samples 16 to 29", "--force"});
+  expectError(merge({"a.qfilm"}, "scene.gltf.qfilm", {"-q", "-o", "scene.gltf"}), 2, {"-o"});
+  expectMerged({"a.qfilm", "b.qfilm"}, "a.qfilm");  // nothing is lost
+  EXPECT_EQ(bytesOf("other.qfilm"), other);
+  expectMerged({"a.qfilm"}, "other.qfilm", {"-q", "--force"});
+  // A rendering keeps to the same rule.
+  const RunResult again = quintet(command({"--batches", "0-3", "-o", "b.qfilm"}));
+  expectError(again, 1, {"b.qfilm: holds samples 16 to 29 of this rendering", "--force"});
+  part("4-7", "b.qfilm");
+  part("0-3", "b.qfilm", {"--force"});
+  write(folder_ / "text.qfilm", "precious");
+  expectError(quintet(command({"--batches", "0-3", "-o", "text.qfilm"})), 1, {"text.qfilm: is not a film file", "--force"});
+}
+
+TEST_F(Merge, TellsOfOtherDevices) {
+  part("0-3", "a.qfilm");
+  part("4-7", "b.qfilm");
+  render::FilmFile file = render::readFilm(folder_ / "b.qfilm");
+  for (auto& [name, value] : file.notes)
+    if (name == "device") value = "Abacus 3000";
+  render::writeFilm(folder_ / "b.qfilm", file);
+  const RunResult result = merge({"a.qfilm", "b.qfilm"}, "m.png", {});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("b.qfilm: device Abacus 3000"), std::string::npos) << result.err;
+  EXPECT_NE(quintet({"info", "m.png"}).out.find("; Abacus 3000"), std::string::npos);
+}
+
+TEST_F(Merge, OptionsThatMakeNoSense) {
+  expectError(quintet({"merge"}), 2, {"no parts"});
+  expectError(quintet({"merge", "a.qfilm"}), 2, {"no output", "-o"});
+  expectError(merge({"a.qfilm"}, "m.txt"), 2, {"m.txt", ".qfilm"});
+  expectError(merge({"a.qfilm"}, "m.png", {"--tonemap", "acess"}), 2, {"--tonemap", "did you mean 'aces'?"});
+  expectError(merge({"a.qfilm"}, "m.png", {"--exposure", "x"}), 2, {"--exposure"});
+  expectError(merge({"a.qfilm"}, "m.png", {"--exr-type", "half"}), 2, {"--exr-type", ".exr"});
+  expectError(merge({"a.qfilm"}, "-", {"--json"}), 2, {"--json"});
+  expectError(merge({"a.qfilm"}, "no/such/folder/m.png"), 1, {"no/such/folder"});
+  expectError(quintet({"run", "normals", "-o", "a.qfilm"}), 2, {"a.qfilm", "render"});
+}
+
+}  // namespace
+}  // namespace quintet::test
