@@ -84,6 +84,8 @@ Shading shadeSurface(Surface s, vec3 wo) {
   r.bsdf.thin = (flags & kMaterialThin) != 0u;
   r.bsdf.clearcoatAlpha = coatRoughness * coatRoughness;
   r.absorption = MATERIAL.absorption;
+  // As lights/triangle.glsl has it for light samples.
+  if (kHasClearcoat && !r.unlit) r.emission *= clearcoatPassed(r.bsdf.clearcoat, r.bsdf.clearcoatAlpha, abs(dot(s.shadingNormal, wo)));
 #undef MATERIAL
 
   // Normal maps live in the frame of the front side; the whole frame turns for a back side.

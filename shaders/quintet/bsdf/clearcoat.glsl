@@ -27,6 +27,13 @@ float clearcoatAlbedo(ClearcoatLobe lobe, vec3 wo, bool delta) {
   return delta ? clearcoatFresnel(lobe, cosine) : lobe.weight * albedoSingle(vec3(kClearcoatF0), 1.0, lb).x;
 }
 
+// What light that the surface itself emits keeps on its way out: 1 - E, at `cosine` to the normal. So a coat over a
+// black body emits as much as it absorbs (Kirchhoff's law), and as much as any light from below (bsdf underCoat).
+float clearcoatPassed(float weight, float alpha, float cosine) {
+  ClearcoatLobe lobe = ClearcoatLobe(vec3(0.0, 0.0, 1.0), weight, max(alpha, kDeltaAlpha));
+  return 1.0 - clearcoatAlbedo(lobe, vec3(0.0, 0.0, cosine), alpha < kDeltaAlpha);
+}
+
 float clearcoatDistribution(ClearcoatLobe lobe, vec3 h) {
   float cosine = dot(h, lobe.normal);
   vec3 sine = cross(h, lobe.normal);

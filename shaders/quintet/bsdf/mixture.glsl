@@ -33,7 +33,7 @@ struct Bsdf {
   ClearcoatLobe clearcoat;
   AlbedoCell row;          // of the specular layer's roughness
   vec4 chance;             // of sampling coat, specular, diffuse, transmission: their sum is 1, or 0 for black
-  float underCoat;         // passed by the clearcoat; also for the light that the surface emits
+  float underCoat;         // passed by the clearcoat
   bool refractive;         // transmission is `dielectric`, not `thin`
   bool specularDelta;
   bool transmissionDelta;

@@ -140,9 +140,10 @@ bool sampleSolidLight(LightData light, vec3 position, vec2 u, inout LightSample 
   const SolidPoint point = solidPoint(primitive.type, primitive.parameter, face, coordinates);
   const vec3 world = rowsTimesPoint(instance.worldFromObject, rowsTimesPoint(primitive.objectFromPrimitive, point.position));
   lightFromPoint(world, vec3(1.0), position, s);
-  s.radiance = surfaceEmission(primitive.material, 1.0, point.uv, point.uv);
   s.normal = safeNormalize(areaVector(m, point.normal) / maxComponent(abs(areaVector(m, point.normal))), s.wi);
-  s.pdf = pdfSolid(instance, primitive, face, coordinates, position, s.distance, abs(dot(s.normal, s.wi)));
+  const float cosine = abs(dot(s.normal, s.wi));
+  s.radiance = surfaceEmission(primitive.material, 1.0, point.uv, point.uv, cosine);
+  s.pdf = pdfSolid(instance, primitive, face, coordinates, position, s.distance, cosine);
   const BoxData box = BoxArray(geometry.boxes).at[light.primitive];
   s.error = solidError(instance, primitive, point.position, max(abs(box.min), abs(box.max)), world, s.normal);
   s.delta = false;

@@ -2,6 +2,8 @@
 #ifndef QUINTET_LIGHTS_TRIANGLE_GLSL
 #define QUINTET_LIGHTS_TRIANGLE_GLSL
 
+#include "../bsdf/clearcoat.glsl"
+#include "../features.glsl"
 #include "../sampling/warp.glsl"
 #include "../surface.glsl"
 #include "light_sample.glsl"
@@ -31,11 +33,20 @@ LightTriangle fetchLightTriangle(InstanceData instance, GeometryData geometry, u
   return t;
 }
 
+float lightTexture(TextureData use, vec2 uv0, vec2 uv1, int channel) {
+  return use.index == kNoTexture ? 1.0 : sampleTexture(use, use.uvSet == 0u ? uv0 : uv1)[channel];
+}
+
 // What a surface of this material emits, times the probability that alpha mask or blend leaves it there: an any-hit
-// shader does not see the end of a shadow ray. `alpha`: of the vertex colour.
-vec3 surfaceEmission(uint material, float alpha, vec2 uv0, vec2 uv1) {
+// shader does not see the end of a shadow ray. `alpha`: of the vertex colour; `cosine`: of the light's direction to the
+// interpolated normal (the coat's normal map plays no part).
+vec3 surfaceEmission(uint material, float alpha, vec2 uv0, vec2 uv1, float cosine) {
   const MaterialData m = MaterialArray(frame.materials).at[material];
   vec3 emission = m.emissive;
+  if (kHasClearcoat && m.clearcoat > 0.0 && (m.flags & kMaterialUnlit) == 0u) {
+    const float roughness = m.clearcoatRoughness * lightTexture(m.clearcoatRoughnessTexture, uv0, uv1, 1);
+    emission *= clearcoatPassed(m.clearcoat * lightTexture(m.clearcoatTexture, uv0, uv1, 0), roughness * roughness, cosine);
+  }
   if (m.emissiveTexture.index != kNoTexture) emission *= sampleTexture(m.emissiveTexture, m.emissiveTexture.uvSet == 0u ? uv0 : uv1).rgb;
   if ((m.flags & (kMaterialMask | kMaterialBlend)) == 0u) return emission;
   alpha *= m.baseColor.a;
@@ -44,13 +55,20 @@ vec3 surfaceEmission(uint material, float alpha, vec2 uv0, vec2 uv1) {
   return clamp(alpha, 0.0, 1.0) * emission;
 }
 
-vec3 lightTriangleEmission(GeometryData geometry, uvec3 v, vec3 b) {
+// Towards `wi`; `normal` is the triangle's.
+vec3 lightTriangleEmission(InstanceData instance, GeometryData geometry, uvec3 v, vec3 b, vec3 wi, vec3 normal) {
   float alpha = 1.0;
   if (geometry.colors != 0ul) {
     Vec4Array colors = Vec4Array(geometry.colors);
     alpha = dot(b, vec3(colors.at[v.x].a, colors.at[v.y].a, colors.at[v.z].a));
   }
-  return surfaceEmission(geometry.material, alpha, interpolateUv(geometry, v, b, 0u), interpolateUv(geometry, v, b, 1u));
+  if (kHasClearcoat && geometry.normals != 0ul) {
+    Vec3Array normals = Vec3Array(geometry.normals);
+    const vec3 object = b.x * normals.at[v.x] + b.y * normals.at[v.y] + b.z * normals.at[v.z];
+    normal = safeNormalize(transposeTimesVector(instance.objectFromWorld, object), normal);
+  }
+  const vec2 uv0 = interpolateUv(geometry, v, b, 0u);
+  return surfaceEmission(geometry.material, alpha, uv0, interpolateUv(geometry, v, b, 1u), abs(dot(normal, wi)));
 }
 
 // Density per solid angle of a uniform point on the triangle, at distance d along a unit ray with
@@ -73,7 +91,7 @@ bool sampleTriangleLight(LightData light, vec3 position, vec2 u, inout LightSamp
   const vec3 b = vec3(1.0 - b12.x - b12.y, b12);
   const vec3 point = rowsTimesPoint(instance.worldFromObject, b.x * t.p0 + b.y * t.p1 + b.z * t.p2);
   lightFromPoint(point, vec3(1.0), position, s);
-  s.radiance = lightTriangleEmission(geometry, t.vertices, b);
+  s.radiance = lightTriangleEmission(instance, geometry, t.vertices, b, s.wi, t.normal);
   s.pdf = pdfTriangle(t.area, s.distance, abs(dot(t.normal, s.wi)));
   s.normal = t.normal;
   s.error = surfaceError(instance, t.p0, t.p1, t.p2, point, t.normal);

@@ -111,6 +111,22 @@ TEST(AlbedoSeries, EmissionAddsToTheSky) {
   expectUniform(renderPicture(scene), vec4(vec3(0.25f) + kAlbedo * vec3(2.0f, 1.0f, 0.5f), 1.0f), {.error = 0.005});
 }
 
+// Kirchhoff's law: a lacquered black body as hot as its surroundings looks like them. The coat takes from the emission
+// what it adds by reflection.
+TEST(Furnace, ALacqueredBlackBodyIsNotSeen) {
+  for (const float roughness : {0.0f, 0.5f, 1.0f}) {
+    SCOPED_TRACE(roughness);
+    scene::Material m = emitter(vec3(1.0f));
+    m.clearcoat = 1.0f;
+    m.clearcoatRoughness = roughness;
+    SceneBuilder scene;
+    scene.add(sphere(vec3(0.0f), 1.0f, 3), m).sky(vec3(1.0f));
+    scene.camera(orthographic({0.6f, 0.4f, 2.0f}, vec3(0.0f), 0.9f));
+    PictureOptions options = with("pathtracer", {"bounces=1"});
+    expectUniform(renderPicture(scene, options), vec4(1.0f), {.error = 0.005, .rounding = 3e-3});
+  }
+}
+
 // From inside a closed box, with a bright world outside: nothing comes in through edges and corners.
 TEST(ClosedBox, IsBlackInsideAtAnyScale) {
   for (const float size : {1e-3f, 1.0f, 1e3f, 1e5f}) {

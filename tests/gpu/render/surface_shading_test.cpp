@@ -1,0 +1,239 @@
+// fetchSurface and shadeSurface against the host: one triangle with everything in its attributes and textures, seen
+// at random points from random sides, under transforms that stretch and mirror.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "lights/light_scene.h"
+#include "scene_builder.h"
+
+namespace quintet::test {
+namespace {
+
+using glm::dvec3;
+
+struct Query { vec2 barycentric; vec3 wo; };
+struct Answer {
+  vec3 position, geometricNormal, normal;
+  std::uint32_t frontFace;
+  vec3 baseColor;
+  float metallic, alpha, clearcoat, clearcoatAlpha;
+  vec3 emission;
+};
+
+const std::string kShade = R"(
+  #include <quintet/material.glsl>
+  struct Query { vec2 barycentric; vec3 wo; };
+  struct Answer {
+    vec3 position, geometricNormal, normal; uint frontFace; vec3 baseColor; float metallic, alpha, clearcoat, clearcoatAlpha;
+    vec3 emission;
+  };
+  #define In Query
+  #define Out Answer
+  Answer run(uint index, Query q) {
+    HitPayload hit;
+    hit.t = 1.0;
+    hit.instance = hit.geometry = hit.primitive = 0u;
+    hit.barycentric = q.barycentric;
+    Surface s = fetchSurface(hit, q.wo);
+    Shading r = shadeSurface(s, q.wo);
+    return Answer(s.position, s.geometricNormal, r.normal, uint(s.frontFace), r.bsdf.baseColor, r.bsdf.metallic, r.bsdf.alpha,
+                  r.bsdf.clearcoat, r.bsdf.clearcoatAlpha, r.emission);
+  }
+)";
+
+// 1 x 1 textures: no filter to reckon with. Left half black, right half white where the texture coordinate counts.
+int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba, io::ColorEncoding encoding) {
+  io::Image image = io::makeImage(static_cast<std::uint32_t>(rgba.size() / 4), 1, 4, io::PixelType::u8, encoding);
+  std::ranges::copy(rgba, image.samples<std::uint8_t>().begin());
+  scene.images.push_back({"texel", std::move(image)});
+  scene.textures.push_back({"texel", static_cast<int>(scene.images.size()) - 1, {scene::Wrap::repeat, scene::Wrap::repeat, scene::Filter::nearest}});
+  return static_cast<int>(scene.textures.size()) - 1;
+}
+
+scene::TextureUse use(int texture, int uvSet = 0) {
+  scene::TextureUse u;
+  u.texture = texture;
+  u.uvSet = uvSet;
+  return u;
+}
+
+struct Case {
+  const char* name;
+  mat4 worldFromObject;
+};
+
+std::vector<Case> transforms() {
+  const mat4 turned = glm::rotate(mat4(1.0f), 0.8f, glm::normalize(vec3(1, 2, -1)));
+  return {{"as it is", mat4(1.0f)},
+          {"stretched", glm::translate(mat4(1.0f), vec3(1, 2, 3)) * turned * glm::scale(mat4(1.0f), vec3(1.0f, 3.0f, 0.4f))},
+          {"mirrored", turned * glm::scale(mat4(1.0f), vec3(-1.0f, 2.0f, 0.7f))}};
+}
+
+scene::Scene triangle(const mat4& worldFromObject) {
+  SceneBuilder builder;
+  scene::Geometry g;
+  g.positions = {{0, 0, 0}, {2, 0, 0.1f}, {0.3f, 1, -0.2f}};
+  g.triangles = {{0, 1, 2}};
+  g.normals = {glm::normalize(vec3(-0.2f, -0.1f, 1)), glm::normalize(vec3(0.3f, 0, 1)), glm::normalize(vec3(0, 0.3f, 1))};
+  for (const vec3& n : g.normals) g.tangents.emplace_back(glm::normalize(vec3(1, 0.2f, 0) - n * glm::dot(n, vec3(1, 0.2f, 0))), -1.0f);
+  g.uvs[0] = {{0, 0}, {1, 0}, {0, 1}};
+  g.uvs[1] = {{0.1f, 0.9f}, {0.2f, 0.3f}, {0.8f, 0.4f}};
+  g.colors = {{1, 0.5f, 0.2f, 1}, {0.3f, 1, 0.6f, 1}, {0.9f, 0.4f, 1, 1}};
+  builder.add(g, {}, worldFromObject);
+  return builder.scene;
+}
+
+std::vector<Query> queries() {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  std::vector<Query> result;
+  while (result.size() < 500) {
+    const vec2 b(uniform(random), uniform(random));
+    const vec3 d(uniform(random) - 0.5f, uniform(random) - 0.5f, uniform(random) - 0.5f);
+    if (b.x + b.y < 1.0f && glm::length(d) > 0.1f) result.push_back({b, glm::normalize(d)});
+  }
+  return result;
+}
+
+std::vector<Answer> shade(const scene::Scene& scene, const std::vector<Query>& points) {
+  const LightScene device(scene, {});
+  return runCompute<Answer>(kShade, points, points.size(), device.options());
+}
+
+// What the host makes of the triangle, in double precision.
+struct Expected { dvec3 position, face, normal, tangent, bitangent; double side; };
+Expected expectAt(const scene::Scene& scene, const Query& q) {
+  const scene::Geometry& g = scene.meshes[0].geometries[0];
+  const glm::dmat4 m(scene.instances[0].worldFromObject);
+  const glm::dmat3 linear(m), forNormals = glm::transpose(glm::inverse(linear));
+  const dvec3 b(1.0 - q.barycentric.x - q.barycentric.y, q.barycentric.x, q.barycentric.y);
+  dvec3 p(0.0), n(0.0), t(0.0);
+  for (glm::length_t i = 0; i < 3; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    p += b[i] * dvec3(g.positions[at]), n += b[i] * dvec3(g.normals[at]), t += b[i] * dvec3(g.tangents[at]);
+  }
+  Expected e;
+  e.position = dvec3(m * glm::dvec4(p, 1.0));
+  // The front is where the vertices turn counter-clockwise in object space: normals go with it under mirroring.
+  e.face = glm::normalize(forNormals * glm::cross(dvec3(g.positions[1] - g.positions[0]), dvec3(g.positions[2] - g.positions[0])));
+  e.side = glm::dot(e.face, dvec3(q.wo)) >= 0.0 ? 1.0 : -1.0;
+  e.normal = glm::normalize(forNormals * n);
+  const dvec3 along = linear * t;
+  e.tangent = glm::normalize(along - e.normal * glm::dot(e.normal, along));
+  // glTF: bitangent = w cross(normal, tangent) in object space, w = -1 here; mirroring turns its sense in the world.
+  e.bitangent = -(glm::determinant(linear) < 0.0 ? -1.0 : 1.0) * glm::cross(e.normal, e.tangent);
+  return e;
+}
+
+// Are normal and mirror direction so far from the horizon that the normal is not bent (material.glsl, consistentNormal)?
+bool isFree(const Expected& e, const dvec3& normal, const dvec3& wo) {
+  const double facing = glm::dot(normal, wo);
+  return facing > 0.02 && glm::dot(2.0 * facing * normal - wo, e.side * e.face) > 0.02;
+}
+
+TEST(SurfaceShading, NormalsGoByTheInverseTranspose) {
+  for (const Case& c : transforms()) {
+    SCOPED_TRACE(c.name);
+    const scene::Scene scene = triangle(c.worldFromObject);
+    const std::vector<Query> points = queries();
+    const std::vector<Answer> answers = shade(scene, points);
+    int compared = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Expected e = expectAt(scene, points[i]);
+      const dvec3 wo = points[i].wo;
+      if (std::abs(glm::dot(e.face, wo)) < 1e-3) continue;
+      ASSERT_LT(glm::length(dvec3(answers[i].position) - e.position), 1e-5);
+      ASSERT_EQ(answers[i].frontFace, e.side > 0.0 ? 1u : 0u);
+      ASSERT_LT(glm::length(dvec3(answers[i].geometricNormal) - e.side * e.face), 1e-5);
+      ASSERT_GT(glm::dot(dvec3(answers[i].normal), wo), 0.0);
+      if (!isFree(e, e.side * e.normal, wo)) continue;
+      ASSERT_LT(glm::length(dvec3(answers[i].normal) - e.side * e.normal), 1e-5);
+      ++compared;
+    }
+    EXPECT_GT(compared, 200);
+  }
+}
+
+TEST(SurfaceShading, NormalMapsLieInTheTangentFrame) {
+  for (const Case& c : transforms()) {
+    SCOPED_TRACE(c.name);
+    scene::Scene scene = triangle(c.worldFromObject);
+    scene.materials[0].normalTexture = use(addTexel(scene, {160, 90, 240, 255}, io::ColorEncoding::linear));
+    scene.materials[0].normalScale = 0.8f;
+    const dvec3 map = glm::normalize(dvec3(0.8 * (2.0 * 160 / 255 - 1.0), 0.8 * (2.0 * 90 / 255 - 1.0), 2.0 * 240 / 255 - 1.0));
+    const std::vector<Query> points = queries();
+    const std::vector<Answer> answers = shade(scene, points);
+    int compared = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Expected e = expectAt(scene, points[i]);
+      const dvec3 normal = e.side * glm::normalize(map.x * e.tangent + map.y * e.bitangent + map.z * e.normal);
+      if (!isFree(e, normal, points[i].wo)) continue;
+      ASSERT_LT(glm::length(dvec3(answers[i].normal) - normal), 2e-5);
+      ++compared;
+    }
+    EXPECT_GT(compared, 150);
+  }
+}
+
+double fromSrgb(int byte) {
+  const double x = byte / 255.0;
+  return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+}
+
+TEST(SurfaceShading, FactorsMultiplyTextures) {
+  scene::Scene scene = triangle(mat4(1.0f));
+  scene::Material& m = scene.materials[0];
+  m.baseColor = {0.5f, 0.6f, 0.7f, 1.0f};
+  m.baseColorTexture = use(addTexel(scene, {200, 100, 50, 255}, io::ColorEncoding::sRgb));
+  m.roughness = 0.8f, m.metallic = 0.9f;
+  m.metallicRoughnessTexture = use(addTexel(scene, {10, 150, 60, 255}, io::ColorEncoding::linear));
+  m.emissive = {1, 2, 3};
+  m.emissiveTexture = use(addTexel(scene, {255, 128, 64, 255}, io::ColorEncoding::sRgb));
+  const std::vector<Query> points = queries();
+  const std::vector<Answer> answers = shade(scene, points);
+  const double roughness = 0.8f * 150 / 255.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const vec3 b(1.0f - points[i].barycentric.x - points[i].barycentric.y, points[i].barycentric);
+    const auto& colors = scene.meshes[0].geometries[0].colors;
+    const dvec3 vertex = dvec3(b.x * vec3(colors[0]) + b.y * vec3(colors[1]) + b.z * vec3(colors[2]));
+    const dvec3 base = dvec3(0.5, 0.6, 0.7) * dvec3(fromSrgb(200), fromSrgb(100), fromSrgb(50)) * vertex;
+    ASSERT_LT(glm::length(dvec3(answers[i].baseColor) - base), 1e-3);
+    ASSERT_NEAR(answers[i].alpha, roughness * roughness, 1e-4);
+    ASSERT_NEAR(answers[i].metallic, 0.9 * 60 / 255.0, 1e-4);
+    ASSERT_LT(glm::length(dvec3(answers[i].emission) - dvec3(1.0, 2.0 * fromSrgb(128), 3.0 * fromSrgb(64))), 1e-2);
+  }
+}
+
+// A texture with a black and a white texel tells by which coordinate it was looked up: set 1, moved, turned, scaled.
+TEST(SurfaceShading, TexturesUseTheirSetAndTransform) {
+  for (const int uvSet : {0, 1}) {
+    SCOPED_TRACE(uvSet);
+    scene::Scene scene = triangle(mat4(1.0f));
+    scene::TextureUse t = use(addTexel(scene, {0, 0, 0, 255, 255, 255, 255, 255}, io::ColorEncoding::linear), uvSet);
+    t.offset = {0.13f, 0.2f};
+    t.scale = {1.5f, 0.7f};
+    t.rotation = 0.6f;
+    scene.materials[0].metallicRoughnessTexture = t;
+    const std::vector<Query> points = queries();
+    const std::vector<Answer> answers = shade(scene, points);
+    const auto& uvs = scene.meshes[0].geometries[0].uvs[static_cast<std::size_t>(uvSet)];
+    int white = 0, compared = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const vec2 q = points[i].barycentric;
+      const glm::dvec2 uv((1.0f - q.x - q.y) * uvs[0] + q.x * uvs[1] + q.y * uvs[2]);
+      // KHR_texture_transform: translation * rotation * scale, rotation counter-clockwise with v down.
+      const double x = 0.13 + std::cos(0.6) * 1.5 * uv.x + std::sin(0.6) * 0.7 * uv.y;
+      const double turns = x - std::floor(x);
+      if (std::min({std::abs(turns - 0.5), turns, 1.0 - turns}) < 0.01) continue;
+      ++compared;
+      white += turns > 0.5;
+      ASSERT_NEAR(answers[i].metallic, turns > 0.5 ? 1.0f : 0.0f, 1e-5f) << x;
+    }
+    EXPECT_GT(compared, 400);
+    EXPECT_TRUE(white > 50 && white < compared - 50);
+  }
+}
+
+}  // namespace
+}  // namespace quintet::test
