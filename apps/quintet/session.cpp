@@ -13,7 +13,6 @@
 #include "diagnostics_view.h"
 #include "picture_names.h"
 #include "program_setup.h"
-#include "scene/content_hash.h"
 #include "scene/names.h"
 #include "values.h"
 
@@ -61,6 +60,7 @@ void Session::prepare() {
 }
 
 void Session::openDevice() {
+  loading_.start(sceneSource_, options_);  // goes on while the driver starts
   gpu::ContextOptions contextOptions;
   contextOptions.device = options_.device;
   contextOptions.log = [this](LogLevel level, const std::string& text) {
@@ -93,37 +93,32 @@ uvec2 Session::picturePart(uvec2 size) const {
 
 void Session::loadScene() {
   progress_.stage("loading " + sceneSource_.name);
-  Stopwatch watch;
+  LoadedScene loaded = loading_.finish(sceneSource_, options_);
   SceneInfo info;
-  scene::Scene scene = app::loadScene(sceneSource_);
-  info.import = scene.seconds;
-  watch.lap();
-  info.hash = scene::contentHash(scene).hex();
-  info.hashSeconds = watch.lap();
-  info.files = scene.report.files;
-  const uvec2 asked = options_.size;
-  const float aspect = asked.y > 0 ? static_cast<float>(asked.x) / static_cast<float>(asked.y) : 0.0f;
-  const ChosenCamera camera = chooseCamera(scene, options_.camera, aspect);
-  const ChosenEnvironment environment = chooseEnvironment(scene, options_.environment);
-  info.camera = camera.camera;
-  info.cameraDescription = camera.description;
-  info.environment = environment.description;
-  info.environmentHash = scene::contentHash(environment.environment).hex();
-  info.size = chooseSize(asked, camera.camera);
-  info.viewSeconds = watch.lap();
-  info.loadSeconds = watch.seconds();
+  info.import = loaded.scene.seconds;
+  info.hash = loaded.hash;
+  info.hashSeconds = loaded.hashSeconds;
+  info.files = loaded.scene.report.files;
+  info.camera = loaded.camera.camera;
+  info.cameraDescription = loaded.camera.description;
+  info.environment = loaded.environment.description;
+  info.environmentHash = loaded.environmentHash;
+  info.size = loaded.size;
+  info.viewSeconds = loaded.viewSeconds;
+  info.loadSeconds = loaded.seconds;
   checkSizes(picturePart(info.size));
-  if (!aovs_.empty()) info.names = {scene::instanceNames(scene), scene::materialNames(scene)};
-  describe(scene, environment);
+  if (!aovs_.empty()) info.names = {scene::instanceNames(loaded.scene), scene::materialNames(loaded.scene)};
+  describe(loaded.scene, loaded.environment);
 
   progress_.stage("building acceleration structures");
-  auto built = std::make_unique<render::DeviceScene>(*context_, std::move(scene), environment.environment);
+  const Stopwatch building;
+  auto built = std::make_unique<render::DeviceScene>(*context_, std::move(loaded.scene), loaded.environment.environment);
   renderer_.reset();
   deviceScene_ = std::move(built);
   sceneInfo_ = std::move(info);
   sceneLoaded_ = true;
   record_.loadSeconds = sceneInfo_.loadSeconds;
-  record_.buildSeconds = watch.seconds() - sceneInfo_.loadSeconds;
+  record_.buildSeconds = building.seconds();
 }
 
 void Session::describe(const scene::Scene& scene, const ChosenEnvironment& environment) {

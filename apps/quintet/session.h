@@ -18,6 +18,7 @@
 #include "render/renderer.h"
 #include "render_loop.h"
 #include "render_options.h"
+#include "scene_loading.h"
 #include "scene_source.h"
 #include "shader/compiler.h"
 #include "warnings.h"
@@ -102,6 +103,7 @@ class Session {
   program::Program program_;
   std::vector<AovLayer> aovs_;
   SceneSource sceneSource_;
+  SceneLoading loading_;
   SceneInfo sceneInfo_;
   bool sceneLoaded_ = false;
   program::ParameterValues parameters_{{}};

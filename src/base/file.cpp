@@ -4,15 +4,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <new>
 #include <optional>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace quintet {
 namespace {
@@ -53,6 +56,27 @@ struct Temporary {
   }
 };
 
+// Reads the file's first bytes on all cores; returns how many from the beginning on have arrived.
+std::size_t readInParts(int fd, std::span<std::byte> data) {
+  constexpr std::size_t kPart = std::size_t{8} << 20;
+  const std::size_t parts = (data.size() + kPart - 1) / kPart;
+  std::vector<std::size_t> got(parts, 0);
+  parallelFor(parts, [&](std::size_t i) {
+    const std::span<std::byte> part = data.subspan(i * kPart, std::min(kPart, data.size() - i * kPart));
+    while (got[i] < part.size()) {
+      const ssize_t more = ::pread(fd, part.data() + got[i], part.size() - got[i], static_cast<off_t>(i * kPart + got[i]));
+      if (more <= 0) break;  // whoever goes on from there is told the same
+      got[i] += static_cast<std::size_t>(more);
+    }
+  });
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < parts; ++i) {
+    sum += got[i];
+    if (sum != std::min(data.size(), (i + 1) * kPart)) break;
+  }
+  return sum;
+}
+
 template <class Container>
 Container readAll(const fs::path& file) {
   const Descriptor in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
@@ -65,6 +89,10 @@ Container readAll(const fs::path& file) {
   try {
     // One byte more than the size, so that the end of the file shows without growing the buffer.
     data.resize(S_ISREG(info.st_mode) ? static_cast<std::size_t>(info.st_size) + 1 : 65536);
+    if constexpr (std::is_same_v<Container, FileBytes>) {
+      if (S_ISREG(info.st_mode)) used = readInParts(in.get(), std::span(data).first(data.size() - 1));
+      if (used > 0 && ::lseek(in.get(), static_cast<off_t>(used), SEEK_SET) < 0) failReading(file, errno);
+    }
     while (true) {
       const ssize_t got = ::read(in.get(), data.data() + used, data.size() - used);
       if (got == 0) break;
@@ -173,6 +201,7 @@ void replaceFile(const fs::path& file, const Target& target, std::span<const std
 }  // namespace
 
 std::vector<std::byte> readFile(const fs::path& file) { return readAll<std::vector<std::byte>>(file); }
+FileBytes readLargeFile(const fs::path& file) { return readAll<FileBytes>(file); }
 std::string readTextFile(const fs::path& file) { return readAll<std::string>(file); }
 
 void writeFile(const fs::path& file, std::span<const std::byte> data) {

@@ -126,17 +126,19 @@ Image toChannels(const Image& image, std::uint32_t channels) {
   withType(image.type, [&](auto sample) {
     using T = decltype(sample);
     const T one = fromUnit<T>(1.0f);
-    const T* in = image.samples<T>().data();
-    T* out = result.samples<T>().data();
-    for (std::size_t i = 0; i < image.pixelCount(); ++i, in += image.channels, out += channels) {
-      const T alpha = image.hasAlpha() ? in[image.channels - 1] : one;
-      if (result.colorChannels() == 1 && image.colorChannels() == 3) {
-        out[0] = fromUnit<T>(encodedLuminance(in, image.encoding));
-      } else {
-        for (std::uint32_t c = 0; c < result.colorChannels(); ++c) out[c] = in[image.colorChannels() == 3 ? c : 0];
+    parallelFor(image.height, [&](std::size_t y) {
+      const T* in = image.samples<T>().data() + y * image.width * image.channels;
+      T* out = result.samples<T>().data() + y * image.width * channels;
+      for (std::size_t x = 0; x < image.width; ++x, in += image.channels, out += channels) {
+        const T alpha = image.hasAlpha() ? in[image.channels - 1] : one;
+        if (result.colorChannels() == 1 && image.colorChannels() == 3) {
+          out[0] = fromUnit<T>(encodedLuminance(in, image.encoding));
+        } else {
+          for (std::uint32_t c = 0; c < result.colorChannels(); ++c) out[c] = in[image.colorChannels() == 3 ? c : 0];
+        }
+        if (result.hasAlpha()) out[channels - 1] = alpha;
       }
-      if (result.hasAlpha()) out[channels - 1] = alpha;
-    }
+    });
   });
   return result;
 }

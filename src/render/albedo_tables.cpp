@@ -185,4 +185,9 @@ std::vector<float> computeAlbedoTables() {
   return table;
 }
 
+const std::vector<float>& albedoTables() {
+  static const std::vector<float> kTables = computeAlbedoTables();
+  return kTables;
+}
+
 }  // namespace quintet::render

@@ -9,6 +9,8 @@ namespace quintet::render {
 // kAlbedoFloatCount floats, the same at each call; some 10 ms of work on two cores. No scene in it: once
 // per process will do.
 std::vector<float> computeAlbedoTables();
+// Those of this process: computed by whoever asks first.
+const std::vector<float>& albedoTables();
 
 }  // namespace quintet::render
 #endif

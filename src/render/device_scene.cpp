@@ -39,7 +39,7 @@ struct DeviceScene::Impl {
   std::optional<TextureUpload> textures;
   std::unique_ptr<gpu::BindlessSet> set;
   std::optional<TextureSlots> parameterSlots;
-  gpu::Buffer geometryTable, materialTable, lights, lightTable, lightNodes, lightSlots, environmentTable, albedoTables;
+  gpu::Buffer geometryTable, materialTable, lights, lightTable, lightNodes, lightSlots, environmentTable, albedoTable;
   std::vector<rt::Blas> blas;                // one per used mesh
   std::vector<int> blasOfMesh;               // -1: no instance uses the mesh
   std::uint64_t bottomLevelBytes = 0;
@@ -135,9 +135,8 @@ struct DeviceScene::Impl {
     statistics.lightCount = frame.lightCount;
     firstLightSlots = table.firstSlots;
 
-    static const std::vector<float> kAlbedoTables = computeAlbedoTables();
-    albedoTables = gpu::makeBufferOf(context, kAlbedoTables, 0, "albedo tables");
-    frame.albedoTables = albedoTables.address();
+    albedoTable = gpu::makeBufferOf(context, albedoTables(), 0, "albedo tables");
+    frame.albedoTables = albedoTable.address();
   }
 
   // Of moving lights some may have no power at a frame, and others none at another: the buffers hold all of them.

@@ -12,17 +12,11 @@
 namespace quintet::rt {
 namespace {
 
-constexpr std::size_t kChunk = 32768;  // primitives per parallel step
-
-// Calls body(first, last) for consecutive parts of [0, count), in parallel.
-template <class Body>
-void forChunks(std::size_t count, const Body& body) {
-  parallelFor((count + kChunk - 1) / kChunk, [&](std::size_t chunk) { body(chunk * kChunk, std::min(count, (chunk + 1) * kChunk)); });
-}
+constexpr std::size_t kChunk = 32768;  // primitives per part
 
 std::vector<Bounds3> boundsOf(const GeometryInput& input) {
   std::vector<Bounds3> bounds(primitiveCount(input));
-  forChunks(bounds.size(), [&](std::size_t first, std::size_t last) {
+  parallelRanges(bounds.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t k = first; k < last; ++k) bounds[k] = primitiveBounds(input, k);
   });
   return bounds;
@@ -33,14 +27,14 @@ std::optional<Bounds3> wholeBounds(const GeometryInput& input) {
   const std::size_t count = primitiveCount(input);
   std::vector<Bounds3> parts((count + kChunk - 1) / kChunk);
   std::atomic<bool> active = true;
-  forChunks(count, [&](std::size_t first, std::size_t last) {
+  parallelRanges(count, [&](std::size_t first, std::size_t last) {
     Bounds3& part = parts[first / kChunk];
     for (std::size_t k = first; k < last; ++k) {
       const Bounds3 bounds = primitiveBounds(input, k);
       if (bounds.empty()) active = false;
       part.extend(bounds);
     }
-  });
+  }, kChunk);
   if (!active) return {};
   Bounds3 whole;
   for (const Bounds3& part : parts) whole.extend(part);
@@ -121,7 +115,7 @@ VkDeviceSize GeometryData::primitiveBytes() const {
 void GeometryData::gather(std::span<std::byte> out) const {
   const auto copy = [&](const auto& primitives) {
     using Primitive = typename std::decay_t<decltype(primitives)>::value_type;
-    forChunks(count, [&](std::size_t first, std::size_t last) {
+    parallelRanges(count, [&](std::size_t first, std::size_t last) {
       for (std::size_t k = first; k < last; ++k)
         std::memcpy(out.data() + k * sizeof(Primitive), &primitives[map.empty() ? k : map[k]], sizeof(Primitive));
     });
@@ -154,6 +148,7 @@ BlasData prepareBlas(const BlasInput& input, bool order) {
   for (const Bounds3& bounds : active.bounds) data.bounds.extend(bounds);
   std::vector<std::uint32_t> sorted;
   if (order) sorted = spatialOrder(active.bounds, active.counts);
+  active.bounds = {};
 
   std::size_t first = 0;
   for (std::size_t g = 0; g < input.geometries.size(); ++g) {
@@ -161,10 +156,15 @@ BlasData prepareBlas(const BlasInput& input, bool order) {
     data.inactiveCount += static_cast<std::uint32_t>(inputCount - count);
     std::vector<std::uint32_t> map = std::move(active.indices[g]);
     if (order) {
-      std::vector<std::uint32_t> ordered(count);
-      for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t position = sorted[first + k] - first;
-        ordered[k] = map.empty() ? static_cast<std::uint32_t>(position) : map[position];
+      std::vector<std::uint32_t> ordered;
+      if (count == sorted.size() && map.empty()) {
+        ordered = std::move(sorted);  // the usual large case: one geometry, all of it
+      } else {
+        ordered.resize(count);
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::size_t position = sorted[first + k] - first;
+          ordered[k] = map.empty() ? static_cast<std::uint32_t>(position) : map[position];
+        }
       }
       map = std::move(ordered);
       if (count == inputCount && isIdentity(map)) map.clear();

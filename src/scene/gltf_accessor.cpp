@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <type_traits>
+
+#include "base/parallel.h"
+#include "scene/triangles.h"
 
 namespace quintet::scene {
 namespace {
@@ -128,13 +132,32 @@ std::vector<std::uint32_t> readSparseIndices(const Document& document, const tin
   return indices;
 }
 
+template <class Element>
+using ComponentOf =
+    std::conditional_t<std::is_same_v<Element, std::uint32_t> || std::is_same_v<Element, uvec3>, std::uint32_t,
+                       std::conditional_t<std::is_same_v<Element, glm::u16vec4>, std::uint16_t, float>>;
+
+// The accessor's data as they lie in the file, if they are elements of that very type, `perElement` of the accessor's
+// own to each; else empty. A vector made from them is written once, not cleared first.
+template <class Element>
+std::span<const Element> directElements(const Document& document, const tinygltf::Accessor& accessor, std::size_t perElement = 1) {
+  using Out = ComponentOf<Element>;
+  bool same = false;
+  withType(accessor.componentType, [&](auto zero) { same = std::is_same_v<decltype(zero), Out>; });
+  if (!same || accessor.bufferView == kNone || accessor.count == 0 || accessor.sparse.isSparse) return {};
+  if (strideOf(document, accessor) * perElement != sizeof(Element)) return {};
+  const std::byte* source = document.view(accessor.bufferView).data() + accessor.byteOffset;
+  if (reinterpret_cast<std::uintptr_t>(source) % alignof(Out) != 0) return {};
+  return {reinterpret_cast<const Element*>(source), accessor.count / perElement};
+}
+
 // Reads an accessor whose type has been checked into elements of N components of type Out.
 template <std::size_t N, class Element>
 std::vector<Element> readElements(const Document& document, int index, bool normalized) {
-  using Out = std::conditional_t<std::is_same_v<Element, std::uint32_t>, std::uint32_t,
-                                 std::conditional_t<std::is_same_v<Element, glm::u16vec4>, std::uint16_t, float>>;
+  using Out = ComponentOf<Element>;
   static_assert(sizeof(Element) == N * sizeof(Out));
   const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
+  if (const auto direct = directElements<Element>(document, accessor); !direct.empty()) return std::vector<Element>(direct.begin(), direct.end());
   if (accessor.bufferView == kNone && accessor.count > kMaxUnbackedCount)
     document.fail(
         fmt::format("/accessors/{}/count", index),
@@ -257,6 +280,37 @@ std::vector<std::uint32_t> readIndices(const Document& document, int index, std:
                   TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT},
                  place);
   return readElements<1, std::uint32_t>(document, index, false);
+}
+
+std::vector<uvec3> readTriangleList(const Document& document, int index, std::size_t vertexCount, std::string_view place) {
+  const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
+  std::vector<uvec3> triangles;
+  if (accessor.type == TINYGLTF_TYPE_SCALAR) {
+    const auto direct = directElements<uvec3>(document, accessor, 3);
+    triangles.assign(direct.begin(), direct.end());
+  }
+  // What follows the last whole triangle is checked, too.
+  if (triangles.empty() || accessor.count % 3 != 0) {
+    const std::vector<std::uint32_t> indices = readIndices(document, index, place);
+    checkIndices(document, indices, vertexCount, place);
+    return makeTriangles(TriangleMode::list, indices, static_cast<std::uint32_t>(vertexCount));
+  }
+  static_assert(sizeof(uvec3) == 3 * sizeof(std::uint32_t));
+  checkIndices(document, {&triangles[0].x, 3 * triangles.size()}, vertexCount, place);
+  return triangles;
+}
+
+void checkIndices(const Document& document, std::span<const std::uint32_t> indices, std::size_t vertexCount, std::string_view place) {
+  std::atomic<std::size_t> wrong = indices.size();  // the first one
+  parallelRanges(indices.size(), [&](std::size_t first, std::size_t last) {
+    const auto part = indices.subspan(first, last - first);
+    const auto found = std::ranges::find_if(part, [&](std::uint32_t i) { return i >= vertexCount; });
+    if (found == part.end()) return;
+    const std::size_t at = first + static_cast<std::size_t>(found - part.begin());
+    for (std::size_t known = wrong; at < known && !wrong.compare_exchange_weak(known, at);) {}
+  });
+  if (wrong < indices.size())
+    document.fail(place, fmt::format("element {} is {}, but there are {} vertices", wrong.load(), indices[wrong], vertexCount));
 }
 
 std::vector<glm::u16vec4> readJoints(const Document& document, int index, std::string_view place) {

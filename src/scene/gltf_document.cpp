@@ -179,7 +179,7 @@ Document readDocument(const std::filesystem::path& file) {
   Document document;
   document.file = file;
   document.files.push_back(file);
-  const std::vector<std::byte>& bytes = document.storage.emplace_back(readFile(file));
+  const FileBytes& bytes = document.storage.emplace_back(readLargeFile(file));
   const Container container = splitContainer(file, bytes);
   json root = parseJson(file, container.json);
   json checked = checkSchema(file, root);

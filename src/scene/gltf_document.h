@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/file.h"
 #include "scene/scene.h"
 
 namespace quintet::scene {
@@ -36,7 +37,7 @@ struct Document {
   std::vector<std::filesystem::path> files;  // itself, and the files that its buffers and images name
 
   // What the spans point into. A deque: its elements stay where they are.
-  std::deque<std::vector<std::byte>> storage;
+  std::deque<FileBytes> storage;
 
   [[noreturn]] void fail(std::string_view place, std::string_view problem) const;
   // The bytes of a view; throws FileError if there are none.
@@ -55,7 +56,7 @@ struct Container {
 Container splitContainer(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
 // gltf_uri.cpp: the bytes behind a URI of the file: a data URI, or a relative path beside it.
-std::vector<std::byte> loadUri(const Document&, std::string_view uri, std::string_view place);
+FileBytes loadUri(const Document&, std::string_view uri, std::string_view place);
 bool isDataUri(std::string_view uri);
 std::filesystem::path pathOfUri(const Document&, std::string_view uri);  // of one that is no data URI
 std::string percentDecode(std::string_view text);

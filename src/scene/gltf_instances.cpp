@@ -15,6 +15,9 @@ namespace {
 // What Vulkan guarantees for a top-level structure (VkPhysicalDeviceAccelerationStructurePropertiesKHR).
 constexpr std::size_t kMaxInstances = (std::size_t{1} << 24) - 1;
 
+// Primitives beyond this size are worth all cores.
+constexpr std::size_t kLargeBytes = std::size_t{32} << 20;
+
 enum class Rank { full, plane, less };
 
 // How many dimensions an object keeps: a matrix without an inverse must not reach the acceleration structure.
@@ -188,12 +191,22 @@ void InstanceBuilder::finish(Scene& scene, MemoryBudget& budget) {
     const auto& mesh = document_.model.meshes[static_cast<std::size_t>(poses_[i].mesh)];
     for (std::size_t k = 0; k < mesh.primitives.size(); ++k) jobs.push_back({i, static_cast<int>(k), {}});
   }
-  parallelFor(jobs.size(), [&](std::size_t i) {
-    const Pose& pose = poses_[jobs[i].pose];
-    budget.take(estimateBytes(document_.model, pose.mesh, jobs[i].primitive));
-    jobs[i].result = readGeometry(document_, scene.materials, pose.mesh, jobs[i].primitive, pose.deformation);
-    if (!pose.shown) jobs[i].result = {};
-  });
+  const auto run = [&](Job& job) {
+    const Pose& pose = poses_[job.pose];
+    budget.take(estimateBytes(document_.model, pose.mesh, job.primitive));
+    job.result = readGeometry(document_, scene.materials, pose.mesh, job.primitive, pose.deformation);
+    if (!pose.shown) job.result = {};
+  };
+  // Large ones one after the other, each on all cores; then all small ones at once.
+  std::vector<Job*> small;
+  for (Job& job : jobs) {
+    if (estimateBytes(document_.model, poses_[job.pose].mesh, job.primitive) > kLargeBytes) {
+      run(job);
+    } else {
+      small.push_back(&job);
+    }
+  }
+  parallelFor(small.size(), [&](std::size_t i) { run(*small[i]); });
 
   std::vector<Mesh> meshes(poses_.size());
   std::set<std::string> ignored, repaired;

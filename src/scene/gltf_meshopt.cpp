@@ -35,7 +35,7 @@ void applyFilter(const std::string& filter, std::byte* data, std::size_t count, 
 
 }  // namespace
 
-std::vector<std::byte> decodeMeshopt(const Document& document, const tinygltf::BufferView& view,
+FileBytes decodeMeshopt(const Document& document, const tinygltf::BufferView& view,
                                      std::span<const std::span<const std::byte>> buffers, const std::string& place) {
   const tinygltf::Value& extension = *findExtension(view.extensions, kMeshopt);
   const auto size = [&](const char* key) { return static_cast<std::size_t>(indexOf(extension, key, 0)); };
@@ -56,7 +56,7 @@ std::vector<std::byte> decodeMeshopt(const Document& document, const tinygltf::B
   if (count * stride > kMaxRatio * length)
     document.fail(place + "/count", fmt::format("{} bytes cannot hold {} elements", length, count));
 
-  std::vector<std::byte> result(count * stride);
+  FileBytes result(count * stride);
   if (count == 0) return result;
   if (decode(mode, result.data(), count, stride, buffers[buffer].subspan(offset, length)) != 0)
     document.fail(place, "the compressed data is broken");

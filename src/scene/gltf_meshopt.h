@@ -11,7 +11,7 @@
 namespace quintet::scene {
 
 // The decompressed bytes of `view` (which has the extension); `place` is the extension object's. Throws FileError.
-std::vector<std::byte> decodeMeshopt(const Document&, const tinygltf::BufferView& view,
+FileBytes decodeMeshopt(const Document&, const tinygltf::BufferView& view,
                                      std::span<const std::span<const std::byte>> buffers, const std::string& place);
 
 }  // namespace quintet::scene

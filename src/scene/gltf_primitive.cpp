@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
+#include <functional>
 
+#include "base/parallel.h"
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_draco.h"
 #include "scene/gltf_extensions.h"
@@ -28,25 +31,42 @@ void PrimitiveReader::checkCount(std::size_t count, std::size_t vertexCount, con
 
 Geometry PrimitiveReader::readAttributes() const {
   Geometry geometry;
-  // Reads `name` into `values`, if the primitive has it.
-  const auto read = [&](const std::string& name, auto& values, auto fromAccessor) {
+  // All at once: copying is waiting for memory. What went wrong is told in this order, whichever came first.
+  struct Task {
+    std::string place;
+    std::function<std::size_t()> read;  // returns the number of elements
+    std::size_t count = 0;
+    std::exception_ptr failure;
+  };
+  std::vector<Task> tasks;
+  const auto add = [&](const std::string& name, auto& values, auto fromAccessor) {
     const auto found = primitive_.attributes.find(name);
     if (found == primitive_.attributes.end()) return;
     const std::string place = attributePlace(name);
-    if (draco_ && draco_->has(name)) {
-      values = draco_->read<typename std::decay_t<decltype(values)>::value_type>(name, place);
-    } else {
-      values = fromAccessor(found->second, place);
-    }
-    if (name != "POSITION") checkCount(values.size(), geometry.positions.size(), place);
+    tasks.push_back({place, [this, &values, name, place, fromAccessor, accessor = found->second] {
+      using Element = typename std::decay_t<decltype(values)>::value_type;
+      values = draco_ && draco_->has(name) ? draco_->read<Element>(name, place) : fromAccessor(accessor, place);
+      return values.size();
+    }, 0, nullptr});
   };
   const auto asStated = Integers::asStated, unit = Integers::unit;
-  read("POSITION", geometry.positions, [&](int a, auto& p) { return readVec3(document_, a, p, asStated); });
-  read("NORMAL", geometry.normals, [&](int a, auto& p) { return readVec3(document_, a, p, unit); });
-  read("TANGENT", geometry.tangents, [&](int a, auto& p) { return readVec4(document_, a, p, unit); });
-  read("TEXCOORD_0", geometry.uvs[0], [&](int a, auto& p) { return readVec2(document_, a, p, asStated); });
-  read("TEXCOORD_1", geometry.uvs[1], [&](int a, auto& p) { return readVec2(document_, a, p, asStated); });
-  read("COLOR_0", geometry.colors, [&](int a, auto& p) { return readColors(document_, a, p); });
+  add("POSITION", geometry.positions, [&](int a, auto& p) { return readVec3(document_, a, p, asStated); });
+  add("NORMAL", geometry.normals, [&](int a, auto& p) { return readVec3(document_, a, p, unit); });
+  add("TANGENT", geometry.tangents, [&](int a, auto& p) { return readVec4(document_, a, p, unit); });
+  add("TEXCOORD_0", geometry.uvs[0], [&](int a, auto& p) { return readVec2(document_, a, p, asStated); });
+  add("TEXCOORD_1", geometry.uvs[1], [&](int a, auto& p) { return readVec2(document_, a, p, asStated); });
+  add("COLOR_0", geometry.colors, [&](int a, auto& p) { return readColors(document_, a, p); });
+  parallelFor(tasks.size(), [&](std::size_t i) {
+    try {
+      tasks[i].count = tasks[i].read();
+    } catch (...) {
+      tasks[i].failure = std::current_exception();
+    }
+  });
+  for (const Task& task : tasks) {
+    if (task.failure) std::rethrow_exception(task.failure);
+    checkCount(task.count, geometry.positions.size(), task.place);
+  }
   return geometry;
 }
 
@@ -62,11 +82,10 @@ std::vector<uvec3> PrimitiveReader::readTriangles(std::size_t vertexCount) const
   if (primitive_.mode == TINYGLTF_MODE_TRIANGLE_FAN) mode = TriangleMode::fan;
   if (primitive_.indices == kNone && !draco_) return makeTriangles(mode, {}, static_cast<std::uint32_t>(vertexCount));
 
+  const std::string place = place_ + "/indices";
+  if (mode == TriangleMode::list && !draco_) return readTriangleList(document_, primitive_.indices, vertexCount, place);
   const std::vector<std::uint32_t> indices = readIndexList();
-  const auto wrong = std::ranges::find_if(indices, [&](std::uint32_t i) { return i >= vertexCount; });
-  if (wrong != indices.end())
-    document_.fail(place_ + "/indices", fmt::format("element {} is {}, but there are {} vertices",
-                                                    wrong - indices.begin(), *wrong, vertexCount));
+  checkIndices(document_, indices, vertexCount, place);
   if (indices.empty()) return {};
   return makeTriangles(mode, indices, static_cast<std::uint32_t>(vertexCount));
 }

@@ -38,7 +38,7 @@ NamedImage loadImage(const Document& document, std::size_t index, MemoryBudget& 
     if (source.bufferView != kNone) {
       result.image = decode(document.view(source.bufferView), place, budget);
     } else {
-      const std::vector<std::byte> bytes = loadUri(document, source.uri, place + "/uri");
+      const FileBytes bytes = loadUri(document, source.uri, place + "/uri");
       if (!isDataUri(source.uri)) result.name = (document.file.parent_path() / percentDecode(source.uri)).string();
       result.image = decode(bytes, place, budget);
     }

@@ -29,7 +29,7 @@ constexpr std::array<signed char, 256> kBase64 = [] {
 }();
 
 // Returns false at the first character that is no base64 digit, padding or white space.
-bool decodeBase64(std::string_view text, std::vector<std::byte>& out) {
+bool decodeBase64(std::string_view text, FileBytes& out) {
   out.reserve(text.size() / 4 * 3 + 3);
   std::uint32_t bits = 0;
   int bitCount = 0;
@@ -44,11 +44,11 @@ bool decodeBase64(std::string_view text, std::vector<std::byte>& out) {
   return text.find_first_not_of("= \r\n\t", i) == std::string_view::npos;
 }
 
-std::vector<std::byte> decodeDataUri(const Document& document, std::string_view uri, std::string_view place) {
+FileBytes decodeDataUri(const Document& document, std::string_view uri, std::string_view place) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string_view::npos) document.fail(place, "the data URI has no comma");
   const std::string_view data = uri.substr(comma + 1);
-  std::vector<std::byte> bytes;
+  FileBytes bytes;
   if (uri.substr(0, comma).ends_with(";base64")) {
     // Percent escapes inside base64 are legal, if rare.
     const bool valid =
@@ -94,7 +94,7 @@ std::filesystem::path pathOfUri(const Document& document, std::string_view uri) 
   return document.file.parent_path() / percentDecode(uri);
 }
 
-std::vector<std::byte> loadUri(const Document& document, std::string_view uri, std::string_view place) {
+FileBytes loadUri(const Document& document, std::string_view uri, std::string_view place) {
   if (isDataUri(uri)) return decodeDataUri(document, uri, place);
   if (hasScheme(uri)) document.fail(place, "only data URIs and relative file names are read");
   const std::string name = percentDecode(uri);
@@ -109,7 +109,7 @@ std::vector<std::byte> loadUri(const Document& document, std::string_view uri, s
   // Anything else (a device, a pipe) could be endless.
   if (!std::filesystem::is_regular_file(status)) document.fail(place, fmt::format("{} is not a file", name));
   try {
-    return readFile(path);
+    return readLargeFile(path);
   } catch (const FileError& error) {
     document.fail(place, fmt::format("{} {}", name, error.problem()));
   }

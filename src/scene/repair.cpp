@@ -1,6 +1,9 @@
 #include "scene/repair.h"
 
 #include <algorithm>
+#include <atomic>
+
+#include "base/parallel.h"
 
 namespace quintet::scene {
 namespace {
@@ -26,12 +29,24 @@ std::vector<vec3> faceNormalSums(const Geometry& geometry) {
   return sums;
 }
 
+// How many elements are so, on all cores; `test` may change them.
+template <class T, class Test>
+std::size_t countIf(std::vector<T>& values, const Test& test) {
+  std::atomic<std::size_t> count = 0;
+  parallelRanges(values.size(), [&](std::size_t first, std::size_t last) {
+    std::size_t found = 0;
+    for (std::size_t i = first; i < last; ++i) found += test(values[i]) ? 1 : 0;
+    count += found;
+  });
+  return count;
+}
+
 }  // namespace
 
 std::size_t dropNonFiniteTriangles(Geometry& geometry) {
   auto& positions = geometry.positions;
+  if (countIf(positions, [](const vec3& p) { return !isFinite(p); }) == 0) return 0;
   const auto good = std::ranges::find_if(positions, isFinite);
-  if (std::ranges::all_of(good, positions.end(), isFinite) && good == positions.begin()) return 0;
 
   std::vector<uvec3> kept;
   std::vector<std::uint32_t> numbers;
@@ -52,8 +67,12 @@ std::size_t dropNonFiniteTriangles(Geometry& geometry) {
 
 void dropUnusedVertices(Geometry& geometry) {
   std::vector<std::uint32_t> newIndex(geometry.positions.size(), 0);
-  for (const uvec3& t : geometry.triangles) newIndex[t.x] = newIndex[t.y] = newIndex[t.z] = 1;
-  const auto used = static_cast<std::size_t>(std::ranges::count(newIndex, 1u));
+  parallelRanges(geometry.triangles.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        std::atomic_ref(newIndex[geometry.triangles[i][c]]).store(1, std::memory_order_relaxed);
+  });
+  const std::size_t used = countIf(newIndex, [](std::uint32_t index) { return index != 0; });
   if (4 * used >= 3 * newIndex.size()) return;
 
   const auto compact = [&](auto& values) {
@@ -75,10 +94,11 @@ void dropUnusedVertices(Geometry& geometry) {
 }
 
 std::size_t repairNormals(Geometry& geometry) {
+  // What has no direction stays as it is, and is found again if there is any.
+  if (countIf(geometry.normals, [](vec3& n) { return !normalize(n); }) == 0) return 0;
   std::vector<std::size_t> broken;
   for (std::size_t i = 0; i < geometry.normals.size(); ++i)
-    if (!normalize(geometry.normals[i])) broken.push_back(i);
-  if (broken.empty()) return 0;
+    if (vec3 n = geometry.normals[i]; !normalize(n)) broken.push_back(i);
   const std::vector<vec3> sums = faceNormalSums(geometry);
   for (const std::size_t i : broken) {
     geometry.normals[i] = sums[i];
@@ -88,35 +108,35 @@ std::size_t repairNormals(Geometry& geometry) {
 }
 
 std::size_t repairTangents(Geometry& geometry) {
-  std::size_t repaired = 0;
-  for (std::size_t i = 0; i < geometry.tangents.size(); ++i) {
-    vec3 t(geometry.tangents[i]);
-    const float w = geometry.tangents[i].w < 0.0f ? -1.0f : 1.0f;
-    if (!normalize(t)) {
-      t = anyPerpendicular(geometry.normals[i]);
-      ++repaired;
+  std::atomic<std::size_t> repaired = 0;
+  parallelRanges(geometry.tangents.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      vec3 t(geometry.tangents[i]);
+      const float w = geometry.tangents[i].w < 0.0f ? -1.0f : 1.0f;
+      if (!normalize(t)) {
+        t = anyPerpendicular(geometry.normals[i]);
+        ++repaired;
+      }
+      geometry.tangents[i] = vec4(t, w);
     }
-    geometry.tangents[i] = vec4(t, w);
-  }
+  });
   return repaired;
 }
 
 std::size_t repairUvsAndColors(Geometry& geometry) {
   std::size_t repaired = 0;
   for (auto& set : geometry.uvs) {
-    for (vec2& uv : set) {
-      if (std::isfinite(uv.x) && std::isfinite(uv.y)) continue;
-      uv = vec2(0.0f);
-      ++repaired;
-    }
+    repaired += countIf(set, [](vec2& uv) {
+      const bool finite = std::isfinite(uv.x) && std::isfinite(uv.y);
+      if (!finite) uv = vec2(0.0f);
+      return !finite;
+    });
   }
-  for (vec4& color : geometry.colors) {
-    if (!isFinite(vec3(color)) || !std::isfinite(color.w)) {
-      color = vec4(1.0f);
-      ++repaired;
-    }
-    color = glm::max(color, vec4(0.0f));
-  }
+  repaired += countIf(geometry.colors, [](vec4& color) {
+    const bool finite = isFinite(vec3(color)) && std::isfinite(color.w);
+    color = finite ? glm::max(color, vec4(0.0f)) : vec4(1.0f);
+    return !finite;
+  });
   return repaired;
 }
 

@@ -1,5 +1,7 @@
 #include "scene/scene.h"
 
+#include "base/parallel.h"
+
 namespace quintet::scene {
 namespace {
 
@@ -7,10 +9,25 @@ namespace {
 // of the turned boxes.
 constexpr std::uint64_t kExactVertexCount = 20'000'000;
 
+// Of all points after `place`, on all cores.
+template <class Place>
+Bounds3 boundsOfPoints(const std::vector<vec3>& points, const Place& place) {
+  constexpr std::size_t kGrain = 65536;
+  std::vector<Bounds3> parts((points.size() + kGrain - 1) / kGrain);
+  parallelRanges(points.size(), [&](std::size_t first, std::size_t last) {
+    Bounds3 part;
+    for (std::size_t i = first; i < last; ++i) part.extend(place(points[i]));
+    parts[first / kGrain] = part;
+  }, kGrain);
+  Bounds3 bounds;
+  for (const Bounds3& part : parts) bounds.extend(part);
+  return bounds;
+}
+
 Bounds3 objectBounds(const Mesh& mesh) {
   Bounds3 bounds;
   for (const Geometry& geometry : mesh.geometries)
-    for (const vec3& p : geometry.positions) bounds.extend(p);
+    bounds.extend(boundsOfPoints(geometry.positions, [](const vec3& p) { return p; }));
   for (const PrimitiveSet& set : mesh.primitiveSets) bounds.extend(boundsOf(set));
   return bounds;
 }
@@ -31,7 +48,7 @@ Bounds3 exactBounds(const Scene& scene) {
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = meshOf(scene, instance);
     for (const Geometry& geometry : mesh.geometries)
-      for (const vec3& p : geometry.positions) bounds.extend(vec3(instance.worldFromObject * vec4(p, 1.0f)));
+      bounds.extend(boundsOfPoints(geometry.positions, [&](const vec3& p) { return vec3(instance.worldFromObject * vec4(p, 1.0f)); }));
     for (const PrimitiveSet& set : mesh.primitiveSets) bounds.extend(boundsOf(set, instance.worldFromObject));
   }
   return bounds;

@@ -1,7 +1,9 @@
 #include "scene/tangents.h"
 
 #include <algorithm>
+#include <array>
 
+#include "base/parallel.h"
 #include "scene/repair.h"
 
 namespace quintet::scene {
@@ -70,6 +72,34 @@ std::vector<int> separateHandedness(Geometry& geometry, std::vector<vec2>& uvs,
   return handedness;
 }
 
+// Of each vertex: its triangles' tangents in the plane of the normal, weighted by the corner's angle. The terms are
+// made on all cores, a block of triangles at a time, and added in the order of the triangles.
+std::vector<vec3> sumOverCorners(const Geometry& geometry, const std::vector<TriangleFrame>& frames) {
+  constexpr std::size_t kBlock = std::size_t{1} << 20;
+  std::vector<vec3> sums(geometry.positions.size(), vec3(0.0f));
+  std::vector<std::array<vec3, 3>> terms(std::min(kBlock, frames.size()));
+  for (std::size_t begin = 0; begin < frames.size(); begin += kBlock) {
+    const std::size_t count = std::min(kBlock, frames.size() - begin);
+    parallelRanges(count, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        terms[i].fill(vec3(0.0f));
+        const TriangleFrame& frame = frames[begin + i];
+        if (frame.handedness == 0) continue;
+        const uvec3& t = geometry.triangles[begin + i];
+        for (std::size_t c = 0; c < 3; ++c) {
+          const vec3& n = geometry.normals[t[c]];
+          const vec3 inPlane = frame.tangent - n * glm::dot(n, frame.tangent);
+          const float length = glm::length(inPlane);
+          if (length > 0.0f) terms[i][c] = cornerAngle(geometry, t, c) / length * inPlane;
+        }
+      }
+    });
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t c = 0; c < 3; ++c) sums[geometry.triangles[begin + i][c]] += terms[i][c];
+  }
+  return sums;
+}
+
 }  // namespace
 
 void splitIntoFlatTriangles(Geometry& geometry) {
@@ -101,33 +131,27 @@ void generateTangents(Geometry& geometry, const TextureUse& use) {
   const auto& source = geometry.uvs[static_cast<std::size_t>(use.uvSet)];
   if (geometry.normals.empty() || source.empty()) return;
   std::vector<vec2> uvs(source.size());
-  std::ranges::transform(source, uvs.begin(), [&](const vec2& uv) { return transformUv(use, uv); });
-
   std::vector<TriangleFrame> frames(geometry.triangles.size());
-  for (std::size_t i = 0; i < frames.size(); ++i) frames[i] = triangleFrame(geometry, uvs, geometry.triangles[i]);
+  parallelRanges(uvs.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) uvs[i] = transformUv(use, source[i]);
+  });
+  parallelRanges(frames.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) frames[i] = triangleFrame(geometry, uvs, geometry.triangles[i]);
+  });
   const std::vector<int> handedness = separateHandedness(geometry, uvs, frames);
-
-  std::vector<vec3> sums(geometry.positions.size(), vec3(0.0f));
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (frames[i].handedness == 0) continue;
-    const uvec3& t = geometry.triangles[i];
-    for (std::size_t c = 0; c < 3; ++c) {
-      const vec3& n = geometry.normals[t[c]];
-      const vec3 inPlane = frames[i].tangent - n * glm::dot(n, frames[i].tangent);
-      const float length = glm::length(inPlane);
-      if (length > 0.0f) sums[t[c]] += cornerAngle(geometry, t, c) / length * inPlane;
-    }
-  }
+  const std::vector<vec3> sums = sumOverCorners(geometry, frames);
 
   geometry.tangents.resize(sums.size());
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    const vec3& n = geometry.normals[i];
-    const vec3 inPlane = sums[i] - n * glm::dot(n, sums[i]);
-    const float length = glm::length(inPlane);
-    const vec3 tangent = length > 1e-6f ? inPlane / length : anyPerpendicular(n);
-    // glTF's v runs down in the picture, "up" of a normal map is -v: the bitangent w · cross(n, t) is -dP/dv.
-    geometry.tangents[i] = vec4(tangent, handedness[i] > 0 ? -1.0f : 1.0f);
-  }
+  parallelRanges(sums.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const vec3& n = geometry.normals[i];
+      const vec3 inPlane = sums[i] - n * glm::dot(n, sums[i]);
+      const float length = glm::length(inPlane);
+      const vec3 tangent = length > 1e-6f ? inPlane / length : anyPerpendicular(n);
+      // glTF's v runs down in the picture, "up" of a normal map is -v: the bitangent w · cross(n, t) is -dP/dv.
+      geometry.tangents[i] = vec4(tangent, handedness[i] > 0 ? -1.0f : 1.0f);
+    }
+  });
 }
 
 void addTangents(Geometry& geometry, const Material& material) {
