@@ -38,7 +38,21 @@ const bool kHasEnvironment = false;  // it is black
 #else
 const bool kHasEnvironment = true;
 #endif
-// QUINTET_NO_PROCEDURALS (no solids, no trees), QUINTET_NO_CSG, QUINTET_NO_TORUS and QUINTET_NO_PROCEDURAL_ALPHA are
+#ifdef QUINTET_NO_VERTEX_COLORS
+const bool kHasVertexColors = false;
+#else
+const bool kHasVertexColors = true;
+#endif
+#ifdef QUINTET_NO_SEEDS
+const bool kHasAlpha = false;  // no any-hit shader decides on a candidate
+#else
+const bool kHasAlpha = true;
+#endif
+#ifndef QUINTET_TEXTURE_SLOTS
+#define QUINTET_TEXTURE_SLOTS 0xFFFFFFFFu
+#endif
+const uint kTextureSlots = QUINTET_TEXTURE_SLOTS;  // bit k: a material has texture kTexture… k
+// QUINTET_NO_SEEDS, QUINTET_NO_PROCEDURALS (no solids, no trees), QUINTET_NO_CSG, QUINTET_NO_TORUS and QUINTET_NO_PROCEDURAL_ALPHA are
 // asked by #ifdef: they also take members and stages away.
 const bool kHasTransmission = kHasSolidTransmission || kHasThinTransmission;
 

@@ -30,7 +30,7 @@ HitPayload hitOf(GeometryData geometry, uint seed) {
 #ifndef QUINTET_NO_PROCEDURALS
   hit.part = 0u;
 #endif
-  hit.seed = seed;
+  setRaySeed(hit, seed);
   return hit;
 }
 

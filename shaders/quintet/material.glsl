@@ -4,6 +4,7 @@
 #define QUINTET_MATERIAL_GLSL
 
 #include "bsdf/bsdf.glsl"
+#include "features.glsl"
 #include "surface.glsl"
 
 struct Shading {
@@ -33,6 +34,10 @@ vec3 consistentNormal(vec3 n, vec3 geometricNormal, vec3 wo) {
   return safeNormalize(wo + normalize(mirrored + (wanted - height) * geometricNormal), geometricNormal);
 }
 
+// Is `slot` this texture? False at once for textures that no material of the scene has.
+bool isTexture(uint slot, uint texture) { return (kTextureSlots & (1u << texture)) != 0u && slot == texture; }
+const bool kHasNormalMaps = (kTextureSlots & (1u << kTextureNormal | 1u << kTextureClearcoatNormal)) != 0u;
+
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TextureArray { TextureData at[]; };
 
 // A tangent-space direction (z up) in world space, in the frame of the front side.
@@ -45,7 +50,7 @@ Shading shadeSurface(Surface s, vec3 wo) {
 #define MATERIAL materials.at[s.material]
   Shading r;
   const uint flags = MATERIAL.flags;
-  vec4 base = MATERIAL.baseColor * s.color;
+  vec4 base = kHasVertexColors ? MATERIAL.baseColor * s.color : MATERIAL.baseColor;
   vec2 roughMetal = vec2(MATERIAL.roughness, MATERIAL.metallic);
   r.emission = MATERIAL.emissive;
   r.bsdf.transmission = MATERIAL.transmission;
@@ -58,20 +63,20 @@ Shading shadeSurface(Surface s, vec3 wo) {
 
   // One look-up in a loop: compilers that inline it (lavapipe's) then see it once.
   TextureArray textureUses = TextureArray(frame.materials + uint64_t(s.material) * (kMaterialTextureOffset + kTextureCount * 32u) + kMaterialTextureOffset);
-  for (uint left = flags >> kMaterialTextureShift; left != 0u; left &= left - 1u) {
+  for (uint left = (flags >> kMaterialTextureShift) & kTextureSlots; left != 0u; left &= left - 1u) {
     const uint slot = uint(findLSB(left));
     const TextureData use = textureUses.at[slot];
     const vec4 v = sampleTexture(use, use.uvSet == 0u ? s.uvs[0] : s.uvs[1]);
-    if (slot == kTextureBaseColor) base *= v;
-    else if (slot == kTextureMetallicRoughness) roughMetal *= v.gb;
-    else if (slot == kTextureNormal) mapped = vec3(MATERIAL.normalScale * (2.0 * v.xy - 1.0), 2.0 * v.z - 1.0);
-    else if (slot == kTextureEmissive) r.emission *= v.rgb;
-    else if (slot == kTextureTransmission) r.bsdf.transmission *= v.r;
-    else if (slot == kTextureSpecular) r.bsdf.specular *= v.a;
-    else if (slot == kTextureSpecularColor) r.bsdf.specularColor *= v.rgb;
-    else if (slot == kTextureClearcoat) r.bsdf.clearcoat *= v.r;
-    else if (slot == kTextureClearcoatRoughness) coatRoughness *= v.g;
-    else coatMapped = vec3(MATERIAL.clearcoatNormalScale * (2.0 * v.xy - 1.0), 2.0 * v.z - 1.0);
+    if (isTexture(slot, kTextureBaseColor)) base *= v;
+    else if (isTexture(slot, kTextureMetallicRoughness)) roughMetal *= v.gb;
+    else if (isTexture(slot, kTextureNormal)) mapped = vec3(MATERIAL.normalScale * (2.0 * v.xy - 1.0), 2.0 * v.z - 1.0);
+    else if (isTexture(slot, kTextureEmissive)) r.emission *= v.rgb;
+    else if (isTexture(slot, kTextureTransmission)) r.bsdf.transmission *= v.r;
+    else if (isTexture(slot, kTextureSpecular)) r.bsdf.specular *= v.a;
+    else if (isTexture(slot, kTextureSpecularColor)) r.bsdf.specularColor *= v.rgb;
+    else if (isTexture(slot, kTextureClearcoat)) r.bsdf.clearcoat *= v.r;
+    else if (isTexture(slot, kTextureClearcoatRoughness)) coatRoughness *= v.g;
+    else if (isTexture(slot, kTextureClearcoatNormal)) coatMapped = vec3(MATERIAL.clearcoatNormalScale * (2.0 * v.xy - 1.0), 2.0 * v.z - 1.0);
   }
 
   r.unlit = (flags & kMaterialUnlit) != 0u;
@@ -91,10 +96,14 @@ Shading shadeSurface(Surface s, vec3 wo) {
   // Normal maps live in the frame of the front side; the whole frame turns for a back side.
   const float side = s.frontFace ? 1.0 : -1.0;
   const vec3 front = side * s.shadingNormal;
-  r.normal = consistentNormal(side * fromTangentSpace(s, front, mapped), s.geometricNormal, wo);
-  r.tangent = safeNormalize(s.tangent - r.normal * dot(r.normal, s.tangent), anyTangent(r.normal));
+  const vec3 wanted = kHasNormalMaps ? side * fromTangentSpace(s, front, mapped) : s.shadingNormal;
+  r.normal = consistentNormal(wanted, s.geometricNormal, wo);
+  // No lobe depends on the tangent's direction: without normal maps any will do, and the vertices' are not fetched.
+  r.tangent = anyTangent(r.normal);
+  if (kHasNormalMaps) r.tangent = safeNormalize(s.tangent - r.normal * dot(r.normal, s.tangent), r.tangent);
   r.bitangent = cross(r.normal, r.tangent);
-  r.bsdf.clearcoatNormal = toLocal(r, consistentNormal(side * fromTangentSpace(s, front, coatMapped), s.geometricNormal, wo));
+  r.bsdf.clearcoatNormal = vec3(0.0, 0.0, 1.0);
+  if (kHasNormalMaps) r.bsdf.clearcoatNormal = toLocal(r, consistentNormal(side * fromTangentSpace(s, front, coatMapped), s.geometricNormal, wo));
   return r;
 }
 

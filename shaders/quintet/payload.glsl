@@ -12,12 +12,25 @@ struct HitPayload {
 #ifndef QUINTET_NO_PROCEDURALS
   uint part;         // solids: which one of a tree, face and side (procedural/point.glsl)
 #endif
+#ifndef QUINTET_NO_SEEDS
   uint seed;         // in: random bits of this ray, for stochastic alpha
+#endif
 };
 
 struct ShadowPayload {
   uint visible;  // set by the miss shader
+#ifndef QUINTET_NO_SEEDS
   uint seed;     // in: as above
+#endif
 };
+
+// A payload's seed: scenes without alpha have none, and what travels with a ray costs time.
+#ifdef QUINTET_NO_SEEDS
+#define raySeed(payload) 0u
+#define setRaySeed(payload, bits)
+#else
+#define raySeed(payload) payload.seed
+#define setRaySeed(payload, bits) payload.seed = bits
+#endif
 
 #endif

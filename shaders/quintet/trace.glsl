@@ -38,7 +38,7 @@ void recordRay(vec3 origin, vec3 direction, float tmax, uint kind, bool hit) {
 // The closest surface along origin + t · direction, t in (0, tmax). `seed` decides stochastic alpha.
 HitPayload traceClosest(vec3 origin, vec3 direction, float tmax, uint seed) {
   hitPayload.t = -1.0;
-  hitPayload.seed = seed;
+  setRaySeed(hitPayload, seed);
   traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_radiance, origin, 0.0, direction,
               tmax, 0);
 #ifdef QUINTET_RECORD_RAYS
@@ -53,7 +53,7 @@ layout(location = 1) rayPayloadEXT ShadowPayload shadowPayload;
 // True if nothing (alpha decided by `seed`) lies between t = 0 and tmax.
 bool traceVisible(vec3 origin, vec3 direction, float tmax, uint seed) {
   shadowPayload.visible = 0u;
-  shadowPayload.seed = seed;
+  setRaySeed(shadowPayload, seed);
   traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, kRay_shadow,
               kRayTypeCount, kMiss_shadow, origin, 0.0, direction, tmax, 1);
 #ifdef QUINTET_RECORD_RAYS

@@ -1,5 +1,7 @@
 #include "render/scene_features.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "render/material_data.h"
@@ -34,6 +36,25 @@ ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
   return features;
 }
 
+// Bit k: a material has texture shared::kTexture… k.
+std::uint32_t textureSlots(const scene::Scene& scene) {
+  std::uint32_t slots = 0;
+  for (const scene::Material& m : scene.materials) {
+    const scene::TextureUse* const uses[shared::kTextureCount] = {
+        &m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture,    &m.emissiveTexture,          &m.transmissionTexture,
+        &m.specularTexture,  &m.specularColorTexture,     &m.clearcoatTexture, &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture};
+    for (std::uint32_t k = 0; k < shared::kTextureCount; ++k)
+      if (uses[k]->used()) slots |= 1u << k;
+  }
+  return slots;
+}
+
+// True if a triangle geometry of the scene fulfils the condition.
+template <class Predicate>
+bool anyGeometry(const scene::Scene& scene, Predicate predicate) {
+  return std::ranges::any_of(scene.meshes, [&](const scene::Mesh& mesh) { return std::ranges::any_of(mesh.geometries, predicate); });
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Scene& scene, const scene::Environment& environment) {
@@ -56,6 +77,9 @@ std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Sce
   without("QUINTET_NO_TORUS", procedural.torus);
   without("QUINTET_NO_PROCEDURAL_ALPHA", procedural.alpha);
   without("QUINTET_NO_SOLID_LIGHTS", procedural.lights);
+  without("QUINTET_NO_SEEDS", procedural.alpha || anyGeometry(scene, [&](const scene::Geometry& g) { return needsAlphaTest(scene, g); }));
+  without("QUINTET_NO_VERTEX_COLORS", anyGeometry(scene, [](const scene::Geometry& g) { return !g.colors.empty(); }));
+  defines.emplace_back("QUINTET_TEXTURE_SLOTS", fmt::format("{:#x}u", textureSlots(scene)));
   return defines;
 }
 

@@ -47,8 +47,9 @@ vec3 surfaceEmission(uint material, float alpha, vec2 uv0, vec2 uv1, float cosin
     const float roughness = m.clearcoatRoughness * lightTexture(m.clearcoatRoughnessTexture, uv0, uv1, 1);
     emission *= clearcoatPassed(m.clearcoat * lightTexture(m.clearcoatTexture, uv0, uv1, 0), roughness * roughness, cosine);
   }
-  if (m.emissiveTexture.index != kNoTexture) emission *= sampleTexture(m.emissiveTexture, m.emissiveTexture.uvSet == 0u ? uv0 : uv1).rgb;
-  if ((m.flags & (kMaterialMask | kMaterialBlend)) == 0u) return emission;
+  const bool textured = (kTextureSlots & (1u << kTextureEmissive)) != 0u && m.emissiveTexture.index != kNoTexture;
+  if (textured) emission *= sampleTexture(m.emissiveTexture, m.emissiveTexture.uvSet == 0u ? uv0 : uv1).rgb;
+  if (!kHasAlpha || (m.flags & (kMaterialMask | kMaterialBlend)) == 0u) return emission;
   alpha *= m.baseColor.a;
   if (m.baseColorTexture.index != kNoTexture) alpha *= sampleTexture(m.baseColorTexture, m.baseColorTexture.uvSet == 0u ? uv0 : uv1).a;
   if ((m.flags & kMaterialMask) != 0u) return alpha < m.alphaCutoff ? vec3(0.0) : emission;
@@ -58,7 +59,7 @@ vec3 surfaceEmission(uint material, float alpha, vec2 uv0, vec2 uv1, float cosin
 // Towards `wi`; `normal` is the triangle's.
 vec3 lightTriangleEmission(InstanceData instance, GeometryData geometry, uvec3 v, vec3 b, vec3 wi, vec3 normal) {
   float alpha = 1.0;
-  if (geometry.colors != 0ul) {
+  if (kHasAlpha && kHasVertexColors && geometry.colors != 0ul) {
     Vec4Array colors = Vec4Array(geometry.colors);
     alpha = dot(b, vec3(colors.at[v.x].a, colors.at[v.y].a, colors.at[v.z].a));
   }

@@ -9,5 +9,5 @@ layout(location = 0) rayPayloadInEXT HitPayload payload;
 void main() {}
 #else
 #include <quintet/procedural/hit.glsl>
-void main() { payload = solidHit(payload.seed); }
+void main() { payload = solidHit(raySeed(payload)); }
 #endif

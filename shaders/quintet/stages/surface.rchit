@@ -4,4 +4,4 @@
 layout(location = 0) rayPayloadInEXT HitPayload payload;
 hitAttributeEXT vec2 baryCoord;
 
-void main() { payload = triangleHit(baryCoord, payload.seed); }
+void main() { payload = triangleHit(baryCoord, raySeed(payload)); }
