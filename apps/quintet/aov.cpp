@@ -34,18 +34,15 @@ std::vector<std::string> namesOf(const std::vector<AovLayer>& layers) {
   return names;
 }
 
-// Per pixel and channel, of the mean that the picture shows.
-io::Image varianceOf(const render::Renderer& renderer) { return render::varianceImage(renderer.film().saveFirst()); }
-
-io::Image sampleCounts(const render::Film& film) {
-  const render::Region& region = film.region();
+io::Image sampleCounts(const AovSource& source) {
+  const render::Region& region = source.region;
   io::Image image = io::makeImage(region.width, region.height, 1, io::PixelType::f32, io::ColorEncoding::linear);
   const std::span<float> values = image.samples<float>();
   render::FilmState cells;
   cells.region = region;
   for (std::uint32_t y = 0; y < region.height; ++y)
     for (std::uint32_t x = 0; x < region.width; ++x)
-      values[std::size_t{y} * region.width + x] = static_cast<float>(film.counts().samplesOf(cells.cellOf(x, y)));
+      values[std::size_t{y} * region.width + x] = static_cast<float>(source.counts.samplesOf(cells.cellOf(x, y)));
   return image;
 }
 
@@ -95,17 +92,28 @@ std::size_t channelCount(const std::vector<AovLayer>& layers, std::size_t first)
   return count;
 }
 
-void addAov(io::ExrPicture& picture, const AovLayer& layer, const render::Renderer& renderer,
-            const CoverageNames& names, io::ExrType colors) {
+AovSource aovSource(const render::Renderer& renderer) {
+  const render::Film& film = renderer.film();
+  return {film.region(), film.counts(), [&](std::size_t output) { return renderer.image(output); },
+          [&](std::size_t output) { return film.plane(output); },
+          [&] { return render::varianceImage(film.saveFirst()); }};
+}
+
+AovSource aovSource(const render::FilmState& film) {
+  return {film.region, film.counts, [&](std::size_t output) { return render::planeImage(film, output); },
+          [&](std::size_t output) { return film.planes.at(output); }, [&] { return render::varianceImage(film); }};
+}
+
+void addAov(io::ExrPicture& picture, const AovLayer& layer, const AovSource& source, const CoverageNames& names,
+            io::ExrType colors) {
   switch (layer.source) {
     case AovLayer::Source::output:
-      return addLayer(picture, layer.name, layer.channels, renderer.image(layer.output), colors, layer.exact);
+      return addLayer(picture, layer.name, layer.channels, source.image(layer.output), colors, layer.exact);
     case AovLayer::Source::variance:
-      return addLayer(picture, layer.name, layer.channels, varianceOf(renderer), colors, true);
+      return addLayer(picture, layer.name, layer.channels, source.variance(), colors, true);
     case AovLayer::Source::sampleCount:
-      return addLayer(picture, layer.name, layer.channels, sampleCounts(renderer.film()), colors, true);
-    case AovLayer::Source::coverage:
-      return addCryptomatte(picture, layer.name, renderer.film(), renderer.film().plane(layer.output), names);
+      return addLayer(picture, layer.name, layer.channels, sampleCounts(source), colors, true);
+    case AovLayer::Source::coverage: return addCryptomatte(picture, layer, source, names);
   }
 }
 

@@ -4,6 +4,7 @@
 #define QUINTET_APP_AOV_H
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,19 @@ struct CoverageNames {
 // Channels that a file with these layers has; `first`: those of the picture.
 std::size_t channelCount(const std::vector<AovLayer>& layers, std::size_t first);
 
-void addAov(io::ExrPicture& picture, const AovLayer& layer, const render::Renderer& renderer,
-            const CoverageNames& names, io::ExrType colors);
+// What layers are made from: a film on the device, or one from a file.
+struct AovSource {
+  render::Region region;
+  render::SampleCounts counts;
+  std::function<io::Image(std::size_t output)> image;
+  std::function<render::FilmPlane(std::size_t output)> plane;  // of coverage
+  std::function<io::Image()> variance;
+};
+AovSource aovSource(const render::Renderer& renderer);
+AovSource aovSource(const render::FilmState& film);  // outlives the source
+
+void addAov(io::ExrPicture& picture, const AovLayer& layer, const AovSource& source, const CoverageNames& names,
+            io::ExrType colors);
 
 }  // namespace quintet::app
 #endif

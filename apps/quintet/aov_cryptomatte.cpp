@@ -79,22 +79,23 @@ std::string cryptomatteType(const std::string& output) {
   return type;
 }
 
-void addCryptomatte(io::ExrPicture& picture, const std::string& output, const render::Film& film,
-                    const render::FilmPlane& plane, const CoverageNames& names) {
-  const Things things(output, names, plane.coverage);
-  const std::string type = cryptomatteType(output);
+void addCryptomatte(io::ExrPicture& picture, const AovLayer& layer, const AovSource& source,
+                    const CoverageNames& names) {
+  const render::FilmPlane plane = source.plane(layer.output);
+  const Things things(layer.name, names, plane.coverage);
+  const std::string type = cryptomatteType(layer.name);
   std::vector<io::ExrChannel> channels(2 * kRanks);
   const std::size_t pixels = std::size_t{picture.width} * picture.height;
   for (std::size_t i = 0; i < channels.size(); ++i)
     channels[i] = {io::cryptomatteChannel(type, i / 2, i % 2 == 1), io::ExrType::f32, std::vector<float>(pixels), true};
 
   render::FilmState cells;
-  cells.region = film.region();
+  cells.region = source.region;
   parallelFor(picture.height, [&](std::size_t y) {
     std::vector<io::CryptomatteCoverage> found;
     for (std::uint32_t x = 0; x < picture.width; ++x) {
       const std::size_t pixel = y * picture.width + x;
-      const auto samples = static_cast<float>(film.counts().samplesOf(cells.cellOf(x, static_cast<std::uint32_t>(y))));
+      const auto samples = static_cast<float>(source.counts.samplesOf(cells.cellOf(x, static_cast<std::uint32_t>(y))));
       found.clear();
       for (const CoverageSlot& slot : std::span(plane.coverage).subspan(pixel * kCoverageSlots, kCoverageSlots))
         if (slot.samples > 0) found.push_back({things.id(slot.id), static_cast<float>(slot.samples) / samples});

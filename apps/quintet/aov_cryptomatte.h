@@ -15,8 +15,8 @@ inline constexpr std::size_t kCryptomatteLayers = 3;  // six ranks, as the speci
 std::string cryptomatteType(const std::string& output);
 
 // Three layers of four channels, and the attributes with the manifest.
-void addCryptomatte(io::ExrPicture& picture, const std::string& output, const render::Film& film,
-                    const render::FilmPlane& plane, const CoverageNames& names);
+void addCryptomatte(io::ExrPicture& picture, const AovLayer& layer, const AovSource& source,
+                    const CoverageNames& names);
 
 }  // namespace quintet::app
 #endif

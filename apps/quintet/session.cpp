@@ -257,7 +257,8 @@ std::vector<std::byte> Session::exrFile(std::size_t output) const {
       exrPicture(renderer_->film().region(), sceneInfo_.size.x, sceneInfo_.size.y, metadata(record_));
   const bool exact = !program::holdsColor(program_.outputs[output]);
   addBeauty(picture, renderer_->image(output), options_.transparent, options_.exr.colors, exact);
-  for (const AovLayer& layer : aovs_) addAov(picture, layer, *renderer_, sceneInfo_.names, options_.exr.colors);
+  const AovSource source = aovSource(*renderer_);
+  for (const AovLayer& layer : aovs_) addAov(picture, layer, source, sceneInfo_.names, options_.exr.colors);
   return io::encodeExr(picture, options_.exr.options);
 }
 
