@@ -64,7 +64,11 @@ std::vector<AovLayer> aovLayers(const program::Program& program) {
 }
 
 std::vector<AovLayer> chooseAovs(const program::Program& program, const std::vector<std::string>& names) {
-  const std::vector<AovLayer> layers = aovLayers(program);
+  return chooseAovs(aovLayers(program), names, fmt::format("the program '{}' has", program.name));
+}
+
+std::vector<AovLayer> chooseAovs(const std::vector<AovLayer>& layers, const std::vector<std::string>& names,
+                                 const std::string& none) {
   if (std::ranges::find(names, "all") != names.end()) return layers;
   std::vector<AovLayer> chosen;
   for (const AovLayer& layer : layers)
@@ -72,8 +76,9 @@ std::vector<AovLayer> chooseAovs(const program::Program& program, const std::vec
   const std::vector<std::string> known = namesOf(layers);
   for (const std::string& name : names)
     if (std::ranges::find(known, name) == known.end())
-      throw UsageError(fmt::format("--aov: the program '{}' has no layer '{}'{}; there are {} (--aov list)",
-                                   program.name, plain(name), suggestion(name, known), fmt::join(known, ", ")));
+      throw UsageError(fmt::format("--aov: {} no layer '{}'{}; there are {}", none, plain(name),
+                                   suggestion(name, known),
+                                   known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
   return chosen;
 }
 

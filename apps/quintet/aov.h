@@ -29,6 +29,9 @@ struct AovLayer {
 std::vector<AovLayer> aovLayers(const program::Program& program);
 // "all" or names. Throws UsageError with the nearest name.
 std::vector<AovLayer> chooseAovs(const program::Program& program, const std::vector<std::string>& names);
+// The same among these layers; `none` begins the error: "the program 'ao' has".
+std::vector<AovLayer> chooseAovs(const std::vector<AovLayer>& layers, const std::vector<std::string>& names,
+                                 const std::string& none);
 // One line each, for --aov list.
 std::string aovList(const program::Program& program);
 

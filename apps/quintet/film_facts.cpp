@@ -115,8 +115,10 @@ FilmFacts filmNotes(const program::Program& program, const RenderOptions& option
                   {"exposure", fmt::format("{}", options.exposure)},
                   {"tone map", options.toneMap ? render::toneMapNames()[static_cast<std::size_t>(*options.toneMap)] : ""},
                   {"all outputs", options.allOutputs ? "yes" : "no"}};
-  for (const program::Output& output : program.outputs)
+  for (const program::Output& output : program.outputs) {
     facts.emplace_back("kind of " + output.name, std::string(program::outputKindName(output.kind)));
+    facts.emplace_back("colour in " + output.name, program::holdsColor(output) ? "yes" : "no");
+  }
   return facts;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "aov_notes.h"
 #include "exr_output.h"
 #include "film_facts.h"
 #include "output.h"
@@ -35,12 +36,32 @@ DisplayOptions displayOptions(const FilmFile& file, const MergeOptions& options,
   return display;
 }
 
-std::vector<std::byte> exrFile(const io::Image& image, program::OutputKind kind, const ExrFormat& format,
+// Of the layers that were rendered, those that were asked for now; all of them, if none were.
+std::vector<AovLayer> chosenLayers(const FilmFile& file, const MergeOptions& options) {
+  std::vector<AovLayer> layers = readAovLayers(file.notes, file.film.planes.size());
+  if (!options.render.aovs.empty()) layers = chooseAovs(layers, options.render.aovs, "in these films there is");
+  return layers;
+}
+
+io::Image imageOf(const FilmFile& file, std::size_t output) {
+  io::Image image = render::planeImage(file.film, output);
+  const bool opaque = factText(file.identity, "transparent") != "yes";
+  if (kindOf(file, file.film.planes[output].name) == program::OutputKind::display) render::decodeDisplay(image, !opaque);
+  return image;
+}
+
+std::vector<std::byte> exrFile(const FilmFile& file, std::size_t output, const MergeOptions& options,
                                const RenderRecord& record) {
   const auto& [x, y, width, height] = record.region;
+  const ExrFormat& format = options.render.exr;
   io::ExrPicture picture = exrPicture({x, y, width, height}, record.width, record.height, metadata(record));
-  const bool isColor = kind == program::OutputKind::color || kind == program::OutputKind::display;
-  addBeauty(picture, image, record.transparent, format.colors, !isColor);
+  const bool isColor = factText(file.notes, "colour in " + file.film.planes[output].name) == "yes";
+  addBeauty(picture, imageOf(file, output), record.transparent, format.colors, !isColor);
+  if (options.render.allOutputs) return io::encodeExr(picture, format.options);
+  AovSource source = aovSource(file.film);
+  source.image = [&](std::size_t other) { return imageOf(file, other); };
+  const CoverageNames names = readCoverageNames(file.notes);
+  for (const AovLayer& layer : chosenLayers(file, options)) addAov(picture, layer, source, names, format.colors);
   return io::encodeExr(picture, format.options);
 }
 
@@ -52,18 +73,16 @@ void writePictures(const FilmFile& file, const MergeOptions& options, RenderReco
     const render::FilmPlane& plane = file.film.planes[i];
     if ((i > 0 && !all) || !plane.stored() || plane.pixel == program::OutputPixel::coverage) continue;
     const program::OutputKind kind = kindOf(file, plane.name);
-    io::Image image = render::planeImage(file.film, i);
     const DisplayOptions display = displayOptions(file, options, kind);
-    if (kind == program::OutputKind::display) render::decodeDisplay(image, !display.opaque);
     const std::filesystem::path path = pictureName(options.render.output, all ? plane.name : "", std::nullopt);
     record.toneMap = outputKind(path) == OutputKind::png ? render::toneMapNames()[static_cast<std::size_t>(display.toneMap)] : "";
     record.exposure = display.exposure;
     record.outputName = plane.name;
     record.files.push_back(path.string());
     if (outputKind(path) == OutputKind::exr)
-      writeBytes(path, exrFile(image, kind, options.render.exr, record));
+      writeBytes(path, exrFile(file, i, options, record));
     else
-      writePicture(path, image, display, metadata(record));
+      writePicture(path, imageOf(file, i), display, metadata(record));
   }
 }
 

@@ -44,6 +44,7 @@ std::optional<MergeOptions> parseMergeOptions(Arguments arguments) {
   interpret(raw, render);
   checkStandardOutput(render.output, render.json, render.allOutputs);
   checkExrOptions(raw, render);
+  if (asksForAovList(raw)) throw UsageError("--aov list: 'quintet render --aov list' names a program's layers");
   checkOutput(render.output);
   return options;
 }

@@ -162,12 +162,14 @@ void checkExrOptions(const RawOptions& raw, const RenderOptions& options) {
     throw UsageError("--aov writes one file of layers, --all-outputs one file each: they exclude each other");
   if (!options.aovs.empty() && !options.outputName.empty())
     throw UsageError("--aov adds to the program's first output: --output cannot choose another");
-  const char* given = !raw.aovs.empty()             ? "--aov"
+  const auto is = [&](OutputKind kind) { return !options.output.empty() && outputKind(options.output) == kind; };
+  const bool film = is(OutputKind::film);  // keeps layers for a file that is made later
+  const char* given = !raw.aovs.empty() && !film    ? "--aov"
                       : !raw.exrType.empty()        ? "--exr-type"
                       : !raw.exrCompression.empty() ? "--exr-compression"
                       : !raw.exrTiles.empty()       ? "--exr-tiles"
                                                     : nullptr;
-  if (!given || (!options.output.empty() && outputKind(options.output) == OutputKind::exr)) return;
+  if (!given || is(OutputKind::exr)) return;
   throw UsageError(fmt::format("{} is for OpenEXR files: -o must name a .exr file", given));
 }
 

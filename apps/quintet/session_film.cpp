@@ -1,4 +1,7 @@
 // The session's rendering as a film file: checkpoints and parts.
+#include <utility>
+
+#include "aov_notes.h"
 #include "film_facts.h"
 #include "session.h"
 
@@ -14,7 +17,9 @@ const render::FilmFacts& Session::identity() {
 
 render::FilmFile Session::film(const RenderOutcome& outcome) {
   fillRecord(outcome);
-  return {identity(), filmNotes(program_, options_, record_), renderer_->saveFilm()};
+  render::FilmFacts notes = filmNotes(program_, options_, record_);
+  addAovNotes(notes, aovs_, sceneInfo_.names);
+  return {identity(), std::move(notes), renderer_->saveFilm()};
 }
 
 void Session::writeFilm(const RenderOutcome& outcome) {

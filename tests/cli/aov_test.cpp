@@ -188,7 +188,7 @@ TEST_F(Aov, BadRequests) {
     expectError(quintet(layers(more)), 2, parts);
   };
   refused({"--aov", "positon"},
-          {"--aov: the program 'layers' has no layer 'positon' (did you mean 'position'?)", "--aov list"});
+          {"--aov: the program 'layers' has no layer 'positon' (did you mean 'position'?)", "tint"});
   refused({"--aov", "color"}, {"no layer 'color'"});
   refused({"--aov", "uv", "-o", "out.png"}, {"--aov is for OpenEXR files: -o must name a .exr file"});
   refused({"--aov", "uv", "--all-outputs"}, {"exclude each other"});
@@ -208,6 +208,32 @@ TEST_F(Aov, OneOptionalOutputAlone) {
   ASSERT_EQ(quintet(layers({"-o", "x.exr", "--all-outputs"})).status, 0);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "x.uv.exr"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.cryptomatte_object.exr"));
+}
+
+// Parts of a rendering have its layers, and joined they are the whole, but for what says how it was made.
+TEST_F(Aov, MergedPartsHaveTheLayers) {
+  const io::ExrPicture whole = render({"--aov", "all", "--spp", "12"});
+  for (const char* part : {"0-1", "2"}) {
+    const RunResult result =
+        quintet(layers({"--aov", "all", "--spp", "12", "--batches", part, "-o", std::string(part) + ".qfilm"}));
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  const auto merged = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"merge", "2.qfilm", "0-1.qfilm", "-q", "-o", "merged.exr"});
+    const RunResult result = quintet(more);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return io::decodeExr(readFile(folder_ / "merged.exr"), "merged.exr");
+  };
+  const io::ExrPicture all = merged({});
+  EXPECT_EQ(channelNames(all), channelNames(whole));
+  for (const io::ExrChannel& channel : whole.channels)
+    EXPECT_EQ(find(all, channel.name).samples, channel.samples) << channel.name;
+  EXPECT_EQ(attribute(all, "cryptomatte/3ae39a5/manifest"), attribute(whole, "cryptomatte/3ae39a5/manifest"));
+  EXPECT_EQ(find(all, "CryptoObject00.G").samples[1], 11.0f / 12.0f);  // only sample 0 meets the second instance
+  EXPECT_THAT(channelNames(merged({"--aov", "uv"})), ::testing::UnorderedElementsAre("R", "G", "B", "uv.U", "uv.V"));
+  expectError(quintet({"merge", "2.qfilm", "0-1.qfilm", "-q", "-o", "m.exr", "--aov", "vu"}), 2,
+              {"no layer 'vu' (did you mean 'uv'?)"});
+  ASSERT_EQ(quintet({"merge", "2.qfilm", "0-1.qfilm", "-q", "-o", "m.png"}).status, 0);
 }
 
 // The path tracer's own, on a quad at z = 0 before a camera on the z axis.
