@@ -21,7 +21,7 @@ using render::SampleRange;
 Checkpoint::Checkpoint(Session& session, const RenderOptions& options) : session_(session), options_(options) {}
 
 RenderLimits Checkpoint::begin() {
-  RenderLimits limits{options_.samples, options_.seconds};
+  RenderLimits limits{options_.samples, options_.seconds, options_.error, options_.adaptive};
   const FarmOptions& farm = options_.farm;
   if (farm.batches) {
     limits.begin = limits.done = farm.batches->first * kBatchSamples;

@@ -96,6 +96,10 @@ void interpretFarm(RenderOptions& options) {
         parseNumber("--checkpoint", farm.rawCheckpoint, 0.0, std::numeric_limits<double>::infinity());
   if (farm.resume || farm.keepCheckpoint || !farm.checkpointFile.empty())
     farm.checkpointSeconds = farm.checkpointSeconds.value_or(kCheckpointSeconds);
+  if (options.adaptive && (farm.checkpointSeconds || !farm.rawBatches.empty() || outputKind(options.output) == OutputKind::film))
+    throw UsageError("--adaptive: pixels differ in samples, there are no checkpoints and parts of such a picture");
+  if (options.error && !farm.rawBatches.empty())
+    throw UsageError("--batches and --until-error exclude each other: a part is a number of samples");
   if (farm.checkpointSeconds) chooseCheckpointFile(options);
   if (farm.rawBatches.empty()) return;
   farm.batches = parseBatches(farm.rawBatches);

@@ -1,5 +1,7 @@
 #include "metadata.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,6 +25,16 @@ nlohmann::ordered_json memoryJson(const MemoryUse& memory) {
           {"textureBytes", memory.textures},
           {"accelerationBytes", memory.acceleration},
           {"ratio", memory.ratio()}};
+}
+
+nlohmann::ordered_json errorJson(const RenderRecord& record) {
+  if (!std::isfinite(record.error)) return {};
+  nlohmann::ordered_json json{{"image", record.error}, {"tiles", record.tileError}};
+  if (record.wantedError) {
+    json["wanted"] = *record.wantedError;
+    json["reached"] = record.error <= *record.wantedError && record.tileError <= 2.0 * *record.wantedError;
+  }
+  return json;
 }
 
 }  // namespace
@@ -59,6 +71,11 @@ io::Metadata metadata(const RenderRecord& record) {
   data.emplace_back("Seconds", fmt::format("{:.3f}", record.renderSeconds));
   data.emplace_back("Rays", fmt::format("{}", record.rays));
   if (record.droppedSamples > 0) data.emplace_back("DroppedSamples", fmt::format("{}", record.droppedSamples));
+  if (record.adaptive) data.emplace_back("Adaptive", "yes");
+  if (std::isfinite(record.error)) {
+    data.emplace_back("Error", fmt::format("{:.6g}", record.error));
+    data.emplace_back("TileError", fmt::format("{:.6g}", record.tileError));
+  }
   if (record.interrupted) data.emplace_back("Interrupted", "yes");
   return data;
 }
@@ -89,6 +106,8 @@ std::string toJson(const RenderRecord& record) {
       {"raysPerSecond", record.raysPerSecond()},
       {"droppedSamples", record.droppedSamples},
       {"interrupted", record.interrupted},
+      {"adaptive", record.adaptive},
+      {"error", errorJson(record)},
       {"device", record.device},
       {"driver", record.driver},
       {"seconds",
@@ -117,12 +136,13 @@ std::string toJson(const RenderRecord& record) {
 std::string summary(const RenderRecord& record) {
   const std::string file = record.files.empty() ? "" : record.files.back();
   const std::string rate = record.rays > 0 ? fmt::format(", {:.3g} Mrays/s", record.raysPerSecond() * 1e-6) : "";
-  return fmt::format("{}: {}x{}, {} {}, {}{}{}", file == "-" ? "standard output" : file,
+  const std::string error = std::isfinite(record.error) ? fmt::format(", error {:.2g} %", 100.0 * record.error) : "";
+  return fmt::format("{}: {}x{}, {} {}{}, {}{}{}", file == "-" ? "standard output" : file,
                      record.region[2], record.region[3], record.samples,
                      !record.accumulates   ? "samples per pixel"
                      : record.samples == 1 ? "frame"
                                            : "frames",
-                     durationText(record.renderSeconds), rate,
+                     error, durationText(record.renderSeconds), rate,
                      record.interrupted ? ", interrupted" : "");
 }
 

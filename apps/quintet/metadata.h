@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -53,6 +54,11 @@ struct RenderRecord {
   bool accumulates = false;             // the program draws frames: `samples` counts them
   std::optional<std::uint32_t> frame;   // of an animation
   bool interrupted = false;
+  bool adaptive = false;                // `samples` is an average
+  // render::ErrorEstimate of the first output, stated with 95 % confidence; infinite: not known.
+  double error = std::numeric_limits<double>::infinity();
+  double tileError = std::numeric_limits<double>::infinity();
+  std::optional<double> wantedError;
 
   // Seconds.
   double startSeconds = 0;       // instance and device

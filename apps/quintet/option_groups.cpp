@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::uint64_t kMaxSamples = 1u << 24;  // float sums hold no more
 constexpr std::uint64_t kDefaultSamples = 64;
+constexpr double kLeastError = 1e-6;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 std::optional<double> number(const std::string& option, const std::string& text, double min, double max) {
@@ -55,7 +56,8 @@ void interpretImage(const RawOptions& raw, RenderOptions& options) {
   if (!raw.region.empty()) options.region = parseRegion("--region", raw.region);
   options.samples = whole("--spp", raw.spp, 1, static_cast<double>(kMaxSamples));
   options.seconds = number("--time", raw.time, 0.0, kUnlimited);
-  if (!options.samples && !options.seconds) options.samples = kDefaultSamples;
+  options.error = number("--until-error", raw.untilError, kLeastError, 1.0);
+  if (!options.samples && !options.seconds && !options.error) options.samples = kDefaultSamples;
   options.exposure = real("--exposure", raw.exposure, -100.0, 100.0).value_or(0.0f);
   options.seed = static_cast<std::uint32_t>(whole("--seed", raw.seed, 0, 4294967295.0).value_or(0));
   options.timeout = number("--timeout", raw.timeout, 0.001, kUnlimited);
@@ -99,8 +101,13 @@ void declareQuality(CLI::App& app, RawOptions& raw, RenderOptions& options) {
   const auto add = [&app](const char* name, auto& value, const char* form, const char* help) {
     app.add_option(name, value, help)->type_name(form)->group("Quality");
   };
-  add("--spp", raw.spp, "N", "Samples per pixel (default: 64; none with --time)");
+  add("--spp", raw.spp, "N", "Samples per pixel (default: 64; none with --time or --until-error)");
   add("--time", raw.time, "SECONDS", "Render for so long; with --spp, what comes first");
+  add("--until-error", raw.untilError, "E",
+      "Render until the picture's relative error is at most E, and twice that in 95 % of\n"
+      "its tiles (0.02: 2 %; stated with 95 % confidence); with --spp or --time, at most that");
+  app.add_flag("--adaptive", options.adaptive, "Give more samples to the tiles that need them; --spp is then their average")
+      ->group("Quality");
   add("--seed", raw.seed, "N", "Of the random numbers (default: 0)");
   add("--bounces", options.bounces, "N", "Short for --set bounces=N");
   add("--clamp", options.clamp, "X", "Short for --set clamp=X");

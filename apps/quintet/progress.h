@@ -16,6 +16,7 @@ struct ProgressState {
   double seconds = 0;                         // since rendering began
   double raysPerSecond = 0;                   // 0: not known yet
   std::optional<std::uint64_t> sampleLimit;
+  std::optional<double> error;                // relative, stated
   const char* unit = "samples";               // or "frames"
   std::optional<double> secondLimit;
 

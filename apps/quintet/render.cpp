@@ -20,6 +20,7 @@ int render(Session& session, const RenderOptions& options) {
   Checkpoint checkpoint(session, options);
   const RenderLimits limits = checkpoint.begin();
   RenderHooks hooks;
+  hooks.states = !options.quiet && session.program().accumulation == program::Accumulation::film;
   hooks.afterBatch = [&](const RenderOutcome& outcome) { checkpoint.afterBatch(outcome); };
   RenderOutcome outcome;
   withoutHanging(session.program(), options.json, [&] {

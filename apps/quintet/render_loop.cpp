@@ -1,11 +1,11 @@
 #include "render_loop.h"
 
-#include <algorithm>
-
 namespace quintet::app {
 namespace {
 
 constexpr double kCountSeconds = 1.0;  // reading the ray counter waits for the device: not more often
+constexpr double kLookSeconds = 2.0;   // so does the error
+constexpr double kLookShare = 50.0;
 
 }  // namespace
 
@@ -13,53 +13,56 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
                             Progress& progress, const RenderHooks& hooks) {
   RenderOutcome outcome;
   const Stopwatch clock;
+  Schedule schedule(renderer, limits);
   ProgressState state;
-  if (limits.samples) state.sampleLimit = *limits.samples - limits.begin;
+  state.sampleLimit = schedule.sampleLimit();
   state.secondLimit = limits.seconds;
-  std::uint64_t done = limits.done;
-  outcome.samples = done - limits.begin;
+  outcome.samples = static_cast<std::uint64_t>(schedule.samples());
   outcome.seconds = limits.secondsBefore;
-  const bool complete = limits.samples && done >= *limits.samples;
-  const bool late = limits.seconds && done > limits.begin && limits.secondsBefore >= *limits.seconds;
-  if (complete || late) return outcome;
-  double counted = 0;
-  bool told = false;
-  while (true) {
-    std::uint32_t count = render::kBatchSamples;
-    if (limits.samples)
-      count = static_cast<std::uint32_t>(std::min<std::uint64_t>(count, *limits.samples - done));
+  if (limits.seconds && limits.done > limits.begin && limits.secondsBefore >= *limits.seconds) return outcome;
+  double counted = 0, looked = 0, lookSeconds = 0;
+  bool told = false, first = limits.done == 0;
+  while (schedule.next()) {
     const double begin = limits.secondsBefore + clock.seconds();
-    renderer.renderBatch(count, [&](double fraction) {
+    const double before = schedule.samples();
+    const bool whole = schedule.render([&](double fraction) {
       if (outcome.firstPixelSeconds == 0) outcome.firstPixelSeconds = clock.seconds();
       if (stop.requested() && !told) {
         progress.note("interrupted: finishing the batch; once more leaves at once, without a picture");
         told = true;
       }
-      state.samples = static_cast<double>(done - limits.begin) + fraction * count;
+      state.samples = before + fraction * schedule.step();
       state.seconds = limits.secondsBefore + clock.seconds();
+      if (schedule.estimate()) state.error = schedule.estimate()->upper;
       progress.update(state);
       outcome.abandoned = hooks.abandon && hooks.abandon();
       return !outcome.abandoned;
     });
-    if (outcome.abandoned) return outcome;
-    done += count;
+    if (!whole) return outcome;
     const double now = limits.secondsBefore + clock.seconds();
     if (outcome.firstPixelSeconds == 0) outcome.firstPixelSeconds = clock.seconds();
     outcome.seconds = now;
-    outcome.samples = done - limits.begin;
-    if (done == count && hooks.firstBatch) hooks.firstBatch(outcome);
+    outcome.samples = static_cast<std::uint64_t>(schedule.samples());
+    if (first && hooks.firstBatch) hooks.firstBatch(outcome);
+    first = false;
     if (hooks.afterBatch) hooks.afterBatch(outcome);
     if (stop.requested()) {
-      outcome.interrupted = !limits.samples || done < *limits.samples;
+      outcome.interrupted = !limits.samples || schedule.samples() < static_cast<double>(*schedule.sampleLimit());
       break;
     }
-    if (limits.samples && done >= *limits.samples) break;
     if (limits.seconds && now + 0.5 * (now - begin) >= *limits.seconds) break;
     if (now - counted > kCountSeconds) {
       state.raysPerSecond = static_cast<double>(renderer.rays().rays) / now;
       counted = now;
     }
+    // The estimate for the progress line takes at most a fiftieth of the time.
+    if (hooks.states && !limits.error && now - looked > kLookSeconds + kLookShare * lookSeconds) {
+      schedule.look();
+      looked = limits.secondsBefore + clock.seconds();
+      lookSeconds = looked - now;
+    }
   }
+  outcome.missed = limits.error && !schedule.reached();
   return outcome;
 }
 

@@ -7,19 +7,10 @@
 #include <optional>
 
 #include "progress.h"
-#include "render/renderer.h"
+#include "schedule.h"
 #include "signals.h"
 
 namespace quintet::app {
-
-struct RenderLimits {
-  std::optional<std::uint64_t> samples;  // per pixel
-  std::optional<double> seconds;         // wall clock of rendering
-  // Of a part or a rendering that goes on: its first sample, the next one, the seconds that it took so far.
-  std::uint64_t begin = 0;
-  std::uint64_t done = 0;
-  double secondsBefore = 0;
-};
 
 struct RenderOutcome {
   bool interrupted = false;      // by a signal, before the limits
@@ -27,6 +18,7 @@ struct RenderOutcome {
   std::optional<std::uint32_t> frame;  // of an animation: the one rendered last
   std::uint64_t samples = 0;     // per pixel that are there now
   double seconds = 0;            // wall clock of all batches
+  bool missed = false;           // the error that was asked for is not reached
   double firstPixelSeconds = 0;  // from the start of the loop until the first launch is done
 };
 
@@ -34,7 +26,8 @@ struct RenderOutcome {
 struct RenderHooks {
   std::function<bool()> abandon;                          // asked between launches: give up, the picture is of no use
   std::function<void(const RenderOutcome&)> firstBatch;   // the first batch is complete
-  std::function<void(const RenderOutcome&)> afterBatch;   // any batch is complete
+  std::function<void(const RenderOutcome&)> afterBatch = {};  // any batch is complete
+  bool states = false;                                    // the progress line tells the error
 };
 
 // At least one batch is rendered, unless all is done already. A batch is begun only if at least half of it is likely to fit into

@@ -13,7 +13,7 @@ bool accumulates(const Session& session) { return session.program().accumulation
 
 RenderOutcome renderFilm(Session& session, const RenderOptions& options, const GracefulStop& stop,
                          const RenderHooks& hooks) {
-  return renderBatches(session.renderer(), {options.samples, options.seconds}, stop, session.progress(), hooks);
+  return renderBatches(session.renderer(), {options.samples, options.seconds, options.error, options.adaptive}, stop, session.progress(), hooks);
 }
 
 // With --watch the first batch is shown at once, and the picture again when it is complete.
@@ -40,7 +40,7 @@ PictureEnd drawMovingScene(Session& session, const RunOptions& options, const Gr
   double seconds = 0, firstPixelSeconds = 0;
   for (std::uint32_t frame = options.allFrames ? 0 : count - 1; frame < count; ++frame) {
     session.beginFrame(frame);
-    RenderOutcome outcome = renderFilm(session, options.render, stop, {hooks.abandon, {}});
+    RenderOutcome outcome = renderFilm(session, options.render, stop, {hooks.abandon, {}, {}, false});
     if (outcome.abandoned) return PictureEnd::abandoned;
     if (firstPixelSeconds == 0) firstPixelSeconds = outcome.firstPixelSeconds;
     seconds += outcome.seconds;

@@ -13,6 +13,8 @@
 #include "diagnostics_view.h"
 #include "picture_names.h"
 #include "program_setup.h"
+#include "render/film_error.h"
+#include "scene/content_hash.h"
 #include "scene/names.h"
 #include "values.h"
 
@@ -51,6 +53,10 @@ Session::Session(const RenderOptions& options) : options_(options), progress_(op
 void Session::prepare() {
   program_ = program::loadProgram(options_.program);
   parameters_ = parameterValues(program_, options_);
+  if (options_.adaptive && !program_.adaptive)
+    throw UsageError(fmt::format("--adaptive: the program '{}' takes the same samples in all pixels (docs/programs.md: adaptive)", program_.name));
+  if (options_.error && program_.accumulation == program::Accumulation::program)
+    throw UsageError(fmt::format("--until-error: the program '{}' averages its samples itself, their spread is not known", program_.name));
   chosenOutputs();
   aovs_ = chooseAovs(program_, options_.aovs);
   checkOutput(options_.output);
@@ -263,6 +269,9 @@ std::vector<std::byte> Session::exrFile(std::size_t output) const {
 }
 
 void Session::report() {
+  if (record_.wantedError && !record_.interrupted && (record_.error > *record_.wantedError || record_.tileError > 2.0 * *record_.wantedError))
+    warnings_.add(fmt::format("the error of {:.2g} % was not reached: it is {:.2g} %, in 95 % of the tiles at most {:.2g} %",
+                              100.0 * *record_.wantedError, 100.0 * record_.error, 100.0 * record_.tileError));
   if (record_.droppedSamples > 0)
     warnings_.add(fmt::format("{} samples were not finite and left out", record_.droppedSamples));
   record_.warnings = warnings_.take();
@@ -290,7 +299,14 @@ void Session::fillRecord(const RenderOutcome& outcome) {
   record_.height = sceneInfo_.size.y;
   record_.region = {region.x, region.y, region.width, region.height};
   record_.seed = options_.seed;
-  record_.samples = statistics.samples;
+  record_.samples = options_.adaptive ? outcome.samples : statistics.samples;
+  record_.adaptive = options_.adaptive;
+  record_.wantedError = options_.error;
+  if (program_.accumulation == program::Accumulation::film) {
+    const render::ErrorEstimate estimate = render::estimateError(renderer_->film().saveFirst());
+    record_.error = estimate.upper;
+    record_.tileError = estimate.tiles;
+  }
   record_.accumulates = program_.accumulation == program::Accumulation::program;
   record_.rays = rays.rays;
   record_.droppedSamples = rays.droppedSamples;

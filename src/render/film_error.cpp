@@ -1,0 +1,151 @@
+#include "render/film_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "render/fixed_sum.h"
+
+namespace quintet::render {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kDarkness = 0.1;       // ε, of the mean luminance
+constexpr double kConfidence = 1.645;   // 95 % of a normal distribution, one side
+constexpr double kTilesBelow = 0.95;
+constexpr std::uint32_t kMostBatches = 1u << 22;
+
+struct PixelMoments {
+  double luminance = 0;  // of the mean
+  double variance = 0;   // of the mean, averaged over the channels
+};
+
+PixelMoments momentsOf(const FilmPlane& plane, std::size_t pixel, double samples, double batches) {
+  PixelMoments result;
+  double mean[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double sum = fixedToDouble(plane.sums[4 * pixel + c]);
+    const double spread = fixedToDouble(plane.squares[4 * pixel + c]) - sum * sum / samples;
+    mean[c] = sum / samples;
+    result.variance += std::max(0.0, spread) / ((batches - 1) * samples) / 3.0;
+  }
+  result.luminance = 0.2126 * mean[0] + 0.7152 * mean[1] + 0.0722 * mean[2];
+  return result;
+}
+
+// Of relative errors' squares.
+double percentile(std::vector<double> values, double part) {
+  if (values.empty()) return 0.0;
+  const auto at = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(at));
+  return values[at];
+}
+
+void conclude(ErrorEstimate& estimate) {
+  double pixels = 0, squares = 0, spread = 0;
+  std::vector<double> tiles;
+  for (std::size_t t = 0; t + 1 < estimate.cells.size(); t += 2) {
+    double tilePixels = 0, tileSquares = 0;
+    for (std::size_t c = t; c < t + 2; ++c) {
+      const CellError& cell = estimate.cells[c];
+      tilePixels += cell.pixels;
+      tileSquares += cell.squares;
+      spread += cell.fourths * (2.0 + 2.0 / (static_cast<double>(cell.batches) - 1.0));
+    }
+    pixels += tilePixels;
+    squares += tileSquares;
+    tiles.push_back(tileSquares / tilePixels);
+  }
+  estimate.image = std::sqrt(squares / pixels);
+  estimate.upper = std::sqrt((squares + kConfidence * std::sqrt(spread)) / pixels);
+  estimate.tiles = std::sqrt(percentile(tiles, kTilesBelow));
+}
+
+}  // namespace
+
+ErrorEstimate estimateError(const FilmState& film) {
+  const FilmPlane& plane = film.planes.at(0);
+  ErrorEstimate estimate;
+  estimate.cells.resize(2 * std::size_t{tileCount(film.region)});
+  bool enough = !plane.squares.empty();
+  for (std::size_t c = 0; c < estimate.cells.size(); ++c) {
+    estimate.cells[c].batches = film.counts.batchesOf(static_cast<std::uint32_t>(c));
+    enough = enough && estimate.cells[c].batches >= 2;
+  }
+  if (!enough) {
+    estimate.image = estimate.upper = estimate.tiles = kInfinite;
+    return estimate;
+  }
+  std::vector<PixelMoments> moments(film.pixelCount());
+  parallelFor(film.region.height, [&](std::size_t y) {
+    for (std::uint32_t x = 0; x < film.region.width; ++x) {
+      const std::uint32_t cell = film.cellOf(x, static_cast<std::uint32_t>(y));
+      const std::size_t pixel = y * film.region.width + x;
+      moments[pixel] = momentsOf(plane, pixel, static_cast<double>(film.counts.samplesOf(cell)), static_cast<double>(film.counts.batchesOf(cell)));
+    }
+  });
+  double mean = 0;
+  for (const PixelMoments& pixel : moments) mean += std::isfinite(pixel.luminance) ? pixel.luminance : 0.0;
+  mean /= static_cast<double>(moments.size());
+  const double darkness = std::max(kDarkness * kDarkness * mean * mean, std::numeric_limits<double>::min());
+  for (std::uint32_t y = 0; y < film.region.height; ++y)
+    for (std::uint32_t x = 0; x < film.region.width; ++x) {
+      const PixelMoments& pixel = moments[std::size_t{y} * film.region.width + x];
+      const double square = pixel.variance / (pixel.luminance * pixel.luminance + darkness);
+      CellError& cell = estimate.cells[film.cellOf(x, y)];
+      ++cell.pixels;
+      if (!std::isfinite(square)) continue;  // a defect of the program that is told elsewhere
+      cell.squares += square;
+      cell.fourths += square * square;
+    }
+  conclude(estimate);
+  return estimate;
+}
+
+std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGoal& goal) {
+  const std::vector<CellError>& cells = estimate.cells;
+  // The room that the confidence takes is taken off the goal.
+  const double aim = goal.error * std::min(1.0, estimate.image / estimate.upper);
+  std::vector<double> spread(cells.size());  // relative variance of one batch, by the other cell
+  double pixels = 0, mean = 0;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const CellError& other = cells[c ^ 1u].pixels > 0 ? cells[c ^ 1u] : cells[c];
+    if (other.pixels > 0) spread[c] = other.squares / other.pixels * static_cast<double>(other.batches);
+    pixels += cells[c].pixels;
+    mean += cells[c].pixels * spread[c];
+  }
+  // Where nothing was found yet, something may be: one part in a hundred of the mean.
+  for (double& s : spread) s = std::max(s, 0.01 * mean / pixels);
+  const auto limit = [&](std::size_t c, double factor) {
+    double batches = factor * std::sqrt(spread[c]);
+    if (goal.error > 0) batches = std::max(batches, spread[c] / (4.0 * aim * aim));
+    const double least = static_cast<double>(cells[c].batches);
+    return static_cast<std::uint32_t>(std::clamp(std::ceil(batches), least, std::max(least, static_cast<double>(kMostBatches))));
+  };
+  const auto total = [&](double factor, double& square) {
+    double sum = 0;
+    square = 0;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      const std::uint32_t batches = limit(c, factor);
+      sum += static_cast<double>(cells[c].pixels) * batches / pixels;
+      square += cells[c].pixels * spread[c] / batches / pixels;
+    }
+    return sum;
+  };
+  // The smallest factor that reaches the error, or the largest that keeps within the batches.
+  double low = 0, high = static_cast<double>(kMostBatches) / std::sqrt(std::max(1e-30, *std::ranges::max_element(spread)));
+  for (int i = 0; i < 100; ++i) {
+    const double factor = 0.5 * (low + high);
+    double square;
+    const double batches = total(factor, square);
+    const bool over = goal.batches > 0 && batches > goal.batches;
+    const bool reached = goal.error > 0 && square <= aim * aim;
+    (over || reached ? high : low) = factor;
+  }
+  std::vector<std::uint32_t> limits(cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) limits[c] = cells[c].pixels > 0 ? limit(c, goal.error > 0 ? high : low) : 0;
+  return limits;
+}
+
+}  // namespace quintet::render

@@ -1,0 +1,51 @@
+// How wrong a film's picture still is, from the spread of its batches; and how many batches each cell of adaptive
+// sampling should get.
+//
+// The error of a picture I with the expectation R is relative and a root mean square over pixels p and channels c:
+//   error² = mean_p [ 1/3 Σ_c (I_pc - R_pc)² / (Y_p² + ε²) ],   Y: luminance, ε = a tenth of the picture's mean luminance.
+// The estimate puts varianceImage (film_state.h) in the place of (I - R)² and I in that of R.
+#ifndef QUINTET_RENDER_FILM_ERROR_H
+#define QUINTET_RENDER_FILM_ERROR_H
+
+#include <cstdint>
+#include <vector>
+
+#include "render/film_state.h"
+
+namespace quintet::render {
+
+// Of one cell, sums over its pixels.
+struct CellError {
+  std::uint32_t pixels = 0;
+  std::uint64_t batches = 0;
+  double squares = 0;  // of the pixels' relative errors
+  double fourths = 0;  // fourth powers
+};
+
+struct ErrorEstimate {
+  double image = 0;          // the estimate of `error`; infinite below two batches
+  double upper = 0;          // with 95 % confidence `error` is below this; what is stated
+  double tiles = 0;          // 95 % of the tiles have a smaller error
+  std::vector<CellError> cells;  // SampleCounts::cellBatches' order
+
+  bool reaches(double target) const { return upper <= target && tiles <= 2.0 * target; }
+};
+
+// Of the first output. `upper` adds 1.645 standard deviations of the difference between the estimate and the square of the
+// real error, by the fourth powers, as for normally distributed pixels; light that no sample has found yet is in neither.
+ErrorEstimate estimateError(const FilmState& film);
+
+struct CellGoal {
+  double error = 0;    // for ErrorEstimate::reaches; 0: none, use all of `batches`
+  double batches = 0;  // per pixel on average, at most; 0: no limit
+};
+
+// How many batches each cell should have at the end, at least as many as it has. Of all ways to reach a mean square error
+// the cheapest has numbers in proportion to the standard deviation (Neyman 1934). The spread of a cell is taken from
+// the other cell of its tile, whose pixels are drawn independently: the number of a cell's samples then does not depend on
+// their values, which would bias the mean (Kirk & Arvo 1991, "Unbiased Sampling Techniques for Image Synthesis"). That is
+// exact for the first decision; in later ones a dependence remains through the numbers of earlier ones only.
+std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGoal& goal);
+
+}  // namespace quintet::render
+#endif

@@ -1,0 +1,149 @@
+// The stated error and the plan of adaptive sampling, by films whose samples are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "render/film_error.h"
+#include "render/fixed_sum.h"
+
+namespace quintet::render {
+namespace {
+
+using Draw = std::function<double(std::uint32_t x, std::uint32_t y)>;  // one sample of a grey pixel
+
+struct Simulation {
+  FilmState film;
+  explicit Simulation(std::uint32_t width, std::uint32_t height) {
+    film.region = {0, 0, width, height};
+    const std::size_t pixels = film.pixelCount();
+    film.planes = {{"color", program::OutputPixel::mean, std::vector<shared::FixedSum>(4 * pixels), std::vector<shared::FixedSum>(4 * pixels), {}, {}}};
+  }
+  void addBatch(const Draw& draw, std::uint32_t x, std::uint32_t y) {
+    double sum = 0;
+    for (std::uint32_t s = 0; s < kBatchSamples; ++s) sum += draw(x, y);
+    const auto value = static_cast<float>(sum);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t i = 4 * (std::size_t{y} * film.region.width + x) + c;
+      film.planes[0].sums[i] = addFixed(film.planes[0].sums[i], fixedFromFloat(value));
+      film.planes[0].squares[i] = addFixed(film.planes[0].squares[i], fixedFromFloat(value * value / kBatchSamples));
+    }
+  }
+  void render(const Draw& draw, std::uint32_t batches) {
+    for (std::uint32_t y = 0; y < film.region.height; ++y)
+      for (std::uint32_t x = 0; x < film.region.width; ++x)
+        for (std::uint32_t b = 0; b < batches; ++b) addBatch(draw, x, y);
+    film.counts.add({0, batches * kBatchSamples});
+  }
+  void complete(const Draw& draw, const std::vector<std::uint32_t>& plan) {
+    for (std::uint32_t y = 0; y < film.region.height; ++y)
+      for (std::uint32_t x = 0; x < film.region.width; ++x) {
+        const std::uint32_t cell = film.cellOf(x, y);
+        for (std::uint64_t b = film.counts.batchesOf(cell); b < plan[cell]; ++b) addBatch(draw, x, y);
+      }
+    film.counts.cellBatches = plan;
+  }
+};
+
+TEST(FilmError, IsThatOfKnownSamples) {
+  // Uniform in [0,2]: mean 1, variance 1/3; of 64 samples 1/192. Relative to Y² + (0.1 · mean)² = 1.01.
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(0, 2);
+  Simulation simulation(64, 48);
+  simulation.render([&](auto, auto) { return uniform(random); }, 16);
+  const ErrorEstimate estimate = estimateError(simulation.film);
+  const double exact = std::sqrt(1.0 / 192 / 1.01);
+  EXPECT_NEAR(estimate.image, exact, 0.02 * exact);
+  EXPECT_GT(estimate.upper, estimate.image);
+  EXPECT_LT(estimate.upper, 1.1 * exact);
+  EXPECT_NEAR(estimate.tiles, exact, 0.1 * exact);
+  EXPECT_TRUE(estimate.reaches(1.1 * exact));
+  EXPECT_FALSE(estimate.reaches(0.9 * exact));
+}
+
+TEST(FilmError, IsNotKnownBelowTwoBatches) {
+  Simulation simulation(8, 8);
+  simulation.render([](auto, auto) { return 1.0; }, 1);
+  EXPECT_TRUE(std::isinf(estimateError(simulation.film).upper));
+}
+
+TEST(FilmError, BlackAndConstantPicturesHaveNone) {
+  for (const double value : {0.0, 3.0}) {
+    Simulation simulation(40, 8);
+    simulation.render([&](auto, auto) { return value; }, 4);
+    EXPECT_LT(estimateError(simulation.film).upper, 1e-6);
+  }
+}
+
+// One tile is noisy, the other hardly.
+double twoTiles(std::mt19937& random, std::uint32_t x) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  return 1.0 + uniform(random) * (x < 32 ? 1.0 : 0.1);
+}
+
+TEST(PlanCells, SpendsWhereTheSpreadIs) {
+  std::mt19937 random(2);
+  const Draw draw = [&](std::uint32_t x, std::uint32_t) { return twoTiles(random, x); };
+  Simulation simulation(64, 32);
+  simulation.render(draw, 8);
+  const std::vector<std::uint32_t> plan = planCells(estimateError(simulation.film), {0, 44});
+  ASSERT_EQ(plan.size(), 4u);
+  EXPECT_NEAR(0.25 * (plan[0] + plan[1] + plan[2] + plan[3]), 44, 1.0) << "batches on average";
+  EXPECT_NEAR(static_cast<double>(plan[0]) / plan[2], 10.0, 1.0) << "in proportion to the standard deviation";
+}
+
+TEST(PlanCells, ReachesTheErrorWithFewerSamples) {
+  std::mt19937 random(3);
+  const Draw draw = [&](std::uint32_t x, std::uint32_t) { return twoTiles(random, x); };
+  Simulation simulation(64, 32);
+  simulation.render(draw, 8);
+  const double goal = 0.03;
+  const std::vector<std::uint32_t> plan = planCells(estimateError(simulation.film), {goal, 0});
+  simulation.complete(draw, plan);
+  const ErrorEstimate estimate = estimateError(simulation.film);
+  EXPECT_LE(estimate.upper, 1.05 * goal);
+  EXPECT_GT(estimate.upper, 0.6 * goal) << "not more than needed";
+  EXPECT_GT(plan[0], 3 * plan[2]);
+}
+
+TEST(PlanCells, NeverGoesBelowWhatIsThere) {
+  std::mt19937 random(4);
+  Simulation simulation(64, 32);
+  simulation.render([&](std::uint32_t x, std::uint32_t) { return twoTiles(random, x); }, 8);
+  for (const std::uint32_t batches : planCells(estimateError(simulation.film), {0.9, 0})) EXPECT_GE(batches, 8u);
+  for (const std::uint32_t batches : planCells(estimateError(simulation.film), {0, 1})) EXPECT_GE(batches, 8u);
+}
+
+// Rare bright samples: a pilot that met none looks converged. Deciding by a pixel's own samples keeps such lucky (dark)
+// means as they are and thins out the others; the other cell's say nothing about them.
+double meanOfRuns(bool byOwnCell, double& standardError) {
+  std::mt19937 random(5);
+  const Draw draw = [&](auto, auto) { return random() % 16 == 0 ? 16.0 : 0.0; };
+  double sum = 0, squares = 0;
+  constexpr int kRuns = 6000;
+  for (int run = 0; run < kRuns; ++run) {
+    Simulation simulation(2, 1);  // one pixel in each cell
+    simulation.render(draw, 4);
+    ErrorEstimate estimate = estimateError(simulation.film);
+    if (byOwnCell) std::swap(estimate.cells[0], estimate.cells[1]);
+    simulation.complete(draw, planCells(estimate, {0, 12}));
+    const io::Image image = planeImage(simulation.film, 0);
+    const double mean = 0.5 * (image.pixel<float>(0, 0)[0] + image.pixel<float>(1, 0)[0]);
+    sum += mean / kRuns;
+    squares += mean * mean / kRuns;
+  }
+  standardError = std::sqrt((squares - sum * sum) / kRuns);
+  return sum;
+}
+
+TEST(PlanCells, DoesNotBiasTheMean) {
+  double error = 0;
+  const double mean = meanOfRuns(false, error);
+  EXPECT_NEAR(mean, 1.0, 3.5 * error);
+  const double biased = meanOfRuns(true, error);
+  EXPECT_GT(std::abs(biased - 1.0), 6.0 * error) << "this test sees the bias of the other way";
+}
+
+}  // namespace
+}  // namespace quintet::render
