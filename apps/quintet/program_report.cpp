@@ -43,7 +43,7 @@ std::string programHelp(const program::Program& program) {
   text += "Parameters (--set NAME=VALUE):\n";
   if (program.parameters.empty()) text += "  none\n";
   for (const program::Parameter& parameter : program.parameters) text += describe(parameter);
-  text += "\nOutputs (--output NAME, --all-outputs):\n";
+  text += "\nOutputs (--output NAME, --all-outputs, --aov NAMES):\n";
   for (const program::Output& output : program.outputs)
     text += fmt::format("  {:<18}{}\n", output.name,
                         output.help.empty() ? std::string(program::outputKindName(output.kind)) : output.help);
