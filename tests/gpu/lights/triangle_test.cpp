@@ -130,6 +130,23 @@ TEST(TriangleLight, EmissiveTexture) {
   EXPECT_GT(pValue(irradiance(sampleLights(scene, vec3(0.0f), kSamples), vec3(0, 1, 0)), exact), 0.01);
 }
 
+// KHR_materials_clearcoat: the coat lies over the emission. Smooth: Schlick's reflectance at the interpolated normal.
+TEST(TriangleLight, CoatOfTheEmitter) {
+  scene::Scene source = emissiveRectangle(vec3(3.0f), placement(1.0f));
+  source.materials[0].clearcoat = 0.8f;
+  for (const bool bent : {false, true}) {
+    if (bent) source.meshes[0].geometries[0].normals.assign(4, glm::normalize(vec3(0.4f, -0.3f, 1.0f)));
+    const vec3 object = bent ? vec3(0.4f, -0.3f, 1.0f) : vec3(0, 0, 1);
+    const dvec3 normal = glm::normalize(dvec3(glm::inverse(glm::transpose(glm::mat3(placement(1.0f)))) * object));
+    const LightScene scene(source, {});
+    for (const LightOut& s : sampleLights(scene, vec3(0.0f), 1000)) {
+      if (!s.valid) continue;
+      const double fresnel = 0.04 + 0.96 * std::pow(1.0 - std::abs(glm::dot(normal, dvec3(s.wi))), 5.0);
+      ASSERT_NEAR(s.radiance.x, 3.0 * (1.0 - 0.8f * fresnel), 1e-4);
+    }
+  }
+}
+
 // Blend: a hit counts with probability alpha, so the light does, too. Mask: below the cut-off there is no surface.
 TEST(TriangleLight, AlphaOfTheEmitter) {
   scene::Scene source = emissiveRectangle(vec3(3.0f), placement(1.0f));

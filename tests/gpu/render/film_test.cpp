@@ -133,6 +133,7 @@ TEST_F(FilmTest, KeepsMeansCentresAndIds) {
   EXPECT_NEAR(color.pixel<float>(36, 4)[0], meanOf(11, [](double s) { return 0.1 * s + 36; }), 1e-5);
   EXPECT_NEAR(color.pixel<float>(0, 0)[1], meanOf(11, [](double s) { return s * s; }), 1e-4);
   EXPECT_EQ(color.pixel<float>(3, 3)[2], -1.0f);
+  EXPECT_EQ(color.pixel<float>(3, 3)[3], 1.0f);
   EXPECT_EQ(depth.pixel<float>(3, 2)[0], 9.0f) << "of sample 0, not a mean";
   const std::vector<shared::CoverageSlot> slots = r.saveFilm().planes[2].coverage;
   std::vector<std::uint32_t> counts(3);
