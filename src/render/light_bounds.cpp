@@ -44,8 +44,6 @@ Cone uniteCones(Cone a, Cone b, bool lines) {
 
 float toFloat(double intensity) { return intensity > 0.0 ? static_cast<float>(std::clamp(intensity, 1e-37, 1e37)) : 0.0f; }
 
-float halfDiagonal(const Bounds3& box) { return 0.5f * glm::length(box.extent()); }
-
 }  // namespace
 
 LightBounds triangleBounds(const std::array<vec3, 3>& corners, const mat4& worldFromObject, double intensity) {
@@ -61,8 +59,8 @@ LightBounds triangleBounds(const std::array<vec3, 3>& corners, const mat4& world
     bounds.box.extend(vec3(corner) - error);
     bounds.box.extend(vec3(corner) + error);
   }
-  for (const glm::dvec3& corner : p)
-    bounds.radius = std::max(bounds.radius, static_cast<float>(glm::distance(corner, glm::dvec3(bounds.box.center()))));
+  bounds.center = bounds.box.center();
+  for (const glm::dvec3& corner : p) bounds.radius = std::max(bounds.radius, static_cast<float>(glm::distance(corner, glm::dvec3(bounds.center))));
   bounds.radius += glm::length(error);
   const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
   const double length = glm::length(normal);
@@ -80,7 +78,8 @@ LightBounds solidBounds(const scene::Primitive& primitive, const mat4& worldFrom
   bounds.box = scene::boundsOf(primitive, worldFromObject);
   bounds.box.min -= error;
   bounds.box.max += error;
-  bounds.radius = halfDiagonal(bounds.box);
+  bounds.center = bounds.box.center();
+  bounds.radius = 0.5f * glm::length(bounds.box.extent());
   if (primitive.type == scene::PrimitiveType::sphere) {
     // The largest singular value of the transform, bounded by the row sums of m mᵀ: exact for balls.
     const glm::dmat3 m = glm::dmat3(glm::mat3(worldFromObject)) * glm::dmat3(glm::mat3(primitive.objectFromPrimitive));
@@ -99,6 +98,7 @@ LightBounds solidBounds(const scene::Primitive& primitive, const mat4& worldFrom
 LightBounds pointBounds(const vec3& position, double intensity) {
   LightBounds bounds;
   bounds.box.extend(position);
+  bounds.center = position;
   bounds.spread = kPi;
   bounds.beyond = kHalfTurn;
   bounds.intensity = toFloat(intensity);
@@ -127,10 +127,11 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
   LightBounds result;
   result.box = a.box;
   result.box.extend(b.box);
-  const vec3 center = result.box.center();
-  const float around = std::max(glm::distance(center, a.box.center()) + a.radius, glm::distance(center, b.box.center()) + b.radius);
-  result.radius = std::min(halfDiagonal(result.box), around * (1.0f + 1e-6f));
   result.intensity = a.intensity + b.intensity;
+  result.center = glm::mix(a.center, b.center, b.intensity / result.intensity);
+  const float around = std::max(glm::distance(result.center, a.center) + a.radius, glm::distance(result.center, b.center) + b.radius);
+  const float corner = glm::length(glm::max(result.box.max - result.center, result.center - result.box.min));
+  result.radius = (1.0f + 1e-6f) * std::min(corner, around);
   result.bothSides = a.bothSides || b.bothSides;
   const Cone cone = uniteCones({a.axis, a.spread}, {b.axis, b.spread}, result.bothSides);
   result.axis = cone.axis;

@@ -13,7 +13,8 @@ namespace quintet::render {
 // Light leaves within `beyond` of a normal, which is within `spread` of `axis`. Radians.
 struct LightBounds {
   Bounds3 box;             // world; infinite lights: of the directions to them
-  float radius = 0.0f;     // of a ball around the box's centre that holds the lights, m
+  vec3 center{0.0f};       // mean of the lights' places by intensity
+  float radius = 0.0f;     // of a ball around it that holds the lights, m
   float intensity = 0.0f;  // sum of the lights' largest radiant intensities, luminance; infinite: irradiance
   vec3 axis{0, 0, 1};      // unit
   float spread = 0.0f;     // kPi: all normals

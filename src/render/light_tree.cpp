@@ -229,7 +229,7 @@ vec3 unpackLightAxis(std::uint32_t axis) {
 
 shared::LightNode packLightNode(const LightBounds& bounds) {
   shared::LightNode node{};
-  node.center = bounds.box.center();
+  node.center = bounds.center;
   node.radius = bounds.radius * (1.0f + 1e-5f) + 4e-7f * (std::abs(node.center.x) + std::abs(node.center.y) + std::abs(node.center.z));
   node.intensity = bounds.intensity;
   node.axis = packAxis(bounds.axis);

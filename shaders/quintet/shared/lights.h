@@ -47,8 +47,8 @@ QT_CONSTANT kLightNodeIndex = 0x0FFFFFFFu;
 // it. Node 0 is the root; the two children of a node lie side by side, and all that is below the first child lies
 // before all that is below the second.
 struct LightNode {
-  vec3 center;      // world, of a ball that holds the lights; infinite: unused
-  float radius;     // metres
+  vec3 center;      // world; mean of the lights' places by intensity; infinite: unused
+  float radius;     // metres; of a ball around it that holds the lights
   float intensity;  // sum of their largest radiant intensities, as luminance; infinite: irradiance instead. Scaled
   uint axis;        // octahedral, 2 x snorm 16: axis of a cone of their normals; infinite: of the directions to them
   uint cone;        // 2 x snorm 16: cosine of its half angle, and of the angle beyond it within which light leaves

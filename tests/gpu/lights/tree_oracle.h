@@ -30,19 +30,20 @@ inline double oracleImportance(const shared::LightNode& node, const Receiver& re
   const double radius = node.radius + 5e-7 * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
   const dvec3 wi = distance > 0.0 ? d / distance : dvec3(0.0);
   const double within = infinite ? angle(cone.x) : distance > radius ? std::asin(radius / distance) : glm::pi<double>();
-  double facing = 1.0;
-  if (receiver.normal != vec3(0.0f)) {
-    const double cosine = glm::dot(dvec3(receiver.normal), wi);
-    facing = std::cos(std::max(0.0, angle(receiver.opaque ? cosine : std::abs(cosine)) - within));
-  }
-  if (facing < -1e-3) return 0.0;
-  const double strength = node.intensity * std::max(facing, 0.0625);
-  if (infinite) return strength;
-  const double leaving = -glm::dot(axis, wi);
-  const double off = angle((node.link & shared::kLightNodeBothSides) != 0 ? std::abs(leaving) : leaving);
-  const double emission = std::cos(std::max(0.0, std::max(0.0, off - angle(cone.x)) - within));
-  if (emission < cone.y - 1e-3) return 0.0;
-  return std::clamp(strength * std::max(emission, 0.01) / std::max(distance * distance, radius * radius), 1e-35, 1e30);
+  // Angles between centre and normals, and at least, anywhere in the ball.
+  double tilt = receiver.normal == vec3(0.0f) ? 0.0 : angle(glm::dot(dvec3(receiver.normal), wi));
+  if (!receiver.opaque) tilt = std::min(tilt, glm::pi<double>() - tilt);
+  const double leastTilt = std::max(0.0, tilt - within);
+  if (std::cos(leastTilt) < -1e-3) return 0.0;
+  if (infinite) return node.intensity * std::max(std::cos(leastTilt), 0.0625);
+  double turn = angle(-glm::dot(axis, wi));
+  if ((node.link & shared::kLightNodeBothSides) != 0) turn = std::min(turn, glm::pi<double>() - turn);
+  turn = std::max(0.0, turn - angle(cone.x));
+  const double leastTurn = std::max(0.0, turn - within);
+  if (std::cos(leastTurn) < cone.y - 1e-3) return 0.0;
+  const auto likely = [](double a, double least) { return 0.25 * std::cos(least) + 0.75 * std::max(0.0, std::cos(a)); };
+  const double strength = node.intensity * std::max(likely(tilt, leastTilt), 0.0625) * std::max(likely(turn, leastTurn), 0.01);
+  return std::clamp(strength / std::max(distance * distance, 0.125 * radius * radius), 1e-35, 1e30);
 }
 
 // Of each light; what is missing to 1 comes to lights that give nothing.

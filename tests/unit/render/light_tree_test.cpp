@@ -190,7 +190,7 @@ TEST(LightBounds, Solids) {
       vec3 p = random.direction();
       if (type == scene::PrimitiveType::box) p /= std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
       if (type == scene::PrimitiveType::torus) p = vec3(p.x, 0, p.z) / std::hypot(p.x, p.z) + 0.25f * p;
-      ASSERT_LE(glm::distance(dvec3(m * glm::dvec4(p, 1.0)), dvec3(bounds.box.center())), bounds.radius);
+      ASSERT_LE(glm::distance(dvec3(m * glm::dvec4(p, 1.0)), dvec3(bounds.center)), bounds.radius);
     }
     if (type == scene::PrimitiveType::sphere) {
       EXPECT_NEAR(bounds.radius, 2.0f, 1e-4f);
