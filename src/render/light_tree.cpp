@@ -16,20 +16,49 @@ constexpr int kDeepest = 64;              // from here on by halves, so that no 
 
 using Lights = std::span<LightTreeInput>;
 
+// The lights of a bin; its cone is about the axis of the first one: quick, and wide enough to compare splits.
 struct Bin {
-  LightBounds bounds;
-  std::size_t count = 0;
+  Bounds3 box;
+  double intensity = 0.0;
+  vec3 axis{0, 0, 1};
+  float cosine = 1.0f;  // of the cone's half angle, if all lights are single normals
+  float spread = 0.0f;  // of the widest light, beyond it
+  float beyond = 0.0f;
+  bool bothSides = false;
+  std::uint32_t count = 0;
 
-  void add(const LightBounds& more, std::size_t n) {
-    bounds = count == 0 ? more : unite(bounds, more);
-    count += n;
+  void add(const LightBounds& b) {
+    if (count++ == 0) axis = b.axis;
+    box.extend(b.box);
+    intensity += b.intensity;
+    bothSides |= b.bothSides;
+    const float along = glm::dot(axis, b.axis);
+    cosine = std::min(cosine, b.bothSides ? std::abs(along) : along);
+    spread = std::max(spread, b.spread);
+    beyond = std::max(beyond, b.beyond);
+  }
+  LightBounds bounds() const {
+    LightBounds b;
+    b.box = box;
+    b.intensity = static_cast<float>(intensity);
+    b.axis = axis;
+    b.spread = std::min(kPi, std::acos(std::max(-1.0f, cosine)) + spread);
+    b.beyond = beyond;
+    b.bothSides = bothSides;
+    return b;
   }
 };
-using Bins = std::array<std::array<Bin, kBins>, 3>;
+
+using Row = std::array<LightBounds, kBins>;  // intensity 0: an empty bin
+using Rows = std::array<Row, 3>;
 
 double cost(const LightBounds& b) {
   const vec3 extent = b.box.extent();
   return static_cast<double>(b.intensity) * glm::dot(extent, extent) * orientationMeasure(b);
+}
+
+void add(LightBounds& sum, const LightBounds& more) {
+  if (more.intensity > 0.0f) sum = sum.intensity > 0.0f ? unite(sum, more) : more;
 }
 
 // Where to part a range: after lights whose centre falls in a bin up to `bin` along `axis`; axis 3: in the middle.
@@ -40,55 +69,66 @@ struct Split {
 
 struct Binning {
   vec3 low, scale;
-  explicit Binning(const Bounds3& centers) : low(centers.min) {
+  std::size_t bins;
+  Binning(const Bounds3& centers, std::size_t lights) : low(centers.min), bins(lights < 32 ? 4 : lights < 512 ? 8 : kBins) {
     const vec3 extent = centers.extent();
-    for (glm::length_t i = 0; i < 3; ++i) scale[i] = extent[i] > 0.0f ? static_cast<float>(kBins) / extent[i] : 0.0f;
+    for (glm::length_t i = 0; i < 3; ++i) scale[i] = extent[i] > 0.0f ? static_cast<float>(bins) / extent[i] : 0.0f;
   }
   std::size_t of(const LightBounds& b, glm::length_t axis) const {
     const float at = (b.box.center()[axis] - low[axis]) * scale[axis];
-    return std::min(kBins - 1, static_cast<std::size_t>(std::max(0.0f, at)));
+    return std::min(bins - 1, static_cast<std::size_t>(std::max(0.0f, at)));
   }
 };
 
-Bins fillBins(Lights lights, const Binning& binning) {
-  std::vector<Bins> parts((lights.size() + kChunk - 1) / kChunk);
+void fillRows(Lights lights, const Binning& binning, Rows& rows) {
+  std::array<std::array<Bin, kBins>, 3> bins;
+  for (const LightTreeInput& light : lights)
+    for (glm::length_t axis = 0; axis < 3; ++axis)
+      if (binning.scale[axis] > 0.0f) bins[static_cast<std::size_t>(axis)][binning.of(light.bounds, axis)].add(light.bounds);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t bin = 0; bin < binning.bins; ++bin)
+      if (bins[axis][bin].count > 0) add(rows[axis][bin], bins[axis][bin].bounds());
+}
+
+// By chunks that do not depend on the number of cores.
+Rows fillRows(Lights lights, const Binning& binning) {
+  Rows rows;
+  if (lights.size() <= kChunk) {
+    fillRows(lights, binning, rows);
+    return rows;
+  }
+  std::vector<Rows> parts((lights.size() + kChunk - 1) / kChunk);
   parallelFor(parts.size(), [&](std::size_t part) {
-    const std::size_t end = std::min(lights.size(), (part + 1) * kChunk);
-    for (std::size_t i = part * kChunk; i < end; ++i)
-      for (glm::length_t axis = 0; axis < 3; ++axis)
-        if (binning.scale[axis] > 0.0f)
-          parts[part][static_cast<std::size_t>(axis)][binning.of(lights[i].bounds, axis)].add(lights[i].bounds, 1);
+    fillRows(lights.subspan(part * kChunk, std::min(kChunk, lights.size() - part * kChunk)), binning, parts[part]);
   });
-  Bins bins = parts[0];
-  for (std::size_t part = 1; part < parts.size(); ++part)
+  for (const Rows& part : parts)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t bin = 0; bin < kBins; ++bin) {
-        const Bin& more = parts[part][axis][bin];
-        if (more.count > 0) bins[axis][bin].add(more.bounds, more.count);
-      }
-  return bins;
+      for (std::size_t bin = 0; bin < binning.bins; ++bin) add(rows[axis][bin], part[axis][bin]);
+  return rows;
 }
 
 // The cheapest border between bins: equation 2, regularised by the extents.
-Split cheapest(const Bins& bins, const vec3& extent) {
+Split cheapest(const Rows& rows, std::size_t bins, const vec3& extent) {
   const float longest = std::max({extent.x, extent.y, extent.z});
   Split best;
   double least = std::numeric_limits<double>::infinity();
   for (glm::length_t axis = 0; axis < 3; ++axis) {
     if (!(extent[axis] > 0.0f)) continue;
-    const std::array<Bin, kBins>& row = bins[static_cast<std::size_t>(axis)];
+    const Row& row = rows[static_cast<std::size_t>(axis)];
     std::array<double, kBins> above{};  // of bins from i on
-    Bin right, left;
-    for (std::size_t i = kBins; i-- > 1;) {
-      if (row[i].count > 0) right.add(row[i].bounds, row[i].count);
-      above[i] = right.count > 0 ? cost(right.bounds) : -1.0;
+    LightBounds right, left;
+    for (std::size_t i = bins; i-- > 1;) {
+      above[i] = i + 1 < bins ? above[i + 1] : -1.0;
+      if (!(row[i].intensity > 0.0f)) continue;
+      add(right, row[i]);
+      above[i] = cost(right);
     }
     const double regular = static_cast<double>(longest) / extent[axis];
-    for (std::size_t i = 0; i + 1 < kBins; ++i) {
-      if (row[i].count > 0) left.add(row[i].bounds, row[i].count);
-      else continue;  // the border after an empty bin is the one before it
+    for (std::size_t i = 0; i + 1 < bins; ++i) {
+      if (!(row[i].intensity > 0.0f)) continue;  // the border after an empty bin is the one before it
+      add(left, row[i]);
       if (above[i + 1] < 0.0) break;
-      const double sum = regular * (cost(left.bounds) + above[i + 1]);
+      const double sum = regular * (cost(left) + above[i + 1]);
       if (sum < least) {
         least = sum;
         best = {axis, i};
@@ -122,10 +162,6 @@ class Builder {
     std::size_t below;  // where its children are, and then all below them
     int depth;
   };
-  struct Planned {
-    std::size_t count;  // of the first child
-  };
-
   std::size_t countReach(LightReach reach) const {
     return static_cast<std::size_t>(std::ranges::count(lights_, reach, &LightTreeInput::reach));
   }
@@ -135,8 +171,7 @@ class Builder {
     return {r.first + count, r.count - count, r.below + 1, r.below + 2 * count, r.depth + 1};
   }
 
-  // Lights of different reach part first.
-  bool partsReach(const Range& r) const { return reachBorder(r) > 0; }
+  // Lights of different reach part first: where, or 0.
   std::size_t reachBorder(const Range& r) const {
     for (const std::size_t border : {infinite_, environments_})
       if (r.first < border && border < r.first + r.count) return border - r.first;
@@ -150,8 +185,8 @@ class Builder {
     const Lights lights = lights_.subspan(r.first, r.count);
     Bounds3 centers;
     for (const LightTreeInput& light : lights) centers.extend(light.bounds.box.center());
-    const Binning binning(centers);
-    const Split best = cheapest(fillBins(lights, binning), centers.extent());
+    const Binning binning(centers, r.count);
+    const Split best = cheapest(fillRows(lights, binning), binning.bins, centers.extent());
     if (best.axis == 3) return r.count / 2;
     const auto isFirst = [&](const LightTreeInput& light) { return binning.of(light.bounds, best.axis) <= best.bin; };
     return static_cast<std::size_t>(std::partition(lights.begin(), lights.end(), isFirst) - lights.begin());
@@ -159,13 +194,13 @@ class Builder {
 
   // Splits large ranges one after the other, each by all cores; what is small enough becomes a task.
   void plan(const Range& r) {
-    if (r.count <= kSubtree && !partsReach(r)) {
+    if (r.count <= kSubtree && reachBorder(r) == 0) {
       subtrees_.push_back(r);
       subtreeBounds_.emplace_back();
       return;
     }
     const std::size_t count = split(r);
-    planned_.push_back({count});
+    planned_.push_back(count);
     plan(firstChild(r, count));
     plan(secondChild(r, count));
   }
@@ -181,10 +216,10 @@ class Builder {
   // The nodes above the subtrees, in the order in which they were planned.
   LightBounds finish(const Range& r) {
     if (nextSubtree_ < subtrees_.size() && subtrees_[nextSubtree_].node == r.node) return subtreeBounds_[nextSubtree_++];
-    const std::size_t count = planned_[nextPlanned_++].count;
+    const std::size_t count = planned_[nextPlanned_++];
     const LightBounds first = finish(firstChild(r, count));
     const LightBounds second = finish(secondChild(r, count));
-    if (partsReach(r)) nodes_[r.below].link |= shared::kLightNodeShare;
+    if (reachBorder(r) > 0) nodes_[r.below].link |= shared::kLightNodeShare;
     return write(r, unite(first, second), static_cast<std::uint32_t>(r.below));
   }
 
@@ -202,7 +237,7 @@ class Builder {
   std::size_t infinite_ = 0;      // then directional lights
   std::vector<Range> subtrees_;
   std::vector<LightBounds> subtreeBounds_;
-  std::vector<Planned> planned_;
+  std::vector<std::size_t> planned_;  // sizes of first children
   std::size_t nextSubtree_ = 0;
   std::size_t nextPlanned_ = 0;
 };
