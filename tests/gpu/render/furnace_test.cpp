@@ -102,6 +102,31 @@ TEST(AlbedoSeries, NaiveAgrees) {
   expectUniform(renderPicture(inside(sphere(vec3(0.0f), 1.0f, 2), 1.0f), with("naive", {"bounces=12"})), series(12), {.error = 0.01});
 }
 
+// Russian roulette from the first event on changes no mean. The surface has two lobes of very different weight, so that
+// a roulette that used the lobe's number would show.
+TEST(AlbedoSeries, RouletteChangesNoMean) {
+  scene::Material m;
+  m.baseColor = {0.3f, 0.3f, 0.3f, 1.0f};
+  m.metallic = 0.0f;
+  m.ior = 3.0f;
+  m.roughness = 0.5f;
+  m.emissive = vec3(1.0f);
+  SceneBuilder scene;
+  scene.add(sphere(vec3(0.0f), 1.0f, 2), m).camera(perspective({0.1f, -0.2f, 0.05f}, {1, 1, 1}, 90.0f));
+  const auto meanWith = [&](const char* start) {
+    PictureOptions options = with("pathtracer", {"bounces=6", std::string("roulette_start=") + start});
+    options.batches = 32;
+    const Picture picture = renderPicture(scene, options);
+    Moments mean;  // the pixels' scatter is more than the error
+    for (std::uint32_t y = 0; y < picture.height(); ++y)
+      for (std::uint32_t x = 0; x < picture.width(); ++x) mean.add(picture.at(x, y, 0).mean());
+    return mean;
+  };
+  const Moments without = meanWith("64"), always = meanWith("1");
+  EXPECT_GT(pValue(without, always, 1e-5), 0.001) << without.mean() << " and " << always.mean();
+  EXPECT_LT(always.standardError(), 0.02 * always.mean());
+}
+
 // Light sampling has to choose between 1280 triangles and the environment.
 TEST(AlbedoSeries, EmissionAddsToTheSky) {
   scene::Material m = lambert(kAlbedo);
