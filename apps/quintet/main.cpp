@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "commands.h"
 #include "gpu/driver_environment.h"
 #include "signals.h"
@@ -83,6 +84,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);
   app::installSignalHandlers();
   try {
+    returnLargeBlocksAtOnce();
     gpu::prepareDriverEnvironment();  // before there are other threads
     return app::dispatch({argv + std::min(argc, 1), argv + argc});
   } catch (const UsageError& error) {

@@ -125,6 +125,8 @@ void Session::loadScene() {
   sceneLoaded_ = true;
   record_.loadSeconds = sceneInfo_.loadSeconds;
   record_.buildSeconds = building.seconds();
+  loaded = {};
+  returnFreedMemory();
 }
 
 void Session::describe(const scene::Scene& scene, const ChosenEnvironment& environment) {

@@ -28,6 +28,13 @@ std::uint64_t statusBytes(std::string_view key) {
 std::uint64_t residentBytes() { return statusBytes("VmRSS:"); }
 std::uint64_t peakResidentBytes() { return statusBytes("VmHWM:"); }
 
+void returnLargeBlocksAtOnce() {
+#if defined(__GLIBC__)
+  constexpr int kLargeBytes = 4 << 20;
+  ::mallopt(M_MMAP_THRESHOLD, kLargeBytes);
+#endif
+}
+
 void returnFreedMemory() {
 #if defined(__GLIBC__)
   ::malloc_trim(0);

@@ -11,6 +11,9 @@ std::uint64_t residentBytes();
 // The most that it ever was since the process began.
 std::uint64_t peakResidentBytes();
 
+// From now on large blocks go back to the system when they are freed; glibc would learn from the first ones to keep them.
+// For a program's beginning.
+void returnLargeBlocksAtOnce();
 // Gives memory that was freed, but kept for later, back to the system.
 void returnFreedMemory();
 

@@ -4,6 +4,7 @@
 #include <sched.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -38,6 +39,37 @@ TEST(ParallelTest, LoopsNest) {
   EXPECT_THROW(
       parallelFor(4, [](std::size_t) { parallelFor(4, [](std::size_t) { throw std::logic_error("inner"); }); }),
       std::logic_error);
+}
+
+TEST(ParallelTest, ALoopInsideALoopOfOneHasTheOtherCores) {
+  if (hardwareThreads() < 2) GTEST_SKIP() << "one core";
+  std::atomic<int> inside{0};
+  std::atomic<bool> together{false};
+  parallelFor(1, [&](std::size_t) {
+    parallelFor(2, [&](std::size_t) {
+      ++inside;
+      for (int wait = 0; wait < 5000 && !together; ++wait) {  // until the other one is here
+        if (inside == 2) together = true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    });
+  });
+  EXPECT_TRUE(together);
+}
+
+TEST(ParallelTest, RangesCoverAllAndCopyIsACopy) {
+  for (const std::size_t count : {0u, 1u, 9u, 10u, 11u, 1005u}) {
+    std::vector<std::atomic<int>> calls(count);
+    parallelRanges(count, [&](std::size_t first, std::size_t last) {
+      EXPECT_LE(last - first, 10u);
+      for (std::size_t i = first; i < last; ++i) ++calls.at(i);
+    }, 10);
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(calls[i], 1) << i << " of " << count;
+  }
+  std::vector<std::byte> from((std::size_t{9} << 20) + 3), to(from.size());
+  for (std::size_t i = 0; i < from.size(); ++i) from[i] = static_cast<std::byte>(i * 7 + i / 4096);
+  parallelCopy(to.data(), from);
+  EXPECT_EQ(from, to);
 }
 
 TEST(ParallelTest, UsesTheCoresOfTheProcess) {
