@@ -86,11 +86,8 @@ void Checkpoint::checkPlace(const FilmFile& file, const RenderLimits& limits) co
   const SampleRange range = ranges.front();
   if (ranges.size() > 1 || range.begin != limits.begin)
     throw FileError(path, fmt::format("holds samples {}; those from {} on are wanted", rangesText(ranges), limits.begin));
-  if (!limits.samples || range.end == *limits.samples) return;
-  if (range.end > *limits.samples)
+  if (limits.samples && range.end > *limits.samples)
     throw FileError(path, fmt::format("holds samples {}; only those up to {} are wanted", rangesText(ranges), *limits.samples - 1));
-  if (range.end % kBatchSamples != 0)
-    throw FileError(path, fmt::format("ends within a batch of {} samples, with {}: nothing can follow", kBatchSamples, range.end));
 }
 
 void Checkpoint::save(const RenderOutcome& outcome) {
@@ -114,8 +111,13 @@ void Checkpoint::afterBatch(const RenderOutcome& outcome) {
   std::fflush(stderr);
 }
 
+// Somebody may want to go on.
+bool Checkpoint::isKept(const RenderOutcome& outcome) const {
+  return outcome.interrupted || outcome.missed || options_.farm.keepCheckpoint;
+}
+
 void Checkpoint::afterRendering(const RenderOutcome& outcome) {
-  if (outcome.interrupted || options_.farm.keepCheckpoint) keep(outcome);
+  if (isKept(outcome)) keep(outcome);
 }
 
 void Checkpoint::keep(const RenderOutcome& outcome) {
@@ -123,7 +125,7 @@ void Checkpoint::keep(const RenderOutcome& outcome) {
 }
 
 void Checkpoint::afterPicture(const RenderOutcome& outcome) {
-  if (!active() || outcome.interrupted || options_.farm.keepCheckpoint) return;
+  if (!active() || isKept(outcome)) return;
   std::error_code failed;
   std::filesystem::remove(options_.farm.checkpointFile, failed);
   if (failed) session_.warnings().add(fmt::format("{}: cannot be removed: {}", options_.farm.checkpointFile.string(), failed.message()));

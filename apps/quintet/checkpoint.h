@@ -35,6 +35,7 @@ class Checkpoint {
   void resume(RenderLimits& limits);
   void checkPlace(const render::FilmFile& file, const RenderLimits& limits) const;
   void save(const RenderOutcome& outcome);
+  bool isKept(const RenderOutcome& outcome) const;
 
   Session& session_;
   const RenderOptions& options_;

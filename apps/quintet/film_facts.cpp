@@ -97,14 +97,15 @@ FilmFacts filmIdentity(const FilmSource& source, const RenderOptions& options) {
   facts.emplace_back("size", fmt::format("{}x{}", source.size.x, source.size.y));
   facts.emplace_back("region", fmt::format("{},{},{},{}", region.x, region.y, region.width, region.height));
   facts.emplace_back("seed", fmt::format("{}", options.seed));
+  // A sampler may place its points for the number that there will be.
+  facts.emplace_back("samples planned", options.samples ? fmt::format("{}", *options.samples) : "any number");
   facts.emplace_back("transparent", options.transparent ? "yes" : "no");
   facts.emplace_back("outputs", fmt::format("{}", fmt::join(outputs, ", ")));
   return facts;
 }
 
 FilmFacts filmNotes(const program::Program& program, const RenderOptions& options, const RenderRecord& record) {
-  FilmFacts facts{{"samples planned", options.samples ? fmt::format("{}", *options.samples) : ""},
-                  {"command", record.commandLine},
+  FilmFacts facts{{"command", record.commandLine},
                   {"scene", record.scene},
                   {"environment", record.environment},
                   {"camera", record.camera},
@@ -154,7 +155,7 @@ void fillRecord(RenderRecord& record, const render::FilmFile& file) {
 }
 
 std::optional<std::uint64_t> plannedSamples(const render::FilmFile& file) {
-  const std::string* text = render::findFact(file.notes, "samples planned");
+  const std::string* text = render::findFact(file.identity, "samples planned");
   if (!text || text->empty() || text->size() > 9 || text->find_first_not_of("0123456789") != text->npos)
     return std::nullopt;
   return std::stoull(*text);

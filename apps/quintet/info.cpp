@@ -15,6 +15,7 @@ constexpr const char* kExamples =
     "  quintet info scene.glb     counts, cameras, extensions; what was ignored or repaired\n"
     "  quintet info out.png       size, format, and how Quintet rendered it\n"
     "  quintet info out.exr       layers, channels, types, compression, windows, attributes\n"
+    "  quintet info part.qfilm    which samples of which rendering\n"
     "  quintet info --json | jq '.devices[].name'\n";
 
 }  // namespace

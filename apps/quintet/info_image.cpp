@@ -5,6 +5,7 @@
 #include "info.h"
 #include "io/codec.h"
 #include "io/exr.h"
+#include "render/film_file.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -23,6 +24,7 @@ const char* typeText(io::PixelType type) {
 
 std::string imageInfo(const std::filesystem::path& file, std::span<const std::byte> bytes, bool json) {
   if (io::isOpenExr(bytes)) return exrInfo(file, bytes, json);  // its layers need not make a picture
+  if (render::isFilmFile(bytes)) return filmInfo(file, bytes, json);
   const io::ImageInfo info = io::probeImage(bytes, file.string());
   const io::Metadata metadata = io::readMetadata(bytes, file.string());
   if (json) {

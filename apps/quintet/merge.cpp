@@ -94,8 +94,6 @@ class Merger {
       return parseNumber("seconds", factText(file.notes, "seconds"), 0.0, 1e12);
     };
     setNote(whole_, "seconds", fmt::format("{:.3f}", seconds(whole_) + seconds(part)));
-    if (plannedSamples(part) > plannedSamples(whole_))
-      setNote(whole_, "samples planned", fmt::format("{}", *plannedSamples(part)));
   }
 
   Progress& progress_;

@@ -249,6 +249,10 @@ std::vector<std::byte> encodeFilm(const FilmFile& file) {
   return out;
 }
 
+bool isFilmFile(Bytes bytes) {
+  return bytes.size() >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) == 0;
+}
+
 FilmFile decodeFilm(Bytes bytes, const std::filesystem::path& file) {
   const Parts parts = checkedParts(bytes, file);
   return Reader(file, parts.header, parts.payload).read();

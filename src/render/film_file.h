@@ -49,6 +49,9 @@ std::vector<FactDifference> differences(const FilmFacts& left, const FilmFacts& 
 
 std::vector<std::byte> encodeFilm(const FilmFile& file);
 
+// It begins like one.
+bool isFilmFile(std::span<const std::byte> bytes);
+
 // Throws FileError that says what is wrong: not a film file, another version, truncated, damaged.
 FilmFile decodeFilm(std::span<const std::byte> bytes, const std::filesystem::path& file);
 
