@@ -13,6 +13,11 @@ const bool kHasThinTransmission = false;  // thin walls
 #else
 const bool kHasThinTransmission = true;
 #endif
+#ifdef QUINTET_NO_PANES
+const bool kHasPanes = false;  // thin walls that light goes straight through
+#else
+const bool kHasPanes = true;
+#endif
 #ifdef QUINTET_NO_CLEARCOAT
 const bool kHasClearcoat = false;
 #else
@@ -52,8 +57,9 @@ const bool kHasAlpha = true;
 #define QUINTET_TEXTURE_SLOTS 0xFFFFFFFFu
 #endif
 const uint kTextureSlots = QUINTET_TEXTURE_SLOTS;  // bit k: a material has texture kTexture… k
-// QUINTET_NO_SEEDS, QUINTET_NO_PROCEDURALS (no solids, no trees), QUINTET_NO_CSG, QUINTET_NO_TORUS and QUINTET_NO_PROCEDURAL_ALPHA are
-// asked by #ifdef: they also take members and stages away.
+// QUINTET_NO_SEEDS, QUINTET_NO_TRANSMITTANCE (shadow rays arrive or do not: neither panes nor alpha blend),
+// QUINTET_NO_PROCEDURALS (no solids, no trees), QUINTET_NO_CSG, QUINTET_NO_TORUS, QUINTET_NO_PROCEDURAL_ALPHA and
+// QUINTET_NO_PROCEDURAL_PANES are asked by #ifdef: they also take members and stages away.
 const bool kHasTransmission = kHasSolidTransmission || kHasThinTransmission;
 
 #endif

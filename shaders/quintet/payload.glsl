@@ -18,9 +18,12 @@ struct HitPayload {
 };
 
 struct ShadowPayload {
-  uint visible;  // set by the miss shader
+  uint visible;        // set by the miss shader
 #ifndef QUINTET_NO_SEEDS
-  uint seed;     // in: as above
+  uint seed;           // in: as above
+#endif
+#ifndef QUINTET_NO_TRANSMITTANCE
+  vec3 transmittance;  // any-hit shaders multiply it by what their surface lets through
 #endif
 };
 

@@ -87,7 +87,7 @@ Surface fetchSurface(HitPayload hit, vec3 wo) {
   const vec3 edge2 = rowsTimesVector(instance.worldFromObject, p2 - p0);
   const float size = max(maxComponent(abs(edge1)), maxComponent(abs(edge2)));
   vec3 front = safeNormalize(cross(edge1 / size, edge2 / size), wo);
-  if (instance.mirrored != 0u) front = -front;
+  if ((instance.flags & kInstanceMirrored) != 0u) front = -front;
   s.frontFace = dot(front, wo) >= 0.0;
   s.geometricNormal = s.frontFace ? front : -front;
   s.error = surfaceError(instance, p0, p1, p2, s.position, front);
@@ -106,7 +106,7 @@ Surface fetchSurface(HitPayload hit, vec3 wo) {
     Vec4Array tangents = Vec4Array(geometry.tangents);
     const vec4 t = b.x * tangents.at[v.x] + b.y * tangents.at[v.y] + b.z * tangents.at[v.z];
     const vec3 world = rowsTimesVector(instance.worldFromObject, t.xyz);
-    const float handedness = (t.w < 0.0 ? -1.0 : 1.0) * (instance.mirrored != 0u ? -1.0 : 1.0);
+    const float handedness = (t.w < 0.0 ? -1.0 : 1.0) * ((instance.flags & kInstanceMirrored) != 0u ? -1.0 : 1.0);
     s.tangent = safeNormalize(world - n * dot(n, world), anyTangent(n));
     s.bitangent = handedness * cross(n, s.tangent);
   } else {

@@ -54,12 +54,25 @@ layout(location = 1) rayPayloadEXT ShadowPayload shadowPayload;
 bool traceVisible(vec3 origin, vec3 direction, float tmax, uint seed) {
   shadowPayload.visible = 0u;
   setRaySeed(shadowPayload, seed);
+#ifndef QUINTET_NO_TRANSMITTANCE
+  shadowPayload.transmittance = vec3(1.0);
+#endif
   traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, kRay_shadow,
               kRayTypeCount, kMiss_shadow, origin, 0.0, direction, tmax, 1);
 #ifdef QUINTET_RECORD_RAYS
   recordRay(origin, direction, tmax, kRecordShadow, shadowPayload.visible == 0u);
 #endif
   return shadowPayload.visible != 0u;
+}
+
+// The part of the light at t = tmax that arrives straight at t = 0: panes and alpha blend tint it, if the program's any-hit
+// shaders are those of quintet/stages/transmittance.rahit; all other surfaces block it.
+vec3 traceTransmittance(vec3 origin, vec3 direction, float tmax, uint seed) {
+  const bool visible = traceVisible(origin, direction, tmax, seed);
+#ifndef QUINTET_NO_TRANSMITTANCE
+  if (visible) return shadowPayload.transmittance;
+#endif
+  return vec3(visible ? 1.0 : 0.0);
 }
 #endif
 

@@ -97,7 +97,7 @@ class Geometry {
         trace.flags.must(geometry.procedural() ? kFlagSkipBoxes : kFlagSkipTriangles))
       return;
     Meeting meeting{&site, &instance, &geometry, {}, false, false};
-    const bool built = (!geometry.alpha && !instance.forceNoOpaque) || instance.forceOpaque;
+    const bool built = (geometry.opaque() && !instance.forceNoOpaque) || instance.forceOpaque;
     meeting.opaque = (built && !trace.flags.may(kFlagNoOpaque)) || trace.flags.must(kFlagOpaque);
     meeting.notOpaque = (!built && !trace.flags.may(kFlagOpaque)) || trace.flags.must(kFlagNoOpaque);
     if ((meeting.opaque && trace.flags.must(kFlagCullOpaque)) ||

@@ -157,6 +157,8 @@ std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry) {
   if (auto i = first([&](const HitGroup& g) { return fits(g) && contains(g.material, geometry.material); })) return *i;
   if (auto i = first([&](const HitGroup& g) { return contains(g.geometry, kind); })) return *i;
   if (auto i = first([&](const HitGroup& g) { return boxes && contains(g.geometry, "procedural"); })) return *i;
+  if (geometry.thin && !geometry.alpha)
+    if (auto i = first([&](const HitGroup& g) { return fits(g) && contains(g.geometry, "thin"); })) return *i;
   if (auto i = first([&](const HitGroup& g) { return fits(g) && contains(g.geometry, opacity); })) return *i;
   if (auto i = first([&](const HitGroup& g) { return !isBound(g) && fits(g); })) return *i;
   if (auto i = first([&](const HitGroup& g) { return !isBound(g); })) return *i;

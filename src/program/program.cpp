@@ -41,7 +41,7 @@ bool isLibraryStage(const std::string& file) { return file.size() > 2 && file.fr
 
 const std::vector<std::string>& geometryClasses() {
   static const std::vector<std::string> kClasses{"triangles",  "solids", "csg",  "custom",
-                                                 "procedural", "opaque", "alpha"};
+                                                 "procedural", "opaque", "alpha", "thin"};
   return kClasses;
 }
 

@@ -42,7 +42,8 @@ struct HitGroup {
   int line = 0;
 };
 
-// What HitGroup::geometry may name: "triangles", "solids", "csg", "custom", "procedural" (any boxes), "opaque", "alpha".
+// What HitGroup::geometry may name: "triangles", "solids", "csg", "custom", "procedural" (any boxes), "opaque", "alpha",
+// "thin" (shadow rays may pass; without a group of this class it counts as opaque).
 const std::vector<std::string>& geometryClasses();
 
 // A ray type; its position is its offset in the shader binding table and the index of its miss shader.

@@ -14,9 +14,12 @@ enum class GeometryKind { triangles, solids, csg, custom };
 // One geometry of a BLAS; its position in SceneFacts::geometries is its position in the hit records.
 struct GeometryFacts {
   GeometryKind kind = GeometryKind::triangles;
-  bool alpha = false;    // its material needs an alpha test: built without the opaque flag
+  bool alpha = false;    // its material needs an alpha test
   std::string name;      // of the primitive set or mesh; may be empty
   std::string material;  // name; may be empty
+  bool thin = false;     // its material has smooth thin walls, which shadow rays may pass
+  bool tints = false;    // any-hit shaders multiply what it leaves of light (thin, blend): built to be asked once
+  bool opaque() const { return !alpha && !thin; }  // built with the opaque flag: no any-hit shader runs
   bool procedural() const { return kind != GeometryKind::triangles; }
 };
 

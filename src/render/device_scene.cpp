@@ -174,13 +174,15 @@ struct DeviceScene::Impl {
         part.triangles = geometry.arrays[k].triangles;
         part.positionsAddress = geometry.geometries[k].positions;
         part.trianglesAddress = geometry.geometries[k].triangles;
-        part.opaque = !facts.geometries[k++].alpha;
+        part.opaque = facts.geometries[k].opaque();
+        part.singleAnyHit = facts.geometries[k++].tints;
       }
       for (const scene::PrimitiveSet& primitives : scene.meshes[m].primitiveSets) {
         rt::GeometryInput& part = input.geometries.emplace_back();
         part.kind = rt::GeometryKind::boxes;
         part.boxes = boxes.emplace_back(boxesForBuild(primitives));
-        part.opaque = !facts.geometries[k++].alpha;
+        part.opaque = facts.geometries[k].opaque();
+        part.singleAnyHit = facts.geometries[k++].tints;
       }
     }
     blas = rt::BlasBuilder(context).build(inputs, &statistics.build);

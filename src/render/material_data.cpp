@@ -32,6 +32,7 @@ std::uint32_t materialFlags(const scene::Material& m) {
   if (m.thickness <= 0.0f) flags |= shared::kMaterialThin;
   if (glm::any(glm::greaterThan(m.emissive, vec3(0.0f)))) flags |= shared::kMaterialEmissive;
   if (m.doubleSided) flags |= shared::kMaterialDoubleSided;
+  if (isPane(m)) flags |= shared::kMaterialPane;
   return flags;
 }
 
@@ -80,21 +81,62 @@ bool canBeTransparent(const scene::Scene& scene, const scene::Material& m) {
   return image != scene::kNone && scene.images[static_cast<std::size_t>(image)].image.hasAlpha();
 }
 
+const scene::Material* find(const scene::Scene& scene, int material) {
+  return material == scene::kNone ? nullptr : &scene.materials[static_cast<std::size_t>(material)];
+}
+
+bool anyTransparent(const scene::Geometry& geometry) {
+  return std::ranges::any_of(geometry.colors, [](const vec4& c) { return c.a < 1.0f; });
+}
+
+// Does any material of the set satisfy the condition? A custom set has one material; solids have their own.
+template <typename Condition>
+bool anyMaterial(const scene::Scene& scene, const scene::PrimitiveSet& set, Condition condition) {
+  const auto fits = [&](int material) {
+    const scene::Material* m = find(scene, material);
+    return m && condition(*m);
+  };
+  return fits(set.material) || std::ranges::any_of(set.primitives, fits, &scene::Primitive::material);
+}
+
 }  // namespace
 
 bool needsAlphaTest(const scene::Scene& scene, const scene::Geometry& geometry) {
-  if (geometry.material == scene::kNone) return false;
-  const scene::Material& m = scene.materials[static_cast<std::size_t>(geometry.material)];
-  if (m.alphaMode == scene::AlphaMode::opaque) return false;
-  if (std::any_of(geometry.colors.begin(), geometry.colors.end(), [](const vec4& c) { return c.a < 1.0f; })) return true;
-  return canBeTransparent(scene, m);
+  const scene::Material* m = find(scene, geometry.material);
+  if (!m || m->alphaMode == scene::AlphaMode::opaque) return false;
+  return anyTransparent(geometry) || canBeTransparent(scene, *m);
 }
 
 bool needsAlphaTest(const scene::Scene& scene, const scene::PrimitiveSet& set) {
-  const auto transparent = [&](int material) {
-    return material != scene::kNone && canBeTransparent(scene, scene.materials[static_cast<std::size_t>(material)]);
-  };
-  return transparent(set.material) || std::ranges::any_of(set.primitives, transparent, &scene::Primitive::material);
+  return anyMaterial(scene, set, [&](const scene::Material& m) { return canBeTransparent(scene, m); });
+}
+
+bool isPane(const scene::Material& m) {
+  // A lobe below alpha = roughness² = 5e-4 (kDeltaAlpha) is a delta; a texture can make it smooth in places.
+  const bool smooth = m.roughness * m.roughness < 5.001e-4f || m.metallicRoughnessTexture.used();
+  const bool metal = m.metallic >= 1.0f && !m.metallicRoughnessTexture.used();
+  return m.transmission > 0.0f && m.thickness <= 0.0f && smooth && !metal && !m.unlit;
+}
+
+bool isPane(const scene::Scene& scene, const scene::Geometry& geometry) {
+  const scene::Material* m = find(scene, geometry.material);
+  return m && isPane(*m);
+}
+
+bool isPane(const scene::Scene& scene, const scene::PrimitiveSet& set) {
+  return set.kind != scene::PrimitiveSetKind::custom && anyMaterial(scene, set, [](const scene::Material& m) { return isPane(m); });
+}
+
+bool tintsShadows(const scene::Scene& scene, const scene::Geometry& geometry) {
+  const scene::Material* m = find(scene, geometry.material);
+  return m && (isPane(*m) || (m->alphaMode == scene::AlphaMode::blend && needsAlphaTest(scene, geometry)));
+}
+
+bool tintsShadows(const scene::Scene& scene, const scene::PrimitiveSet& set) {
+  if (set.kind == scene::PrimitiveSetKind::custom) return false;
+  return anyMaterial(scene, set, [&](const scene::Material& m) {
+    return isPane(m) || (m.alphaMode == scene::AlphaMode::blend && canBeTransparent(scene, m));
+  });
 }
 
 }  // namespace quintet::render

@@ -18,5 +18,15 @@ shared::MaterialData makeMaterial(const scene::Material& material, const Texture
 bool needsAlphaTest(const scene::Scene& scene, const scene::Geometry& geometry);
 bool needsAlphaTest(const scene::Scene& scene, const scene::PrimitiveSet& set);
 
+// True if light may go straight through the surface: a thin wall that is smooth, at least in places. Shadow rays pass
+// it and lose what it does not let through.
+bool isPane(const scene::Material& material);
+bool isPane(const scene::Scene& scene, const scene::Geometry& geometry);
+bool isPane(const scene::Scene& scene, const scene::PrimitiveSet& set);
+
+// True if a shadow ray may keep part of its light here: panes and alpha blend.
+bool tintsShadows(const scene::Scene& scene, const scene::Geometry& geometry);
+bool tintsShadows(const scene::Scene& scene, const scene::PrimitiveSet& set);
+
 }  // namespace quintet::render
 #endif

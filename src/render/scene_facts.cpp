@@ -33,9 +33,11 @@ program::SceneFacts sceneFacts(const scene::Scene& scene) {
   for (const scene::Mesh& mesh : scene.meshes) {
     first.push_back(static_cast<std::uint32_t>(facts.geometries.size()));
     for (const scene::Geometry& g : mesh.geometries)
-      facts.geometries.push_back({program::GeometryKind::triangles, needsAlphaTest(scene, g), mesh.name, materialName(scene, g.material)});
+      facts.geometries.push_back({program::GeometryKind::triangles, needsAlphaTest(scene, g), mesh.name,
+                                  materialName(scene, g.material), isPane(scene, g), tintsShadows(scene, g)});
     for (const scene::PrimitiveSet& set : mesh.primitiveSets)
-      facts.geometries.push_back({kindOf(set.kind), needsAlphaTest(scene, set), set.name, materialName(scene, materialOf(set))});
+      facts.geometries.push_back({kindOf(set.kind), needsAlphaTest(scene, set), set.name,
+                                  materialName(scene, materialOf(set)), isPane(scene, set), tintsShadows(scene, set)});
   }
   for (const scene::Instance& instance : scene.instances) {
     const auto mesh = static_cast<std::size_t>(instance.mesh);

@@ -15,6 +15,7 @@ struct ProceduralFeatures {
   bool csg = false;
   bool torus = false;
   bool alpha = false;
+  bool panes = false;
   bool lights = false;  // solids, not trees
 };
 
@@ -30,6 +31,7 @@ ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
       features.lights |= set.kind == scene::PrimitiveSetKind::solids && std::ranges::any_of(set.primitives, [&](const scene::Primitive& p) {
         return p.material != scene::kNone && emits(scene.materials[static_cast<std::size_t>(p.material)]);
       });
+      features.panes |= isPane(scene, set);
       features.alpha |= set.kind != scene::PrimitiveSetKind::custom && needsAlphaTest(scene, set);
     }
   }
@@ -55,6 +57,13 @@ bool anyGeometry(const scene::Scene& scene, Predicate predicate) {
   return std::ranges::any_of(scene.meshes, [&](const scene::Mesh& mesh) { return std::ranges::any_of(mesh.geometries, predicate); });
 }
 
+bool anyTintsShadows(const scene::Scene& scene) {
+  const auto tints = [&](const auto& geometry) { return tintsShadows(scene, geometry); };
+  return std::ranges::any_of(scene.meshes, [&](const scene::Mesh& mesh) {
+    return std::ranges::any_of(mesh.geometries, tints) || std::ranges::any_of(mesh.primitiveSets, tints);
+  });
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Scene& scene, const scene::Environment& environment) {
@@ -67,6 +76,8 @@ std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Sce
   };
   without("QUINTET_NO_SOLID_TRANSMISSION", any([](const scene::Material& m) { return m.transmission > 0.0f && m.thickness > 0.0f; }));
   without("QUINTET_NO_THIN_TRANSMISSION", any([](const scene::Material& m) { return m.transmission > 0.0f && !(m.thickness > 0.0f); }));
+  without("QUINTET_NO_PANES", any([](const scene::Material& m) { return isPane(m); }));
+  without("QUINTET_NO_TRANSMITTANCE", anyTintsShadows(scene));
   without("QUINTET_NO_CLEARCOAT", any([](const scene::Material& m) { return m.clearcoat > 0.0f; }));
   without("QUINTET_NO_TRIANGLE_LIGHTS", any(emits));
   without("QUINTET_NO_PUNCTUAL_LIGHTS", !scene.lights.empty());
@@ -76,6 +87,7 @@ std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Sce
   without("QUINTET_NO_CSG", procedural.csg);
   without("QUINTET_NO_TORUS", procedural.torus);
   without("QUINTET_NO_PROCEDURAL_ALPHA", procedural.alpha);
+  without("QUINTET_NO_PROCEDURAL_PANES", procedural.panes);
   without("QUINTET_NO_SOLID_LIGHTS", procedural.lights);
   without("QUINTET_NO_SEEDS", procedural.alpha || anyGeometry(scene, [&](const scene::Geometry& g) { return needsAlphaTest(scene, g); }));
   without("QUINTET_NO_VERTEX_COLORS", anyGeometry(scene, [](const scene::Geometry& g) { return !g.colors.empty(); }));

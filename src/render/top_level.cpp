@@ -14,7 +14,8 @@ void place(shared::InstanceData& data, const mat4& worldFromObject) {
     data.worldFromObject[i] = forward[i];
     data.objectFromWorld[i] = backward[i];
   }
-  data.mirrored = glm::determinant(mat3(worldFromObject)) < 0.0f ? 1 : 0;
+  data.flags &= ~shared::kInstanceMirrored;
+  if (glm::determinant(mat3(worldFromObject)) < 0.0f) data.flags |= shared::kInstanceMirrored;
 }
 
 }  // namespace
@@ -31,6 +32,7 @@ TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<c
     data.firstGeometry = places[i].firstGeometry;
     data.firstLightSlot = places[i].firstLightSlot;
     data.customIndex = instance.customIndex;
+    data.flags = (instance.flags & scene::kInstanceForceOpaque) != 0 ? shared::kInstanceOpaque : 0;
     place(data, worldFromObject);
     rt::InstanceInput& input = inputs_.emplace_back();
     input.worldFromObject = worldFromObject;

@@ -22,6 +22,7 @@ struct BsdfSample {
   float pdf;         // of all lobes together; 0 for a delta
   bool delta;
   bool transmitted;  // wi is on the other side
+  bool straight;     // wi = -wo: a pane, behind which the path goes on as if nothing but its weight had happened
 };
 
 // Is there anything but deltas, so that sampling lights makes sense?
@@ -56,11 +57,17 @@ float bsdfPdf(Bsdf b, vec3 wo, vec3 wi) {
   return density > 0.0 && density < 1e30 ? density : 0.0;
 }
 
+// What a pane, a smooth thin wall, lets straight through: the weight of that event without its chance. 0 for all other
+// surfaces. Shadow rays multiply the light by the same number.
+vec3 bsdfStraight(Bsdf b, float cosine) {
+  return kHasPanes && !b.refractive && b.transmissionDelta ? b.underCoat * thinTransmittance(b.thin, cosine) : vec3(0.0);
+}
+
 // The weight of a delta at its direction: b.chance goes in at the caller.
 vec3 bsdfDeltaWeight(Bsdf b, int lobe, float cosine, bool transmitted) {
   if (kHasClearcoat && lobe == 0) return vec3(clearcoatFresnel(b.clearcoat, cosine));
   if (!kHasTransmission || lobe == 1) return b.underCoat * specularFresnel(b.specular, cosine);
-  if (!kHasSolidTransmission || !b.refractive) return b.underCoat * thinTransmittance(b.thin, cosine);
+  if (!kHasSolidTransmission || !b.refractive) return bsdfStraight(b, cosine);
   DielectricSplit split = dielectricSplit(b.dielectric, cosine);
   return b.underCoat * (transmitted ? split.transmittance / (b.dielectric.eta * b.dielectric.eta * (1.0 - split.reflectChance))
                                     : split.reflectance / split.reflectChance);
@@ -89,6 +96,7 @@ bool bsdfSampleDirection(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s)
   else if (coat) s.wi = clearcoatSample(b.clearcoat, wo, m);
   else s.wi = lobe == 2 ? diffuseSample(u) : specularSample(b.specular, wo, m, uPart, u);
   s.transmitted = transmits && (!b.refractive || dot(s.wi, m) < 0.0);
+  s.straight = kHasPanes && transmits && !b.refractive && s.delta;
   s.pdf = 0.0;
   s.weight = s.delta ? bsdfDeltaWeight(b, lobe, dot(wo, m), s.transmitted) / b.chance[lobe] : vec3(0.0);
   // A microfacet may reflect below the surface (or the coat's), or refract above it.

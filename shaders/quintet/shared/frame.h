@@ -10,13 +10,17 @@
 
 QT_SHARED_BEGIN
 
+// InstanceData::flags
+QT_CONSTANT kInstanceMirrored = 1u;  // negative determinant: winding flips
+QT_CONSTANT kInstanceOpaque = 2u;    // forced to be: no any-hit shader runs
+
 // One per TLAS instance, indexed by gl_InstanceCustomIndexEXT.
 struct InstanceData {
   vec4 worldFromObject[3];  // rows of the affine matrix
   vec4 objectFromWorld[3];
   uint firstGeometry;       // GeometryData of geometry g: firstGeometry + g
   uint firstLightSlot;      // light slot of geometry g: firstLightSlot + g (Frame::lightSlots)
-  uint mirrored;            // 1: negative determinant (winding flips)
+  uint flags;               // kInstance…
   uint customIndex;         // the user's own: scene::Instance::customIndex
 };
 QT_SHARED_SIZE(InstanceData, 112);

@@ -23,6 +23,7 @@ QT_CONSTANT kMaterialBlend = 2u;        // a hit counts with probability alpha
 QT_CONSTANT kMaterialUnlit = 4u;        // base colour is the outgoing radiance
 QT_CONSTANT kMaterialThin = 8u;         // transmission without refraction (no volume)
 QT_CONSTANT kMaterialEmissive = 16u;    // emissive factor is not zero
+QT_CONSTANT kMaterialPane = 64u;        // thin, and smooth somewhere: light may go straight through
 QT_CONSTANT kMaterialDoubleSided = 32u;  // for the record: every surface is rendered on both sides
 
 // Bit kMaterialTextureShift + k of the flags is set if the k-th texture of MaterialData is there.
