@@ -65,6 +65,20 @@ TEST(HitGroup, AlphaBoxesGoByTheirClassWithoutAKind) {
   EXPECT_EQ(serving(p, boxes(GeometryKind::solids, "wood")), "any boxes");
 }
 
+TEST(HitGroup, ThinWallsAreOpaqueToProgramsWithoutTheClass) {
+  Program p;
+  p.hitGroups.emplace_back(group("alpha", false)).geometry = {"alpha"};
+  p.hitGroups.emplace_back(group("opaque", false)).geometry = {"opaque"};
+  GeometryFacts pane = triangles();
+  pane.thin = true;
+  EXPECT_EQ(serving(p, pane), "opaque");
+  p.hitGroups.emplace_back(group("thin", false)).geometry = {"thin"};
+  EXPECT_EQ(serving(p, pane), "thin");
+  EXPECT_EQ(serving(p, triangles()), "opaque");
+  pane.alpha = true;
+  EXPECT_EQ(serving(p, pane), "alpha");
+}
+
 TEST(HitGroup, TheFirstOfEqualsWins) {
   Program p;
   for (const char* name : {"first", "second"}) p.hitGroups.emplace_back(group(name, false)).material = {"glass"};
