@@ -23,7 +23,7 @@ SceneBuilder room() {
   return scene;
 }
 
-constexpr std::uint32_t kSide = 20;
+constexpr std::uint32_t kSide = 14;
 
 struct Runs {
   SceneBuilder scene = room();
@@ -55,9 +55,9 @@ double realError(const io::Image& image, const io::Image& exact) {
 
 TEST(StatedError, CoversTheRealOne) {
   Runs runs;
-  const io::Image exact = planeImage(runs.render(1000, 1500), 0);
+  const io::Image exact = planeImage(runs.render(1000, 500), 0);
   for (const std::uint32_t batches : {4u, 16u}) {
-    constexpr int kRuns = 30;
+    constexpr int kRuns = 20;
     int covered = 0;
     double stated = 0, real = 0;
     for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
@@ -77,7 +77,7 @@ TEST(StatedError, CoversTheRealOne) {
 
 TEST(StatedError, OfAdaptiveSamplingIsRightAndLower) {
   Runs runs;
-  const io::Image exact = planeImage(runs.render(1000, 1500), 0);
+  const io::Image exact = planeImage(runs.render(1000, 500), 0);
   render::RenderSettings settings = settingsFor(runs.scene.scene.cameras[0], runs.options);
   render::Renderer renderer(runs.device, runs.options.program, testCompiler(), nullptr, settings);
   for (int b = 0; b < 4; ++b) renderer.renderBatch();
