@@ -104,6 +104,17 @@ SceneBuilder forcedOpaque() {
   return scene;
 }
 
+// A lamp in a block of rough glass that absorbs: light samples at its surface look into the glass.
+SceneBuilder lampInRoughGlass() {
+  SceneBuilder scene = room();
+  scene::Material glass = clearGlass(1.3f, 1.0f);
+  glass.roughness = 0.6f;
+  glass.attenuationColor = {0.2f, 0.5f, 0.8f};
+  glass.attenuationDistance = 0.5f;
+  scene.add(box({-0.8f, 0.05f, -0.6f}, {0.8f, 1.2f, 0.8f}), glass);
+  return scene.add(quad({-0.4f, 0.5f, 0.0f}, {0.8f, 0, 0}, {0, 0.5f, 0.1f}), emitter({9.0f, 7.0f, 5.0f}));
+}
+
 struct Case {
   const char* name;
   SceneBuilder (*make)();
@@ -171,7 +182,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PaneWeights,
                          testing::Values(kOnePane, Case{"OnePaneOneBounce", onePane, 1, 96, 896}, Case{"TwoPanes", twoPanes, 3, 96, 896},
                                          kOneBounce, Case{"TexturedPane", texturedPane, 3, 96, 896},
                                          Case{"PaintedPane", paintedPane, 3, 96, 896}, Case{"Alpha", alpha, 3, 96, 896},
-                                         Case{"Bubbles", bubbles, 3, 96, 896}, Case{"ForcedOpaque", forcedOpaque, 2, 96, 896}),
+                                         Case{"Bubbles", bubbles, 3, 96, 896}, Case{"ForcedOpaque", forcedOpaque, 2, 96, 896},
+                                         Case{"LampInRoughGlass", lampInRoughGlass, 3, 96, 896}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 // pathtracer with `from` replaced by `to` in its ray generation shader.
