@@ -1,4 +1,5 @@
 // Long renderings: what is left on the disk when one ends too early, and that going on from there changes no pixel.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -163,6 +164,27 @@ TEST_F(Checkpoint, PartsHaveThemToo) {
   EXPECT_EQ(a.film.counts, b.film.counts);
   ASSERT_EQ(a.film.planes[0].sums.size(), b.film.planes[0].sums.size());
   EXPECT_EQ(std::memcmp(a.film.planes[0].sums.data(), b.film.planes[0].sums.data(), a.film.planes[0].sums.size() * 16), 0);
+}
+
+// Means, values of pixel centres, counted ids, rays: each goes on where it was.
+TEST_F(Checkpoint, LayersGoOnToo) {
+  const auto part = [&](const char* batches, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render", "scene.gltf", "-q", "--size", "16x12", "--spp", "16", "--aov", "albedo,depth,cryptomatte_object", "--batches", batches};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult result = quintet(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  part("0-3", {"-o", "whole.qfilm"});
+  part("0-1", {"-o", "a.qfilm", "--checkpoint-file", "c.qfilm", "--keep-checkpoint"});
+  part("0-3", {"-o", "b.qfilm", "--checkpoint-file", "c.qfilm", "--resume"});
+  const render::FilmFile whole = render::readFilm(folder_ / "whole.qfilm"), resumed = render::readFilm(folder_ / "b.qfilm");
+  render::FilmFile same = whole;
+  same.notes = resumed.notes;  // seconds, command
+  EXPECT_EQ(render::encodeFilm(same), render::encodeFilm(resumed));
+  const auto has = [&](auto member) {
+    return std::any_of(whole.film.planes.begin(), whole.film.planes.end(), [&](const render::FilmPlane& p) { return !(p.*member).empty(); });
+  };
+  EXPECT_TRUE(has(&render::FilmPlane::squares) && has(&render::FilmPlane::values) && has(&render::FilmPlane::coverage));
 }
 
 TEST_F(Checkpoint, OfAnotherRenderingAreRefusedWithTheDifference) {
