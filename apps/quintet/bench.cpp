@@ -136,6 +136,7 @@ Json measure(const BenchOptions& options) {
     const program::Program program = program::loadProgram(options.program);
     render::Renderer renderer(scene, program, bench.compiler, nullptr, bench.settings(program, bench.size));
     renderer.renderBatch(1);
+    renderer.finish();
   }
   result["warmFirstSampleSeconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - again).count();
   result["primitiveOrder"] = orderGain(bench, context);

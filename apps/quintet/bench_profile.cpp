@@ -57,10 +57,12 @@ Json profile(const Bench& bench, render::DeviceScene& scene) {
   settings.profile = true;
   render::Renderer renderer(scene, program, bench.compiler, nullptr, settings);
   renderer.renderBatch();  // the driver compiles, and the launches find their size
+  renderer.finish();
   const std::size_t warm = renderer.launches().size();
   const std::uint64_t raysBefore = renderer.rays().rays;
   const double wallBefore = renderer.statistics().renderSeconds;
   for (int i = 0; i < bench.options.repeat; ++i) renderer.renderBatch();
+  renderer.finish();
   const double samples = static_cast<double>(bench.size.x) * bench.size.y * render::kBatchSamples * bench.options.repeat;
   const double wall = renderer.statistics().renderSeconds - wallBefore;
   const std::span<const render::LaunchTiming> launches = std::span(renderer.launches()).subspan(warm);

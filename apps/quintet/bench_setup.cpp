@@ -46,6 +46,7 @@ double median(std::vector<double> values) {
 double sampleSeconds(render::Renderer& renderer) {
   const double before = renderer.statistics().deviceSeconds;
   renderer.renderBatch(1);
+  renderer.finish();
   return renderer.statistics().deviceSeconds - before;
 }
 

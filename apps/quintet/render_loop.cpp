@@ -62,6 +62,8 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
       lookSeconds = looked - now;
     }
   }
+  renderer.finish();
+  outcome.seconds = limits.secondsBefore + clock.seconds();
   outcome.missed = limits.error && !schedule.reached();
   return outcome;
 }

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <limits>
 
 #include "gpu/timer.h"
@@ -40,6 +42,19 @@ std::string firstError(const std::vector<shader::Diagnostic>& diagnostics) {
   return "the program does not compile";
 }
 
+// At most as many launches as there are timers.
+constexpr std::uint32_t kMostInFlight = 2;
+
+// A launch that the device has not been seen to end.
+struct InFlight {
+  std::uint64_t value = 0;  // of the timeline
+  Clock::time_point start;  // of its recording
+  gpu::Timer* timer = nullptr;
+  std::uint32_t rows = 0;
+  std::uint32_t samples = 0;
+  double pixelSamples = 0;
+};
+
 }  // namespace
 
 ProgramError::ProgramError(std::vector<shader::Diagnostic> diagnostics) : Error(firstError(diagnostics)), diagnostics_(std::move(diagnostics)) {}
@@ -56,7 +71,9 @@ struct Renderer::Impl {
   gpu::Buffer tileBuffer;  // of the last adaptive batch
   std::optional<ParameterTextures> parameterTextures;
   gpu::Buffer parameterBuffer;
-  gpu::Timer timer;
+  std::array<gpu::Timer, kMostInFlight> timers{gpu::Timer(context, 4), gpu::Timer(context, 4)};  // in turns
+  std::deque<InFlight> inFlight;  // oldest first
+  std::uint64_t launchCount = 0;
   RenderStatistics statistics;
   std::vector<shader::Diagnostic> diagnostics;
   std::vector<std::filesystem::path> files;
@@ -69,9 +86,11 @@ struct Renderer::Impl {
 
   Impl(DeviceScene& deviceScene, const program::Program& program, const shader::Compiler& compiler, const gpu::PipelineCache* cache,
        const RenderSettings& renderSettings)
-      : scene(deviceScene), context(deviceScene.context()), description(program), settings(renderSettings), timer(context, 4) {
+      : scene(deviceScene), context(deviceScene.context()), description(program), settings(renderSettings) {
     const Region region = checkedRegion(settings);
     if (settings.timeoutSeconds <= 0) settings.timeoutSeconds = context.info().quirks.software ? 600 : 60;
+    if (settings.launchesInFlight == 0) settings.launchesInFlight = context.info().quirks.software ? 1 : kMostInFlight;
+    settings.launchesInFlight = accumulates() ? 1 : std::min(settings.launchesInFlight, kMostInFlight);
     link(compiler, cache);
     film = std::make_unique<Film>(context, scene.set(), compiler, region, program, settings.outputs);
 
@@ -137,9 +156,11 @@ struct Renderer::Impl {
     return {region.width, region.height, {region.x, region.y}, 0};
   }
 
-  // Launches a strip with `count` samples from `first` on and waits.
+  // Launches a strip with `count` samples from `first` on. Waits for the oldest launch if there are too many.
   void launch(const Target& target, std::uint32_t row, std::uint32_t rows, std::uint32_t first, std::uint32_t count, const Record& before,
               const Record& after) {
+    while (inFlight.size() >= settings.launchesInFlight) finishOldest();
+    gpu::Timer& timer = timers[launchCount++ % kMostInFlight];
     const auto start = Clock::now();
     const std::uint64_t value = context.submit([&](gpu::Commands& commands) {
       timer.reset(commands);
@@ -162,21 +183,41 @@ struct Renderer::Impl {
       if (after) after(commands);
       timer.mark(commands, 3);
     });
-    context.wait(value, settings.timeoutSeconds);
-    const double wall = secondsSince(start);
+    inFlight.push_back({value, start, &timer, rows, count, static_cast<double>(target.width) * rows * count});
+    // The first one tells how fast the others may be; on a CPU it compiles.
+    if (settings.launchesInFlight == 1 || statistics.firstLaunchSeconds == 0) finish();
+  }
+
+  void finish() {
+    while (!inFlight.empty()) finishOldest();
+  }
+
+  void finishOldest() {
+    const InFlight launch = inFlight.front();
+    inFlight.pop_front();
+    context.wait(launch.value, settings.timeoutSeconds);
+    const double wall = secondsSince(launch.start);
     if (statistics.firstLaunchSeconds == 0) statistics.firstLaunchSeconds = wall;
-    const double device = timer.seconds(1, 2);
-    if (settings.profile) noteLaunch(rows, count, wall);
+    const double device = launch.timer->seconds(1, 2);
+    if (settings.profile) noteLaunch(launch, wall);
     statistics.deviceSeconds += device;
-    const double rate = static_cast<double>(target.width) * rows * count / std::max(1e-6, device > 0 ? device : wall);
+    const double rate = launch.pixelSamples / std::max(1e-6, device > 0 ? device : wall);
     // Strips differ in cost: follow slowly upwards, at once downwards.
     pixelSamplesPerSecond = pixelSamplesPerSecond > 0 ? std::min(rate, 2.0 * pixelSamplesPerSecond) : 0.25 * rate;
   }
 
-  void noteLaunch(std::uint32_t rows, std::uint32_t samples, double wall) {
+  void noteLaunch(const InFlight& launch, double wall) {
+    const gpu::Timer& timer = *launch.timer;
     const double idle = launches.empty() ? 0.0 : std::max(0.0, timer.stamp(0) - lastStamp);
-    launches.push_back({rows, samples, timer.seconds(0, 1), timer.seconds(1, 2), timer.seconds(2, 3), idle, wall});
+    launches.push_back({launch.rows, launch.samples, timer.seconds(0, 1), timer.seconds(1, 2), timer.seconds(2, 3), idle, wall});
     lastStamp = timer.stamp(3);
+  }
+
+  // Between batches: the wait belongs to the rendering.
+  void finishAndCount() {
+    const auto start = Clock::now();
+    finish();
+    statistics.renderSeconds += secondsSince(start);
   }
 
   bool accumulates() const { return description.accumulation == program::Accumulation::program; }
@@ -315,7 +356,9 @@ Renderer::Renderer(DeviceScene& scene, const program::Program& program, const sh
 Renderer::~Renderer() = default;
 
 bool Renderer::renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) { return impl_->renderBatch(sampleCount, progress); }
+void Renderer::finish() { impl_->finishAndCount(); }
 void Renderer::restart() {
+  impl_->finish();
   impl_->film->clear();
   impl_->statistics.samples = 0;
   impl_->statistics.batches = 0;

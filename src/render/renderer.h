@@ -30,6 +30,9 @@ struct RenderSettings {
   double launchSeconds = 0.25;  // a launch is cut so that it takes about this long
   // A launch that takes longer: gpu::TimeoutError. 0: 60, or 600 on a CPU, whose first launch compiles.
   double timeoutSeconds = 0;
+  // Launches that may wait on the device, so that it has no gaps between them. 0: 2, or 1 on a CPU and for programs that
+  // accumulate. What is chosen changes nothing in the image.
+  std::uint32_t launchesInFlight = 0;
   bool profile = false;  // Renderer::launches; keeps what the driver tells of the pipeline (rt::pipelineStatistics)
 };
 
@@ -64,7 +67,7 @@ struct LaunchTiming {
   double wallSeconds = 0;     // of the host, from recording to the end of the wait
 };
 
-// Called between launches with the fraction of the current batch that is done; false: give the batch up
+// Called between launches with the fraction of the current batch that is done or under way; false: give the batch up
 // (its samples are lost).
 using BatchProgress = std::function<bool(double)>;
 
@@ -94,6 +97,10 @@ class Renderer {
   // The film as it is, and to go on from one of the same program, outputs and region. Block.
   FilmState saveFilm() const;
   void restoreFilm(const FilmState& state);
+
+  // Waits for the launches that are under way; statistics() and launches() then know of all of them. What reads the
+  // picture or its counters waits by itself.
+  void finish();
 
   // Forgets all samples or frames: the next one is the first. For the next frame of an animation.
   void restart();

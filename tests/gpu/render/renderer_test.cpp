@@ -62,6 +62,40 @@ TEST(Renderer, BytesDoNotDependOnLaunchSizes) {
   }
 }
 
+TEST(Renderer, BytesDoNotDependOnLaunchesInFlight) {
+  Shared shared;
+  const io::Image whole = shared.render(shared.settings);
+  render::RenderSettings settings = shared.settings;
+  settings.launchesInFlight = 2;
+  settings.launchSeconds = 1e-9;  // a launch for each row and sample
+  settings.profile = true;
+  render::Renderer renderer(shared.device, shared.program, testCompiler(), nullptr, settings);
+  for (const std::uint32_t count : {4u, 4u, 3u}) renderer.renderBatch(count);
+  EXPECT_LT(renderer.launches().size(), 11u * 14u);  // the last one is under way
+  renderer.finish();
+  std::uint64_t rowSamples = 0;
+  for (const render::LaunchTiming& launch : renderer.launches()) rowSamples += std::uint64_t{launch.rows} * launch.samples;
+  EXPECT_EQ(rowSamples, 11u * 14u);
+  EXPECT_EQ(renderer.statistics().samples, 11u);
+  EXPECT_EQ(renderer.image().data, whole.data);
+}
+
+// The picture of what came before is whole when a batch is given up, and nothing of it is left after a new start.
+TEST(Renderer, LaunchesInFlightCanBeGivenUp) {
+  Shared shared;
+  render::RenderSettings settings = shared.settings;
+  settings.launchesInFlight = 2;
+  settings.launchSeconds = 1e-9;
+  render::Renderer renderer(shared.device, shared.program, testCompiler(), nullptr, settings);
+  renderer.renderBatch();
+  const io::Image before = renderer.image();
+  EXPECT_FALSE(renderer.renderBatch(4, [](double) { return false; }));
+  EXPECT_EQ(renderer.image().data, before.data);
+  renderer.restart();
+  renderer.renderBatch();
+  EXPECT_EQ(renderer.image().data, before.data);
+}
+
 TEST(Renderer, TheSeedDecidesTheBytes) {
   Shared shared;
   const io::Image first = shared.render(shared.settings);
@@ -87,6 +121,32 @@ TEST(Renderer, CodeForAbsentFeaturesIsNotMissed) {
   for (std::uint32_t y = 0; y < options.height; ++y)
     for (std::uint32_t x = 0; x < options.width; ++x)
       EXPECT_NEAR(lean.at(x, y, 0).mean(), full.at(x, y, 0).mean(), 1e-5);
+}
+
+// The same for textures, vertex colours and alpha.
+TEST(Renderer, CodeForAbsentTexturesIsNotMissed) {
+  PictureOptions options;
+  options.batches = 8;
+  SceneBuilder scene;
+  scene.add(sphere(vec3(0.0f), 1.0f, 2), lambert({0.7f, 0.4f, 0.2f})).add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.6f, 0.5f, 0.4f}));
+  scene.add(quad({-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}), emitter(vec3(4.0f)));
+  scene.sky({0.2f, 0.3f, 0.4f}).camera(perspective({0, 0.5f, 4}, vec3(0.0f), 40.0f));
+  const Picture lean = renderPicture(scene, options);
+  scene.scene.images.push_back({"grey", io::makeImage(1, 1, 4, io::PixelType::u8, io::ColorEncoding::srgb)});
+  scene.scene.textures.push_back({.name = "grey", .image = 0, .sampler = {}});
+  scene::Material unused = clearGlass(1.5f, 1.0f);
+  for (scene::TextureUse* use : {&unused.baseColorTexture, &unused.metallicRoughnessTexture, &unused.normalTexture, &unused.emissiveTexture,
+                                 &unused.transmissionTexture, &unused.specularTexture, &unused.specularColorTexture})
+    use->texture = 0;
+  scene.scene.materials.push_back(unused);
+  // Out of sight and of the light: an any-hit shader and vertex colours.
+  scene.add(quad({-3, -9, 3}, {6, 0, 0}, {0, 0, -6}), unlit({0.2f, 0.9f, 0.4f}, 0.5f));
+  scene.scene.materials.back().alphaMode = scene::AlphaMode::blend;
+  scene.scene.meshes.back().geometries[0].colors.assign(scene.scene.meshes.back().geometries[0].positions.size(), vec4(1.0f));
+  const Picture full = renderPicture(scene, options);
+  for (std::uint32_t y = 0; y < options.height; ++y)
+    for (std::uint32_t x = 0; x < options.width; ++x)
+      EXPECT_NEAR(lean.at(x, y, 0).mean(), full.at(x, y, 0).mean(), 2e-2) << x << ' ' << y;
 }
 
 TEST(Renderer, ARegionIsAPartOfTheImage) {
