@@ -50,17 +50,19 @@ HitPayload traceClosest(vec3 origin, vec3 direction, float tmax, uint seed) {
 #ifdef QUINTET_SHADOW_RAYS
 layout(location = 1) rayPayloadEXT ShadowPayload shadowPayload;
 
-// True if nothing (alpha decided by `seed`) lies between t = 0 and tmax.
+// True if nothing (alpha decided by `seed`) lies between t = 0 and tmax. tmax 0: no ray; where some of the invocations have
+// none it is much faster (H200) to call this for all of them than to part ways here.
 bool traceVisible(vec3 origin, vec3 direction, float tmax, uint seed) {
+  const uint mask = tmax > 0.0 ? 0xFFu : 0u;
   shadowPayload.visible = 0u;
   setRaySeed(shadowPayload, seed);
 #ifndef QUINTET_NO_TRANSMITTANCE
   shadowPayload.transmittance = vec3(1.0);
 #endif
-  traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, kRay_shadow,
+  traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, mask, kRay_shadow,
               kRayTypeCount, kMiss_shadow, origin, 0.0, direction, tmax, 1);
 #ifdef QUINTET_RECORD_RAYS
-  recordRay(origin, direction, tmax, kRecordShadow, shadowPayload.visible == 0u);
+  if (tmax > 0.0) recordRay(origin, direction, tmax, kRecordShadow, shadowPayload.visible == 0u);
 #endif
   return shadowPayload.visible != 0u;
 }
