@@ -132,7 +132,7 @@ TEST(Renderer, CodeForAbsentTexturesIsNotMissed) {
   scene.add(quad({-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}), emitter(vec3(4.0f)));
   scene.sky({0.2f, 0.3f, 0.4f}).camera(perspective({0, 0.5f, 4}, vec3(0.0f), 40.0f));
   const Picture lean = renderPicture(scene, options);
-  scene.scene.images.push_back({"grey", io::makeImage(1, 1, 4, io::PixelType::u8, io::ColorEncoding::srgb)});
+  scene.scene.images.push_back({"grey", io::makeImage(1, 1, 4, io::PixelType::u8, io::ColorEncoding::sRgb)});
   scene.scene.textures.push_back({.name = "grey", .image = 0, .sampler = {}});
   scene::Material unused = clearGlass(1.5f, 1.0f);
   for (scene::TextureUse* use : {&unused.baseColorTexture, &unused.metallicRoughnessTexture, &unused.normalTexture, &unused.emissiveTexture,
