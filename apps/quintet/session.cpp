@@ -153,6 +153,7 @@ void Session::link() {
   settings.region = options_.region;
   settings.camera = sceneInfo_.camera;
   settings.seed = options_.seed;
+  settings.plannedSamples = options_.adaptive ? shared::kIndependentPixels : static_cast<std::uint32_t>(options_.samples.value_or(0));
   settings.transparent = options_.transparent;
   settings.parameters = parameters_;
   settings.outputs = wantedOutputs();

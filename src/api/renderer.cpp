@@ -36,6 +36,7 @@ Renderer::Renderer(Device& device, const Scene& scene, const Program& program, c
   render.width = settings.width;
   render.height = settings.height;
   render.seed = settings.seed;
+  render.plannedSamples = 0;
   render.camera = makeCamera(data, settings);
   render.parameters = makeParameters(description, settings);
   impl_->framewise = description.accumulation == program::Accumulation::program;

@@ -99,6 +99,7 @@ struct Renderer::Impl {
     frame.width = settings.width;
     frame.height = settings.height;
     frame.seed = settings.seed;
+    frame.plannedSamples = settings.plannedSamples;
     frame.frameCount = settings.frameCount;
     frame.flags = settings.transparent ? shared::kFrameTransparent : 0;
     frame.rayRecords = settings.rayRecords ? settings.rayRecords->address() : 0;

@@ -19,6 +19,10 @@ struct RenderSettings {
   Region region;                // what is rendered; width 0: everything
   scene::Camera camera;
   std::uint32_t seed = 0;
+  // How the sampler spreads samples over neighbouring pixels, so it belongs to what says which picture this is, as the
+  // seed does. kIndependentPixels: pixels share nothing, as adaptive sampling needs it. 0: errors are blue noise, best after
+  // 2^k samples. N: best after N samples; the first of them are then not those of another N.
+  std::uint32_t plannedSamples = shared::kIndependentPixels;
   bool transparent = false;     // background: alpha 0 instead of the environment
   program::ParameterValues parameters{{}};
   std::vector<std::string> outputs;  // of the program's optional ones, those to make

@@ -68,8 +68,9 @@ void calibrate(Side& side, const Options& options) {
 }
 
 void measure(Side& side, std::uint32_t seed, const io::Image& reference, const Options& options) {
-  const RenderCost cost = renderSamples(side, side.samples, seed);
-  side.perSample.push_back((cost.seconds(options.time()) - side.once) / static_cast<double>(side.samples - kShort));
+  const double spent = renderSamples(side, side.samples, seed).seconds(options.time());
+  const auto samples = static_cast<double>(side.samples);
+  side.perSample.push_back(side.samples > 2 * kShort ? (spent - side.once) / (samples - kShort) : spent / samples);
   const PictureError error = pictureError(io::readImage(side.call.output), reference, middleExposure(reference));
   side.relMse.push_back(error.relMse);
   side.trimmed.push_back(error.trimmed);
@@ -138,7 +139,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--out", options.out, "Folder for pictures: A | B | reference, first seed")->capture_default_str();
   app.add_option("--size", options.size, "WxH")->capture_default_str();
   app.add_option("--seconds", options.seconds, "Each build renders a picture for so long")->capture_default_str();
-  app.add_option("--spp", options.samples, "Both builds take so many samples instead")->check(CLI::Range(8, 1 << 22));
+  app.add_option("--spp", options.samples, "Both builds take so many samples instead")->check(CLI::Range(1, 1 << 22));
   app.add_option("--seeds", options.seeds, "Pictures of each build")->capture_default_str();
   app.add_option("--reference-seconds", options.referenceSeconds, "For a reference")->capture_default_str();
   app.add_option("--reference-spp", options.referenceSamples, "For a reference, instead of seconds");

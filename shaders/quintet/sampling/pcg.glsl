@@ -31,6 +31,11 @@ Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed) {
   return Sampler(pixel.x | pixel.y << 16, sampleIndex, 0u, seed);
 }
 
+// As in sobol.glsl: pixels are independent here, whatever is planned.
+Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed, uint plannedSamples) {
+  return makeSampler(pixel, sampleIndex, seed);
+}
+
 uvec4 nextWords(inout Sampler s) { return pcg4d(uvec4(s.pixel, s.index, s.dimension++, s.seed)); }
 
 uint nextBits(inout Sampler s) { return nextWords(s).x; }

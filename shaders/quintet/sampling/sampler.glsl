@@ -1,5 +1,7 @@
 // What the two samplers share: one interface, `struct Sampler` with
-//   Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed)
+//   Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed)                       pixels are independent
+//   Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed, uint plannedSamples)  their errors are blue noise;
+//                                                                         frame.plannedSamples
 //   float next1D(inout Sampler)   vec2 next2D(inout Sampler)   in [0,1)
 //   uint nextBits(inout Sampler)  32 independent bits, e.g. a ray's seed
 // A program includes sobol.glsl (converges faster) or pcg.glsl (plainly independent), never both.

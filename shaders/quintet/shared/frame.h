@@ -59,6 +59,9 @@ QT_SHARED_SIZE(CameraData, 72);
 // Frame::flags
 QT_CONSTANT kFrameTransparent = 1u;  // camera rays that leave the scene give 0 with alpha 0
 
+// Frame::plannedSamples: the random numbers of different pixels are independent, which costs blue noise.
+QT_CONSTANT kIndependentPixels = 0xFFFFFFFFu;
+
 QT_CONSTANT kMaxOutputs = 32u;
 // Samples of a batch: every pixel's samples [k · kBatchSamples, (k+1) · kBatchSamples).
 QT_CONSTANT kBatchSamples = 4u;
@@ -121,7 +124,7 @@ struct Frame {
   uint rayRecordCapacity;  // records per pixel
   uint instanceCount;
   uint frameCount;      // frames of this run, where the program accumulates; 0: it has no end
-  uint padding;
+  uint plannedSamples;  // per pixel in all, 0: not known, or kIndependentPixels; for the sampler
   Address lightNodes;   // LightNode[]: the tree from which lights are drawn
   Address previousInstances;  // InstanceData[] of the frame before, of an animation; 0: nothing moves
 };

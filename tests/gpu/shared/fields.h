@@ -114,7 +114,7 @@ GPU_FIELDS(RayRecord, origin, tmax, direction, kind);
 GPU_FIELDS(RayKinds, camera, cameraHits, continuation, continuationHits, shadow, shadowHits);
 GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics, rayRecords, instrument,
            outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth, filmHeight, lightCount,
-           environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount, padding, lightNodes, previousInstances);
+           environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount, plannedSamples, lightNodes, previousInstances);
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, depthLimit, recordPairs);

@@ -1,0 +1,190 @@
+// Pixels that share their nets: blocks of pixels are nets, errors cancel over small neighbourhoods, and yet each pixel's
+// own numbers are uniform, independent from demand to demand, and as well spread as those of independent pixels.
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/math.h"
+#include "bsdf/chi_square.h"
+#include "harness.h"
+#include "quintet/shared/frame.h"
+
+namespace quintet::test {
+namespace {
+
+constexpr std::uint32_t kIndependent = shared::kIndependentPixels;
+
+struct Demand {
+  uvec2 pixel;
+  std::uint32_t index;      // of the sample
+  std::uint32_t dimension;  // demands made before
+  std::uint32_t seed;
+  std::uint32_t planned;
+};
+
+std::vector<vec2> ask(const std::vector<Demand>& demands) {
+  return runCompute<vec2>(R"(
+    #include <quintet/frame.glsl>
+    #include <quintet/sampling/sobol.glsl>
+    struct In { uvec2 pixel; uint index; uint dimension; uint seed; uint planned; };
+    #define Out vec2
+    vec2 run(uint i, In value) {
+      Sampler s = makeSampler(value.pixel, value.index, value.seed, value.planned);
+      s.dimension = value.dimension;
+      return next2D(s);
+    }
+  )",
+                          demands, demands.size());
+}
+
+// Samples [first, first + count) of the pixels of a square.
+std::vector<Demand> square(uvec2 corner, std::uint32_t side, std::uint32_t first, std::uint32_t count, std::uint32_t planned,
+                           std::uint32_t dimension = 0, std::uint32_t seed = 1) {
+  std::vector<Demand> result;
+  for (std::uint32_t y = 0; y < side; ++y)
+    for (std::uint32_t x = 0; x < side; ++x)
+      for (std::uint32_t i = 0; i < count; ++i) result.push_back({corner + uvec2(x, y), first + i, dimension, seed, planned});
+  return result;
+}
+
+// Each of the 2^k boxes of 2^-i x 2^-j, i + j = k, holds exactly one of 2^k points, for every i.
+bool isNet(const std::vector<vec2>& points) {
+  const int k = std::countr_zero(points.size());
+  for (int i = 0; i <= k; ++i) {
+    std::vector<bool> seen(points.size(), false);
+    for (const vec2& p : points) {
+      const auto x = static_cast<std::size_t>(p.x * std::ldexp(1.0f, i));
+      const auto y = static_cast<std::size_t>(p.y * std::ldexp(1.0f, k - i));
+      const std::size_t box = (x << (k - i)) + y;
+      if (seen[box]) return false;
+      seen[box] = true;
+    }
+  }
+  return true;
+}
+
+double uniformity(const std::vector<vec2>& points) {
+  constexpr int kCells = 24;
+  std::vector<double> observed(kCells * kCells, 0.0);
+  const std::vector<double> expected(kCells * kCells, static_cast<double>(points.size()) / (kCells * kCells));
+  for (const vec2& p : points)
+    observed[static_cast<std::size_t>(p.y * kCells) * kCells + static_cast<std::size_t>(p.x * kCells)] += 1.0;
+  return chiSquareTest(observed, expected).pValue;
+}
+
+struct Range {
+  std::uint32_t first, count, planned;
+};
+
+// Counts that are powers of two, planned or not; and the ranges 16 + 8 of which 24 planned samples consist, 2 + 1 of 3.
+constexpr Range kRanges[] = {{0, 1, 1},  {0, 1, 0},  {0, 2, 0},   {0, 4, 4},  {0, 16, 16}, {0, 8, 0},
+                             {0, 16, 24}, {16, 8, 24}, {0, 2, 3}, {2, 1, 3}, {64, 32, 100}, {96, 4, 100}};
+
+TEST(BlueNoise, BlocksOfPixelsAreNets) {
+  for (const Range& r : kRanges)
+    for (const std::uint32_t dimension : {0u, 7u}) {
+      EXPECT_TRUE(isNet(ask(square({66, 130}, 1, r.first, r.count, r.planned, dimension))));
+      EXPECT_TRUE(isNet(ask(square({66, 130}, 2, r.first, r.count, r.planned, dimension)))) << r.first << " " << r.count;
+      EXPECT_TRUE(isNet(ask(square({64, 136}, 8, r.first, r.count, r.planned, dimension)))) << r.first << " " << r.count;
+    }
+  EXPECT_TRUE(isNet(ask(square({64, 128}, 64, 0, 4, 4))));
+  // What the test would notice.
+  EXPECT_FALSE(isNet(ask(square({64, 136}, 8, 0, 4, kIndependent))));
+  EXPECT_FALSE(isNet(ask(square({65, 136}, 8, 0, 4, 4))));    // not aligned
+  EXPECT_FALSE(isNet(ask(square({64, 136}, 8, 16, 8, 64))));  // a range that is not taken alone: shuffled for each pixel
+}
+
+// Whatever is planned, a pixel has a (0,k,2)-net in each prefix of 2^k samples.
+TEST(BlueNoise, EachPixelKeepsItsNets) {
+  for (const std::uint32_t planned : {0u, 1u, 24u, 100u, 1024u, kIndependent})
+    for (const uvec2 pixel : {uvec2(0, 0), uvec2(63, 64), uvec2(1919, 1079)})
+      for (const std::uint32_t dimension : {0u, 1u, 40u}) {
+        const std::vector<vec2> points = ask(square(pixel, 1, 0, 1024, planned, dimension));
+        for (std::ptrdiff_t count = 1; count <= 1024; count *= 2)
+          EXPECT_TRUE(isNet({points.begin(), points.begin() + count})) << planned << " " << count;
+      }
+}
+
+// Over the seeds, which are what an expectation runs over: each number of a pixel is uniform, two demands of one sample
+// are independent, so are demands of different samples, and the same demand of two far pixels.
+TEST(BlueNoise, NumbersOfAPixelAreUniformAndIndependentOverSeeds) {
+  struct Pair {
+    Demand a, b;
+  };
+  std::vector<Pair> pairs;
+  for (const std::uint32_t planned : {0u, 16u, 24u}) {
+    pairs.push_back({{{5, 9}, 0, 0, 0, planned}, {{5, 9}, 0, 1, 0, planned}});
+    pairs.push_back({{{5, 9}, 3, 4, 0, planned}, {{5, 9}, 3, 9, 0, planned}});
+    pairs.push_back({{{5, 9}, 1, 2, 0, planned}, {{5, 9}, 2, 3, 0, planned}});
+    pairs.push_back({{{63, 9}, 3, 2, 0, planned}, {{64, 9}, 3, 2, 0, planned}});  // of two tiles
+    pairs.push_back({{{5, 9}, 3, 2, 0, planned}, {{6, 9}, 3, 3, 0, planned}});    // neighbours, but two demands
+  }
+  constexpr std::uint32_t kSeeds = 1u << 16;
+  const double least = sidak(0.01, pairs.size() * 5);
+  const auto overSeeds = [](Demand demand) {
+    std::vector<Demand> demands(kSeeds, demand);
+    for (std::uint32_t i = 0; i < kSeeds; ++i) demands[i].seed = i;
+    return ask(demands);
+  };
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const std::vector<vec2> a = overSeeds(pairs[k].a), b = overSeeds(pairs[k].b);
+    EXPECT_GT(uniformity(a), least) << "pair " << k;
+    for (int c = 0; c < 4; ++c) {
+      std::vector<vec2> both(kSeeds);
+      for (std::size_t i = 0; i < kSeeds; ++i) both[i] = {a[i][c & 1], b[i][c >> 1]};
+      EXPECT_GT(uniformity(both), least) << "pair " << k << " " << c;
+    }
+  }
+  // What it would find: neighbours in one demand are dependent, by intention.
+  const std::vector<vec2> a = overSeeds({{4, 8}, 0, 2, 0, 1}), b = overSeeds({{5, 8}, 0, 2, 0, 1});
+  std::vector<vec2> both(kSeeds);
+  for (std::size_t i = 0; i < kSeeds; ++i) both[i] = {a[i].x, b[i].x};
+  EXPECT_LT(uniformity(both), 1e-9);
+}
+
+// The variance of the error of a pixel, and that of the mean over 8 x 8 pixels times 64: their ratio is 1 for white noise.
+// The squares lie across the hierarchy, not along it; what is left in them is mostly the high frequencies at their edges.
+struct Noise {
+  double pixel = 0;
+  double square = 0;
+};
+template <class F>
+Noise noise(std::uint32_t count, std::uint32_t planned, double exact, const F& f) {
+  constexpr std::uint32_t kSide = 128, kSquare = 8;
+  Noise result;
+  const std::vector<vec2> points = ask(square({3, 5}, kSide, 0, count, planned, 2));
+  std::vector<double> squares(kSide * kSide / (kSquare * kSquare), 0.0);
+  for (std::uint32_t pixel = 0; pixel < kSide * kSide; ++pixel) {
+    double error = -exact;
+    for (std::uint32_t i = 0; i < count; ++i) error += f(points[std::size_t{pixel} * count + i]) / count;
+    result.pixel += error * error / (kSide * kSide);
+    squares[pixel / kSide / kSquare * (kSide / kSquare) + pixel % kSide / kSquare] += error;
+  }
+  for (const double sum : squares) result.square += sum * sum / (kSide * kSide);
+  return result;
+}
+
+TEST(BlueNoise, LowFrequenciesOfTheErrorAreSuppressed) {
+  const auto smooth = [](const vec2& p) { return std::sin(kPi * p.x) * p.y * p.y; };
+  const auto edge = [](const vec2& p) { return p.x + 0.6f * p.y < 0.7f ? 1.0 : 0.0; };
+  const double smoothMean = 2.0 / (3.0 * kPi), edgeMean = 0.5 * 0.7 * 0.7 / 0.6 - 0.5 * 0.1 * 0.1 / 0.6;
+  for (const std::uint32_t count : {1u, 4u, 16u, 3u, 24u}) {
+    const Noise a = noise(count, count, smoothMean, smooth), white = noise(count, kIndependent, smoothMean, smooth);
+    const Noise b = noise(count, count, edgeMean, edge);
+    std::printf("%u samples: 8 x 8 pixels, smooth %.3f (independent pixels %.3f), edge %.3f\n", count, a.square / a.pixel,
+                white.square / white.pixel, b.square / b.pixel);
+    EXPECT_LT(a.square / a.pixel, 0.45) << count;
+    EXPECT_LT(b.square / b.pixel, 0.6) << count;
+    EXPECT_GT(white.square / white.pixel, 0.7) << count;
+    EXPECT_LT(white.square / white.pixel, 1.5) << count;
+  }
+  for (const std::uint32_t count : {1u, 4u, 16u}) {  // nothing planned, counts that happen to be powers of two
+    const Noise a = noise(count, 0, smoothMean, smooth);
+    EXPECT_LT(a.square / a.pixel, 0.45) << count;
+  }
+}
+
+}  // namespace
+}  // namespace quintet::test
