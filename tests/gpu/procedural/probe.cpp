@@ -63,10 +63,10 @@ void main() {
   const RayRecord ray = RayRecordArray(frame.rayRecords).at[pixelIndex(pixel)];
   const float tmin = uintBitsToFloat(ray.kind);
   payload.t = -1.0;
-  payload.seed = pixelIndex(pixel);
+  setRaySeed(payload, pixelIndex(pixel));
   traceRayEXT(topLevelAS, 0u, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_radiance, ray.origin, tmin, ray.direction, ray.tmax, 0);
   shadow.visible = 0u;
-  shadow.seed = payload.seed;
+  setRaySeed(shadow, pixelIndex(pixel));
   traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, kRay_shadow, kRayTypeCount,
               kMiss_shadow, ray.origin, tmin, ray.direction, ray.tmax, 1);
   countRays(pixel, 2u, 0u);

@@ -78,7 +78,7 @@ TEST(Aov, PartsOfTheLightAddUpToThePicture) {
         for (const std::string& part : parts) {
           sum += layers.at(part, x, y)[c];
           totals[part] += layers.at(part, x, y)[c];
-          ASSERT_GE(layers.at(part, x, y)[c], 0.0f) << part;
+          ASSERT_GE(layers.at(part, x, y)[c], -1e-6f) << part;
         }
         ASSERT_NEAR(sum, layers.at("color", x, y)[c], 1e-4 * (1 + sum)) << x << ", " << y;
         ASSERT_NEAR(layers.at("color", x, y)[c], plain.at("color", x, y)[c], 1e-5 * (1 + sum)) << "layers change the picture";
