@@ -20,7 +20,7 @@ struct Mistake {
 };
 
 constexpr const char* kRadianceTrace = "gl_RayFlagsNoneEXT, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_radiance";
-constexpr const char* kSurfaceHit = "payload = triangleHit(baryCoord, payload.seed);";
+constexpr const char* kSurfaceHit = "payload = triangleHit(baryCoord, raySeed(payload));";
 
 const Mistake kMistakes[] = {
     // Payloads.
@@ -44,7 +44,7 @@ const Mistake kMistakes[] = {
     {"Q103", "quintet/stages/procedural.rchit", "rayPayloadInEXT", "rayPayloadEXT"},
     {"Q104", "quintet/stages/shadow.rmiss", "payload.visible = 1u;", ""},
     {"Q104", "quintet/stages/surface.rchit", kSurfaceHit, ""},
-    {"Q104", "quintet/stages/procedural.rchit", "payload = solidHit(payload.seed);", ""},
+    {"Q104", "quintet/stages/procedural.rchit", "payload = solidHit(raySeed(payload));", ""},
     {"Q104", "quintet/trace.glsl", "  shadowPayload.visible = 0u;\n", ""},
     {"Q101", "quintet/trace.glsl", "direction, tmax, 1);", "direction, tmax, 0);"},
     // Hit attributes.
@@ -58,7 +58,7 @@ const Mistake kMistakes[] = {
      "hitAttributeEXT vec3 wide[3];\nvoid main() {\n  wide[0] = vec3(1.0);\n  const"},
     // Recursion.
     {"Q401", "quintet/stages/surface.rchit", kSurfaceHit,
-     "payload = triangleHit(baryCoord, payload.seed);\n  traceRayEXT(tlas, 0u, 0xFFu, 0u, 2u, 0u, vec3(0.0), 1e-3, "
+     "payload = triangleHit(baryCoord, raySeed(payload));\n  traceRayEXT(tlas, 0u, 0xFFu, 0u, 2u, 0u, vec3(0.0), 1e-3, "
      "vec3(1.0), 1.0, 1);"},
     // The table.
     {"Q501", "quintet/trace.glsl", "0xFFu, kRay_radiance,", "0xFFu, kRayTypeCount,"},
