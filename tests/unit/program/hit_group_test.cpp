@@ -129,7 +129,7 @@ TEST(HitGroup, WrongBindingsAreRefused) {
             "line 11: 'triangle' is no class of geometry; did you mean 'triangles'?");
   EXPECT_EQ(errorOf(kGroup + "geometry = \"zzzzzzzzzzzzzzz\"\n"),
             "line 11: 'zzzzzzzzzzzzzzz' is no class of geometry; there are triangles, solids, csg, custom, procedural, "
-            "opaque, alpha");
+            "opaque, alpha, thin");
   EXPECT_EQ(errorOf(kGroup + "material = 3\n"),
             "line 11: 'material' of [[hit_group]] must be a string or a list of strings");
   EXPECT_EQ(errorOf(kGroup + "material = [\"a\", 3]\n"),
