@@ -69,9 +69,9 @@ const Mistake kMistakes[] = {
     {"Q503", "quintet/trace.glsl", "0xFFu, kRay_radiance,", "0xFFu, 0x100u,"},
     {"Q504", "quintet/trace.glsl", "kMiss_shadow,", "0x10001u,"},
     {"Q505", "quintet/trace.glsl", "0xFFu, kRay_radiance", "0x100u, kRay_radiance"},
-    {"Q505", "quintet/trace.glsl", "0xFFu, kRay_shadow", "0xFFFFFFFFu, kRay_shadow"},
+    {"Q505", "quintet/trace.glsl", "mask, kRay_shadow", "0xFFFFFFFFu, kRay_shadow"},
     {"Q101 Q506", "quintet/trace.glsl", "kMiss_shadow,", "kMiss_radiance,"},
-    {"Q101", "quintet/trace.glsl", "0xFFu, kRay_shadow", "0xFFu, kRay_radiance"},
+    {"Q101", "quintet/trace.glsl", "mask, kRay_shadow", "mask, kRay_radiance"},
     // Geometry and flags.
     {"Q603 Q604", "quintet/trace.glsl", kRadianceTrace,
      "gl_RayFlagsOpaqueEXT, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_radiance"},
