@@ -158,7 +158,7 @@ Noise noise(std::uint32_t count, std::uint32_t planned, double exact, const F& f
   std::vector<double> squares(kSide * kSide / (kSquare * kSquare), 0.0);
   for (std::uint32_t pixel = 0; pixel < kSide * kSide; ++pixel) {
     double error = -exact;
-    for (std::uint32_t i = 0; i < count; ++i) error += f(points[std::size_t{pixel} * count + i]) / count;
+    for (std::uint32_t i = 0; i < count; ++i) error += f(points[std::size_t{pixel} * count + i]) / static_cast<float>(count);
     result.pixel += error * error / (kSide * kSide);
     squares[pixel / kSide / kSquare * (kSide / kSquare) + pixel % kSide / kSquare] += error;
   }
