@@ -42,7 +42,8 @@ struct Layers {
 // Everything that scatters: diffuse, metal, coat, glass, thin glass, two lights, the sky.
 SceneBuilder mixed() {
   SceneBuilder scene;
-  scene::Material metal, coated = lambert({0.7f, 0.2f, 0.1f}), plastic;
+  scene::Material metal, coated = lambert({0.7f, 0.2f, 0.1f}), plastic, frosted = clearGlass(1.5f, 0.0f);
+  frosted.roughness = 0.4f;  // a clear pane would be looked through, its light emission or background
   metal.roughness = 0.3f;
   coated.clearcoat = 1.0f;
   plastic.metallic = 0.0f;
@@ -50,7 +51,7 @@ SceneBuilder mixed() {
   plastic.baseColor = {0.1f, 0.5f, 0.2f, 1.0f};
   scene.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), plastic);
   scene.add(sphere({-1.0f, 0.5f, 0}, 0.5f, 2), metal).add(sphere({0.1f, 0.5f, 0}, 0.5f, 2), clearGlass(1.5f, 1.0f));
-  scene.add(sphere({1.1f, 0.5f, 0}, 0.4f, 2), coated).add(quad({-0.3f, 0.1f, 1}, {0.9f, 0, 0}, {0, 0.9f, 0}), clearGlass(1.5f, 0.0f));
+  scene.add(sphere({1.1f, 0.5f, 0}, 0.4f, 2), coated).add(quad({-0.3f, 0.1f, 1}, {0.9f, 0, 0}, {0, 0.9f, 0}), frosted);
   scene.add(quad({-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}), emitter(vec3(8.0f)));
   scene::Light lamp;
   lamp.position = {1.0f, 2.0f, 1.0f};
