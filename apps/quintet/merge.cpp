@@ -142,6 +142,7 @@ int mergeCommand(Arguments arguments) {
   RenderRecord record;
   record.commandLine = options->render.commandLine;
   fillRecord(record, whole);
+  record.error = render::estimateError(whole.film);
   progress.stage("writing " + options->render.output.string());
   if (outputKind(options->render.output) == OutputKind::film) {
     if (!options->render.farm.force) refuseLoss(options->render.output, whole.identity, whole.film.counts.ranges);

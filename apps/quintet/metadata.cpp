@@ -28,11 +28,11 @@ nlohmann::ordered_json memoryJson(const MemoryUse& memory) {
 }
 
 nlohmann::ordered_json errorJson(const RenderRecord& record) {
-  if (!std::isfinite(record.error)) return {};
-  nlohmann::ordered_json json{{"image", record.error}, {"tiles", record.tileError}};
+  if (!record.error.known()) return {};
+  nlohmann::ordered_json json{{"image", record.error.upper}, {"tiles", record.error.tiles}};
   if (record.wantedError) {
     json["wanted"] = *record.wantedError;
-    json["reached"] = record.error <= *record.wantedError && record.tileError <= 2.0 * *record.wantedError;
+    json["reached"] = record.error.reaches(*record.wantedError);
   }
   return json;
 }
@@ -72,9 +72,9 @@ io::Metadata metadata(const RenderRecord& record) {
   data.emplace_back("Rays", fmt::format("{}", record.rays));
   if (record.droppedSamples > 0) data.emplace_back("DroppedSamples", fmt::format("{}", record.droppedSamples));
   if (record.adaptive) data.emplace_back("Adaptive", "yes");
-  if (std::isfinite(record.error)) {
-    data.emplace_back("Error", fmt::format("{:.6g}", record.error));
-    data.emplace_back("TileError", fmt::format("{:.6g}", record.tileError));
+  if (record.error.known()) {
+    data.emplace_back("Error", fmt::format("{:.6g}", record.error.upper));
+    data.emplace_back("TileError", fmt::format("{:.6g}", record.error.tiles));
   }
   if (record.interrupted) data.emplace_back("Interrupted", "yes");
   return data;
@@ -136,7 +136,7 @@ std::string toJson(const RenderRecord& record) {
 std::string summary(const RenderRecord& record) {
   const std::string file = record.files.empty() ? "" : record.files.back();
   const std::string rate = record.rays > 0 ? fmt::format(", {:.3g} Mrays/s", record.raysPerSecond() * 1e-6) : "";
-  const std::string error = std::isfinite(record.error) ? fmt::format(", error {:.2g} %", 100.0 * record.error) : "";
+  const std::string error = record.error.known() ? fmt::format(", error {:.2g} %", 100.0 * record.error.upper) : "";
   return fmt::format("{}: {}x{}, {} {}{}, {}{}{}", file == "-" ? "standard output" : file,
                      record.region[2], record.region[3], record.samples,
                      !record.accumulates   ? "samples per pixel"

@@ -4,13 +4,13 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "io/codec.h"
+#include "render/film_error.h"
 #include "shader/compiler.h"
 
 namespace quintet::app {
@@ -55,9 +55,7 @@ struct RenderRecord {
   std::optional<std::uint32_t> frame;   // of an animation
   bool interrupted = false;
   bool adaptive = false;                // `samples` is an average
-  // render::ErrorEstimate of the first output, stated with 95 % confidence; infinite: not known.
-  double error = std::numeric_limits<double>::infinity();
-  double tileError = std::numeric_limits<double>::infinity();
+  render::ErrorEstimate error;          // of the first output
   std::optional<double> wantedError;
 
   // Seconds.

@@ -39,12 +39,12 @@ bool Schedule::next() {
 }
 
 bool Schedule::nextForAll() {
-  if (limits_.samples && done_ >= *limits_.samples) return false;
-  if (limits_.error && looksAfter(done_ / render::kBatchSamples)) {
+  const bool complete = limits_.samples && done_ >= *limits_.samples;
+  if (limits_.error && (complete || looksAfter(done_ / render::kBatchSamples))) {
     look();
     reached_ = estimate_->reaches(*limits_.error);
-    if (reached_) return false;
   }
+  if (complete || reached_) return false;
   count_ = render::kBatchSamples;
   if (limits_.samples) count_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(count_, *limits_.samples - done_));
   step_ = count_;
@@ -53,10 +53,10 @@ bool Schedule::nextForAll() {
 
 double Schedule::average() const {
   double sum = 0, pixels = 0;
-  const render::FilmState shape{renderer_.film().region(), renderer_.film().counts(), {}, {}};
+  const render::SampleCounts& counts = renderer_.film().counts();
   for (std::size_t c = 0; c < estimate_->cells.size(); ++c) {
     pixels += estimate_->cells[c].pixels;
-    sum += static_cast<double>(estimate_->cells[c].pixels) * static_cast<double>(shape.counts.samplesOf(static_cast<std::uint32_t>(c)));
+    sum += static_cast<double>(estimate_->cells[c].pixels) * static_cast<double>(counts.samplesOf(static_cast<std::uint32_t>(c)));
   }
   return sum / pixels;
 }

@@ -26,8 +26,9 @@ class Schedule {
  public:
   Schedule(render::Renderer& renderer, const RenderLimits& limits);
 
-  // Renders the next batch; false: it was given up. Call it only while next() says so.
+  // Decides on the next batch; false: it is enough.
   bool next();
+  // Renders that batch; false: it was given up.
   bool render(const render::BatchProgress& progress);
 
   // Samples per pixel (on average) that are there, those of the batch that comes, and the end as far as it is known.

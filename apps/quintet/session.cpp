@@ -272,9 +272,9 @@ std::vector<std::byte> Session::exrFile(std::size_t output) const {
 }
 
 void Session::report() {
-  if (record_.wantedError && !record_.interrupted && (record_.error > *record_.wantedError || record_.tileError > 2.0 * *record_.wantedError))
+  if (record_.wantedError && !record_.interrupted && !record_.error.reaches(*record_.wantedError))
     warnings_.add(fmt::format("the error of {:.2g} % was not reached: it is {:.2g} %, in 95 % of the tiles at most {:.2g} %",
-                              100.0 * *record_.wantedError, 100.0 * record_.error, 100.0 * record_.tileError));
+                              100.0 * *record_.wantedError, 100.0 * record_.error.upper, 100.0 * record_.error.tiles));
   if (record_.droppedSamples > 0)
     warnings_.add(fmt::format("{} samples were not finite and left out", record_.droppedSamples));
   record_.warnings = warnings_.take();
@@ -305,11 +305,7 @@ void Session::fillRecord(const RenderOutcome& outcome) {
   record_.samples = options_.adaptive ? outcome.samples : statistics.samples;
   record_.adaptive = options_.adaptive;
   record_.wantedError = options_.error;
-  if (program_.accumulation == program::Accumulation::film) {
-    const render::ErrorEstimate estimate = render::estimateError(renderer_->film().saveFirst());
-    record_.error = estimate.upper;
-    record_.tileError = estimate.tiles;
-  }
+  if (program_.accumulation == program::Accumulation::film) record_.error = render::estimateError(renderer_->film().saveFirst());
   record_.accumulates = program_.accumulation == program::Accumulation::program;
   record_.rays = rays.rays;
   record_.droppedSamples = rays.droppedSamples;

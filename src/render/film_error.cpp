@@ -10,7 +10,6 @@
 namespace quintet::render {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kDarkness = 0.1;       // ε, of the mean luminance
 constexpr double kConfidence = 1.645;   // 95 % of a normal distribution, one side
 constexpr double kTilesBelow = 0.95;
@@ -73,10 +72,7 @@ ErrorEstimate estimateError(const FilmState& film) {
     estimate.cells[c].batches = film.counts.batchesOf(static_cast<std::uint32_t>(c));
     enough = enough && estimate.cells[c].batches >= 2;
   }
-  if (!enough) {
-    estimate.image = estimate.upper = estimate.tiles = kInfinite;
-    return estimate;
-  }
+  if (!enough) return estimate;
   std::vector<PixelMoments> moments(film.pixelCount());
   parallelFor(film.region.height, [&](std::size_t y) {
     for (std::uint32_t x = 0; x < film.region.width; ++x) {

@@ -8,6 +8,7 @@
 #define QUINTET_RENDER_FILM_ERROR_H
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "render/film_state.h"
@@ -23,11 +24,13 @@ struct CellError {
 };
 
 struct ErrorEstimate {
-  double image = 0;          // the estimate of `error`; infinite below two batches
-  double upper = 0;          // with 95 % confidence `error` is below this; what is stated
-  double tiles = 0;          // 95 % of the tiles have a smaller error
+  // Infinite as long as they are not known: below two batches.
+  double image = std::numeric_limits<double>::infinity();  // the estimate of `error`
+  double upper = std::numeric_limits<double>::infinity();  // with 95 % confidence `error` is below this; what is stated
+  double tiles = std::numeric_limits<double>::infinity();  // 95 % of the tiles have a smaller error
   std::vector<CellError> cells;  // SampleCounts::cellBatches' order
 
+  bool known() const { return upper < std::numeric_limits<double>::infinity(); }
   bool reaches(double target) const { return upper <= target && tiles <= 2.0 * target; }
 };
 

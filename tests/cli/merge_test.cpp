@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "fixtures.h"
+#include "io/codec.h"
 #include "render/film_file.h"
 
 namespace quintet::test {
@@ -51,6 +52,13 @@ TEST_F(Merge, AnyOrderAndNumberGiveTheBytesOfOneRendering) {
   EXPECT_EQ(picture("m.hdr").data, picture("whole.hdr").data);
   expectMerged({"whole.qfilm"}, "m.png");
   EXPECT_EQ(picture("m.png").data, picture("whole.png").data);
+  const auto error = [&](const char* name) {
+    for (const auto& [key, text] : io::readMetadata(readFile(folder_ / name), name))
+      if (key == "Error") return text;
+    return std::string();
+  };
+  EXPECT_NE(error("whole.png"), "");
+  EXPECT_EQ(error("m.png"), error("whole.png"));
   // In two steps.
   expectMerged({"d.qfilm", "b.qfilm"}, "bd.qfilm");
   expectMerged({"bd.qfilm", "c.qfilm", "a.qfilm"}, "m.png");
