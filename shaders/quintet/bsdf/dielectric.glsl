@@ -32,7 +32,7 @@ DielectricSplit dielectricSplit(DielectricLobe lobe, float cosine) {
   float exactF0 = reflectanceFromIor(lobe.eta);
   // From f0 to 1 as the exact reflectance does; exact where f0 is that of the ior.
   vec3 f = lobe.specular * mix(lobe.f0, vec3(1.0), (fresnel - exactF0) / (1.0 - exactF0));
-  f = fresnel < 1.0 ? max(f, 0.0) : vec3(1.0);
+  f = fresnel < 1.0 ? clamp(f, 0.0, 1.0) : vec3(1.0);
   DielectricSplit split;
   split.reflectance = lobe.compensation * f;
   split.transmittance = lobe.color * (1.0 - maxComponent(f));

@@ -17,7 +17,7 @@ struct ThinLobe {
 };
 
 vec3 thinTransmittance(ThinLobe lobe, float cosine) {
-  return lobe.color * (1.0 - mix(lobe.f0, lobe.f90, schlickWeight(cosine)));
+  return lobe.color * max(1.0 - mix(lobe.f0, lobe.f90, schlickWeight(cosine)), 0.0);
 }
 
 // `lb`: the layer's albedoSchlick at |wi.z|.

@@ -79,9 +79,12 @@ vec3 sampleOf(Bsdf b, vec3 wo, vec3 u) {
 mat3 frameOf(Bsdf b) { return LOBE == 4 ? localFrame(b.clearcoat.normal) : mat3(1.0); }
 float widthOf(Bsdf b) { return LOBE == 4 ? b.clearcoat.alpha : b.specular.alpha; }
 // Rings of equal steps of 1 - 1/sqrt(1 + p^2), p: tangent of the micronormal over the width.
-uint cellOf(Case c, Bsdf b, vec3 wi) {
+// Near the mirror direction of a grazing wo the digits of wi are as wide as a fifth of the narrowest lobe's cells: what
+// rounding has put on a grid is spread over its meshes again. (A compiler may do the same by turning a + (b - a) into b.)
+uint cellOf(Case c, Bsdf b, vec3 wi, vec2 u) {
   bool below = wi.z < 0.0;
   vec3 h = LOBE == 2 ? c.wo + vec3(wi.xy, -wi.z) : LOBE == 3 && below ? c.wo + b.dielectric.eta * wi : c.wo + wi;
+  h.xy += (u - 0.5) * exp2(floor(log2(max(abs(wi.xy), 1e-20))) - 23.0);
   vec3 m = h * frameOf(b);
   if (m.z < 0.0) m = -m;
   vec2 p = m.xy / (m.z * widthOf(b));
@@ -130,7 +133,7 @@ vec3 poleOf(Case c, Bsdf b, bool below) {
 // The angle from the pole to the horizon, for the azimuth of the unit vector t across the pole.
 float horizon(vec3 pole, vec3 t) { return atan(abs(pole.z), pole.z > 0.0 ? -t.z : t.z); }
 // Radii are relative to that of the horizon.
-uint cellOf(Case c, Bsdf b, vec3 wi) {
+uint cellOf(Case c, Bsdf b, vec3 wi, vec2 u) {
   bool below = wi.z < 0.0;
   vec3 pole = poleOf(c, b, below);
   mat3 basis = localFrame(pole);
@@ -171,7 +174,7 @@ const std::string kDraw = kLobes + R"(
 Out run(uint index, In c) {
   Bsdf b = lobesOf(c);
   vec3 wi = sampleOf(b, c.wo, randomAt(index, 7u));
-  return pdfOf(b, c.wo, wi) > 0.0 ? cellOf(c, b, wi) : uint(2 * RINGS * SECTORS);
+  return pdfOf(b, c.wo, wi) > 0.0 ? cellOf(c, b, wi, randomAt(index, 8u).xy) : uint(2 * RINGS * SECTORS);
 }
 )";
 
