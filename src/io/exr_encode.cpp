@@ -43,7 +43,12 @@ bool isLossy(ExrCompression compression) {
   return compression == ExrCompression::dwaa || compression == ExrCompression::dwab;
 }
 
-// What a lossy compression must not touch goes to a part of its own.
+bool hasPicture(const Part& part) {
+  return std::ranges::any_of(part.channels, [](const ExrChannel* c) { return c->name.find('.') == std::string::npos; });
+}
+
+// What a lossy compression must not touch goes to a part of its own. The picture, channels without a layer, comes first:
+// readers show the first part, and names that a later part leaves bare belong to a layer of its name.
 std::vector<Part> splitParts(const ExrPicture& picture, const ExrOptions& options) {
   Part all{"rgba", {}, options.compression, options.level};
   Part data{"data", {}, ExrCompression::zip, std::nullopt};
@@ -52,6 +57,7 @@ std::vector<Part> splitParts(const ExrPicture& picture, const ExrOptions& option
   std::vector<Part> parts;
   for (Part& part : {std::ref(all), std::ref(data)})
     if (!part.channels.empty()) parts.push_back(std::move(part));
+  std::ranges::stable_partition(parts, hasPicture);
   return parts;
 }
 

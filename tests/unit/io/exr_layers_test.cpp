@@ -116,6 +116,33 @@ TEST(ExrLayersTest, LossyFilesHaveTwoParts) {
     EXPECT_THAT(channel.name, testing::MatchesRegex("(albedo[.])?[RGBA]"));
 }
 
+// A picture of data stays the picture, also where colours of a layer beside it are lossy: its part is the first one.
+TEST(ExrLayersTest, LossyFilesBeginWithThePicture) {
+  ExrPicture picture{4, 2, {}};
+  const auto add = [&](const char* name, float value, bool exact) {
+    picture.channels.push_back({name, ExrType::f32, std::vector<float>(8, value), exact});
+  };
+  for (const char* name : {"tint.R", "tint.G", "tint.B"}) add(name, 0.25f, false);
+  add("R", 0.5f, true);
+  add("G", -0.5f, true);
+  add("B", 1000001.0f, true);
+  add("depth.Z", 3.0f, true);
+  const std::vector<std::byte> bytes = encodeExr(picture, {ExrCompression::dwaa});
+  const auto parts = inspectExr(bytes, "a");
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].name, "data");
+  EXPECT_EQ(parts[1].name, "rgba");
+  const Image shown = decodeImage(bytes, "a.exr");
+  ASSERT_EQ(shown.channels, 3u);
+  EXPECT_EQ(shown.pixel<float>(3, 1)[0], 0.5f);
+  EXPECT_EQ(shown.pixel<float>(3, 1)[1], -0.5f);
+  EXPECT_EQ(shown.pixel<float>(3, 1)[2], 1000001.0f);
+  const ExrPicture back = decodeExr(bytes, "a.exr");
+  EXPECT_TRUE(sameBits(find(back, "R").samples, picture.channels[3].samples));
+  EXPECT_NEAR(find(back, "tint.G").samples[0], 0.25f, 0.01f);
+  EXPECT_EQ(find(back, "depth.Z").samples[0], 3.0f);
+}
+
 TEST(ExrLayersTest, LevelsChangeTheSize) {
   const ExrPicture picture = layeredPicture(128, 128);
   const auto size = [&](ExrCompression compression, float level) {
