@@ -9,6 +9,37 @@
 namespace quintet::test {
 namespace {
 
+// Colours that differ by sample, and the pixel's place.
+void writeTwoOutputs(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  write(folder / "program.toml", R"([program]
+description = "two outputs"
+ray_generation = "main.rgen"
+[[ray]]
+name = "unused"
+miss = "main.rmiss"
+[[output]]
+name = "color"
+[[output]]
+name = "place"
+channels = ["X", "Y"]
+)");
+  write(folder / "main.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n");
+  write(folder / "main.rgen", R"(#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/output.glsl>
+#include <quintet/generated/program.glsl>
+void main() {
+  const uvec2 pixel = launchPixel();
+  for (uint i = 0u; i < launch.sampleCount; ++i) {
+    const uint s = launch.firstSample + i;
+    storeOutput(kOutput_color, pixel, loadOutput(kOutput_color, pixel) + vec4(float(s % 7u), 0.1, float(s) / 3.0, 1.0));
+    storeOutput(kOutput_place, pixel, loadOutput(kOutput_place, pixel) + vec4(vec2(pixel), 0.0, 1.0));
+  }
+}
+)");
+}
+
 class Merge : public CliTest {
  protected:
   // 30 samples: 8 batches, the last one of 2.
@@ -78,18 +109,26 @@ TEST_F(Merge, HowThePictureIsShownComesFromTheRenderingOrTheOptions) {
 }
 
 TEST_F(Merge, RegionsAndSeveralOutputs) {
-  const std::vector<std::string> region{"--region", "5,6,20,10"};
-  ASSERT_EQ(quintet(command({"-o", "whole.exr", "--region", "5,6,20,10", "--all-outputs"})).status, 0);
-  part("5-7", "b.qfilm", {"--region", "5,6,20,10", "--all-outputs"});
-  part("0-4", "a.qfilm", {"--region", "5,6,20,10", "--all-outputs"});
+  writeTwoOutputs(folder_ / "two");
+  const std::vector<std::string> shown{"--program", "two", "--region", "5,6,20,10", "--all-outputs"};
+  const auto rendered = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"render", "scene.gltf", "-q", "--size", "40x30", "--spp", "30"});
+    more.insert(more.end(), shown.begin(), shown.end());
+    const RunResult result = quintet(more);
+    ASSERT_EQ(result.status, 0) << result.err;
+  };
+  rendered({"-o", "whole.exr"});
+  rendered({"-o", "b.qfilm", "--batches", "5-7"});
+  rendered({"-o", "a.qfilm", "--batches", "0-4"});
   expectMerged({"b.qfilm", "a.qfilm"}, "m.exr");
-  std::size_t outputs = 0;
+  std::vector<std::string> outputs;
   for (const std::string& name : fileNames()) {
     if (!name.starts_with("whole.")) continue;
     EXPECT_EQ(picture("m." + name.substr(6)).data, picture(name).data);
-    ++outputs;
+    outputs.push_back(name);
   }
-  EXPECT_GE(outputs, 1u);
+  EXPECT_EQ(outputs, (std::vector<std::string>{"whole.color.exr", "whole.place.exr"}));
+  EXPECT_NE(picture("m.color.exr").data, picture("m.place.exr").data);
 }
 
 TEST_F(Merge, SaysHowThePictureWasMade) {
