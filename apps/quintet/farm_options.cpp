@@ -48,6 +48,17 @@ void checkBatches(const RenderOptions& options) {
                                  count - 1, range.last));
 }
 
+// Also by another name, through a link or "..".
+bool sameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code failed;
+  if (std::filesystem::equivalent(a, b, failed)) return true;
+  const auto resolved = [&](const std::filesystem::path& file) {
+    const std::filesystem::path path = std::filesystem::weakly_canonical(std::filesystem::absolute(file), failed);
+    return failed ? file.lexically_normal() : path;
+  };
+  return resolved(a) == resolved(b);
+}
+
 void chooseCheckpointFile(RenderOptions& options) {
   FarmOptions& farm = options.farm;
   if (farm.checkpointFile.empty()) {
@@ -60,7 +71,7 @@ void chooseCheckpointFile(RenderOptions& options) {
   if (farm.checkpointFile.extension() != render::kFilmExtension)
     throw UsageError(fmt::format("--checkpoint-file: {}: the extension must be {}", farm.checkpointFile.string(),
                                  render::kFilmExtension));
-  if (farm.checkpointFile == options.output)
+  if (sameFile(farm.checkpointFile, options.output))
     throw UsageError(fmt::format("--checkpoint-file: {} is the output, too", farm.checkpointFile.string()));
 }
 

@@ -300,6 +300,11 @@ TEST_F(Checkpoint, OptionsThatMakeNoSense) {
   refused({"--checkpoint", "5", "-o", "-"}, {"--checkpoint-file"});
   refused({"--checkpoint", "5", "--checkpoint-file", "a.png"}, {"--checkpoint-file", "a.png", ".qfilm"});
   refused({"--resume", "--checkpoint-file", "a.qfilm", "-o", "a.qfilm"}, {"a.qfilm", "output"});
+  std::filesystem::create_directory_symlink(".", folder_ / "here");
+  for (const char* other : {"./a.qfilm", "here/a.qfilm", "none/../a.qfilm"})
+    refused({"--checkpoint-file", other, "-o", "a.qfilm"}, {"a.qfilm is the output, too"});
+  refused({"--checkpoint-file", (folder_ / "a.qfilm").string(), "-o", "here/a.qfilm"}, {"is the output, too"});
+  std::filesystem::remove(folder_ / "here");
   refused({"--batches", "0-1"}, {"--batches", ".qfilm"});
   refused({"--batches", "0-1", "-o", "a.png"}, {"--batches", ".qfilm"});
   for (const char* range : {"1-0", "-1-2", "0-", "-", "a", "0-1-2", "1.5-2", "0 - 1", "99999999999999999999-1"})
