@@ -1,6 +1,7 @@
 #include "film_facts.h"
 
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +12,7 @@
 #include "base/hash.h"
 #include "session.h"
 #include "shader/embedded_library.h"
+#include "shader/include_resolver.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -20,11 +22,34 @@ using render::FilmFacts;
 
 constexpr std::size_t kShownDigits = 12;  // of a hash
 
+// Names of the files that decide what the program does: descriptions, shaders, and what those include, whatever its
+// name ends in.
+std::set<std::string> sourceNames(const program::Program& program) {
+  std::set<std::string> names;
+  std::vector<std::string> open;
+  const auto add = [&](const std::string& name) {
+    if (names.insert(name).second) open.push_back(name);
+  };
+  for (const auto& [name, text] : program.files)
+    if (isProgramSource(name) && !name.ends_with(".scene.toml")) add(name);
+  while (!open.empty()) {
+    const std::string& text = program.files.at(open.back());
+    open.pop_back();
+    for (const shader::IncludeDirective& include : shader::findIncludes(text)) {
+      const auto isMeant = [wanted = std::filesystem::path(include.name).filename()](const auto& file) {
+        return std::filesystem::path(file.first).filename() == wanted;
+      };
+      const auto found = std::ranges::find_if(program.files, isMeant);
+      if (found != program.files.end()) add(found->first);
+    }
+  }
+  return names;
+}
+
 // Whatever the files' names: farms have the same files in other folders.
 std::string hashOfFiles(const FilmSource& source) {
   Hasher hasher;
-  for (const auto& [name, text] : source.program.files)
-    if (isProgramSource(name) && !name.ends_with(".scene.toml")) hasher.add(name).add(text);
+  for (const std::string& name : sourceNames(source.program)) hasher.add(name).add(source.program.files.at(name));
   std::vector<Hash> others;
   for (const std::filesystem::path& file : source.shaderFiles) {
     const std::vector<std::byte> bytes = readFile(file);

@@ -57,7 +57,8 @@ class Session {
   // Warnings, --json, and one line on what was written last.
   void report();
 
-  // The film as it is, with what is known about it; and of that, what other films of this rendering say alike.
+  // The film as it is, with what is known about it; and of that, what other films of this rendering say alike, as the
+  // files were when the program was linked.
   render::FilmFile film(const RenderOutcome& outcome);
   const render::FilmFacts& identity();
 

@@ -8,6 +8,7 @@
 
 #include "fixtures.h"
 #include "render/film_file.h"
+#include "sky_program.h"
 
 namespace quintet::test {
 namespace {
@@ -221,6 +222,52 @@ TEST_F(Checkpoint, OfAnotherRenderingAreRefusedWithTheDifference) {
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("quintet: out.checkpoint.qfilm: scene: "), std::string::npos) << result.err;
   EXPECT_EQ(render::encodeFilm(render::readFilm(folder_ / kFile)), bytes);  // still there
+}
+
+// What is included from outside of the program's folder is read from the disk, whatever happens to it later.
+TEST_F(Checkpoint, SayWhatTheFilesWereInTheBeginning) {
+  writeSkyProgram(folder_ / "sky", "payload.color = vec3(kGrey);");
+  const std::filesystem::path include = folder_ / "grey.inc";
+  write(folder_ / "sky/payload.glsl", "#include \"../grey.inc\"\nstruct Payload {\n  vec3 color;\n};\n");
+  const std::string grey = "const float kGrey = 0.5;\n";
+  write(include, grey);
+  const auto interrupted = [&](const auto& change) {
+    std::filesystem::remove(folder_ / kFile);
+    write(include, grey);
+    TerminalRun process(command({"--program", "sky", "--spp", "4000", "--checkpoint", "1000", "--json-progress"}), folder_.path());
+    EXPECT_TRUE(process.waitFor("\"samples\":8,"));
+    change();
+    process.signal(SIGINT);
+    EXPECT_EQ(process.finish().status, 130);
+  };
+  const auto resumed = [&](const char* samples) {
+    return quintet(command({"--program", "sky", "--spp", samples, "--resume", "-q"}));
+  };
+  interrupted([&] { write(include, "const float kGrey = 0.25;\n"); });
+  const RunResult other = resumed("4000");
+  EXPECT_EQ(other.status, 1);
+  EXPECT_NE(other.err.find("program files: "), std::string::npos) << other.err;
+  interrupted([&] { std::filesystem::remove(include); });
+  write(include, grey);
+  EXPECT_EQ(resumed("4000").status, 0);
+}
+
+// Whatever their names end in.
+TEST_F(Checkpoint, OfOtherIncludedFilesAreRefused) {
+  writeSkyProgram(folder_ / "sky", "payload.color = vec3(kGrey);");
+  write(folder_ / "sky/payload.glsl", "#include \"more.text\"\nstruct Payload {\n  vec3 color;\n};\n");
+  write(folder_ / "sky/more.text", "#include \"./noise.inc\"\n");
+  write(folder_ / "sky/noise.inc", "const float kGrey = 0.5;\n");
+  write(folder_ / "sky/README", "Grey.");
+  const std::vector<std::string> arguments =
+      command({"--program", "sky", "--spp", "8", "--checkpoint-file", "c.qfilm", "--keep-checkpoint", "--resume", "-q"});
+  ASSERT_EQ(quintet(arguments).status, 0);
+  write(folder_ / "sky/README", "Grey, still.");
+  ASSERT_EQ(quintet(arguments).status, 0);
+  write(folder_ / "sky/noise.inc", "const float kGrey = 0.25;\n");
+  const RunResult result = quintet(arguments);
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("quintet: c.qfilm: program files: "), std::string::npos) << result.err;
 }
 
 TEST_F(Checkpoint, OfAnotherVersionOrDamagedAreRefused) {
