@@ -1,6 +1,7 @@
 #include "aov.h"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,6 +9,7 @@
 #include "aov_cryptomatte.h"
 #include "base/error.h"
 #include "exr_output.h"
+#include "io/cryptomatte.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -31,6 +33,18 @@ AovLayer layerOf(const program::Program& program, std::size_t output) {
 std::vector<std::string> namesOf(const std::vector<AovLayer>& layers) {
   std::vector<std::string> names;
   for (const AovLayer& layer : layers) names.push_back(layer.name);
+  return names;
+}
+
+// As the file names them.
+std::vector<std::string> fileChannels(const AovLayer& layer) {
+  std::vector<std::string> names;
+  if (layer.source == AovLayer::Source::coverage) {
+    for (std::size_t i = 0; i < 4 * kCryptomatteLayers; ++i)
+      names.push_back(io::cryptomatteChannel(cryptomatteType(layer.name), i / 2, i % 2 == 1));
+  } else {
+    for (const std::string& suffix : layer.channels) names.push_back(layer.name + "." + suffix);
+  }
   return names;
 }
 
@@ -82,6 +96,14 @@ std::vector<AovLayer> chooseAovs(const std::vector<AovLayer>& layers, const std:
   return chosen;
 }
 
+void checkChannels(const std::vector<AovLayer>& layers) {
+  std::map<std::string, std::string> owners;  // of channels
+  for (const AovLayer& layer : layers)
+    for (const std::string& channel : fileChannels(layer))
+      if (const auto [at, isNew] = owners.emplace(channel, layer.name); !isNew)
+        throw UsageError(fmt::format("--aov: '{}' and '{}' would both be the channel {} of the file", at->second, layer.name, channel));
+}
+
 std::string aovList(const program::Program& program) {
   std::string text;
   for (const AovLayer& layer : aovLayers(program))
@@ -92,8 +114,7 @@ std::string aovList(const program::Program& program) {
 
 std::size_t channelCount(const std::vector<AovLayer>& layers, std::size_t first) {
   std::size_t count = first;
-  for (const AovLayer& layer : layers)
-    count += layer.source == AovLayer::Source::coverage ? 4 * kCryptomatteLayers : layer.channels.size();
+  for (const AovLayer& layer : layers) count += fileChannels(layer).size();
   return count;
 }
 

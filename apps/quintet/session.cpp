@@ -59,6 +59,7 @@ void Session::prepare() {
     throw UsageError(fmt::format("--until-error: the program '{}' averages its samples itself, their spread is not known", program_.name));
   chosenOutputs();
   aovs_ = chooseAovs(program_, options_.aovs);
+  checkChannels(aovs_);
   checkOutput(options_.output);
   SceneSource source = chooseScene(options_.scene, program_);
   if (source != sceneSource_) sceneLoaded_ = false;

@@ -199,6 +199,19 @@ TEST_F(Aov, BadRequests) {
   for (const std::string& name : fileNames()) EXPECT_FALSE(name.ends_with(".exr") || name.ends_with(".png")) << name;
 }
 
+// Before hours of rendering, not after them.
+TEST_F(Aov, ChannelsOfTheSameNameAreRefused) {
+  const auto output = [](const std::string& name) {
+    return "[[output]]\nname = \"" + name + "\"\nkind = \"id\"\npixel = \"coverage\"\noptional = true\n";
+  };
+  write(folder_ / "layers/program.toml", std::string(kToml) + output("object") + output("things"));
+  for (const char* file : {"out.exr", "out.qfilm"})
+    for (const char* chosen : {"cryptomatte_object,object", "all"})
+      expectError(quintet(layers({"--aov", chosen, "-o", file})), 2,
+                  {"--aov: 'cryptomatte_object' and 'object' would both be the channel CryptoObject00.R"});
+  EXPECT_EQ(render({"--aov", "things,object"}).channels.size(), 3u + 2 * 12u);
+}
+
 TEST_F(Aov, OneOptionalOutputAlone) {
   const RunResult result = quintet(
       {"run", "layers", "two.gltf", "-q", "--size", "6x4", "--spp", "4", "-o", "a.exr", "--output", "position"});
