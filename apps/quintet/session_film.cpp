@@ -3,6 +3,7 @@
 
 #include "aov_notes.h"
 #include "film_facts.h"
+#include "film_guard.h"
 #include "session.h"
 
 namespace quintet::app {
@@ -24,7 +25,10 @@ render::FilmFile Session::film(const RenderOutcome& outcome) {
 
 void Session::writeFilm(const RenderOutcome& outcome) {
   progress_.stage("writing " + options_.output.string());
-  writeBytes(options_.output, render::encodeFilm(film(outcome)));
+  const render::FilmFile file = film(outcome);
+  // It was looked at for what was planned; this may be less.
+  if (!options_.farm.force) refuseLoss(options_.output, file.identity, file.film.counts.ranges);
+  writeBytes(options_.output, render::encodeFilm(file));
   record_.files = {options_.output.string()};
   record_.totalSeconds = clock_.seconds();
 }

@@ -243,6 +243,24 @@ TEST_F(Merge, FilmsAreNotLostUnasked) {
   expectError(quintet(command({"--batches", "0-3", "-o", "text.qfilm"})), 1, {"text.qfilm: is not a film file", "--force"});
 }
 
+// It may have been broken off: what is written counts, not what was planned.
+TEST_F(Merge, FilmsAreNotLostToFewerSamples) {
+  ASSERT_EQ(quintet(command({"-o", "a.qfilm"})).status, 0);
+  const std::vector<std::byte> complete = readFile(folder_ / "a.qfilm");
+  const std::vector<std::string> broken = command({"-o", "a.qfilm", "--time", "0"});  // one batch
+  expectError(quintet(broken), 1, {"a.qfilm: holds samples 0 to 29 of this rendering", "--force"});
+  std::vector<std::string> kept = broken;
+  kept.insert(kept.end(), {"--checkpoint-file", "c.qfilm"});
+  expectError(quintet(kept), 1, {"a.qfilm: holds samples 0 to 29"});
+  EXPECT_EQ(readFile(folder_ / "a.qfilm"), complete);
+  EXPECT_EQ(render::readFilm(folder_ / "c.qfilm").film.counts.samples(), 4u);
+  std::vector<std::string> forced = broken;
+  forced.push_back("--force");
+  EXPECT_EQ(quintet(forced).status, 0);
+  EXPECT_EQ(render::readFilm(folder_ / "a.qfilm").film.counts.samples(), 4u);
+  ASSERT_EQ(quintet(command({"-o", "a.qfilm"})).status, 0);  // nothing is lost
+}
+
 TEST_F(Merge, InfoTellsWhatAFilmIsOf) {
   part("1-2", "a.qfilm");
   const RunResult text = quintet({"info", "a.qfilm"});
