@@ -29,13 +29,13 @@ int render(Session& session, const RenderOptions& options) {
   checkpoint.afterRendering(outcome);
   try {
     session.write(outcome);
-  } catch (const FileError&) {
+  } catch (...) {
     checkpoint.keep(outcome);
     throw;
   }
   checkpoint.afterPicture(outcome);
   session.report();
-  return stop.exitStatus();
+  return outcome.interrupted ? stop.exitStatus() : 0;
 }
 
 }  // namespace

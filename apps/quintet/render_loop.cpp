@@ -46,11 +46,11 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
     if (first && hooks.firstBatch) hooks.firstBatch(outcome);
     first = false;
     if (hooks.afterBatch) hooks.afterBatch(outcome);
+    if (limits.seconds && now + 0.5 * (now - begin) >= *limits.seconds) break;
     if (stop.requested()) {
-      outcome.interrupted = !limits.samples || schedule.samples() < static_cast<double>(*schedule.sampleLimit());
+      outcome.interrupted = schedule.next();  // else all is there
       break;
     }
-    if (limits.seconds && now + 0.5 * (now - begin) >= *limits.seconds) break;
     if (now - counted > kCountSeconds) {
       state.raysPerSecond = static_cast<double>(renderer.rays().rays) / now;
       counted = now;

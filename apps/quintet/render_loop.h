@@ -13,7 +13,7 @@
 namespace quintet::app {
 
 struct RenderOutcome {
-  bool interrupted = false;      // by a signal, before the limits
+  bool interrupted = false;      // by a signal, before the limits: something is missing
   bool abandoned = false;        // RenderHooks::abandon said so
   std::optional<std::uint32_t> frame;  // of an animation: the one rendered last
   std::uint64_t samples = 0;     // per pixel that are there now

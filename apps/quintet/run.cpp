@@ -28,9 +28,10 @@ int draw(Session& session, const RunOptions& options) {
   session.loadScene();
   session.link();
   const GracefulStop stop;
-  withoutHanging(session.program(), options.render.json, [&] { drawPictures(session, options, stop); });
+  PictureEnd end{};
+  withoutHanging(session.program(), options.render.json, [&] { end = drawPictures(session, options, stop); });
   session.report();
-  return stop.exitStatus();
+  return end == PictureEnd::interrupted ? stop.exitStatus() : 0;
 }
 
 int runProgram(RunOptions& all) {
