@@ -10,6 +10,7 @@
 #include "film_facts.h"
 #include "film_guard.h"
 #include "output.h"
+#include "standard_error.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -96,10 +97,22 @@ void Checkpoint::save(const RenderOutcome& outcome) {
     writeBytes(options_.farm.checkpointFile, render::encodeFilm(session_.film(outcome)));
     savedSamples_ = outcome.samples;
   } catch (const FileError& error) {  // the one before is still there: rendering goes on
-    if (!warned_) session_.warnings().add(error.what());
-    warned_ = true;
+    warn(error.what());
+  } catch (const std::exception& error) {
+    warn(fmt::format("{}: cannot be written: {}", options_.farm.checkpointFile.string(), error.what()));
   }
   lastWritten_ = clock_.seconds();
+}
+
+// Now, as somebody may still make room, and in the report.
+void Checkpoint::warn(const std::string& text) {
+  if (warned_) return;
+  warned_ = true;
+  session_.warnings().add(text);
+  session_.progress().clear();
+  if (!options_.farm.jsonProgress) return printError("quintet: warning: {}\n", text);
+  const nlohmann::ordered_json line{{"warning", text}};
+  printError("{}\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 void Checkpoint::afterBatch(const RenderOutcome& outcome) {
@@ -107,8 +120,7 @@ void Checkpoint::afterBatch(const RenderOutcome& outcome) {
   if (!options_.farm.jsonProgress) return;
   nlohmann::ordered_json line{{"samples", outcome.samples}, {"seconds", outcome.seconds}};
   if (active()) line["checkpoint"] = savedSamples_;
-  fmt::print(stderr, "{}\n", line.dump());
-  std::fflush(stderr);
+  printError("{}\n", line.dump());
 }
 
 // Somebody may want to go on.

@@ -25,7 +25,7 @@ class Checkpoint {
   void afterBatch(const RenderOutcome& outcome);
   // At the end of rendering, before the picture is written: the checkpoint is complete if somebody wants it.
   void afterRendering(const RenderOutcome& outcome);
-  // All samples of the outcome are on the disk after it: the picture could not be written.
+  // All samples of the outcome are on the disk after it, if that is possible: the picture could not be written.
   void keep(const RenderOutcome& outcome);
   // The picture is there.
   void afterPicture(const RenderOutcome& outcome);
@@ -35,6 +35,7 @@ class Checkpoint {
   void resume(RenderLimits& limits);
   void checkPlace(const render::FilmFile& file, const RenderLimits& limits) const;
   void save(const RenderOutcome& outcome);
+  void warn(const std::string& text);  // once
   bool isKept(const RenderOutcome& outcome) const;
 
   Session& session_;

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "film_facts.h"
+#include "standard_error.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -16,7 +17,7 @@ void refuseOther(const render::FilmFacts& found, const render::FilmFacts& identi
   const std::vector<render::FactDifference> different = render::differences(found, identity);
   if (different.empty()) return;
   for (const std::string& line : differenceLines(different, check.where, check.here))
-    fmt::print(stderr, "quintet: {}: {}\n", plain(check.file.string()), plain(line));
+    printError("quintet: {}: {}\n", plain(check.file.string()), plain(line));
   throw FileError(check.file, check.problem);
 }
 

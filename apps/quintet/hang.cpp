@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "diagnostics_view.h"
 #include "gpu/error.h"
+#include "standard_error.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -28,7 +29,7 @@ void withoutHanging(const program::Program& program, bool json, const std::funct
       }
     }
     const char* newLine = ::isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "";  // over the progress bar
-    fmt::print(stderr, "{}quintet: {}: {}\n", newLine, plain(program.name), text);
+    printError("{}quintet: {}: {}\n", newLine, plain(program.name), text);
     std::fflush(nullptr);
     ::_exit(1);
   }

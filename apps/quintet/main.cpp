@@ -19,6 +19,7 @@
 #include "commands.h"
 #include "gpu/driver_environment.h"
 #include "signals.h"
+#include "standard_error.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -69,7 +70,7 @@ void occupyStandardStreams() {
 // One line, whatever the message holds.
 int fail(std::string message, int status) {
   std::ranges::replace(message, '\n', ' ');
-  fmt::print(stderr, "quintet: {}\n", plain(message));
+  printError("quintet: {}\n", plain(message));
   return status;
 }
 

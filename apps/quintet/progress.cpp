@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "standard_error.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -81,8 +82,7 @@ bool colorOnStandardError() { return ::isatty(STDERR_FILENO) == 1 && wantsColor(
 Progress::Progress(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), color_(wantsColor()) {}
 
 void Progress::show(const std::string& line) {
-  fmt::print(stderr, "\r\x1b[K{}", line);
-  std::fflush(stderr);
+  printError("\r\x1b[K{}", line);
   shown_ = true;
 }
 
@@ -97,20 +97,19 @@ void Progress::update(const ProgressState& state) {
   if (terminal_) {
     show(progressBar(state, terminalWidth(), color_));
   } else {
-    fmt::print(stderr, "{}\n", progressLine(state));
+    printError("{}\n", progressLine(state));
   }
 }
 
 void Progress::note(const std::string& text) {
   if (quiet_) return;
   clear();
-  fmt::print(stderr, "{}\n", text);
+  printError("{}\n", text);
 }
 
 void Progress::clear() {
   if (!shown_) return;
-  fmt::print(stderr, "\r\x1b[K");
-  std::fflush(stderr);
+  printError("\r\x1b[K");
   shown_ = false;
 }
 

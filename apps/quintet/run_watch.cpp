@@ -12,6 +12,7 @@
 #include "run_pictures.h"
 #include "shader/watch.h"
 #include "signals.h"
+#include "standard_error.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -90,7 +91,7 @@ class Watching {
       session_.tell({asDiagnostic(error)});
     } catch (const UsageError& error) {  // such as --set of a parameter that is no longer there
       session_.progress().clear();
-      fmt::print(stderr, "quintet: {}\n", plain(error.what()));
+      printError("quintet: {}\n", plain(error.what()));
     }
     return false;
   }

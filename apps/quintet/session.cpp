@@ -16,6 +16,7 @@
 #include "render/film_error.h"
 #include "scene/content_hash.h"
 #include "scene/names.h"
+#include "standard_error.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -178,9 +179,9 @@ void Session::tell(const std::vector<shader::Diagnostic>& diagnostics) {
   if (failed && options_.json) {
     writeFile("-", diagnosticsJson(diagnostics));
   } else {
-    fmt::print(stderr, "{}", diagnosticsText(diagnostics, sourcesOf(program_), colorOnStandardError()));
+    printError("{}", diagnosticsText(diagnostics, sourcesOf(program_), colorOnStandardError()));
   }
-  if (failed) fmt::print(stderr, "quintet: {}: {}\n", plain(program_.name), countText(diagnostics));
+  if (failed) printError("quintet: {}: {}\n", plain(program_.name), countText(diagnostics));
 }
 
 void Session::beginFrame(std::uint32_t frame) {
@@ -282,7 +283,7 @@ void Session::report() {
     warnings_.add(fmt::format("{} samples were not finite and left out", record_.droppedSamples));
   record_.warnings = warnings_.take();
   progress_.clear();
-  for (const std::string& warning : record_.warnings) fmt::print(stderr, "quintet: warning: {}\n", warning);
+  for (const std::string& warning : record_.warnings) printError("quintet: warning: {}\n", warning);
   if (options_.json) writeFile("-", toJson(record_));
   progress_.note(summary(record_));
 }

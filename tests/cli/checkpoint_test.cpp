@@ -321,6 +321,53 @@ TEST_F(Checkpoint, StaysWhenThePictureCannotBeWritten) {
   EXPECT_EQ(picture("results/out.png").data, expected.data);
 }
 
+// When it happens, not at the end that may be days away: these renderings have none.
+TEST_F(Checkpoint, ThatCannotBeWrittenAreToldAtOnce) {
+  for (const std::string& option : {std::string("--json-progress"), std::string("-q")}) {
+    const std::filesystem::path checkpoints = folder_ / "checkpoints";
+    std::filesystem::create_directory(checkpoints);
+    TerminalRun process(quick({"--size", "48x36", "--time", "100000", "-o", "out.png", "--checkpoint", "0", "--checkpoint-file",
+                               "checkpoints/c.qfilm", option}),
+                        folder_.path());
+    for (int i = 0; i < 12000 && !std::filesystem::exists(checkpoints / "c.qfilm"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::filesystem::rename(checkpoints, folder_ / "moved");
+    const std::string form = option == "-q" ? "quintet: warning: checkpoints/c.qfilm: " : "{\"warning\":\"checkpoints/c.qfilm: ";
+    EXPECT_TRUE(process.waitFor(form));
+    process.signal(SIGINT);
+    EXPECT_EQ(process.finish().status, 130);
+    std::filesystem::remove_all(folder_ / "moved");
+  }
+}
+
+// A signal that comes when the last batch is under way interrupts nothing.
+TEST_F(Checkpoint, CtrlCInTheLastBatchIsTooLate) {
+  const std::vector<std::string> arguments = command({"--size", "1200x900", "--spp", "8", "--checkpoint", "1000", "--json-progress"});
+  TerminalRun process(arguments, folder_.path());
+  ASSERT_TRUE(process.waitFor("\"samples\":4,"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  process.signal(SIGINT);
+  const RunResult result = process.finish();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("\"samples\":8,"), std::string::npos) << result.err;
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"out.png", "scene.gltf"}));
+}
+
+TEST_F(Checkpoint, NobodyNeedsToReadTheProgress) {
+  const io::Image expected = whole({"--spp", "16"});
+  // A pipe whose reader has gone, and a stream that is closed.
+  for (const char* shell : {"rm -f p; mkfifo p; true < p & exec 2> p; wait", "exec 2>&-"}) {
+    std::filesystem::remove(folder_ / "out.png");
+    RunOptions options;
+    options.shell = shell;
+    const RunResult result = quintet(command({"--spp", "16", "--json-progress"}), options);
+    EXPECT_EQ(result.status, 0) << shell;
+    EXPECT_EQ(picture("out.png").data, expected.data) << shell;
+    EXPECT_EQ(quintet(command({"--spp", "16"}), options).status, 0) << shell;  // the note in the end
+    EXPECT_EQ(quintet(command({"--spp", "0"}), options).status, 2) << shell;   // the error
+  }
+}
+
 TEST_F(Checkpoint, JsonProgressIsALineForEachBatch) {
   std::vector<std::string> arguments = quick({"--size", "8x8", "--spp", "10", "--json-progress"});
   std::erase(arguments, "--quiet");
