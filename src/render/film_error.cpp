@@ -10,6 +10,7 @@
 namespace quintet::render {
 namespace {
 
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kDarkness = 0.1;       // ε, of the mean luminance
 constexpr double kConfidence = 1.645;   // 95 % of a normal distribution, one side
 constexpr double kTilesBelow = 0.95;
@@ -27,7 +28,8 @@ PixelMoments momentsOf(const FilmPlane& plane, std::size_t pixel, double samples
     const double sum = fixedToDouble(plane.sums[4 * pixel + c]);
     const double spread = fixedToDouble(plane.squares[4 * pixel + c]) - sum * sum / samples;
     mean[c] = sum / samples;
-    result.variance += std::max(0.0, spread) / ((batches - 1) * samples) / 3.0;
+    // Squares beyond their range: nothing is known.
+    result.variance += std::isnan(spread) ? kInfinite : std::max(0.0, spread) / ((batches - 1) * samples) / 3.0;
   }
   result.luminance = 0.2126 * mean[0] + 0.7152 * mean[1] + 0.0722 * mean[2];
   return result;
@@ -84,6 +86,7 @@ ErrorEstimate estimateError(const FilmState& film) {
   double mean = 0;
   for (const PixelMoments& pixel : moments) mean += std::isfinite(pixel.luminance) ? pixel.luminance : 0.0;
   mean /= static_cast<double>(moments.size());
+  bool unknown = false;
   const double darkness = std::max(kDarkness * kDarkness * mean * mean, std::numeric_limits<double>::min());
   for (std::uint32_t y = 0; y < film.region.height; ++y)
     for (std::uint32_t x = 0; x < film.region.width; ++x) {
@@ -91,18 +94,21 @@ ErrorEstimate estimateError(const FilmState& film) {
       const double square = pixel.variance / (pixel.luminance * pixel.luminance + darkness);
       CellError& cell = estimate.cells[film.cellOf(x, y)];
       ++cell.pixels;
-      if (!std::isfinite(square)) continue;  // a defect of the program that is told elsewhere
+      if (std::isnan(pixel.luminance)) continue;  // a defect of the program that is told elsewhere
+      unknown = unknown || std::isinf(square);
+      if (std::isinf(square)) continue;
       cell.squares += square;
       cell.fourths += square * square;
     }
   conclude(estimate);
+  if (unknown) estimate.image = estimate.upper = estimate.tiles = kInfinite;
   return estimate;
 }
 
 std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGoal& goal) {
   const std::vector<CellError>& cells = estimate.cells;
   // The room that the confidence takes is taken off the goal.
-  const double aim = goal.error * std::min(1.0, estimate.image / estimate.upper);
+  const double aim = goal.error * (estimate.known() ? std::min(1.0, estimate.image / estimate.upper) : 1.0);
   std::vector<double> spread(cells.size());  // relative variance of one batch, by the other cell
   double pixels = 0, mean = 0;
   for (std::size_t c = 0; c < cells.size(); ++c) {

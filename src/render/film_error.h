@@ -24,7 +24,8 @@ struct CellError {
 };
 
 struct ErrorEstimate {
-  // Infinite as long as they are not known: below two batches.
+  // Infinite as long as they are not known: below two batches, or where squares were beyond the film's range (radiance of
+  // 2e9 and more).
   double image = std::numeric_limits<double>::infinity();  // the estimate of `error`
   double upper = std::numeric_limits<double>::infinity();  // with 95 % confidence `error` is below this; what is stated
   double tiles = std::numeric_limits<double>::infinity();  // 95 % of the tiles have a smaller error

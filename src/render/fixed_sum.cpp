@@ -52,7 +52,9 @@ bool isNotFinite(const shared::FixedSum& sum) { return toWide(sum) == kNotFinite
 shared::FixedSum addFixed(shared::FixedSum a, const shared::FixedSum& b) {
   if (isNotFinite(a)) return a;
   if (isNotFinite(b)) return b;
-  return toSum(toWide(a) + toWide(b));
+  const Wide x = toWide(a), y = toWide(b), sum = x + y;
+  // Both of one sign and the sum of the other: beyond the range.
+  return toSum(((x ^ sum) & (y ^ sum)) >> 127 ? kNotFinite : sum);
 }
 
 double fixedToDouble(const shared::FixedSum& sum) {

@@ -10,7 +10,7 @@ namespace quintet::render {
 // To the nearest unit of 2^-64, halves away from zero; beyond ±2^62: that. Not finite: the value that says so.
 shared::FixedSum fixedFromFloat(float value);
 
-// Exact and associative within ±2^63. A sum that is not finite stays so.
+// Exact and associative within ±2^63; beyond: not finite. A sum that is not finite stays so.
 shared::FixedSum addFixed(shared::FixedSum a, const shared::FixedSum& b);
 
 // To the nearest double, halves up or down; NaN where a term was not finite.

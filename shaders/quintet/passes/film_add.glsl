@@ -18,6 +18,9 @@ void main() {
   if (batch == vec4(0.0)) return;  // as adaptive sampling leaves it
   for (uint c = 0u; c < 4u; ++c) {
     add(pass.total, 4u * i + c, batch[c]);
-    if (pass.squares != 0ul) add(pass.squares, 4u * i + c, batch[c] * batch[c] * pass.inverseSamples);
+    if (pass.squares == 0ul) continue;
+    // What fixedFromFloat would clamp must not pass for a small variance.
+    const float square = batch[c] * batch[c] * pass.inverseSamples;
+    add(pass.squares, 4u * i + c, square < kFixedLimit ? square : uintBitsToFloat(0x7F800000u));
   }
 }

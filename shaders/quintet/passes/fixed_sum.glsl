@@ -4,6 +4,8 @@
 
 #include "../shared/film.h"
 
+const float kFixedLimit = 4611686018427387904.0;  // 2^62
+
 // To the nearest unit of 2^-64; beyond ±2^62: that. Not finite: the value that says so.
 FixedSum fixedFromFloat(float value) {
   const uint bits = floatBitsToUint(value);
@@ -41,6 +43,7 @@ bool isNotFinite(FixedSum sum) { return sum.word[3] == kNotFiniteWord && (sum.wo
 FixedSum addFixed(FixedSum a, FixedSum b) {
   if (isNotFinite(a)) return a;
   if (isNotFinite(b)) return b;
+  const uint high = a.word[3];
   uint carry = 0u;
   for (uint i = 0u; i < 4u; ++i) {
     uint first, second;
@@ -48,6 +51,8 @@ FixedSum addFixed(FixedSum a, FixedSum b) {
     a.word[i] = uaddCarry(a.word[i], b.word[i], second);
     carry = first + second;
   }
+  // Both of one sign and the sum of the other: beyond the range.
+  if ((((high ^ a.word[3]) & (b.word[3] ^ a.word[3])) >> 31) != 0u) return FixedSum(uint[4](0u, 0u, 0u, kNotFiniteWord));
   return a;
 }
 

@@ -9,6 +9,7 @@
 
 #include "../program/run_program.h"
 #include "harness.h"
+#include "render/film_error.h"
 #include "render/film_file.h"
 #include "render/fixed_sum.h"
 
@@ -30,6 +31,8 @@ TEST(FilmPasses, SumAsTheHostDoes) {
     inputs.push_back({draw(), i % 5 ? draw() : 0.0f});
     if (i % 7 == 0) inputs.back().b = -inputs.back().a;
   }
+  for (const float a : {3e38f, -3e38f, 4.5e18f, -4.5e18f})
+    for (const float b : {3e38f, -3e38f, 1e18f, -1e18f}) inputs.push_back({a, b});
   const auto seen = runCompute<std::array<std::uint32_t, 4>>(R"(
     #include <quintet/passes/fixed_sum.glsl>
     struct In { float a; float b; };
@@ -48,6 +51,9 @@ const Files kFiles = {{"m.rmiss", "#version 460\n#extension GL_EXT_ray_tracing :
 #extension GL_EXT_ray_tracing : require
 #include <quintet/output.glsl>
 #include <quintet/generated/program.glsl>
+#ifndef SCALE
+#define SCALE 1.0
+#endif
 void main() {
   const uvec2 pixel = launchPixel();
   if (!launchActive(pixel)) return;
@@ -57,7 +63,7 @@ void main() {
 #endif
   for (uint i = 0u; i < launch.sampleCount; ++i) {
     const uint s = launch.firstSample + i;
-    sum += vec4(0.1 * float(s) + float(pixel.x), float(s * s), -1.0, 1.0);
+    sum += vec4(0.1 * float(s) + float(pixel.x), SCALE * float(s * s), -1.0, 1.0);
 #ifdef QUINTET_OUTPUT_depth
     if (s == 0u) storeOutput(kOutput_depth, pixel, vec4(7.0 + float(pixel.y)));
 #endif
@@ -103,9 +109,10 @@ struct FilmTest : testing::Test {
     options.width = 37;
     options.height = 5;
   }
-  render::Renderer renderer(const std::vector<std::string>& outputs) {
+  render::Renderer renderer(const std::vector<std::string>& outputs, const char* scale = "1.0") {
     render::RenderSettings settings = settingsFor(scene.scene.cameras[0], options);
     settings.outputs = outputs;
+    settings.defines = {{"SCALE", scale}};
     return render::Renderer(device, options.program, testCompiler(), nullptr, settings);
   }
 };
@@ -156,6 +163,18 @@ TEST_F(FilmTest, GivesTheVarianceOfItsBatches) {
   for (int b = 0; b < 6; ++b) spread += (batchMean(b) - mean) * (batchMean(b) - mean);
   EXPECT_NEAR(variance.pixel<float>(5, 1)[1] / (spread / 5 / 6), 1.0, 1e-5);
   EXPECT_EQ(variance.pixel<float>(5, 1)[2], 0.0f);
+}
+
+// Squares of batches beyond the film's range: not known, which is not the same as none. The mean is not touched.
+TEST_F(FilmTest, DoesNotTakeTheBrightestForConstant) {
+  for (const bool beyond : {false, true}) {
+    render::Renderer r = renderer({}, beyond ? "1e9" : "1e7");
+    for (int b = 0; b < 3; ++b) r.renderBatch();
+    const render::FilmState film = r.saveFilm();
+    EXPECT_EQ(render::estimateError(film).known(), !beyond);
+    EXPECT_EQ(std::isnan(render::varianceImage(film).pixel<float>(5, 1)[1]), beyond);
+    EXPECT_NEAR(r.image().pixel<float>(5, 1)[1] / ((beyond ? 1e9 : 1e7) * meanOf(12, [](double s) { return s * s; })), 1.0, 1e-6);
+  }
 }
 
 // A film file holds all of it, without loss.

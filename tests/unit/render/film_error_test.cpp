@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 
 #include "render/film_error.h"
@@ -66,6 +67,20 @@ TEST(FilmError, IsNotKnownBelowTwoBatches) {
   Simulation simulation(8, 8);
   simulation.render([](auto, auto) { return 1.0; }, 1);
   EXPECT_TRUE(std::isinf(estimateError(simulation.film).upper));
+}
+
+// A pixel of the sun in cd/m²: its squares are beyond the film's range, which must not pass for a constant pixel.
+TEST(FilmError, IsNotKnownWhereSquaresAreBeyondTheRange) {
+  Simulation simulation(40, 8);
+  simulation.render([](auto, auto) { return 1.0; }, 4);
+  EXPECT_TRUE(estimateError(simulation.film).known());
+  FilmPlane& plane = simulation.film.planes[0];
+  plane.squares[4 * 17] = fixedFromFloat(std::numeric_limits<float>::infinity());
+  const ErrorEstimate estimate = estimateError(simulation.film);
+  EXPECT_FALSE(estimate.known());
+  EXPECT_FALSE(estimate.reaches(1e9));
+  for (const std::uint32_t batches : planCells(estimate, {.error = 0, .batches = 8})) EXPECT_LE(batches, 16u);
+  EXPECT_TRUE(std::isnan(varianceImage(simulation.film).pixel<float>(17, 0)[0]));
 }
 
 TEST(FilmError, BlackAndConstantPicturesHaveNone) {

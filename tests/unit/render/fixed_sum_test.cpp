@@ -43,6 +43,14 @@ TEST(FixedSum, OfATermThatIsNotFiniteStaysSo) {
   }
 }
 
+TEST(FixedSum, BeyondItsRangeIsNotFinite) {
+  const shared::FixedSum big = fixedFromFloat(3e38f), small = fixedFromFloat(-3e38f);
+  EXPECT_TRUE(isNotFinite(addFixed(big, big)));
+  EXPECT_TRUE(isNotFinite(addFixed(addFixed(small, small), fixedFromFloat(-1.0f))));
+  EXPECT_FALSE(isNotFinite(addFixed(big, fixedFromFloat(4e18f))));
+  EXPECT_EQ(fixedToDouble(addFixed(big, small)), 0.0);
+}
+
 TEST(FixedSum, DoesNotDependOnTheOrder) {
   std::mt19937 random(7);
   std::vector<float> terms;
