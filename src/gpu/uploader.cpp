@@ -3,6 +3,7 @@
 #include <array>
 #include <cassert>
 #include <exception>
+#include <unordered_map>
 #include <vector>
 
 #include "gpu/buffer.h"
@@ -42,6 +43,7 @@ struct Uploader::Impl {
   // in data, length) for each.
   template <class Add>
   void stage(std::span<const std::byte> data, VkDeviceSize pieceBytes, const Add& add);
+  // With a copy that waits in the current half.
   bool overlaps(VkBuffer destination, VkDeviceSize begin, VkDeviceSize end) const;
   void submit();
   void record(Commands& commands) const;
@@ -54,6 +56,8 @@ struct Uploader::Impl {
   std::array<std::uint64_t, 2> busyUntil{};  // timeline value that frees each half
   std::vector<BufferCopy> bufferCopies;
   std::vector<ImageCopy> imageCopies;
+  std::unordered_map<VkBuffer, VkDeviceSize> ends;  // of what bufferCopies write, by destination
+  const int exceptions = std::uncaught_exceptions();
 };
 
 template <class Add>
@@ -74,6 +78,9 @@ void Uploader::Impl::stage(std::span<const std::byte> data, VkDeviceSize pieceBy
 }
 
 bool Uploader::Impl::overlaps(VkBuffer destination, VkDeviceSize begin, VkDeviceSize end) const {
+  // Most buffers are filled from front to back: then there is nothing to search.
+  const auto written = ends.find(destination);
+  if (written == ends.end() || begin >= written->second) return false;
   return std::any_of(bufferCopies.begin(), bufferCopies.end(), [&](const BufferCopy& copy) {
     return copy.destination == destination && copy.region.dstOffset < end &&
            begin < copy.region.dstOffset + copy.region.size;
@@ -85,6 +92,7 @@ void Uploader::Impl::submit() {
   busyUntil[half] = context.submit([this](Commands& commands) { record(commands); });
   bufferCopies.clear();
   imageCopies.clear();
+  ends.clear();
   half = 1 - half;
   used = 0;
   context.wait(busyUntil[half]);
@@ -109,6 +117,11 @@ Uploader::Uploader(Context& context, VkDeviceSize stagingBytes)
     : impl_(std::make_unique<Impl>(context, stagingBytes)) {}
 
 Uploader::~Uploader() {
+  // An exception may have destroyed destinations already: nobody waits for what is not submitted yet.
+  if (std::uncaught_exceptions() > impl_->exceptions) {
+    impl_->bufferCopies.clear();
+    impl_->imageCopies.clear();
+  }
   try {
     flush();
   } catch (const std::exception& error) {
@@ -123,6 +136,8 @@ void Uploader::upload(const Buffer& destination, std::span<const std::byte> data
   if (impl_->overlaps(destination.handle(), offset, offset + data.size())) impl_->submit();
   impl_->stage(data, impl_->halfBytes, [&](VkDeviceSize staged, VkDeviceSize position, VkDeviceSize length) {
     impl_->bufferCopies.push_back({destination.handle(), {staged, offset + position, length}});
+    VkDeviceSize& end = impl_->ends[destination.handle()];
+    end = std::max(end, offset + position + length);
   });
 }
 

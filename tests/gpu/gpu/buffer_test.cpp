@@ -148,6 +148,41 @@ TEST(GpuUploader, KeepsTheOrderOfOverlappingUploads) {
   EXPECT_EQ(buffer.downloadAs<std::uint32_t>(100), expected);
 }
 
+// Backwards, with holes, and again over some of it: what was said last is there.
+TEST(GpuUploader, KeepsTheOrderInAnyOrderOfPlaces) {
+  Context& context = test::testContext();
+  const Buffer buffer(context, {.size = 4 * 1000, .name = "patchwork"});
+  std::vector<std::uint32_t> expected(1000);
+  Uploader uploader(context, 0);
+  const auto write = [&](std::uint32_t begin, std::uint32_t count, std::uint32_t value) {
+    const std::vector<std::uint32_t> data(count, value);
+    uploader.upload(buffer, std::as_bytes(std::span(data)), VkDeviceSize{4} * begin);
+    std::fill_n(expected.begin() + begin, count, value);
+  };
+  write(0, 1000, 1);
+  for (std::uint32_t i = 0; i < 50; ++i) write(980 - 20 * i, 15, 100 + i);
+  for (std::uint32_t i = 0; i < 50; ++i) write((i * 37) % 900, 100, 200 + i);
+  uploader.flush();
+  EXPECT_EQ(buffer.downloadAs<std::uint32_t>(1000), expected);
+}
+
+// An error on the way: destinations may be gone before the uploader.
+TEST(GpuUploader, CopiesNothingWhileAnExceptionIsOnItsWay) {
+  Context& context = test::testContext();
+  const Buffer kept = makeBufferOf(context, std::vector<std::uint32_t>(100, 5), 0, "kept");
+  EXPECT_THROW(
+      {
+        Uploader uploader(context);
+        const std::vector<std::uint32_t> data = counting(100, 1);
+        uploader.upload(kept, std::as_bytes(std::span(data)));
+        const Buffer gone(context, {.size = 400, .name = "gone"});
+        uploader.upload(gone, std::as_bytes(std::span(data)));
+        throw std::runtime_error("no memory");
+      },
+      std::runtime_error);
+  EXPECT_EQ(kept.downloadAs<std::uint32_t>(100), std::vector<std::uint32_t>(100, 5));
+}
+
 TEST(GpuUploader, FlushesNothingToo) {
   Uploader uploader(test::testContext());
   uploader.upload(makeBuffer(test::testContext(), {}, 0, "empty"), {});
