@@ -31,7 +31,10 @@ std::optional<std::uint64_t> Schedule::sampleLimit() const {
   return limits_.samples ? std::optional(*limits_.samples - limits_.begin) : std::nullopt;
 }
 
-void Schedule::look() { estimate_ = render::estimateError(renderer_.film().saveFirst()); }
+void Schedule::look() {
+  renderer_.finish();
+  estimate_ = render::estimateError(renderer_.film().saveFirst());
+}
 
 bool Schedule::next() {
   if (limits_.adaptive && done_ >= pilotSamples(limits_)) return nextForCells();

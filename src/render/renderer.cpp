@@ -7,6 +7,7 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <deque>
 #include <limits>
 
@@ -291,7 +292,7 @@ struct Renderer::Impl {
         launch(target, row, rows, samples.begin + s, std::min(step, count - s), first ? begin() : Record(), last ? end : Record());
       }
       row += rows;
-      if (progress && !progress(static_cast<double>(row) / target.height)) return false;
+      if (progress && !progress(static_cast<double>(row) / target.height) && row < target.height) return false;
     }
     statistics.batches++;
     statistics.samples = film->counts().samples();
@@ -317,7 +318,9 @@ struct Renderer::Impl {
       if (tile.drawn[0] + tile.drawn[1] > 0) tiles.push_back(tile);
     }
     assert(!tiles.empty());
-    tileBuffer = gpu::makeBufferOf(context, tiles, 0, "film tiles");
+    // Written in place: no wait for a copy, so that the launches before this batch may still be under way.
+    tileBuffer = gpu::Buffer(context, {.size = std::span(tiles).size_bytes(), .memory = gpu::Memory::upload, .name = "film tiles"});
+    std::memcpy(tileBuffer.mapped(), tiles.data(), std::span(tiles).size_bytes());
     const Target target{shared::kTileSize * shared::kTileSize, static_cast<std::uint32_t>(tiles.size()), {0, 0}, tileBuffer.address()};
     const SampleRange samples = batchSamples(batch, kBatchSamples);
     const Record end = [&](gpu::Commands& commands) { film->endAdaptiveBatch(commands, samples, counts); };
@@ -367,7 +370,11 @@ void Renderer::restart() {
 }
 bool Renderer::renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress) { return impl_->renderCells(limits, progress); }
 void Renderer::startAt(std::uint64_t batch) { impl_->nextBatch = batch; }
-FilmState Renderer::saveFilm() const { return impl_->film->save(); }
+// What reads from the device waits for the launches first, with the limit on their time: a launch that hangs is told.
+FilmState Renderer::saveFilm() const {
+  impl_->finishAndCount();
+  return impl_->film->save();
+}
 void Renderer::restoreFilm(const FilmState& state) {
   impl_->film->restore(state);
   impl_->statistics.samples = state.counts.samples();
@@ -377,14 +384,23 @@ void Renderer::restoreFilm(const FilmState& state) {
 
 const Film& Renderer::film() const { return *impl_->film; }
 bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) { return impl_->renderFrame(index, progress); }
-io::Image Renderer::image(std::size_t output) const { return impl_->image(output); }
-RayCount Renderer::rays() const { return impl_->film->countRays(); }
+io::Image Renderer::image(std::size_t output) const {
+  impl_->finishAndCount();
+  return impl_->image(output);
+}
+RayCount Renderer::rays() const {
+  impl_->finishAndCount();
+  return impl_->film->countRays();
+}
 const RenderStatistics& Renderer::statistics() const { return impl_->statistics; }
 const std::vector<LaunchTiming>& Renderer::launches() const { return impl_->launches; }
 const program::LinkedProgram& Renderer::linked() const { return *impl_->linked; }
 const std::vector<shader::Diagnostic>& Renderer::diagnostics() const { return impl_->diagnostics; }
 const std::vector<std::filesystem::path>& Renderer::files() const { return impl_->files; }
-std::vector<shader::Diagnostic> Renderer::notes() const { return impl_->notes(); }
+std::vector<shader::Diagnostic> Renderer::notes() const {
+  impl_->finishAndCount();
+  return impl_->notes();
+}
 const program::Program& Renderer::program() const { return impl_->description; }
 
 }  // namespace quintet::render

@@ -71,8 +71,8 @@ struct LaunchTiming {
   double wallSeconds = 0;     // of the host, from recording to the end of the wait
 };
 
-// Called between launches with the fraction of the current batch that is done or under way; false: give the batch up
-// (its samples are lost).
+// Called between launches with the fraction of the current batch that is done or under way; false: give the batch up. Its
+// samples are lost, but not the count of its rays; at 1 nothing is left to give up.
 using BatchProgress = std::function<bool(double)>;
 
 class Renderer {
