@@ -82,7 +82,7 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   b.diffuse.passing = passing;
 
   vec3 clearColor = clear * baseColor;
-  float through = lb.x * max(1.0 - layerMultiple, 0.0);
+  float through = lb.x * (1.0 - layerMultiple);
   b.thin = ThinLobe(clearColor, f0, p.specular, alpha, through / average.x * clearColor, min(through / max(passed, 1e-20), 1.0));
 
   // Where the indices nearly match, refraction is too narrow for its half vector: straight on. So for ior 0.

@@ -10,7 +10,7 @@
 // sum over two and more of them. 1 for a white mirror.
 vec3 multipleFactor(vec3 f0, float f90, float lostAverage) {
   vec3 f = (20.0 * f0 + f90) / 21.0;
-  return f * f * (1.0 - lostAverage) / (1.0 - f * lostAverage);
+  return min(f * f * (1.0 - lostAverage) / (1.0 - f * lostAverage), vec3(1.0));  // a device's quotient may exceed 1
 }
 
 // f cos_i without F L(wo) / M. `lb`: the layer's albedoSchlick at wi.
