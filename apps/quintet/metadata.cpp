@@ -27,6 +27,12 @@ nlohmann::ordered_json memoryJson(const MemoryUse& memory) {
           {"ratio", memory.ratio()}};
 }
 
+nlohmann::ordered_json devicePeakJson(const MemoryUse& memory) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const auto& [purpose, bytes] : memory.devicePeak) json[purpose + "Bytes"] = bytes;
+  return json;
+}
+
 nlohmann::ordered_json errorJson(const RenderRecord& record) {
   if (!record.error.known()) return {};
   nlohmann::ordered_json json{{"image", record.error.upper}, {"tiles", record.error.tiles}};
@@ -127,6 +133,7 @@ std::string toJson(const RenderRecord& record) {
         {"accelerationStructures", record.accelerationBytes},
         {"film", record.filmBytes}}},
       {"memory", memoryJson(record.memory)},
+      {"devicePeak", devicePeakJson(record.memory)},
       {"warnings", record.warnings},
       {"diagnostics", nlohmann::ordered_json::parse(diagnosticsJson(record.diagnostics))},
   };

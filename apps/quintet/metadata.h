@@ -22,6 +22,8 @@ struct MemoryUse {
   std::uint64_t geometry = 0;
   std::uint64_t textures = 0;
   std::uint64_t acceleration = 0;  // with the maps of primitives
+  // Of peakDevice: (purpose, bytes), as things stood when it was reached; "unused" is room in the driver's blocks.
+  std::vector<std::pair<std::string, std::uint64_t>> devicePeak;
   bool deviceIsHost = false;       // a CPU: what the device holds is part of what the process holds
   // Of the peak to the three together. On a CPU the process's peak: what was asked for and never touched is in no
   // memory. Else the larger of the two: each memory by itself.

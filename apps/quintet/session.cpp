@@ -344,7 +344,12 @@ void Session::fillLoading() {
                     {"firstLaunch", renderer_->statistics().firstLaunchSeconds}};
   MemoryUse& memory = record_.memory;
   memory.peakHost = peakResidentBytes();
-  memory.peakDevice = context_->memory().peak;
+  const gpu::DeviceMemory device = context_->memory();
+  memory.peakDevice = device.peak;
+  memory.devicePeak.clear();
+  for (std::size_t p = 0; p < gpu::kPurposeCount; ++p)
+    memory.devicePeak.emplace_back(gpu::purposeName(static_cast<gpu::Purpose>(p)), device.atPeak[p]);
+  memory.devicePeak.emplace_back("unused", device.unusedAtPeak());
   memory.deviceIsHost = context_->info().quirks.software;
   memory.geometry = built.geometryBytes;
   memory.textures = built.textureBytes;

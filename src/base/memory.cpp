@@ -1,6 +1,8 @@
 #include "base/memory.h"
 
 #include <malloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <charconv>
 #include <fstream>
@@ -33,6 +35,13 @@ void returnLargeBlocksAtOnce() {
   constexpr int kLargeBytes = 4 << 20;
   ::mallopt(M_MMAP_THRESHOLD, kLargeBytes);
 #endif
+}
+
+void givePagesBack(std::span<const std::byte> bytes) {
+  const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
+  const auto begin = reinterpret_cast<std::uintptr_t>(bytes.data());
+  const std::uintptr_t first = (begin + page - 1) / page * page, last = (begin + bytes.size()) / page * page;
+  if (first < last) ::madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
 }
 
 void returnFreedMemory() {

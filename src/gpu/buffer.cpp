@@ -15,7 +15,7 @@ namespace quintet::gpu {
 
 namespace {
 
-constexpr VkDeviceSize kStagingBytes = VkDeviceSize{64} << 20;  // of one step of a blocking copy
+constexpr VkDeviceSize kStagingBytes = VkDeviceSize{8} << 20;  // of one step of a blocking copy
 constexpr double kMiB = 1024.0 * 1024.0;
 
 VkDeviceSize alignmentOf(const Context& context, const BufferOptions& options) {
@@ -39,13 +39,14 @@ void refuseAbsurdSize(const Context& context, const BufferOptions& options) {
   refuseOvercommitment(context, options.size, fmt::format("buffer '{}'", options.name));
 }
 
-VmaAllocationCreateInfo allocationInfo(Memory memory) {
+VmaAllocationCreateInfo allocationInfo(Memory memory, bool ownBlock) {
   VmaAllocationCreateInfo info{};
   info.usage = memory == Memory::device ? VMA_MEMORY_USAGE_AUTO_PREFER_DEVICE : VMA_MEMORY_USAGE_AUTO_PREFER_HOST;
   if (memory == Memory::upload)
     info.flags = VMA_ALLOCATION_CREATE_MAPPED_BIT | VMA_ALLOCATION_CREATE_HOST_ACCESS_SEQUENTIAL_WRITE_BIT;
   if (memory == Memory::readback)
     info.flags = VMA_ALLOCATION_CREATE_MAPPED_BIT | VMA_ALLOCATION_CREATE_HOST_ACCESS_RANDOM_BIT;
+  if (ownBlock) info.flags |= VMA_ALLOCATION_CREATE_DEDICATED_MEMORY_BIT;
   return info;
 }
 
@@ -58,11 +59,12 @@ Buffer::Buffer(Context& context, const BufferOptions& options) : context_(&conte
   info.size = size_;
   info.usage = options.usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
-  const VmaAllocationCreateInfo allocation = allocationInfo(options.memory);
+  const VmaAllocationCreateInfo allocation = allocationInfo(options.memory, getsOwnBlock(context, size_));
   VmaAllocationInfo allocated{};
   const VkResult result = vmaCreateBufferWithAlignment(context.allocator(), &info, &allocation,
                                                        alignmentOf(context, options), &handle_, &allocation_, &allocated);
   check(result, fmt::format("allocate {:.1f} MiB for buffer", static_cast<double>(size_) / kMiB), options.name);
+  book(context, allocation_, options.purpose);
   mapped_ = static_cast<std::byte*>(allocated.pMappedData);
   VkBufferDeviceAddressInfo addressInfo{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
   addressInfo.buffer = handle_;
@@ -88,8 +90,9 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 
 void Buffer::release() {
   if (!handle_) return;
-  context_->retire([allocator = context_->allocator(), handle = handle_, allocation = allocation_] {
-    vmaDestroyBuffer(allocator, handle, allocation);
+  context_->retire([context = context_, handle = handle_, allocation = allocation_] {
+    unbook(*context, allocation);
+    vmaDestroyBuffer(context->allocator(), handle, allocation);
   });
   handle_ = VK_NULL_HANDLE;
 }
@@ -105,7 +108,8 @@ void Buffer::upload(std::span<const std::byte> data, VkDeviceSize offset) {
   }
   Buffer staging(*context_, {.size = std::min<VkDeviceSize>(data.size(), kStagingBytes),
                              .memory = Memory::upload,
-                             .name = "staging for an upload"});
+                             .name = "staging for an upload",
+                             .purpose = Purpose::staging});
   for (std::size_t done = 0; done < data.size();) {
     const std::size_t step = std::min<std::size_t>(data.size() - done, staging.size());
     staging.upload(data.subspan(done, step));
@@ -125,7 +129,8 @@ void Buffer::download(std::span<std::byte> data, VkDeviceSize offset) const {
   }
   const Buffer staging(*context_, {.size = std::min<VkDeviceSize>(data.size(), kStagingBytes),
                                    .memory = Memory::readback,
-                                   .name = "staging for a download"});
+                                   .name = "staging for a download",
+                                   .purpose = Purpose::staging});
   for (std::size_t done = 0; done < data.size();) {
     const std::size_t step = std::min<std::size_t>(data.size() - done, staging.size());
     context_->submitAndWait([&](Commands& commands) { commands.copy(*this, staging, step, offset + done, 0); });

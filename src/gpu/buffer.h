@@ -30,6 +30,7 @@ struct BufferOptions {
   VkBufferUsageFlags usage = 0;
   VkDeviceSize alignment = 0;  // bytes of the address; 0: what the usage needs
   std::string name;
+  Purpose purpose = Purpose::tables;
 };
 
 class Buffer {

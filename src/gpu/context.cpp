@@ -1,6 +1,5 @@
 #include "gpu/context.h"
 
-#include <atomic>
 #include <cstdlib>
 #include <optional>
 
@@ -10,6 +9,7 @@
 #include "gpu/device_query.h"
 #include "gpu/error.h"
 #include "gpu/instance.h"
+#include "gpu/memory.h"
 #include "gpu/submissions.h"
 #include "gpu/vma.h"
 
@@ -59,25 +59,15 @@ struct Device {
   VkQueue queue = VK_NULL_HANDLE;
 };
 
-// Counts what VMA takes from the driver; from any thread.
-struct MemoryCounter {
-  void add(VkDeviceSize size) {
-    const std::uint64_t sum = now.fetch_add(size) + size;
-    std::uint64_t known = peak.load();
-    while (known < sum && !peak.compare_exchange_weak(known, sum)) {}
-  }
-  std::atomic<std::uint64_t> now{0}, peak{0};
-};
-
 struct Allocator {
   Allocator(VkInstance instance, const FoundDevice& found, VkDevice device) {
     VmaDeviceMemoryCallbacks callbacks{};
-    callbacks.pUserData = &counter;
+    callbacks.pUserData = &account;
     callbacks.pfnAllocate = [](VmaAllocator, std::uint32_t, VkDeviceMemory, VkDeviceSize size, void* user) {
-      static_cast<MemoryCounter*>(user)->add(size);
+      static_cast<MemoryAccount*>(user)->addBlock(size);
     };
     callbacks.pfnFree = [](VmaAllocator, std::uint32_t, VkDeviceMemory, VkDeviceSize size, void* user) {
-      static_cast<MemoryCounter*>(user)->now -= size;
+      static_cast<MemoryAccount*>(user)->removeBlock(size);
     };
     VmaVulkanFunctions functions{};
     functions.vkGetInstanceProcAddr = vkGetInstanceProcAddr;
@@ -92,13 +82,14 @@ struct Allocator {
     info.pVulkanFunctions = &functions;
     info.vulkanApiVersion = VK_API_VERSION_1_3;
     info.pDeviceMemoryCallbacks = &callbacks;
+    info.preferredLargeHeapBlockSize = kBlockBytes;
     check(vmaCreateAllocator(&info, &handle), "create the memory allocator");
   }
   ~Allocator() { vmaDestroyAllocator(handle); }
   Allocator(const Allocator&) = delete;
   Allocator& operator=(const Allocator&) = delete;
 
-  MemoryCounter counter;
+  MemoryAccount account;
   VmaAllocator handle = VK_NULL_HANDLE;
 };
 
@@ -156,7 +147,8 @@ VmaAllocator Context::allocator() const { return impl_->allocator.handle; }
 VkQueue Context::queue() const { return impl_->device.queue; }
 std::uint32_t Context::queueFamily() const { return impl_->found.queueFamily; }
 const LogSink& Context::log() const { return impl_->log; }
-DeviceMemory Context::memory() const { return {impl_->allocator.counter.now, impl_->allocator.counter.peak}; }
+DeviceMemory Context::memory() const { return impl_->allocator.account.memory(); }
+MemoryAccount& Context::memoryAccount() { return impl_->allocator.account; }
 
 std::uint32_t Context::validationMessageCount() const { return impl_->sink.count(); }
 std::vector<std::string> Context::validationMessages() const { return impl_->sink.messages(); }

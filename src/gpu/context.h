@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/log.h"
+#include "gpu/memory_account.h"
 #include "gpu/vulkan.h"
 
 VK_DEFINE_HANDLE(VmaAllocator)
@@ -70,12 +71,6 @@ struct DeviceInfo {
   bool usable() const { return refusal.empty(); }
 };
 
-// Memory that was asked of the driver, in blocks from which buffers and images are cut; bytes.
-struct DeviceMemory {
-  std::uint64_t now = 0;
-  std::uint64_t peak = 0;  // the most since the context was made
-};
-
 struct ContextOptions {
   // Empty: the first usable device, real GPUs before CPUs. Otherwise an index ("1") or a part of the
   // name or driver, without regard to case ("h200", "lavapipe", "cpu", "gpu"). $QUINTET_DEVICE is used when empty.
@@ -109,7 +104,8 @@ class Context {
   VkQueue queue() const;
   std::uint32_t queueFamily() const;
   const LogSink& log() const;
-  DeviceMemory memory() const;
+  DeviceMemory memory() const;  // asked of the driver
+  MemoryAccount& memoryAccount();
 
   // Validation messages so far, known false alarms left out (context_validation.cpp lists them).
   std::uint32_t validationMessageCount() const;

@@ -57,8 +57,10 @@ Image::Image(Context& context, const ImageOptions& options) : context_(&context)
   refuseUnsupported(context, info, options.name);
   VmaAllocationCreateInfo allocation{};
   allocation.usage = VMA_MEMORY_USAGE_AUTO_PREFER_DEVICE;
+  if (getsOwnBlock(context, byteSize())) allocation.flags = VMA_ALLOCATION_CREATE_DEDICATED_MEMORY_BIT;
   check(vmaCreateImage(context.allocator(), &info, &allocation, &handle_, &allocation_, nullptr),
         fmt::format("allocate {:.1f} MiB for image", static_cast<double>(byteSize()) / kMiB), options.name);
+  book(context, allocation_, Purpose::textures);
 
   VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
   view.image = handle_;
@@ -90,6 +92,7 @@ void Image::release() {
   if (!handle_) return;
   context_->retire([context = context_, handle = handle_, view = view_, allocation = allocation_] {
     context->vk().vkDestroyImageView(context->device(), view, nullptr);
+    unbook(*context, allocation);
     vmaDestroyImage(context->allocator(), handle, allocation);
   });
   handle_ = VK_NULL_HANDLE;

@@ -10,6 +10,25 @@
 
 namespace quintet::gpu {
 
+bool getsOwnBlock(Context& context, VkDeviceSize bytes) {
+  constexpr std::size_t kManyBlocks = 1024;
+  return bytes >= kOwnBlockBytes && context.memoryAccount().blockCount() < kManyBlocks;
+}
+
+// The allocation itself remembers what it is for.
+void book(Context& context, VmaAllocation allocation, Purpose purpose) {
+  VmaAllocationInfo info{};
+  vmaGetAllocationInfo(context.allocator(), allocation, &info);
+  vmaSetAllocationUserData(context.allocator(), allocation, reinterpret_cast<void*>(static_cast<std::uintptr_t>(purpose)));
+  context.memoryAccount().add(purpose, info.size);
+}
+
+void unbook(Context& context, VmaAllocation allocation) {
+  VmaAllocationInfo info{};
+  vmaGetAllocationInfo(context.allocator(), allocation, &info);
+  context.memoryAccount().remove(static_cast<Purpose>(reinterpret_cast<std::uintptr_t>(info.pUserData)), info.size);
+}
+
 void refuseOvercommitment(const Context& context, VkDeviceSize bytes, const std::string& object) {
   if (!context.info().quirks.software) return;
   std::array<VmaBudget, VK_MAX_MEMORY_HEAPS> budgets{};

@@ -37,7 +37,7 @@ struct Uploader::Impl {
   Impl(Context& owner, VkDeviceSize stagingBytes)
       : context(owner),
         halfBytes(alignUp(std::max(stagingBytes / 2, kMinHalfBytes))),
-        staging(owner, {.size = 2 * halfBytes, .memory = Memory::upload, .name = "upload ring"}) {}
+        staging(owner, {.size = 2 * halfBytes, .memory = Memory::upload, .name = "upload ring", .purpose = Purpose::staging}) {}
 
   // Copies `data` into the ring, in pieces of at most `pieceBytes`; calls add(staging offset, position
   // in data, length) for each.

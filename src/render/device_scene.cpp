@@ -62,7 +62,8 @@ struct DeviceScene::Impl {
     statistics.lightSeconds = watch.seconds();
     {
       // A CPU copies at once: a large ring would only be memory.
-      gpu::Uploader uploader(context, VkDeviceSize{context.info().quirks.software ? 32u : 64u} << 20);
+      const VkDeviceSize limit = VkDeviceSize{context.info().quirks.software ? 8u : 64u} << 20;
+      gpu::Uploader uploader(context, std::min(2 * uploadBytes(context, scene), limit));
       uploadMaterials(scene, emptied, environment, uploader);
       geometry = uploadGeometries(context, uploader, scene, emptied);
       uploader.flush();

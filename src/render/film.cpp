@@ -56,6 +56,7 @@ Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Com
     gpu::BufferOptions options;
     options.size = pixels * bytesPerPixel;
     options.name = name;
+    options.purpose = gpu::Purpose::film;
     return gpu::Buffer(context, options);
   };
   for (std::size_t i = 0; i < program.outputs.size(); ++i) {

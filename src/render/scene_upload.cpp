@@ -61,6 +61,7 @@ class Arena {
     options.usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
     options.alignment = kAlignment;
     options.name = "geometry attributes";
+    options.purpose = gpu::Purpose::geometry;
     target_.buffers.emplace_back(context_, options);
     target_.bytes += options.size;
     capacity_ = options.size;
@@ -170,6 +171,14 @@ VkFormat textureFormat(io::PixelType type, bool sRgb) {
 }
 
 }  // namespace
+
+VkDeviceSize uploadBytes(const gpu::Context& context, const scene::Scene& scene) {
+  VkDeviceSize bytes = 0;
+  for (const scene::NamedImage& image : scene.images) bytes += 4 * image.image.pixelCount() * io::bytesPerSample(image.image.type);
+  if (context.info().quirks.software) return bytes;
+  for (const VkDeviceSize size : arraySizes(scene)) bytes += size;
+  return bytes;
+}
 
 GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene, scene::Scene* emptied) {
   GeometryUpload upload;

@@ -31,6 +31,8 @@ struct GeometryUpload {
   std::vector<std::uint32_t> firstGeometry;  // per mesh
   std::uint64_t bytes = 0;
 };
+// What goes through the uploader for a scene: pictures, each in one form, and arrays unless they are written directly.
+VkDeviceSize uploadBytes(const gpu::Context& context, const scene::Scene& scene);
 // `emptied`: null, or the same scene, whose arrays are freed as soon as they are uploaded and `arrays` does not need them.
 GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene, scene::Scene* emptied);
 

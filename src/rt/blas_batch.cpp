@@ -56,7 +56,7 @@ void BlasBatch::addJob(const BlasOptions& options, BlasData& data, Blas* refitte
 void BlasBatch::uploadInputs() {
   // At least some bytes: a geometry without primitives needs a valid address too.
   inputs_ = filler_->make(std::max<VkDeviceSize>(inputBytes_, 64),
-                          VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, "BLAS inputs");
+                          VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, "BLAS inputs", gpu::Purpose::scratch);
   for (const auto& [data, offset] : places_) filler_->write(inputs_, offset, HostBytes(data.first, data.second));
   for (const auto& [geometry, offset] : gathered_) {
     const auto size = static_cast<std::size_t>(geometry->primitiveBytes());
@@ -101,7 +101,7 @@ Blas BlasBatch::create(const Job& job) {
 void BlasBatch::uploadMaps(const BlasData& data, Blas& blas) {
   VkDeviceSize bytes = 0;
   for (const GeometryData& geometry : data.geometries) bytes += geometry.map.size() * sizeof(std::uint32_t);
-  if (bytes > 0) blas.mapStorage_ = filler_->make(bytes, 0, blas.options_.name + " primitive map");
+  if (bytes > 0) blas.mapStorage_ = filler_->make(bytes, 0, blas.options_.name + " primitive map", gpu::Purpose::accelerationStructures);
   VkDeviceSize offset = 0;
   for (const GeometryData& geometry : data.geometries) {
     blas.maps_.push_back(geometry.map.empty() ? 0 : blas.mapStorage_.address() + offset);
@@ -133,7 +133,8 @@ std::vector<Blas> BlasBatch::run() {
   uploadInputs();
   scratch_ = gpu::Buffer(context_, {.size = std::max<VkDeviceSize>(scratchBytes_, 64),
                                     .alignment = context_.info().limits.scratchAlignment,
-                                    .name = "BLAS scratch"});
+                                    .name = "BLAS scratch",
+                                    .purpose = gpu::Purpose::scratch});
   results.reserve(jobs_.size());  // pointers to results stay valid
   std::vector<Blas*> compactable;
   for (Job& job : jobs_) {

@@ -13,7 +13,7 @@ class BufferFiller {
  public:
   // `expectedBytes`: about how much will be written, for the size of the staging ring.
   BufferFiller(gpu::Context& context, VkDeviceSize expectedBytes);
-  gpu::Buffer make(VkDeviceSize size, VkBufferUsageFlags usage, const std::string& name) const;
+  gpu::Buffer make(VkDeviceSize size, VkBufferUsageFlags usage, const std::string& name, gpu::Purpose purpose) const;
   void write(const gpu::Buffer& buffer, VkDeviceSize offset, std::span<const std::byte> data);
   void flush();  // blocks until the device has everything
 

@@ -100,7 +100,10 @@ BuildDescription describeForSizes(const gpu::Context& context, const BlasInput& 
 
 VkAccelerationStructureKHR createStructure(gpu::Context& context, gpu::Buffer& storage, VkDeviceSize size,
                                            VkAccelerationStructureTypeKHR type, const std::string& name) {
-  storage = gpu::Buffer(context, {.size = size, .usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR, .name = name});
+  storage = gpu::Buffer(context, {.size = size,
+                                  .usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR,
+                                  .name = name,
+                                  .purpose = gpu::Purpose::accelerationStructures});
   VkAccelerationStructureCreateInfoKHR info{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR};
   info.buffer = storage.handle();
   info.size = size;

@@ -30,7 +30,7 @@ Tlas::Tlas(gpu::Context& context, std::uint32_t capacity, const std::string& nam
   if (capacity > limits.maxInstances)
     throw UsageError(fmt::format("'{}' for {} instances: the device allows {}", name, capacity, limits.maxInstances));
   const auto sizes = describe(0, capacity).sizes(context, name);
-  scratch_ = gpu::Buffer(context, {.size = sizes.buildScratchSize, .alignment = limits.scratchAlignment, .name = name + " scratch"});
+  scratch_ = gpu::Buffer(context, {.size = sizes.buildScratchSize, .alignment = limits.scratchAlignment, .name = name + " scratch", .purpose = gpu::Purpose::scratch});
   handle_ = createStructure(context, storage_, sizes.accelerationStructureSize, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, name);
 }
 

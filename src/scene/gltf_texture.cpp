@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "io/codec.h"
 #include "scene/gltf_extensions.h"
@@ -52,6 +56,27 @@ NamedImage loadImage(const Document& document, std::size_t index, MemoryBudget& 
   return result;
 }
 
+// For each of the images: its bytes in the document, if no other of them reads these.
+std::vector<std::span<const std::byte>> ownBytes(const Document& document, const std::vector<int>& images) {
+  std::vector<std::span<const std::byte>> views(images.size()), own(images.size());
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const int view = document.images[static_cast<std::size_t>(images[i])].bufferView;
+    if (view != kNone) views[i] = document.bufferViews[static_cast<std::size_t>(view)];
+  }
+  std::vector<std::size_t> order(images.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return views[i].data(); });
+  const std::byte* end = nullptr;  // of all before
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::span<const std::byte> view = views[order[k]];
+    const std::byte* next = k + 1 < order.size() ? views[order[k + 1]].data() : nullptr;
+    const std::byte* last = view.data() + view.size();
+    if (end <= view.data() && (!next || last <= next)) own[order[k]] = view;
+    end = std::max(end, last);
+  }
+  return own;
+}
+
 }  // namespace
 
 TextureTable::TextureTable(const Document& document, Report& report)
@@ -88,8 +113,10 @@ int TextureTable::use(int texture, const std::string& place) {
 void TextureTable::finish(Scene& scene, MemoryBudget& budget) {
   scene.textures = std::move(textures_);
   scene.images.resize(imageSources_.size());
+  const std::vector<std::span<const std::byte>> own = ownBytes(document_, imageSources_);
   parallelFor(imageSources_.size(), [&](std::size_t i) {
     scene.images[i] = loadImage(document_, static_cast<std::size_t>(imageSources_[i]), budget);
+    givePagesBack(own[i]);
   });
 }
 

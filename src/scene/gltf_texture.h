@@ -17,7 +17,8 @@ class TextureTable {
   // The index in Scene::textures of a texture of the file; kNone, with a line in the report, if it has no
   // image that can be read. `place` is the use.
   int use(int texture, const std::string& place);
-  // Decodes all images that were used and moves everything into the scene. Throws FileError, MemoryError.
+  // Decodes all images that were used and moves everything into the scene: the last step, for it gives the memory of
+  // encoded images back as they are decoded. Throws FileError, MemoryError.
   void finish(Scene&, MemoryBudget&);
 
  private:

@@ -13,19 +13,20 @@ number() { grep -o "\"$1\":[-0-9.e+]*" <<<"$2" | head -1 | cut -d: -f2; }
 object() { grep -o "\"$1\":{[^}]*}" <<<"$2"; }
 
 render() {  # LABEL SCENE CACHE
-  local start end json stages memory
+  local start end json stages memory peak
   export QUINTET_CACHE_DIR=$folder/$3/quintet MESA_SHADER_CACHE_DIR=$folder/$3/mesa
   export __GL_SHADER_DISK_CACHE_PATH=$folder/$3/gl CUDA_CACHE_PATH=$folder/$3/cuda
   mkdir -p "$__GL_SHADER_DISK_CACHE_PATH"
   start=$(date +%s%N)
   json=$("$bin/quintet" render "$2" --size "$size" --spp 1 -q --json -o "$folder/out.png")
   end=$(date +%s%N)
-  stages=$(object stages "$json") memory=$(object memory "$json")
+  stages=$(object stages "$json") memory=$(object memory "$json") peak=$(object devicePeak "$json")
   printf '%-22s first pixel %7.3f s   process %7.3f s   ratio %6.3f\n' "$1" "$(number firstPixel "$json")" \
     "$(awk "BEGIN { print ($end - $start) * 1e-9 }")" "$(number ratio "$memory")"
   [ -z "$QUIET" ] || return 0
   echo "  $(sed 's/"stages":{//; s/[}"]//g' <<<"$stages" | awk -F, '{ for (i = 1; i <= NF; ++i) { split($i, p, ":"); printf "%s %.3f  ", p[1], p[2] } }')"
   echo "  $(sed 's/"memory":{//; s/[}"]//g' <<<"$memory" | awk -F, '{ for (i = 1; i <= NF; ++i) { split($i, p, ":"); printf (p[1] ~ /Bytes/ ? "%s %.0f MB  " : ""), p[1], p[2] / 1e6 } }')"
+  echo "  peak of the device: $(sed 's/"devicePeak":{//; s/Bytes//g; s/[}"]//g' <<<"$peak" | awk -F, '{ for (i = 1; i <= NF; ++i) { split($i, p, ":"); printf "%s %.0f MB  ", p[1], p[2] / 1e6 } }')"
 }
 
 uname -m; nproc

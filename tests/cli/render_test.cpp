@@ -146,6 +146,10 @@ TEST_F(Render, JsonSaysWhatWasHeldInMemory) {
   const std::uint64_t needed = bytes("geometryBytes") + bytes("textureBytes") + bytes("accelerationBytes");
   EXPECT_GE(bytes("peakDeviceBytes"), needed + json["bytes"]["film"].get<std::uint64_t>());
   EXPECT_GT(bytes("peakHostBytes"), 0u);
+  std::uint64_t parts = 0;
+  for (const auto& [purpose, size] : json["devicePeak"].items()) parts += size.get<std::uint64_t>();
+  EXPECT_EQ(parts, bytes("peakDeviceBytes"));
+  EXPECT_EQ(json["devicePeak"].size(), 8u);
   const std::uint64_t peak = memory["deviceIsHost"].get<bool>() ? bytes("peakHostBytes") : std::max(bytes("peakHostBytes"), bytes("peakDeviceBytes"));
   const double ratio = static_cast<double>(peak) / static_cast<double>(needed);
   EXPECT_NEAR(memory["ratio"].get<double>(), ratio, 1e-6 * ratio);
@@ -154,6 +158,19 @@ TEST_F(Render, JsonSaysWhatWasHeldInMemory) {
   EXPECT_LE(known, json["seconds"]["load"].get<double>() + 1e-3);
   for (const char* stage : {"lights", "upload", "order", "bottomLevel", "topLevel", "firstLaunch"})
     EXPECT_GE(json["stages"][stage].get<double>(), 0.0) << stage;
+}
+
+// What the device holds beyond scene and film: staging of a download, tables, room in blocks.
+TEST_F(Render, LittleIsHeldBesideSceneAndFilm) {
+  const RunResult result = quintet({"render", "scene.gltf", "--program", "normals", "--size", "640x360", "--spp", "1", "-q", "--json", "-o", "out.png"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  const auto& memory = json["memory"];
+  const auto bytes = [&](const char* key) { return memory[key].get<std::uint64_t>(); };
+  const auto film = json["bytes"]["film"].get<std::uint64_t>();
+  EXPECT_GE(film, 640u * 360 * 150);
+  const std::uint64_t needed = bytes("geometryBytes") + bytes("textureBytes") + bytes("accelerationBytes");
+  EXPECT_LE(bytes("peakDeviceBytes"), needed + film + (std::uint64_t{20} << 20));
 }
 
 TEST_F(Render, TheDefaultEnvironmentIsSaid) {

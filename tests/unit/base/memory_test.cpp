@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 
+#include <array>
 #include <cstring>
+#include <vector>
 
 namespace quintet {
 namespace {
@@ -21,6 +23,22 @@ TEST(ProcessMemory, FollowsWhatIsTouched) {
   ::munmap(memory, kBytes);
   EXPECT_LT(residentBytes(), before + kSlack);
   EXPECT_GE(peakResidentBytes() + kSlack, before + kBytes);
+}
+
+TEST(ProcessMemory, GivesBackWholePagesOnly) {
+  constexpr std::size_t kBytes = std::size_t{64} << 20, kSlack = std::size_t{8} << 20;
+  std::vector<std::byte> block(kBytes, std::byte{7});
+  const std::uint64_t before = residentBytes();
+  givePagesBack(std::span(block).subspan(1, kBytes - 2));
+  EXPECT_LT(residentBytes(), before - kBytes + kSlack);
+  EXPECT_EQ(block.front(), std::byte{7});
+  EXPECT_EQ(block.back(), std::byte{7});
+  EXPECT_EQ(block[kBytes / 2], std::byte{0});
+  std::array<std::byte, 16> small;
+  small.fill(std::byte{3});
+  givePagesBack(small);
+  givePagesBack({});
+  EXPECT_EQ(small[8], std::byte{3});
 }
 
 }  // namespace

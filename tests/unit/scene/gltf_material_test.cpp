@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "io/codec.h"
 #include "scene/gltf.h"
 #include "scene/gltf_builder.h"
 
@@ -247,6 +248,30 @@ TEST(GltfImage, BrokenOnesAreErrorsOfTheScene) {
   EXPECT_EQ(errorOf(builder), "/images/0: needs either a uri or a bufferView");
   builder.root["images"][0] = {{"bufferView", 4}};
   EXPECT_EQ(errorOf(builder), "/images/0/bufferView: buffer view 4 does not exist: the file has 1");
+}
+
+// Encoded pictures are given back as they are decoded, but not while another picture needs the bytes.
+TEST(GltfImage, MayShareBytes) {
+  io::Image noise = io::makeImage(256, 256, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
+  std::uint32_t state = 1;
+  for (std::byte& value : noise.data) value = static_cast<std::byte>((state = state * 1664525u + 1013904223u) >> 24);
+  GltfBuilder builder;
+  const std::vector<std::byte> png = io::encodePng(noise);
+  ASSERT_GT(png.size(), 100'000u);
+  const int alone = builder.addView(png), shared = builder.addView(png);
+  // The same bytes once more, and some from before.
+  Json wider = builder.root["bufferViews"][1];
+  wider["byteOffset"] = wider["byteOffset"].get<std::uint64_t>() - 8;
+  wider["byteLength"] = png.size() + 8;
+  builder.add("bufferViews", wider);
+  for (int i = 0; i < 12; ++i) {
+    builder.add("images", {{"bufferView", i == 0 ? alone : shared}, {"mimeType", "image/png"}});
+    builder.add("textures", {{"source", i}});
+    builder.add("materials", {{"emissiveTexture", {{"index", i}}}});
+  }
+  const scene::Scene scene = builder.load();
+  ASSERT_EQ(scene.images.size(), 12u);
+  for (const scene::NamedImage& image : scene.images) EXPECT_TRUE(image.image.data == noise.data) << image.name;
 }
 
 TEST(GltfImage, ExternalFile) {

@@ -1,0 +1,85 @@
+// What is held of the device's memory, what for, and when it is given back. Each test has a context of its own.
+#include "gpu/memory_account.h"
+
+#include <gtest/gtest.h>
+
+#include "gpu/buffer.h"
+#include "gpu/image.h"
+#include "harness.h"
+
+namespace quintet::gpu {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
+class GpuMemory : public testing::Test {
+ protected:
+  std::uint64_t now() const { return context.memory().now; }
+  std::uint64_t atPeak(Purpose purpose) const { return context.memory().atPeak[static_cast<std::size_t>(purpose)]; }
+  Context context{{.device = test::testContext().info().name}};
+};
+
+TEST_F(GpuMemory, OfLargeBuffersIsGivenBack) {
+  const std::uint64_t before = now();
+  {
+    const Buffer buffer(context, {.size = 20 * kMiB, .name = "film", .purpose = Purpose::film});
+    EXPECT_GE(now(), before + 20 * kMiB);
+    EXPECT_LT(now(), before + 21 * kMiB);
+  }
+  EXPECT_EQ(now(), before);
+  EXPECT_GE(context.memory().peak, before + 20 * kMiB);
+  EXPECT_GE(atPeak(Purpose::film), 20 * kMiB);
+  EXPECT_EQ(atPeak(Purpose::staging), 0u);
+}
+
+TEST_F(GpuMemory, SmallBuffersShareBlocks) {
+  std::vector<Buffer> buffers;
+  for (int i = 0; i < 1000; ++i) buffers.emplace_back(context, BufferOptions{.size = 1000, .name = "small"});
+  EXPECT_LE(context.memoryAccount().blockCount(), 2u);
+  EXPECT_LE(now(), 8 * kMiB);
+}
+
+TEST_F(GpuMemory, OfAnUploadersRingIsGivenBack) {
+  const Buffer buffer(context, {.size = 24 * kMiB, .name = "geometry", .purpose = Purpose::geometry});
+  const Image image(context, {.width = 1024, .height = 1024, .name = "picture"});
+  const std::uint64_t before = now();
+  {
+    Uploader uploader(context, 16 * kMiB);
+    uploader.upload(buffer, std::vector<std::byte>(24 * kMiB));
+    uploader.upload(image, std::vector<std::byte>(4 * kMiB));
+  }
+  EXPECT_EQ(now(), before);
+  EXPECT_GE(context.memory().peak, before + 16 * kMiB);
+  EXPECT_GE(atPeak(Purpose::staging), 16 * kMiB);
+  EXPECT_GE(atPeak(Purpose::geometry), 24 * kMiB);
+  EXPECT_GE(atPeak(Purpose::textures), 4 * kMiB);
+}
+
+TEST_F(GpuMemory, BlockingCopiesNeedLittle) {
+  Buffer buffer(context, {.size = 64 * kMiB, .name = "large"});
+  const std::uint64_t before = now();
+  std::vector<std::uint32_t> data(buffer.size() / 4);
+  for (std::size_t i = 0; i < data.size(); ++i) data[i] = static_cast<std::uint32_t>(i);
+  buffer.uploadAs(std::span<const std::uint32_t>(data));
+  EXPECT_TRUE(buffer.downloadAs<std::uint32_t>(data.size()) == data);
+  EXPECT_LE(context.memory().peak, before + 9 * kMiB);
+  EXPECT_EQ(now(), before);
+}
+
+// The sum of all purposes and of the room in blocks is the peak, whatever came and went.
+TEST_F(GpuMemory, TheAccountAddsUp) {
+  for (const std::uint64_t size : {3 * kMiB, 100 * kMiB / 1000, 7 * kMiB}) {
+    const Buffer a(context, {.size = size, .name = "a", .purpose = Purpose::scratch});
+    const Buffer b(context, {.size = size / 2, .memory = Memory::upload, .name = "b", .purpose = Purpose::staging});
+    std::uint64_t sum = 0;
+    const DeviceMemory memory = context.memory();
+    for (const std::uint64_t part : memory.atPeak) sum += part;
+    EXPECT_LE(sum, memory.peak);
+    EXPECT_EQ(sum + memory.unusedAtPeak(), memory.peak);
+  }
+  EXPECT_GE(atPeak(Purpose::scratch), 7 * kMiB);
+  EXPECT_GE(atPeak(Purpose::staging), 7 * kMiB / 2);
+}
+
+}  // namespace
+}  // namespace quintet::gpu

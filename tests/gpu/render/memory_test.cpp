@@ -1,0 +1,34 @@
+// Nothing of what loading and building needed is held when a scene is on the device.
+#include <gtest/gtest.h>
+
+#include "harness.h"
+#include "render/device_scene.h"
+#include "scene_builder.h"
+
+namespace quintet::test {
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
+TEST(DeviceSceneMemory, HoldsTheSceneOnly) {
+  gpu::Context context({.device = testContext().info().name});
+  SceneBuilder builder;
+  for (int i = 0; i < 8; ++i) builder.add(sphere({3.0f * static_cast<float>(i), 0, 0}, 1.0f, 5), lambert(vec3(0.5f)));
+  scene::Scene& scene = builder.scene;
+  for (int i = 0; i < 3; ++i) {
+    scene.images.push_back({"noise", io::makeImage(1024, 1024, 3, io::PixelType::u8, io::ColorEncoding::sRgb)});
+    scene.textures.push_back({"noise", i, {}});
+    scene.materials[static_cast<std::size_t>(i)].baseColorTexture.texture = i;
+  }
+  const render::DeviceScene device(context, std::move(scene), builder.environment);
+  const render::DeviceSceneStatistics& statistics = device.statistics();
+  EXPECT_GE(statistics.textureBytes, 12 * kMiB);
+  EXPECT_GT(statistics.build.peakScratchBytes, 0u);
+  const std::uint64_t needed = statistics.geometryBytes + statistics.textureBytes + statistics.build.bytes + statistics.primitiveMapBytes;
+  const gpu::DeviceMemory memory = context.memory();
+  EXPECT_GE(memory.now, needed);
+  EXPECT_LE(memory.now, needed + 12 * kMiB);  // tables, and room in the blocks of what is small
+}
+
+}  // namespace
+}  // namespace quintet::test
