@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -94,6 +95,7 @@ class Reader {
     readRegion(film.region);
     readCounts(film);
     for (const Json& entry : member("planes", Json::value_t::array)) readPlane(film, entry);
+    if (film.planes.empty()) fail("/planes is empty");
     takeArrays(film);
     return result;
   }
@@ -139,6 +141,20 @@ class Reader {
     if (cells_ != 0 && cells_ != 2 * std::size_t{tileCount(film.region)}) fail("/cells does not belong to the region");
   }
 
+  // What a film has of an output: nothing, if nobody wanted it; of the first one its picture and the error of that.
+  static bool mayHold(program::OutputPixel pixel, bool first, const std::vector<std::string>& names) {
+    const auto are = [&](std::initializer_list<std::string> wanted) { return std::ranges::is_permutation(names, wanted); };
+    if (pixel == program::OutputPixel::mean && (are({"sums", "squares"}) || are({"values"}))) return true;  // values: of the last frame
+    if (first) return false;
+    if (names.empty()) return true;
+    switch (pixel) {
+      case program::OutputPixel::mean: return are({"sums"});
+      case program::OutputPixel::center: return are({"values"});
+      case program::OutputPixel::coverage: return are({"coverage"});
+    }
+    return false;
+  }
+
   void readPlane(FilmState& film, const Json& json) {
     const std::string place = fmt::format("/planes/{}", film.planes.size());
     const auto text = [&](const char* name) {
@@ -158,6 +174,7 @@ class Reader {
     std::size_t known = 0;
     forArrays(plane, [&](const char* name, const auto&, std::size_t) { known += std::ranges::count(names, name) == 1; });
     if (known != names.size()) fail(fmt::format("{}/arrays has an unknown one", place));
+    if (!mayHold(plane.pixel, film.planes.size() == 1, names)) fail(fmt::format("{}/arrays are not those of pixel '{}'", place, pixel));
   }
 
   void takeArrays(FilmState& film) {

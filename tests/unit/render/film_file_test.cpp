@@ -1,6 +1,7 @@
 // Film files: what is written comes back word for word, and whatever happened to a file on its way is found and named.
 #include "render/film_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -174,6 +175,38 @@ TEST(FilmFile, HoldsHeadersAgainstTheirPayload) {
     else EXPECT_TRUE(problem.starts_with("part.qfilm: header: ") || problem.starts_with("part.qfilm: payload: ")) << from << " → " << to << ": " << problem;
   }
   expectSame(decodeFilm(withHeader(bytes, "\"seed\"", "\"seed\""), "x"), sample(9, 5));
+}
+
+// What a plane holds follows from its kind: whoever reads it relies on that.
+TEST(FilmFile, RefusesPlanesWithOtherArrays) {
+  using program::OutputPixel;
+  const auto problem = [](const auto& change) {
+    FilmFile file = sample(9, 5);
+    change(file.film.planes);
+    return problemOf(encodeFilm(file));
+  };
+  const FilmFile whole = sample(9, 5);
+  const FilmPlane &color = whole.film.planes[0], &depth = whole.film.planes[2], &ids = whole.film.planes[3];
+  EXPECT_EQ(problem([](auto&) {}), "none");
+  EXPECT_EQ(problem([](auto& planes) { planes[0].sums.clear(); }), "part.qfilm: header: /planes/0/arrays are not those of pixel 'mean'");
+  const std::string expected[] = {"mean", "mean", "mean", "coverage", "center", "center", "coverage", "mean", "center"};
+  int i = 0;
+  const auto refused = [&](std::size_t plane, const auto& change) {
+    EXPECT_THAT(problem([&](auto& planes) { change(planes[plane]); }),
+                testing::EndsWith(fmt::format("/planes/{}/arrays are not those of pixel '{}'", plane, expected[i])));
+    ++i;
+  };
+  refused(0, [](FilmPlane& p) { p.squares.clear(); });
+  refused(0, [](FilmPlane& p) { p.sums = {}, p.squares = {}; });
+  refused(1, [&](FilmPlane& p) { p.squares = color.squares; });
+  refused(0, [](FilmPlane& p) { p.pixel = OutputPixel::coverage; });
+  refused(2, [&](FilmPlane& p) { p.sums = color.sums; });
+  refused(2, [&](FilmPlane& p) { p.values = {}, p.coverage = ids.coverage; });
+  refused(3, [&](FilmPlane& p) { p.values = depth.values; });
+  refused(3, [](FilmPlane& p) { p.pixel = OutputPixel::mean; });
+  refused(0, [&](FilmPlane& p) { p = depth; });  // the first one is the picture
+  EXPECT_THAT(problem([](auto& planes) { planes.clear(); }), HasSubstr("/planes is empty"));
+  EXPECT_EQ(problem([&](auto& planes) { planes[0].sums = {}, planes[0].squares = {}, planes[0].values = depth.values; }), "none");
 }
 
 TEST(FilmFacts, DifferencesAreNamedOnce) {
