@@ -1,6 +1,8 @@
 #include "aov_notes.h"
 
 #include <algorithm>
+#include <cctype>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -23,16 +25,30 @@ Json parse(const render::FilmFacts& notes, const char* name) {
   return text ? Json::parse(*text) : Json();
 }
 
-AovLayer layerOf(const Json& json, std::size_t outputCount) {
+bool isName(const std::string& text) {
+  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+}
+
+// The film has what the layer is made from.
+bool canShow(const render::FilmState& film, const AovLayer& layer) {
+  if (layer.source == AovLayer::Source::sampleCount) return true;
+  if (layer.source == AovLayer::Source::variance) return !film.planes.at(0).squares.empty();
+  if (layer.output >= film.planes.size() || !film.planes[layer.output].stored()) return false;
+  const bool counts = film.planes[layer.output].pixel == program::OutputPixel::coverage;
+  return counts == (layer.source == AovLayer::Source::coverage);
+}
+
+AovLayer layerOf(const Json& json, const render::FilmState& film) {
   AovLayer layer;
   layer.name = json.at("name").get<std::string>();
   layer.channels = json.at("channels").get<std::vector<std::string>>();
   layer.exact = json.at("exact").get<bool>();
   const auto source = json.at("source").get<unsigned>();
   layer.output = json.at("output").get<std::size_t>();
-  if (source > static_cast<unsigned>(AovLayer::Source::sampleCount) || layer.output >= outputCount)
+  layer.source = static_cast<AovLayer::Source>(std::min(source, static_cast<unsigned>(AovLayer::Source::sampleCount)));
+  const bool named = layer.source == AovLayer::Source::coverage || std::ranges::all_of(layer.channels, isName);
+  if (!isName(layer.name) || !named || source > static_cast<unsigned>(layer.source) || !canShow(film, layer))
     throw UsageError("the layers of the film are not those of its outputs");
-  layer.source = static_cast<AovLayer::Source>(source);
   return layer;
 }
 
@@ -53,10 +69,27 @@ void addAovNotes(render::FilmFacts& notes, const std::vector<AovLayer>& layers, 
   notes.emplace_back(kMaterials, textOf(names.materials));
 }
 
-std::vector<AovLayer> readAovLayers(const render::FilmFacts& notes, std::size_t outputCount) {
+void joinAovNotes(render::FilmFacts& notes, const render::FilmFacts& others, const render::FilmState& film) {
+  std::vector<AovLayer> layers = readAovLayers(notes, film);
+  for (AovLayer& layer : readAovLayers(others, film))
+    if (std::ranges::find(layers, layer.name, &AovLayer::name) == layers.end()) layers.push_back(std::move(layer));
+  // As aovLayers() has them.
+  const auto place = [](const AovLayer& layer) {
+    const bool ofOutput = layer.source == AovLayer::Source::output || layer.source == AovLayer::Source::coverage;
+    return std::pair(ofOutput ? AovLayer::Source::output : layer.source, layer.output);
+  };
+  std::ranges::sort(layers, {}, place);
+  CoverageNames names = readCoverageNames(notes);
+  if (names.instances.empty() && names.materials.empty()) names = readCoverageNames(others);
+  std::erase_if(notes, [](const auto& note) { return note.first == kLayers || note.first == kInstances || note.first == kMaterials; });
+  addAovNotes(notes, layers, names);
+}
+
+std::vector<AovLayer> readAovLayers(const render::FilmFacts& notes, const render::FilmState& film) {
   try {
     std::vector<AovLayer> layers;
-    for (const Json& layer : parse(notes, kLayers)) layers.push_back(layerOf(layer, outputCount));
+    for (const Json& layer : parse(notes, kLayers)) layers.push_back(layerOf(layer, film));
+    checkChannels(layers);
     return layers;
   } catch (const Json::exception&) {
     throw UsageError("the layers of the film cannot be read");

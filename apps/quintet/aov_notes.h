@@ -12,9 +12,12 @@ namespace quintet::app {
 
 void addAovNotes(render::FilmFacts& notes, const std::vector<AovLayer>& layers, const CoverageNames& names);
 
-// What was noted; nothing where no layers were. Throws UsageError where it fits no film with so many outputs.
-std::vector<AovLayer> readAovLayers(const render::FilmFacts& notes, std::size_t outputCount);
+// What was noted; nothing where no layers were. Throws UsageError where that cannot be read, or made of this film.
+std::vector<AovLayer> readAovLayers(const render::FilmFacts& notes, const render::FilmState& film);
 CoverageNames readCoverageNames(const render::FilmFacts& notes);
+
+// `notes` say the layers of both afterwards, in the program's order. Both are of films like this one.
+void joinAovNotes(render::FilmFacts& notes, const render::FilmFacts& others, const render::FilmState& film);
 
 }  // namespace quintet::app
 #endif

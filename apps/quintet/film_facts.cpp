@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "base/hash.h"
 #include "session.h"
@@ -158,6 +159,8 @@ void fillRecord(RenderRecord& record, const render::FilmFile& file) {
   const auto fact = [&](const char* name) { return factText(file.identity, name); };
   const render::Region& region = file.film.region;
   const uvec2 size = parseSize("size", fact("size"));
+  if (std::uint64_t{region.x} + region.width > size.x || std::uint64_t{region.y} + region.height > size.y)
+    throw UsageError("the region is not in the picture");
   record.scene = note("scene");
   record.sceneHash = fact("scene");
   record.environment = note("environment");

@@ -38,7 +38,7 @@ DisplayOptions displayOptions(const FilmFile& file, const MergeOptions& options,
 
 // Of the layers that were rendered, those that were asked for now; all of them, if none were.
 std::vector<AovLayer> chosenLayers(const FilmFile& file, const MergeOptions& options) {
-  std::vector<AovLayer> layers = readAovLayers(file.notes, file.film.planes.size());
+  std::vector<AovLayer> layers = readAovLayers(file.notes, file.film);
   if (!options.render.aovs.empty()) layers = chooseAovs(layers, options.render.aovs, "in these films there is");
   return layers;
 }
@@ -67,8 +67,18 @@ std::vector<std::byte> exrFile(const FilmFile& file, std::size_t output, const M
 
 }  // namespace
 
+void checkShown(const FilmFile& file) {
+  exposureOf(file);
+  readAovLayers(file.notes, file.film);
+  readCoverageNames(file.notes);
+}
+
+bool showsAllOutputs(const FilmFile& file, const MergeOptions& options) {
+  return options.render.allOutputs || factText(file.notes, "all outputs") == "yes";
+}
+
 void writePictures(const FilmFile& file, const MergeOptions& options, RenderRecord& record) {
-  const bool all = options.render.allOutputs || factText(file.notes, "all outputs") == "yes";
+  const bool all = showsAllOutputs(file, options);
   for (std::size_t i = 0; i < file.film.planes.size(); ++i) {
     const render::FilmPlane& plane = file.film.planes[i];
     if ((i > 0 && !all) || !plane.stored() || plane.pixel == program::OutputPixel::coverage) continue;

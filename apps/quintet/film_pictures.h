@@ -8,6 +8,12 @@
 
 namespace quintet::app {
 
+// Throws UsageError where the notes on how the film is shown are not those of a rendering, whoever wrote them.
+void checkShown(const render::FilmFile& file);
+
+// A picture of each output, now or when it was rendered.
+bool showsAllOutputs(const render::FilmFile& file, const MergeOptions& options);
+
 // Writes the first output, or all; names them in `record`, which is filled otherwise.
 void writePictures(const render::FilmFile& file, const MergeOptions& options, RenderRecord& record);
 

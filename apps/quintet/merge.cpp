@@ -1,12 +1,15 @@
 // `quintet merge`: parts of a rendering become the picture, or the film, that one rendering would have given.
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-
+#include "aov_notes.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "commands.h"
@@ -26,8 +29,23 @@ using render::FilmFile;
 using render::SampleRange;
 
 void setNote(FilmFile& file, const std::string& name, const std::string& value) {
-  for (auto& [noteName, noteValue] : file.notes)
-    if (noteName == name) noteValue = value;
+  const auto found = std::ranges::find(file.notes, name, &render::FilmFacts::value_type::first);
+  if (found == file.notes.end()) file.notes.emplace_back(name, value);
+  else found->second = value;
+}
+
+constexpr std::string_view kBetween = "; ";  // devices
+
+// "a; b": a, b
+std::vector<std::string> entriesOf(const FilmFile& file, const std::string& name) {
+  const std::string text = factText(file.notes, name);
+  std::vector<std::string> entries;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(kBetween, at), text.size());
+    entries.push_back(text.substr(at, end - at));
+    at = end + kBetween.size();
+  }
+  return entries;
 }
 
 // Parts joined one after the other, so that only two of them are in memory.
@@ -40,6 +58,7 @@ class Merger {
     try {
       RenderRecord unused;
       fillRecord(unused, part);
+      checkShown(part);
     } catch (const UsageError& error) {
       throw FileError(path, "header", error.what());
     }
@@ -85,15 +104,37 @@ class Merger {
 
   void joinNotes(const FilmFile& part) {
     for (const char* name : {"device", "driver"}) {
-      const std::string mine = factText(whole_.notes, name), other = factText(part.notes, name);
-      if (mine.find(other) != mine.npos) continue;
-      setNote(whole_, name, mine + "; " + other);
-      progress_.note(fmt::format("{}: {} {}, other parts: {}", last(), name, other, mine));
+      const std::vector<std::string> mine = entriesOf(whole_, name);
+      std::vector<std::string> joined = mine;
+      for (const std::string& entry : entriesOf(part, name))
+        if (std::ranges::find(joined, entry) == joined.end()) joined.push_back(entry);
+      if (joined == mine) continue;
+      progress_.note(fmt::format("{}: {} {}, other parts: {}", last(), name, factText(part.notes, name), factText(whole_.notes, name)));
+      setNote(whole_, name, fmt::format("{}", fmt::join(joined, kBetween)));
     }
+    joinShown(part);
+    joinAovNotes(whole_.notes, part.notes, whole_.film);
     const auto seconds = [](const FilmFile& file) {
       return parseNumber("seconds", factText(file.notes, "seconds"), 0.0, 1e12);
     };
     setNote(whole_, "seconds", fmt::format("{:.3f}", seconds(whole_) + seconds(part)));
+  }
+
+  // How the picture is shown is as for the part with the first samples, so that the order of the parts changes nothing.
+  void joinShown(const FilmFile& part) {
+    const bool isFirst = std::ranges::min(parts_, {}, firstSample).path == last();
+    for (const char* name : {"exposure", "tone map", "all outputs"}) {
+      const std::string mine = factText(whole_.notes, name), other = factText(part.notes, name);
+      if (mine == other) continue;
+      const auto shown = [](const std::string& text) { return text.empty() ? "not given" : text; };
+      progress_.note(fmt::format("{}: {} {}, other parts: {}; {} is taken, as for the first samples", last(), name, shown(other),
+                                 shown(mine), shown(isFirst ? other : mine)));
+      if (isFirst) setNote(whole_, name, other);
+    }
+  }
+
+  static std::uint64_t firstSample(const Part& part) {
+    return part.ranges.empty() ? std::numeric_limits<std::uint64_t>::max() : part.ranges.front().begin;
   }
 
   Progress& progress_;
@@ -138,6 +179,8 @@ int mergeCommand(Arguments arguments) {
     merger.add(part);
   }
   FilmFile& whole = merger.whole();
+  if (showsAllOutputs(whole, *options) && options->render.output == "-")
+    throw UsageError("the parts were rendered with --all-outputs, several files: -o - takes one picture");
   tellMissing(whole, *options, progress);
   RenderRecord record;
   record.commandLine = options->render.commandLine;

@@ -44,6 +44,8 @@ std::optional<MergeOptions> parseMergeOptions(Arguments arguments) {
   interpret(raw, render);
   checkStandardOutput(render.output, render.json, render.allOutputs);
   checkExrOptions(raw, render);
+  if (!render.aovs.empty() && outputKind(render.output) == OutputKind::film)
+    throw UsageError("--aov is for OpenEXR files: a film keeps all layers that its parts have");
   if (asksForAovList(raw)) throw UsageError("--aov list: 'quintet render --aov list' names a program's layers");
   checkOutput(render.output);
   return options;

@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "fixtures.h"
 #include "io/codec.h"
+#include "io/exr.h"
 #include "render/film_file.h"
 
 namespace quintet::test {
@@ -289,7 +290,115 @@ TEST_F(Merge, TellsOfOtherDevices) {
   EXPECT_NE(quintet({"info", "m.png"}).out.find("; Abacus 3000"), std::string::npos);
 }
 
+// A name within another one is another one.
+TEST_F(Merge, DevicesAreNamedWhole) {
+  part("0-3", "a.qfilm");
+  part("4", "b.qfilm");
+  part("5-7", "c.qfilm");
+  const auto rename = [&](const char* name, const std::string& device) {
+    render::FilmFile file = render::readFilm(folder_ / name);
+    for (auto& [key, value] : file.notes)
+      if (key == "device") value = device;
+    render::writeFilm(folder_ / name, file);
+  };
+  rename("a.qfilm", "Abacus 3000");
+  rename("b.qfilm", "Abacus 300; Sliderule");
+  rename("c.qfilm", "Sliderule");
+  const RunResult result = merge({"a.qfilm", "b.qfilm", "c.qfilm"}, "m.qfilm", {});
+  EXPECT_NE(result.err.find("b.qfilm: device Abacus 300; Sliderule, other parts: Abacus 3000\n"), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("c.qfilm"), std::string::npos) << result.err;
+  const render::FilmFile merged = render::readFilm(folder_ / "m.qfilm");
+  EXPECT_EQ(*render::findFact(merged.notes, "device"), "Abacus 3000; Abacus 300; Sliderule");
+}
+
+// How the picture is shown is told by the part with the first samples, its layers by all parts.
+TEST_F(Merge, TheOrderOfThePartsChangesNoPicture) {
+  part("0-3", "a.qfilm", {"--exposure", "1.5", "--tonemap", "aces", "--aov", "sample_count"});
+  part("4", "b.qfilm");
+  part("5-7", "c.qfilm", {"--exposure", "-1", "--all-outputs"});
+  part("5-7", "d.qfilm", {"--aov", "variance"});
+  ASSERT_EQ(quintet(command({"-o", "whole.png", "--exposure", "1.5", "--tonemap", "aces"})).status, 0);
+  ASSERT_EQ(quintet(command({"-o", "whole.exr", "--aov", "variance,sample_count"})).status, 0);
+  std::vector<std::string> parts{"a.qfilm", "b.qfilm", "c.qfilm"}, layered{"a.qfilm", "b.qfilm", "d.qfilm"};
+  do {
+    const RunResult result = merge(parts, "m.png", {});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find(" aces is taken, as for the first samples\n"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(" 1.5 is taken, as for the first samples\n"), std::string::npos) << result.err;
+    EXPECT_EQ(picture("m.png").data, picture("whole.png").data);
+  } while (std::next_permutation(parts.begin(), parts.end()));
+  const auto layersOf = [&](const char* name) {
+    std::vector<std::pair<std::string, std::vector<float>>> channels;
+    for (const io::ExrChannel& channel : io::decodeExr(readFile(folder_ / name), name).channels)
+      channels.emplace_back(channel.name, channel.samples);
+    return channels;
+  };
+  const auto expected = layersOf("whole.exr");
+  ASSERT_EQ(expected.size(), 3u + 3u + 1u);
+  do {
+    expectMerged(layered, "m.exr");
+    EXPECT_EQ(layersOf("m.exr"), expected);
+    expectMerged(layered, "m.qfilm", {"-q", "--force"});
+    const std::string layers = *render::findFact(render::readFilm(folder_ / "m.qfilm").notes, "layers");
+    EXPECT_LT(layers.find("variance"), layers.find("sample_count")) << layers;
+  } while (std::next_permutation(layered.begin(), layered.end()));
+}
+
+TEST_F(Merge, ExposureOfAFilmIsForItsPicture) {
+  std::vector<std::string> arguments = command({"--batches", "0-7", "-o", "a.qfilm", "--exposure", "1"});
+  std::erase(arguments, "--quiet");
+  const RunResult result = quintet(arguments);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err.find("apply"), std::string::npos) << result.err;
+  arguments = command({"-o", "a.exr", "--exposure", "1"});
+  std::erase(arguments, "--quiet");
+  EXPECT_NE(quintet(arguments).err.find("a.exr: linear radiance, --exposure and --tonemap do not apply"), std::string::npos);
+}
+
+// Written like that by somebody else: whatever the notes say, they are the file's fault, and nothing is read out of bounds.
+TEST_F(Merge, NotesOfAFilmAreNotTrusted) {
+  part("0-7", "a.qfilm", {"--aov", "all"});
+  const render::FilmFile good = render::readFilm(folder_ / "a.qfilm");
+  const auto refused = [&](const std::string& name, const std::string& value, const std::string& problem) {
+    render::FilmFile file = good;
+    std::erase_if(file.notes, [&](const auto& note) { return note.first == name; });
+    file.notes.emplace_back(name, value);
+    render::writeFilm(folder_ / "b.qfilm", file);
+    expectError(merge({"b.qfilm"}, "m.exr"), 1, {"b.qfilm: header: " + problem});
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "m.exr"));
+  };
+  const auto layer = [](const std::string& name, int source, const std::string& channels = R"(["X"])", const std::string& output = "0") {
+    return R"({"name":")" + name + R"(","channels":)" + channels + R"(,"exact":true,"source":)" + std::to_string(source) +
+           R"(,"output":)" + output + "}";
+  };
+  const std::string unfit = "the layers of the film are not those of its outputs";
+  refused("layers", "[" + layer("a", 1) + "]", unfit);  // coverage, of a mean
+  refused("layers", "[" + layer("a", 4) + "]", unfit);
+  refused("layers", "[" + layer("a", 0, R"(["X"])", "1") + "]", unfit);
+  refused("layers", "[" + layer("a..b", 0) + "]", unfit);
+  refused("layers", "[" + layer("a", 0, R"(["\n"])") + "]", unfit);
+  refused("layers", "[" + layer("a", 0) + "," + layer("a", 3) + "]", "--aov: 'a' and 'a' would both be the channel a.X");
+  refused("layers", "[" + layer("a", 0, R"(["X"])", "-1") + "]", unfit);
+  refused("layers", "[", "the layers of the film cannot be read");
+  refused("layers", "[{}]", "the layers of the film cannot be read");
+  refused("names of instances", "[1]", "the names of the film cannot be read");
+  refused("exposure", "loud", "exposure: 'loud' is not a number");
+  refused("seconds", "-1", "seconds: '-1' is not in [0, ");
+  render::FilmFile file = good;
+  file.film.region.x = 1;
+  render::writeFilm(folder_ / "b.qfilm", file);
+  expectError(merge({"b.qfilm"}, "m.exr"), 1, {"b.qfilm: header: the region is not in the picture"});
+  file = good;
+  file.notes.erase(std::ranges::find(file.notes, "layers", &render::FilmFacts::value_type::first));
+  file.notes.emplace_back("layers", "[" + layer("a", 3) + "]");
+  render::writeFilm(folder_ / "b.qfilm", file);
+  expectMerged({"b.qfilm"}, "m.exr");  // the same way, but right
+}
+
 TEST_F(Merge, OptionsThatMakeNoSense) {
+  part("0-7", "all.qfilm", {"--all-outputs"});
+  expectError(merge({"all.qfilm"}, "-"), 2, {"--all-outputs", "-o -"});
+  expectError(merge({"all.qfilm"}, "m.qfilm", {"--aov", "variance"}), 2, {"--aov is for OpenEXR files"});
   expectError(quintet({"merge"}), 2, {"no parts"});
   expectError(quintet({"merge", "a.qfilm"}), 2, {"no output", "-o"});
   expectError(merge({"a.qfilm"}, "m.txt"), 2, {"m.txt", ".qfilm"});
