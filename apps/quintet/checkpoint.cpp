@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "film_facts.h"
 #include "film_guard.h"
+#include "gpu/error.h"
 #include "output.h"
 #include "standard_error.h"
 #include "values.h"
@@ -98,6 +99,8 @@ void Checkpoint::save(const RenderOutcome& outcome) {
     savedSamples_ = outcome.samples;
   } catch (const FileError& error) {  // the one before is still there: rendering goes on
     warn(error.what());
+  } catch (const gpu::DeviceLostError&) {  // there will be no film any more
+    throw;
   } catch (const std::exception& error) {
     warn(fmt::format("{}: cannot be written: {}", options_.farm.checkpointFile.string(), error.what()));
   }
