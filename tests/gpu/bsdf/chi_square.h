@@ -1,4 +1,4 @@
-// Pearson's chi-square test with pooling of cells, and Šidák's correction for many tests at once.
+// Pearson's chi-square test with pooling of cells.
 #ifndef QUINTET_TESTS_GPU_BSDF_CHI_SQUARE_H
 #define QUINTET_TESTS_GPU_BSDF_CHI_SQUARE_H
 
@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 #include <vector>
+
+#include "base/statistics.h"
 
 namespace quintet::test {
 
@@ -57,9 +59,6 @@ inline ChiSquare chiSquareTest(const std::vector<double>& observed, const std::v
   result.pValue = gammaQ(0.5 * result.freedom, 0.5 * result.statistic);
   return result;
 }
-
-// The level of each of `count` tests for which all of them together have `level`.
-inline double sidak(double level, std::size_t count) { return 1.0 - std::pow(1.0 - level, 1.0 / static_cast<double>(count)); }
 
 }  // namespace quintet::test
 #endif

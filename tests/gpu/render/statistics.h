@@ -1,9 +1,10 @@
-// Means of independent batches and the tests on them. No device in it.
+// Means of independent batches and the tests on them (distributions: base/statistics.h). No device in it.
 #ifndef QUINTET_TESTS_GPU_RENDER_STATISTICS_H
 #define QUINTET_TESTS_GPU_RENDER_STATISTICS_H
 
 #include <cstddef>
-#include <vector>
+
+#include "base/statistics.h"
 
 namespace quintet::test {
 
@@ -21,13 +22,6 @@ class Moments {
   double mean_ = 0.0;
   double squares_ = 0.0;
 };
-
-// P(|T| >= |t|) for Student's t with so many degrees of freedom (any positive real).
-double studentTwoSided(double t, double freedom);
-
-// The level at which each of n independent tests runs so that all together reject a true hypothesis with
-// probability `alpha` (Šidák 1967).
-double sidak(double alpha, std::size_t n);
 
 // P-value of "the true mean is `exact`"; `floor`: rounding error that the mean has in any case.
 double pValue(const Moments& m, double exact, double floor = 0.0);

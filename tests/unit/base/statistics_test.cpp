@@ -1,0 +1,47 @@
+// Distributions and corrections against tabled values.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/statistics.h"
+
+namespace quintet {
+namespace {
+
+TEST(Statistics, StudentsDistribution) {
+  EXPECT_NEAR(studentTwoSided(2.228139, 10), 0.05, 1e-7);   // NIST/SEMATECH e-Handbook 1.3.6.7.2
+  EXPECT_NEAR(studentTwoSided(12.706205, 1), 0.05, 1e-7);
+  EXPECT_NEAR(studentTwoSided(-3.169273, 10), 0.01, 1e-7);
+  EXPECT_NEAR(studentTwoSided(1.959964, 1e9), 0.05, 1e-6);  // the normal distribution
+  EXPECT_EQ(studentTwoSided(0, 5), 1.0);
+  EXPECT_NEAR(studentTwoSided(1.0, 1), 0.5, 1e-12);         // Cauchy
+}
+
+TEST(Statistics, LevelsOfManyTests) {
+  EXPECT_NEAR(sidak(0.01, 1), 0.01, 1e-15);
+  EXPECT_NEAR(std::pow(1.0 - sidak(0.01, 1000), 1000), 0.99, 1e-12);
+}
+
+TEST(Statistics, FreedomOfASumOfVariances) {
+  VarianceSum sum;
+  EXPECT_EQ(sum.variance(), 0.0);
+  sum.add(2.0, 7.0);
+  EXPECT_DOUBLE_EQ(sum.freedom(), 7.0);
+  VarianceSum more;
+  for (int i = 0; i < 9; ++i) more.add(2.0, 7.0);
+  sum.add(more);
+  EXPECT_DOUBLE_EQ(sum.variance(), 20.0);
+  EXPECT_DOUBLE_EQ(sum.freedom(), 70.0);  // equal variances: the freedoms add up
+  sum.add(1e9, 3.0);
+  EXPECT_NEAR(sum.freedom(), 3.0, 1e-6);  // one that outweighs all
+}
+
+TEST(Statistics, SignificanceBeyondRounding) {
+  EXPECT_EQ(significance(0.0, 0.0, 0.0, 5), 1.0);
+  EXPECT_EQ(significance(1e-9, 0.0, 0.0, 5), 0.0);
+  EXPECT_EQ(significance(-1e-9, 0.0, 1e-8, 5), 1.0);
+  EXPECT_NEAR(significance(-2.0 * 2.228139 - 0.5, 2.0, 0.5, 10), 0.05, 1e-7);
+}
+
+}  // namespace
+}  // namespace quintet
