@@ -1,10 +1,11 @@
-// `quintet compare`: all measures of io/compare.h, a picture of the difference, and an exit status.
+// `quintet compare`: all measures of io/compare.h, a picture of the difference, and an exit status; or the test of two films.
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -13,11 +14,13 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "cli.h"
+#include "compare_films.h"
 #include "io/codec.h"
 #include "io/color.h"
 #include "io/compare.h"
 #include "io/exr.h"
 #include "output.h"
+#include "render/film_file.h"
 #include "side_by_side.h"
 #include "signals.h"
 #include "values.h"
@@ -30,10 +33,17 @@ constexpr const char* kExamples =
     "  quintet compare out.png reference.png --max 2            status 1 if mae8 is more than 2\n"
     "  quintet compare out.exr big.exr --resize --metric flip --max 0.05 -o difference.png\n"
     "  quintet compare a.exr b.exr --layer normal --metric rmse --max 1e-3\n"
-    "  quintet compare out.png reference.png --json | jq .psnr\n";
+    "  quintet compare out.png reference.png --json | jq .psnr\n"
+    "  quintet compare a.qfilm b.qfilm --z-test                 the same picture but for noise? else status 1\n"
+    "  quintet compare a.qfilm b.qfilm --z-test --may-differ program --may-differ parameter\n";
+
+constexpr const char* kZTestGroup = "Films";
 
 struct Options {
   std::string a, b, output, sideBySide, metric = "mae8", max, gammaB;
+  std::string level, block, tolerance;
+  std::vector<std::string> mayDiffer;
+  bool zTest = false;
   std::optional<std::string> layer;
   bool resize = false;
   bool json = false;
@@ -56,6 +66,59 @@ std::array<Measure, 7> measures(const io::Comparison& c) {
            {"alpha8", "mean absolute difference of alpha, in steps of 1/255", c.alphaMae8}}};
 }
 
+void addFilmOptions(CLI::App& app, Options& options) {
+  app.add_flag("--z-test", options.zTest,
+               "A and B are films (.qfilm) with different seeds: test whether they are the\n"
+               "same picture but for noise; status 1 if not; -o writes |t| of each block")
+      ->group(kZTestGroup);
+  const auto add = [&app](const char* name, std::string& value, const char* form, const char* help) {
+    app.add_option(name, value, help)->type_name(form)->group(kZTestGroup);
+  };
+  add("--level", options.level, "P", "With this probability at most, the same picture is rejected (default: 0.01)");
+  add("--block", options.block, "N", "Test the means of blocks of N x N pixels (default: 8)");
+  add("--tolerance", options.tolerance, "X", "A relative difference up to X is rounding (default: 1e-5)");
+  app.add_option("--may-differ", options.mayDiffer,
+                 "What may differ besides seed and number of samples: program, parameter,\n"
+                 "shader library, ... (a name that films have, or its first word); may be repeated")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false)
+      ->type_name("NAME")
+      ->group(kZTestGroup);
+}
+
+// Options that mean nothing here are refused.
+void checkKind(const Options& options) {
+  const auto refuse = [](const char* name, bool given, const char* problem) {
+    if (given) throw UsageError(fmt::format("{}: {}", name, problem));
+  };
+  constexpr const char* kFilms = "needs --z-test";
+  constexpr const char* kPictures = "is for pictures, not for --z-test";
+  refuse("--level", !options.zTest && !options.level.empty(), kFilms);
+  refuse("--block", !options.zTest && !options.block.empty(), kFilms);
+  refuse("--tolerance", !options.zTest && !options.tolerance.empty(), kFilms);
+  refuse("--may-differ", !options.zTest && !options.mayDiffer.empty(), kFilms);
+  refuse("--max", options.zTest && !options.max.empty(), kPictures);
+  refuse("--metric", options.zTest && options.metric != Options().metric, kPictures);
+  refuse("--side-by-side", options.zTest && !options.sideBySide.empty(), kPictures);
+  refuse("--gamma-b", options.zTest && !options.gammaB.empty(), kPictures);
+  refuse("--layer", options.zTest && options.layer.has_value(), kPictures);
+  refuse("--resize", options.zTest && options.resize, kPictures);
+}
+
+FilmComparison filmComparison(const Options& options) {
+  FilmComparison result{options.a, options.b, options.output, options.mayDiffer, options.json, {}};
+  const auto number = [](const char* name, const std::string& text, double unless, double min, double max) {
+    return text.empty() ? unless : parseNumber(name, text, min, max);
+  };
+  result.test.level = number("--level", options.level, result.test.level, 1e-12, 0.5);
+  const double block = number("--block", options.block, result.test.block, 4, 4096);
+  if (block != std::floor(block)) throw UsageError(fmt::format("--block: {} is not a whole number", options.block));
+  result.test.block = static_cast<std::uint32_t>(block);
+  result.test.tolerance = number("--tolerance", options.tolerance, result.test.tolerance, 0, 1);
+  return result;
+}
+
 std::optional<Options> parseOptions(Arguments arguments) {
   CLI::App app("Says how far picture A is from picture B, the reference.", "quintet compare");
   Options options;
@@ -73,9 +136,11 @@ std::optional<Options> parseOptions(Arguments arguments) {
       ->type_name("NAME");
   add("--gamma-b", options.gammaB, "X", "B is encoded by this power instead of the sRGB curve");
   app.add_flag("--json", options.json, "One JSON object instead of text");
+  addFilmOptions(app, options);
   setUp(app, kExamples);
   if (!parse(app, arguments)) return std::nullopt;
   if (options.b.empty()) throw UsageError("two pictures are needed; see 'quintet compare --help'");
+  checkKind(options);
   return options;
 }
 
@@ -90,8 +155,9 @@ const Measure& findMeasure(const std::array<Measure, 7>& all, const std::string&
 }
 
 io::Image readPicture(const std::string& file, const std::optional<std::string>& layer) {
-  if (!layer) return io::readImage(file);
-  return io::decodeExrLayer(readFile(file), file, *layer);
+  const std::vector<std::byte> bytes = readFile(file);
+  if (render::isFilmFile(bytes)) throw FileError(file, "is a film: --z-test compares two, 'quintet merge' makes its picture");
+  return layer ? io::decodeExrLayer(bytes, file, *layer) : io::decodeImage(bytes, file);
 }
 
 // Display values of a pure power, as linear light.
@@ -154,6 +220,10 @@ int compareCommand(Arguments arguments) {
   if (!options->max.empty()) limit = parseNumber("--max", options->max, 0.0, 1e30);
   checkPicture("-o", options->output);
   checkPicture("--side-by-side", options->sideBySide);
+  if (options->zTest) {
+    compareFilms(filmComparison(*options));
+    return 0;
+  }
 
   io::Image a = readPicture(options->a, options->layer);
   io::Image b = readPicture(options->b, options->layer);

@@ -1,0 +1,136 @@
+// `compare --z-test`: two renderings of one scene are the same picture, and what is not is rejected or refused.
+#include <gmock/gmock.h>
+
+#include "base/file.h"
+#include "demo/test_scenes.h"
+#include "fixtures.h"
+#include "render/film_file.h"
+#include "render/fixed_sum.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+
+class CompareFilms : public CliTest {
+ protected:
+  void film(const std::string& name, std::vector<std::string> more) {  // of scene.gltf, 32x24 pixels
+    more.insert(more.end(), {"-o", name});
+    const RunResult result = quintet(quick(more));
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  void cornell(const std::string& name, const std::vector<std::string>& more) {
+    writeFile(folder_ / "cornell.glb", demo::testScenes()[0].make());
+    std::vector<std::string> arguments{"render", "cornell.glb", "-q", "--size", "40x32", "-o", name};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult result = quintet(arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  RunResult compare(const std::string& a, const std::string& b, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"compare", a, b, "--z-test"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return quintet(arguments);
+  }
+  // As if the renderer were too bright.
+  void scale(const std::string& from, const std::string& to, double factor) {
+    render::FilmFile file = render::readFilm(folder_ / from);
+    render::FilmPlane& plane = file.film.planes[0];
+    const auto scaled = [](shared::FixedSum& sum, double by) {
+      sum = render::fixedFromFloat(static_cast<float>(render::fixedToDouble(sum) * by));
+    };
+    for (shared::FixedSum& sum : plane.sums) scaled(sum, factor);
+    for (shared::FixedSum& square : plane.squares) scaled(square, factor * factor);
+    render::writeFilm(folder_ / to, file);
+  }
+};
+
+TEST_F(CompareFilms, OtherSeedsAreTheSamePictureAndAFactorIsNot) {
+  cornell("a.qfilm", {"--spp", "32", "--seed", "1"});
+  cornell("b.qfilm", {"--spp", "32", "--seed", "2"});
+  const RunResult same = compare("a.qfilm", "b.qfilm");
+  EXPECT_EQ(same.status, 0) << same.out << same.err;
+  EXPECT_EQ(same.err, "");
+  EXPECT_THAT(same.out, HasSubstr("a.qfilm: samples 0 to 31, 8 batches, seed 1, "));
+  EXPECT_THAT(same.out, HasSubstr("blocks: 20 of 8x8 pixels, 3 channels; p below 8.35e-05 rejects"));  // 1 - 0.995^(1/60)
+  EXPECT_THAT(same.out, EndsWith("the same picture at level 0.01\n"));
+  const auto json = nlohmann::json::parse(compare("a.qfilm", "b.qfilm", {"--json", "-o", "t.png"}).out);
+  EXPECT_EQ(json["same"], true);
+  EXPECT_EQ(json["tests"], 60);
+  EXPECT_EQ(json["seeds"], (nlohmann::json{"1", "2"}));
+  EXPECT_EQ(json["batches"], (nlohmann::json{8, 8}));
+  EXPECT_EQ(json["devices"][0], json["devices"][1]);
+  EXPECT_EQ(json["image"].size(), 3u);
+  EXPECT_EQ(json["notes"].size(), 0u);
+  EXPECT_EQ(json["distribution"]["noisyTests"], 60);
+  EXPECT_EQ(picture("t.png").width, 40u);
+
+  scale("b.qfilm", "c.qfilm", 1.05);
+  const RunResult bright = compare("a.qfilm", "c.qfilm");
+  EXPECT_EQ(bright.status, 1);
+  EXPECT_THAT(bright.out, EndsWith("not the same picture at level 0.01\n"));
+  EXPECT_THAT(bright.err, HasSubstr("quintet: a.qfilm and c.qfilm: not the same picture at level 0.01: the whole image, "));
+  EXPECT_EQ(nlohmann::json::parse(compare("a.qfilm", "c.qfilm", {"--json"}).out)["same"], false);
+
+  scale("b.qfilm", "d.qfilm", 1.0);
+  EXPECT_EQ(compare("a.qfilm", "d.qfilm").status, 0);
+
+  // Parts of one seed are independent, the same samples are not.
+  cornell("e.qfilm", {"--spp", "64", "--seed", "1", "--batches", "8-15"});
+  EXPECT_EQ(compare("e.qfilm", "b.qfilm").status, 0);
+  const RunResult twice = compare("a.qfilm", "a.qfilm");
+  EXPECT_EQ(twice.status, 0);
+  EXPECT_THAT(twice.out, HasSubstr("note: both films have the same samples of seed 1"));
+  EXPECT_EQ(compare("a.qfilm", "e.qfilm").out.find("note"), std::string::npos);
+}
+
+TEST_F(CompareFilms, OtherRenderingsAreRefusedByName) {
+  film("a.qfilm", {"--spp", "32"});
+  write(folder_ / "other.gltf", [] {
+    nlohmann::json scene = quadScene();
+    scene["nodes"][0]["name"] = "another";
+    scene["materials"] = nlohmann::json::array({{{"pbrMetallicRoughness", {{"roughnessFactor", 0.25}}}}});
+    scene["meshes"][0]["primitives"][0]["material"] = 0;
+    return scene.dump();
+  }());
+  const RunResult other = quintet({"render", "other.gltf", "--program", "normals", "-q", "--size", "32x24", "--spp", "32", "-o", "b.qfilm"});
+  ASSERT_EQ(other.status, 0) << other.err;
+  const RunResult scene = compare("a.qfilm", "b.qfilm");
+  EXPECT_EQ(scene.status, 1);
+  EXPECT_EQ(scene.out, "");
+  EXPECT_THAT(scene.err, HasSubstr("quintet: b.qfilm: scene: "));
+  EXPECT_THAT(scene.err, EndsWith("quintet: b.qfilm: is of another rendering than a.qfilm; --may-differ NAME allows a difference\n"));
+  EXPECT_EQ(compare("a.qfilm", "b.qfilm", {"--may-differ", "scene"}).status, 0);
+  EXPECT_EQ(quintet({"compare", "--z-test", "--may-differ", "scene", "a.qfilm", "b.qfilm"}).status, 0);
+
+  film("c.qfilm", {"--spp", "32", "--size", "32x25"});
+  EXPECT_THAT(compare("a.qfilm", "c.qfilm").err, HasSubstr("size: 32x24 in a.qfilm, 32x25 in c.qfilm"));
+  expectError(compare("a.qfilm", "c.qfilm", {"--may-differ", "size", "--may-differ", "region"}), 1, {"other parts of the image"});
+  film("d.qfilm", {"--spp", "64", "--seed", "4"});
+  const RunResult longer = compare("a.qfilm", "d.qfilm");
+  EXPECT_EQ(longer.status, 0) << longer.err;
+  EXPECT_THAT(longer.out, HasSubstr("note: the films have different numbers of samples"));
+}
+
+TEST_F(CompareFilms, WhatCannotBeTested) {
+  film("a.qfilm", {"--spp", "32"});
+  film("few.qfilm", {"--spp", "28"});
+  ASSERT_EQ(quintet(quick({"-o", "p.png"})).status, 0);
+  expectError(compare("a.qfilm", "few.qfilm"), 1, {"a.qfilm and few.qfilm: ", "7 batches of 4 samples; 8 (32 samples) are needed"});
+  expectError(compare("a.qfilm", "p.png"), 1, {"p.png: is not a film (.qfilm)", "does not tell its noise"});
+  expectError(compare("a.qfilm", "none.qfilm"), 1, {"none.qfilm", "No such file"});
+  expectError(quintet({"compare", "a.qfilm", "a.qfilm"}), 1, {"a.qfilm: is a film", "--z-test"});
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong{{{"--level", "0"}, "--level"},
+                                                                            {{"--level", "0.9"}, "--level"},
+                                                                            {{"--block", "2"}, "--block"},
+                                                                            {{"--block", "8.5"}, "--block: 8.5 is not a whole number"},
+                                                                            {{"--tolerance", "-1"}, "--tolerance"},
+                                                                            {{"--may-differ", "sceen"}, "'sceen' (did you mean 'scene'?)"},
+                                                                            {{"--max", "3"}, "--max: is for pictures"},
+                                                                            {{"--resize"}, "--resize: is for pictures"}};
+  for (const auto& [more, text] : wrong) expectError(compare("a.qfilm", "a.qfilm", more), 2, {text});
+  expectError(quintet({"compare", "p.png", "p.png", "--level", "0.1"}), 2, {"--level: needs --z-test"});
+}
+
+}  // namespace
+}  // namespace quintet::test
