@@ -1,4 +1,4 @@
-// Owen-scrambled Sobol points, padded (B. Burley, "Practical Hash-based Owen Scrambling", JCGT 10(4), 2020,
+// Owen-scrambled Sobol points, padded (B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020,
 // https://jcgt.org/published/0009/04/01/), with errors that are blue noise over the image (blue_shift.glsl).
 // Each demand d of a pixel takes the first two Sobol dimensions, shifted by the pixel's own digits: of each pixel,
 // every prefix of 2^k samples is a (0,k,2)-net (1D: the first dimension). Why the numbers may be multiplied as if
