@@ -136,11 +136,12 @@ void LightTableBuilder::addParts(const scene::Scene& scene, std::size_t maxCount
   std::size_t total = 0;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const int mesh = scene.instances[i].mesh;
+    const bool seen = (scene.instances[i].mask & 0xFFu) != 0;  // 0: no ray meets it
     firstSlots_.push_back(static_cast<std::uint32_t>(slots_.size()));
     if (mesh == scene::kNone) continue;
     const auto m = static_cast<std::size_t>(mesh);
     for (std::size_t g = 0; g < scene.meshes[m].geometryCount(); ++g) {
-      if (g < emitters_[m].size() && !emitters_[m][g].black) parts_.push_back({i, g, slots_.size(), m, emitters_[m][g].count()});
+      if (seen && g < emitters_[m].size() && !emitters_[m][g].black) parts_.push_back({i, g, slots_.size(), m, emitters_[m][g].count()});
       slots_.push_back(shared::kNoLight);
     }
   }

@@ -161,6 +161,21 @@ TEST(LightTable, SlotsAndIndices) {
   EXPECT_EQ(last.primitive, 1u);
 }
 
+// A lamp that no ray meets shines on nothing.
+TEST(LightTable, HiddenInstancesHaveNoLights) {
+  scene::Scene scene = squares();
+  scene.instances = {instanceOf(1), instanceOf(1), instanceOf(1)};
+  scene.instances[0].mask = 0;
+  scene.instances[1].mask = 0x100;  // 8 bits count
+  scene.instances[2].mask = 0x80;
+  const LightTable table = buildLightTable(scene, {});
+  EXPECT_EQ(table.firstSlots, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(table.slots, (std::vector<std::uint32_t>{shared::kNoLight, shared::kNoLight, 0}));
+  ASSERT_EQ(table.lights.size(), 2u);
+  EXPECT_EQ(table.lights[0].instance, 2u);
+  EXPECT_NEAR(table.entries[0].probability, 0.5, 1e-6);
+}
+
 TEST(LightTable, WorldAreaOfInstances) {
   scene::Scene scene = squares();
   const mat4 mirrored = glm::scale(mat4(1.0f), vec3(-1.0f, 3.0f, 1.0f));
