@@ -142,7 +142,7 @@ bool sampleSolidLight(LightData light, vec3 position, vec2 u, inout LightSample 
   lightFromPoint(world, vec3(1.0), position, s);
   s.normal = safeNormalize(areaVector(m, point.normal) / maxComponent(abs(areaVector(m, point.normal))), s.wi);
   const float cosine = abs(dot(s.normal, s.wi));
-  s.radiance = surfaceEmission(primitive.material, 1.0, point.uv, point.uv, cosine);
+  s.radiance = surfaceEmission(instance, primitive.material, 1.0, point.uv, point.uv, cosine);
   s.pdf = pdfSolid(instance, primitive, face, coordinates, position, s.distance, cosine);
   const BoxData box = BoxArray(geometry.boxes).at[light.primitive];
   s.error = solidError(instance, primitive, point.position, max(abs(box.min), abs(box.max)), world, s.normal);

@@ -38,9 +38,10 @@ float lightTexture(TextureData use, vec2 uv0, vec2 uv1, int channel) {
 }
 
 // What a surface of this material emits, times the probability that alpha mask or blend leaves it there: an any-hit
-// shader does not see the end of a shadow ray. `alpha`: of the vertex colour; `cosine`: of the light's direction to the
-// interpolated normal (the coat's normal map plays no part).
-vec3 surfaceEmission(uint material, float alpha, vec2 uv0, vec2 uv1, float cosine) {
+// shader does not see the end of a shadow ray. On an instance that is forced to be opaque none runs, and all is there.
+// `alpha`: of the vertex colour; `cosine`: of the light's direction to the interpolated normal (the coat's normal map
+// plays no part).
+vec3 surfaceEmission(InstanceData instance, uint material, float alpha, vec2 uv0, vec2 uv1, float cosine) {
   const MaterialData m = MaterialArray(frame.materials).at[material];
   vec3 emission = m.emissive;
   if (kHasClearcoat && m.clearcoat > 0.0 && (m.flags & kMaterialUnlit) == 0u) {
@@ -50,6 +51,7 @@ vec3 surfaceEmission(uint material, float alpha, vec2 uv0, vec2 uv1, float cosin
   const bool textured = (kTextureSlots & (1u << kTextureEmissive)) != 0u && m.emissiveTexture.index != kNoTexture;
   if (textured) emission *= sampleTexture(m.emissiveTexture, m.emissiveTexture.uvSet == 0u ? uv0 : uv1).rgb;
   if (!kHasAlpha || (m.flags & (kMaterialMask | kMaterialBlend)) == 0u) return emission;
+  if ((instance.flags & kInstanceOpaque) != 0u) return emission;
   alpha *= m.baseColor.a;
   if (m.baseColorTexture.index != kNoTexture) alpha *= sampleTexture(m.baseColorTexture, m.baseColorTexture.uvSet == 0u ? uv0 : uv1).a;
   if ((m.flags & kMaterialMask) != 0u) return alpha < m.alphaCutoff ? vec3(0.0) : emission;
@@ -69,7 +71,7 @@ vec3 lightTriangleEmission(InstanceData instance, GeometryData geometry, uvec3 v
     normal = safeNormalize(transposeTimesVector(instance.objectFromWorld, object), normal);
   }
   const vec2 uv0 = interpolateUv(geometry, v, b, 0u);
-  return surfaceEmission(geometry.material, alpha, uv0, interpolateUv(geometry, v, b, 1u), abs(dot(normal, wi)));
+  return surfaceEmission(instance, geometry.material, alpha, uv0, interpolateUv(geometry, v, b, 1u), abs(dot(normal, wi)));
 }
 
 // Density per solid angle of a uniform point on the triangle, at distance d along a unit ray with

@@ -102,5 +102,20 @@ TEST(SolidLamp, BallsFromOutside) {
   }
 }
 
+// Alpha dims what it leaves open, but not on an instance that is forced to be opaque.
+TEST(SolidLamp, AlphaOfTheEmitter) {
+  scene::Scene source = emissiveSolid(PrimitiveType::cylinder, stretched());
+  source.materials[0].alphaMode = scene::AlphaMode::blend;
+  source.materials[0].baseColor.a = 0.25f;
+  for (const std::uint32_t flags : {0u, scene::kInstanceForceOpaque}) {
+    source.instances[0].flags = flags;
+    const LightScene scene(source, {});
+    for (const LightOut& s : sampleLights(scene, vec3(0.0f), 1000)) {
+      ASSERT_TRUE(s.valid);
+      EXPECT_EQ(s.radiance, vec3(flags == 0 ? 0.25f : 1.0f));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace quintet::test

@@ -167,6 +167,19 @@ TEST(TriangleLight, AlphaOfTheEmitter) {
   EXPECT_GT(pValue(measure(), exact), sidak(0.01, 3));
 }
 
+// Alpha has no effect on an instance that is forced to be opaque: rays meet all of it.
+TEST(TriangleLight, ForcedOpaqueEmittersAreWhole) {
+  scene::Scene source = emissiveRectangle(vec3(3.0f), placement(1.0f));
+  const double exact = 3.0 * polygonIrradiance(cornersFrom(source, vec3(0.0f)), dvec3(0, 1, 0));
+  source.materials[0].baseColor.a = 0.25f;  // below the cut-off
+  source.instances[0].flags = scene::kInstanceForceOpaque;
+  for (const scene::AlphaMode mode : {scene::AlphaMode::blend, scene::AlphaMode::mask}) {
+    source.materials[0].alphaMode = mode;
+    const LightScene scene(source, {});
+    EXPECT_GT(pValue(irradiance(sampleLights(scene, vec3(0.0f), kSamples), vec3(0, 1, 0)), exact), sidak(0.01, 2));
+  }
+}
+
 // Uniform directions against all triangles by brute force: the densities that BSDF hits are weighed with integrate to
 // the probability of the triangles, and agree with the sampler's own.
 TEST(TriangleLight, DensityOfHitsIntegratesToItsProbability) {
