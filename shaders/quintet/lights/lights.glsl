@@ -61,7 +61,8 @@ float pdfLightPoint(HitPayload hit, vec3 position, float distance, float cosine)
   if (geometry.kind != kGeometryTriangles) {
     if (!kHasSolidLights) return 0.0;
     const PrimitiveData primitive = PrimitiveArray(geometry.primitives).at[hit.primitive];
-    return pdfSolid(instance, primitive, (hit.part >> kPartFaceShift) & 7u, hit.barycentric, position, distance, cosine);
+    const bool front = (hit.part & kPartFront) != 0u;
+    return pdfSolid(instance, primitive, (hit.part >> kPartFaceShift) & 7u, hit.barycentric, front, position, distance, cosine);
   }
 #endif
   return kHasTriangleLights ? pdfTriangle(fetchLightTriangle(instance, geometry, hit.primitive).area, distance, cosine) : 0.0;

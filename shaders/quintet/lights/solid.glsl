@@ -93,13 +93,18 @@ vec3 canonicalPoint(uint type, float parameter, mat3 m, vec2 u, out uint face) {
 }
 
 // Density per solid angle of sampleSolidLight for the point of the hit, met from `receiver` at `distance` along a unit
-// ray with cosine = |ray · normal|.
-float pdfSolid(InstanceData instance, PrimitiveData primitive, uint face, vec2 coordinates, vec3 receiver, float distance, float cosine) {
+// ray with cosine = |ray · normal|, on its outside (`front`) or inside. Of a ball seen from outside the far side, which
+// alpha and panes show, is not drawn.
+float pdfSolid(InstanceData instance, PrimitiveData primitive, uint face, vec2 coordinates, bool front, vec3 receiver, float distance,
+               float cosine) {
   const mat3 m = worldFromPrimitive(instance, primitive);
   const float radius = ballRadius(primitive.type, m);
   const vec3 toCenter = solidCenter(instance, primitive) - receiver;
   const float sineSquared = radius * radius / dot(toCenter, toCenter);
-  if (seesBallFromOutside(radius, toCenter)) return (1.0 + sqrt(1.0 - sineSquared)) / (2.0 * kPi * sineSquared);
+  if (seesBallFromOutside(radius, toCenter)) {
+    if (!front) return 0.0;
+    return (1.0 + sqrt(1.0 - sineSquared)) / (2.0 * kPi * sineSquared);
+  }
   const SolidPoint point = solidPoint(primitive.type, primitive.parameter, face, coordinates);
   const float stretch = length(areaVector(m, normalize(point.normal)));
   const float density = canonicalDensity(primitive.type, primitive.parameter, m, face, point.position);
@@ -143,7 +148,7 @@ bool sampleSolidLight(LightData light, vec3 position, vec2 u, inout LightSample 
   s.normal = safeNormalize(areaVector(m, point.normal) / maxComponent(abs(areaVector(m, point.normal))), s.wi);
   const float cosine = abs(dot(s.normal, s.wi));
   s.radiance = surfaceEmission(instance, primitive.material, 1.0, point.uv, point.uv, cosine);
-  s.pdf = pdfSolid(instance, primitive, face, coordinates, position, s.distance, cosine);
+  s.pdf = pdfSolid(instance, primitive, face, coordinates, true, position, s.distance, cosine);
   const BoxData box = BoxArray(geometry.boxes).at[light.primitive];
   s.error = solidError(instance, primitive, point.position, max(abs(box.min), abs(box.max)), world, s.normal);
   s.delta = false;
