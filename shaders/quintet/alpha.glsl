@@ -29,8 +29,8 @@ float alphaCoverage(vec2 barycentric) {
 // True if the candidate is not there: alpha mask below its cut-off, or blend with probability 1 - alpha.
 bool alphaRejects(vec2 barycentric, uint seed) {
   // Independent of every other number of the path: the ray's own seed, mixed with the primitive's identity.
-  const uint surface = hitTriangle(hitGeometry()) * 8u + uint(gl_GeometryIndexEXT);
-  const uint random = hashCombine(hashCombine(seed, uint(gl_InstanceCustomIndexEXT)), surface);
+  const uint instance = hashCombine(seed, uint(gl_InstanceCustomIndexEXT));
+  const uint random = hashCombine(hashCombine(instance, hitTriangle(hitGeometry())), uint(gl_GeometryIndexEXT));
   return float(random >> 8) * (1.0 / 16777216.0) >= alphaCoverage(barycentric);
 }
 

@@ -25,7 +25,7 @@ float solidCoverage(HitPayload hit) {
 bool solidAlphaRejects(uint seed) {
   const HitPayload hit = solidHit(seed);
   // Independent of every other number of the path, and of the ray's other crossings of the same solid.
-  const uint surface = hashCombine(hit.part, hit.primitive * 8u + hit.geometry);
+  const uint surface = hashCombine(hashCombine(hit.part, hit.primitive), hit.geometry);
   const uint random = hashCombine(hashCombine(seed, hit.instance), hashCombine(surface, floatBitsToUint(hit.t)));
   return float(random >> 8) * (1.0 / 16777216.0) >= solidCoverage(hit);
 }

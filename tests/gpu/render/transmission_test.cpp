@@ -107,6 +107,22 @@ TEST(Alpha, TakesVertexColours) {
   expectUniform(renderPicture(scene, batches(64)), vec4(0.3f * vec3(0.1f, 3.0f, 0.0f) + 0.7f * kBehind, 1.0f), {.error = 0.01});
 }
 
+// Surfaces on one ray decide each for itself. Here the indices of their triangles and geometries are (2,0), (1,8), (0,16).
+TEST(Alpha, SurfacesOfOneMeshAreIndependent) {
+  SceneBuilder scene = lookingThrough(kSheet, veil({0.2f, 3.0f, 0.0f}, 0.5f, scene::AlphaMode::blend), 0.0f);
+  std::vector<scene::Geometry>& geometries = scene.scene.meshes[0].geometries;
+  geometries.clear();
+  for (std::uint32_t g = 0; g <= 16; ++g) {
+    scene::Geometry& sheet = geometries.emplace_back(kSheet);
+    sheet.material = 0;
+    for (vec3& p : sheet.positions) p += vec3(g % 8 == 0 ? 0.0f : 100.0f, 0.0f, 0.01f * static_cast<float>(g));
+    sheet.triangles.assign(3 - g / 8, {0, 0, 0});
+    sheet.triangles.back() = {0, 1, 2};
+  }
+  scene.camera(orthographic({1, -1, 9}, {1, -1, 0}, 0.05f));
+  expectUniform(renderPicture(scene, batches(64)), vec4(0.875f * vec3(0.2f, 3.0f, 0.0f) + 0.125f * kBehind, 1.0f), {.error = 0.03});
+}
+
 TEST(Alpha, MasksAllOrNothing) {
   for (const float cutoff : {0.2f, 0.5f}) {
     const SceneBuilder scene = lookingThrough(kSheet, veil({0.2f, 3.0f, 0.0f}, 0.3f, scene::AlphaMode::mask, cutoff), 0.0f);
