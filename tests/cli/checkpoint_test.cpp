@@ -321,12 +321,12 @@ TEST_F(Checkpoint, StaysWhenThePictureCannotBeWritten) {
   EXPECT_EQ(picture("results/out.png").data, expected.data);
 }
 
-// When it happens, not at the end that may be days away: these renderings have none.
+// When it happens, not at the end that may be days away: here in 30 seconds.
 TEST_F(Checkpoint, ThatCannotBeWrittenAreToldAtOnce) {
   for (const std::string& option : {std::string("--json-progress"), std::string("-q")}) {
     const std::filesystem::path checkpoints = folder_ / "checkpoints";
     std::filesystem::create_directory(checkpoints);
-    TerminalRun process(quick({"--size", "48x36", "--time", "100000", "-o", "out.png", "--checkpoint", "0", "--checkpoint-file",
+    TerminalRun process(quick({"--size", "48x36", "--time", "30", "-o", "out.png", "--checkpoint", "0", "--checkpoint-file",
                                "checkpoints/c.qfilm", option}),
                         folder_.path());
     for (int i = 0; i < 12000 && !std::filesystem::exists(checkpoints / "c.qfilm"); ++i)
