@@ -63,7 +63,7 @@ lint: ## Check the layout of C++ (clang-format) and the scripts (shellcheck), wh
 	        | xargs -0 -r clang-format --dry-run -Werror && echo "lint: C++ is fine"; \
 	else echo "lint: no clang-format or no .clang-format, C++ not checked"; fi
 	@if command -v shellcheck >/dev/null; then \
-	    shellcheck -x scripts/*.sh tests/setup/*.sh tests/mutation/run .ci/run && echo "lint: scripts are fine"; \
+	    shellcheck -x scripts/*.sh tests/setup/*.sh tests/mutation/run tests/mutation/*.sh .ci/run && echo "lint: scripts are fine"; \
 	else echo "lint: no shellcheck here, scripts not checked"; fi
 
 clean: ## Remove everything that was built
