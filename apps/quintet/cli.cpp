@@ -27,6 +27,13 @@ void refuseRemaining(const CLI::App& app) {
       fmt::format("unknown option '{}'{}; see '{} --help'", name, suggestion(name, names), app.get_name()));
 }
 
+// `--spp "$N"` with nothing in N is a mistake of the caller, not the default.
+void refuseEmptyValues(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options())
+    if (option->nonpositional() && std::ranges::find(option->results(), "") != option->results().end())
+      throw UsageError(fmt::format("{}: the value is empty", option->get_name()));
+}
+
 // CLI11 puts two empty lines between groups.
 std::string withoutGaps(std::string text) {
   for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n", at)) text.erase(at, 1);
@@ -54,6 +61,7 @@ bool parse(CLI::App& app, Arguments arguments) {
     throw UsageError(fmt::format("{}; see '{} --help'", error.what(), app.get_name()));
   }
   refuseRemaining(app);
+  refuseEmptyValues(app);
   return true;
 }
 

@@ -34,8 +34,8 @@ nlohmann::ordered_json devicePeakJson(const MemoryUse& memory) {
 }
 
 nlohmann::ordered_json errorJson(const RenderRecord& record) {
-  if (!record.error.known()) return {};
-  nlohmann::ordered_json json{{"image", record.error.upper}, {"tiles", record.error.tiles}};
+  nlohmann::ordered_json json;  // null: neither known nor asked for
+  if (record.error.known()) json = {{"image", record.error.upper}, {"tiles", record.error.tiles}};
   if (record.wantedError) {
     json["wanted"] = *record.wantedError;
     json["reached"] = record.error.reaches(*record.wantedError);
@@ -84,6 +84,13 @@ io::Metadata metadata(const RenderRecord& record) {
   }
   if (record.interrupted) data.emplace_back("Interrupted", "yes");
   return data;
+}
+
+std::string unreachedText(const RenderRecord& record) {
+  const std::string wanted = fmt::format("the error of {:.2g} % was not reached", 100.0 * *record.wantedError);
+  if (!record.error.known()) return wanted + ": it is not known below two batches of samples";
+  return fmt::format("{}: it is {:.2g} %, in 95 % of the tiles at most {:.2g} %", wanted, 100.0 * record.error.upper,
+                     100.0 * record.error.tiles);
 }
 
 std::string toJson(const RenderRecord& record) {

@@ -88,6 +88,9 @@ struct RenderRecord {
 
 io::Metadata metadata(const RenderRecord& record);
 
+// Why --until-error is not content.
+std::string unreachedText(const RenderRecord& record);
+
 // One object, one line.
 std::string toJson(const RenderRecord& record);
 

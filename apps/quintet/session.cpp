@@ -278,8 +278,7 @@ std::vector<std::byte> Session::exrFile(std::size_t output) const {
 
 void Session::report() {
   if (record_.wantedError && !record_.interrupted && !record_.error.reaches(*record_.wantedError))
-    warnings_.add(fmt::format("the error of {:.2g} % was not reached: it is {:.2g} %, in 95 % of the tiles at most {:.2g} %",
-                              100.0 * *record_.wantedError, 100.0 * record_.error.upper, 100.0 * record_.error.tiles));
+    warnings_.add(unreachedText(record_));
   if (record_.droppedSamples > 0)
     warnings_.add(fmt::format("{} samples were not finite and left out", record_.droppedSamples));
   record_.warnings = warnings_.take();

@@ -85,6 +85,14 @@ TEST(ProgressBar, LimitsDecideWhatIsLeft) {
 
 TEST(ProgressBar, Line) { EXPECT_EQ(progressLine(half()), "32/64 samples, 12.3 Mrays/s, 20 s, 20 s left"); }
 
+TEST(ProgressBar, TellsTheErrorWhereItIsKnown) {
+  ProgressState state = half();
+  state.error = 0.0234;
+  EXPECT_EQ(progressLine(state), "32/64 samples, 12.3 Mrays/s, error 2.3 %, 20 s, 20 s left");
+  state.error = std::numeric_limits<double>::infinity();  // below two batches
+  EXPECT_EQ(progressLine(state), progressLine(half()));
+}
+
 TEST(ProgressBar, FitsTheTerminal) {
   for (int width = 0; width < 160; ++width) EXPECT_LE(progressBar(half(), width, false).size(), static_cast<std::size_t>(width));
   EXPECT_EQ(progressBar(half(), 58, false), "[=====>    ] 32/64 samples  12.3 Mrays/s  20 s  20 s left");
