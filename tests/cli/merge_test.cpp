@@ -1,5 +1,6 @@
 // Parts of a rendering: joined in any way they give the bytes of one rendering; what does not belong together is refused.
 #include <algorithm>
+#include <regex>
 
 #include "base/file.h"
 #include "fixtures.h"
@@ -194,6 +195,42 @@ TEST_F(Merge, RefusesPartsThatDoNotBelongTogether) {
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("in a.qfilm, 0.0.9 in b.qfilm"), std::string::npos) << result.err;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "m.png"));
+}
+
+// What decides about the light rather than about the frame: scene, environment, parameters, layers.
+TEST_F(Merge, RefusesPartsOfAnotherSceneLightParameterOrLayers) {
+  nlohmann::json scene = quadScene();
+  scene["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.1, 0.3, 0.1, 1};
+  write(folder_ / "other.gltf", scene.dump());
+  std::filesystem::copy_file(folder_ / "scene.gltf", folder_ / "copy.gltf");
+  const auto partOf = [&](const char* file, const std::vector<std::string>& more, const char* batches, const char* name) {
+    std::vector<std::string> arguments{"render", file, "-q", "--size", "8x6", "--spp", "8", "--batches", batches, "-o", name, "--force"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult result = quintet(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  // 12 digits of hashes are shown; they differ, whatever they are.
+  const auto refused = [&](const char* file, const std::vector<std::string>& more, const std::string& pattern) {
+    partOf(file, more, "1", "b.qfilm");
+    const RunResult result = merge({"a.qfilm", "b.qfilm"}, "m.png");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(result.out, "");
+    const std::string last = "quintet: b.qfilm: is of another rendering than a.qfilm\n";
+    const std::regex lines("quintet: b\\.qfilm: " + pattern + "\n" + last);
+    EXPECT_TRUE(std::regex_match(result.err, lines)) << pattern << " is not:\n" << result.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "m.png"));
+  };
+  const std::string hashes = "([0-9a-f]{12}) in a\\.qfilm, (?!\\1)[0-9a-f]{12} in b\\.qfilm";
+  partOf("scene.gltf", {}, "0", "a.qfilm");
+  refused("other.gltf", {}, "scene: " + hashes);
+  refused("scene.gltf", {"--env", "1,2,3"}, "environment: " + hashes);
+  refused("scene.gltf", {"--env-intensity", "2"}, "environment: " + hashes);
+  refused("scene.gltf", {"--set", "bounces=3"}, "parameter bounces: [0-9]+ in a\\.qfilm, 3 in b\\.qfilm");
+  refused("scene.gltf", {"--set", "clamp=2.5"}, "parameter clamp: [0-9.]+ in a\\.qfilm, 2\\.5 in b\\.qfilm");
+  refused("scene.gltf", {"--aov", "albedo"}, "outputs: color in a\\.qfilm, color, albedo in b\\.qfilm");
+  refused("scene.gltf", {"--transparent"}, "transparent: no in a\\.qfilm, yes in b\\.qfilm");
+  partOf("copy.gltf", {}, "1", "b.qfilm");  // the content decides, not the name
+  expectMerged({"a.qfilm", "b.qfilm"}, "m.png");
 }
 
 TEST_F(Merge, RefusesWhatIsThereTwice) {
