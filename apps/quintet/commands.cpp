@@ -12,7 +12,7 @@ std::span<const Command> commands() {
       Command{"new", "begin a program that renders at once", newCommand},
       Command{"check", "compile and check programs, without rendering", checkCommand},
       Command{"explain", "say what a diagnostic means and how to mend it", explainCommand},
-      Command{"info", "say what a device can do, or what is in a scene or picture", infoCommand},
+      Command{"info", "say what a device can do, or what is in a scene, picture or film", infoCommand},
       Command{"compare", "say how far two pictures are apart", compareCommand},
       Command{"bench", "measure rays per second against the ceiling of the device", benchCommand},
   };

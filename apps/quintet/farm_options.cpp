@@ -80,7 +80,7 @@ void chooseCheckpointFile(RenderOptions& options) {
 void declareFarm(CLI::App& app, FarmOptions& options) {
   const char* group = "Long renderings";
   app.add_option("--checkpoint", options.rawCheckpoint,
-                 "Write what is done every so often, 0: after each batch (default with\n--resume: 60); it goes when the picture is there")
+                 "Write what is done every so often, 0: after each batch (default with\n--resume, --keep-checkpoint, --checkpoint-file: 60); it goes when the\npicture is there")
       ->type_name("SECONDS")
       ->group(group);
   app.add_option("--checkpoint-file", options.checkpointFile, "The checkpoint (default: OUTPUT.checkpoint.qfilm)")

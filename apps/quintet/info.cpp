@@ -1,4 +1,4 @@
-// `quintet info`: devices, a scene or a picture.
+// `quintet info`: devices, a scene, a picture or a film.
 #include "info.h"
 
 #include <vector>
@@ -21,10 +21,10 @@ constexpr const char* kExamples =
 }  // namespace
 
 int infoCommand(Arguments arguments) {
-  CLI::App app("Describes the Vulkan devices, or a scene, or a picture.", "quintet info");
+  CLI::App app("Describes the Vulkan devices, or a scene, a picture or a film.", "quintet info");
   std::string file;
   bool json = false;
-  app.add_option("FILE", file, "A scene or a picture; none: the devices")->type_name("");
+  app.add_option("FILE", file, "A scene, a picture or a film (.qfilm); none: the devices")->type_name("");
   app.add_flag("--json", json, "One JSON object instead of text");
   setUp(app, kExamples);
   if (!parse(app, arguments)) return 0;

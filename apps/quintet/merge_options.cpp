@@ -33,7 +33,7 @@ std::optional<MergeOptions> parseMergeOptions(Arguments arguments) {
   app.add_flag("--force", render.farm.force, "Overwrite a film that would be lost");
   app.add_flag("--json", render.json, "At the end, one JSON object on standard output");
   app.add_flag("-q,--quiet", render.quiet, "No notes on standard error");
-  declareExr(app, raw);
+  declareExr(app, raw, AovNames::ofFilms);
   setUp(app, kExamples);
   if (!parse(app, arguments)) return std::nullopt;
   if (options.parts.empty()) throw UsageError("no parts given; see 'quintet merge --help'");

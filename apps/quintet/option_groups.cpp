@@ -78,15 +78,18 @@ void declareImage(CLI::App& app, RawOptions& raw, RenderOptions& options) {
   add("--tonemap", raw.toneMap, "NAME", "linear, aces, agx or neutral (PNG only; default: neutral for colour)");
 }
 
-void declareExr(CLI::App& app, RawOptions& raw) {
+void declareExr(CLI::App& app, RawOptions& raw, AovNames names) {
   const auto add = [&app](const char* name, std::string& value, const char* form, const char* help) {
     app.add_option(name, value, help)->type_name(form)->group("OpenEXR");
   };
-  app.add_option("--aov", raw.aovs, "Layers to write beside the picture, all of them, or print what there are;\nmay be repeated")
+  const bool ofProgram = names == AovNames::ofProgram;
+  app.add_option("--aov", raw.aovs,
+                 ofProgram ? "Layers to write beside the picture, all of them, or print what there are;\nmay be repeated"
+                           : "Which layers of the films to write (default: all); may be repeated")
       ->expected(1)
       ->take_all()
       ->delimiter(',')
-      ->type_name("NAMES|all|list")
+      ->type_name(ofProgram ? "NAMES|all|list" : "NAMES|all")
       ->group("OpenEXR");
   add("--exr-type", raw.exrType, "half|float", "Of colours (default: half); data are floats always");
   add("--exr-compression", raw.exrCompression, "NAME[:LEVEL]",

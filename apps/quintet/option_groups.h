@@ -23,7 +23,8 @@ void declareView(CLI::App& app, RawOptions& raw, RenderOptions& options);     //
 void declareProgram(CLI::App& app, RawOptions& raw, RenderOptions& options);  // parameters and outputs
 void declareProcess(CLI::App& app, RawOptions& raw, RenderOptions& options, const std::string& timeoutHelp);
 
-void declareExr(CLI::App& app, RawOptions& raw);
+enum class AovNames { ofProgram, ofFilms };  // what --aov names
+void declareExr(CLI::App& app, RawOptions& raw, AovNames names = AovNames::ofProgram);
 bool asksForAovList(const RawOptions& raw);
 
 // Fills `options` with the values of all texts but the scene and the output file. Throws UsageError.

@@ -12,13 +12,21 @@ TEST_F(Usage, VersionAndHelp) {
   EXPECT_TRUE(version.out.starts_with("quintet 0.")) << version.out;
   EXPECT_EQ(version.err, "");
   for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"--help"}, {"render", "--help"}, {"info", "--help"}, {"compare", "--help"}}) {
+       {std::vector<std::string>{"--help"}, {"render", "--help"}, {"info", "--help"}, {"merge", "--help"}, {"compare", "--help"}}) {
     const RunResult help = quintet(arguments);
     EXPECT_EQ(help.status, 0);
     EXPECT_EQ(help.err, "");
     EXPECT_NE(help.out.find("Examples:"), std::string::npos) << help.out;
     EXPECT_EQ(help.out.find('\x1b'), std::string::npos);
   }
+}
+
+// What merge takes of --aov is not what render takes.
+TEST_F(Usage, HelpOffersOnlyWhatIsTaken) {
+  EXPECT_NE(quintet({"render", "--help"}).out.find("--aov NAMES|all|list"), std::string::npos);
+  const std::string merge = quintet({"merge", "--help"}).out;
+  EXPECT_NE(merge.find("--aov NAMES|all "), std::string::npos) << merge;
+  EXPECT_EQ(merge.find("list"), std::string::npos) << merge;
 }
 
 TEST_F(Usage, UnknownCommand) {
@@ -64,6 +72,13 @@ TEST_F(Usage, NumbersOutOfRange) {
   expectError(quintet(quick({"--aperture", "-0.1"})), 2, {"--aperture"});
   expectError(quintet(quick({"--focus", "0"})), 2, {"--focus"});
   expectError(quintet(quick({"--timeout", "0"})), 2, {"--timeout"});
+}
+
+// "$N" with nothing in N is no wish for the default.
+TEST_F(Usage, EmptyValues) {
+  for (const char* option : {"--spp", "--time", "--size", "--exposure", "--env", "--seed", "-o"})
+    expectError(quintet(quick({option, ""})), 2, {"value is empty", option});
+  expectError(quintet({"merge", "a.qfilm", "-o", "m.png", "--tonemap", ""}), 2, {"--tonemap", "empty"});
 }
 
 TEST_F(Usage, VectorsAndRegions) {
