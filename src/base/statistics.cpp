@@ -1,7 +1,9 @@
 #include "base/statistics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <numbers>
 
 namespace quintet {
 namespace {
@@ -36,9 +38,43 @@ double incompleteBeta(double a, double b, double x) {
   return std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) * betaFraction(a, b, x) / a;
 }
 
+// z with P(Z <= z) = probability.
+double normalQuantile(double probability) {
+  double low = -40.0, high = 40.0;
+  for (int i = 0; i < 100; ++i) {
+    const double z = 0.5 * (low + high);
+    (0.5 * std::erfc(-z * std::numbers::sqrt2 / 2.0) < probability ? low : high) = z;
+  }
+  return low;
+}
+
 }  // namespace
 
 double studentTwoSided(double t, double freedom) { return incompleteBeta(0.5 * freedom, 0.5, freedom / (freedom + t * t)); }
+
+double fisherQuantile(double probability, double a, double b) {
+  // The fraction converges after some sqrt(a + b) terms; beyond this many degrees of freedom nothing changes that matters
+  // here, as long as the other is small.
+  constexpr double kMany = 4000.0;
+  if (a > kMany && b > kMany) {
+    // Both cube roots are all but normal (E. Paulson, "An Approximate Normalization of the Analysis of Variance
+    // Distribution", 1942): the root of (1 - v) x - (1 - u) = z sqrt(v x² + u) in x³ = F.
+    const double u = 2.0 / (9.0 * a), v = 2.0 / (9.0 * b), z = normalQuantile(probability);
+    const double p = (1.0 - v) * (1.0 - v) - z * z * v, q = (1.0 - u) * (1.0 - v), r = (1.0 - u) * (1.0 - u) - z * z * u;
+    const double root = (q + std::copysign(std::sqrt(q * q - p * r), z)) / p;
+    return root * root * root;
+  }
+  a = std::min(a, kMany);
+  b = std::min(b, kMany);
+  // I_y(a/2, b/2) with y = a x / (a x + b) rises with y.
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 200 && low < high; ++i) {
+    const double y = 0.5 * (low + high);
+    (incompleteBeta(0.5 * a, 0.5 * b, y) < probability ? low : high) = y;
+  }
+  const double y = 0.5 * (low + high);
+  return b * y / (a * (1.0 - y));
+}
 
 double sidak(double level, std::size_t n) { return -std::expm1(std::log1p(-level) / static_cast<double>(n)); }
 

@@ -9,6 +9,10 @@ namespace quintet {
 // P(|T| >= |t|) for Student's t with so many degrees of freedom (any positive real).
 double studentTwoSided(double t, double freedom);
 
+// x with P(F <= x) = probability for Fisher's F, the ratio of two means of squares with a and b degrees of freedom (any
+// positive reals); probability in (0,1), relative error below 1e-3.
+double fisherQuantile(double probability, double a, double b);
+
 // The level at which each of n tests runs so that all together reject true hypotheses with probability `level`
 // (Z. Šidák, "Rectangular Confidence Regions for the Means of Multivariate Normal Distributions", 1967): exact for
 // independent tests, at most `level` for correlated normal ones.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "render/fixed_sum.h"
 
 namespace quintet::render {
@@ -12,7 +13,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kDarkness = 0.1;       // ε, of the mean luminance
-constexpr double kConfidence = 1.645;   // 95 % of a normal distribution, one side
+constexpr double kConfidence = 0.95;
 constexpr double kTilesBelow = 0.95;
 constexpr std::uint32_t kMostBatches = 1u << 22;
 
@@ -44,7 +45,8 @@ double percentile(std::vector<double> values, double part) {
 }
 
 void conclude(ErrorEstimate& estimate) {
-  double pixels = 0, squares = 0, spread = 0;
+  // Σv over the pixels, Σv², and Σv² over the degrees of freedom by which each v is known.
+  double pixels = 0, squares = 0, fourths = 0, doubt = 0;
   std::vector<double> tiles;
   for (std::size_t t = 0; t + 1 < estimate.cells.size(); t += 2) {
     double tilePixels = 0, tileSquares = 0;
@@ -52,14 +54,17 @@ void conclude(ErrorEstimate& estimate) {
       const CellError& cell = estimate.cells[c];
       tilePixels += cell.pixels;
       tileSquares += cell.squares;
-      spread += cell.fourths * (2.0 + 2.0 / (static_cast<double>(cell.batches) - 1.0));
+      fourths += cell.fourths;
+      doubt += cell.fourths / (static_cast<double>(cell.batches) - 1.0);
     }
     pixels += tilePixels;
     squares += tileSquares;
     tiles.push_back(tileSquares / tilePixels);
   }
   estimate.image = std::sqrt(squares / pixels);
-  estimate.upper = std::sqrt((squares + kConfidence * std::sqrt(spread)) / pixels);
+  // Satterthwaite 1946 for both sums of squares; black pictures have none.
+  const double room = squares > 0 ? fisherQuantile(kConfidence, squares * squares / fourths, squares * squares / doubt) : 1.0;
+  estimate.upper = estimate.image * std::sqrt(room);
   estimate.tiles = std::sqrt(percentile(tiles, kTilesBelow));
 }
 

@@ -35,8 +35,10 @@ struct ErrorEstimate {
   bool reaches(double target) const { return upper <= target && tiles <= 2.0 * target; }
 };
 
-// Of the first output. `upper` adds 1.645 standard deviations of the difference between the estimate and the square of the
-// real error, by the fourth powers, as for normally distributed pixels; light that no sample has found yet is in neither.
+// Of the first output. `upper`: the square of the real error over its estimate follows Fisher's F for normally distributed
+// pixels, with so many degrees of freedom as pixels of equal variance would have (Satterthwaite 1946): a picture whose
+// noise is in a few pixels, or of few batches, is stated with the room it needs. Light that no sample has found yet is
+// in neither.
 ErrorEstimate estimateError(const FilmState& film);
 
 struct CellGoal {

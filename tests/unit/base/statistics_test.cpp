@@ -43,5 +43,17 @@ TEST(Statistics, SignificanceBeyondRounding) {
   EXPECT_NEAR(significance(-2.0 * 2.228139 - 0.5, 2.0, 0.5, 10), 0.05, 1e-7);
 }
 
+// NIST/SEMATECH e-Handbook 1.3.6.7.3, upper critical values at 5 %; the last two by Paulson's formula's limit 1 + 1.645 √(4/n).
+TEST(Statistics, FisherQuantilesAreThoseOfTheTables) {
+  EXPECT_NEAR(fisherQuantile(0.95, 1, 1), 161.448, 0.001);
+  EXPECT_NEAR(fisherQuantile(0.95, 1, 3), 10.128, 0.001);
+  EXPECT_NEAR(fisherQuantile(0.95, 10, 10), 2.978, 0.001);
+  EXPECT_NEAR(fisherQuantile(0.95, 3, 100), 2.696, 0.001);
+  EXPECT_NEAR(fisherQuantile(0.95, 20, 7), 3.445, 0.001);
+  for (const double freedom : {3990.0, 4010.0}) EXPECT_NEAR(fisherQuantile(0.95, freedom, freedom), 1.0534, 2e-4) << freedom;
+  EXPECT_NEAR(fisherQuantile(0.95, 1e6, 1e6), 1.0 + 1.644854 * std::sqrt(4e-6), 1e-5);
+  EXPECT_NEAR(fisherQuantile(0.05, 10, 10), 1.0 / 2.978, 0.001);
+}
+
 }  // namespace
 }  // namespace quintet

@@ -69,6 +69,35 @@ TEST(FilmError, IsNotKnownBelowTwoBatches) {
   EXPECT_TRUE(std::isinf(estimateError(simulation.film).upper));
 }
 
+// Noise in one pixel, or in a few batches: what is stated must leave the room that so few numbers ask for.
+TEST(FilmError, CoversPicturesOfFewNoisyPixels) {
+  std::mt19937 random(6);
+  std::normal_distribution<double> normal(1.0, 0.2);
+  for (const std::uint32_t noisy : {1u, 40u})
+    for (const std::uint32_t batches : {2u, 4u, 16u}) {
+      int covered = 0;
+      constexpr int kRuns = 200;
+      for (int run = 0; run < kRuns; ++run) {
+        Simulation simulation(8, 5);
+        double square = 0, sum = 0;
+        const Draw draw = [&](std::uint32_t px, std::uint32_t py) { return 8 * py + px < noisy ? normal(random) : 1.0; };
+        simulation.render(draw, batches);
+        const io::Image image = planeImage(simulation.film, 0);
+        for (std::uint32_t i = 0; i < 40; ++i) sum += static_cast<double>(image.pixel<float>(i % 8, i / 8)[0]) / 40;
+        for (std::uint32_t x = 0; x < 40; ++x) {
+          const double value = static_cast<double>(image.pixel<float>(x % 8, x / 8)[0]);
+          square += (value - 1.0) * (value - 1.0) / (value * value + 0.01 * sum * sum) / 40;
+        }
+        covered += std::sqrt(square) <= estimateError(simulation.film).upper;
+      }
+      // 95 %, less three standard deviations of 200 runs; and not by saying nothing.
+      EXPECT_GE(covered, 181) << noisy << " pixels, " << batches << " batches";
+      if (noisy == 40 && batches == 16) {
+        EXPECT_LT(covered, 200);
+      }
+    }
+}
+
 // A pixel of the sun in cd/m²: its squares are beyond the film's range, which must not pass for a constant pixel.
 TEST(FilmError, IsNotKnownWhereSquaresAreBeyondTheRange) {
   Simulation simulation(40, 8);
