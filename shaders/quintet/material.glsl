@@ -17,6 +17,9 @@ struct Shading {
   bool unlit;       // emission is all there is
 };
 
+// What is left of light from infinity behind a medium that does not end: exp(-absorption · ∞).
+vec3 endlessTransmittance(vec3 absorption) { return vec3(lessThanEqual(absorption, vec3(0.0))); }
+
 vec3 toLocal(Shading s, vec3 v) { return vec3(dot(v, s.tangent), dot(v, s.bitangent), dot(v, s.normal)); }
 vec3 toWorld(Shading s, vec3 v) { return v.x * s.tangent + v.y * s.bitangent + v.z * s.normal; }
 

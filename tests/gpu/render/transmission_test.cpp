@@ -72,6 +72,42 @@ INSTANTIATE_TEST_SUITE_P(Cases, GlassSlab,
                                          SlabCase{"ColouredTilted", 40, 1.5f, 0.1f}, SlabCase{"DenseColoured", 25, 2.4f, 0.3f}),
                          [](const auto& test) { return std::string(test.param.name); });
 
+// Through a hole filled with glass into a medium that has no other end: what comes from infinity is gone where the
+// medium absorbs (red, and half of it a metre), for light samples and BSDF samples, also behind a pane.
+TEST(OpenMedium, TakesAllLightFromInfinity) {
+  constexpr float kHole = 0.01f, kTint = 0.5f, kAlbedo = 0.8f;
+  scene::Material glass = clearGlass(1.0f, 1.0f), window = clearGlass(1.5f, 0.0f);
+  glass.attenuationColor = {0.5f, 1.0f, 1.0f}, glass.attenuationDistance = 1.0f;
+  glass.specular = window.specular = 0.0f;
+  window.baseColor = vec4(vec3(kTint), 1.0f);
+  scene::Light sun;
+  sun.type = scene::LightType::directional;
+  sun.direction = {0.6f, -0.8f, 0.0f};
+  sun.intensity = vec3(2.0f);
+  const auto level = [](float half, float y) { return quad({-half, y, half}, {2 * half, 0, 0}, {0, 0, -2 * half}); };
+  for (const char* program : {"pathtracer", "naive"}) {
+    for (const bool floor : {false, true}) {
+      SCOPED_TRACE(testing::Message() << program << floor);
+      const bool sunny = program == std::string("pathtracer");
+      SceneBuilder scene;
+      scene.add(level(kHole, 1.0f), glass).add(level(900.0f, 0.5f), window).sky(vec3(1.0f));
+      if (floor) scene.add(level(900.0f, 0.0f), lambert(vec3(kAlbedo)));
+      if (sunny) scene.light(sun);
+      scene.camera(orthographic({0, 2, 0}, {0, 0, 0}, 0.001f));
+      PictureOptions options = batches(64, 4);
+      options.program = program::loadProgram(program);
+      const Picture picture = renderPicture(scene, options);
+      float exact = kTint;
+      if (floor) exact *= kAlbedo * kTint * (1.0f + (sunny ? sun.intensity.x * 0.8f / kPi : 0.0f));
+      Moments red, green;
+      for (std::uint32_t i = 0; i < 16; ++i) red.add(picture.at(i % 4, i / 4, 0).mean()), green.add(picture.at(i % 4, i / 4, 1).mean());
+      EXPECT_LT(red.mean(), 0.01 * exact);  // through the hole, seldom, comes some
+      EXPECT_GE(pValue(green, exact, 2e-5 * exact), 1e-3) << green.mean() << " instead of " << exact;
+      EXPECT_LT(green.standardError(), 0.02 * exact) << "too noisy to tell";
+    }
+  }
+}
+
 // A thin wall is one interface (KHR_materials_transmission), its reflectance Schlick's.
 TEST(ThinGlass, TransmitsWhatItDoesNotReflect) {
   for (const float degrees : {0.0f, 35.0f}) {
