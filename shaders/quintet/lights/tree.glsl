@@ -95,6 +95,17 @@ uint lightFirstChance(uint pair, LightReceiver receiver) {
   return uint(clamp(chance * 2147483648.0, 1.0, 2147483520.0));
 }
 
+// floor((d · 2^31 + r) / part) for d < part ≤ 2^31 and r < 2^31: exact, so 31 digits that are uniform if d and r are. By
+// reciprocals, since devices divide 64 bits slowly: the first quotient is off by 2^11 at most, the second by 1.
+uint lightDigits(uint d, uint r, uint part) {
+  const uint64_t n = uint64_t(d) << 31 | uint64_t(r);
+  const float inverse = 1.0 / float(part);
+  uint q = uint(min((float(d) * 2147483648.0 + float(r)) * inverse, 2147483520.0));
+  q += uint(int(floor(float(int64_t(n - uint64_t(q) * uint64_t(part))) * inverse)));
+  const int64_t left = int64_t(n - uint64_t(q) * uint64_t(part));
+  return left < 0l ? q - 1u : left >= int64_t(part) ? q + 1u : q;
+}
+
 // Draws a light by u in [0,1); `bits`: random, independent of u. kNoLight: the draw came to lights that give nothing.
 uint drawLight(LightReceiver receiver, float u, uint bits, out float probability) {
   uint link = LightNodeArray(frame.lightNodes).at[0].link;
@@ -112,8 +123,7 @@ uint drawLight(LightReceiver receiver, float u, uint bits, out float probability
     probability *= float(part) * (1.0 / 2147483648.0);
     // What u is within its part serves further; digits that it does not have are random.
     bits = hash(bits + 0x9E3779B9u);
-    const float rest = (float(first ? digits : digits - chance) + unitFloat(bits)) / float(part);
-    digits = min(uint(min(rest, 0.99999994) * 2147483648.0) ^ bits & 127u, kLightSure - 1u);
+    digits = lightDigits(first ? digits : digits - chance, bits >> 1, part);
     link = LightNodeArray(frame.lightNodes).at[first ? pair : pair + 1u].link;
   }
   return probability > 0.0 ? link & kLightNodeIndex : kNoLight;
