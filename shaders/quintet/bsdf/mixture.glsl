@@ -62,8 +62,10 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   vec2 lb = b.specularDelta ? vec2(0.0, schlick) : albedoSchlick(b.row, wo.z);
   vec2 average = albedoAverage(b.row);
 
-  // The metal and all of the dielectric that `dielectric` does not reflect itself.
-  float reflecting = b.refractive ? opaque : dielectric;
+  // The metal and all of the dielectric that `dielectric` does not reflect itself. For ior 0 it has no reflectance of
+  // its own, and bends nothing: what the layer lets pass goes straight on.
+  bool bends = b.refractive && p.ior >= 1.0;
+  float reflecting = bends ? opaque : dielectric;
   b.specular.f0 = p.metallic * baseColor + reflecting * colorF0;
   b.specular.f90 = p.metallic + reflecting * p.specular;
   b.specular.alpha = alpha;
@@ -85,14 +87,14 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   float through = lb.x * (1.0 - layerMultiple);
   b.thin = ThinLobe(clearColor, f0, p.specular, alpha, through / average.x * clearColor, min(through / max(passed, 1e-20), 1.0));
 
-  // Where the indices nearly match, refraction is too narrow for its half vector: straight on. So for ior 0.
+  // Where the indices nearly match, refraction is too narrow for its half vector: straight on.
   float ior = max(p.ior, 1.0);
   b.transmissionDelta = b.specularDelta || (b.refractive && (ior < 1.01 || p.alpha * (ior - 1.0) < 1e-5));
   vec2 glass = b.refractive && !b.transmissionDelta ? albedoGlass(wo.z, p.alpha, ior, p.entering) : vec2(1.0);
   b.dielectric.compensation = clear / mix(glass.y, glass.x, p.specular);
-  b.dielectric.color = b.dielectric.compensation * baseColor;
+  b.dielectric.color = b.dielectric.compensation * (bends ? 1.0 : passed) * baseColor;
   b.dielectric.f0 = clearF0;
-  b.dielectric.specular = p.specular;
+  b.dielectric.specular = bends ? p.specular : 0.0;
   b.dielectric.eta = p.entering ? ior : 1.0 / ior;
   b.dielectric.alpha = alpha;
 
@@ -106,7 +108,7 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   float glassAlbedo = mix(tint, 1.0, max(fresnelDielectric(wo.z, b.dielectric.eta), 0.1));
   b.chance = vec4(coat, b.underCoat * luminance(single + multiple),
                   b.underCoat * opaque * tint * passed,
-                  kHasTransmission ? b.underCoat * clear * (b.refractive ? glassAlbedo : tint * passed) : 0.0);
+                  kHasTransmission ? b.underCoat * clear * (bends ? glassAlbedo : tint * passed) : 0.0);
   float sum = b.chance.x + b.chance.y + b.chance.z + b.chance.w;
   b.chance *= sum > 0.0 ? 1.0 / sum : 0.0;
   return b;

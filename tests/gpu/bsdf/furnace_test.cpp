@@ -82,6 +82,10 @@ TEST_F(BsdfFurnace, WhiteGlass) {
     }
   }
   expectWhite("glass without specular", 0.01, [](BsdfCase& c) { c.transmission = 1.0f, c.specular = 0.0f; });
+  for (const float specular : {1.0f, 0.6f}) {
+    expectWhite("glass, ior 0", 0.01, [&](BsdfCase& c) { c.transmission = 1.0f, c.ior = 0.0f, c.specular = specular; });
+    expectWhite("half glass, ior 0, inside", 0.01, [&](BsdfCase& c) { c.transmission = 0.5f, c.ior = 0.0f, c.entering = 0, c.specular = specular; });
+  }
   expectWhite("matched glass", 1e-4, [](BsdfCase& c) { c.transmission = 1.0f, c.ior = 1.0f; });
 }
 

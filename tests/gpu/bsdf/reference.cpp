@@ -134,7 +134,7 @@ dvec3 ReferenceBsdf::refractive(const BsdfCase& c, const dvec3& wo, const dvec3&
 dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
   const dvec3 wo = glm::normalize(dvec3(c.wo)), color = c.baseColor, up(0.0, 0.0, 1.0), coatNormal = glm::normalize(dvec3(c.clearcoatNormal));
   const double metal = c.metallic, opaque = (1.0 - metal) * (1.0 - c.transmission), clear = (1.0 - metal) * c.transmission;
-  const bool solid = clear > 0.0 && !c.thin, rough = c.alpha >= static_cast<float>(kSmallestAlpha);
+  const bool solid = clear > 0.0 && !c.thin, bends = solid && c.ior >= 1.0f, rough = c.alpha >= static_cast<float>(kSmallestAlpha);
   const double r = (c.ior - 1.0) / (c.ior + 1.0), f90 = c.specular;
   const dvec3 f0 = f90 * glm::min(r * r * dvec3(c.specularColor), dvec3(1.0));
   const Layer o = layer(c.alpha, wo.z), i = layer(c.alpha, std::abs(wi.z)), mean = averages(c.alpha);
@@ -151,7 +151,7 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
   if (wi.z > 0.0) {
     f += opaque * color * (passed(o) * passed(i) / (kPi * passed(mean)));
     if (rough) {
-      const double shape = reflection(wo, wi, up, c.alpha), part = solid ? opaque : 1.0 - metal;
+      const double shape = reflection(wo, wi, up, c.alpha), part = bends ? opaque : 1.0 - metal;
       f += shape * (metal * schlick(color, 1.0, glm::dot(wo, h)) + part * schlick(f0, f90, glm::dot(wo, h)));
       for (glm::length_t k = 0; k < 3; ++k) f[k] += spread * (metal * multiple(color[k], 1.0) + part * multiple(f0[k], f90));
     }
@@ -161,7 +161,7 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
     const double shape = reflection(wo, mirrored, up, c.alpha);
     f += clear * color * (shape * (1.0 - schlick(dvec3(largest(f0)), f90, glm::dot(wo, m)).x) + spread * (1.0 - multiple(largest(f0), f90)));
   }
-  if (solid && rough) f += clear * refractive(c, wo, wi);
+  if (bends && rough) f += clear * refractive(c, wo, wi);
   f *= std::abs(wi.z);
 
   const double coatO = glm::dot(wo, coatNormal), coatI = glm::dot(wi, coatNormal);

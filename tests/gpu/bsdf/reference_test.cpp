@@ -55,6 +55,27 @@ TEST_F(BsdfReference, RoughMaterials) {
   compare(cases, 2e-3, 200);
 }
 
+// KHR_materials_ior with 0: reflectance is specular · specularColor, in a lobe as wide as the surface is rough.
+TEST_F(BsdfReference, FullReflectance) {
+  std::vector<NamedCase> cases;
+  for (const float alpha : {0.1f, 0.4f, 1.0f})
+    for (const float cosine : kCosines)
+      for (const bool entering : {true, false}) {
+        BsdfCase c;
+        c.wo = directionAt(cosine);
+        c.alpha = alpha;
+        c.entering = entering;
+        c.ior = 0.0f;
+        c.transmission = 1.0f;
+        cases.push_back({"glass of ior 0", c});
+        c.specular = 0.7f, c.specularColor = {0.5f, 1.0f, 0.2f}, c.baseColor = {0.9f, 0.5f, 0.2f};
+        cases.push_back({"glass of ior 0, coloured", c});
+        c.transmission = 0.6f, c.metallic = 0.3f, c.clearcoat = 0.5f, c.clearcoatAlpha = 0.2f;
+        cases.push_back({"mixture of ior 0", c});
+      }
+  compare(cases, 2e-3, 200);
+}
+
 TEST_F(BsdfReference, NarrowLobes) {
   std::vector<NamedCase> cases;
   for (const float alpha : {0.003f, 0.02f})

@@ -268,6 +268,9 @@ std::vector<Named> lobeCases() {
       cases.push_back({"clearcoat" + where, 4, c});
       for (const NamedCase& named : materialsAt(alpha, base.wo))
         if (cellsFit(named.material)) cases.push_back({named.name, 5, named.material});
+      c = base;
+      c.alpha = alpha, c.transmission = 1.0f, c.ior = 0.0f, c.specular = 0.7f;  // a rough lobe, and straight on
+      if (cellsFit(c)) cases.push_back({"glass of ior 0" + where, 5, c});
     }
   }
   return cases;
