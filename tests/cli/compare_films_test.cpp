@@ -1,4 +1,8 @@
 // `compare --z-test`: two renderings of one scene are the same picture, and what is not is rejected or refused.
+#include <sys/wait.h>
+
+#include <cstdlib>
+
 #include <gmock/gmock.h>
 
 #include "base/file.h"
@@ -10,6 +14,7 @@
 namespace quintet::test {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
@@ -110,6 +115,28 @@ TEST_F(CompareFilms, OtherRenderingsAreRefusedByName) {
   const RunResult longer = compare("a.qfilm", "d.qfilm");
   EXPECT_EQ(longer.status, 0) << longer.err;
   EXPECT_THAT(longer.out, HasSubstr("note: the films have different numbers of samples"));
+}
+
+// tests/devices/run reads --json with sed and awk.
+TEST_F(CompareFilms, TheTableOfTwoDevices) {
+  std::filesystem::create_directory(folder_ / "a");
+  std::filesystem::create_directory(folder_ / "b");
+  for (const char* name : {"/cornell.qfilm", "/glass.qfilm", "/demo.qfilm"}) film(std::string("a") + name, {"--spp", "32", "--seed", "1"});
+  film("b/cornell.qfilm", {"--spp", "32", "--seed", "2"});
+  film("b/glass.qfilm", {"--spp", "32", "--seed", "3"});
+  scale("b/glass.qfilm", "b/glass.qfilm", 0.5);
+  film("b/demo.qfilm", {"--spp", "32", "--size", "32x25"});
+  const std::string place = folder_.path().string();
+  const std::string command = "QUINTET='" QUINTET_BINARY "' '" QUINTET_SOURCE_ROOT "/tests/devices/run' '" + place + "/a' '" + place + "/b' >'" +
+                              place + "/table' 2>'" + place + "/errors'";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  const std::string table = readTextFile(folder_ / "table");
+  EXPECT_THAT(table, ContainsRegex(R"(\| cornell \| 32 \| 12 \| [0-9.e-]+ \([0-9.e-]+\) \| [0-9.]+ \| [0-9.e-]+ \([0-9.e-]+\) \| [-+][0-9.]+ % ± [0-9.]+ % \| same \|)"));
+  EXPECT_THAT(table, ContainsRegex(R"(\| glass .* \+66.[0-9]+ % ± .* \*\*rejected\*\* \|)"));
+  EXPECT_THAT(table, HasSubstr("| demo | | | | | | | not compared |"));
+  EXPECT_THAT(table, HasSubstr("Level 0.00334 for each of 3 scenes; seeds \"1\", \"3\"; devices \""));  // 1 - 0.99^(1/3)
+  EXPECT_THAT(readTextFile(folder_ / "errors"), HasSubstr("demo.qfilm: size: 32x24 in "));
 }
 
 TEST_F(CompareFilms, WhatCannotBeTested) {
