@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <new>
@@ -16,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/temporary_file.h"
 
 namespace quintet {
 namespace {
@@ -45,15 +45,6 @@ class Descriptor {
 
  private:
   int fd_;
-};
-
-// Removes the file unless it was renamed.
-struct Temporary {
-  fs::path path;
-  bool renamed = false;
-  ~Temporary() {
-    if (!renamed) ::unlink(path.c_str());
-  }
 };
 
 // Reads the file's first bytes on all cores; returns how many from the beginning on have arrived.
@@ -174,27 +165,16 @@ void syncFolder(const fs::path& folder) {
 }
 
 void replaceFile(const fs::path& file, const Target& target, std::span<const std::byte> data) {
-  // A name of its own length: the target's may leave no room for a suffix.
-  static std::atomic<unsigned> counter{0};
-  Temporary temporary;
-  int fd = -1;
-  do {
-    temporary.path =
-        target.folder() / (".quintet-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp");
-    fd = ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  } while (fd < 0 && errno == EEXIST);
-  Descriptor out(fd);
-  if (!out) {
-    const int code = errno;
-    temporary.renamed = true;  // never made
-    failWriting(file, code);
+  std::optional<TemporaryFile> temporary;
+  try {
+    temporary.emplace(target.path);
+  } catch (const std::system_error& error) {
+    failWriting(file, error.code().value());
   }
-  if (target.mode) ::fchmod(out.get(), *target.mode & 07777);
-  if (const int code = writeAll(out.get(), data)) failWriting(file, code);
-  if (::fsync(out.get()) != 0 && errno != EINVAL && errno != ENOTSUP) failWriting(file, errno);
-  if (!out.close()) failWriting(file, errno);
-  if (::rename(temporary.path.c_str(), target.path.c_str()) != 0) failWriting(file, errno);
-  temporary.renamed = true;
+  if (target.mode) ::fchmod(temporary->descriptor(), *target.mode & 07777);
+  if (const int code = writeAll(temporary->descriptor(), data)) failWriting(file, code);
+  if (const int code = temporary->flush()) failWriting(file, code);
+  if (const int code = temporary->renameToTarget()) failWriting(file, code);
   syncFolder(target.folder());
 }
 
@@ -219,6 +199,10 @@ void writeFile(const fs::path& file, std::span<const std::byte> data) {
 
 void writeFile(const fs::path& file, std::string_view text) {
   writeFile(file, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void removeLeftovers(const fs::path& file) {
+  if (const Target target = findTarget(file); target.regular()) TemporaryFile::removeLeftovers(target.path);
 }
 
 void checkWritable(const fs::path& file) {

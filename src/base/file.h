@@ -36,11 +36,15 @@ std::vector<std::byte> readFile(const std::filesystem::path& file);
 FileBytes readLargeFile(const std::filesystem::path& file);
 std::string readTextFile(const std::filesystem::path& file);
 
-// Writes to a temporary file beside `file`, flushes it to the disk and renames it over `file`.
+// Writes to a temporary file beside `file` (temporary_file.h), flushes it to the disk and renames it over `file`.
 // On failure (no folder, no permission, disk full) the temporary is removed, what was there stays,
 // and a FileError is thrown. "-" means standard output. Devices and pipes are written directly.
 void writeFile(const std::filesystem::path& file, std::span<const std::byte> data);
 void writeFile(const std::filesystem::path& file, std::string_view text);
+
+// Removes the temporary files of processes that were killed while they wrote `file`; writeFile does so, too. Throws as
+// checkWritable does.
+void removeLeftovers(const std::filesystem::path& file);
 
 // Throws the FileError that writeFile would give for a path that cannot be written at all
 // (missing folder, a folder itself, no permission), without touching an existing file: lets a

@@ -6,12 +6,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <optional>
 #include <thread>
 
 #include "base/error.h"
+#include "base/temporary_file.h"
 #include "temp_folder.h"
 
 namespace quintet {
@@ -155,6 +157,107 @@ TEST(WriteFileTest, FailureLeavesTheOldFileAndNoTemporary) {
       },
       testing::ExitedWithCode(0), "");
   EXPECT_EQ(readTextFile(folder / "a"), "old");
+  EXPECT_EQ(folder.entryCount(), 1u);
+}
+
+// Killed half way: SIGXFSZ ends a process, if it is not ignored.
+void writeAndDie(const fs::path& file) {
+  signal(SIGXFSZ, SIG_DFL);
+  struct rlimit limit {};
+  setrlimit(RLIMIT_CORE, &limit);
+  limit.rlim_cur = limit.rlim_max = 1000;
+  setrlimit(RLIMIT_FSIZE, &limit);
+  writeFile(file, std::string(100000, 'x'));
+}
+void leaveLeftover(const fs::path& file) { EXPECT_EXIT(writeAndDie(file), testing::KilledBySignal(SIGXFSZ), ""); }
+
+std::vector<std::string> hiddenFiles(const TempFolder& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder.path()))
+    if (entry.path().filename().string().starts_with('.')) names.push_back(entry.path().filename());
+  std::ranges::sort(names);
+  return names;
+}
+
+TEST(WriteFileTest, TheNextWriterRemovesWhatAKilledOneHasLeft) {
+  const TempFolder folder;
+  writeFile(folder / "a", "old");
+  leaveLeftover(folder / "a");
+  EXPECT_EQ(readTextFile(folder / "a"), "old");
+  ASSERT_EQ(hiddenFiles(folder).size(), 1u);
+  const std::string left = hiddenFiles(folder)[0];
+  EXPECT_EQ(fs::file_size(folder / left), 1000u);
+  // Of another path, or not of this naming.
+  leaveLeftover(folder / "b");
+  writeFile(folder / ".quintet-mine.tmp", "mine");
+  ASSERT_EQ(hiddenFiles(folder).size(), 3u);
+  writeFile(folder / "a", "new");
+  EXPECT_EQ(readTextFile(folder / "a"), "new");
+  EXPECT_THAT(hiddenFiles(folder), testing::AllOf(testing::SizeIs(2), testing::Not(testing::Contains(left)), testing::Contains(".quintet-mine.tmp")));
+  removeLeftovers(folder / "b");
+  EXPECT_EQ(hiddenFiles(folder), std::vector<std::string>{".quintet-mine.tmp"});
+}
+
+TEST(WriteFileTest, LeftoversOfSeveralGoAtOnceAndAreFoundThroughLinks) {
+  const TempFolder folder;
+  const auto leaveTwo = [&] {
+    leaveLeftover(folder / "a");
+    const std::string first = hiddenFiles(folder).at(0), second = first.substr(0, first.size() - 5) + "1.tmp";
+    ASSERT_TRUE(first.ends_with("-0.tmp")) << first;
+    fs::copy_file(folder / first, folder / second);
+  };
+  leaveTwo();
+  writeFile(folder / "a", "new");
+  EXPECT_EQ(folder.entryCount(), 1u);
+  leaveTwo();
+  fs::create_symlink("a", folder / "link");
+  removeLeftovers(folder / "link");
+  EXPECT_EQ(folder.entryCount(), 2u);
+}
+
+// One process writes slowly, as its file is large: it is not disturbed by another one.
+TEST(WriteFileTest, WhatIsBeingWrittenStays) {
+  const TempFolder folder;
+  std::optional<TemporaryFile> slow(std::in_place, folder / "a");
+  ASSERT_EQ(hiddenFiles(folder).size(), 1u);
+  const std::string name = hiddenFiles(folder)[0];
+  removeLeftovers(folder / "a");
+  writeFile(folder / "a", "fast");
+  EXPECT_EQ(hiddenFiles(folder), std::vector<std::string>{name});
+  ASSERT_EQ(write(slow->descriptor(), "slow", 4), 4);
+  EXPECT_EQ(slow->flush(), 0);
+  removeLeftovers(folder / "a");  // still its own until it has its name
+  EXPECT_EQ(slow->renameToTarget(), 0);
+  slow.reset();
+  EXPECT_EQ(readTextFile(folder / "a"), "slow");
+  EXPECT_EQ(folder.entryCount(), 1u);
+}
+
+// Nobody's file is overwritten through a name that somebody else has prepared.
+TEST(WriteFileTest, LinksInTheWayAreLeftAlone) {
+  const TempFolder folder;
+  leaveLeftover(folder / "a");
+  const std::string name = hiddenFiles(folder).at(0);
+  fs::remove(folder / name);
+  writeFile(folder / "other", "other");
+  fs::create_symlink("other", folder / name);
+  writeFile(folder / "a", "new");
+  EXPECT_EQ(readTextFile(folder / "a"), "new");
+  EXPECT_EQ(readTextFile(folder / "other"), "other");
+  EXPECT_TRUE(fs::is_symlink(folder / name));
+  EXPECT_EQ(folder.entryCount(), 3u);
+}
+
+TEST(WriteFileTest, WritersOfOneFileAtOnceLeaveOneOfThem) {
+  const TempFolder folder;
+  std::vector<std::jthread> writers;
+  for (int i = 0; i < 4; ++i)
+    writers.emplace_back([&, i] {
+      for (int k = 0; k < 50; ++k) writeFile(folder / "a", std::string(20000, static_cast<char>('a' + i)));
+    });
+  writers.clear();
+  const std::string text = readTextFile(folder / "a");
+  EXPECT_EQ(text, std::string(20000, text.at(0)));
   EXPECT_EQ(folder.entryCount(), 1u);
 }
 
