@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "film_facts.h"
 #include "film_guard.h"
 #include "gpu/error.h"
@@ -19,6 +20,14 @@ namespace quintet::app {
 using render::FilmFile;
 using render::kBatchSamples;
 using render::SampleRange;
+
+namespace {
+
+std::string errorText(const std::optional<double>& error) {
+  return error ? fmt::format("an error of {:.3g} %", 100.0 * *error) : "no error to reach";
+}
+
+}  // namespace
 
 Checkpoint::Checkpoint(Session& session, const RenderOptions& options) : session_(session), options_(options) {}
 
@@ -37,9 +46,10 @@ RenderLimits Checkpoint::begin() {
                                  session_.program().name));
   const auto end = static_cast<std::uint32_t>(limits.samples.value_or(0));
   if (film && !farm.force)
-    refuseLoss(options_.output, session_.identity(), {{static_cast<std::uint32_t>(limits.begin), end}});
+    refuseLoss(options_.output, session_.identity(), {{{static_cast<std::uint32_t>(limits.begin), end}}, {}});
   if (active()) {
     checkOutput(farm.checkpointFile);
+    removeLeftovers(farm.checkpointFile);
     resume(limits);
   }
   return limits;
@@ -66,18 +76,29 @@ void Checkpoint::resume(RenderLimits& limits) {
   if (!farm.resume) {
     if (farm.force) return;
     throw FileError(path, fmt::format("holds {} samples of this rendering; --resume goes on from them, --force begins anew",
-                                      file.film.counts.samples()));
+                                      static_cast<std::uint64_t>(render::averageSamples(file.film.region, file.film.counts))));
   }
-  if (file.film.counts.ranges.empty()) return;
+  if (!file.film.counts.ranges.empty()) goOn(file, limits);
+}
+
+void Checkpoint::goOn(const FilmFile& file, RenderLimits& limits) {
+  const std::string name = options_.farm.checkpointFile.string();
   const std::string* device = render::findFact(file.notes, "device");
   if (device && *device != session_.deviceName())
-    session_.progress().note(fmt::format("{}: was begun on {}, goes on on {}", path.string(), *device, session_.deviceName()));
+    session_.progress().note(fmt::format("{}: was begun on {}, goes on on {}", name, *device, session_.deviceName()));
   session_.renderer().restoreFilm(file.film);
   limits.done = file.film.counts.ranges.back().end;
   if (const std::string* seconds = render::findFact(file.notes, "seconds"))
-    limits.secondsBefore = parseNumber(path.string(), *seconds, 0.0, 1e12);
-  savedSamples_ = limits.done - limits.begin;
-  session_.progress().note(fmt::format("{}: going on after {} samples", path.string(), savedSamples_));
+    limits.secondsBefore = parseNumber(name, *seconds, 0.0, 1e12);
+  if (options_.adaptive && wantedErrorOf(file) != options_.error) {
+    session_.progress().note(fmt::format("{}: was planned for {}, goes on for {}; a rendering from the beginning would give other samples",
+                                         name, errorText(wantedErrorOf(file)), errorText(options_.error)));
+  } else {
+    limits.plan = file.plan;
+  }
+  savedCounts_ = file.film.counts;
+  savedSamples_ = static_cast<std::uint64_t>(render::averageSamples(file.film.region, file.film.counts));
+  session_.progress().note(fmt::format("{}: going on after {} samples", name, savedSamples_));
 }
 
 void Checkpoint::checkPlace(const FilmFile& file, const RenderLimits& limits) const {
@@ -97,6 +118,7 @@ void Checkpoint::save(const RenderOutcome& outcome) {
   try {
     writeBytes(options_.farm.checkpointFile, render::encodeFilm(session_.film(outcome)));
     savedSamples_ = outcome.samples;
+    savedCounts_ = session_.renderer().film().counts();
   } catch (const FileError& error) {  // the one before is still there: rendering goes on
     warn(error.what());
   } catch (const gpu::DeviceLostError&) {  // there will be no film any more
@@ -136,7 +158,7 @@ void Checkpoint::afterRendering(const RenderOutcome& outcome) {
 }
 
 void Checkpoint::keep(const RenderOutcome& outcome) {
-  if (active() && savedSamples_ != outcome.samples) save(outcome);
+  if (active() && savedCounts_ != session_.renderer().film().counts()) save(outcome);
 }
 
 void Checkpoint::afterPicture(const RenderOutcome& outcome) {

@@ -36,6 +36,7 @@ class Checkpoint {
   void checkPlace(const render::FilmFile& file, const RenderLimits& limits) const;
   void save(const RenderOutcome& outcome);
   void warn(const std::string& text);  // once
+  void goOn(const render::FilmFile& file, RenderLimits& limits);
   bool isKept(const RenderOutcome& outcome) const;
 
   Session& session_;
@@ -43,6 +44,7 @@ class Checkpoint {
   const Stopwatch clock_;
   double lastWritten_ = 0;            // on clock_
   std::uint64_t savedSamples_ = 0;    // in the checkpoint on the disk
+  render::SampleCounts savedCounts_;
   bool warned_ = false;
 };
 

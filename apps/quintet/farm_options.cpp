@@ -107,8 +107,9 @@ void interpretFarm(RenderOptions& options) {
         parseNumber("--checkpoint", farm.rawCheckpoint, 0.0, std::numeric_limits<double>::infinity());
   if (farm.resume || farm.keepCheckpoint || !farm.checkpointFile.empty())
     farm.checkpointSeconds = farm.checkpointSeconds.value_or(kCheckpointSeconds);
-  if (options.adaptive && (farm.checkpointSeconds || !farm.rawBatches.empty() || outputKind(options.output) == OutputKind::film))
-    throw UsageError("--adaptive: pixels differ in samples, there are no checkpoints and parts of such a picture");
+  if (options.adaptive && !farm.rawBatches.empty())
+    throw UsageError("--batches and --adaptive exclude each other: all samples so far decide which come next, and a part does not know "
+                     "those of the others");
   if (options.error && !farm.rawBatches.empty())
     throw UsageError("--batches and --until-error exclude each other: a part is a number of samples");
   if (farm.checkpointSeconds) chooseCheckpointFile(options);

@@ -1,6 +1,7 @@
 #include "film_facts.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -22,6 +23,7 @@ namespace {
 using render::FilmFacts;
 
 constexpr std::size_t kShownDigits = 12;  // of a hash
+constexpr const char* kWantedError = "error wanted";
 
 // Names of the files that decide what the program does: descriptions, shaders, and what those include, whatever its
 // name ends in.
@@ -125,6 +127,7 @@ FilmFacts filmIdentity(const FilmSource& source, const RenderOptions& options) {
   facts.emplace_back("seed", fmt::format("{}", options.seed));
   // A sampler may place its points for the number that there will be.
   facts.emplace_back("samples planned", options.samples ? fmt::format("{}", *options.samples) : "any number");
+  facts.emplace_back("adaptive", options.adaptive ? "yes" : "no");
   facts.emplace_back("transparent", options.transparent ? "yes" : "no");
   facts.emplace_back("outputs", fmt::format("{}", fmt::join(outputs, ", ")));
   return facts;
@@ -139,6 +142,7 @@ FilmFacts filmNotes(const program::Program& program, const RenderOptions& option
                   {"device", record.device},
                   {"driver", record.driver},
                   {"seconds", fmt::format("{:.3f}", record.renderSeconds)},
+                  {kWantedError, options.error ? fmt::format("{}", *options.error) : ""},
                   {"exposure", fmt::format("{}", options.exposure)},
                   {"tone map", options.toneMap ? render::toneMapNames()[static_cast<std::size_t>(*options.toneMap)] : ""},
                   {"all outputs", options.allOutputs ? "yes" : "no"}};
@@ -174,7 +178,9 @@ void fillRecord(RenderRecord& record, const render::FilmFile& file) {
   record.height = size.y;
   record.region = {region.x, region.y, region.width, region.height};
   record.seed = static_cast<std::uint32_t>(parseNumber("seed", fact("seed"), 0, 4294967295.0));
-  record.samples = file.film.counts.samples();
+  record.samples = static_cast<std::uint64_t>(render::averageSamples(region, file.film.counts));
+  record.adaptive = isAdaptive(file);
+  record.wantedError = wantedErrorOf(file);
   record.renderSeconds = parseNumber("seconds", note("seconds"), 0, 1e12);
   for (const uvec2& pixel : file.film.statistics) {
     record.rays += pixel.x;
@@ -189,6 +195,13 @@ std::optional<std::uint64_t> plannedSamples(const render::FilmFile& file) {
   return std::stoull(*text);
 }
 
+std::optional<double> wantedErrorOf(const render::FilmFile& file) {
+  const std::string text = factText(file.notes, kWantedError);
+  return text.empty() ? std::nullopt : std::optional(parseNumber(kWantedError, text, 0.0, 1e12));
+}
+
+bool isAdaptive(const render::FilmFile& file) { return factText(file.identity, "adaptive") == "yes"; }
+
 std::vector<std::string> differenceLines(const std::vector<render::FactDifference>& differences,
                                          const std::string& left, const std::string& right) {
   std::vector<std::string> lines;
@@ -201,6 +214,20 @@ std::string rangesText(const std::vector<render::SampleRange>& ranges) {
   std::vector<std::string> texts;
   for (const render::SampleRange& range : ranges) texts.push_back(fmt::format("{} to {}", range.begin, range.end - 1));
   return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, " and "));
+}
+
+std::string samplesText(const render::FilmFile& file) {
+  const std::vector<std::uint32_t>& batches = file.film.counts.cellBatches;
+  if (batches.empty()) return "samples " + rangesText(file.film.counts.ranges);
+  std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max(), most = 0;
+  const std::vector<std::uint32_t> pixels = render::cellPixels(file.film.region);
+  for (std::size_t c = 0; c < batches.size(); ++c) {
+    if (pixels[c] == 0) continue;
+    fewest = std::min(fewest, batches[c]);
+    most = std::max(most, batches[c]);
+  }
+  return fmt::format("{:.1f} samples per pixel on average ({} to {})", render::averageSamples(file.film.region, file.film.counts),
+                     fewest * render::kBatchSamples, most * render::kBatchSamples);
 }
 
 }  // namespace quintet::app

@@ -4,6 +4,7 @@
 #define QUINTET_APP_FILM_FACTS_H
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,12 +43,19 @@ void fillRecord(RenderRecord& record, const render::FilmFile& file);
 // Samples per pixel that the rendering is to have in the end; nothing: as many as time allows.
 std::optional<std::uint64_t> plannedSamples(const render::FilmFile& file);
 
+// The error that was to be reached (--until-error); nothing: none.
+std::optional<double> wantedErrorOf(const render::FilmFile& file);
+
+bool isAdaptive(const render::FilmFile& file);
+
 // "seed: 3 in the checkpoint, 4 here", one line for each difference; `left` is "in the checkpoint", `right` "here".
 std::vector<std::string> differenceLines(const std::vector<render::FactDifference>& differences,
                                          const std::string& left, const std::string& right);
 
 // "0 to 15", "0 to 15 and 32 to 63"; "none"
 std::string rangesText(const std::vector<render::SampleRange>& ranges);
+// "samples 0 to 15"; of an adaptive film "20.5 samples per pixel on average (16 to 24)"
+std::string samplesText(const render::FilmFile& file);
 
 }  // namespace quintet::app
 #endif

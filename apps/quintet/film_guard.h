@@ -21,9 +21,9 @@ struct IdentityCheck {
 void refuseOther(const render::FilmFacts& found, const render::FilmFacts& identity, const IdentityCheck& check);
 
 // Throws FileError where `file` holds samples that a film of this identity and these samples would not: its content
-// would be lost.
+// would be lost. An adaptive rendering, whose numbers are not known before, has no cells in `samples`.
 void refuseLoss(const std::filesystem::path& file, const render::FilmFacts& identity,
-                const std::vector<render::SampleRange>& samples);
+                const render::SampleCounts& samples);
 
 }  // namespace quintet::app
 #endif

@@ -19,6 +19,15 @@ Json factsJson(const render::FilmFacts& facts) {
   return json;
 }
 
+// Samples per pixel that are there, and those of the last decision.
+Json adaptiveJson(const render::FilmFile& film) {
+  Json json{{"average", render::averageSamples(film.film.region, film.film.counts)}, {"planned", nullptr}};
+  render::SampleCounts planned = film.film.counts;
+  planned.cellBatches = film.plan;
+  if (!film.plan.empty()) json["planned"] = render::averageSamples(film.film.region, planned);
+  return json;
+}
+
 std::string factsText(const render::FilmFacts& facts) {
   std::string text;
   for (const auto& [name, value] : facts) {
@@ -36,7 +45,7 @@ std::string filmInfo(const std::filesystem::path& file, std::span<const std::byt
   if (json) {
     Json samples = Json::array();
     for (const render::SampleRange& range : film.film.counts.ranges) samples.push_back({range.begin, range.end});
-    const Json result{{"file", file.string()},
+    Json result{{"file", file.string()},
                       {"kind", "film"},
                       {"width", region.width},
                       {"height", region.height},
@@ -44,11 +53,12 @@ std::string filmInfo(const std::filesystem::path& file, std::span<const std::byt
                       {"bytes", bytes.size()},
                       {"identity", factsJson(film.identity)},
                       {"notes", factsJson(film.notes)}};
+    if (isAdaptive(film)) result["adaptive"] = adaptiveJson(film);
     return result.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   const std::optional<std::uint64_t> planned = plannedSamples(film);
-  return fmt::format("{}: film, {}x{}, samples {}{}, {}\n", plain(file.string()), region.width, region.height,
-                     rangesText(film.film.counts.ranges), planned ? fmt::format(" of {}", *planned) : "",
+  return fmt::format("{}: film, {}x{}, {}{}, {}\n", plain(file.string()), region.width, region.height,
+                     samplesText(film), planned ? fmt::format(" of {}", *planned) : "",
                      bytesText(bytes.size())) +
          factsText(film.identity) + factsText(film.notes);
 }

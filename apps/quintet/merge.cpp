@@ -20,6 +20,7 @@
 #include "metadata.h"
 #include "output.h"
 #include "progress.h"
+#include "schedule.h"
 #include "values.h"
 
 namespace quintet::app {
@@ -68,6 +69,9 @@ class Merger {
       return;
     }
     refuseDifferences(part);
+    if (isAdaptive(part))
+      throw FileError(path, fmt::format("is of an adaptive rendering, as {}: all its samples so far decide which come next, so it has no parts; one "
+                                        "such film alone becomes a picture", first()));
     refuseOverlap();
     if (!render::sameArrays(whole_.film, part.film)) throw FileError(path, "its outputs are not those of " + first());
     try {
@@ -123,7 +127,7 @@ class Merger {
   // How the picture is shown is as for the part with the first samples, so that the order of the parts changes nothing.
   void joinShown(const FilmFile& part) {
     const bool isFirst = std::ranges::min(parts_, {}, firstSample).path == last();
-    for (const char* name : {"exposure", "tone map", "all outputs"}) {
+    for (const char* name : {"exposure", "tone map", "all outputs", "error wanted"}) {
       const std::string mine = factText(whole_.notes, name), other = factText(part.notes, name);
       if (mine == other) continue;
       const auto shown = [](const std::string& text) { return text.empty() ? "not given" : text; };
@@ -144,7 +148,6 @@ class Merger {
 
 // Samples that the rendering was to have, and has not.
 std::vector<SampleRange> missingSamples(const FilmFile& file) {
-  if (!file.film.counts.cellBatches.empty()) return {};  // each cell has its own number
   std::vector<SampleRange> missing;
   std::uint32_t next = 0;
   for (const SampleRange& range : file.film.counts.ranges) {
@@ -156,13 +159,28 @@ std::vector<SampleRange> missingSamples(const FilmFile& file) {
   return missing;
 }
 
-void tellMissing(const FilmFile& file, const MergeOptions& options, Progress& progress) {
-  const std::vector<SampleRange> missing = missingSamples(file);
-  if (missing.empty()) return;
-  const std::string text = fmt::format("samples {} are missing", rangesText(missing));
+// Why the rendering is not complete; empty: it is.
+std::string missingText(const FilmFile& file, const render::ErrorEstimate& error) {
+  const std::optional<double> wanted = wantedErrorOf(file);
+  const std::vector<SampleRange>& ranges = file.film.counts.ranges;
+  if (wanted && error.reaches(*wanted) && ranges.size() == 1 && ranges[0].begin == 0) return "";
+  const std::optional<std::uint64_t> planned = plannedSamples(file);
+  if (isAdaptive(file)) {
+    if (isFinished(file, error, {planned, std::nullopt, wanted, true})) return "";
+    if (planned)
+      return fmt::format("{:.1f} of {} samples per pixel are there", render::averageSamples(file.film.region, file.film.counts), *planned);
+  } else if (const std::vector<SampleRange> missing = missingSamples(file); !missing.empty())
+    return fmt::format("samples {} are missing", rangesText(missing));
+  if (!wanted || planned) return "";
+  return fmt::format("the error of {:.2g} % that was wanted is not reached", 100.0 * *wanted);
+}
+
+void tellMissing(const FilmFile& file, const render::ErrorEstimate& error, const MergeOptions& options, Progress& progress) {
   if (file.film.counts.ranges.empty()) throw Error("there are no samples in these films");
+  const std::string text = missingText(file, error);
+  if (text.empty()) return;
   if (outputKind(options.render.output) != OutputKind::film && !options.partial)
-    throw Error(text + "; --partial makes the picture without them");
+    throw Error(text + "; --partial makes the picture all the same");
   progress.note(text);
 }
 
@@ -181,14 +199,14 @@ int mergeCommand(Arguments arguments) {
   FilmFile& whole = merger.whole();
   if (showsAllOutputs(whole, *options) && options->render.output == "-")
     throw UsageError("the parts were rendered with --all-outputs, several files: -o - takes one picture");
-  tellMissing(whole, *options, progress);
   RenderRecord record;
   record.commandLine = options->render.commandLine;
   fillRecord(record, whole);
   record.error = render::estimateError(whole.film);
+  tellMissing(whole, record.error, *options, progress);
   progress.stage("writing " + options->render.output.string());
   if (outputKind(options->render.output) == OutputKind::film) {
-    if (!options->render.farm.force) refuseLoss(options->render.output, whole.identity, whole.film.counts.ranges);
+    if (!options->render.farm.force) refuseLoss(options->render.output, whole.identity, whole.film.counts);
     writeBytes(options->render.output, render::encodeFilm(whole));
     record.files.push_back(options->render.output.string());
   } else {

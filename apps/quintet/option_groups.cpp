@@ -109,7 +109,7 @@ void declareQuality(CLI::App& app, RawOptions& raw, RenderOptions& options) {
   add("--until-error", raw.untilError, "E",
       "Render until the picture's relative error is at most E, and twice that in 95 % of\n"
       "its tiles (0.02: 2 %; stated with 95 % confidence); with --spp or --time, at most that");
-  app.add_flag("--adaptive", options.adaptive, "Give more samples to the tiles that need them; --spp is then their average")
+  app.add_flag("--adaptive", options.adaptive, "Give more samples to the tiles that need them; --spp is then their average\n(goes on with --resume, has no --batches)")
       ->group("Quality");
   add("--seed", raw.seed, "N", "Of the random numbers (default: 0)");
   add("--bounces", options.bounces, "N", "Short for --set bounces=N");

@@ -19,7 +19,11 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
   state.secondLimit = limits.seconds;
   outcome.samples = static_cast<std::uint64_t>(schedule.samples());
   outcome.seconds = limits.secondsBefore;
-  if (limits.seconds && limits.done > limits.begin && limits.secondsBefore >= *limits.seconds) return outcome;
+  outcome.plan = schedule.plan();
+  if (limits.seconds && limits.done > limits.begin && limits.secondsBefore >= *limits.seconds) {
+    outcome.missed = limits.error && !render::estimateError(renderer.film().saveFirst()).reaches(*limits.error);
+    return outcome;
+  }
   double counted = 0, looked = 0, lookSeconds = 0;
   bool told = false, first = limits.done == 0;
   while (schedule.next()) {
@@ -43,6 +47,7 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
     if (outcome.firstPixelSeconds == 0) outcome.firstPixelSeconds = clock.seconds();
     outcome.seconds = now;
     outcome.samples = static_cast<std::uint64_t>(schedule.samples());
+    outcome.plan = schedule.plan();
     if (first && hooks.firstBatch) hooks.firstBatch(outcome);
     first = false;
     if (hooks.afterBatch) hooks.afterBatch(outcome);

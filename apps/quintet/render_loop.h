@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "progress.h"
 #include "schedule.h"
@@ -20,6 +21,7 @@ struct RenderOutcome {
   double seconds = 0;            // wall clock of all batches
   bool missed = false;           // the error that was asked for is not reached
   double firstPixelSeconds = 0;  // from the start of the loop until the first launch is done
+  std::vector<std::uint32_t> plan = {};  // Schedule::plan()
 };
 
 // What --watch and checkpoints add; each may be empty.

@@ -18,6 +18,41 @@ std::uint64_t pilotSamples(const RenderLimits& limits) {
 
 }  // namespace
 
+bool isLeft(const std::vector<std::uint32_t>& plan, const render::SampleCounts& counts) {
+  for (std::uint32_t c = 0; c < plan.size(); ++c)
+    if (plan[c] > counts.batchesOf(c)) return true;
+  return false;
+}
+
+std::vector<std::uint32_t> decide(const render::Region& region, const render::SampleCounts& counts, const render::ErrorEstimate& estimate,
+                                  const RenderLimits& limits) {
+  const double samples = render::averageSamples(region, counts);
+  const double most = static_cast<double>(limits.samples.value_or(0)) / render::kBatchSamples;
+  if (limits.error && estimate.reaches(*limits.error)) return {};
+  // Whole batches do not come nearer to the samples.
+  if (limits.samples && samples > static_cast<double>(*limits.samples) - 0.5 * render::kBatchSamples) return {};
+  render::CellGoal goal{limits.error.value_or(0), most};
+  if (!limits.error && !limits.samples) goal.batches = 2.0 * samples / render::kBatchSamples;  // until the time is over
+  std::vector<std::uint32_t> plan = render::planCells(estimate, goal);
+  // The estimate thinks that this is enough, and it was not: a tenth more of everything.
+  if (limits.error && !isLeft(plan, counts)) {
+    for (std::uint32_t& batches : plan) batches += batches / 10 + (batches > 0 ? 1 : 0);
+    const bool tooMany = limits.samples && render::averageSamples(region, {counts.ranges, plan}) > static_cast<double>(*limits.samples);
+    if (tooMany) plan = render::planCells(estimate, {0, most});
+  }
+  if (!isLeft(plan, counts)) plan.clear();
+  return plan;
+}
+
+bool isFinished(const render::FilmFile& film, const render::ErrorEstimate& estimate, const RenderLimits& limits) {
+  const render::SampleCounts& counts = film.film.counts;
+  if (limits.error && estimate.reaches(*limits.error)) return true;
+  if (limits.samples && counts.samples() >= *limits.samples) return true;
+  if (!limits.samples && !limits.error) return true;  // it had so much time
+  if (counts.samples() < pilotSamples(limits) || isLeft(film.plan, counts)) return false;
+  return decide(film.film.region, counts, estimate, limits).empty();
+}
+
 bool looksAfter(std::uint64_t batches) {
   if (batches < 16) return batches >= 4;
   const int shift = static_cast<int>(std::bit_width(batches)) - 4;
@@ -25,7 +60,11 @@ bool looksAfter(std::uint64_t batches) {
 }
 
 Schedule::Schedule(render::Renderer& renderer, const RenderLimits& limits)
-    : renderer_(renderer), limits_(limits), done_(limits.done), samples_(static_cast<double>(limits.done - limits.begin)) {}
+    : renderer_(renderer),
+      limits_(limits),
+      done_(limits.done),
+      plan_(limits.plan),
+      samples_(render::averageSamples(renderer.film().region(), renderer.film().counts())) {}
 
 std::optional<std::uint64_t> Schedule::sampleLimit() const {
   return limits_.samples ? std::optional(*limits_.samples - limits_.begin) : std::nullopt;
@@ -54,56 +93,23 @@ bool Schedule::nextForAll() {
   return true;
 }
 
-double Schedule::average() const {
-  double sum = 0, pixels = 0;
-  const render::SampleCounts& counts = renderer_.film().counts();
-  for (std::size_t c = 0; c < estimate_->cells.size(); ++c) {
-    pixels += estimate_->cells[c].pixels;
-    sum += static_cast<double>(estimate_->cells[c].pixels) * static_cast<double>(counts.samplesOf(static_cast<std::uint32_t>(c)));
-  }
-  return sum / pixels;
-}
-
 bool Schedule::nextForCells() {
   count_ = 0;
-  const render::SampleCounts& counts = renderer_.film().counts();
-  const auto wants = [&](std::size_t c) { return plan_[c] > counts.batchesOf(static_cast<std::uint32_t>(c)); };
-  const auto anyLeft = [&] {
-    for (std::size_t c = 0; c < plan_.size(); ++c)
-      if (wants(c)) return true;
-    return false;
-  };
-  if (!anyLeft() && (!planNext() || !anyLeft())) return false;
-  samples_ = average();
   step_ = 0;
-  return true;
-}
-
-// Decides how many batches each cell shall have next; false: it is enough.
-bool Schedule::planNext() {
+  if (isLeft(plan_, renderer_.film().counts())) return true;
   look();
-  samples_ = average();
   reached_ = limits_.error && estimate_->reaches(*limits_.error);
-  const double budget = limits_.samples ? static_cast<double>(*limits_.samples) : 0;
-  if (reached_ || (budget > 0 && samples_ > budget - 0.5 * render::kBatchSamples)) return false;
-  render::CellGoal goal;
-  goal.batches = budget / render::kBatchSamples;
-  if (limits_.error) goal.error = *limits_.error;
-  else if (budget == 0) goal.batches = 2.0 * samples_ / render::kBatchSamples;  // until the time is over
-  std::vector<std::uint32_t> plan = render::planCells(*estimate_, goal);
-  const bool grows = plan_.empty() || plan != plan_;
+  std::vector<std::uint32_t> plan = decide(renderer_.film().region(), renderer_.film().counts(), *estimate_, limits_);
+  if (plan.empty()) return false;
   plan_ = std::move(plan);
-  // The estimate thinks that this is enough, and it was not: a tenth more of everything.
-  if (!grows && limits_.error)
-    for (std::uint32_t& batches : plan_) batches += batches / 10 + (batches > 0 ? 1 : 0);
   return true;
 }
 
 bool Schedule::render(const render::BatchProgress& progress) {
   if (count_ == 0) {
-    const bool whole = renderer_.renderCells(plan_, progress);
-    if (whole && estimate_) samples_ = average();
-    return whole;
+    if (!renderer_.renderCells(plan_, progress)) return false;
+    samples_ = render::averageSamples(renderer_.film().region(), renderer_.film().counts());
+    return true;
   }
   if (!renderer_.renderBatch(count_, progress)) return false;
   done_ += count_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/film_error.h"
+#include "render/film_file.h"
 #include "render/renderer.h"
 
 namespace quintet::app {
@@ -20,6 +21,7 @@ struct RenderLimits {
   std::uint64_t begin = 0;
   std::uint64_t done = 0;
   double secondsBefore = 0;
+  std::vector<std::uint32_t> plan = {};  // of an adaptive one: Schedule::plan() of then; empty: it decides anew
 };
 
 class Schedule {
@@ -38,14 +40,15 @@ class Schedule {
   // Nothing: not known. From the last look.
   const std::optional<render::ErrorEstimate>& estimate() const { return estimate_; }
   bool reached() const { return reached_; }
+  // What adaptive sampling has decided on and is carrying out: batches by cell. The film and this are all that the
+  // rendering's further way depends on.
+  const std::vector<std::uint32_t>& plan() const { return plan_; }
   // Looks now: for the progress line.
   void look();
 
  private:
   bool nextForAll();
   bool nextForCells();
-  bool planNext();
-  double average() const;
 
   render::Renderer& renderer_;
   const RenderLimits& limits_;
@@ -57,6 +60,16 @@ class Schedule {
   bool reached_ = false;
   std::optional<render::ErrorEstimate> estimate_;
 };
+
+// Some cell has fewer batches than the plan says.
+bool isLeft(const std::vector<std::uint32_t>& plan, const render::SampleCounts& counts);
+
+// Adaptive sampling's next plan, where nothing is left of the one before; empty: it ends here.
+std::vector<std::uint32_t> decide(const render::Region& region, const render::SampleCounts& counts,
+                                  const render::ErrorEstimate& estimate, const RenderLimits& limits);
+
+// An adaptive rendering with these limits would go no further than this film.
+bool isFinished(const render::FilmFile& film, const render::ErrorEstimate& estimate, const RenderLimits& limits);
 
 // Numbers of batches after which a rendering with an error to reach looks at it: fixed, so that the same command
 // ends with the same samples, interrupted or not. 4 … 15, then eight per doubling.

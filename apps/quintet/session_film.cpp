@@ -20,14 +20,14 @@ render::FilmFile Session::film(const RenderOutcome& outcome) {
   fillRecord(outcome);
   render::FilmFacts notes = filmNotes(program_, options_, record_);
   addAovNotes(notes, aovs_, sceneInfo_.names);
-  return {identity(), std::move(notes), renderer_->saveFilm()};
+  return {identity(), std::move(notes), renderer_->saveFilm(), outcome.plan};
 }
 
 void Session::writeFilm(const RenderOutcome& outcome) {
   progress_.stage("writing " + options_.output.string());
   const render::FilmFile file = film(outcome);
   // It was looked at for what was planned; this may be less.
-  if (!options_.farm.force) refuseLoss(options_.output, file.identity, file.film.counts.ranges);
+  if (!options_.farm.force) refuseLoss(options_.output, file.identity, file.film.counts);
   writeBytes(options_.output, render::encodeFilm(file));
   record_.files = {options_.output.string()};
   record_.totalSeconds = clock_.seconds();

@@ -152,7 +152,10 @@ std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGo
   }
   std::vector<std::uint32_t> limits(cells.size());
   for (std::size_t c = 0; c < cells.size(); ++c) limits[c] = cells[c].pixels > 0 ? limit(c, goal.error > 0 ? high : low) : 0;
-  return limits;
+  // Out of reach: as good as so many batches make it.
+  double unused;
+  const bool tooMany = goal.error > 0 && goal.batches > 0 && total(high, unused) > goal.batches;
+  return tooMany ? planCells(estimate, {0, goal.batches}) : limits;
 }
 
 }  // namespace quintet::render

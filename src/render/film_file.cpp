@@ -70,6 +70,7 @@ Json headerJson(const FilmFile& file) {
           {"region", {region.x, region.y, region.width, region.height}},
           {"samples", ranges},
           {"cells", file.film.counts.cellBatches.size()},
+          {"plan", file.plan.size()},
           {"planes", planes}};
 }
 
@@ -96,7 +97,7 @@ class Reader {
     readCounts(film);
     for (const Json& entry : member("planes", Json::value_t::array)) readPlane(film, entry);
     if (film.planes.empty()) fail("/planes is empty");
-    takeArrays(film);
+    takeArrays(result);
     return result;
   }
 
@@ -136,9 +137,14 @@ class Reader {
       if (!ordered || range.begin >= range.end || range.begin % kBatchSamples != 0) fail("/samples are not in order");
       film.counts.ranges.push_back(range);
     }
-    const Json& cells = member("cells", Json::value_t::number_unsigned);
-    cells_ = cells.get<std::size_t>();
-    if (cells_ != 0 && cells_ != 2 * std::size_t{tileCount(film.region)}) fail("/cells does not belong to the region");
+    cells_ = cellCount(film, "cells");
+    planned_ = cellCount(film, "plan");
+  }
+
+  std::size_t cellCount(const FilmState& film, const char* name) const {
+    const auto count = member(name, Json::value_t::number_unsigned).get<std::size_t>();
+    if (count != 0 && count != 2 * std::size_t{tileCount(film.region)}) fail(fmt::format("/{} does not belong to the region", name));
+    return count;
   }
 
   // What a film has of an output: nothing, if nobody wanted it; of the first one its picture and the error of that.
@@ -177,8 +183,11 @@ class Reader {
     if (!mayHold(plane.pixel, film.planes.size() == 1, names)) fail(fmt::format("{}/arrays are not those of pixel '{}'", place, pixel));
   }
 
-  void takeArrays(FilmState& film) {
+  void takeArrays(FilmFile& file) {
+    FilmState& film = file.film;
     take(film.counts.cellBatches, cells_);
+    take(file.plan, planned_);
+    if (!arePossible(film.counts, file.plan)) throw FileError(file_, "payload", "no rendering has such numbers of batches");
     take(film.statistics, film.pixelCount());
     for (std::size_t i = 0; i < film.planes.size(); ++i) {
       forArrays(film.planes[i], [&](const char* name, auto& array, std::size_t group) {
@@ -201,7 +210,7 @@ class Reader {
   const std::filesystem::path& file_;
   Bytes payload_;
   Json json_;
-  std::size_t cells_ = 0;
+  std::size_t cells_ = 0, planned_ = 0;
   std::vector<std::vector<std::string>> arrays_;  // by plane
 };
 
@@ -254,6 +263,7 @@ std::vector<std::byte> encodeFilm(const FilmFile& file) {
   std::vector<std::byte> out(kPrefixBytes + header.size());
   std::memcpy(out.data() + kPrefixBytes, header.data(), header.size());
   appendArray(out, file.film.counts.cellBatches);
+  appendArray(out, file.plan);
   appendArray(out, file.film.statistics);
   for (const FilmPlane& plane : file.film.planes)
     forArrays(plane, [&](const char*, const auto& array, std::size_t group) { appendArray(out, array, group); });

@@ -6,8 +6,8 @@
 //   u32       bytes of the header
 //   u64       bytes of the payload
 //   header    JSON: who wrote it, identity, notes, region, sample counts, planes
-//   payload   the arrays in blocks (film_blocks.h): cells, statistics, then for each plane what it has of sums, squares,
-//             values, coverage
+//   payload   the arrays in blocks (film_blocks.h): cells, plan, statistics, then for each plane what it has of sums,
+//             squares, values, coverage
 //   16 bytes  XXH3 (base/hash.h) of all bytes before it
 //
 // Integers are little-endian.
@@ -25,7 +25,7 @@
 
 namespace quintet::render {
 
-inline constexpr std::uint32_t kFilmFileVersion = 1;
+inline constexpr std::uint32_t kFilmFileVersion = 2;
 inline constexpr const char* kFilmExtension = ".qfilm";
 
 // Names and values in the order in which they are told: {"seed", "3"}. A name is there once.
@@ -37,6 +37,9 @@ struct FilmFile {
   FilmFacts identity;  // what decides about the samples' values: films agree in all of it, or do not belong together
   FilmFacts notes;     // everything else that is worth knowing: names of files, device, how the picture is to be shown
   FilmState film;
+  // Of adaptive sampling that goes on: the batches that each cell shall have (planCells), as decided at an earlier film
+  // than this one. Empty: nothing was decided yet. The next decision follows from the film once this one is carried out.
+  std::vector<std::uint32_t> plan;
 };
 
 // Where two identities differ; a side that lacks the name has no value.

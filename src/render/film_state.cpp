@@ -84,6 +84,37 @@ std::uint32_t FilmState::cellOf(std::uint32_t x, std::uint32_t y) const {
   return 2 * (y / shared::kTileSize * tileColumns(region.width) + x / shared::kTileSize) + ((x + y) & 1u);
 }
 
+bool arePossible(const SampleCounts& counts, const std::vector<std::uint32_t>& plan) {
+  if (counts.cellBatches.empty() && plan.empty()) return true;
+  const std::vector<SampleRange>& ranges = counts.ranges;
+  if (ranges.size() != 1 || ranges[0].begin != 0 || ranges[0].end % kBatchSamples != 0) return false;
+  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max() / kBatchSamples;  // samples have numbers of 32 bits
+  const auto between = [&](std::uint64_t least) { return [=](std::uint32_t batches) { return batches >= least && batches <= kMost; }; };
+  return std::ranges::all_of(counts.cellBatches, between(counts.batches())) && std::ranges::all_of(plan, between(0));
+}
+
+std::vector<std::uint32_t> cellPixels(const Region& region) {
+  std::vector<std::uint32_t> pixels;
+  for (std::uint32_t y = 0; y < region.height; y += shared::kTileSize)
+    for (std::uint32_t x = 0; x < region.width; x += shared::kTileSize) {
+      const std::uint32_t all = std::min(shared::kTileSize, region.width - x) * std::min(shared::kTileSize, region.height - y);
+      pixels.push_back((all + 1) / 2);
+      pixels.push_back(all / 2);
+    }
+  return pixels;
+}
+
+double averageSamples(const Region& region, const SampleCounts& counts) {
+  if (counts.cellBatches.empty()) return static_cast<double>(counts.samples());
+  double sum = 0, all = 0;
+  const std::vector<std::uint32_t> pixels = cellPixels(region);
+  for (std::uint32_t c = 0; c < pixels.size(); ++c) {
+    all += pixels[c];
+    sum += static_cast<double>(pixels[c]) * static_cast<double>(counts.samplesOf(c));
+  }
+  return sum / all;
+}
+
 io::Image planeImage(const FilmState& film, std::size_t output) {
   const FilmPlane& plane = film.planes.at(output);
   if (!plane.stored() || plane.pixel == program::OutputPixel::coverage)

@@ -72,6 +72,15 @@ struct FilmState {
 std::uint32_t tileColumns(std::uint32_t width);
 std::uint32_t tileCount(const Region& region);
 
+// A rendering may have got there: all pixels have the first samples, whole batches of them, then each cell its own.
+// `plan`: numbers of batches by cell, or empty.
+bool arePossible(const SampleCounts& counts, const std::vector<std::uint32_t>& plan);
+
+// Pixels of each cell, in the order of SampleCounts::cellBatches.
+std::vector<std::uint32_t> cellPixels(const Region& region);
+// Samples per pixel, on average.
+double averageSamples(const Region& region, const SampleCounts& counts);
+
 // RGBA floats, linear, premultiplied: the mean of all samples, or the values. Throws UsageError for coverage and for an
 // output that is not stored.
 io::Image planeImage(const FilmState& film, std::size_t output);

@@ -1,4 +1,7 @@
 // Long renderings: what is left on the disk when one ends too early, and that going on from there changes no pixel.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -6,7 +9,10 @@
 #include <random>
 #include <thread>
 
+#include "base/file.h"
+#include "base/temporary_file.h"
 #include "fixtures.h"
+#include "io/exr.h"
 #include "render/film_file.h"
 #include "sky_program.h"
 
@@ -90,7 +96,7 @@ TEST_F(Checkpoint, SurvivesBeingKilledAtAnyMoment) {
   const RunResult result = quintet(command({"--resume", "-q", "--spp", "1200"}));
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(picture("out.png").data, expected.data);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / kFile));
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"out.png", "scene.gltf", "whole.png"}));
 }
 
 TEST_F(Checkpoint, CtrlCLeavesACheckpointAndThePictureSoFar) {
@@ -186,6 +192,50 @@ TEST_F(Checkpoint, LayersGoOnToo) {
     return std::any_of(whole.film.planes.begin(), whole.film.planes.end(), [&](const render::FilmPlane& p) { return !(p.*member).empty(); });
   };
   EXPECT_TRUE(has(&render::FilmPlane::squares) && has(&render::FilmPlane::values) && has(&render::FilmPlane::coverage));
+}
+
+// The picture of all layers, with a break after the first, second and third batch: centres come from the first one, ids are
+// counted and variances summed over all.
+TEST_F(Checkpoint, PicturesOfLayersAreThoseWithoutABreak) {
+  const std::vector<std::string> what{"render", "scene.gltf", "-q", "--size", "16x12", "--spp", "16", "--aov", "all", "--exr-type", "float", "-o"};
+  const auto rendered = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), what.begin(), what.end());
+    const RunResult result = quintet(more);
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  const auto layers = [&](const char* name) { return io::decodeExr(readFile(folder_ / name), name); };
+  rendered({"whole.exr"});
+  const io::ExrPicture whole = layers("whole.exr");
+  const auto has = [&](const std::string& name) { return std::ranges::find(whole.channels, name, &io::ExrChannel::name) != whole.channels.end(); };
+  EXPECT_TRUE(has("CryptoObject00.R") && has("CryptoMaterial00.A") && has("depth.Z") && has("position.Y") && has("variance.G"));
+  for (int breaks = 1; breaks <= 3; ++breaks) {
+    double before = 0;  // of a batch, which --time always completes
+    if (breaks > 1) before = std::stod(*render::findFact(render::readFilm(folder_ / kFile).notes, "seconds"));
+    rendered({"part.exr", "--resume", "--time", std::to_string(before + 1e-3), "--keep-checkpoint", "--checkpoint-file", kFile});
+    ASSERT_EQ(savedSamples(), static_cast<std::uint64_t>(4 * breaks));
+    std::filesystem::copy_file(folder_ / kFile, folder_ / "rest.qfilm");
+    rendered({"rest.exr", "--resume", "--checkpoint-file", "rest.qfilm"});
+    const io::ExrPicture rest = layers("rest.exr");
+    ASSERT_EQ(rest.channels.size(), whole.channels.size());
+    for (std::size_t i = 0; i < whole.channels.size(); ++i) {
+      const auto &a = whole.channels[i].samples, &b = rest.channels[i].samples;
+      EXPECT_EQ(rest.channels[i].name, whole.channels[i].name);
+      EXPECT_TRUE(a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0) << whole.channels[i].name << ", " << breaks;
+    }
+  }
+}
+
+TEST_F(Checkpoint, LeftoversOfKilledWritersGo) {
+  const pid_t writer = fork();
+  if (writer == 0) {
+    const TemporaryFile left(folder_ / kFile);
+    _exit(0);  // as if killed: nothing is removed
+  }
+  ASSERT_EQ(waitpid(writer, nullptr, 0), writer);
+  ASSERT_EQ(fileNames().size(), 2u);
+  EXPECT_TRUE(fileNames()[0].starts_with(".quintet-")) << fileNames()[0];
+  ASSERT_EQ(quintet(command({"--resume", "-q", "--spp", "4"})).status, 0);
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"out.png", "scene.gltf"}));
 }
 
 TEST_F(Checkpoint, OfAnotherRenderingAreRefusedWithTheDifference) {

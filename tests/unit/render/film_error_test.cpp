@@ -159,6 +159,16 @@ TEST(PlanCells, NeverGoesBelowWhatIsThere) {
   for (const std::uint32_t batches : planCells(estimateError(simulation.film), {0, 1})) EXPECT_GE(batches, 8u);
 }
 
+// An error out of reach: then it is as if only the number had been given.
+TEST(PlanCells, AnErrorDoesNotLeadBeyondTheBatches) {
+  std::mt19937 random(6);
+  Simulation simulation(64, 32);
+  simulation.render([&](std::uint32_t x, std::uint32_t) { return twoTiles(random, x); }, 8);
+  const ErrorEstimate estimate = estimateError(simulation.film);
+  EXPECT_EQ(planCells(estimate, {1e-5, 44}), planCells(estimate, {0, 44}));
+  EXPECT_EQ(planCells(estimate, {0.03, 1e6}), planCells(estimate, {0.03, 0}));
+}
+
 // Rare bright samples: a pilot that met none looks converged. Deciding by a pixel's own samples keeps such lucky (dark)
 // means as they are and thins out the others; the other cell's say nothing about them.
 double meanOfRuns(bool byOwnCell, double& standardError) {

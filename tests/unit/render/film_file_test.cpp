@@ -32,8 +32,13 @@ FilmFile sample(std::uint32_t width = 37, std::uint32_t height = 21, bool cells 
   FilmState& film = file.film;
   film.region = {5, 6, width, height};
   film.counts.ranges = {{0, 16}, {32, 37}};
-  if (cells)
-    for (std::uint32_t c = 0; c < 2 * tileCount(film.region); ++c) film.counts.cellBatches.push_back(static_cast<std::uint32_t>(random() % 9));
+  if (cells) {  // half way through a plan
+    film.counts.ranges.pop_back();
+    for (std::uint32_t c = 0; c < 2 * tileCount(film.region); ++c) {
+      film.counts.cellBatches.push_back(4 + static_cast<std::uint32_t>(random() % 9));
+      file.plan.push_back(static_cast<std::uint32_t>(random() % 30));
+    }
+  }
   const std::size_t pixels = film.pixelCount();
   const auto sums = [&] {
     std::vector<shared::FixedSum> values(4 * pixels);
@@ -61,6 +66,7 @@ void expectSame(const FilmFile& a, const FilmFile& b) {
   EXPECT_EQ(a.notes, b.notes);
   EXPECT_EQ(a.film.region, b.film.region);
   EXPECT_EQ(a.film.counts, b.film.counts);
+  EXPECT_EQ(a.plan, b.plan);
   expectSame(a.film.statistics, b.film.statistics);
   ASSERT_EQ(a.film.planes.size(), b.film.planes.size());
   for (std::size_t i = 0; i < a.film.planes.size(); ++i) {
@@ -109,6 +115,10 @@ TEST(FilmFile, ComesBackWordForWord) {
     const FilmFile file = sample(37, 21, cells);
     expectSame(decodeFilm(encodeFilm(file), "x"), file);
   }
+  // Decided, and nothing of it done.
+  FilmFile planned = sample(37, 21, true);
+  planned.film.counts.cellBatches.clear();
+  expectSame(decodeFilm(encodeFilm(planned), "x"), planned);
   test::TempFolder folder;
   const FilmFile large = sample(250, 200);  // several blocks
   writeFilm(folder / "a.qfilm", large);
@@ -139,7 +149,7 @@ TEST(FilmFile, IsRefusedAfterEveryFlippedBit) {
     flipped[i] ^= static_cast<std::byte>(1u << bit % 8);
     const std::string problem = problemOf(flipped);
     if (i < 8) ASSERT_EQ(problem, "part.qfilm: is not a film file (.qfilm)") << i;
-    else if (i < 12) ASSERT_THAT(problem, HasSubstr("of the film format; this Quintet reads version 1")) << i;
+    else if (i < 12) ASSERT_THAT(problem, HasSubstr("of the film format; this Quintet reads version 2")) << i;
     else if (i >= kPrefixBytes) ASSERT_EQ(problem, "part.qfilm: is damaged: its checksum is not that of its content") << i;
     else ASSERT_NE(problem, "none") << i;
   }
@@ -147,8 +157,8 @@ TEST(FilmFile, IsRefusedAfterEveryFlippedBit) {
 
 TEST(FilmFile, NamesAnotherVersion) {
   std::vector<std::byte> bytes = encodeFilm(sample(3, 2));
-  bytes[8] = std::byte{2};
-  EXPECT_EQ(problemOf(bytes), "part.qfilm: has version 2 of the film format; this Quintet reads version 1");
+  bytes[8] = std::byte{1};
+  EXPECT_EQ(problemOf(bytes), "part.qfilm: has version 1 of the film format; this Quintet reads version 2");
 }
 
 TEST(FilmFile, NamesOtherKindsOfFiles) {
@@ -161,6 +171,7 @@ TEST(FilmFile, NamesOtherKindsOfFiles) {
 TEST(FilmFile, HoldsHeadersAgainstTheirPayload) {
   const std::vector<std::byte> bytes = encodeFilm(sample(9, 5));
   const std::pair<std::string, std::string> changes[] = {
+      {"\"plan\": 0", "\"plan\": 2"},           {"\"plan\": 0", "\"plan\": 1"},        {"\"plan\"", "\"plant\""},
       {"\"cells\": 0", "\"cells\": 7"},         {"\"cells\": 0", "\"cells\": -1"},      {"\"identity\"", "\"identify\""},
       {"\"seed\": \"3\"", "\"seed\": 3"},       {"\"squares\"", "\"values\""},          {"\"squares\"", "\"sums\""},
       {"\"squares\"", "\"roots\""},             {"\"center\"", "\"corner\""},           {"{", "["},
@@ -207,6 +218,26 @@ TEST(FilmFile, RefusesPlanesWithOtherArrays) {
   refused(0, [&](FilmPlane& p) { p = depth; });  // the first one is the picture
   EXPECT_THAT(problem([](auto& planes) { planes.clear(); }), HasSubstr("/planes is empty"));
   EXPECT_EQ(problem([&](auto& planes) { planes[0].sums = {}, planes[0].squares = {}, planes[0].values = depth.values; }), "none");
+}
+
+// Numbers that no rendering comes to: it would go on for years, or divide by nothing.
+TEST(FilmFile, HoldsPlansAgainstTheSamples) {
+  const FilmFile good = sample(37, 21, true);
+  const std::string pilot = "\"samples\": [\n  [\n   0,\n   16\n  ]\n ]";
+  const std::string impossible = "part.qfilm: payload: no rendering has such numbers of batches";
+  const std::vector<std::byte> bytes = encodeFilm(good);
+  EXPECT_EQ(problemOf(withHeader(bytes, pilot, pilot)), "none");
+  for (const char* samples : {"[]", "[[0, 15]]", "[[4, 16]]", "[[0, 8], [12, 16]]"})
+    EXPECT_EQ(problemOf(withHeader(bytes, pilot, std::string("\"samples\": ") + samples)), impossible) << samples;
+  EXPECT_EQ(problemOf(withHeader(bytes, pilot, "\"samples\": [[0, 400]]")), impossible);
+  FilmFile file = good;
+  file.film.counts.cellBatches[3] = 3;
+  EXPECT_EQ(problemOf(encodeFilm(file)), impossible);
+  for (const bool planned : {false, true}) {
+    file = good;
+    (planned ? file.plan : file.film.counts.cellBatches)[1] = 1u << 30;
+    EXPECT_EQ(problemOf(encodeFilm(file)), impossible);
+  }
 }
 
 TEST(FilmFacts, DifferencesAreNamedOnce) {

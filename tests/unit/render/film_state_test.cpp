@@ -161,6 +161,23 @@ TEST(FilmState, TilesCoverTheRegion) {
   EXPECT_EQ(film.cellOf(69, 39), 2u * 5u);
 }
 
+TEST(FilmState, CellsShareAllPixels) {
+  for (const Region& region : {Region{0, 0, 70, 40}, {3, 5, 1, 1}, {0, 0, 33, 31}, {1, 0, 64, 3}}) {
+    const FilmState film{region, {}, {}, {}};
+    std::vector<std::uint32_t> pixels(2 * tileCount(region)), batches;
+    for (std::uint32_t y = 0; y < region.height; ++y)
+      for (std::uint32_t x = 0; x < region.width; ++x) ++pixels[film.cellOf(x, y)];
+    EXPECT_EQ(cellPixels(region), pixels);
+    double sum = 0;
+    for (std::uint32_t c = 0; c < pixels.size(); ++c) {
+      batches.push_back(2 + c * c);
+      sum += 4.0 * pixels[c] * batches[c];
+    }
+    EXPECT_DOUBLE_EQ(averageSamples(region, {{{0, 8}}, batches}), sum / static_cast<double>(film.pixelCount()));
+  }
+  EXPECT_EQ(averageSamples({0, 0, 70, 40}, {{{0, 8}, {12, 14}}, {}}), 10.0);
+}
+
 TEST(FilmState, CoverageIsNoPicture) { EXPECT_THROW(planeImage(Maker(1).film({0}), 2), UsageError); }
 
 }  // namespace
