@@ -64,7 +64,7 @@ void conclude(ErrorEstimate& estimate) {
   estimate.image = std::sqrt(squares / pixels);
   // Satterthwaite 1946 for both sums of squares; black pictures have none.
   const double room = squares > 0 ? fisherQuantile(kConfidence, squares * squares / fourths, squares * squares / doubt) : 1.0;
-  estimate.upper = estimate.image * std::sqrt(room);
+  estimate.upper = std::sqrt((room * squares + fourths) / pixels);
   estimate.tiles = std::sqrt(percentile(tiles, kTilesBelow));
 }
 

@@ -37,8 +37,12 @@ struct ErrorEstimate {
 
 // Of the first output. `upper`: the square of the real error over its estimate follows Fisher's F for normally distributed
 // pixels, with so many degrees of freedom as pixels of equal variance would have (Satterthwaite 1946): a picture whose
-// noise is in a few pixels, or of few batches, is stated with the room it needs. Light that no sample has found yet is
-// in neither.
+// noise is in a few pixels, or of few batches, is stated with the room it needs. To that it adds the fourth powers once, by
+// which the estimate falls short where noise is skewed: bright pixels have both the large variances and, I standing for
+// R, the small weights. (For a gamma distribution of relative variance r, E[v / I²] = r (1 - r + …).) Light that no sample
+// has found yet is in neither. The pixels of a tile are not independent where errors are blue noise, and the sum of their
+// squares scatters more. It does so most where samples are spread best, and there batches overstate the error by more than
+// that; StatedError.CoversWhatTheSamplerDraws has what scatters with nothing overstated (docs/measurements.md).
 ErrorEstimate estimateError(const FilmState& film);
 
 struct CellGoal {

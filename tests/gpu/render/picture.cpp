@@ -69,6 +69,7 @@ render::RenderSettings settingsFor(const scene::Camera& camera, const PictureOpt
   settings.height = options.height;
   settings.camera = camera;
   settings.seed = options.seed;
+  settings.plannedSamples = options.plannedSamples;
   settings.transparent = options.transparent;
   settings.timeoutSeconds = 600;
   settings.parameters = program::ParameterValues(options.program.parameters);

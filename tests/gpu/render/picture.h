@@ -24,6 +24,9 @@ struct PictureOptions {
   std::uint32_t height = 8;
   std::uint32_t batches = 16;    // of render::kBatchSamples samples
   std::uint32_t seed = 1;
+  // RenderSettings::plannedSamples. What takes pixels for independent draws (errors of means over pixels) needs this default;
+  // `quintet render` without --adaptive plans its --spp, or 0.
+  std::uint32_t plannedSamples = shared::kIndependentPixels;
   bool transparent = false;
 };
 
