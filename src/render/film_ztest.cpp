@@ -36,8 +36,9 @@ struct Sums {
 
 void check(const FilmState& film) {
   if (film.planes.empty() || film.planes[0].squares.empty()) throw UsageError("a film keeps no squares of its first output");
-  std::uint64_t least = film.counts.batches();
-  if (!film.counts.cellBatches.empty()) least = *std::ranges::min_element(film.counts.cellBatches);
+  std::uint64_t least = film.counts.cellBatches.empty() ? film.counts.batches() : std::numeric_limits<std::uint64_t>::max();
+  for (std::uint32_t y = 0; y < film.region.height && !film.counts.cellBatches.empty(); ++y)
+    for (std::uint32_t x = 0; x < film.region.width; ++x) least = std::min(least, film.counts.batchesOf(film.cellOf(x, y)));
   if (least < kZTestBatches)
     throw UsageError(fmt::format("a film has {} batches of {} samples; {} ({} samples) are needed to know its noise", least,
                                  kBatchSamples, kZTestBatches, kZTestBatches * kBatchSamples));

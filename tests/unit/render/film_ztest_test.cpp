@@ -241,6 +241,10 @@ TEST(FilmZTest, AdaptiveFilmsHaveBatchesOfTheirOwn) {
   EXPECT_NEAR(variance, (32.0 / 32 + 32.0 / 160) / (64 * 64), 0.07 * variance);
   a.counts.cellBatches[2] = 7;
   EXPECT_THROW(zTest(a, b), UsageError);
+  // A cell without pixels has none: the second tile is one pixel wide and high.
+  FilmState narrow = emptyFilm({0, 0, 33, 1});
+  narrow.counts.cellBatches = {8, 8, 8, 0};
+  EXPECT_FALSE(zTest(narrow, narrow).rejected);
 }
 
 TEST(FilmZTest, RefusesWhatItCannotTest) {
