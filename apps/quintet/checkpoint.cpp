@@ -78,7 +78,12 @@ void Checkpoint::resume(RenderLimits& limits) {
     throw FileError(path, fmt::format("holds {} samples of this rendering; --resume goes on from them, --force begins anew",
                                       static_cast<std::uint64_t>(render::averageSamples(file.film.region, file.film.counts))));
   }
-  if (!file.film.counts.ranges.empty()) goOn(file, limits);
+  if (file.film.counts.ranges.empty()) return;
+  try {
+    goOn(file, limits);
+  } catch (const UsageError& error) {  // of a note, which is the file's
+    throw FileError(path, "header", error.what());
+  }
 }
 
 void Checkpoint::goOn(const FilmFile& file, RenderLimits& limits) {
@@ -88,8 +93,12 @@ void Checkpoint::goOn(const FilmFile& file, RenderLimits& limits) {
     session_.progress().note(fmt::format("{}: was begun on {}, goes on on {}", name, *device, session_.deviceName()));
   session_.renderer().restoreFilm(file.film);
   limits.done = file.film.counts.ranges.back().end;
-  if (const std::string* seconds = render::findFact(file.notes, "seconds"))
-    limits.secondsBefore = parseNumber(name, *seconds, 0.0, 1e12);
+  const auto secondsOf = [&](const char* note) {
+    const std::string text = factText(file.notes, note);
+    return text.empty() ? 0.0 : parseNumber(note, text, 0.0, 1e12);
+  };
+  limits.secondsBefore = secondsOf("seconds");
+  limits.batchSecondsBefore = secondsOf("batch seconds");
   if (options_.adaptive && wantedErrorOf(file) != options_.error) {
     session_.progress().note(fmt::format("{}: was planned for {}, goes on for {}; a rendering from the beginning would give other samples",
                                          name, errorText(wantedErrorOf(file)), errorText(options_.error)));

@@ -141,7 +141,7 @@ FilmFacts filmNotes(const program::Program& program, const RenderOptions& option
                   {"parameters", record.parameters},
                   {"device", record.device},
                   {"driver", record.driver},
-                  {"seconds", fmt::format("{:.3f}", record.renderSeconds)},
+                  {"seconds", fmt::format("{:.6f}", record.renderSeconds)},
                   {kWantedError, options.error ? fmt::format("{}", *options.error) : ""},
                   {"exposure", fmt::format("{}", options.exposure)},
                   {"tone map", options.toneMap ? render::toneMapNames()[static_cast<std::size_t>(*options.toneMap)] : ""},

@@ -19,8 +19,10 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
   state.secondLimit = limits.seconds;
   outcome.samples = static_cast<std::uint64_t>(schedule.samples());
   outcome.seconds = limits.secondsBefore;
+  outcome.batchSeconds = limits.batchSecondsBefore;
   outcome.plan = schedule.plan();
-  if (limits.seconds && limits.done > limits.begin && limits.secondsBefore >= *limits.seconds) {
+  const auto isOver = [&](double seconds, double batch) { return limits.seconds && seconds + 0.5 * batch >= *limits.seconds; };
+  if (limits.done > limits.begin && isOver(limits.secondsBefore, limits.batchSecondsBefore)) {
     outcome.missed = limits.error && !render::estimateError(renderer.film().saveFirst()).reaches(*limits.error);
     return outcome;
   }
@@ -46,12 +48,13 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
     const double now = limits.secondsBefore + clock.seconds();
     if (outcome.firstPixelSeconds == 0) outcome.firstPixelSeconds = clock.seconds();
     outcome.seconds = now;
+    outcome.batchSeconds = now - begin;
     outcome.samples = static_cast<std::uint64_t>(schedule.samples());
     outcome.plan = schedule.plan();
     if (first && hooks.firstBatch) hooks.firstBatch(outcome);
     first = false;
     if (hooks.afterBatch) hooks.afterBatch(outcome);
-    if (limits.seconds && now + 0.5 * (now - begin) >= *limits.seconds) break;
+    if (isOver(now, now - begin)) break;
     if (stop.requested()) {
       outcome.interrupted = schedule.next();  // else all is there
       break;

@@ -19,6 +19,7 @@ struct RenderOutcome {
   std::optional<std::uint32_t> frame;  // of an animation: the one rendered last
   std::uint64_t samples = 0;     // per pixel that are there now
   double seconds = 0;            // wall clock of all batches
+  double batchSeconds = 0;       // of the last one
   bool missed = false;           // the error that was asked for is not reached
   double firstPixelSeconds = 0;  // from the start of the loop until the first launch is done
   std::vector<std::uint32_t> plan = {};  // Schedule::plan()

@@ -21,6 +21,7 @@ struct RenderLimits {
   std::uint64_t begin = 0;
   std::uint64_t done = 0;
   double secondsBefore = 0;
+  double batchSecondsBefore = 0;  // those of its last batch
   std::vector<std::uint32_t> plan = {};  // of an adaptive one: Schedule::plan() of then; empty: it decides anew
 };
 

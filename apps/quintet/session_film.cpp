@@ -1,6 +1,8 @@
 // The session's rendering as a film file: checkpoints and parts.
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "aov_notes.h"
 #include "film_facts.h"
 #include "film_guard.h"
@@ -19,6 +21,7 @@ const render::FilmFacts& Session::identity() {
 render::FilmFile Session::film(const RenderOutcome& outcome) {
   fillRecord(outcome);
   render::FilmFacts notes = filmNotes(program_, options_, record_);
+  notes.emplace_back("batch seconds", fmt::format("{:.6f}", outcome.batchSeconds));
   addAovNotes(notes, aovs_, sceneInfo_.names);
   return {identity(), std::move(notes), renderer_->saveFilm(), outcome.plan};
 }

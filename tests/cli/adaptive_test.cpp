@@ -55,9 +55,7 @@ class Adaptive : public CliTest {
   }
   // Renders one more batch than the checkpoint holds.
   void renderOneBatch(std::vector<std::string> more) {
-    double before = 0;
-    if (std::filesystem::exists(folder_ / kFile)) before = std::stod(*render::findFact(film(kFile).notes, "seconds"));
-    more.insert(more.end(), {"--resume", "--keep-checkpoint", "--time", std::to_string(before + 1e-3), "-o", "part.exr", "--checkpoint-file", kFile});
+    more.insert(more.end(), {"--resume", "--keep-checkpoint", "--time", timeForABatch(kFile), "-o", "part.exr", "--checkpoint-file", kFile});
     render(more);
   }
 };

@@ -209,9 +209,7 @@ TEST_F(Checkpoint, PicturesOfLayersAreThoseWithoutABreak) {
   const auto has = [&](const std::string& name) { return std::ranges::find(whole.channels, name, &io::ExrChannel::name) != whole.channels.end(); };
   EXPECT_TRUE(has("CryptoObject00.R") && has("CryptoMaterial00.A") && has("depth.Z") && has("position.Y") && has("variance.G"));
   for (int breaks = 1; breaks <= 3; ++breaks) {
-    double before = 0;  // of a batch, which --time always completes
-    if (breaks > 1) before = std::stod(*render::findFact(render::readFilm(folder_ / kFile).notes, "seconds"));
-    rendered({"part.exr", "--resume", "--time", std::to_string(before + 1e-3), "--keep-checkpoint", "--checkpoint-file", kFile});
+    rendered({"part.exr", "--resume", "--time", timeForABatch(kFile), "--keep-checkpoint", "--checkpoint-file", kFile});
     ASSERT_EQ(savedSamples(), static_cast<std::uint64_t>(4 * breaks));
     std::filesystem::copy_file(folder_ / kFile, folder_ / "rest.qfilm");
     rendered({"rest.exr", "--resume", "--checkpoint-file", "rest.qfilm"});
@@ -416,6 +414,40 @@ TEST_F(Checkpoint, NobodyNeedsToReadTheProgress) {
     EXPECT_EQ(quintet(command({"--spp", "16"}), options).status, 0) << shell;  // the note in the end
     EXPECT_EQ(quintet(command({"--spp", "0"}), options).status, 2) << shell;   // the error
   }
+}
+
+// The error is out of reach and the time used up: the same command again leaves all as it is, also where the time ends
+// within the next batch.
+TEST_F(Checkpoint, NothingIsAddedWhenTheTimeIsOver) {
+  const auto again = [&](const std::string& seconds) {
+    const RunResult result = quintet({"render", "scene.gltf", "--program", "normals", "--size", "48x36", "--until-error", "1e-6", "--time",
+                                      seconds, "-o", "out.png", "--resume"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find("was not reached"), std::string::npos) << result.err;
+  };
+  again("0.05");
+  const std::uint64_t before = savedSamples();
+  again("0.05");
+  EXPECT_EQ(savedSamples(), before);
+  // A second a batch: 0.4 s do not hold half of one.
+  const auto pretend = [&](const char* batch) {
+    render::FilmFile file = render::readFilm(folder_ / kFile);
+    for (auto& [name, value] : file.notes) {
+      if (name == "seconds") value = "50";
+      if (name == "batch seconds") value = batch;
+    }
+    render::writeFilm(folder_ / kFile, file);
+  };
+  pretend("1");
+  again("50.4");
+  EXPECT_EQ(savedSamples(), before);
+  pretend("0.7");
+  again("50.4");
+  EXPECT_GT(savedSamples(), before);
+  pretend("a while");
+  expectError(quintet({"render", "scene.gltf", "--program", "normals", "--size", "48x36", "--until-error", "1e-6", "--time", "50.4", "-o", "out.png",
+                       "--resume", "-q"}),
+              1, {"out.checkpoint.qfilm: header: batch seconds: 'a while' is not a number"});
 }
 
 TEST_F(Checkpoint, JsonProgressIsALineForEachBatch) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "io/codec.h"
+#include "render/film_file.h"
 
 namespace quintet::test {
 namespace {
@@ -163,6 +164,15 @@ void expectError(const RunResult& result, int status, const std::vector<std::str
 }
 
 io::Image CliTest::picture(const std::string& name) const { return io::readImage(folder_ / name); }
+
+std::string CliTest::timeForABatch(const std::string& checkpoint) const {
+  if (!std::filesystem::exists(folder_ / checkpoint)) return "0";
+  render::FilmFile file = render::readFilm(folder_ / checkpoint);
+  for (auto& [name, value] : file.notes)
+    if (name == "batch seconds") value = "0";
+  render::writeFilm(folder_ / checkpoint, file);
+  return std::to_string(std::stod(*render::findFact(file.notes, "seconds")) + 1e-3);
+}
 
 std::vector<std::string> CliTest::fileNames() const {
   std::vector<std::string> names;

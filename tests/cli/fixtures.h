@@ -64,6 +64,9 @@ class CliTest : public ::testing::Test {
   }
   io::Image picture(const std::string& name) const;
   std::vector<std::string> fileNames() const;  // sorted, hidden ones too
+  // A value of --time for which the rendering of this checkpoint gets one more batch; 0 where there is none. The file then
+  // says that the last batch took no time, so that another one fits.
+  std::string timeForABatch(const std::string& checkpoint) const;
 
   TempFolder folder_;
 };
