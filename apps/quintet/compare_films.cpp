@@ -71,6 +71,9 @@ std::uint64_t droppedSamples(const FilmFile& file) {
   return sum;
 }
 
+// Per pixel; of an adaptive film on average.
+std::uint64_t samplesOf(const FilmFile& file) { return static_cast<std::uint64_t>(render::averageSamples(file.film.region, file.film.counts)); }
+
 // What a reader of the verdict should know.
 std::vector<std::string> notesOn(const FilmFile& a, const FilmFile& b) {
   std::vector<std::string> notes;
@@ -78,7 +81,7 @@ std::vector<std::string> notesOn(const FilmFile& a, const FilmFile& b) {
   if (seed == factText(b.identity, "seed") && shareSamples(a, b))
     notes.push_back(fmt::format("both films have the same samples of seed {}: their difference is rounding, not noise, "
                                 "and the test says little; render one with another --seed", plain(seed)));
-  if (a.film.counts.samples() != b.film.counts.samples())
+  if (samplesOf(a) != samplesOf(b))
     notes.push_back("the films have different numbers of samples: rare bright samples make the difference lopsided, "
                     "and p less exact");
   for (const FilmFile* film : {&a, &b})
@@ -115,8 +118,8 @@ std::string jsonReport(const FilmComparison& comparison, const std::array<FilmFi
                   {"same", !test.rejected},
                   {"level", comparison.test.level},
                   {"size", {region.width, region.height}},
-                  {"samples", both([](const FilmFile& f) { return f.film.counts.samples(); })},
-                  {"batches", both([](const FilmFile& f) { return f.film.counts.batches(); })},
+                  {"samples", both(samplesOf)},
+                  {"batches", both([](const FilmFile& f) { return (samplesOf(f) + render::kBatchSamples - 1) / render::kBatchSamples; })},
                   {"seeds", both([](const FilmFile& f) { return factText(f.identity, "seed"); })},
                   {"devices", note("device")},
                   {"drivers", note("driver")},

@@ -120,16 +120,18 @@ TEST_F(Adaptive, SurvivesBeingKilledOnItsWayToAnError) {
   ASSERT_EQ(quintet(with({"-o", "whole.exr", "--keep-checkpoint", "-q"})).status, 0);
   std::mt19937 random(20261122);
   int halfWay = 0, killed = 0;
-  for (int i = 0; killed < 8 && i < 16; ++i) {
+  std::uint32_t longest = 60'000;
+  for (int i = 0; killed < 8 && i < 40; ++i) {
     TerminalRun process(with({"-o", "out.exr", "--checkpoint", "0", "--resume", "--json-progress"}), folder_.path());
     for (int batch = 0; batch < 2; ++batch) process.waitForNext("\"checkpoint\"");
-    std::this_thread::sleep_for(std::chrono::microseconds(random() % 60'000));
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % longest));
     process.signal(SIGKILL);
     const RunResult result = process.finish();
     if (std::filesystem::exists(folder_ / "out.exr")) {  // it was faster: once more from the beginning
       EXPECT_EQ(picture("out.exr").data, picture("whole.exr").data);
       std::filesystem::remove(folder_ / "out.exr");
       std::filesystem::remove(folder_ / kFile);
+      longest = longest / 2 + 1;
       continue;
     }
     ++killed;

@@ -1,0 +1,108 @@
+// What adaptive sampling decides: within its limits, until they are reached, and of the film alone.
+#include "schedule.h"
+
+#include <gmock/gmock.h>
+
+namespace quintet::app {
+namespace {
+
+constexpr render::Region kRegion{0, 0, 64, 32};  // two tiles, four cells
+
+// All pixels have `batches`.
+render::FilmFile filmOf(std::uint32_t batches) {
+  render::FilmFile film;
+  film.film.region = kRegion;
+  film.film.counts.ranges = {{0, batches * render::kBatchSamples}};
+  return film;
+}
+// The second tile is `ratio` times as noisy as the first one.
+render::ErrorEstimate estimateOf(const render::FilmFile& film, double error, double ratio) {
+  render::ErrorEstimate estimate;
+  estimate.image = estimate.upper = estimate.tiles = error;
+  const double quiet = error * error / (0.5 * (1.0 + ratio * ratio));
+  for (std::uint32_t c = 0; c < 4; ++c) {
+    const double square = quiet * (c < 2 ? 1.0 : ratio * ratio);
+    estimate.cells.push_back({512, film.film.counts.batchesOf(c), 512 * square, 512 * square * square});
+  }
+  return estimate;
+}
+RenderLimits limitsOf(std::optional<std::uint64_t> samples, std::optional<double> error) { return {samples, {}, error, true}; }
+
+std::vector<std::uint32_t> decided(const render::FilmFile& film, const render::ErrorEstimate& estimate, const RenderLimits& limits) {
+  return decide(film.film.region, film.film.counts, estimate, limits);
+}
+
+TEST(Decide, SharesTheSamplesThatAreLeft) {
+  const render::FilmFile film = filmOf(8);
+  const std::vector<std::uint32_t> plan = decided(film, estimateOf(film, 0.1, 3.0), limitsOf(160, {}));
+  ASSERT_EQ(plan.size(), 4u);
+  EXPECT_NEAR(plan[0], 20, 1);  // 40 batches on average, three times as many in the second tile
+  EXPECT_NEAR(plan[2], 60, 1);
+  EXPECT_LE(render::averageSamples(kRegion, {film.film.counts.ranges, plan}), 160.0);
+}
+
+TEST(Decide, EndsWhereAllIsThere) {
+  const render::FilmFile film = filmOf(8);
+  const render::ErrorEstimate estimate = estimateOf(film, 0.1, 3.0);
+  EXPECT_TRUE(decided(film, estimate, limitsOf(32, {})).empty());
+  EXPECT_TRUE(decided(film, estimate, limitsOf(33, {})).empty()) << "a batch more is not nearer";
+  EXPECT_FALSE(decided(film, estimate, limitsOf(48, {})).empty());
+  EXPECT_TRUE(decided(film, estimate, limitsOf({}, 0.1)).empty());
+  EXPECT_TRUE(decided(film, estimate, limitsOf(4000, 0.1)).empty());
+  EXPECT_FALSE(decided(film, estimate, limitsOf({}, 0.099)).empty());
+}
+
+// Four times the batches halve the error: 32. In proportion to the noise, 1:1 or 1:3.
+TEST(Decide, AsksForWhatTheErrorNeeds) {
+  const render::FilmFile film = filmOf(8);
+  for (const std::uint32_t batches : decided(film, estimateOf(film, 0.1, 1.0), limitsOf({}, 0.05))) EXPECT_NEAR(batches, 32, 1);
+  const std::vector<std::uint32_t> plan = decided(film, estimateOf(film, 0.1, 3.0), limitsOf({}, 0.05));
+  EXPECT_NEAR(static_cast<double>(plan[2]) / plan[0], 3.0, 0.2);
+  EXPECT_EQ(decided(film, estimateOf(film, 0.1, 3.0), limitsOf(1'000'000, 0.05)), plan) << "--spp far away changes nothing";
+  EXPECT_EQ(decided(film, estimateOf(film, 0.1, 3.0), limitsOf(48, 0.001)), decided(film, estimateOf(film, 0.1, 3.0), limitsOf(48, {})));
+}
+
+// The tiles' share is not content though the mean is: planCells sees no need, a tenth more is taken, but not beyond --spp.
+TEST(Decide, TakesATenthMoreWhereTheEstimateSeesNoNeed) {
+  const render::FilmFile film = filmOf(40);
+  render::ErrorEstimate estimate = estimateOf(film, 0.1, 1.0);
+  estimate.tiles = 1.0;
+  EXPECT_EQ(decided(film, estimate, limitsOf({}, 0.2)), std::vector<std::uint32_t>(4, 45));
+  const std::vector<std::uint32_t> capped = decided(film, estimate, limitsOf(168, 0.2));
+  ASSERT_EQ(capped.size(), 4u);
+  EXPECT_LE(render::averageSamples(kRegion, {film.film.counts.ranges, capped}), 168.0);
+  EXPECT_TRUE(decided(film, estimate, limitsOf(160, 0.2)).empty());
+}
+
+TEST(Decide, DoublesUntilTheTimeIsOver) {
+  const render::FilmFile film = filmOf(8);
+  for (const std::uint32_t batches : decided(film, estimateOf(film, 0.1, 1.0), limitsOf({}, {}))) EXPECT_NEAR(batches, 16, 1);
+}
+
+TEST(IsFinished, WhereARenderingWouldEnd) {
+  render::FilmFile film = filmOf(3);
+  const auto finished = [&](const RenderLimits& limits) { return isFinished(film, estimateOf(film, 0.1, 3.0), limits); };
+  EXPECT_FALSE(finished(limitsOf(40, {}))) << "the first batches of all pixels";
+  EXPECT_TRUE(finished(limitsOf(12, {})));
+  EXPECT_TRUE(finished(limitsOf({}, 0.1)));
+  EXPECT_TRUE(finished(limitsOf({}, {}))) << "by the time it had";
+  film = filmOf(8);
+  film.film.counts.cellBatches = {8, 8, 12, 12};
+  EXPECT_TRUE(finished(limitsOf(40, {})));
+  EXPECT_FALSE(finished(limitsOf(64, {})));
+  film.plan = {8, 8, 12, 13};
+  EXPECT_FALSE(finished(limitsOf(40, {}))) << "something of the plan is left";
+  EXPECT_TRUE(isLeft(film.plan, film.film.counts));
+  film.plan = {8, 8, 12, 1};
+  EXPECT_FALSE(isLeft(film.plan, film.film.counts));
+}
+
+TEST(LooksAfter, EightTimesPerDoubling) {
+  std::vector<std::uint64_t> looks;
+  for (std::uint64_t batches = 0; batches <= 64; ++batches)
+    if (looksAfter(batches)) looks.push_back(batches);
+  EXPECT_THAT(looks, testing::ElementsAre(4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20, 22, 24, 26, 28, 30, 32, 36, 40, 44, 48, 52, 56, 60, 64));
+}
+
+}  // namespace
+}  // namespace quintet::app
