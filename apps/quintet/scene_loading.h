@@ -7,6 +7,7 @@
 #include <string>
 
 #include "render_options.h"
+#include "render/scene_features.h"
 #include "scene/scene.h"
 #include "scene_setup.h"
 #include "scene_source.h"
@@ -24,19 +25,20 @@ struct LoadedScene {
   double seconds = 0;      // all together
 };
 
-// Reads the scene and chooses camera, light and size. Throws what those throw.
-LoadedScene loadForRendering(const SceneSource& source, const RenderOptions& options);
-
 // The same in a thread of its own, together with tables that no scene is in. One at a time.
 class SceneLoading {
  public:
-  // `options` must outlive the loading.
+  // `options` must outlive the loading. Reads the scene and chooses camera, light and size.
   void start(const SceneSource& source, const RenderOptions& options);
-  // Waits for what was started with this source; starts it if nothing was.
+  // What shaders must know of the scene that start() reads, before all of it is read. Has an exception if reading fails: not
+  // the one that finish() throws.
+  std::shared_future<render::SceneFeatures> features() const { return features_; }
+  // Waits for what was started with this source; starts it if nothing was. Throws what reading and choosing throw.
   LoadedScene finish(const SceneSource& source, const RenderOptions& options);
 
  private:
   SceneSource source_;
+  std::shared_future<render::SceneFeatures> features_;
   std::future<LoadedScene> scene_;
   std::future<void> tables_;
 };

@@ -29,9 +29,11 @@ SceneSource chooseScene(const std::filesystem::path& asked, const program::Progr
   return {{}, "default scene", {}, render::defaultSceneOptions(program)};
 }
 
-scene::Scene loadScene(const SceneSource& source) {
-  if (!source.file.empty()) return scene::loadScene(source.file);
-  return source.text.empty() ? scene::defaultScene(source.builtIn) : scene::parseSceneToml(source.text, source.name);
+scene::Scene loadScene(const SceneSource& source, const scene::Described& described) {
+  if (!source.file.empty()) return scene::loadScene(source.file, described);
+  scene::Scene scene = source.text.empty() ? scene::defaultScene(source.builtIn) : scene::parseSceneToml(source.text, source.name);
+  if (described) described(scene);
+  return scene;
 }
 
 std::vector<std::filesystem::path> sceneFiles(const SceneSource& source) {

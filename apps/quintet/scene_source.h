@@ -8,7 +8,7 @@
 
 #include "program/program.h"
 #include "scene/default_scene.h"
-#include "scene/scene.h"
+#include "scene/load.h"
 
 namespace quintet::app {
 
@@ -24,7 +24,7 @@ struct SceneSource {
 SceneSource chooseScene(const std::filesystem::path& asked, const program::Program& program);
 
 // Throws FileError, UsageError.
-scene::Scene loadScene(const SceneSource& source);
+scene::Scene loadScene(const SceneSource& source, const scene::Described& described = {});
 
 // Every file on disk that loadScene reads, for --watch; those that cannot be found are left out.
 std::vector<std::filesystem::path> sceneFiles(const SceneSource& source);

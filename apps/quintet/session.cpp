@@ -52,6 +52,7 @@ bool isProgramSource(const std::filesystem::path& name) {
 Session::Session(const RenderOptions& options) : options_(options), progress_(options.quiet || options.farm.jsonProgress) {}
 
 void Session::prepare() {
+  earlyShaders_ = {};  // of a program as it was; waits for it
   program_ = program::loadProgram(options_.program);
   parameters_ = parameterValues(program_, options_);
   if (options_.adaptive && !program_.adaptive)
@@ -86,6 +87,14 @@ void Session::openDevice() {
   compilerOptions.cacheFolder = part("shaders");
   compiler_ = std::make_unique<shader::Compiler>(compilerOptions);
   pipelineCache_ = std::make_unique<gpu::PipelineCache>(*context_, part("pipelines"));
+  compileEarly();
+}
+
+// Beside the reading, uploading and building of the scene. Its errors are told by link(), after those of the scene.
+void Session::compileEarly() {
+  earlyShaders_ = std::async([this, features = loading_.features(), settings = settings()] {
+    return render::compileShaders(program_, *compiler_, settings, render::shaderDefines(features.get(), context_->info().quirks));
+  });
 }
 
 void Session::checkSizes(uvec2 size) const {
@@ -148,8 +157,7 @@ void Session::describe(const scene::Scene& scene, const ChosenEnvironment& envir
                                report.repaired.size(), shellQuoted(sceneSource_.file.string())));
 }
 
-void Session::link() {
-  progress_.stage("compiling shaders");
+render::RenderSettings Session::settings() const {
   render::RenderSettings settings;
   settings.width = sceneInfo_.size.x;
   settings.height = sceneInfo_.size.y;
@@ -163,7 +171,18 @@ void Session::link() {
   settings.frameCount = options_.drawnFrames.value_or(0);
   // On a CPU the first launch compiles, and other processes take their share.
   settings.timeoutSeconds = options_.timeout.value_or(context_->info().quirks.software ? 600.0 : 60.0);
-  renderer_ = std::make_unique<render::Renderer>(*deviceScene_, program_, *compiler_, pipelineCache_.get(), settings);
+  return settings;
+}
+
+void Session::link() {
+  progress_.stage("compiling shaders");
+  render::RenderSettings wanted = settings();
+  render::CompiledShaders early;
+  if (earlyShaders_.valid()) {
+    early = earlyShaders_.get();
+    wanted.compiled = &early;
+  }
+  renderer_ = std::make_unique<render::Renderer>(*deviceScene_, program_, *compiler_, pipelineCache_.get(), wanted);
   startedRendering_ = clock_.seconds();
   identity_.clear();
   // Files may be edited while a long rendering goes on: what it is of was read now.

@@ -4,6 +4,7 @@
 #define QUINTET_APP_SESSION_H
 
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -89,6 +90,8 @@ class Session {
   void fillRecord(const RenderOutcome& outcome);
   void writeFilm(const RenderOutcome& outcome);
   void fillLoading();  // stages and memory
+  void compileEarly();
+  render::RenderSettings settings() const;
   std::vector<std::size_t> chosenOutputs() const;
   std::vector<std::string> wantedOutputs() const;  // of the optional ones
   void checkSizes(uvec2 size) const;               // of film and file, as far as the size is known
@@ -114,6 +117,8 @@ class Session {
   std::unique_ptr<shader::Compiler> compiler_;
   std::unique_ptr<render::DeviceScene> deviceScene_;
   std::unique_ptr<render::Renderer> renderer_;
+  // Of the first link: compiled while the scene is read and built. Last: it uses what stands above.
+  std::future<render::CompiledShaders> earlyShaders_;
 };
 
 }  // namespace quintet::app

@@ -46,18 +46,14 @@ struct DeviceScene::Impl {
   std::optional<TopLevel> topLevel;
   program::SceneFacts facts;
   shared::Frame frame{};
-  std::vector<std::pair<std::string, std::string>> defines;
+  Defines defines;
 
   // `emptied`: null, or the same scene.
   Impl(gpu::Context& gpuContext, const scene::Scene& scene, scene::Scene* emptied, const scene::Environment& environment,
        const DeviceSceneOptions& sceneOptions)
       : context(gpuContext), options(sceneOptions), bounds(scene::worldBounds(scene)), facts(sceneFacts(scene)) {
     const Stopwatch watch;
-    defines = featureDefines(scene, environment);
-    if (context.info().quirks.corruptsHitAttributes) {
-      defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
-      if (hasAlpha()) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
-    }
+    defines = shaderDefines(sceneFeatures(scene, environment), context.info().quirks);
     uploadLights(scene, environment);  // first: it reads what is given up below
     statistics.lightSeconds = watch.seconds();
     {

@@ -43,6 +43,13 @@ std::string firstError(const std::vector<shader::Diagnostic>& diagnostics) {
   return "the program does not compile";
 }
 
+Defines definesFor(const RenderSettings& settings, const Defines& sceneDefines) {
+  Defines defines = settings.defines;
+  defines.insert(defines.end(), sceneDefines.begin(), sceneDefines.end());
+  for (const std::string& output : settings.outputs) defines.emplace_back("QUINTET_OUTPUT_" + output, "1");
+  return defines;
+}
+
 // At most as many launches as there are timers.
 constexpr std::uint32_t kMostInFlight = 2;
 
@@ -57,6 +64,13 @@ struct InFlight {
 };
 
 }  // namespace
+
+CompiledShaders compileShaders(const program::Program& program, const shader::Compiler& compiler, const RenderSettings& settings,
+                               const Defines& sceneDefines) {
+  CompiledShaders shaders{definesFor(settings, sceneDefines), {}};
+  shaders.program = program::compile(program, compiler, shaders.defines, settings.instrument);
+  return shaders;
+}
 
 ProgramError::ProgramError(std::vector<shader::Diagnostic> diagnostics) : Error(firstError(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
@@ -119,10 +133,10 @@ struct Renderer::Impl {
   }
 
   void link(const shader::Compiler& compiler, const gpu::PipelineCache* cache) {
-    std::vector<std::pair<std::string, std::string>> defines = settings.defines;
-    defines.insert(defines.end(), scene.defines().begin(), scene.defines().end());
-    for (const std::string& output : settings.outputs) defines.emplace_back("QUINTET_OUTPUT_" + output, "1");
-    const program::CompiledProgram compiled = program::compile(description, compiler, defines, settings.instrument);
+    const bool ready = settings.compiled && !settings.instrument && settings.compiled->defines == definesFor(settings, scene.defines());
+    const CompiledShaders shaders = ready ? *settings.compiled : compileShaders(description, compiler, settings, scene.defines());
+    settings.compiled = nullptr;
+    const program::CompiledProgram& compiled = shaders.program;
     if (!compiled.ok) throw ProgramError(compiled.diagnostics);
     const program::CheckResult checked = program::check(description, compiled, &scene.facts(), program::deviceLimits(context.info()), true);
     if (!checked.ok()) throw ProgramError(checked.diagnostics);

@@ -10,8 +10,15 @@
 #include "program/link.h"
 #include "render/device_scene.h"
 #include "render/film.h"
+#include "render/scene_features.h"
 
 namespace quintet::render {
+
+// A program's GLSL as SPIR-V, and for what it was compiled.
+struct CompiledShaders {
+  Defines defines;
+  program::CompiledProgram program;
+};
 
 struct RenderSettings {
   std::uint32_t width = 1280;   // pixels of the whole image
@@ -37,8 +44,16 @@ struct RenderSettings {
   // Launches that may wait on the device, so that it has no gaps between them. 0: 2, or 1 on a CPU and for programs that
   // accumulate. What is chosen changes nothing in the image.
   std::uint32_t launchesInFlight = 0;
+  // compileShaders() of the same program and settings: taken if the scene on the device wants the same definitions. Needed
+  // during construction only.
+  const CompiledShaders* compiled = nullptr;
   bool profile = false;  // Renderer::launches; keeps what the driver tells of the pipeline (rt::pipelineStatistics)
 };
+
+// Compiles the program for a scene that is not on the device yet. `sceneDefines`: shaderDefines() of it. What is wrong with
+// the program stands in the result.
+CompiledShaders compileShaders(const program::Program& program, const shader::Compiler& compiler, const RenderSettings& settings,
+                               const Defines& sceneDefines);
 
 // A program whose shaders do not compile or do not fit together (program/check.h); what() is the first error's line.
 class ProgramError : public Error {

@@ -57,20 +57,24 @@ bool anyGeometry(const scene::Scene& scene, Predicate predicate) {
   return std::ranges::any_of(scene.meshes, [&](const scene::Mesh& mesh) { return std::ranges::any_of(mesh.geometries, predicate); });
 }
 
+template <class Predicate>
+bool anyPrimitives(const scene::Scene& scene, Predicate predicate) {
+  return std::ranges::any_of(scene.meshes, [&](const scene::Mesh& mesh) { return std::ranges::any_of(mesh.primitiveSets, predicate); });
+}
+
 bool anyTintsShadows(const scene::Scene& scene) {
   const auto tints = [&](const auto& geometry) { return tintsShadows(scene, geometry); };
-  return std::ranges::any_of(scene.meshes, [&](const scene::Mesh& mesh) {
-    return std::ranges::any_of(mesh.geometries, tints) || std::ranges::any_of(mesh.primitiveSets, tints);
-  });
+  return anyGeometry(scene, tints) || anyPrimitives(scene, tints);
 }
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Scene& scene, const scene::Environment& environment) {
+SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment& environment) {
   const auto any = [&](auto predicate) { return std::any_of(scene.materials.begin(), scene.materials.end(), predicate); };
   const vec3 environmentScale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
 
-  std::vector<std::pair<std::string, std::string>> defines;
+  SceneFeatures features;
+  Defines& defines = features.defines;
   const auto without = [&](const char* name, bool present) {
     if (!present) defines.emplace_back(name, "1");
   };
@@ -89,9 +93,19 @@ std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Sce
   without("QUINTET_NO_PROCEDURAL_ALPHA", procedural.alpha);
   without("QUINTET_NO_PROCEDURAL_PANES", procedural.panes);
   without("QUINTET_NO_SOLID_LIGHTS", procedural.lights);
-  without("QUINTET_NO_SEEDS", procedural.alpha || anyGeometry(scene, [&](const scene::Geometry& g) { return needsAlphaTest(scene, g); }));
+  const bool alphaTriangles = anyGeometry(scene, [&](const scene::Geometry& g) { return needsAlphaTest(scene, g); });
+  without("QUINTET_NO_SEEDS", procedural.alpha || alphaTriangles);
   without("QUINTET_NO_VERTEX_COLORS", anyGeometry(scene, [](const scene::Geometry& g) { return !g.colors.empty(); }));
   defines.emplace_back("QUINTET_TEXTURE_SLOTS", fmt::format("{:#x}u", textureSlots(scene)));
+  features.alpha = alphaTriangles || anyPrimitives(scene, [&](const scene::PrimitiveSet& set) { return needsAlphaTest(scene, set); });
+  return features;
+}
+
+Defines shaderDefines(const SceneFeatures& features, const gpu::Quirks& quirks) {
+  Defines defines = features.defines;
+  if (!quirks.corruptsHitAttributes) return defines;
+  defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
+  if (features.alpha) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
   return defines;
 }
 

@@ -7,11 +7,22 @@
 #include <utility>
 #include <vector>
 
+#include "gpu/context.h"
 #include "scene/scene.h"
 
 namespace quintet::render {
 
-std::vector<std::pair<std::string, std::string>> featureDefines(const scene::Scene& scene, const scene::Environment& environmentInUse);
+using Defines = std::vector<std::pair<std::string, std::string>>;
+
+// What shaders must know of a scene. Of pictures only the number of channels is looked at.
+struct SceneFeatures {
+  Defines defines;     // QUINTET_NO_…
+  bool alpha = false;  // any geometry needs an alpha test
+};
+SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment& environmentInUse);
+
+// With the workarounds for a device.
+Defines shaderDefines(const SceneFeatures& features, const gpu::Quirks& quirks);
 
 }  // namespace quintet::render
 #endif

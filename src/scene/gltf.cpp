@@ -53,8 +53,12 @@ Scene load(const std::filesystem::path& file, const LoadOptions& options) {
   scene.seconds.document = watch.lap();
   instances.finish(scene, budget);
   scene.seconds.meshes = watch.lap();
-  textures.finish(scene, budget);
+  const bool early = textures.describe(scene) && options.described;
+  if (early) options.described(scene);
+  watch.lap();
+  textures.decode(scene, budget);
   scene.seconds.images = watch.lap();
+  if (!early && options.described) options.described(scene);
   makePrintable(scene.report);
   return scene;
 }

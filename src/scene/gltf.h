@@ -4,14 +4,20 @@
 #define QUINTET_SCENE_GLTF_H
 
 #include <filesystem>
+#include <functional>
 
 #include "scene/scene.h"
 
 namespace quintet::scene {
 
+// Called once during the loading, when all is known but what is in the pictures: their sizes and channels are, their data
+// is empty. (Where pictures are files of their own, that is at the end.)
+using Described = std::function<void(const Scene&)>;
+
 struct LoadOptions {
   int scene =
       kNone;  // index of the file's scene to load; kNone: its default scene, else its first, else all root nodes
+  Described described;
 };
 
 // Throws FileError with the place in the file ("/accessors/3/bufferView", "line 3, column 7", "byte 12"),

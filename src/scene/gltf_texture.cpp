@@ -110,9 +110,27 @@ int TextureTable::use(int texture, const std::string& place) {
   return known;
 }
 
-void TextureTable::finish(Scene& scene, MemoryBudget& budget) {
+bool TextureTable::describe(Scene& scene) {
   scene.textures = std::move(textures_);
   scene.images.resize(imageSources_.size());
+  for (std::size_t i = 0; i < imageSources_.size(); ++i) {
+    const int view = document_.images[static_cast<std::size_t>(imageSources_[i])].bufferView;
+    if (view == kNone) return false;
+    try {
+      const io::ImageInfo info = io::probeImage(document_.view(view), "image");
+      io::Image& image = scene.images[i].image;
+      image.width = info.width;
+      image.height = info.height;
+      image.channels = info.channels;
+      image.type = info.type;
+    } catch (const FileError&) {
+      return false;  // decode() tells
+    }
+  }
+  return true;
+}
+
+void TextureTable::decode(Scene& scene, MemoryBudget& budget) {
   const std::vector<std::span<const std::byte>> own = ownBytes(document_, imageSources_);
   parallelFor(imageSources_.size(), [&](std::size_t i) {
     scene.images[i] = loadImage(document_, static_cast<std::size_t>(imageSources_[i]), budget);

@@ -17,9 +17,12 @@ class TextureTable {
   // The index in Scene::textures of a texture of the file; kNone, with a line in the report, if it has no
   // image that can be read. `place` is the use.
   int use(int texture, const std::string& place);
-  // Decodes all images that were used and moves everything into the scene: the last step, for it gives the memory of
-  // encoded images back as they are decoded. Throws FileError, MemoryError.
-  void finish(Scene&, MemoryBudget&);
+  // Moves textures and samplers into the scene, and images as their headers describe them. False: some are in other files,
+  // or broken, and are not described.
+  bool describe(Scene&);
+  // Decodes them: the last step, for it gives the memory of encoded images back as they are decoded. Throws FileError,
+  // MemoryError.
+  void decode(Scene&, MemoryBudget&);
 
  private:
   int useImage(int image);

@@ -24,12 +24,14 @@ SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::
   return text[first] == '[' || text[first] == '#' ? SceneFormat::toml : SceneFormat::none;
 }
 
-Scene loadScene(const std::filesystem::path& file) {
+Scene loadScene(const std::filesystem::path& file, const Described& described) {
   // Only a name that says nothing needs a look inside.
   SceneFormat format = sceneFormat(file, {});
   if (format == SceneFormat::none) format = sceneFormat(file, readFile(file));
-  if (format == SceneFormat::toml) return loadSceneToml(file);
-  return loadGltf(file);  // also says what is wrong with a file of no format
+  if (format != SceneFormat::toml) return loadGltf(file, {.described = described});  // also says what is wrong with a file of no format
+  Scene scene = loadSceneToml(file);
+  if (described) described(scene);
+  return scene;
 }
 
 }  // namespace quintet::scene

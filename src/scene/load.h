@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <span>
 
-#include "scene/scene.h"
+#include "scene/gltf.h"
 
 namespace quintet::scene {
 
@@ -17,7 +17,7 @@ enum class SceneFormat { none, gltf, toml };
 SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::byte> content);
 
 // Throws FileError with the place in the file ("/accessors/3/bufferView", "line 3"), MemoryError.
-Scene loadScene(const std::filesystem::path& file);
+Scene loadScene(const std::filesystem::path& file, const Described& described = {});
 
 }  // namespace quintet::scene
 #endif

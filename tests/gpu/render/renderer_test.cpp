@@ -47,6 +47,29 @@ struct Shared {
   }
 };
 
+// Shaders that were compiled before the scene was on the device are taken if they are for this scene, and only then.
+TEST(Renderer, TakesShadersThatWereCompiledForItsScene) {
+  Shared shared;
+  const io::Image picture = shared.render(shared.settings);
+  const auto defines = [](const SceneBuilder& scene) {
+    return render::shaderDefines(render::sceneFeatures(scene.scene, scene.environment), testContext().info().quirks);
+  };
+  ASSERT_EQ(defines(shared.scene), shared.device.defines());
+  render::CompiledShaders early = render::compileShaders(shared.program, testCompiler(), shared.settings, defines(shared.scene));
+  early.program.seconds = 1234.0;
+  render::RenderSettings settings = shared.settings;
+  settings.compiled = &early;
+  const auto secondsOf = [&] { return render::Renderer(shared.device, shared.program, testCompiler(), nullptr, settings).statistics().compileSeconds; };
+  EXPECT_EQ(secondsOf(), 1234.0);
+
+  SceneBuilder dark = something();
+  dark.sky(vec3(0.0f));
+  early = render::compileShaders(shared.program, testCompiler(), shared.settings, defines(dark));
+  early.program.seconds = 1234.0;
+  EXPECT_LT(secondsOf(), 1000.0);
+  EXPECT_EQ(shared.render(settings).data, picture.data);
+}
+
 TEST(Renderer, BytesDoNotDependOnLaunchSizes) {
   Shared shared;
   const io::Image whole = shared.render(shared.settings);

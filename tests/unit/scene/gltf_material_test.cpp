@@ -274,6 +274,51 @@ TEST(GltfImage, MayShareBytes) {
   for (const scene::NamedImage& image : scene.images) EXPECT_TRUE(image.image.data == noise.data) << image.name;
 }
 
+// What Described is told, and when.
+struct Description {
+  int calls = 0;
+  std::vector<std::uint32_t> channels;
+  bool hasPixels = false;
+  scene::Described callback() {
+    return [this](const scene::Scene& scene) {
+      ++calls;
+      for (const scene::NamedImage& image : scene.images) {
+        channels.push_back(image.image.channels);
+        hasPixels = hasPixels || !image.image.empty();
+      }
+      EXPECT_EQ(scene.materials.size(), 2u);
+      EXPECT_EQ(scene.textures.size(), 2u);
+    };
+  }
+};
+
+TEST(GltfImage, IsDescribedBeforeItIsDecoded) {
+  TextureBuilder builder;
+  builder.use();
+  const io::Image veil = io::makeImage(3, 5, 4, io::PixelType::u8, io::ColorEncoding::sRgb);
+  builder.add("images", {{"bufferView", builder.addView(io::encodePng(veil))}, {"mimeType", "image/png"}});
+  builder.add("textures", {{"source", 1}});
+  builder.add("materials", {{"emissiveTexture", {{"index", 1}}}});
+  const TempFolder folder;
+  writeFile(folder / "scene.glb", builder.glb());
+  Description inside;
+  const scene::Scene scene = scene::loadGltf(folder / "scene.glb", {.described = inside.callback()});
+  EXPECT_EQ(inside.calls, 1);
+  EXPECT_FALSE(inside.hasPixels);
+  EXPECT_THAT(inside.channels, ElementsAre(3, 4));
+  EXPECT_EQ(scene.images[1].image.height, 5u);
+
+  // A picture in a file of its own is read once: when it is decoded.
+  builder.root["images"][0] = {{"uri", "tiles.png"}};
+  writeFile(folder / "tiles.png", tinyPng());
+  writeFile(folder / "scene.glb", builder.glb());
+  Description outside;
+  scene::loadGltf(folder / "scene.glb", {.described = outside.callback()});
+  EXPECT_EQ(outside.calls, 1);
+  EXPECT_TRUE(outside.hasPixels);
+  EXPECT_THAT(outside.channels, ElementsAre(3, 4));
+}
+
 TEST(GltfImage, ExternalFile) {
   TextureBuilder builder;
   builder.use();
