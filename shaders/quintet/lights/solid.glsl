@@ -1,11 +1,12 @@
 // Emissive sphere, box, cylinder, cone or torus; emits the material's emission on both sides. A ball that is round in
-// the world, from outside: uniform over the cone in which it is seen (Shirley et al. 1996, "Monte Carlo Techniques for
-// Direct Lighting Calculations"). All else: a point of the surface, with the density that its transform leaves.
+// the world, from outside: its near side (ball.glsl). All else: a point of the surface, near or far side, with the
+// density that its transform leaves.
 #ifndef QUINTET_LIGHTS_SOLID_GLSL
 #define QUINTET_LIGHTS_SOLID_GLSL
 
 #include "../sampling/warp.glsl"
 #include "../surface.glsl"
+#include "ball.glsl"
 #include "light_sample.glsl"
 #include "triangle.glsl"
 
@@ -25,17 +26,6 @@ vec3 solidCenter(InstanceData instance, PrimitiveData primitive) {
   const vec3 center = vec3(primitive.objectFromPrimitive[0].w, primitive.objectFromPrimitive[1].w, primitive.objectFromPrimitive[2].w);
   return rowsTimesPoint(instance.worldFromObject, center);
 }
-
-// World radius of a sphere; 0 if the transform makes an ellipsoid of it, or for other solids.
-float ballRadius(uint type, mat3 m) {
-  const vec3 squares = vec3(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]));
-  const vec3 mixed = abs(vec3(dot(m[0], m[1]), dot(m[1], m[2]), dot(m[2], m[0])));
-  const bool ball = type == kPrimitiveSphere && maxComponent(max(abs(squares - squares.x), mixed)) <= 2e-5 * squares.x;
-  return ball ? sqrt(squares.x) : 0.0;
-}
-
-// Is a receiver outside the ball, and not on its surface, where rounding decides?
-bool seesBallFromOutside(float radius, vec3 toCenter) { return radius > 0.0 && 1.00002 * radius * radius < dot(toCenter, toCenter); }
 
 // Area vector that m makes of a unit of area with normal n (cofactors): its length is the stretch.
 vec3 areaVector(mat3 m, vec3 n) { return n.x * cross(m[1], m[2]) + n.y * cross(m[2], m[0]) + n.z * cross(m[0], m[1]); }
@@ -100,34 +90,12 @@ float pdfSolid(InstanceData instance, PrimitiveData primitive, uint face, vec2 c
   const mat3 m = worldFromPrimitive(instance, primitive);
   const float radius = ballRadius(primitive.type, m);
   const vec3 toCenter = solidCenter(instance, primitive) - receiver;
-  const float sineSquared = radius * radius / dot(toCenter, toCenter);
-  if (seesBallFromOutside(radius, toCenter)) {
-    if (!front) return 0.0;
-    return (1.0 + sqrt(1.0 - sineSquared)) / (2.0 * kPi * sineSquared);
-  }
+  if (seesBallFromOutside(radius, toCenter)) return front ? pdfBall(toCenter, radius) : 0.0;
   const SolidPoint point = solidPoint(primitive.type, primitive.parameter, face, coordinates);
   const float stretch = length(areaVector(m, normalize(point.normal)));
   const float density = canonicalDensity(primitive.type, primitive.parameter, m, face, point.position);
   const float pdf = density * distance * distance / (stretch * cosine);
   return stretch * cosine > 0.0 && !isinf(pdf) ? pdf : 0.0;
-}
-
-// A point of a ball around the origin seen from -toCenter, uniform over the cone of its directions.
-vec3 sampleBall(vec3 toCenter, float radius, vec2 u) {
-  const float sineSquaredMax = radius * radius / dot(toCenter, toCenter);
-  const float h = u.x * sineSquaredMax / (1.0 + sqrt(1.0 - sineSquaredMax));  // 1 - cos of the direction
-  const float sineSquared = h * (2.0 - h);
-  // The near crossing as an angle at the ball's centre (pbrt-v4, section 6.2.4), its sine by the way there: close to
-  // the ball the angle is small.
-  const float rest = sqrt(max(0.0, 1.0 - sineSquared / sineSquaredMax));
-  const float sineMax = sqrt(sineSquaredMax);
-  const float cosine = sineSquared / sineMax + (1.0 - h) * rest;
-  const float way = (1.0 / sineSquaredMax - 1.0) / ((1.0 - h) / sineMax + rest);  // in radii
-  const float sine = min(way * sqrt(sineSquared), 1.0);
-  const vec3 z = -normalize(toCenter);
-  const vec3 x = anyTangent(z);
-  const float phi = 2.0 * kPi * u.y;
-  return radius * (sine * cos(phi) * x + sine * sin(phi) * cross(z, x) + cosine * z);
 }
 
 bool sampleSolidLight(LightData light, vec3 position, vec2 u, inout LightSample s) {

@@ -160,30 +160,6 @@ TEST(SolidLight, BallsLightAPlane) {
   }
 }
 
-// A large ball that is half there, by alpha or as a pane: of the far side, which light samples do not draw, the part
-// shows that its near side lets through. Of the light of a solid ball 1 - (1 - a)², and 1 + the pane's tint.
-TEST(SolidLight, BallsShowTheirFarSide) {
-  const float radius = 1.5f;
-  const vec3 center(0.6f, 2.0f, -0.3f), radiance(4.0f, 2.0f, 1.0f);
-  const float squared = glm::dot(center, center);
-  const float irradiance = kPi * radius * radius / squared * center.y / std::sqrt(squared);
-  scene::Material veil = emitter(radiance), pane = clearGlass(1.5f, 0.0f);
-  veil.alphaMode = scene::AlphaMode::blend;
-  veil.baseColor.a = 0.5f;
-  pane.specular = 0.0f;
-  pane.baseColor = vec4(vec3(0.5f), 1.0f);
-  pane.emissive = radiance;
-  for (const auto& [ball, part] : {std::pair{veil, 0.75f}, {pane, 1.5f}}) {
-    SceneBuilder scene;
-    add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(1, 1, 1))}), lambert(kAlbedo));
-    add(scene, solidsOf({solid(PrimitiveType::sphere, scaled(radius, radius, radius))}), ball, glm::translate(mat4(1.0f), center));
-    scene.scene.materials.push_back(veil);  // one set of shaders for both
-    scene.scene.materials.push_back(pane);
-    scene.camera(orthographic({0, 0.5f, 0}, vec3(0.0f), 1e-3f));
-    expectUniform(renderPicture(scene, with({"bounces=1"}, 64)), vec4(part * irradiance / kPi * kAlbedo * radiance, 1.0f), {.error = 0.015});
-  }
-}
-
 // Lamps of every shape, stretched, over a plane and beside a mirror: light samples and BSDF samples, weighted, against
 // BSDF samples alone.
 TEST(SolidLight, LampsOfEveryShapeAgreeWithBruteForce) {
