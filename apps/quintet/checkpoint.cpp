@@ -44,14 +44,15 @@ RenderLimits Checkpoint::begin() {
   if (session_.program().accumulation == program::Accumulation::program)
     throw UsageError(fmt::format("the program '{}' averages its samples itself: there are no checkpoints and films of it",
                                  session_.program().name));
-  const auto end = static_cast<std::uint32_t>(limits.samples.value_or(0));
-  if (film && !farm.force)
-    refuseLoss(options_.output, session_.identity(), {{{static_cast<std::uint32_t>(limits.begin), end}}, {}});
   if (active()) {
     checkOutput(farm.checkpointFile);
     removeLeftovers(farm.checkpointFile);
     resume(limits);
   }
+  // As far as it is known now how many there will be: those that are planned, or are there.
+  const auto begin = static_cast<std::uint32_t>(limits.begin), end = static_cast<std::uint32_t>(std::max(limits.samples.value_or(0), limits.done));
+  if (film && !farm.force)
+    refuseLoss(options_.output, session_.identity(), {{{begin, end}}, session_.renderer().film().counts().cellBatches});
   return limits;
 }
 

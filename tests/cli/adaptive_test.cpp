@@ -183,6 +183,23 @@ TEST_F(Adaptive, HasNoParts) {
   render({"--spp", "20", "-o", "a.qfilm", "--force"});
 }
 
+// A scheduler repeats a command that ran out of time: the film that it has left is a beginning of this one.
+TEST_F(Adaptive, FilmsThatAreGoneOnWithAreNotLost) {
+  const auto repeat = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"-o", "a.qfilm", "--checkpoint-file", "c.qfilm", "--resume", "--keep-checkpoint", "-q"});
+    return quintet(command(more));
+  };
+  std::uint64_t before = 0;
+  for (const char* error : {"0.03", "0.02", "0.012"}) {
+    EXPECT_EQ(repeat({"--until-error", error}).status, 0);
+    EXPECT_GT(batchesOf(film("a.qfilm")), before) << error;
+    before = batchesOf(film("a.qfilm"));
+  }
+  std::filesystem::remove(folder_ / "c.qfilm");
+  expectError(repeat({"--until-error", "0.012"}), 1, {"a.qfilm: holds samples 0 to ", "would be lost"});
+  EXPECT_EQ(batchesOf(film("a.qfilm")), before);
+}
+
 TEST_F(Adaptive, OtherLimitsAreRefusedOrHaveAMeaning) {
   render({"--until-error", "0.05", "-o", "out.png", "--keep-checkpoint"});
   const std::uint64_t before = batchesOf(film(kFile));
