@@ -113,10 +113,85 @@ TEST(Aov, LightIsSortedByTheFirstScattering) {
   EXPECT_NEAR(seen.at("indirect_specular", 4, 6)[0], seen.at("color", 4, 6)[0], 1e-6);
 }
 
+const std::vector<std::string> kParts{"emission",         "background",        "direct_diffuse",    "direct_specular", "direct_transmission",
+                                      "indirect_diffuse", "indirect_specular", "indirect_transmission"};
+
+// All light of the picture's middle is in this one layer.
+void expectOnly(const SceneBuilder& scene, const std::string& layer, double least) {
+  render::DeviceScene device(testContext(), scene.scene, scene.environment);
+  PictureOptions options;
+  options.batches = 2;
+  const Layers layers(device, scene.scene.cameras.at(0), options, kParts);
+  for (const std::string& other : kParts) {
+    double sum = 0, color = 0;
+    for (const uvec2 p : {uvec2(3, 3), uvec2(4, 3), uvec2(3, 4), uvec2(4, 4)}) {
+      sum += layers.at(other, p.x, p.y)[1] / 4;
+      color += layers.at("color", p.x, p.y)[1] / 4;
+    }
+    EXPECT_NEAR(sum, layer == other ? color : 0.0, 1e-6 * color) << other << " in the scene for " << layer;
+    EXPECT_GT(color, least) << layer;
+  }
+}
+
+TEST(Aov, EachLayerHasASceneOfItsOwn) {
+  scene::Material mirror, frosted = clearGlass(1.5f, 0.0f);
+  mirror.roughness = 0.0f;
+  frosted.roughness = 0.5f;
+  const scene::Camera ahead = perspective({0, 0, 2}, {0, 0, 0}, 30.0f);
+  const scene::Geometry before = quad({-2, -2, 0}, {4, 0, 0}, {0, 4, 0});
+  // Two mirrors under the sky, one smooth, one rough: its sky is found by light samples, too.
+  SceneBuilder mirrors;
+  mirrors.add(quad({-2, -2, 0}, {2, 0, 0}, {0, 4, 0}), mirror);
+  mirror.roughness = 0.5f;
+  expectOnly(mirrors.add(quad({0, -2, 0}, {2, 0, 0}, {0, 4, 0}), mirror).sky(vec3(1.0f)).camera(ahead), "direct_specular", 0.9);
+  // Light behind a rough pane, darkness before it.
+  SceneBuilder pane;
+  pane.add(before, frosted).add(quad({-2, -2, -1}, {4, 0, 0}, {0, 4, 0}), emitter(vec3(2.0f))).camera(ahead);
+  expectOnly(pane, "direct_transmission", 0.5);
+  // A floor below a light that shines along it, on a wall: what the floor has comes from the wall.
+  scene::Light sun;
+  sun.type = scene::LightType::directional;
+  sun.direction = {1, 0, 0};
+  SceneBuilder corner;
+  corner.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(vec3(0.5f))).add(quad({2, 0, 2}, {0, 0, -4}, {0, 3, 0}), lambert(vec3(0.8f)));
+  corner.light(sun).camera(perspective({0.5f, 2, 0.5f}, {1.2f, 0, 0}, 30.0f));
+  expectOnly(corner, "indirect_diffuse", 0.01);
+  // A lit floor behind a rough pane; the light shines along the pane.
+  sun.direction = {0, -1, 0};
+  SceneBuilder behind;
+  behind.add(before, frosted).add(quad({-2, -1, -0.1f}, {4, 0, 0}, {0, 0, -4}), lambert(vec3(0.8f))).light(sun).camera(ahead);
+  expectOnly(behind, "indirect_transmission", 0.01);
+}
+
+TEST(Aov, NormalsOfAPixelAreAveraged) {
+  // A crease within the pixels of column 8: normals z and (1, 0, 1) / √2.
+  SceneBuilder scene;
+  scene.add(quad({-2, -2, 0}, {2.12f, 0, 0}, {0, 4, 0}), lambert(vec3(0.5f))).add(quad({0.12f, -2, 0}, {2, 0, -2}, {0, 4, 0}), lambert(vec3(0.5f)));
+  scene.sky(vec3(1.0f)).camera(perspective({0, 0, 2}, {0, 0, 0}, 90.0f));
+  render::DeviceScene device(testContext(), scene.scene, scene.environment);
+  PictureOptions options;
+  options.width = options.height = 16;
+  options.batches = 4;
+  const Layers layers(device, scene.scene.cameras[0], options, {"normal"});
+  for (const std::uint32_t y : {4u, 9u, 12u}) {
+    const std::span<const float> n = layers.at("normal", 8, y);
+    EXPECT_GT(n[0], 0.15f);
+    EXPECT_LT(n[0], 0.55f);
+    EXPECT_NEAR(n[1], 0.0, 1e-5);
+    EXPECT_NEAR(n[2], 1.0 - n[0] * (std::sqrt(2.0) - 1.0), 1e-5) << "the mean of two, not made a unit vector again";
+    EXPECT_NEAR(layers.at("normal", 10, y)[0], std::sqrt(0.5), 1e-5);
+    EXPECT_NEAR(layers.at("normal", 4, y)[2], 1.0, 1e-5);
+  }
+}
+
 TEST(Aov, FirstSurfaceIsWhatTheCameraSees) {
   // A wall that faces the camera, two units away, red on the left half and green on the right, sky above.
   SceneBuilder scene;
-  scene.add(quad({-2, -2, 0}, {2, 0, 0}, {0, 2.5f, 0}), lambert({0.8f, 0, 0})).add(quad({0, -2, 0}, {2, 0, 0}, {0, 2.5f, 0}), lambert({0, 0.6f, 0}));
+  for (const float x : {-2.0f, 0.0f}) {
+    scene::Geometry half = quad({x, -2, 0}, {2, 0, 0}, {0, 2.5f, 0});
+    half.uvs[0] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    scene.add(half, lambert(x < 0 ? vec3(0.8f, 0, 0) : vec3(0, 0.6f, 0)));
+  }
   scene.sky(vec3(1.0f)).camera(perspective({0, 0, 2}, {0, 0, 0}, 90.0f));
   render::DeviceScene device(testContext(), scene.scene, scene.environment);
   PictureOptions options;
@@ -135,14 +210,17 @@ TEST(Aov, FirstSurfaceIsWhatTheCameraSees) {
     EXPECT_NEAR(layers.at("albedo", p.x, p.y)[left ? 0 : 1], left ? 0.8 : 0.6, 1e-6);
     EXPECT_EQ(layers.at("instance_id", p.x, p.y)[0], left ? 1.0f : 2.0f);
     EXPECT_EQ(layers.at("material_id", p.x, p.y)[0], left ? 1.0f : 2.0f);
-    EXPECT_LE(layers.at("primitive_id", p.x, p.y)[0], 2.0f);
+    const vec2 uv((at.x + (left ? 2 : 0)) / 2, (at.y + 2) / 2.5);
+    EXPECT_NEAR(layers.at("uv", p.x, p.y)[0], uv.x, 1e-5);
+    EXPECT_NEAR(layers.at("uv", p.x, p.y)[1], uv.y, 1e-5);
+    EXPECT_EQ(layers.at("primitive_id", p.x, p.y)[0], uv.x > uv.y ? 1.0f : 2.0f) << "of the two triangles on either side of the diagonal";
     EXPECT_EQ(layers.at("motion", p.x, p.y)[0], 0.0f);
     const shared::CoverageSlot* slots = &layers.plane("cryptomatte_object").coverage[shared::kCoverageSlots * (p.y * 16 + p.x)];
     EXPECT_EQ(slots[0].id, shared::kCoverageId + (left ? 0 : 1));
     EXPECT_EQ(slots[0].samples, 8u);
   }
   EXPECT_EQ(layers.at("depth", 3, 1)[0], 1e10f);
-  EXPECT_EQ(layers.at("instance_id", 3, 1)[0], 0.0f);
+  for (const char* id : {"instance_id", "material_id", "primitive_id", "uv"}) EXPECT_EQ(layers.at(id, 3, 1)[0], 0.0f) << id;
   EXPECT_EQ(layers.plane("cryptomatte_material").coverage[shared::kCoverageSlots * (16 + 3)].samples, 0u);
   // At the seam colours mix and ids do not.
   const float red = layers.at("albedo", 8, 12)[0];
