@@ -2,6 +2,7 @@
 // and parts that are the whole.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -222,6 +223,44 @@ TEST_F(FilmTest, CellsTakeTheirOwnNumberOfBatches) {
   for (std::uint32_t y = 0; y < 5; ++y)
     for (std::uint32_t x = 0; x < 37; ++x) rays += 4u * std::array{1u, 3u, 2u, 1u}[2 * (x / 32) + (x + y) % 2];
   EXPECT_EQ(r.rays().rays, rays);
+}
+
+// Whatever the launches are, and whichever cells are asked for first: the same plan, the same bytes.
+TEST(AdaptiveFilm, DependsNeitherOnLaunchesNorOnTheOrderOfCells) {
+  using Limits = std::vector<std::uint32_t>;
+  SceneBuilder scene;
+  scene.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), lambert(vec3(0.5f))).add(box({-0.5f, 0, -0.5f}, {0.5f, 0.8f, 0.5f}), lambert({0.7f, 0.2f, 0.2f}));
+  scene.sky(vec3(0.7f)).camera(perspective({1.5f, 1.5f, 3.0f}, {0, 0.4f, 0}, 50.0f));
+  render::DeviceScene device(testContext(), scene.scene, scene.environment);
+  PictureOptions options;
+  options.width = 70;
+  options.height = 40;  // 3 x 2 tiles
+  const Limits plan{1, 3, 2, 1, 4, 2, 1, 1, 3, 3, 2, 5};
+  const auto film = [&](double launchSeconds, std::uint32_t inFlight, const std::vector<Limits>& steps) {
+    render::RenderSettings settings = settingsFor(scene.scene.cameras[0], options);
+    settings.outputs = {"depth", "cryptomatte_object"};
+    settings.launchSeconds = launchSeconds;
+    settings.launchesInFlight = inFlight;
+    render::Renderer renderer(device, options.program, testCompiler(), nullptr, settings);
+    renderer.renderBatch();
+    Limits reached(plan.size(), 1);
+    for (const Limits& limits : steps) {
+      for (std::size_t c = 0; c < plan.size(); ++c) reached[c] = std::max(reached[c], limits[c]);
+      while (renderer.film().counts().cellBatches != reached) EXPECT_TRUE(renderer.renderCells(limits));
+    }
+    return renderer.saveFilm();
+  };
+  const auto cells = [&](const auto& chosen) {
+    Limits limits(plan.size(), 0);
+    for (std::size_t c = 0; c < plan.size(); ++c) limits[c] = chosen(c) ? plan[c] : 0;
+    return limits;
+  };
+  const render::FilmState whole = film(1e9, 1, {plan});
+  EXPECT_TRUE(sameBytes(film(1e-9, 2, {cells([](std::size_t c) { return c % 2 == 1; }), plan}), whole)) << "many launches, odd cells first";
+  std::vector<Limits> backwards;
+  for (std::size_t c = plan.size(); c-- > 0;)
+    if (plan[c] > 1) backwards.push_back(cells([&](std::size_t other) { return other == c; }));
+  EXPECT_TRUE(sameBytes(film(1e9, 2, backwards), whole)) << "cell by cell, from the last one";
 }
 
 }  // namespace
