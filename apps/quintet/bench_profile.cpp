@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 
 #include "bench.h"
+#include "program/payload_sizes.h"
 #include "render/tone_map.h"
 #include "rt/pipeline_statistics.h"
 
@@ -29,6 +31,14 @@ Json pipelineFacts(const rt::Pipeline& pipeline) {
   Json stack = Json::object();
   for (const auto& [name, bytes] : rt::groupStackSizes(pipeline)) stack[name] = bytes;
   return {{"executables", executables.empty() ? Json("not told by the driver") : std::move(executables)}, {"stackBytes", std::move(stack)}};
+}
+
+// What travels with a ray, by the payload's type: the largest of all stages.
+Json payloadFacts(const program::CompiledProgram& compiled) {
+  std::map<std::string, std::uint64_t> bytes;
+  for (const program::PayloadSize& payload : program::payloadSizes(compiled))
+    bytes[payload.type] = std::max(bytes[payload.type], payload.bytes);
+  return bytes;
 }
 
 // Sums over launches; the gaps are those between launches, not that before the first one.
@@ -78,6 +88,8 @@ Json profile(const Bench& bench, render::DeviceScene& scene) {
   render::toDisplay(image, render::ToneMap::aces, 0.0f, true);
   const double mapped = secondsSince(mapping);
 
+  Json pipeline = pipelineFacts(renderer.linked().pipeline());
+  pipeline["payloadBytes"] = payloadFacts(program::compile(program, bench.compiler, scene.defines()));
   const render::DeviceSceneStatistics& s = scene.statistics();
   return {{"samplesPerBatch", render::kBatchSamples},
           {"batches", bench.options.repeat},
@@ -98,7 +110,7 @@ Json profile(const Bench& bench, render::DeviceScene& scene) {
           {"samplesPerSecond", samples / wall},
           {"MraysPerSecond", static_cast<double>(renderer.rays().rays - raysBefore) / trace * 1e-6},
           {"launches", launchFacts(launches, bench.size.x)},
-          {"pipeline", pipelineFacts(renderer.linked().pipeline())}};
+          {"pipeline", std::move(pipeline)}};
 }
 
 }  // namespace quintet::app

@@ -55,6 +55,7 @@ TEST_F(Bench, ProfileTellsOfThePipeline) {
   EXPECT_TRUE(pipeline["executables"].is_object() || pipeline["executables"] == "not told by the driver") << pipeline;
   EXPECT_TRUE(pipeline["stackBytes"].contains("ray generation")) << pipeline;
   EXPECT_GE(pipeline["stackBytes"].size(), 3u);  // a miss and a hit group at least
+  EXPECT_EQ(pipeline["payloadBytes"]["HitPayload"], 24) << pipeline;  // t, three indices, two coordinates: one opaque quad
 }
 
 TEST_F(Bench, ProfileAsTable) {
