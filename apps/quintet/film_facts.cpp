@@ -53,13 +53,7 @@ std::set<std::string> sourceNames(const program::Program& program) {
 std::string hashOfFiles(const FilmSource& source) {
   Hasher hasher;
   for (const std::string& name : sourceNames(source.program)) hasher.add(name).add(source.program.files.at(name));
-  std::vector<Hash> others;
-  for (const std::filesystem::path& file : source.shaderFiles) {
-    const std::vector<std::byte> bytes = readFile(file);
-    others.push_back(Hasher().add(std::span<const std::byte>(bytes)).finish());
-  }
-  std::ranges::sort(others);
-  for (const Hash& hash : others) hasher.add(hash.high).add(hash.low);
+  for (const Hash& hash : source.shaderHashes) hasher.add(hash.high).add(hash.low);
   return hasher.finish().hex();
 }
 

@@ -3,7 +3,6 @@
 #ifndef QUINTET_APP_FILM_FACTS_H
 #define QUINTET_APP_FILM_FACTS_H
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,7 +19,7 @@ namespace quintet::app {
 struct FilmSource {
   const program::Program& program;
   const program::ParameterValues& parameters;
-  std::vector<std::filesystem::path> shaderFiles;  // on disk, outside the program
+  const std::vector<Hash>& shaderHashes;  // render::Renderer::shaderHashes
   std::string sceneHash;
   std::string environmentHash;
   const scene::Camera& camera;

@@ -185,7 +185,7 @@ void Session::link() {
   renderer_ = std::make_unique<render::Renderer>(*deviceScene_, program_, *compiler_, pipelineCache_.get(), wanted);
   startedRendering_ = clock_.seconds();
   identity_.clear();
-  // Files may be edited while a long rendering goes on: what it is of was read now.
+  // Pictures of parameters may be edited while a long rendering goes on: they were read now.
   if (options_.farm.checkpointSeconds || outputKind(options_.output) == OutputKind::film) identity();
   std::vector<shader::Diagnostic> found = renderer_->diagnostics();
   std::erase_if(found, [](const shader::Diagnostic& d) { return d.severity == shader::Severity::note; });

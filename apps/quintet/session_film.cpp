@@ -12,7 +12,7 @@ namespace quintet::app {
 
 const render::FilmFacts& Session::identity() {
   if (identity_.empty())
-    identity_ = filmIdentity({program_, parameters_, renderer_->files(), sceneInfo_.hash, sceneInfo_.environmentHash,
+    identity_ = filmIdentity({program_, parameters_, renderer_->shaderHashes(), sceneInfo_.hash, sceneInfo_.environmentHash,
                               sceneInfo_.camera, sceneInfo_.size, renderer_->film()},
                              options_);
   return identity_;

@@ -103,7 +103,10 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
     }
     for (const std::filesystem::path& file : results[i].files)
       if (std::ranges::find(compiled.files, file) == compiled.files.end()) compiled.files.push_back(file);
+    compiled.fileHashes.insert(compiled.fileHashes.end(), results[i].fileHashes.begin(), results[i].fileHashes.end());
   }
+  std::ranges::sort(compiled.fileHashes);
+  compiled.fileHashes.erase(std::unique(compiled.fileHashes.begin(), compiled.fileHashes.end()), compiled.fileHashes.end());
   for (shader::Diagnostic& d : compiled.diagnostics) d.file = userFile(program, d.file);
   compiled.seconds = secondsSince(start);
   return compiled;

@@ -22,6 +22,7 @@ struct CompiledProgram {
   std::vector<Stage> stages;  // one per file of the program that is used
   std::vector<shader::Diagnostic> diagnostics;
   std::vector<std::filesystem::path> files;  // on disk, read besides Program::files: for --watch
+  std::vector<Hash> fileHashes;              // of what was read from them, sorted, each once
   double seconds = 0;         // wall clock
   bool ok = false;
 

@@ -92,6 +92,7 @@ struct Renderer::Impl {
   RenderStatistics statistics;
   std::vector<shader::Diagnostic> diagnostics;
   std::vector<std::filesystem::path> files;
+  std::vector<Hash> shaderHashes;
   std::optional<InstrumentBuffer> instrument;
   program::CompiledProgram instrumented;  // file names of stages, for notes
   std::vector<LaunchTiming> launches;
@@ -142,6 +143,7 @@ struct Renderer::Impl {
     if (!checked.ok()) throw ProgramError(checked.diagnostics);
     diagnostics = checked.diagnostics;
     files = compiled.files;
+    shaderHashes = compiled.fileHashes;
     scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder, description.anyHitForAll);
     linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled, checked.recursionDepth, cache, settings.profile);
     table.emplace(linked->makeTable(scene.facts().geometries));
@@ -411,6 +413,7 @@ const std::vector<LaunchTiming>& Renderer::launches() const { return impl_->laun
 const program::LinkedProgram& Renderer::linked() const { return *impl_->linked; }
 const std::vector<shader::Diagnostic>& Renderer::diagnostics() const { return impl_->diagnostics; }
 const std::vector<std::filesystem::path>& Renderer::files() const { return impl_->files; }
+const std::vector<Hash>& Renderer::shaderHashes() const { return impl_->shaderHashes; }
 std::vector<shader::Diagnostic> Renderer::notes() const {
   impl_->finishAndCount();
   return impl_->notes();

@@ -139,6 +139,8 @@ class Renderer {
   const std::vector<shader::Diagnostic>& diagnostics() const;
   // Files on disk from outside the program: what its shaders include, and pictures of its parameters.
   const std::vector<std::filesystem::path>& files() const;
+  // Of what its shaders include from there, as it was when they were compiled; sorted.
+  const std::vector<Hash>& shaderHashes() const;
   const program::Program& program() const;
 
  private:

@@ -146,7 +146,10 @@ Result Compiler::compile(const Source& source) const {
   explainMissingBuiltIns(result.diagnostics, source.stage);
   explainPayloadOfAnotherStage(result.diagnostics, source.stage, files);
   for (const SourceFile* file : files.files())
-    if (file != &files.root() && !file->diskPath.empty()) result.files.push_back(file->diskPath);
+    if (file != &files.root() && !file->diskPath.empty()) {
+      result.files.push_back(file->diskPath);
+      result.fileHashes.push_back(Hasher().add(file->text).finish());
+    }
   return result;
 }
 

@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/hash.h"
+
 namespace quintet::shader {
 
 enum class Stage { rayGeneration, intersection, anyHit, closestHit, miss, callable, compute };
@@ -48,6 +50,7 @@ struct Result {
   std::vector<std::uint32_t> spirv;          // empty: did not compile
   std::vector<Diagnostic> diagnostics;
   std::vector<std::filesystem::path> files;  // every file on disk that was read, Source::text's own not (for --watch)
+  std::vector<Hash> fileHashes;              // of their texts, as they were compiled; in the same order
   bool fromCache = false;
   bool ok() const { return !spirv.empty(); }
 };

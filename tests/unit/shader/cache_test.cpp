@@ -35,6 +35,8 @@ TEST_F(ShaderCache, HitIsIdenticalAndKeepsWarningsAndFiles) {
   EXPECT_EQ(all(first), all(second));
   EXPECT_FALSE(all(second).empty());
   EXPECT_EQ(first.files, second.files);
+  EXPECT_EQ(first.fileHashes, second.fileHashes);
+  EXPECT_EQ(first.fileHashes.size(), 1u);
   EXPECT_EQ(entries().size(), 1u);
 }
 

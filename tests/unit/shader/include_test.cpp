@@ -52,6 +52,8 @@ TEST(Include, QuotedFilesAreFoundBesideTheIncludingFile) {
   const Result result = Compiler({}).compile(computeSource("#include \"sub/one.glsl\"", "b.x = two();", main.string()));
   EXPECT_TRUE(result.ok()) << all(result);
   EXPECT_EQ(result.files, (std::vector<std::filesystem::path>{one, two}));
+  const auto hashOf = [](std::string_view text) { return Hasher().add(text).finish(); };
+  EXPECT_EQ(result.fileHashes, (std::vector<Hash>{hashOf("#include \"two.glsl\"\n"), hashOf("int two() { return 2; }\n")}));
 }
 
 TEST(Include, ErrorInAFileOnDisk) {
