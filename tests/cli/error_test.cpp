@@ -72,7 +72,7 @@ TEST_F(StatedError, GoalsThatMakeNoSense) {
 }
 
 TEST_F(StatedError, RendersUntilItIsReached) {
-  // Looked after each batch, they would end after 21 and 81, which are not among the numbers.
+  // Looked after each batch, they would end after 23 and 84, which are not among the numbers.
   const nlohmann::json coarse = report(command({"--until-error", "0.05", "-o", "coarse.exr"}));
   const nlohmann::json fine = report(command({"--until-error", "0.025", "-o", "fine.exr"}));
   for (const auto& [json, goal] : {std::pair(coarse, 0.05), std::pair(fine, 0.025)}) {
