@@ -88,7 +88,8 @@ io::Metadata metadata(const RenderRecord& record) {
 
 std::string unreachedText(const RenderRecord& record) {
   const std::string wanted = fmt::format("the error of {:.2g} % was not reached", 100.0 * *record.wantedError);
-  if (!record.error.known()) return wanted + ": it is not known below two batches of samples";
+  if (record.samples <= render::kBatchSamples) return wanted + ": it is not known below two batches of samples";
+  if (!record.error.known()) return wanted + ": it is not known, some pixels are beyond the range of the film's sums";
   return fmt::format("{}: it is {:.2g} %, in 95 % of the tiles at most {:.2g} %", wanted, 100.0 * record.error.upper,
                      100.0 * record.error.tiles);
 }
