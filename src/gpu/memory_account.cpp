@@ -31,13 +31,13 @@ void MemoryAccount::removeBlock(std::uint64_t size) {
 
 void MemoryAccount::add(Purpose purpose, std::uint64_t size) {
   const std::lock_guard lock(mutex_);
-  uses_[static_cast<std::size_t>(purpose)] += size;
-  if (memory_.now == memory_.peak) memory_.atPeak = uses_;
+  memory_.held[static_cast<std::size_t>(purpose)] += size;
+  if (memory_.now == memory_.peak) memory_.atPeak = memory_.held;
 }
 
 void MemoryAccount::remove(Purpose purpose, std::uint64_t size) {
   const std::lock_guard lock(mutex_);
-  uses_[static_cast<std::size_t>(purpose)] -= size;
+  memory_.held[static_cast<std::size_t>(purpose)] -= size;
 }
 
 std::size_t MemoryAccount::blockCount() const {

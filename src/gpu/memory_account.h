@@ -25,6 +25,7 @@ const char* purposeName(Purpose purpose);  // "accelerationStructures"
 struct DeviceMemory {
   std::uint64_t now = 0;
   std::uint64_t peak = 0;  // the most since the context was made
+  std::array<std::uint64_t, kPurposeCount> held{};  // of now, by Purpose; the rest is room in blocks
   // Of the peak, by Purpose: as things stood when it was last reached. The rest is room in blocks.
   std::array<std::uint64_t, kPurposeCount> atPeak{};
   std::uint64_t unusedAtPeak() const;
@@ -45,7 +46,6 @@ class MemoryAccount {
   mutable std::mutex mutex_;
   std::size_t blockCount_ = 0;
   DeviceMemory memory_;
-  std::array<std::uint64_t, kPurposeCount> uses_{};
 };
 
 }  // namespace quintet::gpu

@@ -26,8 +26,15 @@ TEST(DeviceSceneMemory, HoldsTheSceneOnly) {
   EXPECT_GT(statistics.build.peakScratchBytes, 0u);
   const std::uint64_t needed = statistics.geometryBytes + statistics.textureBytes + statistics.build.bytes + statistics.primitiveMapBytes;
   const gpu::DeviceMemory memory = context.memory();
-  EXPECT_GE(memory.now, needed);
-  EXPECT_LE(memory.now, needed + 12 * kMiB);  // tables, and room in the blocks of what is small
+  const auto held = [&](gpu::Purpose purpose) { return memory.held[static_cast<std::size_t>(purpose)]; };
+  EXPECT_EQ(held(gpu::Purpose::scratch), 0u);
+  EXPECT_EQ(held(gpu::Purpose::staging), 0u);
+  const std::uint64_t ofScene = held(gpu::Purpose::geometry) + held(gpu::Purpose::textures) + held(gpu::Purpose::accelerationStructures);
+  EXPECT_GE(ofScene, needed);
+  EXPECT_LE(ofScene, needed + kMiB);  // alignment, the top level
+  EXPECT_LE(held(gpu::Purpose::tables), 4 * kMiB);
+  // Room in blocks of 32 MiB, of which a device has one for each kind of memory that is used, and keeps one empty.
+  EXPECT_LE(memory.now, ofScene + held(gpu::Purpose::tables) + 96 * kMiB);
 }
 
 }  // namespace

@@ -232,6 +232,7 @@ TEST(Renderer, SaysWhereAProgramIsWrong) {
 
 TEST(Renderer, CountsAndCanBeStopped) {
   Shared shared;
+  shared.settings.launchSeconds = 1e-9;  // a row at a time
   render::Renderer renderer(shared.device, shared.program, testCompiler(), nullptr, shared.settings);
   EXPECT_TRUE(renderer.renderBatch());
   EXPECT_TRUE(renderer.renderBatch(2));
@@ -244,7 +245,11 @@ TEST(Renderer, CountsAndCanBeStopped) {
   EXPECT_FALSE(renderer.renderBatch(4, [&](double done) { seen.push_back(done); return false; }));
   ASSERT_EQ(seen.size(), 1u);
   EXPECT_GT(seen[0], 0.0);
+  EXPECT_LT(seen[0], 1.0);
   EXPECT_EQ(renderer.statistics().samples, 6u);
+  // When the last row is under way nothing is left to give up.
+  EXPECT_TRUE(renderer.renderBatch(4, [](double done) { return done < 1.0; }));
+  EXPECT_EQ(renderer.statistics().samples, 10u);
 }
 
 // The other programs run over the same scene.
