@@ -14,6 +14,12 @@ void Moments::add(double value) {
 
 double Moments::standardError() const { return count_ > 1 ? std::sqrt(variance() / static_cast<double>(count_)) : 0.0; }
 
+Moments Moments::movedTo(double mean) const {
+  Moments moved = *this;
+  moved.mean_ = mean;
+  return moved;
+}
+
 double pValue(const Moments& m, double exact, double floor) {
   return significance(m.mean() - exact, m.standardError(), floor, static_cast<double>(m.count()) - 1.0);
 }

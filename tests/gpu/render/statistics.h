@@ -16,6 +16,8 @@ class Moments {
   double mean() const { return mean_; }
   double variance() const { return count_ > 1 ? squares_ / static_cast<double>(count_ - 1) : 0.0; }
   double standardError() const;  // of the mean
+  // The same spread around another mean.
+  Moments movedTo(double mean) const;
 
  private:
   std::size_t count_ = 0;
