@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -81,13 +82,16 @@ Buffer makeBufferOf(Context& context, const std::vector<T>& data, VkBufferUsageF
 // `data` is read before upload returns; a destination must live until the flush.
 class Uploader {
  public:
-  explicit Uploader(Context& context, VkDeviceSize stagingBytes = VkDeviceSize{64} << 20);
+  explicit Uploader(Context& context, VkDeviceSize stagingBytes = VkDeviceSize{16} << 20);
   ~Uploader();  // flushes
   Uploader(const Uploader&) = delete;
   Uploader& operator=(const Uploader&) = delete;
   void upload(const Buffer& destination, std::span<const std::byte> data, VkDeviceSize offset = 0);
   // All pixels of the image, row after row, tightly packed; leaves it in SHADER_READ_ONLY_OPTIMAL.
   void upload(const class Image& destination, std::span<const std::byte> pixels);
+  // The same, made where they are copied from: write(first, rows) fills `rows`, whole rows of pixels from `first` on.
+  using WriteRows = std::function<void(std::uint32_t first, std::span<std::byte> rows)>;
+  void upload(const class Image& destination, const WriteRows& write);
   void flush();  // submits and waits
 
  private:

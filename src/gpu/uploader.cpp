@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/parallel.h"
 #include "gpu/buffer.h"
 #include "gpu/commands.h"
 #include "gpu/image.h"
@@ -39,10 +40,10 @@ struct Uploader::Impl {
         halfBytes(alignUp(std::max(stagingBytes / 2, kMinHalfBytes))),
         staging(owner, {.size = 2 * halfBytes, .memory = Memory::upload, .name = "upload ring", .purpose = Purpose::staging}) {}
 
-  // Copies `data` into the ring, in pieces of at most `pieceBytes`; calls add(staging offset, position
-  // in data, length) for each.
-  template <class Add>
-  void stage(std::span<const std::byte> data, VkDeviceSize pieceBytes, const Add& add);
+  // Has `bytes` bytes written into the ring, in pieces of at most `pieceBytes`; calls write(position, where) and then
+  // add(staging offset, position, length) for each.
+  template <class Write, class Add>
+  void stage(VkDeviceSize bytes, VkDeviceSize pieceBytes, const Write& write, const Add& add);
   // With a copy that waits in the current half.
   bool overlaps(VkBuffer destination, VkDeviceSize begin, VkDeviceSize end) const;
   void submit();
@@ -60,17 +61,17 @@ struct Uploader::Impl {
   const int exceptions = std::uncaught_exceptions();
 };
 
-template <class Add>
-void Uploader::Impl::stage(std::span<const std::byte> data, VkDeviceSize pieceBytes, const Add& add) {
-  for (std::size_t done = 0; done < data.size();) {
+template <class Write, class Add>
+void Uploader::Impl::stage(VkDeviceSize bytes, VkDeviceSize pieceBytes, const Write& write, const Add& add) {
+  for (VkDeviceSize done = 0; done < bytes;) {
     VkDeviceSize room = halfBytes - used;
-    if (room < std::min<VkDeviceSize>(pieceBytes, data.size() - done)) {
+    if (room < std::min(pieceBytes, bytes - done)) {
       submit();
       room = halfBytes;
     }
-    const std::size_t length = std::min<std::size_t>({data.size() - done, pieceBytes, room});
+    const VkDeviceSize length = std::min({bytes - done, pieceBytes, room});
     const VkDeviceSize offset = half * halfBytes + used;
-    std::memcpy(staging.mapped() + offset, data.data() + done, length);
+    write(done, std::span(staging.mapped() + offset, length));
     add(offset, done, length);
     used += alignUp(length);
     done += length;
@@ -134,7 +135,8 @@ void Uploader::upload(const Buffer& destination, std::span<const std::byte> data
   assert(offset + data.size() <= destination.size());
   // Copies of one submission have no order among themselves.
   if (impl_->overlaps(destination.handle(), offset, offset + data.size())) impl_->submit();
-  impl_->stage(data, impl_->halfBytes, [&](VkDeviceSize staged, VkDeviceSize position, VkDeviceSize length) {
+  const auto copy = [&](VkDeviceSize position, std::span<std::byte> out) { parallelCopy(out.data(), data.subspan(position, out.size())); };
+  impl_->stage(data.size(), impl_->halfBytes, copy, [&](VkDeviceSize staged, VkDeviceSize position, VkDeviceSize length) {
     impl_->bufferCopies.push_back({destination.handle(), {staged, offset + position, length}});
     VkDeviceSize& end = impl_->ends[destination.handle()];
     end = std::max(end, offset + position + length);
@@ -144,14 +146,22 @@ void Uploader::upload(const Buffer& destination, std::span<const std::byte> data
 void Uploader::upload(const Image& destination, std::span<const std::byte> pixels) {
   assert(pixels.size() == destination.byteSize());
   const VkDeviceSize rowBytes = destination.byteSize() / destination.height();
+  upload(destination, [&](std::uint32_t first, std::span<std::byte> rows) {
+    parallelCopy(rows.data(), pixels.subspan(first * rowBytes, rows.size()));
+  });
+}
+
+void Uploader::upload(const Image& destination, const WriteRows& write) {
+  const VkDeviceSize bytes = destination.byteSize(), rowBytes = bytes / destination.height();
   const VkDeviceSize rows = std::min<VkDeviceSize>(impl_->halfBytes / rowBytes, destination.height());
-  impl_->stage(pixels, rows * rowBytes, [&](VkDeviceSize staged, VkDeviceSize position, VkDeviceSize length) {
+  const auto writeRows = [&](VkDeviceSize position, std::span<std::byte> out) { write(static_cast<std::uint32_t>(position / rowBytes), out); };
+  impl_->stage(bytes, rows * rowBytes, writeRows, [&](VkDeviceSize staged, VkDeviceSize position, VkDeviceSize length) {
     VkBufferImageCopy region{};
     region.bufferOffset = staged;
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageOffset = {0, static_cast<std::int32_t>(position / rowBytes), 0};
     region.imageExtent = {destination.width(), static_cast<std::uint32_t>(length / rowBytes), 1};
-    impl_->imageCopies.push_back({&destination, region, position == 0, position + length == pixels.size()});
+    impl_->imageCopies.push_back({&destination, region, position == 0, position + length == bytes});
   });
 }
 

@@ -119,27 +119,36 @@ Image toSrgb8(const Image& image) {
   return result;
 }
 
+void writeChannels(const Image& image, std::uint32_t channels, std::uint32_t first, std::span<std::byte> rows) {
+  const std::size_t rowBytes = std::size_t{image.width} * channels * bytesPerSample(image.type);
+  assert(rows.size() % rowBytes == 0 && first + rows.size() / rowBytes <= image.height);
+  if (image.channels == channels) return parallelCopy(rows.data(), std::span(image.data).subspan(first * rowBytes, rows.size()));
+  const bool alphaOut = channels == 2 || channels == 4;
+  const std::uint32_t colorsOut = channels <= 2 ? 1 : 3;
+  withType(image.type, [&](auto sample) {
+    using T = decltype(sample);
+    const T one = fromUnit<T>(1.0f);
+    parallelFor(rows.size() / rowBytes, [&](std::size_t y) {
+      const T* in = image.samples<T>().data() + (first + y) * image.width * image.channels;
+      T* out = reinterpret_cast<T*>(rows.data() + y * rowBytes);
+      for (std::size_t x = 0; x < image.width; ++x, in += image.channels, out += channels) {
+        const T alpha = image.hasAlpha() ? in[image.channels - 1] : one;
+        if (colorsOut == 1 && image.colorChannels() == 3) {
+          out[0] = fromUnit<T>(encodedLuminance(in, image.encoding));
+        } else {
+          for (std::uint32_t c = 0; c < colorsOut; ++c) out[c] = in[image.colorChannels() == 3 ? c : 0];
+        }
+        if (alphaOut) out[channels - 1] = alpha;
+      }
+    });
+  });
+}
+
 Image toChannels(const Image& image, std::uint32_t channels) {
   if (image.channels == channels) return image;
   Image result = makeImage(image.width, image.height, channels, image.type, image.encoding);
   result.premultiplied = image.premultiplied && result.hasAlpha();
-  withType(image.type, [&](auto sample) {
-    using T = decltype(sample);
-    const T one = fromUnit<T>(1.0f);
-    parallelFor(image.height, [&](std::size_t y) {
-      const T* in = image.samples<T>().data() + y * image.width * image.channels;
-      T* out = result.samples<T>().data() + y * image.width * channels;
-      for (std::size_t x = 0; x < image.width; ++x, in += image.channels, out += channels) {
-        const T alpha = image.hasAlpha() ? in[image.channels - 1] : one;
-        if (result.colorChannels() == 1 && image.colorChannels() == 3) {
-          out[0] = fromUnit<T>(encodedLuminance(in, image.encoding));
-        } else {
-          for (std::uint32_t c = 0; c < result.colorChannels(); ++c) out[c] = in[image.colorChannels() == 3 ? c : 0];
-        }
-        if (result.hasAlpha()) out[channels - 1] = alpha;
-      }
-    });
-  });
+  writeChannels(image, channels, 0, result.data);
   return result;
 }
 

@@ -84,6 +84,9 @@ Image toSrgb8(const Image& image);
 // is 1; RGB becomes grey by its luminance (Rec. 709 weights, linear light); alpha that does not fit is dropped.
 Image toChannels(const Image& image, std::uint32_t channels);
 
+// The same, but only the rows from `first` on, as many as `rows` has room for; `rows` holds whole ones. On all cores.
+void writeChannels(const Image& image, std::uint32_t channels, std::uint32_t first, std::span<std::byte> rows);
+
 // Colour times alpha, in linear floats. No alpha: only toFloat.
 Image toPremultiplied(const Image& image);
 

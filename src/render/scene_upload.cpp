@@ -247,17 +247,15 @@ gpu::Image& addTexture(std::deque<gpu::Image>& textures, gpu::Context& context, 
                        const std::string& name) {
   // The device has no sRGB format of 16 bits: those are decoded here.
   const bool decoded = sRgb && source.type == io::PixelType::u16;
-  io::Image converted;
-  if (decoded) converted = io::toFloat(source);
-  if (source.channels != 4) converted = io::toChannels(decoded ? converted : source, 4);
-  const io::Image& image = converted.empty() ? source : converted;
+  const io::Image linear = decoded ? io::toFloat(source) : io::Image{};
+  const io::Image& image = decoded ? linear : source;
   gpu::ImageOptions options;
   options.width = image.width;
   options.height = image.height;
   options.format = textureFormat(image.type, sRgb);
   options.name = name;
   gpu::Image& texture = textures.emplace_back(context, options);
-  uploader.upload(texture, image.data);
+  uploader.upload(texture, [&](std::uint32_t first, std::span<std::byte> rows) { io::writeChannels(image, 4, first, rows); });
   return texture;
 }
 

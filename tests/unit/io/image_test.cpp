@@ -129,6 +129,27 @@ TEST(ResizeTest, WorksInLinearLight) {
   EXPECT_FLOAT_EQ(resizeBox(image, 1, 1).samples<float>()[0], 0.5f);
 }
 
+// Pixel (x, y) of rows that are written piece by piece, against a loop of its own.
+TEST(WriteChannelsTest, WritesTheRowsThatAreAskedFor) {
+  constexpr std::uint32_t kWidth = 5, kHeight = 7;
+  for (const std::uint32_t channels : {1u, 2u, 3u, 4u}) {
+    Image image = makeImage(kWidth, kHeight, channels, PixelType::u8, ColorEncoding::sRgb);
+    for (std::size_t i = 0; i < image.data.size(); ++i) image.samples<std::uint8_t>()[i] = static_cast<std::uint8_t>(37 * i + 11);
+    std::vector<std::byte> whole(kWidth * kHeight * 4);
+    for (std::uint32_t first = 0; first < kHeight; first += 3) {
+      const std::uint32_t rows = std::min(3u, kHeight - first);
+      writeChannels(image, 4, first, std::span(whole).subspan(std::size_t{4} * kWidth * first, std::size_t{4} * kWidth * rows));
+    }
+    const bool grey = channels <= 2, alpha = channels % 2 == 0;
+    for (std::uint32_t p = 0; p < kWidth * kHeight; ++p) {
+      const auto in = [&](std::uint32_t c) { return image.data[std::size_t{p} * channels + c]; };
+      for (std::uint32_t c = 0; c < 3; ++c) EXPECT_EQ(whole[4 * p + c], in(grey ? 0 : c)) << channels << ' ' << p;
+      EXPECT_EQ(whole[4 * p + 3], alpha ? in(channels - 1) : std::byte{255}) << channels << ' ' << p;
+    }
+    EXPECT_EQ(toChannels(image, 4).data, whole);
+  }
+}
+
 TEST(ResizeTest, InvisiblePixelsLendNoColour) {
   const Image image = floats(2, 1, 2, {1.0f, 1.0f, 9.0f, 0.0f});
   EXPECT_THAT(resizeBox(image, 1, 1).samples<float>(), ElementsAre(1.0f, 0.5f));
