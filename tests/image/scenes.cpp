@@ -221,10 +221,84 @@ SceneBuilder thinWalls() {
   return scene;
 }
 
+// Small versions of the scenes of tests/bench/scenes.txt, with what makes those hard: `naive` must still find the light.
+
+// Emissive triangles of very different power between low walls.
+SceneBuilder lanterns() {
+  SceneBuilder scene;
+  scene.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.5f, 0.47f, 0.42f}));
+  std::mt19937 random(17);
+  const auto draw = [&](float low, float high) { return low + (high - low) * static_cast<float>(random() % 65536) / 65536.0f; };
+  for (int i = 0; i < 8; ++i) {
+    const vec3 low(draw(-2.6f, 2.0f), 0, draw(-2.6f, 1.5f));
+    scene.add(box(low, low + (i % 2 ? vec3(0.8f, 0.6f, 0.08f) : vec3(0.08f, 0.6f, 0.8f))), lambert(vec3(0.7f)));
+  }
+  for (int strength = 0; strength < 6; ++strength) {
+    scene::Geometry lights;
+    for (std::uint32_t i = 0; i < 50; ++i) {
+      const vec3 center(draw(-2.8f, 2.8f), draw(0.15f, 1.2f), draw(-2.8f, 2.8f));
+      for (int corner = 0; corner < 3; ++corner) lights.positions.push_back(center + vec3(draw(-0.2f, 0.2f), draw(-0.2f, 0.2f), draw(-0.2f, 0.2f)));
+      lights.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    scene.add(lights, emitter(std::exp2(static_cast<float>(strength)) * vec3(draw(0.3f, 1), draw(0.3f, 1), draw(0.3f, 1))));
+  }
+  scene.camera(perspective({0, 2, 5}, {0, 0.4f, 0}, 45.0f));
+  return scene;
+}
+
+void addSunAndSky(SceneBuilder& scene, const vec3& sun) {
+  demo::SkySettings sky = demo::testSky();
+  sky.sunDirection = glm::normalize(sun);
+  sky.sunRadius = glm::radians(15.0f);
+  scene.environment.image = demo::skyImage(sky, 64, 32);
+  scene.environment.present = true;
+}
+
+// A room that is lit through one opening, in the right wall.
+SceneBuilder window() {
+  SceneBuilder scene;
+  const scene::Material white = lambert({0.8f, 0.78f, 0.74f});
+  scene.add(box({-2, -0.2f, -2}, {2, 0, 2}), plastic({0.42f, 0.27f, 0.16f}, 0.4f)).add(box({-2, 2.4f, -2}, {2, 2.6f, 2}), white);
+  scene.add(box({-2, 0, -2}, {-1.8f, 2.4f, 2}), lambert({0.35f, 0.45f, 0.62f})).add(box({-1.8f, 0, -2}, {1.8f, 2.4f, -1.8f}), white);
+  scene.add(box({-1.8f, 0, 1.8f}, {1.8f, 2.4f, 2}), white).add(box({1.8f, 0, -2}, {2, 0.5f, 2}), white).add(box({1.8f, 2.1f, -2}, {2, 2.4f, 2}), white);
+  scene.add(box({1.8f, 0.5f, -2}, {2, 2.1f, -1.1f}), white).add(box({1.8f, 0.5f, 1.1f}, {2, 2.1f, 2}), white);
+  scene.add(box({-0.6f, 0, -1}, {0.2f, 0.7f, -0.3f}), lambert({0.7f, 0.16f, 0.13f}));
+  addSunAndSky(scene, {0.78f, 0.55f, 0.28f});
+  scene.camera(perspective({-0.9f, 1.4f, 1.7f}, {0.2f, 0.8f, -1.5f}, 55.0f));
+  return scene;
+}
+
+// Leaves with an alpha mask in many layers under the sun.
+SceneBuilder foliage() {
+  SceneBuilder scene;
+  scene.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.33f, 0.27f, 0.2f}));
+  scene::Material leaf = plastic(vec3(1.0f), 0.5f);
+  leaf.alphaMode = scene::AlphaMode::mask;
+  leaf.baseColorTexture = use(addTexture(scene, 32, io::ColorEncoding::sRgb, [](auto x, auto y) {
+    const vec2 p = (vec2(x, y) + 0.5f) / 16.0f - 1.0f;
+    return vec4(0.25f, 0.5f, 0.1f, p.x * p.x + 3.0f * p.y * p.y < 1.0f ? 1.0f : 0.0f);
+  }));
+  std::mt19937 random(29);
+  const auto draw = [&](float low, float high) { return low + (high - low) * static_cast<float>(random() % 65536) / 65536.0f; };
+  scene::Geometry leaves;
+  for (std::uint32_t i = 0; i < 250; ++i) {
+    const float angle = draw(0, 2 * kPi), size = draw(0.25f, 0.5f);
+    const vec3 a = size * vec3(std::cos(angle), draw(-0.4f, 0.4f), std::sin(angle)), b = size * vec3(-std::sin(angle), draw(-0.4f, 0.4f), std::cos(angle));
+    const scene::Geometry one = withUvs(quad({draw(-2, 2), draw(0.1f, 1.5f), draw(-2, 2)}, a, b));
+    for (const uvec3& t : one.triangles) leaves.triangles.push_back(t + 4 * i);
+    leaves.positions.insert(leaves.positions.end(), one.positions.begin(), one.positions.end());
+    leaves.uvs[0].insert(leaves.uvs[0].end(), one.uvs[0].begin(), one.uvs[0].end());
+  }
+  scene.add(leaves, leaf);
+  addSunAndSky(scene, {0.6f, 0.5f, 0.4f});
+  scene.camera(perspective({0, 1.5f, 4}, {0, 0.6f, 0}, 40.0f));
+  return scene;
+}
+
 }  // namespace
 
 std::span<const ImageScene> imageScenes() {
-  // name, scene, width, height, block, samples of pathtracer and naive, with wrong weights too
+  // name, scene, width, height, block, samples of pathtracer and naive, light samples matter
   static const ImageScene kScenes[] = {
       {"cornell", cornell, 48, 48, 4, 128, 512, true},
       {"glass", glass, 64, 36, 4, 128, 512, true},
@@ -232,11 +306,14 @@ std::span<const ImageScene> imageScenes() {
       {"textures", textures, 32, 20, 4, 128, 256, false},
       {"clearcoat", clearcoat, 32, 20, 4, 128, 256, false},
       {"rough_glass", roughGlass, 32, 20, 4, 128, 256, false},
-      {"sun_and_sky", sunAndSky, 32, 20, 4, 256, 1024, false},
+      {"sun_and_sky", sunAndSky, 32, 20, 4, 256, 1024, true},
       {"solids", solids, 32, 20, 4, 128, 512, false},
       {"alpha", alpha, 32, 20, 4, 128, 256, false},
       {"lens", lens, 32, 20, 4, 128, 256, false},
-      {"thin_walls", thinWalls, 32, 20, 4, 128, 256, false},
+      {"thin_walls", thinWalls, 32, 20, 4, 128, 256, true},
+      {"lanterns", lanterns, 32, 20, 4, 256, 2048, true},
+      {"window", window, 32, 20, 4, 256, 2048, true},
+      {"foliage", foliage, 32, 20, 4, 128, 512, true},
   };
   return kScenes;
 }

@@ -16,7 +16,9 @@ struct ImageScene {
   std::uint32_t width, height;
   std::uint32_t block;      // pixels a side; divides both
   std::uint32_t pathtracerSamples, naiveSamples;  // multiples of 128
-  bool findsWrongWeights;   // also render with wrong MIS weights, which must be noticed: costs time
+  // Light samples matter. Also rendered with its number of samples planned, and with wrong MIS weights, which must be
+  // noticed: costs time.
+  bool lightSamples;
 };
 
 inline void PrintTo(const ImageScene& s, std::ostream* out) { *out << s.name; }
