@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 #include "io/image.h"
@@ -133,6 +134,13 @@ Picture render(const Case& c, program::Program program, std::uint32_t batches) {
   return renderPicture(c.make(), options);
 }
 
+// What several tests compare with, rendered once.
+const Picture& naiveOf(const Case& c) {
+  static std::map<std::string, Picture> pictures;
+  const auto known = pictures.find(c.name);
+  return known != pictures.end() ? known->second : pictures.emplace(c.name, render(c, program::loadProgram("naive"), c.naiveBatches)).first->second;
+}
+
 struct Verdict {
   bool same = true;
   std::string text;
@@ -171,7 +179,7 @@ class PaneWeights : public testing::TestWithParam<Case> {};
 
 TEST_P(PaneWeights, AgreeWithBruteForce) {
   const Case& c = GetParam();
-  const Verdict v = compare(render(c, program::loadProgram("pathtracer"), c.batches), render(c, program::loadProgram("naive"), c.naiveBatches));
+  const Verdict v = compare(render(c, program::loadProgram("pathtracer"), c.batches), naiveOf(c));
   std::printf("%s: %s\n", c.name, v.text.c_str());
   EXPECT_TRUE(v.same) << v.text;
 }
@@ -221,14 +229,13 @@ TEST(PaneWeights, WrongOnesAreFound) {
       {"shadow rays are tinted twice", shadowed("twice.rahit", twice)},
       {"weights of 1.3", changed("return a / (a + b);", "return a / (a + 0.7 * b);")},
   };
-  const Picture naive = render(kOnePane, program::loadProgram("naive"), kOnePane.naiveBatches);
+  const Picture& naive = naiveOf(kOnePane);
   for (const auto& [name, program] : wrong) {
     const Verdict v = compare(render(kOnePane, program, kOnePane.batches), naive);
     std::printf("%s: %s\n", name, v.text.c_str());
     EXPECT_FALSE(v.same) << name << ": " << v.text;
   }
-  const Verdict v = compare(render(kOneBounce, changed(keep, "path.depth++;"), kOneBounce.batches),
-                            render(kOneBounce, program::loadProgram("naive"), kOneBounce.naiveBatches));
+  const Verdict v = compare(render(kOneBounce, changed(keep, "path.depth++;"), kOneBounce.batches), naiveOf(kOneBounce));
   EXPECT_FALSE(v.same) << "panes are bounces: " << v.text;
 }
 
