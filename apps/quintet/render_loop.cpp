@@ -44,7 +44,7 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
       outcome.abandoned = hooks.abandon && hooks.abandon();
       return !outcome.abandoned;
     });
-    if (!whole) return outcome;
+    if (!whole || outcome.abandoned) return outcome;  // a batch of one launch is whole when it hears of that
     const double now = limits.secondsBefore + clock.seconds();
     if (outcome.firstPixelSeconds == 0) outcome.firstPixelSeconds = clock.seconds();
     outcome.seconds = now;
