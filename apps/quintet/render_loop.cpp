@@ -23,7 +23,7 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
   outcome.plan = schedule.plan();
   const auto isOver = [&](double seconds, double batch) { return limits.seconds && seconds + 0.5 * batch >= *limits.seconds; };
   if (limits.done > limits.begin && isOver(limits.secondsBefore, limits.batchSecondsBefore)) {
-    outcome.missed = limits.error && !render::estimateError(renderer.film().saveFirst()).reaches(*limits.error);
+    outcome.missed = limits.error && !renderer.film().estimateError().reaches(*limits.error);
     return outcome;
   }
   double counted = 0, looked = 0, lookSeconds = 0;

@@ -72,7 +72,7 @@ std::optional<std::uint64_t> Schedule::sampleLimit() const {
 
 void Schedule::look() {
   renderer_.finish();
-  estimate_ = render::estimateError(renderer_.film().saveFirst());
+  estimate_ = renderer_.film().estimateError();
 }
 
 bool Schedule::next() {

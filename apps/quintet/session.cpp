@@ -328,7 +328,7 @@ void Session::fillRecord(const RenderOutcome& outcome) {
   record_.samples = options_.adaptive ? outcome.samples : statistics.samples;
   record_.adaptive = options_.adaptive;
   record_.wantedError = options_.error;
-  if (program_.accumulation == program::Accumulation::film) record_.error = render::estimateError(renderer_->film().saveFirst());
+  if (program_.accumulation == program::Accumulation::film) record_.error = renderer_->film().estimateError();
   record_.accumulates = program_.accumulation == program::Accumulation::program;
   record_.rays = rays.rays;
   record_.droppedSamples = rays.droppedSamples;

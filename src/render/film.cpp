@@ -153,23 +153,45 @@ void Film::addBatch(gpu::Commands& commands, SampleRange samples) {
   commands.barrier(gpu::Stage::all, gpu::Stage::all);
 }
 
-FilmPlane Film::plane(const Output& output) const {
+FilmPlane Film::plane(const Output& output) const { return plane(output, 0, region_.height); }
+
+FilmPlane Film::plane(const Output& output, std::uint32_t firstRow, std::uint32_t rows) const {
   FilmPlane plane;
   plane.name = output.name;
   plane.pixel = output.pixel;
   if (!output.total) return plane;
-  const std::size_t pixels = std::size_t{region_.width} * region_.height;
-  if (accumulation_ == Accumulation::program || output.pixel == OutputPixel::center) plane.values = output.total.downloadAs<vec4>(pixels);
-  else if (output.pixel == OutputPixel::mean) plane.sums = output.total.downloadAs<shared::FixedSum>(4 * pixels);
-  else plane.coverage = output.total.downloadAs<shared::CoverageSlot>(shared::kCoverageSlots * pixels);
-  if (output.squares) plane.squares = output.squares.downloadAs<shared::FixedSum>(4 * pixels);
+  const auto read = [&](const gpu::Buffer& buffer, auto& values, std::size_t perPixel) {
+    const std::size_t row = perPixel * region_.width;
+    values.resize(row * rows);
+    buffer.download(std::as_writable_bytes(std::span(values)), firstRow * row * sizeof(values[0]));
+  };
+  if (accumulation_ == Accumulation::program || output.pixel == OutputPixel::center) read(output.total, plane.values, 1);
+  else if (output.pixel == OutputPixel::mean) read(output.total, plane.sums, 4);
+  else read(output.total, plane.coverage, shared::kCoverageSlots);
+  if (output.squares) read(output.squares, plane.squares, 4);
   return plane;
+}
+
+template <class Use>
+void Film::forStrips(const Output& output, const Use& use) const {
+  for (std::uint32_t first = 0; first < region_.height; first += shared::kTileSize) {
+    const std::uint32_t rows = std::min(shared::kTileSize, region_.height - first);
+    FilmState strip{{region_.x, region_.y + first, region_.width, rows}, countsOfRows(counts_, region_.width, first, rows), {}, {}};
+    strip.planes.push_back(plane(output, first, rows));
+    use(strip, first);
+  }
 }
 
 FilmState Film::save() const {
   FilmState state{region_, counts_, {}, statistics_.downloadAs<uvec2>(std::size_t{region_.width} * region_.height)};
   for (const Output& output : outputs_) state.planes.push_back(plane(output));
   return state;
+}
+
+ErrorEstimate Film::estimateError() const {
+  ErrorEstimator estimator(region_, counts_);
+  forStrips(outputs_[0], [&](const FilmState& strip, std::uint32_t first) { estimator.add(strip, first); });
+  return estimator.estimate();
 }
 
 FilmState Film::saveFirst() const {
@@ -193,9 +215,16 @@ void Film::restore(const FilmState& state) {
 }
 
 io::Image Film::download(std::size_t output) const {
-  FilmState state{region_, counts_, {}, {}};
-  state.planes.push_back(plane(outputs_.at(output)));
-  return planeImage(state, 0);
+  io::Image image;
+  forStrips(outputs_.at(output), [&](const FilmState& strip, std::uint32_t first) {
+    const io::Image part = planeImage(strip, 0);
+    if (first == 0) {
+      image = io::makeImage(region_.width, region_.height, 4, io::PixelType::f32, io::ColorEncoding::linear);
+      image.premultiplied = part.premultiplied;
+    }
+    std::ranges::copy(part.samples<float>(), image.samples<float>().begin() + std::ptrdiff_t{4} * first * region_.width);
+  });
+  return image;
 }
 
 std::vector<vec4> Film::downloadBatch(std::size_t output) const {

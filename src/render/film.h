@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gpu/compute.h"
+#include "render/film_error.h"
 #include "render/film_state.h"
 #include "shader/compiler.h"
 
@@ -53,9 +54,11 @@ class Film {
   std::vector<vec4> downloadBatch(std::size_t output) const;
   RayCount countRays() const;  // blocks
 
-  // All of it, or only the first output (what an error estimate needs). Blocks.
+  // All of it, or only the first output. Blocks.
   FilmState save() const;
   FilmState saveFirst() const;
+  // estimateError of what is there now. Blocks.
+  ErrorEstimate estimateError() const;
   // Goes on from a state of the same program, outputs and region.
   void restore(const FilmState& state);
 
@@ -67,6 +70,10 @@ class Film {
   };
   void addBatch(gpu::Commands& commands, SampleRange samples);
   FilmPlane plane(const Output& output) const;
+  FilmPlane plane(const Output& output, std::uint32_t firstRow, std::uint32_t rows) const;
+  // Reads an output tile row by tile row: use(strip, its first row).
+  template <class Use>
+  void forStrips(const Output& output, const Use& use) const;
 
   gpu::Context& context_;
   Region region_;

@@ -17,25 +17,6 @@ constexpr double kConfidence = 0.95;
 constexpr double kTilesBelow = 0.95;
 constexpr std::uint32_t kMostBatches = 1u << 22;
 
-struct PixelMoments {
-  double luminance = 0;  // of the mean
-  double variance = 0;   // of the mean, averaged over the channels
-};
-
-PixelMoments momentsOf(const FilmPlane& plane, std::size_t pixel, double samples, double batches) {
-  PixelMoments result;
-  double mean[3];
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double sum = fixedToDouble(plane.sums[4 * pixel + c]);
-    const double spread = fixedToDouble(plane.squares[4 * pixel + c]) - sum * sum / samples;
-    mean[c] = sum / samples;
-    // Squares beyond their range: nothing is known.
-    result.variance += std::isnan(spread) ? kInfinite : std::max(0.0, spread) / ((batches - 1) * samples) / 3.0;
-  }
-  result.luminance = 0.2126 * mean[0] + 0.7152 * mean[1] + 0.0722 * mean[2];
-  return result;
-}
-
 // Of relative errors' squares.
 double percentile(std::vector<double> values, double part) {
   if (values.empty()) return 0.0;
@@ -70,36 +51,54 @@ void conclude(ErrorEstimate& estimate) {
 
 }  // namespace
 
-ErrorEstimate estimateError(const FilmState& film) {
-  const FilmPlane& plane = film.planes.at(0);
-  ErrorEstimate estimate;
-  estimate.cells.resize(2 * std::size_t{tileCount(film.region)});
-  bool enough = !plane.squares.empty();
-  for (std::size_t c = 0; c < estimate.cells.size(); ++c) {
-    estimate.cells[c].batches = film.counts.batchesOf(static_cast<std::uint32_t>(c));
-    enough = enough && estimate.cells[c].batches >= 2;
+ErrorEstimator::ErrorEstimator(const Region& region, const SampleCounts& counts) : shape_{region, counts, {}, {}}, moments_(shape_.pixelCount()) {
+  for (std::uint32_t c = 0; c < 2 * tileCount(region); ++c) known_ = known_ && counts.batchesOf(c) >= 2;
+}
+
+ErrorEstimator::Moments ErrorEstimator::momentsOf(const FilmPlane& plane, std::size_t pixel, double samples, double batches) {
+  double variance = 0;
+  double mean[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double sum = fixedToDouble(plane.sums[4 * pixel + c]);
+    const double spread = fixedToDouble(plane.squares[4 * pixel + c]) - sum * sum / samples;
+    mean[c] = sum / samples;
+    // Squares beyond their range: nothing is known.
+    variance += std::isnan(spread) ? kInfinite : std::max(0.0, spread) / ((batches - 1) * samples) / 3.0;
   }
-  if (!enough) return estimate;
-  std::vector<PixelMoments> moments(film.pixelCount());
-  parallelFor(film.region.height, [&](std::size_t y) {
-    for (std::uint32_t x = 0; x < film.region.width; ++x) {
-      const std::uint32_t cell = film.cellOf(x, static_cast<std::uint32_t>(y));
-      const std::size_t pixel = y * film.region.width + x;
-      moments[pixel] = momentsOf(plane, pixel, static_cast<double>(film.counts.samplesOf(cell)), static_cast<double>(film.counts.batchesOf(cell)));
+  return {static_cast<float>(0.2126 * mean[0] + 0.7152 * mean[1] + 0.0722 * mean[2]), static_cast<float>(variance)};
+}
+
+void ErrorEstimator::add(const FilmState& strip, std::uint32_t firstRow) {
+  const FilmPlane& plane = strip.planes.at(0);
+  known_ = known_ && !plane.squares.empty();
+  if (!known_) return;
+  parallelFor(strip.region.height, [&](std::size_t y) {
+    for (std::uint32_t x = 0; x < strip.region.width; ++x) {
+      const std::uint32_t cell = strip.cellOf(x, static_cast<std::uint32_t>(y));
+      moments_[(firstRow + y) * strip.region.width + x] =
+          momentsOf(plane, y * strip.region.width + x, static_cast<double>(strip.counts.samplesOf(cell)), static_cast<double>(strip.counts.batchesOf(cell)));
     }
   });
+}
+
+ErrorEstimate ErrorEstimator::estimate() const {
+  ErrorEstimate estimate;
+  estimate.cells.resize(2 * std::size_t{tileCount(shape_.region)});
+  for (std::size_t c = 0; c < estimate.cells.size(); ++c) estimate.cells[c].batches = shape_.counts.batchesOf(static_cast<std::uint32_t>(c));
+  if (!known_) return estimate;
   double mean = 0;
-  for (const PixelMoments& pixel : moments) mean += std::isfinite(pixel.luminance) ? pixel.luminance : 0.0;
-  mean /= static_cast<double>(moments.size());
+  for (const Moments& pixel : moments_) mean += std::isfinite(pixel.luminance) ? static_cast<double>(pixel.luminance) : 0.0;
+  mean /= static_cast<double>(moments_.size());
   bool unknown = false;
   const double darkness = std::max(kDarkness * kDarkness * mean * mean, std::numeric_limits<double>::min());
-  for (std::uint32_t y = 0; y < film.region.height; ++y)
-    for (std::uint32_t x = 0; x < film.region.width; ++x) {
-      const PixelMoments& pixel = moments[std::size_t{y} * film.region.width + x];
-      const double square = pixel.variance / (pixel.luminance * pixel.luminance + darkness);
-      CellError& cell = estimate.cells[film.cellOf(x, y)];
+  for (std::uint32_t y = 0; y < shape_.region.height; ++y)
+    for (std::uint32_t x = 0; x < shape_.region.width; ++x) {
+      const Moments& pixel = moments_[std::size_t{y} * shape_.region.width + x];
+      const double luminance = static_cast<double>(pixel.luminance);
+      const double square = static_cast<double>(pixel.variance) / (luminance * luminance + darkness);
+      CellError& cell = estimate.cells[shape_.cellOf(x, y)];
       ++cell.pixels;
-      if (std::isnan(pixel.luminance)) continue;  // a defect of the program that is told elsewhere
+      if (std::isnan(luminance)) continue;  // a defect of the program that is told elsewhere
       unknown = unknown || std::isinf(square);
       if (std::isinf(square)) continue;
       cell.squares += square;
@@ -108,6 +107,12 @@ ErrorEstimate estimateError(const FilmState& film) {
   conclude(estimate);
   if (unknown) estimate.image = estimate.upper = estimate.tiles = kInfinite;
   return estimate;
+}
+
+ErrorEstimate estimateError(const FilmState& film) {
+  ErrorEstimator estimator(film.region, film.counts);
+  estimator.add(film, 0);
+  return estimator.estimate();
 }
 
 std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGoal& goal) {

@@ -45,6 +45,25 @@ struct ErrorEstimate {
 // that; StatedError.CoversWhatTheSamplerDraws has what scatters with nothing overstated (docs/measurements.md).
 ErrorEstimate estimateError(const FilmState& film);
 
+// The same for a film that is read in strips of whole tile rows (their counts: countsOfRows), each once, in any order: a film is large.
+class ErrorEstimator {
+ public:
+  ErrorEstimator(const Region& region, const SampleCounts& counts);
+  void add(const FilmState& strip, std::uint32_t firstRow);
+  ErrorEstimate estimate() const;
+
+ private:
+  struct Moments {
+    float luminance = 0;  // of a pixel's mean
+    float variance = 0;   // of that mean, averaged over the channels
+  };
+  static Moments momentsOf(const FilmPlane& plane, std::size_t pixel, double samples, double batches);
+
+  FilmState shape_;  // region and counts
+  bool known_ = true;
+  std::vector<Moments> moments_;
+};
+
 struct CellGoal {
   double error = 0;    // for ErrorEstimate::reaches; 0: none, use all of `batches`
   double batches = 0;  // per pixel on average, at most; 0: no limit

@@ -115,6 +115,17 @@ double averageSamples(const Region& region, const SampleCounts& counts) {
   return sum / all;
 }
 
+SampleCounts countsOfRows(const SampleCounts& counts, std::uint32_t width, std::uint32_t first, std::uint32_t rows) {
+  assert(first % shared::kTileSize == 0);
+  SampleCounts part = counts;
+  if (counts.cellBatches.empty()) return part;
+  const std::size_t cells = 2 * std::size_t{tileColumns(width)};
+  const std::size_t begin = first / shared::kTileSize * cells;
+  const auto from = counts.cellBatches.begin() + static_cast<std::ptrdiff_t>(begin);
+  part.cellBatches.assign(from, from + static_cast<std::ptrdiff_t>(cells * tileColumns(rows)));
+  return part;
+}
+
 io::Image planeImage(const FilmState& film, std::size_t output) {
   const FilmPlane& plane = film.planes.at(output);
   if (!plane.stored() || plane.pixel == program::OutputPixel::coverage)

@@ -81,6 +81,9 @@ std::vector<std::uint32_t> cellPixels(const Region& region);
 // Samples per pixel, on average.
 double averageSamples(const Region& region, const SampleCounts& counts);
 
+// The counts of rows [first, first + rows) of a film of this width; `first` is a multiple of shared::kTileSize.
+SampleCounts countsOfRows(const SampleCounts& counts, std::uint32_t width, std::uint32_t first, std::uint32_t rows);
+
 // RGBA floats, linear, premultiplied: the mean of all samples, or the values. Throws UsageError for coverage and for an
 // output that is not stored.
 io::Image planeImage(const FilmState& film, std::size_t output);

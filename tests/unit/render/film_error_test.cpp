@@ -69,6 +69,31 @@ TEST(FilmError, IsNotKnownBelowTwoBatches) {
   EXPECT_TRUE(std::isinf(estimateError(simulation.film).upper));
 }
 
+// Read in strips of tile rows, adaptive counts or not: the same words in any order.
+TEST(FilmError, OfStripsIsThatOfTheWhole) {
+  std::mt19937 random(8);
+  const Draw draw = [&](std::uint32_t x, std::uint32_t) { return 1.0 + 0.01 * static_cast<double>(random() % 100) * (x < 32 ? 1.0 : 0.1); };
+  for (const bool adaptive : {false, true}) {
+    Simulation simulation(70, 75);
+    simulation.render(draw, 4);
+    if (adaptive) simulation.complete(draw, planCells(estimateError(simulation.film), {0, 9}));
+    const FilmState& film = simulation.film;
+    ErrorEstimator estimator(film.region, film.counts);
+    for (const std::uint32_t first : {64u, 0u, 32u}) {
+      const std::uint32_t rows = std::min(32u, film.region.height - first);
+      FilmState strip{{0, first, 70, rows}, countsOfRows(film.counts, 70, first, rows), {film.planes[0]}, {}};
+      for (auto* words : {&strip.planes[0].sums, &strip.planes[0].squares})
+        *words = {words->begin() + 4 * 70 * first, words->begin() + 4 * 70 * (first + rows)};
+      estimator.add(strip, first);
+    }
+    const ErrorEstimate whole = estimateError(film), strips = estimator.estimate();
+    EXPECT_TRUE(whole.known());
+    EXPECT_EQ(strips.upper, whole.upper);
+    EXPECT_EQ(strips.tiles, whole.tiles);
+    for (std::size_t c = 0; c < whole.cells.size(); ++c) EXPECT_EQ(strips.cells[c].squares, whole.cells[c].squares) << c;
+  }
+}
+
 // Noise in one pixel, or in a few batches: what is stated must leave the room that so few numbers ask for.
 TEST(FilmError, CoversPicturesOfFewNoisyPixels) {
   std::mt19937 random(6);
