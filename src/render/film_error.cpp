@@ -1,6 +1,7 @@
 #include "render/film_error.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -25,27 +26,36 @@ double percentile(std::vector<double> values, double part) {
   return values[at];
 }
 
-void conclude(ErrorEstimate& estimate) {
-  // Σv over the pixels, Σv², and Σv² over the degrees of freedom by which each v is known.
+// Sums over pixels: of squares v, of v², and of v² over the degrees of freedom by which each v is known.
+struct ErrorSums {
   double pixels = 0, squares = 0, fourths = 0, doubt = 0;
+  void add(const CellError& cell) {
+    pixels += cell.pixels;
+    squares += cell.squares;
+    fourths += cell.fourths;
+    doubt += cell.fourths / (static_cast<double>(cell.batches) - 1.0);
+  }
+  double image() const { return std::sqrt(squares / pixels); }
+  double upper() const {
+    // Satterthwaite 1946 for both sums of squares; black pictures have none.
+    const double room = squares > 0 ? fisherQuantile(kConfidence, squares * squares / fourths, squares * squares / doubt) : 1.0;
+    return std::sqrt((room * squares + fourths) / pixels);
+  }
+};
+
+void conclude(ErrorEstimate& estimate) {
+  ErrorSums sums;
   std::vector<double> tiles;
   for (std::size_t t = 0; t + 1 < estimate.cells.size(); t += 2) {
-    double tilePixels = 0, tileSquares = 0;
+    ErrorSums tile;
     for (std::size_t c = t; c < t + 2; ++c) {
-      const CellError& cell = estimate.cells[c];
-      tilePixels += cell.pixels;
-      tileSquares += cell.squares;
-      fourths += cell.fourths;
-      doubt += cell.fourths / (static_cast<double>(cell.batches) - 1.0);
+      tile.add(estimate.cells[c]);
+      sums.add(estimate.cells[c]);
     }
-    pixels += tilePixels;
-    squares += tileSquares;
-    tiles.push_back(tileSquares / tilePixels);
+    tiles.push_back(tile.squares / tile.pixels);
   }
-  estimate.image = std::sqrt(squares / pixels);
-  // Satterthwaite 1946 for both sums of squares; black pictures have none.
-  const double room = squares > 0 ? fisherQuantile(kConfidence, squares * squares / fourths, squares * squares / doubt) : 1.0;
-  estimate.upper = std::sqrt((room * squares + fourths) / pixels);
+  estimate.image = sums.image();
+  estimate.upper = sums.upper();
   estimate.tiles = std::sqrt(percentile(tiles, kTilesBelow));
 }
 
@@ -82,28 +92,36 @@ void ErrorEstimator::add(const FilmState& strip, std::uint32_t firstRow) {
 }
 
 ErrorEstimate ErrorEstimator::estimate() const {
+  const auto forPixels = [&](const auto& use) {
+    for (std::uint32_t y = 0; y < shape_.region.height; ++y)
+      for (std::uint32_t x = 0; x < shape_.region.width; ++x) use(moments_[std::size_t{y} * shape_.region.width + x], shape_.cellOf(x, y));
+  };
   ErrorEstimate estimate;
   estimate.cells.resize(2 * std::size_t{tileCount(shape_.region)});
   for (std::size_t c = 0; c < estimate.cells.size(); ++c) estimate.cells[c].batches = shape_.counts.batchesOf(static_cast<std::uint32_t>(c));
   if (!known_) return estimate;
-  double mean = 0;
-  for (const Moments& pixel : moments_) mean += std::isfinite(pixel.luminance) ? static_cast<double>(pixel.luminance) : 0.0;
-  mean /= static_cast<double>(moments_.size());
+  // Of the pixels with even x + y, and of the others: what decides about a cell must know nothing of its own samples.
+  std::array<double, 2> darkness{}, count{};
+  forPixels([&](const Moments& pixel, std::uint32_t cell) {
+    ++count[cell & 1u];
+    darkness[cell & 1u] += std::isfinite(pixel.luminance) ? static_cast<double>(pixel.luminance) : 0.0;
+  });
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double mean = darkness[i] / std::max(1.0, count[i]);
+    darkness[i] = std::max(kDarkness * kDarkness * mean * mean, std::numeric_limits<double>::min());
+  }
   bool unknown = false;
-  const double darkness = std::max(kDarkness * kDarkness * mean * mean, std::numeric_limits<double>::min());
-  for (std::uint32_t y = 0; y < shape_.region.height; ++y)
-    for (std::uint32_t x = 0; x < shape_.region.width; ++x) {
-      const Moments& pixel = moments_[std::size_t{y} * shape_.region.width + x];
-      const double luminance = static_cast<double>(pixel.luminance);
-      const double square = static_cast<double>(pixel.variance) / (luminance * luminance + darkness);
-      CellError& cell = estimate.cells[shape_.cellOf(x, y)];
-      ++cell.pixels;
-      if (std::isnan(luminance)) continue;  // a defect of the program that is told elsewhere
-      unknown = unknown || std::isinf(square);
-      if (std::isinf(square)) continue;
-      cell.squares += square;
-      cell.fourths += square * square;
-    }
+  forPixels([&](const Moments& pixel, std::uint32_t index) {
+    const double luminance = static_cast<double>(pixel.luminance);
+    const double square = static_cast<double>(pixel.variance) / (luminance * luminance + darkness[index & 1u]);
+    CellError& cell = estimate.cells[index];
+    ++cell.pixels;
+    if (std::isnan(luminance)) return;  // a defect of the program that is told elsewhere
+    unknown = unknown || std::isinf(square);
+    if (std::isinf(square)) return;
+    cell.squares += square;
+    cell.fourths += square * square;
+  });
   conclude(estimate);
   if (unknown) estimate.image = estimate.upper = estimate.tiles = kInfinite;
   return estimate;
@@ -115,20 +133,26 @@ ErrorEstimate estimateError(const FilmState& film) {
   return estimator.estimate();
 }
 
-std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGoal& goal) {
-  const std::vector<CellError>& cells = estimate.cells;
-  // The room that the confidence takes is taken off the goal.
-  const double aim = goal.error * (estimate.known() ? std::min(1.0, estimate.image / estimate.upper) : 1.0);
+namespace {
+
+// The numbers of the cells 2 · tile + `part`. All that decides comes from the other cells.
+void planPart(const std::vector<CellError>& cells, const CellGoal& goal, std::size_t part, std::vector<std::uint32_t>& limits) {
   std::vector<double> spread(cells.size());  // relative variance of one batch, by the other cell
-  double pixels = 0, mean = 0;
-  for (std::size_t c = 0; c < cells.size(); ++c) {
+  double pixels = 0, mean = 0, widest = 1e-30;
+  ErrorSums others;
+  for (std::size_t c = part; c < cells.size(); c += 2) {
     const CellError& other = cells[c ^ 1u].pixels > 0 ? cells[c ^ 1u] : cells[c];
     if (other.pixels > 0) spread[c] = other.squares / other.pixels * static_cast<double>(other.batches);
+    if (other.pixels > 0) others.add(other);
     pixels += cells[c].pixels;
     mean += cells[c].pixels * spread[c];
   }
+  if (pixels == 0) return;
   // Where nothing was found yet, something may be: one part in a hundred of the mean.
-  for (double& s : spread) s = std::max(s, 0.01 * mean / pixels);
+  for (std::size_t c = part; c < cells.size(); c += 2) widest = std::max(widest, spread[c] = std::max(spread[c], 0.01 * mean / pixels));
+  // The room that the confidence takes is taken off the goal.
+  const double ratio = others.image() / others.upper();
+  const double aim = goal.error * (std::isfinite(ratio) ? std::min(1.0, ratio) : 1.0);
   const auto limit = [&](std::size_t c, double factor) {
     double batches = factor * std::sqrt(spread[c]);
     if (goal.error > 0) batches = std::max(batches, spread[c] / (4.0 * aim * aim));
@@ -138,7 +162,7 @@ std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGo
   const auto total = [&](double factor, double& square) {
     double sum = 0;
     square = 0;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
+    for (std::size_t c = part; c < cells.size(); c += 2) {
       const std::uint32_t batches = limit(c, factor);
       sum += static_cast<double>(cells[c].pixels) * batches / pixels;
       square += cells[c].pixels * spread[c] / batches / pixels;
@@ -146,7 +170,7 @@ std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGo
     return sum;
   };
   // The smallest factor that reaches the error, or the largest that keeps within the batches.
-  double low = 0, high = static_cast<double>(kMostBatches) / std::sqrt(std::max(1e-30, *std::ranges::max_element(spread)));
+  double low = 0, high = static_cast<double>(kMostBatches) / std::sqrt(widest);
   for (int i = 0; i < 100; ++i) {
     const double factor = 0.5 * (low + high);
     double square;
@@ -155,12 +179,19 @@ std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGo
     const bool reached = goal.error > 0 && square <= aim * aim;
     (over || reached ? high : low) = factor;
   }
-  std::vector<std::uint32_t> limits(cells.size());
-  for (std::size_t c = 0; c < cells.size(); ++c) limits[c] = cells[c].pixels > 0 ? limit(c, goal.error > 0 ? high : low) : 0;
+  for (std::size_t c = part; c < cells.size(); c += 2) limits[c] = cells[c].pixels > 0 ? limit(c, goal.error > 0 ? high : low) : 0;
   // Out of reach: as good as so many batches make it.
   double unused;
   const bool tooMany = goal.error > 0 && goal.batches > 0 && total(high, unused) > goal.batches;
-  return tooMany ? planCells(estimate, {0, goal.batches}) : limits;
+  if (tooMany) planPart(cells, {0, goal.batches}, part, limits);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGoal& goal) {
+  std::vector<std::uint32_t> limits(estimate.cells.size());
+  for (const std::size_t part : {std::size_t{0}, std::size_t{1}}) planPart(estimate.cells, goal, part, limits);
+  return limits;
 }
 
 }  // namespace quintet::render

@@ -72,9 +72,10 @@ struct CellGoal {
 // How many batches each cell should have at the end, at least as many as it has. Of all ways to reach a mean square error
 // the cheapest has numbers in proportion to the standard deviation (Neyman 1934). The spread of a cell is taken from
 // the other cell of its tile, whose pixels are drawn independently: the number of a cell's samples then does not depend on
-// their values, which would bias the mean (Kirk & Arvo 1991, "Unbiased Sampling Techniques for Image Synthesis"), but for the
-// factor that all cells share, in which each has a small part. In later decisions a dependence remains through the
-// numbers of earlier ones, too. How much: docs/design/path-tracer.md, "How many samples".
+// their values, which would bias the mean (Kirk & Arvo 1991, "Unbiased Sampling Techniques for Image Synthesis"). So do the
+// factor that all even cells share, their part of the batches or of the error, and ε: they come from the odd ones, and
+// the reverse. (Only a tile that has no other cell, one pixel at an edge, decides by itself.) In later decisions a dependence
+// remains through the numbers of earlier ones. docs/design/path-tracer.md, "How many samples".
 std::vector<std::uint32_t> planCells(const ErrorEstimate& estimate, const CellGoal& goal);
 
 }  // namespace quintet::render

@@ -200,7 +200,7 @@ double meanOfRuns(bool byOwnCell, double& standardError) {
   std::mt19937 random(5);
   const Draw draw = [&](auto, auto) { return random() % 16 == 0 ? 16.0 : 0.0; };
   double sum = 0, squares = 0;
-  constexpr int kRuns = 6000;
+  constexpr int kRuns = 20000;
   for (int run = 0; run < kRuns; ++run) {
     Simulation simulation(2, 1);  // one pixel in each cell
     simulation.render(draw, 4);
