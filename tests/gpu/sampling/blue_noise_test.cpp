@@ -1,6 +1,5 @@
 // Pixels that share their nets: blocks of pixels are nets, errors cancel over small neighbourhoods, and yet each pixel's
 // own numbers are uniform, independent from demand to demand, and as well spread as those of independent pixels.
-#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "bsdf/chi_square.h"
 #include "harness.h"
 #include "quintet/shared/frame.h"
+#include "sampling/nets.h"
 
 namespace quintet::test {
 namespace {
@@ -47,22 +47,6 @@ std::vector<Demand> square(uvec2 corner, std::uint32_t side, std::uint32_t first
     for (std::uint32_t x = 0; x < side; ++x)
       for (std::uint32_t i = 0; i < count; ++i) result.push_back({corner + uvec2(x, y), first + i, dimension, seed, planned});
   return result;
-}
-
-// Each of the 2^k boxes of 2^-i x 2^-j, i + j = k, holds exactly one of 2^k points, for every i.
-bool isNet(const std::vector<vec2>& points) {
-  const int k = std::countr_zero(points.size());
-  for (int i = 0; i <= k; ++i) {
-    std::vector<bool> seen(points.size(), false);
-    for (const vec2& p : points) {
-      const auto x = static_cast<std::size_t>(p.x * std::ldexp(1.0f, i));
-      const auto y = static_cast<std::size_t>(p.y * std::ldexp(1.0f, k - i));
-      const std::size_t box = (x << (k - i)) + y;
-      if (seen[box]) return false;
-      seen[box] = true;
-    }
-  }
-  return true;
 }
 
 double uniformity(const std::vector<vec2>& points) {

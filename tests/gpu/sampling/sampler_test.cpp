@@ -1,7 +1,6 @@
 // The two samplers: range, uniformity, independence of pixels and of demands, stratification, and what that buys.
 // Every statistical test says which mistake it would find, and finds it.
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "base/math.h"
 #include "bsdf/chi_square.h"
 #include "harness.h"
+#include "sampling/nets.h"
 
 namespace quintet::test {
 namespace {
@@ -88,22 +88,6 @@ std::vector<float> component(const std::vector<vec2>& points, int c) {
   std::vector<float> result;
   for (const vec2& p : points) result.push_back(p[c]);
   return result;
-}
-
-// Each of the 2^k boxes of 2^-i x 2^-j, i + j = k, holds exactly one of 2^k points, for every i.
-bool isNet(const std::vector<vec2>& points) {
-  const int k = std::countr_zero(points.size());
-  for (int i = 0; i <= k; ++i) {
-    std::vector<bool> seen(points.size(), false);
-    for (const vec2& p : points) {
-      const auto x = static_cast<std::size_t>(p.x * std::ldexp(1.0f, i));
-      const auto y = static_cast<std::size_t>(p.y * std::ldexp(1.0f, k - i));
-      const std::size_t box = (x << (k - i)) + y;
-      if (seen[box]) return false;
-      seen[box] = true;
-    }
-  }
-  return true;
 }
 
 const std::vector<Defines> kSamplers{{}, {{"PCG", "1"}}};

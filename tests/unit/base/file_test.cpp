@@ -308,10 +308,10 @@ TEST(FoldersTest, CacheFollowsTheEnvironment) {
   const Variable own("QUINTET_CACHE_DIR", nullptr);
   const Variable home("HOME", "/home/x");
   {
-    const Variable xdg("XDG_CACHE_HOME", "/tmp/xdg");
-    EXPECT_EQ(cacheFolder(), "/tmp/xdg/quintet");
-    const Variable override("QUINTET_CACHE_DIR", "/tmp/own");
-    EXPECT_EQ(cacheFolder(), "/tmp/own");
+    const Variable xdg("XDG_CACHE_HOME", "/xdg");
+    EXPECT_EQ(cacheFolder(), "/xdg/quintet");
+    const Variable override("QUINTET_CACHE_DIR", "/own");
+    EXPECT_EQ(cacheFolder(), "/own");
   }
   {
     const Variable relative("XDG_CACHE_HOME", "not/absolute");
