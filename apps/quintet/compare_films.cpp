@@ -137,13 +137,13 @@ std::string jsonReport(const FilmComparison& comparison, const std::array<FilmFi
                     {"beyond2.58", test.beyond[1]},
                     {"beyond3.29", test.beyond[2]}}},
                   {"nonFinitePixels", test.nonFinitePixels},
+                  {"unknownPixels", test.unknownPixels},
                   {"notes", notes}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string filmLine(const std::string& path, const FilmFile& file) {
-  return fmt::format("{}: samples {}, {} batches, seed {}, {}\n", plain(path), rangesText(file.film.counts.ranges),
-                     file.film.counts.batches(), plain(factText(file.identity, "seed")),
+  return fmt::format("{}: {}, seed {}, {}\n", plain(path), samplesText(file), plain(factText(file.identity, "seed")),
                      plain(factText(file.notes, "device")));
 }
 
@@ -173,6 +173,7 @@ std::string textReport(const FilmComparison& comparison, const std::array<FilmFi
     text += fmt::format("   {:<5} p {:<8.3g} {:+.4f} % ± {:.4f} %   {}\n", kChannels[m.channel], m.p,
                         100.0 * relative(m, m.difference()), 100.0 * relative(m, m.differenceError()), meansText(m));
   if (test.nonFinitePixels > 0) text += fmt::format("{} pixels are not finite\n", test.nonFinitePixels);
+  if (test.unknownPixels > 0) text += fmt::format("{} pixels are too bright to know their noise and were not tested\n", test.unknownPixels);
   for (const std::string& note : notes) text += "note: " + note + "\n";
   return text + fmt::format("{} at level {}\n", test.rejected ? "not the same picture" : "the same picture",
                             comparison.test.level);

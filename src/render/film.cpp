@@ -153,9 +153,9 @@ void Film::addBatch(gpu::Commands& commands, SampleRange samples) {
   commands.barrier(gpu::Stage::all, gpu::Stage::all);
 }
 
-FilmPlane Film::plane(const Output& output) const { return plane(output, 0, region_.height); }
+FilmPlane Film::plane(const Output& output) const { return plane(output, 0, region_.height, true); }
 
-FilmPlane Film::plane(const Output& output, std::uint32_t firstRow, std::uint32_t rows) const {
+FilmPlane Film::plane(const Output& output, std::uint32_t firstRow, std::uint32_t rows, bool squares) const {
   FilmPlane plane;
   plane.name = output.name;
   plane.pixel = output.pixel;
@@ -168,16 +168,16 @@ FilmPlane Film::plane(const Output& output, std::uint32_t firstRow, std::uint32_
   if (accumulation_ == Accumulation::program || output.pixel == OutputPixel::center) read(output.total, plane.values, 1);
   else if (output.pixel == OutputPixel::mean) read(output.total, plane.sums, 4);
   else read(output.total, plane.coverage, shared::kCoverageSlots);
-  if (output.squares) read(output.squares, plane.squares, 4);
+  if (output.squares && squares) read(output.squares, plane.squares, 4);
   return plane;
 }
 
 template <class Use>
-void Film::forStrips(const Output& output, const Use& use) const {
+void Film::forStrips(const Output& output, bool squares, const Use& use) const {
   for (std::uint32_t first = 0; first < region_.height; first += shared::kTileSize) {
     const std::uint32_t rows = std::min(shared::kTileSize, region_.height - first);
     FilmState strip{{region_.x, region_.y + first, region_.width, rows}, countsOfRows(counts_, region_.width, first, rows), {}, {}};
-    strip.planes.push_back(plane(output, first, rows));
+    strip.planes.push_back(plane(output, first, rows, squares));
     use(strip, first);
   }
 }
@@ -190,7 +190,7 @@ FilmState Film::save() const {
 
 ErrorEstimate Film::estimateError() const {
   ErrorEstimator estimator(region_, counts_);
-  forStrips(outputs_[0], [&](const FilmState& strip, std::uint32_t first) { estimator.add(strip, first); });
+  forStrips(outputs_[0], true, [&](const FilmState& strip, std::uint32_t first) { estimator.add(strip, first); });
   return estimator.estimate();
 }
 
@@ -216,7 +216,7 @@ void Film::restore(const FilmState& state) {
 
 io::Image Film::download(std::size_t output) const {
   io::Image image;
-  forStrips(outputs_.at(output), [&](const FilmState& strip, std::uint32_t first) {
+  forStrips(outputs_.at(output), false, [&](const FilmState& strip, std::uint32_t first) {
     const io::Image part = planeImage(strip, 0);
     if (first == 0) {
       image = io::makeImage(region_.width, region_.height, 4, io::PixelType::f32, io::ColorEncoding::linear);

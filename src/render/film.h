@@ -70,10 +70,10 @@ class Film {
   };
   void addBatch(gpu::Commands& commands, SampleRange samples);
   FilmPlane plane(const Output& output) const;
-  FilmPlane plane(const Output& output, std::uint32_t firstRow, std::uint32_t rows) const;
-  // Reads an output tile row by tile row: use(strip, its first row).
+  FilmPlane plane(const Output& output, std::uint32_t firstRow, std::uint32_t rows, bool squares) const;
+  // Reads an output, with its squares or without, tile row by tile row: use(strip, its first row).
   template <class Use>
-  void forStrips(const Output& output, const Use& use) const;
+  void forStrips(const Output& output, bool squares, const Use& use) const;
 
   gpu::Context& context_;
   Region region_;

@@ -69,11 +69,9 @@ ErrorEstimator::Moments ErrorEstimator::momentsOf(const FilmPlane& plane, std::s
   double variance = 0;
   double mean[3];
   for (std::size_t c = 0; c < 3; ++c) {
-    const double sum = fixedToDouble(plane.sums[4 * pixel + c]);
-    const double spread = fixedToDouble(plane.squares[4 * pixel + c]) - sum * sum / samples;
-    mean[c] = sum / samples;
-    // Squares beyond their range: nothing is known.
-    variance += std::isnan(spread) ? kInfinite : std::max(0.0, spread) / ((batches - 1) * samples) / 3.0;
+    mean[c] = fixedToDouble(plane.sums[4 * pixel + c]) / samples;
+    const double part = varianceOfMean(plane, 4 * pixel + c, samples, batches);
+    variance += std::isnan(part) ? kInfinite : part / 3.0;  // squares beyond their range: nothing is known
   }
   return {static_cast<float>(0.2126 * mean[0] + 0.7152 * mean[1] + 0.0722 * mean[2]), static_cast<float>(variance)};
 }

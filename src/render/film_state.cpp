@@ -142,6 +142,12 @@ io::Image planeImage(const FilmState& film, std::size_t output) {
   return image;
 }
 
+double varianceOfMean(const FilmPlane& plane, std::size_t i, double samples, double batches) {
+  const double sum = fixedToDouble(plane.sums[i]);
+  const double spread = fixedToDouble(plane.squares[i]) - sum * sum / samples;
+  return std::isnan(spread) ? spread : std::max(0.0, spread) / ((batches - 1) * samples);
+}
+
 io::Image varianceImage(const FilmState& film, std::size_t output) {
   const FilmPlane& plane = film.planes.at(output);
   if (plane.squares.empty()) throw UsageError(fmt::format("output '{}': the film keeps no squares of it", plane.name));
@@ -150,12 +156,8 @@ io::Image varianceImage(const FilmState& film, std::size_t output) {
   forPixels(film, [&](std::size_t pixel, std::uint32_t cell) {
     const auto samples = static_cast<double>(film.counts.samplesOf(cell));
     const auto batches = static_cast<double>(film.counts.batchesOf(cell));
-    for (std::size_t i = 4 * pixel; i < 4 * pixel + 4; ++i) {
-      const double sum = fixedToDouble(plane.sums[i]);
-      const double spread = fixedToDouble(plane.squares[i]) - sum * sum / samples;
-      values[i] = batches < 2 ? std::numeric_limits<float>::infinity()
-                              : static_cast<float>(std::isnan(spread) ? spread : std::max(0.0, spread) / ((batches - 1) * samples));
-    }
+    for (std::size_t i = 4 * pixel; i < 4 * pixel + 4; ++i)
+      values[i] = batches < 2 ? std::numeric_limits<float>::infinity() : static_cast<float>(varianceOfMean(plane, i, samples, batches));
   });
   return image;
 }

@@ -87,6 +87,9 @@ SampleCounts countsOfRows(const SampleCounts& counts, std::uint32_t width, std::
 // RGBA floats, linear, premultiplied: the mean of all samples, or the values. Throws UsageError for coverage and for an
 // output that is not stored.
 io::Image planeImage(const FilmState& film, std::size_t output);
+// Of word i of `sums`, a pixel's channel with so many samples in so many batches, at least 2: the variance of its mean, as
+// varianceImage states it. NaN where sums or squares are beyond the film's range.
+double varianceOfMean(const FilmPlane& plane, std::size_t i, double samples, double batches);
 // Variance of that mean per pixel and channel, estimated from the spread of its batches; infinite below two batches. For
 // well-distributed samples (Owen-scrambled Sobol) it is an upper bound in expectation: batches of a pixel repel each other.
 // Q = Σ sᵦ²/nᵦ, S = Σ sᵦ, N = Σ nᵦ over B batches: (Q - S²/N) / ((B - 1) N).

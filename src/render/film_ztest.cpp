@@ -46,10 +46,8 @@ void check(const FilmState& film) {
 
 // One pixel and channel of a film: the mean, and its variance with the degrees of freedom of its batches.
 void addPixel(Sums& sums, std::size_t f, const FilmPlane& plane, std::size_t i, double samples, double batches) {
-  const double sum = fixedToDouble(plane.sums[i]);
-  const double spread = fixedToDouble(plane.squares[i]) - sum * sum / samples;
-  sums.means[f] += sum / samples;
-  sums.variances[f].add(std::max(0.0, spread) / ((batches - 1.0) * samples), batches - 1.0);
+  sums.means[f] += fixedToDouble(plane.sums[i]) / samples;
+  sums.variances[f].add(varianceOfMean(plane, i, samples, batches), batches - 1.0);
 }
 
 class Tester {
@@ -62,7 +60,8 @@ class Tester {
         blocks_((region_.x + region_.width - 1) / options.block - first_.x + 1,
                 (region_.y + region_.height - 1) / options.block - first_.y + 1),
         sums_(std::size_t{blocks_.x} * blocks_.y * options.channels),
-        nonFinite_(blocks_.y) {}
+        nonFinite_(blocks_.y),
+        unknown_(blocks_.y) {}
 
   ZTest run() {
     parallelFor(blocks_.y, [&](std::size_t row) {
@@ -78,6 +77,7 @@ class Tester {
     }
     for (std::uint32_t c = 0; c < options_.channels; ++c) test.image.push_back(concluded(whole[c], region_, c));
     for (const std::size_t pixels : nonFinite_) test.nonFinitePixels += pixels;
+    for (const std::size_t pixels : unknown_) test.unknownPixels += pixels;
     return test;
   }
 
@@ -96,8 +96,9 @@ class Tester {
     for (std::uint32_t y = block.y - region_.y; y < block.y - region_.y + block.height; ++y)
       for (std::uint32_t x = block.x - region_.x; x < block.x - region_.x + block.width; ++x) {
         const std::size_t pixel = std::size_t{y} * region_.width + x;
-        if (!isFinite(pixel)) {
-          ++nonFinite_[row];
+        const bool finite = isFinite(pixel, &FilmPlane::sums);
+        if (!finite || !isFinite(pixel, &FilmPlane::squares)) {
+          ++(finite ? unknown_ : nonFinite_)[row];
           continue;
         }
         const std::uint32_t cell = films_[0]->cellOf(x, y);
@@ -110,10 +111,10 @@ class Tester {
       }
   }
 
-  bool isFinite(std::size_t pixel) const {
+  bool isFinite(std::size_t pixel, std::vector<shared::FixedSum> FilmPlane::*words) const {
     for (const FilmState* film : films_)
       for (std::size_t i = 4 * pixel; i < 4 * pixel + options_.channels; ++i)
-        if (isNotFinite(film->planes[0].sums[i]) || isNotFinite(film->planes[0].squares[i])) return false;
+        if (isNotFinite((film->planes[0].*words)[i])) return false;
     return true;
   }
 
@@ -139,7 +140,7 @@ class Tester {
   uvec2 first_;   // block of the region's first pixel
   uvec2 blocks_;  // columns and rows
   std::vector<Sums> sums_;
-  std::vector<std::size_t> nonFinite_;  // pixels, by row of blocks
+  std::vector<std::size_t> nonFinite_, unknown_;  // pixels, by row of blocks
 };
 
 void describe(ZTest& test) {
@@ -168,6 +169,7 @@ ZTest zTest(const FilmState& a, const FilmState& b, const ZTestOptions& options)
   check(a);
   check(b);
   ZTest test = Tester(a, b, options).run();
+  if (test.unknownPixels == a.pixelCount()) throw UsageError("the films are too bright to know their noise");
   test.blockLevel = sidak(0.5 * options.level, test.blocks.size());
   test.imageLevel = sidak(0.5 * options.level, test.image.size());
   const auto smallest = std::ranges::min_element(test.blocks, {}, &ZTestMeans::p);

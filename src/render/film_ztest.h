@@ -67,10 +67,12 @@ struct ZTest {
   static constexpr std::array<double, 3> kZ{1.96, 2.58, 3.29};  // two-sided 5 %, 1 %, 0.1 %
   std::array<double, 3> beyond{};
   std::size_t nonFinitePixels = 0;  // in either film: in no mean, and the picture is rejected
+  std::size_t unknownPixels = 0;    // finite, but in either film too bright for its squares (film_error.h): in no mean
   bool rejected = false;
 };
 
-// Throws UsageError for films of other regions, without squares, or with fewer than kZTestBatches batches.
+// Throws UsageError for films of other regions, without squares, with fewer than kZTestBatches batches, or of unknown pixels
+// alone.
 ZTest zTest(const FilmState& a, const FilmState& b, const ZTestOptions& options = {});
 
 // Of each pixel, the largest |t| of its block over the channels, divided by `scale` and clamped to [0, 1]; blocks without error

@@ -219,6 +219,20 @@ TEST(FilmZTest, APixelThatIsNotFiniteIsRejected) {
   for (const ZTestMeans& m : test.image) EXPECT_TRUE(std::isfinite(m.mean[1]));
 }
 
+// The sun in cd/m²: its mean is known, its noise is not. That is no difference.
+TEST(FilmZTest, PixelsTooBrightForTheirSquaresAreNotTested) {
+  Random random(11);
+  const FilmState a = film(kSmall, 32, exponential(random));
+  FilmState b = film(kSmall, 32, exponential(random));
+  b.planes[0].squares[4 * 100 + 2] = fixedFromFloat(std::numeric_limits<float>::infinity());
+  const ZTest test = zTest(a, b);
+  EXPECT_FALSE(test.rejected);
+  EXPECT_EQ(test.unknownPixels, 1u);
+  EXPECT_EQ(test.nonFinitePixels, 0u);
+  for (shared::FixedSum& square : b.planes[0].squares) square = fixedFromFloat(std::numeric_limits<float>::infinity());
+  EXPECT_THROW(zTest(a, b), UsageError);
+}
+
 TEST(FilmZTest, AdaptiveFilmsHaveBatchesOfTheirOwn) {
   Random random(10);
   const auto make = [&] {
