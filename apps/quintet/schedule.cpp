@@ -53,6 +53,10 @@ bool isFinished(const render::FilmFile& film, const render::ErrorEstimate& estim
   return decide(film.film.region, counts, estimate, limits).empty();
 }
 
+bool isHopeless(const render::ErrorEstimate& estimate, const RenderLimits& limits) {
+  return limits.error && !limits.samples && !limits.seconds && !estimate.known();
+}
+
 bool looksAfter(std::uint64_t batches) {
   if (batches < 16) return batches >= 4;
   const int shift = static_cast<int>(std::bit_width(batches)) - 4;
@@ -85,6 +89,7 @@ bool Schedule::nextForAll() {
   if (limits_.error && (complete || looksAfter(done_ / render::kBatchSamples))) {
     look();
     reached_ = estimate_->reaches(*limits_.error);
+    if (isHopeless(*estimate_, limits_)) return false;
   }
   if (complete || reached_) return false;
   count_ = render::kBatchSamples;
@@ -99,6 +104,7 @@ bool Schedule::nextForCells() {
   if (isLeft(plan_, renderer_.film().counts())) return true;
   look();
   reached_ = limits_.error && estimate_->reaches(*limits_.error);
+  if (isHopeless(*estimate_, limits_)) return false;
   std::vector<std::uint32_t> plan = decide(renderer_.film().region(), renderer_.film().counts(), *estimate_, limits_);
   if (plan.empty()) return false;
   plan_ = std::move(plan);

@@ -72,6 +72,9 @@ std::vector<std::uint32_t> decide(const render::Region& region, const render::Sa
 // An adaptive rendering with these limits would go no further than this film.
 bool isFinished(const render::FilmFile& film, const render::ErrorEstimate& estimate, const RenderLimits& limits);
 
+// An error to reach that will never be known (squares beyond the film's range stay so), and nothing else that ends it.
+bool isHopeless(const render::ErrorEstimate& estimate, const RenderLimits& limits);
+
 // Numbers of batches after which a rendering with an error to reach looks at it: fixed, so that the same command
 // ends with the same samples, interrupted or not. 4 … 15, then eight per doubling.
 bool looksAfter(std::uint64_t batches);

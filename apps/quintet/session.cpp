@@ -92,7 +92,7 @@ void Session::openDevice() {
 
 // Beside the reading, uploading and building of the scene. Its errors are told by link(), after those of the scene.
 void Session::compileEarly() {
-  earlyShaders_ = std::async([this, features = loading_.features(), settings = settings()] {
+  earlyShaders_ = std::async(std::launch::async, [this, features = loading_.features(), settings = settings()] {
     return render::compileShaders(program_, *compiler_, settings, render::shaderDefines(features.get(), context_->info().quirks));
   });
 }

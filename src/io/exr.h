@@ -65,8 +65,8 @@ struct ExrOptions {
 };
 
 // One file. With a lossy compression (DWA) it has two parts if there are `exact` channels: "rgba", lossy, and "data",
-// under ZIP, the one with channels without a layer first; else one. Finite values beyond half's range clamp to ±65504; u32 rounds `samples` to the nearest value
-// in range. The same picture gives the same bytes. Throws UsageError (sizes that disagree, names used twice, levels
+// under ZIP, the one with channels without a layer first; else one. Finite values beyond half's range clamp to ±65504;
+// u32 rounds `samples` to the nearest value in range. The same picture gives the same bytes. Throws UsageError (sizes that disagree, names used twice, levels
 // that do not exist, more than a reader takes). To a file: writeFile (base/file.h), which replaces it in one step.
 std::vector<std::byte> encodeExr(const ExrPicture& picture, const ExrOptions& options = {});
 

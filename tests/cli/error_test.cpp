@@ -250,5 +250,17 @@ TEST_F(StatedError, AdaptiveSpendsSamplesWhereTheyAreNeeded) {
   EXPECT_GT(least[1], 4 * least[2]);
 }
 
+// An environment in cd/m2, as of the sun: its squares are beyond the film's range, its error is never known.
+TEST_F(StatedError, ThatCannotBeKnownEndsTheRendering) {
+  for (const bool isAdaptive : {false, true}) {
+    std::vector<std::string> arguments{"render", "scene.gltf", "--env", "1e10,1e10,1e10", "--size", "32x32", "--until-error", "0.1", "-o", "out.exr"};
+    if (isAdaptive) arguments.push_back("--adaptive");
+    const nlohmann::json json = report(arguments);
+    EXPECT_EQ(json.at("error").at("reached"), false);
+    EXPECT_THAT(json.at("warnings").at(0), HasSubstr("beyond the range"));
+    EXPECT_LE(json.at("samples"), 64);
+  }
+}
+
 }  // namespace
 }  // namespace quintet::test

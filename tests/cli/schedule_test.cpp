@@ -65,6 +65,14 @@ TEST(Decide, AsksForWhatTheErrorNeeds) {
   EXPECT_EQ(decided(film, estimateOf(film, 0.1, 3.0), limitsOf(48, 0.001)), decided(film, estimateOf(film, 0.1, 3.0), limitsOf(48, {})));
 }
 
+TEST(Decide, GivesUpOnWhatCannotBeKnown) {
+  const render::ErrorEstimate known = estimateOf(filmOf(8), 0.1, 1.0), unknown;
+  EXPECT_TRUE(isHopeless(unknown, limitsOf({}, 0.01)));
+  EXPECT_FALSE(isHopeless(unknown, limitsOf(64, 0.01))) << "the samples end it";
+  EXPECT_FALSE(isHopeless(unknown, limitsOf({}, {}))) << "nothing is to be reached";
+  EXPECT_FALSE(isHopeless(known, limitsOf({}, 0.01)));
+}
+
 // The tiles' share is not content though the mean is: planCells sees no need, a tenth more is taken, but not beyond --spp.
 TEST(Decide, TakesATenthMoreWhereTheEstimateSeesNoNeed) {
   const render::FilmFile film = filmOf(40);
