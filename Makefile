@@ -19,6 +19,8 @@ RENDER_FLAGS ?= --size 800x450 --time 50
 BENCH_FLAGS  ?=
 # --only NAME, --fast, --list
 MUTATION_FLAGS ?=
+# --fix
+LINT_FLAGS ?=
 
 .DEFAULT_GOAL := build
 .PHONY: demo test build setup bench lessons reference mutation lint clean help configure
@@ -55,16 +57,8 @@ reference: build ## Compare with the reference images and values (tests/referenc
 mutation: build ## Seed bugs one at a time and see that the tests notice (tests/mutation/run)
 	@tests/mutation/run $(BUILD)/bin --jobs $(JOBS) $(MUTATION_FLAGS)
 
-# The headers below shaders/ are read by C++ too, and formatted by hand, side by side with their GLSL.
-lint: ## Check the layout of C++ (clang-format) and the scripts (shellcheck), where these are installed
-	@if command -v clang-format >/dev/null && [ -e .clang-format ]; then \
-	    git ls-files -z -- 'apps/*.cpp' 'apps/*.h' 'examples/*.cpp' 'examples/*.h' 'include/*.h' \
-	        'src/*.cpp' 'src/*.h' 'tests/*.cpp' 'tests/*.h' \
-	        | xargs -0 -r clang-format --dry-run -Werror && echo "lint: C++ is fine"; \
-	else echo "lint: no clang-format or no .clang-format, C++ not checked"; fi
-	@if command -v shellcheck >/dev/null; then \
-	    shellcheck -x scripts/*.sh tests/setup/*.sh tests/mutation/run tests/mutation/*.sh .ci/run && echo "lint: scripts are fine"; \
-	else echo "lint: no shellcheck here, scripts not checked"; fi
+lint: ## Check the layout of C++ and the scripts (LINT_FLAGS=--fix: lay out the C++)
+	@bash scripts/lint.sh $(LINT_FLAGS)
 
 clean: ## Remove everything that was built
 	@rm -rf build

@@ -101,7 +101,8 @@ void checkChannels(const std::vector<AovLayer>& layers) {
   for (const AovLayer& layer : layers)
     for (const std::string& channel : fileChannels(layer))
       if (const auto [at, isNew] = owners.emplace(channel, layer.name); !isNew)
-        throw UsageError(fmt::format("--aov: '{}' and '{}' would both be the channel {} of the file", at->second, layer.name, channel));
+        throw UsageError(fmt::format("--aov: '{}' and '{}' would both be the channel {} of the file", at->second,
+                                     layer.name, channel));
 }
 
 std::string aovList(const program::Program& program) {

@@ -81,7 +81,9 @@ void joinAovNotes(render::FilmFacts& notes, const render::FilmFacts& others, con
   std::ranges::sort(layers, {}, place);
   CoverageNames names = readCoverageNames(notes);
   if (names.instances.empty() && names.materials.empty()) names = readCoverageNames(others);
-  std::erase_if(notes, [](const auto& note) { return note.first == kLayers || note.first == kInstances || note.first == kMaterials; });
+  std::erase_if(notes, [](const auto& note) {
+    return note.first == kLayers || note.first == kInstances || note.first == kMaterials;
+  });
   addAovNotes(notes, layers, names);
 }
 

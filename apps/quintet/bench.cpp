@@ -33,10 +33,13 @@ double medianSampleSeconds(render::Renderer& renderer, int repeat) {
 }
 
 // Rays of the batches so far per batch.
-std::uint64_t raysPerSample(const render::Renderer& renderer) { return renderer.rays().rays / std::max<std::uint64_t>(1, renderer.statistics().samples); }
+std::uint64_t raysPerSample(const render::Renderer& renderer) {
+  return renderer.rays().rays / std::max<std::uint64_t>(1, renderer.statistics().samples);
+}
 
 // Mrays/s of one ambient occlusion sample (a primary and a secondary ray per pixel) on this scene.
-double occlusionRate(const Bench& bench, gpu::Context& context, const scene::Scene& scene, bool keepInputOrder, uvec2 pixels) {
+double occlusionRate(const Bench& bench, gpu::Context& context, const scene::Scene& scene, bool keepInputOrder,
+                     uvec2 pixels) {
   render::DeviceSceneOptions options;
   options.keepInputOrder = keepInputOrder;
   render::DeviceScene device(context, scene, bench.environment, options);
@@ -50,7 +53,8 @@ double occlusionRate(const Bench& bench, gpu::Context& context, const scene::Sce
 scene::Scene shuffled(scene::Scene scene) {
   std::mt19937 random(1);
   for (scene::Mesh& mesh : scene.meshes)
-    for (scene::Geometry& geometry : mesh.geometries) std::shuffle(geometry.triangles.begin(), geometry.triangles.end(), random);
+    for (scene::Geometry& geometry : mesh.geometries)
+      std::shuffle(geometry.triangles.begin(), geometry.triangles.end(), random);
   std::shuffle(scene.instances.begin(), scene.instances.end(), random);
   return scene;
 }
@@ -62,12 +66,9 @@ Json orderGain(const Bench& bench, gpu::Context& context) {
   const double given = occlusionRate(bench, context, bench.scene, true, pixels);
   const double worst = occlusionRate(bench, context, random, true, pixels);
   const double ordered = occlusionRate(bench, context, random, false, pixels);
-  return {{"pixels", {pixels.x, pixels.y}},
-          {"fileOrderMraysPerSecond", given},
-          {"randomOrderMraysPerSecond", worst},
-          {"spatialOrderMraysPerSecond", ordered},
-          {"gainOverRandom", ordered / worst},
-          {"gainOverFile", ordered / given}};
+  return {{"pixels", {pixels.x, pixels.y}},     {"fileOrderMraysPerSecond", given},
+          {"randomOrderMraysPerSecond", worst}, {"spatialOrderMraysPerSecond", ordered},
+          {"gainOverRandom", ordered / worst},  {"gainOverFile", ordered / given}};
 }
 
 // The library asks lavapipe for more threads than cores, so that a launch's uneven parts even out; without
@@ -95,8 +96,13 @@ std::string asTable(const Json& json, const std::string& prefix = {}) {
   std::string text;
   for (const auto& [key, value] : json.items()) {
     const std::string name = prefix.empty() ? key : prefix + "." + key;
-    if (value.is_object()) text += asTable(value, name);
-    else text += fmt::format("{:<48} {}\n", name, value.is_number_float() ? fmt::format("{:.4g}", value.get<double>()) : value.is_string() ? value.get<std::string>() : value.dump());
+    if (value.is_object())
+      text += asTable(value, name);
+    else
+      text += fmt::format("{:<48} {}\n", name,
+                          value.is_number_float() ? fmt::format("{:.4g}", value.get<double>())
+                          : value.is_string()     ? value.get<std::string>()
+                                                  : value.dump());
   }
   return text;
 }
@@ -110,23 +116,22 @@ Json measure(const BenchOptions& options) {
   const double loadSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const scene::TriangleCount triangles = scene::countTriangles(bench.scene);
 
-  Json result = {{"device", context.info().name},
-                 {"driver", context.info().driver},
-                 {"scene", options.scene},
-                 {"size", {bench.size.x, bench.size.y}},
-                 {"triangles", triangles.stored},
-                 {"instancedTriangles", triangles.instanced},
+  Json result = {{"device", context.info().name}, {"driver", context.info().driver},
+                 {"scene", options.scene},        {"size", {bench.size.x, bench.size.y}},
+                 {"triangles", triangles.stored}, {"instancedTriangles", triangles.instanced},
                  {"loadSeconds", loadSeconds}};
   {
     render::DeviceScene scene(context, bench.scene, bench.environment);
     result["pathTracer"] = pathTracerRatio(bench, scene);
     if (options.profile) result["profile"] = profile(bench, scene);
     const render::DeviceSceneStatistics& s = scene.statistics();
-    result["accelerationStructures"] = {{"orderSeconds", s.build.orderSeconds},
-                                        {"buildSeconds", s.build.buildSeconds},
-                                        {"topLevelSeconds", s.topLevelSeconds},
-                                        {"bytes", s.accelerationBytes},
-                                        {"bytesPerTriangle", static_cast<double>(s.accelerationBytes) / static_cast<double>(std::max<std::uint64_t>(1, triangles.stored))}};
+    result["accelerationStructures"] = {
+        {"orderSeconds", s.build.orderSeconds},
+        {"buildSeconds", s.build.buildSeconds},
+        {"topLevelSeconds", s.topLevelSeconds},
+        {"bytes", s.accelerationBytes},
+        {"bytesPerTriangle",
+         static_cast<double>(s.accelerationBytes) / static_cast<double>(std::max<std::uint64_t>(1, triangles.stored))}};
     result["uploadSeconds"] = s.uploadSeconds;
   }
   if (options.profile) return result;
@@ -153,8 +158,11 @@ int benchCommand(Arguments arguments) {
   app.add_option("--device", options.device, "Index or part of the name");
   app.add_option("--env", options.environment, "Environment, as in `quintet render`");
   app.add_option("--size", options.size, "WxH; default 512x512 on a CPU, else 1920x1080");
-  app.add_option("--repeat", options.repeat, "Measurements; the median counts")->check(CLI::Range(1, 1000))->capture_default_str();
-  app.add_option("--program", options.program, "What is measured; its rays go through traceClosest and traceVisible")->capture_default_str();
+  app.add_option("--repeat", options.repeat, "Measurements; the median counts")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--program", options.program, "What is measured; its rays go through traceClosest and traceVisible")
+      ->capture_default_str();
   app.add_flag("--profile", options.profile, "Where the time goes, instead of what order and balance gain");
   app.add_flag("--json", options.json, "One JSON object instead of a table");
   setUp(app, kExamples);

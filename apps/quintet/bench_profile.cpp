@@ -30,7 +30,8 @@ Json pipelineFacts(const rt::Pipeline& pipeline) {
   }
   Json stack = Json::object();
   for (const auto& [name, bytes] : rt::groupStackSizes(pipeline)) stack[name] = bytes;
-  return {{"executables", executables.empty() ? Json("not told by the driver") : std::move(executables)}, {"stackBytes", std::move(stack)}};
+  return {{"executables", executables.empty() ? Json("not told by the driver") : std::move(executables)},
+          {"stackBytes", std::move(stack)}};
 }
 
 // What travels with a ray, by the payload's type: the largest of all stages.
@@ -73,7 +74,8 @@ Json profile(const Bench& bench, render::DeviceScene& scene) {
   const double wallBefore = renderer.statistics().renderSeconds;
   for (int i = 0; i < bench.options.repeat; ++i) renderer.renderBatch();
   renderer.finish();
-  const double samples = static_cast<double>(bench.size.x) * bench.size.y * render::kBatchSamples * bench.options.repeat;
+  const double samples =
+      static_cast<double>(bench.size.x) * bench.size.y * render::kBatchSamples * bench.options.repeat;
   const double wall = renderer.statistics().renderSeconds - wallBefore;
   const std::span<const render::LaunchTiming> launches = std::span(renderer.launches()).subspan(warm);
   double begin = 0, trace = 0, end = 0, idle = 0;

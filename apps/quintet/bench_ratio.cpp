@@ -6,7 +6,9 @@
 namespace quintet::app {
 namespace {
 
-Bench::Json kind(std::uint32_t rays, std::uint32_t hits) { return {{"rays", rays}, {"hits", hits}, {"misses", rays - hits}}; }
+Bench::Json kind(std::uint32_t rays, std::uint32_t hits) {
+  return {{"rays", rays}, {"hits", hits}, {"misses", rays - hits}};
+}
 
 }  // namespace
 
@@ -18,7 +20,8 @@ Bench::Json pathTracerRatio(const Bench& bench, render::DeviceScene& scene) {
   const program::Program replay = program::loadProgram("replay");
   constexpr std::uint32_t kCapacity = 32;
   gpu::BufferOptions recordOptions;
-  recordOptions.size = sizeof(shared::RayKinds) + VkDeviceSize{bench.size.x} * bench.size.y * kCapacity * sizeof(shared::RayRecord);
+  recordOptions.size =
+      sizeof(shared::RayKinds) + VkDeviceSize{bench.size.x} * bench.size.y * kCapacity * sizeof(shared::RayRecord);
   recordOptions.name = "ray records";
   const gpu::Buffer records(context, recordOptions);
   context.submitAndWait([&](gpu::Commands& commands) { commands.fill(records, 0); });

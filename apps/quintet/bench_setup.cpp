@@ -18,7 +18,8 @@ shader::CompilerOptions compilerOptions() {
 
 }  // namespace
 
-Bench::Bench(const BenchOptions& o, bool software) : options(o), scene(scene::loadScene(o.scene)), compiler(compilerOptions()) {
+Bench::Bench(const BenchOptions& o, bool software)
+    : options(o), scene(scene::loadScene(o.scene)), compiler(compilerOptions()) {
   size = o.size.empty() ? (software ? uvec2(512, 512) : uvec2(1920, 1080)) : parseSize("--size", o.size);
   if (size.y == 0) size.y = size.x;
   camera = chooseCamera(scene, {}, static_cast<float>(size.x) / static_cast<float>(size.y)).camera;

@@ -42,15 +42,17 @@ RenderLimits Checkpoint::begin() {
   const bool film = outputKind(options_.output) == OutputKind::film;
   if (!active() && !film) return limits;
   if (session_.program().accumulation == program::Accumulation::program)
-    throw UsageError(fmt::format("the program '{}' averages its samples itself: there are no checkpoints and films of it",
-                                 session_.program().name));
+    throw UsageError(
+        fmt::format("the program '{}' averages its samples itself: there are no checkpoints and films of it",
+                    session_.program().name));
   if (active()) {
     checkOutput(farm.checkpointFile);
     removeLeftovers(farm.checkpointFile);
     resume(limits);
   }
   // As far as it is known now how many there will be: those that are planned, or are there.
-  const auto begin = static_cast<std::uint32_t>(limits.begin), end = static_cast<std::uint32_t>(std::max(limits.samples.value_or(0), limits.done));
+  const auto begin = static_cast<std::uint32_t>(limits.begin),
+             end = static_cast<std::uint32_t>(std::max(limits.samples.value_or(0), limits.done));
   if (film && !farm.force)
     refuseLoss(options_.output, session_.identity(), {{{begin, end}}, session_.renderer().film().counts().cellBatches});
   return limits;
@@ -76,8 +78,9 @@ void Checkpoint::resume(RenderLimits& limits) {
   }
   if (!farm.resume) {
     if (farm.force) return;
-    throw FileError(path, fmt::format("holds {} samples of this rendering; --resume goes on from them, --force begins anew",
-                                      static_cast<std::uint64_t>(render::averageSamples(file.film.region, file.film.counts))));
+    throw FileError(
+        path, fmt::format("holds {} samples of this rendering; --resume goes on from them, --force begins anew",
+                          static_cast<std::uint64_t>(render::averageSamples(file.film.region, file.film.counts))));
   }
   if (file.film.counts.ranges.empty()) return;
   try {
@@ -101,8 +104,9 @@ void Checkpoint::goOn(const FilmFile& file, RenderLimits& limits) {
   limits.secondsBefore = secondsOf("seconds");
   limits.batchSecondsBefore = secondsOf("batch seconds");
   if (options_.adaptive && wantedErrorOf(file) != options_.error) {
-    session_.progress().note(fmt::format("{}: was planned for {}, goes on for {}; a rendering from the beginning would give other samples",
-                                         name, errorText(wantedErrorOf(file)), errorText(options_.error)));
+    session_.progress().note(
+        fmt::format("{}: was planned for {}, goes on for {}; a rendering from the beginning would give other samples",
+                    name, errorText(wantedErrorOf(file)), errorText(options_.error)));
   } else {
     limits.plan = file.plan;
   }
@@ -113,14 +117,17 @@ void Checkpoint::goOn(const FilmFile& file, RenderLimits& limits) {
 
 void Checkpoint::checkPlace(const FilmFile& file, const RenderLimits& limits) const {
   const std::filesystem::path& path = options_.farm.checkpointFile;
-  if (!render::sameArrays(file.film, session_.renderer().saveFilm())) throw FileError(path, "its outputs are not those of the program");
+  if (!render::sameArrays(file.film, session_.renderer().saveFilm()))
+    throw FileError(path, "its outputs are not those of the program");
   const std::vector<SampleRange>& ranges = file.film.counts.ranges;
   if (ranges.empty()) return;
   const SampleRange range = ranges.front();
   if (ranges.size() > 1 || range.begin != limits.begin)
-    throw FileError(path, fmt::format("holds samples {}; those from {} on are wanted", rangesText(ranges), limits.begin));
+    throw FileError(path,
+                    fmt::format("holds samples {}; those from {} on are wanted", rangesText(ranges), limits.begin));
   if (limits.samples && range.end > *limits.samples)
-    throw FileError(path, fmt::format("holds samples {}; only those up to {} are wanted", rangesText(ranges), *limits.samples - 1));
+    throw FileError(
+        path, fmt::format("holds samples {}; only those up to {} are wanted", rangesText(ranges), *limits.samples - 1));
 }
 
 void Checkpoint::save(const RenderOutcome& outcome) {
@@ -175,7 +182,9 @@ void Checkpoint::afterPicture(const RenderOutcome& outcome) {
   if (!active() || isKept(outcome)) return;
   std::error_code failed;
   std::filesystem::remove(options_.farm.checkpointFile, failed);
-  if (failed) session_.warnings().add(fmt::format("{}: cannot be removed: {}", options_.farm.checkpointFile.string(), failed.message()));
+  if (failed)
+    session_.warnings().add(
+        fmt::format("{}: cannot be removed: {}", options_.farm.checkpointFile.string(), failed.message()));
 }
 
 }  // namespace quintet::app

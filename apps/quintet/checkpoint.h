@@ -42,8 +42,8 @@ class Checkpoint {
   Session& session_;
   const RenderOptions& options_;
   const Stopwatch clock_;
-  double lastWritten_ = 0;            // on clock_
-  std::uint64_t savedSamples_ = 0;    // in the checkpoint on the disk
+  double lastWritten_ = 0;          // on clock_
+  std::uint64_t savedSamples_ = 0;  // in the checkpoint on the disk
   render::SampleCounts savedCounts_;
   bool warned_ = false;
 };

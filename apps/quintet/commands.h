@@ -13,7 +13,7 @@ using Arguments = std::span<const std::string>;
 
 struct Command {
   std::string_view name;
-  std::string_view summary;      // one line for `quintet --help`
+  std::string_view summary;         // one line for `quintet --help`
   int (*run)(Arguments) = nullptr;  // returns the exit status; throws what main turns into 1 or 2
 };
 

@@ -156,7 +156,8 @@ const Measure& findMeasure(const std::array<Measure, 7>& all, const std::string&
 
 io::Image readPicture(const std::string& file, const std::optional<std::string>& layer) {
   const std::vector<std::byte> bytes = readFile(file);
-  if (render::isFilmFile(bytes)) throw FileError(file, "is a film: --z-test compares two, 'quintet merge' makes its picture");
+  if (render::isFilmFile(bytes))
+    throw FileError(file, "is a film: --z-test compares two, 'quintet merge' makes its picture");
   return layer ? io::decodeExrLayer(bytes, file, *layer) : io::decodeImage(bytes, file);
 }
 
@@ -186,7 +187,8 @@ std::string report(const Options& options, const io::Image& a, const io::Compari
   if (options.json) {
     nlohmann::ordered_json json{{"a", options.a}, {"b", options.b}, {"size", {a.width, a.height}}};
     for (const Measure& m : measures(comparison))
-      json[m.name] = std::isfinite(m.value) ? nlohmann::ordered_json(m.value) : nlohmann::ordered_json();  // psnr of equals
+      json[m.name] =
+          std::isfinite(m.value) ? nlohmann::ordered_json(m.value) : nlohmann::ordered_json();  // psnr of equals
     json["nonFinitePixels"] = comparison.nonFinitePixels;
     return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   }
@@ -205,7 +207,8 @@ void writePng(const std::string& file, const io::Image& image) {
 
 void checkPicture(const std::string& option, const std::string& file) {
   if (file.empty()) return;
-  if (outputKind(file) != OutputKind::png) throw UsageError(fmt::format("{}: {}: the extension must be .png", option, file));
+  if (outputKind(file) != OutputKind::png)
+    throw UsageError(fmt::format("{}: {}: the extension must be .png", option, file));
   if (file == "-") throw UsageError(fmt::format("{}: the standard output has the numbers", option));
   checkWritable(file);
 }
@@ -238,8 +241,8 @@ int compareCommand(Arguments arguments) {
   const auto all = measures(comparison);
   const Measure& measure = findMeasure(all, options->metric);
   if (limit && !(measure.moreIsBetter ? measure.value >= *limit : measure.value <= *limit))
-    throw Error(fmt::format("{} and {}: {} {:.6g} is {} than {:.6g}", options->a, options->b, measure.name, measure.value,
-                            measure.moreIsBetter ? "less" : "more", *limit));
+    throw Error(fmt::format("{} and {}: {} {:.6g} is {} than {:.6g}", options->a, options->b, measure.name,
+                            measure.value, measure.moreIsBetter ? "less" : "more", *limit));
   return 0;
 }
 

@@ -37,15 +37,14 @@ FilmFile readFilmToTest(const std::string& path) {
   return render::decodeFilm(bytes, path);
 }
 
-bool matches(const std::string& fact, const std::string& name) {
-  return fact == name || fact.starts_with(name + " ");
-}
+bool matches(const std::string& fact, const std::string& name) { return fact == name || fact.starts_with(name + " "); }
 
 // Both must agree in what remains.
 FilmFacts without(const FilmFacts& facts, const std::vector<std::string>& names) {
   FilmFacts result;
   for (const auto& fact : facts)
-    if (std::ranges::none_of(names, [&](const std::string& name) { return matches(fact.first, name); })) result.push_back(fact);
+    if (std::ranges::none_of(names, [&](const std::string& name) { return matches(fact.first, name); }))
+      result.push_back(fact);
   return result;
 }
 
@@ -72,21 +71,27 @@ std::uint64_t droppedSamples(const FilmFile& file) {
 }
 
 // Per pixel; of an adaptive film on average.
-std::uint64_t samplesOf(const FilmFile& file) { return static_cast<std::uint64_t>(render::averageSamples(file.film.region, file.film.counts)); }
+std::uint64_t samplesOf(const FilmFile& file) {
+  return static_cast<std::uint64_t>(render::averageSamples(file.film.region, file.film.counts));
+}
 
 // What a reader of the verdict should know.
 std::vector<std::string> notesOn(const FilmFile& a, const FilmFile& b) {
   std::vector<std::string> notes;
   const std::string seed = factText(a.identity, "seed");
   if (seed == factText(b.identity, "seed") && shareSamples(a, b))
-    notes.push_back(fmt::format("both films have the same samples of seed {}: their difference is rounding, not noise, "
-                                "and the test says little; render one with another --seed", plain(seed)));
+    notes.push_back(
+        fmt::format("both films have the same samples of seed {}: their difference is rounding, not noise, "
+                    "and the test says little; render one with another --seed",
+                    plain(seed)));
   if (samplesOf(a) != samplesOf(b))
-    notes.push_back("the films have different numbers of samples: rare bright samples make the difference lopsided, "
-                    "and p less exact");
+    notes.push_back(
+        "the films have different numbers of samples: rare bright samples make the difference lopsided, "
+        "and p less exact");
   for (const FilmFile* film : {&a, &b})
     if (const std::uint64_t dropped = droppedSamples(*film); dropped > 0)
-      notes.push_back(fmt::format("{} samples of {} were not finite and are left out", dropped, film == &a ? "A" : "B"));
+      notes.push_back(
+          fmt::format("{} samples of {} were not finite and are left out", dropped, film == &a ? "A" : "B"));
   return notes;
 }
 
@@ -119,7 +124,9 @@ std::string jsonReport(const FilmComparison& comparison, const std::array<FilmFi
                   {"level", comparison.test.level},
                   {"size", {region.width, region.height}},
                   {"samples", both(samplesOf)},
-                  {"batches", both([](const FilmFile& f) { return (samplesOf(f) + render::kBatchSamples - 1) / render::kBatchSamples; })},
+                  {"batches", both([](const FilmFile& f) {
+                     return (samplesOf(f) + render::kBatchSamples - 1) / render::kBatchSamples;
+                   })},
                   {"seeds", both([](const FilmFile& f) { return factText(f.identity, "seed"); })},
                   {"devices", note("device")},
                   {"drivers", note("driver")},
@@ -160,8 +167,9 @@ std::string textReport(const FilmComparison& comparison, const std::array<FilmFi
                        const std::vector<std::string>& notes) {
   std::string text = filmLine(comparison.a, films[0]) + filmLine(comparison.b, films[1]);
   const ZTestMeans& smallest = test.blocks[test.smallest];
-  text += fmt::format("blocks: {} of {}x{} pixels, {} channels; p below {:.3g} rejects\n", test.blocks.size() / test.image.size(),
-                      comparison.test.block, comparison.test.block, test.image.size(), test.blockLevel);
+  text += fmt::format("blocks: {} of {}x{} pixels, {} channels; p below {:.3g} rejects\n",
+                      test.blocks.size() / test.image.size(), comparison.test.block, comparison.test.block,
+                      test.image.size(), test.blockLevel);
   text += fmt::format("   smallest p {:.3g} at {}: {}\n", smallest.p, place(smallest), meansText(smallest));
   text += fmt::format("   |t| of {} with noise: root mean square {:.2f}", test.noisy, test.rms);
   constexpr std::array<double, 3> kExpected{5, 1, 0.1};
@@ -173,7 +181,8 @@ std::string textReport(const FilmComparison& comparison, const std::array<FilmFi
     text += fmt::format("   {:<5} p {:<8.3g} {:+.4f} % ± {:.4f} %   {}\n", kChannels[m.channel], m.p,
                         100.0 * relative(m, m.difference()), 100.0 * relative(m, m.differenceError()), meansText(m));
   if (test.nonFinitePixels > 0) text += fmt::format("{} pixels are not finite\n", test.nonFinitePixels);
-  if (test.unknownPixels > 0) text += fmt::format("{} pixels are too bright to know their noise and were not tested\n", test.unknownPixels);
+  if (test.unknownPixels > 0)
+    text += fmt::format("{} pixels are too bright to know their noise and were not tested\n", test.unknownPixels);
   for (const std::string& note : notes) text += "note: " + note + "\n";
   return text + fmt::format("{} at level {}\n", test.rejected ? "not the same picture" : "the same picture",
                             comparison.test.level);
@@ -219,10 +228,11 @@ void compareFilms(const FilmComparison& comparison) {
   const ZTest test = tested();
   const std::vector<std::string> notes = notesOn(films[0], films[1]);
   writeMap(comparison.output, test, films[0].film.region);
-  writeFile("-", comparison.json ? jsonReport(comparison, films, test, notes) : textReport(comparison, films, test, notes));
+  writeFile("-",
+            comparison.json ? jsonReport(comparison, films, test, notes) : textReport(comparison, films, test, notes));
   if (test.rejected)
-    throw Error(fmt::format("{} and {}: not the same picture at level {}: {}", comparison.a, comparison.b, options.level,
-                            reason(test)));
+    throw Error(fmt::format("{} and {}: not the same picture at level {}: {}", comparison.a, comparison.b,
+                            options.level, reason(test)));
 }
 
 }  // namespace quintet::app

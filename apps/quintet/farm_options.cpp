@@ -31,9 +31,8 @@ BatchRange parseBatches(const std::string& text) {
     }
   }
   if (!right)
-    throw UsageError(
-        fmt::format("--batches: '{}' is not A-B with A <= B: batches of {} samples, from 0, B included", text,
-                    render::kBatchSamples));
+    throw UsageError(fmt::format("--batches: '{}' is not A-B with A <= B: batches of {} samples, from 0, B included",
+                                 text, render::kBatchSamples));
   return range;
 }
 
@@ -80,7 +79,8 @@ void chooseCheckpointFile(RenderOptions& options) {
 void declareFarm(CLI::App& app, FarmOptions& options) {
   const char* group = "Long renderings";
   app.add_option("--checkpoint", options.rawCheckpoint,
-                 "Write what is done every so often, 0: after each batch (default with\n--resume, --keep-checkpoint, --checkpoint-file: 60); it goes when the\npicture is there")
+                 "Write what is done every so often, 0: after each batch (default with\n--resume, --keep-checkpoint, "
+                 "--checkpoint-file: 60); it goes when the\npicture is there")
       ->type_name("SECONDS")
       ->group(group);
   app.add_option("--checkpoint-file", options.checkpointFile, "The checkpoint (default: OUTPUT.checkpoint.qfilm)")
@@ -92,7 +92,8 @@ void declareFarm(CLI::App& app, FarmOptions& options) {
                "Go on from the checkpoint to the same bytes as without the break; begin\nwhere there is none")
       ->group(group);
   app.add_option("--batches", options.rawBatches,
-                 "Render only batches A to B of --spp (4 samples each, from 0, B included) into\n-o FILE.qfilm; 'quintet merge' joins parts")
+                 "Render only batches A to B of --spp (4 samples each, from 0, B included) into\n-o FILE.qfilm; "
+                 "'quintet merge' joins parts")
       ->type_name("A-B")
       ->group(group);
   app.add_flag("--force", options.force, "Overwrite a checkpoint or film that would be lost")->group(group);
@@ -108,8 +109,10 @@ void interpretFarm(RenderOptions& options) {
   if (farm.resume || farm.keepCheckpoint || !farm.checkpointFile.empty())
     farm.checkpointSeconds = farm.checkpointSeconds.value_or(kCheckpointSeconds);
   if (options.adaptive && !farm.rawBatches.empty())
-    throw UsageError("--batches and --adaptive exclude each other: all samples so far decide which come next, and a part does not know "
-                     "those of the others");
+    throw UsageError(
+        "--batches and --adaptive exclude each other: all samples so far decide which come next, and a part does not "
+        "know "
+        "those of the others");
   if (options.error && !farm.rawBatches.empty())
     throw UsageError("--batches and --until-error exclude each other: a part is a number of samples");
   if (farm.checkpointSeconds) chooseCheckpointFile(options);

@@ -26,7 +26,7 @@ struct FarmOptions {
   std::filesystem::path checkpointFile;     // empty: no checkpoints
   bool keepCheckpoint = false;
   bool resume = false;
-  bool force = false;         // what would be lost may be
+  bool force = false;  // what would be lost may be
   bool jsonProgress = false;
   std::optional<BatchRange> batches;
 

@@ -61,8 +61,10 @@ std::string hashOfFiles(const FilmSource& source) {
 std::string imageText(const program::Program& program, const program::ImageValue& image) {
   if (image.file.empty()) return "none";
   Hasher hasher;
-  if (image.ofProgram) hasher.add(program.files.at(image.file));
-  else hasher.add(readTextFile(image.file));
+  if (image.ofProgram)
+    hasher.add(program.files.at(image.file));
+  else
+    hasher.add(readTextFile(image.file));
   return hasher.finish().hex();
 }
 
@@ -71,8 +73,8 @@ void addParameters(FilmFacts& facts, const FilmSource& source) {
   const std::vector<program::ImageValue> images = source.parameters.images();
   for (const program::Parameter& parameter : source.parameters.parameters()) {
     const auto image = std::ranges::find(images, parameter.name, &program::ImageValue::parameter);
-    facts.emplace_back("parameter " + parameter.name, image != images.end() ? imageText(source.program, *image)
-                                                                            : values.at(parameter.name).dump());
+    facts.emplace_back("parameter " + parameter.name,
+                       image != images.end() ? imageText(source.program, *image) : values.at(parameter.name).dump());
   }
 }
 
@@ -128,18 +130,19 @@ FilmFacts filmIdentity(const FilmSource& source, const RenderOptions& options) {
 }
 
 FilmFacts filmNotes(const program::Program& program, const RenderOptions& options, const RenderRecord& record) {
-  FilmFacts facts{{"command", record.commandLine},
-                  {"scene", record.scene},
-                  {"environment", record.environment},
-                  {"camera", record.camera},
-                  {"parameters", record.parameters},
-                  {"device", record.device},
-                  {"driver", record.driver},
-                  {"seconds", fmt::format("{:.6f}", record.renderSeconds)},
-                  {kWantedError, options.error ? fmt::format("{}", *options.error) : ""},
-                  {"exposure", fmt::format("{}", options.exposure)},
-                  {"tone map", options.toneMap ? render::toneMapNames()[static_cast<std::size_t>(*options.toneMap)] : ""},
-                  {"all outputs", options.allOutputs ? "yes" : "no"}};
+  FilmFacts facts{
+      {"command", record.commandLine},
+      {"scene", record.scene},
+      {"environment", record.environment},
+      {"camera", record.camera},
+      {"parameters", record.parameters},
+      {"device", record.device},
+      {"driver", record.driver},
+      {"seconds", fmt::format("{:.6f}", record.renderSeconds)},
+      {kWantedError, options.error ? fmt::format("{}", *options.error) : ""},
+      {"exposure", fmt::format("{}", options.exposure)},
+      {"tone map", options.toneMap ? render::toneMapNames()[static_cast<std::size_t>(*options.toneMap)] : ""},
+      {"all outputs", options.allOutputs ? "yes" : "no"}};
   for (const program::Output& output : program.outputs) {
     facts.emplace_back("kind of " + output.name, std::string(program::outputKindName(output.kind)));
     facts.emplace_back("colour in " + output.name, program::holdsColor(output) ? "yes" : "no");
@@ -220,8 +223,9 @@ std::string samplesText(const render::FilmFile& file) {
     fewest = std::min(fewest, batches[c]);
     most = std::max(most, batches[c]);
   }
-  return fmt::format("{:.1f} samples per pixel on average ({} to {})", render::averageSamples(file.film.region, file.film.counts),
-                     fewest * render::kBatchSamples, most * render::kBatchSamples);
+  return fmt::format("{:.1f} samples per pixel on average ({} to {})",
+                     render::averageSamples(file.film.region, file.film.counts), fewest * render::kBatchSamples,
+                     most * render::kBatchSamples);
 }
 
 }  // namespace quintet::app

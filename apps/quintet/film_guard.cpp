@@ -34,14 +34,19 @@ void refuseLoss(const std::filesystem::path& file, const render::FilmFacts& iden
   refuseOther(found.identity, identity,
               {file, "in the file", "here", "holds another rendering, which would be lost; --force overwrites it"});
   for (const SampleRange& held : found.film.counts.ranges)
-    if (std::ranges::none_of(samples.ranges, [&](const SampleRange& s) { return s.begin <= held.begin && held.end <= s.end; }))
+    if (std::ranges::none_of(samples.ranges,
+                             [&](const SampleRange& s) { return s.begin <= held.begin && held.end <= s.end; }))
       throw FileError(file, fmt::format("holds samples {} to {} of this rendering, which would be lost; --force "
                                         "overwrites it",
                                         held.begin, held.end - 1));
   const std::vector<std::uint32_t>& batches = found.film.counts.cellBatches;
-  const auto loses = [&](std::size_t cell) { return cell >= samples.cellBatches.size() || samples.cellBatches[cell] < batches[cell]; };
+  const auto loses = [&](std::size_t cell) {
+    return cell >= samples.cellBatches.size() || samples.cellBatches[cell] < batches[cell];
+  };
   for (std::size_t c = 0; c < batches.size(); ++c)
-    if (loses(c)) throw FileError(file, fmt::format("holds {} of this rendering, which would be lost; --force overwrites it", samplesText(found)));
+    if (loses(c))
+      throw FileError(file, fmt::format("holds {} of this rendering, which would be lost; --force overwrites it",
+                                        samplesText(found)));
 }
 
 }  // namespace quintet::app

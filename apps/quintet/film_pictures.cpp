@@ -22,7 +22,8 @@ float exposureOf(const FilmFile& file) {
 program::OutputKind kindOf(const FilmFile& file, const std::string& output) {
   const std::string name = factText(file.notes, "kind of " + output);
   for (int kind = 0; kind < static_cast<int>(program::OutputKind::display); ++kind)
-    if (program::outputKindName(static_cast<program::OutputKind>(kind)) == name) return static_cast<program::OutputKind>(kind);
+    if (program::outputKindName(static_cast<program::OutputKind>(kind)) == name)
+      return static_cast<program::OutputKind>(kind);
   return program::OutputKind::display;
 }
 
@@ -46,7 +47,8 @@ std::vector<AovLayer> chosenLayers(const FilmFile& file, const MergeOptions& opt
 io::Image imageOf(const FilmFile& file, std::size_t output) {
   io::Image image = render::planeImage(file.film, output);
   const bool opaque = factText(file.identity, "transparent") != "yes";
-  if (kindOf(file, file.film.planes[output].name) == program::OutputKind::display) render::decodeDisplay(image, !opaque);
+  if (kindOf(file, file.film.planes[output].name) == program::OutputKind::display)
+    render::decodeDisplay(image, !opaque);
   return image;
 }
 
@@ -85,7 +87,8 @@ void writePictures(const FilmFile& file, const MergeOptions& options, RenderReco
     const program::OutputKind kind = kindOf(file, plane.name);
     const DisplayOptions display = displayOptions(file, options, kind);
     const std::filesystem::path path = pictureName(options.render.output, all ? plane.name : "", std::nullopt);
-    record.toneMap = outputKind(path) == OutputKind::png ? render::toneMapNames()[static_cast<std::size_t>(display.toneMap)] : "";
+    record.toneMap =
+        outputKind(path) == OutputKind::png ? render::toneMapNames()[static_cast<std::size_t>(display.toneMap)] : "";
     record.exposure = display.exposure;
     record.outputName = plane.name;
     record.files.push_back(path.string());

@@ -34,7 +34,8 @@ int infoCommand(Arguments arguments) {
     text = devicesInfo(json);
   } else {
     const std::vector<std::byte> bytes = readFile(file);
-    text = scene::sceneFormat(file, bytes) != scene::SceneFormat::none ? sceneInfo(file, json) : imageInfo(file, bytes, json);
+    text = scene::sceneFormat(file, bytes) != scene::SceneFormat::none ? sceneInfo(file, json)
+                                                                       : imageInfo(file, bytes, json);
   }
   writeFile("-", text);
   return 0;

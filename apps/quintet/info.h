@@ -9,8 +9,8 @@
 
 namespace quintet::app {
 
-std::string devicesInfo(bool json);                           // info_devices.cpp
-std::string sceneInfo(const std::filesystem::path&, bool json);  // info_scene.cpp
+std::string devicesInfo(bool json);                                                                // info_devices.cpp
+std::string sceneInfo(const std::filesystem::path&, bool json);                                    // info_scene.cpp
 std::string imageInfo(const std::filesystem::path&, std::span<const std::byte> bytes, bool json);  // info_image.cpp
 std::string exrInfo(const std::filesystem::path&, std::span<const std::byte> bytes, bool json);    // info_exr.cpp
 std::string filmInfo(const std::filesystem::path&, std::span<const std::byte> bytes, bool json);   // info_film.cpp

@@ -54,16 +54,20 @@ Json toJson(const gpu::DeviceInfo& device) {
 
 std::string toText(const gpu::DeviceInfo& device) {
   std::string text = fmt::format("{}: {}\n", device.index, plain(device.name));
-  const auto line = [&text](const char* label, const std::string& value) { text += fmt::format("   {:<13}{}\n", label, value); };
+  const auto line = [&text](const char* label, const std::string& value) {
+    text += fmt::format("   {:<13}{}\n", label, value);
+  };
   line("kind", device.kind);
   line("driver", plain(device.driver));
   line("Vulkan", versionText(device.apiVersion));
-  line("memory", fmt::format("{}, buffers of at most {}", bytesText(device.memoryBytes), bytesText(device.maxBufferBytes)));
+  line("memory",
+       fmt::format("{}, buffers of at most {}", bytesText(device.memoryBytes), bytesText(device.maxBufferBytes)));
   if (device.limits.handleSize > 0) {
     const gpu::RayTracingLimits& limits = device.limits;
-    line("ray tracing", fmt::format("recursion {}, hit attributes {} bytes, launches of {} rays, handles {}/{}/{} bytes",
-                                    limits.maxRecursionDepth, limits.maxHitAttributeSize, limits.maxLaunchInvocations,
-                                    limits.handleSize, limits.handleAlignment, limits.baseAlignment));
+    line("ray tracing",
+         fmt::format("recursion {}, hit attributes {} bytes, launches of {} rays, handles {}/{}/{} bytes",
+                     limits.maxRecursionDepth, limits.maxHitAttributeSize, limits.maxLaunchInvocations,
+                     limits.handleSize, limits.handleAlignment, limits.baseAlignment));
     line("", fmt::format("{} instances, {} geometries and {} primitives at most", limits.maxInstances,
                          limits.maxGeometries, limits.maxPrimitives));
   }

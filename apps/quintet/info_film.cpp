@@ -32,7 +32,8 @@ std::string factsText(const render::FilmFacts& facts) {
   std::string text;
   for (const auto& [name, value] : facts) {
     if (value.empty()) continue;
-    text += fmt::format("   {:<25} {}{}\n", plain(name), plain(value.substr(0, kShown)), value.size() > kShown ? " …" : "");
+    text +=
+        fmt::format("   {:<25} {}{}\n", plain(name), plain(value.substr(0, kShown)), value.size() > kShown ? " …" : "");
   }
   return text;
 }
@@ -46,20 +47,19 @@ std::string filmInfo(const std::filesystem::path& file, std::span<const std::byt
     Json samples = Json::array();
     for (const render::SampleRange& range : film.film.counts.ranges) samples.push_back({range.begin, range.end});
     Json result{{"file", file.string()},
-                      {"kind", "film"},
-                      {"width", region.width},
-                      {"height", region.height},
-                      {"samples", samples},
-                      {"bytes", bytes.size()},
-                      {"identity", factsJson(film.identity)},
-                      {"notes", factsJson(film.notes)}};
+                {"kind", "film"},
+                {"width", region.width},
+                {"height", region.height},
+                {"samples", samples},
+                {"bytes", bytes.size()},
+                {"identity", factsJson(film.identity)},
+                {"notes", factsJson(film.notes)}};
     if (isAdaptive(film)) result["adaptive"] = adaptiveJson(film);
     return result.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   }
   const std::optional<std::uint64_t> planned = plannedSamples(film);
   return fmt::format("{}: film, {}x{}, {}{}, {}\n", plain(file.string()), region.width, region.height,
-                     samplesText(film), planned ? fmt::format(" of {}", *planned) : "",
-                     bytesText(bytes.size())) +
+                     samplesText(film), planned ? fmt::format(" of {}", *planned) : "", bytesText(bytes.size())) +
          factsText(film.identity) + factsText(film.notes);
 }
 

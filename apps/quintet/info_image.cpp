@@ -31,8 +31,8 @@ std::string imageInfo(const std::filesystem::path& file, std::span<const std::by
     using Json = nlohmann::ordered_json;
     Json texts = Json::object();
     for (const auto& [keyword, text] : metadata) texts[keyword] = text;
-    const Json result{{"file", file.string()},    {"kind", "image"},         {"format", info.format},
-                      {"width", info.width},      {"height", info.height},   {"channels", info.channels},
+    const Json result{{"file", file.string()},       {"kind", "image"},       {"format", info.format},
+                      {"width", info.width},         {"height", info.height}, {"channels", info.channels},
                       {"type", typeText(info.type)}, {"bytes", bytes.size()}, {"metadata", std::move(texts)}};
     return result.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   }

@@ -45,10 +45,10 @@ std::string describe(const scene::NamedImage& image) {
 
 std::string describe(const scene::Camera& camera) {
   const vec3 eye(camera.worldFromCamera[3]);
-  const std::string lens =
-      camera.orthographic
-          ? fmt::format("orthographic, {:.4g} x {:.4g} m", 2 * camera.orthographicHalfSize.x, 2 * camera.orthographicHalfSize.y)
-          : fmt::format("perspective, {:.4g} degrees", glm::degrees(camera.verticalFov));
+  const std::string lens = camera.orthographic
+                               ? fmt::format("orthographic, {:.4g} x {:.4g} m", 2 * camera.orthographicHalfSize.x,
+                                             2 * camera.orthographicHalfSize.y)
+                               : fmt::format("perspective, {:.4g} degrees", glm::degrees(camera.verticalFov));
   const std::string aspect = camera.aspect > 0 ? fmt::format(", aspect {:.4g}", camera.aspect) : "";
   return fmt::format("'{}': {}{}, at {:.4g} {:.4g} {:.4g}", plain(camera.name), lens, aspect, eye.x, eye.y, eye.z);
 }
@@ -108,16 +108,22 @@ Json namedObjects(const scene::Scene& scene, const char* kind) {
   Json list = Json::array();
   if (kind == std::string_view("images"))
     for (const auto& [name, image] : scene.images)
-      list.push_back({{"name", name}, {"width", image.width}, {"height", image.height}, {"channels", image.channels},
+      list.push_back({{"name", name},
+                      {"width", image.width},
+                      {"height", image.height},
+                      {"channels", image.channels},
                       {"bits", 8 * io::bytesPerSample(image.type)}});
   if (kind == std::string_view("cameras"))
     for (const scene::Camera& camera : scene.cameras)
-      list.push_back({{"name", camera.name}, {"type", camera.orthographic ? "orthographic" : "perspective"},
+      list.push_back({{"name", camera.name},
+                      {"type", camera.orthographic ? "orthographic" : "perspective"},
                       {"verticalFov", camera.orthographic ? Json() : Json(glm::degrees(camera.verticalFov))},
-                      {"aspect", camera.aspect}, {"position", vectorJson(vec3(camera.worldFromCamera[3]))}});
+                      {"aspect", camera.aspect},
+                      {"position", vectorJson(vec3(camera.worldFromCamera[3]))}});
   if (kind == std::string_view("lights"))
     for (const scene::Light& light : scene.lights)
-      list.push_back({{"name", light.name}, {"type", typeName(light.type)}, {"intensity", vectorJson(light.intensity)}});
+      list.push_back(
+          {{"name", light.name}, {"type", typeName(light.type)}, {"intensity", vectorJson(light.intensity)}});
   return list;
 }
 
@@ -136,13 +142,25 @@ Json toJson(const scene::Scene& scene, const std::string& file) {
           {"meshes", scene.meshes.size()},
           {"geometries", geometryCount(scene)},
           {"triangles", {{"stored", triangles.stored}, {"instanced", triangles.instanced}}},
-          {"procedural", {{"sets", procedural.sets}, {"solids", procedural.solids}, {"trees", procedural.csgTrees},
-                          {"leaves", procedural.csgLeaves}, {"customBoxes", procedural.customBoxes}}},
+          {"procedural",
+           {{"sets", procedural.sets},
+            {"solids", procedural.solids},
+            {"trees", procedural.csgTrees},
+            {"leaves", procedural.csgLeaves},
+            {"customBoxes", procedural.customBoxes}}},
           {"instances", scene.instances.size()},
-          {"instancesWith", {{"mask", instances.masked}, {"flags", instances.flagged}, {"customIndex", instances.indexed},
-                             {"keyframes", instances.moving}, {"procedural", instances.procedural}}},
-          {"materials", {{"count", scene.materials.size()}, {"alpha", materials.alpha}, {"emissive", materials.emissive},
-                         {"transmissive", materials.transmissive}, {"unlit", materials.unlit}}},
+          {"instancesWith",
+           {{"mask", instances.masked},
+            {"flags", instances.flagged},
+            {"customIndex", instances.indexed},
+            {"keyframes", instances.moving},
+            {"procedural", instances.procedural}}},
+          {"materials",
+           {{"count", scene.materials.size()},
+            {"alpha", materials.alpha},
+            {"emissive", materials.emissive},
+            {"transmissive", materials.transmissive},
+            {"unlit", materials.unlit}}},
           {"textures", scene.textures.size()},
           {"imageBytes", imageBytes(scene)},
           {"images", namedObjects(scene, "images")},
@@ -172,7 +190,8 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
   const MaterialCounts materials = countMaterials(scene);
   const auto describeAny = [](const auto& element) { return describe(element); };
   const auto itself = [](const std::string& line) { return plain(line); };
-  std::string text = fmt::format("{}: {}\n", plain(file), scene::sceneFormat(file, {}) == scene::SceneFormat::toml ? "scene" : "glTF scene");
+  std::string text = fmt::format("{}: {}\n", plain(file),
+                                 scene::sceneFormat(file, {}) == scene::SceneFormat::toml ? "scene" : "glTF scene");
   const auto line = [&text](const char* label, const std::string& value) {
     if (!value.empty()) text += fmt::format("   {:<12}{}\n", label, value);
   };
@@ -183,20 +202,23 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
     line("bounds", "nothing to see");
   } else {
     const vec3 size = bounds.extent();
-    line("bounds", fmt::format("{:.4g} {:.4g} {:.4g} to {:.4g} {:.4g} {:.4g} ({:.4g} x {:.4g} x {:.4g} m)", bounds.min.x,
-                               bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z, size.x, size.y, size.z));
+    line("bounds",
+         fmt::format("{:.4g} {:.4g} {:.4g} to {:.4g} {:.4g} {:.4g} ({:.4g} x {:.4g} x {:.4g} m)", bounds.min.x,
+                     bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z, size.x, size.y, size.z));
   }
   line("meshes", fmt::format("{} with {} geometries", scene.meshes.size(), geometryCount(scene)));
   line("triangles", fmt::format("{} stored, {} in instances", triangles.stored, triangles.instanced));
   const scene::ProceduralCount procedural = scene::countProcedural(scene);
   if (procedural.sets > 0)
-    line("procedural", fmt::format("{} sets: {} solids, {} trees of {} leaves, {} custom boxes", procedural.sets, procedural.solids,
-                                   procedural.csgTrees, procedural.csgLeaves, procedural.customBoxes));
+    line("procedural",
+         fmt::format("{} sets: {} solids, {} trees of {} leaves, {} custom boxes", procedural.sets, procedural.solids,
+                     procedural.csgTrees, procedural.csgLeaves, procedural.customBoxes));
   line("instances", describe(countInstances(scene), scene.instances.size()));
   line("materials", fmt::format("{} ({} with alpha, {} emissive, {} transmissive, {} unlit)", scene.materials.size(),
                                 materials.alpha, materials.emissive, materials.transmissive, materials.unlit));
   line("textures", fmt::format("{}", scene.textures.size()));
-  addList(text, "images", fmt::format("{}, {} decoded", scene.images.size(), bytesText(imageBytes(scene))), scene.images, describeAny);
+  addList(text, "images", fmt::format("{}, {} decoded", scene.images.size(), bytesText(imageBytes(scene))),
+          scene.images, describeAny);
   addList(text, "lights", fmt::format("{}", scene.lights.size()), scene.lights, describeAny);
   addList(text, "cameras", fmt::format("{}", scene.cameras.size()), scene.cameras, describeAny);
   line("extensions", fmt::format("used: {}", joined(scene.report.extensionsUsed)));

@@ -64,7 +64,8 @@ int dispatch(const std::vector<std::string>& arguments) {
 // only be opened the wrong way round, so that using it still fails.
 void occupyStandardStreams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (::fcntl(fd, F_GETFD) < 0) [[maybe_unused]] const int opened = ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
+    if (::fcntl(fd, F_GETFD) < 0) [[maybe_unused]]
+      const int opened = ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
 }
 
 // One line, whatever the message holds.

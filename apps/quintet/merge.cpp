@@ -31,8 +31,10 @@ using render::SampleRange;
 
 void setNote(FilmFile& file, const std::string& name, const std::string& value) {
   const auto found = std::ranges::find(file.notes, name, &render::FilmFacts::value_type::first);
-  if (found == file.notes.end()) file.notes.emplace_back(name, value);
-  else found->second = value;
+  if (found == file.notes.end())
+    file.notes.emplace_back(name, value);
+  else
+    found->second = value;
 }
 
 constexpr std::string_view kBetween = "; ";  // devices
@@ -70,8 +72,10 @@ class Merger {
     }
     refuseDifferences(part);
     if (isAdaptive(part))
-      throw FileError(path, fmt::format("is of an adaptive rendering, as {}: all its samples so far decide which come next, so it has no parts; one "
-                                        "such film alone becomes a picture", first()));
+      throw FileError(path, fmt::format("is of an adaptive rendering, as {}: all its samples so far decide which come "
+                                        "next, so it has no parts; one "
+                                        "such film alone becomes a picture",
+                                        first()));
     refuseOverlap();
     if (!render::sameArrays(whole_.film, part.film)) throw FileError(path, "its outputs are not those of " + first());
     try {
@@ -113,7 +117,8 @@ class Merger {
       for (const std::string& entry : entriesOf(part, name))
         if (std::ranges::find(joined, entry) == joined.end()) joined.push_back(entry);
       if (joined == mine) continue;
-      progress_.note(fmt::format("{}: {} {}, other parts: {}", last(), name, factText(part.notes, name), factText(whole_.notes, name)));
+      progress_.note(fmt::format("{}: {} {}, other parts: {}", last(), name, factText(part.notes, name),
+                                 factText(whole_.notes, name)));
       setNote(whole_, name, fmt::format("{}", fmt::join(joined, kBetween)));
     }
     joinShown(part);
@@ -131,8 +136,8 @@ class Merger {
       const std::string mine = factText(whole_.notes, name), other = factText(part.notes, name);
       if (mine == other) continue;
       const auto shown = [](const std::string& text) { return text.empty() ? "not given" : text; };
-      progress_.note(fmt::format("{}: {} {}, other parts: {}; {} is taken, as for the first samples", last(), name, shown(other),
-                                 shown(mine), shown(isFirst ? other : mine)));
+      progress_.note(fmt::format("{}: {} {}, other parts: {}; {} is taken, as for the first samples", last(), name,
+                                 shown(other), shown(mine), shown(isFirst ? other : mine)));
       if (isFirst) setNote(whole_, name, other);
     }
   }
@@ -168,14 +173,16 @@ std::string missingText(const FilmFile& file, const render::ErrorEstimate& error
   if (isAdaptive(file)) {
     if (isFinished(file, error, {planned, std::nullopt, wanted, true})) return "";
     if (planned)
-      return fmt::format("{:.1f} of {} samples per pixel are there", render::averageSamples(file.film.region, file.film.counts), *planned);
+      return fmt::format("{:.1f} of {} samples per pixel are there",
+                         render::averageSamples(file.film.region, file.film.counts), *planned);
   } else if (const std::vector<SampleRange> missing = missingSamples(file); !missing.empty())
     return fmt::format("samples {} are missing", rangesText(missing));
   if (!wanted || planned) return "";
   return fmt::format("the error of {:.2g} % that was wanted is not reached", 100.0 * *wanted);
 }
 
-void tellMissing(const FilmFile& file, const render::ErrorEstimate& error, const MergeOptions& options, Progress& progress) {
+void tellMissing(const FilmFile& file, const render::ErrorEstimate& error, const MergeOptions& options,
+                 Progress& progress) {
   if (file.film.counts.ranges.empty()) throw Error("there are no samples in these films");
   const std::string text = missingText(file, error);
   if (text.empty()) return;

@@ -152,13 +152,12 @@ std::string summary(const RenderRecord& record) {
   const std::string file = record.files.empty() ? "" : record.files.back();
   const std::string rate = record.rays > 0 ? fmt::format(", {:.3g} Mrays/s", record.raysPerSecond() * 1e-6) : "";
   const std::string error = record.error.known() ? fmt::format(", error {:.2g} %", 100.0 * record.error.upper) : "";
-  return fmt::format("{}: {}x{}, {} {}{}, {}{}{}", file == "-" ? "standard output" : file,
-                     record.region[2], record.region[3], record.samples,
+  return fmt::format("{}: {}x{}, {} {}{}, {}{}{}", file == "-" ? "standard output" : file, record.region[2],
+                     record.region[3], record.samples,
                      !record.accumulates   ? "samples per pixel"
                      : record.samples == 1 ? "frame"
                                            : "frames",
-                     error, durationText(record.renderSeconds), rate,
-                     record.interrupted ? ", interrupted" : "");
+                     error, durationText(record.renderSeconds), rate, record.interrupted ? ", interrupted" : "");
 }
 
 }  // namespace quintet::app

@@ -17,14 +17,14 @@ namespace quintet::app {
 
 // What the process and the device held, and what a scene needs at least; bytes.
 struct MemoryUse {
-  std::uint64_t peakHost = 0;      // resident, by the end of the rendering
-  std::uint64_t peakDevice = 0;    // asked of the driver
+  std::uint64_t peakHost = 0;    // resident, by the end of the rendering
+  std::uint64_t peakDevice = 0;  // asked of the driver
   std::uint64_t geometry = 0;
   std::uint64_t textures = 0;
   std::uint64_t acceleration = 0;  // with the maps of primitives
   // Of peakDevice: (purpose, bytes), as things stood when it was reached; "unused" is room in the driver's blocks.
   std::vector<std::pair<std::string, std::uint64_t>> devicePeak;
-  bool deviceIsHost = false;       // a CPU: what the device holds is part of what the process holds
+  bool deviceIsHost = false;  // a CPU: what the device holds is part of what the process holds
   // Of the peak to the three together. On a CPU the process's peak: what was asked for and never touched is in no
   // memory. Else the larger of the two: each memory by itself.
   double ratio() const;
@@ -46,18 +46,18 @@ struct RenderRecord {
   std::string toneMap;  // empty: linear radiance was written
   float exposure = 0;
   bool transparent = false;
-  std::uint32_t width = 0;   // of the whole image
+  std::uint32_t width = 0;  // of the whole image
   std::uint32_t height = 0;
   std::array<std::uint32_t, 4> region{};  // x, y, width, height of what was rendered
   std::uint32_t seed = 0;
   std::uint64_t samples = 0;
   std::uint64_t rays = 0;
   std::uint64_t droppedSamples = 0;
-  bool accumulates = false;             // the program draws frames: `samples` counts them
-  std::optional<std::uint32_t> frame;   // of an animation
+  bool accumulates = false;            // the program draws frames: `samples` counts them
+  std::optional<std::uint32_t> frame;  // of an animation
   bool interrupted = false;
-  bool adaptive = false;                // `samples` is an average
-  render::ErrorEstimate error;          // of the first output
+  bool adaptive = false;        // `samples` is an average
+  render::ErrorEstimate error;  // of the first output
   std::optional<double> wantedError;
 
   // Seconds.
@@ -78,7 +78,7 @@ struct RenderRecord {
   std::uint64_t filmBytes = 0;
 
   std::vector<std::string> warnings;
-  std::vector<shader::Diagnostic> diagnostics;  // warnings about the program
+  std::vector<shader::Diagnostic> diagnostics;         // warnings about the program
   std::vector<std::pair<std::string, double>> stages;  // seconds from the start to the first pixel, in more detail
   MemoryUse memory;
 

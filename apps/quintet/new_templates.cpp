@@ -162,8 +162,11 @@ void main() {
 std::map<std::string, std::string> lectureTemplate(const std::string& file) { return {{file, kLecture}}; }
 
 std::map<std::string, std::string> folderTemplate() {
-  return {{"program.toml", kToml},     {"payload.glsl", kPayload}, {"main.rgen", kRayGeneration},
-          {"surface.rchit", kClosestHit}, {"sky.rmiss", kMiss}};
+  return {{"program.toml", kToml},
+          {"payload.glsl", kPayload},
+          {"main.rgen", kRayGeneration},
+          {"surface.rchit", kClosestHit},
+          {"sky.rmiss", kMiss}};
 }
 
 }  // namespace quintet::app

@@ -84,8 +84,9 @@ void declareExr(CLI::App& app, RawOptions& raw, AovNames names) {
   };
   const bool ofProgram = names == AovNames::ofProgram;
   app.add_option("--aov", raw.aovs,
-                 ofProgram ? "Layers to write beside the picture, all of them, or print what there are;\nmay be repeated"
-                           : "Which layers of the films to write (default: all); may be repeated")
+                 ofProgram
+                     ? "Layers to write beside the picture, all of them, or print what there are;\nmay be repeated"
+                     : "Which layers of the films to write (default: all); may be repeated")
       ->expected(1)
       ->take_all()
       ->delimiter(',')
@@ -109,7 +110,9 @@ void declareQuality(CLI::App& app, RawOptions& raw, RenderOptions& options) {
   add("--until-error", raw.untilError, "E",
       "Render until the picture's relative error is at most E, and twice that in 95 % of\n"
       "its tiles (0.02: 2 %; stated with 95 % confidence); with --spp or --time, at most that");
-  app.add_flag("--adaptive", options.adaptive, "Give more samples to the tiles that need them; --spp is then their average\n(goes on with --resume, has no --batches)")
+  app.add_flag("--adaptive", options.adaptive,
+               "Give more samples to the tiles that need them; --spp is then their average\n(goes on with --resume, "
+               "has no --batches)")
       ->group("Quality");
   add("--seed", raw.seed, "N", "Of the random numbers (default: 0)");
   add("--bounces", options.bounces, "N", "Short for --set bounces=N");

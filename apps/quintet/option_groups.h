@@ -12,8 +12,8 @@ namespace quintet::app {
 
 // Options as text, before their values are looked at.
 struct RawOptions {
-  std::string scene, output, size, spp, time, untilError, lookFrom, lookAt, up, fov, aperture, focus, envIntensity, envRotation,
-      exposure, toneMap, seed, region, timeout, setFile, exrType, exrCompression, exrTiles;
+  std::string scene, output, size, spp, time, untilError, lookFrom, lookAt, up, fov, aperture, focus, envIntensity,
+      envRotation, exposure, toneMap, seed, region, timeout, setFile, exrType, exrCompression, exrTiles;
   std::vector<std::string> aovs;
 };
 

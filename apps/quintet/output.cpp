@@ -17,7 +17,8 @@ namespace quintet::app {
 OutputKind outputKind(const std::filesystem::path& file) {
   if (file == "-") return OutputKind::png;
   std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".png") return OutputKind::png;
   if (extension == ".exr") return OutputKind::exr;
   if (extension == ".hdr") return OutputKind::hdr;
@@ -40,7 +41,8 @@ void writePicture(const std::filesystem::path& file, const io::Image& image, con
   const OutputKind kind = outputKind(file);
   assert(kind == OutputKind::png || kind == OutputKind::hdr);
   if (kind == OutputKind::png)
-    writeBytes(file, io::encodePng(render::toDisplay(image, display.toneMap, display.exposure, display.opaque), metadata));
+    writeBytes(file,
+               io::encodePng(render::toDisplay(image, display.toneMap, display.exposure, display.opaque), metadata));
   else
     writeBytes(file, io::encodeHdr(image));
 }

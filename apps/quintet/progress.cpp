@@ -41,7 +41,8 @@ std::string figures(const ProgressState& state, std::string_view gap) {
   if (state.raysPerSecond > 0) text += fmt::format("{}{:.3g} Mrays/s", gap, state.raysPerSecond * 1e-6);
   if (state.error && std::isfinite(*state.error)) text += fmt::format("{}error {:.2g} %", gap, 100.0 * *state.error);
   text += fmt::format("{}{}", gap, durationText(state.seconds));
-  if (const double left = state.secondsLeft(); left < kUnknown) text += fmt::format("{}{} left", gap, durationText(left));
+  if (const double left = state.secondsLeft(); left < kUnknown)
+    text += fmt::format("{}{} left", gap, durationText(left));
   return text;
 }
 

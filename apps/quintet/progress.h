@@ -12,12 +12,12 @@
 namespace quintet::app {
 
 struct ProgressState {
-  double samples = 0;                         // per pixel, with the done part of the running batch
-  double seconds = 0;                         // since rendering began
-  double raysPerSecond = 0;                   // 0: not known yet
+  double samples = 0;        // per pixel, with the done part of the running batch
+  double seconds = 0;        // since rendering began
+  double raysPerSecond = 0;  // 0: not known yet
   std::optional<std::uint64_t> sampleLimit;
-  std::optional<double> error;                // relative, stated
-  const char* unit = "samples";               // or "frames"
+  std::optional<double> error;   // relative, stated
+  const char* unit = "samples";  // or "frames"
   std::optional<double> secondLimit;
 
   double fraction() const;     // of the limit that is reached first, [0,1]

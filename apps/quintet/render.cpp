@@ -23,9 +23,8 @@ int render(Session& session, const RenderOptions& options) {
   hooks.states = !options.quiet && session.program().accumulation == program::Accumulation::film;
   hooks.afterBatch = [&](const RenderOutcome& outcome) { checkpoint.afterBatch(outcome); };
   RenderOutcome outcome;
-  withoutHanging(session.program(), options.json, [&] {
-    outcome = renderBatches(session.renderer(), limits, stop, session.progress(), hooks);
-  });
+  withoutHanging(session.program(), options.json,
+                 [&] { outcome = renderBatches(session.renderer(), limits, stop, session.progress(), hooks); });
   checkpoint.afterRendering(outcome);
   try {
     session.write(outcome);

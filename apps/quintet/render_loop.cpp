@@ -21,7 +21,9 @@ RenderOutcome renderBatches(render::Renderer& renderer, const RenderLimits& limi
   outcome.seconds = limits.secondsBefore;
   outcome.batchSeconds = limits.batchSecondsBefore;
   outcome.plan = schedule.plan();
-  const auto isOver = [&](double seconds, double batch) { return limits.seconds && seconds + 0.5 * batch >= *limits.seconds; };
+  const auto isOver = [&](double seconds, double batch) {
+    return limits.seconds && seconds + 0.5 * batch >= *limits.seconds;
+  };
   if (limits.done > limits.begin && isOver(limits.secondsBefore, limits.batchSecondsBefore)) {
     outcome.missed = limits.error && !renderer.film().estimateError().reaches(*limits.error);
     return outcome;

@@ -28,7 +28,8 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   RawOptions raw;
   app.add_option("SCENE", raw.scene, "The scene: .gltf, .glb or .scene.toml")->type_name("");
   app.add_option("-o,--output", raw.output,
-                 ".png, .exr, .hdr or .qfilm (all of the film, for 'quintet merge'); - is PNG on\nstandard output (default: SCENE.png, here)")
+                 ".png, .exr, .hdr or .qfilm (all of the film, for 'quintet merge'); - is PNG on\nstandard output "
+                 "(default: SCENE.png, here)")
       ->type_name("FILE")
       ->group("Image");
   declareImage(app, raw, options);

@@ -23,7 +23,7 @@ struct RenderOptions {
   uvec2 size{0};                 // 0: decided by the camera
   std::optional<std::uint64_t> samples;
   std::optional<double> seconds;
-  std::optional<double> error;           // relative, to be reached
+  std::optional<double> error;  // relative, to be reached
   bool adaptive = false;
   std::optional<std::uint32_t> frames;  // as asked for
   // Of a program that draws frame after frame; nothing: until the time is over.

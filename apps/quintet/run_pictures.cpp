@@ -13,7 +13,8 @@ bool accumulates(const Session& session) { return session.program().accumulation
 
 RenderOutcome renderFilm(Session& session, const RenderOptions& options, const GracefulStop& stop,
                          const RenderHooks& hooks) {
-  return renderBatches(session.renderer(), {options.samples, options.seconds, options.error, options.adaptive}, stop, session.progress(), hooks);
+  return renderBatches(session.renderer(), {options.samples, options.seconds, options.error, options.adaptive}, stop,
+                       session.progress(), hooks);
 }
 
 // With --watch the first batch is shown at once, and the picture again when it is complete.

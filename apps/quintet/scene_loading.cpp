@@ -8,7 +8,8 @@ namespace quintet::app {
 
 namespace {
 
-LoadedScene load(const SceneSource& source, const RenderOptions& options, std::promise<render::SceneFeatures>& features) {
+LoadedScene load(const SceneSource& source, const RenderOptions& options,
+                 std::promise<render::SceneFeatures>& features) {
   const Stopwatch all;
   LoadedScene loaded;
   loaded.scene = loadScene(source, [&](const scene::Scene& scene) {
@@ -37,7 +38,8 @@ void SceneLoading::start(const SceneSource& source, const RenderOptions& options
   // The default policy: where no thread can be had, the work is done when it is asked for.
   std::promise<render::SceneFeatures> features;
   features_ = features.get_future().share();
-  scene_ = std::async([source, &options, features = std::move(features)]() mutable { return load(source, options, features); });
+  scene_ = std::async(
+      [source, &options, features = std::move(features)]() mutable { return load(source, options, features); });
   tables_ = std::async([] { static_cast<void>(render::albedoTables()); });
 }
 

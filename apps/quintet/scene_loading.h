@@ -6,8 +6,8 @@
 #include <future>
 #include <string>
 
-#include "render_options.h"
 #include "render/scene_features.h"
+#include "render_options.h"
 #include "scene/scene.h"
 #include "scene_setup.h"
 #include "scene_source.h"

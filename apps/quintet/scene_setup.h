@@ -11,8 +11,8 @@
 namespace quintet::app {
 
 struct CameraOptions {
-  std::string camera;             // index or name in the file; empty: the first
-  std::optional<vec3> lookFrom;   // world
+  std::string camera;            // index or name in the file; empty: the first
+  std::optional<vec3> lookFrom;  // world
   std::optional<vec3> lookAt;
   vec3 up{0, 1, 0};
   std::optional<float> fov;       // vertical, degrees
@@ -34,9 +34,9 @@ ChosenCamera chooseCamera(const scene::Scene& scene, const CameraOptions& option
 uvec2 chooseSize(uvec2 asked, const scene::Camera& camera);
 
 struct EnvironmentOptions {
-  std::string source;              // a file, "none", "default", "r,g,b"; empty: decide
+  std::string source;  // a file, "none", "default", "r,g,b"; empty: decide
   std::optional<float> intensity;
-  std::optional<float> rotation;   // degrees about +y, counter-clockwise seen from above
+  std::optional<float> rotation;  // degrees about +y, counter-clockwise seen from above
 };
 
 struct ChosenEnvironment {

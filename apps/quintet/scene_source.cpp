@@ -31,7 +31,8 @@ SceneSource chooseScene(const std::filesystem::path& asked, const program::Progr
 
 scene::Scene loadScene(const SceneSource& source, const scene::Described& described) {
   if (!source.file.empty()) return scene::loadScene(source.file, described);
-  scene::Scene scene = source.text.empty() ? scene::defaultScene(source.builtIn) : scene::parseSceneToml(source.text, source.name);
+  scene::Scene scene =
+      source.text.empty() ? scene::defaultScene(source.builtIn) : scene::parseSceneToml(source.text, source.name);
   if (described) described(scene);
   return scene;
 }

@@ -24,8 +24,8 @@ bool isLeft(const std::vector<std::uint32_t>& plan, const render::SampleCounts& 
   return false;
 }
 
-std::vector<std::uint32_t> decide(const render::Region& region, const render::SampleCounts& counts, const render::ErrorEstimate& estimate,
-                                  const RenderLimits& limits) {
+std::vector<std::uint32_t> decide(const render::Region& region, const render::SampleCounts& counts,
+                                  const render::ErrorEstimate& estimate, const RenderLimits& limits) {
   const double samples = render::averageSamples(region, counts);
   const double most = static_cast<double>(limits.samples.value_or(0)) / render::kBatchSamples;
   if (limits.error && estimate.reaches(*limits.error)) return {};
@@ -37,7 +37,8 @@ std::vector<std::uint32_t> decide(const render::Region& region, const render::Sa
   // The estimate thinks that this is enough, and it was not: a tenth more of everything.
   if (limits.error && !isLeft(plan, counts)) {
     for (std::uint32_t& batches : plan) batches += batches / 10 + (batches > 0 ? 1 : 0);
-    const bool tooMany = limits.samples && render::averageSamples(region, {counts.ranges, plan}) > static_cast<double>(*limits.samples);
+    const bool tooMany =
+        limits.samples && render::averageSamples(region, {counts.ranges, plan}) > static_cast<double>(*limits.samples);
     if (tooMany) plan = render::planCells(estimate, {0, most});
   }
   if (!isLeft(plan, counts)) plan.clear();

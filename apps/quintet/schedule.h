@@ -21,7 +21,7 @@ struct RenderLimits {
   std::uint64_t begin = 0;
   std::uint64_t done = 0;
   double secondsBefore = 0;
-  double batchSecondsBefore = 0;  // those of its last batch
+  double batchSecondsBefore = 0;         // those of its last batch
   std::vector<std::uint32_t> plan = {};  // of an adaptive one: Schedule::plan() of then; empty: it decides anew
 };
 
@@ -53,8 +53,8 @@ class Schedule {
 
   render::Renderer& renderer_;
   const RenderLimits& limits_;
-  std::uint64_t done_;           // samples of all pixels
-  std::uint32_t count_ = 0;      // of the batch that comes; 0: of cells
+  std::uint64_t done_;       // samples of all pixels
+  std::uint32_t count_ = 0;  // of the batch that comes; 0: of cells
   std::vector<std::uint32_t> plan_;
   double samples_ = 0;
   double step_ = 0;

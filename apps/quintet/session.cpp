@@ -49,16 +49,20 @@ bool isProgramSource(const std::filesystem::path& name) {
          std::ranges::find(kExtensions, name.extension().string()) != std::end(kExtensions);
 }
 
-Session::Session(const RenderOptions& options) : options_(options), progress_(options.quiet || options.farm.jsonProgress) {}
+Session::Session(const RenderOptions& options)
+    : options_(options), progress_(options.quiet || options.farm.jsonProgress) {}
 
 void Session::prepare() {
   earlyShaders_ = {};  // of a program as it was; waits for it
   program_ = program::loadProgram(options_.program);
   parameters_ = parameterValues(program_, options_);
   if (options_.adaptive && !program_.adaptive)
-    throw UsageError(fmt::format("--adaptive: the program '{}' takes the same samples in all pixels (docs/programs.md: adaptive)", program_.name));
+    throw UsageError(
+        fmt::format("--adaptive: the program '{}' takes the same samples in all pixels (docs/programs.md: adaptive)",
+                    program_.name));
   if (options_.error && program_.accumulation == program::Accumulation::program)
-    throw UsageError(fmt::format("--until-error: the program '{}' averages its samples itself, their spread is not known", program_.name));
+    throw UsageError(fmt::format(
+        "--until-error: the program '{}' averages its samples itself, their spread is not known", program_.name));
   chosenOutputs();
   aovs_ = chooseAovs(program_, options_.aovs);
   checkChannels(aovs_);
@@ -93,7 +97,8 @@ void Session::openDevice() {
 // Beside the reading, uploading and building of the scene. Its errors are told by link(), after those of the scene.
 void Session::compileEarly() {
   earlyShaders_ = std::async(std::launch::async, [this, features = loading_.features(), settings = settings()] {
-    return render::compileShaders(program_, *compiler_, settings, render::shaderDefines(features.get(), context_->info().quirks));
+    return render::compileShaders(program_, *compiler_, settings,
+                                  render::shaderDefines(features.get(), context_->info().quirks));
   });
 }
 
@@ -129,7 +134,8 @@ void Session::loadScene() {
 
   progress_.stage("building acceleration structures");
   const Stopwatch building;
-  auto built = std::make_unique<render::DeviceScene>(*context_, std::move(loaded.scene), loaded.environment.environment);
+  auto built =
+      std::make_unique<render::DeviceScene>(*context_, std::move(loaded.scene), loaded.environment.environment);
   renderer_.reset();
   deviceScene_ = std::move(built);
   sceneInfo_ = std::move(info);
@@ -164,7 +170,8 @@ render::RenderSettings Session::settings() const {
   settings.region = options_.region;
   settings.camera = sceneInfo_.camera;
   settings.seed = options_.seed;
-  settings.plannedSamples = options_.adaptive ? shared::kIndependentPixels : static_cast<std::uint32_t>(options_.samples.value_or(0));
+  settings.plannedSamples =
+      options_.adaptive ? shared::kIndependentPixels : static_cast<std::uint32_t>(options_.samples.value_or(0));
   settings.transparent = options_.transparent;
   settings.parameters = parameters_;
   settings.outputs = wantedOutputs();
@@ -347,20 +354,13 @@ void Session::fillRecord(const RenderOutcome& outcome) {
 
 void Session::fillLoading() {
   const render::DeviceSceneStatistics& built = deviceScene_->statistics();
-  record_.stages = {{"start", record_.startSeconds},
-                    {"document", sceneInfo_.import.document},
-                    {"meshes", sceneInfo_.import.meshes},
-                    {"images", sceneInfo_.import.images},
-                    {"hash", sceneInfo_.hashSeconds},
-                    {"view", sceneInfo_.viewSeconds},
-                    {"lights", built.lightSeconds},
-                    {"upload", built.uploadSeconds - built.lightSeconds},
-                    {"order", built.build.orderSeconds},
-                    {"bottomLevel", built.build.buildSeconds},
-                    {"topLevel", built.topLevelSeconds},
-                    {"compile", record_.compileSeconds},
-                    {"pipeline", record_.pipelineSeconds},
-                    {"firstLaunch", renderer_->statistics().firstLaunchSeconds}};
+  record_.stages = {{"start", record_.startSeconds},       {"document", sceneInfo_.import.document},
+                    {"meshes", sceneInfo_.import.meshes},  {"images", sceneInfo_.import.images},
+                    {"hash", sceneInfo_.hashSeconds},      {"view", sceneInfo_.viewSeconds},
+                    {"lights", built.lightSeconds},        {"upload", built.uploadSeconds - built.lightSeconds},
+                    {"order", built.build.orderSeconds},   {"bottomLevel", built.build.buildSeconds},
+                    {"topLevel", built.topLevelSeconds},   {"compile", record_.compileSeconds},
+                    {"pipeline", record_.pipelineSeconds}, {"firstLaunch", renderer_->statistics().firstLaunchSeconds}};
   MemoryUse& memory = record_.memory;
   memory.peakHost = peakResidentBytes();
   const gpu::DeviceMemory device = context_->memory();

@@ -111,7 +111,7 @@ class Session {
   SceneInfo sceneInfo_;
   bool sceneLoaded_ = false;
   program::ParameterValues parameters_{{}};
-  render::FilmFacts identity_;  // empty: not asked for yet
+  render::FilmFacts identity_;             // empty: not asked for yet
   std::unique_ptr<gpu::Context> context_;  // outlives all that follows
   std::unique_ptr<gpu::PipelineCache> pipelineCache_;
   std::unique_ptr<shader::Compiler> compiler_;

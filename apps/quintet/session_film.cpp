@@ -12,8 +12,8 @@ namespace quintet::app {
 
 const render::FilmFacts& Session::identity() {
   if (identity_.empty())
-    identity_ = filmIdentity({program_, parameters_, renderer_->shaderHashes(), sceneInfo_.hash, sceneInfo_.environmentHash,
-                              sceneInfo_.camera, sceneInfo_.size, renderer_->film()},
+    identity_ = filmIdentity({program_, parameters_, renderer_->shaderHashes(), sceneInfo_.hash,
+                              sceneInfo_.environmentHash, sceneInfo_.camera, sceneInfo_.size, renderer_->film()},
                              options_);
   return identity_;
 }

@@ -25,8 +25,7 @@ void paste(io::Image& target, const io::Image& source, std::uint32_t left) {
 }  // namespace
 
 io::Image sideBySide(const io::Image& a, const io::Image& b, const io::Image& difference) {
-  io::Image result =
-      io::makeImage(3 * a.width + 2 * kGap, a.height, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
+  io::Image result = io::makeImage(3 * a.width + 2 * kGap, a.height, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
   for (auto& sample : result.samples<std::uint8_t>()) sample = 255;
   std::uint32_t left = 0;
   for (const io::Image* part : std::array{&a, &b, &difference}) {

@@ -87,8 +87,8 @@ render::ToneMap parseToneMap(const std::string& option, const std::string& name)
   const std::vector<std::string> names = render::toneMapNames();
   const auto toneMap = render::toneMapByName(name);
   if (!toneMap)
-    throw UsageError(
-        fmt::format("{}: there is no '{}'{}; there are {}", option, name, suggestion(name, names), fmt::join(names, ", ")));
+    throw UsageError(fmt::format("{}: there is no '{}'{}; there are {}", option, name, suggestion(name, names),
+                                 fmt::join(names, ", ")));
   return *toneMap;
 }
 
@@ -101,8 +101,7 @@ double parseNumber(const std::string& option, const std::string& text, double mi
 }
 
 std::string shellQuoted(std::string_view text) {
-  constexpr std::string_view kPlain =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./,=:+@%";
+  constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./,=:+@%";
   if (!text.empty() && text.find_first_not_of(kPlain) == std::string_view::npos) return std::string(text);
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);

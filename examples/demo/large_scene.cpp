@@ -153,7 +153,8 @@ int writeRows(Writer& writer, std::size_t count, std::size_t perRow, int target,
 }
 
 int addAccessor(Json& root, int view, const char* type, int componentType, std::size_t count) {
-  root["accessors"].push_back({{"bufferView", view}, {"componentType", componentType}, {"count", count}, {"type", type}});
+  root["accessors"].push_back(
+      {{"bufferView", view}, {"componentType", componentType}, {"count", count}, {"type", type}});
   return static_cast<int>(root["accessors"].size()) - 1;
 }
 
@@ -166,24 +167,29 @@ Json addPatch(Json& root, Writer& writer, const Patch& patch) {
       for (std::size_t c = 0; c < width; ++c) out[c] = member(row, patch.at(row, c));
     });
   };
-  const int positions = addAccessor(root, points(vec3(), [&](std::size_t row, const Point& p) {
-    boxes[row].extend(p.position);
-    return p.position;
-  }), "VEC3", kFloat, count);
+  const int positions = addAccessor(root,
+                                    points(vec3(),
+                                           [&](std::size_t row, const Point& p) {
+                                             boxes[row].extend(p.position);
+                                             return p.position;
+                                           }),
+                                    "VEC3", kFloat, count);
   Bounds3 box;
   for (const Bounds3& b : boxes) box.extend(b);
   root["accessors"].back()["min"] = {box.min.x, box.min.y, box.min.z};
   root["accessors"].back()["max"] = {box.max.x, box.max.y, box.max.z};
-  const int normals = addAccessor(root, points(vec3(), [](std::size_t, const Point& p) { return p.normal; }), "VEC3", kFloat, count);
-  const int uvs = addAccessor(root, points(vec2(), [](std::size_t, const Point& p) { return p.uv; }), "VEC2", kFloat, count);
-  const int indices = writeRows<uvec3>(writer, patch.rows, 2 * patch.columns, kElementArrayBuffer,
-                                       [&](std::size_t row, std::span<uvec3> out) {
-    for (std::size_t c = 0; c < patch.columns; ++c) {
-      const auto a = static_cast<std::uint32_t>(row * width + c), b = static_cast<std::uint32_t>(a + width);
-      out[2 * c] = {a, b, b + 1};
-      out[2 * c + 1] = {a, b + 1, a + 1};
-    }
-  });
+  const int normals =
+      addAccessor(root, points(vec3(), [](std::size_t, const Point& p) { return p.normal; }), "VEC3", kFloat, count);
+  const int uvs =
+      addAccessor(root, points(vec2(), [](std::size_t, const Point& p) { return p.uv; }), "VEC2", kFloat, count);
+  const int indices = writeRows<uvec3>(
+      writer, patch.rows, 2 * patch.columns, kElementArrayBuffer, [&](std::size_t row, std::span<uvec3> out) {
+        for (std::size_t c = 0; c < patch.columns; ++c) {
+          const auto a = static_cast<std::uint32_t>(row * width + c), b = static_cast<std::uint32_t>(a + width);
+          out[2 * c] = {a, b, b + 1};
+          out[2 * c + 1] = {a, b + 1, a + 1};
+        }
+      });
   Json primitive{{"attributes", {{"POSITION", positions}, {"NORMAL", normals}, {"TEXCOORD_0", uvs}}},
                  {"indices", addAccessor(root, indices, "SCALAR", kUnsignedInt, 3 * patch.triangleCount())}};
   return primitive;
@@ -196,9 +202,11 @@ io::Image makeTexture(std::uint32_t size, std::uint32_t seed, bool normalMap) {
     for (std::uint32_t x = 0; x < size; ++x) {
       const float angle = 40.0f * (static_cast<float>(x) + 3.0f * static_cast<float>(y)) / static_cast<float>(size);
       const float wave = 0.5f + 0.4f * std::sin(angle + static_cast<float>(seed)), grain = 0.1f * hash01(x, y, 0, seed);
-      const vec3 value = normalMap ? vec3(0.4f + 0.2f * wave, 0.5f + grain, 0.98f) : vec3(wave + grain, 0.9f - 0.5f * wave, 0.3f + grain);
+      const vec3 value = normalMap ? vec3(0.4f + 0.2f * wave, 0.5f + grain, 0.98f)
+                                   : vec3(wave + grain, 0.9f - 0.5f * wave, 0.3f + grain);
       for (std::size_t c = 0; c < 3; ++c)
-        pixels[3 * (std::size_t{y} * size + x) + c] = static_cast<std::uint8_t>(255.0f * std::clamp(value[c], 0.0f, 1.0f));
+        pixels[3 * (std::size_t{y} * size + x) + c] =
+            static_cast<std::uint8_t>(255.0f * std::clamp(value[c], 0.0f, 1.0f));
     }
   }
   return image;
@@ -235,12 +243,15 @@ std::uint64_t writeLargeScene(const std::filesystem::path& file, const LargeScen
   const double rows = std::max(2.0, std::round(std::sqrt(static_cast<double>(options.triangles) / 4.0)));
   const double columns = std::max(2.0, std::round(static_cast<double>(options.triangles) / (2.0 * rows * meshes)));
   Writer writer(file, 4096 + std::size_t{1024} * meshes + std::size_t{512} * options.textures);
-  Json root{{"asset", {{"version", "2.0"}, {"generator", "Quintet"}}}, {"scene", 0}, {"scenes", {{{"nodes", Json::array()}}}}};
+  Json root{{"asset", {{"version", "2.0"}, {"generator", "Quintet"}}},
+            {"scene", 0},
+            {"scenes", {{{"nodes", Json::array()}}}}};
   addTextures(root, writer, options);
   std::uint64_t triangles = 0;
   for (std::uint32_t i = 0; i < meshes; ++i) {
     const Patch patch{static_cast<std::size_t>(rows), static_cast<std::size_t>(columns),
-                      static_cast<float>(i) / static_cast<float>(meshes), static_cast<float>(i + 1) / static_cast<float>(meshes)};
+                      static_cast<float>(i) / static_cast<float>(meshes),
+                      static_cast<float>(i + 1) / static_cast<float>(meshes)};
     Json primitive = addPatch(root, writer, patch);
     primitive["material"] = i % std::max(options.textures, 1u);
     root["meshes"].push_back({{"name", fmt::format("patch {}", i)}, {"primitives", {std::move(primitive)}}});

@@ -11,9 +11,9 @@ namespace quintet::demo {
 struct LargeSceneOptions {
   std::uint64_t triangles = 10'000'000;  // about; at least 8 for each mesh are made
   std::uint32_t meshes = 1;
-  std::uint32_t textures = 0;            // base colours, shared out among the meshes
-  std::uint32_t textureSize = 1024;      // pixels a side
-  bool normalMaps = false;               // one beside each base colour: the importer has to make tangents
+  std::uint32_t textures = 0;        // base colours, shared out among the meshes
+  std::uint32_t textureSize = 1024;  // pixels a side
+  bool normalMaps = false;           // one beside each base colour: the importer has to make tangents
 };
 
 // Writes a binary glTF 2.0 file; the same options give the same bytes. Returns the number of triangles.

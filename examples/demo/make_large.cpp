@@ -12,7 +12,8 @@ namespace {
 
 constexpr const char* kUsage =
     "usage: quintet_make_large OUT.glb [--triangles N] [--meshes M] [--textures K] [--texture-size S] [--normal-maps]\n"
-    "A displaced sphere of about N triangles (10000000) in M meshes (1), with K base colours of S x S pixels (0, 1024).\n";
+    "A displaced sphere of about N triangles (10000000) in M meshes (1), with K base colours of S x S pixels (0, "
+    "1024).\n";
 
 bool parse(int argc, char** argv, quintet::demo::LargeSceneOptions& options) {
   for (int i = 2; i < argc; ++i) {
@@ -25,11 +26,16 @@ bool parse(int argc, char** argv, quintet::demo::LargeSceneOptions& options) {
     const unsigned long value = i + 1 < argc ? std::strtoul(argv[i + 1], &end, 10) : 0;
     if (!end || *end != '\0' || value > 4'000'000'000ul) return false;
     const auto small = static_cast<std::uint32_t>(value);
-    if (name == "--triangles") options.triangles = value;
-    else if (name == "--meshes") options.meshes = small;
-    else if (name == "--textures") options.textures = small;
-    else if (name == "--texture-size" && small > 0 && small <= 16384) options.textureSize = small;
-    else return false;
+    if (name == "--triangles")
+      options.triangles = value;
+    else if (name == "--meshes")
+      options.meshes = small;
+    else if (name == "--textures")
+      options.textures = small;
+    else if (name == "--texture-size" && small > 0 && small <= 16384)
+      options.textureSize = small;
+    else
+      return false;
     ++i;
   }
   return true;

@@ -78,10 +78,10 @@ class Scene {
   static Scene load(const std::filesystem::path& file);  // throws FileError
   // The scene that the program brings, else a small built-in one that its shaders can meet.
   static Scene of(const Program& program);
-  std::string name() const;                              // the file's
+  std::string name() const;  // the file's
   std::size_t instanceCount() const;
   std::size_t cameraCount() const;
-  std::array<std::array<float, 3>, 2> bounds() const;    // world, min and max; min > max if nothing is there
+  std::array<std::array<float, 3>, 2> bounds() const;  // world, min and max; min > max if nothing is there
 
  private:
   friend class Renderer;
@@ -126,15 +126,15 @@ struct Camera {
   std::array<float, 3> lookFrom{0, 0, 5};  // world, metres
   std::array<float, 3> lookAt{0, 0, 0};
   std::array<float, 3> up{0, 1, 0};
-  float verticalFov = 0.7854f;             // radians, (0, pi)
-  float apertureRadius = 0;                // metres; what is as far as lookAt is sharp
+  float verticalFov = 0.7854f;  // radians, (0, pi)
+  float apertureRadius = 0;     // metres; what is as far as lookAt is sharp
 };
 
 struct Settings {
-  std::uint32_t width = 1280;   // pixels, 1 … 65536
+  std::uint32_t width = 1280;  // pixels, 1 … 65536
   std::uint32_t height = 720;
-  std::uint32_t seed = 0;       // of the random numbers
-  std::optional<Camera> camera; // none: the scene's first, else one that shows everything
+  std::uint32_t seed = 0;        // of the random numbers
+  std::optional<Camera> camera;  // none: the scene's first, else one that shows everything
   std::vector<std::pair<std::string, std::string>> parameters;  // name, value as on the command line ("1,0.5,0")
 };
 

@@ -12,7 +12,9 @@ Device::Device(const DeviceOptions& options) : impl_(std::make_unique<Impl>()) {
       if (level == LogLevel::warning) warn(text);
     };
   impl_->context = std::make_unique<gpu::Context>(context);
-  const auto part = [&](const char* name) { return options.cacheFolder.empty() ? options.cacheFolder : options.cacheFolder / name; };
+  const auto part = [&](const char* name) {
+    return options.cacheFolder.empty() ? options.cacheFolder : options.cacheFolder / name;
+  };
   shader::CompilerOptions compiler;
   compiler.cacheFolder = part("shaders");
   impl_->compiler = std::make_unique<shader::Compiler>(compiler);

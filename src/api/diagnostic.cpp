@@ -18,9 +18,12 @@ std::string firstError(const std::vector<Diagnostic>& diagnostics) {
 
 }  // namespace
 
-std::string Diagnostic::format() const { return shader::Diagnostic{toInternal(severity), file, line, column, id, text}.format(); }
+std::string Diagnostic::format() const {
+  return shader::Diagnostic{toInternal(severity), file, line, column, id, text}.format();
+}
 
-ProgramError::ProgramError(std::vector<Diagnostic> diagnostics) : Error(firstError(diagnostics)), diagnostics_(std::move(diagnostics)) {}
+ProgramError::ProgramError(std::vector<Diagnostic> diagnostics)
+    : Error(firstError(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
 Diagnostic api::toPublic(const shader::Diagnostic& d) {
   const auto severity = d.severity == shader::Severity::error     ? Diagnostic::Severity::error

@@ -15,7 +15,8 @@ std::string Program::description() const { return impl_->program.description; }
 std::vector<ParameterInfo> Program::parameters() const {
   std::vector<ParameterInfo> result;
   for (const program::Parameter& p : impl_->program.parameters)
-    result.push_back({p.name, std::string(program::typeName(p.type)), program::formatDefault(p), p.min, p.max, p.unit, p.help});
+    result.push_back(
+        {p.name, std::string(program::typeName(p.type)), program::formatDefault(p), p.min, p.max, p.unit, p.help});
   return result;
 }
 

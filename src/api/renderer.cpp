@@ -14,10 +14,12 @@ vec3 toVec3(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 scene::Camera makeCamera(const scene::Scene& scene, const Settings& settings) {
   if (!settings.camera) {
     if (!scene.cameras.empty()) return scene.cameras.front();
-    return scene::frameScene(scene::worldBounds(scene), static_cast<float>(settings.width) / static_cast<float>(std::max(1u, settings.height)));
+    return scene::frameScene(scene::worldBounds(scene),
+                             static_cast<float>(settings.width) / static_cast<float>(std::max(1u, settings.height)));
   }
   const Camera& camera = *settings.camera;
-  return scene::lookAtCamera(toVec3(camera.lookFrom), toVec3(camera.lookAt), toVec3(camera.up), camera.verticalFov, camera.apertureRadius);
+  return scene::lookAtCamera(toVec3(camera.lookFrom), toVec3(camera.lookAt), toVec3(camera.up), camera.verticalFov,
+                             camera.apertureRadius);
 }
 
 program::ParameterValues makeParameters(const program::Program& program, const Settings& settings) {
@@ -72,10 +74,12 @@ Picture Renderer::picture(const std::string& output) const {
   const program::Program& program = impl_->renderer->program();
   const std::vector<std::string> outputs = program::outputNames(program);
   const auto found = output.empty() ? outputs.begin() : std::ranges::find(outputs, output);
-  if (found == outputs.end()) throw UsageError(fmt::format("no output '{}'; there are {}", output, fmt::join(outputs, ", ")));
+  if (found == outputs.end())
+    throw UsageError(fmt::format("no output '{}'; there are {}", output, fmt::join(outputs, ", ")));
   const io::Image image = impl_->renderer->image(static_cast<std::size_t>(found - outputs.begin()));
   const std::span<const float> samples = image.samples<float>();
-  const bool isColor = program.outputs[static_cast<std::size_t>(found - outputs.begin())].kind == program::OutputKind::color;
+  const bool isColor =
+      program.outputs[static_cast<std::size_t>(found - outputs.begin())].kind == program::OutputKind::color;
   return {image.width, image.height, {samples.begin(), samples.end()}, isColor};
 }
 

@@ -55,7 +55,8 @@ std::size_t readInParts(int fd, std::span<std::byte> data) {
   parallelFor(parts, [&](std::size_t i) {
     const std::span<std::byte> part = data.subspan(i * kPart, std::min(kPart, data.size() - i * kPart));
     while (got[i] < part.size()) {
-      const ssize_t more = ::pread(fd, part.data() + got[i], part.size() - got[i], static_cast<off_t>(i * kPart + got[i]));
+      const ssize_t more =
+          ::pread(fd, part.data() + got[i], part.size() - got[i], static_cast<off_t>(i * kPart + got[i]));
       if (more <= 0) break;  // whoever goes on from there is told the same
       got[i] += static_cast<std::size_t>(more);
     }

@@ -23,9 +23,13 @@ struct UnclearedAllocator : std::allocator<T> {
     using other = UnclearedAllocator<U>;
   };
   template <class U>
-  void construct(U* at) { ::new (static_cast<void*>(at)) U; }
+  void construct(U* at) {
+    ::new (static_cast<void*>(at)) U;
+  }
   template <class U, class... Arguments>
-  void construct(U* at, Arguments&&... arguments) { ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...); }
+  void construct(U* at, Arguments&&... arguments) {
+    ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...);
+  }
 };
 using FileBytes = std::vector<std::byte, UnclearedAllocator<std::byte>>;
 

@@ -3,12 +3,16 @@
 #ifndef QUINTET_BASE_MATH_H
 #define QUINTET_BASE_MATH_H
 
+#ifdef GLM_VERSION
+#error "glm without this set-up has other types: include base/math.h instead of it"
+#endif
 #define GLM_FORCE_DEPTH_ZERO_TO_ONE
 #define GLM_FORCE_SIZE_T_LENGTH
 #define GLM_ENABLE_EXPERIMENTAL
 #include <glm/glm.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/packing.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include <cmath>

@@ -20,7 +20,8 @@ void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body
 // Calls body(first, last) for consecutive parts of [0, count) of at most `grain` indices, on all cores.
 template <class Body>
 void parallelRanges(std::size_t count, const Body& body, std::size_t grain = 65536) {
-  parallelFor((count + grain - 1) / grain, [&](std::size_t part) { body(part * grain, std::min(count, (part + 1) * grain)); });
+  parallelFor((count + grain - 1) / grain,
+              [&](std::size_t part) { body(part * grain, std::min(count, (part + 1) * grain)); });
 }
 
 // memcpy on all cores: first writes to new memory are page faults, and those are what takes the time.

@@ -35,7 +35,8 @@ double incompleteBeta(double a, double b, double x) {
   if (x <= 0.0) return 0.0;
   if (x >= 1.0) return 1.0;
   if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - incompleteBeta(b, a, 1.0 - x);
-  return std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) * betaFraction(a, b, x) / a;
+  return std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x)) *
+         betaFraction(a, b, x) / a;
 }
 
 // z with P(Z <= z) = probability.
@@ -50,7 +51,9 @@ double normalQuantile(double probability) {
 
 }  // namespace
 
-double studentTwoSided(double t, double freedom) { return incompleteBeta(0.5 * freedom, 0.5, freedom / (freedom + t * t)); }
+double studentTwoSided(double t, double freedom) {
+  return incompleteBeta(0.5 * freedom, 0.5, freedom / (freedom + t * t));
+}
 
 double fisherQuantile(double probability, double a, double b) {
   // The fraction converges after some sqrt(a + b) terms; beyond this many degrees of freedom nothing changes that matters
@@ -60,7 +63,8 @@ double fisherQuantile(double probability, double a, double b) {
     // Both cube roots are all but normal (E. Paulson, "An Approximate Normalization of the Analysis of Variance
     // Distribution", 1942): the root of (1 - v) x - (1 - u) = z sqrt(v x² + u) in x³ = F.
     const double u = 2.0 / (9.0 * a), v = 2.0 / (9.0 * b), z = normalQuantile(probability);
-    const double p = (1.0 - v) * (1.0 - v) - z * z * v, q = (1.0 - u) * (1.0 - v), r = (1.0 - u) * (1.0 - u) - z * z * u;
+    const double p = (1.0 - v) * (1.0 - v) - z * z * v, q = (1.0 - u) * (1.0 - v),
+                 r = (1.0 - u) * (1.0 - u) - z * z * u;
     const double root = (q + std::copysign(std::sqrt(q * q - p * r), z)) / p;
     return root * root * root;
   }

@@ -21,13 +21,16 @@ namespace fs = std::filesystem;
 // depend on the target's, which may leave no room for a suffix.
 fs::path nameOf(const fs::path& target, unsigned number) {
   const std::string hash = Hasher().add(target.filename().string()).finish().hex().substr(0, 16);
-  return (target.has_parent_path() ? target.parent_path() : fs::path(".")) / (".quintet-" + hash + "-" + std::to_string(number) + ".tmp");
+  return (target.has_parent_path() ? target.parent_path() : fs::path(".")) /
+         (".quintet-" + hash + "-" + std::to_string(number) + ".tmp");
 }
 
 // Between its opening and its locking the name may have gone to somebody else.
 bool isStill(int fd, const fs::path& path) {
-  struct stat open {}, named {};
-  return ::fstat(fd, &open) == 0 && ::lstat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+  struct stat open {
+  }, named{};
+  return ::fstat(fd, &open) == 0 && ::lstat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev &&
+         open.st_ino == named.st_ino;
 }
 
 bool lock(int fd) { return ::flock(fd, LOCK_EX | LOCK_NB) == 0; }
@@ -83,8 +86,10 @@ void TemporaryFile::removeLeftovers(const fs::path& target) {
   struct stat info {};
   for (unsigned number = 0, missing = 0; missing < kGap; ++number) {
     const fs::path path = nameOf(target, number);
-    if (::lstat(path.c_str(), &info) == 0) removeLeftover(path);
-    else ++missing;
+    if (::lstat(path.c_str(), &info) == 0)
+      removeLeftover(path);
+    else
+      ++missing;
   }
 }
 

@@ -61,8 +61,8 @@ Buffer::Buffer(Context& context, const BufferOptions& options) : context_(&conte
                VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
   const VmaAllocationCreateInfo allocation = allocationInfo(options.memory, getsOwnBlock(context, size_));
   VmaAllocationInfo allocated{};
-  const VkResult result = vmaCreateBufferWithAlignment(context.allocator(), &info, &allocation,
-                                                       alignmentOf(context, options), &handle_, &allocation_, &allocated);
+  const VkResult result = vmaCreateBufferWithAlignment(
+      context.allocator(), &info, &allocation, alignmentOf(context, options), &handle_, &allocation_, &allocated);
   check(result, fmt::format("allocate {:.1f} MiB for buffer", static_cast<double>(size_) / kMiB), options.name);
   book(context, allocation_, options.purpose);
   mapped_ = static_cast<std::byte*>(allocated.pMappedData);
@@ -139,7 +139,8 @@ void Buffer::download(std::span<std::byte> data, VkDeviceSize offset) const {
   }
 }
 
-Buffer makeBuffer(Context& context, std::span<const std::byte> data, VkBufferUsageFlags usage, const std::string& name) {
+Buffer makeBuffer(Context& context, std::span<const std::byte> data, VkBufferUsageFlags usage,
+                  const std::string& name) {
   Buffer buffer(context, {.size = data.size(), .usage = usage, .name = name});
   buffer.upload(data);
   return buffer;

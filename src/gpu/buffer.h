@@ -53,7 +53,9 @@ class Buffer {
   void download(std::span<std::byte> data, VkDeviceSize offset = 0) const;
 
   template <class T>
-  void uploadAs(std::span<const T> data) { upload(std::as_bytes(data)); }
+  void uploadAs(std::span<const T> data) {
+    upload(std::as_bytes(data));
+  }
   template <class T>
   std::vector<T> downloadAs(std::size_t count) const {
     std::vector<T> result(count);

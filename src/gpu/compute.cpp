@@ -13,7 +13,8 @@ ComputePipeline::ComputePipeline(Context& context, const BindlessSet& set, std::
   moduleInfo.codeSize = spirv.size_bytes();
   moduleInfo.pCode = spirv.data();
   VkShaderModule shader = VK_NULL_HANDLE;
-  check(context.vk().vkCreateShaderModule(context.device(), &moduleInfo, nullptr, &shader), "load compute shader", name);
+  check(context.vk().vkCreateShaderModule(context.device(), &moduleInfo, nullptr, &shader), "load compute shader",
+        name);
 
   VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
   info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};

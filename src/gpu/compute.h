@@ -19,8 +19,8 @@ class ComputePipeline {
   ComputePipeline& operator=(const ComputePipeline&) = delete;
 
   // Binds pipeline and set, pushes `constants` (at most the set's pushConstantBytes) and dispatches workgroups.
-  void dispatch(Commands& commands, std::span<const std::byte> constants, std::uint32_t groupsX, std::uint32_t groupsY = 1,
-                std::uint32_t groupsZ = 1) const;
+  void dispatch(Commands& commands, std::span<const std::byte> constants, std::uint32_t groupsX,
+                std::uint32_t groupsY = 1, std::uint32_t groupsZ = 1) const;
 
  private:
   Context& context_;

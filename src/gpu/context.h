@@ -24,46 +24,46 @@ class Commands;
 // Defects and habits of a driver that other layers work around (docs/design/quirks.md). Each has a
 // test that tells when the driver has mended it.
 struct Quirks {
-  bool software = false;              // lavapipe: the CPU is the device
-  bool keepsPrimitiveOrder = false;   // builder halves the input order: sort primitives and instances first
-  bool corruptsHitAttributes = false; // rejected candidates overwrite them: recompute in closest-hit
-  bool noCompaction = false;          // compacted size equals the full size
-  bool changesNestedBuiltIns = false; // built-ins of a hit read after a nested trace are those of the inner hit
-  bool sharesAnyHit = false;          // hit groups that share an intersection stage run the first group's any-hit shader
-  bool sharesLocalArrays = false;     // indexed arrays of an intersection shader and its any-hit shader overlap
+  bool software = false;               // lavapipe: the CPU is the device
+  bool keepsPrimitiveOrder = false;    // builder halves the input order: sort primitives and instances first
+  bool corruptsHitAttributes = false;  // rejected candidates overwrite them: recompute in closest-hit
+  bool noCompaction = false;           // compacted size equals the full size
+  bool changesNestedBuiltIns = false;  // built-ins of a hit read after a nested trace are those of the inner hit
+  bool sharesAnyHit = false;       // hit groups that share an intersection stage run the first group's any-hit shader
+  bool sharesLocalArrays = false;  // indexed arrays of an intersection shader and its any-hit shader overlap
 };
 
 struct RayTracingLimits {
-  std::uint32_t handleSize = 0;           // bytes, shaderGroupHandleSize
-  std::uint32_t handleAlignment = 0;      // bytes, shaderGroupHandleAlignment
-  std::uint32_t baseAlignment = 0;        // bytes, shaderGroupBaseAlignment
-  std::uint32_t maxRecordStride = 0;      // bytes, maxShaderGroupStride
+  std::uint32_t handleSize = 0;       // bytes, shaderGroupHandleSize
+  std::uint32_t handleAlignment = 0;  // bytes, shaderGroupHandleAlignment
+  std::uint32_t baseAlignment = 0;    // bytes, shaderGroupBaseAlignment
+  std::uint32_t maxRecordStride = 0;  // bytes, maxShaderGroupStride
   std::uint32_t maxRecursionDepth = 0;
-  std::uint32_t maxHitAttributeSize = 0;  // bytes
-  std::uint32_t maxLaunchInvocations = 0; // width · height · depth
-  std::uint32_t scratchAlignment = 0;     // bytes, minAccelerationStructureScratchOffsetAlignment
+  std::uint32_t maxHitAttributeSize = 0;   // bytes
+  std::uint32_t maxLaunchInvocations = 0;  // width · height · depth
+  std::uint32_t scratchAlignment = 0;      // bytes, minAccelerationStructureScratchOffsetAlignment
   std::uint64_t maxGeometries = 0;
   std::uint64_t maxInstances = 0;
   std::uint64_t maxPrimitives = 0;
 };
 
 struct DeviceInfo {
-  std::uint32_t index = 0;      // in the order of Context::devices()
-  std::string name;             // "NVIDIA H200"
-  std::string driver;           // "lavapipe 25.0.7 (LLVM 15.0.6)": name, version and info
-  std::string uuid;             // 32 hex digits
-  std::string kind;             // "discrete GPU", "integrated GPU", "CPU", …
+  std::uint32_t index = 0;  // in the order of Context::devices()
+  std::string name;         // "NVIDIA H200"
+  std::string driver;       // "lavapipe 25.0.7 (LLVM 15.0.6)": name, version and info
+  std::string uuid;         // 32 hex digits
+  std::string kind;         // "discrete GPU", "integrated GPU", "CPU", …
   std::uint32_t apiVersion = 0;
   std::uint64_t memoryBytes = 0;     // largest device-local heap
   std::uint64_t maxBufferBytes = 0;  // of one buffer
   std::uint32_t maxImageSize = 0;    // pixels, width and height of a 2D image
   std::uint32_t maxTextures = 0;     // combined image samplers that one shader may see
-  std::string refusal;          // why Quintet cannot use it; empty: usable
-  RayTracingLimits limits;      // zero when ray tracing is absent
+  std::string refusal;               // why Quintet cannot use it; empty: usable
+  RayTracingLimits limits;           // zero when ray tracing is absent
   bool rayQuery = false;
   bool positionFetch = false;
   bool pipelineStatistics = false;  // rt::pipelineStatistics has something to tell
-  float timestampPeriod = 0.0f;  // nanoseconds per tick; 0: no timestamps
+  float timestampPeriod = 0.0f;     // nanoseconds per tick; 0: no timestamps
   std::uint32_t timestampBits = 0;  // valid low bits of a timestamp
   std::uint32_t subgroupSize = 0;
   std::array<std::uint8_t, 16> pipelineCacheUuid{};
@@ -117,8 +117,8 @@ class Context {
   // Blocks until `value` is reached. Throws TimeoutError after timeoutSeconds (≤ 0: no limit).
   void wait(std::uint64_t value, double timeoutSeconds = 0.0);
   void submitAndWait(const std::function<void(Commands&)>& record) { wait(submit(record)); }
-  std::uint64_t completed() const;   // last timeline value that has been reached
-  std::uint64_t submitted() const;   // last timeline value handed out
+  std::uint64_t completed() const;  // last timeline value that has been reached
+  std::uint64_t submitted() const;  // last timeline value handed out
 
   // Runs `destroy` once all work submitted so far has ended (at the latest in the destructor).
   void retire(std::function<void()> destroy);

@@ -21,7 +21,8 @@ class BindlessSet {
   VkPipelineLayout pipelineLayout() const { return pipelineLayout_; }
   VkDescriptorSet set() const { return set_; }
   std::uint32_t pushConstantBytes() const { return pushConstantBytes_; }
-  static VkShaderStageFlags stages();  // of the bindings and of the push constants: vkCmdPushConstants wants all of them
+  static VkShaderStageFlags
+  stages();  // of the bindings and of the push constants: vkCmdPushConstants wants all of them
 
   // The set must not be in use by pending work.
   void setAccelerationStructure(VkAccelerationStructureKHR structure);

@@ -64,8 +64,9 @@ int devicePreference(std::string_view kind) {
 
 std::size_t chooseDevice(std::span<const DeviceInfo> devices, std::string_view request) {
   if (devices.empty())
-    throw NoDeviceError("no Vulkan device found: the drivers know of none; install mesa-vulkan-drivers (CPU) or your "
-                        "GPU's driver, then look at `quintet info`");
+    throw NoDeviceError(
+        "no Vulkan device found: the drivers know of none; install mesa-vulkan-drivers (CPU) or your "
+        "GPU's driver, then look at `quintet info`");
   const std::optional<std::size_t> index = asIndex(request, devices.size());
   const std::string wanted = lowerCase(request);
   bool matched = false;
@@ -75,7 +76,8 @@ std::size_t chooseDevice(std::span<const DeviceInfo> devices, std::string_view r
     if (devices[i].usable()) return i;
   }
   if (request.empty()) throw NoDeviceError(fmt::format("no usable device; found {}", listing(devices)));
-  throw NoDeviceError(fmt::format("{} device '{}'; found {}", matched ? "cannot use" : "no", request, listing(devices)));
+  throw NoDeviceError(
+      fmt::format("{} device '{}'; found {}", matched ? "cannot use" : "no", request, listing(devices)));
 }
 
 }  // namespace quintet::gpu

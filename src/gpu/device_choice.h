@@ -10,8 +10,9 @@
 
 namespace quintet::gpu {
 
-std::string deviceKindName(VkPhysicalDeviceType type);  // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
-int devicePreference(std::string_view kind);            // smaller is better: discrete, integrated, virtual, other, CPU
+std::string deviceKindName(
+    VkPhysicalDeviceType type);               // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
+int devicePreference(std::string_view kind);  // smaller is better: discrete, integrated, virtual, other, CPU
 
 // The index of the device that ContextOptions::device = `request` means, in the order of `devices`
 // (the order of preference). Throws NoDeviceError with a list of all devices if none fits.

@@ -16,9 +16,9 @@ constexpr const char* kNeededExtensions[] = {
     VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
 };
 constexpr const char* kOptionalExtensions[] = {
-    VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME,  // copies of acceleration structures, SBT access bit
-    VK_KHR_PIPELINE_LIBRARY_EXTENSION_NAME,           // hit groups compiled on their own
-    VK_EXT_MEMORY_BUDGET_EXTENSION_NAME,              // exhausted memory is an error, not the system's OOM killer
+    VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME,       // copies of acceleration structures, SBT access bit
+    VK_KHR_PIPELINE_LIBRARY_EXTENSION_NAME,                // hit groups compiled on their own
+    VK_EXT_MEMORY_BUDGET_EXTENSION_NAME,                   // exhausted memory is an error, not the system's OOM killer
     VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME,  // registers, stack: what the driver tells of a pipeline
 };
 
@@ -27,8 +27,10 @@ struct Feature {
   const char* name;
   VkBool32& (*member)(DeviceFeatures&);
 };
-#define QUINTET_FEATURE(group, field) \
-  Feature { #field, [](DeviceFeatures& f) -> VkBool32& { return f.group.field; } }
+#define QUINTET_FEATURE(group, field)                                     \
+  Feature {                                                               \
+#field, [](DeviceFeatures & f) -> VkBool32& { return f.group.field; } \
+  }
 
 const Feature kNeededFeatures[] = {
     QUINTET_FEATURE(core.features, shaderInt64),

@@ -130,9 +130,9 @@ DeviceInfo describe(VkPhysicalDevice device, const Capabilities& capabilities, s
   info.timestampPeriod = timestampBits ? core.limits.timestampPeriod : 0.0f;
   info.timestampBits = timestampBits;
   info.maxImageSize = core.limits.maxImageDimension2D;
-  info.maxTextures = std::min({core.limits.maxPerStageDescriptorSampledImages, core.limits.maxPerStageDescriptorSamplers,
-                               core.limits.maxDescriptorSetSampledImages, core.limits.maxDescriptorSetSamplers,
-                               core.limits.maxPerStageResources - 1});
+  info.maxTextures = std::min({core.limits.maxPerStageDescriptorSampledImages,
+                               core.limits.maxPerStageDescriptorSamplers, core.limits.maxDescriptorSetSampledImages,
+                               core.limits.maxDescriptorSetSamplers, core.limits.maxPerStageResources - 1});
   info.subgroupSize = properties.vulkan11.subgroupSize;
   std::memcpy(info.pipelineCacheUuid.data(), core.pipelineCacheUUID, info.pipelineCacheUuid.size());
   info.quirks = quirksOf(properties.driver.driverID);

@@ -19,7 +19,9 @@ void setUnlessSet(const char* name, const std::string& value) { ::setenv(name, v
 
 }  // namespace
 
-unsigned lavapipeThreads(unsigned cores) { return std::min(kThreadsPerCore * std::max(cores, 1u), kMaxLavapipeThreads); }
+unsigned lavapipeThreads(unsigned cores) {
+  return std::min(kThreadsPerCore * std::max(cores, 1u), kMaxLavapipeThreads);
+}
 
 void prepareDriverEnvironment() {
   static std::once_flag once;

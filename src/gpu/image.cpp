@@ -158,9 +158,8 @@ Sampler& Sampler::operator=(Sampler&& other) noexcept {
 
 void Sampler::release() {
   if (!handle_) return;
-  context_->retire([context = context_, handle = handle_] {
-    context->vk().vkDestroySampler(context->device(), handle, nullptr);
-  });
+  context_->retire(
+      [context = context_, handle = handle_] { context->vk().vkDestroySampler(context->device(), handle, nullptr); });
   handle_ = VK_NULL_HANDLE;
 }
 

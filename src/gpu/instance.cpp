@@ -18,9 +18,10 @@ namespace {
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 [[noreturn]] void throwNoDriver(std::string_view reason) {
-  throw NoDeviceError(fmt::format("no Vulkan driver found: {}; install mesa-vulkan-drivers (CPU) or your GPU's driver, "
-                                  "then look at `quintet info`",
-                                  reason));
+  throw NoDeviceError(
+      fmt::format("no Vulkan driver found: {}; install mesa-vulkan-drivers (CPU) or your GPU's driver, "
+                  "then look at `quintet info`",
+                  reason));
 }
 
 void loadLoader() {
@@ -96,8 +97,7 @@ Instance::Instance(ValidationSink* sink) {
 
 void Instance::addMessenger(ValidationSink& sink) {
   setObjectName_ = instanceFunction<PFN_vkSetDebugUtilsObjectNameEXT>(handle_, "vkSetDebugUtilsObjectNameEXT");
-  const auto create =
-      instanceFunction<PFN_vkCreateDebugUtilsMessengerEXT>(handle_, "vkCreateDebugUtilsMessengerEXT");
+  const auto create = instanceFunction<PFN_vkCreateDebugUtilsMessengerEXT>(handle_, "vkCreateDebugUtilsMessengerEXT");
   const VkDebugUtilsMessengerCreateInfoEXT info = sink.messengerInfo();
   const VkResult result = create ? create(handle_, &info, nullptr, &messenger_) : VK_ERROR_EXTENSION_NOT_PRESENT;
   if (result == VK_SUCCESS) return;

@@ -19,7 +19,8 @@ bool getsOwnBlock(Context& context, VkDeviceSize bytes) {
 void book(Context& context, VmaAllocation allocation, Purpose purpose) {
   VmaAllocationInfo info{};
   vmaGetAllocationInfo(context.allocator(), allocation, &info);
-  vmaSetAllocationUserData(context.allocator(), allocation, reinterpret_cast<void*>(static_cast<std::uintptr_t>(purpose)));
+  vmaSetAllocationUserData(context.allocator(), allocation,
+                           reinterpret_cast<void*>(static_cast<std::uintptr_t>(purpose)));
   context.memoryAccount().add(purpose, info.size);
 }
 

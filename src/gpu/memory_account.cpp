@@ -6,8 +6,8 @@
 namespace quintet::gpu {
 
 const char* purposeName(Purpose purpose) {
-  constexpr std::array<const char*, kPurposeCount> kNames{"geometry", "textures", "accelerationStructures", "scratch",
-                                                          "staging",  "film",     "tables"};
+  constexpr std::array<const char*, kPurposeCount> kNames{
+      "geometry", "textures", "accelerationStructures", "scratch", "staging", "film", "tables"};
   return kNames[static_cast<std::size_t>(purpose)];
 }
 

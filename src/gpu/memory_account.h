@@ -10,13 +10,13 @@
 namespace quintet::gpu {
 
 enum class Purpose {
-  geometry,                // attributes, triangles, boxes, solids
+  geometry,  // attributes, triangles, boxes, solids
   textures,
   accelerationStructures,  // with the maps of primitives
   scratch,                 // of their builds
   staging,                 // host memory on the way to or from the device
   film,
-  tables,                  // the rest: lights, materials, instances, shader binding tables
+  tables,  // the rest: lights, materials, instances, shader binding tables
 };
 constexpr std::size_t kPurposeCount = 7;
 const char* purposeName(Purpose purpose);  // "accelerationStructures"
@@ -24,7 +24,7 @@ const char* purposeName(Purpose purpose);  // "accelerationStructures"
 // Bytes.
 struct DeviceMemory {
   std::uint64_t now = 0;
-  std::uint64_t peak = 0;  // the most since the context was made
+  std::uint64_t peak = 0;                           // the most since the context was made
   std::array<std::uint64_t, kPurposeCount> held{};  // of now, by Purpose; the rest is room in blocks
   // Of the peak, by Purpose: as things stood when it was last reached. The rest is room in blocks.
   std::array<std::uint64_t, kPurposeCount> atPeak{};

@@ -16,9 +16,8 @@ Timer::Timer(Context& context, std::uint32_t markCount) : context_(context), cou
 
 Timer::~Timer() {
   if (!pool_) return;
-  context_.retire([&context = context_, pool = pool_] {
-    context.vk().vkDestroyQueryPool(context.device(), pool, nullptr);
-  });
+  context_.retire(
+      [&context = context_, pool = pool_] { context.vk().vkDestroyQueryPool(context.device(), pool, nullptr); });
 }
 
 void Timer::reset(Commands& commands) {
@@ -27,8 +26,7 @@ void Timer::reset(Commands& commands) {
 
 void Timer::mark(Commands& commands, std::uint32_t index) {
   assert(index < count_);
-  if (pool_)
-    context_.vk().vkCmdWriteTimestamp2(commands.handle(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, index);
+  if (pool_) context_.vk().vkCmdWriteTimestamp2(commands.handle(), VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pool_, index);
 }
 
 std::uint64_t Timer::ticks(std::uint32_t index) const {

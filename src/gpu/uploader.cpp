@@ -38,7 +38,9 @@ struct Uploader::Impl {
   Impl(Context& owner, VkDeviceSize stagingBytes)
       : context(owner),
         halfBytes(alignUp(std::max(stagingBytes / 2, kMinHalfBytes))),
-        staging(owner, {.size = 2 * halfBytes, .memory = Memory::upload, .name = "upload ring", .purpose = Purpose::staging}) {}
+        staging(owner,
+                {.size = 2 * halfBytes, .memory = Memory::upload, .name = "upload ring", .purpose = Purpose::staging}) {
+  }
 
   // Has `bytes` bytes written into the ring, in pieces of at most `pieceBytes`; calls write(position, where) and then
   // add(staging offset, position, length) for each.
@@ -135,12 +137,15 @@ void Uploader::upload(const Buffer& destination, std::span<const std::byte> data
   assert(offset + data.size() <= destination.size());
   // Copies of one submission have no order among themselves.
   if (impl_->overlaps(destination.handle(), offset, offset + data.size())) impl_->submit();
-  const auto copy = [&](VkDeviceSize position, std::span<std::byte> out) { parallelCopy(out.data(), data.subspan(position, out.size())); };
-  impl_->stage(data.size(), impl_->halfBytes, copy, [&](VkDeviceSize staged, VkDeviceSize position, VkDeviceSize length) {
-    impl_->bufferCopies.push_back({destination.handle(), {staged, offset + position, length}});
-    VkDeviceSize& end = impl_->ends[destination.handle()];
-    end = std::max(end, offset + position + length);
-  });
+  const auto copy = [&](VkDeviceSize position, std::span<std::byte> out) {
+    parallelCopy(out.data(), data.subspan(position, out.size()));
+  };
+  impl_->stage(data.size(), impl_->halfBytes, copy,
+               [&](VkDeviceSize staged, VkDeviceSize position, VkDeviceSize length) {
+                 impl_->bufferCopies.push_back({destination.handle(), {staged, offset + position, length}});
+                 VkDeviceSize& end = impl_->ends[destination.handle()];
+                 end = std::max(end, offset + position + length);
+               });
 }
 
 void Uploader::upload(const Image& destination, std::span<const std::byte> pixels) {
@@ -154,7 +159,9 @@ void Uploader::upload(const Image& destination, std::span<const std::byte> pixel
 void Uploader::upload(const Image& destination, const WriteRows& write) {
   const VkDeviceSize bytes = destination.byteSize(), rowBytes = bytes / destination.height();
   const VkDeviceSize rows = std::min<VkDeviceSize>(impl_->halfBytes / rowBytes, destination.height());
-  const auto writeRows = [&](VkDeviceSize position, std::span<std::byte> out) { write(static_cast<std::uint32_t>(position / rowBytes), out); };
+  const auto writeRows = [&](VkDeviceSize position, std::span<std::byte> out) {
+    write(static_cast<std::uint32_t>(position / rowBytes), out);
+  };
   impl_->stage(bytes, rows * rowBytes, writeRows, [&](VkDeviceSize staged, VkDeviceSize position, VkDeviceSize length) {
     VkBufferImageCopy region{};
     region.bufferOffset = staged;

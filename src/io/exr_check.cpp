@@ -60,7 +60,8 @@ ExrPlace wholePlace(const ExrPicture& picture) {
 
 void checkExrSize(std::uint32_t width, std::uint32_t height, std::size_t channels, std::uint32_t tileSize) {
   if (channels > kMaxExrChannels)
-    throw UsageError(fmt::format("{} channels are too many for an OpenEXR file; at most {}", channels, kMaxExrChannels));
+    throw UsageError(
+        fmt::format("{} channels are too many for an OpenEXR file; at most {}", channels, kMaxExrChannels));
   if (std::uint64_t{width} * height * channels * sizeof(float) > kMaxPictureBytes)
     throw UsageError(fmt::format("{} channels of {} x {} pixels are too large for one OpenEXR file ({} GiB at most)",
                                  channels, width, height, kMaxPictureBytes >> 30));

@@ -98,10 +98,9 @@ Layer findLayer(const Source& source, Imf::MultiPartInputFile& file, const std::
   if (found.channels.empty() && wanted == kBeauty) found = collectLayer(file, "", layers);
   if (found.channels.empty()) {
     const std::string nearest = nearestName(wanted, layers);
-    throw UsageError(fmt::format("{}: there is no layer '{}'{}; there are {}", source.name,
-                                 wanted.empty() ? kBeauty : wanted,
-                                 nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest),
-                                 fmt::join(layers, ", ")));
+    throw UsageError(
+        fmt::format("{}: there is no layer '{}'{}; there are {}", source.name, wanted.empty() ? kBeauty : wanted,
+                    nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", nearest), fmt::join(layers, ", ")));
   }
   std::ranges::stable_sort(found.channels, {}, rankOf);
   return found;

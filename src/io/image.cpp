@@ -21,12 +21,9 @@ constexpr float kUnit = std::is_same_v<T, float> ? 1.0f
 template <class Function>
 auto withType(PixelType type, Function&& function) {
   switch (type) {
-    case PixelType::u8:
-      return function(std::uint8_t{});
-    case PixelType::u16:
-      return function(std::uint16_t{});
-    case PixelType::f32:
-      break;
+    case PixelType::u8: return function(std::uint8_t{});
+    case PixelType::u16: return function(std::uint16_t{});
+    case PixelType::f32: break;
   }
   return function(float{});
 }
@@ -122,7 +119,8 @@ Image toSrgb8(const Image& image) {
 void writeChannels(const Image& image, std::uint32_t channels, std::uint32_t first, std::span<std::byte> rows) {
   const std::size_t rowBytes = std::size_t{image.width} * channels * bytesPerSample(image.type);
   assert(rows.size() % rowBytes == 0 && first + rows.size() / rowBytes <= image.height);
-  if (image.channels == channels) return parallelCopy(rows.data(), std::span(image.data).subspan(first * rowBytes, rows.size()));
+  if (image.channels == channels)
+    return parallelCopy(rows.data(), std::span(image.data).subspan(first * rowBytes, rows.size()));
   const bool alphaOut = channels == 2 || channels == 4;
   const std::uint32_t colorsOut = channels <= 2 ? 1 : 3;
   withType(image.type, [&](auto sample) {

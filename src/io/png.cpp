@@ -70,14 +70,10 @@ class Reader {
 
   std::uint32_t channelsInFile() const {
     switch (header_.color_type) {
-      case SPNG_COLOR_TYPE_TRUECOLOR:
-        return 3;
-      case SPNG_COLOR_TYPE_GRAYSCALE_ALPHA:
-        return 2;
-      case SPNG_COLOR_TYPE_TRUECOLOR_ALPHA:
-        return 4;
-      default:
-        return 1;
+      case SPNG_COLOR_TYPE_TRUECOLOR: return 3;
+      case SPNG_COLOR_TYPE_GRAYSCALE_ALPHA: return 2;
+      case SPNG_COLOR_TYPE_TRUECOLOR_ALPHA: return 4;
+      default: return 1;
     }
   }
   std::uint32_t channels() const {

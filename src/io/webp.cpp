@@ -39,15 +39,11 @@ void checkContainer(const Source& source) {
 
 [[noreturn]] void failWith(const Source& source, VP8StatusCode status) {
   switch (status) {
-    case VP8_STATUS_OUT_OF_MEMORY:
-      throw std::bad_alloc();
+    case VP8_STATUS_OUT_OF_MEMORY: throw std::bad_alloc();
     case VP8_STATUS_NOT_ENOUGH_DATA:
-    case VP8_STATUS_SUSPENDED:
-      source.fail(source.size(), "WebP data ends early");
-    case VP8_STATUS_UNSUPPORTED_FEATURE:
-      source.fail("WebP with a feature that is not supported");
-    default:
-      source.fail("broken WebP: the image data is corrupt");
+    case VP8_STATUS_SUSPENDED: source.fail(source.size(), "WebP data ends early");
+    case VP8_STATUS_UNSUPPORTED_FEATURE: source.fail("WebP with a feature that is not supported");
+    default: source.fail("broken WebP: the image data is corrupt");
   }
 }
 

@@ -31,7 +31,8 @@ void dropZeroAttributes(const LinkModel& model, std::vector<std::vector<shader::
     if (boxes == model.stages.end() || !boxes->facts) continue;
     const auto& twin = found[static_cast<std::size_t>(boxes - model.stages.begin())];
     std::erase_if(found[i], [&](const shader::Diagnostic& d) {
-      return d.id == "Q705" && std::ranges::none_of(twin, [&](const shader::Diagnostic& t) { return t.id == d.id && t.line == d.line; });
+      return d.id == "Q705" &&
+             std::ranges::none_of(twin, [&](const shader::Diagnostic& t) { return t.id == d.id && t.line == d.line; });
     });
   }
 }

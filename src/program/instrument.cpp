@@ -53,7 +53,9 @@ Head findHead(std::string_view source) {
 
 }  // namespace
 
-bool isInstrumented(shader::Stage stage) { return stage != shader::Stage::intersection && stage != shader::Stage::callable; }
+bool isInstrumented(shader::Stage stage) {
+  return stage != shader::Stage::intersection && stage != shader::Stage::callable;
+}
 
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index) {
   if (!isInstrumented(stage)) return source;
@@ -61,7 +63,9 @@ std::string instrumentStage(const std::string& source, shader::Stage stage, std:
   const bool lecture = source.find("#include <quintet/gsn.glsl>") != source.npos;
   std::string result = source.substr(0, head.bytes);
   if (!result.empty() && result.back() != '\n') result += '\n';
-  result += fmt::format("#define QUINTET_INSTRUMENT 1\n#define QUINTET_INSTRUMENT_STAGE {}u\n#define QUINTET_INSTRUMENT_KIND {}\n", index, kindOf(stage));
+  result += fmt::format(
+      "#define QUINTET_INSTRUMENT 1\n#define QUINTET_INSTRUMENT_STAGE {}u\n#define QUINTET_INSTRUMENT_KIND {}\n", index,
+      kindOf(stage));
   if (!lecture) result += "#include <quintet/instrument.glsl>\n";
   result += fmt::format("#line {}\n", head.lines + 1);
   result += source.substr(head.bytes);

@@ -212,8 +212,8 @@ class Builder {
       }
     }
     if (ray.miss.empty())
-      ray.miss =
-          addFile(file + std::string(kStubMissExtension), "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n");
+      ray.miss = addFile(file + std::string(kStubMissExtension),
+                         "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n");
     program_.rays = {ray};
     HitGroup& first = program_.hitGroups.emplace_back();
     first.name = "triangles";

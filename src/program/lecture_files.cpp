@@ -73,8 +73,8 @@ Program load(const fs::path& file) {
   std::map<std::string, std::string> files = readIncludes(folder, text);
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? fs::path(".") : folder, failed)) {
     const std::string name = entry.path().filename().string();
-    if (name.ends_with(".scene.toml") && entry.is_regular_file(failed) &&
-        entry.file_size(failed) <= kMaxLectureBytes && !isOfAnother(entry.path(), file, text))
+    if (name.ends_with(".scene.toml") && entry.is_regular_file(failed) && entry.file_size(failed) <= kMaxLectureBytes &&
+        !isOfAnother(entry.path(), file, text))
       files[name] = readTextFile(entry.path());
   }
   readImages(folder, text, files);

@@ -40,7 +40,9 @@ bool hasIntersection(const HitGroup& group) {
   return std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
 }
 
-bool isBound(const HitGroup& group) { return !group.geometry.empty() || !group.material.empty() || !group.primitives.empty(); }
+bool isBound(const HitGroup& group) {
+  return !group.geometry.empty() || !group.material.empty() || !group.primitives.empty();
+}
 
 bool contains(const std::vector<std::string>& names, std::string_view name) {
   return !name.empty() && std::find(names.begin(), names.end(), name) != names.end();
@@ -56,7 +58,8 @@ std::string_view kindName(GeometryKind kind) {
 std::string userFile(const Program& program, const std::string& file) {
   if (!isLibraryStage(file)) return file;
   const std::string inside = file.substr(1, file.size() - 2);
-  const bool own = std::ranges::any_of(program.files, [&](const auto& entry) { return program.path(entry.first) == inside; });
+  const bool own =
+      std::ranges::any_of(program.files, [&](const auto& entry) { return program.path(entry.first) == inside; });
   return own ? inside : file;
 }
 
@@ -82,7 +85,8 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
     shader::Source source;
     const bool library = isLibraryStage(files[i]);
     source.stage = *shader::stageOfFile(library ? files[i].substr(1, files[i].size() - 2) : files[i]);
-    source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + files[i] + "\n" : program.files.at(files[i]);
+    source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + files[i] + "\n"
+                          : program.files.at(files[i]);
     if (instrument) source.text = instrumentStage(source.text, source.stage, i);
     source.name = program.path(files[i]);
     source.defines = defines;
@@ -98,7 +102,8 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
     // What stages share (common text, an included file) says the same in each of them.
     for (shader::Diagnostic& d : results[i].diagnostics) {
       const std::string line = d.format();
-      if (std::ranges::none_of(compiled.diagnostics, [&](const shader::Diagnostic& known) { return known.format() == line; }))
+      if (std::ranges::none_of(compiled.diagnostics,
+                               [&](const shader::Diagnostic& known) { return known.format() == line; }))
         compiled.diagnostics.push_back(std::move(d));
     }
     for (const std::filesystem::path& file : results[i].files)
@@ -106,15 +111,16 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
     compiled.fileHashes.insert(compiled.fileHashes.end(), results[i].fileHashes.begin(), results[i].fileHashes.end());
   }
   std::ranges::sort(compiled.fileHashes);
-  compiled.fileHashes.erase(std::unique(compiled.fileHashes.begin(), compiled.fileHashes.end()), compiled.fileHashes.end());
+  compiled.fileHashes.erase(std::unique(compiled.fileHashes.begin(), compiled.fileHashes.end()),
+                            compiled.fileHashes.end());
   for (shader::Diagnostic& d : compiled.diagnostics) d.file = userFile(program, d.file);
   compiled.seconds = secondsSince(start);
   return compiled;
 }
 
 LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set, const Program& program,
-                             const CompiledProgram& compiled, std::uint32_t recursionDepth, const gpu::PipelineCache* cache,
-                             bool captureStatistics)
+                             const CompiledProgram& compiled, std::uint32_t recursionDepth,
+                             const gpu::PipelineCache* cache, bool captureStatistics)
     : context_(context), program_(program), recursionDepth_(recursionDepth) {
   assert(compiled.ok);
   const auto start = std::chrono::steady_clock::now();
@@ -127,7 +133,8 @@ LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set,
 
   options.groups.push_back({.general = stages.index(program.rayGeneration), .name = "ray generation"});
   firstMissGroup_ = groupCount();
-  for (const MissShader& miss : missShaders(program)) options.groups.push_back({.general = stages.index(miss.file), .name = "miss " + miss.file});
+  for (const MissShader& miss : missShaders(program))
+    options.groups.push_back({.general = stages.index(miss.file), .name = "miss " + miss.file});
   firstHitGroup_ = groupCount();
   for (const HitGroup& group : program.hitGroups) {
     for (const RayType& ray : program.rays) {
@@ -140,7 +147,8 @@ LinkedProgram::LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set,
     }
   }
   firstCallableGroup_ = groupCount();
-  for (const Callable& callable : program.callables) options.groups.push_back({.general = stages.index(callable.file), .name = "callable " + callable.file});
+  for (const Callable& callable : program.callables)
+    options.groups.push_back({.general = stages.index(callable.file), .name = "callable " + callable.file});
 
   options.stages = stages.stages();
   pipeline_ = std::make_unique<rt::Pipeline>(context, set, options, cache);
@@ -194,7 +202,8 @@ rt::ShaderBindingTable LinkedProgram::makeTable(std::span<const GeometryFacts> g
     }
   }
   group = firstCallableGroup_;
-  for (const Callable& callable : program_.callables) contents.callable.push_back({group++, recordData(callable.record)});
+  for (const Callable& callable : program_.callables)
+    contents.callable.push_back({group++, recordData(callable.record)});
   return rt::ShaderBindingTable(context_, *pipeline_, contents, program_.name + " shader binding table");
 }
 

@@ -23,7 +23,7 @@ struct CompiledProgram {
   std::vector<shader::Diagnostic> diagnostics;
   std::vector<std::filesystem::path> files;  // on disk, read besides Program::files: for --watch
   std::vector<Hash> fileHashes;              // of what was read from them, sorted, each once
-  double seconds = 0;         // wall clock
+  double seconds = 0;                        // wall clock
   bool ok = false;
 
   const Stage& stage(const std::string& file) const;
@@ -46,8 +46,9 @@ std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry);
 class LinkedProgram {
  public:
   // `compiled.ok` must hold. `recursionDepth`: of nested traces, as check() derives it (check.h).
-  LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set, const Program& program, const CompiledProgram& compiled,
-                std::uint32_t recursionDepth, const gpu::PipelineCache* cache, bool captureStatistics = false);
+  LinkedProgram(gpu::Context& context, const gpu::BindlessSet& set, const Program& program,
+                const CompiledProgram& compiled, std::uint32_t recursionDepth, const gpu::PipelineCache* cache,
+                bool captureStatistics = false);
 
   const Program& program() const { return program_; }
   const rt::Pipeline& pipeline() const { return *pipeline_; }

@@ -10,7 +10,8 @@ std::vector<PayloadSize> payloadSizes(const CompiledProgram& compiled) {
     const std::optional<shader::SpirvModule> module = shader::SpirvModule::read(stage.spirv);
     if (!module) continue;
     for (const shader::SpirvVariable& variable : module->variables())
-      if (variable.storage == spv::StorageClass::RayPayloadKHR || variable.storage == spv::StorageClass::IncomingRayPayloadKHR)
+      if (variable.storage == spv::StorageClass::RayPayloadKHR ||
+          variable.storage == spv::StorageClass::IncomingRayPayloadKHR)
         sizes.push_back({stage.file, module->types().nameOf(variable.type), module->types().get(variable.type).bytes});
   }
   return sizes;

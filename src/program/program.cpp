@@ -40,7 +40,7 @@ Program loadFolder(const fs::path& folder) {
 bool isLibraryStage(const std::string& file) { return file.size() > 2 && file.front() == '<' && file.back() == '>'; }
 
 const std::vector<std::string>& geometryClasses() {
-  static const std::vector<std::string> kClasses{"triangles",  "solids", "csg",  "custom",
+  static const std::vector<std::string> kClasses{"triangles",  "solids", "csg",   "custom",
                                                  "procedural", "opaque", "alpha", "thin"};
   return kClasses;
 }
@@ -95,7 +95,8 @@ Program parseProgram(const std::string& toml, const std::string& name, const std
   program.files = std::move(files);
   const std::string file = program.path(program.descriptionFile);
   if (const int line = deepTomlKey(toml); line > 0)
-    throw FileError(file, fmt::format("line {}", line), fmt::format("a dotted key of more than {} levels", kMaxTomlKeyDots));
+    throw FileError(file, fmt::format("line {}", line),
+                    fmt::format("a dotted key of more than {} levels", kMaxTomlKeyDots));
   toml::table root;
   try {
     root = toml::parse(toml, file);
@@ -148,8 +149,9 @@ std::map<std::string, std::string> shortNames() {
   const std::string nearest = nearestName(name, candidates);
   const auto found = known.find(nearest);
   const std::string full = found == known.end() ? nearest : found->second;
-  throw UsageError(fmt::format("no program '{}': neither a folder with program.toml, nor a file {}.rt.glsl, nor a built-in one{}",
-                               name, name, full.empty() ? "" : fmt::format("; did you mean '{}'?", full)));
+  throw UsageError(
+      fmt::format("no program '{}': neither a folder with program.toml, nor a file {}.rt.glsl, nor a built-in one{}",
+                  name, name, full.empty() ? "" : fmt::format("; did you mean '{}'?", full)));
 }
 
 }  // namespace

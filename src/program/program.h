@@ -120,11 +120,12 @@ struct Program {
   // Depth of nested traceRayEXT that the author promises not to exceed; 1: only ray generation traces.
   std::optional<std::uint32_t> declaredRecursion;
   Accumulation accumulation = Accumulation::film;
-  bool keepsInstanceOrder = false;     // gl_InstanceID is the instance's index in the scene (costs speed on lavapipe)
+  bool keepsInstanceOrder = false;  // gl_InstanceID is the instance's index in the scene (costs speed on lavapipe)
   // Any-hit shaders are asked about geometry without alpha, too; not about instances forced to be opaque.
   bool anyHitForAll = false;
   std::uint32_t samplesPerLaunch = 1;  // samples per pixel that the ray generation shader can loop over
-  bool adaptive = false;  // the ray generation shader asks launchPixel() and launchActive(): pixels may differ in samples
+  bool adaptive =
+      false;  // the ray generation shader asks launchPixel() and launchActive(): pixels may differ in samples
 
   // What a front end found (lecture.h): an error here is a program that does not compile.
   std::vector<shader::Diagnostic> diagnostics;

@@ -196,7 +196,8 @@ class Parser {
   std::vector<std::string> parseChannels(TomlReader& reader) const {
     std::vector<std::string> channels = reader.texts("channels");
     const auto good = [](const std::string& name) {
-      return name.size() <= 32 && std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+      return name.size() <= 32 &&
+             std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_'; });
     };
     const bool twice = std::set<std::string>(channels.begin(), channels.end()).size() != channels.size();
     if (channels.size() > 4 || twice || !std::ranges::all_of(channels, good))

@@ -40,8 +40,10 @@ class Sweep {
     // What is left weighs 1 up to rounding; entries of weight 0 must not be drawn all the same.
     for (; heavy < n; heavy = next(heavy + 1, true), gain_ = 0.0) set(heavy, 1.0, heavy);
     for (; light < n; light = next(light + 1, false)) {
-      if (scaled(light) > 0.0) set(light, 1.0, light);
-      else table_[fallback].probability += static_cast<float>(set(light, 0.0, fallback) / static_cast<double>(n));
+      if (scaled(light) > 0.0)
+        set(light, 1.0, light);
+      else
+        table_[fallback].probability += static_cast<float>(set(light, 0.0, fallback) / static_cast<double>(n));
     }
     return std::move(table_);
   }

@@ -13,8 +13,10 @@ shared::CameraData makeCamera(const scene::Camera& camera, std::uint32_t width, 
   if (camera.orthographic) {
     // The file's box fits into the image; the longer side of the image shows more.
     vec2 half = camera.orthographicHalfSize;
-    if (half.x < half.y * aspect) half.x = half.y * aspect;
-    else half.y = half.x / aspect;
+    if (half.x < half.y * aspect)
+      half.x = half.y * aspect;
+    else
+      half.y = half.x / aspect;
     data.halfSize = half;
   } else {
     const float half = std::tan(0.5f * camera.verticalFov);

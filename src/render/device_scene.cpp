@@ -40,8 +40,8 @@ struct DeviceScene::Impl {
   std::unique_ptr<gpu::BindlessSet> set;
   std::optional<TextureSlots> parameterSlots;
   gpu::Buffer geometryTable, materialTable, lights, lightTable, lightNodes, lightSlots, environmentTable, albedoTable;
-  std::vector<rt::Blas> blas;                // one per used mesh
-  std::vector<int> blasOfMesh;               // -1: no instance uses the mesh
+  std::vector<rt::Blas> blas;   // one per used mesh
+  std::vector<int> blasOfMesh;  // -1: no instance uses the mesh
   std::uint64_t bottomLevelBytes = 0;
   std::optional<TopLevel> topLevel;
   program::SceneFacts facts;
@@ -49,8 +49,8 @@ struct DeviceScene::Impl {
   Defines defines;
 
   // `emptied`: null, or the same scene.
-  Impl(gpu::Context& gpuContext, const scene::Scene& scene, scene::Scene* emptied, const scene::Environment& environment,
-       const DeviceSceneOptions& sceneOptions)
+  Impl(gpu::Context& gpuContext, const scene::Scene& scene, scene::Scene* emptied,
+       const scene::Environment& environment, const DeviceSceneOptions& sceneOptions)
       : context(gpuContext), options(sceneOptions), bounds(scene::worldBounds(scene)), facts(sceneFacts(scene)) {
     const Stopwatch watch;
     defines = shaderDefines(sceneFeatures(scene, environment), context.info().quirks);
@@ -74,7 +74,8 @@ struct DeviceScene::Impl {
 
   bool hasAlpha() const { return std::ranges::any_of(facts.geometries, &program::GeometryFacts::alpha); }
 
-  void uploadMaterials(const scene::Scene& scene, scene::Scene* emptied, const scene::Environment& environment, gpu::Uploader& uploader) {
+  void uploadMaterials(const scene::Scene& scene, scene::Scene* emptied, const scene::Environment& environment,
+                       gpu::Uploader& uploader) {
     textures.emplace(context, uploader, scene);
     if (emptied) {
       textures->empty(*emptied);
@@ -90,11 +91,13 @@ struct DeviceScene::Impl {
 
     shared::EnvironmentData& data = frame.environment;
     data.scale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
-    data.texture = environment.image.empty() ? shared::kNoTexture : textures->addEnvironment(cleanEnvironment(environment.image));
+    data.texture =
+        environment.image.empty() ? shared::kNoTexture : textures->addEnvironment(cleanEnvironment(environment.image));
     data.cosRotation = std::cos(environment.rotation);
     data.sinRotation = std::sin(environment.rotation);
 
-    set = std::make_unique<gpu::BindlessSet>(context, textures->count() + TextureSlots::kCount, static_cast<std::uint32_t>(sizeof(shared::Launch)));
+    set = std::make_unique<gpu::BindlessSet>(context, textures->count() + TextureSlots::kCount,
+                                             static_cast<std::uint32_t>(sizeof(shared::Launch)));
     parameterSlots.emplace(*set, textures->count(), TextureSlots::kCount);
     uploader.flush();
     textures->bind(*set);
@@ -197,7 +200,8 @@ struct DeviceScene::Impl {
     std::vector<InstancePlace> places;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
       const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
-      places.push_back({&blas[static_cast<std::size_t>(blasOfMesh[mesh])], geometry.firstGeometry[mesh], firstLightSlots[i]});
+      places.push_back(
+          {&blas[static_cast<std::size_t>(blasOfMesh[mesh])], geometry.firstGeometry[mesh], firstLightSlots[i]});
     }
     topLevel.emplace(context, scene, places);
     frame.instances = topLevel->table();
@@ -217,9 +221,11 @@ struct DeviceScene::Impl {
   std::optional<LightTableBuilder> movingLights;  // only if an instance with keyframes has lights
 };
 
-DeviceScene::DeviceScene(gpu::Context& context, const scene::Scene& scene, const scene::Environment& environment, const DeviceSceneOptions& options)
+DeviceScene::DeviceScene(gpu::Context& context, const scene::Scene& scene, const scene::Environment& environment,
+                         const DeviceSceneOptions& options)
     : impl_(std::make_unique<Impl>(context, scene, nullptr, environment, options)) {}
-DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scene::Environment& environment, const DeviceSceneOptions& options)
+DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scene::Environment& environment,
+                         const DeviceSceneOptions& options)
     : impl_(std::make_unique<Impl>(context, scene, &scene, environment, options)) {}
 DeviceScene::~DeviceScene() = default;
 

@@ -22,10 +22,10 @@ struct DeviceSceneOptions {
 };
 
 struct DeviceSceneStatistics {
-  double uploadSeconds = 0;     // attributes, textures, light tables
-  rt::BuildStatistics build;    // bottom level
+  double uploadSeconds = 0;   // attributes, textures, light tables
+  rt::BuildStatistics build;  // bottom level
   double topLevelSeconds = 0;
-  double lightSeconds = 0;      // of uploadSeconds: light, environment and albedo tables
+  double lightSeconds = 0;  // of uploadSeconds: light, environment and albedo tables
   std::uint64_t geometryBytes = 0;
   std::uint64_t textureBytes = 0;
   std::uint64_t accelerationBytes = 0;  // bottom and top level

@@ -14,10 +14,10 @@ inline constexpr std::uint32_t kMaxEnvironmentTableWidth = 4096;
 inline constexpr std::uint32_t kMaxEnvironmentTableHeight = 2048;
 
 struct EnvironmentTable {
-  std::uint32_t width = 0;   // cells; 0: nothing to sample (black)
+  std::uint32_t width = 0;  // cells; 0: nothing to sample (black)
   std::uint32_t height = 0;
   std::vector<shared::AliasEntry> entries;  // row by row from the top
-  double integral = 0.0;     // ∫ luminance dω over the sphere, intensity included: W/m² on a unit cross section
+  double integral = 0.0;  // ∫ luminance dω over the sphere, intensity included: W/m² on a unit cross section
 };
 
 // A constant environment has one cell. `present` is not looked at: pass the environment in use. The

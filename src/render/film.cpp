@@ -15,18 +15,20 @@ static_assert(shared::kMaxOutputs == 32, "program_parser.cpp refuses more output
 using program::Accumulation;
 using program::OutputPixel;
 
-std::unique_ptr<gpu::ComputePipeline> makePass(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler,
-                                               const std::string& name) {
+std::unique_ptr<gpu::ComputePipeline> makePass(gpu::Context& context, const gpu::BindlessSet& set,
+                                               const shader::Compiler& compiler, const std::string& name) {
   shader::Source source;
   source.stage = shader::Stage::compute;
   source.name = name + ".comp";
   source.text = fmt::format("#version 460\n#include <quintet/passes/{}.glsl>\n", name);
   const shader::Result result = compiler.compile(source);
-  if (!result.ok()) throw Error(result.diagnostics.empty() ? source.name + " does not compile" : result.diagnostics[0].format());
+  if (!result.ok())
+    throw Error(result.diagnostics.empty() ? source.name + " does not compile" : result.diagnostics[0].format());
   return std::make_unique<gpu::ComputePipeline>(context, set, result.spirv, VK_NULL_HANDLE, name);
 }
 
-void dispatch(const gpu::ComputePipeline& pass, gpu::Commands& commands, std::span<const std::byte> constants, std::uint32_t pixels) {
+void dispatch(const gpu::ComputePipeline& pass, gpu::Commands& commands, std::span<const std::byte> constants,
+              std::uint32_t pixels) {
   const std::uint32_t groups = (pixels + shared::kFilmGroupSize - 1) / shared::kFilmGroupSize;
   const std::uint32_t columns = std::min(groups, shared::kFilmColumns);
   pass.dispatch(commands, constants, columns, (groups + columns - 1) / columns);
@@ -38,19 +40,26 @@ bool isStored(const program::Output& output, const std::vector<std::string>& wan
 
 std::uint64_t totalBytes(OutputPixel pixel, Accumulation accumulation) {
   if (accumulation == Accumulation::program || pixel == OutputPixel::center) return sizeof(vec4);
-  return pixel == OutputPixel::mean ? 4 * sizeof(shared::FixedSum) : shared::kCoverageSlots * sizeof(shared::CoverageSlot);
+  return pixel == OutputPixel::mean ? 4 * sizeof(shared::FixedSum)
+                                    : shared::kCoverageSlots * sizeof(shared::CoverageSlot);
 }
 
-bool keepsSquares(std::size_t output, Accumulation accumulation) { return output == 0 && accumulation == Accumulation::film; }
+bool keepsSquares(std::size_t output, Accumulation accumulation) {
+  return output == 0 && accumulation == Accumulation::film;
+}
 
 }  // namespace
 
 Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler, Region region,
            const program::Program& program, const std::vector<std::string>& wanted)
-    : context_(context), region_(region), accumulation_(program.accumulation), add_(makePass(context, set, compiler, "film_add")) {
+    : context_(context),
+      region_(region),
+      accumulation_(program.accumulation),
+      add_(makePass(context, set, compiler, "film_add")) {
   const std::vector<std::string> names = program::outputNames(program);
   for (const std::string& name : wanted)
-    if (std::ranges::find(names, name) == names.end()) throw UsageError(fmt::format("the program '{}' has no output '{}'", program.name, name));
+    if (std::ranges::find(names, name) == names.end())
+      throw UsageError(fmt::format("the program '{}' has no output '{}'", program.name, name));
   const VkDeviceSize pixels = VkDeviceSize{region.width} * region.height;
   const auto buffer = [&](std::uint64_t bytesPerPixel, const std::string& name) {
     gpu::BufferOptions options;
@@ -67,8 +76,10 @@ Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Com
     if (!isStored(output, wanted)) continue;
     made.batch = buffer(sizeof(vec4), "film batch " + output.name);
     made.total = buffer(totalBytes(output.pixel, accumulation_), "film total " + output.name);
-    if (keepsSquares(i, accumulation_)) made.squares = buffer(4 * sizeof(shared::FixedSum), "film squares " + output.name);
-    if (output.pixel == OutputPixel::coverage && !coverage_) coverage_ = makePass(context, set, compiler, "film_coverage");
+    if (keepsSquares(i, accumulation_))
+      made.squares = buffer(4 * sizeof(shared::FixedSum), "film squares " + output.name);
+    if (output.pixel == OutputPixel::coverage && !coverage_)
+      coverage_ = makePass(context, set, compiler, "film_coverage");
   }
   statistics_ = buffer(sizeof(uvec2), "film statistics");
   clear();
@@ -126,7 +137,8 @@ void Film::endBatch(gpu::Commands& commands, SampleRange samples) {
   if (accumulation_ == Accumulation::film) counts_.add(samples);
 }
 
-void Film::endAdaptiveBatch(gpu::Commands& commands, SampleRange samples, const std::vector<std::uint32_t>& cellBatches) {
+void Film::endAdaptiveBatch(gpu::Commands& commands, SampleRange samples,
+                            const std::vector<std::uint32_t>& cellBatches) {
   assert(accumulation_ == Accumulation::film && cellBatches.size() == 2 * std::size_t{tileCount(region_)});
   addBatch(commands, samples);
   counts_.cellBatches = cellBatches;
@@ -145,7 +157,8 @@ void Film::addBatch(gpu::Commands& commands, SampleRange samples) {
       const shared::FilmCoverage pass{output.total.address(), output.batch.address(), pixels, 0};
       dispatch(*coverage_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
     } else {
-      const shared::FilmAdd pass{output.total.address(), output.squares ? output.squares.address() : 0, output.batch.address(), pixels,
+      const shared::FilmAdd pass{output.total.address(), output.squares ? output.squares.address() : 0,
+                                 output.batch.address(), pixels,
                                  1.0f / static_cast<float>(samples.end - samples.begin)};
       dispatch(*add_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
     }
@@ -165,9 +178,12 @@ FilmPlane Film::plane(const Output& output, std::uint32_t firstRow, std::uint32_
     values.resize(row * rows);
     buffer.download(std::as_writable_bytes(std::span(values)), firstRow * row * sizeof(values[0]));
   };
-  if (accumulation_ == Accumulation::program || output.pixel == OutputPixel::center) read(output.total, plane.values, 1);
-  else if (output.pixel == OutputPixel::mean) read(output.total, plane.sums, 4);
-  else read(output.total, plane.coverage, shared::kCoverageSlots);
+  if (accumulation_ == Accumulation::program || output.pixel == OutputPixel::center)
+    read(output.total, plane.values, 1);
+  else if (output.pixel == OutputPixel::mean)
+    read(output.total, plane.sums, 4);
+  else
+    read(output.total, plane.coverage, shared::kCoverageSlots);
   if (output.squares && squares) read(output.squares, plane.squares, 4);
   return plane;
 }
@@ -176,7 +192,8 @@ template <class Use>
 void Film::forStrips(const Output& output, bool squares, const Use& use) const {
   for (std::uint32_t first = 0; first < region_.height; first += shared::kTileSize) {
     const std::uint32_t rows = std::min(shared::kTileSize, region_.height - first);
-    FilmState strip{{region_.x, region_.y + first, region_.width, rows}, countsOfRows(counts_, region_.width, first, rows), {}, {}};
+    FilmState strip{
+        {region_.x, region_.y + first, region_.width, rows}, countsOfRows(counts_, region_.width, first, rows), {}, {}};
     strip.planes.push_back(plane(output, first, rows, squares));
     use(strip, first);
   }
@@ -222,7 +239,8 @@ io::Image Film::download(std::size_t output) const {
       image = io::makeImage(region_.width, region_.height, 4, io::PixelType::f32, io::ColorEncoding::linear);
       image.premultiplied = part.premultiplied;
     }
-    std::ranges::copy(part.samples<float>(), image.samples<float>().begin() + std::ptrdiff_t{4} * first * region_.width);
+    std::ranges::copy(part.samples<float>(),
+                      image.samples<float>().begin() + std::ptrdiff_t{4} * first * region_.width);
   });
   return image;
 }

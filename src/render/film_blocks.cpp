@@ -21,7 +21,9 @@ constexpr std::size_t kBlockBytes = std::size_t{1} << 20;  // about, before comp
 constexpr std::size_t kLargestRatio = 1032;                // of deflate (zlib's documentation)
 constexpr int kLevel = 1;                                  // what is left to compress is mostly noise
 
-std::size_t blockBytes(std::size_t elementBytes) { return std::max(kBlockBytes / elementBytes, std::size_t{1}) * elementBytes; }
+std::size_t blockBytes(std::size_t elementBytes) {
+  return std::max(kBlockBytes / elementBytes, std::size_t{1}) * elementBytes;
+}
 
 std::vector<std::byte> split(std::span<const std::byte> bytes, std::size_t elementBytes) {
   std::vector<std::byte> planes(bytes.size());
@@ -40,8 +42,8 @@ void join(std::span<const std::byte> planes, std::span<std::byte> bytes, std::si
 std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
   std::vector<std::byte> out(::compressBound(bytes.size()));
   uLongf size = out.size();
-  const int code = ::compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
-                               bytes.size(), kLevel);
+  const int code = ::compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                               reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), kLevel);
   if (code != Z_OK) throw std::bad_alloc();  // the only reason left
   out.resize(size);
   return out;
@@ -49,7 +51,8 @@ std::vector<std::byte> deflated(std::span<const std::byte> bytes) {
 
 bool inflated(std::span<const std::byte> bytes, std::span<std::byte> out) {
   uLongf size = out.size();
-  const int code = ::uncompress(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  const int code = ::uncompress(reinterpret_cast<Bytef*>(out.data()), &size,
+                                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
   if (code == Z_MEM_ERROR) throw std::bad_alloc();
   return code == Z_OK && size == out.size();
 }
@@ -71,7 +74,9 @@ void appendBlocks(std::vector<std::byte>& out, std::span<const std::byte> bytes,
   }
 }
 
-bool blocksMayHold(std::size_t rawBytes, std::size_t compressedBytes) { return rawBytes / kLargestRatio <= compressedBytes; }
+bool blocksMayHold(std::size_t rawBytes, std::size_t compressedBytes) {
+  return rawBytes / kLargestRatio <= compressedBytes;
+}
 
 bool takeBlocks(std::span<const std::byte>& in, std::span<std::byte> bytes, std::size_t elementBytes) {
   const std::size_t size = blockBytes(elementBytes);
@@ -89,8 +94,10 @@ bool takeBlocks(std::span<const std::byte>& in, std::span<std::byte> bytes, std:
   parallelFor(blocks.size(), [&](std::size_t i) {
     const std::span<std::byte> part = bytes.subspan(i * size, std::min(size, bytes.size() - i * size));
     std::vector<std::byte> planes(part.size());
-    if (inflated(blocks[i], planes)) join(planes, part, elementBytes);
-    else right = false;
+    if (inflated(blocks[i], planes))
+      join(planes, part, elementBytes);
+    else
+      right = false;
   });
   return right;
 }

@@ -13,7 +13,7 @@ namespace quintet::render {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kDarkness = 0.1;       // ε, of the mean luminance
+constexpr double kDarkness = 0.1;  // ε, of the mean luminance
 constexpr double kConfidence = 0.95;
 constexpr double kTilesBelow = 0.95;
 constexpr std::uint32_t kMostBatches = 1u << 22;
@@ -38,7 +38,8 @@ struct ErrorSums {
   double image() const { return std::sqrt(squares / pixels); }
   double upper() const {
     // Satterthwaite 1946 for both sums of squares; black pictures have none.
-    const double room = squares > 0 ? fisherQuantile(kConfidence, squares * squares / fourths, squares * squares / doubt) : 1.0;
+    const double room =
+        squares > 0 ? fisherQuantile(kConfidence, squares * squares / fourths, squares * squares / doubt) : 1.0;
     return std::sqrt((room * squares + fourths) / pixels);
   }
 };
@@ -61,11 +62,13 @@ void conclude(ErrorEstimate& estimate) {
 
 }  // namespace
 
-ErrorEstimator::ErrorEstimator(const Region& region, const SampleCounts& counts) : shape_{region, counts, {}, {}}, moments_(shape_.pixelCount()) {
+ErrorEstimator::ErrorEstimator(const Region& region, const SampleCounts& counts)
+    : shape_{region, counts, {}, {}}, moments_(shape_.pixelCount()) {
   for (std::uint32_t c = 0; c < 2 * tileCount(region); ++c) known_ = known_ && counts.batchesOf(c) >= 2;
 }
 
-ErrorEstimator::Moments ErrorEstimator::momentsOf(const FilmPlane& plane, std::size_t pixel, double samples, double batches) {
+ErrorEstimator::Moments ErrorEstimator::momentsOf(const FilmPlane& plane, std::size_t pixel, double samples,
+                                                  double batches) {
   double variance = 0;
   double mean[3];
   for (std::size_t c = 0; c < 3; ++c) {
@@ -84,7 +87,8 @@ void ErrorEstimator::add(const FilmState& strip, std::uint32_t firstRow) {
     for (std::uint32_t x = 0; x < strip.region.width; ++x) {
       const std::uint32_t cell = strip.cellOf(x, static_cast<std::uint32_t>(y));
       moments_[(firstRow + y) * strip.region.width + x] =
-          momentsOf(plane, y * strip.region.width + x, static_cast<double>(strip.counts.samplesOf(cell)), static_cast<double>(strip.counts.batchesOf(cell)));
+          momentsOf(plane, y * strip.region.width + x, static_cast<double>(strip.counts.samplesOf(cell)),
+                    static_cast<double>(strip.counts.batchesOf(cell)));
     }
   });
 }
@@ -92,11 +96,13 @@ void ErrorEstimator::add(const FilmState& strip, std::uint32_t firstRow) {
 ErrorEstimate ErrorEstimator::estimate() const {
   const auto forPixels = [&](const auto& use) {
     for (std::uint32_t y = 0; y < shape_.region.height; ++y)
-      for (std::uint32_t x = 0; x < shape_.region.width; ++x) use(moments_[std::size_t{y} * shape_.region.width + x], shape_.cellOf(x, y));
+      for (std::uint32_t x = 0; x < shape_.region.width; ++x)
+        use(moments_[std::size_t{y} * shape_.region.width + x], shape_.cellOf(x, y));
   };
   ErrorEstimate estimate;
   estimate.cells.resize(2 * std::size_t{tileCount(shape_.region)});
-  for (std::size_t c = 0; c < estimate.cells.size(); ++c) estimate.cells[c].batches = shape_.counts.batchesOf(static_cast<std::uint32_t>(c));
+  for (std::size_t c = 0; c < estimate.cells.size(); ++c)
+    estimate.cells[c].batches = shape_.counts.batchesOf(static_cast<std::uint32_t>(c));
   if (!known_) return estimate;
   // Of the pixels with even x + y, and of the others: what decides about a cell must know nothing of its own samples.
   std::array<double, 2> darkness{}, count{};
@@ -134,7 +140,8 @@ ErrorEstimate estimateError(const FilmState& film) {
 namespace {
 
 // The numbers of the cells 2 · tile + `part`. All that decides comes from the other cells.
-void planPart(const std::vector<CellError>& cells, const CellGoal& goal, std::size_t part, std::vector<std::uint32_t>& limits) {
+void planPart(const std::vector<CellError>& cells, const CellGoal& goal, std::size_t part,
+              std::vector<std::uint32_t>& limits) {
   std::vector<double> spread(cells.size());  // relative variance of one batch, by the other cell
   double pixels = 0, mean = 0, widest = 1e-30;
   ErrorSums others;
@@ -147,7 +154,8 @@ void planPart(const std::vector<CellError>& cells, const CellGoal& goal, std::si
   }
   if (pixels == 0) return;
   // Where nothing was found yet, something may be: one part in a hundred of the mean.
-  for (std::size_t c = part; c < cells.size(); c += 2) widest = std::max(widest, spread[c] = std::max(spread[c], 0.01 * mean / pixels));
+  for (std::size_t c = part; c < cells.size(); c += 2)
+    widest = std::max(widest, spread[c] = std::max(spread[c], 0.01 * mean / pixels));
   // The room that the confidence takes is taken off the goal.
   const double ratio = others.image() / others.upper();
   const double aim = goal.error * (std::isfinite(ratio) ? std::min(1.0, ratio) : 1.0);
@@ -155,7 +163,8 @@ void planPart(const std::vector<CellError>& cells, const CellGoal& goal, std::si
     double batches = factor * std::sqrt(spread[c]);
     if (goal.error > 0) batches = std::max(batches, spread[c] / (4.0 * aim * aim));
     const double least = static_cast<double>(cells[c].batches);
-    return static_cast<std::uint32_t>(std::clamp(std::ceil(batches), least, std::max(least, static_cast<double>(kMostBatches))));
+    return static_cast<std::uint32_t>(
+        std::clamp(std::ceil(batches), least, std::max(least, static_cast<double>(kMostBatches))));
   };
   const auto total = [&](double factor, double& square) {
     double sum = 0;
@@ -177,7 +186,8 @@ void planPart(const std::vector<CellError>& cells, const CellGoal& goal, std::si
     const bool reached = goal.error > 0 && square <= aim * aim;
     (over || reached ? high : low) = factor;
   }
-  for (std::size_t c = part; c < cells.size(); c += 2) limits[c] = cells[c].pixels > 0 ? limit(c, goal.error > 0 ? high : low) : 0;
+  for (std::size_t c = part; c < cells.size(); c += 2)
+    limits[c] = cells[c].pixels > 0 ? limit(c, goal.error > 0 ? high : low) : 0;
   // Out of reach: as good as so many batches make it.
   double unused;
   const bool tooMany = goal.error > 0 && goal.batches > 0 && total(high, unused) > goal.batches;

@@ -29,7 +29,7 @@ struct ErrorEstimate {
   double image = std::numeric_limits<double>::infinity();  // the estimate of `error`
   double upper = std::numeric_limits<double>::infinity();  // with 95 % confidence `error` is below this; what is stated
   double tiles = std::numeric_limits<double>::infinity();  // 95 % of the tiles have a smaller error
-  std::vector<CellError> cells;  // SampleCounts::cellBatches' order
+  std::vector<CellError> cells;                            // SampleCounts::cellBatches' order
 
   bool known() const { return upper < std::numeric_limits<double>::infinity(); }
   bool reaches(double target) const { return upper <= target && tiles <= 2.0 * target; }

@@ -110,7 +110,9 @@ class Reader {
     return *found;
   }
 
-  static bool isNumber(const Json& value) { return value.is_number_unsigned() && value.get<std::uint64_t>() <= 0xFFFFFFFFu; }
+  static bool isNumber(const Json& value) {
+    return value.is_number_unsigned() && value.get<std::uint64_t>() <= 0xFFFFFFFFu;
+  }
 
   FilmFacts facts(const char* name) const {
     FilmFacts result;
@@ -125,13 +127,16 @@ class Reader {
     const Json& json = member("region", Json::value_t::array);
     if (json.size() != 4 || !std::ranges::all_of(json, isNumber)) fail("/region is not four numbers");
     region = {json[0], json[1], json[2], json[3]};
-    const auto fits = [](std::uint64_t first, std::uint64_t size) { return size >= 1 && first + size <= io::kMaxImageSide; };
+    const auto fits = [](std::uint64_t first, std::uint64_t size) {
+      return size >= 1 && first + size <= io::kMaxImageSide;
+    };
     if (!fits(region.x, region.width) || !fits(region.y, region.height)) fail("/region is not in an image");
   }
 
   void readCounts(FilmState& film) {
     for (const Json& json : member("samples", Json::value_t::array)) {
-      if (!json.is_array() || json.size() != 2 || !std::ranges::all_of(json, isNumber)) fail("/samples are not pairs of numbers");
+      if (!json.is_array() || json.size() != 2 || !std::ranges::all_of(json, isNumber))
+        fail("/samples are not pairs of numbers");
       const SampleRange range{json[0], json[1]};
       const bool ordered = film.counts.ranges.empty() || film.counts.ranges.back().end < range.begin;
       if (!ordered || range.begin >= range.end || range.begin % kBatchSamples != 0) fail("/samples are not in order");
@@ -143,14 +148,18 @@ class Reader {
 
   std::size_t cellCount(const FilmState& film, const char* name) const {
     const auto count = member(name, Json::value_t::number_unsigned).get<std::size_t>();
-    if (count != 0 && count != 2 * std::size_t{tileCount(film.region)}) fail(fmt::format("/{} does not belong to the region", name));
+    if (count != 0 && count != 2 * std::size_t{tileCount(film.region)})
+      fail(fmt::format("/{} does not belong to the region", name));
     return count;
   }
 
   // What a film has of an output: nothing, if nobody wanted it; of the first one its picture and the error of that.
   static bool mayHold(program::OutputPixel pixel, bool first, const std::vector<std::string>& names) {
-    const auto are = [&](std::initializer_list<std::string> wanted) { return std::ranges::is_permutation(names, wanted); };
-    if (pixel == program::OutputPixel::mean && (are({"sums", "squares"}) || are({"values"}))) return true;  // values: of the last frame
+    const auto are = [&](std::initializer_list<std::string> wanted) {
+      return std::ranges::is_permutation(names, wanted);
+    };
+    if (pixel == program::OutputPixel::mean && (are({"sums", "squares"}) || are({"values"})))
+      return true;  // values: of the last frame
     if (first) return false;
     if (names.empty()) return true;
     switch (pixel) {
@@ -164,13 +173,15 @@ class Reader {
   void readPlane(FilmState& film, const Json& json) {
     const std::string place = fmt::format("/planes/{}", film.planes.size());
     const auto text = [&](const char* name) {
-      if (!json.is_object() || !json.contains(name) || !json[name].is_string()) fail(fmt::format("{}/{} is not a text", place, name));
+      if (!json.is_object() || !json.contains(name) || !json[name].is_string())
+        fail(fmt::format("{}/{} is not a text", place, name));
       return json[name].get<std::string>();
     };
     FilmPlane& plane = film.planes.emplace_back();
     plane.name = text("name");
     const std::string pixel = text("pixel");
-    constexpr std::array kPixels{program::OutputPixel::mean, program::OutputPixel::center, program::OutputPixel::coverage};
+    constexpr std::array kPixels{program::OutputPixel::mean, program::OutputPixel::center,
+                                 program::OutputPixel::coverage};
     const auto found = std::ranges::find(kPixels, pixel, program::outputPixelName);
     if (found == kPixels.end()) fail(fmt::format("{}/pixel '{}' is unknown", place, pixel));
     plane.pixel = *found;
@@ -178,23 +189,27 @@ class Reader {
     std::vector<std::string>& names = arrays_.emplace_back();
     for (const Json& name : json["arrays"]) names.push_back(name.is_string() ? name.get<std::string>() : "");
     std::size_t known = 0;
-    forArrays(plane, [&](const char* name, const auto&, std::size_t) { known += std::ranges::count(names, name) == 1; });
+    forArrays(plane,
+              [&](const char* name, const auto&, std::size_t) { known += std::ranges::count(names, name) == 1; });
     if (known != names.size()) fail(fmt::format("{}/arrays has an unknown one", place));
-    if (!mayHold(plane.pixel, film.planes.size() == 1, names)) fail(fmt::format("{}/arrays are not those of pixel '{}'", place, pixel));
+    if (!mayHold(plane.pixel, film.planes.size() == 1, names))
+      fail(fmt::format("{}/arrays are not those of pixel '{}'", place, pixel));
   }
 
   void takeArrays(FilmFile& file) {
     FilmState& film = file.film;
     take(film.counts.cellBatches, cells_);
     take(file.plan, planned_);
-    if (!arePossible(film.counts, file.plan)) throw FileError(file_, "payload", "no rendering has such numbers of batches");
+    if (!arePossible(film.counts, file.plan))
+      throw FileError(file_, "payload", "no rendering has such numbers of batches");
     take(film.statistics, film.pixelCount());
     for (std::size_t i = 0; i < film.planes.size(); ++i) {
       forArrays(film.planes[i], [&](const char* name, auto& array, std::size_t group) {
         if (std::ranges::find(arrays_[i], name) != arrays_[i].end()) take(array, film.pixelCount() * group, group);
       });
     }
-    if (!payload_.empty()) throw FileError(file_, "payload", fmt::format("{} bytes belong to nothing", payload_.size()));
+    if (!payload_.empty())
+      throw FileError(file_, "payload", fmt::format("{} bytes belong to nothing", payload_.size()));
   }
 
   template <class T>
@@ -227,7 +242,8 @@ Parts checkedParts(Bytes bytes, const std::filesystem::path& file) {
   Prefix prefix;
   std::memcpy(&prefix, bytes.data() + kMagic.size(), sizeof prefix);
   if (prefix.version != kFilmFileVersion)
-    throw FileError(file, fmt::format("has version {} of the film format; this Quintet reads version {}", prefix.version, kFilmFileVersion));
+    throw FileError(file, fmt::format("has version {} of the film format; this Quintet reads version {}",
+                                      prefix.version, kFilmFileVersion));
   const std::size_t rest = bytes.size() - kPrefixBytes;
   const std::uint64_t wanted = prefix.headerBytes + kHashBytes;
   if (rest < wanted || rest - wanted < prefix.payloadBytes)
@@ -237,7 +253,8 @@ Parts checkedParts(Bytes bytes, const std::filesystem::path& file) {
   const auto hash = hashOf(bytes.first(bytes.size() - kHashBytes));
   if (std::memcmp(hash.data(), bytes.last(kHashBytes).data(), kHashBytes) != 0)
     throw FileError(file, "is damaged: its checksum is not that of its content");
-  return {bytes.subspan(kPrefixBytes, prefix.headerBytes), bytes.subspan(kPrefixBytes + prefix.headerBytes, prefix.payloadBytes)};
+  return {bytes.subspan(kPrefixBytes, prefix.headerBytes),
+          bytes.subspan(kPrefixBytes + prefix.headerBytes, prefix.payloadBytes)};
 }
 
 }  // namespace
@@ -267,7 +284,8 @@ std::vector<std::byte> encodeFilm(const FilmFile& file) {
   appendArray(out, file.film.statistics);
   for (const FilmPlane& plane : file.film.planes)
     forArrays(plane, [&](const char*, const auto& array, std::size_t group) { appendArray(out, array, group); });
-  const Prefix prefix{kFilmFileVersion, static_cast<std::uint32_t>(header.size()), out.size() - kPrefixBytes - header.size()};
+  const Prefix prefix{kFilmFileVersion, static_cast<std::uint32_t>(header.size()),
+                      out.size() - kPrefixBytes - header.size()};
   std::memcpy(out.data(), kMagic.data(), kMagic.size());
   std::memcpy(out.data() + kMagic.size(), &prefix, sizeof prefix);
   const auto hash = hashOf(out);

@@ -24,7 +24,8 @@ void forPixels(const FilmState& film, const Body& body) {
 }
 
 io::Image emptyImage(const FilmState& film) {
-  io::Image image = io::makeImage(film.region.width, film.region.height, 4, io::PixelType::f32, io::ColorEncoding::linear);
+  io::Image image =
+      io::makeImage(film.region.width, film.region.height, 4, io::PixelType::f32, io::ColorEncoding::linear);
   image.premultiplied = true;
   return image;
 }
@@ -37,9 +38,12 @@ void mergeCoverage(shared::CoverageSlot* into, const shared::CoverageSlot* from)
     const bool hasA = a < shared::kCoverageSlots && into[a].samples > 0;
     const bool hasB = b < shared::kCoverageSlots && from[b].samples > 0;
     if (!hasA && !hasB) break;
-    if (hasA && hasB && into[a].id == from[b].id) merged[count++] = {into[a].id, into[a++].samples + from[b++].samples};
-    else if (hasA && (!hasB || into[a].id < from[b].id)) merged[count++] = into[a++];
-    else merged[count++] = from[b++];
+    if (hasA && hasB && into[a].id == from[b].id)
+      merged[count++] = {into[a].id, into[a++].samples + from[b++].samples};
+    else if (hasA && (!hasB || into[a].id < from[b].id))
+      merged[count++] = into[a++];
+    else
+      merged[count++] = from[b++];
   }
   std::copy_n(merged.begin(), shared::kCoverageSlots, into);
 }
@@ -55,11 +59,15 @@ void SampleCounts::add(SampleRange range) {
   const bool meetsAfter = after != ranges.end() && after->begin < range.end;
   if (meetsBefore || meetsAfter) {
     const SampleRange& other = meetsBefore ? *std::prev(after) : *after;
-    throw UsageError(fmt::format("samples {} to {} are there twice", std::max(range.begin, other.begin), std::min(range.end, other.end) - 1));
+    throw UsageError(fmt::format("samples {} to {} are there twice", std::max(range.begin, other.begin),
+                                 std::min(range.end, other.end) - 1));
   }
   ranges.insert(after, range);
   for (std::size_t i = 1; i < ranges.size();) {
-    if (ranges[i - 1].end != ranges[i].begin) { ++i; continue; }
+    if (ranges[i - 1].end != ranges[i].begin) {
+      ++i;
+      continue;
+    }
     ranges[i - 1].end = ranges[i].end;
     ranges.erase(ranges.begin() + static_cast<std::ptrdiff_t>(i));
   }
@@ -88,8 +96,11 @@ bool arePossible(const SampleCounts& counts, const std::vector<std::uint32_t>& p
   if (counts.cellBatches.empty() && plan.empty()) return true;
   const std::vector<SampleRange>& ranges = counts.ranges;
   if (ranges.size() != 1 || ranges[0].begin != 0 || ranges[0].end % kBatchSamples != 0) return false;
-  constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max() / kBatchSamples;  // samples have numbers of 32 bits
-  const auto between = [&](std::uint64_t least) { return [=](std::uint32_t batches) { return batches >= least && batches <= kMost; }; };
+  constexpr std::uint32_t kMost =
+      std::numeric_limits<std::uint32_t>::max() / kBatchSamples;  // samples have numbers of 32 bits
+  const auto between = [&](std::uint64_t least) {
+    return [=](std::uint32_t batches) { return batches >= least && batches <= kMost; };
+  };
   return std::ranges::all_of(counts.cellBatches, between(counts.batches())) && std::ranges::all_of(plan, between(0));
 }
 
@@ -97,7 +108,8 @@ std::vector<std::uint32_t> cellPixels(const Region& region) {
   std::vector<std::uint32_t> pixels;
   for (std::uint32_t y = 0; y < region.height; y += shared::kTileSize)
     for (std::uint32_t x = 0; x < region.width; x += shared::kTileSize) {
-      const std::uint32_t all = std::min(shared::kTileSize, region.width - x) * std::min(shared::kTileSize, region.height - y);
+      const std::uint32_t all =
+          std::min(shared::kTileSize, region.width - x) * std::min(shared::kTileSize, region.height - y);
       pixels.push_back((all + 1) / 2);
       pixels.push_back(all / 2);
     }
@@ -129,14 +141,16 @@ SampleCounts countsOfRows(const SampleCounts& counts, std::uint32_t width, std::
 io::Image planeImage(const FilmState& film, std::size_t output) {
   const FilmPlane& plane = film.planes.at(output);
   if (!plane.stored() || plane.pixel == program::OutputPixel::coverage)
-    throw UsageError(fmt::format("output '{}' {}", plane.name, plane.stored() ? "holds ids, not a picture" : "was not asked for"));
+    throw UsageError(
+        fmt::format("output '{}' {}", plane.name, plane.stored() ? "holds ids, not a picture" : "was not asked for"));
   io::Image image = emptyImage(film);
   const std::span<float> values = image.samples<float>();
   forPixels(film, [&](std::size_t pixel, std::uint32_t cell) {
     const auto samples = static_cast<double>(std::max<std::uint64_t>(1, film.counts.samplesOf(cell)));
     for (int c = 0; c < 4; ++c) {
       const std::size_t i = 4 * pixel + static_cast<std::size_t>(c);
-      values[i] = plane.sums.empty() ? plane.values[pixel][c] : static_cast<float>(fixedToDouble(plane.sums[i]) / samples);
+      values[i] =
+          plane.sums.empty() ? plane.values[pixel][c] : static_cast<float>(fixedToDouble(plane.sums[i]) / samples);
     }
   });
   return image;
@@ -157,17 +171,20 @@ io::Image varianceImage(const FilmState& film, std::size_t output) {
     const auto samples = static_cast<double>(film.counts.samplesOf(cell));
     const auto batches = static_cast<double>(film.counts.batchesOf(cell));
     for (std::size_t i = 4 * pixel; i < 4 * pixel + 4; ++i)
-      values[i] = batches < 2 ? std::numeric_limits<float>::infinity() : static_cast<float>(varianceOfMean(plane, i, samples, batches));
+      values[i] = batches < 2 ? std::numeric_limits<float>::infinity()
+                              : static_cast<float>(varianceOfMean(plane, i, samples, batches));
   });
   return image;
 }
 
 bool sameArrays(const FilmState& a, const FilmState& b) {
   const auto alike = [](const FilmPlane& p, const FilmPlane& q) {
-    return p.name == q.name && p.pixel == q.pixel && p.sums.size() == q.sums.size() && p.squares.size() == q.squares.size() &&
-           p.values.size() == q.values.size() && p.coverage.size() == q.coverage.size();
+    return p.name == q.name && p.pixel == q.pixel && p.sums.size() == q.sums.size() &&
+           p.squares.size() == q.squares.size() && p.values.size() == q.values.size() &&
+           p.coverage.size() == q.coverage.size();
   };
-  return a.region == b.region && a.statistics.size() == b.statistics.size() && std::ranges::equal(a.planes, b.planes, alike);
+  return a.region == b.region && a.statistics.size() == b.statistics.size() &&
+         std::ranges::equal(a.planes, b.planes, alike);
 }
 
 void mergeFilm(FilmState& film, const FilmState& part) {
@@ -183,7 +200,8 @@ void mergeFilm(FilmState& film, const FilmState& part) {
     const FilmPlane& from = part.planes[p];
     for (std::size_t i = 0; i < into.sums.size(); ++i) into.sums[i] = addFixed(into.sums[i], from.sums[i]);
     for (std::size_t i = 0; i < into.squares.size(); ++i) into.squares[i] = addFixed(into.squares[i], from.squares[i]);
-    for (std::size_t i = 0; i < into.coverage.size(); i += shared::kCoverageSlots) mergeCoverage(&into.coverage[i], &from.coverage[i]);
+    for (std::size_t i = 0; i < into.coverage.size(); i += shared::kCoverageSlots)
+      mergeCoverage(&into.coverage[i], &from.coverage[i]);
     if (takesCenters) into.values = from.values;
   }
   for (std::size_t i = 0; i < film.statistics.size(); ++i) film.statistics[i] += part.statistics[i];

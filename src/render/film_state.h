@@ -33,14 +33,16 @@ struct SampleRange {
 
 // How many samples the pixels have: all alike, or by cell of a tile (shared::FilmTile).
 struct SampleCounts {
-  std::vector<SampleRange> ranges;       // sorted, disjoint, adjoining ones joined
+  std::vector<SampleRange> ranges;  // sorted, disjoint, adjoining ones joined
   // Adaptive sampling: batches of cell 2 · tile + c, tiles row by row; batches [0, n), each whole. Empty: all alike.
   std::vector<std::uint32_t> cellBatches;
 
-  void add(SampleRange range);           // throws UsageError where samples are there already
-  std::uint64_t samples() const;         // of every pixel where all are alike
+  void add(SampleRange range);    // throws UsageError where samples are there already
+  std::uint64_t samples() const;  // of every pixel where all are alike
   std::uint64_t batches() const;
-  std::uint64_t samplesOf(std::uint32_t cell) const { return cellBatches.empty() ? samples() : std::uint64_t{cellBatches[cell]} * kBatchSamples; }
+  std::uint64_t samplesOf(std::uint32_t cell) const {
+    return cellBatches.empty() ? samples() : std::uint64_t{cellBatches[cell]} * kBatchSamples;
+  }
   std::uint64_t batchesOf(std::uint32_t cell) const { return cellBatches.empty() ? batches() : cellBatches[cell]; }
   bool operator==(const SampleCounts&) const = default;
 };
@@ -49,10 +51,11 @@ struct SampleCounts {
 struct FilmPlane {
   std::string name;
   program::OutputPixel pixel = program::OutputPixel::mean;
-  std::vector<shared::FixedSum> sums;         // mean: RGBA per pixel, sum over all samples
-  std::vector<shared::FixedSum> squares;      // mean of the first output: sum over batches of (batch sum)² / samples of the batch
-  std::vector<vec4> values;                   // center; or the last frame, where the program accumulates
-  std::vector<shared::CoverageSlot> coverage; // coverage: kCoverageSlots per pixel
+  std::vector<shared::FixedSum> sums;  // mean: RGBA per pixel, sum over all samples
+  std::vector<shared::FixedSum>
+      squares;               // mean of the first output: sum over batches of (batch sum)² / samples of the batch
+  std::vector<vec4> values;  // center; or the last frame, where the program accumulates
+  std::vector<shared::CoverageSlot> coverage;  // coverage: kCoverageSlots per pixel
 
   bool stored() const { return !sums.empty() || !values.empty() || !coverage.empty(); }
 };
@@ -60,8 +63,8 @@ struct FilmPlane {
 struct FilmState {
   Region region;
   SampleCounts counts;
-  std::vector<FilmPlane> planes;     // one per output of the program
-  std::vector<uvec2> statistics;     // per pixel: rays, samples dropped
+  std::vector<FilmPlane> planes;  // one per output of the program
+  std::vector<uvec2> statistics;  // per pixel: rays, samples dropped
 
   std::size_t pixelCount() const { return std::size_t{region.width} * region.height; }
   // Cell of a pixel (from the film's first one).

@@ -35,13 +35,16 @@ struct Sums {
 };
 
 void check(const FilmState& film) {
-  if (film.planes.empty() || film.planes[0].squares.empty()) throw UsageError("a film keeps no squares of its first output");
-  std::uint64_t least = film.counts.cellBatches.empty() ? film.counts.batches() : std::numeric_limits<std::uint64_t>::max();
+  if (film.planes.empty() || film.planes[0].squares.empty())
+    throw UsageError("a film keeps no squares of its first output");
+  std::uint64_t least =
+      film.counts.cellBatches.empty() ? film.counts.batches() : std::numeric_limits<std::uint64_t>::max();
   for (std::uint32_t y = 0; y < film.region.height && !film.counts.cellBatches.empty(); ++y)
-    for (std::uint32_t x = 0; x < film.region.width; ++x) least = std::min(least, film.counts.batchesOf(film.cellOf(x, y)));
+    for (std::uint32_t x = 0; x < film.region.width; ++x)
+      least = std::min(least, film.counts.batchesOf(film.cellOf(x, y)));
   if (least < kZTestBatches)
-    throw UsageError(fmt::format("a film has {} batches of {} samples; {} ({} samples) are needed to know its noise", least,
-                                 kBatchSamples, kZTestBatches, kZTestBatches * kBatchSamples));
+    throw UsageError(fmt::format("a film has {} batches of {} samples; {} ({} samples) are needed to know its noise",
+                                 least, kBatchSamples, kZTestBatches, kZTestBatches * kBatchSamples));
 }
 
 // One pixel and channel of a film: the mean, and its variance with the degrees of freedom of its batches.
@@ -106,7 +109,8 @@ class Tester {
         for (std::size_t f = 0; f < 2; ++f) {
           const auto samples = static_cast<double>(films_[f]->counts.samplesOf(cell));
           const auto batches = static_cast<double>(films_[f]->counts.batchesOf(cell));
-          for (std::size_t c = 0; c < sums.size(); ++c) addPixel(sums[c], f, films_[f]->planes[0], 4 * pixel + c, samples, batches);
+          for (std::size_t c = 0; c < sums.size(); ++c)
+            addPixel(sums[c], f, films_[f]->planes[0], 4 * pixel + c, samples, batches);
         }
       }
   }
@@ -164,7 +168,8 @@ double ZTestMeans::differenceError() const { return std::hypot(error[0], error[1
 double ZTestMeans::t() const { return differenceError() > 0.0 ? difference() / differenceError() : 0.0; }
 
 ZTest zTest(const FilmState& a, const FilmState& b, const ZTestOptions& options) {
-  assert(options.level > 0.0 && options.level < 1.0 && options.block >= 1 && options.channels >= 1 && options.channels <= 4);
+  assert(options.level > 0.0 && options.level < 1.0 && options.block >= 1 && options.channels >= 1 &&
+         options.channels <= 4);
   if (a.region != b.region) throw UsageError("the films show other parts of the image");
   check(a);
   check(b);

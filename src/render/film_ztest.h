@@ -34,32 +34,32 @@ namespace quintet::render {
 inline constexpr std::uint64_t kZTestBatches = 8;
 
 struct ZTestOptions {
-  double level = 0.01;       // with which the same picture is rejected, at most; in (0, 1)
-  std::uint32_t block = 8;   // side of a block, pixels, at least 1; blocks are aligned to the whole image
-  double tolerance = 1e-5;   // relative difference that passes for rounding, e.g. of two devices
+  double level = 0.01;         // with which the same picture is rejected, at most; in (0, 1)
+  std::uint32_t block = 8;     // side of a block, pixels, at least 1; blocks are aligned to the whole image
+  double tolerance = 1e-5;     // relative difference that passes for rounding, e.g. of two devices
   std::uint32_t channels = 3;  // 4: alpha, too
 };
 
 // The means of both films over some pixels, in one channel.
 struct ZTestMeans {
-  Region region;                    // of the whole image
+  Region region;  // of the whole image
   std::uint32_t channel = 0;
   std::array<double, 2> mean{};
-  std::array<double, 2> error{};    // standard errors of the means
-  double freedom = 1;               // degrees of, of the difference
-  double p = 1;                     // of a difference as large as this one, if there is none
+  std::array<double, 2> error{};  // standard errors of the means
+  double freedom = 1;             // degrees of, of the difference
+  double p = 1;                   // of a difference as large as this one, if there is none
 
   double difference() const { return mean[0] - mean[1]; }
-  double differenceError() const;   // standard error
-  double t() const;                 // 0 where there is no error
+  double differenceError() const;  // standard error
+  double t() const;                // 0 where there is no error
 };
 
 struct ZTest {
-  std::vector<ZTestMeans> blocks;   // row by row, the channels of a block together
-  std::vector<ZTestMeans> image;    // by channel
-  double blockLevel = 0;            // a block's p below this rejects
+  std::vector<ZTestMeans> blocks;  // row by row, the channels of a block together
+  std::vector<ZTestMeans> image;   // by channel
+  double blockLevel = 0;           // a block's p below this rejects
   double imageLevel = 0;
-  std::size_t smallest = 0;         // the block of smallest p
+  std::size_t smallest = 0;  // the block of smallest p
   // Blocks whose means have an error, and how their t is distributed: root mean square (1 for independent samples, less
   // where variances are overestimated) and which part lies beyond z of the normal distribution.
   std::size_t noisy = 0;

@@ -32,14 +32,18 @@ std::string describe(const shared::InstrumentReport& report, std::size_t missCou
   const std::string where = fmt::format("pixel {}, {}, depth {}", report.pixel.x, report.pixel.y, report.depth);
   switch (report.kind) {
     case shared::kReportRay:
-      return fmt::format("the ray is not valid: origin {}, direction {} ({})", vectorText(report.origin), vectorText(report.direction), where);
+      return fmt::format("the ray is not valid: origin {}, direction {} ({})", vectorText(report.origin),
+                         vectorText(report.direction), where);
     case shared::kReportMiss:
-      return fmt::format("miss index {} is beyond the table, which has {}; the trace was not executed ({})", report.index, missCount, where);
+      return fmt::format("miss index {} is beyond the table, which has {}; the trace was not executed ({})",
+                         report.index, missCount, where);
     case shared::kReportDepth:
       return fmt::format("this trace is deeper than the pipeline was made for; it was not executed ({})", where);
     default:
-      return fmt::format("the ray meets the primitive that it has just left, {:.3g} away: less than the rounding error of its origin {} ({})",
-                         report.distance, vectorText(report.origin), where);
+      return fmt::format(
+          "the ray meets the primitive that it has just left, {:.3g} away: less than the rounding error of its origin "
+          "{} ({})",
+          report.distance, vectorText(report.origin), where);
   }
 }
 
@@ -53,11 +57,13 @@ void addRecords(const shared::Instrument& notes, const program::Program& program
     const std::uint32_t offset = pair % 16, stride = pair / 16;
     for (const program::InstanceFacts& instance : facts.instances) {
       if (instance.geometryCount == 0) continue;
-      const std::uint64_t record = std::uint64_t{instance.firstGeometry} * rays + std::uint64_t{instance.geometryCount - 1} * stride + offset;
+      const std::uint64_t record =
+          std::uint64_t{instance.firstGeometry} * rays + std::uint64_t{instance.geometryCount - 1} * stride + offset;
       if (record < records) continue;
-      result.push_back({shader::Severity::error, file, 0, 0, "Q004",
-                        fmt::format("a trace with offset {} and stride {} reaches hit record {} at instance '{}'; the table has {}", offset, stride,
-                                    record, instance.name, records)});
+      result.push_back(
+          {shader::Severity::error, file, 0, 0, "Q004",
+           fmt::format("a trace with offset {} and stride {} reaches hit record {} at instance '{}'; the table has {}",
+                       offset, stride, record, instance.name, records)});
       break;
     }
   }
@@ -69,7 +75,8 @@ std::string sourceFile(const program::Program& program, const std::string& stage
   return stage.starts_with(program.descriptionFile + ".") ? program.descriptionFile : stage;
 }
 
-InstrumentBuffer::InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit, std::size_t missCount) {
+InstrumentBuffer::InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit,
+                                   std::size_t missCount) {
   std::vector<std::byte> bytes(sizeof(InstrumentNotes) + pixels * sizeof(shared::InstrumentPixel));
   auto& header = *reinterpret_cast<shared::Instrument*>(bytes.data());
   header.pixelCount = static_cast<std::uint32_t>(pixels);
@@ -85,7 +92,8 @@ InstrumentNotes InstrumentBuffer::download() const {
 }
 
 std::vector<shader::Diagnostic> instrumentDiagnostics(const InstrumentNotes& written, const program::Program& program,
-                                                      const program::CompiledProgram& compiled, const program::SceneFacts& facts) {
+                                                      const program::CompiledProgram& compiled,
+                                                      const program::SceneFacts& facts) {
   std::vector<shader::Diagnostic> result;
   const shared::Instrument& notes = written.counts;
   struct Place {
@@ -99,18 +107,23 @@ std::vector<shader::Diagnostic> instrumentDiagnostics(const InstrumentNotes& wri
     if (place.count++ == 0) place.first = report;
   }
   for (const auto& [key, place] : places) {
-    const std::string file = sourceFile(program, place.first.stage < compiled.stages.size() ? compiled.stages[place.first.stage].file : program.rayGeneration);
+    const std::string file =
+        sourceFile(program, place.first.stage < compiled.stages.size() ? compiled.stages[place.first.stage].file
+                                                                       : program.rayGeneration);
     const bool selfHit = place.first.kind == shared::kReportSelfHit;
     std::string text = describe(place.first, notes.missCount);
-    if (place.count > 1) text += fmt::format("; {} such{}", place.count, notes.reportCount > shared::kInstrumentReports ? " or more" : "");
-    result.push_back({selfHit ? shader::Severity::warning : shader::Severity::error, program.path(file), traceLine(program, file, place.first.line), 0,
-                      fmt::format("Q00{}", place.first.kind), text});
+    if (place.count > 1)
+      text += fmt::format("; {} such{}", place.count, notes.reportCount > shared::kInstrumentReports ? " or more" : "");
+    result.push_back({selfHit ? shader::Severity::warning : shader::Severity::error, program.path(file),
+                      traceLine(program, file, place.first.line), 0, fmt::format("Q00{}", place.first.kind), text});
   }
   addRecords(notes, program, facts, result);
   if (notes.anyHitCount > 0)
-    result.push_back({shader::Severity::note, program.path(sourceFile(program, program.rayGeneration)), 0, 0, "Q006",
-                      fmt::format("{} calls of any-hit shaders for {} traces; {:.2f} per pixel, {} in the one with most", notes.anyHitCount,
-                                  notes.traceCount, static_cast<double>(notes.anyHitCount) / std::max(1u, notes.pixelCount), notes.mostAnyHits)});
+    result.push_back(
+        {shader::Severity::note, program.path(sourceFile(program, program.rayGeneration)), 0, 0, "Q006",
+         fmt::format("{} calls of any-hit shaders for {} traces; {:.2f} per pixel, {} in the one with most",
+                     notes.anyHitCount, notes.traceCount,
+                     static_cast<double>(notes.anyHitCount) / std::max(1u, notes.pixelCount), notes.mostAnyHits)});
   return result;
 }
 

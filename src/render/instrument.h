@@ -32,7 +32,8 @@ std::string sourceFile(const program::Program& program, const std::string& stage
 // Diagnostics Q001, Q003 … Q006; Q004 by the scene's table: records that no instance has, misses that are not there.
 // Several reports of one place are one diagnostic with their number and the first pixel.
 std::vector<shader::Diagnostic> instrumentDiagnostics(const InstrumentNotes& notes, const program::Program& program,
-                                                      const program::CompiledProgram& compiled, const program::SceneFacts& facts);
+                                                      const program::CompiledProgram& compiled,
+                                                      const program::SceneFacts& facts);
 
 }  // namespace quintet::render
 #endif

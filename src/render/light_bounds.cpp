@@ -42,7 +42,9 @@ Cone uniteCones(Cone a, Cone b, bool lines) {
   return {glm::normalize((std::sin(apart - turn) * a.axis + std::sin(turn) * b.axis) / sine), spread};
 }
 
-float toFloat(double intensity) { return intensity > 0.0 ? static_cast<float>(std::clamp(intensity, 1e-37, 1e37)) : 0.0f; }
+float toFloat(double intensity) {
+  return intensity > 0.0 ? static_cast<float>(std::clamp(intensity, 1e-37, 1e37)) : 0.0f;
+}
 
 }  // namespace
 
@@ -60,7 +62,8 @@ LightBounds triangleBounds(const std::array<vec3, 3>& corners, const mat4& world
     bounds.box.extend(vec3(corner) + error);
   }
   bounds.center = bounds.box.center();
-  for (const glm::dvec3& corner : p) bounds.radius = std::max(bounds.radius, static_cast<float>(glm::distance(corner, glm::dvec3(bounds.center))));
+  for (const glm::dvec3& corner : p)
+    bounds.radius = std::max(bounds.radius, static_cast<float>(glm::distance(corner, glm::dvec3(bounds.center))));
   bounds.radius += glm::length(error);
   const glm::dvec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
   const double length = glm::length(normal);
@@ -87,7 +90,8 @@ LightBounds solidBounds(const scene::Primitive& primitive, const mat4& worldFrom
     double largest = 0.0;
     for (int row = 0; row < 3; ++row)
       largest = std::max(largest, std::abs(squares[row][0]) + std::abs(squares[row][1]) + std::abs(squares[row][2]));
-    bounds.radius = std::min(bounds.radius, static_cast<float>(std::sqrt(largest)) * (1.0f + 1e-6f) + glm::length(error));
+    bounds.radius =
+        std::min(bounds.radius, static_cast<float>(std::sqrt(largest)) * (1.0f + 1e-6f) + glm::length(error));
   }
   bounds.spread = kPi;
   bounds.beyond = kHalfTurn;
@@ -105,7 +109,8 @@ LightBounds pointBounds(const vec3& position, double intensity) {
   return bounds;
 }
 
-LightBounds spotBounds(const vec3& position, const vec3& direction, double innerAngle, double outerAngle, double intensity) {
+LightBounds spotBounds(const vec3& position, const vec3& direction, double innerAngle, double outerAngle,
+                       double intensity) {
   LightBounds bounds = pointBounds(position, intensity);
   bounds.axis = direction;
   bounds.spread = static_cast<float>(innerAngle);
@@ -129,7 +134,8 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
   result.box.extend(b.box);
   result.intensity = a.intensity + b.intensity;
   result.center = glm::mix(a.center, b.center, b.intensity / result.intensity);
-  const float around = std::max(glm::distance(result.center, a.center) + a.radius, glm::distance(result.center, b.center) + b.radius);
+  const float around =
+      std::max(glm::distance(result.center, a.center) + a.radius, glm::distance(result.center, b.center) + b.radius);
   const float corner = glm::length(glm::max(result.box.max - result.center, result.center - result.box.min));
   result.radius = (1.0f + 1e-6f) * std::min(corner, around);
   result.bothSides = a.bothSides || b.bothSides;
@@ -143,8 +149,9 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
 double orientationMeasure(const LightBounds& bounds) {
   if (bounds.spread >= (bounds.bothSides ? kHalfTurn : kPi)) return 4.0 * glm::pi<double>();
   const double o = bounds.spread, w = std::min(o + bounds.beyond, glm::pi<double>());
-  const double oneSide = 2.0 * glm::pi<double>() * (1.0 - std::cos(o)) +
-                         glm::half_pi<double>() * (2.0 * w * std::sin(o) - std::cos(o - 2.0 * w) - 2.0 * o * std::sin(o) + std::cos(o));
+  const double oneSide =
+      2.0 * glm::pi<double>() * (1.0 - std::cos(o)) +
+      glm::half_pi<double>() * (2.0 * w * std::sin(o) - std::cos(o - 2.0 * w) - 2.0 * o * std::sin(o) + std::cos(o));
   return bounds.bothSides ? std::min(2.0 * oneSide, 4.0 * glm::pi<double>()) : oneSide;
 }
 

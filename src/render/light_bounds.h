@@ -4,7 +4,6 @@
 #define QUINTET_RENDER_LIGHT_BOUNDS_H
 
 #include <array>
-#include <array>
 
 #include "scene/procedural.h"
 
@@ -27,7 +26,8 @@ struct LightBounds {
 LightBounds triangleBounds(const std::array<vec3, 3>& objectCorners, const mat4& worldFromObject, double intensity);
 LightBounds solidBounds(const scene::Primitive& primitive, const mat4& worldFromObject, double intensity);
 LightBounds pointBounds(const vec3& position, double intensity);
-LightBounds spotBounds(const vec3& position, const vec3& direction, double innerAngle, double outerAngle, double intensity);
+LightBounds spotBounds(const vec3& position, const vec3& direction, double innerAngle, double outerAngle,
+                       double intensity);
 LightBounds directionalBounds(const vec3& direction, double irradiance);  // direction: the way the light goes
 LightBounds environmentBounds(double irradiance);
 

@@ -35,7 +35,8 @@ std::vector<float> weightsOf(const std::vector<shared::LightData>& lights, const
   const auto present = static_cast<double>(std::ranges::count_if(sums, [](double s) { return s > 0.0; }));
   std::array<double, 4> factors{};
   for (std::size_t c = 0; c < sums.size(); ++c)
-    if (sums[c] > 0.0) factors[c] = (kMinimumClassShare + (1.0 - kMinimumClassShare * present) * (sums[c] / total)) / sums[c];
+    if (sums[c] > 0.0)
+      factors[c] = (kMinimumClassShare + (1.0 - kMinimumClassShare * present) * (sums[c] / total)) / sums[c];
   std::vector<float> result(powers.size());
   for (std::size_t i = 0; i < powers.size(); ++i)
     result[i] = static_cast<float>(powers[i] * factors[static_cast<std::size_t>(classOf(lights[i]))]);
@@ -115,7 +116,8 @@ struct LightTableBuilder::Collector {
       total += bounds[i].bounds.intensity;
     }
     for (LightTreeInput& input : bounds)
-      if (input.bounds.intensity > 0.0f) input.bounds.intensity = std::max(static_cast<float>(input.bounds.intensity / total), 1e-30f);
+      if (input.bounds.intensity > 0.0f)
+        input.bounds.intensity = std::max(static_cast<float>(input.bounds.intensity / total), 1e-30f);
     LightTree tree = buildLightTree(std::move(bounds), table.lights.size());
     for (std::size_t i = 0; i < table.lights.size(); ++i) table.lights[i].leaf = tree.leaves[i];
     table.nodes = std::move(tree.nodes);
@@ -123,8 +125,11 @@ struct LightTableBuilder::Collector {
   }
 };
 
-LightTableBuilder::LightTableBuilder(const scene::Scene& scene, const scene::Environment& environment, std::size_t maxTriangleLights)
-    : punctual_(scene.lights), emitters_(makeEmitters(scene)), environment_(buildEnvironmentTable(environment)),
+LightTableBuilder::LightTableBuilder(const scene::Scene& scene, const scene::Environment& environment,
+                                     std::size_t maxTriangleLights)
+    : punctual_(scene.lights),
+      emitters_(makeEmitters(scene)),
+      environment_(buildEnvironmentTable(environment)),
       environmentIntegral_(environment_.width > 0 ? environment_.integral : 0.0) {
   const Bounds3 bounds = scene::worldBounds(scene);
   const double radius = bounds.empty() ? 0.0 : 0.5 * glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
@@ -141,7 +146,8 @@ void LightTableBuilder::addParts(const scene::Scene& scene, std::size_t maxCount
     if (mesh == scene::kNone) continue;
     const auto m = static_cast<std::size_t>(mesh);
     for (std::size_t g = 0; g < scene.meshes[m].geometryCount(); ++g) {
-      if (seen && g < emitters_[m].size() && !emitters_[m][g].black) parts_.push_back({i, g, slots_.size(), m, emitters_[m][g].count()});
+      if (seen && g < emitters_[m].size() && !emitters_[m][g].black)
+        parts_.push_back({i, g, slots_.size(), m, emitters_[m][g].count()});
       slots_.push_back(shared::kNoLight);
     }
   }
@@ -153,7 +159,8 @@ void LightTableBuilder::addParts(const scene::Scene& scene, std::size_t maxCount
     while (total + parts_[kept].count <= maxCount) total += parts_[kept++].count;
     parts_.resize(kept);
   }
-  moves_ = std::ranges::any_of(parts_, [&](const Part& part) { return !scene.instances[part.instance].keyframes.empty(); });
+  moves_ =
+      std::ranges::any_of(parts_, [&](const Part& part) { return !scene.instances[part.instance].keyframes.empty(); });
 }
 
 void LightTableBuilder::keep() {
@@ -192,7 +199,8 @@ void LightTable::clear() {
   environmentLight = shared::kNoLight;
 }
 
-LightTable buildLightTable(const scene::Scene& scene, const scene::Environment& environmentInUse, std::size_t maxTriangleLights) {
+LightTable buildLightTable(const scene::Scene& scene, const scene::Environment& environmentInUse,
+                           std::size_t maxTriangleLights) {
   LightTableBuilder builder(scene, environmentInUse, maxTriangleLights);
   std::vector<mat4> places;
   for (const scene::Instance& instance : scene.instances) places.push_back(scene::worldFromObjectAt(instance, 0.0f));

@@ -18,9 +18,9 @@ struct LightTable {
   std::vector<shared::AliasEntry> entries;  // one per light: the choice by power alone
   // One per geometry of each instance: index of its triangle or solid 0 in `lights` (p: + p), or kNoLight.
   std::vector<std::uint32_t> slots;
-  std::vector<std::uint32_t> firstSlots;    // one per instance: where its geometries begin in `slots`
+  std::vector<std::uint32_t> firstSlots;  // one per instance: where its geometries begin in `slots`
   std::uint32_t environmentLight = shared::kNoLight;
-  EnvironmentTable environment;             // of environmentInUse
+  EnvironmentTable environment;  // of environmentInUse
 
   bool dark() const { return entries.empty(); }  // no light has any power
   void clear();                                  // lights and slots
@@ -51,7 +51,7 @@ class LightTableBuilder {
   EnvironmentTable& environment() { return environment_; }
 
   bool moves() const { return moves_; }  // an instance with keyframes has lights
-  void keep();  // from here on without the scene
+  void keep();                           // from here on without the scene
 
  private:
   struct Part {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <glm/gtc/packing.hpp>
 
 #include "base/parallel.h"
 
@@ -10,9 +9,9 @@ namespace quintet::render {
 namespace {
 
 constexpr std::size_t kBins = 12;
-constexpr std::size_t kChunk = 16384;     // lights binned by one task
-constexpr std::size_t kSubtree = 32768;   // at most so many lights are built into a subtree by one task
-constexpr int kDeepest = 64;              // from here on by halves, so that no recursion is deep
+constexpr std::size_t kChunk = 16384;    // lights binned by one task
+constexpr std::size_t kSubtree = 32768;  // at most so many lights are built into a subtree by one task
+constexpr int kDeepest = 64;             // from here on by halves, so that no recursion is deep
 
 using Lights = std::span<LightTreeInput>;
 
@@ -70,7 +69,11 @@ struct Split {
 struct Binning {
   vec3 low, scale;
   std::size_t bins;
-  Binning(const Bounds3& centers, std::size_t lights) : low(centers.min), bins(lights < 32 ? 4 : lights < 512 ? 8 : kBins) {
+  Binning(const Bounds3& centers, std::size_t lights)
+      : low(centers.min),
+        bins(lights < 32    ? 4
+             : lights < 512 ? 8
+                            : kBins) {
     const vec3 extent = centers.extent();
     for (glm::length_t i = 0; i < 3; ++i) scale[i] = extent[i] > 0.0f ? static_cast<float>(bins) / extent[i] : 0.0f;
   }
@@ -84,7 +87,8 @@ void fillRows(Lights lights, const Binning& binning, Rows& rows) {
   std::array<std::array<Bin, kBins>, 3> bins;
   for (const LightTreeInput& light : lights)
     for (glm::length_t axis = 0; axis < 3; ++axis)
-      if (binning.scale[axis] > 0.0f) bins[static_cast<std::size_t>(axis)][binning.of(light.bounds, axis)].add(light.bounds);
+      if (binning.scale[axis] > 0.0f)
+        bins[static_cast<std::size_t>(axis)][binning.of(light.bounds, axis)].add(light.bounds);
   for (std::size_t axis = 0; axis < 3; ++axis)
     for (std::size_t bin = 0; bin < binning.bins; ++bin)
       if (bins[axis][bin].count > 0) add(rows[axis][bin], bins[axis][bin].bounds());
@@ -166,7 +170,9 @@ class Builder {
     return static_cast<std::size_t>(std::ranges::count(lights_, reach, &LightTreeInput::reach));
   }
 
-  static Range firstChild(const Range& r, std::size_t count) { return {r.first, count, r.below, r.below + 2, r.depth + 1}; }
+  static Range firstChild(const Range& r, std::size_t count) {
+    return {r.first, count, r.below, r.below + 2, r.depth + 1};
+  }
   static Range secondChild(const Range& r, std::size_t count) {
     return {r.first + count, r.count - count, r.below + 1, r.below + 2 * count, r.depth + 1};
   }
@@ -215,7 +221,8 @@ class Builder {
 
   // The nodes above the subtrees, in the order in which they were planned.
   LightBounds finish(const Range& r) {
-    if (nextSubtree_ < subtrees_.size() && subtrees_[nextSubtree_].node == r.node) return subtreeBounds_[nextSubtree_++];
+    if (nextSubtree_ < subtrees_.size() && subtrees_[nextSubtree_].node == r.node)
+      return subtreeBounds_[nextSubtree_++];
     const std::size_t count = planned_[nextPlanned_++];
     const LightBounds first = finish(firstChild(r, count));
     const LightBounds second = finish(secondChild(r, count));
@@ -244,7 +251,9 @@ class Builder {
 
 std::uint32_t packAxis(const vec3& n) {
   vec2 v = vec2(n) / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
-  if (n.z < 0.0f) v = vec2((1.0f - std::abs(v.y)) * (v.x >= 0.0f ? 1.0f : -1.0f), (1.0f - std::abs(v.x)) * (v.y >= 0.0f ? 1.0f : -1.0f));
+  if (n.z < 0.0f)
+    v = vec2((1.0f - std::abs(v.y)) * (v.x >= 0.0f ? 1.0f : -1.0f),
+             (1.0f - std::abs(v.x)) * (v.y >= 0.0f ? 1.0f : -1.0f));
   return glm::packSnorm2x16(v);
 }
 
@@ -265,7 +274,8 @@ vec3 unpackLightAxis(std::uint32_t axis) {
 shared::LightNode packLightNode(const LightBounds& bounds) {
   shared::LightNode node{};
   node.center = bounds.center;
-  node.radius = bounds.radius * (1.0f + 1e-5f) + 4e-7f * (std::abs(node.center.x) + std::abs(node.center.y) + std::abs(node.center.z));
+  node.radius = bounds.radius * (1.0f + 1e-5f) +
+                4e-7f * (std::abs(node.center.x) + std::abs(node.center.y) + std::abs(node.center.z));
   node.intensity = bounds.intensity;
   node.axis = packAxis(bounds.axis);
   // Wider by the coding of the axis and what the unions have rounded.
@@ -290,7 +300,8 @@ LightTree buildLightTree(std::vector<LightTreeInput> lights, std::size_t lightCo
   Builder(lights, tree.nodes).run();
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const std::uint32_t link = tree.nodes[i].link;
-    if (i != 1 && (link & shared::kLightNodeLeaf) != 0) tree.leaves[link & shared::kLightNodeIndex] = static_cast<std::uint32_t>(i);
+    if (i != 1 && (link & shared::kLightNodeLeaf) != 0)
+      tree.leaves[link & shared::kLightNodeIndex] = static_cast<std::uint32_t>(i);
   }
   return tree;
 }

@@ -124,7 +124,8 @@ bool isPane(const scene::Scene& scene, const scene::Geometry& geometry) {
 }
 
 bool isPane(const scene::Scene& scene, const scene::PrimitiveSet& set) {
-  return set.kind != scene::PrimitiveSetKind::custom && anyMaterial(scene, set, [](const scene::Material& m) { return isPane(m); });
+  return set.kind != scene::PrimitiveSetKind::custom &&
+         anyMaterial(scene, set, [](const scene::Material& m) { return isPane(m); });
 }
 
 bool tintsShadows(const scene::Scene& scene, const scene::Geometry& geometry) {

@@ -27,14 +27,16 @@ constexpr float kPadding = 4e-6f;
 Bounds3 padded(const Bounds3& box) {
   if (box.empty()) return box;
   const vec3 extent = box.extent();
-  const vec3 by = kPadding * (glm::max(glm::abs(box.min), glm::abs(box.max)) + std::max({extent.x, extent.y, extent.z}));
+  const vec3 by =
+      kPadding * (glm::max(glm::abs(box.min), glm::abs(box.max)) + std::max({extent.x, extent.y, extent.z}));
   return {box.min - by, box.max + by};
 }
 
 }  // namespace
 
 std::uint32_t materialIndex(const scene::Scene& scene, int material) {
-  return static_cast<std::uint32_t>(material == scene::kNone ? scene.materials.size() : static_cast<std::size_t>(material));
+  return static_cast<std::uint32_t>(material == scene::kNone ? scene.materials.size()
+                                                             : static_cast<std::size_t>(material));
 }
 
 std::vector<shared::PrimitiveData> makePrimitives(const scene::Scene& scene, const scene::PrimitiveSet& set) {

@@ -12,7 +12,8 @@ namespace {
 bool serves(const program::Program& program, program::GeometryKind kind) {
   if (program.hitGroups.empty()) return kind == program::GeometryKind::triangles;
   const program::HitGroup& group = program.hitGroups[program::hitGroupFor(program, {kind, false, {}, {}})];
-  const bool intersects = std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
+  const bool intersects =
+      std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
   return intersects == (kind != program::GeometryKind::triangles);
 }
 
@@ -26,7 +27,8 @@ scene::DefaultSceneOptions defaultSceneOptions(const program::Program& program) 
 }
 
 scene::Scene programScene(const program::Program& program) {
-  if (!program.scene.empty()) return scene::parseSceneToml(program.files.at(program.scene), program.path(program.scene));
+  if (!program.scene.empty())
+    return scene::parseSceneToml(program.files.at(program.scene), program.path(program.scene));
   return scene::defaultScene(defaultSceneOptions(program));
 }
 

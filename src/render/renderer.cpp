@@ -27,13 +27,16 @@ using Record = std::function<void(gpu::Commands&)>;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 Region checkedRegion(const RenderSettings& settings) {
-  if (settings.width == 0 || settings.height == 0 || settings.width > io::kMaxImageSide || settings.height > io::kMaxImageSide)
-    throw UsageError(fmt::format("image size {}x{}: each side must be 1 to {} pixels", settings.width, settings.height, io::kMaxImageSide));
+  if (settings.width == 0 || settings.height == 0 || settings.width > io::kMaxImageSide ||
+      settings.height > io::kMaxImageSide)
+    throw UsageError(fmt::format("image size {}x{}: each side must be 1 to {} pixels", settings.width, settings.height,
+                                 io::kMaxImageSide));
   const Region& r = settings.region;
   if (r.width == 0 && r.height == 0) return {0, 0, settings.width, settings.height};
-  if (r.width == 0 || r.height == 0 || r.x >= settings.width || r.y >= settings.height || r.width > settings.width - r.x ||
-      r.height > settings.height - r.y)
-    throw UsageError(fmt::format("region {},{},{},{} is not inside the image of {}x{}", r.x, r.y, r.width, r.height, settings.width, settings.height));
+  if (r.width == 0 || r.height == 0 || r.x >= settings.width || r.y >= settings.height ||
+      r.width > settings.width - r.x || r.height > settings.height - r.y)
+    throw UsageError(fmt::format("region {},{},{},{} is not inside the image of {}x{}", r.x, r.y, r.width, r.height,
+                                 settings.width, settings.height));
   return r;
 }
 
@@ -65,14 +68,15 @@ struct InFlight {
 
 }  // namespace
 
-CompiledShaders compileShaders(const program::Program& program, const shader::Compiler& compiler, const RenderSettings& settings,
-                               const Defines& sceneDefines) {
+CompiledShaders compileShaders(const program::Program& program, const shader::Compiler& compiler,
+                               const RenderSettings& settings, const Defines& sceneDefines) {
   CompiledShaders shaders{definesFor(settings, sceneDefines), {}};
   shaders.program = program::compile(program, compiler, shaders.defines, settings.instrument);
   return shaders;
 }
 
-ProgramError::ProgramError(std::vector<shader::Diagnostic> diagnostics) : Error(firstError(diagnostics)), diagnostics_(std::move(diagnostics)) {}
+ProgramError::ProgramError(std::vector<shader::Diagnostic> diagnostics)
+    : Error(firstError(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
 struct Renderer::Impl {
   DeviceScene& scene;
@@ -87,7 +91,7 @@ struct Renderer::Impl {
   std::optional<ParameterTextures> parameterTextures;
   gpu::Buffer parameterBuffer;
   std::array<gpu::Timer, kMostInFlight> timers{gpu::Timer(context, 4), gpu::Timer(context, 4)};  // in turns
-  std::deque<InFlight> inFlight;  // oldest first
+  std::deque<InFlight> inFlight;                                                                 // oldest first
   std::uint64_t launchCount = 0;
   RenderStatistics statistics;
   std::vector<shader::Diagnostic> diagnostics;
@@ -96,12 +100,12 @@ struct Renderer::Impl {
   std::optional<InstrumentBuffer> instrument;
   program::CompiledProgram instrumented;  // file names of stages, for notes
   std::vector<LaunchTiming> launches;
-  double lastStamp = 0;  // of the device, when the launch before ended
+  double lastStamp = 0;              // of the device, when the launch before ended
   double pixelSamplesPerSecond = 0;  // measured; 0: unknown yet
   std::uint64_t nextBatch = 0;
 
-  Impl(DeviceScene& deviceScene, const program::Program& program, const shader::Compiler& compiler, const gpu::PipelineCache* cache,
-       const RenderSettings& renderSettings)
+  Impl(DeviceScene& deviceScene, const program::Program& program, const shader::Compiler& compiler,
+       const gpu::PipelineCache* cache, const RenderSettings& renderSettings)
       : scene(deviceScene), context(deviceScene.context()), description(program), settings(renderSettings) {
     const Region region = checkedRegion(settings);
     if (settings.timeoutSeconds <= 0) settings.timeoutSeconds = context.info().quirks.software ? 600 : 60;
@@ -122,11 +126,13 @@ struct Renderer::Impl {
     frame.rayRecordCapacity = settings.rayRecords ? settings.rayRecordCapacity : 0;
     film->describe(frame);
     if (settings.instrument) {
-      instrument.emplace(context, std::uint64_t{region.width} * region.height, linked->recursionDepth(), program::missShaders(description).size());
+      instrument.emplace(context, std::uint64_t{region.width} * region.height, linked->recursionDepth(),
+                         program::missShaders(description).size());
       frame.instrument = instrument->address();
     }
     frameBuffer = gpu::makeBuffer(context, std::as_bytes(std::span(&frame, 1)), 0, "frame");
-    if (settings.parameters.parameters().empty()) settings.parameters = program::ParameterValues(description.parameters);
+    if (settings.parameters.parameters().empty())
+      settings.parameters = program::ParameterValues(description.parameters);
     for (const program::ImageValue& image : settings.parameters.images())
       if (!image.file.empty() && !image.ofProgram) files.emplace_back(image.file);
     parameterTextures.emplace(context, scene.parameterSlots(), description, settings.parameters);
@@ -134,18 +140,23 @@ struct Renderer::Impl {
   }
 
   void link(const shader::Compiler& compiler, const gpu::PipelineCache* cache) {
-    const bool ready = settings.compiled && !settings.instrument && settings.compiled->defines == definesFor(settings, scene.defines());
-    const CompiledShaders shaders = ready ? *settings.compiled : compileShaders(description, compiler, settings, scene.defines());
+    const bool ready = settings.compiled && !settings.instrument &&
+                       settings.compiled->defines == definesFor(settings, scene.defines());
+    const CompiledShaders shaders =
+        ready ? *settings.compiled : compileShaders(description, compiler, settings, scene.defines());
     settings.compiled = nullptr;
     const program::CompiledProgram& compiled = shaders.program;
     if (!compiled.ok) throw ProgramError(compiled.diagnostics);
-    const program::CheckResult checked = program::check(description, compiled, &scene.facts(), program::deviceLimits(context.info()), true);
+    const program::CheckResult checked =
+        program::check(description, compiled, &scene.facts(), program::deviceLimits(context.info()), true);
     if (!checked.ok()) throw ProgramError(checked.diagnostics);
     diagnostics = checked.diagnostics;
     files = compiled.files;
     shaderHashes = compiled.fileHashes;
-    scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder, description.anyHitForAll);
-    linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled, checked.recursionDepth, cache, settings.profile);
+    scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder,
+                     description.anyHitForAll);
+    linked = std::make_unique<program::LinkedProgram>(context, scene.set(), description, compiled,
+                                                      checked.recursionDepth, cache, settings.profile);
     table.emplace(linked->makeTable(scene.facts().geometries));
     statistics.compileSeconds = compiled.seconds;
     if (settings.instrument) instrumented = compiled;
@@ -156,7 +167,8 @@ struct Renderer::Impl {
   // chosen changes nothing in the image.
   std::uint32_t launchRows(double width, std::uint32_t rowsLeft, std::uint32_t samples) const {
     const auto limit = static_cast<double>(context.info().limits.maxLaunchInvocations);
-    double rows = pixelSamplesPerSecond > 0 ? settings.launchSeconds * pixelSamplesPerSecond / (width * samples) : 16384.0 / width;
+    double rows = pixelSamplesPerSecond > 0 ? settings.launchSeconds * pixelSamplesPerSecond / (width * samples)
+                                            : 16384.0 / width;
     rows = std::clamp(rows, 1.0, std::max(1.0, limit / width));
     return std::min(rowsLeft, static_cast<std::uint32_t>(rows));
   }
@@ -175,8 +187,8 @@ struct Renderer::Impl {
   }
 
   // Launches a strip with `count` samples from `first` on. Waits for the oldest launch if there are too many.
-  void launch(const Target& target, std::uint32_t row, std::uint32_t rows, std::uint32_t first, std::uint32_t count, const Record& before,
-              const Record& after) {
+  void launch(const Target& target, std::uint32_t row, std::uint32_t rows, std::uint32_t first, std::uint32_t count,
+              const Record& before, const Record& after) {
     while (inFlight.size() >= settings.launchesInFlight) finishOldest();
     gpu::Timer& timer = timers[launchCount++ % kMostInFlight];
     const auto start = Clock::now();
@@ -227,7 +239,8 @@ struct Renderer::Impl {
   void noteLaunch(const InFlight& launch, double wall) {
     const gpu::Timer& timer = *launch.timer;
     const double idle = launches.empty() ? 0.0 : std::max(0.0, timer.stamp(0) - lastStamp);
-    launches.push_back({launch.rows, launch.samples, timer.seconds(0, 1), timer.seconds(1, 2), timer.seconds(2, 3), idle, wall});
+    launches.push_back(
+        {launch.rows, launch.samples, timer.seconds(0, 1), timer.seconds(1, 2), timer.seconds(2, 3), idle, wall});
     lastStamp = timer.stamp(3);
   }
 
@@ -305,7 +318,8 @@ struct Renderer::Impl {
       const std::uint32_t step = whole ? count : 1;
       for (std::uint32_t s = 0; s < count; s += step) {
         const bool first = row == 0 && s == 0, last = row + rows == target.height && s + step >= count;
-        launch(target, row, rows, samples.begin + s, std::min(step, count - s), first ? begin() : Record(), last ? end : Record());
+        launch(target, row, rows, samples.begin + s, std::min(step, count - s), first ? begin() : Record(),
+               last ? end : Record());
       }
       row += rows;
       if (progress && !progress(static_cast<double>(row) / target.height) && row < target.height) return false;
@@ -335,9 +349,11 @@ struct Renderer::Impl {
     }
     assert(!tiles.empty());
     // Written in place: no wait for a copy, so that the launches before this batch may still be under way.
-    tileBuffer = gpu::Buffer(context, {.size = std::span(tiles).size_bytes(), .memory = gpu::Memory::upload, .name = "film tiles"});
+    tileBuffer = gpu::Buffer(
+        context, {.size = std::span(tiles).size_bytes(), .memory = gpu::Memory::upload, .name = "film tiles"});
     std::memcpy(tileBuffer.mapped(), tiles.data(), std::span(tiles).size_bytes());
-    const Target target{shared::kTileSize * shared::kTileSize, static_cast<std::uint32_t>(tiles.size()), {0, 0}, tileBuffer.address()};
+    const Target target{
+        shared::kTileSize * shared::kTileSize, static_cast<std::uint32_t>(tiles.size()), {0, 0}, tileBuffer.address()};
     const SampleRange samples = batchSamples(batch, kBatchSamples);
     const Record end = [&](gpu::Commands& commands) { film->endAdaptiveBatch(commands, samples, counts); };
     return renderSamples(target, samples, end, progress);
@@ -345,7 +361,8 @@ struct Renderer::Impl {
 
   std::vector<shader::Diagnostic> notes() const {
     if (!instrument) return {};
-    std::vector<shader::Diagnostic> result = instrumentDiagnostics(instrument->download(), description, instrumented, scene.facts());
+    std::vector<shader::Diagnostic> result =
+        instrumentDiagnostics(instrument->download(), description, instrumented, scene.facts());
     addBadOutputs(result);
     return result;
   }
@@ -361,21 +378,25 @@ struct Renderer::Impl {
       if (bad == values.end()) continue;
       const auto count = std::ranges::count_if(values, [](float v) { return !std::isfinite(v); });
       const auto pixel = static_cast<std::uint64_t>(bad - values.begin()) / 4;
-      result.push_back({shader::Severity::error, file, 0, 0, "Q002",
-                        fmt::format("output '{}' is {} at pixel {}, {}; {} values are not finite", description.outputs[output].name, *bad,
-                                    film->region().x + pixel % image.width, film->region().y + pixel / image.width, count)});
+      result.push_back(
+          {shader::Severity::error, file, 0, 0, "Q002",
+           fmt::format("output '{}' is {} at pixel {}, {}; {} values are not finite", description.outputs[output].name,
+                       *bad, film->region().x + pixel % image.width, film->region().y + pixel / image.width, count)});
     }
     if (const std::uint64_t dropped = film->countRays().droppedSamples; dropped > 0)
-      result.push_back({shader::Severity::error, file, 0, 0, "Q002", fmt::format("{} samples were not finite; the program left them out", dropped)});
+      result.push_back({shader::Severity::error, file, 0, 0, "Q002",
+                        fmt::format("{} samples were not finite; the program left them out", dropped)});
   }
 };
 
-Renderer::Renderer(DeviceScene& scene, const program::Program& program, const shader::Compiler& compiler, const gpu::PipelineCache* cache,
-                   const RenderSettings& settings)
+Renderer::Renderer(DeviceScene& scene, const program::Program& program, const shader::Compiler& compiler,
+                   const gpu::PipelineCache* cache, const RenderSettings& settings)
     : impl_(std::make_unique<Impl>(scene, program, compiler, cache, settings)) {}
 Renderer::~Renderer() = default;
 
-bool Renderer::renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) { return impl_->renderBatch(sampleCount, progress); }
+bool Renderer::renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) {
+  return impl_->renderBatch(sampleCount, progress);
+}
 void Renderer::finish() { impl_->finishAndCount(); }
 void Renderer::restart() {
   impl_->finish();
@@ -384,7 +405,9 @@ void Renderer::restart() {
   impl_->statistics.batches = 0;
   impl_->nextBatch = 0;
 }
-bool Renderer::renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress) { return impl_->renderCells(limits, progress); }
+bool Renderer::renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress) {
+  return impl_->renderCells(limits, progress);
+}
 void Renderer::startAt(std::uint64_t batch) { impl_->nextBatch = batch; }
 // What reads from the device waits for the launches first, with the limit on their time: a launch that hangs is told.
 FilmState Renderer::saveFilm() const {
@@ -395,11 +418,14 @@ void Renderer::restoreFilm(const FilmState& state) {
   impl_->film->restore(state);
   impl_->statistics.samples = state.counts.samples();
   impl_->statistics.batches = state.counts.batches();
-  impl_->nextBatch = state.counts.ranges.empty() ? 0 : (state.counts.ranges.back().end + kBatchSamples - 1) / kBatchSamples;
+  impl_->nextBatch =
+      state.counts.ranges.empty() ? 0 : (state.counts.ranges.back().end + kBatchSamples - 1) / kBatchSamples;
 }
 
 const Film& Renderer::film() const { return *impl_->film; }
-bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) { return impl_->renderFrame(index, progress); }
+bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) {
+  return impl_->renderFrame(index, progress);
+}
 io::Image Renderer::image(std::size_t output) const {
   impl_->finishAndCount();
   return impl_->image(output);

@@ -21,24 +21,25 @@ struct CompiledShaders {
 };
 
 struct RenderSettings {
-  std::uint32_t width = 1280;   // pixels of the whole image
+  std::uint32_t width = 1280;  // pixels of the whole image
   std::uint32_t height = 720;
-  Region region;                // what is rendered; width 0: everything
+  Region region;  // what is rendered; width 0: everything
   scene::Camera camera;
   std::uint32_t seed = 0;
   // How the sampler spreads samples over neighbouring pixels, so it belongs to what says which picture this is, as the
   // seed does. kIndependentPixels: pixels share nothing, as adaptive sampling needs it. 0: errors are blue noise, best after
   // 2^k samples. N: best after N samples; the first of them are then not those of another N.
   std::uint32_t plannedSamples = shared::kIndependentPixels;
-  bool transparent = false;     // background: alpha 0 instead of the environment
+  bool transparent = false;  // background: alpha 0 instead of the environment
   program::ParameterValues parameters{{}};
-  std::vector<std::string> outputs;  // of the program's optional ones, those to make
+  std::vector<std::string> outputs;                          // of the program's optional ones, those to make
   std::vector<std::pair<std::string, std::string>> defines;  // for all shaders of the program
-  const gpu::Buffer* rayRecords = nullptr;  // shared::RayKinds, then RayRecords, rayRecordCapacity per pixel: for benchmarks
+  const gpu::Buffer* rayRecords =
+      nullptr;  // shared::RayKinds, then RayRecords, rayRecordCapacity per pixel: for benchmarks
   std::uint32_t rayRecordCapacity = 0;
   std::uint32_t frameCount = 0;  // frames of this run, for programs that accumulate (frameSize); 0: it has no end
-  bool instrument = false;      // checks at run time, slow: Renderer::notes
-  double launchSeconds = 0.25;  // a launch is cut so that it takes about this long
+  bool instrument = false;       // checks at run time, slow: Renderer::notes
+  double launchSeconds = 0.25;   // a launch is cut so that it takes about this long
   // A launch that takes longer: gpu::TimeoutError. 0: 60, or 600 on a CPU, whose first launch compiles.
   double timeoutSeconds = 0;
   // Launches that may wait on the device, so that it has no gaps between them. 0: 2, or 1 on a CPU and for programs that
@@ -52,8 +53,8 @@ struct RenderSettings {
 
 // Compiles the program for a scene that is not on the device yet. `sceneDefines`: shaderDefines() of it. What is wrong with
 // the program stands in the result.
-CompiledShaders compileShaders(const program::Program& program, const shader::Compiler& compiler, const RenderSettings& settings,
-                               const Defines& sceneDefines);
+CompiledShaders compileShaders(const program::Program& program, const shader::Compiler& compiler,
+                               const RenderSettings& settings, const Defines& sceneDefines);
 
 // A program whose shaders do not compile or do not fit together (program/check.h); what() is the first error's line.
 class ProgramError : public Error {
@@ -66,12 +67,12 @@ class ProgramError : public Error {
 };
 
 struct RenderStatistics {
-  double compileSeconds = 0;     // GLSL to SPIR-V
-  double pipelineSeconds = 0;    // SPIR-V to pipeline
-  double firstLaunchSeconds = 0; // first launch, with what the driver still compiles in it
-  double renderSeconds = 0;      // wall clock of all batches
-  double deviceSeconds = 0;      // timestamps around all launches
-  std::uint64_t samples = 0;     // per pixel; frames, where the program accumulates
+  double compileSeconds = 0;      // GLSL to SPIR-V
+  double pipelineSeconds = 0;     // SPIR-V to pipeline
+  double firstLaunchSeconds = 0;  // first launch, with what the driver still compiles in it
+  double renderSeconds = 0;       // wall clock of all batches
+  double deviceSeconds = 0;       // timestamps around all launches
+  std::uint64_t samples = 0;      // per pixel; frames, where the program accumulates
   std::uint64_t batches = 0;
 };
 
@@ -81,9 +82,9 @@ struct LaunchTiming {
   std::uint32_t samples = 0;  // per pixel
   double beginSeconds = 0;    // emptying the batch
   double traceSeconds = 0;
-  double endSeconds = 0;      // adding the batch to the total
-  double idleSeconds = 0;     // of the device, since the launch before; 0 for the first one
-  double wallSeconds = 0;     // of the host, from recording to the end of the wait
+  double endSeconds = 0;   // adding the batch to the total
+  double idleSeconds = 0;  // of the device, since the launch before; 0 for the first one
+  double wallSeconds = 0;  // of the host, from recording to the end of the wait
 };
 
 // Called between launches with the fraction of the current batch that is done or under way; false: give the batch up. Its

@@ -21,7 +21,8 @@ std::string materialName(const scene::Scene& scene, int material) {
 }
 
 int materialOf(const scene::PrimitiveSet& set) {
-  return set.kind == scene::PrimitiveSetKind::custom || set.primitives.empty() ? set.material : set.primitives.front().material;
+  return set.kind == scene::PrimitiveSetKind::custom || set.primitives.empty() ? set.material
+                                                                               : set.primitives.front().material;
 }
 
 }  // namespace
@@ -41,8 +42,9 @@ program::SceneFacts sceneFacts(const scene::Scene& scene) {
   }
   for (const scene::Instance& instance : scene.instances) {
     const auto mesh = static_cast<std::size_t>(instance.mesh);
-    facts.instances.push_back({instance.name, first[mesh], static_cast<std::uint32_t>(scene.meshes[mesh].geometryCount()), instance.mask,
-                               (instance.flags & scene::kInstanceForceOpaque) != 0, (instance.flags & scene::kInstanceForceNoOpaque) != 0});
+    facts.instances.push_back(
+        {instance.name, first[mesh], static_cast<std::uint32_t>(scene.meshes[mesh].geometryCount()), instance.mask,
+         (instance.flags & scene::kInstanceForceOpaque) != 0, (instance.flags & scene::kInstanceForceNoOpaque) != 0});
   }
   return facts;
 }

@@ -28,9 +28,11 @@ ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
       features.solids |= set.kind != scene::PrimitiveSetKind::custom;
       features.csg |= set.kind == scene::PrimitiveSetKind::csg;
       features.torus |= std::ranges::count(set.primitives, scene::PrimitiveType::torus, &scene::Primitive::type) > 0;
-      features.lights |= set.kind == scene::PrimitiveSetKind::solids && std::ranges::any_of(set.primitives, [&](const scene::Primitive& p) {
-        return p.material != scene::kNone && emits(scene.materials[static_cast<std::size_t>(p.material)]);
-      });
+      features.lights |=
+          set.kind == scene::PrimitiveSetKind::solids &&
+          std::ranges::any_of(set.primitives, [&](const scene::Primitive& p) {
+            return p.material != scene::kNone && emits(scene.materials[static_cast<std::size_t>(p.material)]);
+          });
       features.panes |= isPane(scene, set);
       features.alpha |= set.kind != scene::PrimitiveSetKind::custom && needsAlphaTest(scene, set);
     }
@@ -43,8 +45,9 @@ std::uint32_t textureSlots(const scene::Scene& scene) {
   std::uint32_t slots = 0;
   for (const scene::Material& m : scene.materials) {
     const scene::TextureUse* const uses[shared::kTextureCount] = {
-        &m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture,    &m.emissiveTexture,          &m.transmissionTexture,
-        &m.specularTexture,  &m.specularColorTexture,     &m.clearcoatTexture, &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture};
+        &m.baseColorTexture,          &m.metallicRoughnessTexture, &m.normalTexture,        &m.emissiveTexture,
+        &m.transmissionTexture,       &m.specularTexture,          &m.specularColorTexture, &m.clearcoatTexture,
+        &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture};
     for (std::uint32_t k = 0; k < shared::kTextureCount; ++k)
       if (uses[k]->used()) slots |= 1u << k;
   }
@@ -54,12 +57,14 @@ std::uint32_t textureSlots(const scene::Scene& scene) {
 // True if a triangle geometry of the scene fulfils the condition.
 template <class Predicate>
 bool anyGeometry(const scene::Scene& scene, Predicate predicate) {
-  return std::ranges::any_of(scene.meshes, [&](const scene::Mesh& mesh) { return std::ranges::any_of(mesh.geometries, predicate); });
+  return std::ranges::any_of(scene.meshes,
+                             [&](const scene::Mesh& mesh) { return std::ranges::any_of(mesh.geometries, predicate); });
 }
 
 template <class Predicate>
 bool anyPrimitives(const scene::Scene& scene, Predicate predicate) {
-  return std::ranges::any_of(scene.meshes, [&](const scene::Mesh& mesh) { return std::ranges::any_of(mesh.primitiveSets, predicate); });
+  return std::ranges::any_of(
+      scene.meshes, [&](const scene::Mesh& mesh) { return std::ranges::any_of(mesh.primitiveSets, predicate); });
 }
 
 bool anyTintsShadows(const scene::Scene& scene) {
@@ -70,7 +75,9 @@ bool anyTintsShadows(const scene::Scene& scene) {
 }  // namespace
 
 SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment& environment) {
-  const auto any = [&](auto predicate) { return std::any_of(scene.materials.begin(), scene.materials.end(), predicate); };
+  const auto any = [&](auto predicate) {
+    return std::any_of(scene.materials.begin(), scene.materials.end(), predicate);
+  };
   const vec3 environmentScale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
 
   SceneFeatures features;
@@ -78,8 +85,10 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
   const auto without = [&](const char* name, bool present) {
     if (!present) defines.emplace_back(name, "1");
   };
-  without("QUINTET_NO_SOLID_TRANSMISSION", any([](const scene::Material& m) { return m.transmission > 0.0f && m.thickness > 0.0f; }));
-  without("QUINTET_NO_THIN_TRANSMISSION", any([](const scene::Material& m) { return m.transmission > 0.0f && !(m.thickness > 0.0f); }));
+  without("QUINTET_NO_SOLID_TRANSMISSION",
+          any([](const scene::Material& m) { return m.transmission > 0.0f && m.thickness > 0.0f; }));
+  without("QUINTET_NO_THIN_TRANSMISSION",
+          any([](const scene::Material& m) { return m.transmission > 0.0f && !(m.thickness > 0.0f); }));
   without("QUINTET_NO_PANES", any([](const scene::Material& m) { return isPane(m); }));
   without("QUINTET_NO_TRANSMITTANCE", anyTintsShadows(scene));
   without("QUINTET_NO_CLEARCOAT", any([](const scene::Material& m) { return m.clearcoat > 0.0f; }));
@@ -97,7 +106,8 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
   without("QUINTET_NO_SEEDS", procedural.alpha || alphaTriangles);
   without("QUINTET_NO_VERTEX_COLORS", anyGeometry(scene, [](const scene::Geometry& g) { return !g.colors.empty(); }));
   defines.emplace_back("QUINTET_TEXTURE_SLOTS", fmt::format("{:#x}u", textureSlots(scene)));
-  features.alpha = alphaTriangles || anyPrimitives(scene, [&](const scene::PrimitiveSet& set) { return needsAlphaTest(scene, set); });
+  features.alpha = alphaTriangles ||
+                   anyPrimitives(scene, [&](const scene::PrimitiveSet& set) { return needsAlphaTest(scene, set); });
   return features;
 }
 

@@ -56,7 +56,8 @@ class Arena {
   // A buffer that the next arrays fill exactly.
   void grow() {
     gpu::BufferOptions options;
-    for (std::size_t i = next_; i < sizes_.size() && (i == next_ || options.size + sizes_[i] <= kArenaBytes); ++i) options.size += sizes_[i];
+    for (std::size_t i = next_; i < sizes_.size() && (i == next_ || options.size + sizes_[i] <= kArenaBytes); ++i)
+      options.size += sizes_[i];
     options.memory = context_.info().quirks.software ? gpu::Memory::upload : gpu::Memory::device;
     options.usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
     options.alignment = kAlignment;
@@ -103,7 +104,8 @@ std::vector<VkDeviceSize> arraySizes(const scene::Scene& scene) {
   return sizes;
 }
 
-shared::GeometryData uploadTriangles(Arena& arena, const scene::Scene& scene, const scene::Geometry& g, GeometryArrays& arrays) {
+shared::GeometryData uploadTriangles(Arena& arena, const scene::Scene& scene, const scene::Geometry& g,
+                                     GeometryArrays& arrays) {
   shared::GeometryData data{};
   const Placed<vec3> positions = arena.add(g.positions);
   const Placed<uvec3> triangles = arena.add(g.triangles);
@@ -123,7 +125,8 @@ shared::GeometryData uploadTriangles(Arena& arena, const scene::Scene& scene, co
 
 // What the device has now; the arrays that are still read stay.
 void giveUp(scene::Geometry& g, const GeometryArrays& arrays) {
-  const bool positions = arrays.positions.data() == g.positions.data(), triangles = arrays.triangles.data() == g.triangles.data();
+  const bool positions = arrays.positions.data() == g.positions.data(),
+             triangles = arrays.triangles.data() == g.triangles.data();
   forArrays(g, [&](auto& values) {
     const void* own = values.data();
     if ((positions && own == arrays.positions.data()) || (triangles && own == arrays.triangles.data())) return;
@@ -174,13 +177,15 @@ VkFormat textureFormat(io::PixelType type, bool sRgb) {
 
 VkDeviceSize uploadBytes(const gpu::Context& context, const scene::Scene& scene) {
   VkDeviceSize bytes = 0;
-  for (const scene::NamedImage& image : scene.images) bytes += 4 * image.image.pixelCount() * io::bytesPerSample(image.image.type);
+  for (const scene::NamedImage& image : scene.images)
+    bytes += 4 * image.image.pixelCount() * io::bytesPerSample(image.image.type);
   if (context.info().quirks.software) return bytes;
   for (const VkDeviceSize size : arraySizes(scene)) bytes += size;
   return bytes;
 }
 
-GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene, scene::Scene* emptied) {
+GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene,
+                                scene::Scene* emptied) {
   GeometryUpload upload;
   Arena arena(context, uploader, upload, arraySizes(scene));
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
@@ -209,7 +214,8 @@ void TextureUpload::expect(int texture, bool sRgb) {
 
 void TextureUpload::giveUp(int image, bool sRgb) {
   expected_.erase({image, sRgb});
-  if (emptied_ && !expected_.contains({image, !sRgb})) clear(emptied_->images[static_cast<std::size_t>(image)].image.data);
+  if (emptied_ && !expected_.contains({image, !sRgb}))
+    clear(emptied_->images[static_cast<std::size_t>(image)].image.data);
 }
 
 std::uint32_t TextureUpload::index(int texture, bool sRgb) {
@@ -243,8 +249,8 @@ void TextureUpload::bind(gpu::BindlessSet& set) const {
   for (std::uint32_t i = 0; i < count(); ++i) set.setTexture(i, *entries_[i].image, *entries_[i].sampler);
 }
 
-gpu::Image& addTexture(std::deque<gpu::Image>& textures, gpu::Context& context, gpu::Uploader& uploader, const io::Image& source, bool sRgb,
-                       const std::string& name) {
+gpu::Image& addTexture(std::deque<gpu::Image>& textures, gpu::Context& context, gpu::Uploader& uploader,
+                       const io::Image& source, bool sRgb, const std::string& name) {
   // The device has no sRGB format of 16 bits: those are decoded here.
   const bool decoded = sRgb && source.type == io::PixelType::u16;
   const io::Image linear = decoded ? io::toFloat(source) : io::Image{};
@@ -255,7 +261,8 @@ gpu::Image& addTexture(std::deque<gpu::Image>& textures, gpu::Context& context, 
   options.format = textureFormat(image.type, sRgb);
   options.name = name;
   gpu::Image& texture = textures.emplace_back(context, options);
-  uploader.upload(texture, [&](std::uint32_t first, std::span<std::byte> rows) { io::writeChannels(image, 4, first, rows); });
+  uploader.upload(texture,
+                  [&](std::uint32_t first, std::span<std::byte> rows) { io::writeChannels(image, 4, first, rows); });
   return texture;
 }
 
@@ -266,7 +273,8 @@ const gpu::Image& TextureUpload::upload(const io::Image& source, bool sRgb, cons
 }
 
 const gpu::Sampler& TextureUpload::sampler(const gpu::SamplerOptions& options) {
-  const auto found = std::find_if(samplers_.begin(), samplers_.end(), [&](const auto& entry) { return entry.first == options; });
+  const auto found =
+      std::find_if(samplers_.begin(), samplers_.end(), [&](const auto& entry) { return entry.first == options; });
   if (found != samplers_.end()) return found->second;
   samplers_.emplace_back(options, gpu::Sampler(context_, options));
   return samplers_.back().second;

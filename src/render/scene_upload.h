@@ -34,12 +34,13 @@ struct GeometryUpload {
 // What goes through the uploader for a scene: pictures, each in one form, and arrays unless they are written directly.
 VkDeviceSize uploadBytes(const gpu::Context& context, const scene::Scene& scene);
 // `emptied`: null, or the same scene, whose arrays are freed as soon as they are uploaded and `arrays` does not need them.
-GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene, scene::Scene* emptied);
+GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, const scene::Scene& scene,
+                                scene::Scene* emptied);
 
 // Appends a picture of any type as a texture of 4 channels. `sRgb`: integer colours are decoded when they are read.
 // A deque: the uploader keeps the texture's address until it is flushed.
-gpu::Image& addTexture(std::deque<gpu::Image>& textures, gpu::Context& context, gpu::Uploader& uploader, const io::Image& image, bool sRgb,
-                       const std::string& name);
+gpu::Image& addTexture(std::deque<gpu::Image>& textures, gpu::Context& context, gpu::Uploader& uploader,
+                       const io::Image& image, bool sRgb, const std::string& name);
 
 // Textures on the device, one for each (image, encoding, sampler) that is asked for.
 class TextureUpload {

@@ -17,7 +17,8 @@ double stretch(const dmat3& m, const dvec3& n) {
 
 bool keepsShapes(const dmat3& m) {
   const dvec3 squares(glm::dot(m[0], m[0]), glm::dot(m[1], m[1]), glm::dot(m[2], m[2]));
-  const double mixed = std::max({std::abs(glm::dot(m[0], m[1])), std::abs(glm::dot(m[1], m[2])), std::abs(glm::dot(m[2], m[0]))});
+  const double mixed =
+      std::max({std::abs(glm::dot(m[0], m[1])), std::abs(glm::dot(m[1], m[2])), std::abs(glm::dot(m[2], m[0]))});
   return std::max({std::abs(squares.y - squares.x), std::abs(squares.z - squares.x), mixed}) < 1e-5 * squares.x;
 }
 
@@ -36,9 +37,11 @@ double canonicalArea(const scene::Primitive& primitive, const StretchOf& at) {
   const double caps = kTwoPi / 2.0 * at({0, 1, 0});  // one
   switch (primitive.type) {
     case scene::PrimitiveType::box: return 8.0 * (at({1, 0, 0}) + at({0, 1, 0}) + at({0, 0, 1}));
-    case scene::PrimitiveType::cylinder: return 2.0 * caps + 2.0 * kTwoPi * meanAround([&](double x, double z) { return at({x, 0, z}); });
+    case scene::PrimitiveType::cylinder:
+      return 2.0 * caps + 2.0 * kTwoPi * meanAround([&](double x, double z) { return at({x, 0, z}); });
     case scene::PrimitiveType::cone:
-      return caps + 0.5 * kTwoPi * std::sqrt(5.0) * meanAround([&](double x, double z) { return at(dvec3(2 * x, 1, 2 * z) / std::sqrt(5.0)); });
+      return caps + 0.5 * kTwoPi * std::sqrt(5.0) *
+                        meanAround([&](double x, double z) { return at(dvec3(2 * x, 1, 2 * z) / std::sqrt(5.0)); });
     case scene::PrimitiveType::sphere: {
       double sum = 0.0;  // slices of equal height are of equal area
       for (int i = 0; i < kSteps; ++i) {

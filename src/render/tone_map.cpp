@@ -13,10 +13,8 @@
 namespace quintet::render {
 namespace {
 
-constexpr std::array<std::pair<const char*, ToneMap>, 4> kNames{{{"linear", ToneMap::linear},
-                                                                 {"aces", ToneMap::aces},
-                                                                 {"agx", ToneMap::agx},
-                                                                 {"neutral", ToneMap::neutral}}};
+constexpr std::array<std::pair<const char*, ToneMap>, 4> kNames{
+    {{"linear", ToneMap::linear}, {"aces", ToneMap::aces}, {"agx", ToneMap::agx}, {"neutral", ToneMap::neutral}}};
 
 // Beyond this every curve has long reached its end; squares of it still fit a float.
 constexpr float kBrightest = 1e8f;

@@ -20,7 +20,8 @@ void place(shared::InstanceData& data, const mat4& worldFromObject) {
 
 }  // namespace
 
-TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstancePlace> places) : context_(context) {
+TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstancePlace> places)
+    : context_(context) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Instance& instance = scene.instances[i];
     const mat4 worldFromObject = scene::worldFromObjectAt(instance, 0.0f);

@@ -44,8 +44,8 @@ class TopLevel {
   void build();
 
   gpu::Context& context_;
-  std::vector<scene::Instance> moving_;        // those with keyframes
-  std::vector<std::uint32_t> movingIndex_;     // their indices in the scene
+  std::vector<scene::Instance> moving_;     // those with keyframes
+  std::vector<std::uint32_t> movingIndex_;  // their indices in the scene
   std::vector<shared::InstanceData> data_;
   std::vector<rt::InstanceInput> inputs_;
   gpu::Buffer table_, previousTable_;

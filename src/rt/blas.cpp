@@ -44,9 +44,7 @@ VkDeviceSize inputBytes(const gpu::Context& context, const BlasInput& input) {
 
 std::vector<BlasData> prepare(const gpu::Context& context, std::span<const BlasInput> inputs) {
   std::vector<BlasData> data(inputs.size());
-  const auto prepareOne = [&](std::size_t k) {
-    data[k] = prepareBlas(inputs[k], isOrdered(context, inputs[k]));
-  };
+  const auto prepareOne = [&](std::size_t k) { data[k] = prepareBlas(inputs[k], isOrdered(context, inputs[k])); };
   std::vector<std::size_t> small;
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     if (primitiveCount(inputs[k]) > kManyPrimitives) {
@@ -60,8 +58,8 @@ std::vector<BlasData> prepare(const gpu::Context& context, std::span<const BlasI
 }
 
 struct Plan {
-  std::vector<std::size_t> lengths;   // of consecutive runs of inputs that fit the budgets together
-  std::vector<BlasOptions> options;   // one per input
+  std::vector<std::size_t> lengths;  // of consecutive runs of inputs that fit the budgets together
+  std::vector<BlasOptions> options;  // one per input
 };
 
 // Compaction needs the old and the new structure at once, and wins a sixth: a batch must be small against the whole,
@@ -81,7 +79,8 @@ Plan planBatches(gpu::Context& context, std::span<const BlasInput> inputs, VkDev
     const VkDeviceSize ownScratch = sizes[k].buildScratchSize + context.info().limits.scratchAlignment;
     const VkDeviceSize ownBytes = inputBytes(context, inputs[k]), ownBuilt = sizes[k].accelerationStructureSize;
     if (ownBuilt > builtBudget) options.compact = false;
-    if (plan.lengths.empty() || scratch + ownScratch > scratchBudget || bytes + ownBytes > kInputBudget || built + ownBuilt > builtBudget) {
+    if (plan.lengths.empty() || scratch + ownScratch > scratchBudget || bytes + ownBytes > kInputBudget ||
+        built + ownBuilt > builtBudget) {
       plan.lengths.push_back(0);
       scratch = bytes = built = 0;
     }
@@ -120,7 +119,8 @@ void Blas::release() {
   handle_ = VK_NULL_HANDLE;
 }
 
-BlasBuilder::BlasBuilder(gpu::Context& context, VkDeviceSize scratchBudget) : context_(context), scratchBudget_(scratchBudget) {}
+BlasBuilder::BlasBuilder(gpu::Context& context, VkDeviceSize scratchBudget)
+    : context_(context), scratchBudget_(scratchBudget) {}
 
 std::vector<Blas> BlasBuilder::build(std::span<const BlasInput> inputs, BuildStatistics* statistics) {
   BuildStatistics own;
@@ -155,7 +155,8 @@ std::vector<Blas> BlasBuilder::build(std::span<const BlasInput> inputs, BuildSta
 void BlasBuilder::remember(Blas& blas, const BlasInput& input, const BlasData& data) {
   for (std::size_t g = 0; g < data.geometries.size(); ++g) {
     const GeometryData& built = data.geometries[g];
-    blas.built_.push_back({built.input.kind, built.input.positions.size(), rt::primitiveCount(input.geometries[g]), built.count, built.map});
+    blas.built_.push_back({built.input.kind, built.input.positions.size(), rt::primitiveCount(input.geometries[g]),
+                           built.count, built.map});
   }
 }
 
@@ -176,7 +177,8 @@ void BlasBuilder::refit(Blas& blas, const BlasInput& moved) {
       const std::uint32_t primitive = built.map.empty() ? k : built.map[k];
       const Bounds3 bounds = primitiveBounds(geometry, primitive);
       if (bounds.empty())
-        throw UsageError(fmt::format("refit of '{}': primitive {} of geometry {} is no longer finite", name, primitive, g));
+        throw UsageError(
+            fmt::format("refit of '{}': primitive {} of geometry {} is no longer finite", name, primitive, g));
       data.bounds.extend(bounds);
     }
   }

@@ -34,8 +34,8 @@ struct GeometryInput {
 
 struct BlasOptions {
   bool fastTrace = true;
-  bool allowUpdate = false;   // refit
-  bool compact = true;        // where the driver gains by it (and not with allowUpdate)
+  bool allowUpdate = false;     // refit
+  bool compact = true;          // where the driver gains by it (and not with allowUpdate)
   bool keepInputOrder = false;  // for benchmarks: no spatial order even where it pays
   std::string name;
 };
@@ -56,10 +56,10 @@ class Blas {
 
   VkAccelerationStructureKHR handle() const { return handle_; }
   VkDeviceAddress address() const { return address_; }
-  VkDeviceSize size() const { return storage_.size(); }   // bytes after compaction
-  VkDeviceSize builtSize() const { return builtSize_; }    // bytes before compaction
+  VkDeviceSize size() const { return storage_.size(); }         // bytes after compaction
+  VkDeviceSize builtSize() const { return builtSize_; }         // bytes before compaction
   VkDeviceSize mapBytes() const { return mapStorage_.size(); }  // of the primitive maps
-  const Bounds3& bounds() const { return bounds_; }        // object space, of all geometries
+  const Bounds3& bounds() const { return bounds_; }             // object space, of all geometries
   // For geometry g: device address of a uint per built primitive: gl_PrimitiveID → index in the
   // input; 0 where both are the same.
   VkDeviceAddress primitiveMap(std::size_t geometry) const { return maps_[geometry]; }
@@ -73,9 +73,9 @@ class Blas {
   struct BuiltGeometry {
     GeometryKind kind = GeometryKind::triangles;
     std::size_t vertexCount = 0;
-    std::size_t inputCount = 0;        // primitives in the input
-    std::uint32_t builtCount = 0;      // primitives in the build
-    std::vector<std::uint32_t> map;    // empty: identity
+    std::size_t inputCount = 0;      // primitives in the input
+    std::uint32_t builtCount = 0;    // primitives in the build
+    std::vector<std::uint32_t> map;  // empty: identity
   };
   void release();
   gpu::Context* context_ = nullptr;
@@ -92,12 +92,12 @@ class Blas {
 };
 
 struct BuildStatistics {
-  double orderSeconds = 0;    // host: spatial order
-  double buildSeconds = 0;    // wall clock of builds and compaction
+  double orderSeconds = 0;  // host: spatial order
+  double buildSeconds = 0;  // wall clock of builds and compaction
   std::uint64_t primitiveCount = 0;
   std::uint32_t batchCount = 0;
   VkDeviceSize peakScratchBytes = 0;
-  VkDeviceSize bytes = 0;     // all BLAS after compaction
+  VkDeviceSize bytes = 0;  // all BLAS after compaction
 };
 
 class BlasBuilder {

@@ -7,10 +7,14 @@ namespace {
 
 constexpr VkDeviceSize kInputAlignment = 16;
 
-VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) { return (value + alignment - 1) / alignment * alignment; }
+VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) {
+  return (value + alignment - 1) / alignment * alignment;
+}
 
 template <class T>
-std::span<const std::byte> bytesOf(std::span<const T> data) { return std::as_bytes(data); }
+std::span<const std::byte> bytesOf(std::span<const T> data) {
+  return std::as_bytes(data);
+}
 
 }  // namespace
 
@@ -56,7 +60,8 @@ void BlasBatch::addJob(const BlasOptions& options, BlasData& data, Blas* refitte
 void BlasBatch::uploadInputs() {
   // At least some bytes: a geometry without primitives needs a valid address too.
   inputs_ = filler_->make(std::max<VkDeviceSize>(inputBytes_, 64),
-                          VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, "BLAS inputs", gpu::Purpose::scratch);
+                          VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, "BLAS inputs",
+                          gpu::Purpose::scratch);
   for (const auto& [data, offset] : places_) filler_->write(inputs_, offset, HostBytes(data.first, data.second));
   for (const auto& [geometry, offset] : gathered_) {
     const auto size = static_cast<std::size_t>(geometry->primitiveBytes());
@@ -91,8 +96,8 @@ Blas BlasBatch::create(const Job& job) {
   blas.bounds_ = job.data->bounds;
   blas.inactiveCount_ = job.data->inactiveCount;
   blas.builtSize_ = job.sizes.accelerationStructureSize;
-  blas.handle_ = createStructure(context_, blas.storage_, blas.builtSize_, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
-                                 job.options->name);
+  blas.handle_ = createStructure(context_, blas.storage_, blas.builtSize_,
+                                 VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, job.options->name);
   blas.address_ = structureAddress(context_, blas.handle_);
   uploadMaps(*job.data, blas);
   return blas;
@@ -101,7 +106,9 @@ Blas BlasBatch::create(const Job& job) {
 void BlasBatch::uploadMaps(const BlasData& data, Blas& blas) {
   VkDeviceSize bytes = 0;
   for (const GeometryData& geometry : data.geometries) bytes += geometry.map.size() * sizeof(std::uint32_t);
-  if (bytes > 0) blas.mapStorage_ = filler_->make(bytes, 0, blas.options_.name + " primitive map", gpu::Purpose::accelerationStructures);
+  if (bytes > 0)
+    blas.mapStorage_ =
+        filler_->make(bytes, 0, blas.options_.name + " primitive map", gpu::Purpose::accelerationStructures);
   VkDeviceSize offset = 0;
   for (const GeometryData& geometry : data.geometries) {
     blas.maps_.push_back(geometry.map.empty() ? 0 : blas.mapStorage_.address() + offset);
@@ -122,8 +129,8 @@ void BlasBatch::recordBuilds(gpu::Commands& commands) const {
     infos.push_back(info);
     ranges.push_back(job.description.ranges.data());
   }
-  context_.vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), static_cast<std::uint32_t>(infos.size()), infos.data(),
-                                                    ranges.data());
+  context_.vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), static_cast<std::uint32_t>(infos.size()),
+                                                    infos.data(), ranges.data());
 }
 
 std::vector<Blas> BlasBatch::run() {

@@ -31,7 +31,7 @@ class BlasBatch {
     VkDeviceSize offset = 0;
   };
   struct GeometryPlaces {
-    Place points;   // or boxes
+    Place points;  // or boxes
     Place indices;
   };
   struct Job {

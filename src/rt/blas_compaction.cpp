@@ -13,10 +13,12 @@ class SizeQueries {
     VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
     info.queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR;
     info.queryCount = count;
-    gpu::check(context.vk().vkCreateQueryPool(context.device(), &info, nullptr, &pool_), "create the compaction queries");
+    gpu::check(context.vk().vkCreateQueryPool(context.device(), &info, nullptr, &pool_),
+               "create the compaction queries");
   }
   ~SizeQueries() {
-    context_.retire([&context = context_, pool = pool_] { context.vk().vkDestroyQueryPool(context.device(), pool, nullptr); });
+    context_.retire(
+        [&context = context_, pool = pool_] { context.vk().vkDestroyQueryPool(context.device(), pool, nullptr); });
   }
   SizeQueries(const SizeQueries&) = delete;
   SizeQueries& operator=(const SizeQueries&) = delete;
@@ -38,12 +40,14 @@ std::vector<VkDeviceSize> BlasBatch::compactedSizes(std::span<Blas* const> struc
   context_.submitAndWait([&](gpu::Commands& commands) {
     vk.vkCmdResetQueryPool(commands.handle(), queries.pool(), 0, count);
     vk.vkCmdWriteAccelerationStructuresPropertiesKHR(commands.handle(), count, handles.data(),
-                                                     VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR, queries.pool(), 0);
+                                                     VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR,
+                                                     queries.pool(), 0);
   });
   std::vector<VkDeviceSize> sizes(count);
-  gpu::check(vk.vkGetQueryPoolResults(context_.device(), queries.pool(), 0, count, sizes.size() * sizeof(VkDeviceSize), sizes.data(),
-                                      sizeof(VkDeviceSize), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-             "read the compacted sizes");
+  gpu::check(
+      vk.vkGetQueryPoolResults(context_.device(), queries.pool(), 0, count, sizes.size() * sizeof(VkDeviceSize),
+                               sizes.data(), sizeof(VkDeviceSize), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+      "read the compacted sizes");
   return sizes;
 }
 
@@ -59,8 +63,8 @@ void BlasBatch::compact(std::span<Blas* const> structures) const {
     if (sizes[k] == 0 || sizes[k] >= blas.builtSize_) continue;
     Blas& smaller = copies.emplace_back(Copy{&blas, {}}).smaller;
     smaller.context_ = &context_;
-    smaller.handle_ = createStructure(context_, smaller.storage_, sizes[k], VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR,
-                                      blas.options_.name);
+    smaller.handle_ = createStructure(context_, smaller.storage_, sizes[k],
+                                      VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, blas.options_.name);
   }
   context_.submitAndWait([&](gpu::Commands& commands) {
     for (const Copy& copy : copies) {

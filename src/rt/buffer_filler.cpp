@@ -8,7 +8,8 @@ namespace quintet::rt {
 BufferFiller::BufferFiller(gpu::Context& context, VkDeviceSize expectedBytes)
     : context_(context), stagingBytes_(std::clamp<VkDeviceSize>(2 * expectedBytes, 1 << 16, VkDeviceSize{64} << 20)) {}
 
-gpu::Buffer BufferFiller::make(VkDeviceSize size, VkBufferUsageFlags usage, const std::string& name, gpu::Purpose purpose) const {
+gpu::Buffer BufferFiller::make(VkDeviceSize size, VkBufferUsageFlags usage, const std::string& name,
+                               gpu::Purpose purpose) const {
   const gpu::Memory memory = context_.info().quirks.software ? gpu::Memory::upload : gpu::Memory::device;
   return gpu::Buffer(context_, {.size = size, .memory = memory, .usage = usage, .name = name, .purpose = purpose});
 }

@@ -56,14 +56,15 @@ VkAccelerationStructureBuildSizesInfoKHR BuildDescription::sizes(gpu::Context& c
     total += range.primitiveCount;
   }
   VkAccelerationStructureBuildSizesInfoKHR sizes{VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR};
-  context.vk().vkGetAccelerationStructureBuildSizesKHR(context.device(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR,
-                                                       &buildInfo, counts.data(), &sizes);
+  context.vk().vkGetAccelerationStructureBuildSizesKHR(
+      context.device(), VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &buildInfo, counts.data(), &sizes);
   // lavapipe (Mesa 25.0) counts bytes in 32 bits: beyond 4 GiB the size that it tells is too small, and
   // building would write past the buffer. No structure takes less than 12 bytes a primitive.
   constexpr std::uint64_t kLavapipeMaxPrimitives = (std::uint64_t{1} << 32) / 160;
   const bool wraps = context.info().quirks.software && total > kLavapipeMaxPrimitives;
   if (wraps || sizes.accelerationStructureSize < 12 * total)
-    throw MemoryError(fmt::format("'{}': {} primitives are too many for one acceleration structure of this driver", name, total));
+    throw MemoryError(
+        fmt::format("'{}': {} primitives are too many for one acceleration structure of this driver", name, total));
   return sizes;
 }
 
@@ -72,8 +73,9 @@ bool compacts(const gpu::Context& context, const BlasOptions& options) {
 }
 
 VkBuildAccelerationStructureFlagsKHR buildFlags(const gpu::Context& context, const BlasOptions& options) {
-  VkBuildAccelerationStructureFlagsKHR flags = options.fastTrace ? VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR
-                                                                 : VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_BUILD_BIT_KHR;
+  VkBuildAccelerationStructureFlagsKHR flags = options.fastTrace
+                                                   ? VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR
+                                                   : VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_BUILD_BIT_KHR;
   if (options.allowUpdate) flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR;
   if (compacts(context, options)) flags |= VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_COMPACTION_BIT_KHR;
   return flags;
@@ -89,7 +91,8 @@ BuildDescription describeForSizes(const gpu::Context& context, const BlasInput& 
       throw UsageError(fmt::format("BLAS '{}' mixes triangles and boxes", input.options.name));
     total += primitiveCount(geometry);
     if (total > limits.maxPrimitives || geometry.positions.size() > limits.maxPrimitives * 3)
-      throw UsageError(fmt::format("BLAS '{}' has more primitives than the device's {}", input.options.name, limits.maxPrimitives));
+      throw UsageError(
+          fmt::format("BLAS '{}' has more primitives than the device's {}", input.options.name, limits.maxPrimitives));
     description.add(applyMap(geometry, {}, primitiveCount(geometry)), 0, 0);
   }
   if (input.geometries.size() > limits.maxGeometries)
@@ -116,7 +119,8 @@ VkAccelerationStructureKHR createStructure(gpu::Context& context, gpu::Buffer& s
 }
 
 void retireStructure(gpu::Context& context, VkAccelerationStructureKHR handle) {
-  context.retire([&context, handle] { context.vk().vkDestroyAccelerationStructureKHR(context.device(), handle, nullptr); });
+  context.retire(
+      [&context, handle] { context.vk().vkDestroyAccelerationStructureKHR(context.device(), handle, nullptr); });
 }
 
 VkDeviceAddress structureAddress(gpu::Context& context, VkAccelerationStructureKHR handle) {

@@ -27,14 +27,17 @@ std::optional<Bounds3> wholeBounds(const GeometryInput& input) {
   const std::size_t count = primitiveCount(input);
   std::vector<Bounds3> parts((count + kChunk - 1) / kChunk);
   std::atomic<bool> active = true;
-  parallelRanges(count, [&](std::size_t first, std::size_t last) {
-    Bounds3& part = parts[first / kChunk];
-    for (std::size_t k = first; k < last; ++k) {
-      const Bounds3 bounds = primitiveBounds(input, k);
-      if (bounds.empty()) active = false;
-      part.extend(bounds);
-    }
-  }, kChunk);
+  parallelRanges(
+      count,
+      [&](std::size_t first, std::size_t last) {
+        Bounds3& part = parts[first / kChunk];
+        for (std::size_t k = first; k < last; ++k) {
+          const Bounds3 bounds = primitiveBounds(input, k);
+          if (bounds.empty()) active = false;
+          part.extend(bounds);
+        }
+      },
+      kChunk);
   if (!active) return {};
   Bounds3 whole;
   for (const Bounds3& part : parts) whole.extend(part);
@@ -120,8 +123,10 @@ void GeometryData::gather(std::span<std::byte> out) const {
         std::memcpy(out.data() + k * sizeof(Primitive), &primitives[map.empty() ? k : map[k]], sizeof(Primitive));
     });
   };
-  if (input.kind == GeometryKind::triangles) copy(input.triangles);
-  else copy(input.boxes);
+  if (input.kind == GeometryKind::triangles)
+    copy(input.triangles);
+  else
+    copy(input.boxes);
 }
 
 namespace {

@@ -14,7 +14,8 @@ namespace {
 constexpr std::uint32_t kMax24Bits = (1u << 24) - 1;
 
 void checkBits(const char* field, std::uint32_t value, std::uint32_t largest) {
-  if (value > largest) throw UsageError(fmt::format("instance: {} is {}, at most {} is possible", field, value, largest));
+  if (value > largest)
+    throw UsageError(fmt::format("instance: {} is {}, at most {} is possible", field, value, largest));
 }
 
 }  // namespace
@@ -70,7 +71,8 @@ std::vector<VkAccelerationStructureInstanceKHR> packNumbered(std::span<const Ins
 
 }  // namespace
 
-std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances, InstanceOrder order) {
+std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances,
+                                                              InstanceOrder order) {
   if (order == InstanceOrder::numbered) return packNumbered(instances);
   const bool spatial = order == InstanceOrder::spatial;
   std::vector<VkAccelerationStructureInstanceKHR> packed;

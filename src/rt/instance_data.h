@@ -16,7 +16,8 @@ VkAccelerationStructureInstanceKHR packInstance(const InstanceInput& instance);
 // spatial: the active instances in spatial order; given: the active ones as they come; numbered: all, each at its
 // place (so that gl_InstanceID is its index), the inactive ones with mask 0.
 enum class InstanceOrder { spatial, given, numbered };
-std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances, InstanceOrder order);
+std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances,
+                                                              InstanceOrder order);
 
 }  // namespace quintet::rt
 #endif

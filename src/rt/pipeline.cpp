@@ -49,13 +49,14 @@ class Modules {
     info.codeSize = stage.spirv.size_bytes();
     info.pCode = stage.spirv.data();
     VkShaderModule handle = VK_NULL_HANDLE;
-    gpu::check(context_.vk().vkCreateShaderModule(context_.device(), &info, nullptr, &handle), "create the shader module",
-               stage.name);
+    gpu::check(context_.vk().vkCreateShaderModule(context_.device(), &info, nullptr, &handle),
+               "create the shader module", stage.name);
     handles_.push_back(handle);
     context_.setName(VK_OBJECT_TYPE_SHADER_MODULE, reinterpret_cast<std::uint64_t>(handle), stage.name);
   }
   void release() {
-    for (const VkShaderModule handle : handles_) context_.vk().vkDestroyShaderModule(context_.device(), handle, nullptr);
+    for (const VkShaderModule handle : handles_)
+      context_.vk().vkDestroyShaderModule(context_.device(), handle, nullptr);
   }
   gpu::Context& context_;
   std::vector<VkShaderModule> handles_;
@@ -89,7 +90,8 @@ class Groups {
   }
 
   void add(const PipelineGroup& group) {
-    assert(group.general == kNoStage || (group.closestHit == kNoStage && group.anyHit == kNoStage && group.intersection == kNoStage));
+    assert(group.general == kNoStage ||
+           (group.closestHit == kNoStage && group.anyHit == kNoStage && group.intersection == kNoStage));
     VkRayTracingShaderGroupCreateInfoKHR info{VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR};
     info.type = group.general != kNoStage        ? VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR
                 : group.intersection != kNoStage ? VK_RAY_TRACING_SHADER_GROUP_TYPE_PROCEDURAL_HIT_GROUP_KHR
@@ -124,7 +126,9 @@ void checkOptions(const gpu::RayTracingLimits& limits, const PipelineOptions& op
 
 Pipeline::Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const PipelineOptions& options,
                    const gpu::PipelineCache* cache)
-    : context_(context), set_(set), groups_(options.groups),
+    : context_(context),
+      set_(set),
+      groups_(options.groups),
       keepsStatistics_(options.captureStatistics && context.info().pipelineStatistics) {
   const gpu::RayTracingLimits& limits = context.info().limits;
   checkOptions(limits, options);
@@ -139,9 +143,10 @@ Pipeline::Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const Pip
   info.maxPipelineRayRecursionDepth = options.maxRecursionDepth;
   info.layout = set.pipelineLayout();
   if (keepsStatistics_) info.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
-  gpu::check(context.vk().vkCreateRayTracingPipelinesKHR(context.device(), VK_NULL_HANDLE,
-                                                         cache ? cache->handle() : VK_NULL_HANDLE, 1, &info, nullptr, &handle_),
-             "create the ray tracing pipeline", options.name);
+  gpu::check(
+      context.vk().vkCreateRayTracingPipelinesKHR(
+          context.device(), VK_NULL_HANDLE, cache ? cache->handle() : VK_NULL_HANDLE, 1, &info, nullptr, &handle_),
+      "create the ray tracing pipeline", options.name);
   try {
     handles_.resize(std::size_t{limits.handleSize} * info.groupCount);
     gpu::check(context.vk().vkGetRayTracingShaderGroupHandlesKHR(context.device(), handle_, 0, info.groupCount,
@@ -155,9 +160,8 @@ Pipeline::Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const Pip
 }
 
 Pipeline::~Pipeline() {
-  context_.retire([&context = context_, handle = handle_] {
-    context.vk().vkDestroyPipeline(context.device(), handle, nullptr);
-  });
+  context_.retire(
+      [&context = context_, handle = handle_] { context.vk().vkDestroyPipeline(context.device(), handle, nullptr); });
 }
 
 ShaderBindingTable::ShaderBindingTable(gpu::Context& context, const Pipeline& pipeline, const SbtContents& contents,
@@ -196,8 +200,9 @@ void trace(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindin
     vk.vkCmdPushConstants(commands.handle(), set.pipelineLayout(), gpu::BindlessSet::stages(), 0,
                           static_cast<std::uint32_t>(constants.size()), constants.data());
   const SbtLayout& layout = table.layout();
-  const VkStridedDeviceAddressRegionKHR rayGeneration = table.region(layout.rayGeneration), miss = table.region(layout.miss),
-                                        hit = table.region(layout.hit), callable = table.region(layout.callable);
+  const VkStridedDeviceAddressRegionKHR rayGeneration = table.region(layout.rayGeneration),
+                                        miss = table.region(layout.miss), hit = table.region(layout.hit),
+                                        callable = table.region(layout.callable);
   vk.vkCmdTraceRaysKHR(commands.handle(), &rayGeneration, &miss, &hit, &callable, width, height, depth);
 }
 

@@ -44,7 +44,8 @@ struct PipelineOptions {
 class Pipeline {
  public:
   // Throws UsageError when the recursion depth exceeds the device's, VulkanError otherwise.
-  Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const PipelineOptions& options, const gpu::PipelineCache* cache);
+  Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const PipelineOptions& options,
+           const gpu::PipelineCache* cache);
   ~Pipeline();
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
@@ -68,7 +69,8 @@ class Pipeline {
 // The table on the device.
 class ShaderBindingTable {
  public:
-  ShaderBindingTable(gpu::Context& context, const Pipeline& pipeline, const SbtContents& contents, const std::string& name);
+  ShaderBindingTable(gpu::Context& context, const Pipeline& pipeline, const SbtContents& contents,
+                     const std::string& name);
   const SbtLayout& layout() const { return layout_; }
   VkStridedDeviceAddressRegionKHR region(const SbtRegion& region) const;
 

@@ -17,14 +17,18 @@ double asNumber(const VkPipelineExecutableStatisticKHR& statistic) {
   }
 }
 
-std::vector<VkPipelineExecutableStatisticKHR> statisticsOf(const gpu::Context& context, VkPipeline pipeline, std::uint32_t executable) {
+std::vector<VkPipelineExecutableStatisticKHR> statisticsOf(const gpu::Context& context, VkPipeline pipeline,
+                                                           std::uint32_t executable) {
   VkPipelineExecutableInfoKHR info{VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR};
   info.pipeline = pipeline;
   info.executableIndex = executable;
   std::uint32_t count = 0;
-  gpu::check(context.vk().vkGetPipelineExecutableStatisticsKHR(context.device(), &info, &count, nullptr), "count a pipeline's statistics");
-  std::vector<VkPipelineExecutableStatisticKHR> statistics(count, {VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR});
-  gpu::check(context.vk().vkGetPipelineExecutableStatisticsKHR(context.device(), &info, &count, statistics.data()), "get a pipeline's statistics");
+  gpu::check(context.vk().vkGetPipelineExecutableStatisticsKHR(context.device(), &info, &count, nullptr),
+             "count a pipeline's statistics");
+  std::vector<VkPipelineExecutableStatisticKHR> statistics(count,
+                                                           {VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR});
+  gpu::check(context.vk().vkGetPipelineExecutableStatisticsKHR(context.device(), &info, &count, statistics.data()),
+             "get a pipeline's statistics");
   return statistics;
 }
 
@@ -36,9 +40,12 @@ std::vector<PipelineExecutable> pipelineStatistics(const Pipeline& pipeline) {
   VkPipelineInfoKHR info{VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR};
   info.pipeline = pipeline.handle();
   std::uint32_t count = 0;
-  gpu::check(context.vk().vkGetPipelineExecutablePropertiesKHR(context.device(), &info, &count, nullptr), "count a pipeline's executables");
-  std::vector<VkPipelineExecutablePropertiesKHR> properties(count, {VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR});
-  gpu::check(context.vk().vkGetPipelineExecutablePropertiesKHR(context.device(), &info, &count, properties.data()), "list a pipeline's executables");
+  gpu::check(context.vk().vkGetPipelineExecutablePropertiesKHR(context.device(), &info, &count, nullptr),
+             "count a pipeline's executables");
+  std::vector<VkPipelineExecutablePropertiesKHR> properties(count,
+                                                            {VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR});
+  gpu::check(context.vk().vkGetPipelineExecutablePropertiesKHR(context.device(), &info, &count, properties.data()),
+             "list a pipeline's executables");
   std::vector<PipelineExecutable> executables;
   for (std::uint32_t i = 0; i < count; ++i) {
     PipelineExecutable& executable = executables.emplace_back();
@@ -58,7 +65,8 @@ std::vector<std::pair<std::string, std::uint64_t>> groupStackSizes(const Pipelin
     std::uint64_t size = 0;
     const auto ask = [&](int stage, VkShaderGroupShaderKHR shader) {
       if (stage != kNoStage)
-        size = std::max<std::uint64_t>(size, context.vk().vkGetRayTracingShaderGroupStackSizeKHR(context.device(), pipeline.handle(), i, shader));
+        size = std::max<std::uint64_t>(
+            size, context.vk().vkGetRayTracingShaderGroupStackSizeKHR(context.device(), pipeline.handle(), i, shader));
     };
     ask(group.general, VK_SHADER_GROUP_SHADER_GENERAL_KHR);
     ask(group.closestHit, VK_SHADER_GROUP_SHADER_CLOSEST_HIT_KHR);

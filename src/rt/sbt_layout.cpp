@@ -22,8 +22,8 @@ std::uint64_t strideOf(std::span<const SbtRecord> records, const char* table, co
   for (const SbtRecord& record : records) largest = std::max<std::uint64_t>(largest, record.data.size());
   const std::uint64_t stride = alignUp(limits.handleSize + largest, limits.handleAlignment);
   if (stride > limits.maxRecordStride)
-    throw UsageError(fmt::format("a {} record has {} bytes of data: {} bytes with its handle, the device allows {}", table,
-                                 largest, stride, limits.maxRecordStride));
+    throw UsageError(fmt::format("a {} record has {} bytes of data: {} bytes with its handle, the device allows {}",
+                                 table, largest, stride, limits.maxRecordStride));
   return stride;
 }
 

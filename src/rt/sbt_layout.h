@@ -15,7 +15,7 @@ namespace quintet::rt {
 
 // One record: a shader group of the pipeline and the bytes that the shader sees as shaderRecordEXT.
 struct SbtRecord {
-  std::uint32_t group = 0;               // group index in the pipeline; kUnusedGroup: a record of zeros
+  std::uint32_t group = 0;  // group index in the pipeline; kUnusedGroup: a record of zeros
   std::vector<std::byte> data;
   static constexpr std::uint32_t kUnusedGroup = ~0u;
 };
@@ -23,7 +23,7 @@ struct SbtRecord {
 struct SbtContents {
   SbtRecord rayGeneration;
   std::vector<SbtRecord> miss;
-  std::vector<SbtRecord> hit;       // [instance offset + geometry · stride + ray type]
+  std::vector<SbtRecord> hit;  // [instance offset + geometry · stride + ray type]
   std::vector<SbtRecord> callable;
 };
 

@@ -85,7 +85,8 @@ class Splitter {
 
   float areaOf(std::span<const Item> items) const {
     vec3 low(std::numeric_limits<float>::infinity()), high = -low;
-    for (const Item& item : items) low = glm::min(low, bounds_[item.index].min), high = glm::max(high, bounds_[item.index].max);
+    for (const Item& item : items)
+      low = glm::min(low, bounds_[item.index].min), high = glm::max(high, bounds_[item.index].max);
     const vec3 e = high - low;
     return e.x * e.y + e.y * e.z + e.z * e.x;
   }
@@ -105,7 +106,8 @@ class Splitter {
     float bestCost = std::numeric_limits<float>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
       if (!(gains[axis] >= worth)) continue;
-      std::nth_element(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(sampleLeft), tried.end(), byCenter(axis));
+      std::nth_element(tried.begin(), tried.begin() + static_cast<std::ptrdiff_t>(sampleLeft), tried.end(),
+                       byCenter(axis));
       const float cost = areaOf(tried.first(sampleLeft)) * static_cast<float>(sampleLeft) +
                          areaOf(tried.subspan(sampleLeft)) * static_cast<float>(count - sampleLeft);
       if (cost < bestCost) best = axis, bestCost = cost;

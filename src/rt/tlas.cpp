@@ -30,8 +30,12 @@ Tlas::Tlas(gpu::Context& context, std::uint32_t capacity, const std::string& nam
   if (capacity > limits.maxInstances)
     throw UsageError(fmt::format("'{}' for {} instances: the device allows {}", name, capacity, limits.maxInstances));
   const auto sizes = describe(0, capacity).sizes(context, name);
-  scratch_ = gpu::Buffer(context, {.size = sizes.buildScratchSize, .alignment = limits.scratchAlignment, .name = name + " scratch", .purpose = gpu::Purpose::scratch});
-  handle_ = createStructure(context, storage_, sizes.accelerationStructureSize, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, name);
+  scratch_ = gpu::Buffer(context, {.size = sizes.buildScratchSize,
+                                   .alignment = limits.scratchAlignment,
+                                   .name = name + " scratch",
+                                   .purpose = gpu::Purpose::scratch});
+  handle_ = createStructure(context, storage_, sizes.accelerationStructureSize,
+                            VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR, name);
 }
 
 Tlas::~Tlas() { retireStructure(context_, handle_); }
@@ -45,10 +49,11 @@ void Tlas::build(gpu::Commands& commands, std::span<const InstanceInput> instanc
   const std::vector<VkAccelerationStructureInstanceKHR> packed = packInstances(instances, order);
   const std::span<const std::byte> bytes = std::as_bytes(std::span(packed));
   // Freed when this submission has ended: no ring to run out of, whatever is in flight.
-  const gpu::Buffer buffer(context_, {.size = std::max<VkDeviceSize>(bytes.size(), sizeof(VkAccelerationStructureInstanceKHR)),
-                                      .memory = gpu::Memory::upload,
-                                      .usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR,
-                                      .name = name_ + " instances"});
+  const gpu::Buffer buffer(context_,
+                           {.size = std::max<VkDeviceSize>(bytes.size(), sizeof(VkAccelerationStructureInstanceKHR)),
+                            .memory = gpu::Memory::upload,
+                            .usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR,
+                            .name = name_ + " instances"});
   if (!bytes.empty()) std::memcpy(buffer.mapped(), bytes.data(), bytes.size());
 
   const BuildDescription description = describe(buffer.address(), static_cast<std::uint32_t>(packed.size()));
@@ -56,7 +61,8 @@ void Tlas::build(gpu::Commands& commands, std::span<const InstanceInput> instanc
   info.dstAccelerationStructure = handle_;
   info.scratchData.deviceAddress = scratch_.address();
   const VkAccelerationStructureBuildRangeInfoKHR* ranges = description.ranges.data();
-  commands.barrier(gpu::Stage::all, gpu::Stage::accelerationStructureBuild);  // earlier traces, BLAS builds, our scratch
+  commands.barrier(gpu::Stage::all,
+                   gpu::Stage::accelerationStructureBuild);  // earlier traces, BLAS builds, our scratch
   context_.vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), 1, &info, &ranges);
   commands.barrier(gpu::Stage::accelerationStructureBuild, gpu::Stage::all);
 }

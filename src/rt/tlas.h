@@ -14,9 +14,9 @@ namespace quintet::rt {
 struct InstanceInput {
   mat4 worldFromObject{1.0f};
   const Blas* blas = nullptr;
-  std::uint32_t customIndex = 0;         // 24 bits: gl_InstanceCustomIndexEXT
-  std::uint32_t mask = 0xFF;             // 8 bits
-  std::uint32_t recordOffset = 0;        // 24 bits: first hit record in the SBT
+  std::uint32_t customIndex = 0;   // 24 bits: gl_InstanceCustomIndexEXT
+  std::uint32_t mask = 0xFF;       // 8 bits
+  std::uint32_t recordOffset = 0;  // 24 bits: first hit record in the SBT
   VkGeometryInstanceFlagsKHR flags = 0;
 };
 

@@ -109,7 +109,8 @@ Camera lookAtCamera(const vec3& eye, const vec3& target, const vec3& up, float v
   if (!(glm::length(way) > 0.0f)) throw UsageError("the camera is at the point that it looks at");
   if (!(glm::length(up) > 0.0f)) throw UsageError("the camera's up vector has no length");
   vec3 upright = glm::normalize(up);
-  if (glm::length(glm::cross(glm::normalize(way), upright)) < 1e-5f) upright = std::abs(upright.z) < 0.9f ? vec3(0, 0, -1) : vec3(1, 0, 0);
+  if (glm::length(glm::cross(glm::normalize(way), upright)) < 1e-5f)
+    upright = std::abs(upright.z) < 0.9f ? vec3(0, 0, -1) : vec3(1, 0, 0);
   Camera camera;
   camera.worldFromCamera = glm::inverse(glm::lookAtRH(eye, target, upright));
   camera.focusDistance = glm::length(way);

@@ -60,9 +60,7 @@ class Feeder {
   void add(const Geometry& g) {
     (*this)(g.positions, g.triangles, g.normals, g.tangents, g.uvs, g.colors, g.material, g.fileTriangles);
   }
-  void add(const PrimitiveSet& s) {
-    (*this)(s.name, s.kind, s.primitives, s.nodes, s.trees, s.boxes, s.material);
-  }
+  void add(const PrimitiveSet& s) { (*this)(s.name, s.kind, s.primitives, s.nodes, s.trees, s.boxes, s.material); }
   void add(const Mesh& m) { (*this)(m.name, m.geometries, m.primitiveSets); }
   void add(const Instance& i) {
     (*this)(i.name, i.mesh, i.worldFromObject, i.mask, i.flags, i.customIndex, i.keyframes, i.keyframeFromObject);

@@ -52,13 +52,15 @@ Environment defaultEnvironment() {
 namespace {
 
 bool emits(const Scene& scene, int material) {
-  return material != kNone && glm::any(glm::greaterThan(scene.materials[static_cast<std::size_t>(material)].emissive, vec3(0.0f)));
+  return material != kNone &&
+         glm::any(glm::greaterThan(scene.materials[static_cast<std::size_t>(material)].emissive, vec3(0.0f)));
 }
 
 bool emits(const Scene& scene, const Mesh& mesh) {
   const auto geometryEmits = [&](const Geometry& g) { return emits(scene, g.material); };
   const auto setEmits = [&](const PrimitiveSet& set) {
-    return emits(scene, set.material) || std::ranges::any_of(set.primitives, [&](const Primitive& p) { return emits(scene, p.material); });
+    return emits(scene, set.material) ||
+           std::ranges::any_of(set.primitives, [&](const Primitive& p) { return emits(scene, p.material); });
   };
   return std::ranges::any_of(mesh.geometries, geometryEmits) || std::ranges::any_of(mesh.primitiveSets, setEmits);
 }

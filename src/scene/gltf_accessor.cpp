@@ -140,7 +140,8 @@ using ComponentOf =
 // The accessor's data as they lie in the file, if they are elements of that very type, `perElement` of the accessor's
 // own to each; else empty. A vector made from them is written once, not cleared first.
 template <class Element>
-std::span<const Element> directElements(const Document& document, const tinygltf::Accessor& accessor, std::size_t perElement = 1) {
+std::span<const Element> directElements(const Document& document, const tinygltf::Accessor& accessor,
+                                        std::size_t perElement = 1) {
   using Out = ComponentOf<Element>;
   bool same = false;
   withType(accessor.componentType, [&](auto zero) { same = std::is_same_v<decltype(zero), Out>; });
@@ -157,7 +158,8 @@ std::vector<Element> readElements(const Document& document, int index, bool norm
   using Out = ComponentOf<Element>;
   static_assert(sizeof(Element) == N * sizeof(Out));
   const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
-  if (const auto direct = directElements<Element>(document, accessor); !direct.empty()) return std::vector<Element>(direct.begin(), direct.end());
+  if (const auto direct = directElements<Element>(document, accessor); !direct.empty())
+    return std::vector<Element>(direct.begin(), direct.end());
   if (accessor.bufferView == kNone && accessor.count > kMaxUnbackedCount)
     document.fail(
         fmt::format("/accessors/{}/count", index),
@@ -282,7 +284,8 @@ std::vector<std::uint32_t> readIndices(const Document& document, int index, std:
   return readElements<1, std::uint32_t>(document, index, false);
 }
 
-std::vector<uvec3> readTriangleList(const Document& document, int index, std::size_t vertexCount, std::string_view place) {
+std::vector<uvec3> readTriangleList(const Document& document, int index, std::size_t vertexCount,
+                                    std::string_view place) {
   const tinygltf::Accessor& accessor = document.model.accessors[static_cast<std::size_t>(index)];
   std::vector<uvec3> triangles;
   if (accessor.type == TINYGLTF_TYPE_SCALAR) {
@@ -300,17 +303,20 @@ std::vector<uvec3> readTriangleList(const Document& document, int index, std::si
   return triangles;
 }
 
-void checkIndices(const Document& document, std::span<const std::uint32_t> indices, std::size_t vertexCount, std::string_view place) {
+void checkIndices(const Document& document, std::span<const std::uint32_t> indices, std::size_t vertexCount,
+                  std::string_view place) {
   std::atomic<std::size_t> wrong = indices.size();  // the first one
   parallelRanges(indices.size(), [&](std::size_t first, std::size_t last) {
     const auto part = indices.subspan(first, last - first);
     const auto found = std::ranges::find_if(part, [&](std::uint32_t i) { return i >= vertexCount; });
     if (found == part.end()) return;
     const std::size_t at = first + static_cast<std::size_t>(found - part.begin());
-    for (std::size_t known = wrong; at < known && !wrong.compare_exchange_weak(known, at);) {}
+    for (std::size_t known = wrong; at < known && !wrong.compare_exchange_weak(known, at);) {
+    }
   });
   if (wrong < indices.size())
-    document.fail(place, fmt::format("element {} is {}, but there are {} vertices", wrong.load(), indices[wrong], vertexCount));
+    document.fail(
+        place, fmt::format("element {} is {}, but there are {} vertices", wrong.load(), indices[wrong], vertexCount));
 }
 
 std::vector<glm::u16vec4> readJoints(const Document& document, int index, std::string_view place) {

@@ -33,7 +33,8 @@ std::vector<std::uint32_t> readIndices(const Document&, int accessor, std::strin
 // Of a list of triangles; every index is below vertexCount.
 std::vector<uvec3> readTriangleList(const Document&, int accessor, std::size_t vertexCount, std::string_view place);
 // Throws FileError for the first index that is too large.
-void checkIndices(const Document&, std::span<const std::uint32_t> indices, std::size_t vertexCount, std::string_view place);
+void checkIndices(const Document&, std::span<const std::uint32_t> indices, std::size_t vertexCount,
+                  std::string_view place);
 std::vector<glm::u16vec4> readJoints(const Document&, int accessor, std::string_view place);
 
 }  // namespace quintet::scene

@@ -36,7 +36,7 @@ void applyFilter(const std::string& filter, std::byte* data, std::size_t count, 
 }  // namespace
 
 FileBytes decodeMeshopt(const Document& document, const tinygltf::BufferView& view,
-                                     std::span<const std::span<const std::byte>> buffers, const std::string& place) {
+                        std::span<const std::span<const std::byte>> buffers, const std::string& place) {
   const tinygltf::Value& extension = *findExtension(view.extensions, kMeshopt);
   const auto size = [&](const char* key) { return static_cast<std::size_t>(indexOf(extension, key, 0)); };
   const std::size_t buffer = size("buffer"), offset = size("byteOffset"), length = size("byteLength");

@@ -12,7 +12,7 @@ namespace quintet::scene {
 
 // The decompressed bytes of `view` (which has the extension); `place` is the extension object's. Throws FileError.
 FileBytes decodeMeshopt(const Document&, const tinygltf::BufferView& view,
-                                     std::span<const std::span<const std::byte>> buffers, const std::string& place);
+                        std::span<const std::span<const std::byte>> buffers, const std::string& place);
 
 }  // namespace quintet::scene
 #endif

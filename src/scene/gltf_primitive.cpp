@@ -43,11 +43,14 @@ Geometry PrimitiveReader::readAttributes() const {
     const auto found = primitive_.attributes.find(name);
     if (found == primitive_.attributes.end()) return;
     const std::string place = attributePlace(name);
-    tasks.push_back({place, [this, &values, name, place, fromAccessor, accessor = found->second] {
-      using Element = typename std::decay_t<decltype(values)>::value_type;
-      values = draco_ && draco_->has(name) ? draco_->read<Element>(name, place) : fromAccessor(accessor, place);
-      return values.size();
-    }, 0, nullptr});
+    tasks.push_back({place,
+                     [this, &values, name, place, fromAccessor, accessor = found->second] {
+                       using Element = typename std::decay_t<decltype(values)>::value_type;
+                       values = draco_ && draco_->has(name) ? draco_->read<Element>(name, place)
+                                                            : fromAccessor(accessor, place);
+                       return values.size();
+                     },
+                     0, nullptr});
   };
   const auto asStated = Integers::asStated, unit = Integers::unit;
   add("POSITION", geometry.positions, [&](int a, auto& p) { return readVec3(document_, a, p, asStated); });

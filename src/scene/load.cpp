@@ -28,7 +28,8 @@ Scene loadScene(const std::filesystem::path& file, const Described& described) {
   // Only a name that says nothing needs a look inside.
   SceneFormat format = sceneFormat(file, {});
   if (format == SceneFormat::none) format = sceneFormat(file, readFile(file));
-  if (format != SceneFormat::toml) return loadGltf(file, {.described = described});  // also says what is wrong with a file of no format
+  if (format != SceneFormat::toml)
+    return loadGltf(file, {.described = described});  // also says what is wrong with a file of no format
   Scene scene = loadSceneToml(file);
   if (described) described(scene);
   return scene;

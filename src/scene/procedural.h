@@ -53,8 +53,8 @@ struct PrimitiveSet {
   std::vector<Primitive> primitives;
   std::vector<CsgNode> nodes;
   std::vector<CsgTree> trees;
-  std::vector<Bounds3> boxes;   // custom
-  int material = -1;            // custom: Scene::materials
+  std::vector<Bounds3> boxes;  // custom
+  int material = -1;           // custom: Scene::materials
 };
 
 // Boxes in the BLAS.

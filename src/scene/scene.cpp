@@ -14,11 +14,14 @@ template <class Place>
 Bounds3 boundsOfPoints(const std::vector<vec3>& points, const Place& place) {
   constexpr std::size_t kGrain = 65536;
   std::vector<Bounds3> parts((points.size() + kGrain - 1) / kGrain);
-  parallelRanges(points.size(), [&](std::size_t first, std::size_t last) {
-    Bounds3 part;
-    for (std::size_t i = first; i < last; ++i) part.extend(place(points[i]));
-    parts[first / kGrain] = part;
-  }, kGrain);
+  parallelRanges(
+      points.size(),
+      [&](std::size_t first, std::size_t last) {
+        Bounds3 part;
+        for (std::size_t i = first; i < last; ++i) part.extend(place(points[i]));
+        parts[first / kGrain] = part;
+      },
+      kGrain);
   Bounds3 bounds;
   for (const Bounds3& part : parts) bounds.extend(part);
   return bounds;
@@ -35,7 +38,8 @@ Bounds3 objectBounds(const Mesh& mesh) {
 std::uint64_t countPoints(const Mesh& mesh) {
   std::uint64_t count = 0;
   for (const Geometry& geometry : mesh.geometries) count += geometry.positions.size();
-  for (const PrimitiveSet& set : mesh.primitiveSets) count += set.primitives.size() + set.nodes.size() + set.boxes.size();
+  for (const PrimitiveSet& set : mesh.primitiveSets)
+    count += set.primitives.size() + set.nodes.size() + set.boxes.size();
   return count;
 }
 
@@ -48,7 +52,8 @@ Bounds3 exactBounds(const Scene& scene) {
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = meshOf(scene, instance);
     for (const Geometry& geometry : mesh.geometries)
-      bounds.extend(boundsOfPoints(geometry.positions, [&](const vec3& p) { return vec3(instance.worldFromObject * vec4(p, 1.0f)); }));
+      bounds.extend(boundsOfPoints(geometry.positions,
+                                   [&](const vec3& p) { return vec3(instance.worldFromObject * vec4(p, 1.0f)); }));
     for (const PrimitiveSet& set : mesh.primitiveSets) bounds.extend(boundsOf(set, instance.worldFromObject));
   }
   return bounds;

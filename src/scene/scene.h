@@ -52,33 +52,33 @@ enum class AlphaMode : std::uint32_t { opaque, mask, blend };
 // Colour textures (base colour, emissive, specular colour) are sRGB-encoded, all others linear data.
 struct Material {
   std::string name;
-  vec4 baseColor{1.0f};          // linear, [0,1]; alpha is coverage
-  TextureUse baseColorTexture;   // rgb · colour, a · alpha
-  float metallic = 1.0f;         // [0,1]
-  float roughness = 1.0f;        // perceptual, [0,1]; alpha = roughness²
+  vec4 baseColor{1.0f};                 // linear, [0,1]; alpha is coverage
+  TextureUse baseColorTexture;          // rgb · colour, a · alpha
+  float metallic = 1.0f;                // [0,1]
+  float roughness = 1.0f;               // perceptual, [0,1]; alpha = roughness²
   TextureUse metallicRoughnessTexture;  // g: roughness, b: metallic
-  TextureUse normalTexture;      // tangent space, y up (OpenGL convention)
+  TextureUse normalTexture;             // tangent space, y up (OpenGL convention)
   float normalScale = 1.0f;
-  TextureUse occlusionTexture;   // kept for the record: a path tracer does not use it
+  TextureUse occlusionTexture;  // kept for the record: a path tracer does not use it
   float occlusionStrength = 1.0f;
-  vec3 emissive{0.0f};           // radiance in W/(sr·m²) units of the scene, strength included, ≥ 0
+  vec3 emissive{0.0f};  // radiance in W/(sr·m²) units of the scene, strength included, ≥ 0
   TextureUse emissiveTexture;
   AlphaMode alphaMode = AlphaMode::opaque;
   float alphaCutoff = 0.5f;
   bool doubleSided = false;
-  bool unlit = false;            // KHR_materials_unlit: base colour is the outgoing radiance
-  float ior = 1.5f;              // KHR_materials_ior, ≥ 1 (0 in the file: Fresnel term 1, kept as 0)
-  float transmission = 0.0f;     // KHR_materials_transmission, [0,1]
+  bool unlit = false;              // KHR_materials_unlit: base colour is the outgoing radiance
+  float ior = 1.5f;                // KHR_materials_ior, ≥ 1 (0 in the file: Fresnel term 1, kept as 0)
+  float transmission = 0.0f;       // KHR_materials_transmission, [0,1]
   TextureUse transmissionTexture;  // r
-  float thickness = 0.0f;        // KHR_materials_volume; 0: thin-walled, else a closed solid
+  float thickness = 0.0f;          // KHR_materials_volume; 0: thin-walled, else a closed solid
   float attenuationDistance = std::numeric_limits<float>::infinity();  // metres, > 0
-  vec3 attenuationColor{1.0f};   // colour of white light after attenuationDistance, (0,1]
-  float specular = 1.0f;         // KHR_materials_specular, [0,1]
-  TextureUse specularTexture;    // a
-  vec3 specularColor{1.0f};      // ≥ 0, F0 tint
+  vec3 attenuationColor{1.0f};      // colour of white light after attenuationDistance, (0,1]
+  float specular = 1.0f;            // KHR_materials_specular, [0,1]
+  TextureUse specularTexture;       // a
+  vec3 specularColor{1.0f};         // ≥ 0, F0 tint
   TextureUse specularColorTexture;  // rgb, sRGB
-  float clearcoat = 0.0f;        // KHR_materials_clearcoat, [0,1]
-  TextureUse clearcoatTexture;   // r
+  float clearcoat = 0.0f;           // KHR_materials_clearcoat, [0,1]
+  TextureUse clearcoatTexture;      // r
   float clearcoatRoughness = 0.0f;
   TextureUse clearcoatRoughnessTexture;  // g
   TextureUse clearcoatNormalTexture;
@@ -87,13 +87,13 @@ struct Material {
 
 // A triangle list. Every attribute is empty or has positions.size() elements.
 struct Geometry {
-  std::vector<vec3> positions;     // object space
-  std::vector<uvec3> triangles;    // vertex indices, counter-clockwise seen from the front
-  std::vector<vec3> normals;       // unit; empty: flat shading by the face normal
-  std::vector<vec4> tangents;      // xyz unit, w = ±1: bitangent = w · cross(normal, tangent)
+  std::vector<vec3> positions;   // object space
+  std::vector<uvec3> triangles;  // vertex indices, counter-clockwise seen from the front
+  std::vector<vec3> normals;     // unit; empty: flat shading by the face normal
+  std::vector<vec4> tangents;    // xyz unit, w = ±1: bitangent = w · cross(normal, tangent)
   std::array<std::vector<vec2>, kMaxUvSets> uvs;
-  std::vector<vec4> colors;        // linear RGBA, multiplies the base colour
-  int material = kNone;            // Scene::materials; kNone: the default material
+  std::vector<vec4> colors;  // linear RGBA, multiplies the base colour
+  int material = kNone;      // Scene::materials; kNone: the default material
   // Position of each triangle in the file's own numbering when some were dropped (degenerate NaN
   // vertices, broken indices); empty: identity.
   std::vector<std::uint32_t> fileTriangles;
@@ -128,12 +128,12 @@ struct Keyframe {
 struct Instance {
   std::string name;  // the node's
   int mesh = kNone;
-  mat4 worldFromObject{1.0f};  // affine; may mirror (negative determinant)
-  std::uint32_t mask = 0xFF;       // 8 bits, against the ray's cull mask
-  std::uint32_t flags = 0;         // kInstance…
-  std::uint32_t customIndex = 0;   // 24 bits, the user's own
+  mat4 worldFromObject{1.0f};       // affine; may mirror (negative determinant)
+  std::uint32_t mask = 0xFF;        // 8 bits, against the ray's cull mask
+  std::uint32_t flags = 0;          // kInstance…
+  std::uint32_t customIndex = 0;    // 24 bits, the user's own
   std::vector<Keyframe> keyframes;  // ascending frames; empty: worldFromObject always. Else that is frame 0
-  mat4 keyframeFromObject{1.0f};   // with keyframes: where the object is in the frame that they move (keyframes.h)
+  mat4 keyframeFromObject{1.0f};    // with keyframes: where the object is in the frame that they move (keyframes.h)
 };
 
 struct Camera {
@@ -153,11 +153,11 @@ enum class LightType : std::uint32_t { point, spot, directional };
 struct Light {
   std::string name;
   LightType type = LightType::point;
-  vec3 intensity{1.0f};     // point, spot: W/sr (glTF candela); directional: W/m² (glTF lux); colour included
-  vec3 position{0.0f};      // world
-  vec3 direction{0, 0, -1};  // world, unit, the way the light travels
-  float innerConeAngle = 0.0f;           // radians, from the axis
-  float outerConeAngle = kPi / 4.0f;     // radians
+  vec3 intensity{1.0f};         // point, spot: W/sr (glTF candela); directional: W/m² (glTF lux); colour included
+  vec3 position{0.0f};          // world
+  vec3 direction{0, 0, -1};     // world, unit, the way the light travels
+  float innerConeAngle = 0.0f;  // radians, from the axis
+  float outerConeAngle = kPi / 4.0f;                     // radians
   float range = std::numeric_limits<float>::infinity();  // metres; kept for the record, physically ignored
 };
 
@@ -165,11 +165,11 @@ struct Light {
 // top row (the convention of the reference pictures). An empty image means `constant` everywhere.
 struct Environment {
   std::string name;
-  io::Image image;          // float RGB(A), linear, or empty
-  vec3 constant{0.0f};      // radiance
-  float intensity = 1.0f;   // multiplies both
-  float rotation = 0.0f;    // radians about +y, counter-clockwise seen from above
-  bool present = false;     // false: the file has none; the renderer decides
+  io::Image image;         // float RGB(A), linear, or empty
+  vec3 constant{0.0f};     // radiance
+  float intensity = 1.0f;  // multiplies both
+  float rotation = 0.0f;   // radians about +y, counter-clockwise seen from above
+  bool present = false;    // false: the file has none; the renderer decides
 };
 
 struct NamedImage {
@@ -181,11 +181,11 @@ struct NamedImage {
 struct Report {
   std::vector<std::string> extensionsUsed;     // of the file, that Quintet understands
   std::vector<std::string> extensionsIgnored;  // of the file, that it does not
-  std::vector<std::string> ignored;   // "/meshes/0/primitives/2: mode LINES has no surface"
-  std::vector<std::string> repaired;  // "/meshes/0/primitives/0: 3 triangles with non-finite vertices dropped"
-  std::string generator;              // asset.generator
-  std::string copyright;              // asset.copyright
-  std::vector<std::filesystem::path> files;  // that were read: the scene file, glTF files, their buffers and images
+  std::vector<std::string> ignored;            // "/meshes/0/primitives/2: mode LINES has no surface"
+  std::vector<std::string> repaired;           // "/meshes/0/primitives/0: 3 triangles with non-finite vertices dropped"
+  std::string generator;                       // asset.generator
+  std::string copyright;                       // asset.copyright
+  std::vector<std::filesystem::path> files;    // that were read: the scene file, glTF files, their buffers and images
 };
 
 // Wall clock of an importer's steps, seconds; 0: the importer does not count it.
@@ -220,7 +220,7 @@ TriangleCount countTriangles(const Scene&);
 // Primitive sets and what they hold, stored once.
 struct ProceduralCount {
   std::uint64_t sets = 0;
-  std::uint64_t solids = 0;       // outside of trees
+  std::uint64_t solids = 0;  // outside of trees
   std::uint64_t csgTrees = 0;
   std::uint64_t csgLeaves = 0;
   std::uint64_t customBoxes = 0;

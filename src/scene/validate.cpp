@@ -64,9 +64,11 @@ void checkPrimitive(const Scene& scene, const Primitive& primitive, const std::s
 
 void checkTree(const PrimitiveSet& set, const CsgTree& tree, const std::string& name) {
   if (tree.firstNode > set.nodes.size() || tree.nodeCount > set.nodes.size() - tree.firstNode)
-    fail("{}: nodes {} to {} of {}", name, tree.firstNode, std::uint64_t{tree.firstNode} + tree.nodeCount, set.nodes.size());
+    fail("{}: nodes {} to {} of {}", name, tree.firstNode, std::uint64_t{tree.firstNode} + tree.nodeCount,
+         set.nodes.size());
   const auto nodes = std::span(set.nodes).subspan(tree.firstNode, tree.nodeCount);
-  if (const std::string problem = csgProblem(nodes, set.primitives.size()); !problem.empty()) fail("{}: {}", name, problem);
+  if (const std::string problem = csgProblem(nodes, set.primitives.size()); !problem.empty())
+    fail("{}: {}", name, problem);
 }
 
 void checkPrimitiveSet(const Scene& scene, const PrimitiveSet& set, const std::string& name) {
@@ -111,7 +113,8 @@ void checkKeyframes(const std::vector<Keyframe>& keys, const std::string& name) 
 void checkInstance(const Scene& scene, const Instance& instance, const std::string& name) {
   if (!inRange(instance.mesh, scene.meshes.size())) fail("{}.mesh: {} of {}", name, instance.mesh, scene.meshes.size());
   if (!isFinite(instance.worldFromObject)) fail("{}.worldFromObject: not finite", name);
-  if (glm::determinant(glm::dmat3(glm::mat3(instance.worldFromObject))) == 0.0) fail("{}.worldFromObject: no inverse", name);
+  if (glm::determinant(glm::dmat3(glm::mat3(instance.worldFromObject))) == 0.0)
+    fail("{}.worldFromObject: no inverse", name);
   if (instance.mask > 0xFF) fail("{}.mask: {} has more than 8 bits", name, instance.mask);
   if (instance.flags > 0xF) fail("{}.flags: {} is unknown", name, instance.flags);
   if (instance.customIndex > 0xFFFFFF) fail("{}.customIndex: {} has more than 24 bits", name, instance.customIndex);

@@ -67,7 +67,9 @@ int lineOf(std::string_view text, std::size_t position) {
 }
 
 bool isMacroName(std::string_view name) {
-  const auto isWord = [](char c) { return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; };
+  const auto isWord = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_';
+  };
   return !name.empty() && !(name.front() >= '0' && name.front() <= '9') && std::ranges::all_of(name, isWord);
 }
 
@@ -138,7 +140,8 @@ Result Compiler::compile(const Source& source) const {
     const shaderc::Compiler& compiler = impl_->shadercCompiler();
     runOnDeepStack(stackBytesFor(inputs.textBytes), [&] { run = runGlslang(compiler, source, impl_->options, files); });
     // An include that findIncludes does not see (after a comment, say) is not part of the key.
-    const bool keyCoversAll = std::ranges::all_of(run.includes, [&](const auto& i) { return inputs.includes.contains(i); });
+    const bool keyCoversAll =
+        std::ranges::all_of(run.includes, [&](const auto& i) { return inputs.includes.contains(i); });
     if (keyCoversAll) impl_->cache.store(inputs.key, {run.spirv, run.diagnostics});
     result.spirv = std::move(run.spirv);
     result.diagnostics = std::move(run.diagnostics);

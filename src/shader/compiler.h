@@ -18,25 +18,26 @@
 namespace quintet::shader {
 
 enum class Stage { rayGeneration, intersection, anyHit, closestHit, miss, callable, compute };
-std::string_view stageName(Stage);                                    // "ray generation"
-std::string_view stageExtension(Stage);                               // ".rgen"
-std::optional<Stage> stageOfFile(const std::filesystem::path& file);  // by extension .rgen .rint .rahit .rchit .rmiss .rcall .comp
+std::string_view stageName(Stage);       // "ray generation"
+std::string_view stageExtension(Stage);  // ".rgen"
+std::optional<Stage> stageOfFile(
+    const std::filesystem::path& file);  // by extension .rgen .rint .rahit .rchit .rmiss .rcall .comp
 
 enum class Severity { note, warning, error };
 
 struct Diagnostic {
   Severity severity = Severity::error;
-  std::string file;   // as the user knows it: a path, or "<quintet/bsdf/ggx.glsl>" for the embedded library
-  int line = 0;       // 1-based; 0: unknown
-  int column = 0;     // 1-based; 0: unknown
-  std::string id;     // "GLSL" for the compiler's own, "Q101" … for the link's
+  std::string file;  // as the user knows it: a path, or "<quintet/bsdf/ggx.glsl>" for the embedded library
+  int line = 0;      // 1-based; 0: unknown
+  int column = 0;    // 1-based; 0: unknown
+  std::string id;    // "GLSL" for the compiler's own, "Q101" … for the link's
   std::string text;
   std::string format() const;  // "file:line: error: text [id]"
 };
 
 struct Source {
   Stage stage = Stage::compute;
-  std::string text;              // GLSL 460 (another #version is compiled as 460, with a warning)
+  std::string text;  // GLSL 460 (another #version is compiled as 460, with a warning)
   // Path shown in diagnostics; its folder is searched for #include "…". "<programs/x.rgen>": in memory.
   std::string name;
   std::vector<std::pair<std::string, std::string>> defines;
@@ -47,7 +48,7 @@ struct Source {
 };
 
 struct Result {
-  std::vector<std::uint32_t> spirv;          // empty: did not compile
+  std::vector<std::uint32_t> spirv;  // empty: did not compile
   std::vector<Diagnostic> diagnostics;
   std::vector<std::filesystem::path> files;  // every file on disk that was read, Source::text's own not (for --watch)
   std::vector<Hash> fileHashes;              // of their texts, as they were compiled; in the same order
@@ -61,7 +62,8 @@ struct CompilerOptions {
   std::vector<std::filesystem::path> includeFolders;  // further folders for #include <…>
   std::filesystem::path cacheFolder;                  // empty: no disk cache
   bool optimize = true;                               // spirv-opt for speed
-  bool debugInfo = true;  // sources, lines and names in the SPIR-V; the code is the same (spirv_module.h: withoutDebugInfo)
+  bool debugInfo =
+      true;  // sources, lines and names in the SPIR-V; the code is the same (spirv_module.h: withoutDebugInfo)
 };
 
 class Compiler {

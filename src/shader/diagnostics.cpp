@@ -153,7 +153,8 @@ std::vector<Diagnostic> parseMessages(std::string_view messages, const IncludeRe
 void dropConsequences(std::vector<Diagnostic>& diagnostics) {
   const auto isMissingInclude = [](const Diagnostic& d) { return d.text.starts_with("'#include'"); };
   if (std::ranges::any_of(diagnostics, isMissingInclude))
-    std::erase_if(diagnostics, [&](const Diagnostic& d) { return d.severity == Severity::error && !isMissingInclude(d); });
+    std::erase_if(diagnostics,
+                  [&](const Diagnostic& d) { return d.severity == Severity::error && !isMissingInclude(d); });
   std::set<std::pair<std::string, int>> seen;
   std::erase_if(diagnostics, [&](const Diagnostic& d) {
     return d.severity == Severity::error && d.line > 0 && !seen.emplace(d.file, d.line).second;
@@ -164,7 +165,8 @@ void explainPayloadOfAnotherStage(std::vector<Diagnostic>& diagnostics, Stage st
   for (Diagnostic& d : diagnostics) {
     if (d.text.find("RayPayloadKHR Storage Class is limited") == d.text.npos) continue;
     d.id = "Q103";
-    d.text = "rayPayloadEXT in the " + std::string(stageName(stage)) + " shader, which cannot trace: the payload of the ray that runs it is rayPayloadInEXT";
+    d.text = "rayPayloadEXT in the " + std::string(stageName(stage)) +
+             " shader, which cannot trace: the payload of the ray that runs it is rayPayloadInEXT";
     for (const SourceFile* file : files.files()) {
       const auto found = findWord(file->text, "rayPayloadEXT");
       if (!found) continue;

@@ -114,7 +114,8 @@ shaderc::CompileOptions optionsFor(const Source& source, const CompilerOptions& 
   result.SetTargetSpirv(shaderc_spirv_version_1_6);
   // Other versions, or none, make glslang 12 print its own built-ins to standard output.
   result.SetForcedVersionProfile(460, shaderc_profile_core);
-  result.SetOptimizationLevel(options.optimize ? shaderc_optimization_level_performance : shaderc_optimization_level_zero);
+  result.SetOptimizationLevel(options.optimize ? shaderc_optimization_level_performance
+                                               : shaderc_optimization_level_zero);
   if (options.debugInfo) result.SetGenerateDebugInfo();
   for (const auto& [name, value] : source.defines) result.AddMacroDefinition(name, value);
   return result;
@@ -134,10 +135,12 @@ GlslangRun runGlslang(const shaderc::Compiler& compiler, const Source& source, c
   diagnostics.insert(diagnostics.end(), run.diagnostics.begin(), run.diagnostics.end());
   dropConsequences(diagnostics);
   run.diagnostics = std::move(diagnostics);
-  if (result.GetCompilationStatus() == shaderc_compilation_status_success) run.spirv.assign(result.begin(), result.end());
+  if (result.GetCompilationStatus() == shaderc_compilation_status_success)
+    run.spirv.assign(result.begin(), result.end());
   const auto isError = [](const Diagnostic& d) { return d.severity == Severity::error; };
   if (run.spirv.empty() && std::ranges::none_of(run.diagnostics, isError))
-    run.diagnostics.push_back({Severity::error, files.root().name, 0, 0, "GLSL", "the compiler failed without a message"});
+    run.diagnostics.push_back(
+        {Severity::error, files.root().name, 0, 0, "GLSL", "the compiler failed without a message"});
   return run;
 }
 

@@ -13,7 +13,7 @@ class Compiler;
 namespace quintet::shader {
 
 struct GlslangRun {
-  std::vector<std::uint32_t> spirv;      // empty: failed
+  std::vector<std::uint32_t> spirv;  // empty: failed
   std::vector<Diagnostic> diagnostics;
   // Includes that the preprocessor followed, as (including file, directive); for the check that a
   // cache key covers all of them.

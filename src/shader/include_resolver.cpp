@@ -22,7 +22,9 @@ std::string printable(std::string name) {
 }
 
 std::string normalized(const fs::path& path) { return path.lexically_normal().generic_string(); }
-bool leavesItsRoot(const std::string& path) { return path.empty() || path.front() == '/' || path == ".." || path.starts_with("../"); }
+bool leavesItsRoot(const std::string& path) {
+  return path.empty() || path.front() == '/' || path == ".." || path.starts_with("../");
+}
 bool inBrackets(std::string_view name) { return name.size() > 2 && name.front() == '<' && name.back() == '>'; }
 
 std::size_t skipBlanks(std::string_view text, std::size_t at) {
@@ -48,9 +50,11 @@ std::vector<IncludeDirective> findIncludes(std::string_view text) {
   return found;
 }
 
-IncludeResolver::IncludeResolver(const Source& source, const CompilerOptions& options, std::span<const EmbeddedFile> library)
+IncludeResolver::IncludeResolver(const Source& source, const CompilerOptions& options,
+                                 std::span<const EmbeddedFile> library)
     : source_(source), options_(options), library_(library) {
-  root_.name = printable(source.name.empty() ? "<shader" + std::string(stageExtension(source.stage)) + ">" : source.name);
+  root_.name =
+      printable(source.name.empty() ? "<shader" + std::string(stageExtension(source.stage)) + ">" : source.name);
   root_.text = source.text;
   if (inBrackets(source.name)) {
     root_.libraryPath = normalized(source.name.substr(1, source.name.size() - 2));
@@ -83,7 +87,8 @@ const SourceFile* IncludeResolver::onDisk(const fs::path& path, const std::strin
   std::error_code failed;
   if (!fs::is_regular_file(path, failed) || fs::file_size(path, failed) > kMaxFileBytes || failed) return nullptr;
   try {
-    return keep({.name = name, .libraryPath = libraryPath, .diskPath = path, .text = {}, .storage = readTextFile(path)});
+    return keep(
+        {.name = name, .libraryPath = libraryPath, .diskPath = path, .text = {}, .storage = readTextFile(path)});
   } catch (const FileError&) {
     return nullptr;  // removed meanwhile, or unreadable
   }
@@ -113,7 +118,8 @@ const SourceFile* IncludeResolver::resolve(const SourceFile& from, const Include
   if (include.name.empty() || include.name.find('\0') != include.name.npos) return nullptr;
   const fs::path name(include.name);
   if (include.quoted && !name.is_absolute()) {
-    const std::string inLibraryPath = from.libraryPath.empty() ? "" : normalized(fs::path(from.libraryPath).parent_path() / name);
+    const std::string inLibraryPath =
+        from.libraryPath.empty() ? "" : normalized(fs::path(from.libraryPath).parent_path() / name);
     const std::optional<fs::path> folder = folderOnDisk(from);
     const std::string besideOnDisk = folder ? normalized(*folder / name) : "";
     for (const std::string& candidate : {inLibraryPath, besideOnDisk})

@@ -18,7 +18,7 @@ struct SourceFile {
   std::string libraryPath;         // name in the library: "quintet/bsdf/ggx.glsl"; empty: not part of it
   std::filesystem::path diskPath;  // empty: in memory
   std::string_view text;
-  std::string storage;             // holds `text` if it was read from disk
+  std::string storage;  // holds `text` if it was read from disk
 };
 
 struct IncludeDirective {

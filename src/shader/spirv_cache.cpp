@@ -24,7 +24,9 @@ class Writer {
     data_.insert(data_.end(), first, first + size);
   }
   template <class T>
-  void value(T v) { bytes(&v, sizeof v); }
+  void value(T v) {
+    bytes(&v, sizeof v);
+  }
   void text(std::string_view t) {
     value(static_cast<std::uint32_t>(t.size()));
     bytes(t.data(), t.size());
@@ -46,7 +48,9 @@ class Reader {
     return true;
   }
   template <class T>
-  bool value(T& v) { return bytes(&v, sizeof v); }
+  bool value(T& v) {
+    return bytes(&v, sizeof v);
+  }
   bool text(std::string& t) {
     std::uint32_t size = 0;
     if (!value(size) || size > data_.size()) return false;

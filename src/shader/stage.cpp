@@ -13,9 +13,12 @@ struct StageNames {
 };
 
 constexpr std::array kStages{
-    StageNames{Stage::rayGeneration, "ray generation", ".rgen"}, StageNames{Stage::intersection, "intersection", ".rint"},
-    StageNames{Stage::anyHit, "any-hit", ".rahit"},              StageNames{Stage::closestHit, "closest-hit", ".rchit"},
-    StageNames{Stage::miss, "miss", ".rmiss"},                   StageNames{Stage::callable, "callable", ".rcall"},
+    StageNames{Stage::rayGeneration, "ray generation", ".rgen"},
+    StageNames{Stage::intersection, "intersection", ".rint"},
+    StageNames{Stage::anyHit, "any-hit", ".rahit"},
+    StageNames{Stage::closestHit, "closest-hit", ".rchit"},
+    StageNames{Stage::miss, "miss", ".rmiss"},
+    StageNames{Stage::callable, "callable", ".rcall"},
     StageNames{Stage::compute, "compute", ".comp"},
 };
 

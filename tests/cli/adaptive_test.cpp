@@ -23,7 +23,8 @@ class Adaptive : public CliTest {
     nlohmann::json scene = quadScene();
     scene["extensionsUsed"] = {"KHR_lights_punctual"};
     scene["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 20}}};
-    scene["nodes"].push_back({{"translation", {0.5, 0.5, 1}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    scene["nodes"].push_back(
+        {{"translation", {0.5, 0.5, 1}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     scene["scenes"][0]["nodes"].push_back(3);
     write(folder_ / "scene.gltf", scene.dump());
   }
@@ -55,7 +56,8 @@ class Adaptive : public CliTest {
   }
   // Renders one more batch than the checkpoint holds.
   void renderOneBatch(std::vector<std::string> more) {
-    more.insert(more.end(), {"--resume", "--keep-checkpoint", "--time", timeForABatch(kFile), "-o", "part.exr", "--checkpoint-file", kFile});
+    more.insert(more.end(), {"--resume", "--keep-checkpoint", "--time", timeForABatch(kFile), "-o", "part.exr",
+                             "--checkpoint-file", kFile});
     render(more);
   }
 };
@@ -65,7 +67,9 @@ void expectSame(const io::ExrPicture& a, const io::ExrPicture& b) {
   for (std::size_t i = 0; i < a.channels.size(); ++i) {
     EXPECT_EQ(a.channels[i].name, b.channels[i].name);
     ASSERT_EQ(a.channels[i].samples.size(), b.channels[i].samples.size());
-    EXPECT_EQ(std::memcmp(a.channels[i].samples.data(), b.channels[i].samples.data(), 4 * a.channels[i].samples.size()), 0) << a.channels[i].name;
+    EXPECT_EQ(std::memcmp(a.channels[i].samples.data(), b.channels[i].samples.data(), 4 * a.channels[i].samples.size()),
+              0)
+        << a.channels[i].name;
   }
 }
 
@@ -143,7 +147,8 @@ TEST_F(Adaptive, SurvivesBeingKilledOnItsWayToAnError) {
   EXPECT_EQ(picture("out.exr").data, picture("whole.exr").data);
   EXPECT_EQ(facts("out.exr"), facts("whole.exr"));
   EXPECT_EQ(bytes(kFile), bytes("whole.checkpoint.qfilm"));
-  EXPECT_EQ(fileNames(), (std::vector<std::string>{kFile, "out.exr", "scene.gltf", "whole.checkpoint.qfilm", "whole.exr"}));
+  EXPECT_EQ(fileNames(),
+            (std::vector<std::string>{kFile, "out.exr", "scene.gltf", "whole.checkpoint.qfilm", "whole.exr"}));
 }
 
 TEST_F(Adaptive, FilmsAreShownAndBecomePictures) {
@@ -176,10 +181,13 @@ TEST_F(Adaptive, HalfAFilmIsAPictureOnlyIfAsked) {
 
 TEST_F(Adaptive, HasNoParts) {
   render({"--spp", "20", "-o", "a.qfilm"});
-  expectError(quintet({"merge", "a.qfilm", "a.qfilm", "-o", "m.png", "-q"}), 1, {"a.qfilm: is of an adaptive rendering", "no parts"});
-  expectError(quintet(command({"--spp", "64", "--batches", "0-3", "-o", "b.qfilm"})), 2, {"--batches and --adaptive exclude each other", "does not know"});
+  expectError(quintet({"merge", "a.qfilm", "a.qfilm", "-o", "m.png", "-q"}), 1,
+              {"a.qfilm: is of an adaptive rendering", "no parts"});
+  expectError(quintet(command({"--spp", "64", "--batches", "0-3", "-o", "b.qfilm"})), 2,
+              {"--batches and --adaptive exclude each other", "does not know"});
   // Another rendering of the same: whether it would have all these samples is not known before.
-  expectError(quintet(command({"--spp", "20", "-o", "a.qfilm", "-q"})), 1, {"a.qfilm: holds ", "on average", "--force"});
+  expectError(quintet(command({"--spp", "20", "-o", "a.qfilm", "-q"})), 1,
+              {"a.qfilm: holds ", "on average", "--force"});
   render({"--spp", "20", "-o", "a.qfilm", "--force"});
 }
 
@@ -207,39 +215,47 @@ TEST_F(Adaptive, OtherLimitsAreRefusedOrHaveAMeaning) {
     arguments.insert(arguments.end(), {"--resume", "-q"});
     const RunResult result = quintet(arguments);
     EXPECT_EQ(result.status, 1);
-    for (const std::string& text : texts) EXPECT_NE(result.err.find("quintet: out.checkpoint.qfilm: " + text), std::string::npos) << result.err;
+    for (const std::string& text : texts)
+      EXPECT_NE(result.err.find("quintet: out.checkpoint.qfilm: " + text), std::string::npos) << result.err;
     EXPECT_EQ(batchesOf(film(kFile)), before);
   };
   const std::string other = "is of another rendering; --force begins anew\n";
   std::vector<std::string> same = command({"--until-error", "0.05", "-o", "out.png"});
   std::erase(same, "--adaptive");
   refused(same, {"adaptive: yes in the checkpoint, no here\n", other});
-  refused(command({"--until-error", "0.05", "--spp", "64", "-o", "out.png"}), {"samples planned: any number in the checkpoint, 64 here\n", other});
+  refused(command({"--until-error", "0.05", "--spp", "64", "-o", "out.png"}),
+          {"samples planned: any number in the checkpoint, 64 here\n", other});
   // A smaller error: it goes on, and says that this is not the way of one rendering. A larger one: nothing is left to do.
-  const auto with = [&](const char* error) { return quintet(command({"--until-error", error, "-o", "out.png", "--resume", "--keep-checkpoint"})); };
+  const auto with = [&](const char* error) {
+    return quintet(command({"--until-error", error, "-o", "out.png", "--resume", "--keep-checkpoint"}));
+  };
   const RunResult larger = with("0.1");
   EXPECT_EQ(larger.status, 0) << larger.err;
   EXPECT_EQ(batchesOf(film(kFile)), before);
   const RunResult smaller = with("0.02");
   EXPECT_EQ(smaller.status, 0) << smaller.err;
-  EXPECT_NE(smaller.err.find("was planned for an error of 5 %, goes on for an error of 2 %"), std::string::npos) << smaller.err;
+  EXPECT_NE(smaller.err.find("was planned for an error of 5 %, goes on for an error of 2 %"), std::string::npos)
+      << smaller.err;
   EXPECT_EQ(smaller.err.find("not reached"), std::string::npos) << smaller.err;
   EXPECT_GT(batchesOf(film(kFile)), before);
   const RunResult merged = quintet({"merge", kFile, "-o", "m.png", "--json", "-q"});
   ASSERT_EQ(merged.status, 0) << merged.err;
   EXPECT_EQ(nlohmann::json::parse(merged.out)["error"]["reached"], true);
   // One without --adaptive is not gone on with, either.
-  std::vector<std::string> plain{"render", "scene.gltf", "--spp", "8", "--size", "16x16", "-o", "plain.png", "--keep-checkpoint", "-q"};
+  std::vector<std::string> plain{"render",    "scene.gltf",        "--spp", "8", "--size", "16x16", "-o",
+                                 "plain.png", "--keep-checkpoint", "-q"};
   ASSERT_EQ(quintet(plain).status, 0);
   plain.insert(plain.end(), {"--resume", "--adaptive"});
   const RunResult result = quintet(plain);
   EXPECT_EQ(result.status, 1);
-  EXPECT_NE(result.err.find("plain.checkpoint.qfilm: adaptive: no in the checkpoint, yes here"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("plain.checkpoint.qfilm: adaptive: no in the checkpoint, yes here"), std::string::npos)
+      << result.err;
 }
 
 // An error out of reach does not lead beyond --spp.
 TEST_F(Adaptive, KeepsWithinTheSamples) {
-  const RunResult result = quintet(command({"--until-error", "1e-4", "--spp", "32", "-o", "out.png", "--json", "--keep-checkpoint"}));
+  const RunResult result =
+      quintet(command({"--until-error", "1e-4", "--spp", "32", "-o", "out.png", "--json", "--keep-checkpoint"}));
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.err.find("was not reached"), std::string::npos) << result.err;
   EXPECT_NEAR(render::averageSamples(film(kFile).film.region, film(kFile).film.counts), 31.0, 1.0);

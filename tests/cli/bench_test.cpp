@@ -7,7 +7,8 @@ namespace {
 class Bench : public CliTest {
  protected:
   nlohmann::json profile(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"bench", "scene.gltf", "--size", "32x24", "--repeat", "2", "--profile", "--json"};
+    std::vector<std::string> arguments{"bench",    "scene.gltf", "--size",    "32x24",
+                                       "--repeat", "2",          "--profile", "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const RunResult result = quintet(arguments);
     EXPECT_EQ(result.status, 0) << result.err;
@@ -31,17 +32,19 @@ TEST_F(Bench, ProfileCountsRaysByKind) {
   const auto hits = rays["camera"]["hits"].get<std::uint64_t>();
   EXPECT_GT(hits, 0u);
   EXPECT_GT(rays["camera"]["misses"].get<std::uint64_t>(), 0u);
-  EXPECT_LE(rays["continuation"]["rays"].get<std::uint64_t>(), hits + rays["continuation"]["hits"].get<std::uint64_t>());
+  EXPECT_LE(rays["continuation"]["rays"].get<std::uint64_t>(),
+            hits + rays["continuation"]["hits"].get<std::uint64_t>());
 }
 
 TEST_F(Bench, ProfileOfPassesAndLaunchesAddsUp) {
   const nlohmann::json p = profile()["profile"];
-  for (const char* pass : {"uploadSeconds", "orderSeconds", "bottomLevelBuildSeconds", "topLevelBuildSeconds", "beginBatchSeconds",
-                           "traceSeconds", "filmAddSeconds", "downloadSeconds", "toneMapSeconds"})
+  for (const char* pass : {"uploadSeconds", "orderSeconds", "bottomLevelBuildSeconds", "topLevelBuildSeconds",
+                           "beginBatchSeconds", "traceSeconds", "filmAddSeconds", "downloadSeconds", "toneMapSeconds"})
     EXPECT_GE(p["passes"].at(pass).get<double>(), 0.0) << pass;
   const double busy = p["deviceBusySeconds"], wall = p["wallSeconds"], trace = p["passes"]["traceSeconds"];
   EXPECT_GT(trace, 0.0);
-  EXPECT_NEAR(busy, trace + p["passes"]["beginBatchSeconds"].get<double>() + p["passes"]["filmAddSeconds"].get<double>(), 1e-9);
+  EXPECT_NEAR(
+      busy, trace + p["passes"]["beginBatchSeconds"].get<double>() + p["passes"]["filmAddSeconds"].get<double>(), 1e-9);
   EXPECT_LE(busy + p["deviceIdleSeconds"].get<double>(), 1.05 * wall + 0.002);  // two clocks
   EXPECT_NEAR(p["busyShare"].get<double>(), busy / wall, 1e-6);
   EXPECT_NEAR(p["samplesPerSecond"].get<double>(), 32.0 * 24 * 4 * 2 / wall, 1.0);
@@ -55,13 +58,15 @@ TEST_F(Bench, ProfileTellsOfThePipeline) {
   EXPECT_TRUE(pipeline["executables"].is_object() || pipeline["executables"] == "not told by the driver") << pipeline;
   EXPECT_TRUE(pipeline["stackBytes"].contains("ray generation")) << pipeline;
   EXPECT_GE(pipeline["stackBytes"].size(), 3u);  // a miss and a hit group at least
-  EXPECT_EQ(pipeline["payloadBytes"]["HitPayload"], 24) << pipeline;  // t, three indices, two coordinates: one opaque quad
+  EXPECT_EQ(pipeline["payloadBytes"]["HitPayload"], 24)
+      << pipeline;  // t, three indices, two coordinates: one opaque quad
 }
 
 TEST_F(Bench, ProfileAsTable) {
   const RunResult result = quintet({"bench", "scene.gltf", "--size", "16x16", "--repeat", "1", "--profile"});
   ASSERT_EQ(result.status, 0) << result.err;
-  for (const char* line : {"\npathTracer.ratio ", "\npathTracer.rays.shadow.hits ", "\nprofile.passes.filmAddSeconds ", "\nprofile.launches.count "})
+  for (const char* line : {"\npathTracer.ratio ", "\npathTracer.rays.shadow.hits ", "\nprofile.passes.filmAddSeconds ",
+                           "\nprofile.launches.count "})
     EXPECT_NE(result.out.find(line), std::string::npos) << line;
   EXPECT_EQ(result.out.find("primitiveOrder"), std::string::npos);
 }

@@ -42,7 +42,8 @@ TEST_F(Check, EveryBuiltInProgramIsClean) {
 TEST_F(Check, FoldersOfPrograms) {
   writeProgram("all/one", "payload.color", "sky.rmiss");
   writeProgram("all/deep/two", "payload.color", "sky.rmiss");
-  write(folder_ / "all" / "three.rt.glsl", "void main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(vec4(1.0)); }\n");
+  write(folder_ / "all" / "three.rt.glsl",
+        "void main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(vec4(1.0)); }\n");
   const RunResult result = quintet({"check", "all", "--strict"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "all/deep/two: clean\nall/one: clean\nall/three.rt.glsl: clean\n");

@@ -127,12 +127,16 @@ TEST_F(Checkpoint, KeptOnesAreComplete) {
     return quintet(quick(more));
   };
   ASSERT_EQ(with("12", {"-o", "a.png", "--keep-checkpoint"}).status, 0);
-  ASSERT_EQ(with("12", {"-o", "b.png", "--resume", "--checkpoint-file", "a.checkpoint.qfilm", "--keep-checkpoint"}).status, 0);
+  ASSERT_EQ(
+      with("12", {"-o", "b.png", "--resume", "--checkpoint-file", "a.checkpoint.qfilm", "--keep-checkpoint"}).status,
+      0);
   EXPECT_EQ(picture("a.png").data, picture("b.png").data);  // nothing was left to do
   // The sampler may have placed its points for 12 samples.
   const RunResult more = with("24", {"-o", "a.png", "--resume"});
   EXPECT_EQ(more.status, 1);
-  EXPECT_NE(more.err.find("quintet: a.checkpoint.qfilm: samples planned: 12 in the checkpoint, 24 here\n"), std::string::npos) << more.err;
+  EXPECT_NE(more.err.find("quintet: a.checkpoint.qfilm: samples planned: 12 in the checkpoint, 24 here\n"),
+            std::string::npos)
+      << more.err;
 }
 
 TEST_F(Checkpoint, KeptOnesOfAPartGoOnToALongerPart) {
@@ -148,12 +152,15 @@ TEST_F(Checkpoint, KeptOnesOfAPartGoOnToALongerPart) {
   ASSERT_EQ(a.size(), b.size());
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]), 0);
   ASSERT_EQ(part("1-7", {"-o", "d.qfilm", "--keep-checkpoint"}).status, 0);
-  expectError(part("1-3", {"-o", "e.qfilm", "--resume"}), 1, {"c.qfilm: holds samples 4 to 29; only those up to 15 are wanted"});
-  expectError(part("2-7", {"-o", "e.qfilm", "--resume"}), 1, {"c.qfilm: holds samples 4 to 29; those from 8 on are wanted"});
+  expectError(part("1-3", {"-o", "e.qfilm", "--resume"}), 1,
+              {"c.qfilm: holds samples 4 to 29; only those up to 15 are wanted"});
+  expectError(part("2-7", {"-o", "e.qfilm", "--resume"}), 1,
+              {"c.qfilm: holds samples 4 to 29; those from 8 on are wanted"});
 }
 
 TEST_F(Checkpoint, PartsHaveThemToo) {
-  std::vector<std::string> arguments = quick({"--size", "48x36", "--spp", "400", "--batches", "50-90", "-o", "part.qfilm"});
+  std::vector<std::string> arguments =
+      quick({"--size", "48x36", "--spp", "400", "--batches", "50-90", "-o", "part.qfilm"});
   ASSERT_EQ(quintet(arguments).status, 0);
   std::filesystem::rename(folder_ / "part.qfilm", folder_ / "whole.qfilm");
   std::vector<std::string> broken = arguments;
@@ -170,13 +177,16 @@ TEST_F(Checkpoint, PartsHaveThemToo) {
   const render::FilmFile a = render::readFilm(folder_ / "part.qfilm"), b = render::readFilm(folder_ / "whole.qfilm");
   EXPECT_EQ(a.film.counts, b.film.counts);
   ASSERT_EQ(a.film.planes[0].sums.size(), b.film.planes[0].sums.size());
-  EXPECT_EQ(std::memcmp(a.film.planes[0].sums.data(), b.film.planes[0].sums.data(), a.film.planes[0].sums.size() * 16), 0);
+  EXPECT_EQ(std::memcmp(a.film.planes[0].sums.data(), b.film.planes[0].sums.data(), a.film.planes[0].sums.size() * 16),
+            0);
 }
 
 // Means, values of pixel centres, counted ids, rays: each goes on where it was.
 TEST_F(Checkpoint, LayersGoOnToo) {
   const auto part = [&](const char* batches, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"render", "scene.gltf", "-q", "--size", "16x12", "--spp", "16", "--aov", "albedo,depth,cryptomatte_object", "--batches", batches};
+    std::vector<std::string> arguments{
+        "render",    "scene.gltf", "-q", "--size", "16x12", "--spp", "16", "--aov", "albedo,depth,cryptomatte_object",
+        "--batches", batches};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const RunResult result = quintet(arguments);
     EXPECT_EQ(result.status, 0) << result.err;
@@ -184,12 +194,14 @@ TEST_F(Checkpoint, LayersGoOnToo) {
   part("0-3", {"-o", "whole.qfilm"});
   part("0-1", {"-o", "a.qfilm", "--checkpoint-file", "c.qfilm", "--keep-checkpoint"});
   part("0-3", {"-o", "b.qfilm", "--checkpoint-file", "c.qfilm", "--resume"});
-  const render::FilmFile whole = render::readFilm(folder_ / "whole.qfilm"), resumed = render::readFilm(folder_ / "b.qfilm");
+  const render::FilmFile whole = render::readFilm(folder_ / "whole.qfilm"),
+                         resumed = render::readFilm(folder_ / "b.qfilm");
   render::FilmFile same = whole;
   same.notes = resumed.notes;  // seconds, command
   EXPECT_EQ(render::encodeFilm(same), render::encodeFilm(resumed));
   const auto has = [&](auto member) {
-    return std::any_of(whole.film.planes.begin(), whole.film.planes.end(), [&](const render::FilmPlane& p) { return !(p.*member).empty(); });
+    return std::any_of(whole.film.planes.begin(), whole.film.planes.end(),
+                       [&](const render::FilmPlane& p) { return !(p.*member).empty(); });
   };
   EXPECT_TRUE(has(&render::FilmPlane::squares) && has(&render::FilmPlane::values) && has(&render::FilmPlane::coverage));
 }
@@ -197,7 +209,8 @@ TEST_F(Checkpoint, LayersGoOnToo) {
 // The picture of all layers, with a break after the first, second and third batch: centres come from the first one, ids are
 // counted and variances summed over all.
 TEST_F(Checkpoint, PicturesOfLayersAreThoseWithoutABreak) {
-  const std::vector<std::string> what{"render", "scene.gltf", "-q", "--size", "16x12", "--spp", "16", "--aov", "all", "--exr-type", "float", "-o"};
+  const std::vector<std::string> what{"render", "scene.gltf", "-q",  "--size",     "16x12", "--spp",
+                                      "16",     "--aov",      "all", "--exr-type", "float", "-o"};
   const auto rendered = [&](std::vector<std::string> more) {
     more.insert(more.begin(), what.begin(), what.end());
     const RunResult result = quintet(more);
@@ -206,8 +219,11 @@ TEST_F(Checkpoint, PicturesOfLayersAreThoseWithoutABreak) {
   const auto layers = [&](const char* name) { return io::decodeExr(readFile(folder_ / name), name); };
   rendered({"whole.exr"});
   const io::ExrPicture whole = layers("whole.exr");
-  const auto has = [&](const std::string& name) { return std::ranges::find(whole.channels, name, &io::ExrChannel::name) != whole.channels.end(); };
-  EXPECT_TRUE(has("CryptoObject00.R") && has("CryptoMaterial00.A") && has("depth.Z") && has("position.Y") && has("variance.G"));
+  const auto has = [&](const std::string& name) {
+    return std::ranges::find(whole.channels, name, &io::ExrChannel::name) != whole.channels.end();
+  };
+  EXPECT_TRUE(has("CryptoObject00.R") && has("CryptoMaterial00.A") && has("depth.Z") && has("position.Y") &&
+              has("variance.G"));
   for (int breaks = 1; breaks <= 3; ++breaks) {
     rendered({"part.exr", "--resume", "--time", timeForABatch(kFile), "--keep-checkpoint", "--checkpoint-file", kFile});
     ASSERT_EQ(savedSamples(), static_cast<std::uint64_t>(4 * breaks));
@@ -218,7 +234,8 @@ TEST_F(Checkpoint, PicturesOfLayersAreThoseWithoutABreak) {
     for (std::size_t i = 0; i < whole.channels.size(); ++i) {
       const auto &a = whole.channels[i].samples, &b = rest.channels[i].samples;
       EXPECT_EQ(rest.channels[i].name, whole.channels[i].name);
-      EXPECT_TRUE(a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0) << whole.channels[i].name << ", " << breaks;
+      EXPECT_TRUE(a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0)
+          << whole.channels[i].name << ", " << breaks;
     }
   }
 }
@@ -246,9 +263,12 @@ TEST_F(Checkpoint, OfAnotherRenderingAreRefusedWithTheDifference) {
   }());
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases{
       {{"--seed", "4"}, {"seed: 0 in the checkpoint, 4 here"}},
-      {{"--size", "48x35"}, {"size: 48x36 in the checkpoint, 48x35 here", "region: 0,0,48,36 in the checkpoint, 0,0,48,35 here"}},
+      {{"--size", "48x35"},
+       {"size: 48x36 in the checkpoint, 48x35 here", "region: 0,0,48,36 in the checkpoint, 0,0,48,35 here"}},
       {{"--region", "1,2,10,11"}, {"region: 0,0,48,36 in the checkpoint, 1,2,10,11 here"}},
-      {{"--program", "ao"}, {"program: normals in the checkpoint, ao here", "program files: ", "parameter distance: unknown in the checkpoint"}},
+      {{"--program", "ao"},
+       {"program: normals in the checkpoint, ao here",
+        "program files: ", "parameter distance: unknown in the checkpoint"}},
       {{"--camera", "side"}, {"camera position: 0,0,4 in the checkpoint, 4,0,0 here", "camera axes: "}},
       {{"--fov", "30"}, {"camera: perspective, 0.8 rad in the checkpoint, perspective, 0.5235988 rad here"}},
       {{"--aperture", "0.5"}, {"camera lens: 0 m"}},
@@ -261,8 +281,10 @@ TEST_F(Checkpoint, OfAnotherRenderingAreRefusedWithTheDifference) {
     const RunResult result = quintet(arguments);
     EXPECT_EQ(result.status, 1) << result.err;
     for (const std::string& text : texts)
-      EXPECT_NE(result.err.find("quintet: out.checkpoint.qfilm: " + text), std::string::npos) << text << " is not in:\n" << result.err;
-    EXPECT_TRUE(result.err.ends_with("quintet: out.checkpoint.qfilm: is of another rendering; --force begins anew\n")) << result.err;
+      EXPECT_NE(result.err.find("quintet: out.checkpoint.qfilm: " + text), std::string::npos) << text << " is not in:\n"
+                                                                                              << result.err;
+    EXPECT_TRUE(result.err.ends_with("quintet: out.checkpoint.qfilm: is of another rendering; --force begins anew\n"))
+        << result.err;
   }
   std::vector<std::string> other = command({"--resume", "-q"});
   other[1] = "other.gltf";
@@ -282,7 +304,8 @@ TEST_F(Checkpoint, SayWhatTheFilesWereInTheBeginning) {
   const auto interrupted = [&](const auto& change) {
     std::filesystem::remove(folder_ / kFile);
     write(include, grey);
-    TerminalRun process(command({"--program", "sky", "--spp", "4000", "--checkpoint", "1000", "--json-progress"}), folder_.path());
+    TerminalRun process(command({"--program", "sky", "--spp", "4000", "--checkpoint", "1000", "--json-progress"}),
+                        folder_.path());
     EXPECT_TRUE(process.waitFor("\"samples\":8,"));
     change();
     process.signal(SIGINT);
@@ -307,8 +330,8 @@ TEST_F(Checkpoint, OfOtherIncludedFilesAreRefused) {
   write(folder_ / "sky/more.text", "#include \"./noise.inc\"\n");
   write(folder_ / "sky/noise.inc", "const float kGrey = 0.5;\n");
   write(folder_ / "sky/README", "Grey.");
-  const std::vector<std::string> arguments =
-      command({"--program", "sky", "--spp", "8", "--checkpoint-file", "c.qfilm", "--keep-checkpoint", "--resume", "-q"});
+  const std::vector<std::string> arguments = command(
+      {"--program", "sky", "--spp", "8", "--checkpoint-file", "c.qfilm", "--keep-checkpoint", "--resume", "-q"});
   ASSERT_EQ(quintet(arguments).status, 0);
   write(folder_ / "sky/README", "Grey, still.");
   ASSERT_EQ(quintet(arguments).status, 0);
@@ -353,7 +376,8 @@ TEST_F(Checkpoint, StaysWhenThePictureCannotBeWritten) {
   const io::Image expected = whole();
   const std::filesystem::path results = folder_ / "results";
   const std::vector<std::string> arguments =
-      command({"-o", "results/out.png", "--checkpoint", "1000", "--checkpoint-file", "keep.qfilm", "--resume", "--json-progress"});
+      command({"-o", "results/out.png", "--checkpoint", "1000", "--checkpoint-file", "keep.qfilm", "--resume",
+               "--json-progress"});
   std::filesystem::create_directory(results);
   {
     TerminalRun process(arguments, folder_.path());
@@ -374,13 +398,14 @@ TEST_F(Checkpoint, ThatCannotBeWrittenAreToldAtOnce) {
   for (const std::string& option : {std::string("--json-progress"), std::string("-q")}) {
     const std::filesystem::path checkpoints = folder_ / "checkpoints";
     std::filesystem::create_directory(checkpoints);
-    TerminalRun process(quick({"--size", "48x36", "--time", "30", "-o", "out.png", "--checkpoint", "0", "--checkpoint-file",
-                               "checkpoints/c.qfilm", option}),
+    TerminalRun process(quick({"--size", "48x36", "--time", "30", "-o", "out.png", "--checkpoint", "0",
+                               "--checkpoint-file", "checkpoints/c.qfilm", option}),
                         folder_.path());
     for (int i = 0; i < 12000 && !std::filesystem::exists(checkpoints / "c.qfilm"); ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     std::filesystem::rename(checkpoints, folder_ / "moved");
-    const std::string form = option == "-q" ? "quintet: warning: checkpoints/c.qfilm: " : "{\"warning\":\"checkpoints/c.qfilm: ";
+    const std::string form =
+        option == "-q" ? "quintet: warning: checkpoints/c.qfilm: " : "{\"warning\":\"checkpoints/c.qfilm: ";
     EXPECT_TRUE(process.waitFor(form));
     process.signal(SIGINT);
     EXPECT_EQ(process.finish().status, 130);
@@ -390,7 +415,8 @@ TEST_F(Checkpoint, ThatCannotBeWrittenAreToldAtOnce) {
 
 // A signal that comes when the last batch is under way interrupts nothing.
 TEST_F(Checkpoint, CtrlCInTheLastBatchIsTooLate) {
-  const std::vector<std::string> arguments = command({"--size", "1200x900", "--spp", "8", "--checkpoint", "1000", "--json-progress"});
+  const std::vector<std::string> arguments =
+      command({"--size", "1200x900", "--spp", "8", "--checkpoint", "1000", "--json-progress"});
   TerminalRun process(arguments, folder_.path());
   ASSERT_TRUE(process.waitFor("\"samples\":4,"));
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -420,8 +446,8 @@ TEST_F(Checkpoint, NobodyNeedsToReadTheProgress) {
 // within the next batch.
 TEST_F(Checkpoint, NothingIsAddedWhenTheTimeIsOver) {
   const auto again = [&](const std::string& seconds) {
-    const RunResult result = quintet({"render", "scene.gltf", "--program", "normals", "--size", "48x36", "--until-error", "1e-6", "--time",
-                                      seconds, "-o", "out.png", "--resume"});
+    const RunResult result = quintet({"render", "scene.gltf", "--program", "normals", "--size", "48x36",
+                                      "--until-error", "1e-6", "--time", seconds, "-o", "out.png", "--resume"});
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_NE(result.err.find("was not reached"), std::string::npos) << result.err;
   };
@@ -445,8 +471,8 @@ TEST_F(Checkpoint, NothingIsAddedWhenTheTimeIsOver) {
   again("50.4");
   EXPECT_GT(savedSamples(), before);
   pretend("a while");
-  expectError(quintet({"render", "scene.gltf", "--program", "normals", "--size", "48x36", "--until-error", "1e-6", "--time", "50.4", "-o", "out.png",
-                       "--resume", "-q"}),
+  expectError(quintet({"render", "scene.gltf", "--program", "normals", "--size", "48x36", "--until-error", "1e-6",
+                       "--time", "50.4", "-o", "out.png", "--resume", "-q"}),
               1, {"out.checkpoint.qfilm: header: batch seconds: 'a while' is not a number"});
 }
 
@@ -485,13 +511,15 @@ TEST_F(Checkpoint, OptionsThatMakeNoSense) {
   refused({"--batches", "0-1", "-o", "a.png"}, {"--batches", ".qfilm"});
   for (const char* range : {"1-0", "-1-2", "0-", "-", "a", "0-1-2", "1.5-2", "0 - 1", "99999999999999999999-1"})
     refused({"--spp", "64", std::string("--batches=") + range, "-o", "a.qfilm"}, {"--batches", "A-B"});
-  refused({"--spp", "30", "--batches", "4-8", "-o", "a.qfilm"}, {"--batches", "30 samples are batches 0-7", "no batch 8"});
+  refused({"--spp", "30", "--batches", "4-8", "-o", "a.qfilm"},
+          {"--batches", "30 samples are batches 0-7", "no batch 8"});
   refused({"--time", "1", "--batches", "0-1", "-o", "a.qfilm"}, {"--batches", "--time"});
   EXPECT_EQ(fileNames(), std::vector<std::string>{"scene.gltf"});
 }
 
 TEST_F(Checkpoint, ProgramsThatAverageThemselvesHaveNone) {
-  const RunResult result = quintet({"render", "scene.gltf", "--program", "lessons/09_progressive", "--size", "8x8", "-q", "--checkpoint", "1", "-o", "a.png"});
+  const RunResult result = quintet({"render", "scene.gltf", "--program", "lessons/09_progressive", "--size", "8x8",
+                                    "-q", "--checkpoint", "1", "-o", "a.png"});
   expectError(result, 2, {"09_progressive", "averages its samples itself"});
 }
 

@@ -57,7 +57,8 @@ TEST_F(CompareFilms, OtherSeedsAreTheSamePictureAndAFactorIsNot) {
   EXPECT_EQ(same.status, 0) << same.out << same.err;
   EXPECT_EQ(same.err, "");
   EXPECT_THAT(same.out, HasSubstr("a.qfilm: samples 0 to 31, seed 1, "));
-  EXPECT_THAT(same.out, HasSubstr("blocks: 20 of 8x8 pixels, 3 channels; p below 8.35e-05 rejects"));  // 1 - 0.995^(1/60)
+  EXPECT_THAT(same.out,
+              HasSubstr("blocks: 20 of 8x8 pixels, 3 channels; p below 8.35e-05 rejects"));  // 1 - 0.995^(1/60)
   EXPECT_THAT(same.out, EndsWith("the same picture at level 0.01\n"));
   const auto json = nlohmann::json::parse(compare("a.qfilm", "b.qfilm", {"--json", "-o", "t.png"}).out);
   EXPECT_EQ(json["same"], true);
@@ -74,7 +75,8 @@ TEST_F(CompareFilms, OtherSeedsAreTheSamePictureAndAFactorIsNot) {
   const RunResult bright = compare("a.qfilm", "c.qfilm");
   EXPECT_EQ(bright.status, 1);
   EXPECT_THAT(bright.out, EndsWith("not the same picture at level 0.01\n"));
-  EXPECT_THAT(bright.err, HasSubstr("quintet: a.qfilm and c.qfilm: not the same picture at level 0.01: the whole image, "));
+  EXPECT_THAT(bright.err,
+              HasSubstr("quintet: a.qfilm and c.qfilm: not the same picture at level 0.01: the whole image, "));
   EXPECT_EQ(nlohmann::json::parse(compare("a.qfilm", "c.qfilm", {"--json"}).out)["same"], false);
 
   scale("b.qfilm", "d.qfilm", 1.0);
@@ -98,19 +100,23 @@ TEST_F(CompareFilms, OtherRenderingsAreRefusedByName) {
     scene["meshes"][0]["primitives"][0]["material"] = 0;
     return scene.dump();
   }());
-  const RunResult other = quintet({"render", "other.gltf", "--program", "normals", "-q", "--size", "32x24", "--spp", "32", "-o", "b.qfilm"});
+  const RunResult other = quintet(
+      {"render", "other.gltf", "--program", "normals", "-q", "--size", "32x24", "--spp", "32", "-o", "b.qfilm"});
   ASSERT_EQ(other.status, 0) << other.err;
   const RunResult scene = compare("a.qfilm", "b.qfilm");
   EXPECT_EQ(scene.status, 1);
   EXPECT_EQ(scene.out, "");
   EXPECT_THAT(scene.err, HasSubstr("quintet: b.qfilm: scene: "));
-  EXPECT_THAT(scene.err, EndsWith("quintet: b.qfilm: is of another rendering than a.qfilm; --may-differ NAME allows a difference\n"));
+  EXPECT_THAT(
+      scene.err,
+      EndsWith("quintet: b.qfilm: is of another rendering than a.qfilm; --may-differ NAME allows a difference\n"));
   EXPECT_EQ(compare("a.qfilm", "b.qfilm", {"--may-differ", "scene"}).status, 0);
   EXPECT_EQ(quintet({"compare", "--z-test", "--may-differ", "scene", "a.qfilm", "b.qfilm"}).status, 0);
 
   film("c.qfilm", {"--spp", "32", "--size", "32x25"});
   EXPECT_THAT(compare("a.qfilm", "c.qfilm").err, HasSubstr("size: 32x24 in a.qfilm, 32x25 in c.qfilm"));
-  expectError(compare("a.qfilm", "c.qfilm", {"--may-differ", "size", "--may-differ", "region"}), 1, {"other parts of the image"});
+  expectError(compare("a.qfilm", "c.qfilm", {"--may-differ", "size", "--may-differ", "region"}), 1,
+              {"other parts of the image"});
   film("d.qfilm", {"--spp", "64", "--seed", "4"});
   const RunResult longer = compare("a.qfilm", "d.qfilm");
   EXPECT_EQ(longer.status, 0) << longer.err;
@@ -121,21 +127,26 @@ TEST_F(CompareFilms, OtherRenderingsAreRefusedByName) {
 TEST_F(CompareFilms, TheTableOfTwoDevices) {
   std::filesystem::create_directory(folder_ / "a");
   std::filesystem::create_directory(folder_ / "b");
-  for (const char* name : {"/cornell.qfilm", "/glass.qfilm", "/demo.qfilm"}) film(std::string("a") + name, {"--spp", "32", "--seed", "1"});
+  for (const char* name : {"/cornell.qfilm", "/glass.qfilm", "/demo.qfilm"})
+    film(std::string("a") + name, {"--spp", "32", "--seed", "1"});
   film("b/cornell.qfilm", {"--spp", "32", "--seed", "2"});
   film("b/glass.qfilm", {"--spp", "32", "--seed", "3"});
   scale("b/glass.qfilm", "b/glass.qfilm", 0.5);
   film("b/demo.qfilm", {"--spp", "32", "--size", "32x25"});
   const std::string place = folder_.path().string();
-  const std::string command = "QUINTET='" QUINTET_BINARY "' '" QUINTET_SOURCE_ROOT "/tests/devices/run' '" + place + "/a' '" + place + "/b' >'" +
-                              place + "/table' 2>'" + place + "/errors'";
+  const std::string command = "QUINTET='" QUINTET_BINARY "' '" QUINTET_SOURCE_ROOT "/tests/devices/run' '" + place +
+                              "/a' '" + place + "/b' >'" + place + "/table' 2>'" + place + "/errors'";
   const int status = std::system(command.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 1);
   const std::string table = readTextFile(folder_ / "table");
-  EXPECT_THAT(table, ContainsRegex(R"(\| cornell \| 32 \| 12 \| [0-9.e-]+ \([0-9.e-]+\) \| [0-9.]+ \| [0-9.e-]+ \([0-9.e-]+\) \| [-+][0-9.]+ % ± [0-9.]+ % \| same \|)"));
+  EXPECT_THAT(
+      table,
+      ContainsRegex(
+          R"(\| cornell \| 32 \| 12 \| [0-9.e-]+ \([0-9.e-]+\) \| [0-9.]+ \| [0-9.e-]+ \([0-9.e-]+\) \| [-+][0-9.]+ % ± [0-9.]+ % \| same \|)"));
   EXPECT_THAT(table, ContainsRegex(R"(\| glass .* \+66.[0-9]+ % ± .* \*\*rejected\*\* \|)"));
   EXPECT_THAT(table, HasSubstr("| demo | | | | | | | not compared |"));
-  EXPECT_THAT(table, HasSubstr("Level 0.00334 for each of 3 scenes; seeds \"1\", \"3\"; devices \""));  // 1 - 0.99^(1/3)
+  EXPECT_THAT(table,
+              HasSubstr("Level 0.00334 for each of 3 scenes; seeds \"1\", \"3\"; devices \""));  // 1 - 0.99^(1/3)
   EXPECT_THAT(readTextFile(folder_ / "errors"), HasSubstr("demo.qfilm: size: 32x24 in "));
 }
 
@@ -143,18 +154,20 @@ TEST_F(CompareFilms, WhatCannotBeTested) {
   film("a.qfilm", {"--spp", "32"});
   film("few.qfilm", {"--spp", "28"});
   ASSERT_EQ(quintet(quick({"-o", "p.png"})).status, 0);
-  expectError(compare("a.qfilm", "few.qfilm"), 1, {"a.qfilm and few.qfilm: ", "7 batches of 4 samples; 8 (32 samples) are needed"});
+  expectError(compare("a.qfilm", "few.qfilm"), 1,
+              {"a.qfilm and few.qfilm: ", "7 batches of 4 samples; 8 (32 samples) are needed"});
   expectError(compare("a.qfilm", "p.png"), 1, {"p.png: is not a film (.qfilm)", "does not tell its noise"});
   expectError(compare("a.qfilm", "none.qfilm"), 1, {"none.qfilm", "No such file"});
   expectError(quintet({"compare", "a.qfilm", "a.qfilm"}), 1, {"a.qfilm: is a film", "--z-test"});
-  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong{{{"--level", "0"}, "--level"},
-                                                                            {{"--level", "0.9"}, "--level"},
-                                                                            {{"--block", "2"}, "--block"},
-                                                                            {{"--block", "8.5"}, "--block: 8.5 is not a whole number"},
-                                                                            {{"--tolerance", "-1"}, "--tolerance"},
-                                                                            {{"--may-differ", "sceen"}, "'sceen' (did you mean 'scene'?)"},
-                                                                            {{"--max", "3"}, "--max: is for pictures"},
-                                                                            {{"--resize"}, "--resize: is for pictures"}};
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong{
+      {{"--level", "0"}, "--level"},
+      {{"--level", "0.9"}, "--level"},
+      {{"--block", "2"}, "--block"},
+      {{"--block", "8.5"}, "--block: 8.5 is not a whole number"},
+      {{"--tolerance", "-1"}, "--tolerance"},
+      {{"--may-differ", "sceen"}, "'sceen' (did you mean 'scene'?)"},
+      {{"--max", "3"}, "--max: is for pictures"},
+      {{"--resize"}, "--resize: is for pictures"}};
   for (const auto& [more, text] : wrong) expectError(compare("a.qfilm", "a.qfilm", more), 2, {text});
   expectError(quintet({"compare", "p.png", "p.png", "--level", "0.1"}), 2, {"--level: needs --z-test"});
 }

@@ -14,7 +14,8 @@ class Compare : public CliTest {
   Compare() {
     io::Image image = testImage(32, 16);
     write(folder_ / "a.png", io::encodePng(image));
-    for (auto& sample : image.samples<std::uint8_t>()) sample = static_cast<std::uint8_t>(sample < 128 ? sample + 4 : sample - 4);
+    for (auto& sample : image.samples<std::uint8_t>())
+      sample = static_cast<std::uint8_t>(sample < 128 ? sample + 4 : sample - 4);
     write(folder_ / "b.png", io::encodePng(image));
     write(folder_ / "big.png", io::encodePng(testImage(64, 32)));
   }
@@ -68,7 +69,8 @@ TEST_F(Compare, GammaOfTheReference) {
   write(folder_ / "srgb.png", io::encodePng(image));
   for (auto& sample : image.samples<std::uint8_t>()) sample = 117;
   write(folder_ / "power.png", io::encodePng(image));
-  const auto json = nlohmann::json::parse(quintet({"compare", "srgb.png", "power.png", "--gamma-b", "2.2", "--json"}).out);
+  const auto json =
+      nlohmann::json::parse(quintet({"compare", "srgb.png", "power.png", "--gamma-b", "2.2", "--json"}).out);
   EXPECT_LE(json["mae8"], 0.0);
 }
 

@@ -24,7 +24,8 @@ class StatedError : public CliTest {
   // The program `normals`, 64x48, as long as `more` says.
   static std::vector<std::string> command(const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"render", "scene.gltf", "--program", "normals"};
-    if (std::find(more.begin(), more.end(), "--size") == more.end()) arguments.insert(arguments.end(), {"--size", "64x48"});
+    if (std::find(more.begin(), more.end(), "--size") == more.end())
+      arguments.insert(arguments.end(), {"--size", "64x48"});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -66,8 +67,9 @@ TEST_F(StatedError, GoalsThatMakeNoSense) {
   expectError(quintet(command({"--spp", "64", "--until-error", "0.1", "--batches", "0-1", "-o", "out.qfilm"})), 2,
               {"--batches", "--until-error"});
   expectError(quintet(command({"--adaptive", "-o", "out.png"})), 2, {"--adaptive", "'normals'"});
-  expectError(quintet({"render", "scene.gltf", "--program", "lessons/09_progressive", "--until-error", "0.1", "-o", "out.png"}), 2,
-              {"--until-error", "09_progressive", "averages its samples itself"});
+  expectError(
+      quintet({"render", "scene.gltf", "--program", "lessons/09_progressive", "--until-error", "0.1", "-o", "out.png"}),
+      2, {"--until-error", "09_progressive", "averages its samples itself"});
   EXPECT_EQ(fileNames(), std::vector<std::string>{"scene.gltf"});
 }
 
@@ -114,7 +116,8 @@ TEST_F(StatedError, IsToldByPictureReportAndLastLine) {
 }
 
 TEST_F(StatedError, AWarningSaysThatItWasNotReached) {
-  const RunResult result = quintet(command({"--spp", "12", "--until-error", "0.0001", "-o", "out.png", "-q", "--json"}));
+  const RunResult result =
+      quintet(command({"--spp", "12", "--until-error", "0.0001", "-o", "out.png", "-q", "--json"}));
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json.at("error").at("wanted"), 0.0001);
@@ -140,7 +143,8 @@ TEST_F(StatedError, AWarningSaysThatItWasNotReached) {
 // The end of --spp and the goal at once: at a count that is looked after (16 samples), and at others.
 TEST_F(StatedError, ReachedWithTheLastSampleIsReached) {
   for (const char* samples : {"16", "12", "10"}) {
-    const nlohmann::json json = report(command({"--spp", samples, "--until-error", "0.9", "-o", "out.png", "--checkpoint", "0"}));
+    const nlohmann::json json =
+        report(command({"--spp", samples, "--until-error", "0.9", "-o", "out.png", "--checkpoint", "0"}));
     EXPECT_EQ(json.at("samples"), std::stoi(samples));
     EXPECT_EQ(json.at("error").at("reached"), true);
     EXPECT_EQ(json.at("warnings"), nlohmann::json::array());
@@ -187,7 +191,9 @@ TEST_F(StatedError, GoingOnGivesTheSameBytes) {
 }
 
 TEST_F(StatedError, TheProgressLineTellsIt) {
-  TerminalRun process(command({"--size", "200x150", "--until-error", "0.00001", "-o", "out.png", "--checkpoint", "1000"}), folder_.path());
+  TerminalRun process(
+      command({"--size", "200x150", "--until-error", "0.00001", "-o", "out.png", "--checkpoint", "1000"}),
+      folder_.path());
   ASSERT_TRUE(process.waitFor("Mrays/s  error "));
   ASSERT_TRUE(process.waitForNext(" %  "));
   process.signal(SIGINT);
@@ -229,7 +235,8 @@ TEST_F(StatedError, TheSameCommandGivesTheSameBytes) {
 
 // --spp is the average of what the pixels get; the picture says that they differ.
 TEST_F(StatedError, AdaptiveSpendsSamplesWhereTheyAreNeeded) {
-  const nlohmann::json json = report(adaptive({"--spp", "64", "-o", "out.exr", "--aov", "sample_count,variance", "--exr-type", "float"}));
+  const nlohmann::json json =
+      report(adaptive({"--spp", "64", "-o", "out.exr", "--aov", "sample_count,variance", "--exr-type", "float"}));
   EXPECT_EQ(json.at("adaptive"), true);
   EXPECT_NEAR(json.at("samples").get<double>(), 64, 2);
   EXPECT_EQ(told("out.exr", "Adaptive"), "yes");
@@ -253,7 +260,8 @@ TEST_F(StatedError, AdaptiveSpendsSamplesWhereTheyAreNeeded) {
 // An environment in cd/m2, as of the sun: its squares are beyond the film's range, its error is never known.
 TEST_F(StatedError, ThatCannotBeKnownEndsTheRendering) {
   for (const bool isAdaptive : {false, true}) {
-    std::vector<std::string> arguments{"render", "scene.gltf", "--env", "1e10,1e10,1e10", "--size", "32x32", "--until-error", "0.1", "-o", "out.exr"};
+    std::vector<std::string> arguments{"render",        "scene.gltf", "--env", "1e10,1e10,1e10", "--size", "32x32",
+                                       "--until-error", "0.1",        "-o",    "out.exr"};
     if (isAdaptive) arguments.push_back("--adaptive");
     const nlohmann::json json = report(arguments);
     EXPECT_EQ(json.at("error").at("reached"), false);

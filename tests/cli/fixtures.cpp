@@ -32,8 +32,7 @@ std::string base64(std::string_view bytes) {
     unsigned group = 0;
     for (std::size_t k = 0; k < 3; ++k)
       group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
+    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
   }
   return text;
 }
@@ -79,7 +78,8 @@ nlohmann::json quadScene() {
                     {"buffer": 0, "byteOffset": 48, "byteLength": 32},
                     {"buffer": 0, "byteOffset": 80, "byteLength": 12}]
   })");
-  json["buffers"] = {{{"byteLength", buffer.size()}, {"uri", "data:application/octet-stream;base64," + base64(buffer)}}};
+  json["buffers"] = {
+      {{"byteLength", buffer.size()}, {"uri", "data:application/octet-stream;base64," + base64(buffer)}}};
   return json;
 }
 
@@ -134,8 +134,9 @@ std::vector<std::byte> encodeJpeg(const io::Image& image) {
   const tjhandle encoder = tjInitCompress();
   unsigned char* data = nullptr;
   unsigned long size = 0;
-  const int failed = tjCompress2(encoder, reinterpret_cast<const unsigned char*>(image.data.data()), static_cast<int>(image.width),
-                                 0, static_cast<int>(image.height), TJPF_RGB, &data, &size, TJSAMP_444, 90, 0);
+  const int failed =
+      tjCompress2(encoder, reinterpret_cast<const unsigned char*>(image.data.data()), static_cast<int>(image.width), 0,
+                  static_cast<int>(image.height), TJPF_RGB, &data, &size, TJSAMP_444, 90, 0);
   tjDestroy(encoder);
   if (failed) throw std::runtime_error("no JPEG");
   const auto* bytes = reinterpret_cast<const std::byte*>(data);
@@ -176,7 +177,8 @@ std::string CliTest::timeForABatch(const std::string& checkpoint) const {
 
 std::vector<std::string> CliTest::fileNames() const {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) names.push_back(entry.path().filename());
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+    names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   return names;
 }

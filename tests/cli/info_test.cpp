@@ -44,7 +44,8 @@ TEST_F(Info, SceneAsJson) {
 
 TEST_F(Info, SceneFile) {
   write(folder_ / "s.scene.toml",
-        "[[spheres]]\nitems = [{}, {}]\n[[csg]]\ntree = { intersection = [{ box = {} }, { sphere = { center = [9, 0, 0] } }] }\n"
+        "[[spheres]]\nitems = [{}, {}]\n[[csg]]\ntree = { intersection = [{ box = {} }, { sphere = { center = [9, 0, "
+        "0] } }] }\n"
         "[[mesh]]\nname = 'm'\nshape = 'cube'\n[[instance]]\nof = 'm'\nmask = 1\n");
   const RunResult text = quintet({"info", "s.scene.toml"});
   EXPECT_EQ(text.status, 0);

@@ -10,7 +10,8 @@ class Input : public CliTest {
   // What `info` and `render` both say.
   void expectRefused(const std::string& file, const std::vector<std::string>& parts) {
     expectError(quintet({"info", file}), 1, parts);
-    expectError(quintet({"render", file, "--program", "normals", "--size", "8x8", "--spp", "1", "-q", "-o", "out.png"}), 1, parts);
+    expectError(quintet({"render", file, "--program", "normals", "--size", "8x8", "--spp", "1", "-q", "-o", "out.png"}),
+                1, parts);
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
   }
   void expectSceneRefused(const nlohmann::json& json, const std::vector<std::string>& parts) {
@@ -114,7 +115,8 @@ name = "all"
 [[output]]
 name = "color"
 )");
-  write(folder_ / "mine" / "mine.rgen", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {\n  undefined();\n}\n");
+  write(folder_ / "mine" / "mine.rgen",
+        "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {\n  undefined();\n}\n");
   write(folder_ / "mine" / "mine.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n");
   const RunResult result = quintet({"render", "scene.gltf", "--program", "mine", "--size", "8x8", "-q"});
   EXPECT_EQ(result.status, 1);
@@ -122,7 +124,8 @@ name = "color"
   EXPECT_NE(result.err.find("undefined"), std::string::npos);
   EXPECT_TRUE(result.err.ends_with("quintet: mine: 1 error\n")) << result.err;
   write(folder_ / "mine" / "program.toml", "[program\n");
-  expectError(quintet({"render", "scene.gltf", "--program", "mine", "--size", "8x8", "-q"}), 1, {"program.toml", "line 1"});
+  expectError(quintet({"render", "scene.gltf", "--program", "mine", "--size", "8x8", "-q"}), 1,
+              {"program.toml", "line 1"});
 }
 
 TEST_F(Input, ControlCharactersOfAFileStayInIt) {

@@ -55,13 +55,15 @@ class Merge : public CliTest {
     const RunResult result = quintet(command(more));
     ASSERT_EQ(result.status, 0) << result.err;
   }
-  RunResult merge(std::vector<std::string> parts, const std::string& output, const std::vector<std::string>& more = {"-q"}) {
+  RunResult merge(std::vector<std::string> parts, const std::string& output,
+                  const std::vector<std::string>& more = {"-q"}) {
     parts.insert(parts.begin(), "merge");
     parts.insert(parts.end(), {"-o", output});
     parts.insert(parts.end(), more.begin(), more.end());
     return quintet(parts);
   }
-  void expectMerged(const std::vector<std::string>& parts, const std::string& output, const std::vector<std::string>& more = {"-q"}) {
+  void expectMerged(const std::vector<std::string>& parts, const std::string& output,
+                    const std::vector<std::string>& more = {"-q"}) {
     const RunResult result = merge(parts, output, more);
     EXPECT_EQ(result.status, 0) << result.err;
   }
@@ -203,8 +205,10 @@ TEST_F(Merge, RefusesPartsOfAnotherSceneLightParameterOrLayers) {
   scene["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.1, 0.3, 0.1, 1};
   write(folder_ / "other.gltf", scene.dump());
   std::filesystem::copy_file(folder_ / "scene.gltf", folder_ / "copy.gltf");
-  const auto partOf = [&](const char* file, const std::vector<std::string>& more, const char* batches, const char* name) {
-    std::vector<std::string> arguments{"render", file, "-q", "--size", "8x6", "--spp", "8", "--batches", batches, "-o", name, "--force"};
+  const auto partOf = [&](const char* file, const std::vector<std::string>& more, const char* batches,
+                          const char* name) {
+    std::vector<std::string> arguments{"render", file,        "-q",    "--size", "8x6", "--spp",
+                                       "8",      "--batches", batches, "-o",     name,  "--force"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const RunResult result = quintet(arguments);
     EXPECT_EQ(result.status, 0) << result.err;
@@ -244,9 +248,11 @@ TEST_F(Merge, RefusesBrokenFiles) {
   part("0-3", "a.qfilm");
   part("4-7", "b.qfilm");
   const std::vector<std::byte> bytes = readFile(folder_ / "b.qfilm");
-  for (const std::size_t size : {std::size_t{0}, std::size_t{5}, std::size_t{20}, std::size_t{100}, bytes.size() / 2, bytes.size() - 1}) {
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{5}, std::size_t{20}, std::size_t{100}, bytes.size() / 2, bytes.size() - 1}) {
     write(folder_ / "b.qfilm", std::span(bytes).first(size));
-    expectError(merge({"a.qfilm", "b.qfilm"}, "m.png"), 1, {"b.qfilm: is ", size == 0 ? "empty" : "truncated after " + std::to_string(size)});
+    expectError(merge({"a.qfilm", "b.qfilm"}, "m.png"), 1,
+                {"b.qfilm: is ", size == 0 ? "empty" : "truncated after " + std::to_string(size)});
   }
   std::vector<std::byte> damaged = bytes;
   damaged[bytes.size() / 2] ^= std::byte{4};
@@ -278,7 +284,8 @@ TEST_F(Merge, FilmsAreNotLostUnasked) {
   part("4-7", "b.qfilm");
   part("0-3", "b.qfilm", {"--force"});
   write(folder_ / "text.qfilm", "precious");
-  expectError(quintet(command({"--batches", "0-3", "-o", "text.qfilm"})), 1, {"text.qfilm: is not a film file", "--force"});
+  expectError(quintet(command({"--batches", "0-3", "-o", "text.qfilm"})), 1,
+              {"text.qfilm: is not a film file", "--force"});
 }
 
 // It may have been broken off: what is written counts, not what was planned.
@@ -342,7 +349,8 @@ TEST_F(Merge, DevicesAreNamedWhole) {
   rename("b.qfilm", "Abacus 300; Sliderule");
   rename("c.qfilm", "Sliderule");
   const RunResult result = merge({"a.qfilm", "b.qfilm", "c.qfilm"}, "m.qfilm", {});
-  EXPECT_NE(result.err.find("b.qfilm: device Abacus 300; Sliderule, other parts: Abacus 3000\n"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("b.qfilm: device Abacus 300; Sliderule, other parts: Abacus 3000\n"), std::string::npos)
+      << result.err;
   EXPECT_EQ(result.err.find("c.qfilm"), std::string::npos) << result.err;
   const render::FilmFile merged = render::readFilm(folder_ / "m.qfilm");
   EXPECT_EQ(*render::findFact(merged.notes, "device"), "Abacus 3000; Abacus 300; Sliderule");
@@ -389,7 +397,8 @@ TEST_F(Merge, ExposureOfAFilmIsForItsPicture) {
   EXPECT_EQ(result.err.find("apply"), std::string::npos) << result.err;
   arguments = command({"-o", "a.exr", "--exposure", "1"});
   std::erase(arguments, "--quiet");
-  EXPECT_NE(quintet(arguments).err.find("a.exr: linear radiance, --exposure and --tonemap do not apply"), std::string::npos);
+  EXPECT_NE(quintet(arguments).err.find("a.exr: linear radiance, --exposure and --tonemap do not apply"),
+            std::string::npos);
 }
 
 // Written like that by somebody else: whatever the notes say, they are the file's fault, and nothing is read out of bounds.
@@ -404,9 +413,10 @@ TEST_F(Merge, NotesOfAFilmAreNotTrusted) {
     expectError(merge({"b.qfilm"}, "m.exr"), 1, {"b.qfilm: header: " + problem});
     EXPECT_FALSE(std::filesystem::exists(folder_ / "m.exr"));
   };
-  const auto layer = [](const std::string& name, int source, const std::string& channels = R"(["X"])", const std::string& output = "0") {
-    return R"({"name":")" + name + R"(","channels":)" + channels + R"(,"exact":true,"source":)" + std::to_string(source) +
-           R"(,"output":)" + output + "}";
+  const auto layer = [](const std::string& name, int source, const std::string& channels = R"(["X"])",
+                        const std::string& output = "0") {
+    return R"({"name":")" + name + R"(","channels":)" + channels + R"(,"exact":true,"source":)" +
+           std::to_string(source) + R"(,"output":)" + output + "}";
   };
   const std::string unfit = "the layers of the film are not those of its outputs";
   refused("layers", "[" + layer("a", 1) + "]", unfit);  // coverage, of a mean
@@ -414,7 +424,8 @@ TEST_F(Merge, NotesOfAFilmAreNotTrusted) {
   refused("layers", "[" + layer("a", 0, R"(["X"])", "1") + "]", unfit);
   refused("layers", "[" + layer("a..b", 0) + "]", unfit);
   refused("layers", "[" + layer("a", 0, R"(["\n"])") + "]", unfit);
-  refused("layers", "[" + layer("a", 0) + "," + layer("a", 3) + "]", "--aov: 'a' and 'a' would both be the channel a.X");
+  refused("layers", "[" + layer("a", 0) + "," + layer("a", 3) + "]",
+          "--aov: 'a' and 'a' would both be the channel a.X");
   refused("layers", "[" + layer("a", 0, R"(["X"])", "-1") + "]", unfit);
   refused("layers", "[", "the layers of the film cannot be read");
   refused("layers", "[{}]", "the layers of the film cannot be read");

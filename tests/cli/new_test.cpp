@@ -25,7 +25,8 @@ class New : public CliTest {
     const io::Image image = this->picture(picture);
     const auto corner = image.pixel<std::uint8_t>(1, 1);
     bool differs = false;
-    for (std::uint32_t y = 0; y < image.height; ++y) differs = differs || !std::ranges::equal(image.pixel<std::uint8_t>(24, y), corner);
+    for (std::uint32_t y = 0; y < image.height; ++y)
+      differs = differs || !std::ranges::equal(image.pixel<std::uint8_t>(24, y), corner);
     EXPECT_TRUE(differs) << "all of one colour";
   }
 };

@@ -35,7 +35,8 @@ TEST(Values, Regions) {
 
 TEST(Values, Numbers) {
   EXPECT_EQ(parseNumber("--x", "2.5", 0, 10), 2.5);
-  for (const char* text : {"", "11", "-1", "1x", "inf", "nan", "0x1"}) EXPECT_THROW(parseNumber("--x", text, 0, 10), UsageError) << text;
+  for (const char* text : {"", "11", "-1", "1x", "inf", "nan", "0x1"})
+    EXPECT_THROW(parseNumber("--x", text, 0, 10), UsageError) << text;
   try {
     parseNumber("--x", "11", 0, 10);
   } catch (const UsageError& error) {
@@ -94,7 +95,8 @@ TEST(ProgressBar, TellsTheErrorWhereItIsKnown) {
 }
 
 TEST(ProgressBar, FitsTheTerminal) {
-  for (int width = 0; width < 160; ++width) EXPECT_LE(progressBar(half(), width, false).size(), static_cast<std::size_t>(width));
+  for (int width = 0; width < 160; ++width)
+    EXPECT_LE(progressBar(half(), width, false).size(), static_cast<std::size_t>(width));
   EXPECT_EQ(progressBar(half(), 58, false), "[=====>    ] 32/64 samples  12.3 Mrays/s  20 s  20 s left");
   EXPECT_EQ(progressBar(half(), 58, false).find('\x1b'), std::string::npos);
   EXPECT_NE(progressBar(half(), 58, true).find("\x1b[32m"), std::string::npos);

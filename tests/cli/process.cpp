@@ -79,15 +79,17 @@ std::vector<std::string> commandOf(const std::vector<std::string>& arguments, co
                                    const std::string& shell) {
   const std::string change = folder.empty() ? "" : "cd \"$0\" && ";
   const std::string more = shell.empty() ? "" : shell + " && ";
-  std::vector<std::string> command{"/bin/sh", "-c", change + more + "exec \"$@\"", folder.empty() ? "sh" : folder.string(),
-                                   QUINTET_BINARY};
+  std::vector<std::string> command{"/bin/sh", "-c", change + more + "exec \"$@\"",
+                                   folder.empty() ? "sh" : folder.string(), QUINTET_BINARY};
   command.insert(command.end(), arguments.begin(), arguments.end());
   return command;
 }
 
-pid_t spawn(std::vector<std::string> command, std::vector<std::string> environment, posix_spawn_file_actions_t& actions) {
+pid_t spawn(std::vector<std::string> command, std::vector<std::string> environment,
+            posix_spawn_file_actions_t& actions) {
   pid_t process = -1;
-  const int code = ::posix_spawn(&process, "/bin/sh", &actions, nullptr, pointers(command).data(), pointers(environment).data());
+  const int code =
+      ::posix_spawn(&process, "/bin/sh", &actions, nullptr, pointers(command).data(), pointers(environment).data());
   ::posix_spawn_file_actions_destroy(&actions);
   if (code != 0) throw std::runtime_error("cannot start a process");
   return process;

@@ -18,10 +18,10 @@ struct RunResult {
 };
 
 struct RunOptions {
-  std::filesystem::path folder;  // to run in
+  std::filesystem::path folder;                                  // to run in
   std::vector<std::pair<std::string, std::string>> environment;  // added
-  std::filesystem::path out;     // standard output goes to this file instead of RunResult
-  std::string shell;  // a line of sh before the binary takes over: "exec >&-", "ulimit -f 0"
+  std::filesystem::path out;  // standard output goes to this file instead of RunResult
+  std::string shell;          // a line of sh before the binary takes over: "exec >&-", "ulimit -f 0"
 };
 
 RunResult run(const std::vector<std::string>& arguments, const RunOptions& options = {});

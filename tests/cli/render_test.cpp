@@ -1,8 +1,8 @@
 // What `render` writes: pixels, formats, metadata, JSON, notes.
 #include <gmock/gmock.h>
 
-#include "fixtures.h"
 #include "base/file.h"
+#include "fixtures.h"
 #include "io/codec.h"
 
 namespace quintet::test {
@@ -40,7 +40,8 @@ TEST_F(Render, SizeFollowsTheCamera) {
 }
 
 TEST_F(Render, SameCommandSamePixels) {
-  const std::vector<std::string> arguments{"render", "scene.gltf", "--size", "24x16", "--spp", "5", "-q", "--bounces", "2"};
+  const std::vector<std::string> arguments{"render", "scene.gltf", "--size",    "24x16", "--spp",
+                                           "5",      "-q",         "--bounces", "2"};
   auto first = arguments, second = arguments, other = arguments;
   first.insert(first.end(), {"-o", "first.png"});
   second.insert(second.end(), {"-o", "second.png"});
@@ -150,11 +151,14 @@ TEST_F(Render, JsonSaysWhatWasHeldInMemory) {
   for (const auto& [purpose, size] : json["devicePeak"].items()) parts += size.get<std::uint64_t>();
   EXPECT_EQ(parts, bytes("peakDeviceBytes"));
   EXPECT_EQ(json["devicePeak"].size(), 8u);
-  const std::uint64_t peak = memory["deviceIsHost"].get<bool>() ? bytes("peakHostBytes") : std::max(bytes("peakHostBytes"), bytes("peakDeviceBytes"));
+  const std::uint64_t peak = memory["deviceIsHost"].get<bool>()
+                                 ? bytes("peakHostBytes")
+                                 : std::max(bytes("peakHostBytes"), bytes("peakDeviceBytes"));
   const double ratio = static_cast<double>(peak) / static_cast<double>(needed);
   EXPECT_NEAR(memory["ratio"].get<double>(), ratio, 1e-6 * ratio);
   double known = 0;
-  for (const char* stage : {"document", "meshes", "images", "hash", "view"}) known += json["stages"][stage].get<double>();
+  for (const char* stage : {"document", "meshes", "images", "hash", "view"})
+    known += json["stages"][stage].get<double>();
   EXPECT_LE(known, json["seconds"]["load"].get<double>() + 1e-3);
   for (const char* stage : {"lights", "upload", "order", "bottomLevel", "topLevel", "firstLaunch"})
     EXPECT_GE(json["stages"][stage].get<double>(), 0.0) << stage;
@@ -162,7 +166,8 @@ TEST_F(Render, JsonSaysWhatWasHeldInMemory) {
 
 // What the device holds beyond scene and film: staging of a download, tables, room in blocks.
 TEST_F(Render, LittleIsHeldBesideSceneAndFilm) {
-  const RunResult result = quintet({"render", "scene.gltf", "--program", "normals", "--size", "640x360", "--spp", "1", "-q", "--json", "-o", "out.png"});
+  const RunResult result = quintet({"render", "scene.gltf", "--program", "normals", "--size", "640x360", "--spp", "1",
+                                    "-q", "--json", "-o", "out.png"});
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
   const auto& memory = json["memory"];
@@ -174,7 +179,8 @@ TEST_F(Render, LittleIsHeldBesideSceneAndFilm) {
 }
 
 TEST_F(Render, TheDefaultEnvironmentIsSaid) {
-  const std::vector<std::string> arguments{"render", "scene.gltf", "--program", "normals", "--size", "8x8", "--spp", "1"};
+  const std::vector<std::string> arguments{"render", "scene.gltf", "--program", "normals",
+                                           "--size", "8x8",        "--spp",     "1"};
   const RunResult told = quintet(arguments);
   EXPECT_THAT(told.err, HasSubstr("default environment"));
   EXPECT_THAT(told.err, HasSubstr("scene.png: 8x8, 1 samples"));
@@ -191,7 +197,8 @@ TEST_F(Render, TimeEndsTheRendering) {
   const auto json = nlohmann::json::parse(result.out);
   EXPECT_GE(json["samples"], 4);
   EXPECT_LT(json["seconds"]["render"], 60.0);
-  const auto both = nlohmann::json::parse(quintet(quick({"-o", "out.png", "--json", "--time", "1000", "--spp", "2"})).out);
+  const auto both =
+      nlohmann::json::parse(quintet(quick({"-o", "out.png", "--json", "--time", "1000", "--spp", "2"})).out);
   EXPECT_EQ(both["samples"], 2);
 }
 
@@ -205,8 +212,8 @@ TEST_F(Render, ViewFromTheCommandLine) {
 }
 
 TEST_F(Render, EnvironmentOfOneColour) {
-  succeed({"render", "scene.gltf", "--size", "8x8", "--spp", "1", "-q", "-o", "sky.exr", "--look-from", "0,0,4", "--look-at", "0,0,8",
-           "--env", "0.25,0.5,1", "--env-intensity", "2"});
+  succeed({"render", "scene.gltf", "--size", "8x8", "--spp", "1", "-q", "-o", "sky.exr", "--look-from", "0,0,4",
+           "--look-at", "0,0,8", "--env", "0.25,0.5,1", "--env-intensity", "2"});
   const io::Image image = picture("sky.exr");
   EXPECT_NEAR(image.pixel<float>(4, 4)[0], 0.5f, 1e-3f);
   EXPECT_NEAR(image.pixel<float>(4, 4)[2], 2.0f, 1e-2f);

@@ -35,7 +35,9 @@ scene::Scene makeScene() {
 vec3 eyeOf(const scene::Camera& camera) { return vec3(camera.worldFromCamera[3]); }
 vec3 wayOf(const scene::Camera& camera) { return -vec3(camera.worldFromCamera[2]); }
 
-void expectNear(const vec3& a, const vec3& b) { EXPECT_LT(glm::length(a - b), 1e-5f) << a.x << ' ' << a.y << ' ' << a.z; }
+void expectNear(const vec3& a, const vec3& b) {
+  EXPECT_LT(glm::length(a - b), 1e-5f) << a.x << ' ' << a.y << ' ' << a.z;
+}
 
 TEST(ChooseCamera, TheFirstThatIsGiven) {
   scene::Scene scene = makeScene();

@@ -26,9 +26,12 @@ render::ErrorEstimate estimateOf(const render::FilmFile& film, double error, dou
   }
   return estimate;
 }
-RenderLimits limitsOf(std::optional<std::uint64_t> samples, std::optional<double> error) { return {samples, {}, error, true}; }
+RenderLimits limitsOf(std::optional<std::uint64_t> samples, std::optional<double> error) {
+  return {samples, {}, error, true};
+}
 
-std::vector<std::uint32_t> decided(const render::FilmFile& film, const render::ErrorEstimate& estimate, const RenderLimits& limits) {
+std::vector<std::uint32_t> decided(const render::FilmFile& film, const render::ErrorEstimate& estimate,
+                                   const RenderLimits& limits) {
   return decide(film.film.region, film.film.counts, estimate, limits);
 }
 
@@ -61,8 +64,10 @@ TEST(Decide, AsksForWhatTheErrorNeeds) {
   for (const std::uint32_t batches : even) EXPECT_NEAR(batches, 32 * (1.077 + 0.01), 1);
   const std::vector<std::uint32_t> plan = decided(film, estimateOf(film, 0.1, 3.0), limitsOf({}, 0.05));
   EXPECT_NEAR(static_cast<double>(plan[2]) / plan[0], 3.0, 0.2);
-  EXPECT_EQ(decided(film, estimateOf(film, 0.1, 3.0), limitsOf(1'000'000, 0.05)), plan) << "--spp far away changes nothing";
-  EXPECT_EQ(decided(film, estimateOf(film, 0.1, 3.0), limitsOf(48, 0.001)), decided(film, estimateOf(film, 0.1, 3.0), limitsOf(48, {})));
+  EXPECT_EQ(decided(film, estimateOf(film, 0.1, 3.0), limitsOf(1'000'000, 0.05)), plan)
+      << "--spp far away changes nothing";
+  EXPECT_EQ(decided(film, estimateOf(film, 0.1, 3.0), limitsOf(48, 0.001)),
+            decided(film, estimateOf(film, 0.1, 3.0), limitsOf(48, {})));
 }
 
 TEST(Decide, GivesUpOnWhatCannotBeKnown) {
@@ -87,12 +92,15 @@ TEST(Decide, TakesATenthMoreWhereTheEstimateSeesNoNeed) {
 
 TEST(Decide, DoublesUntilTheTimeIsOver) {
   const render::FilmFile film = filmOf(8);
-  for (const std::uint32_t batches : decided(film, estimateOf(film, 0.1, 1.0), limitsOf({}, {}))) EXPECT_NEAR(batches, 16, 1);
+  for (const std::uint32_t batches : decided(film, estimateOf(film, 0.1, 1.0), limitsOf({}, {})))
+    EXPECT_NEAR(batches, 16, 1);
 }
 
 TEST(IsFinished, WhereARenderingWouldEnd) {
   render::FilmFile film = filmOf(3);
-  const auto finished = [&](const RenderLimits& limits) { return isFinished(film, estimateOf(film, 0.1, 3.0), limits); };
+  const auto finished = [&](const RenderLimits& limits) {
+    return isFinished(film, estimateOf(film, 0.1, 3.0), limits);
+  };
   EXPECT_FALSE(finished(limitsOf(40, {}))) << "the first batches of all pixels";
   EXPECT_TRUE(finished(limitsOf(12, {})));
   EXPECT_TRUE(finished(limitsOf({}, 0.1)));
@@ -112,7 +120,8 @@ TEST(LooksAfter, EightTimesPerDoubling) {
   std::vector<std::uint64_t> looks;
   for (std::uint64_t batches = 0; batches <= 64; ++batches)
     if (looksAfter(batches)) looks.push_back(batches);
-  EXPECT_THAT(looks, testing::ElementsAre(4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20, 22, 24, 26, 28, 30, 32, 36, 40, 44, 48, 52, 56, 60, 64));
+  EXPECT_THAT(looks, testing::ElementsAre(4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20, 22, 24, 26, 28, 30, 32,
+                                          36, 40, 44, 48, 52, 56, 60, 64));
 }
 
 }  // namespace

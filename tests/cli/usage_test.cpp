@@ -11,8 +11,11 @@ TEST_F(Usage, VersionAndHelp) {
   EXPECT_EQ(version.status, 0);
   EXPECT_TRUE(version.out.starts_with("quintet 0.")) << version.out;
   EXPECT_EQ(version.err, "");
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{"--help"}, {"render", "--help"}, {"info", "--help"}, {"merge", "--help"}, {"compare", "--help"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"--help"},
+                                                    {"render", "--help"},
+                                                    {"info", "--help"},
+                                                    {"merge", "--help"},
+                                                    {"compare", "--help"}}) {
     const RunResult help = quintet(arguments);
     EXPECT_EQ(help.status, 0);
     EXPECT_EQ(help.err, "");
@@ -41,7 +44,8 @@ TEST_F(Usage, NoCommandShowsTheHelp) {
 }
 
 TEST_F(Usage, UnknownOption) {
-  expectError(quintet({"render", "scene.gltf", "--sice", "3x3"}), 2, {"unknown option '--sice'", "did you mean '--size'?"});
+  expectError(quintet({"render", "scene.gltf", "--sice", "3x3"}), 2,
+              {"unknown option '--sice'", "did you mean '--size'?"});
   expectError(quintet({"render", "--sice=3x3"}), 2, {"unknown option '--sice'", "did you mean '--size'?"});
   expectError(quintet({"info", "--jsn"}), 2, {"unknown option '--jsn'", "did you mean '--json'?"});
   expectError(quintet({"compare", "a", "b", "--metrik", "flip"}), 2, {"did you mean '--metric'?"});
@@ -55,7 +59,8 @@ TEST_F(Usage, MissingOrSuperfluousArguments) {
 }
 
 TEST_F(Usage, SizesThatMakeNoSense) {
-  for (const char* size : {"0x0", "0", "-5x10", "10x-5", "65537x10", "99999999999x1", "axb", "10x", "x10", "10x10x10", "1e3x10", ""})
+  for (const char* size :
+       {"0x0", "0", "-5x10", "10x-5", "65537x10", "99999999999x1", "axb", "10x", "x10", "10x10x10", "1e3x10", ""})
     expectError(quintet({"render", "scene.gltf", std::string("--size=") + size}), 2, {"--size"});
 }
 
@@ -120,8 +125,8 @@ TEST_F(Usage, ProgramHelpNamesTheParameters) {
 }
 
 TEST_F(Usage, SetMayBeRepeated) {
-  const RunResult result = quintet({"render", "scene.gltf", "--program", "ao", "--size", "8x8", "--spp", "1", "-q", "--set", "distance=2",
-                                    "--set", "background=0,0.5,1", "--json"});
+  const RunResult result = quintet({"render", "scene.gltf", "--program", "ao", "--size", "8x8", "--spp", "1", "-q",
+                                    "--set", "distance=2", "--set", "background=0,0.5,1", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const std::string parameters = nlohmann::json::parse(result.out)["parameters"];
   EXPECT_NE(parameters.find("distance=2"), std::string::npos) << parameters;

@@ -17,10 +17,13 @@ extern "C" const char* __lsan_default_suppressions() {
 
 void quintet::test::keepDriversLoaded() {
   std::vector<std::string> files;
-  ::dl_iterate_phdr([](dl_phdr_info* info, std::size_t, void* data) {
-    if (info->dlpi_name && *info->dlpi_name) static_cast<std::vector<std::string>*>(data)->push_back(info->dlpi_name);
-    return 0;
-  }, &files);
+  ::dl_iterate_phdr(
+      [](dl_phdr_info* info, std::size_t, void* data) {
+        if (info->dlpi_name && *info->dlpi_name)
+          static_cast<std::vector<std::string>*>(data)->push_back(info->dlpi_name);
+        return 0;
+      },
+      &files);
   for (const std::string& file : files) ::dlopen(file.c_str(), RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
 }
 

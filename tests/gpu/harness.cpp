@@ -68,7 +68,8 @@ void runPipeline(const gpu::ComputePipeline& pipeline, std::span<const std::byte
   context.wait(context.submit([&](gpu::Commands& commands) {
     pipeline.dispatch(commands, constants, x, y, z);
     commands.toHost(gpu::Stage::compute);
-  }), kTimeout);
+  }),
+               kTimeout);
 }
 
 const gpu::ComputePipeline& cachedPipeline(const std::string& glsl, const Defines& defines) {

@@ -52,9 +52,9 @@ void dispatchCompute(const std::string& glsl, std::span<const std::byte> constan
 
 struct ComputeOptions {
   Defines defines = {};
-  const gpu::BindlessSet* set = nullptr;        // for textures; at least 32 bytes of push constants
-  VkDeviceAddress frame = 0;                    // launch.frame of <quintet/frame.glsl>
-  std::array<VkDeviceAddress, 8> addresses{};   // what testAddress(0) … testAddress(7) return in GLSL
+  const gpu::BindlessSet* set = nullptr;       // for textures; at least 32 bytes of push constants
+  VkDeviceAddress frame = 0;                   // launch.frame of <quintet/frame.glsl>
+  std::array<VkDeviceAddress, 8> addresses{};  // what testAddress(0) … testAddress(7) return in GLSL
 };
 
 namespace detail {
@@ -84,8 +84,7 @@ std::vector<Out> runCompute(const std::string& body, const std::vector<In>& inpu
                             const ComputeOptions& options = {}) {
   static_assert(std::is_trivially_copyable_v<In> && sizeof(In) % 4 == 0);
   if (inputs.empty()) throw std::invalid_argument("runCompute: no inputs");
-  return detail::runComputeAs<Out>(
-      {body, std::as_bytes(std::span(inputs)), sizeof(In), sizeof(Out), count, options});
+  return detail::runComputeAs<Out>({body, std::as_bytes(std::span(inputs)), sizeof(In), sizeof(Out), count, options});
 }
 
 // One invocation per input.

@@ -23,8 +23,8 @@ struct Blocks {
 };
 
 // 32 long batches of `samples` in all.
-Blocks render(const ImageScene& s, render::DeviceScene& device, const scene::Camera& camera, const program::Program& program,
-              std::uint32_t samples, bool asRendered = false) {
+Blocks render(const ImageScene& s, render::DeviceScene& device, const scene::Camera& camera,
+              const program::Program& program, std::uint32_t samples, bool asRendered = false) {
   constexpr std::uint32_t kLongBatches = 32;
   PictureOptions options;
   options.program = program;
@@ -45,13 +45,15 @@ Blocks render(const ImageScene& s, render::DeviceScene& device, const scene::Cam
       const std::vector<vec4> pixels = renderer.film().downloadBatch(0);
       for (std::uint32_t y = 0; y < s.height; ++y)
         for (std::uint32_t x = 0; x < s.width; ++x)
-          sums[std::size_t{y / s.block} * blocks.columns + x / s.block] += glm::dvec3(pixels[std::size_t{y} * s.width + x]);
+          sums[std::size_t{y / s.block} * blocks.columns + x / s.block] +=
+              glm::dvec3(pixels[std::size_t{y} * s.width + x]);
     }
     for (std::size_t b = 0; b < sums.size(); ++b)
       for (glm::length_t c = 0; c < 3; ++c) blocks.means[b][static_cast<std::size_t>(c)].add(scale * sums[b][c]);
   }
   EXPECT_EQ(renderer.rays().droppedSamples, 0u);
-  std::printf("%s %s%s: %u samples, %.1f s, %.2f M rays\n", s.name, program.name.c_str(), asRendered ? " as planned" : "", kLongBatches * perLongBatch * render::kBatchSamples,
+  std::printf("%s %s%s: %u samples, %.1f s, %.2f M rays\n", s.name, program.name.c_str(),
+              asRendered ? " as planned" : "", kLongBatches * perLongBatch * render::kBatchSamples,
               renderer.statistics().renderSeconds, 1e-6 * static_cast<double>(renderer.rays().rays));
   return blocks;
 }
@@ -59,7 +61,8 @@ Blocks render(const ImageScene& s, render::DeviceScene& device, const scene::Cam
 // The path tracer as `render --spp` plans it. Its pixels share their numbers, so that errors cancel in a block, and neither
 // the spread of a pixel's batches nor that of neighbours says by how much. The means of blocks scatter less than those of
 // independent pixels, at most as much (BlueNoise.*, docs/measurements.md): `independent` lends its spread.
-Blocks renderAsPlanned(const ImageScene& s, render::DeviceScene& device, const scene::Camera& camera, const Blocks& independent) {
+Blocks renderAsPlanned(const ImageScene& s, render::DeviceScene& device, const scene::Camera& camera,
+                       const Blocks& independent) {
   Blocks blocks = render(s, device, camera, program::loadProgram("pathtracer"), s.pathtracerSamples, true);
   for (std::size_t b = 0; b < blocks.means.size(); ++b)
     for (std::size_t c = 0; c < 3; ++c) blocks.means[b][c] = independent.means[b][c].movedTo(blocks.means[b][c].mean());
@@ -69,8 +72,8 @@ Blocks renderAsPlanned(const ImageScene& s, render::DeviceScene& device, const s
 struct Verdict {
   double smallest = 1.0;  // p-value of all blocks and channels
   std::string where;
-  double whole = 1.0;     // p-value of the sum over the image, smallest of the channels
-  double noise = 0.0;     // standard error of that sum, relative
+  double whole = 1.0;  // p-value of the sum over the image, smallest of the channels
+  double noise = 0.0;  // standard error of that sum, relative
   bool rejected = false;
 };
 
@@ -83,9 +86,9 @@ Verdict compare(const Blocks& a, const Blocks& b) {
       const double p = pValue(ma, mb, 1e-6 * mb.mean());
       if (p < v.smallest) {
         v.smallest = p;
-        v.where = "block " + std::to_string(i % a.columns) + "," + std::to_string(i / a.columns) + " channel " + std::to_string(c) + ": " +
-                  std::to_string(ma.mean()) + " ± " + std::to_string(ma.standardError()) + " against " + std::to_string(mb.mean()) + " ± " +
-                  std::to_string(mb.standardError());
+        v.where = "block " + std::to_string(i % a.columns) + "," + std::to_string(i / a.columns) + " channel " +
+                  std::to_string(c) + ": " + std::to_string(ma.mean()) + " ± " + std::to_string(ma.standardError()) +
+                  " against " + std::to_string(mb.mean()) + " ± " + std::to_string(mb.standardError());
       }
       difference += ma.mean() - mb.mean();
       variance += ma.standardError() * ma.standardError() + mb.standardError() * mb.standardError();
@@ -100,7 +103,8 @@ Verdict compare(const Blocks& a, const Blocks& b) {
 }
 
 std::ostream& operator<<(std::ostream& out, const Verdict& v) {
-  return out << "smallest p " << v.smallest << " at " << v.where << "; whole image p " << v.whole << ", its error " << 100 * v.noise << " %";
+  return out << "smallest p " << v.smallest << " at " << v.where << "; whole image p " << v.whole << ", its error "
+             << 100 * v.noise << " %";
 }
 
 // The path tracer with MIS weights that do not add up to 1.

@@ -62,7 +62,8 @@ int addTexture(SceneBuilder& builder, std::uint32_t size, io::ColorEncoding enco
     for (std::uint32_t x = 0; x < size; ++x) {
       const vec4 c = glm::clamp(color(x, y), 0.0f, 1.0f);
       for (std::uint32_t k = 0; k < 4; ++k)
-        image.pixel<std::uint8_t>(x, y)[k] = static_cast<std::uint8_t>(255.0f * c[static_cast<glm::length_t>(k)] + 0.5f);
+        image.pixel<std::uint8_t>(x, y)[k] =
+            static_cast<std::uint8_t>(255.0f * c[static_cast<glm::length_t>(k)] + 0.5f);
     }
   builder.scene.images.push_back({"texture", std::move(image)});
   scene::Texture texture;
@@ -94,8 +95,12 @@ SceneBuilder textures() {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   scene::Material m = plastic(vec3(1.0f), 1.0f, 1.0f);
-  m.baseColorTexture = use(addTexture(scene, 8, io::ColorEncoding::sRgb, [](auto x, auto y) { return (x + y) % 2 ? vec4(0.9f, 0.7f, 0.2f, 1) : vec4(0.2f, 0.4f, 0.8f, 1); }));
-  m.metallicRoughnessTexture = use(addTexture(scene, 4, io::ColorEncoding::linear, [](auto x, auto y) { return vec4(0, 0.3f + 0.2f * static_cast<float>(x), y % 2 ? 1 : 0, 1); }));
+  m.baseColorTexture = use(addTexture(scene, 8, io::ColorEncoding::sRgb, [](auto x, auto y) {
+    return (x + y) % 2 ? vec4(0.9f, 0.7f, 0.2f, 1) : vec4(0.2f, 0.4f, 0.8f, 1);
+  }));
+  m.metallicRoughnessTexture = use(addTexture(scene, 4, io::ColorEncoding::linear, [](auto x, auto y) {
+    return vec4(0, 0.3f + 0.2f * static_cast<float>(x), y % 2 ? 1 : 0, 1);
+  }));
   m.normalTexture = use(addTexture(scene, 16, io::ColorEncoding::linear, [&](auto, auto) {
     return vec4(0.5f + 0.5f * glm::normalize(vec3(uniform(random) - 0.5f, uniform(random) - 0.5f, 1.0f)), 1.0f);
   }));
@@ -167,15 +172,19 @@ SceneBuilder solids() {
     scene.scene.materials.push_back(m);
     return static_cast<int>(scene.scene.materials.size()) - 1;
   };
-  const int light = material(emitter({4, 3, 2})), grey = material(lambert(vec3(0.6f))), metal = material(plastic(vec3(0.9f), 0.4f, 1.0f));
+  const int light = material(emitter({4, 3, 2})), grey = material(lambert(vec3(0.6f))),
+            metal = material(plastic(vec3(0.9f), 0.4f, 1.0f));
   scene::PrimitiveSet set;
-  set.primitives = {solid(sphere, {-1.6f, 0.6f, 0.5f}, vec3(0.6f), light), solid(box, {1.9f, 0.4f, 0.2f}, {0.3f, 0.4f, 0.3f}, light),
-                    solid(torus, {0.2f, 0.25f, 1.0f}, vec3(0.45f), light),     solid(cone, {-0.6f, 0.6f, -0.8f}, {0.4f, 0.6f, 0.4f}, metal),
+  set.primitives = {solid(sphere, {-1.6f, 0.6f, 0.5f}, vec3(0.6f), light),
+                    solid(box, {1.9f, 0.4f, 0.2f}, {0.3f, 0.4f, 0.3f}, light),
+                    solid(torus, {0.2f, 0.25f, 1.0f}, vec3(0.45f), light),
+                    solid(cone, {-0.6f, 0.6f, -0.8f}, {0.4f, 0.6f, 0.4f}, metal),
                     solid(cylinder, {1.0f, 0.6f, -0.9f}, {0.3f, 0.6f, 0.3f}, grey)};
   addSet(scene, set);
   scene::PrimitiveSet tree;
   tree.kind = scene::PrimitiveSetKind::csg;
-  tree.primitives = {solid(box, {0.2f, 0.7f, -0.1f}, vec3(0.5f), grey), solid(sphere, {0.2f, 1.0f, 0.3f}, vec3(0.5f), metal)};
+  tree.primitives = {solid(box, {0.2f, 0.7f, -0.1f}, vec3(0.5f), grey),
+                     solid(sphere, {0.2f, 1.0f, 0.3f}, vec3(0.5f), metal)};
   tree.nodes = {{scene::CsgOperation::leaf, 0}, {scene::CsgOperation::leaf, 1}, {scene::CsgOperation::subtract, 0}};
   tree.trees = {{0, 3}};
   addSet(scene, tree);
@@ -187,7 +196,8 @@ SceneBuilder alpha() {
   SceneBuilder scene = stage(vec3(2.0f), vec3(0.4f));
   const auto holes = [](auto x, auto y) { return vec4(0.3f, 0.6f, 0.2f, (x * y) % 3 ? 0.9f : 0.2f); };
   scene::Material mask = lambert(vec3(1.0f)), blend = mask, panel = emitter({4, 3, 2});
-  mask.baseColorTexture = blend.baseColorTexture = panel.baseColorTexture = use(addTexture(scene, 8, io::ColorEncoding::sRgb, holes));
+  mask.baseColorTexture = blend.baseColorTexture = panel.baseColorTexture =
+      use(addTexture(scene, 8, io::ColorEncoding::sRgb, holes));
   mask.alphaMode = scene::AlphaMode::mask;
   blend.alphaMode = panel.alphaMode = scene::AlphaMode::blend;
   blend.baseColor.a = 0.6f;
@@ -202,7 +212,8 @@ SceneBuilder lens() {
   SceneBuilder scene = stage();
   for (int i = 0; i < 5; ++i) {
     const float x = -1.2f + 0.6f * static_cast<float>(i), z = 2.0f - static_cast<float>(i);
-    scene.add(box({x, 0, z}, {x + 0.4f, 1.0f, z + 0.4f}), lambert(vec3(0.2f + 0.15f * static_cast<float>(i), 0.5f, 0.4f)));
+    scene.add(box({x, 0, z}, {x + 0.4f, 1.0f, z + 0.4f}),
+              lambert(vec3(0.2f + 0.15f * static_cast<float>(i), 0.5f, 0.4f)));
   }
   scene.scene.cameras[0].apertureRadius = 0.15f;
   scene.scene.cameras[0].focusDistance = 4.5f;
@@ -228,7 +239,9 @@ SceneBuilder lanterns() {
   SceneBuilder scene;
   scene.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.5f, 0.47f, 0.42f}));
   std::mt19937 random(17);
-  const auto draw = [&](float low, float high) { return low + (high - low) * static_cast<float>(random() % 65536) / 65536.0f; };
+  const auto draw = [&](float low, float high) {
+    return low + (high - low) * static_cast<float>(random() % 65536) / 65536.0f;
+  };
   for (int i = 0; i < 8; ++i) {
     const vec3 low(draw(-2.6f, 2.0f), 0, draw(-2.6f, 1.5f));
     scene.add(box(low, low + (i % 2 ? vec3(0.8f, 0.6f, 0.08f) : vec3(0.08f, 0.6f, 0.8f))), lambert(vec3(0.7f)));
@@ -237,10 +250,12 @@ SceneBuilder lanterns() {
     scene::Geometry lights;
     for (std::uint32_t i = 0; i < 50; ++i) {
       const vec3 center(draw(-2.8f, 2.8f), draw(0.15f, 1.2f), draw(-2.8f, 2.8f));
-      for (int corner = 0; corner < 3; ++corner) lights.positions.push_back(center + vec3(draw(-0.2f, 0.2f), draw(-0.2f, 0.2f), draw(-0.2f, 0.2f)));
+      for (int corner = 0; corner < 3; ++corner)
+        lights.positions.push_back(center + vec3(draw(-0.2f, 0.2f), draw(-0.2f, 0.2f), draw(-0.2f, 0.2f)));
       lights.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
-    scene.add(lights, emitter(std::exp2(static_cast<float>(strength)) * vec3(draw(0.3f, 1), draw(0.3f, 1), draw(0.3f, 1))));
+    scene.add(lights,
+              emitter(std::exp2(static_cast<float>(strength)) * vec3(draw(0.3f, 1), draw(0.3f, 1), draw(0.3f, 1))));
   }
   scene.camera(perspective({0, 2, 5}, {0, 0.4f, 0}, 45.0f));
   return scene;
@@ -258,9 +273,13 @@ void addSunAndSky(SceneBuilder& scene, const vec3& sun) {
 SceneBuilder window() {
   SceneBuilder scene;
   const scene::Material white = lambert({0.8f, 0.78f, 0.74f});
-  scene.add(box({-2, -0.2f, -2}, {2, 0, 2}), plastic({0.42f, 0.27f, 0.16f}, 0.4f)).add(box({-2, 2.4f, -2}, {2, 2.6f, 2}), white);
-  scene.add(box({-2, 0, -2}, {-1.8f, 2.4f, 2}), lambert({0.35f, 0.45f, 0.62f})).add(box({-1.8f, 0, -2}, {1.8f, 2.4f, -1.8f}), white);
-  scene.add(box({-1.8f, 0, 1.8f}, {1.8f, 2.4f, 2}), white).add(box({1.8f, 0, -2}, {2, 0.5f, 2}), white).add(box({1.8f, 2.1f, -2}, {2, 2.4f, 2}), white);
+  scene.add(box({-2, -0.2f, -2}, {2, 0, 2}), plastic({0.42f, 0.27f, 0.16f}, 0.4f))
+      .add(box({-2, 2.4f, -2}, {2, 2.6f, 2}), white);
+  scene.add(box({-2, 0, -2}, {-1.8f, 2.4f, 2}), lambert({0.35f, 0.45f, 0.62f}))
+      .add(box({-1.8f, 0, -2}, {1.8f, 2.4f, -1.8f}), white);
+  scene.add(box({-1.8f, 0, 1.8f}, {1.8f, 2.4f, 2}), white)
+      .add(box({1.8f, 0, -2}, {2, 0.5f, 2}), white)
+      .add(box({1.8f, 2.1f, -2}, {2, 2.4f, 2}), white);
   scene.add(box({1.8f, 0.5f, -2}, {2, 2.1f, -1.1f}), white).add(box({1.8f, 0.5f, 1.1f}, {2, 2.1f, 2}), white);
   scene.add(box({-0.6f, 0, -1}, {0.2f, 0.7f, -0.3f}), lambert({0.7f, 0.16f, 0.13f}));
   addSunAndSky(scene, {0.78f, 0.55f, 0.28f});
@@ -279,11 +298,14 @@ SceneBuilder foliage() {
     return vec4(0.25f, 0.5f, 0.1f, p.x * p.x + 3.0f * p.y * p.y < 1.0f ? 1.0f : 0.0f);
   }));
   std::mt19937 random(29);
-  const auto draw = [&](float low, float high) { return low + (high - low) * static_cast<float>(random() % 65536) / 65536.0f; };
+  const auto draw = [&](float low, float high) {
+    return low + (high - low) * static_cast<float>(random() % 65536) / 65536.0f;
+  };
   scene::Geometry leaves;
   for (std::uint32_t i = 0; i < 250; ++i) {
     const float angle = draw(0, 2 * kPi), size = draw(0.25f, 0.5f);
-    const vec3 a = size * vec3(std::cos(angle), draw(-0.4f, 0.4f), std::sin(angle)), b = size * vec3(-std::sin(angle), draw(-0.4f, 0.4f), std::cos(angle));
+    const vec3 a = size * vec3(std::cos(angle), draw(-0.4f, 0.4f), std::sin(angle)),
+               b = size * vec3(-std::sin(angle), draw(-0.4f, 0.4f), std::cos(angle));
     const scene::Geometry one = withUvs(quad({draw(-2, 2), draw(0.1f, 1.5f), draw(-2, 2)}, a, b));
     for (const uvec3& t : one.triangles) leaves.triangles.push_back(t + 4 * i);
     leaves.positions.insert(leaves.positions.end(), one.positions.begin(), one.positions.end());

@@ -14,7 +14,7 @@ struct ImageScene {
   const char* name;
   SceneBuilder (*make)();  // with one camera
   std::uint32_t width, height;
-  std::uint32_t block;      // pixels a side; divides both
+  std::uint32_t block;                            // pixels a side; divides both
   std::uint32_t pathtracerSamples, naiveSamples;  // multiples of 128
   // Light samples matter. Also rendered with its number of samples planned, and with wrong MIS weights, which must be
   // noticed: costs time.

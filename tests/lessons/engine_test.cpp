@@ -57,14 +57,17 @@ TEST(LessonRecords, HitGroupsRayTypesAndTheirNumbers) {
     }
     // A surface that looks away from the sun is dark whatever is in between.
     const double cosine = std::max(0.0, glm::dot(normal, toSun));
-    const Blocked blocked = blockers(scene, {s.position + 1e-6 * (glm::dot(toSun, geometric) < 0 ? -geometric : geometric), toSun}, decided);
+    const Blocked blocked = blockers(
+        scene, {s.position + 1e-6 * (glm::dot(toSun, geometric) < 0 ? -geometric : geometric), toSun}, decided);
     if (!decided && cosine > 0) return kUndecided;
     const dvec3 sun = blocked.other ? dvec3(0) : blocked.foil ? dvec3(0.2, 0.75, 0.35) : dvec3(1);
     tinted += blocked.foil && !blocked.other;
     return glm::dvec4(base * (0.2 + 0.8 * sun * cosine), 1);
   };
-  expectPixels(picture, [&](dvec2 p) { return pixel(p, false); }, 1e-4, 0.15, 0);
-  expectPixels(picture, [&](dvec2 p) { return pixel(p, true); }, 1e-3, 0.15, 1);
+  expectPixels(
+      picture, [&](dvec2 p) { return pixel(p, false); }, 1e-4, 0.15, 0);
+  expectPixels(
+      picture, [&](dvec2 p) { return pixel(p, true); }, 1e-3, 0.15, 1);
   EXPECT_GT(stripes, 20);
   EXPECT_GT(tinted, 10);
   EXPECT_GT(free, 10);
@@ -75,33 +78,39 @@ TEST(LessonLambert, MirrorsShadowsAndTheGradient) {
   const dvec3 toLight = glm::normalize(dvec3(0.4, 1, 0.6));
   const dvec3 base[5] = {{0.7, 0.68, 0.6}, {0.9, 0.9, 0.92}, {0.85, 0.4, 0.15}, {0.85, 0.4, 0.15}, {0.9, 0.9, 0.92}};
   int mirrored = 0, shadowed = 0;
-  expectPixels(renderLesson("20_lambert"), [&](dvec2 point) {
-    HostRay ray = cameraRay({3, 2.6, 6.5}, {0, 0.9, 0}, {0, 1, 0}, 38, 1.5, point);
-    dvec3 weight(1);
-    for (int bounce = 0; bounce <= 8; ++bounce) {
-      const HostHit hit = closestTriangle(scene, ray, 1e-6, 1e5);
-      if (hit.margin < kMargin) return kUndecided;
-      if (hit.t < 0) return glm::dvec4(weight * glm::mix(dvec3(0.85, 0.8, 0.75), dvec3(0.25, 0.45, 0.8), 0.5 + 0.5 * ray.direction.y), 1);
-      const HostSurface s = surfaceAt(scene, hit);
-      const bool front = glm::dot(s.faceNormal, ray.direction) < 0;
-      const dvec3 normal = front ? s.normal : -s.normal, position = s.position + 1e-6 * (front ? s.faceNormal : -s.faceNormal);
-      const dvec3 color = base[hit.instance];
-      if (hit.instance == 1 || hit.instance == 4) {
-        if (bounce == 8) return kUndecided;
-        mirrored++;
-        weight *= color;
-        ray = {position, glm::reflect(ray.direction, normal)};
-        continue;
-      }
-      const double cosine = std::max(0.0, glm::dot(normal, toLight));
-      const HostHit shadow = closestTriangle(scene, {position, toLight}, 1e-6, 1e5);
-      if (cosine > 0 && shadow.margin < kMargin) return kUndecided;
-      shadowed += shadow.t > 0;
-      const dvec3 sun = shadow.t < 0 ? dvec3(0.9, 0.85, 0.8) * cosine : dvec3(0);
-      return glm::dvec4(weight * color * (dvec3(0.15, 0.17, 0.2) + sun), 1);
-    }
-    return kUndecided;
-  }, 2e-3, 0.25);
+  expectPixels(
+      renderLesson("20_lambert"),
+      [&](dvec2 point) {
+        HostRay ray = cameraRay({3, 2.6, 6.5}, {0, 0.9, 0}, {0, 1, 0}, 38, 1.5, point);
+        dvec3 weight(1);
+        for (int bounce = 0; bounce <= 8; ++bounce) {
+          const HostHit hit = closestTriangle(scene, ray, 1e-6, 1e5);
+          if (hit.margin < kMargin) return kUndecided;
+          if (hit.t < 0)
+            return glm::dvec4(
+                weight * glm::mix(dvec3(0.85, 0.8, 0.75), dvec3(0.25, 0.45, 0.8), 0.5 + 0.5 * ray.direction.y), 1);
+          const HostSurface s = surfaceAt(scene, hit);
+          const bool front = glm::dot(s.faceNormal, ray.direction) < 0;
+          const dvec3 normal = front ? s.normal : -s.normal,
+                      position = s.position + 1e-6 * (front ? s.faceNormal : -s.faceNormal);
+          const dvec3 color = base[hit.instance];
+          if (hit.instance == 1 || hit.instance == 4) {
+            if (bounce == 8) return kUndecided;
+            mirrored++;
+            weight *= color;
+            ray = {position, glm::reflect(ray.direction, normal)};
+            continue;
+          }
+          const double cosine = std::max(0.0, glm::dot(normal, toLight));
+          const HostHit shadow = closestTriangle(scene, {position, toLight}, 1e-6, 1e5);
+          if (cosine > 0 && shadow.margin < kMargin) return kUndecided;
+          shadowed += shadow.t > 0;
+          const dvec3 sun = shadow.t < 0 ? dvec3(0.9, 0.85, 0.8) * cosine : dvec3(0);
+          return glm::dvec4(weight * color * (dvec3(0.15, 0.17, 0.2) + sun), 1);
+        }
+        return kUndecided;
+      },
+      2e-3, 0.25);
   EXPECT_GT(mirrored, 100);
   EXPECT_GT(shadowed, 40);
 }

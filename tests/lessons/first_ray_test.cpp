@@ -14,7 +14,8 @@ void expectSilhouette(const LessonPicture& picture, const scene::Scene& scene, d
   for (std::uint32_t y = 0; y < picture.height; ++y) {
     for (std::uint32_t x = 0; x < picture.width; ++x) {
       const dvec2 point((x + 0.5) / picture.width, (y + 0.5) / picture.height);
-      const HostHit hit = closestTriangle(scene, cameraRay(dvec3(0), dvec3(0, 0, -1), dvec3(0, 1, 0), fieldOfView, aspect, point), 0.001, 1000);
+      const HostHit hit = closestTriangle(
+          scene, cameraRay(dvec3(0), dvec3(0, 0, -1), dvec3(0, 1, 0), fieldOfView, aspect, point), 0.001, 1000);
       if (hit.margin < kUndecided) continue;
       const vec3 expected = hit.t > 0 ? color : vec3(0);
       EXPECT_LT(glm::length(vec3(picture.at(x, y)) - expected), 1e-5f) << x << ", " << y;

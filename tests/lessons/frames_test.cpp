@@ -37,16 +37,20 @@ TEST(LessonProgressive, IsTheAverageOfItsFrames) {
   const scene::Scene scene = lessonScene("09_progressive");
   LessonOptions options;
   options.frames = 5;
-  expectPixels(renderLesson("09_progressive", options), [&](dvec2 point) {
-    const dvec2 pixel(options.width, options.height);
-    dvec3 sum(0);
-    for (int frame = 0; frame < 5; ++frame) {
-      const glm::dvec4 value = progressiveSample(scene, point + (dvec2(halton(frame + 1, 2), halton(frame + 1, 3)) - 0.5) / pixel);
-      if (value.w == 0) return kUndecided;
-      sum += dvec3(value);
-    }
-    return glm::dvec4(sum / 5.0, 1);
-  }, 5e-5, 0.1);
+  expectPixels(
+      renderLesson("09_progressive", options),
+      [&](dvec2 point) {
+        const dvec2 pixel(options.width, options.height);
+        dvec3 sum(0);
+        for (int frame = 0; frame < 5; ++frame) {
+          const glm::dvec4 value =
+              progressiveSample(scene, point + (dvec2(halton(frame + 1, 2), halton(frame + 1, 3)) - 0.5) / pixel);
+          if (value.w == 0) return kUndecided;
+          sum += dvec3(value);
+        }
+        return glm::dvec4(sum / 5.0, 1);
+      },
+      5e-5, 0.1);
 }
 
 TEST(LessonProgressive, TheErrorFalls) {
@@ -78,23 +82,27 @@ TEST(LessonDynamic, InstancesMove) {
     LessonOptions options;
     options.frames = frame + 1;
     const LessonPicture picture = renderLesson("19_dynamic", options);
-    for (scene::Instance& instance : scene.instances) instance.worldFromObject = scene::worldFromObjectAt(instance, static_cast<float>(frame));
+    for (scene::Instance& instance : scene.instances)
+      instance.worldFromObject = scene::worldFromObjectAt(instance, static_cast<float>(frame));
     const dvec3 toSun = glm::normalize(dvec3(0.5, 1, 0.4));
     const dvec3 base[3] = {{0.6, 0.62, 0.6}, {0.85, 0.45, 0.2}, {0.2, 0.5, 0.75}};
     int moving = 0;
-    expectPixels(picture, [&](dvec2 point) {
-      const dvec2 plane = (2.0 * point - 1.0) * dvec2(1.5, 1) * std::tan(glm::radians(20.0)) - dvec2(0, 0.35);
-      const HostRay ray{{0, 3.5, 8}, glm::normalize(dvec3(plane, -1))};
-      const HostHit hit = closestTriangle(scene, ray, 0.001, 1000);
-      if (hit.margin < 2e-4) return kUndecided;
-      if (hit.t < 0) return glm::dvec4(0.6, 0.72, 0.85, 1);
-      moving += hit.instance > 0;
-      const HostSurface s = surfaceAt(scene, hit);
-      const HostHit shadow = closestTriangle(scene, {s.position + 0.001 * s.faceNormal, toSun}, 0, 1000);
-      if (shadow.margin < 2e-4) return kUndecided;
-      const double light = shadow.t < 0 ? std::max(0.0, glm::dot(s.faceNormal, toSun)) : 0.0;
-      return glm::dvec4(base[hit.instance] * (0.2 + 0.8 * light), 1);
-    }, 1e-4, 0.1);
+    expectPixels(
+        picture,
+        [&](dvec2 point) {
+          const dvec2 plane = (2.0 * point - 1.0) * dvec2(1.5, 1) * std::tan(glm::radians(20.0)) - dvec2(0, 0.35);
+          const HostRay ray{{0, 3.5, 8}, glm::normalize(dvec3(plane, -1))};
+          const HostHit hit = closestTriangle(scene, ray, 0.001, 1000);
+          if (hit.margin < 2e-4) return kUndecided;
+          if (hit.t < 0) return glm::dvec4(0.6, 0.72, 0.85, 1);
+          moving += hit.instance > 0;
+          const HostSurface s = surfaceAt(scene, hit);
+          const HostHit shadow = closestTriangle(scene, {s.position + 0.001 * s.faceNormal, toSun}, 0, 1000);
+          if (shadow.margin < 2e-4) return kUndecided;
+          const double light = shadow.t < 0 ? std::max(0.0, glm::dot(s.faceNormal, toSun)) : 0.0;
+          return glm::dvec4(base[hit.instance] * (0.2 + 0.8 * light), 1);
+        },
+        1e-4, 0.1);
     EXPECT_GT(moving, 40) << "frame " << frame;
   }
 }

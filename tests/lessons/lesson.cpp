@@ -21,7 +21,9 @@ vec4 LessonPicture::fromTop(std::uint32_t x, std::uint32_t y, std::size_t output
   return {p[0], p[1], p[2], p[3]};
 }
 
-vec4 LessonPicture::at(std::uint32_t x, std::uint32_t y, std::size_t output) const { return fromTop(x, height - 1 - y, output); }
+vec4 LessonPicture::at(std::uint32_t x, std::uint32_t y, std::size_t output) const {
+  return fromTop(x, height - 1 - y, output);
+}
 
 program::Program lesson(const std::string& name) { return program::loadProgram("lessons/" + name); }
 
@@ -38,7 +40,7 @@ LessonPicture renderLesson(const std::string& name, const LessonOptions& options
   settings.height = options.height;
   settings.seed = options.seed;
   const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-  settings.camera = options.camera              ? *options.camera
+  settings.camera = options.camera           ? *options.camera
                     : !scene.cameras.empty() ? scene.cameras.front()
                                              : scene::frameScene(scene::worldBounds(scene), aspect);
   settings.parameters = program::ParameterValues(program.parameters);
@@ -63,7 +65,8 @@ LessonPicture renderLesson(const std::string& name, const LessonOptions& options
   return picture;
 }
 
-HostRay cameraRay(const dvec3& eye, const dvec3& lookAt, const dvec3& up, double fieldOfViewYDegrees, double aspect, const dvec2& point) {
+HostRay cameraRay(const dvec3& eye, const dvec3& lookAt, const dvec3& up, double fieldOfViewYDegrees, double aspect,
+                  const dvec2& point) {
   const dvec3 forward = glm::normalize(lookAt - eye);
   const dvec3 right = glm::normalize(glm::cross(forward, up));
   const dvec3 upright = glm::cross(right, forward);
@@ -84,7 +87,9 @@ HostHit closestTriangle(const scene::Scene& scene, const HostRay& ray, double tm
       const scene::Geometry& geometry = mesh.geometries[g];
       for (std::size_t t = 0; t < geometry.triangles.size(); ++t) {
         const uvec3 v = geometry.triangles[t];
-        const auto corner = [&](std::uint32_t k) { return dvec3(world * glm::dvec4(dvec3(geometry.positions[k]), 1.0)); };
+        const auto corner = [&](std::uint32_t k) {
+          return dvec3(world * glm::dvec4(dvec3(geometry.positions[k]), 1.0));
+        };
         const dvec3 a = corner(v.x), e1 = corner(v.y) - a, e2 = corner(v.z) - a;
         const dvec3 p = glm::cross(ray.direction, e2);
         const double det = glm::dot(e1, p);
@@ -105,7 +110,8 @@ HostHit closestTriangle(const scene::Scene& scene, const HostRay& ray, double tm
 
 HostSurface surfaceAt(const scene::Scene& scene, const HostHit& hit) {
   const scene::Instance& instance = scene.instances[static_cast<std::size_t>(hit.instance)];
-  const scene::Geometry& g = scene.meshes[static_cast<std::size_t>(instance.mesh)].geometries[static_cast<std::size_t>(hit.geometry)];
+  const scene::Geometry& g =
+      scene.meshes[static_cast<std::size_t>(instance.mesh)].geometries[static_cast<std::size_t>(hit.geometry)];
   const uvec3 v = g.triangles[static_cast<std::size_t>(hit.primitive)];
   const dvec3 weights(1 - hit.barycentric.x - hit.barycentric.y, hit.barycentric.x, hit.barycentric.y);
   const auto blend = [&](const auto& values) {
@@ -124,8 +130,8 @@ HostSurface surfaceAt(const scene::Scene& scene, const HostHit& hit) {
   return s;
 }
 
-void expectPixels(const LessonPicture& picture, const std::function<glm::dvec4(dvec2)>& expected, double tolerance, double undecided,
-                  std::size_t output) {
+void expectPixels(const LessonPicture& picture, const std::function<glm::dvec4(dvec2)>& expected, double tolerance,
+                  double undecided, std::size_t output) {
   int skipped = 0, failed = 0;
   std::string text;
   for (std::uint32_t y = 0; y < picture.height; ++y) {
@@ -139,7 +145,8 @@ void expectPixels(const LessonPicture& picture, const std::function<glm::dvec4(d
       const dvec3 difference = glm::abs(got - dvec3(want));
       if (std::max({difference.x, difference.y, difference.z}) <= tolerance) continue;
       if (failed++ < 8)
-        text += fmt::format("  pixel {}, {}: {:.6f} {:.6f} {:.6f} instead of {:.6f} {:.6f} {:.6f}\n", x, y, got.x, got.y, got.z, want.x, want.y, want.z);
+        text += fmt::format("  pixel {}, {}: {:.6f} {:.6f} {:.6f} instead of {:.6f} {:.6f} {:.6f}\n", x, y, got.x,
+                            got.y, got.z, want.x, want.y, want.z);
     }
   }
   const int pixels = static_cast<int>(picture.width * picture.height);

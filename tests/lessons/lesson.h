@@ -40,7 +40,7 @@ struct LessonPicture {
   vec4 fromTop(std::uint32_t x, std::uint32_t y, std::size_t output = 0) const;
 };
 
-program::Program lesson(const std::string& name);      // "01_first_ray"
+program::Program lesson(const std::string& name);  // "01_first_ray"
 scene::Scene lessonScene(const std::string& name);
 LessonPicture renderLesson(const std::string& name, const LessonOptions& options = {});
 
@@ -49,7 +49,8 @@ struct HostRay {
   dvec3 direction;
 };
 // Camera at `eye` looking along `forward` (unit) with `up`; `point` in [0,1]², (0,0) at the bottom left.
-HostRay cameraRay(const dvec3& eye, const dvec3& lookAt, const dvec3& up, double fieldOfViewYDegrees, double aspect, const dvec2& point);
+HostRay cameraRay(const dvec3& eye, const dvec3& lookAt, const dvec3& up, double fieldOfViewYDegrees, double aspect,
+                  const dvec2& point);
 
 struct HostHit {
   double t = -1;  // < 0: none

@@ -33,8 +33,8 @@ struct Random {
 using HostPath = std::function<dvec3(dvec2 point, Random& random)>;
 
 // `toLinear`: from what the lesson shows. Several runs with different seeds would need a seed: independent frames do.
-void expectBlocks(const std::string& name, const LessonOptions& given, std::uint32_t frames, int hostSamples, const HostPath& path,
-                  const std::function<double(double)>& toLinear) {
+void expectBlocks(const std::string& name, const LessonOptions& given, std::uint32_t frames, int hostSamples,
+                  const HostPath& path, const std::function<double(double)>& toLinear) {
   LessonOptions options = given;
   options.width = kWidth;
   options.height = kHeight;
@@ -89,8 +89,10 @@ TEST(LessonPathTracer, ConvergesToTheSameAsWithoutSamplingTheLamp) {
   const scene::Scene scene = lessonScene("22_path_tracer");
   LessonOptions options;
   options.set = {{"bounces", "3"}, {"samples", "32"}};
-  expectBlocks("22_path_tracer", options, 8, 2400, [&](dvec2 point, Random& random) { return cornellPath(scene, point, random); },
-               [](double v) { return std::pow(v, 2.2); });
+  expectBlocks(
+      "22_path_tracer", options, 8, 2400,
+      [&](dvec2 point, Random& random) { return cornellPath(scene, point, random); },
+      [](double v) { return std::pow(v, 2.2); });
 }
 
 // ---- 21 ----
@@ -122,8 +124,10 @@ Material materialOf(std::uint32_t i) {
 }
 
 dvec3 weekendPath(const std::vector<Bounds3>& boxes, dvec2 point, Random& random) {
-  const dvec3 eye(13, 2, 3), back = glm::normalize(eye), right = glm::normalize(glm::cross(dvec3(0, 1, 0), back)), up = glm::cross(back, right);
-  const dvec2 plane = (2.0 * point - 1.0) * dvec2(static_cast<double>(kWidth) / kHeight, 1) * std::tan(glm::radians(10.0));
+  const dvec3 eye(13, 2, 3), back = glm::normalize(eye), right = glm::normalize(glm::cross(dvec3(0, 1, 0), back)),
+                             up = glm::cross(back, right);
+  const dvec2 plane =
+      (2.0 * point - 1.0) * dvec2(static_cast<double>(kWidth) / kHeight, 1) * std::tan(glm::radians(10.0));
   dvec2 lens;
   do lens = 2.0 * dvec2(random(), random()) - 1.0;
   while (glm::dot(lens, lens) > 1);
@@ -156,8 +160,10 @@ dvec3 weekendPath(const std::vector<Bounds3>& boxes, dvec2 point, Random& random
       const double eta = front ? 1 / 1.5 : 1.5, cosine = std::min(1.0, -glm::dot(ray.direction, normal));
       const double sine = eta * std::sqrt(1 - cosine * cosine);
       const double r0 = std::pow((1 - eta) / (1 + eta), 2), reflectance = r0 + (1 - r0) * std::pow(1 - cosine, 5);
-      if (sine > 1 || reflectance > random()) next = glm::reflect(ray.direction, normal);
-      else next = eta * (ray.direction + cosine * normal) - std::sqrt(1 - sine * sine) * normal;
+      if (sine > 1 || reflectance > random())
+        next = glm::reflect(ray.direction, normal);
+      else
+        next = eta * (ray.direction + cosine * normal) - std::sqrt(1 - sine * sine) * normal;
     }
     weight *= m.color;
     ray = {position, glm::normalize(next)};
@@ -170,8 +176,9 @@ TEST(LessonOneWeekend, ConvergesToTheHostsPicture) {
   const scene::Scene scene = lessonScene("21_one_weekend");
   const std::vector<Bounds3>& boxes = scene.meshes.front().primitiveSets.front().boxes;
   ASSERT_GT(boxes.size(), 400u);
-  expectBlocks("21_one_weekend", {}, 8, 48, [&](dvec2 point, Random& random) { return weekendPath(boxes, point, random); },
-               [](double v) { return v * v; });
+  expectBlocks(
+      "21_one_weekend", {}, 8, 48, [&](dvec2 point, Random& random) { return weekendPath(boxes, point, random); },
+      [](double v) { return v * v; });
 }
 
 }  // namespace

@@ -25,14 +25,17 @@ bool seesLamp(const scene::Scene& scene, const dvec3& position, const dvec3& lam
 TEST(LessonDiffuse, FollowsLambert) {
   const scene::Scene scene = lessonScene("04_diffuse");
   const LessonPicture picture = renderLesson("04_diffuse");
-  expectPixels(picture, [&](dvec2 point) {
-    const HostHit hit = closestTriangle(scene, eyeRay(point, 1.5), 0.001, 1000);
-    if (hit.margin < kUndecided) return glm::dvec4(0);
-    if (hit.t < 0) return glm::dvec4(kBackground, 1);
-    const HostSurface s = surfaceAt(scene, hit);
-    const double cosine = std::max(0.0, glm::dot(s.normal, glm::normalize(dvec3(3, 5, 3) - s.position)));
-    return glm::dvec4(kAmbient + dvec3(0.8, 0.7, 0.55) * cosine, 1);
-  }, 2e-5);
+  expectPixels(
+      picture,
+      [&](dvec2 point) {
+        const HostHit hit = closestTriangle(scene, eyeRay(point, 1.5), 0.001, 1000);
+        if (hit.margin < kUndecided) return glm::dvec4(0);
+        if (hit.t < 0) return glm::dvec4(kBackground, 1);
+        const HostSurface s = surfaceAt(scene, hit);
+        const double cosine = std::max(0.0, glm::dot(s.normal, glm::normalize(dvec3(3, 5, 3) - s.position)));
+        return glm::dvec4(kAmbient + dvec3(0.8, 0.7, 0.55) * cosine, 1);
+      },
+      2e-5);
 }
 
 void expectShadow(std::uint32_t frame) {
@@ -42,20 +45,23 @@ void expectShadow(std::uint32_t frame) {
   const double turn = 2 * glm::pi<double>() * (frame % 45) / 45.0;
   const dvec3 lamp(4 * std::cos(turn), 5, 4 * std::sin(turn));
   int lit = 0, dark = 0;
-  expectPixels(renderLesson("05_shadow", options), [&](dvec2 point) {
-    const HostRay ray = eyeRay(point, 1.5);
-    const HostHit hit = closestTriangle(scene, ray, 0.001, 1000);
-    if (hit.margin < kUndecided) return glm::dvec4(0);
-    if (hit.t < 0) return glm::dvec4(kBackground, 1);
-    const HostSurface s = surfaceAt(scene, hit);
-    const dvec3 side = glm::dot(s.normal, ray.direction) < 0 ? s.normal : -s.normal;
-    bool decided = true;
-    const bool seen = seesLamp(scene, s.position + 0.001 * side, lamp, decided);
-    if (!decided) return glm::dvec4(0);
-    (seen ? lit : dark)++;
-    const double cosine = std::max(0.0, glm::dot(s.normal, glm::normalize(lamp - s.position)));
-    return glm::dvec4(kAmbient + dvec3(0.8, 0.7, 0.55) * (seen ? cosine : 0.0), 1);
-  }, 3e-5, 0.1);
+  expectPixels(
+      renderLesson("05_shadow", options),
+      [&](dvec2 point) {
+        const HostRay ray = eyeRay(point, 1.5);
+        const HostHit hit = closestTriangle(scene, ray, 0.001, 1000);
+        if (hit.margin < kUndecided) return glm::dvec4(0);
+        if (hit.t < 0) return glm::dvec4(kBackground, 1);
+        const HostSurface s = surfaceAt(scene, hit);
+        const dvec3 side = glm::dot(s.normal, ray.direction) < 0 ? s.normal : -s.normal;
+        bool decided = true;
+        const bool seen = seesLamp(scene, s.position + 0.001 * side, lamp, decided);
+        if (!decided) return glm::dvec4(0);
+        (seen ? lit : dark)++;
+        const double cosine = std::max(0.0, glm::dot(s.normal, glm::normalize(lamp - s.position)));
+        return glm::dvec4(kAmbient + dvec3(0.8, 0.7, 0.55) * (seen ? cosine : 0.0), 1);
+      },
+      3e-5, 0.1);
   EXPECT_GT(lit, 200);
   EXPECT_GT(dark, 100);
 }
@@ -86,7 +92,8 @@ glm::dvec4 mirrorColor(const scene::Scene& scene, HostRay ray, double reflectanc
     const dvec3 normal = glm::dot(s.normal, ray.direction) > 0 ? -s.normal : s.normal;
     const dvec3 position = s.position + 0.001 * normal;
     dvec3 light = kAmbient;
-    if (seesLamp(scene, position, lamp, decided)) light += std::max(0.0, glm::dot(normal, glm::normalize(lamp - position)));
+    if (seesLamp(scene, position, lamp, decided))
+      light += std::max(0.0, glm::dot(normal, glm::normalize(lamp - position)));
     color += contribution * base[hit.instance] * light;
     contribution *= reflectance;
     ray = {position, glm::reflect(ray.direction, normal)};
@@ -98,7 +105,9 @@ void expectMirrors(const std::string& name, double reflectance) {
   const scene::Scene scene = lessonScene(name);
   LessonOptions options;
   options.set = {{"reflectance", std::to_string(reflectance)}};
-  expectPixels(renderLesson(name, options), [&](dvec2 point) { return mirrorColor(scene, eyeRay(point, 1.5), reflectance, 5); }, 2e-4, 0.25);
+  expectPixels(
+      renderLesson(name, options), [&](dvec2 point) { return mirrorColor(scene, eyeRay(point, 1.5), reflectance, 5); },
+      2e-4, 0.25);
 }
 
 TEST(LessonMirrorLoop, FollowsTheReflections) { expectMirrors("06_mirror_loop", 0.4); }
@@ -108,7 +117,8 @@ TEST(LessonMirrorRecursion, IsThePictureOfTheLoop) {
   const LessonPicture loop = renderLesson("06_mirror_loop"), recursion = renderLesson("07_mirror_recursion");
   double worst = 0;
   for (std::uint32_t y = 0; y < loop.height; ++y)
-    for (std::uint32_t x = 0; x < loop.width; ++x) worst = std::max<double>(worst, glm::length(loop.at(x, y) - recursion.at(x, y)));
+    for (std::uint32_t x = 0; x < loop.width; ++x)
+      worst = std::max<double>(worst, glm::length(loop.at(x, y) - recursion.at(x, y)));
   EXPECT_LT(worst, 1e-4);
 }
 

@@ -15,7 +15,8 @@ struct Interval {
 
 inline std::optional<Interval> sphereInterval(const HostRay& ray, const dvec3& center, double radius) {
   const dvec3 o = ray.origin - center;
-  const double a = glm::dot(ray.direction, ray.direction), b = glm::dot(o, ray.direction), c = glm::dot(o, o) - radius * radius;
+  const double a = glm::dot(ray.direction, ray.direction), b = glm::dot(o, ray.direction),
+               c = glm::dot(o, o) - radius * radius;
   const double discriminant = b * b - a * c;
   if (discriminant < 0) return {};
   return Interval{(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a};

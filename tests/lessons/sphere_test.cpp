@@ -27,7 +27,8 @@ SphereHit nearestSphere(const scene::Scene& scene, const HostRay& ray) {
       const auto interval = sphereInterval(local, center, radius);
       // Near the outline a float decides otherwise.
       const double a = glm::dot(local.direction, local.direction);
-      const dvec3 nearest = local.origin - center - glm::dot(local.origin - center, local.direction) / a * local.direction;
+      const dvec3 nearest =
+          local.origin - center - glm::dot(local.origin - center, local.direction) / a * local.direction;
       if (std::abs(glm::length(nearest) / radius - 1) < 2e-3) best.decided = false;
       if (!interval || interval->out < 0.001) continue;
       const bool entering = interval->in >= 0.001;
@@ -47,12 +48,15 @@ void expectSpheres(int show, bool worldSpace, const std::function<dvec3(const Sp
   options.scene = scene;
   options.set = {{"show", std::to_string(show)}, {"worldSpace", worldSpace ? "true" : "false"}};
   int hits = 0;
-  expectPixels(renderLesson("10_sphere", options), [&](dvec2 point) {
-    const SphereHit hit = nearestSphere(scene, cameraRay({0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 40, 1.5, point));
-    if (!hit.decided) return kUndecided;
-    hits += hit.t < 1e30;
-    return glm::dvec4(hit.t < 1e30 ? color(hit) : dvec3(0.1, 0.12, 0.16), 1);
-  }, tolerance, 0.1);
+  expectPixels(
+      renderLesson("10_sphere", options),
+      [&](dvec2 point) {
+        const SphereHit hit = nearestSphere(scene, cameraRay({0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 40, 1.5, point));
+        if (!hit.decided) return kUndecided;
+        hits += hit.t < 1e30;
+        return glm::dvec4(hit.t < 1e30 ? color(hit) : dvec3(0.1, 0.12, 0.16), 1);
+      },
+      tolerance, 0.1);
   EXPECT_GT(hits, 150);
 }
 
@@ -64,10 +68,13 @@ TEST(LessonSphere, NormalsInWorldSpace) { expectSpheres(1, true, kNormal, 1e-4);
 TEST(LessonSphere, DistancesInObjectSpace) { expectSpheres(3, false, kDistance, 2e-5); }
 TEST(LessonSphere, DistancesInWorldSpace) { expectSpheres(3, true, kDistance, 2e-5); }
 TEST(LessonSphere, TextureCoordinates) {
-  expectSpheres(2, false, [](const SphereHit& h) {
-    const double s = std::atan2(h.local.y, h.local.x) / (2 * glm::pi<double>());
-    return dvec3(s - std::floor(s), std::acos(-h.local.z) / glm::pi<double>(), 0);
-  }, 2e-3);
+  expectSpheres(
+      2, false,
+      [](const SphereHit& h) {
+        const double s = std::atan2(h.local.y, h.local.x) / (2 * glm::pi<double>());
+        return dvec3(s - std::floor(s), std::acos(-h.local.z) / glm::pi<double>(), 0);
+      },
+      2e-3);
 }
 
 dvec3 colorOf(std::uint32_t primitive) {
@@ -98,24 +105,28 @@ TEST(LessonManySpheres, TenThousandAgainstBruteForce) {
     return best;
   };
   int hits = 0, dark = 0;
-  expectPixels(renderLesson("11_many_spheres"), [&](dvec2 point) {
-    bool decided = true;
-    const HostRay ray = cameraRay({0, 0, 45}, {0, 0, 0}, {0, 1, 0}, 35, 1.5, point);
-    const auto [t, i] = nearest(ray, 0.001, 1000, decided);
-    if (!decided) return kUndecided;
-    if (i < 0) return glm::dvec4(0.75, 0.82, 0.9, 1);
-    const dvec3 center = 0.5 * (dvec3(boxes[static_cast<std::size_t>(i)].min) + dvec3(boxes[static_cast<std::size_t>(i)].max));
-    const dvec3 position = ray.origin + t * ray.direction;
-    const dvec3 normal = glm::normalize(position - center);
-    const dvec3 toLamp = dvec3(40, 60, 50) - position;
-    const double distance = glm::length(toLamp);
-    const bool seen = nearest({position + 0.001 * normal, toLamp / distance}, 0, distance, decided).second < 0;
-    if (!decided) return kUndecided;
-    hits++;
-    dark += !seen;
-    const double light = seen ? std::max(0.0, glm::dot(normal, toLamp / distance)) : 0.0;
-    return glm::dvec4(colorOf(static_cast<std::uint32_t>(i)) * (0.12 + 0.88 * light), 1);
-  }, 2e-3, 0.15);
+  expectPixels(
+      renderLesson("11_many_spheres"),
+      [&](dvec2 point) {
+        bool decided = true;
+        const HostRay ray = cameraRay({0, 0, 45}, {0, 0, 0}, {0, 1, 0}, 35, 1.5, point);
+        const auto [t, i] = nearest(ray, 0.001, 1000, decided);
+        if (!decided) return kUndecided;
+        if (i < 0) return glm::dvec4(0.75, 0.82, 0.9, 1);
+        const dvec3 center =
+            0.5 * (dvec3(boxes[static_cast<std::size_t>(i)].min) + dvec3(boxes[static_cast<std::size_t>(i)].max));
+        const dvec3 position = ray.origin + t * ray.direction;
+        const dvec3 normal = glm::normalize(position - center);
+        const dvec3 toLamp = dvec3(40, 60, 50) - position;
+        const double distance = glm::length(toLamp);
+        const bool seen = nearest({position + 0.001 * normal, toLamp / distance}, 0, distance, decided).second < 0;
+        if (!decided) return kUndecided;
+        hits++;
+        dark += !seen;
+        const double light = seen ? std::max(0.0, glm::dot(normal, toLamp / distance)) : 0.0;
+        return glm::dvec4(colorOf(static_cast<std::uint32_t>(i)) * (0.12 + 0.88 * light), 1);
+      },
+      2e-3, 0.15);
   EXPECT_GT(hits, 300);
   EXPECT_GT(dark, 50);
 }
@@ -144,7 +155,8 @@ glm::dvec4 refractionColor(HostRay ray, double inside, double outside) {
       const bool dark = (static_cast<int>(std::floor(2 * onFloor.x) + std::floor(2 * onFloor.z)) & 1) != 0;
       return dark ? glm::dvec4(0.1, 0.15, 0.2, 1) : glm::dvec4(0.85, 0.8, 0.7, 1);
     }
-    if (t < 0) return glm::dvec4(glm::mix(dvec3(0.9, 0.75, 0.6), dvec3(0.25, 0.45, 0.8), 0.5 + 0.5 * ray.direction.y), 1);
+    if (t < 0)
+      return glm::dvec4(glm::mix(dvec3(0.9, 0.75, 0.6), dvec3(0.25, 0.45, 0.8), 0.5 + 0.5 * ray.direction.y), 1);
     const dvec3 position = ray.origin + t * ray.direction;
     const dvec3 normal = (entering ? 1.0 : -1.0) * (position - center) / radius;
     // Snell's law by angles rather than by refract().
@@ -164,9 +176,12 @@ glm::dvec4 refractionColor(HostRay ray, double inside, double outside) {
 void expectRefraction(double inside, double outside) {
   LessonOptions options;
   options.set = {{"inside", std::to_string(inside)}, {"outside", std::to_string(outside)}};
-  expectPixels(renderLesson("08_refraction", options), [&](dvec2 point) {
-    return refractionColor(cameraRay({0, 1.5, 6}, {0, 1.5, 0}, {0, 1, 0}, 35, 1.5, point), inside, outside);
-  }, 5e-3, 0.25);
+  expectPixels(
+      renderLesson("08_refraction", options),
+      [&](dvec2 point) {
+        return refractionColor(cameraRay({0, 1.5, 6}, {0, 1.5, 0}, {0, 1, 0}, 35, 1.5, point), inside, outside);
+      },
+      5e-3, 0.25);
 }
 
 TEST(LessonRefraction, GlassInAir) { expectRefraction(1.5, 1.0); }

@@ -9,8 +9,17 @@
 namespace quintet::test {
 namespace {
 
-struct Query { float cosine; float alpha; float ior; std::uint32_t outside; };
-struct Answer { vec2 schlick; vec2 glass; vec2 average; };
+struct Query {
+  float cosine;
+  float alpha;
+  float ior;
+  std::uint32_t outside;
+};
+struct Answer {
+  vec2 schlick;
+  vec2 glass;
+  vec2 average;
+};
 
 const std::string kLookUp = kBsdfPrelude + R"(
 struct Query { float cosine; float alpha; float ior; uint outside; };
@@ -70,16 +79,15 @@ glm::dvec4 integrate(const Query& q) {
 
 class BsdfAlbedo : public BsdfTest {
  protected:
-  static std::vector<Answer> lookUp(const std::vector<Query>& queries) {
-    return runQueries<Answer>(kLookUp, queries);
-  }
+  static std::vector<Answer> lookUp(const std::vector<Query>& queries) { return runQueries<Answer>(kLookUp, queries); }
 };
 
 TEST_F(BsdfAlbedo, TablesAgreeWithTheOracle) {
-  const std::vector<Query> queries = {
-      {1.0f, 1.0f, 1.5f, 1}, {1.0f, 1.0f, 1.5f, 0}, {0.6f, 0.5f, 1.33f, 1}, {0.6f, 0.5f, 1.33f, 0},  {0.15f, 0.8f, 2.0f, 1},
-      {0.15f, 0.8f, 2.0f, 0}, {0.3f, 0.1f, 1.5f, 1}, {0.3f, 0.1f, 1.5f, 0}, {0.85f, 0.02f, 1.7f, 1}, {0.85f, 0.25f, 1.7f, 0},
-      {0.05f, 0.3f, 1.2f, 1}, {0.05f, 0.3f, 1.2f, 0}, {1.0f, 0.6f, 1.5f, 0}, {0.1f, 1.0f, 1.15f, 0}, {0.75f, 1.0f, 2.4f, 0}};
+  const std::vector<Query> queries = {{1.0f, 1.0f, 1.5f, 1},   {1.0f, 1.0f, 1.5f, 0},  {0.6f, 0.5f, 1.33f, 1},
+                                      {0.6f, 0.5f, 1.33f, 0},  {0.15f, 0.8f, 2.0f, 1}, {0.15f, 0.8f, 2.0f, 0},
+                                      {0.3f, 0.1f, 1.5f, 1},   {0.3f, 0.1f, 1.5f, 0},  {0.85f, 0.02f, 1.7f, 1},
+                                      {0.85f, 0.25f, 1.7f, 0}, {0.05f, 0.3f, 1.2f, 1}, {0.05f, 0.3f, 1.2f, 0},
+                                      {1.0f, 0.6f, 1.5f, 0},   {0.1f, 1.0f, 1.15f, 0}, {0.75f, 1.0f, 2.4f, 0}};
   const std::vector<Answer> answers = lookUp(queries);
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const glm::dvec4 expected = integrate(queries[i]);
@@ -95,7 +103,8 @@ TEST_F(BsdfAlbedo, AverageIsThatOfTheRow) {
   constexpr int kPoints = 4096;
   for (const float alpha : {0.0005f, 0.05f, 0.4f, 1.0f}) {
     std::vector<Query> queries;
-    for (int i = 0; i < kPoints; ++i) queries.push_back({std::sqrt((static_cast<float>(i) + 0.5f) / kPoints), alpha, 1.5f, 1});
+    for (int i = 0; i < kPoints; ++i)
+      queries.push_back({std::sqrt((static_cast<float>(i) + 0.5f) / kPoints), alpha, 1.5f, 1});
     glm::dvec2 sum(0.0);
     const std::vector<Answer> answers = lookUp(queries);
     for (const Answer& a : answers) sum += glm::dvec2(a.schlick) / double{kPoints};

@@ -75,8 +75,10 @@ inline std::vector<NamedCase> materialsAt(float alpha, const vec3& wo) {
   for (const bool outside : {true, false}) {
     const auto glass = [&](BsdfCase& c) { c.transmission = 1.0f, c.entering = outside; };
     add(outside ? "glass outside" : "glass inside", glass);
-    add(outside ? "glass 1.15 outside" : "glass 1.15 inside", [&](BsdfCase& c) { glass(c), c.ior = 1.15f, c.specular = 0.5f; });
-    add(outside ? "mixture, solid outside" : "mixture, solid inside", [&](BsdfCase& c) { mix(c), c.entering = outside; });
+    add(outside ? "glass 1.15 outside" : "glass 1.15 inside",
+        [&](BsdfCase& c) { glass(c), c.ior = 1.15f, c.specular = 0.5f; });
+    add(outside ? "mixture, solid outside" : "mixture, solid inside",
+        [&](BsdfCase& c) { mix(c), c.entering = outside; });
   }
   add("coat", [&](BsdfCase& c) { coat(c), c.clearcoatAlpha = alpha, c.alpha = 0.3f; });
   add("mixture, thin", [&](BsdfCase& c) { mix(c), c.thin = 1; });

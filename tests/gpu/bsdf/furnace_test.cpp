@@ -49,7 +49,8 @@ class BsdfFurnace : public BsdfTest {
         c.alpha = alpha;
         change(c);
         const Albedo albedo = albedoOf(c);
-        EXPECT_NEAR(albedo.mean.x, 1.0, tolerance + 4.0 * albedo.error) << name << ", alpha " << alpha << ", cosine " << cosine;
+        EXPECT_NEAR(albedo.mean.x, 1.0, tolerance + 4.0 * albedo.error)
+            << name << ", alpha " << alpha << ", cosine " << cosine;
         if (std::abs(albedo.mean.x - 1.0) <= std::abs(worst)) continue;
         worst = albedo.mean.x - 1.0;
         where = "alpha " + std::to_string(alpha) + ", cosine " + std::to_string(cosine);
@@ -78,19 +79,22 @@ TEST_F(BsdfFurnace, WhiteGlass) {
   for (const float ior : {1.15f, 1.5f, 2.4f}) {
     for (const bool entering : {true, false}) {
       const std::string name = "glass, ior " + std::to_string(ior) + (entering ? ", outside" : ", inside");
-      expectWhite(name.c_str(), entering ? 0.01 : 0.018, [&](BsdfCase& c) { c.transmission = 1.0f, c.ior = ior, c.entering = entering; });
+      expectWhite(name.c_str(), entering ? 0.01 : 0.018,
+                  [&](BsdfCase& c) { c.transmission = 1.0f, c.ior = ior, c.entering = entering; });
     }
   }
   expectWhite("glass without specular", 0.01, [](BsdfCase& c) { c.transmission = 1.0f, c.specular = 0.0f; });
   for (const float specular : {1.0f, 0.6f}) {
     expectWhite("glass, ior 0", 0.01, [&](BsdfCase& c) { c.transmission = 1.0f, c.ior = 0.0f, c.specular = specular; });
-    expectWhite("half glass, ior 0, inside", 0.01, [&](BsdfCase& c) { c.transmission = 0.5f, c.ior = 0.0f, c.entering = 0, c.specular = specular; });
+    expectWhite("half glass, ior 0, inside", 0.01,
+                [&](BsdfCase& c) { c.transmission = 0.5f, c.ior = 0.0f, c.entering = 0, c.specular = specular; });
   }
   expectWhite("matched glass", 1e-4, [](BsdfCase& c) { c.transmission = 1.0f, c.ior = 1.0f; });
 }
 
 TEST_F(BsdfFurnace, ClearcoatAndMixture) {
-  expectWhite("clearcoat on dielectric", 0.01, [](BsdfCase& c) { c.clearcoat = 1.0f, c.clearcoatAlpha = c.alpha, c.alpha = 0.5f; });
+  expectWhite("clearcoat on dielectric", 0.01,
+              [](BsdfCase& c) { c.clearcoat = 1.0f, c.clearcoatAlpha = c.alpha, c.alpha = 0.5f; });
   expectWhite("everything", 0.01, [](BsdfCase& c) {
     c.clearcoat = 0.7f, c.clearcoatAlpha = 0.05f, c.transmission = 0.5f, c.metallic = 0.3f, c.entering = 0;
   });
@@ -117,8 +121,9 @@ TEST_F(BsdfFurnace, NoMaterialGainsEnergy) {
     c.clearcoatNormal = glm::normalize(vec3(next() - 0.5f, next() - 0.5f, 1.0f));
     const Albedo albedo = albedoOf(c);
     EXPECT_LE(std::max({albedo.mean.x, albedo.mean.y, albedo.mean.z}), 1.04 + 4.0 * albedo.error)
-        << "case " << i << ": alpha " << c.alpha << ", cosine " << c.wo.z << ", ior " << c.ior << ", transmission " << c.transmission
-        << ", metallic " << c.metallic << ", specular " << c.specular << ", entering " << c.entering << ", thin " << c.thin;
+        << "case " << i << ": alpha " << c.alpha << ", cosine " << c.wo.z << ", ior " << c.ior << ", transmission "
+        << c.transmission << ", metallic " << c.metallic << ", specular " << c.specular << ", entering " << c.entering
+        << ", thin " << c.thin;
   }
 }
 

@@ -22,7 +22,12 @@ class BsdfLobes : public BsdfTest {
 
 // The functions that a program calls agree with one another on what was sampled.
 TEST_F(BsdfLobes, WeightIsEvalOverPdf) {
-  struct Out { vec3 weight; float pdf; vec3 value; float evaluatedPdf; };
+  struct Out {
+    vec3 weight;
+    float pdf;
+    vec3 value;
+    float evaluatedPdf;
+  };
   const std::string body = kBsdfPrelude + R"(
     struct Out_ { vec3 weight; float pdf; vec3 value; float evaluatedPdf; };
     #define In Case
@@ -93,7 +98,10 @@ const std::string kBothWays = kBsdfPrelude + R"(
     return Out(forward, evalOf(c, wi * vec3(1.0, 1.0, -1.0), wo * vec3(1.0, 1.0, -1.0)));
   }
 )";
-struct BothWays { vec3 forward; vec3 backward; };
+struct BothWays {
+  vec3 forward;
+  vec3 backward;
+};
 
 // Once for any two directions, once for two in the lobe: of any two, narrow lobes hold a handful.
 TEST_F(BsdfLobes, Reciprocity) {
@@ -120,7 +128,11 @@ TEST_F(BsdfLobes, Reciprocity) {
 // by one factor of wo (Turquin 2019), since a reciprocal lobe would need tables of four dimensions. Coat: what lies
 // below is dimmed on the way out only, as KHR_materials_clearcoat says.
 TEST_F(BsdfLobes, GlassAndCoatAreReciprocalUpToAFactor) {
-  struct Limit { const char* name; double ratio; BsdfCase material; };
+  struct Limit {
+    const char* name;
+    double ratio;
+    BsdfCase material;
+  };
   std::vector<Limit> limits;
   BsdfCase glass, coat;
   glass.transmission = 1.0f;
@@ -138,7 +150,8 @@ TEST_F(BsdfLobes, GlassAndCoatAreReciprocalUpToAFactor) {
     }
     EXPECT_LE(largest, limit.ratio) << limit.name << ", alpha " << limit.material.alpha;
     EXPECT_GT(largest, 1.01) << limit.name << " has become reciprocal: say so";
-    std::printf("  %s, alpha %g: f(wo, wi) / f(wi, wo) up to %.2f\n", limit.name, static_cast<double>(limit.material.alpha), largest);
+    std::printf("  %s, alpha %g: f(wo, wi) / f(wi, wo) up to %.2f\n", limit.name,
+                static_cast<double>(limit.material.alpha), largest);
   }
 }
 
@@ -170,7 +183,8 @@ TEST_F(BsdfLobes, SmoothGlassFollowsSnellAndFresnel) {
       c.baseColor = {1.0f, 0.5f, 0.25f};
       const double eta = entering ? 1.5 : 1.0 / 1.5;
       const double cosT = std::sqrt(1.0 - (1.0 - double{cosine} * cosine) / (eta * eta));
-      const double rs = (cosine - eta * cosT) / (cosine + eta * cosT), rp = (eta * cosine - cosT) / (eta * cosine + cosT);
+      const double rs = (cosine - eta * cosT) / (cosine + eta * cosT),
+                   rp = (eta * cosine - cosT) / (eta * cosine + cosT);
       const double fresnel = 0.5 * (rs * rs + rp * rp);
       glm::dvec3 reflected(0.0), refracted(0.0);
       for (const BsdfSampleOut& s : sample(c)) {
@@ -230,12 +244,16 @@ TEST_F(BsdfLobes, SmoothLobesAreAnnounced) {
   glass.alpha = 0.0f, glass.transmission = 1.0f;
   diffuse.alpha = 0.0f;
   lacquered = mirror, lacquered.clearcoat = 1.0f;
-  EXPECT_EQ((runCases<std::uint32_t>(body, {mirror, glass, diffuse, lacquered}, 4)), (std::vector<std::uint32_t>{0, 0, 1, 1}));
+  EXPECT_EQ((runCases<std::uint32_t>(body, {mirror, glass, diffuse, lacquered}, 4)),
+            (std::vector<std::uint32_t>{0, 0, 1, 1}));
 }
 
 // Millions of random materials and directions, with the corners of the parameters over-represented.
 TEST_F(BsdfLobes, NothingIsInvalid) {
-  struct Out { std::uint32_t faults; float weight; };
+  struct Out {
+    std::uint32_t faults;
+    float weight;
+  };
   const std::string body = kBsdfPrelude + R"(
     struct Out_ { uint faults; float weight; };
     #define Out Out_

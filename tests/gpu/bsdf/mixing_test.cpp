@@ -75,7 +75,14 @@ using BsdfMixing = BsdfTest;
 
 TEST_F(BsdfMixing, LobesAreDrawnByTheirChances) {
   constexpr std::size_t kParts = 6;
-  struct Out { float mixed; float sum; float chances; float distance; std::uint32_t part; float expected[kParts]; };
+  struct Out {
+    float mixed;
+    float sum;
+    float chances;
+    float distance;
+    std::uint32_t part;
+    float expected[kParts];
+  };
   std::vector<NamedCase> named;
   std::vector<BsdfCase> cases;
   for (const float alpha : kRoughAlphas)

@@ -23,9 +23,13 @@ double distribution(double cosine, double alpha) {
 }
 
 // Heitz 2014, eq. 72.
-double lambda(double cosine, double alpha) { return 0.5 * (std::sqrt(1.0 + alpha * alpha * tangentSquared(cosine)) - 1.0); }
+double lambda(double cosine, double alpha) {
+  return 0.5 * (std::sqrt(1.0 + alpha * alpha * tangentSquared(cosine)) - 1.0);
+}
 
-dvec3 schlick(const dvec3& f0, double f90, double cosine) { return f0 + (dvec3(f90) - f0) * std::pow(1.0 - cosine, 5.0); }
+dvec3 schlick(const dvec3& f0, double f90, double cosine) {
+  return f0 + (dvec3(f90) - f0) * std::pow(1.0 - cosine, 5.0);
+}
 
 // Reflection by micronormals around `normal`, without Fresnel: D G / (4 cos_o cos_i).
 double reflection(const dvec3& wo, const dvec3& wi, const dvec3& normal, double alpha) {
@@ -57,14 +61,19 @@ double multipleFactor(double f0, double f90, double lost) {
 double largest(const dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
 // Linear interpolation on an axis of `count` nodes.
-struct Cell { std::size_t index; double part; };
+struct Cell {
+  std::size_t index;
+  double part;
+};
 Cell cellOf(double position, std::size_t count) {
   const double x = std::clamp(position, 0.0, 1.0) * static_cast<double>(count - 1);
   const auto index = std::min(static_cast<std::size_t>(x), count - 2);
   return {index, x - static_cast<double>(index)};
 }
 double root4(double x) { return std::pow(x, 0.25); }
-Cell rowOf(double alpha, std::size_t count) { return cellOf((root4(alpha) - root4(kSmallestAlpha)) / (1.0 - root4(kSmallestAlpha)), count); }
+Cell rowOf(double alpha, std::size_t count) {
+  return cellOf((root4(alpha) - root4(kSmallestAlpha)) / (1.0 - root4(kSmallestAlpha)), count);
+}
 
 }  // namespace
 
@@ -74,7 +83,8 @@ ReferenceBsdf::Layer ReferenceBsdf::layer(double alpha, double cosine) const {
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) {
       const std::size_t at = 2 * ((row.index + i) * shared::kAlbedoCosines + column.index + j);
-      sum += (i ? row.part : 1.0 - row.part) * (j ? column.part : 1.0 - column.part) * dvec2(tables_[at], tables_[at + 1]);
+      sum +=
+          (i ? row.part : 1.0 - row.part) * (j ? column.part : 1.0 - column.part) * dvec2(tables_[at], tables_[at + 1]);
     }
   return {sum.x, sum.y};
 }
@@ -82,15 +92,17 @@ ReferenceBsdf::Layer ReferenceBsdf::layer(double alpha, double cosine) const {
 ReferenceBsdf::Layer ReferenceBsdf::averages(double alpha) const {
   const Cell row = rowOf(alpha, shared::kAlbedoRoughnesses);
   const std::size_t at = shared::kAlbedoAverageOffset + 2 * row.index;
-  return {glm::mix(double{tables_[at]}, double{tables_[at + 2]}, row.part), glm::mix(double{tables_[at + 1]}, double{tables_[at + 3]}, row.part)};
+  return {glm::mix(double{tables_[at]}, double{tables_[at + 2]}, row.part),
+          glm::mix(double{tables_[at + 1]}, double{tables_[at + 3]}, row.part)};
 }
 
 dvec2 ReferenceBsdf::glass(const BsdfCase& c, double cosine) const {
   const double ior = c.ior, edge = c.entering ? 0.0 : std::sqrt(1.0 - 1.0 / (ior * ior));
   double position = root4(cosine);
-  if (!c.entering) position = cosine < edge ? 0.5 * root4(cosine / edge) : 0.5 + 0.5 * std::sqrt((cosine - edge) / (1.0 - edge));
-  const Cell cells[] = {cellOf(std::sqrt(2.0 * (ior - 1.0) / (ior + 1.0)), shared::kGlassIors), rowOf(c.alpha, shared::kGlassRoughnesses),
-                        cellOf(position, shared::kGlassCosines)};
+  if (!c.entering)
+    position = cosine < edge ? 0.5 * root4(cosine / edge) : 0.5 + 0.5 * std::sqrt((cosine - edge) / (1.0 - edge));
+  const Cell cells[] = {cellOf(std::sqrt(2.0 * (ior - 1.0) / (ior + 1.0)), shared::kGlassIors),
+                        rowOf(c.alpha, shared::kGlassRoughnesses), cellOf(position, shared::kGlassCosines)};
   dvec2 sum(0.0);
   for (std::size_t corner = 0; corner < 8; ++corner) {
     std::size_t at = c.entering ? 0 : shared::kGlassIors;
@@ -120,21 +132,26 @@ dvec3 ReferenceBsdf::refractive(const BsdfCase& c, const dvec3& wo, const dvec3&
   };
   const dvec2 albedo = glass(c, wo.z);
   const double scale = 1.0 / (albedo.y + double{c.specular} * (albedo.x - albedo.y));
-  if (wi.z > 0.0) return scale * reflection(wo, wi, {0, 0, 1}, c.alpha) * reflectance(glm::dot(wo, glm::normalize(wo + wi)));
+  if (wi.z > 0.0)
+    return scale * reflection(wo, wi, {0, 0, 1}, c.alpha) * reflectance(glm::dot(wo, glm::normalize(wo + wi)));
   dvec3 m = -glm::normalize(wo + eta * wi);
   if (m.z < 0.0) m = -m;
   const double cosO = glm::dot(wo, m), cosI = glm::dot(wi, m);
   if (cosO <= 0.0 || cosI >= 0.0) return dvec3(0.0);
   const double masking = 1.0 / ((1.0 + lambda(wo.z, c.alpha)) * (1.0 + lambda(wi.z, c.alpha)));
   const double q = cosO + eta * cosI;
-  const double value = std::abs(cosO * cosI / (wo.z * wi.z)) * eta * eta * masking * distribution(m.z, c.alpha) / (q * q);
+  const double value =
+      std::abs(cosO * cosI / (wo.z * wi.z)) * eta * eta * masking * distribution(m.z, c.alpha) / (q * q);
   return scale * value / (eta * eta) * (1.0 - largest(reflectance(cosO))) * glm::clamp(dvec3(c.baseColor), 0.0, 1.0);
 }
 
 dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
-  const dvec3 wo = glm::normalize(dvec3(c.wo)), color = c.baseColor, up(0.0, 0.0, 1.0), coatNormal = glm::normalize(dvec3(c.clearcoatNormal));
-  const double metal = c.metallic, opaque = (1.0 - metal) * (1.0 - c.transmission), clear = (1.0 - metal) * c.transmission;
-  const bool solid = clear > 0.0 && !c.thin, bends = solid && c.ior >= 1.0f, rough = c.alpha >= static_cast<float>(kSmallestAlpha);
+  const dvec3 wo = glm::normalize(dvec3(c.wo)), color = c.baseColor, up(0.0, 0.0, 1.0),
+              coatNormal = glm::normalize(dvec3(c.clearcoatNormal));
+  const double metal = c.metallic, opaque = (1.0 - metal) * (1.0 - c.transmission),
+               clear = (1.0 - metal) * c.transmission;
+  const bool solid = clear > 0.0 && !c.thin, bends = solid && c.ior >= 1.0f,
+             rough = c.alpha >= static_cast<float>(kSmallestAlpha);
   const double r = (c.ior - 1.0) / (c.ior + 1.0), f90 = c.specular;
   const dvec3 f0 = f90 * glm::min(r * r * dvec3(c.specularColor), dvec3(1.0));
   const Layer o = layer(c.alpha, wo.z), i = layer(c.alpha, std::abs(wi.z)), mean = averages(c.alpha);
@@ -153,13 +170,16 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
     if (rough) {
       const double shape = reflection(wo, wi, up, c.alpha), part = bends ? opaque : 1.0 - metal;
       f += shape * (metal * schlick(color, 1.0, glm::dot(wo, h)) + part * schlick(f0, f90, glm::dot(wo, h)));
-      for (glm::length_t k = 0; k < 3; ++k) f[k] += spread * (metal * multiple(color[k], 1.0) + part * multiple(f0[k], f90));
+      for (glm::length_t k = 0; k < 3; ++k)
+        f[k] += spread * (metal * multiple(color[k], 1.0) + part * multiple(f0[k], f90));
     }
   } else if (clear > 0.0 && c.thin && rough) {
     const dvec3 mirrored(wi.x, wi.y, -wi.z);
     const dvec3 m = glm::normalize(wo + mirrored);
     const double shape = reflection(wo, mirrored, up, c.alpha);
-    f += clear * color * (shape * (1.0 - schlick(dvec3(largest(f0)), f90, glm::dot(wo, m)).x) + spread * (1.0 - multiple(largest(f0), f90)));
+    f += clear * color *
+         (shape * (1.0 - schlick(dvec3(largest(f0)), f90, glm::dot(wo, m)).x) +
+          spread * (1.0 - multiple(largest(f0), f90)));
   }
   if (bends && rough) f += clear * refractive(c, wo, wi);
   f *= std::abs(wi.z);
@@ -169,7 +189,8 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
   const Layer coat = layer(c.clearcoatAlpha, coatO);
   f *= 1.0 - c.clearcoat * (0.04 * (1.0 - coat.lost - coat.schlick) + coat.schlick);
   if (wi.z > 0.0 && coatI > 0.0)
-    f += double{c.clearcoat} * schlick(dvec3(0.04), 1.0, glm::dot(wo, h)) * reflection(wo, wi, coatNormal, c.clearcoatAlpha) * coatI;
+    f += double{c.clearcoat} * schlick(dvec3(0.04), 1.0, glm::dot(wo, h)) *
+         reflection(wo, wi, coatNormal, c.clearcoatAlpha) * coatI;
   return f;
 }
 

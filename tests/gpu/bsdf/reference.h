@@ -16,7 +16,9 @@ class ReferenceBsdf {
   glm::dvec3 eval(const BsdfCase& c, const glm::dvec3& wi) const;
 
  private:
-  struct Layer { double lost, schlick; };
+  struct Layer {
+    double lost, schlick;
+  };
   Layer layer(double alpha, double cosine) const;
   Layer averages(double alpha) const;
   glm::dvec2 glass(const BsdfCase& c, double cosine) const;

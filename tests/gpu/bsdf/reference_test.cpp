@@ -6,7 +6,10 @@
 namespace quintet::test {
 namespace {
 
-struct Answer { vec3 wi; vec3 value; };
+struct Answer {
+  vec3 wi;
+  vec3 value;
+};
 
 // Directions of the sampler, where the lobes are, and uniform ones.
 const std::string kEvaluation = kBsdfPrelude + R"(
@@ -31,7 +34,8 @@ class BsdfReference : public BsdfTest {
     const ReferenceBsdf reference;
     std::vector<BsdfCase> materials;
     for (const NamedCase& named : cases) materials.push_back(named.material);
-    const std::vector<Answer> answers = runCases<Answer>(kEvaluation, materials, materials.size() * static_cast<std::size_t>(perCase));
+    const std::vector<Answer> answers =
+        runCases<Answer>(kEvaluation, materials, materials.size() * static_cast<std::size_t>(perCase));
     std::size_t compared = 0;
     for (std::size_t k = 0; k < answers.size(); ++k) {
       const NamedCase& named = cases[k % cases.size()];
@@ -40,8 +44,9 @@ class BsdfReference : public BsdfTest {
       const glm::dvec3 value = answers[k].value;
       ++compared;
       ASSERT_LE(glm::length(value - expected), tolerance * glm::length(expected) + 1e-5)
-          << named.name << ": " << value.x << ", " << value.y << ", " << value.z << " instead of " << expected.x << ", " << expected.y
-          << ", " << expected.z << " at wi = " << answers[k].wi.x << ", " << answers[k].wi.y << ", " << answers[k].wi.z;
+          << named.name << ": " << value.x << ", " << value.y << ", " << value.z << " instead of " << expected.x << ", "
+          << expected.y << ", " << expected.z << " at wi = " << answers[k].wi.x << ", " << answers[k].wi.y << ", "
+          << answers[k].wi.z;
     }
     EXPECT_GT(compared, answers.size() * 9 / 10);
   }

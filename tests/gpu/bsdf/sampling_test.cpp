@@ -204,8 +204,10 @@ class BsdfSampling : public BsdfTest {
   // Compares counted and integrated density in all cells, and in one for what is rejected.
   static ChiSquare test(const Named& named, bool wrong = false) {
     const float narrowest = named.lobe == 4 ? named.material.clearcoatAlpha : named.material.alpha;
-    Defines defines = {{"LOBE", std::to_string(named.lobe)}, {"FIRST", std::to_string(std::max(0.02f * narrowest, 2e-5f))},
-                       {"RINGS", std::to_string(kRings)}, {"SECTORS", std::to_string(kSectors)},
+    Defines defines = {{"LOBE", std::to_string(named.lobe)},
+                       {"FIRST", std::to_string(std::max(0.02f * narrowest, 2e-5f))},
+                       {"RINGS", std::to_string(kRings)},
+                       {"SECTORS", std::to_string(kSectors)},
                        {"POINTS", std::to_string(kPoints)}};
     if (wrong) defines.emplace_back("WRONG", "1");
     const auto integrals = runCases<float>(kIntegrate, {named.material}, 2 * kRings * kSectors, defines);
@@ -216,7 +218,8 @@ class BsdfSampling : public BsdfTest {
     const double integral = std::accumulate(integrals.begin(), integrals.end(), 0.0);
     const double accepted = 1.0 - observed.back() / kSamples;
     EXPECT_LE(integral, 1.0 + 2e-3) << named.name;
-    EXPECT_TRUE(wrong || std::abs(integral - accepted) < 5e-3) << named.name << ": " << integral << ", accepted " << accepted;
+    EXPECT_TRUE(wrong || std::abs(integral - accepted) < 5e-3)
+        << named.name << ": " << integral << ", accepted " << accepted;
 
     std::vector<double> expected(integrals.begin(), integrals.end());
     // Where nothing is rejected, the quadrature's own error is no expectation.
@@ -284,20 +287,36 @@ void expectFollowsThePdf(int lobe, const Test& test) {
   for (const Named& named : cases) {
     if (named.lobe != lobe) continue;
     const ChiSquare result = test(named);
-    EXPECT_GE(result.pValue, level) << named.name << ": chi-square " << result.statistic << " with " << result.freedom << " degrees";
+    EXPECT_GE(result.pValue, level) << named.name << ": chi-square " << result.statistic << " with " << result.freedom
+                                    << " degrees";
   }
 }
 
-TEST_F(BsdfSampling, DiffuseFollowsThePdf) { expectFollowsThePdf(0, [](const Named& n) { return test(n); }); }
-TEST_F(BsdfSampling, SpecularFollowsThePdf) { expectFollowsThePdf(1, [](const Named& n) { return test(n); }); }
-TEST_F(BsdfSampling, ThinFollowsThePdf) { expectFollowsThePdf(2, [](const Named& n) { return test(n); }); }
-TEST_F(BsdfSampling, DielectricFollowsThePdf) { expectFollowsThePdf(3, [](const Named& n) { return test(n); }); }
-TEST_F(BsdfSampling, ClearcoatFollowsThePdf) { expectFollowsThePdf(4, [](const Named& n) { return test(n); }); }
-TEST_F(BsdfSampling, MixturesFollowThePdf) { expectFollowsThePdf(5, [](const Named& n) { return test(n); }); }
+TEST_F(BsdfSampling, DiffuseFollowsThePdf) {
+  expectFollowsThePdf(0, [](const Named& n) { return test(n); });
+}
+TEST_F(BsdfSampling, SpecularFollowsThePdf) {
+  expectFollowsThePdf(1, [](const Named& n) { return test(n); });
+}
+TEST_F(BsdfSampling, ThinFollowsThePdf) {
+  expectFollowsThePdf(2, [](const Named& n) { return test(n); });
+}
+TEST_F(BsdfSampling, DielectricFollowsThePdf) {
+  expectFollowsThePdf(3, [](const Named& n) { return test(n); });
+}
+TEST_F(BsdfSampling, ClearcoatFollowsThePdf) {
+  expectFollowsThePdf(4, [](const Named& n) { return test(n); });
+}
+TEST_F(BsdfSampling, MixturesFollowThePdf) {
+  expectFollowsThePdf(5, [](const Named& n) { return test(n); });
+}
 
 // cos^2 has the distribution ln(1 + x / a^2) / ln(1 + 1 / a^2), a^2 = 2 alpha^2.
 TEST_F(BsdfSampling, MultipleScatteringFollowsItsPdf) {
-  struct Out { vec3 wi; float pdf; };
+  struct Out {
+    vec3 wi;
+    float pdf;
+  };
   const std::string body = kBsdfPrelude + R"(
     struct Out_ { vec3 wi; float pdf; };
     #define In float

@@ -74,9 +74,8 @@ TEST(GpuBuffer, HasAnAlignedAddress) {
     EXPECT_EQ(buffers.back().address() % 16, 0u);
     buffers.emplace_back(context, BufferOptions{.size = 20, .alignment = 4096, .name = "aligned"});
     EXPECT_EQ(buffers.back().address() % 4096, 0u);
-    buffers.emplace_back(context, BufferOptions{.size = 20,
-                                                .usage = VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR,
-                                                .name = "table"});
+    buffers.emplace_back(
+        context, BufferOptions{.size = 20, .usage = VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR, .name = "table"});
     EXPECT_EQ(buffers.back().address() % context.info().limits.baseAlignment, 0u);
   }
 }
@@ -84,8 +83,8 @@ TEST(GpuBuffer, HasAnAlignedAddress) {
 TEST(GpuBuffer, RefusesAbsurdSizes) {
   Context& context = test::testContext();
   EXPECT_THAT([&] { const Buffer b(context, {.size = VkDeviceSize{1} << 50, .name = "film"}); },
-              ThrowsMessage<MemoryError>(AllOf(HasSubstr("buffer 'film' of 1073741824.0 MiB"),
-                                               HasSubstr("the device's memory of"))));
+              ThrowsMessage<MemoryError>(
+                  AllOf(HasSubstr("buffer 'film' of 1073741824.0 MiB"), HasSubstr("the device's memory of"))));
   for (const Memory memory : {Memory::device, Memory::upload, Memory::readback}) {
     EXPECT_THROW(Buffer(context, {.size = ~VkDeviceSize{0}, .memory = memory, .name = "all"}), MemoryError);
     EXPECT_THROW(Buffer(context, {.size = context.info().maxBufferBytes + 1, .memory = memory, .name = "limit"}),
@@ -101,9 +100,12 @@ TEST(GpuBuffer, RefusesMoreThanTheMemoryInTotal) {
   std::vector<Buffer> buffers;
   const VkDeviceSize size = context.info().maxBufferBytes;
   const std::size_t enough = context.info().memoryBytes / size + 2;
-  EXPECT_THAT([&] {
-    for (std::size_t i = 0; i < enough; ++i) buffers.emplace_back(context, BufferOptions{.size = size, .name = "piece"});
-  }, ThrowsMessage<MemoryError>(AllOf(HasSubstr("MiB for buffer 'piece'"), HasSubstr("MiB are free"))));
+  EXPECT_THAT(
+      [&] {
+        for (std::size_t i = 0; i < enough; ++i)
+          buffers.emplace_back(context, BufferOptions{.size = size, .name = "piece"});
+      },
+      ThrowsMessage<MemoryError>(AllOf(HasSubstr("MiB for buffer 'piece'"), HasSubstr("MiB are free"))));
 }
 
 TEST(GpuUploader, FillsManyBuffersThroughASmallRing) {
@@ -117,7 +119,8 @@ TEST(GpuUploader, FillsManyBuffersThroughASmallRing) {
       uploader.upload(buffers.back(), std::as_bytes(std::span(data)));
     }
   }
-  for (std::uint32_t i = 0; i < 40; ++i) EXPECT_TRUE(buffers[i].downloadAs<std::uint32_t>(75'001) == counting(75'001, i));
+  for (std::uint32_t i = 0; i < 40; ++i)
+    EXPECT_TRUE(buffers[i].downloadAs<std::uint32_t>(75'001) == counting(75'001, i));
 }
 
 TEST(GpuUploader, SplitsWhatIsLargerThanTheRing) {

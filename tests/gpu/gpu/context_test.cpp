@@ -15,8 +15,8 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
 using testing::IsEmpty;
+using testing::Not;
 using testing::ThrowsMessage;
 
 TEST(GpuContext, ListsDevicesInOrderOfPreference) {
@@ -60,9 +60,9 @@ TEST(GpuContext, TakesADeviceByIndexAndByName) {
 }
 
 TEST(GpuContext, NamesTheDevicesWhenARequestMatchesNone) {
-  EXPECT_THAT([] { const Context context({.device = "voodoo"}); },
-              ThrowsMessage<NoDeviceError>(AllOf(HasSubstr("no device 'voodoo'"),
-                                                 HasSubstr(test::testContext().info().name))));
+  EXPECT_THAT(
+      [] { const Context context({.device = "voodoo"}); },
+      ThrowsMessage<NoDeviceError>(AllOf(HasSubstr("no device 'voodoo'"), HasSubstr(test::testContext().info().name))));
 }
 
 TEST(GpuContext, LivesBesideAnother) {

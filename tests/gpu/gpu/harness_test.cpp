@@ -16,20 +16,29 @@ TEST(GpuHarness, SquaresTheInputs) {
     #define In float
     #define Out float
     Out run(uint index, In value) { return value * value; }
-  )", inputs);
+  )",
+                                               inputs);
   EXPECT_EQ(squares, (std::vector<float>{1, 4, 9, 16, 25}));
 }
 
 TEST(GpuHarness, RunsMoreInvocationsThanInputs) {
-  struct In { std::uint32_t first; float second[3]; };
-  struct Out { std::uint32_t index; std::uint32_t first; float sum; };
+  struct In {
+    std::uint32_t first;
+    float second[3];
+  };
+  struct Out {
+    std::uint32_t index;
+    std::uint32_t first;
+    float sum;
+  };
   const std::vector<In> inputs = {{7, {1, 2, 3}}, {8, {4, 5, 6}}, {9, {7, 8, 9}}};
   const std::size_t count = 1'100'000;  // more than one row of groups
   const auto outputs = test::runCompute<Out>(R"(
     struct In { uint first; vec3 second; };
     struct Out { uint index; uint first; float sum; };
     Out run(uint index, In value) { return Out(index, value.first, value.second.x + value.second.y + value.second.z); }
-  )", inputs, count);
+  )",
+                                             inputs, count);
   ASSERT_EQ(outputs.size(), count);
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -44,7 +53,8 @@ TEST(GpuHarness, NeedsNoInputs) {
   const auto outputs = test::runCompute<std::uint64_t>(R"(
     #define Out uint64_t
     Out run(uint index) { return uint64_t(index) << 33; }
-  )", 1000);
+  )",
+                                                       1000);
   for (std::size_t i = 0; i < outputs.size(); ++i) ASSERT_EQ(outputs[i], std::uint64_t{i} << 33);
 }
 
@@ -57,21 +67,22 @@ TEST(GpuHarness, PassesAddressesAndDefines) {
     #define Out float
     layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Table { float at[]; };
     Out run(uint index) { return FACTOR * Table(testAddress(2)).at[index]; }
-  )", 5, options);
+  )",
+                                               5, options);
   EXPECT_EQ(outputs, (std::vector<float>{30, 10, 40, 10, 50}));
 }
 
 TEST(GpuHarness, RefusesStructsOfDifferentSize) {
-  struct Out { float a, b; };
-  EXPECT_THAT([] {
-    test::runCompute<Out>("#define Out vec3\nOut run(uint index) { return vec3(1); }", 10);
-  }, ThrowsMessage<std::runtime_error>(HasSubstr("Out has 8 bytes in C++, 12 in GLSL")));
+  struct Out {
+    float a, b;
+  };
+  EXPECT_THAT([] { test::runCompute<Out>("#define Out vec3\nOut run(uint index) { return vec3(1); }", 10); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("Out has 8 bytes in C++, 12 in GLSL")));
 }
 
 TEST(GpuHarness, ReportsTheBodysLine) {
-  EXPECT_THAT([] {
-    test::runCompute<float>("#define Out float\nOut run(uint index) { return nothing; }", 10);
-  }, ThrowsMessage<std::runtime_error>(HasSubstr("test.comp:2")));
+  EXPECT_THAT([] { test::runCompute<float>("#define Out float\nOut run(uint index) { return nothing; }", 10); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("test.comp:2")));
 }
 
 TEST(GpuHarness, RunsWholeShaders) {
@@ -84,7 +95,8 @@ TEST(GpuHarness, RunsWholeShaders) {
     layout(buffer_reference, scalar) buffer Output { uint at[]; };
     layout(push_constant, scalar) uniform Constants { Output result; };
     void main() { result.at[gl_GlobalInvocationID.x] = gl_GlobalInvocationID.x * 3u; }
-  )", std::as_bytes(std::span(&address, 1)), 8);
+  )",
+                        std::as_bytes(std::span(&address, 1)), 8);
   const auto values = buffer.downloadAs<std::uint32_t>(256);
   for (std::uint32_t i = 0; i < 256; ++i) ASSERT_EQ(values[i], 3 * i);
 }

@@ -35,7 +35,8 @@ std::vector<vec4> sample(const BindlessSet& set, const std::vector<vec3>& uvsAnd
     #define In vec3
     #define Out vec4
     Out run(uint index, In value) { return textureLod(textures[nonuniformEXT(uint(value.z))], value.xy, 0.0); }
-  )", uvsAndIndex, uvsAndIndex.size(), options);
+  )",
+                                uvsAndIndex, uvsAndIndex.size(), options);
 }
 
 float linearFromSrgb(float c) { return c <= 0.04045f ? c / 12.92f : std::pow((c + 0.055f) / 1.055f, 2.4f); }
@@ -101,7 +102,8 @@ TEST(GpuImage, DecodesSrgbButNotAlphaWhenSampled) {
 TEST(GpuImage, FiltersAndWrapsAsTheSamplerSays) {
   Context& context = test::testContext();
   const std::vector<float> pixels = {0, 1, 2, 3};
-  const Image ramp = upload({.width = 4, .format = VK_FORMAT_R32_SFLOAT, .name = "ramp"}, std::as_bytes(std::span(pixels)));
+  const Image ramp =
+      upload({.width = 4, .format = VK_FORMAT_R32_SFLOAT, .name = "ramp"}, std::as_bytes(std::span(pixels)));
   const Sampler linear(context, {.addressU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE});
   const Sampler repeat(context, {});
   const Sampler mirror(context, {.filter = VK_FILTER_NEAREST, .addressU = VK_SAMPLER_ADDRESS_MODE_MIRRORED_REPEAT});

@@ -10,7 +10,9 @@ namespace {
 // lavapipe 25.0.7 with LLVM 15 on CPUs with AVX-512 loses the masks of this expression, which swaps the
 // pixels of 64 × 8 blocks, and writes beyond the picture.
 TEST(GpuQuirks, IntegerMasksSurviveTheCompiler) {
-  struct Pair { std::uint32_t x, y; };
+  struct Pair {
+    std::uint32_t x, y;
+  };
   constexpr std::uint32_t kWidth = 512;
   const auto swizzled = test::runCompute<Pair>(R"(
     #define Out uvec2
@@ -18,18 +20,22 @@ TEST(GpuQuirks, IntegerMasksSurviveTheCompiler) {
       uint x = index % 512u, y = index / 512u;
       return uvec2(((x >> 6) * 8u + (y & 7u)) * 8u + (x & 7u), (y & ~7u) + ((x & 63u) >> 3));
     }
-  )", kWidth * 512);
+  )",
+                                               kWidth * 512);
   std::size_t wrong = 0;
   for (std::uint32_t i = 0; i < swizzled.size(); ++i) {
     const std::uint32_t x = i % kWidth, y = i / kWidth;
-    if (swizzled[i].x != ((x >> 6) * 8 + (y & 7)) * 8 + (x & 7) || swizzled[i].y != (y & ~7u) + ((x & 63) >> 3)) ++wrong;
+    if (swizzled[i].x != ((x >> 6) * 8 + (y & 7)) * 8 + (x & 7) || swizzled[i].y != (y & ~7u) + ((x & 63) >> 3))
+      ++wrong;
   }
   EXPECT_EQ(wrong, 0u);
 }
 
 // Signed and unsigned shifts, masks and multiplications of many widths, against the host.
 TEST(GpuQuirks, IntegerArithmeticIsTheHosts) {
-  struct Values { std::uint32_t a, b, c, d; };
+  struct Values {
+    std::uint32_t a, b, c, d;
+  };
   const auto results = test::runCompute<Values>(R"(
     struct Out { uint a, b, c, d; };
     uint hash(uint x) { x ^= x >> 16; x *= 0x7feb352du; x ^= x >> 15; x *= 0x846ca68bu; return x ^ (x >> 16); }
@@ -38,7 +44,8 @@ TEST(GpuQuirks, IntegerArithmeticIsTheHosts) {
       return Out(h, uint(int(h) >> int(i & 31u)), (h & ~(0xFFu << (i & 15u))) + ((h >> 7) & 63u) * 3u,
                  bitfieldExtract(h, int(i & 15u), 9) ^ (h << (i & 7u)));
     }
-  )", 1 << 18);
+  )",
+                                                1 << 18);
   std::size_t wrong = 0;
   for (std::uint32_t i = 0; i < results.size(); ++i) {
     std::uint32_t h = i;

@@ -31,11 +31,15 @@ class Busy {
             uint x = 1u;
             for (uint i = 0u; i < rounds; ++i) x = x * 1664525u + (x >> 7) + i;
             result.value = x;
-          })"), VK_NULL_HANDLE, "busy"),
+          })"),
+                  VK_NULL_HANDLE, "busy"),
         result_(context, {.size = 4, .name = "busy result"}) {}
 
   void record(Commands& commands, std::uint32_t rounds = 50'000'000) const {
-    struct { VkDeviceAddress result; std::uint32_t rounds, padding; } constants{result_.address(), rounds, 0};
+    struct {
+      VkDeviceAddress result;
+      std::uint32_t rounds, padding;
+    } constants{result_.address(), rounds, 0};
     pipeline_.dispatch(commands, std::as_bytes(std::span(&constants, 1)), 1);
   }
 
@@ -89,12 +93,14 @@ TEST(GpuSubmissions, SurviveAnExceptionWhileRecording) {
   const std::uint64_t before = context.submitted();
   const Buffer buffer(context, {.size = 64, .name = "half recorded"});
   for (int i = 0; i < 3; ++i)
-    EXPECT_THAT([&] {
-      context.submit([&](Commands& commands) {
-        commands.fill(buffer, 1);
-        throw std::runtime_error("the recorder fails");
-      });
-    }, ThrowsMessage<std::runtime_error>(HasSubstr("the recorder fails")));
+    EXPECT_THAT(
+        [&] {
+          context.submit([&](Commands& commands) {
+            commands.fill(buffer, 1);
+            throw std::runtime_error("the recorder fails");
+          });
+        },
+        ThrowsMessage<std::runtime_error>(HasSubstr("the recorder fails")));
   EXPECT_EQ(context.submitted(), before);
   context.submitAndWait([&](Commands& commands) { commands.fill(buffer, 2); });
   EXPECT_EQ(buffer.downloadAs<std::uint32_t>(16), std::vector<std::uint32_t>(16, 2));

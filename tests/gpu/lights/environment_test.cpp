@@ -73,7 +73,8 @@ std::vector<Query> query(const LightScene& scene, const std::vector<vec3>& direc
     #define In vec3
     #define Out Query
     Query run(uint i, vec3 d) { return Query(environmentRadiance(d), pdfLightEnvironment(d, lightReceiver(vec3(0.0)))); }
-  )", directions, directions.size(), scene.options(defines));
+  )",
+                           directions, directions.size(), scene.options(defines));
 }
 
 // Directions: +x is u = 0.5, +z is u = 0.75, +y is the top row; a rotation turns the whole towards -z.
@@ -142,7 +143,8 @@ TEST(EnvironmentLight, SamplesFollowTheDensity) {
       const vec3 wi = environmentSample(next2D(rng), nextBits(rng), pdf);
       return vec4(wi, pdf);
     }
-  )", kSamples, scene.options());
+  )",
+                                        kSamples, scene.options());
   std::vector<double> observed(table.entries.size() * 4, 0.0), expected(observed.size()), byAngle(observed.size());
   std::size_t mismatches = 0;
   for (const vec4& s : samples) {

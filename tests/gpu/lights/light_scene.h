@@ -10,8 +10,8 @@
 
 #include "bsdf/chi_square.h"
 #include "harness.h"
-#include "render/device_scene.h"
 #include "lights/tree_oracle.h"
+#include "render/device_scene.h"
 #include "render/light_table.h"
 
 namespace quintet::test {

@@ -119,14 +119,15 @@ TEST(Lights, SplitIndexIsExact) {
       result.x = splitIndex(value.u, value.extra, value.count, result.y);
       return result;
     }
-  )", inputs);
+  )",
+                                       inputs);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const In& in = inputs[i];
     // k · count · 2^32 + extra · count, in units of 2^-56: by halves, since it has 88 bits.
     const auto k = static_cast<std::uint64_t>(in.u * 16777216.0f);
-    const std::uint64_t high = k * in.count;                                  // units of 2^-24
+    const std::uint64_t high = k * in.count;                                    // units of 2^-24
     const std::uint64_t low = static_cast<std::uint64_t>(in.extra) * in.count;  // units of 2^-56
-    const std::uint64_t sum = ((high & 0xFFFFFF) << 8) + (low >> 24);         // units of 2^-32
+    const std::uint64_t sum = ((high & 0xFFFFFF) << 8) + (low >> 24);           // units of 2^-32
     EXPECT_EQ(found[i].x, static_cast<std::uint32_t>((high >> 24) + (sum >> 32))) << i;
     EXPECT_EQ(found[i].y, static_cast<std::uint32_t>(sum)) << i;
     EXPECT_LT(found[i].x, in.count);

@@ -12,9 +12,11 @@ using glm::dvec3;
 using scene::PrimitiveType;
 
 constexpr std::size_t kSamples = 200'000;
-constexpr std::array kTypes{PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone, PrimitiveType::torus};
+constexpr std::array kTypes{PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone,
+                            PrimitiveType::torus};
 
-scene::Scene emissiveSolid(PrimitiveType type, const mat4& objectFromPrimitive, const mat4& worldFromObject = mat4(1.0f)) {
+scene::Scene emissiveSolid(PrimitiveType type, const mat4& objectFromPrimitive,
+                           const mat4& worldFromObject = mat4(1.0f)) {
   scene::Scene scene;
   scene.materials.resize(1);
   scene.materials[0].emissive = vec3(1.0f);
@@ -35,12 +37,14 @@ scene::Scene emissiveSolid(PrimitiveType type, const mat4& objectFromPrimitive, 
 
 mat4 stretched() {
   const mat4 turn = glm::rotate(mat4(1.0f), 1.1f, glm::normalize(vec3(1, 0.4f, -0.3f)));
-  return glm::translate(mat4(1.0f), vec3(0.3f, 2.0f, -0.4f)) * turn * glm::scale(mat4(1.0f), vec3(-1.5f, 0.5f, 0.8f)) * glm::transpose(turn);
+  return glm::translate(mat4(1.0f), vec3(0.3f, 2.0f, -0.4f)) * turn * glm::scale(mat4(1.0f), vec3(-1.5f, 0.5f, 0.8f)) *
+         glm::transpose(turn);
 }
 
 // Mean of 1/pdf: the solid angle of all of the surface, near and far side each for itself.
 Estimate solidAngle(const LightScene& scene, const vec3& position) {
-  return estimate(sampleLights(scene, position, kSamples), [](const LightOut& s) { return s.valid ? 1.0 / s.pdf : 0.0; });
+  return estimate(sampleLights(scene, position, kSamples),
+                  [](const LightOut& s) { return s.valid ? 1.0 / s.pdf : 0.0; });
 }
 
 // From inside, a closed convex surface is all around.
@@ -70,8 +74,10 @@ TEST(SolidLamp, BoxesFromOutside) {
         c[(face / 2 + 2) % 3] = k < 2 ? -1.0f : 1.0f;
         corners[static_cast<std::size_t>(k)] = glm::normalize(dvec3(vec3(m * vec4(c, 1.0f))) - dvec3(p));
       }
-      for (const auto& [a, b, c] : {std::array{corners[0], corners[1], corners[2]}, std::array{corners[0], corners[2], corners[3]}})
-        exact += 2.0 * std::atan2(std::abs(glm::dot(a, glm::cross(b, c))), 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
+      for (const auto& [a, b, c] :
+           {std::array{corners[0], corners[1], corners[2]}, std::array{corners[0], corners[2], corners[3]}})
+        exact += 2.0 * std::atan2(std::abs(glm::dot(a, glm::cross(b, c))),
+                                  1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
     }
     EXPECT_GT(pValue(solidAngle(scene, p), exact), sidak(0.01, 3));
   }
@@ -82,9 +88,11 @@ TEST(SolidLamp, BallsFromOutside) {
   const float radius = 0.5f;
   const vec3 center(5, 1, -2);
   const mat4 turn = glm::rotate(mat4(1.0f), 1.1f, glm::normalize(vec3(1, 0.4f, -0.3f)));
-  const LightScene scene(emissiveSolid(PrimitiveType::sphere, glm::translate(mat4(1.0f), vec3(0, 1, 0)) * turn * glm::scale(mat4(1.0f), vec3(radius)),
-                                       glm::translate(mat4(1.0f), vec3(5, 0, -2)) * glm::scale(mat4(1.0f), vec3(1, 1, -1))),
-                         {});
+  const LightScene scene(
+      emissiveSolid(PrimitiveType::sphere,
+                    glm::translate(mat4(1.0f), vec3(0, 1, 0)) * turn * glm::scale(mat4(1.0f), vec3(radius)),
+                    glm::translate(mat4(1.0f), vec3(5, 0, -2)) * glm::scale(mat4(1.0f), vec3(1, 1, -1))),
+      {});
   for (const vec3& p : {vec3(0.0f), center + vec3(0, 0.5001f, 0), center + vec3(0, -0.7f, 0.2f), vec3(4000, 100, 50)}) {
     const double distance = glm::length(dvec3(p) - dvec3(center)), sine = radius / distance;
     const double exact = 2.0 * kPiDouble * sine * sine / (1.0 + std::sqrt(1.0 - sine * sine));

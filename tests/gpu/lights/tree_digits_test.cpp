@@ -30,7 +30,9 @@ std::vector<std::uint32_t> randomWords(std::size_t count) {
 }
 
 TEST(LightTreeDigits, QuotientsAreExact) {
-  struct In { std::uint32_t d, r, part; };
+  struct In {
+    std::uint32_t d, r, part;
+  };
   std::vector<In> inputs;
   const std::vector<std::uint32_t> words = randomWords(3'000'000);
   for (std::uint32_t i = 0; i < 1'000'000; ++i) {
@@ -43,7 +45,8 @@ TEST(LightTreeDigits, QuotientsAreExact) {
     if (i % 5 == 0) d %= std::min(part, 200u);
     if (i % 13 == 0) r = i % 2 ? 0 : kOne - 1;
     // The first with its quotient, or the last with the one before.
-    if (i % 17 == 0) r -= static_cast<std::uint32_t>(std::min<std::uint64_t>(r, (std::uint64_t{d} << 31 | r) % part + i % 2));
+    if (i % 17 == 0)
+      r -= static_cast<std::uint32_t>(std::min<std::uint64_t>(r, (std::uint64_t{d} << 31 | r) % part + i % 2));
     inputs.push_back({d, r, part});
   }
   const auto found = runCompute<std::uint32_t>(R"(
@@ -51,7 +54,8 @@ TEST(LightTreeDigits, QuotientsAreExact) {
     struct In { uint d; uint r; uint part; };
     #define Out uint
     uint run(uint i, In v) { return lightDigits(v.d, v.r, v.part); }
-  )", inputs, inputs.size());
+  )",
+                                               inputs, inputs.size());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const auto& [d, r, part] = inputs[i];
     ASSERT_EQ(found[i], quotient(d, r, part)) << d << " " << r << " / " << part;
@@ -61,13 +65,15 @@ TEST(LightTreeDigits, QuotientsAreExact) {
 // Lamps of very different strength, in two groups: numbers at the ends of each group's range decide about the faintest.
 TEST(LightTreeDigits, DrawsAreThoseOfExactArithmetic) {
   scene::Scene source;
-  for (const auto& [x, intensity] : {std::pair{-10.0f, 1.0f}, {-10.1f, 1e-7f}, {10.0f, 1.0f}, {10.1f, 1e-7f}, {10.2f, 3e-8f}}) {
+  for (const auto& [x, intensity] :
+       {std::pair{-10.0f, 1.0f}, {-10.1f, 1e-7f}, {10.0f, 1.0f}, {10.1f, 1e-7f}, {10.2f, 3e-8f}}) {
     scene::Light& light = source.lights.emplace_back();
     light.position = {x, 0, 0};
     light.intensity = vec3(intensity);
   }
   const LightScene scene(source, {});
-  const std::string at = "#include <quintet/lights/tree.glsl>\nLightReceiver here() { return lightReceiver(vec3(0.0)); }\n";
+  const std::string at =
+      "#include <quintet/lights/tree.glsl>\nLightReceiver here() { return lightReceiver(vec3(0.0)); }\n";
   std::vector<std::uint32_t> nodes(scene.table.nodes.size());
   std::iota(nodes.begin(), nodes.end(), 0u);
   const auto chances = runCompute<std::uint32_t>(at + R"(
@@ -77,9 +83,13 @@ TEST(LightTreeDigits, DrawsAreThoseOfExactArithmetic) {
       const uint link = LightNodeArray(frame.lightNodes).at[node].link;
       return (link & kLightNodeLeaf) != 0u ? 0u : lightFirstChance(link & kLightNodeIndex, here());
     }
-  )", nodes, nodes.size(), scene.options());
+  )",
+                                                 nodes, nodes.size(), scene.options());
 
-  struct In { float u; std::uint32_t bits; };
+  struct In {
+    float u;
+    std::uint32_t bits;
+  };
   std::vector<In> inputs;
   const std::vector<std::uint32_t> words = randomWords(400'000);
   for (std::uint32_t i = 0; i < 200'000; ++i) {
@@ -91,7 +101,8 @@ TEST(LightTreeDigits, DrawsAreThoseOfExactArithmetic) {
     struct In { float u; uint bits; };
     #define Out uint
     uint run(uint i, In v) { float probability; return drawLight(here(), v.u, v.bits, probability); }
-  )", inputs, inputs.size(), scene.options());
+  )",
+                                               inputs, inputs.size(), scene.options());
 
   std::vector<std::size_t> counts(source.lights.size());
   for (std::size_t i = 0; i < inputs.size(); ++i) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/packing.hpp>
 #include <vector>
 
 #include "quintet/shared/frame.h"
@@ -42,12 +41,14 @@ inline double oracleImportance(const shared::LightNode& node, const Receiver& re
   const double leastTurn = std::max(0.0, turn - within);
   if (std::cos(leastTurn) < cone.y - 1e-3) return 0.0;
   const auto likely = [](double a, double least) { return 0.25 * std::cos(least) + 0.75 * std::max(0.0, std::cos(a)); };
-  const double strength = node.intensity * std::max(likely(tilt, leastTilt), 0.0625) * std::max(likely(turn, leastTurn), 0.01);
+  const double strength =
+      node.intensity * std::max(likely(tilt, leastTilt), 0.0625) * std::max(likely(turn, leastTurn), 0.01);
   return std::clamp(strength / std::max(distance * distance, 0.125 * radius * radius), 1e-35, 1e30);
 }
 
 // Of each light; what is missing to 1 comes to lights that give nothing.
-inline std::vector<double> oracleProbabilities(const std::vector<shared::LightNode>& nodes, std::size_t lightCount, const Receiver& receiver) {
+inline std::vector<double> oracleProbabilities(const std::vector<shared::LightNode>& nodes, std::size_t lightCount,
+                                               const Receiver& receiver) {
   std::vector<double> result(lightCount, 0.0);
   struct Visit {
     std::size_t node;

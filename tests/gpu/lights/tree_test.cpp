@@ -17,7 +17,9 @@ constexpr std::size_t kSamples = 400'000;
 class Random {
  public:
   explicit Random(std::uint32_t seed) : engine_(seed) {}
-  float operator()(float low, float high) { return low + (high - low) * static_cast<float>(static_cast<double>(engine_()) * 0x1p-32); }
+  float operator()(float low, float high) {
+    return low + (high - low) * static_cast<float>(static_cast<double>(engine_()) * 0x1p-32);
+  }
   vec3 point(float size) { return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)}; }
   vec3 direction() {
     for (;;) {
@@ -39,7 +41,8 @@ scene::Scene manyLights(std::uint32_t seed, int triangles = 240, int punctual = 
     scene::Geometry geometry;
     geometry.material = m;
     for (int i = 0; i < triangles / 3; ++i) {
-      const vec3 p = vec3(2.0f * static_cast<float>(i % 5) - 4.0f, 2.0f, 3.0f * static_cast<float>(m)) + random.point(0.6f);
+      const vec3 p =
+          vec3(2.0f * static_cast<float>(i % 5) - 4.0f, 2.0f, 3.0f * static_cast<float>(m)) + random.point(0.6f);
       const auto first = static_cast<std::uint32_t>(geometry.positions.size());
       for (int k = 0; k < 3; ++k) geometry.positions.push_back(p + random.point(0.2f));
       geometry.triangles.emplace_back(first, first + 1, first + 2);
@@ -88,8 +91,10 @@ std::vector<Receiver> receivers(const scene::Scene& scene) {
     result.push_back({2.0f * a - 0.5f * (b + c), normal, 0});
   }
   for (const scene::Light& light : scene.lights)
-    if (light.type == scene::LightType::spot && result.size() < 14) result.push_back({light.position - 0.5f * light.direction, light.direction, 1});
-  while (result.size() < 40) result.push_back({random.point(6.0f), random.direction(), static_cast<std::uint32_t>(result.size() % 2)});
+    if (light.type == scene::LightType::spot && result.size() < 14)
+      result.push_back({light.position - 0.5f * light.direction, light.direction, 1});
+  while (result.size() < 40)
+    result.push_back({random.point(6.0f), random.direction(), static_cast<std::uint32_t>(result.size() % 2)});
   return result;
 }
 
@@ -113,7 +118,8 @@ std::vector<float> deviceProbabilities(const LightScene& scene, const std::vecto
     struct In { vec3 position; vec3 normal; uint opaque; uint light; };
     #define Out float
     float run(uint i, In v) { return lightProbability(v.light, LightReceiver(v.position, v.normal, v.opaque != 0u)); }
-  )", inputs, inputs.size(), scene.options());
+  )",
+                           inputs, inputs.size(), scene.options());
 }
 
 TEST(LightTreeDevice, ProbabilitiesEqualTheOracle) {
@@ -136,7 +142,7 @@ TEST(LightTreeDevice, ProbabilitiesEqualTheOracle) {
     EXPECT_LT(sum, 1.0 + 1e-5) << r;
     EXPECT_GT(sum, places[r].opaque ? 0.0 : 0.5) << r;  // what is missing: draws that end among spots turned away
   }
-  EXPECT_GT(never, count);              // lights below the horizon, and spots turned away, are not drawn
+  EXPECT_GT(never, count);  // lights below the horizon, and spots turned away, are not drawn
   EXPECT_GT(farFromPower, 0.5 * static_cast<double>(places.size()));
 }
 
@@ -162,7 +168,8 @@ TEST(LightTreeDevice, DrawsFollowTheProbabilities) {
         result.asked = lightProbability(result.light, receiverOf(v));
         return result;
       }
-    )", std::vector<Receiver>{all[r]}, kSamples, scene.options());
+    )",
+                                       std::vector<Receiver>{all[r]}, kSamples, scene.options());
     std::vector<double> observed(count + 1, 0.0), expected(count + 1, 0.0), ofAnother(count + 1, 0.0);
     for (const Out& draw : draws) {
       ASSERT_EQ(draw.drawn, draw.asked) << "receiver " << r << " light " << draw.light;
@@ -192,13 +199,16 @@ TEST(LightTreeDevice, NoLightThatGivesIsNeverDrawn) {
     const LightScene scene(source, sky());
     Random random(4);
     std::vector<Receiver> inputs;
-    for (int i = 0; i < 30'000; ++i) inputs.push_back({random.point(i % 2 ? 6.0f : 1.5f) + offset + vec3(0, 2, 0), random.direction(), i % 3 ? 1u : 0u});
+    for (int i = 0; i < 30'000; ++i)
+      inputs.push_back(
+          {random.point(i % 2 ? 6.0f : 1.5f) + offset + vec3(0, 2, 0), random.direction(), i % 3 ? 1u : 0u});
     // Planes that just touch a light: an edge of a triangle lies in the receiver's plane.
     for (std::size_t i = 0; i < 3000; ++i) {
       const scene::Instance& instance = source.instances[i % 3];
       const scene::Geometry& g = source.meshes[instance.mesh].geometries[0];
       const uvec3 t = g.triangles[i / 3 % g.triangles.size()];
-      const vec3 a(instance.worldFromObject * vec4(g.positions[t.x], 1.0f)), b(instance.worldFromObject * vec4(g.positions[t.y], 1.0f));
+      const vec3 a(instance.worldFromObject * vec4(g.positions[t.x], 1.0f)),
+          b(instance.worldFromObject * vec4(g.positions[t.y], 1.0f));
       const vec3 p = a + random.point(2.0f);
       inputs.push_back({p, glm::normalize(glm::cross(a - p, b - p)), 1});
     }
@@ -224,7 +234,8 @@ TEST(LightTreeDevice, NoLightThatGivesIsNeverDrawn) {
         }
         return result;
       }
-    )", inputs, inputs.size(), scene.options());
+    )",
+                                       inputs, inputs.size(), scene.options());
     std::uint64_t contributions = 0, lost = 0;
     for (const uvec2& b : bad) contributions += b.x, lost += b.y;
     EXPECT_GT(contributions, 2'000'000u);
@@ -242,7 +253,8 @@ Estimate irradianceOf(const LightScene& scene, const Receiver& place, const Defi
       if (!sampleLight(receiverOf(v), next1D(rng), next2D(rng), s)) return 0.0;
       return s.radiance.x * max(0.0, dot(s.wi, v.normal)) / s.pdf;
     }
-  )", std::vector<Receiver>{place}, kSamples, scene.options(defines));
+  )",
+                                         std::vector<Receiver>{place}, kSamples, scene.options(defines));
   return estimate(samples, [](float v) { return static_cast<double>(v); });
 }
 
@@ -259,7 +271,8 @@ double triangleIrradiance(std::vector<dvec3> corners, const dvec3& normal) {
   for (std::size_t i = 0; i < above.size(); ++i) {
     const dvec3 a = glm::normalize(above[i]), b = glm::normalize(above[(i + 1) % above.size()]);
     const dvec3 axis = glm::cross(a, b);
-    if (glm::length(axis) > 0.0) sum += std::atan2(glm::length(axis), glm::dot(a, b)) * glm::dot(axis / glm::length(axis), normal);
+    if (glm::length(axis) > 0.0)
+      sum += std::atan2(glm::length(axis), glm::dot(a, b)) * glm::dot(axis / glm::length(axis), normal);
   }
   return std::abs(sum) / 2.0;
 }
@@ -271,7 +284,8 @@ double exactIrradiance(const scene::Scene& scene, const Receiver& place) {
     const scene::Geometry& g = scene.meshes[instance.mesh].geometries[0];
     for (const uvec3& t : g.triangles) {
       std::vector<dvec3> corners;
-      for (int k = 0; k < 3; ++k) corners.emplace_back(dvec3(glm::dmat4(instance.worldFromObject) * glm::dvec4(g.positions[t[k]], 1.0)) - p);
+      for (int k = 0; k < 3; ++k)
+        corners.emplace_back(dvec3(glm::dmat4(instance.worldFromObject) * glm::dvec4(g.positions[t[k]], 1.0)) - p);
       sum += scene.materials[static_cast<std::size_t>(g.material)].emissive.x * triangleIrradiance(corners, n);
     }
   }
@@ -282,8 +296,9 @@ double exactIrradiance(const scene::Scene& scene, const Receiver& place) {
 TEST(LightTreeDevice, EstimatesAgreeWithClosedForms) {
   const scene::Scene source = manyLights(5, 600, 0);
   const LightScene scene(source, {});
-  for (const Receiver& place : {Receiver{vec3(0), vec3(0, 1, 0), 1}, Receiver{vec3(-4, 1.2f, 3.2f), glm::normalize(vec3(0.2f, 1, 0)), 1},
-                                Receiver{vec3(2, 2, 0.3f), vec3(1, 0, 0), 1}, Receiver{vec3(0, 9, 4), vec3(0, -1, 0), 0}}) {
+  for (const Receiver& place :
+       {Receiver{vec3(0), vec3(0, 1, 0), 1}, Receiver{vec3(-4, 1.2f, 3.2f), glm::normalize(vec3(0.2f, 1, 0)), 1},
+        Receiver{vec3(2, 2, 0.3f), vec3(1, 0, 0), 1}, Receiver{vec3(0, 9, 4), vec3(0, -1, 0), 0}}) {
     const double exact = exactIrradiance(source, place);
     const Estimate tree = irradianceOf(scene, place, {}), power = irradianceOf(scene, place, kByPower);
     EXPECT_GT(pValue(tree, exact), sidak(0.01, 8)) << tree.mean << " ± " << tree.error << " for " << exact;
@@ -299,7 +314,9 @@ TEST(LightTreeDevice, EstimatesAgreeWithClosedForms) {
 // nothing, and the third stands still.
 TEST(LightTreeDevice, FollowsKeyframes) {
   scene::Scene source = manyLights(6, 30, 0);
-  const auto key = [](float frame, const vec3& at, float size) { return scene::Keyframe{frame, at, quat(1, 0, 0, 0), vec3(size)}; };
+  const auto key = [](float frame, const vec3& at, float size) {
+    return scene::Keyframe{frame, at, quat(1, 0, 0, 0), vec3(size)};
+  };
   source.instances[0].keyframes = {key(0, {0, -9, 0}, 1), key(10, {0, 0, 0}, 1), key(20, {0, -9, 0}, 1)};
   source.instances[1].keyframes = {key(0, {0, 1, -3}, 1e-4f), key(10, {0, 1, -3}, 2)};
   LightScene scene(source, {});
@@ -307,11 +324,13 @@ TEST(LightTreeDevice, FollowsKeyframes) {
   for (const float frame : {0.0f, 10.0f, 4.0f, 20.0f}) {
     scene.setFrame(frame);
     scene::Scene now = source;
-    for (scene::Instance& instance : now.instances) instance.worldFromObject = scene::worldFromObjectAt(instance, frame);
+    for (scene::Instance& instance : now.instances)
+      instance.worldFromObject = scene::worldFromObjectAt(instance, frame);
     const double exact = exactIrradiance(now, place);
     for (const Defines& defines : {Defines{}, kByPower}) {
       const Estimate found = irradianceOf(scene, place, defines);
-      EXPECT_GT(pValue(found, exact), sidak(0.01, 8)) << "frame " << frame << ": " << found.mean << " ± " << found.error << " for " << exact;
+      EXPECT_GT(pValue(found, exact), sidak(0.01, 8))
+          << "frame " << frame << ": " << found.mean << " ± " << found.error << " for " << exact;
     }
   }
 }

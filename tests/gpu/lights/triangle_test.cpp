@@ -273,7 +273,8 @@ TEST(TriangleLight, ShadowTargetIsInFront) {
           if (!sampleLight(origin, next1D(rng), next2D(rng), s)) return TargetOut(vec3(0.0), 0u);
           return TargetOut(shadowTarget(s, origin), 1u);
         }
-      )", std::vector<vec3>{origin}, 20'000, scene.options());
+      )",
+                                                 std::vector<vec3>{origin}, 20'000, scene.options());
       const std::vector<dvec3> c = cornersFrom(source, origin);
       const dvec3 normal = glm::normalize(glm::cross(c[1] - c[0], c[2] - c[0]));
       const double side = glm::dot(normal, c[0]) < 0.0 ? 1.0 : -1.0;

@@ -44,7 +44,8 @@ PrimitiveSet randomTrees(Random& random, int depth, int count, bool full) {
 std::vector<ProbeRay> raysAround(Random& random, std::size_t count, const mat4& worldFromObject) {
   std::vector<ProbeRay> rays;
   for (std::size_t i = 0; i < count; ++i) {
-    const vec3 from = i % 3 == 0 ? random.inBox(1.0f) : random.onSphere() * random.uniform(2.0f, i % 3 == 1 ? 20.0f : 5.0f);
+    const vec3 from =
+        i % 3 == 0 ? random.inBox(1.0f) : random.onSphere() * random.uniform(2.0f, i % 3 == 1 ? 20.0f : 5.0f);
     const vec3 along = (random.inBox(1.0f) - from) * std::exp(random.uniform(-3.0f, 3.0f));
     ProbeRay ray;
     ray.origin = worldFromObject * vec4(from, 1.0f);
@@ -78,15 +79,24 @@ struct Round {
 TEST(Csg, AgreesWithTheOracle) {
   Random random(7);
   std::size_t count = 0, hits = 0, doubtful = 0, flipped = 0;
-  for (const Round& round : {Round{1, 1, true, 2000}, {1, 5, true, 1500}, {2, 1, true, 2000}, {2, 3, false, 2000}, {3, 1, true, 2000},
-                             {3, 20, false, 2000}, {4, 1, true, 1500}, {5, 2, false, 1500}, {6, 1, false, 1000}, {8, 1, true, 500}}) {
+  for (const Round& round : {Round{1, 1, true, 2000},
+                             {1, 5, true, 1500},
+                             {2, 1, true, 2000},
+                             {2, 3, false, 2000},
+                             {3, 1, true, 2000},
+                             {3, 20, false, 2000},
+                             {4, 1, true, 1500},
+                             {5, 2, false, 1500},
+                             {6, 1, false, 1000},
+                             {8, 1, true, 500}}) {
     SCOPED_TRACE(testing::Message() << "depth " << round.depth << ", " << round.trees << " trees");
     const PrimitiveSet set = randomTrees(random, round.depth, round.trees, round.full);
     const mat4 worldFromObject = round.depth % 2 ? random.affine(2.5f, 4.0f) : mat4(1.0f);
     const std::vector<ProbeRay> rays = raysAround(random, round.rays, worldFromObject);
     const std::vector<ProbeHit> found = probe(sceneOf(set, worldFromObject), rays);
     for (std::size_t i = 0; i < rays.size(); ++i, ++count) {
-      const Expected expected = expectHit([&](const oracle::Ray& ray) { return crossingsOfAll(set, ray); }, rays[i], worldFromObject);
+      const Expected expected =
+          expectHit([&](const oracle::Ray& ray) { return crossingsOfAll(set, ray); }, rays[i], worldFromObject);
       doubtful += expected.doubtful;
       if (expected.doubtful) continue;
       hits += expected.hit.has_value();
@@ -107,11 +117,13 @@ TEST(Csg, AgreesWithTheOracle) {
 Primitive boxFrom(const vec3& low, const vec3& high) {
   Primitive primitive;
   primitive.type = PrimitiveType::box;
-  primitive.objectFromPrimitive = glm::translate(mat4(1.0f), 0.5f * (low + high)) * glm::scale(mat4(1.0f), 0.5f * (high - low));
+  primitive.objectFromPrimitive =
+      glm::translate(mat4(1.0f), 0.5f * (low + high)) * glm::scale(mat4(1.0f), 0.5f * (high - low));
   return primitive;
 }
 
-const CsgNode kUnite{CsgOperation::unite, 0}, kIntersect{CsgOperation::intersect, 0}, kSubtract{CsgOperation::subtract, 0};
+const CsgNode kUnite{CsgOperation::unite, 0}, kIntersect{CsgOperation::intersect, 0},
+    kSubtract{CsgOperation::subtract, 0};
 CsgNode leaf(std::uint32_t i) { return {CsgOperation::leaf, i}; }
 
 PrimitiveSet treeOf(const std::vector<Primitive>& primitives, const std::vector<CsgNode>& nodes) {
@@ -134,28 +146,41 @@ struct Coincidence {
 };
 
 std::vector<Coincidence> coincidences() {
-  const Primitive whole = boxFrom(vec3(-1), vec3(1)), upper = boxFrom({-2, -2, 0}, {2, 2, 1}), top = boxFrom({-1, -1, 0}, {1, 1, 1}),
-                  bottom = boxFrom(vec3(-1), {1, 1, 0}), above = boxFrom({-2, -2, 1}, {2, 2, 2}), low = boxFrom(vec3(-1), {1, 1, -0.5f});
-  return {{"a subtrahend that shares a face takes it away", treeOf({whole, upper}, {leaf(0), leaf(1), kSubtract}), 3, 0, 1, true},
-          {"the same from inside", treeOf({whole, upper}, {leaf(0), leaf(1), kSubtract}), -0.5f, -1, 0, false},
-          {"no wall where two that touch are united", treeOf({top, bottom}, {leaf(0), leaf(1), kUnite}), 0.5f, -1, 1, false},
-          {"a common face of an intersection", treeOf({whole, upper}, {leaf(0), leaf(1), kIntersect}), 3, 1, 0, true},
-          {"an intersection of two that touch is nothing", treeOf({top, bottom}, {leaf(0), leaf(1), kIntersect}), 3, 100, 0, true},
-          {"a subtrahend that touches from outside leaves the face", treeOf({whole, above}, {leaf(0), leaf(1), kSubtract}), 0.5f, -1, 0, false},
-          {"and from there, too", treeOf({whole, above}, {leaf(0), leaf(1), kSubtract}), 3, 1, 0, true},
-          {"a thing minus itself is nothing", treeOf({whole, whole}, {leaf(0), leaf(1), kSubtract}), 3, 100, 0, true},
-          {"a thing with itself is itself", treeOf({whole, whole}, {leaf(0), leaf(1), kUnite}), 3, 1, 0, true},
-          {"the operand that decides shows", treeOf({top, whole, bottom}, {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}), 3, 0, 2, true},
-          {"three faces in one", treeOf({top, top, whole}, {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}), 3, 1, 2, true},
-          {"what is cut away twice", treeOf({whole, upper, top}, {leaf(0), leaf(1), kSubtract, leaf(2), kSubtract}), 3, 0, 1, true},
-          {"a hole down to a face", treeOf({whole, boxFrom({-0.9f, -0.9f, -2}, {0.9f, 0.9f, 2}), low}, {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}), 3, -0.5f, 2, true}};
+  const Primitive whole = boxFrom(vec3(-1), vec3(1)), upper = boxFrom({-2, -2, 0}, {2, 2, 1}),
+                  top = boxFrom({-1, -1, 0}, {1, 1, 1}), bottom = boxFrom(vec3(-1), {1, 1, 0}),
+                  above = boxFrom({-2, -2, 1}, {2, 2, 2}), low = boxFrom(vec3(-1), {1, 1, -0.5f});
+  return {
+      {"a subtrahend that shares a face takes it away", treeOf({whole, upper}, {leaf(0), leaf(1), kSubtract}), 3, 0, 1,
+       true},
+      {"the same from inside", treeOf({whole, upper}, {leaf(0), leaf(1), kSubtract}), -0.5f, -1, 0, false},
+      {"no wall where two that touch are united", treeOf({top, bottom}, {leaf(0), leaf(1), kUnite}), 0.5f, -1, 1,
+       false},
+      {"a common face of an intersection", treeOf({whole, upper}, {leaf(0), leaf(1), kIntersect}), 3, 1, 0, true},
+      {"an intersection of two that touch is nothing", treeOf({top, bottom}, {leaf(0), leaf(1), kIntersect}), 3, 100, 0,
+       true},
+      {"a subtrahend that touches from outside leaves the face", treeOf({whole, above}, {leaf(0), leaf(1), kSubtract}),
+       0.5f, -1, 0, false},
+      {"and from there, too", treeOf({whole, above}, {leaf(0), leaf(1), kSubtract}), 3, 1, 0, true},
+      {"a thing minus itself is nothing", treeOf({whole, whole}, {leaf(0), leaf(1), kSubtract}), 3, 100, 0, true},
+      {"a thing with itself is itself", treeOf({whole, whole}, {leaf(0), leaf(1), kUnite}), 3, 1, 0, true},
+      {"the operand that decides shows", treeOf({top, whole, bottom}, {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}),
+       3, 0, 2, true},
+      {"three faces in one", treeOf({top, top, whole}, {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}), 3, 1, 2, true},
+      {"what is cut away twice", treeOf({whole, upper, top}, {leaf(0), leaf(1), kSubtract, leaf(2), kSubtract}), 3, 0,
+       1, true},
+      {"a hole down to a face",
+       treeOf({whole, boxFrom({-0.9f, -0.9f, -2}, {0.9f, 0.9f, 2}), low},
+              {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}),
+       3, -0.5f, 2, true}};
 }
 
 // Appends a tree, moved by m; a box is the same after a quarter turn about z, and its numbers are not.
 void append(PrimitiveSet& to, const PrimitiveSet& set, const mat4& m, Random& random) {
-  const auto firstPrimitive = static_cast<std::uint32_t>(to.primitives.size()), firstNode = static_cast<std::uint32_t>(to.nodes.size());
+  const auto firstPrimitive = static_cast<std::uint32_t>(to.primitives.size()),
+             firstNode = static_cast<std::uint32_t>(to.nodes.size());
   for (Primitive primitive : set.primitives) {
-    const mat4 turn = glm::rotate(mat4(1.0f), static_cast<float>(random.below(4)) * glm::half_pi<float>(), vec3(0, 0, 1));
+    const mat4 turn =
+        glm::rotate(mat4(1.0f), static_cast<float>(random.below(4)) * glm::half_pi<float>(), vec3(0, 0, 1));
     primitive.objectFromPrimitive = m * primitive.objectFromPrimitive * turn;
     to.primitives.push_back(primitive);
   }
@@ -189,11 +214,12 @@ TEST(Csg, FacesThatCoincideActTogether) {
       int wrong = 0;
       const ProbeHit* const found = &hits[c * kRays];
       for (int i = 0; i < kRays; ++i) {
-        const bool right = std::abs(found[i].t - (cases[c].start - cases[c].z)) < 1e-3f && found[i].leaf == firstLeaf + cases[c].leaf &&
-                           found[i].front == cases[c].front;
+        const bool right = std::abs(found[i].t - (cases[c].start - cases[c].z)) < 1e-3f &&
+                           found[i].leaf == firstLeaf + cases[c].leaf && found[i].front == cases[c].front;
         wrong += cases[c].z > 99.0f ? found[i].t >= 0.0f : !right;
       }
-      EXPECT_EQ(wrong, 0) << cases[c].name << ", transform " << k << ": t " << found->t << " leaf " << found->leaf - firstLeaf << " front " << found->front;
+      EXPECT_EQ(wrong, 0) << cases[c].name << ", transform " << k << ": t " << found->t << " leaf "
+                          << found->leaf - firstLeaf << " front " << found->front;
       firstLeaf += static_cast<std::uint32_t>(cases[c].set.primitives.size());
     }
   }
@@ -227,10 +253,12 @@ TEST(Csg, IsNotMetByRaysThatLeaveIt) {
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const auto expected = oracle::firstHit(crossingsOfAll(set, toObject(rays[i], worldFromObject)), 0.0, 1e30);
       const double place = expected ? expected->t : -1.0;
-      const bool same = hits[i].t >= 0.0f && expected && std::abs(hits[i].t - place) < 1e-3 * place + 30.0 * from[i]->error;
+      const bool same =
+          hits[i].t >= 0.0f && expected && std::abs(hits[i].t - place) < 1e-3 * place + 30.0 * from[i]->error;
       if (same || (hits[i].t < 0.0f && !expected)) continue;
       ++different;  // past an edge, or at one
-      itself += hits[i].t >= 0.0f && hits[i].leaf == from[i]->leaf && hits[i].face == from[i]->face && hits[i].t < 100.0f * from[i]->error;
+      itself += hits[i].t >= 0.0f && hits[i].leaf == from[i]->leaf && hits[i].face == from[i]->face &&
+                hits[i].t < 100.0f * from[i]->error;
     }
     EXPECT_EQ(itself, 0u) << "of " << hits.size();
     EXPECT_LE(different, hits.size() / 200) << "of " << hits.size();
@@ -299,7 +327,8 @@ TEST(Csg, LargeTreesAgreeWithTheOracle) {
     const std::vector<ProbeHit> hits = probe(sceneOf(set), rays);
     std::size_t doubtful = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Expected expected = expectHit([&](const oracle::Ray& ray) { return crossingsOfAll(set, ray); }, rays[i], mat4(1.0f));
+      const Expected expected =
+          expectHit([&](const oracle::Ray& ray) { return crossingsOfAll(set, ray); }, rays[i], mat4(1.0f));
       doubtful += expected.doubtful;
       SCOPED_TRACE(testing::Message() << "ray " << i);
       if (!expected.doubtful) compareHit(hits[i], rays[i], expected, mat4(1.0f));

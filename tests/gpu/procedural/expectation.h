@@ -19,7 +19,8 @@ struct Expected {
 
 inline oracle::Ray toObject(const ProbeRay& ray, const mat4& worldFromObject) {
   const dmat4 objectFromWorld = glm::inverse(dmat4(worldFromObject));
-  return {dvec3(objectFromWorld * glm::dvec4(dvec3(ray.origin), 1.0)), dvec3(objectFromWorld * glm::dvec4(dvec3(ray.direction), 0.0))};
+  return {dvec3(objectFromWorld * glm::dvec4(dvec3(ray.origin), 1.0)),
+          dvec3(objectFromWorld * glm::dvec4(dvec3(ray.direction), 0.0))};
 }
 
 // `crossingsOf`: oracle::Crossings of an object-space ray.
@@ -31,7 +32,8 @@ Expected expectHit(const CrossingsOf& crossingsOf, const ProbeRay& ray, const ma
   for (int k = 0; k < 6 && !result.doubtful; ++k) {
     dvec3 by(0.0);
     by[k / 2] = k % 2 ? e : -e;
-    const auto moved = oracle::firstHit(crossingsOf(oracle::Ray{local.origin + by, local.direction}), ray.tmin, ray.tmax);
+    const auto moved =
+        oracle::firstHit(crossingsOf(oracle::Ray{local.origin + by, local.direction}), ray.tmin, ray.tmax);
     result.doubtful = moved.has_value() != result.hit.has_value() ||
                       (moved && (moved->entering != result.hit->entering || moved->primitive != result.hit->primitive ||
                                  glm::dot(moved->normal, result.hit->normal) < 0.99 ||
@@ -40,15 +42,19 @@ Expected expectHit(const CrossingsOf& crossingsOf, const ProbeRay& ray, const ma
   return result;
 }
 
-inline void compareHit(const ProbeHit& hit, const ProbeRay& ray, const Expected& expected, const mat4& worldFromObject) {
-  ASSERT_EQ(hit.t >= 0.0f, expected.hit.has_value()) << "t " << hit.t << " instead of " << (expected.hit ? expected.hit->t : -1.0);
+inline void compareHit(const ProbeHit& hit, const ProbeRay& ray, const Expected& expected,
+                       const mat4& worldFromObject) {
+  ASSERT_EQ(hit.t >= 0.0f, expected.hit.has_value())
+      << "t " << hit.t << " instead of " << (expected.hit ? expected.hit->t : -1.0);
   EXPECT_EQ(hit.visible, !expected.hit.has_value());
   if (!expected.hit) return;
   // Roundings on the way there count as a length; a ray that grazes turns it into a longer way.
   const dvec3 d(ray.direction);
-  const dvec3 normal = glm::normalize(glm::transpose(glm::inverse(oracle::dmat3(dmat4(worldFromObject)))) * expected.hit->normal);
+  const dvec3 normal =
+      glm::normalize(glm::transpose(glm::inverse(oracle::dmat3(dmat4(worldFromObject)))) * expected.hit->normal);
   const double length = glm::length(d), cosine = std::abs(glm::dot(normal, d)) / length;
-  const double scale = glm::length(dvec3(ray.origin)) + std::abs(expected.hit->t) * length + glm::length(dvec3(hit.position));
+  const double scale =
+      glm::length(dvec3(ray.origin)) + std::abs(expected.hit->t) * length + glm::length(dvec3(hit.position));
   EXPECT_NEAR(hit.t, expected.hit->t, 4e-6 * scale / length / std::max(cosine, 0.01));
   EXPECT_EQ(hit.leaf, expected.hit->primitive);
   EXPECT_EQ(hit.front, expected.hit->entering);

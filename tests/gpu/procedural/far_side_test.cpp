@@ -23,7 +23,8 @@ scene::Primitive lampOf(PrimitiveType type, const mat4& place) {
 }
 
 // Lamps above a floor, of which a small place is seen. One set of shaders for both materials.
-SceneBuilder above(const std::vector<scene::Primitive>& lamps, const scene::Material& material, const scene::Material& other) {
+SceneBuilder above(const std::vector<scene::Primitive>& lamps, const scene::Material& material,
+                   const scene::Material& other) {
   SceneBuilder scene;
   scene.scene.materials = {lambert(kAlbedo), material, other};
   scene::Primitive floor = lampOf(PrimitiveType::box, moved(0, -1, 0));
@@ -63,8 +64,10 @@ TEST(SolidFarSide, ShowsThroughBalls) {
   pane.emissive = radiance;
   const mat4 place = glm::translate(mat4(1.0f), center) * scaled(radius, radius, radius);
   for (const auto& [ball, part] : {std::pair{veiled(radiance), 0.75f}, {pane, 1.5f}}) {
-    const SceneBuilder scene = above({lampOf(PrimitiveType::sphere, place)}, ball, part < 1.0f ? pane : veiled(radiance));
-    expectUniform(renderPicture(scene, oneBounce(64)), vec4(part * irradiance / kPi * kAlbedo * radiance, 1.0f), {.error = 0.015});
+    const SceneBuilder scene =
+        above({lampOf(PrimitiveType::sphere, place)}, ball, part < 1.0f ? pane : veiled(radiance));
+    expectUniform(renderPicture(scene, oneBounce(64)), vec4(part * irradiance / kPi * kAlbedo * radiance, 1.0f),
+                  {.error = 0.015});
   }
 }
 
@@ -72,14 +75,17 @@ TEST(SolidFarSide, ShowsThroughBalls) {
 // 1 - (1 - a)² of their light.
 TEST(SolidFarSide, ShowsThroughOtherSolids) {
   const mat4 size = glm::rotate(mat4(1.0f), 0.8f, glm::normalize(vec3(1, 2, 0.5f))) * scaled(0.7f, 0.4f, -0.5f);
-  const std::vector<scene::Primitive> lamps{
-      lampOf(PrimitiveType::sphere, moved(1, 1.2f, 1) * size), lampOf(PrimitiveType::box, moved(-1, 1.2f, 1) * size),
-      lampOf(PrimitiveType::cylinder, moved(1, 1.2f, -1) * size), lampOf(PrimitiveType::cone, moved(-1, 1.2f, -1) * size)};
+  const std::vector<scene::Primitive> lamps{lampOf(PrimitiveType::sphere, moved(1, 1.2f, 1) * size),
+                                            lampOf(PrimitiveType::box, moved(-1, 1.2f, 1) * size),
+                                            lampOf(PrimitiveType::cylinder, moved(1, 1.2f, -1) * size),
+                                            lampOf(PrimitiveType::cone, moved(-1, 1.2f, -1) * size)};
   const scene::Material whole = emitter(vec3(3.0f)), half = veiled(vec3(4.0f));
-  const Picture a = renderPicture(above(lamps, whole, half), oneBounce(96)), b = renderPicture(above(lamps, half, whole), oneBounce(96));
+  const Picture a = renderPicture(above(lamps, whole, half), oneBounce(96)),
+                b = renderPicture(above(lamps, half, whole), oneBounce(96));
   Moments wholeLight, halfLight;
   for (std::uint32_t y = 0; y < a.height(); ++y)
-    for (std::uint32_t x = 0; x < a.width(); ++x) wholeLight.add(a.at(x, y, 0).mean()), halfLight.add(b.at(x, y, 0).mean());
+    for (std::uint32_t x = 0; x < a.width(); ++x)
+      wholeLight.add(a.at(x, y, 0).mean()), halfLight.add(b.at(x, y, 0).mean());
   EXPECT_GE(pValue(wholeLight, halfLight), 0.01) << wholeLight.mean() << " against " << halfLight.mean();
   EXPECT_LT(halfLight.standardError(), 0.015 * halfLight.mean()) << "too noisy to tell";
 }

@@ -41,7 +41,8 @@ PrimitiveSet difference(const std::vector<Primitive>& primitives) {
 }
 
 // One instance of a set that is all of one material.
-void add(SceneBuilder& scene, PrimitiveSet set, const scene::Material& material, const mat4& worldFromObject = mat4(1.0f)) {
+void add(SceneBuilder& scene, PrimitiveSet set, const scene::Material& material,
+         const mat4& worldFromObject = mat4(1.0f)) {
   for (Primitive& primitive : set.primitives) primitive.material = static_cast<int>(scene.scene.materials.size());
   scene.scene.materials.push_back(material);
   scene::Instance& instance = scene.scene.instances.emplace_back();
@@ -50,7 +51,8 @@ void add(SceneBuilder& scene, PrimitiveSet set, const scene::Material& material,
   scene.scene.meshes.emplace_back().primitiveSets.push_back(std::move(set));
 }
 
-PictureOptions with(std::vector<std::string> set, std::uint32_t batches = 16, const std::string& program = "pathtracer") {
+PictureOptions with(std::vector<std::string> set, std::uint32_t batches = 16,
+                    const std::string& program = "pathtracer") {
   PictureOptions options;
   options.program = program::loadProgram(program);
   options.set = std::move(set);
@@ -76,7 +78,8 @@ PrimitiveSet convexSolids() {
 }
 
 TEST(SolidLight, ConvexSolidsInAUniformSkyShowTheirAlbedo) {
-  const std::array<mat4, 4> places{mat4(1.0f), scaled(1e-3f, 1e-3f, 1e-3f), moved(700, -500, 510), scaled(-2e4f, 1e4f, 1e4f)};
+  const std::array<mat4, 4> places{mat4(1.0f), scaled(1e-3f, 1e-3f, 1e-3f), moved(700, -500, 510),
+                                   scaled(-2e4f, 1e4f, 1e4f)};
   for (std::size_t k = 0; k < 2; ++k) {
     for (const PrimitiveType type : kConvex) {
       const mat4& m = places[(static_cast<std::size_t>(type) + 3 * k) % 4];  // not all pairs: each compiles for seconds
@@ -93,9 +96,11 @@ TEST(SolidLight, ConvexSolidsInAUniformSkyShowTheirAlbedo) {
 
 // White and concave: every path leaves at last and brings the sky's light, wherever it went before.
 TEST(SolidLight, WhiteBodiesAreInvisibleInAUniformSky) {
-  const PrimitiveSet drilled = difference({solid(PrimitiveType::box), solid(PrimitiveType::cylinder, scaled(0.6f, 2, 0.6f)),
-                                           solid(PrimitiveType::sphere, moved(0, 0, 1) * scaled(0.7f, 0.7f, 0.7f)),
-                                           solid(PrimitiveType::torus, moved(-1, 0, 0)), solid(PrimitiveType::cone, moved(1, 0, 0) * scaled(0.5f, 1.4f, 0.5f))});
+  const PrimitiveSet drilled =
+      difference({solid(PrimitiveType::box), solid(PrimitiveType::cylinder, scaled(0.6f, 2, 0.6f)),
+                  solid(PrimitiveType::sphere, moved(0, 0, 1) * scaled(0.7f, 0.7f, 0.7f)),
+                  solid(PrimitiveType::torus, moved(-1, 0, 0)),
+                  solid(PrimitiveType::cone, moved(1, 0, 0) * scaled(0.5f, 1.4f, 0.5f))});
   for (const PrimitiveSet& set : {drilled, solidsOf({solid(PrimitiveType::torus)}), convexSolids()}) {
     SceneBuilder scene;
     add(scene, set, lambert(vec3(1.0f)), glm::rotate(mat4(1.0f), 0.3f, vec3(0, 1, 0)));
@@ -126,7 +131,9 @@ TEST(SolidLight, IsDarkInside) {
   }
   for (const float size : kSizes) {
     SCOPED_TRACE(size);
-    look(difference({solid(PrimitiveType::box), solid(PrimitiveType::sphere, scaled(0.9f, 0.9f, 0.9f)), solid(PrimitiveType::cylinder, scaled(0.3f, 0.95f, 0.3f))}), size);
+    look(difference({solid(PrimitiveType::box), solid(PrimitiveType::sphere, scaled(0.9f, 0.9f, 0.9f)),
+                     solid(PrimitiveType::cylinder, scaled(0.3f, 0.95f, 0.3f))}),
+         size);
   }
 }
 
@@ -152,11 +159,13 @@ TEST(SolidLight, BallsLightAPlane) {
   for (const mat4& turn : {mat4(1.0f), glm::rotate(mat4(1.0f), 1.0f, vec3(1, 2, 3)) * scaled(-1, 1, 1)}) {
     SceneBuilder scene;
     add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(1, 1, 1))}), lambert(kAlbedo));
-    add(scene, solidsOf({solid(PrimitiveType::sphere, scaled(radius, radius, radius))}), emitter(radiance), glm::translate(mat4(1.0f), center) * turn);
+    add(scene, solidsOf({solid(PrimitiveType::sphere, scaled(radius, radius, radius))}), emitter(radiance),
+        glm::translate(mat4(1.0f), center) * turn);
     scene.camera(orthographic({0, 0.5f, 0}, vec3(0.0f), 1e-3f));
     const float squared = glm::dot(center, center);
     const float irradiance = kPi * radius * radius / squared * center.y / std::sqrt(squared);
-    expectUniform(renderPicture(scene, with({"bounces=1"}, 64)), vec4(irradiance / kPi * kAlbedo * radiance, 1.0f), {.error = 0.02});
+    expectUniform(renderPicture(scene, with({"bounces=1"}, 64)), vec4(irradiance / kPi * kAlbedo * radiance, 1.0f),
+                  {.error = 0.02});
   }
 }
 
@@ -164,14 +173,16 @@ TEST(SolidLight, BallsLightAPlane) {
 // BSDF samples alone.
 TEST(SolidLight, LampsOfEveryShapeAgreeWithBruteForce) {
   const mat4 turn = glm::rotate(mat4(1.0f), 0.8f, glm::normalize(vec3(1, 2, 0.5f)));
-  for (const PrimitiveType type : {PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone, PrimitiveType::torus}) {
+  for (const PrimitiveType type : {PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder,
+                                   PrimitiveType::cone, PrimitiveType::torus}) {
     SCOPED_TRACE(static_cast<int>(type));
     SceneBuilder scene;
     scene::Material floor = lambert(kAlbedo);
     floor.specular = 1.0f;
     floor.roughness = 0.3f;
     add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(3, 1, 3))}), floor);
-    add(scene, solidsOf({solid(type, turn * scaled(0.9f, 0.4f, 0.6f))}), emitter({4.0f, 2.0f, 1.0f}), moved(0, 1.2f, 0) * scaled(1, 1, -1));
+    add(scene, solidsOf({solid(type, turn * scaled(0.9f, 0.4f, 0.6f))}), emitter({4.0f, 2.0f, 1.0f}),
+        moved(0, 1.2f, 0) * scaled(1, 1, -1));
     scene.camera(perspective({0, 1.5f, 4.0f}, {0, 0.2f, 0}, 30.0f));
     const Picture direct = renderPicture(scene, with({"bounces=2"}, 32));
     const Picture naive = renderPicture(scene, with({"bounces=2"}, 192, "naive"));
@@ -185,8 +196,10 @@ TEST(SolidLight, SolidsAndTreesCastShadows) {
   lamp.position = {0, 5, 0};
   lamp.intensity = vec3(100.0f);
   const mat4 place = moved(0, 1, 0) * scaled(0.6f, 0.2f, 0.6f);
-  std::vector<PrimitiveSet> sets{difference({solid(PrimitiveType::box, place), solid(PrimitiveType::sphere, moved(0, 1.2f, 0) * scaled(0.5f, 0.15f, 0.5f))})};
-  for (const PrimitiveType type : {PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone})
+  std::vector<PrimitiveSet> sets{difference(
+      {solid(PrimitiveType::box, place), solid(PrimitiveType::sphere, moved(0, 1.2f, 0) * scaled(0.5f, 0.15f, 0.5f))})};
+  for (const PrimitiveType type :
+       {PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone})
     sets.push_back(solidsOf({solid(type, place)}));
   for (const PrimitiveSet& set : sets) {
     SceneBuilder scene;
@@ -221,7 +234,8 @@ TEST(SolidGlass, TheBoxIsTheBoxOfTriangles) {
   triangles.add(box(vec3(-1), vec3(1)), glass(), turn);
   add(analytic, solidsOf({solid(PrimitiveType::box, turn)}), glass());
   // As the common part of a larger box and itself.
-  PrimitiveSet common = difference({solid(PrimitiveType::box, turn * scaled(1, 1, 1.3f)), solid(PrimitiveType::box, turn * scaled(1.2f, 1.0f, 1))});
+  PrimitiveSet common = difference(
+      {solid(PrimitiveType::box, turn * scaled(1, 1, 1.3f)), solid(PrimitiveType::box, turn * scaled(1.2f, 1.0f, 1))});
   common.nodes.back().operation = CsgOperation::intersect;
   add(tree, common, glass());
   const PictureOptions options = with({}, 64);
@@ -250,7 +264,8 @@ TEST(SolidGlass, TheHollowBallIsTheOneOfTriangles) {
       for (uvec3& t : mesh.triangles) std::swap(t.x, t.y);
     triangles.add(mesh, glass());
   }
-  add(tree, difference({solid(PrimitiveType::sphere), solid(PrimitiveType::sphere, scaled(0.7f, 0.7f, 0.7f))}), glass());
+  add(tree, difference({solid(PrimitiveType::sphere), solid(PrimitiveType::sphere, scaled(0.7f, 0.7f, 0.7f))}),
+      glass());
   const PictureOptions options = with({}, 64);
   expectSame(renderPicture(tree, options), renderPicture(triangles, options), 0.015);
 }
@@ -265,8 +280,10 @@ TEST(SolidAlpha, EachCrossingCountsForItself) {
     int crossings;
   };
   const mat4 small = scaled(0.5f, 0.5f, 0.5f);
-  for (const Case& c : {Case{"ball", solidsOf({solid(PrimitiveType::sphere)}), 2}, Case{"torus", solidsOf({solid(PrimitiveType::torus)}), 4},
-                        Case{"shell", difference({solid(PrimitiveType::sphere), solid(PrimitiveType::sphere, small)}), 4}}) {
+  for (const Case& c :
+       {Case{"ball", solidsOf({solid(PrimitiveType::sphere)}), 2},
+        Case{"torus", solidsOf({solid(PrimitiveType::torus)}), 4},
+        Case{"shell", difference({solid(PrimitiveType::sphere), solid(PrimitiveType::sphere, small)}), 4}}) {
     SCOPED_TRACE(c.name);
     SceneBuilder scene;
     scene::Material m = unlit({2.0f, 1.0f, 0.5f}, 0.4f);
@@ -275,7 +292,8 @@ TEST(SolidAlpha, EachCrossingCountsForItself) {
     scene.sky({0.5f, 0.25f, 4.0f}).camera(orthographic({0, 0, 5}, vec3(0.0f), 0.1f));
     const float through = std::pow(0.6f, static_cast<float>(c.crossings));
     const vec3 exact = (1.0f - through) * vec3(2.0f, 1.0f, 0.5f) + through * vec3(0.5f, 0.25f, 4.0f);
-    for (const char* program : {"pathtracer", "naive"}) expectUniform(renderPicture(scene, with({}, 64, program)), vec4(exact, 1.0f), {.error = 0.02});
+    for (const char* program : {"pathtracer", "naive"})
+      expectUniform(renderPicture(scene, with({}, 64, program)), vec4(exact, 1.0f), {.error = 0.02});
   }
 }
 

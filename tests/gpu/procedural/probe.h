@@ -18,17 +18,17 @@ struct ProbeRay {
 };
 
 struct ProbeHit {
-  float t = -1.0f;              // < 0: miss
+  float t = -1.0f;  // < 0: miss
   std::uint32_t instance = 0;
   std::uint32_t primitive = 0;  // solid or tree of the set; triangle
   std::uint32_t leaf = 0;       // index in PrimitiveSet::primitives
   std::uint32_t face = 0;
   bool front = false;
   bool flipped = false;
-  bool visible = false;         // what a shadow ray from origin to tmax says
+  bool visible = false;  // what a shadow ray from origin to tmax says
   vec3 position{0};
   float error = 0;
-  vec3 normal{0};               // geometric, on the ray's side
+  vec3 normal{0};  // geometric, on the ray's side
   vec3 shadingNormal{0};
   vec3 tangent{0};
   vec3 bitangent{0};

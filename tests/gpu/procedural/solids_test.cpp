@@ -11,7 +11,8 @@ namespace {
 using scene::Primitive;
 using scene::PrimitiveType;
 
-constexpr std::array kTypes{PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone, PrimitiveType::torus};
+constexpr std::array kTypes{PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone,
+                            PrimitiveType::torus};
 const char* nameOf(PrimitiveType type) {
   constexpr std::array kNames{"sphere", "box", "cylinder", "cone", "torus"};
   return kNames[static_cast<std::size_t>(type)];
@@ -21,9 +22,12 @@ const char* nameOf(PrimitiveType type) {
 std::vector<ProbeRay> raysAround(Random& random, std::size_t count, const mat4& worldFromPrimitive) {
   std::vector<ProbeRay> rays;
   for (std::size_t i = 0; i < count; ++i) {
-    const vec3 from = i % 4 == 0 ? random.inBox(1.2f) : random.onSphere() * random.uniform(1.5f, i % 4 == 1 ? 50.0f : 4.0f);
+    const vec3 from =
+        i % 4 == 0 ? random.inBox(1.2f) : random.onSphere() * random.uniform(1.5f, i % 4 == 1 ? 50.0f : 4.0f);
     vec3 along = random.inBox(1.3f) - from;
-    if (i % 11 == 0) along = vec3(glm::equal(glm::uvec3(0, 1, 2), glm::uvec3(random.below(3)))) * (random.below(2) == 1 ? 1.0f : -1.0f);
+    if (i % 11 == 0)
+      along =
+          vec3(glm::equal(glm::uvec3(0, 1, 2), glm::uvec3(random.below(3)))) * (random.below(2) == 1 ? 1.0f : -1.0f);
     along *= std::exp(random.uniform(-3.0f, 3.0f));
     ProbeRay ray;
     ray.origin = worldFromPrimitive * vec4(from, 1.0f);
@@ -48,12 +52,14 @@ struct Agreement {
   std::size_t hits = 0, doubtful = 0;
 };
 
-void compare(const ProbeHit& hit, const ProbeRay& ray, const Expected& expected, const Primitive& primitive, const mat4& worldFromObject) {
+void compare(const ProbeHit& hit, const ProbeRay& ray, const Expected& expected, const Primitive& primitive,
+             const mat4& worldFromObject) {
   compareHit(hit, ray, expected, worldFromObject);
   if (!expected.hit || hit.t < 0.0f) return;
   // The point itself, from wherever the ray came, lies on the surface.
   const dmat4 worldFromPrimitive = dmat4(worldFromObject) * dmat4(primitive.objectFromPrimitive);
-  const auto fromPoint = oracle::crossings(primitive, toObject({.origin = hit.position, .direction = hit.normal}, worldFromObject));
+  const auto fromPoint =
+      oracle::crossings(primitive, toObject({.origin = hit.position, .direction = hit.normal}, worldFromObject));
   double nearest = 1e30;
   for (const oracle::Crossing& crossing : fromPoint) nearest = std::min(nearest, std::abs(crossing.t));
   EXPECT_LT(nearest, static_cast<double>(hit.error)) << "error bound " << hit.error;
@@ -148,7 +154,8 @@ TEST_P(Solids, AreNotMetByRaysThatLeaveThem) {
       if (goesOutside) {
         ++outside;
         // The torus may be met again: where its exact double says so.
-        const bool again = GetParam() == PrimitiveType::torus && oracle::firstHit(oracle::crossings(primitive, local), 0.0, 1e30);
+        const bool again =
+            GetParam() == PrimitiveType::torus && oracle::firstHit(oracle::crossings(primitive, local), 0.0, 1e30);
         wrongOutside += hits[i].t >= 0.0f && !(again && hits[i].front);
       } else if (!oracle::inside(primitive, local.origin)) {
         ++pastEdge;  // from the very edge of a face, or an apex
@@ -164,7 +171,8 @@ TEST_P(Solids, AreNotMetByRaysThatLeaveThem) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, Solids, testing::ValuesIn(kTypes), [](const auto& type) { return std::string(nameOf(type.param)); });
+INSTANTIATE_TEST_SUITE_P(Every, Solids, testing::ValuesIn(kTypes),
+                         [](const auto& type) { return std::string(nameOf(type.param)); });
 
 }  // namespace
 }  // namespace quintet::test

@@ -17,7 +17,8 @@ const std::string kHit = "void main() { /**** CLOSEST-HIT SHADER ****/ payload.c
 
 // Lines: 1 common, 2 ray generation.
 std::string rayGeneration(const std::string& body) {
-  return "void main() { /**** RAY GENERATION SHADER ****/ vec2 p = (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy); "
+  return "void main() { /**** RAY GENERATION SHADER ****/ vec2 p = (vec2(gl_LaunchIDEXT.xy) + 0.5) / "
+         "vec2(gl_LaunchSizeEXT.xy); "
          "vec3 eye = vec3(0.0, 1.0, 6.0); vec3 d = normalize(vec3(p - 0.5, -1.0)); payload.color = vec3(0.0); " +
          body + " gsnSetPixel(vec4(payload.color, 1.0)); }\n";
 }
@@ -25,7 +26,8 @@ std::string trace(const std::string& origin, const std::string& direction, const
   return "traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, " + miss + ", " + origin + ", 0.0, " + direction + ", 100.0, 0);";
 }
 
-std::vector<shader::Diagnostic> notesOf(const program::Program& program, const scene::Scene& scene, std::uint32_t size = 16) {
+std::vector<shader::Diagnostic> notesOf(const program::Program& program, const scene::Scene& scene,
+                                        std::uint32_t size = 16) {
   render::DeviceScene deviceScene(testContext(), scene, scene::environmentInUse(scene));
   render::RenderSettings settings;
   settings.width = settings.height = size;
@@ -52,7 +54,8 @@ TEST(Instrument, NothingWhereNothingIsWrong) {
 }
 
 TEST(Instrument, BuiltInProgramsAreRight) {
-  for (const char* name : {"pathtracer", "ao", "lessons/07_mirror_recursion", "lessons/10_sphere", "lessons/17_records"}) {
+  for (const char* name :
+       {"pathtracer", "ao", "lessons/07_mirror_recursion", "lessons/10_sphere", "lessons/17_records"}) {
     const program::Program program = program::loadProgram(name);
     std::vector<shader::Diagnostic> notes = notesOf(program, render::programScene(program), 12);
     std::erase_if(notes, [](const shader::Diagnostic& d) { return d.severity == shader::Severity::note; });
@@ -61,7 +64,8 @@ TEST(Instrument, BuiltInProgramsAreRight) {
 }
 
 TEST(Instrument, ARayThatIsNotFinite) {
-  const auto notes = notesOf(kCommon + rayGeneration("if (gl_LaunchIDEXT.x == 3u) d.y = sqrt(-p.x);\n" + trace("eye", "d")) + kHit + kMiss);
+  const auto notes = notesOf(
+      kCommon + rayGeneration("if (gl_LaunchIDEXT.x == 3u) d.y = sqrt(-p.x);\n" + trace("eye", "d")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q001:3");
   EXPECT_EQ(notes[0].severity, shader::Severity::error);
   EXPECT_NE(notes[0].text.find("pixel 3, "), std::string::npos) << notes[0].text;
@@ -70,7 +74,8 @@ TEST(Instrument, ARayThatIsNotFinite) {
 
 // A trace in an included file has a line of that file, which is none of the program's: here line 2 of both.
 TEST(Instrument, ATraceInAnIncludedFileHasNoLine) {
-  const std::string text = kCommon + "void side() { vec2 unused = vec2(0.0); }\n#include \"far.glsl\"\n" + rayGeneration("far(eye, 0.0 * d);") + kHit + kMiss;
+  const std::string text = kCommon + "void side() { vec2 unused = vec2(0.0); }\n#include \"far.glsl\"\n" +
+                           rayGeneration("far(eye, 0.0 * d);") + kHit + kMiss;
   const std::string far = "void far(vec3 o, vec3 d) {\n" + trace("o", "d") + " }\n";
   const program::Program program = program::parseLecture(text, "demo.rt.glsl", "here", {{"far.glsl", far}});
   EXPECT_EQ(idsOf(notesOf(program, render::programScene(program))), "Q001:0");
@@ -81,32 +86,47 @@ TEST(Instrument, ARayWithoutDirection) {
 }
 
 TEST(Instrument, AnOutputThatIsNotFinite) {
-  const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "d") + " if (gl_LaunchIDEXT.y == 4u) payload.color = vec3(uintBitsToFloat(0x7FC00000u + gl_LaunchIDEXT.x));") + kHit + kMiss);
+  const auto notes = notesOf(
+      kCommon +
+      rayGeneration(
+          trace("eye", "d") +
+          " if (gl_LaunchIDEXT.y == 4u) payload.color = vec3(uintBitsToFloat(0x7FC00000u + gl_LaunchIDEXT.x));") +
+      kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q002:0");
 }
 
 TEST(Instrument, RecursionDeeperThanDeclared) {
   const std::string options = "// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: 3\"\n";
-  const std::string hit = "void main() { /**** CLOSEST-HIT SHADER ****/ vec3 o = gl_WorldRayOriginEXT; vec3 d = gl_WorldRayDirectionEXT;\n" +
-                          trace("o", "d") + " payload.color = vec3(0.1); }\n";
+  const std::string hit =
+      "void main() { /**** CLOSEST-HIT SHADER ****/ vec3 o = gl_WorldRayOriginEXT; vec3 d = "
+      "gl_WorldRayDirectionEXT;\n" +
+      trace("o", "d") + " payload.color = vec3(0.1); }\n";
   EXPECT_EQ(idsOf(notesOf(options + kCommon + rayGeneration(trace("eye", "d")) + hit + kMiss)), "Q003:5");
 }
 
 TEST(Instrument, AMissShaderThatIsNotThere) {
-  const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" + rayGeneration(trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
+  const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" +
+                             rayGeneration(trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q004:3");
 }
 
 TEST(Instrument, AHitOnThePrimitiveJustLeft) {
   // The second ray starts on the surface and goes back into it.
-  const std::string hit = "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT; payload.level = 1; }\n";
+  const std::string hit =
+      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = gl_WorldRayOriginEXT + gl_HitTEXT * "
+      "gl_WorldRayDirectionEXT; payload.level = 1; }\n";
   const std::string miss = "void main() { /**** MISS SHADER ****/ payload.color = vec3(0.0); payload.level = 0; }\n";
-  const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "d") + " if (payload.level == 1) { vec3 o = payload.color - 1e-7 * d;\n" + trace("o", "d") + " }") + hit + miss);
+  const auto notes =
+      notesOf(kCommon +
+              rayGeneration(trace("eye", "d") + " if (payload.level == 1) { vec3 o = payload.color - 1e-7 * d;\n" +
+                            trace("o", "d") + " }") +
+              hit + miss);
   EXPECT_EQ(idsOf(notes), "Q005:0");
 }
 
 TEST(Instrument, AnyHitCallsAreCounted) {
-  const std::string anyHit = "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitTEXT < 3.0) ignoreIntersectionEXT; }\n";
+  const std::string anyHit =
+      "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitTEXT < 3.0) ignoreIntersectionEXT; }\n";
   const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "d")) + anyHit + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q006:0");
   EXPECT_NE(notes[0].text.find("for 256 traces"), std::string::npos) << notes[0].text;

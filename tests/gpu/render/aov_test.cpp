@@ -24,16 +24,20 @@ struct Layers {
   std::map<std::string, io::Image> images;
   render::FilmState film;
 
-  Layers(render::DeviceScene& device, const scene::Camera& camera, PictureOptions options, const std::vector<std::string>& outputs) {
+  Layers(render::DeviceScene& device, const scene::Camera& camera, PictureOptions options,
+         const std::vector<std::string>& outputs) {
     render::RenderSettings settings = settingsFor(camera, options);
     settings.outputs = outputs;
     render::Renderer renderer(device, program, testCompiler(), nullptr, settings);
     for (std::uint32_t b = 0; b < options.batches; ++b) renderer.renderBatch();
     film = renderer.saveFilm();
     for (std::size_t i = 0; i < program.outputs.size(); ++i)
-      if (film.planes[i].stored() && film.planes[i].coverage.empty()) images.emplace(program.outputs[i].name, renderer.image(i));
+      if (film.planes[i].stored() && film.planes[i].coverage.empty())
+        images.emplace(program.outputs[i].name, renderer.image(i));
   }
-  std::span<const float> at(const std::string& name, std::uint32_t x, std::uint32_t y) const { return images.at(name).pixel<float>(x, y); }
+  std::span<const float> at(const std::string& name, std::uint32_t x, std::uint32_t y) const {
+    return images.at(name).pixel<float>(x, y);
+  }
   const render::FilmPlane& plane(const std::string& name) const {
     return *std::ranges::find(film.planes, name, &render::FilmPlane::name);
   }
@@ -69,8 +73,9 @@ TEST(Aov, PartsOfTheLightAddUpToThePicture) {
   const program::Program program = program::loadProgram("pathtracer");
   const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program));
   const Layers plain(device, scene.scene.cameras[0], options, {});
-  const std::vector<std::string> parts{"emission", "background", "direct_diffuse", "direct_specular", "direct_transmission",
-                                       "indirect_diffuse", "indirect_specular", "indirect_transmission"};
+  const std::vector<std::string> parts{"emission",          "background",           "direct_diffuse",
+                                       "direct_specular",   "direct_transmission",  "indirect_diffuse",
+                                       "indirect_specular", "indirect_transmission"};
   std::map<std::string, double> totals;
   for (std::uint32_t y = 0; y < 16; ++y)
     for (std::uint32_t x = 0; x < 24; ++x)
@@ -82,7 +87,8 @@ TEST(Aov, PartsOfTheLightAddUpToThePicture) {
           ASSERT_GE(layers.at(part, x, y)[c], -1e-6f) << part;
         }
         ASSERT_NEAR(sum, layers.at("color", x, y)[c], 1e-4 * (1 + sum)) << x << ", " << y;
-        ASSERT_NEAR(layers.at("color", x, y)[c], plain.at("color", x, y)[c], 1e-5 * (1 + sum)) << "layers change the picture";
+        ASSERT_NEAR(layers.at("color", x, y)[c], plain.at("color", x, y)[c], 1e-5 * (1 + sum))
+            << "layers change the picture";
       }
   for (const std::string& part : parts) EXPECT_GT(totals[part], 0.0) << part;
 }
@@ -92,14 +98,17 @@ TEST(Aov, LightIsSortedByTheFirstScattering) {
   SceneBuilder scene;
   scene::Light lamp;
   lamp.position = {0, 1, 0};
-  scene.add(quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}), lambert(vec3(0.5f))).light(lamp).camera(perspective({0, 1, 2}, {0, 0, 0}, 30.0f));
+  scene.add(quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}), lambert(vec3(0.5f)))
+      .light(lamp)
+      .camera(perspective({0, 1, 2}, {0, 0, 0}, 30.0f));
   render::DeviceScene device(testContext(), scene.scene, scene.environment);
   PictureOptions options;
   options.batches = 1;
   const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
   EXPECT_GT(layers.at("direct_diffuse", 4, 4)[0], 0.01f);
   EXPECT_EQ(layers.at("direct_diffuse", 4, 4)[0], layers.at("color", 4, 4)[0]);
-  for (const char* other : {"emission", "background", "direct_specular", "direct_transmission", "indirect_diffuse", "indirect_specular"})
+  for (const char* other :
+       {"emission", "background", "direct_specular", "direct_transmission", "indirect_diffuse", "indirect_specular"})
     EXPECT_EQ(layers.at(other, 4, 4)[0], 0.0f) << other;
 
   SceneBuilder mirrored = scene;
@@ -113,8 +122,9 @@ TEST(Aov, LightIsSortedByTheFirstScattering) {
   EXPECT_NEAR(seen.at("indirect_specular", 4, 6)[0], seen.at("color", 4, 6)[0], 1e-6);
 }
 
-const std::vector<std::string> kParts{"emission",         "background",        "direct_diffuse",    "direct_specular", "direct_transmission",
-                                      "indirect_diffuse", "indirect_specular", "indirect_transmission"};
+const std::vector<std::string> kParts{"emission",          "background",           "direct_diffuse",
+                                      "direct_specular",   "direct_transmission",  "indirect_diffuse",
+                                      "indirect_specular", "indirect_transmission"};
 
 // All light of the picture's middle is in this one layer.
 void expectOnly(const SceneBuilder& scene, const std::string& layer, double least) {
@@ -143,7 +153,8 @@ TEST(Aov, EachLayerHasASceneOfItsOwn) {
   SceneBuilder mirrors;
   mirrors.add(quad({-2, -2, 0}, {2, 0, 0}, {0, 4, 0}), mirror);
   mirror.roughness = 0.5f;
-  expectOnly(mirrors.add(quad({0, -2, 0}, {2, 0, 0}, {0, 4, 0}), mirror).sky(vec3(1.0f)).camera(ahead), "direct_specular", 0.9);
+  expectOnly(mirrors.add(quad({0, -2, 0}, {2, 0, 0}, {0, 4, 0}), mirror).sky(vec3(1.0f)).camera(ahead),
+             "direct_specular", 0.9);
   // Light behind a rough pane, darkness before it.
   SceneBuilder pane;
   pane.add(before, frosted).add(quad({-2, -2, -1}, {4, 0, 0}, {0, 4, 0}), emitter(vec3(2.0f))).camera(ahead);
@@ -153,20 +164,25 @@ TEST(Aov, EachLayerHasASceneOfItsOwn) {
   sun.type = scene::LightType::directional;
   sun.direction = {1, 0, 0};
   SceneBuilder corner;
-  corner.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(vec3(0.5f))).add(quad({2, 0, 2}, {0, 0, -4}, {0, 3, 0}), lambert(vec3(0.8f)));
+  corner.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(vec3(0.5f)))
+      .add(quad({2, 0, 2}, {0, 0, -4}, {0, 3, 0}), lambert(vec3(0.8f)));
   corner.light(sun).camera(perspective({0.5f, 2, 0.5f}, {1.2f, 0, 0}, 30.0f));
   expectOnly(corner, "indirect_diffuse", 0.01);
   // A lit floor behind a rough pane; the light shines along the pane.
   sun.direction = {0, -1, 0};
   SceneBuilder behind;
-  behind.add(before, frosted).add(quad({-2, -1, -0.1f}, {4, 0, 0}, {0, 0, -4}), lambert(vec3(0.8f))).light(sun).camera(ahead);
+  behind.add(before, frosted)
+      .add(quad({-2, -1, -0.1f}, {4, 0, 0}, {0, 0, -4}), lambert(vec3(0.8f)))
+      .light(sun)
+      .camera(ahead);
   expectOnly(behind, "indirect_transmission", 0.01);
 }
 
 TEST(Aov, NormalsOfAPixelAreAveraged) {
   // A crease within the pixels of column 8: normals z and (1, 0, 1) / √2.
   SceneBuilder scene;
-  scene.add(quad({-2, -2, 0}, {2.12f, 0, 0}, {0, 4, 0}), lambert(vec3(0.5f))).add(quad({0.12f, -2, 0}, {2, 0, -2}, {0, 4, 0}), lambert(vec3(0.5f)));
+  scene.add(quad({-2, -2, 0}, {2.12f, 0, 0}, {0, 4, 0}), lambert(vec3(0.5f)))
+      .add(quad({0.12f, -2, 0}, {2, 0, -2}, {0, 4, 0}), lambert(vec3(0.5f)));
   scene.sky(vec3(1.0f)).camera(perspective({0, 0, 2}, {0, 0, 0}, 90.0f));
   render::DeviceScene device(testContext(), scene.scene, scene.environment);
   PictureOptions options;
@@ -198,7 +214,9 @@ TEST(Aov, FirstSurfaceIsWhatTheCameraSees) {
   options.width = options.height = 16;
   options.batches = 2;
   const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
-  const auto where = [](std::uint32_t x, std::uint32_t y) { return vec2(-2 + 4 * (x + 0.5) / 16, 2 - 4 * (y + 0.5) / 16); };
+  const auto where = [](std::uint32_t x, std::uint32_t y) {
+    return vec2(-2 + 4 * (x + 0.5) / 16, 2 - 4 * (y + 0.5) / 16);
+  };
   for (const uvec2 p : {uvec2(2, 12), uvec2(13, 9), uvec2(7, 15)}) {
     const vec2 at = where(p.x, p.y);
     const bool left = at.x < 0;
@@ -213,14 +231,17 @@ TEST(Aov, FirstSurfaceIsWhatTheCameraSees) {
     const vec2 uv((at.x + (left ? 2 : 0)) / 2, (at.y + 2) / 2.5);
     EXPECT_NEAR(layers.at("uv", p.x, p.y)[0], uv.x, 1e-5);
     EXPECT_NEAR(layers.at("uv", p.x, p.y)[1], uv.y, 1e-5);
-    EXPECT_EQ(layers.at("primitive_id", p.x, p.y)[0], uv.x > uv.y ? 1.0f : 2.0f) << "of the two triangles on either side of the diagonal";
+    EXPECT_EQ(layers.at("primitive_id", p.x, p.y)[0], uv.x > uv.y ? 1.0f : 2.0f)
+        << "of the two triangles on either side of the diagonal";
     EXPECT_EQ(layers.at("motion", p.x, p.y)[0], 0.0f);
-    const shared::CoverageSlot* slots = &layers.plane("cryptomatte_object").coverage[shared::kCoverageSlots * (p.y * 16 + p.x)];
+    const shared::CoverageSlot* slots =
+        &layers.plane("cryptomatte_object").coverage[shared::kCoverageSlots * (p.y * 16 + p.x)];
     EXPECT_EQ(slots[0].id, shared::kCoverageId + (left ? 0 : 1));
     EXPECT_EQ(slots[0].samples, 8u);
   }
   EXPECT_EQ(layers.at("depth", 3, 1)[0], 1e10f);
-  for (const char* id : {"instance_id", "material_id", "primitive_id", "uv"}) EXPECT_EQ(layers.at(id, 3, 1)[0], 0.0f) << id;
+  for (const char* id : {"instance_id", "material_id", "primitive_id", "uv"})
+    EXPECT_EQ(layers.at(id, 3, 1)[0], 0.0f) << id;
   EXPECT_EQ(layers.plane("cryptomatte_material").coverage[shared::kCoverageSlots * (16 + 3)].samples, 0u);
   // At the seam colours mix and ids do not.
   const float red = layers.at("albedo", 8, 12)[0];
@@ -232,7 +253,8 @@ TEST(Aov, FirstSurfaceIsWhatTheCameraSees) {
 TEST(Aov, MotionIsInPixelsOfThePictureBefore) {
   SceneBuilder scene;
   scene.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), lambert(vec3(0.5f)));
-  scene.scene.instances[0].keyframes = {{0, vec3(0), quat(1, 0, 0, 0), vec3(1)}, {10, vec3(1, 0.5f, 0), quat(1, 0, 0, 0), vec3(1)}};
+  scene.scene.instances[0].keyframes = {{0, vec3(0), quat(1, 0, 0, 0), vec3(1)},
+                                        {10, vec3(1, 0.5f, 0), quat(1, 0, 0, 0), vec3(1)}};
   scene.camera(perspective({0, 0, 2}, {0, 0, 0}, 90.0f));
   render::DeviceScene device(testContext(), scene.scene, scene.environment);
   device.setFrame(5);

@@ -55,16 +55,19 @@ TEST_P(AreaLight, MatchesTheFormFactor) {
   SceneBuilder scene = plane();
   scene.add(quad(c.corner, c.a, c.b), emitter(radiance));
   const std::vector<vec3> polygon = {c.corner, c.corner + c.a, c.corner + c.a + c.b, c.corner + c.b};
-  expectPixels(renderPicture(scene, batches(24)), [&](vec2 pixel) {
-    return kAlbedo / kPi * radiance * irradiance(pointOf(pixel, 8), {0, 1, 0}, polygon);
-  }, {.error = 0.01, .rounding = 2e-4});
+  expectPixels(renderPicture(scene, batches(24)),
+               [&](vec2 pixel) {
+                 return kAlbedo / kPi * radiance * irradiance(pointOf(pixel, 8), {0, 1, 0}, polygon);
+               },
+               {.error = 0.01, .rounding = 2e-4});
 }
 
 INSTANTIATE_TEST_SUITE_P(Quads, AreaLight,
                          testing::Values(AreaCase{"Above", {-0.5f, 1.0f, -0.5f}, {1, 0, 0}, {0, 0, 1}},
                                          AreaCase{"AboveFacingUp", {-0.5f, 1.0f, -0.5f}, {0, 0, 1}, {1, 0, 0}},
                                          AreaCase{"UprightBeside", {0.7f, 0.05f, -0.6f}, {0, 0.8f, 0}, {0.3f, 0, 1.2f}},
-                                         AreaCase{"SmallAndLow", {-0.05f, 0.3f, -0.05f}, {0.1f, 0.03f, 0}, {0, 0, 0.1f}},
+                                         AreaCase{
+                                             "SmallAndLow", {-0.05f, 0.3f, -0.05f}, {0.1f, 0.03f, 0}, {0, 0, 0.1f}},
                                          AreaCase{"FarAndHuge", {-300, 1000, -250}, {600, 0, 0}, {0, 80, 500}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
@@ -104,13 +107,17 @@ TEST_P(PunctualLight, MatchesItsFormula) {
   scene.light(light);
   PictureOptions options = batches(16);
   options.width = options.height = 16;
-  expectPixels(renderPicture(scene, options), [&](vec2 pixel) { return reflected(light, pointOf(pixel, options.width)); }, kPunctual);
+  expectPixels(
+      renderPicture(scene, options), [&](vec2 pixel) { return reflected(light, pointOf(pixel, options.width)); },
+      kPunctual);
 }
 
-INSTANTIATE_TEST_SUITE_P(Types, PunctualLight, testing::Values(scene::LightType::point, scene::LightType::spot, scene::LightType::directional),
-                         [](const auto& test) {
-                           return std::string(std::array{"Point", "Spot", "Directional"}[static_cast<std::size_t>(test.param)]);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Types, PunctualLight,
+    testing::Values(scene::LightType::point, scene::LightType::spot, scene::LightType::directional),
+    [](const auto& test) {
+      return std::string(std::array{"Point", "Spot", "Directional"}[static_cast<std::size_t>(test.param)]);
+    });
 
 // The sun below the horizon of the plane, and a lamp behind it.
 TEST(PunctualLights, DoNotShineThrough) {
@@ -125,14 +132,17 @@ TEST(PunctualLights, AndAreaLightsAddUp) {
   std::array lights = {lampAt(scene::LightType::point), lampAt(scene::LightType::directional)};
   lights[1].direction.x *= -1.0f;  // the panel casts no shadow on what is seen
   for (const scene::Light& light : lights) scene.light(light);
-  const vec3 corner(0.7f, 0.05f, -0.6f), a(0, 0.8f, 0), b(0.3f, 0, 1.2f), radiance(4.0f, 5.0f, 6.0f), sky(0.5f, 0.4f, 0.3f);
+  const vec3 corner(0.7f, 0.05f, -0.6f), a(0, 0.8f, 0), b(0.3f, 0, 1.2f), radiance(4.0f, 5.0f, 6.0f),
+      sky(0.5f, 0.4f, 0.3f);
   scene.add(quad(corner, a, b), emitter(radiance)).sky(sky);
-  expectPixels(renderPicture(scene, batches(512)), [&](vec2 pixel) {
-    const vec3 p = pointOf(pixel, 8);
-    vec3 sum = reflected(lights[0], p) + reflected(lights[1], p);
-    const float panel = irradiance(p, {0, 1, 0}, {corner, corner + a, corner + a + b, corner + b});
-    return sum + kAlbedo / kPi * (radiance * panel + sky * (kPi - panel));
-  }, {.error = 0.01, .rounding = 5e-4});
+  expectPixels(renderPicture(scene, batches(512)),
+               [&](vec2 pixel) {
+                 const vec3 p = pointOf(pixel, 8);
+                 vec3 sum = reflected(lights[0], p) + reflected(lights[1], p);
+                 const float panel = irradiance(p, {0, 1, 0}, {corner, corner + a, corner + a + b, corner + b});
+                 return sum + kAlbedo / kPi * (radiance * panel + sky * (kPi - panel));
+               },
+               {.error = 0.01, .rounding = 5e-4});
 }
 
 // A blocker between lamp and plane: exactly none of the light; at grazing distance of the lamp, too.
@@ -167,7 +177,8 @@ TEST(BentNormals, LeakNothing) {
       lamp.position = {0.5f, 0.3f, -1.0f};
       sun.direction = glm::normalize(vec3(-0.5f, 0.1f, 1.0f));
       scene.add(wall, material).add(quad({-20, -20, -3}, {40, 0, 0}, {0, 40, 0}), emitter(vec3(10.0f)));
-      scene.scene.materials.insert(scene.scene.materials.end(), materials.begin(), materials.end());  // one set of shaders for all
+      scene.scene.materials.insert(scene.scene.materials.end(), materials.begin(),
+                                   materials.end());  // one set of shaders for all
       scene.light(lamp).light(sun).camera(perspective({0.2f, 0.1f, 1.5f}, {0, 0, 0}, 60.0f));
       expectBlack(renderPicture(scene, batches(8)));
     }

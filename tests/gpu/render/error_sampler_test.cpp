@@ -67,7 +67,8 @@ const std::string kPictures = R"(
 
 std::vector<Looks> draw(const std::vector<Job>& jobs, std::uint32_t first, std::uint32_t last) {
   const auto number = [](std::size_t n) { return std::to_string(n) + "u"; };
-  const Defines defines = {{"RUNS", number(jobs.size())}, {"SIDE", number(kSide)}, {"FIRST", number(first)}, {"LAST", number(last)}};
+  const Defines defines = {
+      {"RUNS", number(jobs.size())}, {"SIDE", number(kSide)}, {"FIRST", number(first)}, {"LAST", number(last)}};
   return runCompute<Looks>(kPictures, jobs, jobs.size() * kPixels, {.defines = defines});
 }
 
@@ -80,7 +81,12 @@ Picture judge(const std::vector<double>& exact, std::uint32_t batches, const std
   const double mean = std::accumulate(exact.begin(), exact.end(), 0.0) / kPixels;
   render::FilmState film;
   film.region = {0, 0, kSide, kSide};
-  film.planes = {{"color", program::OutputPixel::mean, std::vector<shared::FixedSum>(4 * kPixels), std::vector<shared::FixedSum>(4 * kPixels), {}, {}}};
+  film.planes = {{"color",
+                  program::OutputPixel::mean,
+                  std::vector<shared::FixedSum>(4 * kPixels),
+                  std::vector<shared::FixedSum>(4 * kPixels),
+                  {},
+                  {}}};
   film.counts.add({0, render::kBatchSamples * batches});
   double squares = 0;
   for (std::size_t p = 0; p < kPixels; ++p) {
@@ -89,7 +95,8 @@ Picture judge(const std::vector<double>& exact, std::uint32_t batches, const std
       film.planes[0].sums[4 * p + c] = render::fixedFromFloat(sums.sum);
       film.planes[0].squares[4 * p + c] = render::fixedFromFloat(sums.squares);
     }
-    squares += std::pow(static_cast<double>(sums.sum) / samples - exact[p], 2) / (exact[p] * exact[p] + 0.01 * mean * mean);
+    squares +=
+        std::pow(static_cast<double>(sums.sum) / samples - exact[p], 2) / (exact[p] * exact[p] + 0.01 * mean * mean);
   }
   return {std::sqrt(squares / kPixels), render::estimateError(film).upper};
 }
@@ -114,11 +121,13 @@ TEST(StatedError, CoversWhatTheSamplerDraws) {
         });
         int covered = 0;
         double real = 0, stated = 0;
-        for (const Picture& p : pictures) covered += p.real <= p.stated, real += p.real / kRuns, stated += p.stated / kRuns;
-        std::printf("  integrand %u, planned %d, %u batches: covered %d of %u, stated %.4f, real %.4f\n", kind, static_cast<int>(planned), batches,
-                    covered, kRuns, stated, real);
+        for (const Picture& p : pictures)
+          covered += p.real <= p.stated, real += p.real / kRuns, stated += p.stated / kRuns;
+        std::printf("  integrand %u, planned %d, %u batches: covered %d of %u, stated %.4f, real %.4f\n", kind,
+                    static_cast<int>(planned), batches, covered, kRuns, stated, real);
         EXPECT_GE(covered, static_cast<int>(9 * kRuns / 10)) << kind << " " << planned << " " << batches;
-        EXPECT_LT(stated, 1.35 * real) << "the statement would be of little use: " << kind << " " << planned << " " << batches;
+        EXPECT_LT(stated, 1.35 * real) << "the statement would be of little use: " << kind << " " << planned << " "
+                                       << batches;
       }
     }
   }

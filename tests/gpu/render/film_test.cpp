@@ -39,9 +39,11 @@ TEST(FilmPasses, SumAsTheHostDoes) {
     struct In { float a; float b; };
     struct Out { FixedSum sum; };
     Out run(uint index, In value) { return Out(addFixed(fixedFromFloat(value.a), fixedFromFloat(value.b))); }
-  )", inputs, inputs.size());
+  )",
+                                                             inputs, inputs.size());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const shared::FixedSum expected = render::addFixed(render::fixedFromFloat(inputs[i].a), render::fixedFromFloat(inputs[i].b));
+    const shared::FixedSum expected =
+        render::addFixed(render::fixedFromFloat(inputs[i].a), render::fixedFromFloat(inputs[i].b));
     ASSERT_EQ(std::memcmp(&expected, seen[i].data(), 16), 0) << inputs[i].a << " + " << inputs[i].b;
   }
 }
@@ -174,7 +176,8 @@ TEST_F(FilmTest, DoesNotTakeTheBrightestForConstant) {
     const render::FilmState film = r.saveFilm();
     EXPECT_EQ(render::estimateError(film).known(), !beyond);
     EXPECT_EQ(std::isnan(render::varianceImage(film).pixel<float>(5, 1)[1]), beyond);
-    EXPECT_NEAR(r.image().pixel<float>(5, 1)[1] / ((beyond ? 1e9 : 1e7) * meanOf(12, [](double s) { return s * s; })), 1.0, 1e-6);
+    EXPECT_NEAR(r.image().pixel<float>(5, 1)[1] / ((beyond ? 1e9 : 1e7) * meanOf(12, [](double s) { return s * s; })),
+                1.0, 1e-6);
   }
 }
 
@@ -217,7 +220,8 @@ TEST_F(FilmTest, CellsTakeTheirOwnNumberOfBatches) {
   for (std::uint32_t y = 0; y < 5; ++y)
     for (std::uint32_t x = 0; x < 37; ++x) {
       const std::uint32_t batches = std::array{1, 3, 2, 1}[2 * (x / 32) + (x + y) % 2];
-      ASSERT_NEAR(color.pixel<float>(x, y)[1], meanOf(4 * batches, [](double s) { return s * s; }), 1e-4) << x << ", " << y;
+      ASSERT_NEAR(color.pixel<float>(x, y)[1], meanOf(4 * batches, [](double s) { return s * s; }), 1e-4)
+          << x << ", " << y;
     }
   std::uint64_t rays = 0;
   for (std::uint32_t y = 0; y < 5; ++y)
@@ -229,7 +233,8 @@ TEST_F(FilmTest, CellsTakeTheirOwnNumberOfBatches) {
 TEST(AdaptiveFilm, DependsNeitherOnLaunchesNorOnTheOrderOfCells) {
   using Limits = std::vector<std::uint32_t>;
   SceneBuilder scene;
-  scene.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), lambert(vec3(0.5f))).add(box({-0.5f, 0, -0.5f}, {0.5f, 0.8f, 0.5f}), lambert({0.7f, 0.2f, 0.2f}));
+  scene.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), lambert(vec3(0.5f)))
+      .add(box({-0.5f, 0, -0.5f}, {0.5f, 0.8f, 0.5f}), lambert({0.7f, 0.2f, 0.2f}));
   scene.sky(vec3(0.7f)).camera(perspective({1.5f, 1.5f, 3.0f}, {0, 0.4f, 0}, 50.0f));
   render::DeviceScene device(testContext(), scene.scene, scene.environment);
   PictureOptions options;
@@ -256,7 +261,8 @@ TEST(AdaptiveFilm, DependsNeitherOnLaunchesNorOnTheOrderOfCells) {
     return limits;
   };
   const render::FilmState whole = film(1e9, 1, {plan});
-  EXPECT_TRUE(sameBytes(film(1e-9, 2, {cells([](std::size_t c) { return c % 2 == 1; }), plan}), whole)) << "many launches, odd cells first";
+  EXPECT_TRUE(sameBytes(film(1e-9, 2, {cells([](std::size_t c) { return c % 2 == 1; }), plan}), whole))
+      << "many launches, odd cells first";
   std::vector<Limits> backwards;
   for (std::size_t c = plan.size(); c-- > 0;)
     if (plan[c] > 1) backwards.push_back(cells([&](std::size_t other) { return other == c; }));

@@ -58,7 +58,10 @@ TEST(Furnace, HasNoAcneUnderUnevenAndMirroredScale) {
   const mat4 turned = glm::rotate(mat4(1.0f), 0.7f, glm::normalize(vec3(1, 2, 3)));
   for (const vec3 scale : {vec3(1.0f, 0.02f, 1.0f), vec3(-1.0f, 1.0f, 1.0f)}) {
     SceneBuilder scene;
-    scene.add(sphere(vec3(0.0f), 1.0f, 3), lambert(kAlbedo), turned * glm::scale(mat4(1.0f), scale) * glm::inverse(turned)).sky(vec3(1.0f));
+    scene
+        .add(sphere(vec3(0.0f), 1.0f, 3), lambert(kAlbedo),
+             turned * glm::scale(mat4(1.0f), scale) * glm::inverse(turned))
+        .sky(vec3(1.0f));
     const vec3 side = turned * vec4(0, 1, 0, 0);  // where even the flat one fills the image
     scene.camera(orthographic(4.0f * side, vec3(0.0f), 0.4f));
     PictureOptions options;
@@ -99,7 +102,8 @@ TEST(AlbedoSeries, InsideABox) {
 }
 
 TEST(AlbedoSeries, NaiveAgrees) {
-  expectUniform(renderPicture(inside(sphere(vec3(0.0f), 1.0f, 2), 1.0f), with("naive", {"bounces=12"})), series(12), {.error = 0.01});
+  expectUniform(renderPicture(inside(sphere(vec3(0.0f), 1.0f, 2), 1.0f), with("naive", {"bounces=12"})), series(12),
+                {.error = 0.01});
 }
 
 // Russian roulette from the first event on changes no mean. The surface has two lobes of very different weight, so that

@@ -11,8 +11,7 @@ namespace {
 
 // Colours a surface with gl_InstanceID, the user's index, the index in the scene; alpha 1. Nothing: 0.
 program::Program indexProgram(bool keepsOrder) {
-  const std::map<std::string, std::string> files{
-      {"index.rgen", R"(#version 460
+  const std::map<std::string, std::string> files{{"index.rgen", R"(#version 460
 #extension GL_EXT_ray_tracing : require
 #include <quintet/camera.glsl>
 #include <quintet/output.glsl>
@@ -25,11 +24,11 @@ void main() {
   storeOutput(kOutput_color, launchPixel(), loadOutput(kOutput_color, launchPixel()) + color);
   countRays(launchPixel(), 1u, 0u);
 })"},
-      {"index.rmiss", R"(#version 460
+                                                 {"index.rmiss", R"(#version 460
 #extension GL_EXT_ray_tracing : require
 layout(location = 0) rayPayloadInEXT vec4 color;
 void main() { color = vec4(0.0); })"},
-      {"index.rchit", R"(#version 460
+                                                 {"index.rchit", R"(#version 460
 #extension GL_EXT_ray_tracing : require
 #include <quintet/hit.glsl>
 layout(location = 0) rayPayloadInEXT vec4 color;
@@ -45,7 +44,8 @@ name = "all"
 primary = { closest_hit = "index.rchit" }
 [[output]]
 name = "color"
-)", "index", "<test>", files);
+)",
+                                                   "index", "<test>", files);
   program.keepsInstanceOrder = keepsOrder;
   return program;
 }
@@ -57,7 +57,8 @@ std::uint32_t placeOf(std::uint32_t instance) { return instance * 3 % kSquares; 
 SceneBuilder row() {
   SceneBuilder scene;
   for (std::uint32_t i = 0; i < kSquares; ++i) {
-    scene.add(quad({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}), lambert(vec3(0.5f)), glm::translate(mat4(1.0f), vec3(placeOf(i), 0, 0)));
+    scene.add(quad({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}), lambert(vec3(0.5f)),
+              glm::translate(mat4(1.0f), vec3(placeOf(i), 0, 0)));
     scene.scene.instances.back().customIndex = 100 + i;
   }
   scene.camera(orthographic({3, 0, 1}, {3, 0, 0}, 0.5f));
@@ -114,11 +115,13 @@ TEST(Instances, FollowTheirKeyframes) {
     return scene::Keyframe{frame, vec3(x, 0, 0), glm::angleAxis(angle, vec3(0, 1, 0)), vec3(1.0f)};
   };
   const auto place = static_cast<float>(placeOf(4));
-  scene.scene.instances[4].keyframes = {at(5, place + 500.0f, 0), at(15, place - 500.0f, 0), at(20, place, 0), at(30, place, kPi)};
+  scene.scene.instances[4].keyframes = {at(5, place + 500.0f, 0), at(15, place - 500.0f, 0), at(20, place, 0),
+                                        at(30, place, kPi)};
   render::DeviceScene device(testContext(), scene.scene, scene.environment);
   EXPECT_TRUE(device.animated());
   const program::Program program = indexProgram(false);
-  for (const auto& [frame, visible] : {std::pair(0.0f, false), {10.0f, true}, {12.0f, false}, {20.0f, true}, {99.0f, true}, {-3.0f, false}}) {
+  for (const auto& [frame, visible] :
+       {std::pair(0.0f, false), {10.0f, true}, {12.0f, false}, {20.0f, true}, {99.0f, true}, {-3.0f, false}}) {
     device.setFrame(frame);
     const std::vector<vec4> pixels = lookAtRow(device, scene.scene, program);
     for (std::uint32_t i = 0; i < kSquares; ++i)
@@ -136,7 +139,8 @@ TEST(Instances, ShadeWhereTheyAre) {
   PictureOptions options;
   options.program = program::loadProgram("normals");
   render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  render::Renderer renderer(device, options.program, testCompiler(), nullptr, settingsFor(scene.scene.cameras[0], options));
+  render::Renderer renderer(device, options.program, testCompiler(), nullptr,
+                            settingsFor(scene.scene.cameras[0], options));
   device.setFrame(5.0f);
   renderer.renderBatch(1);
   const vec4 color = renderer.film().downloadBatch(0)[0];

@@ -24,12 +24,14 @@ TEST(DeviceSceneMemory, HoldsTheSceneOnly) {
   const render::DeviceSceneStatistics& statistics = device.statistics();
   EXPECT_GE(statistics.textureBytes, 12 * kMiB);
   EXPECT_GT(statistics.build.peakScratchBytes, 0u);
-  const std::uint64_t needed = statistics.geometryBytes + statistics.textureBytes + statistics.build.bytes + statistics.primitiveMapBytes;
+  const std::uint64_t needed =
+      statistics.geometryBytes + statistics.textureBytes + statistics.build.bytes + statistics.primitiveMapBytes;
   const gpu::DeviceMemory memory = context.memory();
   const auto held = [&](gpu::Purpose purpose) { return memory.held[static_cast<std::size_t>(purpose)]; };
   EXPECT_EQ(held(gpu::Purpose::scratch), 0u);
   EXPECT_EQ(held(gpu::Purpose::staging), 0u);
-  const std::uint64_t ofScene = held(gpu::Purpose::geometry) + held(gpu::Purpose::textures) + held(gpu::Purpose::accelerationStructures);
+  const std::uint64_t ofScene =
+      held(gpu::Purpose::geometry) + held(gpu::Purpose::textures) + held(gpu::Purpose::accelerationStructures);
   EXPECT_GE(ofScene, needed);
   EXPECT_LE(ofScene, needed + kMiB);  // alignment, the top level
   EXPECT_LE(held(gpu::Purpose::tables), 4 * kMiB);

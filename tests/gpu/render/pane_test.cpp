@@ -17,12 +17,13 @@ vec3 straight(const scene::Material& m, float cosine) {
   const float index = (m.ior - 1.0f) / (m.ior + 1.0f);
   const float f0 = index * index * m.specular;
   const float coat = m.clearcoat * (0.04f + 0.96f * grazing);
-  return (1.0f - coat) * (1.0f - m.metallic) * m.transmission * (1.0f - glm::mix(f0, m.specular, grazing)) * vec3(m.baseColor);
+  return (1.0f - coat) * (1.0f - m.metallic) * m.transmission * (1.0f - glm::mix(f0, m.specular, grazing)) *
+         vec3(m.baseColor);
 }
 
 struct Sheet {
   scene::Material material;
-  vec3 normal{0, 1, 0};         // of the plane, through (0, height, 0)
+  vec3 normal{0, 1, 0};  // of the plane, through (0, height, 0)
   float height = 0.5f;
   vec3 shadingNormal{0, 0, 0};  // 0: the plane's
   vec4 color{1.0f};             // of the vertices
@@ -82,13 +83,17 @@ TEST_P(LampBehindPanes, ShinesWithTheirTint) {
     return light;
   };
   const Picture picture = renderPicture(scene, options);
-  if (exact(vec2(4.0f)) == vec3(0.0f)) expectBlack(picture);
-  else expectPixels(picture, exact, {.error = 0.01, .rounding = 1.5e-3});  // of the BSDF's tables
+  if (exact(vec2(4.0f)) == vec3(0.0f))
+    expectBlack(picture);
+  else
+    expectPixels(picture, exact, {.error = 0.01, .rounding = 1.5e-3});  // of the BSDF's tables
 }
 
 const vec3 kUp(0, 1, 0), kTilted = glm::normalize(vec3(0.3f, 1.0f, 0.2f));
 
-Sheet sheetOf(scene::Material material, const vec3& normal = kUp, float height = 0.5f) { return {std::move(material), normal, height}; }
+Sheet sheetOf(scene::Material material, const vec3& normal = kUp, float height = 0.5f) {
+  return {std::move(material), normal, height};
+}
 
 std::vector<LampCase> lampCases() {
   const scene::Material green = pane({0.3f, 0.9f, 0.5f}), red = pane({0.9f, 0.4f, 0.2f});
@@ -100,7 +105,8 @@ std::vector<LampCase> lampCases() {
   Sheet bent = sheetOf(green), coloured = sheetOf(green), fromBelow = sheetOf(green, -kTilted);
   bent.shadingNormal = {-0.15f, 1.0f, 0.2f};
   coloured.color = {0.5f, 1.0f, 0.25f, 1.0f};
-  Sheet blend = sheetOf(veil(red, 0.3f, scene::AlphaMode::blend)), blendedPane = sheetOf(veil(green, 0.6f, scene::AlphaMode::blend));
+  Sheet blend = sheetOf(veil(red, 0.3f, scene::AlphaMode::blend)),
+        blendedPane = sheetOf(veil(green, 0.6f, scene::AlphaMode::blend));
   Sheet hole = sheetOf(veil(lambert(vec3(0.5f)), 0.3f, scene::AlphaMode::mask)), stays = hole;
   Sheet paint = sheetOf(veil(lambert(vec3(0.5f)), 0.3f, scene::AlphaMode::blend), kTilted, 0.6f);
   blend.coverage = paint.coverage = 0.3f, blendedPane.coverage = 0.6f, hole.coverage = 0.0f;
@@ -128,7 +134,8 @@ std::vector<LampCase> lampCases() {
           {"PaneBeforeRough", {frosted, sheetOf(green, kUp, 0.6f)}}};
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, LampBehindPanes, testing::ValuesIn(lampCases()), [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Cases, LampBehindPanes, testing::ValuesIn(lampCases()),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 // A lamp in a bubble: the light passes its wall once, whatever the shape is; a camera outside.
 TEST(LampInABubble, ShinesThroughItsWall) {
@@ -143,11 +150,13 @@ TEST(LampInABubble, ShinesThroughItsWall) {
     scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kHalf));
     PictureOptions options;
     options.set = {"bounces=1"};
-    expectPixels(renderPicture(scene, options), [&](vec2 pixel) {
-      const vec2 at = kHalf * (2.0f * pixel / 8.0f - 1.0f);
-      const vec3 d = lamp.position - vec3(at.x, 0.0f, at.y);
-      return kAlbedo / kPi * lamp.intensity * glm::normalize(d).y / glm::dot(d, d) * straight(green, 1.0f);
-    }, {.error = 0.01, .rounding = 1.5e-3});
+    expectPixels(renderPicture(scene, options),
+                 [&](vec2 pixel) {
+                   const vec2 at = kHalf * (2.0f * pixel / 8.0f - 1.0f);
+                   const vec3 d = lamp.position - vec3(at.x, 0.0f, at.y);
+                   return kAlbedo / kPi * lamp.intensity * glm::normalize(d).y / glm::dot(d, d) * straight(green, 1.0f);
+                 },
+                 {.error = 0.01, .rounding = 1.5e-3});
   }
 }
 
@@ -165,12 +174,14 @@ TEST(LampBehindABubble, ShinesThroughBothWalls) {
     scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kHalf));
     PictureOptions options;
     options.set = {"bounces=1"};
-    expectPixels(renderPicture(scene, options), [&](vec2 pixel) {
-      const vec2 at = kHalf * (2.0f * pixel / 8.0f - 1.0f);
-      const float cosine = std::sqrt(1.0f - glm::dot(at, at) / (radius * radius));
-      const vec3 wall = straight(green, cosine);
-      return kAlbedo / kPi * wall * wall;
-    }, {.error = 0.01, .rounding = 3e-3});
+    expectPixels(renderPicture(scene, options),
+                 [&](vec2 pixel) {
+                   const vec2 at = kHalf * (2.0f * pixel / 8.0f - 1.0f);
+                   const float cosine = std::sqrt(1.0f - glm::dot(at, at) / (radius * radius));
+                   const vec3 wall = straight(green, cosine);
+                   return kAlbedo / kPi * wall * wall;
+                 },
+                 {.error = 0.01, .rounding = 3e-3});
   }
 }
 
@@ -187,7 +198,8 @@ TEST(Panes, CountNoBounces) {
     options.program = program::loadProgram(program);
     options.set = {"bounces=0"};
     options.batches = 64;
-    expectUniform(renderPicture(scene, options), vec4(wall * wall * wall * vec3(1.0f, 0.5f, 2.0f), 1.0f), {.error = 0.02, .rounding = 4e-3});
+    expectUniform(renderPicture(scene, options), vec4(wall * wall * wall * vec3(1.0f, 0.5f, 2.0f), 1.0f),
+                  {.error = 0.02, .rounding = 4e-3});
   }
 }
 
@@ -202,7 +214,8 @@ TEST(Panes, CoverATransparentBackground) {
     options.program = program::loadProgram(program);
     options.transparent = true;
     options.batches = 64;
-    expectUniform(renderPicture(scene, options), vec4(0.04f + straight(green, 1.0f), 1.0f), {.error = 0.02, .rounding = 2e-3});
+    expectUniform(renderPicture(scene, options), vec4(0.04f + straight(green, 1.0f), 1.0f),
+                  {.error = 0.02, .rounding = 2e-3});
   }
 }
 

@@ -39,7 +39,8 @@ scene::Geometry sheet(float height, float degrees) {
 
 int addTexture(SceneBuilder& scene, std::uint32_t columns, const std::vector<std::uint8_t>& rgba, bool sRgb) {
   const auto rows = static_cast<std::uint32_t>(rgba.size() / 4 / columns);
-  io::Image image = io::makeImage(columns, rows, 4, io::PixelType::u8, sRgb ? io::ColorEncoding::sRgb : io::ColorEncoding::linear);
+  io::Image image =
+      io::makeImage(columns, rows, 4, io::PixelType::u8, sRgb ? io::ColorEncoding::sRgb : io::ColorEncoding::linear);
   std::ranges::copy(rgba, image.samples<std::uint8_t>().begin());
   const int index = static_cast<int>(scene.scene.textures.size());
   scene.scene.images.push_back({"image", std::move(image)});
@@ -61,8 +62,10 @@ SceneBuilder twoPanes() {
 SceneBuilder texturedPane() {
   SceneBuilder scene = room();
   scene::Material glass = pane(vec3(1.0f));
-  glass.baseColorTexture.texture = addTexture(scene, 2, {255, 60, 40, 255, 40, 255, 90, 255, 80, 90, 255, 255, 250, 250, 120, 255}, true);
-  glass.normalTexture.texture = addTexture(scene, 2, {160, 128, 250, 255, 128, 90, 250, 255, 128, 128, 255, 255, 100, 150, 250, 255}, false);
+  glass.baseColorTexture.texture =
+      addTexture(scene, 2, {255, 60, 40, 255, 40, 255, 90, 255, 80, 90, 255, 255, 250, 250, 120, 255}, true);
+  glass.normalTexture.texture =
+      addTexture(scene, 2, {160, 128, 250, 255, 128, 90, 250, 255, 128, 128, 255, 255, 100, 150, 250, 255}, false);
   glass.transmissionTexture.texture = addTexture(scene, 1, {255, 0, 0, 255, 100, 0, 0, 255}, false);
   glass.metallicRoughnessTexture.texture = addTexture(scene, 2, {0, 0, 0, 255, 0, 200, 0, 255}, false);
   glass.metallicRoughnessTexture.scale = {3.0f, 1.0f};
@@ -85,9 +88,11 @@ SceneBuilder paintedPane() {
 SceneBuilder alpha() {
   SceneBuilder scene = room();
   scene::Material lattice = veil(lambert(vec3(0.4f)), 1.0f, scene::AlphaMode::mask);
-  lattice.baseColorTexture.texture = addTexture(scene, 2, {255, 255, 255, 255, 255, 255, 255, 0, 255, 255, 255, 0, 255, 255, 255, 255}, true);
+  lattice.baseColorTexture.texture =
+      addTexture(scene, 2, {255, 255, 255, 255, 255, 255, 255, 0, 255, 255, 255, 0, 255, 255, 255, 255}, true);
   lattice.baseColorTexture.scale = vec2(3.0f);
-  return scene.add(sheet(0.9f, 8.0f), veil(lambert({0.9f, 0.5f, 0.2f}), 0.4f, scene::AlphaMode::blend)).add(sheet(1.25f, 0.0f), lattice);
+  return scene.add(sheet(0.9f, 8.0f), veil(lambert({0.9f, 0.5f, 0.2f}), 0.4f, scene::AlphaMode::blend))
+      .add(sheet(1.25f, 0.0f), lattice);
 }
 
 // The panel in a bubble, another bubble on the floor, and a sheet of glass that comes and goes.
@@ -138,7 +143,9 @@ Picture render(const Case& c, program::Program program, std::uint32_t batches) {
 const Picture& naiveOf(const Case& c) {
   static std::map<std::string, Picture> pictures;
   const auto known = pictures.find(c.name);
-  return known != pictures.end() ? known->second : pictures.emplace(c.name, render(c, program::loadProgram("naive"), c.naiveBatches)).first->second;
+  return known != pictures.end()
+             ? known->second
+             : pictures.emplace(c.name, render(c, program::loadProgram("naive"), c.naiveBatches)).first->second;
 }
 
 struct Verdict {
@@ -159,8 +166,8 @@ Verdict compare(const Picture& a, const Picture& b) {
         if (p < smallest) {
           smallest = p;
           where.str({});
-          where << "pixel " << x << "," << y << " channel " << c << ": " << ma.mean() << " ± " << ma.standardError() << " against "
-                << mb.mean() << " ± " << mb.standardError();
+          where << "pixel " << x << "," << y << " channel " << c << ": " << ma.mean() << " ± " << ma.standardError()
+                << " against " << mb.mean() << " ± " << mb.standardError();
         }
         difference += ma.mean() - mb.mean();
         variance += ma.standardError() * ma.standardError() + mb.standardError() * mb.standardError();
@@ -171,7 +178,8 @@ Verdict compare(const Picture& a, const Picture& b) {
     noise = std::max(noise, std::sqrt(variance) / sum);
   }
   std::ostringstream text;
-  text << "smallest p " << smallest << " at " << where.str() << "; whole image p " << whole << ", its error " << 100.0 * noise << " %";
+  text << "smallest p " << smallest << " at " << where.str() << "; whole image p " << whole << ", its error "
+       << 100.0 * noise << " %";
   return {smallest >= sidak(0.005, 3 * kSize * kSize) && whole >= sidak(0.005, 3) && noise < 0.01, text.str()};
 }
 
@@ -187,10 +195,12 @@ TEST_P(PaneWeights, AgreeWithBruteForce) {
 constexpr Case kOnePane{"OnePane", onePane, 3, 96, 896}, kOneBounce{"TwoPanesOneBounce", twoPanes, 1, 96, 896};
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PaneWeights,
-                         testing::Values(kOnePane, Case{"OnePaneOneBounce", onePane, 1, 96, 896}, Case{"TwoPanes", twoPanes, 3, 96, 896},
-                                         kOneBounce, Case{"TexturedPane", texturedPane, 3, 96, 896},
+                         testing::Values(kOnePane, Case{"OnePaneOneBounce", onePane, 1, 96, 896},
+                                         Case{"TwoPanes", twoPanes, 3, 96, 896}, kOneBounce,
+                                         Case{"TexturedPane", texturedPane, 3, 96, 896},
                                          Case{"PaintedPane", paintedPane, 3, 96, 896}, Case{"Alpha", alpha, 3, 96, 896},
-                                         Case{"Bubbles", bubbles, 3, 96, 896}, Case{"ForcedOpaque", forcedOpaque, 2, 96, 896},
+                                         Case{"Bubbles", bubbles, 3, 96, 896},
+                                         Case{"ForcedOpaque", forcedOpaque, 2, 96, 896},
                                          Case{"LampInRoughGlass", lampInRoughGlass, 3, 96, 896}),
                          [](const auto& test) { return std::string(test.param.name); });
 
@@ -215,9 +225,11 @@ program::Program shadowed(const std::string& file, const std::string& text) {
 }
 
 TEST(PaneWeights, WrongOnesAreFound) {
-  const std::string keep = "if ((InstanceArray(frame.instances).at[hit.instance].flags & kInstanceOpaque) != 0u) path.bsdfPdf = 0.0;";
+  const std::string keep =
+      "if ((InstanceArray(frame.instances).at[hit.instance].flags & kInstanceOpaque) != 0u) path.bsdfPdf = 0.0;";
   const std::string twice =
-      "#version 460\n#extension GL_EXT_ray_tracing : require\n#include <quintet/alpha.glsl>\n#include <quintet/transmittance.glsl>\n"
+      "#version 460\n#extension GL_EXT_ray_tracing : require\n#include <quintet/alpha.glsl>\n#include "
+      "<quintet/transmittance.glsl>\n"
       "layout(location = 1) rayPayloadInEXT ShadowPayload payload;\nhitAttributeEXT vec2 baryCoord;\n"
       "void main() {\n  HitPayload hit = hitOf(hitGeometry(), raySeed(payload));\n  hit.barycentric = baryCoord;\n"
       "  const vec3 passed = candidateTransmittance(hit, hitGeometry().material, 1.0, gl_WorldRayDirectionEXT);\n"
@@ -235,7 +247,8 @@ TEST(PaneWeights, WrongOnesAreFound) {
     std::printf("%s: %s\n", name, v.text.c_str());
     EXPECT_FALSE(v.same) << name << ": " << v.text;
   }
-  const Verdict v = compare(render(kOneBounce, changed(keep, "path.depth++;"), kOneBounce.batches), naiveOf(kOneBounce));
+  const Verdict v =
+      compare(render(kOneBounce, changed(keep, "path.depth++;"), kOneBounce.batches), naiveOf(kOneBounce));
   EXPECT_FALSE(v.same) << "panes are bounces: " << v.text;
 }
 

@@ -31,7 +31,8 @@ class CacheFolder {
 // Says where and by how much a value is wrong.
 void expectMean(const std::string& where, const Moments& m, double exact, double level, double rounding) {
   const double p = pValue(m, exact, rounding * std::abs(exact) + 1e-7);
-  EXPECT_GE(p, level) << where << ": " << m.mean() << " ± " << m.standardError() << " instead of " << exact << " (p = " << p << ")";
+  EXPECT_GE(p, level) << where << ": " << m.mean() << " ± " << m.standardError() << " instead of " << exact
+                      << " (p = " << p << ")";
 }
 
 // Mean over the renderer's filter, by equal parts of it.
@@ -84,7 +85,8 @@ void Picture::addBatch(const std::vector<vec4>& sums, std::uint32_t samples) {
 
 Picture renderPicture(const SceneBuilder& scene, const PictureOptions& options) {
   render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  render::Renderer renderer(device, options.program, testCompiler(), nullptr, settingsFor(scene.scene.cameras.at(0), options));
+  render::Renderer renderer(device, options.program, testCompiler(), nullptr,
+                            settingsFor(scene.scene.cameras.at(0), options));
   Picture picture(options.width, options.height);
   for (std::uint32_t i = 0; i < options.batches; ++i) {
     renderer.renderBatch();
@@ -134,7 +136,8 @@ void expectPixels(const Picture& picture, const std::function<vec3(vec2)>& exact
     }
     const double error = std::sqrt(variance);
     const double z = std::max(0.0, std::abs(difference) - tolerance.rounding * sum) / std::max(error, 1e-12);
-    EXPECT_GE(studentTwoSided(z, 1e6), sidak(kAlpha, 3)) << "channel " << c << ": sum wrong by " << difference << " ± " << error << " of " << sum;
+    EXPECT_GE(studentTwoSided(z, 1e6), sidak(kAlpha, 3))
+        << "channel " << c << ": sum wrong by " << difference << " ± " << error << " of " << sum;
     EXPECT_LE(error, tolerance.error * sum + 1e-7) << "too noisy to tell, channel " << c;
   }
 }

@@ -22,7 +22,7 @@ struct PictureOptions {
   std::vector<std::string> set;  // parameters, "bounces=1"
   std::uint32_t width = 8;
   std::uint32_t height = 8;
-  std::uint32_t batches = 16;    // of render::kBatchSamples samples
+  std::uint32_t batches = 16;  // of render::kBatchSamples samples
   std::uint32_t seed = 1;
   // RenderSettings::plannedSamples. What takes pixels for independent draws (errors of means over pixels) needs this default;
   // `quintet render` without --adaptive plans its --spp, or 0.
@@ -34,7 +34,8 @@ render::RenderSettings settingsFor(const scene::Camera& camera, const PictureOpt
 
 class Picture {
  public:
-  Picture(std::uint32_t width, std::uint32_t height) : width_(width), height_(height), channels_(std::size_t{4} * width * height) {}
+  Picture(std::uint32_t width, std::uint32_t height)
+      : width_(width), height_(height), channels_(std::size_t{4} * width * height) {}
   void addBatch(const std::vector<vec4>& sums, std::uint32_t samples);
 
   std::uint32_t width() const { return width_; }

@@ -55,11 +55,16 @@ TEST(Renderer, TakesShadersThatWereCompiledForItsScene) {
     return render::shaderDefines(render::sceneFeatures(scene.scene, scene.environment), testContext().info().quirks);
   };
   ASSERT_EQ(defines(shared.scene), shared.device.defines());
-  render::CompiledShaders early = render::compileShaders(shared.program, testCompiler(), shared.settings, defines(shared.scene));
+  render::CompiledShaders early =
+      render::compileShaders(shared.program, testCompiler(), shared.settings, defines(shared.scene));
   early.program.seconds = 1234.0;
   render::RenderSettings settings = shared.settings;
   settings.compiled = &early;
-  const auto secondsOf = [&] { return render::Renderer(shared.device, shared.program, testCompiler(), nullptr, settings).statistics().compileSeconds; };
+  const auto secondsOf = [&] {
+    return render::Renderer(shared.device, shared.program, testCompiler(), nullptr, settings)
+        .statistics()
+        .compileSeconds;
+  };
   EXPECT_EQ(secondsOf(), 1234.0);
 
   SceneBuilder dark = something();
@@ -97,7 +102,8 @@ TEST(Renderer, BytesDoNotDependOnLaunchesInFlight) {
   EXPECT_LT(renderer.launches().size(), 11u * 14u);  // the last one is under way
   renderer.finish();
   std::uint64_t rowSamples = 0;
-  for (const render::LaunchTiming& launch : renderer.launches()) rowSamples += std::uint64_t{launch.rows} * launch.samples;
+  for (const render::LaunchTiming& launch : renderer.launches())
+    rowSamples += std::uint64_t{launch.rows} * launch.samples;
   EXPECT_EQ(rowSamples, 11u * 14u);
   EXPECT_EQ(renderer.statistics().samples, 11u);
   EXPECT_EQ(renderer.image().data, whole.data);
@@ -143,10 +149,12 @@ TEST(Renderer, CodeForAbsentFeaturesIsNotMissed) {
   SceneBuilder scene;
   scene::Material metal;
   metal.roughness = 0.4f;
-  scene.add(sphere(vec3(0.0f), 1.0f, 2), metal).add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.6f, 0.5f, 0.4f}));
+  scene.add(sphere(vec3(0.0f), 1.0f, 2), metal)
+      .add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.6f, 0.5f, 0.4f}));
   scene.sky({0.5f, 0.6f, 0.7f}).camera(perspective({0, 0.5f, 4}, vec3(0.0f), 40.0f));
   const Picture lean = renderPicture(scene, options);
-  scene.scene.materials.insert(scene.scene.materials.end(), {clearGlass(1.5f, 1.0f), clearGlass(1.5f, 0.0f), emitter(vec3(1.0f))});
+  scene.scene.materials.insert(scene.scene.materials.end(),
+                               {clearGlass(1.5f, 1.0f), clearGlass(1.5f, 0.0f), emitter(vec3(1.0f))});
   scene.scene.materials.back().clearcoat = 1.0f;
   expectSame(lean, renderPicture(scene, options));
 }
@@ -156,21 +164,24 @@ TEST(Renderer, CodeForAbsentTexturesIsNotMissed) {
   PictureOptions options;
   options.batches = 8;
   SceneBuilder scene;
-  scene.add(sphere(vec3(0.0f), 1.0f, 2), lambert({0.7f, 0.4f, 0.2f})).add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.6f, 0.5f, 0.4f}));
+  scene.add(sphere(vec3(0.0f), 1.0f, 2), lambert({0.7f, 0.4f, 0.2f}))
+      .add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.6f, 0.5f, 0.4f}));
   scene.add(quad({-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}), emitter(vec3(4.0f)));
   scene.sky({0.2f, 0.3f, 0.4f}).camera(perspective({0, 0.5f, 4}, vec3(0.0f), 40.0f));
   const Picture lean = renderPicture(scene, options);
   scene.scene.images.push_back({"grey", io::makeImage(1, 1, 4, io::PixelType::u8, io::ColorEncoding::sRgb)});
   scene.scene.textures.push_back({.name = "grey", .image = 0, .sampler = {}});
   scene::Material unused = clearGlass(1.5f, 1.0f);
-  for (scene::TextureUse* use : {&unused.baseColorTexture, &unused.metallicRoughnessTexture, &unused.normalTexture, &unused.emissiveTexture,
-                                 &unused.transmissionTexture, &unused.specularTexture, &unused.specularColorTexture})
+  for (scene::TextureUse* use :
+       {&unused.baseColorTexture, &unused.metallicRoughnessTexture, &unused.normalTexture, &unused.emissiveTexture,
+        &unused.transmissionTexture, &unused.specularTexture, &unused.specularColorTexture})
     use->texture = 0;
   scene.scene.materials.push_back(unused);
   // Out of sight and of the light: an any-hit shader and vertex colours.
   scene.add(quad({-3, -9, 3}, {6, 0, 0}, {0, 0, -6}), unlit({0.2f, 0.9f, 0.4f}, 0.5f));
   scene.scene.materials.back().alphaMode = scene::AlphaMode::blend;
-  scene.scene.meshes.back().geometries[0].colors.assign(scene.scene.meshes.back().geometries[0].positions.size(), vec4(1.0f));
+  scene.scene.meshes.back().geometries[0].colors.assign(scene.scene.meshes.back().geometries[0].positions.size(),
+                                                        vec4(1.0f));
   expectSame(lean, renderPicture(scene, options));
 }
 
@@ -194,7 +205,8 @@ TEST(Renderer, ARegionIsAPartOfTheImage) {
 
 TEST(Renderer, RefusesRegionsAndSizesThatMakeNoSense) {
   Shared shared;
-  for (const render::Region region : {render::Region{20, 0, 1, 1}, {0, 0, 21, 1}, {10, 10, 5, 5}, {0, 0, 0, 3}, {1, 0, 0xFFFFFFFFu, 1}}) {
+  for (const render::Region region :
+       {render::Region{20, 0, 1, 1}, {0, 0, 21, 1}, {10, 10, 5, 5}, {0, 0, 0, 3}, {1, 0, 0xFFFFFFFFu, 1}}) {
     render::RenderSettings settings = shared.settings;
     settings.region = region;
     try {
@@ -242,7 +254,10 @@ TEST(Renderer, CountsAndCanBeStopped) {
   EXPECT_EQ(renderer.rays().droppedSamples, 0u);
   const io::Image before = renderer.image();
   std::vector<double> seen;
-  EXPECT_FALSE(renderer.renderBatch(4, [&](double done) { seen.push_back(done); return false; }));
+  EXPECT_FALSE(renderer.renderBatch(4, [&](double done) {
+    seen.push_back(done);
+    return false;
+  }));
   ASSERT_EQ(seen.size(), 1u);
   EXPECT_GT(seen[0], 0.0);
   EXPECT_LT(seen[0], 1.0);
@@ -260,7 +275,8 @@ TEST(BuiltInProgram, NormalsShowsTheNormalAsColour) {
   PictureOptions options;
   options.program = program::loadProgram("normals");
   options.batches = 2;
-  expectUniform(renderPicture(scene, options), vec4(0.5f + 0.5f * std::sin(0.5f), 0.5f, 0.5f + 0.5f * std::cos(0.5f), 1.0f), {.error = 1e-5});
+  expectUniform(renderPicture(scene, options),
+                vec4(0.5f + 0.5f * std::sin(0.5f), 0.5f, 0.5f + 0.5f * std::cos(0.5f), 1.0f), {.error = 1e-5});
 }
 
 // Seen from a plane, a parallel square of side 2 at height 1 hides its form factor.

@@ -46,7 +46,8 @@ scene::Geometry quad(const vec3& corner, const vec3& a, const vec3& b) {
 
 scene::Geometry box(const vec3& low, const vec3& high) {
   scene::Geometry g;
-  for (int i = 0; i < 8; ++i) g.positions.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+  for (int i = 0; i < 8; ++i)
+    g.positions.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
   g.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
                  {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
   return g;
@@ -55,16 +56,17 @@ scene::Geometry box(const vec3& low, const vec3& high) {
 scene::Geometry sphere(const vec3& center, float radius, int level) {
   const float p = 0.5f * (1.0f + std::sqrt(5.0f));
   scene::Geometry g;
-  g.positions = {{-1, p, 0}, {1, p, 0}, {-1, -p, 0}, {1, -p, 0}, {0, -1, p}, {0, 1, p},
-                 {0, -1, -p}, {0, 1, -p}, {p, 0, -1}, {p, 0, 1}, {-p, 0, -1}, {-p, 0, 1}};
-  g.triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                 {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  g.positions = {{-1, p, 0},  {1, p, 0},  {-1, -p, 0}, {1, -p, 0}, {0, -1, p},  {0, 1, p},
+                 {0, -1, -p}, {0, 1, -p}, {p, 0, -1},  {p, 0, 1},  {-p, 0, -1}, {-p, 0, 1}};
+  g.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                 {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (vec3& v : g.positions) v = glm::normalize(v);
   for (; level > 0; --level) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [entry, added] = middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<std::uint32_t>(g.positions.size()));
+      const auto [entry, added] =
+          middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<std::uint32_t>(g.positions.size()));
       if (added) g.positions.push_back(glm::normalize(g.positions[a] + g.positions[b]));
       return entry->second;
     };
@@ -79,7 +81,8 @@ scene::Geometry sphere(const vec3& center, float radius, int level) {
   return g;
 }
 
-SceneBuilder& SceneBuilder::add(scene::Geometry geometry, const scene::Material& material, const mat4& worldFromObject) {
+SceneBuilder& SceneBuilder::add(scene::Geometry geometry, const scene::Material& material,
+                                const mat4& worldFromObject) {
   geometry.material = static_cast<int>(scene.materials.size());
   scene.materials.push_back(material);
   scene::Instance instance;

@@ -21,7 +21,8 @@ scene::Geometry sphere(const vec3& center, float radius, int level);
 class SceneBuilder {
  public:
   // One mesh and its instance, with a material of its own.
-  SceneBuilder& add(scene::Geometry geometry, const scene::Material& material, const mat4& worldFromObject = mat4(1.0f));
+  SceneBuilder& add(scene::Geometry geometry, const scene::Material& material,
+                    const mat4& worldFromObject = mat4(1.0f));
   SceneBuilder& light(const scene::Light& light);
   SceneBuilder& sky(const vec3& radiance);
   SceneBuilder& camera(const scene::Camera& camera);

@@ -12,7 +12,10 @@ namespace {
 
 using glm::dvec3;
 
-struct Query { vec2 barycentric; vec3 wo; };
+struct Query {
+  vec2 barycentric;
+  vec3 wo;
+};
 struct Answer {
   vec3 position, geometricNormal, normal;
   std::uint32_t frontFace;
@@ -47,7 +50,9 @@ int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba, io::Col
   io::Image image = io::makeImage(static_cast<std::uint32_t>(rgba.size() / 4), 1, 4, io::PixelType::u8, encoding);
   std::ranges::copy(rgba, image.samples<std::uint8_t>().begin());
   scene.images.push_back({"texel", std::move(image)});
-  scene.textures.push_back({"texel", static_cast<int>(scene.images.size()) - 1, {scene::Wrap::repeat, scene::Wrap::repeat, scene::Filter::nearest}});
+  scene.textures.push_back({"texel",
+                            static_cast<int>(scene.images.size()) - 1,
+                            {scene::Wrap::repeat, scene::Wrap::repeat, scene::Filter::nearest}});
   return static_cast<int>(scene.textures.size()) - 1;
 }
 
@@ -66,7 +71,8 @@ struct Case {
 std::vector<Case> transforms() {
   const mat4 turned = glm::rotate(mat4(1.0f), 0.8f, glm::normalize(vec3(1, 2, -1)));
   return {{"as it is", mat4(1.0f)},
-          {"stretched", glm::translate(mat4(1.0f), vec3(1, 2, 3)) * turned * glm::scale(mat4(1.0f), vec3(1.0f, 3.0f, 0.4f))},
+          {"stretched",
+           glm::translate(mat4(1.0f), vec3(1, 2, 3)) * turned * glm::scale(mat4(1.0f), vec3(1.0f, 3.0f, 0.4f))},
           {"mirrored", turned * glm::scale(mat4(1.0f), vec3(-1.0f, 2.0f, 0.7f))}};
 }
 
@@ -75,8 +81,10 @@ scene::Scene triangle(const mat4& worldFromObject) {
   scene::Geometry g;
   g.positions = {{0, 0, 0}, {2, 0, 0.1f}, {0.3f, 1, -0.2f}};
   g.triangles = {{0, 1, 2}};
-  g.normals = {glm::normalize(vec3(-0.2f, -0.1f, 1)), glm::normalize(vec3(0.3f, 0, 1)), glm::normalize(vec3(0, 0.3f, 1))};
-  for (const vec3& n : g.normals) g.tangents.emplace_back(glm::normalize(vec3(1, 0.2f, 0) - n * glm::dot(n, vec3(1, 0.2f, 0))), -1.0f);
+  g.normals = {glm::normalize(vec3(-0.2f, -0.1f, 1)), glm::normalize(vec3(0.3f, 0, 1)),
+               glm::normalize(vec3(0, 0.3f, 1))};
+  for (const vec3& n : g.normals)
+    g.tangents.emplace_back(glm::normalize(vec3(1, 0.2f, 0) - n * glm::dot(n, vec3(1, 0.2f, 0))), -1.0f);
   g.uvs[0] = {{0, 0}, {1, 0}, {0, 1}};
   g.uvs[1] = {{0.1f, 0.9f}, {0.2f, 0.3f}, {0.8f, 0.4f}};
   g.colors = {{1, 0.5f, 0.2f, 1}, {0.3f, 1, 0.6f, 1}, {0.9f, 0.4f, 1, 1}};
@@ -102,7 +110,10 @@ std::vector<Answer> shade(const scene::Scene& scene, const std::vector<Query>& p
 }
 
 // What the host makes of the triangle, in double precision.
-struct Expected { dvec3 position, face, normal, tangent, bitangent; double side; };
+struct Expected {
+  dvec3 position, face, normal, tangent, bitangent;
+  double side;
+};
 Expected expectAt(const scene::Scene& scene, const Query& q) {
   const scene::Geometry& g = scene.meshes[0].geometries[0];
   const glm::dmat4 m(scene.instances[0].worldFromObject);
@@ -116,7 +127,8 @@ Expected expectAt(const scene::Scene& scene, const Query& q) {
   Expected e;
   e.position = dvec3(m * glm::dvec4(p, 1.0));
   // The front is where the vertices turn counter-clockwise in object space: normals go with it under mirroring.
-  e.face = glm::normalize(forNormals * glm::cross(dvec3(g.positions[1] - g.positions[0]), dvec3(g.positions[2] - g.positions[0])));
+  e.face = glm::normalize(forNormals *
+                          glm::cross(dvec3(g.positions[1] - g.positions[0]), dvec3(g.positions[2] - g.positions[0])));
   e.side = glm::dot(e.face, dvec3(q.wo)) >= 0.0 ? 1.0 : -1.0;
   e.normal = glm::normalize(forNormals * n);
   const dvec3 along = linear * t;
@@ -161,7 +173,8 @@ TEST(SurfaceShading, NormalMapsLieInTheTangentFrame) {
     scene::Scene scene = triangle(c.worldFromObject);
     scene.materials[0].normalTexture = use(addTexel(scene, {160, 90, 240, 255}, io::ColorEncoding::linear));
     scene.materials[0].normalScale = 0.8f;
-    const dvec3 map = glm::normalize(dvec3(0.8 * (2.0 * 160 / 255 - 1.0), 0.8 * (2.0 * 90 / 255 - 1.0), 2.0 * 240 / 255 - 1.0));
+    const dvec3 map =
+        glm::normalize(dvec3(0.8 * (2.0 * 160 / 255 - 1.0), 0.8 * (2.0 * 90 / 255 - 1.0), 2.0 * 240 / 255 - 1.0));
     const std::vector<Query> points = queries();
     const std::vector<Answer> answers = shade(scene, points);
     int compared = 0;

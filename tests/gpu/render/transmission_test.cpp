@@ -54,7 +54,8 @@ TEST_P(GlassSlab, TransmitsByFresnelAndBeer) {
   glass.attenuationColor = vec3(c.absorbs, 1.0f, std::sqrt(c.absorbs));
   glass.attenuationDistance = 1.0f;
   const auto half = static_cast<float>(0.5 * kThickness);
-  const Picture picture = renderPicture(lookingThrough(box({-3, -3, -half}, {3, 3, half}), glass, c.degrees), batches(64));
+  const Picture picture =
+      renderPicture(lookingThrough(box({-3, -3, -half}, {3, 3, half}), glass, c.degrees), batches(64));
 
   const double cosine = std::cos(glm::radians(static_cast<double>(c.degrees)));
   const double r = fresnel(cosine, c.ior);
@@ -68,8 +69,10 @@ TEST_P(GlassSlab, TransmitsByFresnelAndBeer) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, GlassSlab,
-                         testing::Values(SlabCase{"ClearStraight", 0, 1.5f, 1.0f}, SlabCase{"ClearTilted", 35, 1.5f, 1.0f},
-                                         SlabCase{"ColouredTilted", 40, 1.5f, 0.1f}, SlabCase{"DenseColoured", 25, 2.4f, 0.3f}),
+                         testing::Values(SlabCase{"ClearStraight", 0, 1.5f, 1.0f},
+                                         SlabCase{"ClearTilted", 35, 1.5f, 1.0f},
+                                         SlabCase{"ColouredTilted", 40, 1.5f, 0.1f},
+                                         SlabCase{"DenseColoured", 25, 2.4f, 0.3f}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 // Through a hole filled with glass into a medium that has no other end: what comes from infinity is gone where the
@@ -100,7 +103,8 @@ TEST(OpenMedium, TakesAllLightFromInfinity) {
       float exact = kTint;
       if (floor) exact *= kAlbedo * kTint * (1.0f + (sunny ? sun.intensity.x * 0.8f / kPi : 0.0f));
       Moments red, green;
-      for (std::uint32_t i = 0; i < 16; ++i) red.add(picture.at(i % 4, i / 4, 0).mean()), green.add(picture.at(i % 4, i / 4, 1).mean());
+      for (std::uint32_t i = 0; i < 16; ++i)
+        red.add(picture.at(i % 4, i / 4, 0).mean()), green.add(picture.at(i % 4, i / 4, 1).mean());
       EXPECT_LT(red.mean(), 0.01 * exact);  // through the hole, seldom, comes some
       EXPECT_GE(pValue(green, exact, 2e-5 * exact), 1e-3) << green.mean() << " instead of " << exact;
       EXPECT_LT(green.standardError(), 0.02 * exact) << "too noisy to tell";
@@ -116,9 +120,11 @@ TEST(ThinGlass, TransmitsWhatItDoesNotReflect) {
     glass.baseColor = {0.8f, 0.6f, 0.4f, 1.0f};
     const float cosine = std::cos(glm::radians(degrees));
     const float reflectance = 0.04f + 0.96f * std::pow(1.0f - cosine, 5.0f);
-    const Picture picture = renderPicture(lookingThrough(quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), glass, degrees), batches(32));
+    const Picture picture =
+        renderPicture(lookingThrough(quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), glass, degrees), batches(32));
     // The tables behind the lobe's scale are good to about 1e-3.
-    expectUniform(picture, vec4(kBehind * vec3(0.8f, 0.6f, 0.4f) * (1.0f - reflectance), 1.0f), {.error = 0.005, .rounding = 2e-3});
+    expectUniform(picture, vec4(kBehind * vec3(0.8f, 0.6f, 0.4f) * (1.0f - reflectance), 1.0f),
+                  {.error = 0.005, .rounding = 2e-3});
   }
 }
 
@@ -133,14 +139,16 @@ const scene::Geometry kSheet = quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0});
 
 TEST(Alpha, BlendsByItsValue) {
   const SceneBuilder scene = lookingThrough(kSheet, veil({0.2f, 3.0f, 0.0f}, 0.3f, scene::AlphaMode::blend), 0.0f);
-  expectUniform(renderPicture(scene, batches(64)), vec4(0.3f * vec3(0.2f, 3.0f, 0.0f) + 0.7f * kBehind, 1.0f), {.error = 0.01});
+  expectUniform(renderPicture(scene, batches(64)), vec4(0.3f * vec3(0.2f, 3.0f, 0.0f) + 0.7f * kBehind, 1.0f),
+                {.error = 0.01});
 }
 
 TEST(Alpha, TakesVertexColours) {
   scene::Geometry sheet = kSheet;
   sheet.colors.assign(4, vec4(0.5f, 1.0f, 1.0f, 0.5f));
   const SceneBuilder scene = lookingThrough(sheet, veil({0.2f, 3.0f, 0.0f}, 0.6f, scene::AlphaMode::blend), 0.0f);
-  expectUniform(renderPicture(scene, batches(64)), vec4(0.3f * vec3(0.1f, 3.0f, 0.0f) + 0.7f * kBehind, 1.0f), {.error = 0.01});
+  expectUniform(renderPicture(scene, batches(64)), vec4(0.3f * vec3(0.1f, 3.0f, 0.0f) + 0.7f * kBehind, 1.0f),
+                {.error = 0.01});
 }
 
 // Surfaces on one ray decide each for itself. Here the indices of their triangles and geometries are (2,0), (1,8), (0,16).
@@ -156,13 +164,16 @@ TEST(Alpha, SurfacesOfOneMeshAreIndependent) {
     sheet.triangles.back() = {0, 1, 2};
   }
   scene.camera(orthographic({1, -1, 9}, {1, -1, 0}, 0.05f));
-  expectUniform(renderPicture(scene, batches(64)), vec4(0.875f * vec3(0.2f, 3.0f, 0.0f) + 0.125f * kBehind, 1.0f), {.error = 0.03});
+  expectUniform(renderPicture(scene, batches(64)), vec4(0.875f * vec3(0.2f, 3.0f, 0.0f) + 0.125f * kBehind, 1.0f),
+                {.error = 0.03});
 }
 
 TEST(Alpha, MasksAllOrNothing) {
   for (const float cutoff : {0.2f, 0.5f}) {
-    const SceneBuilder scene = lookingThrough(kSheet, veil({0.2f, 3.0f, 0.0f}, 0.3f, scene::AlphaMode::mask, cutoff), 0.0f);
-    expectUniform(renderPicture(scene, batches(4)), vec4(cutoff < 0.3f ? vec3(0.2f, 3.0f, 0.0f) : kBehind, 1.0f), {.error = 1e-4});
+    const SceneBuilder scene =
+        lookingThrough(kSheet, veil({0.2f, 3.0f, 0.0f}, 0.3f, scene::AlphaMode::mask, cutoff), 0.0f);
+    expectUniform(renderPicture(scene, batches(4)), vec4(cutoff < 0.3f ? vec3(0.2f, 3.0f, 0.0f) : kBehind, 1.0f),
+                  {.error = 1e-4});
   }
 }
 
@@ -177,7 +188,8 @@ TEST(Alpha, LetsLightThroughInShadowRays) {
   sun.direction = {0.6f, -0.8f, 0.0f};
   sun.intensity = vec3(2.0f);
   scene.light(sun).camera(orthographic({0, 1, 0}, vec3(0.0f), 0.1f));
-  expectUniform(renderPicture(scene, batches(64)), vec4(vec3(0.6f / kPi * 2.0f * 0.8f * 0.7f * 0.5f), 1.0f), {.error = 0.02});
+  expectUniform(renderPicture(scene, batches(64)), vec4(vec3(0.6f / kPi * 2.0f * 0.8f * 0.7f * 0.5f), 1.0f),
+                {.error = 0.02});
 }
 
 // `transparent`: the background has alpha 0, colours are premultiplied.

@@ -38,12 +38,14 @@ Hit bruteForceSpheres(const std::vector<Bounds3>& boxes, const Ray& ray, const A
 }
 
 template <class Accept>
-void expectSpheres(const std::vector<Hit>& hits, const std::vector<Bounds3>& boxes, const std::vector<Ray>& rays, const Accept& accept) {
+void expectSpheres(const std::vector<Hit>& hits, const std::vector<Bounds3>& boxes, const std::vector<Ray>& rays,
+                   const Accept& accept) {
   std::size_t different = 0, hitCount = 0;
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const Hit expected = bruteForceSpheres(boxes, rays[k], accept);
     hitCount += expected.t >= 0.0f;
-    different += std::abs(hits[k].t - expected.t) > 1e-3f || (expected.t >= 0.0f && hits[k].primitive != expected.primitive);
+    different +=
+        std::abs(hits[k].t - expected.t) > 1e-3f || (expected.t >= 0.0f && hits[k].primitive != expected.primitive);
   }
   EXPECT_LE(different, rays.size() / 300);
   EXPECT_GT(hitCount, rays.size() / 20);
@@ -82,8 +84,7 @@ TEST(RtBoxes, SpheresAgainstBruteForce) {
   const std::vector<Ray> rays = randomRays(3000, 52);
   const std::vector<Hit> hits = scene.trace(kBoxHit, rays);
   expectSpheres(hits, boxes, rays, kAll);
-  for (const Hit& hit : hits)
-    EXPECT_TRUE(hit.t < 0.0f || hit.kind == 1 || hit.kind == 2);
+  for (const Hit& hit : hits) EXPECT_TRUE(hit.t < 0.0f || hit.kind == 1 || hit.kind == 2);
 }
 
 // Two hit groups with one intersection shader and different any-hit shaders, in both orders.

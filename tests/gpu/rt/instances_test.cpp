@@ -85,18 +85,24 @@ TEST(RtInstances, RebuiltWhileFramesAreInFlight) {
   Tlas tlas(context(), kInstances);
   testSet().setAccelerationStructure(tlas.handle());
   const Pipeline& pipeline = testPipeline();
-  const ShaderBindingTable table(context(), pipeline, contentsOf({hitRecord(kTriangleHit, {.map = blas.primitiveMap(0)})}), "table");
+  const ShaderBindingTable table(context(), pipeline,
+                                 contentsOf({hitRecord(kTriangleHit, {.map = blas.primitiveMap(0)})}), "table");
   std::vector<Ray> rays;
   for (std::uint32_t k = 0; k < kInstances; ++k) rays.push_back({.origin = {3.0f * static_cast<float>(k), -0.5f, 0}});
   const gpu::Buffer rayBuffer = gpu::makeBufferOf(context(), rays, 0, "rays");
   std::vector<gpu::Buffer> hits;
-  const auto depthOf = [](std::uint32_t frame, std::uint32_t k) { return 1.0f + static_cast<float>((frame * 7 + k) % 50); };
-  for (std::uint32_t frame = 0; frame < kFrames; ++frame) hits.push_back(gpu::Buffer(context(), {.size = kInstances * sizeof(Hit), .name = "hits"}));
+  const auto depthOf = [](std::uint32_t frame, std::uint32_t k) {
+    return 1.0f + static_cast<float>((frame * 7 + k) % 50);
+  };
+  for (std::uint32_t frame = 0; frame < kFrames; ++frame)
+    hits.push_back(gpu::Buffer(context(), {.size = kInstances * sizeof(Hit), .name = "hits"}));
 
   for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
     std::vector<InstanceInput> instances;
     for (std::uint32_t k = 0; k < kInstances; ++k)
-      instances.push_back({.worldFromObject = translation(3.0f * static_cast<float>(k), -depthOf(frame, k)), .blas = &blas, .customIndex = k});
+      instances.push_back({.worldFromObject = translation(3.0f * static_cast<float>(k), -depthOf(frame, k)),
+                           .blas = &blas,
+                           .customIndex = k});
     struct {
       VkDeviceAddress rays, hits;
       std::uint32_t count, flags, mask, recordOffset, recordStride, missIndex;
@@ -121,8 +127,9 @@ TEST(RtInstances, RefusesWhatDoesNotFit) {
   Tlas tlas(context(), 1);
   const std::vector<InstanceInput> two(2, InstanceInput{.blas = &blas});
   EXPECT_THROW(tlas.buildAndWait(two), UsageError);
-  for (const InstanceInput& instance : {InstanceInput{.blas = &blas, .customIndex = 1u << 24}, InstanceInput{.blas = &blas, .mask = 256},
-                                        InstanceInput{.blas = &blas, .recordOffset = 1u << 24}})
+  for (const InstanceInput& instance :
+       {InstanceInput{.blas = &blas, .customIndex = 1u << 24}, InstanceInput{.blas = &blas, .mask = 256},
+        InstanceInput{.blas = &blas, .recordOffset = 1u << 24}})
     EXPECT_THROW(tlas.buildAndWait({&instance, 1}), UsageError);
   EXPECT_THROW(Tlas(context(), ~0u), UsageError);
 }

@@ -26,7 +26,8 @@ TEST(RtPipeline, RefusesDeepRecursionAndNoRayGeneration) {
 }
 
 TEST(RtPipeline, EmptyTablesAndEmptyLaunches) {
-  const OneShader shader(shader::Stage::rayGeneration, "void main() { launch.hits.at[gl_LaunchIDEXT.x].primitive = 7; }");
+  const OneShader shader(shader::Stage::rayGeneration,
+                         "void main() { launch.hits.at[gl_LaunchIDEXT.x].primitive = 7; }");
   const gpu::PipelineCache cache(context(), {});
   const Pipeline pipeline(context(), testSet(), shader.options, &cache);
   const ShaderBindingTable table(context(), pipeline, {}, "only ray generation");
@@ -57,7 +58,8 @@ TEST(RtPipeline, CallablesReadTheirRecords) {
     layout(shaderRecordEXT, scalar) buffer Record { uint tag; } record;
     void main() { data = record.tag; })");
   PipelineOptions options;
-  options.stages = {{shader::Stage::rayGeneration, rayGeneration, "rgen"}, {shader::Stage::callable, callable, "rcall"}};
+  options.stages = {{shader::Stage::rayGeneration, rayGeneration, "rgen"},
+                    {shader::Stage::callable, callable, "rcall"}};
   options.groups = {{.general = 0}, {.general = 1}};
   const Pipeline pipeline(context(), testSet(), options, nullptr);
   SbtContents contents;
@@ -70,7 +72,8 @@ TEST(RtPipeline, CallablesReadTheirRecords) {
   const ShaderBindingTable table(context(), pipeline, contents, "callables");
   const gpu::Buffer hits = gpu::makeBufferOf(context(), std::vector<Hit>(9), 0, "hits");
   const std::uint64_t constants[] = {0, hits.address()};
-  context().submitAndWait([&](gpu::Commands& commands) { trace(commands, pipeline, table, std::as_bytes(std::span(constants)), 9, 1); });
+  context().submitAndWait(
+      [&](gpu::Commands& commands) { trace(commands, pipeline, table, std::as_bytes(std::span(constants)), 9, 1); });
   const auto result = hits.downloadAs<Hit>(9);
   for (std::uint32_t k = 0; k < 9; ++k) EXPECT_EQ(result[k].tag, 100 + k);
 }

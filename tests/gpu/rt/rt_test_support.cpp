@@ -15,9 +15,9 @@ struct Launch {
 std::unique_ptr<Pipeline> makePipeline(const gpu::BindlessSet& set) {
   const std::string record(kRecord);
   const std::pair<shader::Stage, std::string> texts[] = {
-      {shader::Stage::rayGeneration, kRayGenerationText},     {shader::Stage::miss, kMissText},
-      {shader::Stage::closestHit, record + kClosestHitText},  {shader::Stage::intersection, record + kIntersectionText},
-      {shader::Stage::anyHit, record + kAcceptAllText},       {shader::Stage::anyHit, record + kOddOnlyText},
+      {shader::Stage::rayGeneration, kRayGenerationText},    {shader::Stage::miss, kMissText},
+      {shader::Stage::closestHit, record + kClosestHitText}, {shader::Stage::intersection, record + kIntersectionText},
+      {shader::Stage::anyHit, record + kAcceptAllText},      {shader::Stage::anyHit, record + kOddOnlyText},
   };
   std::vector<std::vector<std::uint32_t>> spirv;
   PipelineOptions options;
@@ -77,7 +77,8 @@ SbtContents contentsOf(std::vector<SbtRecord> hit, const std::vector<std::uint32
   return contents;
 }
 
-std::vector<Hit> traceRays(const Tlas& tlas, const SbtContents& contents, const std::vector<Ray>& rays, const TraceOptions& options) {
+std::vector<Hit> traceRays(const Tlas& tlas, const SbtContents& contents, const std::vector<Ray>& rays,
+                           const TraceOptions& options) {
   gpu::Context& context = quintet::test::testContext();
   const Pipeline& pipeline = testPipeline();
   const ShaderBindingTable table(context, pipeline, contents, "test table");
@@ -85,7 +86,8 @@ std::vector<Hit> traceRays(const Tlas& tlas, const SbtContents& contents, const 
   const gpu::Buffer hitBuffer = gpu::makeBufferOf(context, std::vector<Hit>(rays.size()), 0, "hits");
   testSet().setAccelerationStructure(tlas.handle());
   const auto count = static_cast<std::uint32_t>(rays.size());
-  const Launch launch{rayBuffer.address(), hitBuffer.address(), count, options.flags, options.mask, options.recordOffset,
+  const Launch launch{rayBuffer.address(),  hitBuffer.address(), count,
+                      options.flags,        options.mask,        options.recordOffset,
                       options.recordStride, options.missIndex};
   context.submitAndWait([&](gpu::Commands& commands) {
     trace(commands, pipeline, table, std::as_bytes(std::span(&launch, 1)), 64, (count + 63) / 64);
@@ -94,7 +96,8 @@ std::vector<Hit> traceRays(const Tlas& tlas, const SbtContents& contents, const 
 }
 
 SingleBlas::SingleBlas(const BlasInput& input)
-    : blas(std::move(BlasBuilder(quintet::test::testContext()).build({&input, 1})[0])), tlas(quintet::test::testContext(), 1) {
+    : blas(std::move(BlasBuilder(quintet::test::testContext()).build({&input, 1})[0])),
+      tlas(quintet::test::testContext(), 1) {
   std::vector<SbtRecord> hit;
   for (std::size_t g = 0; g < input.geometries.size(); ++g)
     hit.push_back(hitRecord(kTriangleHit, {.map = blas.primitiveMap(g), .tag = static_cast<std::uint32_t>(g)}));
@@ -111,9 +114,7 @@ std::vector<Hit> SingleBlas::trace(const std::vector<Ray>& rays, const TraceOpti
   return traceRays(tlas, contents, rays, options);
 }
 
-Mesh quad(float z) {
-  return {{{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}}, {{0, 1, 2}, {0, 2, 3}}};
-}
+Mesh quad(float z) { return {{{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}}, {{0, 1, 2}, {0, 2, 3}}}; }
 
 Mesh randomMesh(std::size_t triangles, std::uint32_t seed, float size) {
   std::mt19937 random(seed);
@@ -147,7 +148,8 @@ Hit bruteForce(const Mesh& mesh, const Ray& ray) {
   const dvec3 origin(ray.origin), direction(ray.direction);
   for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
     const dvec3 a(mesh.positions[mesh.triangles[k][0]]);
-    const dvec3 ab = dvec3(mesh.positions[mesh.triangles[k][1]]) - a, ac = dvec3(mesh.positions[mesh.triangles[k][2]]) - a;
+    const dvec3 ab = dvec3(mesh.positions[mesh.triangles[k][1]]) - a,
+                ac = dvec3(mesh.positions[mesh.triangles[k][2]]) - a;
     const dvec3 p = cross(direction, ac), s = origin - a, q = cross(s, ab);
     const double determinant = dot(ab, p);
     if (determinant == 0.0) continue;

@@ -22,11 +22,11 @@ struct Ray {
 };
 
 struct Hit {
-  float t = -1.0f;             // < 0: miss
-  std::uint32_t primitive = 0; // of the input, through the map
+  float t = -1.0f;              // < 0: miss
+  std::uint32_t primitive = 0;  // of the input, through the map
   std::uint32_t geometry = 0;
-  std::uint32_t custom = 0;    // instance custom index
-  std::uint32_t tag = 0;       // of the hit record, or the miss record
+  std::uint32_t custom = 0;  // instance custom index
+  std::uint32_t tag = 0;     // of the hit record, or the miss record
   std::uint32_t kind = 0;
   float u = 0, v = 0;
 };
@@ -65,7 +65,8 @@ std::vector<std::uint32_t> compileStage(shader::Stage stage, const std::string& 
 const Pipeline& testPipeline();
 gpu::BindlessSet& testSet();
 
-std::vector<Hit> traceRays(const Tlas& tlas, const SbtContents& contents, const std::vector<Ray>& rays, const TraceOptions& options = {});
+std::vector<Hit> traceRays(const Tlas& tlas, const SbtContents& contents, const std::vector<Ray>& rays,
+                           const TraceOptions& options = {});
 
 // One BLAS and one instance of it, a triangle hit record per geometry (tag: its index).
 struct SingleBlas {
@@ -83,7 +84,7 @@ struct Mesh {
   std::vector<uvec3> triangles;
   GeometryInput geometry() const { return {.positions = positions, .triangles = triangles}; }
 };
-Mesh quad(float z);  // x, y from -1 to 1, two triangles
+Mesh quad(float z);                                                             // x, y from -1 to 1, two triangles
 Mesh randomMesh(std::size_t triangles, std::uint32_t seed, float size = 0.1f);  // in the unit cube
 std::vector<Ray> randomRays(std::size_t count, std::uint32_t seed);             // from around the unit cube into it
 

@@ -12,11 +12,11 @@ TEST(RtTriangles, KnownRays) {
   const Mesh mesh = quad(-3);
   SingleBlas scene({.geometries = {mesh.geometry()}, .options = {.name = "quad"}});
   const std::vector<Ray> rays{
-      {.origin = {0.5f, -0.5f, 0}},                     // below the diagonal: triangle 0
-      {.origin = {-0.5f, 0.5f, 0}},                     // above: triangle 1
-      {.origin = {1.5f, 0, 0}},                         // beside
-      {.origin = {0.5f, -0.5f, 0}, .tMax = 2.9f},       // too short
-      {.origin = {0.5f, -0.5f, 0}, .tMin = 3.1f},       // begins behind
+      {.origin = {0.5f, -0.5f, 0}},                           // below the diagonal: triangle 0
+      {.origin = {-0.5f, 0.5f, 0}},                           // above: triangle 1
+      {.origin = {1.5f, 0, 0}},                               // beside
+      {.origin = {0.5f, -0.5f, 0}, .tMax = 2.9f},             // too short
+      {.origin = {0.5f, -0.5f, 0}, .tMin = 3.1f},             // begins behind
       {.origin = {0.5f, -0.5f, -6}, .direction = {0, 0, 2}},  // from the back, direction of length 2
   };
   const std::vector<Hit> hits = scene.trace(rays);
@@ -98,10 +98,11 @@ TEST(RtTriangles, HitRecordsByGeometryAndRayType) {
   scene.tlas.buildAndWait({&instance, 1});
 
   std::vector<Ray> rays;
-  for (std::uint32_t g = 0; g < kGeometries; ++g) rays.push_back({.origin = {3.0f * static_cast<float>(g) + 0.5f, -0.5f, 0}});
+  for (std::uint32_t g = 0; g < kGeometries; ++g)
+    rays.push_back({.origin = {3.0f * static_cast<float>(g) + 0.5f, -0.5f, 0}});
   for (std::uint32_t type = 0; type < kRayTypes; ++type) {
-    const auto hits = traceRays(scene.tlas, contents, rays,
-                                {.recordOffset = type, .recordStride = kRayTypes, .missIndex = type + 1});
+    const auto hits =
+        traceRays(scene.tlas, contents, rays, {.recordOffset = type, .recordStride = kRayTypes, .missIndex = type + 1});
     for (std::uint32_t g = 0; g < kGeometries; ++g) {
       if (g == 4) {
         EXPECT_EQ(hits[g].t, -1.0f);
@@ -167,7 +168,8 @@ TEST(RtTriangles, CompactionKeepsHits) {
 TEST(RtTriangles, MixedKindsAreRefused) {
   const Mesh mesh = quad(0);
   const Bounds3 box{vec3(0), vec3(1)};
-  const BlasInput input{.geometries = {mesh.geometry(), {.kind = GeometryKind::boxes, .boxes = {&box, 1}}}, .options = {}};
+  const BlasInput input{.geometries = {mesh.geometry(), {.kind = GeometryKind::boxes, .boxes = {&box, 1}}},
+                        .options = {}};
   EXPECT_THROW(BlasBuilder(quintet::test::testContext()).build({&input, 1}), UsageError);
 }
 

@@ -40,12 +40,13 @@ std::vector<vec2> ask(const std::vector<Demand>& demands) {
 }
 
 // Samples [first, first + count) of the pixels of a square.
-std::vector<Demand> square(uvec2 corner, std::uint32_t side, std::uint32_t first, std::uint32_t count, std::uint32_t planned,
-                           std::uint32_t dimension = 0, std::uint32_t seed = 1) {
+std::vector<Demand> square(uvec2 corner, std::uint32_t side, std::uint32_t first, std::uint32_t count,
+                           std::uint32_t planned, std::uint32_t dimension = 0, std::uint32_t seed = 1) {
   std::vector<Demand> result;
   for (std::uint32_t y = 0; y < side; ++y)
     for (std::uint32_t x = 0; x < side; ++x)
-      for (std::uint32_t i = 0; i < count; ++i) result.push_back({corner + uvec2(x, y), first + i, dimension, seed, planned});
+      for (std::uint32_t i = 0; i < count; ++i)
+        result.push_back({corner + uvec2(x, y), first + i, dimension, seed, planned});
   return result;
 }
 
@@ -63,21 +64,24 @@ struct Range {
 };
 
 // Counts that are powers of two, planned or not; and the ranges 16 + 8 of which 24 planned samples consist, 2 + 1 of 3.
-constexpr Range kRanges[] = {{0, 1, 1},  {0, 1, 0},  {0, 2, 0},   {0, 4, 4},  {0, 16, 16}, {0, 8, 0},
+constexpr Range kRanges[] = {{0, 1, 1},   {0, 1, 0},   {0, 2, 0}, {0, 4, 4}, {0, 16, 16},   {0, 8, 0},
                              {0, 16, 24}, {16, 8, 24}, {0, 2, 3}, {2, 1, 3}, {64, 32, 100}, {96, 4, 100}};
 
 TEST(BlueNoise, BlocksOfPixelsAreNets) {
   for (const Range& r : kRanges)
     for (const std::uint32_t dimension : {0u, 7u}) {
       EXPECT_TRUE(isNet(ask(square({66, 130}, 1, r.first, r.count, r.planned, dimension))));
-      EXPECT_TRUE(isNet(ask(square({66, 130}, 2, r.first, r.count, r.planned, dimension)))) << r.first << " " << r.count;
-      EXPECT_TRUE(isNet(ask(square({64, 136}, 8, r.first, r.count, r.planned, dimension)))) << r.first << " " << r.count;
+      EXPECT_TRUE(isNet(ask(square({66, 130}, 2, r.first, r.count, r.planned, dimension))))
+          << r.first << " " << r.count;
+      EXPECT_TRUE(isNet(ask(square({64, 136}, 8, r.first, r.count, r.planned, dimension))))
+          << r.first << " " << r.count;
     }
   EXPECT_TRUE(isNet(ask(square({64, 128}, 64, 0, 4, 4))));
   // What the test would notice.
   EXPECT_FALSE(isNet(ask(square({64, 136}, 8, 0, 4, kIndependent))));
-  EXPECT_FALSE(isNet(ask(square({65, 136}, 8, 0, 4, 4))));    // not aligned
-  EXPECT_FALSE(isNet(ask(square({64, 136}, 8, 16, 8, 64))));  // a range that is not taken alone: shuffled for each pixel
+  EXPECT_FALSE(isNet(ask(square({65, 136}, 8, 0, 4, 4))));  // not aligned
+  EXPECT_FALSE(
+      isNet(ask(square({64, 136}, 8, 16, 8, 64))));  // a range that is not taken alone: shuffled for each pixel
 }
 
 // Whatever is planned, a pixel has a (0,k,2)-net in each prefix of 2^k samples.
@@ -142,7 +146,8 @@ Noise noise(std::uint32_t count, std::uint32_t planned, double exact, const F& f
   std::vector<double> squares(kSide * kSide / (kSquare * kSquare), 0.0);
   for (std::uint32_t pixel = 0; pixel < kSide * kSide; ++pixel) {
     double error = -exact;
-    for (std::uint32_t i = 0; i < count; ++i) error += f(points[std::size_t{pixel} * count + i]) / static_cast<float>(count);
+    for (std::uint32_t i = 0; i < count; ++i)
+      error += f(points[std::size_t{pixel} * count + i]) / static_cast<float>(count);
     result.pixel += error * error / (kSide * kSide);
     squares[pixel / kSide / kSquare * (kSide / kSquare) + pixel % kSide / kSquare] += error;
   }
@@ -157,8 +162,8 @@ TEST(BlueNoise, LowFrequenciesOfTheErrorAreSuppressed) {
   for (const std::uint32_t count : {1u, 4u, 16u, 3u, 24u}) {
     const Noise a = noise(count, count, smoothMean, smooth), white = noise(count, kIndependent, smoothMean, smooth);
     const Noise b = noise(count, count, edgeMean, edge);
-    std::printf("%u samples: 8 x 8 pixels, smooth %.3f (independent pixels %.3f), edge %.3f\n", count, a.square / a.pixel,
-                white.square / white.pixel, b.square / b.pixel);
+    std::printf("%u samples: 8 x 8 pixels, smooth %.3f (independent pixels %.3f), edge %.3f\n", count,
+                a.square / a.pixel, white.square / white.pixel, b.square / b.pixel);
     EXPECT_LT(a.square / a.pixel, 0.45) << count;
     EXPECT_LT(b.square / b.pixel, 0.6) << count;
     EXPECT_GT(white.square / white.pixel, 0.7) << count;

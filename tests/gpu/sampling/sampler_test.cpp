@@ -106,7 +106,8 @@ TEST(Sampler, StaysBelowOne) {
     #include <quintet/sampling/hash.glsl>
     #define Out vec2
     vec2 run(uint i) { return vec2(unitFloat(0xFFFFFFFFu), unitFloat(0u)); }
-  )", 1);
+  )",
+                                        1);
   EXPECT_EQ(largest[0].x, 1.0f - 0x1p-24f);
   EXPECT_EQ(largest[0].y, 0.0f);
 }

@@ -27,8 +27,7 @@ const std::vector<Warp> kWarps{
     {"cosine hemisphere", "sampleCosineHemisphere(u)", "vec2(p.z * p.z, turn(p.xy))"},
     {"sphere", "sampleSphere(u)", "vec2(0.5 - 0.5 * p.z, turn(p.xy))"},
     {"wide cone", "sampleCone(u, 0.3)", "vec2((1.0 - p.z) / 0.7, turn(p.xy))"},
-    {"narrow cone", "sampleCone(u, 0.99999)",
-     "vec2(dot(p.xy, p.xy) / (1.0 + p.z) / (1.0 - 0.99999), turn(p.xy))"},
+    {"narrow cone", "sampleCone(u, 0.99999)", "vec2(dot(p.xy, p.xy) / (1.0 + p.z) / (1.0 - 0.99999), turn(p.xy))"},
     {"triangle", "vec3(sampleTriangle(u), 0.0)", "vec2((p.x + p.y) * (p.x + p.y), p.y / max(1e-30, p.x + p.y))"},
 };
 
@@ -46,8 +45,10 @@ std::vector<vec3> run(const Warp& warp, bool wrong, bool raw) {
     #ifdef WRONG
       u.x *= mix(u.x, 1.0, 0.9);
     #endif
-      const vec3 p = )" + std::string(warp.map) + R"(;
-      return )" + (raw ? "p" : "vec3(" + std::string(warp.inverse) + ", 0.0)") + R"(;
+      const vec3 p = )" + std::string(warp.map) +
+                           R"(;
+      return )" + (raw ? "p" : "vec3(" + std::string(warp.inverse) + ", 0.0)") +
+                           R"(;
     }
   )";
   return runCompute<vec3>(body, kSamples, options);
@@ -101,7 +102,8 @@ TEST(Warp, CornersAreFinite) {
       if (warp == 3u) return sampleCone(v, 0.999999);
       return vec3(sampleTriangle(v), 0.0);
     }
-  )", 40);
+  )",
+                                       40);
   for (const vec3& v : values) {
     EXPECT_TRUE(isFinite(v));
     EXPECT_LE(glm::length(v), 1.0f + 1e-6f);

@@ -81,30 +81,30 @@ inline std::string glslOf(const std::string& type, const std::string& members) {
 template <class T>
 struct Fields;
 
-#define GPU_FIELDS(Type, ...)                                                                         \
-  inline void appendWords(Words& words, const shared::Type& value) {                                  \
-    const auto& [__VA_ARGS__] = value;                                                                \
-    const auto append = [&](const auto&... members) { (appendWords(words, members), ...); };          \
-    append(__VA_ARGS__);                                                                              \
-  }                                                                                                   \
-  template <>                                                                                         \
-  struct Fields<shared::Type> {                                                                       \
-    static constexpr const char* kName = #Type;                                                       \
-    static std::string glsl() { return glslOf(#Type, #__VA_ARGS__); }                                 \
+#define GPU_FIELDS(Type, ...)                                                                \
+  inline void appendWords(Words& words, const shared::Type& value) {                         \
+    const auto& [__VA_ARGS__] = value;                                                       \
+    const auto append = [&](const auto&... members) { (appendWords(words, members), ...); }; \
+    append(__VA_ARGS__);                                                                     \
+  }                                                                                          \
+  template <>                                                                                \
+  struct Fields<shared::Type> {                                                              \
+    static constexpr const char* kName = #Type;                                              \
+    static std::string glsl() { return glslOf(#Type, #__VA_ARGS__); }                        \
   }
 
 GPU_FIELDS(TextureData, rowU, rowV, index, uvSet);
-GPU_FIELDS(MaterialData, baseColor, emissive, metallic, roughness, normalScale, alphaCutoff, ior, transmission, specular,
-           specularColor, clearcoat, clearcoatRoughness, clearcoatNormalScale, absorption, flags, baseColorTexture,
-           metallicRoughnessTexture, normalTexture, emissiveTexture, transmissionTexture, specularTexture,
-           specularColorTexture, clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture);
+GPU_FIELDS(MaterialData, baseColor, emissive, metallic, roughness, normalScale, alphaCutoff, ior, transmission,
+           specular, specularColor, clearcoat, clearcoatRoughness, clearcoatNormalScale, absorption, flags,
+           baseColorTexture, metallicRoughnessTexture, normalTexture, emissiveTexture, transmissionTexture,
+           specularTexture, specularColorTexture, clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture);
 GPU_FIELDS(AliasEntry, keep, alias, probability);
 GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, leaf);
 GPU_FIELDS(LightNode, center, radius, intensity, axis, cone, link);
 GPU_FIELDS(EnvironmentData, table, scale, texture, width, height, cosRotation, sinRotation);
 GPU_FIELDS(InstanceData, worldFromObject, objectFromWorld, firstGeometry, firstLightSlot, flags, customIndex);
-GPU_FIELDS(GeometryData, positions, triangles, normals, tangents, uvs, colors, primitiveMap, boxes, primitives, nodes, trees, material,
-           triangleCount, kind, padding);
+GPU_FIELDS(GeometryData, positions, triangles, normals, tangents, uvs, colors, primitiveMap, boxes, primitives, nodes,
+           trees, material, triangleCount, kind, padding);
 GPU_FIELDS(PrimitiveData, primitiveFromObject, objectFromPrimitive, type, parameter, material, padding);
 GPU_FIELDS(CsgNodeData, operation, operand);
 GPU_FIELDS(CsgTreeData, firstNode, nodeCount);
@@ -112,12 +112,14 @@ GPU_FIELDS(BoxData, min, max);
 GPU_FIELDS(CameraData, worldFromCamera, halfSize, apertureRadius, focusDistance, orthographic, padding);
 GPU_FIELDS(RayRecord, origin, tmax, direction, kind);
 GPU_FIELDS(RayKinds, camera, cameraHits, continuation, continuationHits, shadow, shadowHits);
-GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics, rayRecords, instrument,
-           outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth, filmHeight, lightCount,
-           environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount, plannedSamples, lightNodes, previousInstances);
+GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics,
+           rayRecords, instrument, outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth,
+           filmHeight, lightCount, environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount,
+           plannedSamples, lightNodes, previousInstances);
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
-GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, depthLimit, recordPairs);
+GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, depthLimit,
+           recordPairs);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
 GPU_FIELDS(FixedSum, word);

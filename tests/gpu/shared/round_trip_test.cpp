@@ -34,9 +34,12 @@ struct AllWords {
 // The body's start: all structs, and put and take for T and the structs in it.
 template <class T>
 std::string glslFor() {
-  return std::string("#include <quintet/shared/film.h>\n#include <quintet/shared/instrument.h>\n") + kGlslWords + Fields<shared::TextureData>::glsl() +
-         Fields<shared::EnvironmentData>::glsl() + Fields<shared::CameraData>::glsl() +
-         (std::set<std::string>{"TextureData", "EnvironmentData", "CameraData"}.contains(Fields<T>::kName) ? "" : Fields<T>::glsl()) +
+  return std::string("#include <quintet/shared/film.h>\n#include <quintet/shared/instrument.h>\n") + kGlslWords +
+         Fields<shared::TextureData>::glsl() + Fields<shared::EnvironmentData>::glsl() +
+         Fields<shared::CameraData>::glsl() +
+         (std::set<std::string>{"TextureData", "EnvironmentData", "CameraData"}.contains(Fields<T>::kName)
+              ? ""
+              : Fields<T>::glsl()) +
          "struct AllWords { uint at[256]; };\n";
 }
 
@@ -44,9 +47,12 @@ template <class T>
 class SharedStruct : public testing::Test {};
 
 using SharedStructs =
-    testing::Types<shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::LightNode, shared::EnvironmentData,
-                   shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::RayKinds, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::FilmTile, shared::FixedSum, shared::CoverageSlot, shared::Launch,
-                   shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel>;
+    testing::Types<shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::LightNode,
+                   shared::EnvironmentData, shared::InstanceData, shared::GeometryData, shared::PrimitiveData,
+                   shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord,
+                   shared::RayKinds, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::FilmTile,
+                   shared::FixedSum, shared::CoverageSlot, shared::Launch, shared::Instrument, shared::InstrumentReport,
+                   shared::InstrumentPixel>;
 
 struct StructNames {
   template <class T>
@@ -91,7 +97,8 @@ TEST(SharedHeaders, HaveNoUntestedStruct) {
     if (!file.path.starts_with("quintet/shared/")) continue;
     ++headers;
     const std::string text(file.data);
-    for (std::sregex_iterator match(text.begin(), text.end(), structs), end; match != end; ++match) declared.insert((*match)[1]);
+    for (std::sregex_iterator match(text.begin(), text.end(), structs), end; match != end; ++match)
+      declared.insert((*match)[1]);
   }
   EXPECT_GE(headers, 6u);
   std::set<std::string> tested;
@@ -109,10 +116,11 @@ TEST(SharedHeaders, AgreeOnConstants) {
       return Out(uint[8](kAlbedoAverageOffset, kGlassOffset, kAlbedoFloatCount, kNoTexture, kNoLight, kMaxOutputs, kFilmColumns,
                          kMaterialTextureOffset));
     }
-  )", 1)[0];
-  EXPECT_EQ(seen, (std::array<std::uint32_t, 8>{shared::kAlbedoAverageOffset, shared::kGlassOffset, shared::kAlbedoFloatCount,
-                                                shared::kNoTexture, shared::kNoLight, shared::kMaxOutputs, shared::kFilmColumns,
-                                                shared::kMaterialTextureOffset}));
+  )",
+                                                             1)[0];
+  EXPECT_EQ(seen, (std::array<std::uint32_t, 8>{
+                      shared::kAlbedoAverageOffset, shared::kGlassOffset, shared::kAlbedoFloatCount, shared::kNoTexture,
+                      shared::kNoLight, shared::kMaxOutputs, shared::kFilmColumns, shared::kMaterialTextureOffset}));
 }
 
 }  // namespace

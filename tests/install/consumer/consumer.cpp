@@ -42,8 +42,12 @@ void animation(quintet::Device& device) {
 void errors(quintet::Device& device) {
   const auto program = quintet::Program::load("lessons/01_first_ray");
   const auto scene = quintet::Scene::of(program);
-  expect(program.parameters().front().defaultValue == "45", "a default as --set takes it: " + program.parameters().front().defaultValue);
-  expect(throws<quintet::UsageError>([&] { quintet::Renderer(device, scene, program, {.parameters = {{"fieldOfVeiw", "3"}}}); }), "a wrong parameter");
+  expect(program.parameters().front().defaultValue == "45",
+         "a default as --set takes it: " + program.parameters().front().defaultValue);
+  expect(throws<quintet::UsageError>([&] {
+           quintet::Renderer(device, scene, program, {.parameters = {{"fieldOfVeiw", "3"}}});
+         }),
+         "a wrong parameter");
   expect(throws<quintet::FileError>([] { quintet::Scene::load("absent.glb"); }), "an absent scene");
   expect(quintet::check(program, &scene).empty(), "lesson 01 is clean");
 
@@ -51,7 +55,8 @@ void errors(quintet::Device& device) {
                                   "void main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(vec4(nothing)); }\n";
   const auto bad = quintet::Program::load("bad.rt.glsl");
   expect(quintet::check(bad).size() == 1 && quintet::check(bad).front().line == 2, "the error's line");
-  expect(throws<quintet::ProgramError>([&] { quintet::Renderer(device, scene, bad); }), "a program that does not compile");
+  expect(throws<quintet::ProgramError>([&] { quintet::Renderer(device, scene, bad); }),
+         "a program that does not compile");
 }
 
 }  // namespace

@@ -193,7 +193,8 @@ TEST(WriteFileTest, TheNextWriterRemovesWhatAKilledOneHasLeft) {
   ASSERT_EQ(hiddenFiles(folder).size(), 3u);
   writeFile(folder / "a", "new");
   EXPECT_EQ(readTextFile(folder / "a"), "new");
-  EXPECT_THAT(hiddenFiles(folder), testing::AllOf(testing::SizeIs(2), testing::Not(testing::Contains(left)), testing::Contains(".quintet-mine.tmp")));
+  EXPECT_THAT(hiddenFiles(folder), testing::AllOf(testing::SizeIs(2), testing::Not(testing::Contains(left)),
+                                                  testing::Contains(".quintet-mine.tmp")));
   removeLeftovers(folder / "b");
   EXPECT_EQ(hiddenFiles(folder), std::vector<std::string>{".quintet-mine.tmp"});
 }

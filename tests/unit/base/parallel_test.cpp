@@ -60,10 +60,13 @@ TEST(ParallelTest, ALoopInsideALoopOfOneHasTheOtherCores) {
 TEST(ParallelTest, RangesCoverAllAndCopyIsACopy) {
   for (const std::size_t count : {0u, 1u, 9u, 10u, 11u, 1005u}) {
     std::vector<std::atomic<int>> calls(count);
-    parallelRanges(count, [&](std::size_t first, std::size_t last) {
-      EXPECT_LE(last - first, 10u);
-      for (std::size_t i = first; i < last; ++i) ++calls.at(i);
-    }, 10);
+    parallelRanges(
+        count,
+        [&](std::size_t first, std::size_t last) {
+          EXPECT_LE(last - first, 10u);
+          for (std::size_t i = first; i < last; ++i) ++calls.at(i);
+        },
+        10);
     for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(calls[i], 1) << i << " of " << count;
   }
   std::vector<std::byte> from((std::size_t{9} << 20) + 3), to(from.size());

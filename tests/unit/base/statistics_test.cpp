@@ -9,12 +9,12 @@ namespace quintet {
 namespace {
 
 TEST(Statistics, StudentsDistribution) {
-  EXPECT_NEAR(studentTwoSided(2.228139, 10), 0.05, 1e-7);   // NIST/SEMATECH e-Handbook 1.3.6.7.2
+  EXPECT_NEAR(studentTwoSided(2.228139, 10), 0.05, 1e-7);  // NIST/SEMATECH e-Handbook 1.3.6.7.2
   EXPECT_NEAR(studentTwoSided(12.706205, 1), 0.05, 1e-7);
   EXPECT_NEAR(studentTwoSided(-3.169273, 10), 0.01, 1e-7);
   EXPECT_NEAR(studentTwoSided(1.959964, 1e9), 0.05, 1e-6);  // the normal distribution
   EXPECT_EQ(studentTwoSided(0, 5), 1.0);
-  EXPECT_NEAR(studentTwoSided(1.0, 1), 0.5, 1e-12);         // Cauchy
+  EXPECT_NEAR(studentTwoSided(1.0, 1), 0.5, 1e-12);  // Cauchy
 }
 
 TEST(Statistics, LevelsOfManyTests) {
@@ -50,7 +50,8 @@ TEST(Statistics, FisherQuantilesAreThoseOfTheTables) {
   EXPECT_NEAR(fisherQuantile(0.95, 10, 10), 2.978, 0.001);
   EXPECT_NEAR(fisherQuantile(0.95, 3, 100), 2.696, 0.001);
   EXPECT_NEAR(fisherQuantile(0.95, 20, 7), 3.445, 0.001);
-  for (const double freedom : {3990.0, 4010.0}) EXPECT_NEAR(fisherQuantile(0.95, freedom, freedom), 1.0534, 2e-4) << freedom;
+  for (const double freedom : {3990.0, 4010.0})
+    EXPECT_NEAR(fisherQuantile(0.95, freedom, freedom), 1.0534, 2e-4) << freedom;
   EXPECT_NEAR(fisherQuantile(0.95, 1e6, 1e6), 1.0 + 1.644854 * std::sqrt(4e-6), 1e-5);
   EXPECT_NEAR(fisherQuantile(0.05, 10, 10), 1.0 / 2.978, 0.001);
 }

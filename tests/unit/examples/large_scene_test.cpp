@@ -12,7 +12,8 @@ namespace {
 
 TEST(LargeScene, IsWhatWasAskedFor) {
   const test::TempFolder folder;
-  const std::uint64_t count = writeLargeScene(folder / "a.glb", {.triangles = 6000, .meshes = 3, .textures = 2, .textureSize = 16, .normalMaps = true});
+  const std::uint64_t count = writeLargeScene(
+      folder / "a.glb", {.triangles = 6000, .meshes = 3, .textures = 2, .textureSize = 16, .normalMaps = true});
   const scene::Scene scene = scene::loadScene(folder / "a.glb");
   EXPECT_EQ(scene::countTriangles(scene).stored, count);
   EXPECT_NEAR(static_cast<double>(count), 6000.0, 200.0);

@@ -66,8 +66,8 @@ TEST(DeviceChoice, SaysWhyARequestedDeviceIsRefused) {
   const std::vector<DeviceInfo> devices = threeDevices();
   for (const char* request : {"1", "old card"})
     EXPECT_THAT([&] { chooseDevice(devices, request); },
-                ThrowsMessage<NoDeviceError>(AllOf(HasSubstr("cannot use device"),
-                                                   HasSubstr("refused: no VK_KHR_ray_tracing_pipeline"))));
+                ThrowsMessage<NoDeviceError>(
+                    AllOf(HasSubstr("cannot use device"), HasSubstr("refused: no VK_KHR_ray_tracing_pipeline"))));
 }
 
 TEST(DeviceChoice, SaysThatThereIsNoDeviceAtAll) {
@@ -75,8 +75,9 @@ TEST(DeviceChoice, SaysThatThereIsNoDeviceAtAll) {
   std::vector<DeviceInfo> devices = threeDevices();
   devices.resize(2);
   devices[0].refusal = "Vulkan 1.1 (1.3 is needed)";
-  EXPECT_THAT([&] { chooseDevice(devices, ""); },
-              ThrowsMessage<NoDeviceError>(AllOf(HasSubstr("no usable device"), HasSubstr("Vulkan 1.1 (1.3 is needed)"))));
+  EXPECT_THAT(
+      [&] { chooseDevice(devices, ""); },
+      ThrowsMessage<NoDeviceError>(AllOf(HasSubstr("no usable device"), HasSubstr("Vulkan 1.1 (1.3 is needed)"))));
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ TEST(VulkanErrors, HaveATypePerCause) {
 }
 
 TEST(VulkanErrors, LetSuccessCodesPass) {
-  for (const VkResult result : {VK_SUCCESS, VK_TIMEOUT, VK_INCOMPLETE, VK_NOT_READY}) EXPECT_NO_THROW(check(result, "x"));
+  for (const VkResult result : {VK_SUCCESS, VK_TIMEOUT, VK_INCOMPLETE, VK_NOT_READY})
+    EXPECT_NO_THROW(check(result, "x"));
 }
 
 TEST(VulkanErrors, NameUnknownResults) {

@@ -45,17 +45,10 @@ Bytes mutate(const Bytes& original, std::minstd_rand& random) {
   constexpr std::byte kExtremes[]{std::byte{0}, std::byte{0xff}, std::byte{0x7f}, std::byte{0x80}, std::byte{1}};
   for (auto changes = 1 + random() % 4; changes > 0; --changes) {
     switch (random() % 6) {
-      case 0:
-        bytes.erase(bytes.begin() + position());
-        break;
-      case 1:
-        bytes.insert(bytes.begin() + position(), static_cast<std::byte>(random()));
-        break;
-      case 2:
-        bytes[static_cast<std::size_t>(position())] = kExtremes[random() % 5];
-        break;
-      default:
-        bytes[static_cast<std::size_t>(position())] ^= static_cast<std::byte>(1u << random() % 8);
+      case 0: bytes.erase(bytes.begin() + position()); break;
+      case 1: bytes.insert(bytes.begin() + position(), static_cast<std::byte>(random())); break;
+      case 2: bytes[static_cast<std::size_t>(position())] = kExtremes[random() % 5]; break;
+      default: bytes[static_cast<std::size_t>(position())] ^= static_cast<std::byte>(1u << random() % 8);
     }
   }
   return bytes;

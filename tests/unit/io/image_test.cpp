@@ -134,11 +134,13 @@ TEST(WriteChannelsTest, WritesTheRowsThatAreAskedFor) {
   constexpr std::uint32_t kWidth = 5, kHeight = 7;
   for (const std::uint32_t channels : {1u, 2u, 3u, 4u}) {
     Image image = makeImage(kWidth, kHeight, channels, PixelType::u8, ColorEncoding::sRgb);
-    for (std::size_t i = 0; i < image.data.size(); ++i) image.samples<std::uint8_t>()[i] = static_cast<std::uint8_t>(37 * i + 11);
+    for (std::size_t i = 0; i < image.data.size(); ++i)
+      image.samples<std::uint8_t>()[i] = static_cast<std::uint8_t>(37 * i + 11);
     std::vector<std::byte> whole(kWidth * kHeight * 4);
     for (std::uint32_t first = 0; first < kHeight; first += 3) {
       const std::uint32_t rows = std::min(3u, kHeight - first);
-      writeChannels(image, 4, first, std::span(whole).subspan(std::size_t{4} * kWidth * first, std::size_t{4} * kWidth * rows));
+      writeChannels(image, 4, first,
+                    std::span(whole).subspan(std::size_t{4} * kWidth * first, std::size_t{4} * kWidth * rows));
     }
     const bool grey = channels <= 2, alpha = channels % 2 == 0;
     for (std::uint32_t p = 0; p < kWidth * kHeight; ++p) {

@@ -117,18 +117,13 @@ Bytes writeParts(const Imath::Box2i& box) {
 Bytes makeExr(ExrKind kind) {
   const Imath::Box2i box({0, 0}, {9, 5});
   switch (kind) {
-    case ExrKind::tiled:
-      return writeTiles(makeHeader(box, box, {"R", "G", "B"}), Imf::ONE_LEVEL);
-    case ExrKind::mipmapped:
-      return writeTiles(makeHeader(box, box, {"Y"}), Imf::MIPMAP_LEVELS);
+    case ExrKind::tiled: return writeTiles(makeHeader(box, box, {"R", "G", "B"}), Imf::ONE_LEVEL);
+    case ExrKind::mipmapped: return writeTiles(makeHeader(box, box, {"Y"}), Imf::MIPMAP_LEVELS);
     case ExrKind::offsetWindows:
       return writeLines(makeHeader({{10, 20}, {14, 23}}, {{8, 21}, {12, 30}}, {"R", "G", "B", "A"}));
-    case ExrKind::layers:
-      return writeLines(makeHeader(box, box, {"Z", "view.A", "view.B", "view.G", "view.R"}));
-    case ExrKind::multiPart:
-      return writeParts(box);
-    case ExrKind::piz:
-      break;
+    case ExrKind::layers: return writeLines(makeHeader(box, box, {"Z", "view.A", "view.B", "view.G", "view.R"}));
+    case ExrKind::multiPart: return writeParts(box);
+    case ExrKind::piz: break;
   }
   Imf::Header header = makeHeader(box, box, {"Y"});
   header.compression() = Imf::PIZ_COMPRESSION;

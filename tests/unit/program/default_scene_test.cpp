@@ -21,7 +21,8 @@ TEST(DefaultScene, IsTheOnlySceneFile) {
 }
 
 TEST(DefaultScene, IsWhatTheProgramNames) {
-  EXPECT_EQ(parse(kHead + "scene = \"b.scene.toml\"\n", {{"a.scene.toml", ""}, {"b.scene.toml", ""}}).scene, "b.scene.toml");
+  EXPECT_EQ(parse(kHead + "scene = \"b.scene.toml\"\n", {{"a.scene.toml", ""}, {"b.scene.toml", ""}}).scene,
+            "b.scene.toml");
   try {
     parse(kHead + "scene = \"c.scene.toml\"\n", {{"a.scene.toml", ""}});
     FAIL() << "accepted";

@@ -23,14 +23,16 @@ std::string problems(const CompiledProgram& compiled) {
 }
 
 TEST(ProgramLink, GeneratesConstants) {
-  const Program p = parse(std::string(kSmall) +
-                          "[[ray]]\nname = \"shadow\"\nmiss = \"dark.rmiss\"\n[[output]]\nname = \"color\"\n[[output]]\nname = \"depth\"\n"
-                          "[[parameter]]\nname = \"on\"\ntype = \"bool\"\ndefault = true\n"
-                          "[[parameter]]\nname = \"tint\"\ntype = \"color\"\ndefault = [1, 1, 1]\n");
+  const Program p = parse(
+      std::string(kSmall) +
+      "[[ray]]\nname = \"shadow\"\nmiss = \"dark.rmiss\"\n[[output]]\nname = \"color\"\n[[output]]\nname = \"depth\"\n"
+      "[[parameter]]\nname = \"on\"\ntype = \"bool\"\ndefault = true\n"
+      "[[parameter]]\nname = \"tint\"\ntype = \"color\"\ndefault = [1, 1, 1]\n");
   const std::string glsl = generatedConstants(p);
-  for (const char* line : {"const uint kRayTypeCount = 2u;", "const uint kRay_radiance = 0u;", "const uint kRay_shadow = 1u;",
-                           "const uint kMiss_shadow = 1u;", "const uint kOutput_color = 0u;", "const uint kOutput_depth = 1u;",
-                           "uint on;", "vec3 tint;", "#define parameters "})
+  for (const char* line :
+       {"const uint kRayTypeCount = 2u;", "const uint kRay_radiance = 0u;", "const uint kRay_shadow = 1u;",
+        "const uint kMiss_shadow = 1u;", "const uint kOutput_color = 0u;", "const uint kOutput_depth = 1u;", "uint on;",
+        "vec3 tint;", "#define parameters "})
     EXPECT_THAT(glsl, HasSubstr(line));
 }
 
@@ -49,10 +51,12 @@ void main() {
   const HitPayload hit = traceClosest(vec3(0.0), helper(), parameters.far, 0u);
   storeOutput(kOutput_color, launchPixel(), vec4(hit.t));
 }
-)"}, {"more/helper.glsl", "vec3 helper() { return vec3(0.0, 0.0, -1.0); }\n"}};
-  const std::string toml = changed(kSmall, "sky.rmiss", "<quintet/stages/radiance.rmiss>") +
-                           "[[hit_group]]\nname = \"all\"\nradiance = { closest_hit = \"<quintet/stages/surface.rchit>\" }\n"
-                           "[[parameter]]\nname = \"far\"\ntype = \"float\"\ndefault = 1\n";
+)"},
+                 {"more/helper.glsl", "vec3 helper() { return vec3(0.0, 0.0, -1.0); }\n"}};
+  const std::string toml =
+      changed(kSmall, "sky.rmiss", "<quintet/stages/radiance.rmiss>") +
+      "[[hit_group]]\nname = \"all\"\nradiance = { closest_hit = \"<quintet/stages/surface.rchit>\" }\n"
+      "[[parameter]]\nname = \"far\"\ntype = \"float\"\ndefault = 1\n";
   const CompiledProgram compiled = compile(parse(toml, files), compiler(), {});
   EXPECT_TRUE(compiled.ok) << problems(compiled);
   ASSERT_EQ(compiled.stages.size(), 3u);
@@ -62,16 +66,19 @@ void main() {
 }
 
 TEST(ProgramLink, PassesDefinesToEveryStage) {
-  const Files files = {{"main.rgen", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() { int i = VALUE; }\n"},
-                       {"sky.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() { int i = VALUE; }\n"}};
+  const Files files = {
+      {"main.rgen", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() { int i = VALUE; }\n"},
+      {"sky.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() { int i = VALUE; }\n"}};
   EXPECT_FALSE(compile(parse(kSmall, files), compiler(), {}).ok);
   EXPECT_TRUE(compile(parse(kSmall, files), compiler(), {{"VALUE", "3"}}).ok);
 }
 
 TEST(ProgramLink, PointsAtTheErrorsOfEveryStage) {
-  const Files files = {{"main.rgen", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {\n  int i = nothing;\n}\n"},
-                       {"sky.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\n#include \"broken.glsl\"\nvoid main() {}\n"},
-                       {"broken.glsl", "\n\nint f( { }\n"}};
+  const Files files = {
+      {"main.rgen", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {\n  int i = nothing;\n}\n"},
+      {"sky.rmiss",
+       "#version 460\n#extension GL_EXT_ray_tracing : require\n#include \"broken.glsl\"\nvoid main() {}\n"},
+      {"broken.glsl", "\n\nint f( { }\n"}};
   const CompiledProgram compiled = compile(parse(kSmall, files), compiler(), {});
   EXPECT_FALSE(compiled.ok);
   std::vector<std::string> places;
@@ -83,7 +90,8 @@ TEST(ProgramLink, PointsAtTheErrorsOfEveryStage) {
 TEST(ProgramLink, ReportsALibraryStageThatDoesNotExist) {
   Files files = someFiles();
   files["main.rgen"] = "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n";
-  const CompiledProgram compiled = compile(parse(changed(kSmall, "sky.rmiss", "<quintet/stages/none.rmiss>"), files), compiler(), {});
+  const CompiledProgram compiled =
+      compile(parse(changed(kSmall, "sky.rmiss", "<quintet/stages/none.rmiss>"), files), compiler(), {});
   EXPECT_FALSE(compiled.ok);
   EXPECT_THAT(problems(compiled), HasSubstr("quintet/stages/none.rmiss"));
 }

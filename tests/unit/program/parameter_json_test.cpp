@@ -147,7 +147,10 @@ TEST(ProgramJson, DescribesWhatThereIs) {
   EXPECT_EQ(json["description"], "a test");
   EXPECT_EQ(json["accumulation"], "film");
   EXPECT_EQ(json["rays"], nlohmann::json::array({"radiance"}));
-  EXPECT_EQ(json["outputs"][1], nlohmann::json::parse(R"({"name":"where","kind":"normal","pixel":"mean","optional":false,"channels":["X","Y","Z"],"help":"the normal"})"));
+  EXPECT_EQ(
+      json["outputs"][1],
+      nlohmann::json::parse(
+          R"({"name":"where","kind":"normal","pixel":"mean","optional":false,"channels":["X","Y","Z"],"help":"the normal"})"));
   const auto& p = json["parameters"];
   ASSERT_EQ(p.size(), 8u);
   EXPECT_EQ(p[0], nlohmann::json::parse(

@@ -15,8 +15,8 @@ namespace quintet::program {
 using Files = std::map<std::string, std::string>;
 
 inline Files someFiles() {
-  return {{"main.rgen", ""}, {"sky.rmiss", ""}, {"dark.rmiss", ""}, {"hit.rchit", ""}, {"alpha.rahit", ""},
-          {"box.rint", ""},  {"noise.rcall", ""}};
+  return {{"main.rgen", ""},   {"sky.rmiss", ""}, {"dark.rmiss", ""}, {"hit.rchit", ""},
+          {"alpha.rahit", ""}, {"box.rint", ""},  {"noise.rcall", ""}};
 }
 
 // Lines 1 to 3 and 5 to 7; more can be appended from line 8 on.

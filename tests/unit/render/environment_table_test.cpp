@@ -95,7 +95,7 @@ TEST(EnvironmentTable, LargeMapsGetACoarserTableThatCovers) {
   // Texels 2499 … 2501 show light: u in [2499, 2502] / 5000.
   const double scale = 4096.0 / 5000.0;
   for (std::size_t x = 0; x < table.width; ++x) {
-    const bool lit = static_cast<double>(x) < 2502.0 * scale && static_cast<double>(x + 1) > 2499.0 * scale;
+    const bool lit = static_cast<double>(x)<2502.0 * scale&& static_cast<double>(x + 1)> 2499.0 * scale;
     ASSERT_EQ(table.entries[4096 + x].probability > 0.0f, lit) << x;
   }
   // The texel is 1/5000 of its row; filtering moves a quarter of its light to the rows beside.

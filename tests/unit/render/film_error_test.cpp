@@ -19,7 +19,12 @@ struct Simulation {
   explicit Simulation(std::uint32_t width, std::uint32_t height) {
     film.region = {0, 0, width, height};
     const std::size_t pixels = film.pixelCount();
-    film.planes = {{"color", program::OutputPixel::mean, std::vector<shared::FixedSum>(4 * pixels), std::vector<shared::FixedSum>(4 * pixels), {}, {}}};
+    film.planes = {{"color",
+                    program::OutputPixel::mean,
+                    std::vector<shared::FixedSum>(4 * pixels),
+                    std::vector<shared::FixedSum>(4 * pixels),
+                    {},
+                    {}}};
   }
   void addBatch(const Draw& draw, std::uint32_t x, std::uint32_t y) {
     double sum = 0;
@@ -72,7 +77,9 @@ TEST(FilmError, IsNotKnownBelowTwoBatches) {
 // Read in strips of tile rows, adaptive counts or not: the same words in any order.
 TEST(FilmError, OfStripsIsThatOfTheWhole) {
   std::mt19937 random(8);
-  const Draw draw = [&](std::uint32_t x, std::uint32_t) { return 1.0 + 0.01 * static_cast<double>(random() % 100) * (x < 32 ? 1.0 : 0.1); };
+  const Draw draw = [&](std::uint32_t x, std::uint32_t) {
+    return 1.0 + 0.01 * static_cast<double>(random() % 100) * (x < 32 ? 1.0 : 0.1);
+  };
   for (const bool adaptive : {false, true}) {
     Simulation simulation(70, 75);
     simulation.render(draw, 4);
@@ -90,7 +97,8 @@ TEST(FilmError, OfStripsIsThatOfTheWhole) {
     EXPECT_TRUE(whole.known());
     EXPECT_EQ(strips.upper, whole.upper);
     EXPECT_EQ(strips.tiles, whole.tiles);
-    for (std::size_t c = 0; c < whole.cells.size(); ++c) EXPECT_EQ(strips.cells[c].squares, whole.cells[c].squares) << c;
+    for (std::size_t c = 0; c < whole.cells.size(); ++c)
+      EXPECT_EQ(strips.cells[c].squares, whole.cells[c].squares) << c;
   }
 }
 
@@ -105,7 +113,9 @@ TEST(FilmError, CoversPicturesOfFewNoisyPixels) {
       for (int run = 0; run < kRuns; ++run) {
         Simulation simulation(8, 5);
         double square = 0, sum = 0;
-        const Draw draw = [&](std::uint32_t px, std::uint32_t py) { return 8 * py + px < noisy ? normal(random) : 1.0; };
+        const Draw draw = [&](std::uint32_t px, std::uint32_t py) {
+          return 8 * py + px < noisy ? normal(random) : 1.0;
+        };
         simulation.render(draw, batches);
         const io::Image image = planeImage(simulation.film, 0);
         for (std::uint32_t i = 0; i < 40; ++i) sum += static_cast<double>(image.pixel<float>(i % 8, i / 8)[0]) / 40;

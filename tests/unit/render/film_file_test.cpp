@@ -49,8 +49,14 @@ FilmFile sample(std::uint32_t width = 37, std::uint32_t height = 21, bool cells 
   film.planes = {{"color", program::OutputPixel::mean, sums(), sums(), {}, {}},
                  {"unwanted", program::OutputPixel::mean, {}, {}, {}, {}},
                  {"depth", program::OutputPixel::center, {}, {}, std::vector<vec4>(pixels, vec4(1.5f, -2, 0, 1)), {}},
-                 {"ids", program::OutputPixel::coverage, {}, {}, {}, std::vector<shared::CoverageSlot>(shared::kCoverageSlots * pixels)}};
-  for (shared::CoverageSlot& slot : film.planes[3].coverage) slot = {static_cast<std::uint32_t>(random()), static_cast<std::uint32_t>(random() % 5)};
+                 {"ids",
+                  program::OutputPixel::coverage,
+                  {},
+                  {},
+                  {},
+                  std::vector<shared::CoverageSlot>(shared::kCoverageSlots * pixels)}};
+  for (shared::CoverageSlot& slot : film.planes[3].coverage)
+    slot = {static_cast<std::uint32_t>(random()), static_cast<std::uint32_t>(random() % 5)};
   for (std::size_t i = 0; i < pixels; ++i) film.statistics.emplace_back(random() % 1000, random() % 2);
   return file;
 }
@@ -135,7 +141,8 @@ TEST(FilmFile, IsRefusedAtEveryLength) {
   const std::vector<std::byte> bytes = encodeFilm(sample(9, 5));
   EXPECT_EQ(problemOf(std::span(bytes).first(0)), "part.qfilm: is empty");
   for (std::size_t size = 1; size < bytes.size(); ++size)
-    ASSERT_EQ(problemOf(std::span(bytes).first(size)), "part.qfilm: is truncated after " + std::to_string(size) + " bytes");
+    ASSERT_EQ(problemOf(std::span(bytes).first(size)),
+              "part.qfilm: is truncated after " + std::to_string(size) + " bytes");
   std::vector<std::byte> longer = bytes;
   longer.resize(bytes.size() + 3);
   EXPECT_EQ(problemOf(longer), "part.qfilm: is damaged: it has 3 bytes too many");
@@ -148,10 +155,14 @@ TEST(FilmFile, IsRefusedAfterEveryFlippedBit) {
     std::vector<std::byte> flipped = bytes;
     flipped[i] ^= static_cast<std::byte>(1u << bit % 8);
     const std::string problem = problemOf(flipped);
-    if (i < 8) ASSERT_EQ(problem, "part.qfilm: is not a film file (.qfilm)") << i;
-    else if (i < 12) ASSERT_THAT(problem, HasSubstr("of the film format; this Quintet reads version 2")) << i;
-    else if (i >= kPrefixBytes) ASSERT_EQ(problem, "part.qfilm: is damaged: its checksum is not that of its content") << i;
-    else ASSERT_NE(problem, "none") << i;
+    if (i < 8)
+      ASSERT_EQ(problem, "part.qfilm: is not a film file (.qfilm)") << i;
+    else if (i < 12)
+      ASSERT_THAT(problem, HasSubstr("of the film format; this Quintet reads version 2")) << i;
+    else if (i >= kPrefixBytes)
+      ASSERT_EQ(problem, "part.qfilm: is damaged: its checksum is not that of its content") << i;
+    else
+      ASSERT_NE(problem, "none") << i;
   }
 }
 
@@ -170,20 +181,39 @@ TEST(FilmFile, NamesOtherKindsOfFiles) {
 // Written like that on purpose: the checksum is right.
 TEST(FilmFile, HoldsHeadersAgainstTheirPayload) {
   const std::vector<std::byte> bytes = encodeFilm(sample(9, 5));
-  const std::pair<std::string, std::string> changes[] = {
-      {"\"plan\": 0", "\"plan\": 2"},           {"\"plan\": 0", "\"plan\": 1"},        {"\"plan\"", "\"plant\""},
-      {"\"cells\": 0", "\"cells\": 7"},         {"\"cells\": 0", "\"cells\": -1"},      {"\"identity\"", "\"identify\""},
-      {"\"seed\": \"3\"", "\"seed\": 3"},       {"\"squares\"", "\"values\""},          {"\"squares\"", "\"sums\""},
-      {"\"squares\"", "\"roots\""},             {"\"center\"", "\"corner\""},           {"{", "["},
-      {"{", "{{"},                              {"\"planes\"", "\"planes\": 1, \"x\""}, {"\"name\": \"color\"", "\"name\": 1"},
-      {"\"region\": [\n  5", "\"region\": [\n  65535"}, {"  9,\n", "  65530,\n"}, {"  9,\n", "  8,\n"}, {"  9,\n", "  0,\n"},
-      {"  9,\n", "  9.5,\n"},                   {"   16\n", "   15\n"},                 {"   0,\n", "   1,\n"},
-      {"   16\n", "   0\n"},                    {"   16\n", "   32\n"},                 {"   16\n", "   4294967296\n"}};
+  const std::pair<std::string, std::string> changes[] = {{"\"plan\": 0", "\"plan\": 2"},
+                                                         {"\"plan\": 0", "\"plan\": 1"},
+                                                         {"\"plan\"", "\"plant\""},
+                                                         {"\"cells\": 0", "\"cells\": 7"},
+                                                         {"\"cells\": 0", "\"cells\": -1"},
+                                                         {"\"identity\"", "\"identify\""},
+                                                         {"\"seed\": \"3\"", "\"seed\": 3"},
+                                                         {"\"squares\"", "\"values\""},
+                                                         {"\"squares\"", "\"sums\""},
+                                                         {"\"squares\"", "\"roots\""},
+                                                         {"\"center\"", "\"corner\""},
+                                                         {"{", "["},
+                                                         {"{", "{{"},
+                                                         {"\"planes\"", "\"planes\": 1, \"x\""},
+                                                         {"\"name\": \"color\"", "\"name\": 1"},
+                                                         {"\"region\": [\n  5", "\"region\": [\n  65535"},
+                                                         {"  9,\n", "  65530,\n"},
+                                                         {"  9,\n", "  8,\n"},
+                                                         {"  9,\n", "  0,\n"},
+                                                         {"  9,\n", "  9.5,\n"},
+                                                         {"   16\n", "   15\n"},
+                                                         {"   0,\n", "   1,\n"},
+                                                         {"   16\n", "   0\n"},
+                                                         {"   16\n", "   32\n"},
+                                                         {"   16\n", "   4294967296\n"}};
   for (const auto& [from, to] : changes) {
     const std::string problem = problemOf(withHeader(bytes, from, to));
     // Only the number of samples may be anything: nothing else in the file depends on it.
-    if (to == "   15\n") EXPECT_EQ(problem, "none");
-    else EXPECT_TRUE(problem.starts_with("part.qfilm: header: ") || problem.starts_with("part.qfilm: payload: ")) << from << " → " << to << ": " << problem;
+    if (to == "   15\n")
+      EXPECT_EQ(problem, "none");
+    else
+      EXPECT_TRUE(problem.starts_with("part.qfilm: header: ") || problem.starts_with("part.qfilm: payload: "))
+          << from << " → " << to << ": " << problem;
   }
   expectSame(decodeFilm(withHeader(bytes, "\"seed\"", "\"seed\""), "x"), sample(9, 5));
 }
@@ -199,7 +229,8 @@ TEST(FilmFile, RefusesPlanesWithOtherArrays) {
   const FilmFile whole = sample(9, 5);
   const FilmPlane &color = whole.film.planes[0], &depth = whole.film.planes[2], &ids = whole.film.planes[3];
   EXPECT_EQ(problem([](auto&) {}), "none");
-  EXPECT_EQ(problem([](auto& planes) { planes[0].sums.clear(); }), "part.qfilm: header: /planes/0/arrays are not those of pixel 'mean'");
+  EXPECT_EQ(problem([](auto& planes) { planes[0].sums.clear(); }),
+            "part.qfilm: header: /planes/0/arrays are not those of pixel 'mean'");
   const std::string expected[] = {"mean", "mean", "mean", "coverage", "center", "center", "coverage", "mean", "center"};
   int i = 0;
   const auto refused = [&](std::size_t plane, const auto& change) {
@@ -217,7 +248,9 @@ TEST(FilmFile, RefusesPlanesWithOtherArrays) {
   refused(3, [](FilmPlane& p) { p.pixel = OutputPixel::mean; });
   refused(0, [&](FilmPlane& p) { p = depth; });  // the first one is the picture
   EXPECT_THAT(problem([](auto& planes) { planes.clear(); }), HasSubstr("/planes is empty"));
-  EXPECT_EQ(problem([&](auto& planes) { planes[0].sums = {}, planes[0].squares = {}, planes[0].values = depth.values; }), "none");
+  EXPECT_EQ(
+      problem([&](auto& planes) { planes[0].sums = {}, planes[0].squares = {}, planes[0].values = depth.values; }),
+      "none");
 }
 
 // Numbers that no rendering comes to: it would go on for years, or divide by nothing.

@@ -40,7 +40,7 @@ TEST(SampleCounts, RefuseSamplesThatAreThere) {
 struct Maker {
   std::mt19937 random{3};
   Region region{2, 1, 5, 3};
-  std::vector<std::vector<vec4>> sums;       // by batch
+  std::vector<std::vector<vec4>> sums;  // by batch
   std::vector<std::vector<std::uint32_t>> ids;
 
   explicit Maker(int batches) {
@@ -50,7 +50,8 @@ struct Maker {
       std::vector<std::uint32_t> drawn;
       for (std::uint32_t p = 0; p < region.width * region.height; ++p) {
         pixels.emplace_back(normal(random), 10.0f * normal(random), 1e-5f * normal(random), 4.0f);
-        for (std::uint32_t s = 0; s < kBatchSamples; ++s) drawn.push_back(1 + static_cast<std::uint32_t>(random() % (p == 0 ? 40 : 5)));
+        for (std::uint32_t s = 0; s < kBatchSamples; ++s)
+          drawn.push_back(1 + static_cast<std::uint32_t>(random() % (p == 0 ? 40 : 5)));
       }
       sums.push_back(pixels);
       ids.push_back(drawn);
@@ -59,9 +60,19 @@ struct Maker {
 
   FilmState film(const std::vector<int>& batches) const {
     FilmState film{region, {}, {}, std::vector<uvec2>(15)};
-    film.planes = {{"color", program::OutputPixel::mean, std::vector<shared::FixedSum>(60), std::vector<shared::FixedSum>(60), {}, {}},
+    film.planes = {{"color",
+                    program::OutputPixel::mean,
+                    std::vector<shared::FixedSum>(60),
+                    std::vector<shared::FixedSum>(60),
+                    {},
+                    {}},
                    {"depth", program::OutputPixel::center, {}, {}, std::vector<vec4>(15), {}},
-                   {"ids", program::OutputPixel::coverage, {}, {}, {}, std::vector<shared::CoverageSlot>(15 * shared::kCoverageSlots)}};
+                   {"ids",
+                    program::OutputPixel::coverage,
+                    {},
+                    {},
+                    {},
+                    std::vector<shared::CoverageSlot>(15 * shared::kCoverageSlots)}};
     for (const int b : batches) add(film, static_cast<std::size_t>(b));
     return film;
   }
@@ -90,9 +101,7 @@ struct Maker {
 };
 
 // A film file holds all of it, without loss.
-bool sameBytes(const FilmState& a, const FilmState& b) {
-  return encodeFilm({{}, {}, a}) == encodeFilm({{}, {}, b});
-}
+bool sameBytes(const FilmState& a, const FilmState& b) { return encodeFilm({{}, {}, a}) == encodeFilm({{}, {}, b}); }
 
 TEST(FilmState, PartsJoinToTheWholeInAnyOrder) {
   const Maker maker(10);
@@ -132,7 +141,8 @@ TEST(FilmState, MeansAndVariancesAreThoseOfTheBatches) {
         for (const auto& batch : maker.sums) sum += static_cast<double>(batch[y * 5 + x][c]) / 4 / count;
         for (const auto& batch : maker.sums) spread += std::pow(static_cast<double>(batch[y * 5 + x][c]) / 4 - sum, 2);
         EXPECT_NEAR(mean.pixel<float>(x, y)[static_cast<std::size_t>(c)] / sum, 1.0, 1e-5);
-        EXPECT_NEAR(variance.pixel<float>(x, y)[static_cast<std::size_t>(c)] / (spread / (count - 1) / count), 1.0, 1e-4);
+        EXPECT_NEAR(variance.pixel<float>(x, y)[static_cast<std::size_t>(c)] / (spread / (count - 1) / count), 1.0,
+                    1e-4);
       }
 }
 

@@ -72,15 +72,17 @@ TEST(FilmZTest, PassesTheSamePicture) {
   Random random(1);
   const Region region{0, 0, 64, 40};
   const auto bright = [](std::uint32_t x, std::uint32_t y) { return 0.01 + x * y; };  // from pixel to pixel
-  const Draw draw = [&](std::uint32_t x, std::uint32_t y) { return std::exponential_distribution<double>(1.0 / bright(x, y))(random); };
+  const Draw draw = [&](std::uint32_t x, std::uint32_t y) {
+    return std::exponential_distribution<double>(1.0 / bright(x, y))(random);
+  };
   const ZTest test = zTest(film(region, 64, draw), film(region, 64, draw));
   EXPECT_FALSE(test.rejected);
   ASSERT_EQ(test.blocks.size(), 3u * 8 * 5);
   EXPECT_EQ(test.noisy, test.blocks.size());
   EXPECT_DOUBLE_EQ(test.blockLevel, sidak(0.005, 120));
   EXPECT_DOUBLE_EQ(test.imageLevel, sidak(0.005, 3));
-  EXPECT_NEAR(test.rms, 1.0, 0.2);       // 3 standard deviations of 120 values
-  EXPECT_LT(test.beyond[0], 0.12);       // 0.05 + 3.5 standard deviations
+  EXPECT_NEAR(test.rms, 1.0, 0.2);  // 3 standard deviations of 120 values
+  EXPECT_LT(test.beyond[0], 0.12);  // 0.05 + 3.5 standard deviations
   double mean = 0;
   for (std::uint32_t y = 0; y < 40; ++y)
     for (std::uint32_t x = 0; x < 64; ++x) mean += bright(x, y) / (64 * 40);
@@ -126,14 +128,18 @@ TEST(FilmZTest, IsWelchsTestByHand) {
 TEST(FilmZTest, RejectsAtItsLevel) {
   // Binomial of 200 and 0.05: 2 to 20 with 99.8 %.
   Random random(3);
-  const int count = rejections(200, 0.05, [&] { return std::pair(film(kSmall, 32, exponential(random)), film(kSmall, 32, exponential(random))); });
+  const int count = rejections(200, 0.05, [&] {
+    return std::pair(film(kSmall, 32, exponential(random)), film(kSmall, 32, exponential(random)));
+  });
   EXPECT_GE(count, 2);
   EXPECT_LE(count, 20);
 }
 
 TEST(FilmZTest, KeepsItsLevelWithOtherNumbersOfSamples) {
   Random random(4);
-  const int count = rejections(200, 0.05, [&] { return std::pair(film(kSmall, 42, exponential(random)), film(kSmall, 90, exponential(random))); });
+  const int count = rejections(200, 0.05, [&] {
+    return std::pair(film(kSmall, 42, exponential(random)), film(kSmall, 90, exponential(random)));
+  });
   EXPECT_LE(count, 20);
 }
 
@@ -157,7 +163,9 @@ TEST(FilmZTest, FindsAMeanThatIsWrong) {
   Random random(6);
   const double error = std::sqrt(2.0 / (256 * 64));
   const auto pair = [&](double factor) {
-    return [&random, factor] { return std::pair(film(kSmall, 64, exponential(random)), film(kSmall, 64, exponential(random, factor))); };
+    return [&random, factor] {
+      return std::pair(film(kSmall, 64, exponential(random)), film(kSmall, 64, exponential(random, factor)));
+    };
   };
   EXPECT_GE(rejections(40, 0.05, pair(1 + 3 * error)), 32);
   EXPECT_EQ(rejections(20, 0.01, pair(1 + 6 * error)), 20);
@@ -242,7 +250,8 @@ TEST(FilmZTest, AdaptiveFilmsHaveBatchesOfTheirOwn) {
       for (std::uint32_t x = 0; x < 40; ++x)
         for (std::size_t c = 0; c < 3; ++c)
           for (std::uint32_t b = 0; b < result.counts.cellBatches[result.cellOf(x, y)]; ++b)
-            addBatchSum(result, 4 * (std::size_t{y} * 40 + x) + c, static_cast<float>(std::gamma_distribution<double>(4.0)(random)), 4);
+            addBatchSum(result, 4 * (std::size_t{y} * 40 + x) + c,
+                        static_cast<float>(std::gamma_distribution<double>(4.0)(random)), 4);
     return result;
   };
   FilmState a = make();
@@ -251,7 +260,8 @@ TEST(FilmZTest, AdaptiveFilmsHaveBatchesOfTheirOwn) {
   EXPECT_FALSE(test.rejected);
   EXPECT_NEAR(test.image[0].mean[0], 1.0, 0.05);
   double variance = 0;  // of the four blocks of the first tile, three channels, two films
-  for (std::size_t i = 0; i < 12; ++i) variance += (std::pow(test.blocks[i].error[0], 2) + std::pow(test.blocks[i].error[1], 2)) / 24;
+  for (std::size_t i = 0; i < 12; ++i)
+    variance += (std::pow(test.blocks[i].error[0], 2) + std::pow(test.blocks[i].error[1], 2)) / 24;
   EXPECT_NEAR(variance, (32.0 / 32 + 32.0 / 160) / (64 * 64), 0.07 * variance);
   a.counts.cellBatches[2] = 7;
   EXPECT_THROW(zTest(a, b), UsageError);
@@ -273,7 +283,9 @@ TEST(FilmZTest, RefusesWhatItCannotTest) {
   };
   const FilmState right = film(kSmall, 32, exponential(random));
   EXPECT_EQ(problem(right, right), "");
-  EXPECT_NE(problem(right, film(kSmall, 28, exponential(random))).find("7 batches of 4 samples; 8 (32 samples) are needed"), std::string::npos);
+  EXPECT_NE(
+      problem(right, film(kSmall, 28, exponential(random))).find("7 batches of 4 samples; 8 (32 samples) are needed"),
+      std::string::npos);
   EXPECT_NE(problem(right, film({0, 0, 16, 15}, 32, exponential(random))).find("other parts"), std::string::npos);
   FilmState without = right;
   without.planes[0].squares.clear();

@@ -11,10 +11,13 @@
 namespace quintet::render {
 namespace {
 
-bool same(const shared::FixedSum& a, const shared::FixedSum& b) { return std::equal(std::begin(a.word), std::end(a.word), std::begin(b.word)); }
+bool same(const shared::FixedSum& a, const shared::FixedSum& b) {
+  return std::equal(std::begin(a.word), std::end(a.word), std::begin(b.word));
+}
 
 TEST(FixedSum, HoldsFloatsOfItsRangeExactly) {
-  for (const float value : {0.0f, 1.0f, -1.0f, 0.1f, -3.25e-7f, 1e12f, -4.6e18f, std::ldexp(1.0f, -64), std::ldexp(-0x1.FFFFFEp0f, -41)})
+  for (const float value :
+       {0.0f, 1.0f, -1.0f, 0.1f, -3.25e-7f, 1e12f, -4.6e18f, std::ldexp(1.0f, -64), std::ldexp(-0x1.FFFFFEp0f, -41)})
     EXPECT_EQ(fixedToDouble(fixedFromFloat(value)), static_cast<double>(value)) << value;
 }
 
@@ -54,7 +57,8 @@ TEST(FixedSum, BeyondItsRangeIsNotFinite) {
 TEST(FixedSum, DoesNotDependOnTheOrder) {
   std::mt19937 random(7);
   std::vector<float> terms;
-  for (int i = 0; i < 1000; ++i) terms.push_back(std::ldexp(static_cast<float>(random()) / 4e9f - 0.5f, static_cast<int>(random() % 80) - 50));
+  for (int i = 0; i < 1000; ++i)
+    terms.push_back(std::ldexp(static_cast<float>(random()) / 4e9f - 0.5f, static_cast<int>(random() % 80) - 50));
   const auto sum = [&] {
     shared::FixedSum total{};
     for (const float term : terms) total = addFixed(total, fixedFromFloat(term));

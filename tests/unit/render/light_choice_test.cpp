@@ -43,8 +43,11 @@ struct Triangle {
 Triangle worldTriangle(const scene::Scene& scene, std::size_t instance, std::size_t geometry, std::size_t i) {
   const scene::Instance& placed = scene.instances[instance];
   const scene::Geometry& g = scene.meshes[static_cast<std::size_t>(placed.mesh)].geometries[geometry];
-  Triangle result{{}, g.material == scene::kNone ? 0.0f : scene.materials[static_cast<std::size_t>(g.material)].emissive.y};
-  for (glm::length_t k = 0; k < 3; ++k) result.corners[static_cast<std::size_t>(k)] = vec3(placed.worldFromObject * vec4(g.positions[g.triangles[i][k]], 1.0f));
+  Triangle result{{},
+                  g.material == scene::kNone ? 0.0f : scene.materials[static_cast<std::size_t>(g.material)].emissive.y};
+  for (glm::length_t k = 0; k < 3; ++k)
+    result.corners[static_cast<std::size_t>(k)] =
+        vec3(placed.worldFromObject * vec4(g.positions[g.triangles[i][k]], 1.0f));
   return result;
 }
 
@@ -55,7 +58,8 @@ std::vector<test::Receiver> receiversOn(const scene::Scene& scene, std::size_t c
     const scene::Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.instances[i].mesh)];
     for (std::size_t g = 0; g < mesh.geometries.size(); ++g)
       for (std::size_t t = 0; t < mesh.geometries[g].triangles.size(); ++t)
-        if (const Triangle triangle = worldTriangle(scene, i, g, t); triangle.radiance == 0.0f) triangles.push_back(triangle);
+        if (const Triangle triangle = worldTriangle(scene, i, g, t); triangle.radiance == 0.0f)
+          triangles.push_back(triangle);
   }
   std::mt19937 random(3);
   std::vector<test::Receiver> result;
@@ -105,11 +109,12 @@ void compare(const char* name, const std::vector<std::byte>& file, double leastG
       irradiances.push_back(triangle.radiance * triangleIrradiance(seen, receiver.normal));
     }
     byPower.push_back(relativeVariance(irradiances, powers));
-    byTree.push_back(relativeVariance(irradiances, test::oracleProbabilities(table.nodes, table.lights.size(), receiver)));
+    byTree.push_back(
+        relativeVariance(irradiances, test::oracleProbabilities(table.nodes, table.lights.size(), receiver)));
   }
   const Spread power = spreadOf(byPower), tree = spreadOf(byTree);
-  std::printf("%s: %zu lights, relative variance by power %.2f (95 %% below %.2f), by the tree %.3f (%.3f)\n", name, table.lights.size(), power.mean, power.p95,
-              tree.mean, tree.p95);
+  std::printf("%s: %zu lights, relative variance by power %.2f (95 %% below %.2f), by the tree %.3f (%.3f)\n", name,
+              table.lights.size(), power.mean, power.p95, tree.mean, tree.p95);
   EXPECT_GT(power.mean / tree.mean, leastGain);
   EXPECT_LT(tree.mean, mostVariance);
 }

@@ -87,15 +87,19 @@ TEST(LightTable, PowerOfEachKind) {
   const double crossSection = kPiDouble * 0.5;  // R² of the unit square
   const double cosInner = std::cos(0.3), cosOuter = std::cos(0.8);
   const double spot = 3.0 * 2.0 * kPiDouble * ((1.0 - cosInner) + (cosInner - cosOuter) / 3.0);
-  const std::vector<double> powers{4.0 * kPiDouble * 0.5, spot, 1.5 * crossSection, 0.0,
-                                   kPiDouble * 0.5 * 2.0, kPiDouble * 0.5 * 2.0, 4.0 * kPiDouble * 0.7 * crossSection};
+  const std::vector<double> powers{4.0 * kPiDouble * 0.5,
+                                   spot,
+                                   1.5 * crossSection,
+                                   0.0,
+                                   kPiDouble * 0.5 * 2.0,
+                                   kPiDouble * 0.5 * 2.0,
+                                   4.0 * kPiDouble * 0.7 * crossSection};
   const double local = powers[0] + powers[1], directional = powers[2], triangles = powers[4] + powers[5];
   const double total = local + directional + triangles + powers[6];
   const auto share = [&](double power, double ofClass) { return power / ofClass * (0.1 + 0.6 * ofClass / total); };
-  const std::vector<double> wanted{share(powers[0], local),     share(powers[1], local),
-                                   share(powers[2], directional), 0.0,
-                                   share(powers[4], triangles), share(powers[5], triangles),
-                                   share(powers[6], powers[6])};
+  const std::vector<double> wanted{
+      share(powers[0], local),     share(powers[1], local),     share(powers[2], directional), 0.0,
+      share(powers[4], triangles), share(powers[5], triangles), share(powers[6], powers[6])};
   const std::vector<double> found = probabilities(table);
   for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(found[i], wanted[i], 1e-5) << i;
   EXPECT_NEAR(std::accumulate(found.begin(), found.end(), 0.0), 1.0, 1e-6);

@@ -17,7 +17,9 @@ using glm::dvec3;
 class Random {
  public:
   explicit Random(std::uint32_t seed) : engine_(seed) {}
-  float operator()(float low, float high) { return low + (high - low) * static_cast<float>(static_cast<double>(engine_()) * 0x1p-32); }
+  float operator()(float low, float high) {
+    return low + (high - low) * static_cast<float>(static_cast<double>(engine_()) * 0x1p-32);
+  }
   vec3 point(float size) { return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)}; }
   vec3 direction() {
     for (;;) {
@@ -79,7 +81,8 @@ void forAncestors(const LightTree& tree, const Body& body) {
       body(light, at);
       const std::uint32_t pair = tree.nodes[at].link & shared::kLightNodeIndex;
       const std::uint32_t second = tree.nodes[pair + 1].link;
-      const bool first = leaf != pair + 1 && (leaf == pair || (second & shared::kLightNodeLeaf) || leaf < (second & shared::kLightNodeIndex));
+      const bool first = leaf != pair + 1 && (leaf == pair || (second & shared::kLightNodeLeaf) ||
+                                              leaf < (second & shared::kLightNodeIndex));
       at = first ? pair : pair + 1;
     }
     EXPECT_EQ(tree.nodes[at].link & (shared::kLightNodeLeaf | shared::kLightNodeIndex), shared::kLightNodeLeaf | light);
@@ -96,7 +99,8 @@ TEST(LightTree, NodesBoundTheirLights) {
   forAncestors(tree, [&](std::size_t light, std::uint32_t at) {
     const shared::LightNode& node = tree.nodes[at];
     sums[at] += c.lights[light].bounds.intensity;
-    for (const vec3& p : c.points[light]) ASSERT_LE(glm::distance(dvec3(p), dvec3(node.center)), node.radius) << light << " in " << at;
+    for (const vec3& p : c.points[light])
+      ASSERT_LE(glm::distance(dvec3(p), dvec3(node.center)), node.radius) << light << " in " << at;
     const double spread = std::acos(std::max(-1.0f, glm::unpackSnorm2x16(node.cone).x));
     const double beyond = std::acos(glm::unpackSnorm2x16(node.cone).y);
     ASSERT_GE(beyond, c.lights[light].bounds.beyond - 1e-6);
@@ -108,7 +112,8 @@ TEST(LightTree, NodesBoundTheirLights) {
     const bool lines = (node.link & shared::kLightNodeBothSides) != 0;
     const double cosine = lines ? std::abs(glm::dot(normal, axis)) : glm::dot(normal, axis);
     const double angle = std::atan2(glm::length(glm::cross(normal, axis)), cosine) + c.lights[light].bounds.spread;
-    ASSERT_TRUE(angle <= spread + 1e-6 || spread > 3.14159) << light << " in " << at << ": " << angle << " " << spread << " lines " << lines;
+    ASSERT_TRUE(angle <= spread + 1e-6 || spread > 3.14159)
+        << light << " in " << at << ": " << angle << " " << spread << " lines " << lines;
     narrow += spread < 1.0 ? 1 : 0;
   });
   EXPECT_GT(narrow, 3000u);  // the cones are worth something
@@ -124,7 +129,10 @@ TEST(LightTree, IsTheSameEachTime) {
   EXPECT_EQ(a.leaves, b.leaves);
   std::size_t deepest = 0, sum = 0;
   std::vector<std::size_t> depth(c.lights.size(), 0);
-  forAncestors(a, [&](std::size_t light, std::uint32_t) { deepest = std::max(deepest, ++depth[light]); ++sum; });
+  forAncestors(a, [&](std::size_t light, std::uint32_t) {
+    deepest = std::max(deepest, ++depth[light]);
+    ++sum;
+  });
   EXPECT_LT(deepest, 64u);
   EXPECT_LT(sum / c.lights.size(), 24u);  // a full tree has 17.6
 }
@@ -163,7 +171,9 @@ TEST(LightTree, KindsPartFirst) {
   c.lights[20] = {directionalBounds(vec3(0, -1, 0), 1.0), 20, LightReach::directional};
   c.lights[30] = {directionalBounds(vec3(0, 1, 0), 1.0), 30, LightReach::directional};
   const LightTree tree = buildLightTree(c.lights, 100);
-  const auto flags = [&](std::uint32_t node) { return tree.nodes[node].link & (shared::kLightNodeInfinite | shared::kLightNodeShare); };
+  const auto flags = [&](std::uint32_t node) {
+    return tree.nodes[node].link & (shared::kLightNodeInfinite | shared::kLightNodeShare);
+  };
   const std::uint32_t pair = tree.nodes[0].link & shared::kLightNodeIndex;
   EXPECT_EQ(flags(pair), shared::kLightNodeInfinite | shared::kLightNodeShare);
   EXPECT_EQ(flags(pair + 1), 0u);
@@ -179,11 +189,14 @@ TEST(LightTree, KindsPartFirst) {
 // Solids lie within their balls, and a round one's is tight.
 TEST(LightBounds, Solids) {
   Random random(5);
-  for (const scene::PrimitiveType type : {scene::PrimitiveType::sphere, scene::PrimitiveType::box, scene::PrimitiveType::torus}) {
+  for (const scene::PrimitiveType type :
+       {scene::PrimitiveType::sphere, scene::PrimitiveType::box, scene::PrimitiveType::torus}) {
     scene::Primitive primitive;
     primitive.type = type;
-    primitive.objectFromPrimitive = glm::translate(glm::rotate(mat4(1.0f), 1.0f, random.direction()), random.point(3.0f));
-    const mat4 place = glm::scale(glm::translate(mat4(1.0f), random.point(10.0f)), type == scene::PrimitiveType::box ? vec3(1, 5, 0.2f) : vec3(2.0f));
+    primitive.objectFromPrimitive =
+        glm::translate(glm::rotate(mat4(1.0f), 1.0f, random.direction()), random.point(3.0f));
+    const mat4 place = glm::scale(glm::translate(mat4(1.0f), random.point(10.0f)),
+                                  type == scene::PrimitiveType::box ? vec3(1, 5, 0.2f) : vec3(2.0f));
     const LightBounds bounds = solidBounds(primitive, place, 1.0);
     const glm::dmat4 m = glm::dmat4(place) * glm::dmat4(primitive.objectFromPrimitive);
     for (int i = 0; i < 1000; ++i) {

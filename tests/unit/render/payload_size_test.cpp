@@ -51,27 +51,33 @@ scene::Material& addVeil(scene::Scene& scene) {
 const std::map<std::string, Change>& features() {
   static const std::map<std::string, Change> kFeatures{
       {"glass", [](scene::Scene& s, scene::Environment&) { (addPane(s).thickness = 1.0f, addTriangles(s)); }},
-      {"rough thin walls", [](scene::Scene& s, scene::Environment&) { (addPane(s).roughness = 0.5f, addTriangles(s)); }},
+      {"rough thin walls",
+       [](scene::Scene& s, scene::Environment&) { (addPane(s).roughness = 0.5f, addTriangles(s)); }},
       {"panes", [](scene::Scene& s, scene::Environment&) { (addPane(s), addTriangles(s)); }},
       {"veils", [](scene::Scene& s, scene::Environment&) { (addVeil(s), addTriangles(s)); }},
-      {"cut-outs", [](scene::Scene& s, scene::Environment&) { (addVeil(s).alphaMode = scene::AlphaMode::mask, addTriangles(s)); }},
+      {"cut-outs",
+       [](scene::Scene& s, scene::Environment&) { (addVeil(s).alphaMode = scene::AlphaMode::mask, addTriangles(s)); }},
       {"clearcoat", [](scene::Scene& s, scene::Environment&) { (addMaterial(s).clearcoat = 1.0f, addTriangles(s)); }},
-      {"triangle lights", [](scene::Scene& s, scene::Environment&) { (addMaterial(s).emissive = vec3(1.0f), addTriangles(s)); }},
+      {"triangle lights",
+       [](scene::Scene& s, scene::Environment&) { (addMaterial(s).emissive = vec3(1.0f), addTriangles(s)); }},
       {"lamps", [](scene::Scene& s, scene::Environment&) { s.lights.emplace_back(); }},
       {"sky", [](scene::Scene&, scene::Environment& e) { e.constant = vec3(1.0f); }},
       {"solids", [](scene::Scene& s, scene::Environment&) { addSolid(s); }},
       {"trees", [](scene::Scene& s, scene::Environment&) { addSolid(s).kind = scene::PrimitiveSetKind::csg; }},
       {"tori", [](scene::Scene& s, scene::Environment&) { addSolid(s, scene::PrimitiveType::torus); }},
-      {"solid lights", [](scene::Scene& s, scene::Environment&) { (addMaterial(s).emissive = vec3(1.0f), addSolid(s)); }},
+      {"solid lights",
+       [](scene::Scene& s, scene::Environment&) { (addMaterial(s).emissive = vec3(1.0f), addSolid(s)); }},
       {"solid panes", [](scene::Scene& s, scene::Environment&) { (addPane(s), addSolid(s)); }},
       {"solid veils", [](scene::Scene& s, scene::Environment&) { (addVeil(s), addSolid(s)); }},
-      {"solid cut-outs", [](scene::Scene& s, scene::Environment&) { (addVeil(s).alphaMode = scene::AlphaMode::mask, addSolid(s)); }},
+      {"solid cut-outs",
+       [](scene::Scene& s, scene::Environment&) { (addVeil(s).alphaMode = scene::AlphaMode::mask, addSolid(s)); }},
       {"vertex colours", [](scene::Scene& s, scene::Environment&) { addTriangles(s).colors.assign(3, vec4(1.0f)); }},
       {"textures", [](scene::Scene& s, scene::Environment&) {
          scene::Material& m = addMaterial(s);
-         for (scene::TextureUse* use : {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.emissiveTexture,
-                                        &m.transmissionTexture, &m.specularTexture, &m.specularColorTexture, &m.clearcoatTexture,
-                                        &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture})
+         for (scene::TextureUse* use :
+              {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.emissiveTexture,
+               &m.transmissionTexture, &m.specularTexture, &m.specularColorTexture, &m.clearcoatTexture,
+               &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture})
            use->texture = 0;
          addTriangles(s);
        }}};
@@ -136,7 +142,9 @@ TEST_F(PayloadSize, EveryFeatureIsHere) {
   EXPECT_GE(all.size(), 16u);
   EXPECT_EQ(absent(definesOf(allFeatures())), std::set<std::string>());
   for (const std::string& name : all)
-    EXPECT_TRUE(std::ranges::any_of(features(), [&](const auto& f) { return !absent(definesOf({f.second})).contains(name); })) << name;
+    EXPECT_TRUE(std::ranges::any_of(features(), [&](const auto& f) {
+      return !absent(definesOf({f.second})).contains(name);
+    })) << name;
   for (const auto& [name, change] : features()) EXPECT_NE(definesOf({change}), definesOf({})) << name;
 }
 
@@ -167,15 +175,19 @@ TEST_F(PayloadSize, IsThatOfTheShaders) {
   program::CompiledProgram compiled;
   for (const char* qualifier : {"rayPayloadEXT", "rayPayloadInEXT"}) {
     shader::Source source{.stage = shader::Stage::closestHit, .name = "large.rchit", .defines = {}, .virtualFiles = {}};
-    source.text = std::string("#version 460\n#extension GL_EXT_ray_tracing : require\nstruct Large { vec3 a; float b[13]; uvec2 c; };\n") +
-                  "layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;\nlayout(location = 0) " + qualifier +
+    source.text = std::string(
+                      "#version 460\n#extension GL_EXT_ray_tracing : require\nstruct Large { vec3 a; float b[13]; "
+                      "uvec2 c; };\n") +
+                  "layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;\nlayout(location = 0) " +
+                  qualifier +
                   " Large p;\nvoid main() { p.a = vec3(1.0); p.b[gl_PrimitiveID] = 2.0; p.c.y = 1u;\n"
                   "traceRayEXT(tlas, 0u, 0xFFu, 0u, 0u, 0u, p.a, 0.0, p.a, 1.0, 0); }\n";
     const shader::Result result = compiler_.compile(source);
     ASSERT_TRUE(result.ok()) << result.diagnostics.front().format();
     compiled.stages.push_back({source.name, source.stage, result.spirv});
   }
-  for (const program::PayloadSize& payload : program::payloadSizes(compiled)) EXPECT_EQ(payload.bytes, 72u) << payload.type;
+  for (const program::PayloadSize& payload : program::payloadSizes(compiled))
+    EXPECT_EQ(payload.bytes, 72u) << payload.type;
   EXPECT_EQ(program::payloadSizes(compiled).size(), 2u);
 }
 

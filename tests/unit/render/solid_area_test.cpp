@@ -11,7 +11,8 @@ namespace {
 using scene::PrimitiveType;
 constexpr double kPiDouble = glm::pi<double>();
 
-double area(PrimitiveType type, const mat4& objectFromPrimitive, const mat4& worldFromObject = mat4(1.0f), float parameter = 0.25f) {
+double area(PrimitiveType type, const mat4& objectFromPrimitive, const mat4& worldFromObject = mat4(1.0f),
+            float parameter = 0.25f) {
   scene::Primitive primitive;
   primitive.type = type;
   primitive.objectFromPrimitive = objectFromPrimitive;

@@ -18,13 +18,14 @@ constexpr ToneMap kAll[] = {ToneMap::linear, ToneMap::aces, ToneMap::agx, ToneMa
 void expectColor(ToneMap operation, const vec3& color, const vec3& expected) {
   const vec3 result = toneMap(operation, color);
   for (glm::length_t i = 0; i < 3; ++i)
-    EXPECT_NEAR(result[i], expected[i], 2e-5f) << toneMapNames()[static_cast<std::size_t>(operation)] << " of " << color.r
-                                               << ' ' << color.g << ' ' << color.b << ", channel " << i;
+    EXPECT_NEAR(result[i], expected[i], 2e-5f) << toneMapNames()[static_cast<std::size_t>(operation)] << " of "
+                                               << color.r << ' ' << color.g << ' ' << color.b << ", channel " << i;
 }
 
 // One row of linear premultiplied RGBA.
 io::Image row(const std::vector<vec4>& pixels) {
-  auto image = io::makeImage(static_cast<std::uint32_t>(pixels.size()), 1, 4, io::PixelType::f32, io::ColorEncoding::linear);
+  auto image =
+      io::makeImage(static_cast<std::uint32_t>(pixels.size()), 1, 4, io::PixelType::f32, io::ColorEncoding::linear);
   for (std::uint32_t x = 0; x < image.width; ++x)
     for (glm::length_t i = 0; i < 4; ++i) image.pixel<float>(x, 0)[i] = pixels[x][i];
   image.premultiplied = true;
@@ -108,14 +109,16 @@ TEST(ToneMap, GreysRiseAndStayInRange) {
 }
 
 TEST(ToDisplay, OpaqueGivesSrgbBytes) {
-  const auto result = toDisplay(row({{0, 0, 0, 1}, {0.18f, 0.5f, 1, 1}, {2, kNaN, -1, 1}}), ToneMap::linear, 0.0f, true);
+  const auto result =
+      toDisplay(row({{0, 0, 0, 1}, {0.18f, 0.5f, 1, 1}, {2, kNaN, -1, 1}}), ToneMap::linear, 0.0f, true);
   EXPECT_EQ(result.channels, 3u);
   EXPECT_EQ(result.encoding, io::ColorEncoding::sRgb);
   EXPECT_EQ(bytes(result), (std::vector<int>{0, 0, 0, 118, 188, 255, 255, 0, 0}));
 }
 
 TEST(ToDisplay, AlphaIsDividedOutBeforeTheCurve) {
-  const auto result = toDisplay(row({{0.09f, 0.25f, 0.5f, 0.5f}, {0, 0, 0, 0}, {1, 1, 1, 0}}), ToneMap::linear, 0.0f, false);
+  const auto result =
+      toDisplay(row({{0.09f, 0.25f, 0.5f, 0.5f}, {0, 0, 0, 0}, {1, 1, 1, 0}}), ToneMap::linear, 0.0f, false);
   EXPECT_EQ(result.channels, 4u);
   EXPECT_FALSE(result.premultiplied);
   EXPECT_EQ(bytes(result), (std::vector<int>{118, 188, 255, 128, 0, 0, 0, 0, 0, 0, 0, 0}));

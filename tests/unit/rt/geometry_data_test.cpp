@@ -68,7 +68,8 @@ TEST(GeometryData, GeometriesWithoutPrimitivesKeepTheirPlace) {
   Mesh broken(3);
   for (vec3& p : broken.positions) p.x = kNan;
   const Mesh none(0), good(5);
-  const BlasData data = prepareBlas({.geometries = {none.geometry(), broken.geometry(), good.geometry()}, .options = {}}, true);
+  const BlasData data =
+      prepareBlas({.geometries = {none.geometry(), broken.geometry(), good.geometry()}, .options = {}}, true);
   ASSERT_EQ(data.geometries.size(), 3u);
   EXPECT_EQ(data.geometries[0].count, 0u);
   EXPECT_EQ(data.geometries[1].count, 0u);
@@ -82,7 +83,8 @@ TEST(GeometryData, BoxesMustBeFiniteAndNotInverted) {
   boxes[2].min.y = 2.0f;
   boxes[3].max.z = kNan;
   boxes[4] = {vec3(3), vec3(3)};  // a point is allowed
-  const BlasData data = prepareBlas({.geometries = {{.kind = GeometryKind::boxes, .boxes = boxes}}, .options = {}}, false);
+  const BlasData data =
+      prepareBlas({.geometries = {{.kind = GeometryKind::boxes, .boxes = boxes}}, .options = {}}, false);
   EXPECT_EQ(data.inactiveCount, 3u);
   EXPECT_EQ(data.geometries[0].map, (std::vector<std::uint32_t>{0, 4, 5}));
   EXPECT_EQ(data.bounds.max, vec3(3));
@@ -107,7 +109,8 @@ TEST(InstanceData, MatricesAreRowMajor) {
   instance.flags = VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR;
   const VkAccelerationStructureInstanceKHR packed = packInstance(instance);
   for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 4; ++column) EXPECT_EQ(packed.transform.matrix[row][column], static_cast<float>(10 * row + column));
+    for (int column = 0; column < 4; ++column)
+      EXPECT_EQ(packed.transform.matrix[row][column], static_cast<float>(10 * row + column));
   EXPECT_EQ(packed.instanceCustomIndex, 0xFFFFFFu);
   EXPECT_EQ(packed.instanceShaderBindingTableRecordOffset, 0x123456u);
   EXPECT_EQ(packed.mask, 0x81u);

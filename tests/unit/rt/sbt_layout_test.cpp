@@ -87,7 +87,8 @@ TEST(SbtLayout, DataThatDoesNotFitIsRefused) {
 
 TEST(SbtFill, HandlesDataAndUnusedRecords) {
   const gpu::RayTracingLimits device = limits(16, 32, 64);
-  const SbtContents contents{record(2), {record(0)}, {record(1, 20), record(SbtRecord::kUnusedGroup), record(2, 4)}, {}};
+  const SbtContents contents{
+      record(2), {record(0)}, {record(1, 20), record(SbtRecord::kUnusedGroup), record(2, 4)}, {}};
   const SbtLayout layout = layoutSbt(contents, device);
   const std::vector<std::byte> table = fillSbt(contents, layout, handles(3, 16), device);
   ASSERT_EQ(table.size(), layout.size);
@@ -141,10 +142,12 @@ TEST(SbtLayout, RulesOfTheSpecificationHoldForRandomTables) {
   std::mt19937 random(1);
   const auto table = [&](std::size_t maxCount) {
     std::vector<SbtRecord> records(random() % (maxCount + 1));
-    for (SbtRecord& r : records) r = record(random() % 8, random() % 3 ? 0 : random() % 200, static_cast<std::uint8_t>(1 + random() % 200));
+    for (SbtRecord& r : records)
+      r = record(random() % 8, random() % 3 ? 0 : random() % 200, static_cast<std::uint8_t>(1 + random() % 200));
     return records;
   };
-  const gpu::RayTracingLimits devices[] = {limits(32, 32, 64), limits(16, 64, 64), limits(32, 8, 256), limits(8, 16, 16), limits(64, 64, 64)};
+  const gpu::RayTracingLimits devices[] = {limits(32, 32, 64), limits(16, 64, 64), limits(32, 8, 256),
+                                           limits(8, 16, 16), limits(64, 64, 64)};
   for (int round = 0; round < 500; ++round) {
     const gpu::RayTracingLimits& device = devices[random() % std::size(devices)];
     const SbtContents contents{record(random() % 8, random() % 100), table(4), table(20), table(5)};
@@ -153,10 +156,11 @@ TEST(SbtLayout, RulesOfTheSpecificationHoldForRandomTables) {
     ASSERT_EQ(bytes.size(), layout.size);
     EXPECT_EQ(layout.rayGeneration.size, layout.rayGeneration.stride);
     std::uint64_t end = 0;
-    const std::pair<const SbtRegion*, std::vector<SbtRecord>> tables[] = {{&layout.rayGeneration, {contents.rayGeneration}},
-                                                                        {&layout.miss, contents.miss},
-                                                                        {&layout.hit, contents.hit},
-                                                                        {&layout.callable, contents.callable}};
+    const std::pair<const SbtRegion*, std::vector<SbtRecord>> tables[] = {
+        {&layout.rayGeneration, {contents.rayGeneration}},
+        {&layout.miss, contents.miss},
+        {&layout.hit, contents.hit},
+        {&layout.callable, contents.callable}};
     for (const auto& [region, records] : tables) {
       EXPECT_EQ(region->size, region->stride * records.size());
       if (records.empty()) continue;

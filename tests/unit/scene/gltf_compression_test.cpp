@@ -1,11 +1,11 @@
 // KHR_draco_mesh_compression and EXT_meshopt_compression: streams made by the libraries' own encoders.
-#include <algorithm>
-#include <array>
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
+#include <algorithm>
+#include <array>
 
 #include <random>
 

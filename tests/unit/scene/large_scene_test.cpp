@@ -37,7 +37,8 @@ class OneCore {
 // One mesh large enough to be read with all cores at once, and small ones beside each other.
 TEST(LargeScenes, LoadTheSameOnOneCore) {
   const TempFolder folder;
-  demo::writeLargeScene(folder / "one.glb", {.triangles = 700'000, .textures = 1, .textureSize = 8, .normalMaps = true});
+  demo::writeLargeScene(folder / "one.glb",
+                        {.triangles = 700'000, .textures = 1, .textureSize = 8, .normalMaps = true});
   demo::writeLargeScene(folder / "many.glb", {.triangles = 100'000, .meshes = 20});
   for (const char* name : {"one.glb", "many.glb"}) {
     const scene::Scene parallel = scene::loadScene(folder / name);
@@ -101,7 +102,8 @@ TEST(LargeScenes, RepairsAreThoseOfAPlainLoop) {
   for (std::size_t i = 0; i < kCount; ++i) {
     const bool isBroken = std::ranges::count(broken, i) > 0;
     const std::size_t first = i / 3 * 3;
-    const vec3 face = glm::cross(before.positions[first + 1] - before.positions[first], before.positions[first + 2] - before.positions[first]);
+    const vec3 face = glm::cross(before.positions[first + 1] - before.positions[first],
+                                 before.positions[first + 2] - before.positions[first]);
     const vec3 expected = glm::normalize(isBroken ? face : before.normals[i]);
     if (!(glm::distance(g.normals[i], expected) < 1e-5f)) ++wrong;
     if (g.uvs[0][i] != (isBroken ? vec2(0.0f) : before.uvs[0][i])) ++wrong;

@@ -30,7 +30,8 @@ TEST(NamesTest, UnnamedOnesTakeTheMeshesName) {
 }
 
 TEST(NamesTest, RepeatedNamesAreNumbered) {
-  EXPECT_THAT(instanceNames(withInstances({{"a", 0}, {"a", 0}, {"b", 0}, {"a", 0}})), ElementsAre("a", "a#2", "b", "a#3"));
+  EXPECT_THAT(instanceNames(withInstances({{"a", 0}, {"a", 0}, {"b", 0}, {"a", 0}})),
+              ElementsAre("a", "a#2", "b", "a#3"));
   // A thing that has such a name already keeps it, before or after.
   EXPECT_THAT(instanceNames(withInstances({{"a", 0}, {"a", 0}, {"a#2", 0}, {"a#2", 0}})),
               ElementsAre("a", "a#3", "a#2", "a#2#2"));

@@ -104,7 +104,8 @@ TEST_F(ShaderCache, BrokenEntriesAreReplaced) {
   const std::filesystem::path file = entries()[0];
   const std::vector<std::byte> bytes = readFile(file);
   std::vector<std::vector<std::byte>> broken;
-  for (std::size_t size = 0; size < bytes.size(); size += 23) broken.emplace_back(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+  for (std::size_t size = 0; size < bytes.size(); size += 23)
+    broken.emplace_back(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
   for (std::size_t at = 0; at < bytes.size(); at += 11) {
     broken.push_back(bytes);
     broken.back()[at] ^= std::byte{0x40};

@@ -43,7 +43,8 @@ TEST(Compiler, ErrorNamesFileLineAndColumn) {
 }
 
 TEST(Compiler, ConsequencesOfAnErrorAreLeftOut) {
-  const Result result = Compiler({}).compile(computeSource("int f() { return nowhere.x + nowhere.y * 2.0; }\nint g() { return gone; }"));
+  const Result result =
+      Compiler({}).compile(computeSource("int f() { return nowhere.x + nowhere.y * 2.0; }\nint g() { return gone; }"));
   ASSERT_EQ(result.diagnostics.size(), 2u) << all(result);
   EXPECT_EQ(result.diagnostics[0].text, "'nowhere' : undeclared identifier");
   EXPECT_EQ(result.diagnostics[1].text, "'gone' : undeclared identifier");
@@ -105,7 +106,8 @@ TEST(Compiler, DefinesReachTheSource) {
 }
 
 TEST(Compiler, ImpossibleDefinesAreRefused) {
-  for (const auto& [name, value] : {std::pair<std::string, std::string>{"", "1"}, {"A B", "1"}, {"1A", ""}, {"A", "1\nint x;"}}) {
+  for (const auto& [name, value] :
+       {std::pair<std::string, std::string>{"", "1"}, {"A B", "1"}, {"1A", ""}, {"A", "1\nint x;"}}) {
     Source source = computeSource("");
     source.defines = {{name, value}};
     const Result result = Compiler({}).compile(source);

@@ -35,7 +35,8 @@ TEST(Include, FromAVirtualFileToTheDisk) {
   const TemporaryFolder folder;
   const auto outside = folder.write("outside.glsl", "int two() { return 2; }\n");
   const std::string inside = (folder.path() / "program" / "inside.glsl").string();
-  Source source = computeSource("#include \"inside.glsl\"", "b.x = two();", (folder.path() / "program" / "main.comp").string());
+  Source source =
+      computeSource("#include \"inside.glsl\"", "b.x = two();", (folder.path() / "program" / "main.comp").string());
   source.virtualFiles[inside] = "#include \"../outside.glsl\"\n";
   const Result result = Compiler({}).compile(source);
   EXPECT_TRUE(result.ok()) << all(result);
@@ -53,13 +54,15 @@ TEST(Include, QuotedFilesAreFoundBesideTheIncludingFile) {
   EXPECT_TRUE(result.ok()) << all(result);
   EXPECT_EQ(result.files, (std::vector<std::filesystem::path>{one, two}));
   const auto hashOf = [](std::string_view text) { return Hasher().add(text).finish(); };
-  EXPECT_EQ(result.fileHashes, (std::vector<Hash>{hashOf("#include \"two.glsl\"\n"), hashOf("int two() { return 2; }\n")}));
+  EXPECT_EQ(result.fileHashes,
+            (std::vector<Hash>{hashOf("#include \"two.glsl\"\n"), hashOf("int two() { return 2; }\n")}));
 }
 
 TEST(Include, ErrorInAFileOnDisk) {
   const TemporaryFolder folder;
   const auto one = folder.write("one.glsl", kBroken);
-  const Result result = Compiler({}).compile(computeSource("#include \"one.glsl\"", "", (folder.path() / "m.comp").string()));
+  const Result result =
+      Compiler({}).compile(computeSource("#include \"one.glsl\"", "", (folder.path() / "m.comp").string()));
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.diagnostics.at(0).file, one.string());
   EXPECT_EQ(result.diagnostics.at(0).line, 3);
@@ -122,8 +125,8 @@ TEST(Include, MissingFileTellsWhereItWasSearched) {
   const TemporaryFolder folder;
   CompilerOptions options;
   options.includeFolders = {folder.path()};
-  const Result result =
-      Compiler(options).compile(computeSource("#include \"no/such.glsl\"\nint f() { return fromThere; }", "", "/some/where/m.comp"));
+  const Result result = Compiler(options).compile(
+      computeSource("#include \"no/such.glsl\"\nint f() { return fromThere; }", "", "/some/where/m.comp"));
   EXPECT_EQ(result.diagnostics.size(), 2u) << all(result);
   const Diagnostic* error = firstOf(result, Severity::error);
   ASSERT_TRUE(error);
@@ -143,7 +146,8 @@ TEST(Include, CycleIsAnErrorThatShowsIt) {
   const Result result = Compiler({}).compile(source);
   const Diagnostic* error = firstOf(result, Severity::error);
   ASSERT_TRUE(error);
-  EXPECT_NE(error->text.find("<b.glsl> -> <a.glsl> -> <b.glsl> (add include guards)"), std::string::npos) << error->text;
+  EXPECT_NE(error->text.find("<b.glsl> -> <a.glsl> -> <b.glsl> (add include guards)"), std::string::npos)
+      << error->text;
 }
 
 TEST(Include, GuardsEndACycle) {
@@ -168,14 +172,16 @@ TEST(Include, NamesThatWouldBreakLineDirectives) {
   const TemporaryFolder folder;
   folder.write("one.glsl", kBroken);
   const std::string name = (folder.path() / "q\"uo\\te\nd.comp").string();
-  const Result result = Compiler({}).compile(computeSource("#include \"one.glsl\"\nint g() { return missing; }", "", name));
+  const Result result =
+      Compiler({}).compile(computeSource("#include \"one.glsl\"\nint g() { return missing; }", "", name));
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.diagnostics.at(0).line, 3);
   EXPECT_EQ(result.diagnostics.back().line, 5) << all(result);
 }
 
 TEST(Include, DirectivesAreFoundInEveryUsualForm) {
-  const auto found = findIncludes("#include <a>\n  #  include \"b\"\n//#include <c>\n#include d\n#include \"e\n#includ <f>\n#include<g>");
+  const auto found = findIncludes(
+      "#include <a>\n  #  include \"b\"\n//#include <c>\n#include d\n#include \"e\n#includ <f>\n#include<g>");
   std::vector<std::string> names;
   for (const IncludeDirective& i : found) names.emplace_back(i.name);
   EXPECT_EQ(names, (std::vector<std::string>{"a", "b", "c", "g"}));

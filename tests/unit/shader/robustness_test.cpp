@@ -17,12 +17,42 @@ void expectDiagnosed(const Compiler& compiler, const std::string& text) {
 TEST(Robustness, OddTexts) {
   const Compiler compiler({});
   const std::string odd[] = {
-      "", " ", "\n", "#", "#version", "#version 460", "#version 99999999999999999999", "#include", "#include \"\"",
-      "#include <>", "#include <.>", "#include \"/\"", "#line", "#line 4294967295 \"x\"\nerror", "#if", "#error", "\xff\xfe",
-      "\xef\xbb\xbf#version 460\nvoid main() {}", "void main() {", "/*", "//\\", "\\\n\\\n", "#define A A\nA", "#pragma once",
-      "#version 300 es\nvoid main() {}", "#version 110\nvoid main() {}", "\"", "'", "main", std::string(1 << 20, ' '),
-      std::string(1 << 20, 'x'), std::string(1 << 16, '('), std::string(1 << 16, '{'), std::string(1 << 16, '\n'),
-      "#define A(x) x x\nA(A(A(A(A(A(A(A(A(1)))))))))", std::string(5 << 20, 'x'),
+      "",
+      " ",
+      "\n",
+      "#",
+      "#version",
+      "#version 460",
+      "#version 99999999999999999999",
+      "#include",
+      "#include \"\"",
+      "#include <>",
+      "#include <.>",
+      "#include \"/\"",
+      "#line",
+      "#line 4294967295 \"x\"\nerror",
+      "#if",
+      "#error",
+      "\xff\xfe",
+      "\xef\xbb\xbf#version 460\nvoid main() {}",
+      "void main() {",
+      "/*",
+      "//\\",
+      "\\\n\\\n",
+      "#define A A\nA",
+      "#pragma once",
+      "#version 300 es\nvoid main() {}",
+      "#version 110\nvoid main() {}",
+      "\"",
+      "'",
+      "main",
+      std::string(1 << 20, ' '),
+      std::string(1 << 20, 'x'),
+      std::string(1 << 16, '('),
+      std::string(1 << 16, '{'),
+      std::string(1 << 16, '\n'),
+      "#define A(x) x x\nA(A(A(A(A(A(A(A(A(1)))))))))",
+      std::string(5 << 20, 'x'),
   };
   for (const std::string& text : odd) expectDiagnosed(compiler, text);
 }
@@ -51,7 +81,8 @@ TEST(Robustness, DeepExpressions) {
 TEST(Robustness, RandomBytesAndMutations) {
   const Compiler compiler({});
   std::mt19937 random(1);
-  const std::string good = computeText("#include <x>\n#define F(a) (a + 1)\nint f(int a) { return a > 3 ? F(a) : -a; }", "b.x = f(b.x);");
+  const std::string good =
+      computeText("#include <x>\n#define F(a) (a + 1)\nint f(int a) { return a > 3 ? F(a) : -a; }", "b.x = f(b.x);");
   for (int k = 0; k < 400; ++k) {
     std::string text = good;
     if (k % 4 == 0) {

@@ -44,7 +44,8 @@ inline std::string computeText(const std::string& head, const std::string& body 
          "\nvoid main() { " + body + " }\n";
 }
 
-inline Source computeSource(const std::string& head, const std::string& body = "b.x = 1;", const std::string& name = "test.comp") {
+inline Source computeSource(const std::string& head, const std::string& body = "b.x = 1;",
+                            const std::string& name = "test.comp") {
   Source source;
   source.text = computeText(head, body);
   source.name = name;
