@@ -59,6 +59,101 @@ TEST(SolidLamp, FillsTheSphereFromInside) {
   }
 }
 
+// A solid, seen from one place: one uniform direction against all its crossings, and one light sample of it.
+struct Case {
+  vec3 from;
+  std::uint32_t light;
+};
+struct Seen {
+  float density;    // over the chance of the direction: of hits at the crossings, as they are weighed, summed
+  float crossings;  // over that chance: how many the sampler can draw
+  float drawn;      // 1/pdf of the light sample
+};
+
+const std::string kSee = R"(
+  #include <quintet/lights/lights.glsl>
+  #include <quintet/procedural/crossings.glsl>
+  #include <quintet/sampling/pcg.glsl>
+  struct In { vec3 from; uint light; };
+  struct Out { float density; float crossings; float drawn; };
+  Out run(uint i, In value) {
+    Sampler rng = makeSampler(uvec2(5u), i, 3u);
+    const LightData light = LightArray(frame.lights).at[value.light];
+    const InstanceData instance = InstanceArray(frame.instances).at[light.instance];
+    const GeometryData geometry = GeometryArray(frame.geometries).at[instance.firstGeometry + light.geometry];
+    const PrimitiveData primitive = PrimitiveArray(geometry.primitives).at[light.primitive];
+    const mat3 m = worldFromPrimitive(instance, primitive);
+    const vec3 direction = sampleSphere(next2D(rng));
+    const vec3 origin = rowsTimesPoint(instance.objectFromWorld, value.from);
+    const vec3 along = rowsTimesVector(instance.objectFromWorld, direction);
+    const vec4 crossings = primitiveCrossings(primitive, origin, along);
+    const vec3 d = primitiveVector(primitive.primitiveFromObject, along);
+    Out sum = Out(0.0, 0.0, 0.0);
+    for (int k = 0; k < 4; ++k) {
+      if (crossings[k] <= 0.0 || crossings[k] >= kInfinity) continue;
+      const bool front = k % 2 == 0;
+      const vec3 p = primitivePoint(primitive.primitiveFromObject, origin) + crossings[k] * d;
+      const uint face = nearestFace(primitive.type, p, d, front);
+      HitPayload hit;
+      hit.instance = light.instance;
+      hit.geometry = light.geometry;
+      hit.primitive = light.primitive;
+      hit.barycentric = pointCoordinates(primitive.type, face, p);
+      hit.part = light.primitive | face << kPartFaceShift | (front ? kPartFront : 0u);
+      const vec3 n = areaVector(m, solidPoint(primitive.type, primitive.parameter, face, hit.barycentric).normal);
+      const float pdf = pdfLightPoint(hit, value.from, crossings[k], abs(dot(direction, normalize(n))));
+      sum.density += 4.0 * kPi * pdf;
+      sum.crossings += pdf > 0.0 ? 4.0 * kPi : 0.0;
+    }
+    LightSample s;
+    if (sampleSolidLight(light, value.from, next2D(rng), s)) sum.drawn = 1.0 / s.pdf;
+    return sum;
+  }
+)";
+
+// Every shape, also where no solid angle is known in closed form: what hits are weighed with integrates to 1, and so do
+// the light samples' own densities over the directions in which there is something, as often as there is.
+TEST(SolidLamp, DensitiesIntegrateToOne) {
+  scene::Scene source = emissiveSolid(PrimitiveType::sphere, mat4(1.0f));
+  source.meshes.clear();
+  source.instances.clear();
+  std::vector<Case> cases;
+  for (const PrimitiveType type : kTypes) {
+    for (const mat4& m : {stretched(), glm::scale(mat4(1.0f), vec3(0.7f))}) {
+      const mat4 place = glm::translate(mat4(1.0f), vec3(source.instances.size(), 0, 0));
+      const scene::Scene one = emissiveSolid(type, m, place);
+      source.meshes.push_back(one.meshes[0]);
+      source.instances.push_back(one.instances[0]);
+      source.instances.back().mesh = static_cast<int>(source.meshes.size()) - 1;
+      // Outside, inside (of a torus: in its tube), and close above.
+      const float torusX = type == PrimitiveType::torus ? 1.0f : 0.1f;
+      for (const vec3& p : {vec3(-2.0f, 0.8f, 1.5f), vec3(torusX, -0.1f, 0.05f), vec3(0.2f, 1.3f, -0.3f)})
+        cases.push_back({vec3(place * m * vec4(p, 1.0f)), static_cast<std::uint32_t>(source.instances.size()) - 1});
+    }
+  }
+  const LightScene scene(source, {});
+  for (Case& c : cases) {  // the second solid of the instance: the first is dark
+    const auto first = std::ranges::find(scene.table.lights, c.light, &shared::LightData::instance);
+    c.light = static_cast<std::uint32_t>(first - scene.table.lights.begin()) + 1;
+  }
+
+  const std::vector<Seen> seen = runCompute<Seen>(kSee, cases, kSamples * cases.size(), scene.options());
+  const auto tests = 2 * cases.size();
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    SCOPED_TRACE(testing::Message() << "type " << i / 6 << (i % 6 < 3 ? ", stretched, " : ", round, ") << "case "
+                                    << i % 3);
+    std::vector<Seen> own;
+    for (std::size_t k = i; k < seen.size(); k += cases.size()) own.push_back(seen[k]);
+    const Estimate density = estimate(own, [](const Seen& s) { return s.density; });
+    EXPECT_GT(pValue(density, 1.0), sidak(0.01, tests)) << density.mean;
+    const Estimate angle = estimate(own, [](const Seen& s) { return s.crossings; });
+    Estimate drawn = estimate(own, [](const Seen& s) { return s.drawn; });
+    drawn.error = std::hypot(drawn.error, angle.error);
+    EXPECT_GT(angle.mean, 0.1);
+    EXPECT_GT(pValue(drawn, angle.mean), sidak(0.01, tests)) << drawn.mean << " instead of " << angle.mean;
+  }
+}
+
 // From outside a box shows three faces, and hides as many: 2 Ω, by van Oosterom & Strackee (1983) for each triangle.
 TEST(SolidLamp, BoxesFromOutside) {
   const mat4 m = stretched();

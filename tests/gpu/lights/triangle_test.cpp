@@ -207,8 +207,7 @@ TEST(TriangleLight, DensityOfHitsIntegratesToItsProbability) {
         const mat3 m = inverse(mat3(d, p0 - rowsTimesPoint(instance.worldFromObject, t.p1),
                                     p0 - rowsTimesPoint(instance.worldFromObject, t.p2)));
         const vec3 x = m * p0;  // distance and barycentrics
-        if (x.x > 0.0 && x.y >= 0.0 && x.z >= 0.0 && x.y + x.z <= 1.0)
-{
+        if (x.x > 0.0 && x.y >= 0.0 && x.z >= 0.0 && x.y + x.z <= 1.0) {
           HitPayload hit;
           hit.t = x.x;
           hit.instance = k >> 1;
