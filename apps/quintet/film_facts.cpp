@@ -130,19 +130,18 @@ FilmFacts filmIdentity(const FilmSource& source, const RenderOptions& options) {
 }
 
 FilmFacts filmNotes(const program::Program& program, const RenderOptions& options, const RenderRecord& record) {
-  FilmFacts facts{
-      {"command", record.commandLine},
-      {"scene", record.scene},
-      {"environment", record.environment},
-      {"camera", record.camera},
-      {"parameters", record.parameters},
-      {"device", record.device},
-      {"driver", record.driver},
-      {"seconds", fmt::format("{:.6f}", record.renderSeconds)},
-      {kWantedError, options.error ? fmt::format("{}", *options.error) : ""},
-      {"exposure", fmt::format("{}", options.exposure)},
-      {"tone map", options.toneMap ? render::toneMapNames()[static_cast<std::size_t>(*options.toneMap)] : ""},
-      {"all outputs", options.allOutputs ? "yes" : "no"}};
+  FilmFacts facts{{"command", record.commandLine},
+                  {"scene", record.scene},
+                  {"environment", record.environment},
+                  {"camera", record.camera},
+                  {"parameters", record.parameters},
+                  {"device", record.device},
+                  {"driver", record.driver},
+                  {"seconds", fmt::format("{:.6f}", record.renderSeconds)},
+                  {kWantedError, options.error ? fmt::format("{}", *options.error) : ""},
+                  {kExposureFact, exposureText(options.exposure)},
+                  {kToneMapFact, toneMapText(options.toneMap)},
+                  {kAllOutputsFact, options.allOutputs ? "yes" : "no"}};
   for (const program::Output& output : program.outputs) {
     facts.emplace_back("kind of " + output.name, std::string(program::outputKindName(output.kind)));
     facts.emplace_back("colour in " + output.name, program::holdsColor(output) ? "yes" : "no");
@@ -150,9 +149,23 @@ FilmFacts filmNotes(const program::Program& program, const RenderOptions& option
   return facts;
 }
 
+std::string exposureText(float stops) { return fmt::format("{}", stops); }
+
+std::string toneMapText(const std::optional<render::ToneMap>& toneMap) {
+  return toneMap ? render::toneMapNames()[static_cast<std::size_t>(*toneMap)] : "";
+}
+
 std::string factText(const FilmFacts& facts, const std::string& name) {
   const std::string* found = render::findFact(facts, name);
   return found ? *found : std::string();
+}
+
+void setFact(FilmFacts& facts, const std::string& name, const std::string& value) {
+  const auto found = std::ranges::find(facts, name, &FilmFacts::value_type::first);
+  if (found == facts.end())
+    facts.emplace_back(name, value);
+  else
+    found->second = value;
 }
 
 void fillRecord(RenderRecord& record, const render::FilmFile& file) {

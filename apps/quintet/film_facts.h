@@ -15,6 +15,11 @@
 
 namespace quintet::app {
 
+// Notes on how the picture is shown.
+inline constexpr const char* kExposureFact = "exposure";  // stops
+inline constexpr const char* kToneMapFact = "tone map";   // empty: by the kind of the output
+inline constexpr const char* kAllOutputsFact = "all outputs";
+
 // Of a linked rendering.
 struct FilmSource {
   const program::Program& program;
@@ -33,8 +38,14 @@ render::FilmFacts filmIdentity(const FilmSource& source, const RenderOptions& op
 // Everything else. `record` is filled.
 render::FilmFacts filmNotes(const program::Program& program, const RenderOptions& options, const RenderRecord& record);
 
+std::string exposureText(float stops);
+std::string toneMapText(const std::optional<render::ToneMap>& toneMap);
+
 // Empty where there is none.
 std::string factText(const render::FilmFacts& facts, const std::string& name);
+
+// In place of what there is by this name.
+void setFact(render::FilmFacts& facts, const std::string& name, const std::string& value);
 
 // Fills in what filmNotes and filmIdentity told, and what the film counts.
 void fillRecord(RenderRecord& record, const render::FilmFile& file);

@@ -14,11 +14,6 @@ namespace {
 
 using render::FilmFile;
 
-float exposureOf(const FilmFile& file) {
-  const std::string text = factText(file.notes, "exposure");
-  return text.empty() ? 0.0f : static_cast<float>(parseNumber("exposure", text, -100.0, 100.0));
-}
-
 program::OutputKind kindOf(const FilmFile& file, const std::string& output) {
   const std::string name = factText(file.notes, "kind of " + output);
   for (int kind = 0; kind < static_cast<int>(program::OutputKind::display); ++kind)
@@ -30,7 +25,7 @@ program::OutputKind kindOf(const FilmFile& file, const std::string& output) {
 DisplayOptions displayOptions(const FilmFile& file, const MergeOptions& options, program::OutputKind kind) {
   DisplayOptions display;
   display.toneMap = kind == program::OutputKind::color ? render::ToneMap::neutral : render::ToneMap::linear;
-  if (const auto rendered = render::toneMapByName(factText(file.notes, "tone map"))) display.toneMap = *rendered;
+  if (const auto rendered = render::toneMapByName(factText(file.notes, kToneMapFact))) display.toneMap = *rendered;
   if (options.render.toneMap) display.toneMap = *options.render.toneMap;
   display.exposure = options.exposureGiven ? options.render.exposure : exposureOf(file);
   display.opaque = factText(file.identity, "transparent") != "yes";
@@ -69,6 +64,18 @@ std::vector<std::byte> exrFile(const FilmFile& file, std::size_t output, const M
 
 }  // namespace
 
+float exposureOf(const FilmFile& file) {
+  const std::string text = factText(file.notes, kExposureFact);
+  return text.empty() ? 0.0f : static_cast<float>(parseNumber("exposure", text, -100.0, 100.0));
+}
+
+void keepShown(FilmFile& file, const MergeOptions& options) {
+  const RenderOptions& render = options.render;
+  if (options.exposureGiven) setFact(file.notes, kExposureFact, exposureText(render.exposure));
+  if (render.toneMap) setFact(file.notes, kToneMapFact, toneMapText(render.toneMap));
+  if (render.allOutputs) setFact(file.notes, kAllOutputsFact, "yes");
+}
+
 void checkShown(const FilmFile& file) {
   exposureOf(file);
   readAovLayers(file.notes, file.film);
@@ -76,7 +83,7 @@ void checkShown(const FilmFile& file) {
 }
 
 bool showsAllOutputs(const FilmFile& file, const MergeOptions& options) {
-  return options.render.allOutputs || factText(file.notes, "all outputs") == "yes";
+  return options.render.allOutputs || factText(file.notes, kAllOutputsFact) == "yes";
 }
 
 void writePictures(const FilmFile& file, const MergeOptions& options, RenderRecord& record) {

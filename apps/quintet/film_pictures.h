@@ -14,6 +14,11 @@ void checkShown(const render::FilmFile& file);
 // A picture of each output, now or when it was rendered.
 bool showsAllOutputs(const render::FilmFile& file, const MergeOptions& options);
 
+float exposureOf(const render::FilmFile& file);  // stops, as rendered
+
+// Notes in the film what the options say of how it is shown, for the picture that is made of it later.
+void keepShown(render::FilmFile& file, const MergeOptions& options);
+
 // Writes the first output, or all; names them in `record`, which is filled otherwise.
 void writePictures(const render::FilmFile& file, const MergeOptions& options, RenderRecord& record);
 

@@ -29,14 +29,6 @@ namespace {
 using render::FilmFile;
 using render::SampleRange;
 
-void setNote(FilmFile& file, const std::string& name, const std::string& value) {
-  const auto found = std::ranges::find(file.notes, name, &render::FilmFacts::value_type::first);
-  if (found == file.notes.end())
-    file.notes.emplace_back(name, value);
-  else
-    found->second = value;
-}
-
 constexpr std::string_view kBetween = "; ";  // devices
 
 // "a; b": a, b
@@ -119,26 +111,26 @@ class Merger {
       if (joined == mine) continue;
       progress_.note(fmt::format("{}: {} {}, other parts: {}", last(), name, factText(part.notes, name),
                                  factText(whole_.notes, name)));
-      setNote(whole_, name, fmt::format("{}", fmt::join(joined, kBetween)));
+      setFact(whole_.notes, name, fmt::format("{}", fmt::join(joined, kBetween)));
     }
     joinShown(part);
     joinAovNotes(whole_.notes, part.notes, whole_.film);
     const auto seconds = [](const FilmFile& file) {
       return parseNumber("seconds", factText(file.notes, "seconds"), 0.0, 1e12);
     };
-    setNote(whole_, "seconds", fmt::format("{:.3f}", seconds(whole_) + seconds(part)));
+    setFact(whole_.notes, "seconds", fmt::format("{:.3f}", seconds(whole_) + seconds(part)));
   }
 
   // How the picture is shown is as for the part with the first samples, so that the order of the parts changes nothing.
   void joinShown(const FilmFile& part) {
     const bool isFirst = std::ranges::min(parts_, {}, firstSample).path == last();
-    for (const char* name : {"exposure", "tone map", "all outputs", "error wanted"}) {
+    for (const char* name : {kExposureFact, kToneMapFact, kAllOutputsFact, "error wanted"}) {
       const std::string mine = factText(whole_.notes, name), other = factText(part.notes, name);
       if (mine == other) continue;
       const auto shown = [](const std::string& text) { return text.empty() ? "not given" : text; };
       progress_.note(fmt::format("{}: {} {}, other parts: {}; {} is taken, as for the first samples", last(), name,
                                  shown(other), shown(mine), shown(isFirst ? other : mine)));
-      if (isFirst) setNote(whole_, name, other);
+      if (isFirst) setFact(whole_.notes, name, other);
     }
   }
 
@@ -211,9 +203,14 @@ int mergeCommand(Arguments arguments) {
   fillRecord(record, whole);
   record.error = render::estimateError(whole.film);
   tellMissing(whole, record.error, *options, progress);
+  const std::string unshown =
+      unshownText(options->render.output, options->render.toneMap || options->render.exposure != 0);
+  if (!unshown.empty()) progress.note(unshown);
   progress.stage("writing " + options->render.output.string());
   if (outputKind(options->render.output) == OutputKind::film) {
     if (!options->render.farm.force) refuseLoss(options->render.output, whole.identity, whole.film.counts);
+    keepShown(whole, *options);
+    record.exposure = exposureOf(whole);
     writeBytes(options->render.output, render::encodeFilm(whole));
     record.files.push_back(options->render.output.string());
   } else {

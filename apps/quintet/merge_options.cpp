@@ -24,11 +24,11 @@ std::optional<MergeOptions> parseMergeOptions(Arguments arguments) {
   app.add_option("PART", options.parts, "Films (.qfilm): parts, or checkpoints")->type_name("");
   app.add_option("-o,--output", raw.output, ".png, .exr, .hdr or .qfilm; - is PNG on standard output")
       ->type_name("FILE");
-  app.add_option("--exposure", raw.exposure, "Multiply by 2^STOPS (PNG only; default: as rendered)")
+  app.add_option("--exposure", raw.exposure, "Multiply by 2^STOPS (PNG; kept by a film; default: as rendered)")
       ->type_name("STOPS");
-  app.add_option("--tonemap", raw.toneMap, "linear, aces, agx or neutral (PNG only; default: as rendered)")
+  app.add_option("--tonemap", raw.toneMap, "linear, aces, agx or neutral (PNG; kept by a film; default: as rendered)")
       ->type_name("NAME");
-  app.add_flag("--all-outputs", render.allOutputs, "Write every output of the films: out.NAME.png");
+  app.add_flag("--all-outputs", render.allOutputs, "Write every output of the films: out.NAME.png (kept by a film)");
   app.add_flag("--partial", options.partial, "Make the picture even if samples are missing");
   app.add_flag("--force", render.farm.force, "Overwrite a film that would be lost");
   app.add_flag("--json", render.json, "At the end, one JSON object on standard output");

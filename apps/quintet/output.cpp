@@ -47,6 +47,12 @@ void writePicture(const std::filesystem::path& file, const io::Image& image, con
     writeBytes(file, io::encodeHdr(image));
 }
 
+std::string unshownText(const std::filesystem::path& file, bool given) {
+  const OutputKind kind = outputKind(file);
+  if (!given || kind == OutputKind::png || kind == OutputKind::film) return "";
+  return fmt::format("{}: linear radiance, --exposure and --tonemap do not apply", file.string());
+}
+
 void writeBytes(const std::filesystem::path& file, std::span<const std::byte> bytes) {
   if (file == "-") {
     writeFile(file, bytes);  // no temporary file: nothing to protect

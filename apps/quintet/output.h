@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "io/codec.h"
 #include "render/tone_map.h"
@@ -29,6 +30,10 @@ struct DisplayOptions {
 // PNG or Radiance HDR. `image`: linear premultiplied RGBA. PNG is tone mapped, Radiance HDR gets the linear values.
 void writePicture(const std::filesystem::path& file, const io::Image& image, const DisplayOptions& display,
                   const io::Metadata& metadata);
+
+// That --exposure and --tonemap, if given, change nothing in such a file; empty: they do. A film remembers them for its
+// picture.
+std::string unshownText(const std::filesystem::path& file, bool given);
 
 // Replaces `file` in one step, while no signal ends the process; "-" is the standard output.
 void writeBytes(const std::filesystem::path& file, std::span<const std::byte> bytes);

@@ -148,9 +148,8 @@ void Session::loadScene() {
 
 void Session::describe(const scene::Scene& scene, const ChosenEnvironment& environment) {
   const std::string& name = sceneSource_.name;
-  const OutputKind kind = outputKind(options_.output);  // a film remembers them for its picture
-  if (kind != OutputKind::png && kind != OutputKind::film && (options_.toneMap || options_.exposure != 0))
-    progress_.note(fmt::format("{}: linear radiance, --exposure and --tonemap do not apply", options_.output.string()));
+  const std::string unshown = unshownText(options_.output, options_.toneMap || options_.exposure != 0);
+  if (!unshown.empty()) progress_.note(unshown);
   const bool usesLight = program_.accumulation == program::Accumulation::film;  // lecture programs bring their own
   if (environment.isDefault && usesLight)
     progress_.note(
