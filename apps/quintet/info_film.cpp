@@ -38,6 +38,17 @@ std::string factsText(const render::FilmFacts& facts) {
   return text;
 }
 
+// Without what the program says of outputs that this film does not hold.
+render::FilmFacts ownNotes(const render::FilmFile& film) {
+  render::FilmFacts notes = film.notes;
+  for (const render::FilmPlane& plane : film.film.planes)
+    if (!plane.stored())
+      std::erase_if(notes, [&](const auto& note) {
+        return note.first == "kind of " + plane.name || note.first == "colour in " + plane.name;
+      });
+  return notes;
+}
+
 }  // namespace
 
 std::string filmInfo(const std::filesystem::path& file, std::span<const std::byte> bytes, bool json) {
@@ -60,7 +71,7 @@ std::string filmInfo(const std::filesystem::path& file, std::span<const std::byt
   const std::optional<std::uint64_t> planned = plannedSamples(film);
   return fmt::format("{}: film, {}x{}, {}{}, {}\n", plain(file.string()), region.width, region.height,
                      samplesText(film), planned ? fmt::format(" of {}", *planned) : "", bytesText(bytes.size())) +
-         factsText(film.identity) + factsText(film.notes);
+         factsText(film.identity) + factsText(ownNotes(film));
 }
 
 }  // namespace quintet::app

@@ -163,6 +163,8 @@ TEST_F(Adaptive, FilmsAreShownAndBecomePictures) {
   EXPECT_EQ(info.status, 0);
   EXPECT_NE(info.out.find("a.qfilm: film, 70x40, "), std::string::npos) << info.out;
   EXPECT_NE(info.out.find(" samples per pixel on average (16 to "), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("kind of color "), std::string::npos) << info.out;
+  EXPECT_EQ(info.out.find("kind of albedo "), std::string::npos) << "the film has none: " << info.out;
   const nlohmann::json json = nlohmann::json::parse(quintet({"info", "a.qfilm", "--json"}).out);
   EXPECT_NEAR(json["adaptive"]["average"], 28.0, 2.0);
   EXPECT_EQ(json["adaptive"]["average"], json["adaptive"]["planned"]);
