@@ -3,6 +3,7 @@
 #include <array>
 
 #include "aov_notes.h"
+#include "exr_camera.h"
 #include "exr_output.h"
 #include "film_facts.h"
 #include "output.h"
@@ -52,6 +53,7 @@ std::vector<std::byte> exrFile(const FilmFile& file, std::size_t output, const M
   const auto& [x, y, width, height] = record.region;
   const ExrFormat& format = options.render.exr;
   io::ExrPicture picture = exrPicture({x, y, width, height}, record.width, record.height, metadata(record));
+  addCamera(picture, readCameraNotes(file.notes));
   const bool isColor = factText(file.notes, "colour in " + file.film.planes[output].name) == "yes";
   addBeauty(picture, imageOf(file, output), record.transparent, format.colors, !isColor);
   if (options.render.allOutputs) return io::encodeExr(picture, format.options);
@@ -80,6 +82,7 @@ void checkShown(const FilmFile& file) {
   exposureOf(file);
   readAovLayers(file.notes, file.film);
   readCoverageNames(file.notes);
+  readCameraNotes(file.notes);
 }
 
 bool showsAllOutputs(const FilmFile& file, const MergeOptions& options) {

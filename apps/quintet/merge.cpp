@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "commands.h"
+#include "exr_camera.h"
 #include "film_facts.h"
 #include "film_guard.h"
 #include "film_pictures.h"
@@ -115,6 +116,7 @@ class Merger {
     }
     joinShown(part);
     joinAovNotes(whole_.notes, part.notes, whole_.film);
+    joinCameraNotes(whole_.notes, part.notes);
     const auto seconds = [](const FilmFile& file) {
       return parseNumber("seconds", factText(file.notes, "seconds"), 0.0, 1e12);
     };

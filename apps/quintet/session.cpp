@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "diagnostics_view.h"
+#include "exr_camera.h"
 #include "picture_names.h"
 #include "program_setup.h"
 #include "render/film_error.h"
@@ -294,6 +295,7 @@ void Session::write(const RenderOutcome& outcome, std::optional<std::uint32_t> f
 std::vector<std::byte> Session::exrFile(std::size_t output) const {
   io::ExrPicture picture =
       exrPicture(renderer_->film().region(), sceneInfo_.size.x, sceneInfo_.size.y, metadata(record_));
+  addCamera(picture, shownCamera(program_, sceneInfo_.camera, sceneInfo_.size));
   const bool exact = !program::holdsColor(program_.outputs[output]);
   addBeauty(picture, renderer_->image(output), options_.transparent, options_.exr.colors, exact);
   const AovSource source = aovSource(*renderer_);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "aov_notes.h"
+#include "exr_camera.h"
 #include "film_facts.h"
 #include "film_guard.h"
 #include "session.h"
@@ -23,6 +24,7 @@ render::FilmFile Session::film(const RenderOutcome& outcome) {
   render::FilmFacts notes = filmNotes(program_, options_, record_);
   notes.emplace_back("batch seconds", fmt::format("{:.6f}", outcome.batchSeconds));
   addAovNotes(notes, aovs_, sceneInfo_.names);
+  addCameraNotes(notes, shownCamera(program_, sceneInfo_.camera, sceneInfo_.size));
   return {identity(), std::move(notes), renderer_->saveFilm(), outcome.plan};
 }
 

@@ -1,7 +1,6 @@
-// scene::Camera to the device's form.
-#include <cmath>
+#include "render/camera.h"
 
-#include "render/renderer.h"
+#include <cmath>
 
 namespace quintet::render {
 
@@ -26,6 +25,23 @@ shared::CameraData makeCamera(const scene::Camera& camera, std::uint32_t width, 
   data.focusDistance = camera.focusDistance;
   data.orthographic = camera.orthographic ? 1 : 0;
   return data;
+}
+
+// In doubles: a camera far from the origin has large terms that cancel.
+CameraMatrices cameraMatrices(const scene::Camera& camera, std::uint32_t width, std::uint32_t height) {
+  const vec2 half = makeCamera(camera, width, height).halfSize;
+  glm::dmat4 cameraFromWorld = glm::inverse(glm::dmat4(camera.worldFromCamera));
+  for (std::size_t column = 0; column < 4; ++column) cameraFromWorld[column].z = -cameraFromWorld[column].z;
+  glm::dmat4 ndcFromCamera(1.0);  // columns
+  ndcFromCamera[0].x = 0.5 / static_cast<double>(half.x);
+  ndcFromCamera[1].y = -0.5 / static_cast<double>(half.y);
+  if (camera.orthographic) {
+    ndcFromCamera[3] = {0.5, 0.5, 0.0, 1.0};
+  } else {
+    ndcFromCamera[2] = {0.5, 0.5, 1.0, 1.0};
+    ndcFromCamera[3] = {0.0, 0.0, -1.0, 0.0};
+  }
+  return {mat4(cameraFromWorld), mat4(ndcFromCamera * cameraFromWorld)};
 }
 
 }  // namespace quintet::render

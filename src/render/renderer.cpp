@@ -14,6 +14,7 @@
 #include "gpu/timer.h"
 #include "io/codec.h"
 #include "program/check.h"
+#include "render/camera.h"
 #include "render/instrument.h"
 #include "render/parameter_textures.h"
 #include "render/tone_map.h"

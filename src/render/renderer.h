@@ -149,8 +149,5 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-// The device's camera for an image of this size.
-shared::CameraData makeCamera(const scene::Camera& camera, std::uint32_t width, std::uint32_t height);
-
 }  // namespace quintet::render
 #endif
