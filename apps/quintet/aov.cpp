@@ -48,6 +48,21 @@ std::vector<std::string> fileChannels(const AovLayer& layer) {
   return names;
 }
 
+// Readers of Cryptomatte take as layers of a type what is its name and digits: CryptoObject2's 00 would be a layer of
+// CryptoObject, too.
+void checkTypes(const std::vector<AovLayer>& layers) {
+  for (const AovLayer& a : layers)
+    for (const AovLayer& b : layers) {
+      if (&a == &b || a.source != AovLayer::Source::coverage || b.source != AovLayer::Source::coverage) continue;
+      const std::string type = cryptomatteType(a.name), other = cryptomatteType(b.name);
+      if (other.starts_with(type) && other.find_first_not_of("0123456789", type.size()) == other.npos)
+        throw UsageError(
+            fmt::format("--aov: the layers of '{}' would be taken for some of '{}': names of what is "
+                        "counted must differ in more than digits at the end",
+                        b.name, a.name));
+    }
+}
+
 io::Image sampleCounts(const AovSource& source) {
   const render::Region& region = source.region;
   io::Image image = io::makeImage(region.width, region.height, 1, io::PixelType::f32, io::ColorEncoding::linear);
@@ -103,6 +118,7 @@ void checkChannels(const std::vector<AovLayer>& layers) {
       if (const auto [at, isNew] = owners.emplace(channel, layer.name); !isNew)
         throw UsageError(fmt::format("--aov: '{}' and '{}' would both be the channel {} of the file", at->second,
                                      layer.name, channel));
+  checkTypes(layers);
 }
 
 std::string aovList(const program::Program& program) {

@@ -32,7 +32,8 @@ std::vector<AovLayer> chooseAovs(const program::Program& program, const std::vec
 // The same among these layers; `none` begins the error: "the program 'ao' has".
 std::vector<AovLayer> chooseAovs(const std::vector<AovLayer>& layers, const std::vector<std::string>& names,
                                  const std::string& none);
-// Throws UsageError where two of them would have channels of the same name in a file: `object` and `cryptomatte_object`.
+// Throws UsageError where two of them would have channels of the same name in a file (`object` and `cryptomatte_object`)
+// or where readers of Cryptomatte could not tell two of them apart (`object` and `object2`).
 void checkChannels(const std::vector<AovLayer>& layers);
 // One line each, for --aov list.
 std::string aovList(const program::Program& program);

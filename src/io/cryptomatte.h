@@ -1,4 +1,4 @@
-// Cryptomatte (Friedman and Jones, Psyop; specification 1.2.0): per pixel the things that are seen and how much of
+// Cryptomatte (Friedman and Jones, Psyop; specification 1.1.0 and later): per pixel the things that are seen and how much of
 // the pixel each covers, by ids that are hashes of names, so that a compositing program makes mattes from names.
 #ifndef QUINTET_IO_CRYPTOMATTE_H
 #define QUINTET_IO_CRYPTOMATTE_H

@@ -210,6 +210,10 @@ TEST_F(Aov, ChannelsOfTheSameNameAreRefused) {
       expectError(quintet(layers({"--aov", chosen, "-o", file})), 2,
                   {"--aov: 'cryptomatte_object' and 'object' would both be the channel CryptoObject00.R"});
   EXPECT_EQ(render({"--aov", "things,object"}).channels.size(), 3u + 2 * 12u);
+  // CryptoObject200 is read as a layer of CryptoObject.
+  write(folder_ / "layers/program.toml", std::string(kToml) + output("object2") + output("objects"));
+  expectError(quintet(layers({"--aov", "all"})), 2, {"--aov: the layers of 'object2'", "'cryptomatte_object'"});
+  EXPECT_EQ(render({"--aov", "objects,cryptomatte_object"}).channels.size(), 3u + 2 * 12u);
 }
 
 TEST_F(Aov, OneOptionalOutputAlone) {
