@@ -27,10 +27,5 @@ struct LightTree {
 // the rest: each gets its share of the draws. Each leaf holds one light.
 LightTree buildLightTree(std::vector<LightTreeInput> lights, std::size_t lightCount);
 
-// The node of these bounds; link is left for the caller. The cone is as wide as its coding asks for.
-shared::LightNode packLightNode(const LightBounds& bounds);
-// The axis as the device sees it.
-vec3 unpackLightAxis(std::uint32_t axis);
-
 }  // namespace quintet::render
 #endif

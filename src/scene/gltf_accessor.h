@@ -11,10 +11,6 @@
 
 namespace quintet::scene {
 
-// Every accessor, used or not: inside its view, stride not below the element size, sparse parts inside
-// theirs. Called once by readDocument; throws FileError.
-void checkAccessors(const Document&);
-
 // Integers become what a vertex attribute would be in a shader: normalised ones [0,1] or [-1,1], others
 // their value. `unit`: integers are normalised even where the file forgets to say so.
 enum class Integers { asStated, unit };

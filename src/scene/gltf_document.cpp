@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "scene/gltf_accessor.h"
+#include "scene/gltf_accessor_layout.h"
 #include "scene/gltf_extensions.h"
 #include "scene/gltf_meshopt.h"
 #include "scene/gltf_schema.h"

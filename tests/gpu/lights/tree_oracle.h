@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "quintet/shared/frame.h"
+#include "render/light_node.h"
 #include "render/light_tree.h"
 
 namespace quintet::test {

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/light_node.h"
 #include "render/light_table.h"
 
 namespace quintet::render {
