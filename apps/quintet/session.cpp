@@ -1,3 +1,5 @@
+// The session from the options to the linked program: what is checked, loaded, built and compiled. What becomes of it is
+// in session_pictures.cpp, session_film.cpp and session_record.cpp.
 #include "session.h"
 
 #include <algorithm>
@@ -11,11 +13,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "diagnostics_view.h"
-#include "exr_camera.h"
-#include "picture_names.h"
 #include "program_setup.h"
-#include "render/film_error.h"
-#include "scene/content_hash.h"
 #include "scene/names.h"
 #include "standard_error.h"
 #include "values.h"
@@ -236,144 +234,6 @@ std::vector<std::filesystem::path> Session::files() const {
   if (renderer_) files.insert(files.end(), renderer_->files().begin(), renderer_->files().end());
   std::erase_if(files, [](const auto& file) { return file.string().starts_with('<'); });  // in memory
   return files;
-}
-
-std::vector<std::size_t> Session::chosenOutputs() const {
-  const std::vector<std::string> names = program::outputNames(program_);
-  std::vector<std::size_t> chosen;
-  if (options_.allOutputs) {
-    for (std::size_t i = 0; i < names.size(); ++i)
-      if (program_.outputs[i].pixel != program::OutputPixel::coverage) chosen.push_back(i);
-  } else if (options_.outputName.empty()) {
-    chosen.push_back(0);
-  } else {
-    const auto found = std::ranges::find(names, options_.outputName);
-    if (found == names.end())
-      throw UsageError(fmt::format("--output: the program '{}' has no output '{}'{}; there are {} (-o names the file)",
-                                   program_.name, options_.outputName, suggestion(options_.outputName, names),
-                                   fmt::join(names, ", ")));
-    chosen.push_back(static_cast<std::size_t>(found - names.begin()));
-    if (program_.outputs[chosen.back()].pixel == program::OutputPixel::coverage)
-      throw UsageError(fmt::format("--output: '{}' counts ids and is no picture: use --aov {}", options_.outputName,
-                                   options_.outputName));
-  }
-  return chosen;
-}
-
-std::vector<std::string> Session::wantedOutputs() const {
-  std::vector<std::size_t> wanted = chosenOutputs();
-  for (const AovLayer& layer : aovs_) wanted.push_back(layer.output);
-  std::vector<std::string> names;
-  for (const std::size_t output : wanted)
-    if (program_.outputs[output].optional) names.push_back(program_.outputs[output].name);
-  return names;
-}
-
-void Session::write(const RenderOutcome& outcome, std::optional<std::uint32_t> frame) {
-  if (outputKind(options_.output) == OutputKind::film) return writeFilm(outcome);
-  progress_.stage("writing " + options_.output.string());
-  fillRecord(outcome);
-  record_.frame = frame ? frame : outcome.frame;
-  record_.files.clear();
-  for (const std::size_t output : chosenOutputs()) {
-    const std::string& name = program_.outputs[output].name;
-    const std::filesystem::path file = pictureName(options_.output, options_.allOutputs ? name : "", frame);
-    const DisplayOptions display{chooseToneMap(program_.outputs[output], options_), options_.exposure,
-                                 !options_.transparent};
-    const bool toned = outputKind(file) == OutputKind::png;
-    record_.toneMap = toned ? render::toneMapNames()[static_cast<std::size_t>(display.toneMap)] : "";
-    record_.outputName = name;
-    record_.files.push_back(file.string());
-    if (outputKind(file) == OutputKind::exr)
-      writeBytes(file, exrFile(output));
-    else
-      writePicture(file, renderer_->image(output), display, metadata(record_));
-  }
-  record_.totalSeconds = clock_.seconds();
-}
-
-std::vector<std::byte> Session::exrFile(std::size_t output) const {
-  io::ExrPicture picture =
-      exrPicture(renderer_->film().region(), sceneInfo_.size.x, sceneInfo_.size.y, metadata(record_));
-  addCamera(picture, shownCamera(program_, sceneInfo_.camera, sceneInfo_.size));
-  const bool exact = !program::holdsColor(program_.outputs[output]);
-  addBeauty(picture, renderer_->image(output), options_.transparent, options_.exr.colors, exact);
-  const AovSource source = aovSource(*renderer_);
-  for (const AovLayer& layer : aovs_) addAov(picture, layer, source, sceneInfo_.names, options_.exr.colors);
-  return io::encodeExr(picture, options_.exr.options);
-}
-
-void Session::report() {
-  if (record_.wantedError && !record_.interrupted && !record_.error.reaches(*record_.wantedError))
-    warnings_.add(unreachedText(record_));
-  if (record_.droppedSamples > 0)
-    warnings_.add(fmt::format("{} samples were not finite and left out", record_.droppedSamples));
-  record_.warnings = warnings_.take();
-  progress_.clear();
-  for (const std::string& warning : record_.warnings) printError("quintet: warning: {}\n", warning);
-  if (options_.json) writeFile("-", toJson(record_));
-  progress_.note(summary(record_));
-}
-
-void Session::fillRecord(const RenderOutcome& outcome) {
-  const render::RenderStatistics& statistics = renderer_->statistics();
-  const render::DeviceSceneStatistics& built = deviceScene_->statistics();
-  const render::RayCount rays = renderer_->rays();
-  const render::Region& region = renderer_->film().region();
-  record_.commandLine = options_.commandLine;
-  record_.scene = sceneSource_.file.empty() ? sceneSource_.name : sceneSource_.file.string();
-  record_.sceneHash = sceneInfo_.hash;
-  record_.camera = sceneInfo_.cameraDescription;
-  record_.environment = sceneInfo_.environment;
-  record_.program = program_.name;
-  record_.parameters = parameters_.describe();
-  record_.exposure = options_.exposure;
-  record_.transparent = options_.transparent;
-  record_.width = sceneInfo_.size.x;
-  record_.height = sceneInfo_.size.y;
-  record_.region = {region.x, region.y, region.width, region.height};
-  record_.seed = options_.seed;
-  record_.samples = options_.adaptive ? outcome.samples : statistics.samples;
-  record_.adaptive = options_.adaptive;
-  record_.wantedError = options_.error;
-  if (program_.accumulation == program::Accumulation::film) record_.error = renderer_->film().estimateError();
-  record_.accumulates = program_.accumulation == program::Accumulation::program;
-  record_.rays = rays.rays;
-  record_.droppedSamples = rays.droppedSamples;
-  record_.interrupted = outcome.interrupted;
-  record_.compileSeconds = statistics.compileSeconds;
-  record_.pipelineSeconds = statistics.pipelineSeconds;
-  record_.firstPixelSeconds = startedRendering_ + outcome.firstPixelSeconds;
-  record_.renderSeconds = outcome.seconds;
-  record_.deviceSeconds = statistics.deviceSeconds;
-  record_.geometryBytes = built.geometryBytes;
-  record_.textureBytes = built.textureBytes;
-  record_.accelerationBytes = built.accelerationBytes;
-  record_.filmBytes = renderer_->film().bytes();
-  fillLoading();
-}
-
-void Session::fillLoading() {
-  const render::DeviceSceneStatistics& built = deviceScene_->statistics();
-  record_.stages = {{"start", record_.startSeconds},       {"document", sceneInfo_.import.document},
-                    {"meshes", sceneInfo_.import.meshes},  {"images", sceneInfo_.import.images},
-                    {"hash", sceneInfo_.hashSeconds},      {"view", sceneInfo_.viewSeconds},
-                    {"lights", built.lightSeconds},        {"upload", built.uploadSeconds - built.lightSeconds},
-                    {"order", built.build.orderSeconds},   {"bottomLevel", built.build.buildSeconds},
-                    {"topLevel", built.topLevelSeconds},   {"compile", record_.compileSeconds},
-                    {"pipeline", record_.pipelineSeconds}, {"firstLaunch", renderer_->statistics().firstLaunchSeconds}};
-  MemoryUse& memory = record_.memory;
-  memory.peakHost = peakResidentBytes();
-  const gpu::DeviceMemory device = context_->memory();
-  memory.peakDevice = device.peak;
-  memory.devicePeak.clear();
-  for (std::size_t p = 0; p < gpu::kPurposeCount; ++p)
-    memory.devicePeak.emplace_back(gpu::purposeName(static_cast<gpu::Purpose>(p)), device.atPeak[p]);
-  memory.devicePeak.emplace_back("unused", device.unusedAtPeak());
-  memory.deviceIsHost = context_->info().quirks.software;
-  memory.geometry = built.geometryBytes;
-  memory.textures = built.textureBytes;
-  memory.acceleration = built.accelerationBytes + built.primitiveMapBytes;
 }
 
 }  // namespace quintet::app
