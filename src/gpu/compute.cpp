@@ -3,12 +3,14 @@
 #include <cassert>
 
 #include "gpu/error.h"
+#include "gpu/pipeline_store.h"
 
 namespace quintet::gpu {
 
-ComputePipeline::ComputePipeline(Context& context, const BindlessSet& set, std::span<const std::uint32_t> spirv,
-                                 VkPipelineCache cache, const std::string& name)
-    : context_(context), set_(set) {
+namespace {
+
+VkPipeline make(Context& context, const BindlessSet& set, std::span<const std::uint32_t> spirv, VkPipelineCache cache,
+                const std::string& name) {
   VkShaderModuleCreateInfo moduleInfo{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
   moduleInfo.codeSize = spirv.size_bytes();
   moduleInfo.pCode = spirv.data();
@@ -22,16 +24,31 @@ ComputePipeline::ComputePipeline(Context& context, const BindlessSet& set, std::
   info.stage.module = shader;
   info.stage.pName = "main";
   info.layout = set.pipelineLayout();
-  const VkResult result = context.vk().vkCreateComputePipelines(context.device(), cache, 1, &info, nullptr, &pipeline_);
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  const VkResult result = context.vk().vkCreateComputePipelines(context.device(), cache, 1, &info, nullptr, &pipeline);
   context.vk().vkDestroyShaderModule(context.device(), shader, nullptr);
   check(result, "create compute pipeline", name);
-  context.setName(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline_), name);
+  context.setName(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), name);
+  return pipeline;
+}
+
+}  // namespace
+
+ComputePipeline::ComputePipeline(Context& context, const BindlessSet& set, std::span<const std::uint32_t> spirv,
+                                 VkPipelineCache cache, const std::string& name)
+    : context_(context), set_(set), stored_(cache == VK_NULL_HANDLE) {
+  const auto makeIt = [&] { return make(context, set, spirv, cache, name); };
+  if (stored_) key_ = Hasher().add("compute").add(set.pushConstantBytes()).add(std::as_bytes(spirv)).finish();
+  pipeline_ = stored_ ? context.pipelines().acquire(key_, makeIt) : makeIt();
 }
 
 ComputePipeline::~ComputePipeline() {
-  context_.retire([&context = context_, pipeline = pipeline_] {
-    context.vk().vkDestroyPipeline(context.device(), pipeline, nullptr);
-  });
+  if (stored_)
+    context_.pipelines().release(context_, key_);
+  else
+    context_.retire([&context = context_, pipeline = pipeline_] {
+      context.vk().vkDestroyPipeline(context.device(), pipeline, nullptr);
+    });
 }
 
 void ComputePipeline::dispatch(Commands& commands, std::span<const std::byte> constants, std::uint32_t groupsX,

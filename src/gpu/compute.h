@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "base/hash.h"
 #include "gpu/commands.h"
 #include "gpu/descriptors.h"
 
@@ -11,7 +12,7 @@ namespace quintet::gpu {
 
 class ComputePipeline {
  public:
-  // `cache` may be null. Throws VulkanError.
+  // Of Context::pipelines(), unless `cache` is to hold what the driver makes of it. Throws VulkanError.
   ComputePipeline(Context& context, const BindlessSet& set, std::span<const std::uint32_t> spirv, VkPipelineCache cache,
                   const std::string& name);
   ~ComputePipeline();
@@ -26,6 +27,8 @@ class ComputePipeline {
   Context& context_;
   const BindlessSet& set_;
   VkPipeline pipeline_ = VK_NULL_HANDLE;
+  Hash key_;
+  bool stored_ = false;  // in Context::pipelines()
 };
 
 }  // namespace quintet::gpu

@@ -10,6 +10,7 @@
 #include "gpu/error.h"
 #include "gpu/instance.h"
 #include "gpu/memory.h"
+#include "gpu/pipeline_store.h"
 #include "gpu/submissions.h"
 #include "gpu/vma.h"
 
@@ -104,7 +105,8 @@ struct Context::Impl {
         found(findDevice(instance.handle(), options.device)),
         device(found),
         allocator(instance.handle(), found, device.handle),
-        submissions(device.vk, device.handle, device.queue, found.queueFamily) {}
+        submissions(device.vk, device.handle, device.queue, found.queueFamily),
+        pipelines(device.vk, device.handle) {}
 
   LogSink log;
   ValidationSink sink;
@@ -113,6 +115,7 @@ struct Context::Impl {
   Device device;
   Allocator allocator;
   Submissions submissions;
+  PipelineStore pipelines;
 };
 
 bool ContextOptions::validationRequested() {
@@ -149,6 +152,7 @@ std::uint32_t Context::queueFamily() const { return impl_->found.queueFamily; }
 const LogSink& Context::log() const { return impl_->log; }
 DeviceMemory Context::memory() const { return impl_->allocator.account.memory(); }
 MemoryAccount& Context::memoryAccount() { return impl_->allocator.account; }
+PipelineStore& Context::pipelines() { return impl_->pipelines; }
 
 std::uint32_t Context::validationMessageCount() const { return impl_->sink.count(); }
 std::vector<std::string> Context::validationMessages() const { return impl_->sink.messages(); }

@@ -20,6 +20,7 @@ VK_DEFINE_HANDLE(VmaAllocator)
 namespace quintet::gpu {
 
 class Commands;
+class PipelineStore;
 
 // Defects and habits of a driver that other layers work around (docs/design/quirks.md). Each has a
 // test that tells when the driver has mended it.
@@ -106,6 +107,7 @@ class Context {
   const LogSink& log() const;
   DeviceMemory memory() const;  // asked of the driver
   MemoryAccount& memoryAccount();
+  PipelineStore& pipelines();
 
   // Validation messages so far, known false alarms left out (context_validation.cpp lists them).
   std::uint32_t validationMessageCount() const;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "gpu/error.h"
+#include "gpu/pipeline_store.h"
 
 namespace quintet::rt {
 namespace {
@@ -122,6 +123,40 @@ void checkOptions(const gpu::RayTracingLimits& limits, const PipelineOptions& op
     throw UsageError(fmt::format("pipeline '{}' has no ray generation group", options.name));
 }
 
+VkPipeline make(gpu::Context& context, const gpu::BindlessSet& set, const PipelineOptions& options,
+                bool keepsStatistics, const gpu::PipelineCache* cache) {
+  const Modules modules(context, options.stages);
+  const Groups groups(options, modules);
+  VkRayTracingPipelineCreateInfoKHR info{VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR};
+  info.stageCount = static_cast<std::uint32_t>(groups.stages().size());
+  info.pStages = groups.stages().data();
+  info.groupCount = static_cast<std::uint32_t>(groups.groups().size());
+  info.pGroups = groups.groups().data();
+  info.maxPipelineRayRecursionDepth = options.maxRecursionDepth;
+  info.layout = set.pipelineLayout();
+  if (keepsStatistics) info.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  gpu::check(
+      context.vk().vkCreateRayTracingPipelinesKHR(
+          context.device(), VK_NULL_HANDLE, cache ? cache->handle() : VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+      "create the ray tracing pipeline", options.name);
+  context.setName(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(pipeline), options.name);
+  return pipeline;
+}
+
+// All that make() depends on; the layouts of all sets are compatible if their push constants are as large.
+Hash keyOf(const gpu::BindlessSet& set, const PipelineOptions& options, bool keepsStatistics) {
+  Hasher hasher;
+  hasher.add("ray tracing").add(set.pushConstantBytes()).add(options.maxRecursionDepth).add(keepsStatistics ? 1u : 0u);
+  hasher.add(options.stages.size());
+  for (const PipelineStage& stage : options.stages)
+    hasher.add(static_cast<std::uint64_t>(stage.stage)).add(stage.spirv.size()).add(std::as_bytes(stage.spirv));
+  for (const PipelineGroup& group : options.groups)
+    for (const int shader : {group.general, group.closestHit, group.anyHit, group.intersection})
+      hasher.add(static_cast<std::uint64_t>(shader + 1));
+  return hasher.finish();
+}
+
 }  // namespace
 
 Pipeline::Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const PipelineOptions& options,
@@ -132,37 +167,21 @@ Pipeline::Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const Pip
       keepsStatistics_(options.captureStatistics && context.info().pipelineStatistics) {
   const gpu::RayTracingLimits& limits = context.info().limits;
   checkOptions(limits, options);
-  const Modules modules(context, options.stages);
-  const Groups groups(options, modules);
-
-  VkRayTracingPipelineCreateInfoKHR info{VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR};
-  info.stageCount = static_cast<std::uint32_t>(groups.stages().size());
-  info.pStages = groups.stages().data();
-  info.groupCount = static_cast<std::uint32_t>(groups.groups().size());
-  info.pGroups = groups.groups().data();
-  info.maxPipelineRayRecursionDepth = options.maxRecursionDepth;
-  info.layout = set.pipelineLayout();
-  if (keepsStatistics_) info.flags |= VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR;
-  gpu::check(
-      context.vk().vkCreateRayTracingPipelinesKHR(
-          context.device(), VK_NULL_HANDLE, cache ? cache->handle() : VK_NULL_HANDLE, 1, &info, nullptr, &handle_),
-      "create the ray tracing pipeline", options.name);
+  key_ = keyOf(set, options, keepsStatistics_);
+  handle_ = context.pipelines().acquire(key_, [&] { return make(context, set, options, keepsStatistics_, cache); });
   try {
-    handles_.resize(std::size_t{limits.handleSize} * info.groupCount);
-    gpu::check(context.vk().vkGetRayTracingShaderGroupHandlesKHR(context.device(), handle_, 0, info.groupCount,
-                                                                 handles_.size(), handles_.data()),
-               "get the shader group handles", options.name);
-    context.setName(VK_OBJECT_TYPE_PIPELINE, reinterpret_cast<std::uint64_t>(handle_), options.name);
+    handles_.resize(std::size_t{limits.handleSize} * groups_.size());
+    gpu::check(
+        context.vk().vkGetRayTracingShaderGroupHandlesKHR(
+            context.device(), handle_, 0, static_cast<std::uint32_t>(groups_.size()), handles_.size(), handles_.data()),
+        "get the shader group handles", options.name);
   } catch (...) {
-    context.vk().vkDestroyPipeline(context.device(), handle_, nullptr);
+    context.pipelines().release(context, key_);
     throw;
   }
 }
 
-Pipeline::~Pipeline() {
-  context_.retire(
-      [&context = context_, handle = handle_] { context.vk().vkDestroyPipeline(context.device(), handle, nullptr); });
-}
+Pipeline::~Pipeline() { context_.pipelines().release(context_, key_); }
 
 ShaderBindingTable::ShaderBindingTable(gpu::Context& context, const Pipeline& pipeline, const SbtContents& contents,
                                        const std::string& name)

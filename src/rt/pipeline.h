@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/hash.h"
 #include "gpu/commands.h"
 #include "gpu/descriptors.h"
 #include "gpu/pipeline_cache.h"
@@ -60,7 +61,8 @@ class Pipeline {
  private:
   gpu::Context& context_;
   const gpu::BindlessSet& set_;
-  VkPipeline handle_ = VK_NULL_HANDLE;
+  VkPipeline handle_ = VK_NULL_HANDLE;  // of Context::pipelines()
+  Hash key_;
   std::vector<std::byte> handles_;
   std::vector<PipelineGroup> groups_;
   bool keepsStatistics_ = false;

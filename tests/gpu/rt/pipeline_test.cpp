@@ -1,4 +1,6 @@
 // Pipelines and launches: what is refused, and callable shaders, which no other test uses.
+#include <algorithm>
+
 #include "base/error.h"
 #include "rt_test_support.h"
 
@@ -82,6 +84,37 @@ TEST(RtPipeline, OversizedRecordIsRefused) {
   SbtContents contents = contentsOf({});
   contents.miss[0].data.resize(context().info().limits.maxRecordStride);
   EXPECT_THROW(ShaderBindingTable(context(), testPipeline(), contents, "fat"), UsageError);
+}
+
+// Each of these is part of the key by which a pipeline is found again (gpu::PipelineStore).
+TEST(RtPipeline, IsMadeOnceForAllThatItDependsOn) {
+  OneShader shader(shader::Stage::rayGeneration, "void main() { launch.hits.at[0].tag = 1; }");
+  const auto other = compileStage(shader::Stage::rayGeneration, "void main() { launch.hits.at[0].tag = 2; }");
+  shader.options.stages.push_back({shader::Stage::rayGeneration, other, "other"});
+  const Pipeline first(context(), testSet(), shader.options, nullptr);
+  PipelineOptions same = shader.options;
+  same.name = "same", same.stages[0].name = "same";
+  const Pipeline second(context(), testSet(), same, nullptr);
+  EXPECT_EQ(second.handle(), first.handle());
+  EXPECT_TRUE(std::ranges::equal(second.groupHandles(), first.groupHandles()));
+  std::vector<PipelineOptions> different(4, shader.options);
+  different[0].maxRecursionDepth = 2;
+  different[1].groups[0].general = 1;
+  different[2].groups.push_back({.general = 1});
+  std::swap(different[3].stages[0], different[3].stages[1]);
+  std::vector<VkPipeline> handles = {first.handle()};
+  std::vector<std::unique_ptr<Pipeline>> pipelines;
+  for (const PipelineOptions& options : different) {
+    pipelines.push_back(std::make_unique<Pipeline>(context(), testSet(), options, nullptr));
+    EXPECT_EQ(std::ranges::count(handles, pipelines.back()->handle()), 0) << handles.size();
+    handles.push_back(pipelines.back()->handle());
+  }
+  // Why the driver's cache does not know a pipeline that is made again: the same shaders have other handles.
+  if (context().info().quirks.software) {
+    EXPECT_FALSE(std::ranges::equal(pipelines[0]->groupHandles(), first.groupHandles())) << "mended";
+  }
+  const gpu::BindlessSet smaller(context(), 0, testSet().pushConstantBytes() / 2);
+  EXPECT_NE(Pipeline(context(), smaller, shader.options, nullptr).handle(), first.handle());
 }
 
 }  // namespace

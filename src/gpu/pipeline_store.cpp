@@ -1,0 +1,49 @@
+#include "gpu/pipeline_store.h"
+
+#include <cassert>
+#include <limits>
+
+#include "gpu/context.h"
+
+namespace quintet::gpu {
+
+PipelineStore::~PipelineStore() {
+  for (const auto& [key, entry] : entries_) vk_.vkDestroyPipeline(device_, entry.handle, nullptr);
+}
+
+VkPipeline PipelineStore::acquire(const Hash& key, const std::function<VkPipeline()>& make) {
+  const auto use = [this](Entry& entry) {
+    if (entry.users++ == 0) --unused_;
+    return entry.handle;
+  };
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto known = entries_.find(key); known != entries_.end()) return use(known->second);
+  }
+  const VkPipeline made = make();  // long: others need not wait
+  const std::lock_guard lock(mutex_);
+  const auto [known, isNew] = entries_.try_emplace(key, Entry{made, 1, 0});
+  if (isNew) return made;
+  vk_.vkDestroyPipeline(device_, made, nullptr);  // another thread was faster
+  return use(known->second);
+}
+
+void PipelineStore::release(Context& context, const Hash& key) {
+  const std::lock_guard lock(mutex_);
+  Entry& entry = entries_.at(key);
+  assert(entry.users > 0);
+  if (--entry.users > 0) return;
+  entry.released = ++releases_;
+  if (++unused_ <= kKept) return;
+  auto oldest = entries_.end();
+  std::uint64_t first = std::numeric_limits<std::uint64_t>::max();
+  for (auto e = entries_.begin(); e != entries_.end(); ++e)
+    if (e->second.users == 0 && e->second.released < first) oldest = e, first = e->second.released;
+  context.retire([&context, handle = oldest->second.handle] {
+    context.vk().vkDestroyPipeline(context.device(), handle, nullptr);
+  });
+  entries_.erase(oldest);
+  --unused_;
+}
+
+}  // namespace quintet::gpu
