@@ -10,61 +10,11 @@
 #include "program/link.h"
 #include "render/device_scene.h"
 #include "render/film.h"
+#include "render/program_shaders.h"
+#include "render/render_settings.h"
 #include "render/scene_features.h"
 
 namespace quintet::render {
-
-// A program's GLSL as SPIR-V, and for what it was compiled.
-struct CompiledShaders {
-  Defines defines;
-  program::CompiledProgram program;
-};
-
-struct RenderSettings {
-  std::uint32_t width = 1280;  // pixels of the whole image
-  std::uint32_t height = 720;
-  Region region;  // what is rendered; width 0: everything
-  scene::Camera camera;
-  std::uint32_t seed = 0;
-  // How the sampler spreads samples over neighbouring pixels, so it belongs to what says which picture this is, as the
-  // seed does. kIndependentPixels: pixels share nothing, as adaptive sampling needs it. 0: errors are blue noise, best after
-  // 2^k samples. N: best after N samples; the first of them are then not those of another N.
-  std::uint32_t plannedSamples = shared::kIndependentPixels;
-  bool transparent = false;  // background: alpha 0 instead of the environment
-  program::ParameterValues parameters{{}};
-  std::vector<std::string> outputs;                          // of the program's optional ones, those to make
-  std::vector<std::pair<std::string, std::string>> defines;  // for all shaders of the program
-  const gpu::Buffer* rayRecords =
-      nullptr;  // shared::RayKinds, then RayRecords, rayRecordCapacity per pixel: for benchmarks
-  std::uint32_t rayRecordCapacity = 0;
-  std::uint32_t frameCount = 0;  // frames of this run, for programs that accumulate (frameSize); 0: it has no end
-  bool instrument = false;       // checks at run time, slow: Renderer::notes
-  double launchSeconds = 0.25;   // a launch is cut so that it takes about this long
-  // A launch that takes longer: gpu::TimeoutError. 0: 60, or 600 on a CPU, whose first launch compiles.
-  double timeoutSeconds = 0;
-  // Launches that may wait on the device, so that it has no gaps between them. 0: 2, or 1 on a CPU and for programs that
-  // accumulate. What is chosen changes nothing in the image.
-  std::uint32_t launchesInFlight = 0;
-  // compileShaders() of the same program and settings: taken if the scene on the device wants the same definitions. Needed
-  // during construction only.
-  const CompiledShaders* compiled = nullptr;
-  bool profile = false;  // Renderer::launches; keeps what the driver tells of the pipeline (rt::pipelineStatistics)
-};
-
-// Compiles the program for a scene that is not on the device yet. `sceneDefines`: shaderDefines() of it. What is wrong with
-// the program stands in the result.
-CompiledShaders compileShaders(const program::Program& program, const shader::Compiler& compiler,
-                               const RenderSettings& settings, const Defines& sceneDefines);
-
-// A program whose shaders do not compile or do not fit together (program/check.h); what() is the first error's line.
-class ProgramError : public Error {
- public:
-  explicit ProgramError(std::vector<shader::Diagnostic> diagnostics);
-  const std::vector<shader::Diagnostic>& diagnostics() const { return diagnostics_; }
-
- private:
-  std::vector<shader::Diagnostic> diagnostics_;
-};
 
 struct RenderStatistics {
   double compileSeconds = 0;      // GLSL to SPIR-V
