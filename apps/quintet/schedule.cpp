@@ -32,7 +32,9 @@ std::vector<std::uint32_t> decide(const render::Region& region, const render::Sa
   // Whole batches do not come nearer to the samples.
   if (limits.samples && samples > static_cast<double>(*limits.samples) - 0.5 * render::kBatchSamples) return {};
   render::CellGoal goal{limits.error.value_or(0), most};
-  if (!limits.error && !limits.samples) goal.batches = 2.0 * samples / render::kBatchSamples;  // until the time is over
+  // Twice as many at most, until the time is over, or to an error: estimates of few samples say too little of what many need.
+  const double twice = 2.0 * samples / render::kBatchSamples;
+  if (!limits.samples || (limits.error && twice < most)) goal.batches = twice;
   std::vector<std::uint32_t> plan = render::planCells(estimate, goal);
   // The estimate thinks that this is enough, and it was not: a tenth more of everything.
   if (limits.error && !isLeft(plan, counts)) {

@@ -56,10 +56,10 @@ double studentTwoSided(double t, double freedom) {
 }
 
 double fisherQuantile(double probability, double a, double b) {
-  // The fraction converges after some sqrt(a + b) terms; beyond this many degrees of freedom nothing changes that matters
+  // The fraction converges after some sqrt(a + b) terms; beyond `kMany` degrees of freedom nothing changes that matters
   // here, as long as the other is small.
-  constexpr double kMany = 4000.0;
-  if (a > kMany && b > kMany) {
+  constexpr double kSome = 200.0, kMany = 4000.0;
+  if (a > kSome && b > kSome) {
     // Both cube roots are all but normal (E. Paulson, "An Approximate Normalization of the Analysis of Variance
     // Distribution", 1942): the root of (1 - v) x - (1 - u) = z sqrt(v x² + u) in x³ = F.
     const double u = 2.0 / (9.0 * a), v = 2.0 / (9.0 * b), z = normalQuantile(probability);
@@ -72,7 +72,7 @@ double fisherQuantile(double probability, double a, double b) {
   b = std::min(b, kMany);
   // I_y(a/2, b/2) with y = a x / (a x + b) rises with y.
   double low = 0.0, high = 1.0;
-  for (int i = 0; i < 200 && low < high; ++i) {
+  for (int i = 0; i < 64; ++i) {
     const double y = 0.5 * (low + high);
     (incompleteBeta(0.5 * a, 0.5 * b, y) < probability ? low : high) = y;
   }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/statistics.h"
@@ -16,9 +18,9 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kDarkness = 0.1;  // ε, of the mean luminance
 constexpr double kConfidence = 0.95;
 constexpr double kTilesBelow = 0.95;
+constexpr int kReach = 2;  // of the pixels that a pixel is compared with
 constexpr std::uint32_t kMostBatches = 1u << 22;
 
-// Of relative errors' squares.
 double percentile(std::vector<double> values, double part) {
   if (values.empty()) return 0.0;
   const auto at = static_cast<std::size_t>(part * static_cast<double>(values.size() - 1));
@@ -36,28 +38,38 @@ struct ErrorSums {
     doubt += cell.fourths / (static_cast<double>(cell.batches) - 1.0);
   }
   double image() const { return std::sqrt(squares / pixels); }
-  double upper() const {
-    // Satterthwaite 1946 for both sums of squares; black pictures have none.
-    const double room =
-        squares > 0 ? fisherQuantile(kConfidence, squares * squares / fourths, squares * squares / doubt) : 1.0;
-    return std::sqrt((room * squares + fourths) / pixels);
+  // The square of a bound over the square of the estimate: Satterthwaite 1946 for both sums of squares; black pictures
+  // have none.
+  double room() const {
+    return squares > 0 ? fisherQuantile(kConfidence, squares * squares / fourths, squares * squares / doubt) : 1.0;
   }
+  double upper() const { return std::sqrt(room() * squares / pixels); }
 };
+
+double roomOf(const CellError& cell) {
+  ErrorSums sums;
+  sums.add(cell);
+  return sums.room();
+}
 
 void conclude(ErrorEstimate& estimate) {
   ErrorSums sums;
-  std::vector<double> tiles;
-  for (std::size_t t = 0; t + 1 < estimate.cells.size(); t += 2) {
-    ErrorSums tile;
-    for (std::size_t c = t; c < t + 2; ++c) {
-      tile.add(estimate.cells[c]);
-      sums.add(estimate.cells[c]);
-    }
-    tiles.push_back(tile.squares / tile.pixels);
-  }
+  for (const CellError& cell : estimate.cells) sums.add(cell);
+  std::vector<double> tiles(estimate.cells.size() / 2);
+  parallelRanges(
+      tiles.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+          ErrorSums tile;
+          tile.add(estimate.cells[2 * t]);
+          tile.add(estimate.cells[2 * t + 1]);
+          tiles[t] = tile.upper();
+        }
+      },
+      64);
   estimate.image = sums.image();
   estimate.upper = sums.upper();
-  estimate.tiles = std::sqrt(percentile(tiles, kTilesBelow));
+  estimate.tiles = percentile(std::move(tiles), kTilesBelow);
 }
 
 }  // namespace
@@ -93,6 +105,50 @@ void ErrorEstimator::add(const FilmState& strip, std::uint32_t firstRow) {
   });
 }
 
+double ErrorEstimator::weightOf(std::uint32_t x, std::uint32_t y) const {
+  const auto width = static_cast<int>(shape_.region.width), height = static_cast<int>(shape_.region.height);
+  const auto at = [&](int px, int py) -> const Moments& {
+    return moments_[static_cast<std::size_t>(py) * shape_.region.width + static_cast<std::size_t>(px)];
+  };
+  const auto px = static_cast<int>(x), py = static_cast<int>(y);
+  const float luminance = std::abs(at(px, py).luminance), deviation = std::sqrt(at(px, py).variance);
+  float sum = 0;
+  int count = 0;
+  for (int dy = -kReach; dy <= kReach; ++dy)
+    for (int dx = -kReach + (dy & 1); dx <= kReach; dx += 2) {  // those of the same cells
+      const bool inside = px + dx >= 0 && px + dx < width && py + dy >= 0 && py + dy < height;
+      if (!inside || (dx == 0 && dy == 0)) continue;
+      const float other = std::abs(at(px + dx, py + dy).luminance);
+      if (!(other <= luminance + deviation)) continue;  // brighter, or not a number
+      sum += other;
+      ++count;
+    }
+  if (count == 0) return static_cast<double>(luminance);
+  const float around = sum / static_cast<float>(count);
+  return static_cast<double>(std::min(luminance, std::max(around, luminance - deviation)));
+}
+
+bool ErrorEstimator::addTileRow(std::uint32_t row, const std::array<double, 2>& darkness,
+                                std::vector<CellError>& cells) const {
+  bool known = true;
+  const std::uint32_t end = std::min((row + 1) * shared::kTileSize, shape_.region.height);
+  for (std::uint32_t y = row * shared::kTileSize; y < end; ++y)
+    for (std::uint32_t x = 0; x < shape_.region.width; ++x) {
+      const Moments& pixel = moments_[std::size_t{y} * shape_.region.width + x];
+      const std::uint32_t index = shape_.cellOf(x, y);
+      CellError& cell = cells[index];
+      ++cell.pixels;
+      if (std::isnan(pixel.luminance)) continue;  // a defect of the program that is told elsewhere
+      const double weight = weightOf(x, y);
+      const double square = static_cast<double>(pixel.variance) / (weight * weight + darkness[index & 1u]);
+      known = known && !std::isinf(square);
+      if (std::isinf(square)) continue;
+      cell.squares += square;
+      cell.fourths += square * square;
+    }
+  return known;
+}
+
 ErrorEstimate ErrorEstimator::estimate() const {
   const auto forPixels = [&](const auto& use) {
     for (std::uint32_t y = 0; y < shape_.region.height; ++y)
@@ -114,17 +170,10 @@ ErrorEstimate ErrorEstimator::estimate() const {
     const double mean = darkness[i] / std::max(1.0, count[i]);
     darkness[i] = std::max(kDarkness * kDarkness * mean * mean, std::numeric_limits<double>::min());
   }
-  bool unknown = false;
-  forPixels([&](const Moments& pixel, std::uint32_t index) {
-    const double luminance = static_cast<double>(pixel.luminance);
-    const double square = static_cast<double>(pixel.variance) / (luminance * luminance + darkness[index & 1u]);
-    CellError& cell = estimate.cells[index];
-    ++cell.pixels;
-    if (std::isnan(luminance)) return;  // a defect of the program that is told elsewhere
-    unknown = unknown || std::isinf(square);
-    if (std::isinf(square)) return;
-    cell.squares += square;
-    cell.fourths += square * square;
+  std::atomic<bool> unknown{false};
+  const std::size_t tileRows = tileCount(shape_.region) / tileColumns(shape_.region.width);
+  parallelFor(tileRows, [&](std::size_t row) {
+    if (!addTileRow(static_cast<std::uint32_t>(row), darkness, estimate.cells)) unknown = true;
   });
   conclude(estimate);
   if (unknown) estimate.image = estimate.upper = estimate.tiles = kInfinite;
@@ -142,13 +191,15 @@ namespace {
 // The numbers of the cells 2 · tile + `part`. All that decides comes from the other cells.
 void planPart(const std::vector<CellError>& cells, const CellGoal& goal, std::size_t part,
               std::vector<std::uint32_t>& limits) {
-  std::vector<double> spread(cells.size());  // relative variance of one batch, by the other cell
+  std::vector<double> spread(cells.size());      // relative variance of one batch, by the other cell
+  std::vector<double> rooms(cells.size(), 1.0);  // ErrorSums::room of the other cell
   double pixels = 0, mean = 0, widest = 1e-30;
   ErrorSums others;
   for (std::size_t c = part; c < cells.size(); c += 2) {
     const CellError& other = cells[c ^ 1u].pixels > 0 ? cells[c ^ 1u] : cells[c];
     if (other.pixels > 0) spread[c] = other.squares / other.pixels * static_cast<double>(other.batches);
     if (other.pixels > 0) others.add(other);
+    if (goal.error > 0 && other.pixels > 0) rooms[c] = roomOf(other);
     pixels += cells[c].pixels;
     mean += cells[c].pixels * spread[c];
   }
@@ -157,11 +208,11 @@ void planPart(const std::vector<CellError>& cells, const CellGoal& goal, std::si
   for (std::size_t c = part; c < cells.size(); c += 2)
     widest = std::max(widest, spread[c] = std::max(spread[c], 0.01 * mean / pixels));
   // The room that the confidence takes is taken off the goal.
-  const double ratio = others.image() / others.upper();
+  const double ratio = goal.error > 0 ? others.image() / others.upper() : 1.0;
   const double aim = goal.error * (std::isfinite(ratio) ? std::min(1.0, ratio) : 1.0);
   const auto limit = [&](std::size_t c, double factor) {
     double batches = factor * std::sqrt(spread[c]);
-    if (goal.error > 0) batches = std::max(batches, spread[c] / (4.0 * aim * aim));
+    if (goal.error > 0) batches = std::max(batches, rooms[c] * spread[c] / (4.0 * goal.error * goal.error));
     const double least = static_cast<double>(cells[c].batches);
     return static_cast<std::uint32_t>(
         std::clamp(std::ceil(batches), least, std::max(least, static_cast<double>(kMostBatches))));

@@ -3,10 +3,12 @@
 //
 // The error of a picture I with the expectation R is relative and a root mean square over pixels p and channels c:
 //   error² = mean_p [ 1/3 Σ_c (I_pc - R_pc)² / (Y_p² + ε²) ],   Y: luminance, ε = a tenth of the picture's mean luminance.
-// The estimate puts varianceImage (film_state.h) in the place of (I - R)² and I in that of R.
+// The estimate puts varianceImage (film_state.h) in the place of (I - R)², and in that of R what I and the pixels around it
+// say (ErrorEstimator::weightOf).
 #ifndef QUINTET_RENDER_FILM_ERROR_H
 #define QUINTET_RENDER_FILM_ERROR_H
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -28,8 +30,9 @@ struct ErrorEstimate {
   // 2e9 and more).
   double image = std::numeric_limits<double>::infinity();  // the estimate of `error`
   double upper = std::numeric_limits<double>::infinity();  // with 95 % confidence `error` is below this; what is stated
-  double tiles = std::numeric_limits<double>::infinity();  // 95 % of the tiles have a smaller error
-  std::vector<CellError> cells;                            // SampleCounts::cellBatches' order
+  double tiles =
+      std::numeric_limits<double>::infinity();  // 95 % of the tiles have a smaller error, with such confidence
+  std::vector<CellError> cells;                 // SampleCounts::cellBatches' order
 
   bool known() const { return upper < std::numeric_limits<double>::infinity(); }
   bool reaches(double target) const { return upper <= target && tiles <= 2.0 * target; }
@@ -37,12 +40,12 @@ struct ErrorEstimate {
 
 // Of the first output. `upper`: the square of the real error over its estimate follows Fisher's F for normally distributed
 // pixels, with so many degrees of freedom as pixels of equal variance would have (Satterthwaite 1946): a picture whose
-// noise is in a few pixels, or of few batches, is stated with the room it needs. To that it adds the fourth powers once, by
-// which the estimate falls short where noise is skewed: bright pixels have both the large variances and, I standing for
-// R, the small weights. (For a gamma distribution of relative variance r, E[v / I²] = r (1 - r + …).) Light that no sample
-// has found yet is in neither. The pixels of a tile are not independent where errors are blue noise, and the sum of their
-// squares scatters more. It does so most where samples are spread best, and there batches overstate the error by more than
-// that; StatedError.CoversWhatTheSamplerDraws has what scatters with nothing overstated (docs/measurements.md).
+// noise is in a few pixels, or of few batches, is stated with the room it needs. So is each tile; `tiles` is the percentile of
+// what is stated of them. Nothing is added for looking several times (--until-error): what the looks choose by, the spread of
+// the batches, scatters less than the error itself, and Fisher's F has room for both; docs/measurements.md has the coverage at
+// the stop. Light that no sample has found yet is in nothing. The pixels of a tile are not independent where errors are
+// blue noise, and the sum of their squares scatters more. It does so most where samples are spread best, and there batches
+// overstate the error by more than that; StatedError.CoversWhatTheSamplerDraws has what scatters with nothing overstated.
 ErrorEstimate estimateError(const FilmState& film);
 
 // The same for a film that is read in strips of whole tile rows (their counts: countsOfRows), each once, in any order: a film is large.
@@ -58,6 +61,14 @@ class ErrorEstimator {
     float variance = 0;   // of that mean, averaged over the channels
   };
   static Moments momentsOf(const FilmPlane& plane, std::size_t pixel, double samples, double batches);
+  // The luminance that a pixel's error is taken relative to. Its own, I, would understate it where noise is skewed: a pixel
+  // that has met a rare bright sample has the large variance v and the large I, those that have not have neither, and in
+  // expectation v / I² = r (1 + 3 r - 2 κ √r + …) with the mean's relative variance r and skewness κ. So it is what the pixels around it say, which know nothing of its luck: the mean of those of its parity
+  // within two rows and columns (cells must know nothing of each other) that are not brighter than I + √v, but not below I - √v
+  // (edges, texture), and I at most. For even noise that is too low by some 0.4 √v, which goes with v.
+  double weightOf(std::uint32_t x, std::uint32_t y) const;
+  // To the cells of a row of tiles, with ε² by parity; false: some variance is not known.
+  bool addTileRow(std::uint32_t row, const std::array<double, 2>& darkness, std::vector<CellError>& cells) const;
 
   FilmState shape_;  // region and counts
   bool known_ = true;
