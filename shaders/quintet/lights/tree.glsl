@@ -28,8 +28,9 @@ const float kLeastEmission = 0.01;
 const float kLightLikely = 0.75;
 // The distance is not taken as less than this part of the radius, squared: neither.
 const float kNearest = 0.125;
-// Least part of the draws for each side where lights of different kinds part (kLightNodeShare).
+// Least part of the draws for each side of a kLightNodeShare. In glass narrow lobes find panels themselves, not the sun.
 const float kLightShare = 0.15;
+const float kLightShareThrough = 0.5;
 
 // cos(max(0, a - b)) of two angles in [0, pi] by their cosines.
 float cosineOfDifference(float a, float b) {
@@ -91,7 +92,8 @@ uint lightFirstChance(uint pair, LightReceiver receiver) {
   if (second == 0.0) return first == 0.0 ? kLightDeadEnd : kLightSure;
   if (first == 0.0) return 0u;
   precise float chance = first / (first + second);
-  if (share) chance = kLightShare + (1.0 - 2.0 * kLightShare) * chance;
+  const float least = receiver.opaque ? kLightShare : kLightShareThrough;
+  if (share) chance = least + (1.0 - 2.0 * least) * chance;
   return uint(clamp(chance * 2147483648.0, 1.0, 2147483520.0));
 }
 

@@ -68,7 +68,8 @@ inline std::vector<double> oracleProbabilities(const std::vector<shared::LightNo
     const double a = oracleImportance(nodes[index], receiver), b = oracleImportance(nodes[index + 1], receiver);
     if (a == 0.0 && b == 0.0) continue;
     double chance = a / (a + b);
-    if (a > 0.0 && b > 0.0 && (nodes[index].link & shared::kLightNodeShare) != 0) chance = 0.15 + 0.7 * chance;
+    if (a > 0.0 && b > 0.0 && (nodes[index].link & shared::kLightNodeShare) != 0)
+      chance = receiver.opaque ? 0.15 + 0.7 * chance : 0.5;
     if (a > 0.0) open.push_back({index, visit.probability * chance});
     if (b > 0.0) open.push_back({index + 1, visit.probability * (1.0 - chance)});
   }

@@ -352,5 +352,19 @@ TEST(LightTreeDevice, NoKindStarves) {
   }
 }
 
+// At a transmitting surface the sun in the sky gets as many draws as the panels beside it, however bright they are: with 15 %,
+// the caustics of rough glass had twice the error.
+TEST(LightTreeDevice, SkyAndPanelsShareEvenlyBehindGlass) {
+  for (const float power : {1e-6f, 1.0f, 1e6f}) {
+    const LightScene scene(emissiveRectangle(vec3(power), glm::translate(mat4(1.0f), vec3(0, 0, 1))), sky());
+    const Receiver glass{vec3(0), vec3(0, 0, 1), 0}, wall{vec3(0), vec3(0, 0, 1), 1};
+    const std::vector<float> p = deviceProbabilities(scene, {glass, wall});
+    ASSERT_EQ(p.size(), 6u);  // twice: two triangles, sky
+    EXPECT_NEAR(p[0] + p[1], 0.5f, 1e-5f);
+    EXPECT_NEAR(p[2], 0.5f, 1e-5f);
+    if (power != 1.0f) EXPECT_NEAR(p[5], power < 1.0f ? 0.85f : 0.15f, 1e-4f);
+  }
+}
+
 }  // namespace
 }  // namespace quintet::test
