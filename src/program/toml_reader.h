@@ -3,14 +3,12 @@
 #ifndef QUINTET_PROGRAM_TOML_READER_H
 #define QUINTET_PROGRAM_TOML_READER_H
 
-#define TOML_EXCEPTIONS 1
-#define TOML_ENABLE_FORMATTERS 0
-#include <toml++/toml.h>
-
 #include <cstdint>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "base/toml.h"
 
 namespace quintet::program {
 

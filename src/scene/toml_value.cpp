@@ -4,11 +4,8 @@
 
 #include <algorithm>
 
-#define TOML_EXCEPTIONS 1
-#define TOML_ENABLE_FORMATTERS 0
-#include <toml++/toml.h>
-
 #include "base/error.h"
+#include "base/toml.h"
 #include "base/toml_depth.h"
 #include "scene/printable.h"
 

@@ -1,7 +1,6 @@
 // The corpus of mistakes (tests/check/mistakes): each program has exactly one mistake, which is reported at the line
 // that says so, and its repaired twin is silent. The device of these tests has every defect of docs/design/quirks.md.
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/toml.h"
 #include "check_test_support.h"
 #include "program/diagnostic_catalog.h"
 #include "program/lecture.h"
