@@ -362,7 +362,9 @@ TEST(LightTreeDevice, SkyAndPanelsShareEvenlyBehindGlass) {
     ASSERT_EQ(p.size(), 6u);  // twice: two triangles, sky
     EXPECT_NEAR(p[0] + p[1], 0.5f, 1e-5f);
     EXPECT_NEAR(p[2], 0.5f, 1e-5f);
-    if (power != 1.0f) EXPECT_NEAR(p[5], power < 1.0f ? 0.85f : 0.15f, 1e-4f);
+    if (power != 1.0f) {
+      EXPECT_NEAR(p[5], power < 1.0f ? 0.85f : 0.15f, 1e-4f);
+    }
   }
 }
 
