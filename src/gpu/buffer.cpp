@@ -127,16 +127,25 @@ void Buffer::download(std::span<std::byte> data, VkDeviceSize offset) const {
     std::memcpy(data.data(), mapped_ + offset, data.size());
     return;
   }
-  const Buffer staging(*context_, {.size = std::min<VkDeviceSize>(data.size(), kStagingBytes),
-                                   .memory = Memory::readback,
-                                   .name = "staging for a download",
-                                   .purpose = Purpose::staging});
+  download(data, offset, makeReadback(*context_, data.size()));
+}
+
+void Buffer::download(std::span<std::byte> data, VkDeviceSize offset, const Buffer& staging) const {
+  assert(handle_ && offset + data.size() <= size_ && staging.mapped_);
+  if (mapped_) return download(data, offset);
   for (std::size_t done = 0; done < data.size();) {
     const std::size_t step = std::min<std::size_t>(data.size() - done, staging.size());
     context_->submitAndWait([&](Commands& commands) { commands.copy(*this, staging, step, offset + done, 0); });
     staging.download(data.subspan(done, step));
     done += step;
   }
+}
+
+Buffer Buffer::makeReadback(Context& context, VkDeviceSize size) {
+  return Buffer(context, {.size = std::min(size, kStagingBytes),
+                          .memory = Memory::readback,
+                          .name = "staging for a download",
+                          .purpose = Purpose::staging});
 }
 
 Buffer makeBuffer(Context& context, std::span<const std::byte> data, VkBufferUsageFlags usage,

@@ -51,6 +51,9 @@ class Buffer {
   // Blocking copies through a staging buffer (or the mapping): for set-up and tests.
   void upload(std::span<const std::byte> data, VkDeviceSize offset = 0);
   void download(std::span<std::byte> data, VkDeviceSize offset = 0) const;
+  // Through the caller's staging (Memory::readback): making one takes longer than reading some megabytes.
+  void download(std::span<std::byte> data, VkDeviceSize offset, const Buffer& staging) const;
+  static Buffer makeReadback(Context& context, VkDeviceSize size);  // of a staging's usual size at most
 
   template <class T>
   void uploadAs(std::span<const T> data) {

@@ -166,17 +166,25 @@ void Film::addBatch(gpu::Commands& commands, SampleRange samples) {
   commands.barrier(gpu::Stage::all, gpu::Stage::all);
 }
 
-FilmPlane Film::plane(const Output& output) const { return plane(output, 0, region_.height, true); }
-
-FilmPlane Film::plane(const Output& output, std::uint32_t firstRow, std::uint32_t rows, bool squares) const {
+FilmPlane Film::plane(const Output& output) const {
   FilmPlane plane;
+  readRows(output, {0, region_.height, true}, nullptr, plane);
+  return plane;
+}
+
+void Film::readRows(const Output& output, const Rows& rows, const gpu::Buffer* staging, FilmPlane& plane) const {
   plane.name = output.name;
   plane.pixel = output.pixel;
-  if (!output.total) return plane;
+  if (!output.total) return;
   const auto read = [&](const gpu::Buffer& buffer, auto& values, std::size_t perPixel) {
     const std::size_t row = perPixel * region_.width;
-    values.resize(row * rows);
-    buffer.download(std::as_writable_bytes(std::span(values)), firstRow * row * sizeof(values[0]));
+    values.resize(row * rows.count);
+    const std::span<std::byte> bytes = std::as_writable_bytes(std::span(values));
+    const VkDeviceSize offset = rows.first * row * sizeof(values[0]);
+    if (staging)
+      buffer.download(bytes, offset, *staging);
+    else
+      buffer.download(bytes, offset);
   };
   if (accumulation_ == Accumulation::program || output.pixel == OutputPixel::center)
     read(output.total, plane.values, 1);
@@ -184,17 +192,21 @@ FilmPlane Film::plane(const Output& output, std::uint32_t firstRow, std::uint32_
     read(output.total, plane.sums, 4);
   else
     read(output.total, plane.coverage, shared::kCoverageSlots);
-  if (output.squares && squares) read(output.squares, plane.squares, 4);
-  return plane;
+  if (output.squares && rows.squares) read(output.squares, plane.squares, 4);
 }
 
 template <class Use>
 void Film::forStrips(const Output& output, bool squares, const Use& use) const {
+  // One staging and one strip for all of them: what costs is to make them, and the pages of fresh memory.
+  const std::uint64_t bytes = output.total ? output.total.size() / region_.height * shared::kTileSize : 1;
+  const gpu::Buffer staging = gpu::Buffer::makeReadback(context_, bytes);
+  FilmState strip;
+  strip.planes.resize(1);
   for (std::uint32_t first = 0; first < region_.height; first += shared::kTileSize) {
     const std::uint32_t rows = std::min(shared::kTileSize, region_.height - first);
-    FilmState strip{
-        {region_.x, region_.y + first, region_.width, rows}, countsOfRows(counts_, region_.width, first, rows), {}, {}};
-    strip.planes.push_back(plane(output, first, rows, squares));
+    strip.region = {region_.x, region_.y + first, region_.width, rows};
+    strip.counts = countsOfRows(counts_, region_.width, first, rows);
+    readRows(output, {first, rows, squares}, &staging, strip.planes[0]);
     use(strip, first);
   }
 }

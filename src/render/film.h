@@ -70,7 +70,12 @@ class Film {
   };
   void addBatch(gpu::Commands& commands, SampleRange samples);
   FilmPlane plane(const Output& output) const;
-  FilmPlane plane(const Output& output, std::uint32_t firstRow, std::uint32_t rows, bool squares) const;
+  struct Rows {
+    std::uint32_t first, count;
+    bool squares;  // too
+  };
+  // Into a plane that may be used again; `staging` (Buffer::makeReadback) may be null.
+  void readRows(const Output& output, const Rows& rows, const gpu::Buffer* staging, FilmPlane& plane) const;
   // Reads an output, with its squares or without, tile row by tile row: use(strip, its first row).
   template <class Use>
   void forStrips(const Output& output, bool squares, const Use& use) const;
