@@ -1,10 +1,9 @@
-# Every library that we do not write ourselves; docs/design/dependencies.md gives each one's reason.
-include(FindPackageHandleStandardArgs)
+# Finds all third-party libraries; docs/design/dependencies.md states the reason for each.
 find_package(PkgConfig REQUIRED)
 
 find_package(VulkanHeaders CONFIG QUIET)
 if(NOT TARGET Vulkan::Headers)
-  find_package(Vulkan REQUIRED)  # its headers only: volk loads the loader at run time
+  find_package(Vulkan REQUIRED)  # only the headers: volk loads the loader at runtime
 endif()
 find_package(fmt REQUIRED)
 find_package(glm REQUIRED)
@@ -20,7 +19,7 @@ pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(shaderc REQUIRED IMPORTED_TARGET shaderc)
 
-# Header-only packages without a usable CMake or pkg-config file of their own.
+# Header-only packages without a usable CMake or pkg-config file.
 function(quintet_header_library NAME HEADER)
   find_path(${NAME}_INCLUDE_DIR ${HEADER} REQUIRED)
   add_library(${NAME} INTERFACE IMPORTED GLOBAL)
@@ -30,7 +29,8 @@ quintet_header_library(quintet_volk volk.h)
 quintet_header_library(quintet_vma vk_mem_alloc.h)
 quintet_header_library(quintet_tinygltf tiny_gltf.h)
 quintet_header_library(quintet_tomlplusplus toml++/toml.h)
-# For code points such as U+00E9 it comes (3.3.0) to places that it calls unreachable; either way on gives the same answer.
+# For code points such as U+00E9 version 3.3.0 executes statements that it marks as unreachable. Both branches after
+# them give the same result.
 if(QUINTET_SANITIZE MATCHES undefined)
   target_compile_options(quintet_tomlplusplus INTERFACE -fno-sanitize=unreachable)
 endif()

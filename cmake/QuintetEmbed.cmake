@@ -1,6 +1,6 @@
-# quintet_embed(TARGET SYMBOL ROOT FILES…): adds a C++ source to TARGET that holds the files'
-# bytes, as the function   std::span<const quintet::EmbeddedFile> quintet::SYMBOL();
-# (base/embedded.h; declare it where it is used), with paths relative to ROOT, sorted.
+# quintet_embed(TARGET SYMBOL ROOT FILES…) adds a C++ source to TARGET with the bytes of the files. Its function
+#   std::span<const quintet::EmbeddedFile> quintet::SYMBOL();
+# returns them (base/embedded.h) with paths relative to ROOT, sorted by path. Declare the function where it is used.
 function(quintet_embed TARGET SYMBOL ROOT)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/${SYMBOL}.cpp)
   add_custom_command(

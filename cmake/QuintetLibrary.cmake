@@ -1,14 +1,16 @@
-# quintet_library(NAME [DEPENDS layer…] [LINK target…] [LINK_PUBLIC target…] [SYSTEM_INCLUDES dir…])
+# quintet_library(NAME [DEPENDS layer…] [LINK target…] [LINK_PUBLIC target…] [DEFINES definition…] [EXCLUDE folder…])
 #
-# Makes the static library quintet_NAME from the folder's *.cpp files. Other targets see its
-# headers as "NAME/file.h", and only if they link it: each library exports one include root
-# that contains nothing but a link to its own folder.
+# Creates the static library quintet_NAME from the sources of the current folder and its subfolders, except the folders
+# of EXCLUDE. Other targets include its headers as "NAME/file.h", but only if they link the library: each library
+# exports one include root that contains only a link to its folder.
 function(quintet_library NAME)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;LINK;LINK_PUBLIC;DEFINES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
-  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
+  cmake_parse_arguments(ARG "" "" "DEPENDS;LINK;LINK_PUBLIC;DEFINES;EXCLUDE" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
+  foreach(folder IN LISTS ARG_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
+  endforeach()
   set(target quintet_${NAME})
-  add_library(${target} STATIC ${sources} ${headers})
+  add_library(${target} STATIC ${sources})
   set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX)
 
   set(root ${CMAKE_BINARY_DIR}/include/${NAME})

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The error of two builds of quintet in equal time, on our own hard scenes (tests/bench/scenes.txt).
+# Compares the error of two builds of quintet at equal time, on the scenes of tests/bench/scenes.txt.
 #
-#   scripts/equal_time.sh A B [OPTION…]         A and B: quintet binaries; see quintet_equal_time --help
-#   scripts/equal_time.sh --pack FOLDER A B     everything that another machine needs; there: FOLDER/run [OPTION…]
+#   scripts/equal_time.sh A B [OPTION…]         A and B are quintet binaries; see quintet_equal_time --help
+#   scripts/equal_time.sh --pack FOLDER A B     pack everything for another machine; run FOLDER/run [OPTION…] there
 #
-# Environment: BUILD  folder of quintet_equal_time and quintet_make_scenes (build/release/bin)
+# Environment: BUILD  folder of quintet_equal_time and quintet_make_scenes (default: build/release/bin)
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -20,7 +20,7 @@ makeScenes() {  # FOLDER
     cp "$root/tests/bench/scenes.txt" "$1"
 }
 
-# Without its debugging information, and the libraries that a bare system lacks.
+# Copies a binary without debug information, and the libraries that a minimal system lacks.
 addBinary() {  # BINARY FOLDER NAME
     strip -o "$2/$3" "$1"
     ldd "$1" | awk '/=> \//{print $3}' | grep -vE '/(libc|libm|libpthread|libdl|librt|ld-linux)[.-]' |

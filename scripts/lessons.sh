@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Renders the picture of every lesson's page: scripts/lessons.sh QUINTET [OUTPUT_FOLDER] [NAME…]
-# Without names all of them. Frames, parameters and sizes below are those of the pictures in docs/images/lessons.
+# Renders the images of the lesson pages: scripts/lessons.sh QUINTET [OUTPUT_FOLDER] [NAME…]
+# Renders all lessons if no name is given. The frame counts, parameters and size are those of docs/images/lessons.
 set -euo pipefail
 
 quintet=${1:?usage: lessons.sh QUINTET [OUTPUT_FOLDER] [NAME…]}

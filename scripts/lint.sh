@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# The layout of C++ (clang-format 14: other versions lay out differently) and the scripts (shellcheck).
-#   lint.sh        checks with what is installed and says what is not
-#   lint.sh --cpp  checks only the C++
-#   lint.sh --fix  lays out the C++
-# Exit status: 1 if something is not as it should be, 77 if neither tool is installed.
-# The headers below shaders/ are read by C++ too, and laid out by hand, side by side with their GLSL.
+# Checks the format of C++ (clang-format 14, because other versions format differently) and the scripts (shellcheck).
+#   lint.sh        checks C++ and scripts with the installed tools
+#   lint.sh --cpp  checks only C++
+#   lint.sh --fix  formats C++, then checks the scripts
+# Exit status: 1 for problems, 77 if no tool is installed.
+# The headers below shaders/, which C++ and GLSL share, are formatted by hand.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 
@@ -13,10 +13,10 @@ check() {  # LABEL COMMAND…
   local label=$1
   shift
   if "$@"; then
-    echo "lint: $label fine"
+    echo "lint: $label: ok"
     [ "$status" = 1 ] || status=0
   else
-    echo "lint: $label not fine"
+    echo "lint: $label: problems found"
     status=1
   fi
 }
@@ -30,17 +30,17 @@ for name in clang-format-14 clang-format; do
 done
 mapfile -d '' sources < <(find apps examples include src tests \( -name '*.cpp' -o -name '*.h' \) -print0)
 if [ -z "$clang_format" ]; then
-  echo "lint: no clang-format 14 here, C++ not checked"
+  echo "lint: C++ not checked, clang-format 14 is not installed"
 elif [ "${1-}" = --fix ]; then
-  check "C++ is now" "$clang_format" -i "${sources[@]}"
+  check "C++ formatted" "$clang_format" -i "${sources[@]}"
 else
-  check "C++ is" "$clang_format" --dry-run -Werror "${sources[@]}"
+  check "C++ format" "$clang_format" --dry-run -Werror "${sources[@]}"
 fi
 
 [ "${1-}" = --cpp ] && exit "$status"
 if command -v shellcheck >/dev/null; then
-  check "scripts are" shellcheck -x scripts/*.sh tests/setup/*.sh tests/mutation/run tests/mutation/*.sh tests/bench/*.sh .ci/run
+  check "scripts" shellcheck -x scripts/*.sh tests/setup/*.sh tests/mutation/run tests/mutation/*.sh tests/bench/*.sh .ci/run
 else
-  echo "lint: no shellcheck here, scripts not checked"
+  echo "lint: scripts not checked, shellcheck is not installed"
 fi
 exit "$status"

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Installs with apt what Quintet needs to build and run: those packages of scripts/lib/packages.txt that are missing
-# or too old. Says what it will do before it does it; asks nothing; is quick where nothing is missing.
+# Installs with apt the packages of scripts/lib/packages.txt that are missing or too old. Prints the steps before it
+# runs them, asks no questions, and returns quickly if nothing is missing.
 #
-#     scripts/setup.sh           do it
-#     scripts/setup.sh --plan    print what it would do, and change nothing (exit status 1: it could not be done)
+#     scripts/setup.sh           install
+#     scripts/setup.sh --plan    print the steps and change nothing (exit status 1: a package cannot be installed)
 #
 # Environment:
-#     QUINTET_SETUP=skip         do nothing: the packages come from somewhere else
-#     QUINTET_OS_RELEASE=FILE    in place of /etc/os-release (tests)
-#     QUINTET_APT_DIR=FOLDER     in place of /etc/apt, for the files that this script writes (tests)
+#     QUINTET_SETUP=skip         do nothing; the packages are installed in another way
+#     QUINTET_OS_RELEASE=FILE    used instead of /etc/os-release (tests)
+#     QUINTET_APT_DIR=FOLDER     used instead of /etc/apt for the files that this script writes (tests)
 set -euo pipefail
 export LC_ALL=C
 
@@ -28,16 +28,16 @@ main() {
             sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"
             return
             ;;
-        *) die "unknown argument '$1' (try --help)" ;;
+        *) die "unknown argument '$1'; see --help" ;;
     esac
     if [[ ${QUINTET_SETUP-} == skip ]]; then
-        say "skipped, as QUINTET_SETUP=skip asks"
+        say "skipped because of QUINTET_SETUP=skip"
         return
     fi
 
     readPackageList "$here/lib/packages.txt"
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
-        say "this system has no apt, so nothing is installed. Quintet needs:"
+        say "this system has no apt; install these packages:"
         printNeeds
         return
     fi

@@ -1,5 +1,5 @@
-// Finds the command, and turns whatever goes wrong in it into one line and an exit status: 2 for a command
-// that makes no sense, 1 for everything that the world refuses.
+// Finds the command, runs it, and turns exceptions into one line on standard error and an exit status: 2 for a wrong command
+// line, 1 for every other failure.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -16,13 +16,14 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "commands.h"
-#include "gpu/driver_environment.h"
-#include "signals.h"
-#include "standard_error.h"
-#include "values.h"
+#include "base/suggestion.h"
+#include "base/text.h"
+#include "cli/command.h"
+#include "cli/console.h"
+#include "cli/signals.h"
+#include "gpu/instance.h"
 
-namespace quintet::app {
+namespace quintet::cli {
 namespace {
 
 std::string helpText() {
@@ -31,13 +32,14 @@ std::string helpText() {
       "Usage: quintet COMMAND [OPTIONS]\n\nCommands:\n";
   for (const Command& command : commands()) text += fmt::format("  {:<10}{}\n", command.name, command.summary);
   return text +
-         "\n  quintet COMMAND --help says more, with examples; quintet --version says which one this is.\n\n"
+         "\n  quintet COMMAND --help      options and examples of a command\n  quintet --version           version of "
+         "Quintet\n\n"
          "Examples:\n"
          "  quintet render scene.glb                          scene.png, 1280x720, 64 samples per pixel\n"
-         "  quintet render scene.glb -o out.exr --time 60     as many samples as a minute allows\n"
+         "  quintet render scene.glb -o out.exr --time 60     as many samples as possible in a minute\n"
          "  quintet run ao                                    a program on the built-in scene\n"
-         "  quintet info                                      which devices there are\n"
-         "  quintet compare out.png reference.png             how far they are apart\n";
+         "  quintet info                                      the Vulkan devices\n"
+         "  quintet compare out.png reference.png             measures of their difference\n";
 }
 
 int dispatch(const std::vector<std::string>& arguments) {
@@ -60,42 +62,42 @@ int dispatch(const std::vector<std::string>& arguments) {
                                first.starts_with('-') ? "option" : "command", first, suggestion(first, names)));
 }
 
-// A closed standard stream would be taken by the next file that is opened. In its place comes one that can
-// only be opened the wrong way round, so that using it still fails.
+// The descriptor of a closed standard stream would be reused by the next file that is opened. It is replaced by one that is
+// open in the wrong direction, so that using it still fails.
 void occupyStandardStreams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(fd, F_GETFD) < 0) [[maybe_unused]]
       const int opened = ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
 }
 
-// One line, whatever the message holds.
+// The message on one line.
 int fail(std::string message, int status) {
   std::ranges::replace(message, '\n', ' ');
-  printError("quintet: {}\n", plain(message));
+  printError("quintet: " + printable(message) + "\n");
   return status;
 }
 
 }  // namespace
-}  // namespace quintet::app
+}  // namespace quintet::cli
 
 int main(int argc, char** argv) {
   using namespace quintet;
-  app::occupyStandardStreams();
-  // A reader that goes away and a file that becomes too large are errors like others.
+  cli::occupyStandardStreams();
+  // A reader that has ended and a file that becomes too large are ordinary errors.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  app::installSignalHandlers();
+  cli::installSignalHandlers();
   try {
-    returnLargeBlocksAtOnce();
-    gpu::prepareDriverEnvironment();  // before there are other threads
-    return app::dispatch({argv + std::min(argc, 1), argv + argc});
+    releaseLargeBlocksImmediately();
+    gpu::prepareDriverEnvironment();  // before other threads exist
+    return cli::dispatch({argv + std::min(argc, 1), argv + argc});
   } catch (const UsageError& error) {
-    return app::fail(error.what(), 2);
+    return cli::fail(error.what(), 2);
   } catch (const std::bad_alloc&) {
-    return app::fail("out of memory", 1);
+    return cli::fail("out of memory", 1);
   } catch (const std::exception& error) {
-    return app::fail(error.what(), 1);
+    return cli::fail(error.what(), 1);
   } catch (...) {
-    return app::fail("unknown failure", 1);
+    return cli::fail("unknown error", 1);
   }
 }

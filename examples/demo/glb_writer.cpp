@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 static_assert(std::endian::native == std::endian::little, "glTF's buffers are little-endian");
 
-// glTF's numbers for formats and targets.
+// glTF's constants for component types, targets, filters and wrap modes.
 constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125, kFloat = 5126;
 constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963, kNoTarget = 0;
 constexpr int kLinear = 9729, kLinearMipmapLinear = 9987, kRepeat = 10497;
@@ -129,7 +129,7 @@ Json GlbWriter::materialExtensions(const Material& m) {
 int GlbWriter::addMesh(const std::string& name, const TriangleMesh& mesh, int material) {
   const Bounds3 box = bounds(mesh);
   const int positions = addAccessor(mesh.positions, "VEC3", kFloat, kArrayBuffer);
-  root_["accessors"].back()["min"] = {box.min.x, box.min.y, box.min.z};  // exact, as the specification demands
+  root_["accessors"].back()["min"] = {box.min.x, box.min.y, box.min.z};  // exact, as the specification requires
   root_["accessors"].back()["max"] = {box.max.x, box.max.y, box.max.z};
   Json attributes = {{"POSITION", positions}};
   if (!mesh.normals.empty()) attributes["NORMAL"] = addAccessor(mesh.normals, "VEC3", kFloat, kArrayBuffer);
@@ -137,7 +137,7 @@ int GlbWriter::addMesh(const std::string& name, const TriangleMesh& mesh, int ma
   if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = addAccessor(mesh.uvs, "VEC2", kFloat, kArrayBuffer);
 
   int indices = 0;
-  if (mesh.positions.size() < 65535) {  // 65535 itself would restart a strip
+  if (mesh.positions.size() < 65535) {  // 65535 is the primitive restart value
     std::vector<std::uint16_t> small;
     for (const uvec3& t : mesh.triangles) {
       for (unsigned k = 0; k < 3; ++k) small.push_back(static_cast<std::uint16_t>(t[k]));

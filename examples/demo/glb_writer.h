@@ -1,5 +1,5 @@
-// Writes what the generators make as one binary glTF 2.0 file: every image as an embedded PNG, every
-// attribute as floats, extensions only where a material needs them. The same calls give the same bytes.
+// Writes a generated scene as one binary glTF 2.0 file: images as embedded PNG, attributes as floats, extensions only
+// if a material requires them. The same calls give the same bytes.
 #ifndef QUINTET_DEMO_GLB_WRITER_H
 #define QUINTET_DEMO_GLB_WRITER_H
 
@@ -17,7 +17,7 @@ namespace quintet::demo {
 
 inline constexpr int kNoTexture = -1;
 
-// glTF's material; the defaults are the ones of the specification, except for `metallic`.
+// The glTF material with the defaults of the specification, except for `metallic`.
 struct Material {
   std::string name;
   vec4 baseColor{1.0f};  // linear
@@ -27,14 +27,14 @@ struct Material {
   int metallicRoughnessTexture = kNoTexture;
   int normalTexture = kNoTexture;
   float normalScale = 1.0f;
-  vec3 emissive{0.0f};       // radiance; above 1 through KHR_materials_emissive_strength
-  float alphaCutoff = 0.0f;  // above 0: alpha mode MASK
+  vec3 emissive{0.0f};       // radiance; above 1 requires KHR_materials_emissive_strength
+  float alphaCutoff = 0.0f;  // above 0 sets alpha mode MASK
   bool doubleSided = false;
   float ior = 1.5f;
   float transmission = 0.0f;
-  float thickness = 0.0f;  // above 0: a solid of glass (KHR_materials_volume)
+  float thickness = 0.0f;  // above 0 means a solid (KHR_materials_volume)
   vec3 attenuationColor{1.0f};
-  float attenuationDistance = 0.0f;  // metres; 0: clear
+  float attenuationDistance = 0.0f;  // meters; 0 means no attenuation
   float clearcoat = 0.0f;
   float clearcoatRoughness = 0.0f;
   float specular = 1.0f;
@@ -44,17 +44,17 @@ class GlbWriter {
  public:
   GlbWriter();
 
-  // Each returns the index of the new object. An image must be u8 or u16.
+  // Return the index of the new object. An image must be u8 or u16.
   int addTexture(const std::string& name, const io::Image& image);
   int addMaterial(const Material& material);
   int addMesh(const std::string& name, const TriangleMesh& mesh, int material);
 
-  // A node of the scene.
+  // Add nodes to the scene.
   void addInstance(const std::string& name, int mesh, const mat4& worldFromObject = mat4(1.0f));
-  void addObject(const std::string& name, const TriangleMesh& mesh, int material);  // mesh and its only instance
+  void addObject(const std::string& name, const TriangleMesh& mesh, int material);  // a mesh and its only instance
   void addCamera(const std::string& name, vec3 eye, vec3 target, float verticalFovDegrees, float aspect);
 
-  // The file's bytes so far.
+  // Bytes of the file.
   std::vector<std::byte> finish() const;
 
  private:

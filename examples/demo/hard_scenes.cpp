@@ -1,4 +1,4 @@
-// Scenes of test_scenes.h in which light is hard to find: for comparisons of error in equal time.
+// The scenes of test_scenes.h that are difficult to sample, for comparisons of error at equal time.
 #include <array>
 
 #include "demo/scene_parts.h"
@@ -8,7 +8,7 @@
 namespace quintet::demo {
 namespace {
 
-// A triangle of about this size around p, turned any way.
+// A triangle of about this size at p with a random orientation.
 TriangleMesh anyTriangle(vec3 p, float size, Random& random) {
   const vec3 a = anyDirection(random);
   const vec3 b = glm::normalize(glm::cross(a, anyDirection(random)));
@@ -17,7 +17,7 @@ TriangleMesh anyTriangle(vec3 p, float size, Random& random) {
   return triangle;
 }
 
-// The curve of a stem that leans.
+// The curve of a leaning stem.
 std::vector<vec3> stem(vec3 foot, float height, vec3 lean) {
   std::vector<vec3> curve;
   for (int i = 0; i <= 12; ++i) {
@@ -44,7 +44,7 @@ std::vector<std::byte> lanterns() {
   const int block = glb.addMesh("block", box({-0.25f, -0.5f, -0.25f}, {0.25f, 0.7f, 0.25f}), polished);
   for (int i = 0; i < kWalls; ++i) {
     const vec3 p = ground(random(-0.48f, 0.48f) * kSide, random(-0.48f, 0.42f) * kSide);
-    glb.addInstance("wall", i % 3 == 2 ? block : wall, turned(p, i % 2 == 0 ? 0.0f : 90.0f));
+    glb.addInstance("wall", i % 3 == 2 ? block : wall, rotated(p, i % 2 == 0 ? 0.0f : 90.0f));
   }
 
   for (int c = 0; c < kColors; ++c) {
@@ -87,14 +87,14 @@ std::vector<std::byte> panes() {
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     const int mesh = glb.addMesh("pane", quad({-0.5f, 0, 0}, {1, 0, 0}, {0, 1.3f, 0}), sheets[i]);
     glb.addInstance("pane", mesh,
-                    turned({-1.65f + 1.1f * static_cast<float>(i), 0.001f, -0.35f}, i % 2 == 0 ? 12.0f : -12.0f));
+                    rotated({-1.65f + 1.1f * static_cast<float>(i), 0.001f, -0.35f}, i % 2 == 0 ? 12.0f : -12.0f));
     glb.addInstance("clay", glb.addMesh("clay", icosphere(0.16f, 4), clay),
-                    turned({-1.65f + 1.1f * static_cast<float>(i), 0.16f, -0.95f}, 0));
+                    rotated({-1.65f + 1.1f * static_cast<float>(i), 0.16f, -0.95f}, 0));
   }
   glb.addObject("roof", quad({-1.2f, 1.5f, 0.6f}, {2.4f, 0, 0}, {0, 0, -2.0f}), sheets[0]);
-  glb.addInstance("sphere", glb.addMesh("sphere", icosphere(0.22f, 5), solid), turned({-0.55f, 0.221f, 0.45f}, 0));
+  glb.addInstance("sphere", glb.addMesh("sphere", icosphere(0.22f, 5), solid), rotated({-0.55f, 0.221f, 0.45f}, 0));
   glb.addInstance("slab", glb.addMesh("slab", box({-0.2f, 0, -0.2f}, {0.2f, 0.35f, 0.2f}), solid),
-                  turned({0.55f, 0.001f, 0.45f}, 30.0f));
+                  rotated({0.55f, 0.001f, 0.45f}, 30.0f));
   glb.addObject("lamp above", quad({-0.3f, 3.0f, -0.8f}, {0.6f, 0, 0}, {0, 0, 0.6f}),
                 addLight(glb, "lamp", vec3(40, 36, 30)));
   glb.addObject("lamp aside", quad({-3.6f, 0.6f, -1.6f}, {0, 0.8f, 0}, {0, 0, 0.8f}),
@@ -112,7 +112,7 @@ std::vector<std::byte> window() {
       {.name = "brass", .baseColor = {0.86f, 0.68f, 0.36f, 1.0f}, .metallic = 1.0f, .roughness = 0.25f});
   const int cloth = addDiffuse(glb, "cloth", {0.70f, 0.16f, 0.13f});
 
-  // 4 m wide (x), 2.6 m high, 5 m deep; walls of 0.2 m; the opening is in the right wall.
+  // 4 m wide (x), 2.6 m high, 5 m deep; walls 0.2 m thick; the opening is in the right wall.
   glb.addObject("floor", box({-2.2f, -0.2f, -2.7f}, {2.2f, 0, 2.7f}), boards);
   glb.addObject("ceiling", box({-2.2f, 2.6f, -2.7f}, {2.2f, 2.8f, 2.7f}), white);
   glb.addObject("left", box({-2.2f, 0, -2.7f}, {-2.0f, 2.6f, 2.7f}), blue);
@@ -126,9 +126,9 @@ std::vector<std::byte> window() {
   glb.addObject("table", box({-0.7f, 0.70f, -1.6f}, {0.7f, 0.75f, -0.7f}), boards);
   for (const vec2 leg : {vec2(-0.65f, -1.55f), vec2(0.6f, -1.55f), vec2(-0.65f, -0.75f), vec2(0.6f, -0.75f)})
     glb.addObject("leg", box({leg.x, 0, leg.y}, {leg.x + 0.05f, 0.70f, leg.y + 0.05f}), boards);
-  glb.addInstance("ball", glb.addMesh("ball", icosphere(0.18f, 5), brass), turned({-0.25f, 0.931f, -1.1f}, 0));
+  glb.addInstance("ball", glb.addMesh("ball", icosphere(0.18f, 5), brass), rotated({-0.25f, 0.931f, -1.1f}, 0));
   glb.addInstance("block", glb.addMesh("block", box({-0.15f, 0, -0.15f}, {0.15f, 0.22f, 0.15f}), cloth),
-                  turned({0.3f, 0.751f, -1.1f}, 25.0f));
+                  rotated({0.3f, 0.751f, -1.1f}, 25.0f));
   glb.addObject("outside ground", quad({2.2f, -0.2f, 8}, {20, 0, 0}, {0, 0, -16}),
                 addDiffuse(glb, "grass", {0.18f, 0.25f, 0.10f}));
   glb.addCamera("main", {-0.9f, 1.45f, 2.3f}, {0.25f, 0.95f, -1.5f}, 52.0f, kWide);
@@ -158,7 +158,7 @@ std::vector<std::byte> foliage() {
     for (int i = 0; i < kLeavesPerPlant; ++i) {
       const auto at = static_cast<std::size_t>(random(3.0f, 12.99f));
       glb.addInstance("leaf", sheet,
-                      turned(curve[at] + vec3(0, random(-0.05f, 0.05f), 0), random(0, 360), random(0.14f, 0.32f)));
+                      rotated(curve[at] + vec3(0, random(-0.05f, 0.05f), 0), random(0, 360), random(0.14f, 0.32f)));
     }
   }
   glb.addObject("stems", stems, bark);

@@ -65,7 +65,7 @@ Point surface(vec2 uv) {
   return {radius * direction, glm::normalize(direction - alongSphere / radius), 8.0f * uv};
 }
 
-// One mesh: quads between two meridians.
+// One mesh: the quads between two meridians.
 struct Patch {
   std::size_t rows, columns;
   float firstU, lastU;
@@ -102,15 +102,15 @@ class Writer {
     views_.push_back(std::move(view));
   }
 
-  // The header and the JSON, padded to the room that was left for it.
+  // Writes the header and the JSON, padded to the reserved size.
   void finish(Json root) {
-    beginView();  // pads
+    beginView();  // adds padding
     root["bufferViews"] = std::move(views_);
     root["buffers"] = Json::array({{{"byteLength", size_}}});
     std::string text = root.dump();
     const std::size_t total = binaryStart() + size_;
     if (text.size() > jsonBytes_ || total > 0xFFFFFFFFu)
-      throw UsageError(fmt::format("{}: {} bytes are more than a GLB can hold", file_.string(), total));
+      throw UsageError(fmt::format("{}: {} bytes exceed the limit of a GLB (4 GiB)", file_.string(), total));
     text.resize(jsonBytes_, ' ');
     out_.seekp(0);
     word(0x46546C67u), word(2), word(total);  // "glTF", version, length
@@ -137,7 +137,8 @@ class Writer {
   std::size_t size_ = 0, viewStart_ = 0;
 };
 
-// Writes `count` rows of elements, each made by element(row, out): in parallel, a piece at a time.
+// Writes `count` rows of elements in pieces. element(row, out) computes a row; the rows of a piece are computed in
+// parallel.
 template <class T, class Row>
 int writeRows(Writer& writer, std::size_t count, std::size_t perRow, int target, const Row& row) {
   const int view = writer.beginView();

@@ -1,4 +1,4 @@
-// quintet_make_demo OUTDIR: writes demo.glb and sky.hdr, the scene and the light of `make demo`.
+// quintet_make_demo OUTDIR: writes demo.glb and sky.hdr, the scene and the sky of `make demo`.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

@@ -1,4 +1,4 @@
-// quintet_make_large OUT.glb: a scene of ten million triangles, or as many as are asked for, to measure loading.
+// quintet_make_large OUT.glb: writes a scene of ten million triangles, or another number, for measurements of loading.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -12,8 +12,9 @@ namespace {
 
 constexpr const char* kUsage =
     "usage: quintet_make_large OUT.glb [--triangles N] [--meshes M] [--textures K] [--texture-size S] [--normal-maps]\n"
-    "A displaced sphere of about N triangles (10000000) in M meshes (1), with K base colours of S x S pixels (0, "
-    "1024).\n";
+    "Writes a displaced sphere of about N triangles (default 10000000) in M meshes (1), with K base color textures (0) "
+    "of "
+    "S x S pixels (1024).\n";
 
 bool parse(int argc, char** argv, quintet::demo::LargeSceneOptions& options) {
   for (int i = 2; i < argc; ++i) {

@@ -1,4 +1,4 @@
-// quintet_make_scenes OUTDIR: writes the scenes of the tests and of the benchmark.
+// quintet_make_scenes OUTDIR: writes the scenes of the tests and the benchmark.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

@@ -104,7 +104,7 @@ void computeTangents(TriangleMesh& mesh) {
   for (const uvec3& t : mesh.triangles) {
     const vec3 e1 = mesh.positions[t.y] - mesh.positions[t.x], e2 = mesh.positions[t.z] - mesh.positions[t.x];
     const vec2 d1 = mesh.uvs[t.y] - mesh.uvs[t.x], d2 = mesh.uvs[t.z] - mesh.uvs[t.x];
-    const float sign = d1.x * d2.y - d2.x * d1.y < 0.0f ? -1.0f : 1.0f;  // its size only weighs the triangle
+    const float sign = d1.x * d2.y - d2.x * d1.y < 0.0f ? -1.0f : 1.0f;  // its length is a weight of the triangle
     for (unsigned k = 0; k < 3; ++k) {
       alongU[t[k]] += sign * (e1 * d2.y - e2 * d1.y);
       alongV[t[k]] += sign * (e2 * d1.x - e1 * d2.x);
@@ -122,7 +122,7 @@ void computeTangents(TriangleMesh& mesh) {
 
 bool isClosed(const TriangleMesh& mesh) {
   const std::vector<std::uint32_t> welded = weld(mesh.positions);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;  // from the smaller index: +1, back: -1
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;  // +1 from the smaller index to the larger one, -1 back
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
   for (const uvec3& t : mesh.triangles) {
     for (unsigned k = 0; k < 3; ++k) {

@@ -16,7 +16,7 @@ float pathLength(std::span<const vec2> path) {
   return sum;
 }
 
-// Splits each triangle into four; the new points lie on the unit sphere.
+// Splits each triangle into four. New points are on the unit sphere.
 void subdivide(TriangleMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
   const auto middle = [&](std::uint32_t a, std::uint32_t b) {
@@ -32,16 +32,16 @@ void subdivide(TriangleMesh& mesh) {
   mesh.triangles = std::move(triangles);
 }
 
-// Corner k and its neighbours on a regular polygon with rounded corners, drawn in by `inset`.
+// Point of the outline of a regular polygon with rounded corners, moved inwards by `inset`.
 vec2 polygonPoint(const PrismShape& shape, int index, float inset) {
   const float half = kPi / static_cast<float>(shape.sides);
   const int corner = index / shape.perSide, step = index % shape.perSide;
   const int arcSteps = shape.perSide / 2;
-  const auto arcPoint = [&](int k, float t) {  // t: -1 … 1 over the rounded corner
+  const auto arcPoint = [&](int k, float t) {  // t is -1 … 1 along the rounded corner
     const float axis = 2.0f * half * static_cast<float>(k % shape.sides);
     const float angle = axis + half * t;
-    const float centre = shape.radius - shape.rounding / std::cos(half);
-    return centre * vec2(std::cos(axis), std::sin(axis)) +
+    const float center = shape.radius - shape.rounding / std::cos(half);
+    return center * vec2(std::cos(axis), std::sin(axis)) +
            (shape.rounding - inset) * vec2(std::cos(angle), std::sin(angle));
   };
   if (step <= arcSteps) return arcPoint(corner, 2.0f * at(step, arcSteps) - 1.0f);
@@ -131,10 +131,10 @@ std::vector<vec2> smoothCurve(std::span<const vec2> points, int perSpan) {
 
 std::vector<vec2> discProfile(float radius, float height, float bevel, int bevelSteps) {
   std::vector<vec2> profile{{0.0f, 0.0f}, {radius - 2.0f * bevel, 0.0f}};
-  const auto arc = [&](vec2 centre, float from) {
+  const auto arc = [&](vec2 center, float from) {
     for (int k = 0; k <= bevelSteps; ++k) {
       const float angle = from + 0.5f * kPi * at(k, bevelSteps);
-      profile.push_back(centre + bevel * vec2(std::cos(angle), std::sin(angle)));
+      profile.push_back(center + bevel * vec2(std::cos(angle), std::sin(angle)));
     }
   };
   arc({radius - bevel, bevel}, -0.5f * kPi);
@@ -144,7 +144,7 @@ std::vector<vec2> discProfile(float radius, float height, float bevel, int bevel
 }
 
 TriangleMesh superellipsoid(vec3 halfSize, float exponent, int perEdge) {
-  const auto warp = [](float x) { return std::tan(x * kPi / 4.0f); };  // evens out the cube's cells
+  const auto warp = [](float x) { return std::tan(x * kPi / 4.0f); };  // makes the cells more uniform
   TriangleMesh mesh;
   for (glm::length_t face = 0; face < 6; ++face) {
     const glm::length_t axis = face / 2, a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -152,7 +152,7 @@ TriangleMesh superellipsoid(vec3 halfSize, float exponent, int perEdge) {
     TriangleMesh part = parametric(perEdge, perEdge, false, false, [&](float u, float v) {
       vec3 q;
       q[axis] = warp(side);
-      q[a] = warp(side * (2.0f * u - 1.0f));  // turned with the side, so that the front stays outside
+      q[a] = warp(side * (2.0f * u - 1.0f));  // reversed with the side, so that the front is outside
       q[b] = warp(2.0f * v - 1.0f);
       const vec3 power = glm::pow(glm::abs(q), vec3(exponent));
       return halfSize * q * std::pow(power.x + power.y + power.z, -1.0f / exponent);
@@ -170,7 +170,7 @@ TriangleMesh torusKnot(int p, int q, float radius, float swing, float tube, int 
     const float cp = std::cos(fp * phi), sp = std::sin(fp * phi), cq = std::cos(fq * phi), sq = std::sin(fq * phi);
     const float r = radius + swing * cq, dr = -fq * swing * sq;
     const vec3 tangent = glm::normalize(vec3(dr * cp - fp * r * sp, dr * sp + fp * r * cp, -fq * swing * cq));
-    const vec3 away(cq * cp, cq * sp, -sq);  // from the carrying torus's circle
+    const vec3 away(cq * cp, cq * sp, -sq);  // from the circle of the supporting torus
     const vec3 n = glm::normalize(away - tangent * glm::dot(away, tangent));
     const float psi = -2.0f * kPi * v;
     return vec3(r * cp, r * sp, -swing * sq) + tube * (std::cos(psi) * n + std::sin(psi) * glm::cross(tangent, n));
@@ -230,14 +230,14 @@ TriangleMesh quad(vec3 corner, vec3 a, vec3 b) {
   return mesh;
 }
 
-TriangleMesh flatDisc(float inner, float outer, int segments, float metresPerTile) {
+TriangleMesh flatDisc(float inner, float outer, int segments, float metersPerTile) {
   TriangleMesh mesh = parametric(segments, 1, true, false, [&](float u, float v) {
     const float r = glm::mix(outer, inner, v), angle = -2.0f * kPi * u;
     return vec3(r * std::cos(angle), 0.0f, r * std::sin(angle));
   });
   computeNormals(mesh);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    mesh.uvs[i] = vec2(mesh.positions[i].x, mesh.positions[i].z) / metresPerTile;
+    mesh.uvs[i] = vec2(mesh.positions[i].x, mesh.positions[i].z) / metersPerTile;
   }
   return mesh;
 }

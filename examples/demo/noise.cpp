@@ -34,7 +34,7 @@ float noise(vec3 p, std::uint32_t seed, glm::ivec3 period) {
   const vec3 f = p - cell;
   const vec3 s = f * f * f * (f * (f * 6.0f - 15.0f) + 10.0f);
   const glm::ivec3 i(cell);
-  std::uint32_t x[2], y[2], z[2];  // the lattice coordinates of the cell's two sides
+  std::uint32_t x[2], y[2], z[2];  // lattice coordinates of the two sides of the cell
   for (int k = 0; k < 2; ++k) {
     x[k] = static_cast<std::uint32_t>(wrap(i.x + k, period.x));
     y[k] = static_cast<std::uint32_t>(wrap(i.y + k, period.y));
@@ -42,7 +42,7 @@ float noise(vec3 p, std::uint32_t seed, glm::ivec3 period) {
   }
   const std::uint32_t start = pcg(seed);
   float corner[8];
-  for (unsigned c = 0; c < 8; c += 2) {  // hash(x, y, z, seed), with what is common computed once
+  for (unsigned c = 0; c < 8; c += 2) {  // hash(x, y, z, seed) with common terms computed once
     const unsigned dy = (c >> 1) & 1u, dz = c >> 2;
     const std::uint32_t row = pcg(y[dy] + pcg(z[dz] + start));
     const vec3 offset = f - vec3(0.0f, static_cast<float>(dy), static_cast<float>(dz));

@@ -1,10 +1,10 @@
-// The soft parts of mesh_builder.h: ropes along curves, and leaves.
+// Plant parts of mesh_builder.h: ropes along curves, and leaves.
 #include "demo/mesh_builder.h"
 
 namespace quintet::demo {
 
 TriangleMesh tube(std::span<const vec3> curve, float startRadius, float endRadius, int around) {
-  // A frame carried along the curve without twist (parallel transport).
+  // A frame along the curve without twist (parallel transport).
   std::vector<vec3> across;
   vec3 previous = curve[1] - curve[0];
   vec3 normal = glm::cross(previous, std::abs(previous.y) < std::abs(previous.x) ? vec3(0, 1, 0) : vec3(1, 0, 0));
@@ -38,7 +38,7 @@ TriangleMesh leaf(vec3 base, vec3 direction, vec3 up, float length, float width,
   TriangleMesh mesh = parametric(6, 14, false, false, [&](float u, float v) {
     const float across = 2.0f * u - 1.0f;
     const float half = 0.5f * width * std::pow(std::sin(kPi * std::pow(v, 0.85f)), 0.8f);
-    const float rise = -bend * length * v * v + 0.35f * half * across * across;  // droops, and is cupped
+    const float rise = -bend * length * v * v + 0.35f * half * across * across;  // bent downwards and cupped
     const bool tip = v == 0.0f || v == 1.0f;
     return base + forward * (length * v * (1.0f - 0.25f * bend * v)) + side * (tip ? 0.0f : half * across) +
            normal * (tip ? -bend * length * v * v : rise);

@@ -17,13 +17,13 @@ vec3 rgbFromYxy(float luminance, float x, float y) {
   return glm::max(rgbFromXyz * xyz, vec3(0.0f));
 }
 
-// Colour of the sun through the air, by the paper's appendix (Rayleigh and aerosols; Iqbal 1983).
+// Color of the sun through the air, from the appendix of the paper (Rayleigh and aerosols; Iqbal 1983).
 vec3 sunColor(float thetaSun, float turbidity) {
   const float degrees = glm::degrees(thetaSun);
   const float mass = 1.0f / (std::cos(thetaSun) + 0.15f * std::pow(93.885f - degrees, -1.253f));
   const float beta = 0.04608f * turbidity - 0.04586f;
   vec3 color;
-  const vec3 wavelengths(0.61f, 0.55f, 0.465f);  // micrometres, for red, green, blue
+  const vec3 wavelengths(0.61f, 0.55f, 0.465f);  // wavelengths of red, green and blue, micrometers
   for (glm::length_t i = 0; i < 3; ++i) {
     color[i] = std::exp(-0.008735f * std::pow(wavelengths[i], -4.08f) * mass) *
                std::exp(-beta * std::pow(wavelengths[i], -1.3f) * mass);
@@ -31,7 +31,7 @@ vec3 sunColor(float thetaSun, float turbidity) {
   return color / glm::dot(color, kLuminance);
 }
 
-// The disc: full in the middle, then fading.
+// The disc has full radiance in the center and fades outwards.
 float discProfile(float gamma, float radius) { return 1.0f - glm::smoothstep(0.25f * radius, radius, gamma); }
 
 float discSolidAngle(float radius) {
@@ -83,7 +83,7 @@ Sky::Sky(const SkySettings& settings)
         zenithChromaticity(t, thetaSun_, {0.00275f, -0.00610f, 0.00317f, 0.0f},
                            {-0.04214f, 0.08970f, -0.04153f, 0.00516f}, {0.15346f, -0.26756f, 0.06670f, 0.26688f})};
 
-  // The model's kcd/m² become the wanted irradiance.
+  // Scales the kcd/m² of the model to the requested irradiance.
   constexpr int kRows = 64, kColumns = 128;
   float irradiance = 0.0f;
   for (int j = 0; j < kRows; ++j) {
@@ -113,10 +113,10 @@ vec3 Sky::sun(const vec3& d) const {
   return sunRadiance_ * discProfile(gamma, settings_.sunRadius);
 }
 
-// Water reflects the sky (Schlick 1994, ior 1.34), smeared by waves, over a dark blue-green depth; towards
-// the horizon it fades into the haze.
+// Water that reflects the sky (Schlick 1994, ior 1.34), blurred by waves, over a dark blue-green depth. It fades into
+// the haze towards the horizon.
 vec3 Sky::sea(const vec3& d) const {
-  constexpr float kWaves = 0.12f;  // lifts the reflected ray: waves show their slopes to a flat view
+  constexpr float kWaves = 0.12f;  // raises the reflected ray, because a grazing view sees the slopes of waves
   const float down = -d.y;
   const vec3 reflected = glm::normalize(vec3(d.x, down + kWaves, d.z));
   const float fresnel = 0.021f + 0.979f * std::pow(1.0f - std::min(down + kWaves, 1.0f), 5.0f);
@@ -127,7 +127,7 @@ vec3 Sky::sea(const vec3& d) const {
 
 vec3 Sky::haze(const vec3& d) const { return hazy(dome(glm::normalize(vec3(d.x, 1e-3f, d.z))), 0.0f); }
 
-// Moist air near the horizon, white in the light of sun and sky: the model alone is mauve there.
+// Moist air near the horizon, white in the light of sun and sky. Without it, the model is mauve there.
 vec3 Sky::hazy(const vec3& clear, float height) const {
   return glm::mix(clear, whiteLight_, 0.8f * settings_.haze * std::exp(-height / 0.07f));
 }
@@ -141,7 +141,7 @@ vec3 Sky::cloudy(const vec3& clear, const vec3& d) const {
   return glm::mix(clear, 1.2f * whiteLight_, settings_.clouds * density * glm::smoothstep(0.0f, 0.10f, d.y));
 }
 
-// Three ridges, the nearer the darker; the air between takes their colour away.
+// Three ridges, the nearest one darkest, with colors faded by the air.
 vec3 Sky::hilly(const vec3& behind, const vec3& d) const {
   struct Ridge {
     float height, amplitude, frequency, air;

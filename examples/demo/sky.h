@@ -1,7 +1,7 @@
-// A clear sky over the sea as an equirectangular picture: the daylight model of Preetham, Shirley & Smits,
-// "A Practical Analytic Model for Daylight", SIGGRAPH 1999, with a sun whose disc is made larger and softer
-// than the real one so that its shadows are soft and its light is easy to sample. Thin clouds, hills in the
-// haze and the sea are painted by eye, from the model's own light.
+// A clear sky over the sea as an equirectangular image: the daylight model of Preetham, Shirley & Smits, "A Practical
+// Analytic Model for Daylight", SIGGRAPH 1999. The disc of the sun is larger and softer than the real one, so that its
+// shadows are soft and its light is easy to sample. Thin clouds, hills in the haze and the sea are not physical; they
+// use the light of the model.
 #ifndef QUINTET_DEMO_SKY_H
 #define QUINTET_DEMO_SKY_H
 
@@ -14,11 +14,11 @@ namespace quintet::demo {
 
 struct SkySettings {
   vec3 sunDirection{0.0f, 1.0f, 0.0f};   // unit, towards the sun, above the horizon
-  float turbidity = 3.0f;                // haze: 2 (clear) … 6
-  float skyIrradiance = 1.5f;            // luminance-weighted, on the ground, from the sky alone
-  float sunIrradiance = 3.0f;            // the same, of the sun alone, on a surface that faces it
-  float sunRadius = glm::radians(4.0f);  // where the disc has faded to nothing
-  float clouds = 0.0f;                   // 0: none … 1
+  float turbidity = 3.0f;                // 2 (clear) … 6 (hazy)
+  float skyIrradiance = 1.5f;            // luminance of the irradiance on the ground, without the sun
+  float sunIrradiance = 3.0f;            // luminance of the irradiance of the sun on a surface that faces it
+  float sunRadius = glm::radians(4.0f);  // radius at which the disc has faded out
+  float clouds = 0.0f;                   // 0 (none) … 1
   float haze = 0.0f;                     // whiteness of the horizon, 0 … 1
   bool hills = false;                    // along the horizon
 };
@@ -27,7 +27,7 @@ class Sky {
  public:
   explicit Sky(const SkySettings& settings);
 
-  // Radiance from the unit direction: sky, sun and hills above the horizon, the sea below.
+  // Radiance from a unit direction: sky, sun and hills above the horizon, the sea below.
   vec3 radiance(const vec3& direction) const;
 
  private:
@@ -36,7 +36,7 @@ class Sky {
   vec3 cloudy(const vec3& clear, const vec3& direction) const;
   vec3 hilly(const vec3& behind, const vec3& direction) const;
   vec3 hazy(const vec3& clear, float height) const;
-  vec3 haze(const vec3& direction) const;  // of the horizon, that way
+  vec3 haze(const vec3& direction) const;  // of the horizon in this direction
   vec3 sea(const vec3& direction) const;
 
   struct Perez {
@@ -53,7 +53,7 @@ class Sky {
   vec3 sunRadiance_{0.0f};
 };
 
-// Rows from the zenith down; u = atan2(z, x)/2π + 0.5, v = acos(y)/π. Linear floats, RGB.
+// Linear RGB floats. u = atan2(z, x)/2π + 0.5, v = acos(y)/π from the top row.
 io::Image skyImage(const SkySettings& settings, std::uint32_t width, std::uint32_t height);
 
 }  // namespace quintet::demo

@@ -13,25 +13,25 @@ namespace {
 constexpr float kPlinthRadius = 0.50f, kPlinthHeight = 0.055f;
 constexpr float kTerraceRadius = 3.4f;
 
-mat4 placed(float x, float z, float y = kPlinthHeight, float turnDegrees = 0.0f, float tiltDegrees = 0.0f) {
+mat4 transformAt(float x, float z, float y = kPlinthHeight, float turnDegrees = 0.0f, float tiltDegrees = 0.0f) {
   mat4 m = glm::translate(mat4(1.0f), vec3(x, y, z));
   m = glm::rotate(m, glm::radians(turnDegrees), vec3(0, 1, 0));
   return glm::rotate(m, glm::radians(tiltDegrees), vec3(1, 0, 0));
 }
 
-// A disc's texture unrolls from the middle of its top over the rim.
-void unrollFromTop(TriangleMesh& mesh, float profileLength, float metresPerTile) {
+// Maps the texture of a disc from the center of its top over the rim.
+void unrollFromTop(TriangleMesh& mesh, float profileLength, float metersPerTile) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const vec2 p(mesh.positions[i].x, mesh.positions[i].z);
     const vec2 outward = p == vec2(0.0f) ? p : glm::normalize(p);
-    mesh.uvs[i] = outward * (1.0f - mesh.uvs[i].y) * profileLength / metresPerTile;
+    mesh.uvs[i] = outward * (1.0f - mesh.uvs[i].y) * profileLength / metersPerTile;
   }
 }
 
 void addGround(GlbWriter& glb, const StillLifeSettings& settings) {
   const SurfaceMaps oak = oakHerringbone(settings.oakTextureSize);
   const int floor = glb.addMaterial({.name = "oiled oak",
-                                     .baseColorTexture = glb.addTexture("oak colour", oak.baseColor),
+                                     .baseColorTexture = glb.addTexture("oak color", oak.baseColor),
                                      .metallicRoughnessTexture = glb.addTexture("oak roughness", oak.metallicRoughness),
                                      .normalTexture = glb.addTexture("oak normal", oak.normal)});
   TriangleMesh disc = flatDisc(0.0f, kTerraceRadius, 96, kOakTile);
@@ -53,7 +53,7 @@ void addGround(GlbWriter& glb, const StillLifeSettings& settings) {
   const SurfaceMaps veins = marble(settings.textureSize);
   const int marbled =
       glb.addMaterial({.name = "white marble",
-                       .baseColorTexture = glb.addTexture("marble colour", veins.baseColor),
+                       .baseColorTexture = glb.addTexture("marble color", veins.baseColor),
                        .metallicRoughnessTexture = glb.addTexture("marble roughness", veins.metallicRoughness)});
   const std::vector<vec2> profile = discProfile(kPlinthRadius, kPlinthHeight, 0.008f, 6);
   TriangleMesh plinth = revolve(profile, 192);
@@ -61,7 +61,7 @@ void addGround(GlbWriter& glb, const StillLifeSettings& settings) {
   glb.addObject("plinth", plinth, marbled);
 }
 
-void addVase(GlbWriter& glb, const mat4& place) {
+void addVase(GlbWriter& glb, const mat4& transform) {
   const int ceramic = glb.addMaterial({.name = "celadon glaze",
                                        .baseColor = {0.50f, 0.60f, 0.55f, 1.0f},
                                        .roughness = 0.42f,
@@ -74,11 +74,11 @@ void addVase(GlbWriter& glb, const mat4& place) {
   std::vector<vec2> profile{{0.0f, 0.0f}, {0.030f, 0.0f}, {0.046f, 0.001f}};
   for (const vec2& p : smoothCurve(outside, 6)) profile.push_back(p);
   profile.insert(profile.end(), {{0.030f, 0.27f}, {0.0f, 0.265f}});
-  glb.addInstance("vase", glb.addMesh("vase", revolve(profile, 112), ceramic), place);
+  glb.addInstance("vase", glb.addMesh("vase", revolve(profile, 112), ceramic), transform);
 }
 
-// Olive twigs that stand in the vase.
-void addTwigs(GlbWriter& glb, const mat4& place) {
+// Olive twigs in the vase.
+void addTwigs(GlbWriter& glb, const mat4& transform) {
   const int bark = glb.addMaterial({.name = "bark", .baseColor = {0.20f, 0.15f, 0.10f, 1.0f}, .roughness = 0.85f});
   const int green = glb.addMaterial(
       {.name = "olive leaf", .baseColor = {0.235f, 0.29f, 0.16f, 1.0f}, .roughness = 0.45f, .doubleSided = true});
@@ -112,8 +112,8 @@ void addTwigs(GlbWriter& glb, const mat4& place) {
       }
     }
   }
-  glb.addInstance("stems", glb.addMesh("stems", stems, bark), place);
-  glb.addInstance("leaves", glb.addMesh("leaves", leaves, green), place);
+  glb.addInstance("stems", glb.addMesh("stems", stems, bark), transform);
+  glb.addInstance("leaves", glb.addMesh("leaves", leaves, green), transform);
 }
 
 void addMetals(GlbWriter& glb) {
@@ -121,7 +121,7 @@ void addMetals(GlbWriter& glb) {
       {.name = "satin gold", .baseColor = {0.98f, 0.75f, 0.40f, 1.0f}, .metallic = 1.0f, .roughness = 0.30f});
   const float radius = 0.092f, swing = 0.040f, rope = 0.0285f;
   glb.addInstance("knot", glb.addMesh("knot", torusKnot(2, 3, radius, swing, rope, 360, 36), gold),
-                  placed(0.02f, -0.15f, kPlinthHeight + radius + swing + rope - 0.006f, 14.0f));
+                  transformAt(0.02f, -0.15f, kPlinthHeight + radius + swing + rope - 0.006f, 14.0f));
 
   const SurfaceMaps brush = brushedMetal(512, 0.40f);
   const int copper =
@@ -133,12 +133,12 @@ void addMetals(GlbWriter& glb) {
   TriangleMesh cushion = superellipsoid({0.082f, 0.075f, 0.082f}, 4.0f, 36);
   computeTangents(cushion);
   glb.addInstance("cushion", glb.addMesh("cushion", cushion, copper),
-                  placed(-0.095f, 0.12f, kPlinthHeight + 0.075f, 24.0f));
+                  transformAt(-0.095f, 0.12f, kPlinthHeight + 0.075f, 24.0f));
 
   const int steel = glb.addMaterial(
       {.name = "polished steel", .baseColor = {0.80f, 0.80f, 0.81f, 1.0f}, .metallic = 1.0f, .roughness = 0.03f});
   glb.addInstance("bearing", glb.addMesh("bearing", icosphere(0.030f, 4), steel),
-                  placed(0.065f, 0.275f, kPlinthHeight + 0.030f));
+                  transformAt(0.065f, 0.275f, kPlinthHeight + 0.030f));
 }
 
 void addGlass(GlbWriter& glb) {
@@ -150,7 +150,7 @@ void addGlass(GlbWriter& glb) {
                                      .attenuationColor = {0.78f, 0.93f, 0.91f},
                                      .attenuationDistance = 0.18f});
   glb.addInstance("sphere", glb.addMesh("sphere", icosphere(0.098f, 5), clear),
-                  placed(0.185f, 0.115f, kPlinthHeight + 0.098f));
+                  transformAt(0.185f, 0.115f, kPlinthHeight + 0.098f));
 
   const int amber = glb.addMaterial({.name = "amber glass",
                                      .roughness = 0.0f,
@@ -166,20 +166,20 @@ void addGlass(GlbWriter& glb) {
                          .height = 0.39f,
                          .twist = 2.0f,
                          .taper = 0.70f};
-  glb.addInstance("prism", glb.addMesh("prism", twistedPrism(prism), amber), placed(0.325f, -0.13f));
+  glb.addInstance("prism", glb.addMesh("prism", twistedPrism(prism), amber), transformAt(0.325f, -0.13f));
 }
 
 void addStone(GlbWriter& glb) {
   const int lapis = glb.addMaterial({.name = "lapis", .baseColor = {0.05f, 0.12f, 0.29f, 1.0f}, .roughness = 0.25f});
   glb.addInstance("gem", glb.addMesh("gem", icosphere(0.058f, 1, true), lapis),
-                  placed(-0.32f, 0.17f, kPlinthHeight + 0.050f, 20.0f));
+                  transformAt(-0.32f, 0.17f, kPlinthHeight + 0.050f, 20.0f));
 }
 
 }  // namespace
 
 std::vector<std::byte> stillLife(const StillLifeSettings& settings) {
   GlbWriter glb;
-  const mat4 vase = placed(-0.275f, -0.11f);
+  const mat4 vase = transformAt(-0.275f, -0.11f);
   addGround(glb, settings);
   addVase(glb, vase);
   addTwigs(glb, vase);

@@ -1,4 +1,4 @@
-// The scene of `make demo` and of the picture at the top of README.
+// The scene of `make demo` and of the image at the top of README.
 #ifndef QUINTET_DEMO_STILL_LIFE_H
 #define QUINTET_DEMO_STILL_LIFE_H
 
@@ -17,7 +17,7 @@ struct StillLifeSettings {
 // demo.glb: camera "hero", 16:9.
 std::vector<std::byte> stillLife(const StillLifeSettings& settings = {});
 
-// Its light.
+// The sky that lights it.
 SkySettings stillLifeSky();
 
 }  // namespace quintet::demo

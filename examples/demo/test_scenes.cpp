@@ -24,9 +24,9 @@ std::vector<std::byte> cornell() {
   glb.addObject("right", quad({1, 0, -1}, z, y), green);
   glb.addObject("lamp", quad({-0.25f, 1.99f, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}), light);
   glb.addInstance("metal block", glb.addMesh("metal block", box({-0.28f, 0, -0.28f}, {0.28f, 1.15f, 0.28f}), metal),
-                  turned({-0.35f, 0, -0.35f}, 18.0f));
+                  rotated({-0.35f, 0, -0.35f}, 18.0f));
   glb.addInstance("block", glb.addMesh("block", box({-0.28f, 0, -0.28f}, {0.28f, 0.56f, 0.28f}), white),
-                  turned({0.36f, 0, 0.28f}, -17.0f));
+                  rotated({0.36f, 0, 0.28f}, -17.0f));
   glb.addCamera("main", {0, 1, 0.98f}, {0, 0.98f, 0}, 90.0f, 1.0f);
   return glb.finish();
 }
@@ -46,9 +46,9 @@ std::vector<std::byte> glass() {
   const int cool = addLight(glb, "cool panel", {2.5f, 3.2f, 4.2f});
 
   glb.addObject("ground", quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), ground);
-  glb.addInstance("sphere", glb.addMesh("sphere", icosphere(0.30f, 5), rough), turned({-0.36f, 0.30f, 0}, 0.0f));
+  glb.addInstance("sphere", glb.addMesh("sphere", icosphere(0.30f, 5), rough), rotated({-0.36f, 0.30f, 0}, 0.0f));
   glb.addInstance("slab", glb.addMesh("slab", box({-0.30f, 0, -0.04f}, {0.30f, 0.62f, 0.04f}), clear),
-                  turned({0.38f, 0.001f, 0.05f}, -25.0f));
+                  rotated({0.38f, 0.001f, 0.05f}, -25.0f));
   glb.addObject("panel above", quad({-0.8f, 1.7f, -0.6f}, {1.6f, 0, 0}, {0, 0, 1.2f}), warm);
   glb.addObject("panel behind", quad({-1.2f, 0.1f, -1.3f}, {2.4f, 0, 0}, {0, 0.9f, 0}), cool);
   glb.addObject("panel left", quad({-1.6f, 0.1f, -0.5f}, {0, 1.0f, 0}, {0, 0, 1.0f}), warm);
@@ -96,7 +96,7 @@ std::vector<std::byte> manyLights() {
                                             .doubleSided = true});
   const int sheet = glb.addMesh("leaf", quad({-0.5f, 0, 0.5f}, {1, 0, 0}, {0, 0.35f, -1}), leafMaterial);
   for (int i = 0; i < kLeaves; ++i) {
-    glb.addInstance("leaf", sheet, turned(somewhere(0.02f, 0.35f), random(0, 360), random(0.12f, 0.30f)));
+    glb.addInstance("leaf", sheet, rotated(somewhere(0.02f, 0.35f), random(0, 360), random(0.12f, 0.30f)));
   }
   glb.addCamera("main", {0, 1.5f, 2.9f}, {0, 0.1f, 0}, 42.0f, kWide);
   return glb.finish();
@@ -124,7 +124,7 @@ std::vector<std::byte> bench() {
   for (std::size_t i = 0; i < kRocks; ++i) {
     const float x = random(-0.45f, 0.45f) * kSide, z = random(-0.45f, 0.45f) * kSide;
     glb.addInstance("rock", rocks[i % rocks.size()],
-                    turned({x, terrainHeight(x, z, kHills, 23), z}, random(0, 360), random(0.12f, 0.50f)));
+                    rotated({x, terrainHeight(x, z, kHills, 23), z}, random(0, 360), random(0.12f, 0.50f)));
   }
   glb.addCamera("main", {0, 2.6f, 7.0f}, {0, 0, 0}, 45.0f, kWide);
   return glb.finish();

@@ -21,21 +21,22 @@ struct Board {
   std::uint32_t id = 0;
 };
 
-// Boards are `n` cells long; in each row of cells the first n of every 2n belong to one lying board, the
-// others to n standing ones; each row is shifted by one. The pattern repeats after 2n cells both ways.
+// Boards are `n` cells long. In each row of cells, the first n of every 2n cells belong to one horizontal board, the
+// others to n vertical boards. Each row is shifted by one cell. The pattern repeats after 2n cells in both directions.
 Board herringbone(float x, float y, int n, int cells) {
   const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
   const int k = (((i - j) % (2 * n)) + 2 * n) % (2 * n);
-  const bool lying = k < n;
-  const int startX = lying ? i - k : i, startY = lying ? j : j - (2 * n - 1 - k);
+  const bool horizontal = k < n;
+  const int startX = horizontal ? i - k : i, startY = horizontal ? j : j - (2 * n - 1 - k);
   const auto wrapped = [&](int c) { return static_cast<std::uint32_t>(((c % cells) + cells) % cells); };
   const float dx = x - static_cast<float>(startX), dy = y - static_cast<float>(startY);
-  return {lying ? dx : dy, lying ? dy : dx, 1u + wrapped(startX) * 1024u + wrapped(startY) * 2u + (lying ? 1u : 0u)};
+  return {horizontal ? dx : dy, horizontal ? dy : dx,
+          1u + wrapped(startX) * 1024u + wrapped(startY) * 2u + (horizontal ? 1u : 0u)};
 }
 
 Texel oakBoard(const Board& board, float length) {
   const auto random = [&](std::uint32_t k) { return hash01(board.id, k, 0, 11); };
-  // The board is cut from a log: distance from the pith, disturbed, gives the growth rings.
+  // The board is cut from a log: the perturbed distance from the pith gives the growth rings.
   const vec3 seed(17.0f * random(0), 31.0f * random(1), 13.0f * random(2));
   const vec3 p = vec3(0.35f * board.along, 1.3f * board.across, 0.0f) + seed;
   const float bow = (random(3) - 0.5f) * 0.25f * (board.along - 0.5f * length * (0.4f + 1.2f * random(4)));
@@ -43,21 +44,21 @@ Texel oakBoard(const Board& board, float length) {
   const float ring = distance * (5.0f + 5.0f * random(6));
   const float phase = ring - std::floor(ring);
   const float late = glm::smoothstep(0.15f, 0.85f, phase) * (1.0f - glm::smoothstep(0.9f, 1.0f, phase));
-  const float fibre = fbm(vec3(1.6f * board.along, 34.0f * board.across, 0.0f) + seed, 3, 21);
+  const float fiber = fbm(vec3(1.6f * board.along, 34.0f * board.across, 0.0f) + seed, 3, 21);
   const float pores =
       glm::smoothstep(0.28f, 0.5f, noise(vec3(3.0f * board.along, 46.0f * board.across, 5.0f) + seed, 29));
 
   const vec3 early(0.60f, 0.405f, 0.240f), dark(0.44f, 0.275f, 0.150f);
-  vec3 color = glm::mix(early, dark, 0.62f * late + 0.30f * fibre);
+  vec3 color = glm::mix(early, dark, 0.62f * late + 0.30f * fiber);
   color *= (0.80f + 0.36f * random(7)) * (1.0f - 0.22f * pores);
   color = glm::mix(color, vec3(glm::dot(color, vec3(0.33f))), 0.15f * random(8));
-  return {glm::clamp(color, 0.02f, 0.9f), 0.52f + 0.08f * late + 0.10f * fibre + 0.12f * pores, 0.0f,
-          -6e-5f * pores - 2e-5f * late + 2e-5f * fibre};
+  return {glm::clamp(color, 0.02f, 0.9f), 0.52f + 0.08f * late + 0.10f * fiber + 0.12f * pores, 0.0f,
+          -6e-5f * pores - 2e-5f * late + 2e-5f * fiber};
 }
 
 }  // namespace
 
-SurfaceMaps bake(std::uint32_t size, float metresPerTile, const std::function<Texel(float, float)>& texel) {
+SurfaceMaps bake(std::uint32_t size, float metersPerTile, const std::function<Texel(float, float)>& texel) {
   SurfaceMaps maps{io::makeImage(size, size, 3, PixelType::u8, ColorEncoding::sRgb),
                    io::makeImage(size, size, 3, PixelType::u8, ColorEncoding::linear),
                    io::makeImage(size, size, 3, PixelType::u8, ColorEncoding::linear)};
@@ -76,7 +77,7 @@ SurfaceMaps bake(std::uint32_t size, float metresPerTile, const std::function<Te
       heights[row * size + x] = t.height;
     }
   });
-  const float perTexel = 0.5f * static_cast<float>(size) / metresPerTile;
+  const float perTexel = 0.5f * static_cast<float>(size) / metersPerTile;
   parallelFor(size, [&](std::size_t row) {
     const std::size_t above = (row + size - 1) % size * size, below = (row + 1) % size * size, here = row * size;
     for (std::uint32_t x = 0; x < size; ++x) {
@@ -97,7 +98,7 @@ SurfaceMaps oakHerringbone(std::uint32_t size) {
     const Board board = herringbone(u * kCells, v * kCells, kBoardLength, kCells);
     const float length = kBoardLength;
     Texel t = oakBoard(board, length);
-    // A fine gap between boards with a soft shoulder.
+    // A narrow gap between boards with rounded edges.
     const float edge = std::min({board.across, 1.0f - board.across, board.along, length - board.along});
     const float gap = 1.0f - glm::smoothstep(0.008f, 0.020f, edge);
     const float shoulder = 1.0f - glm::smoothstep(0.0f, 0.045f, edge);
@@ -117,7 +118,7 @@ SurfaceMaps marble(std::uint32_t size) {
     const vec3 p(u * kPeriod, v * kPeriod, 0.0f);
     const vec3 warp(field(p, 4, 41, 1), field(p, 4, 42, 1), 0.0f);
     const vec3 q = p + 1.1f * warp;
-    // Veins run where a smooth field crosses zero; a second field says how strong.
+    // Veins are at the zero crossings of a smooth field; a second field is their strength.
     const float wide = std::exp(-12.0f * std::abs(field(q, 5, 43, 1)));
     const float fine = std::exp(-34.0f * std::abs(field(q + 0.3f * warp, 4, 47, 2)));
     const float where = glm::smoothstep(-0.15f, 0.15f, field(p, 3, 53, 1));

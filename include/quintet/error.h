@@ -1,6 +1,4 @@
-// Failures of the world, one exception type per cause. Every message is one line that names the
-// object and the place; programmer errors are asserts. Apps catch once, print what(), and exit 1
-// (UsageError: 2). Vulkan's own failures are in gpu/error.h.
+// Exceptions for failures at run time: one type per cause. what() is one line that names the object and the location.
 #ifndef QUINTET_ERROR_H
 #define QUINTET_ERROR_H
 
@@ -11,34 +9,35 @@
 
 namespace quintet {
 
+// Base of all exceptions that the library throws on purpose; also thrown itself, for example if no device can be used.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message) : std::runtime_error(message) {}
 };
 
-// A file that is missing, unreadable, unwritable or broken. `place` is a JSON pointer, "line 3",
-// "byte 12", or empty: "scene.gltf: /accessors/3/bufferView: 12 bytes past the end of buffer 0".
+// A file that is missing, unreadable, not writable or invalid. `location` is a JSON pointer, "line 3", "byte 12", or
+// empty. Example: "scene.gltf: /accessors/3/bufferView: 12 bytes past the end of buffer 0".
 class FileError : public Error {
  public:
-  FileError(const std::filesystem::path& file, std::string_view place, std::string_view problem);
+  FileError(const std::filesystem::path& file, std::string_view location, std::string_view problem);
   FileError(const std::filesystem::path& file, std::string_view problem) : FileError(file, {}, problem) {}
   const std::filesystem::path& file() const { return file_; }
-  const std::string& place() const { return place_; }
+  const std::string& location() const { return location_; }
   const std::string& problem() const { return problem_; }
 
  private:
   std::filesystem::path file_;
-  std::string place_;
+  std::string location_;
   std::string problem_;
 };
 
-// The caller asked for something that makes no sense (unknown option, value out of range).
+// An invalid argument or option: an unknown name, a value out of range, a combination that is not supported.
 class UsageError : public Error {
  public:
   using Error::Error;
 };
 
-// Host or device memory is exhausted, or a request is larger than any limit.
+// Host or device memory is exhausted, or a request exceeds every limit.
 class MemoryError : public Error {
  public:
   using Error::Error;

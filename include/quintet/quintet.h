@@ -1,14 +1,13 @@
-// Quintet's C++ API: a scene, a program of ray tracing shaders, a device; out comes a picture.
+// Quintet's C++ API: a scene, a program of ray tracing shaders and a device give an image.
 //
 //   quintet::Device device;
 //   quintet::Renderer renderer(device, quintet::Scene::load("scene.glb"), quintet::Program::load("pathtracer"));
 //   renderer.render(64);
-//   renderer.picture().write("scene.png");
+//   renderer.image().write("scene.png");
 //
-// Conventions. Units are metres and radians; frames are right-handed with y up; a camera looks along its -z.
-// Pictures are linear, Rec. 709 primaries, rows from the top. What the world refuses (a file, a device, memory, a
-// shader) is an exception of quintet/error.h whose what() is one line with file and place. Objects are movable;
-// none may be used from two threads at once. The library prints nothing and never exits.
+// Conventions. Lengths are in meters, angles in radians. Frames are right-handed with y up; a camera looks along its -z
+// axis. Images are linear with Rec. 709 primaries, rows from the top. Failures are exceptions of quintet/error.h.
+// Objects are movable; use an object from one thread at a time. The library never prints and never exits.
 #ifndef QUINTET_QUINTET_H
 #define QUINTET_QUINTET_H
 
@@ -22,42 +21,23 @@
 #include <utility>
 #include <vector>
 
+#include <quintet/diagnostic.h>
 #include <quintet/error.h>
 
 namespace quintet {
 
-// What the compiler or the check of the linked pipeline has to say.
-struct Diagnostic {
-  enum class Severity { note, warning, error };
-  Severity severity = Severity::error;
-  std::string file;
-  int line = 0;    // from 1; 0: unknown
-  int column = 0;  // from 1; 0: unknown
-  std::string id;  // "GLSL", "Q101", …: docs/diagnostics
-  std::string text;
-  std::string format() const;  // "file:line:column: error: text [id]"
-};
-
-// A program whose shaders do not compile, or do not fit together. what(): the first error's line.
-class ProgramError : public Error {
- public:
-  explicit ProgramError(std::vector<Diagnostic> diagnostics);
-  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
-
- private:
-  std::vector<Diagnostic> diagnostics_;
-};
-
 struct DeviceOptions {
-  std::string choice;  // index, or part of the name ("h200", "lavapipe", "cpu"); empty: $QUINTET_DEVICE, else the best
-  std::filesystem::path cacheFolder;                  // compiled shaders and pipelines; empty: not kept
-  std::function<void(const std::string&)> onWarning;  // of the driver; called from any thread; empty: dropped
+  // Index, or part of the name ("h200", "lavapipe", "cpu"). Empty means $QUINTET_DEVICE, else the best device.
+  std::string choice;
+  std::filesystem::path cacheFolder;                  // for compiled shaders and pipelines; empty disables the caches
+  std::function<void(const std::string&)> onWarning;  // of the driver; called from any thread; may be empty
 };
 
-// A Vulkan device that can trace rays. Outlives the renderers made with it.
+// A Vulkan device that supports ray tracing. It must outlive the renderers that use it.
 class Device {
  public:
-  explicit Device(const DeviceOptions& options = {});  // throws Error, with each device's refusal, if none fits
+  // Throws Error if no device can be used; the message says why for each one.
+  explicit Device(const DeviceOptions& options = {});
   Device(Device&&) noexcept;
   Device& operator=(Device&&) noexcept;
   ~Device();
@@ -72,20 +52,21 @@ class Device {
 
 class Program;
 
-// A scene in host memory: glTF (.gltf, .glb) or .scene.toml. Copies share their data.
+// A scene in host memory. Copies share their data.
 class Scene {
  public:
-  static Scene load(const std::filesystem::path& file);  // throws FileError
-  // The scene that the program brings, else a small built-in one that its shaders can meet.
+  // Reads glTF (.gltf, .glb) or .scene.toml. Throws FileError, MemoryError.
+  static Scene load(const std::filesystem::path& file);
+  // Returns the program's own scene, else a small built-in one with geometry that its hit groups support.
   static Scene of(const Program& program);
-  std::string name() const;  // the file's
+  std::string name() const;  // of the file
   std::size_t instanceCount() const;
   std::size_t cameraCount() const;
-  std::array<std::array<float, 3>, 2> bounds() const;  // world, min and max; min > max if nothing is there
+  std::array<std::array<float, 3>, 2> bounds() const;  // world space, min and max; min > max for an empty scene
 
  private:
   friend class Renderer;
-  friend std::vector<Diagnostic> check(const Program&, const Scene*);
+  friend std::vector<Diagnostic> checkProgram(const Program&, const Scene*);
   struct Impl;
   std::shared_ptr<const Impl> impl_;
 };
@@ -93,18 +74,18 @@ class Scene {
 struct ParameterInfo {
   std::string name;
   std::string type;          // "bool", "int", "float", "vec2", "vec3", "vec4", "color", …: docs/programs.md
-  std::string defaultValue;  // as Settings::parameters takes it
+  std::string defaultValue;  // in the form of Settings::parameters
   double min = 0, max = 0;   // of each component, inclusive
   std::string unit;
   std::string help;
 };
 
-// Ray tracing shaders and what connects them: a folder with program.toml, a .rt.glsl file, or a built-in
-// program's name. Copies share their data. Shaders are compiled when a Renderer is made.
+// Ray tracing shaders and the description that connects them. Copies share their data. Shaders are compiled by Renderer.
 class Program {
  public:
-  static Program load(const std::string& nameOrPath);  // throws FileError, UsageError
-  static std::vector<std::string> builtIn();           // names
+  // Reads a folder with program.toml, a .rt.glsl file, or the built-in program of this name. Throws FileError, UsageError.
+  static Program load(const std::string& nameOrPath);
+  static std::vector<std::string> builtIn();  // names
   std::string name() const;
   std::string description() const;
   std::vector<ParameterInfo> parameters() const;
@@ -113,55 +94,58 @@ class Program {
  private:
   friend class Renderer;
   friend class Scene;
-  friend std::vector<Diagnostic> check(const Program&, const Scene*);
+  friend std::vector<Diagnostic> checkProgram(const Program&, const Scene*);
   struct Impl;
   std::shared_ptr<const Impl> impl_;
 };
 
-// Compiles and links without a device: everything that does not fit together, by the ids of docs/diagnostics. With a
-// scene also what depends on it. A Renderer does the same, and refuses a program with errors.
-std::vector<Diagnostic> check(const Program& program, const Scene* scene = nullptr);
+// Compiles and links a program without a device and returns every mismatch, with the ids of docs/diagnostics. A scene adds
+// the rules that depend on it. Renderer checks the same and throws if there are errors.
+std::vector<Diagnostic> checkProgram(const Program& program, const Scene* scene = nullptr);
 
 struct Camera {
-  std::array<float, 3> lookFrom{0, 0, 5};  // world, metres
-  std::array<float, 3> lookAt{0, 0, 0};
+  std::array<float, 3> lookFrom{0, 0, 5};  // world space, meters
+  std::array<float, 3> lookAt{0, 0, 0};    // also the point in focus
   std::array<float, 3> up{0, 1, 0};
   float verticalFov = 0.7854f;  // radians, (0, pi)
-  float apertureRadius = 0;     // metres; what is as far as lookAt is sharp
+  float apertureRadius = 0;     // meters; 0 is a pinhole camera
 };
 
 struct Settings {
-  std::uint32_t width = 1280;  // pixels, 1 … 65536
+  std::uint32_t width = 1280;  // pixels, [1, 65536]
   std::uint32_t height = 720;
-  std::uint32_t seed = 0;        // of the random numbers
-  std::optional<Camera> camera;  // none: the scene's first, else one that shows everything
+  std::uint32_t seed = 0;        // of the random number generator
+  std::optional<Camera> camera;  // default: the scene's first camera, else one that shows the whole scene
   std::vector<std::pair<std::string, std::string>> parameters;  // name, value as on the command line ("1,0.5,0")
 };
 
 // RGBA floats, linear, premultiplied, rows from the top.
-struct Picture {
+struct Image {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::vector<float> pixels;  // 4 · width · height
-  bool toneMap = true;        // .png: Khronos PBR neutral before the sRGB curve; false where values are not radiance
-  std::array<float, 4> at(std::uint32_t x, std::uint32_t y) const;  // (0, 0): top left
-  // .png (sRGB, 8 bits), .exr (half, linear) or .hdr. Throws FileError, UsageError; never half a file.
+  std::vector<float> pixels;  // 4 * width * height
+  bool toneMap = true;        // .png: Khronos PBR Neutral before the sRGB curve; false if values are not radiance
+  std::array<float, 4> at(std::uint32_t x, std::uint32_t y) const;  // (0, 0) is the top left; throws UsageError
+  // Writes .png (sRGB, 8 bits), .exr (half, linear) or .hdr in one step. Throws FileError, UsageError.
   void write(const std::filesystem::path& file) const;
 };
 
-// A program at work on a scene.
+// Renders a scene with a program.
 class Renderer {
  public:
-  // Uploads, compiles, links. `device` outlives the renderer. Throws ProgramError, UsageError, MemoryError, Error.
+  // Uploads the scene, then compiles, checks and links the program. `device` must outlive the renderer. Throws
+  // ProgramError, UsageError, MemoryError, Error.
   Renderer(Device& device, const Scene& scene, const Program& program, const Settings& settings = {});
   Renderer(Renderer&&) noexcept;
   ~Renderer();
 
-  // Adds `count` samples per pixel (multiples of 4 fill the batches in which they are drawn); a program that accumulates itself (lecture form) renders `count` frames.
+  // Adds `count` samples per pixel; multiples of 4 are fastest. A program that accumulates frames itself renders `count`
+  // frames.
   void render(std::uint32_t count);
-  std::uint64_t sampleCount() const;  // or frames, so far
-  // Mean of the samples so far (or the last frame). Throws UsageError for an output that the program does not have.
-  Picture picture(const std::string& output = "") const;  // empty: the first
+  std::uint64_t sampleCount() const;  // per pixel, or frames, so far
+  // Returns the mean of the samples so far, or the last frame. An empty name means the first output. Throws UsageError for
+  // an output that the program does not have or that was not rendered.
+  Image image(const std::string& output = "") const;
 
  private:
   struct Impl;

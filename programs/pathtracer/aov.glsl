@@ -1,5 +1,5 @@
-// The path tracer's outputs besides the picture: layers of the first surface, and the light of a path by what its first
-// scattering was. Only what was asked for is compiled (QUINTET_OUTPUT_…); without any, nothing of this file is left.
+// The path tracer's outputs besides the image: properties of the first surface, and the radiance of a path classified by its
+// first scattering event. Only requested outputs are compiled (QUINTET_OUTPUT_…).
 #ifndef PATHTRACER_AOV_GLSL
 #define PATHTRACER_AOV_GLSL
 
@@ -19,9 +19,9 @@
 #define AOV_LIGHT
 #endif
 
-// Where light of a path was found.
+// How a path found its light.
 const uint kFromBackground = 0u;
-const uint kFromSurface = 1u;    // that the path met
+const uint kFromSurface = 1u;    // the path hit the emitter
 const uint kFromShadowRay = 2u;  // from the path's last surface to a light
 
 #ifdef AOV_SURFACE
@@ -36,8 +36,8 @@ FirstSurface aovFirst;
 #endif
 
 #ifdef AOV_LIGHT
-// Parts of the first scattering by lobe; what they leave of 1 is transmission. [0]: of the path's direction, [1]: of the
-// shadow ray's.
+// Fractions of the first scattering event that are diffuse and specular; the rest is transmission. [0]: for the path's
+// direction; [1]: for the shadow ray's.
 vec3 aovDiffuse[2];
 vec3 aovSpecular[2];
 vec3 aovEmission, aovBackground;
@@ -45,7 +45,7 @@ vec3 aovDirect[3];  // diffuse, specular, transmission
 vec3 aovIndirect[3];
 #endif
 
-// A path begins.
+// Called when a path starts.
 void aovBegin() {
 #ifdef AOV_SURFACE
   aovFirst = FirstSurface(vec3(0.0), vec3(0.0), 0u, 0u, false);
@@ -56,7 +56,7 @@ void aovBegin() {
 #endif
 }
 
-// The surface that a path has met after `depth` scatterings.
+// Called for the surface that a path has hit after `depth` scattering events.
 void aovSurface(uint depth, HitPayload hit, Surface surface, Shading shading) {
 #ifdef AOV_SURFACE
   if (depth > 0u) return;
@@ -65,7 +65,8 @@ void aovSurface(uint depth, HitPayload hit, Surface surface, Shading shading) {
 #endif
 }
 
-// The first scattering: f = bsdfEval(bsdf, wo, wi). Diffuse and specular reflection share a direction by what each gives.
+// Called for a scattering event; f = bsdfEval(bsdf, wo, wi). A reflected direction is split into diffuse and specular by the
+// contribution of each.
 void aovScatter(uint depth, bool towardsLight, Bsdf bsdf, vec3 wi, vec3 f) {
 #ifdef AOV_LIGHT
   if (depth > 0u) return;
@@ -82,7 +83,7 @@ void aovScatterDelta(uint depth, bool transmitted) {
 #endif
 }
 
-// Light that was found after so many scatterings.
+// Called for a contribution after `scatterings` events.
 void aovRadiance(vec3 contribution, uint scatterings, uint source) {
 #ifdef AOV_LIGHT
   if (scatterings == 0u) {
@@ -90,8 +91,9 @@ void aovRadiance(vec3 contribution, uint scatterings, uint source) {
     else aovEmission += contribution;
     return;
   }
-  const int way = scatterings == 1u && source == kFromShadowRay ? 1 : 0;
-  const vec3 parts[3] = vec3[3](aovDiffuse[way], aovSpecular[way], vec3(1.0) - aovDiffuse[way] - aovSpecular[way]);
+  const int direction = scatterings == 1u && source == kFromShadowRay ? 1 : 0;
+  const vec3 parts[3] = vec3[3](aovDiffuse[direction], aovSpecular[direction],
+                                 vec3(1.0) - aovDiffuse[direction] - aovSpecular[direction]);
   for (int i = 0; i < 3; ++i) {
     if (scatterings == 1u) aovDirect[i] += parts[i] * contribution;
     else aovIndirect[i] += parts[i] * contribution;
@@ -101,7 +103,7 @@ void aovRadiance(vec3 contribution, uint scatterings, uint source) {
 
 #define AOV_ADD(name, value) addOutput(kOutput_##name, pixel, vec4(value, 1.0));
 
-// A path has ended and its value counts. `index`: of the sample.
+// Called when a path has ended with a finite value. `index` is the sample's.
 void aovEnd(uvec2 pixel, uint index) {
 #ifdef QUINTET_OUTPUT_albedo
   AOV_ADD(albedo, aovFirst.albedo)
@@ -142,9 +144,9 @@ void aovEnd(uvec2 pixel, uint index) {
 }
 
 #ifdef AOV_CENTER
-const float kFarAway = 1e10;  // depth of what the ray leaves behind, as other renderers write it
+const float kFarAway = 1e10;  // depth of pixels without a surface, as in other renderers
 
-// What is not averaged: of the ray through the centres of pixel and lens.
+// Stores the outputs that are not averaged, for the ray through the centers of pixel and lens. Returns the number of rays.
 uint aovCenter(uvec2 pixel) {
   const Ray ray = cameraRay(vec2(pixel) + 0.5, vec2(0.5));
   const HitPayload hit = traceClosest(ray.origin, ray.direction, kInfinity, hash(pixel.x | pixel.y << 16));

@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# What setup.sh would do: reads the package list, asks dpkg what is there and apt what it offers, and decides.
-# Changes nothing on the system. Sourced by setup.sh.
+# The plan of setup.sh: compares the package list with the packages that dpkg has and that apt offers. Does not change
+# the system. Sourced by setup.sh.
 
 say() { printf 'setup: %s\n' "$*"; }
 warn() { printf 'setup: warning: %s\n' "$*" >&2; }
@@ -10,11 +10,11 @@ die() {
 }
 
 # ---- The list -------------------------------------------------------------------------------------------------------
-# Arrays side by side, one entry for each package of the list.
-needNames=()    # the name, and its alternatives, separated by spaces
-needVersion=()  # least version, or empty
+# Parallel arrays with one entry per package of the list.
+needNames=()    # names, separated by spaces
+needVersion=()  # minimum version, or empty
 needOptional=() # 'optional' or empty
-needRemark=()   # what does not work without it, or empty
+needRemark=()   # consequence if it is missing, or empty
 
 readPackageList() {
     local line name names version optional remark
@@ -41,7 +41,7 @@ readPackageList() {
     done <"$1"
 }
 
-# describe INDEX: for people, 'cmake >= 3.25'.
+# describe INDEX: prints 'cmake >= 3.25'.
 describe() {
     local text=${needNames[$1]// / or }
     [[ -z ${needVersion[$1]} ]] || text+=" >= ${needVersion[$1]#*:}"
@@ -49,7 +49,7 @@ describe() {
     printf '%s' "$text"
 }
 
-# describeAll INDEX...: the same for several, with commas.
+# describeAll INDEX...: prints several descriptions, separated by commas.
 describeAll() {
     local i text=''
     for i in "$@"; do text+="${text:+, }$(describe "$i")"; done
@@ -60,8 +60,8 @@ printNeeds() {
     local i
     for i in "${!needNames[@]}"; do printf '    %s\n' "$(describe "$i")"; done
     cat <<'TEXT'
-(names as in Debian 12), and a Vulkan driver with VK_KHR_ray_tracing_pipeline: that of a GPU which has it, or Mesa's
-software driver lavapipe, Mesa 25.0 or later.
+(names of Debian 12), and a Vulkan driver with VK_KHR_ray_tracing_pipeline: the driver of a GPU that supports it, or
+lavapipe, the software driver of Mesa 25.0 or later.
 TEXT
 }
 
@@ -72,7 +72,7 @@ readOsRelease() {
     osId='' osCodename='' osName='this system'
     [[ -r $1 ]] || return 0
     local values
-    # A file of shell assignments; read in a shell of its own, so that none of them lands here.
+    # The file contains shell assignments. A subshell reads it, so that they do not change variables of this script.
     mapfile -t values < <(
         # shellcheck disable=SC1090
         source "$1"
@@ -81,13 +81,13 @@ readOsRelease() {
     osId=${values[0]} osCodename=${values[1]} osName=${values[2]}
 }
 
-# versionFits HAVE LEAST: is HAVE at least LEAST? Any version fits an empty LEAST; no version (empty) fits nothing.
+# versionFits VERSION MINIMUM: succeeds if VERSION is not empty and at least MINIMUM, which can be empty.
 versionFits() {
     [[ -n $1 ]] || return 1
     [[ -z $2 ]] || dpkg --compare-versions "$1" ge "$2"
 }
 
-# Fills 'missing' with the indices of what no installed package meets: one call of dpkg-query for all.
+# Fills 'missing' with the indices of packages that are not installed or too old, with one call of dpkg-query.
 declare -A installedVersion=()
 missing=()
 
@@ -115,7 +115,7 @@ isInstalled() {
     return 1
 }
 
-# Fills 'candidate' with the versions that apt would install now.
+# Fills 'candidate' with the versions that apt would install.
 declare -A candidate=()
 
 readCandidates() {
@@ -134,29 +134,29 @@ readCandidates() {
     done < <(apt-cache policy "${names[@]}" 2>/dev/null)
 }
 
-# Has apt ever read its package lists? (A fresh container image has none.)
+# Succeeds if apt has package lists. A new container image has none.
 haveLists() {
     apt-cache policy 2>/dev/null | grep -v 'a=now' | grep -q '^ *release '
 }
 
-# suiteIsThere SUITE: is it among apt's sources?
-suiteIsThere() {
-    # shellcheck disable=SC2016  # apt fills these in
+# hasSuite SUITE: succeeds if it is one of apt's sources.
+hasSuite() {
+    # shellcheck disable=SC2016  # apt replaces the variables
     apt-get indextargets --format '$(RELEASE) $(CODENAME)' 'Created-By: Packages' 2>/dev/null |
         tr ' ' '\n' | grep -Fxq -- "$1"
 }
 
 # ---- The plan -------------------------------------------------------------------------------------------------------
-# Debian 12 itself lacks two things: a Mesa with ray tracing, which is in its backports, and the memory allocator, which
-# is in Debian 13 (and needs nothing else: it is one header).
-planUpdate=''     # 'unknown' where apt has no package lists yet, so that versions are only known after an update
-planInstall=()    # packages by their plain name
-planFromSuite=()  # 'package suite': to be installed from that suite
+# Debian 12 lacks a Mesa with ray tracing, which is in its backports, and the memory allocator, which is in Debian 13
+# and has no dependencies, because it is one header.
+planUpdate=''     # 'unknown' if apt has no package lists, so that versions are known only after an update
+planInstall=()    # packages from the regular suites
+planFromSuite=()  # entries 'package suite'
 planAddSuite=()   # suites to add to apt's sources
-planWarnings=()   # indices of optional things that will be missing or too old
-planFailures=()   # indices of needed things that cannot be had
+planWarnings=()   # indices of optional packages that stay missing or too old
+planFailures=()   # indices of required packages that cannot be installed
 
-# The suite outside of Debian 12 proper that has a package; empty for none.
+# suiteFor PACKAGE: prints the additional suite for a package on Debian 12; empty if none is needed.
 suiteFor() {
     [[ $osId == debian && $osCodename == bookworm ]] || return 0
     case $1 in
@@ -185,24 +185,24 @@ planOne() {
     suite=$(suiteFor "$name")
     if [[ -n $suite ]]; then
         planFromSuite+=("$name $suite")
-        suiteIsThere "$suite" || planAddSuite+=("$suite")
+        hasSuite "$suite" || planAddSuite+=("$suite")
     elif [[ -n $planUpdate ]]; then
         planInstall+=("$name")
     elif [[ -n ${needOptional[$i]} ]]; then
         planWarnings+=("$i")
-        # Better an old one than none: an old Mesa still has the drivers of GPUs.
+        # An old version is better than none: an old Mesa still has drivers for GPUs.
         [[ -z ${candidate[$name]-} || -n ${installedVersion[$name]-} ]] || planInstall+=("$name")
     else
         planFailures+=("$i")
     fi
 }
 
-# Nothing to do, and no need to ask apt again: all that is missing is optional, and apt has nothing better.
+# Succeeds if all missing packages are optional and apt has no better versions.
 planIsEmpty() {
     [[ -z $planUpdate ]] && ((${#planInstall[@]} + ${#planFromSuite[@]} + ${#planFailures[@]} == 0))
 }
 
-# offered INDEX: what is there and what apt offers, in words.
+# offered INDEX: prints the installed version and the version that apt offers.
 offered() {
     local name text=''
     for name in ${needNames[$1]}; do
@@ -212,14 +212,14 @@ offered() {
     printf '%s' "${text:-apt does not offer it}"
 }
 
-# printPlan [updated]: without the first step, where that is done.
+# printPlan [updated]: 'updated' omits the first step.
 printPlan() {
     local entry i
     say "on $osName:"
     [[ ${1-} == updated ]] || printf '  - apt-get update\n'
     for entry in "${planAddSuite[@]}"; do
         case $entry in
-            trixie) printf '  - add trixie to the sources of apt for the next step, then take it out again\n' ;;
+            trixie) printf '  - add trixie to the sources of apt for the next step, then remove it\n' ;;
             *) printf '  - add %s to the sources of apt\n' "$entry" ;;
         esac
     done

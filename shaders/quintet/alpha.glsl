@@ -1,6 +1,6 @@
-// Alpha in any-hit shaders: how much of the surface is there, and the test of it by chance. The test's answer depends
-// only on the ray's seed and on the surface point, so that calling it twice for one candidate (as drivers may)
-// changes nothing.
+// Alpha in any-hit shaders: the coverage of the surface, and the stochastic alpha test. The result of the test depends
+// only on the ray's seed and on the surface point. Drivers may call any-hit twice for one candidate; both calls give
+// the same result.
 #ifndef QUINTET_ALPHA_GLSL
 #define QUINTET_ALPHA_GLSL
 
@@ -9,7 +9,7 @@
 #include "sampling/hash.glsl"
 #include "texture.glsl"
 
-// How much of the candidate is there: 0 or 1 for alpha mask, alpha for blend, 1 for all other materials.
+// Coverage of the candidate: 0 or 1 for alpha mask, alpha for blend, 1 for all other materials.
 float alphaCoverage(vec2 barycentric) {
   const GeometryData geometry = hitGeometry();
   const MaterialData material = MaterialArray(frame.materials).at[geometry.material];
@@ -26,9 +26,9 @@ float alphaCoverage(vec2 barycentric) {
   return coverageOf(material, alpha);
 }
 
-// True if the candidate is not there: alpha mask below its cut-off, or blend with probability 1 - alpha.
+// True if the candidate must be ignored: alpha mask below its cutoff, or blend with probability 1 - alpha.
 bool alphaRejects(vec2 barycentric, uint seed) {
-  // Independent of every other number of the path: the ray's own seed, mixed with the primitive's identity.
+  // Independent of all other random numbers of the path: a hash of the ray's seed and the primitive.
   const uint instance = hashCombine(seed, uint(gl_InstanceCustomIndexEXT));
   const uint random = hashCombine(hashCombine(instance, hitTriangle(hitGeometry())), uint(gl_GeometryIndexEXT));
   return float(random >> 8) * (1.0 / 16777216.0) >= alphaCoverage(barycentric);

@@ -10,8 +10,8 @@ struct Ray {
   vec3 direction;  // unit
 };
 
-// Offset from the pixel's centre in pixels, distributed as a tent of radius 0.75: filter importance
-// sampling (Ernst et al. 2006), so that each pixel is the mean of its own samples.
+// Offset from the pixel's center in pixels, distributed as a tent of radius 0.75. With this filter importance
+// sampling (Ernst et al. 2006), each pixel is the mean of its own samples.
 vec2 filterOffset(vec2 u) {
   const vec2 v = 2.0 * u - 1.0;
   return 0.75 * sign(v) * (1.0 - sqrt(1.0 - abs(v)));
@@ -21,7 +21,7 @@ vec3 cameraToWorld(CameraData camera, vec4 p) {
   return vec3(dot(camera.worldFromCamera[0], p), dot(camera.worldFromCamera[1], p), dot(camera.worldFromCamera[2], p));
 }
 
-// Ray through image point `pixel` (in pixels from the top left corner; centres at .5); `lens` in [0,1)².
+// Ray through image point `pixel` (in pixels from the top left corner; pixel centers at .5); `lens` in [0,1)².
 Ray cameraRay(vec2 pixel, vec2 lens) {
   const CameraData camera = frame.camera;
   const vec2 ndc = vec2(2.0, -2.0) * pixel / vec2(frame.width, frame.height) + vec2(-1.0, 1.0);
@@ -41,17 +41,17 @@ Ray cameraRay(vec2 pixel, vec2 lens) {
   return ray;
 }
 
-// A world position in the camera's frame.
+// A world position in camera space.
 vec3 cameraFromWorld(vec3 world) {
   const vec4 rows[3] = frame.camera.worldFromCamera;
   const vec3 p = world - vec3(rows[0].w, rows[1].w, rows[2].w);
   return rows[0].xyz * p.x + rows[1].xyz * p.y + rows[2].xyz * p.z;
 }
 
-// Metres in front of the camera, along its axis.
+// Depth along the camera's axis in meters; positive in front of the camera.
 float cameraDepth(vec3 world) { return -cameraFromWorld(world).z; }
 
-// Where a world position in front of the camera appears, in pixels from the top left corner.
+// Projection of a world position in front of the camera, in pixels from the top left corner.
 vec2 imagePoint(vec3 world) {
   const vec3 p = cameraFromWorld(world);
   const vec2 plane = frame.camera.orthographic != 0u ? p.xy : p.xy / -p.z;

@@ -1,10 +1,10 @@
-// What a material makes of a surface's alpha.
+// Coverage of a surface from its alpha and the alpha mode of its material.
 #ifndef QUINTET_COVERAGE_GLSL
 #define QUINTET_COVERAGE_GLSL
 
 #include "frame.glsl"
 
-// How much of the surface is there, [0,1]: 0 or 1 for alpha mask, alpha for blend, 1 for all other materials.
+// Coverage in [0,1]: 0 or 1 for alpha mask, alpha for blend, 1 for all other materials.
 float coverageOf(MaterialData material, float alpha) {
   if ((material.flags & kMaterialMask) != 0u) return alpha < material.alphaCutoff ? 0.0 : 1.0;
   return (material.flags & kMaterialBlend) != 0u ? clamp(alpha, 0.0, 1.0) : 1.0;

@@ -1,5 +1,5 @@
-// What the scene has. The renderer defines QUINTET_NO_… for what no material and no light of the scene
-// needs (src/render/scene_features.h); the compiler then drops that code. Results do not change.
+// Features of the scene. The renderer defines QUINTET_NO_… for each feature that no material and no light of the scene
+// needs (src/render/scene/scene_features.h). The compiler then removes that code. Results do not change.
 #ifndef QUINTET_FEATURES_GLSL
 #define QUINTET_FEATURES_GLSL
 
@@ -14,7 +14,7 @@ const bool kHasThinTransmission = false;  // thin walls
 const bool kHasThinTransmission = true;
 #endif
 #ifdef QUINTET_NO_PANES
-const bool kHasPanes = false;  // thin walls that light goes straight through
+const bool kHasPanes = false;  // smooth thin walls, which transmit light without deflection
 #else
 const bool kHasPanes = true;
 #endif
@@ -39,7 +39,7 @@ const bool kHasPunctualLights = false;
 const bool kHasPunctualLights = true;
 #endif
 #ifdef QUINTET_NO_ENVIRONMENT
-const bool kHasEnvironment = false;  // it is black
+const bool kHasEnvironment = false;  // the environment is black
 #else
 const bool kHasEnvironment = true;
 #endif
@@ -49,7 +49,7 @@ const bool kHasVertexColors = false;
 const bool kHasVertexColors = true;
 #endif
 #ifdef QUINTET_NO_SEEDS
-const bool kHasAlpha = false;  // no any-hit shader decides on a candidate
+const bool kHasAlpha = false;  // no any-hit shader tests alpha
 #else
 const bool kHasAlpha = true;
 #endif
@@ -57,9 +57,9 @@ const bool kHasAlpha = true;
 #define QUINTET_TEXTURE_SLOTS 0xFFFFFFFFu
 #endif
 const uint kTextureSlots = QUINTET_TEXTURE_SLOTS;  // bit k: a material has texture kTexture… k
-// QUINTET_NO_SEEDS, QUINTET_NO_TRANSMITTANCE (shadow rays arrive or do not: neither panes nor alpha blend),
-// QUINTET_NO_PROCEDURALS (no solids, no trees), QUINTET_NO_CSG, QUINTET_NO_TORUS, QUINTET_NO_PROCEDURAL_ALPHA and
-// QUINTET_NO_PROCEDURAL_PANES are asked by #ifdef: they also take members and stages away.
+// These are tested by #ifdef, because they also remove members and stages: QUINTET_NO_SEEDS, QUINTET_NO_TRANSMITTANCE
+// (visibility of shadow rays is binary: no panes, no alpha blend), QUINTET_NO_PROCEDURALS (no solids, no CSG trees),
+// QUINTET_NO_CSG, QUINTET_NO_TORUS, QUINTET_NO_PROCEDURAL_ALPHA and QUINTET_NO_PROCEDURAL_PANES.
 const bool kHasTransmission = kHasSolidTransmission || kHasThinTransmission;
 
 #endif

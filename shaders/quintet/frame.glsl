@@ -1,5 +1,5 @@
-// Access to the frame and the scene's arrays from any stage. `launch` is the push-constant block of
-// every program; a compute shader that uses the library declares the same block by this include.
+// Access to the frame and the scene's arrays from any stage. `launch` is the push-constant block of every program and
+// of every compute shader that includes this file.
 #ifndef QUINTET_FRAME_GLSL
 #define QUINTET_FRAME_GLSL
 
@@ -28,11 +28,11 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Uvec3Array { uvec3 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer OutputArray { vec4 at[]; };
 
-// The frame's members without a copy: frame.lightCount, frame.camera.halfSize, …
+// Accesses members of the frame without a copy: frame.lightCount, frame.camera.halfSize, …
 #define frame FrameReference(launch.frame).value
 
 const float kPi = 3.14159265358979323846;
-const float kInfinity = 3.402823466e38;  // the largest float: "no limit" for a ray
+const float kInfinity = 3.402823466e38;  // the largest float: a ray without limit
 
 // Rec. 709 luminance.
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }

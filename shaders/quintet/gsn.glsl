@@ -1,7 +1,7 @@
-// The names of the lecture form (docs/lecture-form.md): gsnSetPixel, gsnGetPositions, frameID, baryCoord, … The
-// splitter (src/program/lecture.cpp) puts before a stage: this file, getters of the inputs, gsn/names_end.glsl.
-// It defines QUINTET_GSN_… for the stage. The library's own names are renamed until names_end, so that a program
-// may use them for its own things; a program that includes <quintet/…> itself sees them (QUINTET_GSN_OPEN).
+// The predeclared names of the lecture form (docs/lecture-form.md): gsnSetPixel, gsnGetPositions, frameID, baryCoord, …
+// src/program/gsn/stage.cpp defines QUINTET_GSN_… for a stage and inserts before it: this file, getters of the inputs,
+// and gsn/names_end.glsl. Up to names_end, the names of the library are renamed, so that a program can use them for its
+// own declarations. They are not renamed in a program that includes <quintet/…> itself (QUINTET_GSN_OPEN).
 #ifndef QUINTET_GSN_GLSL
 #define QUINTET_GSN_GLSL
 
@@ -25,9 +25,9 @@ layout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT topLeve
 #endif
 
 int frameID;    // index of the frame, from 0
-int frameSize;  // frames of this run; 0: it has no end
+int frameSize;  // number of frames of this run; 0 if unlimited
 
-// Row 0 is the bottom of the picture for the program; films begin at the top.
+// Launch index and size as the program sees them: row 0 is the bottom of the image. Row 0 of the film is the top.
 uvec3 gsnLaunchID_;
 uvec3 gsnLaunchSize_;
 uvec3 gsnLaunchID() { return gsnLaunchID_; }

@@ -5,8 +5,8 @@
 #include "hit_geometry.glsl"
 #include "payload.glsl"
 
-// Barycentrics of the ray's hit with the triangle, from the ray itself: drivers exist where a candidate
-// that any-hit has rejected overwrites the attributes of the committed hit (docs/design/quirks.md).
+// Computes the barycentrics of the hit from the ray, because on some drivers a candidate that any-hit has rejected
+// overwrites the attributes of the committed hit (docs/design/quirks.md).
 vec2 barycentricsFromRay(vec3 origin, vec3 direction, vec3 p0, vec3 p1, vec3 p2) {
   const vec3 edge1 = p1 - p0;
   const vec3 edge2 = p2 - p0;
@@ -19,7 +19,7 @@ vec2 barycentricsFromRay(vec3 origin, vec3 direction, vec3 p0, vec3 p1, vec3 p2)
   return b / max(1.0, b.x + b.y);
 }
 
-// What a payload holds of any hit: where it is in the scene and on the ray. `seed` is kept.
+// The members of the payload that are common to all hits: indices in the scene, and t. `seed` is kept.
 HitPayload hitOf(GeometryData geometry, uint seed) {
   HitPayload hit;
   hit.t = gl_HitTEXT;

@@ -1,6 +1,6 @@
-// Checks at run time (quintet check --instrument). program::instrumentStage puts this file before a stage and a main()
-// of its own behind it, and defines QUINTET_INSTRUMENT_STAGE and QUINTET_INSTRUMENT_KIND (0 ray generation, 1 closest
-// hit, 2 any-hit, 3 other). It replaces traceRayEXT by a macro that looks at the arguments first.
+// Runtime checks (quintet check --instrument). program::instrumentStage inserts this file before a stage and a new
+// main() after it, and defines QUINTET_INSTRUMENT_STAGE and QUINTET_INSTRUMENT_KIND (0 ray generation, 1 closest hit, 2
+// any-hit, 3 other). A macro replaces traceRayEXT and checks the arguments first.
 #ifndef QUINTET_INSTRUMENT_GLSL
 #define QUINTET_INSTRUMENT_GLSL
 
@@ -38,7 +38,7 @@ void instrumentReport_(uint kind, uint line, uint depth, float distance, uint in
 #if QUINTET_INSTRUMENT_KIND != 2
 bool instrumentBad_(vec3 v) { return any(isnan(v)) || any(isinf(v)); }
 
-// Before a trace; false: it must not be executed.
+// Checks the arguments before a trace. Returns false if the trace must not run.
 bool instrumentTrace_(uint offset, uint stride, uint miss, vec3 origin, float tmin, vec3 direction, float tmax, uint line) {
   const uint pixel = instrumentPixel_();
   const uint depth = ++instrument_.pixels[pixel].depth;
@@ -62,7 +62,7 @@ bool instrumentTrace_(uint offset, uint stride, uint miss, vec3 origin, float tm
 }
 void instrumentAfter_() { instrument_.pixels[instrumentPixel_()].depth--; }
 
-// The arguments are evaluated once.
+// Evaluates each argument once.
 #define traceRayEXT(as_, flags_, mask_, offset_, stride_, miss_, origin_, tmin_, direction_, tmax_, location_)              \
   do {                                                                                                                     \
     const uint iFlags_ = (flags_), iMask_ = (mask_), iOffset_ = (offset_), iStride_ = (stride_), iMiss_ = (miss_);         \
@@ -80,7 +80,7 @@ void instrumentBegin_() {
 #if QUINTET_INSTRUMENT_KIND == 0
   instrument_.pixels[pixel].depth = 0u;
 #elif QUINTET_INSTRUMENT_KIND == 1
-  // The primitive of the closest hit before, met again within the rounding error of the coordinates (64 roundings).
+  // Reports a hit on the primitive of the previous closest hit within the rounding error of the coordinates (64 roundings).
   const uint instance = uint(gl_InstanceCustomIndexEXT) + 1u;
   const InstrumentPixel last = instrument_.pixels[pixel];
   const vec3 size = abs(gl_WorldRayOriginEXT);

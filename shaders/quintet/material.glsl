@@ -1,5 +1,4 @@
-// What a surface looks like: textures and factors of glTF's material evaluated at a point, the shading
-// frame, and the emission.
+// The material of glTF evaluated at a surface point: textures and factors, the shading frame, and the emission.
 #ifndef QUINTET_MATERIAL_GLSL
 #define QUINTET_MATERIAL_GLSL
 
@@ -12,20 +11,20 @@ struct Shading {
   vec3 normal;      // world, unit: z of the local frame, on the side of wo
   vec3 tangent;     // x
   vec3 bitangent;   // y
-  vec3 emission;    // radiance towards wo (both sides emit)
+  vec3 emission;    // radiance towards wo; both sides emit
   vec3 absorption;  // 1/m inside the solid
-  bool unlit;       // emission is all there is
+  bool unlit;       // the surface emits and does not scatter
 };
 
-// What is left of light from infinity behind a medium that does not end: exp(-absorption · ∞).
+// Transmittance of a medium without end, for light from infinity: exp(-absorption · ∞).
 vec3 endlessTransmittance(vec3 absorption) { return vec3(lessThanEqual(absorption, vec3(0.0))); }
 
 vec3 toLocal(Shading s, vec3 v) { return vec3(dot(v, s.tangent), dot(v, s.bitangent), dot(v, s.normal)); }
 vec3 toWorld(Shading s, vec3 v) { return v.x * s.tangent + v.y * s.bitangent + v.z * s.normal; }
 
-// Bends n so that it is on wo's side and the mirror direction of wo stays above the geometric surface:
-// no black borders on normal-mapped or coarsely tessellated surfaces, no light through them
-// (Keller et al. 2017, "The Iray Light Transport Simulation and Rendering System", section A.3).
+// Bends n to wo's side, and so far that the mirror direction of wo stays above the geometric surface. So normal-mapped and
+// coarsely tessellated surfaces have no black borders, and no light leaks through them (Keller et al. 2017, "The Iray Light
+// Transport Simulation and Rendering System", section A.3).
 vec3 consistentNormal(vec3 n, vec3 geometricNormal, vec3 wo) {
   const float least = 1e-3;
   const float facing = dot(n, wo);
@@ -37,13 +36,13 @@ vec3 consistentNormal(vec3 n, vec3 geometricNormal, vec3 wo) {
   return safeNormalize(wo + normalize(mirrored + (wanted - height) * geometricNormal), geometricNormal);
 }
 
-// Is `slot` this texture? False at once for textures that no material of the scene has.
+// Returns true if `slot` is this texture. False at compile time for textures that no material of the scene has.
 bool isTexture(uint slot, uint texture) { return (kTextureSlots & (1u << texture)) != 0u && slot == texture; }
 const bool kHasNormalMaps = (kTextureSlots & (1u << kTextureNormal | 1u << kTextureClearcoatNormal)) != 0u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TextureArray { TextureData at[]; };
 
-// A tangent-space direction (z up) in world space, in the frame of the front side.
+// Transforms a tangent-space direction (z up) to world space, in the frame of the front side.
 vec3 fromTangentSpace(Surface s, vec3 front, vec3 t) {
   return safeNormalize(t.x * s.tangent + t.y * s.bitangent + t.z * front, front);
 }
@@ -64,7 +63,7 @@ Shading shadeSurface(Surface s, vec3 wo) {
   vec3 mapped = vec3(0.0, 0.0, 1.0);
   vec3 coatMapped = mapped;
 
-  // One look-up in a loop: compilers that inline it (lavapipe's) then see it once.
+  // A loop with one texture access, so that compilers that inline it (lavapipe) compile it once.
   TextureArray textureUses = TextureArray(frame.materials + uint64_t(s.material) * (kMaterialTextureOffset + kTextureCount * 32u) + kMaterialTextureOffset);
   for (uint left = (flags >> kMaterialTextureShift) & kTextureSlots; left != 0u; left &= left - 1u) {
     const uint slot = uint(findLSB(left));
@@ -92,16 +91,16 @@ Shading shadeSurface(Surface s, vec3 wo) {
   r.bsdf.thin = (flags & kMaterialThin) != 0u;
   r.bsdf.clearcoatAlpha = coatRoughness * coatRoughness;
   r.absorption = MATERIAL.absorption;
-  // As lights/triangle.glsl has it for light samples.
+  // The same factor as in lights/triangle.glsl for light samples.
   if (kHasClearcoat && !r.unlit) r.emission *= clearcoatPassed(r.bsdf.clearcoat, r.bsdf.clearcoatAlpha, abs(dot(s.shadingNormal, wo)));
 #undef MATERIAL
 
-  // Normal maps live in the frame of the front side; the whole frame turns for a back side.
+  // Normal maps are defined in the frame of the front side. For a back side the whole frame is turned.
   const float side = s.frontFace ? 1.0 : -1.0;
   const vec3 front = side * s.shadingNormal;
   const vec3 wanted = kHasNormalMaps ? side * fromTangentSpace(s, front, mapped) : s.shadingNormal;
   r.normal = consistentNormal(wanted, s.geometricNormal, wo);
-  // No lobe depends on the tangent's direction: without normal maps any will do, and the vertices' are not fetched.
+  // No lobe depends on the tangent's direction. Without normal maps any tangent works, and none is fetched.
   r.tangent = anyTangent(r.normal);
   if (kHasNormalMaps) r.tangent = safeNormalize(s.tangent - r.normal * dot(r.normal, s.tangent), r.tangent);
   r.bitangent = cross(r.normal, r.tangent);

@@ -1,6 +1,6 @@
-// Writing results. Where the film averages (the default), outputs are sums over the samples of a batch; the film divides later. A program loads
-// the sum, adds its samples one by one in sample order and stores it, so that the bytes do not depend
-// on how many samples a launch takes.
+// Writes results. If the film averages (the default), an output is the sum over the samples of a batch; the film
+// divides later. A program loads the sum, adds its samples one by one in sample order, and stores the sum. The result
+// then does not depend on the number of samples per launch, bit for bit.
 #ifndef QUINTET_OUTPUT_GLSL
 #define QUINTET_OUTPUT_GLSL
 
@@ -10,7 +10,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer StatisticsAr
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TileArray { FilmTile at[]; };
 
-// Every second bit, starting with the lowest.
+// Extracts bits 0, 2, 4, … into adjacent bits.
 uint evenBits(uint x) {
   x &= 0x55555555u;
   x = (x | x >> 1) & 0x33333333u;
@@ -18,14 +18,14 @@ uint evenBits(uint x) {
   return (x | x >> 4) & 0x00FF00FFu;
 }
 
-// The pixel of this invocation. Where the launch covers tiles, each row of it is one tile, its pixels in Morton order.
+// The pixel of this invocation. If the launch covers tiles, each row is one tile, with its pixels in Morton order.
 uvec2 launchPixel() {
   if (launch.tiles == 0ul) return gl_LaunchIDEXT.xy + launch.offset;
   const FilmTile tile = TileArray(launch.tiles).at[gl_LaunchIDEXT.y + launch.offset.y];
   return frame.filmOffset + uvec2(tile.x, tile.y) + uvec2(evenBits(gl_LaunchIDEXT.x), evenBits(gl_LaunchIDEXT.x >> 1));
 }
 
-// Of a program with adaptive = true: whether this pixel takes part in the batch; false: leave it alone.
+// For programs with adaptive = true: true if this pixel is sampled in this batch. If false, write nothing.
 bool launchActive(uvec2 pixel) {
   if (launch.tiles == 0ul) return true;
   const uvec2 film = pixel - frame.filmOffset;
@@ -43,23 +43,24 @@ uint pixelIndex(uvec2 pixel) {
 vec4 loadOutput(uint slot, uvec2 pixel) { return OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)]; }
 void storeOutput(uint slot, uvec2 pixel, vec4 sum) { OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] = sum; }
 void addOutput(uint slot, uvec2 pixel, vec4 sample_) { OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] += sample_; }
-// Of an output that counts ids (pixel = "coverage"): what sample `index` of the pixel has met; 0: nothing.
+// For an output that counts ids (pixel = "coverage"): stores the id that sample `index` of the pixel has hit; 0: no
+// hit.
 void storeCoverage(uint slot, uvec2 pixel, uint index, uint id) {
   OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)][index % kBatchSamples] = uintBitsToFloat(id);
 }
 
-// Of a program that averages itself (accumulation = "program"): the number of the frame, and what the frame before
-// stored; 0 in the first frame, and always 0 where the film averages.
+// For a program that averages by itself (accumulation = "program"): the index of the frame, and the value that the
+// previous frame stored. That value is 0 in the first frame, and always 0 if the film averages.
 uint launchFrame() { return launch.firstSample; }
 vec4 loadPrevious(uint slot, uvec2 pixel) {
   const Address previous = frame.previousOutputs[slot];
   return previous != 0ul ? OutputArray(previous).at[pixelIndex(pixel)] : vec4(0.0);
 }
 
-// Non-finite samples are left out and counted: `quintet render` reports them as the defect that they are.
+// Programs discard and count non-finite samples; `quintet render` reports their number.
 bool isFinite(vec4 value) { return !(any(isnan(value)) || any(isinf(value))); }
 
-// Adds to this pixel's counters: rays traced, samples dropped.
+// Adds to this pixel's counters: rays traced, samples discarded.
 void countRays(uvec2 pixel, uint rays, uint dropped) {
   if (frame.statistics != 0ul) StatisticsArray(frame.statistics).at[pixelIndex(pixel)] += uvec2(rays, dropped);
 }

@@ -1,4 +1,4 @@
-// The surface at a hit: position with its error bound, frames, texture coordinates.
+// The surface at a hit: position and its error bound, frames, texture coordinates.
 #ifndef QUINTET_SURFACE_GLSL
 #define QUINTET_SURFACE_GLSL
 
@@ -7,14 +7,14 @@
 
 struct Surface {
   vec3 position;         // world
-  float error;           // metres along the geometric normal within which the traversal may see the surface
+  float error;           // meters along the geometric normal; bounds the distance to the surface that rays intersect
   vec3 geometricNormal;  // world, unit, on the side of wo
-  vec3 shadingNormal;    // world, unit, interpolated, on the side of wo; not yet normal mapped
+  vec3 shadingNormal;    // world, unit, interpolated, on the side of wo; before normal mapping
   vec3 tangent;          // world, unit, orthogonal to shadingNormal, for normal maps
   vec3 bitangent;
-  bool frontFace;        // wo is on the side from which the triangle is counter-clockwise; solids: outside
+  bool frontFace;        // wo sees the triangle counter-clockwise; for solids: wo is outside
   uint material;
-  vec4 color;            // vertex colour, 1 if absent
+  vec4 color;            // vertex color; 1 if there is none
   vec2 uvs[2];
 };
 
@@ -22,16 +22,16 @@ vec3 rowsTimesPoint(vec4 rows[3], vec3 p) {
   return vec3(dot(rows[0].xyz, p) + rows[0].w, dot(rows[1].xyz, p) + rows[1].w, dot(rows[2].xyz, p) + rows[2].w);
 }
 vec3 rowsTimesVector(vec4 rows[3], vec3 v) { return vec3(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v)); }
-// Transpose of the linear part times v: normals, when `rows` is the inverse transform.
+// Returns the transpose of the linear part times v. It transforms normals if `rows` is the inverse transform.
 vec3 transposeTimesVector(vec4 rows[3], vec3 v) { return rows[0].xyz * v.x + rows[1].xyz * v.y + rows[2].xyz * v.z; }
 
-// Bound of how far, along the world normal n, the computed point p of triangle (p0, p1, p2) may lie from
-// the triangle as the traversal sees it. Standard model of floating-point error (Higham 2002, ch. 3;
-// used for ray offsets by Wächter & Binder 2019 and pbrt ch. 6.8), with e = 2^-24 and k roundings bounded by
-// k·e: interpolation in object space, transform to world, the traversal's transform of the ray's
-// origin back to object space, and its subtraction of origin and vertices. That last error is spread over all
-// axes: watertight tests shear the triangle along the ray, so the extent of one axis reaches the others
-// (an axis-aligned plane through the origin has no error but this one).
+// Returns a bound of the distance, along the world normal n, between the computed point p of triangle (p0, p1, p2) and the
+// triangle that the traversal intersects. It uses the standard model of floating-point error (Higham 2002, chapter 3; for
+// ray offsets: Wächter and Binder 2019, pbrt chapter 6.8), with e = 2^-24 and k roundings bounded by k·e. The errors are
+// those of interpolation in object space, of the transform to world, of the traversal's transform of the ray origin back to
+// object space, and of its subtraction of origin and vertices. The last one applies to all axes: watertight tests shear the
+// triangle along the ray, so the extent of one axis affects the others. An axis-aligned plane through the origin has no
+// other error. Derivation: docs/design/path-tracer.md, "Ray offsets".
 float surfaceError(InstanceData instance, vec3 p0, vec3 p1, vec3 p2, vec3 p, vec3 n) {
   const float e = 5.9604645e-8;
   const vec3 largest = max(max(abs(p0), abs(p1)), abs(p2));
@@ -46,12 +46,12 @@ float surfaceError(InstanceData instance, vec3 p0, vec3 p1, vec3 p2, vec3 p, vec
   return 2.0 * e * (dot(abs(n), world) + dot(abs(transposeTimesVector(instance.worldFromObject, n)), object));
 }
 
-// Where a ray that leaves the surface towards `direction` starts, so that it cannot meet the surface itself.
+// Returns the origin of a ray that leaves the surface towards `direction`, such that it cannot hit the surface itself.
 vec3 offsetOrigin(Surface surface, vec3 direction) {
   return surface.position + (dot(direction, surface.geometricNormal) < 0.0 ? -surface.error : surface.error) * surface.geometricNormal;
 }
 
-// A tangent for surfaces that have none (Duff et al. 2017).
+// Returns a tangent for surfaces without tangents (Duff et al. 2017).
 vec3 anyTangent(vec3 n) {
   const float s = n.z >= 0.0 ? 1.0 : -1.0;
   const float a = -1.0 / (s + n.z);
@@ -82,7 +82,7 @@ Surface fetchSurface(HitPayload hit, vec3 wo) {
 
   Surface s;
   s.position = rowsTimesPoint(instance.worldFromObject, b.x * p0 + b.y * p1 + b.z * p2);
-  // From world-space edges: the inverse transpose loses precision for strong scales.
+  // The normal comes from world-space edges, because the inverse transpose loses precision for large scales.
   const vec3 edge1 = rowsTimesVector(instance.worldFromObject, p1 - p0);
   const vec3 edge2 = rowsTimesVector(instance.worldFromObject, p2 - p0);
   const float size = max(maxComponent(abs(edge1)), maxComponent(abs(edge2)));

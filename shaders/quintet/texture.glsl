@@ -1,5 +1,5 @@
-// Texture coordinates and look-ups. No derivatives exist in ray tracing stages and the textures have no
-// mip levels: many samples per pixel filter them.
+// Texture coordinates and lookups. Ray tracing stages have no derivatives and the textures have no mip levels: textures
+// are filtered by many samples per pixel.
 #ifndef QUINTET_TEXTURE_GLSL
 #define QUINTET_TEXTURE_GLSL
 
@@ -18,8 +18,8 @@ vec2 interpolateUv(GeometryData geometry, uvec3 v, vec3 b, uint uvSet) {
   return b.x * uvs.at[v.x] + b.y * uvs.at[v.y] + b.z * uvs.at[v.z];
 }
 
-// A program's parameter of type image is the index of its texture: sampleParameter(parameters.NAME, uv). Bilinear,
-// repeated; (0, 0) is the upper left corner.
+// A program parameter of type image is the index of its texture: sampleParameter(parameters.NAME, uv). The lookup is
+// bilinear and repeats; (0, 0) is the upper left corner.
 vec4 sampleParameter(uint image, vec2 uv) { return textureLod(textures[nonuniformEXT(image)], uv, 0.0); }
 vec4 texelParameter(uint image, ivec2 texel) { return texelFetch(textures[nonuniformEXT(image)], texel, 0); }
 ivec2 parameterSize(uint image) { return textureSize(textures[nonuniformEXT(image)], 0); }

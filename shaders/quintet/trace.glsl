@@ -15,7 +15,7 @@ layout(location = 0) rayPayloadEXT HitPayload hitPayload;
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayRecordArray { RayKinds kinds; RayRecord at[]; };
 uint recordedRays = 0u;
 
-// Counts the traced ray by its kind and keeps it for the program `replay`; rays beyond the capacity are only counted.
+// Counts the traced ray by its kind and stores it for the program `replay`; rays beyond the capacity are only counted.
 void recordRay(vec3 origin, vec3 direction, float tmax, uint kind, bool hit) {
   RayRecordArray records = RayRecordArray(frame.rayRecords);
   if (kind == kRecordShadow) {
@@ -35,7 +35,7 @@ void recordRay(vec3 origin, vec3 direction, float tmax, uint kind, bool hit) {
 }
 #endif
 
-// The closest surface along origin + t · direction, t in (0, tmax). `seed` decides stochastic alpha.
+// The closest surface along origin + t · direction, t in (0, tmax). `seed` is for stochastic alpha.
 HitPayload traceClosest(vec3 origin, vec3 direction, float tmax, uint seed) {
   hitPayload.t = -1.0;
   setRaySeed(hitPayload, seed);
@@ -50,8 +50,8 @@ HitPayload traceClosest(vec3 origin, vec3 direction, float tmax, uint seed) {
 #ifdef QUINTET_SHADOW_RAYS
 layout(location = 1) rayPayloadEXT ShadowPayload shadowPayload;
 
-// True if nothing (alpha decided by `seed`) lies between t = 0 and tmax. tmax 0: no ray; where some of the invocations have
-// none it is much faster (H200) to call this for all of them than to part ways here.
+// True if no surface lies between t = 0 and tmax; `seed` is for stochastic alpha. tmax 0: no ray. If only some
+// invocations have a ray, calling this from all of them is much faster (H200) than diverging here.
 bool traceVisible(vec3 origin, vec3 direction, float tmax, uint seed) {
   const uint mask = tmax > 0.0 ? 0xFFu : 0u;
   shadowPayload.visible = 0u;
@@ -67,8 +67,8 @@ bool traceVisible(vec3 origin, vec3 direction, float tmax, uint seed) {
   return shadowPayload.visible != 0u;
 }
 
-// The part of the light at t = tmax that arrives straight at t = 0: panes and alpha blend tint it, if the program's any-hit
-// shaders are those of quintet/stages/transmittance.rahit; all other surfaces block it.
+// The fraction of the light at t = tmax that arrives undeflected at t = 0. Panes and alpha blend tint it, if the
+// program uses the any-hit shader quintet/stages/transmittance.rahit; all other surfaces block it.
 vec3 traceTransmittance(vec3 origin, vec3 direction, float tmax, uint seed) {
   const bool visible = traceVisible(origin, direction, tmax, seed);
 #ifndef QUINTET_NO_TRANSMITTANCE

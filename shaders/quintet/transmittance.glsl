@@ -1,11 +1,11 @@
-// What a surface lets straight through to a shadow ray, for any-hit shaders: what alpha leaves open, and where the
-// surface is there, the weight with which a path goes straight through it (bsdfStraight: only smooth thin walls).
+// Transmittance of a surface for a shadow ray, in any-hit shaders: the part that alpha does not cover, plus, for the
+// covered part, the weight of a path that passes undeflected (bsdfStraight: only smooth thin walls).
 #ifndef QUINTET_TRANSMITTANCE_GLSL
 #define QUINTET_TRANSMITTANCE_GLSL
 
 #include "material.glsl"
 
-// The surface of `hit`, a candidate of a ray towards `direction`, of which `coverage` is there.
+// `hit`: a candidate of a ray in `direction`, with the alpha coverage `coverage`.
 vec3 candidateTransmittance(HitPayload hit, uint material, float coverage, vec3 direction) {
   vec3 straight = vec3(0.0);
   if (kHasPanes && (MaterialArray(frame.materials).at[material].flags & kMaterialPane) != 0u) {
@@ -17,8 +17,8 @@ vec3 candidateTransmittance(HitPayload hit, uint material, float coverage, vec3 
   return mix(vec3(1.0), straight, coverage);
 }
 
-// True if the ray ends here: nothing is left of its light.
-bool takesAll(inout ShadowPayload payload, vec3 transmittance) {
+// True if the surface blocks all remaining light, so that the ray can end.
+bool blocksRay(inout ShadowPayload payload, vec3 transmittance) {
 #ifdef QUINTET_NO_TRANSMITTANCE
   return maxComponent(transmittance) <= 0.0;
 #else

@@ -8,7 +8,7 @@
 namespace quintet {
 
 struct EmbeddedFile {
-  std::string_view path;  // relative, with '/' separators, sorted within its set
+  std::string_view path;  // relative, with '/' separators; a set of files is sorted by path
   std::string_view data;
 };
 

@@ -3,15 +3,15 @@
 namespace quintet {
 namespace {
 
-std::string describe(const std::filesystem::path& file, std::string_view place, std::string_view problem) {
+std::string describe(const std::filesystem::path& file, std::string_view location, std::string_view problem) {
   std::string text = file.string();
-  if (!place.empty()) text.append(": ").append(place);
+  if (!location.empty()) text.append(": ").append(location);
   return text.append(": ").append(problem);
 }
 
 }  // namespace
 
-FileError::FileError(const std::filesystem::path& file, std::string_view place, std::string_view problem)
-    : Error(describe(file, place, problem)), file_(file), place_(place), problem_(problem) {}
+FileError::FileError(const std::filesystem::path& file, std::string_view location, std::string_view problem)
+    : Error(describe(file, location, problem)), file_(file), location_(location), problem_(problem) {}
 
 }  // namespace quintet

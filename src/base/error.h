@@ -1,4 +1,4 @@
-// The exception types of the public API, used by every layer.
+// The exception types of the public API. Every layer throws them.
 #ifndef QUINTET_BASE_ERROR_H
 #define QUINTET_BASE_ERROR_H
 

@@ -40,14 +40,14 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
   explicit operator bool() const { return fd_ >= 0; }
   int get() const { return fd_; }
-  // False (with errno) if the system reports only now that a write was lost, as NFS does.
+  // Returns false, with errno set, if the system reports a lost write at this point (NFS).
   bool close() { return fd_ < 0 || ::close(std::exchange(fd_, -1)) == 0; }
 
  private:
   int fd_;
 };
 
-// Reads the file's first bytes on all cores; returns how many from the beginning on have arrived.
+// Reads the file's first bytes on all cores. Returns the length of the prefix that was read without a gap.
 std::size_t readInParts(int fd, std::span<std::byte> data) {
   constexpr std::size_t kPart = std::size_t{8} << 20;
   const std::size_t parts = (data.size() + kPart - 1) / kPart;
@@ -57,7 +57,7 @@ std::size_t readInParts(int fd, std::span<std::byte> data) {
     while (got[i] < part.size()) {
       const ssize_t more =
           ::pread(fd, part.data() + got[i], part.size() - got[i], static_cast<off_t>(i * kPart + got[i]));
-      if (more <= 0) break;  // whoever goes on from there is told the same
+      if (more <= 0) break;  // the caller reads the rest and gets the same error
       got[i] += static_cast<std::size_t>(more);
     }
   });
@@ -79,7 +79,7 @@ Container readAll(const fs::path& file) {
   Container data;
   std::size_t used = 0;
   try {
-    // One byte more than the size, so that the end of the file shows without growing the buffer.
+    // One byte more than the size: read() can then return 0 at the end of the file without growing the buffer.
     data.resize(S_ISREG(info.st_mode) ? static_cast<std::size_t>(info.st_size) + 1 : 65536);
     if constexpr (std::is_same_v<Container, FileBytes>) {
       if (S_ISREG(info.st_mode)) used = readInParts(in.get(), std::span(data).first(data.size() - 1));
@@ -102,7 +102,7 @@ Container readAll(const fs::path& file) {
   return data;
 }
 
-// Returns 0 or the error's code.
+// Returns 0 or the error code.
 int writeAll(int fd, std::span<const std::byte> data) {
   while (!data.empty()) {
     const ssize_t written = ::write(fd, data.data(), data.size());
@@ -115,13 +115,13 @@ int writeAll(int fd, std::span<const std::byte> data) {
 }
 
 struct Target {
-  fs::path path;               // symbolic links followed, so that a rename replaces the file and not the link
-  std::optional<mode_t> mode;  // of the file that is there
+  fs::path path;               // symbolic links are resolved, so that a rename replaces the file and not the link
+  std::optional<mode_t> mode;  // of the existing file
   bool regular() const { return !mode || S_ISREG(*mode); }
   fs::path folder() const { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
 };
 
-// Finds what `file` stands for; throws what checkWritable promises.
+// Resolves `file`; throws the errors of checkWritable.
 Target findTarget(const fs::path& file) {
   if (file.empty()) failWriting(file, "the file name is empty");
   Target target{file, {}};
@@ -129,7 +129,7 @@ Target findTarget(const fs::path& file) {
   for (int links = 0; fs::is_symlink(fs::symlink_status(target.path, ignored)); ++links) {
     if (links == 40) failWriting(file, ELOOP);
     const fs::path next = fs::read_symlink(target.path, ignored);
-    // A link of /proc/self/fd may name a pipe or a deleted file: opened by the link itself.
+    // A link of /proc/self/fd can name a pipe or a deleted file, which only the link itself can open.
     if (struct stat info{}; ::stat(target.path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) break;
     target.path = target.folder() / next;
   }
@@ -162,7 +162,7 @@ void writeDirectly(const fs::path& file, const Target& target, std::span<const s
 
 void syncFolder(const fs::path& folder) {
   const Descriptor fd(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (fd) ::fsync(fd.get());  // some file systems cannot; the data itself is safe by now
+  if (fd) ::fsync(fd.get());  // some file systems do not support this; the data is already on the disk
 }
 
 void replaceFile(const fs::path& file, const Target& target, std::span<const std::byte> data) {
@@ -216,7 +216,7 @@ fs::path cacheFolder() {
     return value ? value : "";
   };
   if (const fs::path own = variable("QUINTET_CACHE_DIR"); !own.empty()) return own;
-  // The XDG base directory specification wants relative paths ignored.
+  // The XDG base directory specification requires that relative paths are ignored.
   if (const fs::path xdg = variable("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / "quintet";
   if (const fs::path home = variable("HOME"); home.is_absolute()) return home / ".cache" / "quintet";
   return {};

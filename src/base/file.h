@@ -1,5 +1,4 @@
-// Reading whole files, writing them so that a reader never sees half of one, and the folders where
-// the platform wants caches.
+// Reads whole files, replaces files atomically, and finds the folders of the cache and of the executable.
 #ifndef QUINTET_BASE_FILE_H
 #define QUINTET_BASE_FILE_H
 
@@ -15,7 +14,7 @@
 
 namespace quintet {
 
-// std::allocator, but resize() leaves new elements of simple types uninitialised.
+// std::allocator, except that resize() leaves new elements of trivial types uninitialized.
 template <class T>
 struct UnclearedAllocator : std::allocator<T> {
   template <class U>
@@ -33,33 +32,32 @@ struct UnclearedAllocator : std::allocator<T> {
 };
 using FileBytes = std::vector<std::byte, UnclearedAllocator<std::byte>>;
 
-// Throws FileError (missing, a folder, unreadable, larger than memory).
+// Reads a whole file. Throws FileError if it is missing, a folder, unreadable or larger than the memory.
 std::vector<std::byte> readFile(const std::filesystem::path& file);
-// The same for large files: not cleared first, and read on all cores. (Mapping the file would be no faster, and a file
-// that another program cuts short would kill this one.)
+// Reads a large file on all cores into memory that is not cleared first. Mapping the file would not be faster, and the
+// process would be killed if another process truncated the file.
 FileBytes readLargeFile(const std::filesystem::path& file);
 std::string readTextFile(const std::filesystem::path& file);
 
-// Writes to a temporary file beside `file` (temporary_file.h), flushes it to the disk and renames it over `file`.
-// On failure (no folder, no permission, disk full) the temporary is removed, what was there stays,
-// and a FileError is thrown. "-" means standard output. Devices and pipes are written directly.
+// Writes a temporary file beside `file` (temporary_file.h), flushes it to the disk and renames it to `file`, so readers
+// never see a partial file. On failure (no folder, no permission, disk full) the temporary file is removed, an existing
+// `file` stays unchanged, and a FileError is thrown. "-" means standard output. Devices and pipes are written directly.
 void writeFile(const std::filesystem::path& file, std::span<const std::byte> data);
 void writeFile(const std::filesystem::path& file, std::string_view text);
 
-// Removes the temporary files of processes that were killed while they wrote `file`; writeFile does so, too. Throws as
-// checkWritable does.
+// Removes the temporary files of processes that were killed while they wrote `file`. writeFile does this as well.
+// Throws the errors of checkWritable.
 void removeLeftovers(const std::filesystem::path& file);
 
-// Throws the FileError that writeFile would give for a path that cannot be written at all
-// (missing folder, a folder itself, no permission), without touching an existing file: lets a
-// long job fail before it starts.
+// Throws the FileError of writeFile for a path that cannot be written (missing folder, a folder itself, no permission)
+// without touching an existing file, so that a long job can fail before it starts.
 void checkWritable(const std::filesystem::path& file);
 
-// $XDG_CACHE_HOME/quintet or ~/.cache/quintet; $QUINTET_CACHE_DIR overrides both. Not created here.
-// Empty when no home is known: then caches are off.
+// Returns $QUINTET_CACHE_DIR, $XDG_CACHE_HOME/quintet or ~/.cache/quintet, the first that is set. The folder may not
+// exist. Empty if no home folder is known, which disables the caches.
 std::filesystem::path cacheFolder();
 
-// The folder of the running executable; empty if the system does not tell.
+// Returns the folder of the running executable; empty if it is unknown.
 std::filesystem::path executableFolder();
 
 }  // namespace quintet

@@ -33,7 +33,7 @@ Hasher& Hasher::add(std::span<const std::byte> bytes) {
   return *this;
 }
 
-// Little-endian whatever the host, so that names in a shared cache agree.
+// Little-endian on every host, so that names in a shared cache agree.
 Hasher& Hasher::add(std::uint64_t value) {
   std::array<std::uint8_t, 8> bytes;
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));

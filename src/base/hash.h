@@ -1,5 +1,5 @@
-// 128-bit content hash (XXH3): names of cache entries and the scene hash in an image's metadata.
-// Not cryptographic.
+// 128-bit content hash (XXH3) for the names of cache entries and for the scene hash in image metadata. It is not
+// cryptographic.
 #ifndef QUINTET_BASE_HASH_H
 #define QUINTET_BASE_HASH_H
 
@@ -18,10 +18,10 @@ struct Hash {
   std::uint64_t high = 0;
   std::uint64_t low = 0;
   auto operator<=>(const Hash&) const = default;
-  std::string hex() const;  // 32 lower-case digits
+  std::string hex() const;  // 32 lowercase digits
 };
 
-// Incremental; strings are framed by their length, so ("ab","c") and ("a","bc") differ.
+// Hashes a sequence of values. The length of each string is hashed too, so ("ab", "c") and ("a", "bc") differ.
 class Hasher {
  public:
   Hasher();

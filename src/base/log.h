@@ -1,4 +1,4 @@
-// How a library reports what is not an error: the app passes a sink, the library never prints.
+// Log callbacks. The library never prints; the application passes a sink for messages that are not errors.
 #ifndef QUINTET_BASE_LOG_H
 #define QUINTET_BASE_LOG_H
 
@@ -9,7 +9,7 @@ namespace quintet {
 
 enum class LogLevel { debug, info, warning };
 
-// May be called from any thread; an empty sink drops the message. One line, no trailing newline.
+// Receives one line without a trailing newline. It may be called from any thread; an empty sink discards the message.
 using LogSink = std::function<void(LogLevel, const std::string&)>;
 
 }  // namespace quintet

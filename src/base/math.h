@@ -1,10 +1,10 @@
-// The project's glm set-up and the few vector helpers that glm lacks. Column vectors, column-major
-// matrices, right-handed frames; transforms are named by both ends (worldFromObject).
+// The glm configuration of the project, and bounding boxes. Vectors are columns, matrices are column-major, frames are
+// right-handed, and the name of a transform has both spaces (worldFromObject).
 #ifndef QUINTET_BASE_MATH_H
 #define QUINTET_BASE_MATH_H
 
 #ifdef GLM_VERSION
-#error "glm without this set-up has other types: include base/math.h instead of it"
+#error "include base/math.h instead of glm: the types of glm depend on this configuration"
 #endif
 #define GLM_FORCE_DEPTH_ZERO_TO_ONE
 #define GLM_FORCE_SIZE_T_LENGTH
@@ -32,7 +32,7 @@ using glm::vec4;
 
 inline constexpr float kPi = 3.14159265358979323846f;
 
-// Axis-aligned box; default: empty (min > max), the neutral element of `extend`.
+// Axis-aligned bounding box. The default is empty (min > max), the neutral element of `extend`.
 struct Bounds3 {
   vec3 min{std::numeric_limits<float>::infinity()};
   vec3 max{-std::numeric_limits<float>::infinity()};
@@ -42,13 +42,13 @@ struct Bounds3 {
   vec3 extent() const { return max - min; }
   void extend(const vec3& p) { min = glm::min(min, p), max = glm::max(max, p); }
   void extend(const Bounds3& b) { min = glm::min(min, b.min), max = glm::max(max, b.max); }
-  // Surface area (0 if empty).
+  // Surface area; 0 if empty.
   float area() const {
     if (empty()) return 0.0f;
     const vec3 e = extent();
     return 2.0f * (e.x * e.y + e.y * e.z + e.z * e.x);
   }
-  // The box of the eight transformed corners.
+  // Returns the bounds of the eight transformed corners.
   Bounds3 transformed(const mat4& m) const {
     Bounds3 result;
     if (empty()) return result;

@@ -12,7 +12,8 @@
 namespace quintet {
 namespace {
 
-// A line of /proc/self/status: "VmHWM:     12345 kB". getrusage would do, but its peak is inherited across exec.
+// Reads a line such as "VmHWM:     12345 kB" of /proc/self/status. The peak that getrusage reports is inherited across
+// exec.
 std::uint64_t statusBytes(std::string_view key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -30,21 +31,21 @@ std::uint64_t statusBytes(std::string_view key) {
 std::uint64_t residentBytes() { return statusBytes("VmRSS:"); }
 std::uint64_t peakResidentBytes() { return statusBytes("VmHWM:"); }
 
-void returnLargeBlocksAtOnce() {
+void releaseLargeBlocksImmediately() {
 #if defined(__GLIBC__)
   constexpr int kLargeBytes = 4 << 20;
   ::mallopt(M_MMAP_THRESHOLD, kLargeBytes);
 #endif
 }
 
-void givePagesBack(std::span<const std::byte> bytes) {
+void releasePages(std::span<const std::byte> bytes) {
   const auto page = static_cast<std::uintptr_t>(::sysconf(_SC_PAGESIZE));
   const auto begin = reinterpret_cast<std::uintptr_t>(bytes.data());
   const std::uintptr_t first = (begin + page - 1) / page * page, last = (begin + bytes.size()) / page * page;
   if (first < last) ::madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
 }
 
-void returnFreedMemory() {
+void releaseFreedMemory() {
 #if defined(__GLIBC__)
   ::malloc_trim(0);
 #endif

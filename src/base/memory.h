@@ -1,4 +1,4 @@
-// How much memory this process holds, as the system counts it.
+// Memory of this process: resident size, and control over when freed memory returns to the system.
 #ifndef QUINTET_BASE_MEMORY_H
 #define QUINTET_BASE_MEMORY_H
 
@@ -8,19 +8,19 @@
 
 namespace quintet {
 
-// Bytes in physical memory, mapped files that were read included. 0 where the system does not tell.
+// Returns the bytes in physical memory, including the pages of mapped files; 0 if unknown.
 std::uint64_t residentBytes();
-// The most that it ever was since the process began.
+// Returns the maximum of residentBytes() since the process started.
 std::uint64_t peakResidentBytes();
 
-// From now on large blocks go back to the system when they are freed; glibc would learn from the first ones to keep them.
-// For a program's beginning.
-void returnLargeBlocksAtOnce();
-// Gives the pages that lie wholly inside these bytes of a vector back to the system: they read as zeros from then on. For
-// parts of a large block that nobody reads again.
-void givePagesBack(std::span<const std::byte> bytes);
-// Gives memory that was freed, but kept for later, back to the system.
-void returnFreedMemory();
+// Makes the allocator return blocks of 4 MiB or more to the system as soon as they are freed. By default glibc raises
+// this threshold after the first large blocks and keeps later ones. Call it at the start of the program.
+void releaseLargeBlocksImmediately();
+// Returns the pages that are completely inside `bytes` to the system; they read as zeros afterwards. Use it for parts
+// of a large block that are not read again.
+void releasePages(std::span<const std::byte> bytes);
+// Returns freed memory that the allocator has kept to the system.
+void releaseFreedMemory();
 
 }  // namespace quintet
 #endif

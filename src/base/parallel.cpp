@@ -17,7 +17,7 @@ namespace {
 
 thread_local bool insideLoop = false;
 
-// Takes indices from a shared counter until none is left or a body has thrown.
+// Threads take indices from a shared counter until it reaches the count or a call has thrown.
 class Loop {
  public:
   Loop(std::size_t count, const std::function<void(std::size_t)>& body) : count_(count), body_(body) {}
@@ -56,17 +56,17 @@ unsigned hardwareThreads() {
 }
 
 void parallelFor(std::size_t count, const std::function<void(std::size_t)>& body) {
-  if (count == 1) return body(0);  // a loop inside of it may have the other cores
+  if (count == 1) return body(0);  // a loop inside the body can then use all cores
   Loop loop(count, body);
   std::vector<std::jthread> helpers;
-  // A loop inside a loop runs on the thread that it is on: the others are busy already.
+  // A nested loop stays on its thread, because the outer loop already uses the other cores.
   if (count > 1 && !insideLoop) {
     const std::size_t wanted = std::min<std::size_t>(count, hardwareThreads()) - 1;
     helpers.reserve(wanted);
     try {
       while (helpers.size() < wanted) helpers.emplace_back([&loop] { loop.work(); });
     } catch (const std::system_error&) {
-      // No more threads to be had: those that started, and this one, do the work.
+      // The system has no more threads. The started ones and this thread do the work.
     }
   }
   loop.work();

@@ -8,8 +8,8 @@
 namespace quintet {
 namespace {
 
-// Regularised incomplete beta function I_x(a, b) by its continued fraction (DLMF 8.17.22, evaluated after
-// Lentz 1976); converges quickly for x < (a + 1) / (a + b + 2).
+// Continued fraction of the regularized incomplete beta function I_x(a, b) (DLMF 8.17.22, evaluated with the method of
+// Lentz 1976). It converges quickly for x < (a + 1) / (a + b + 2).
 double betaFraction(double a, double b, double x) {
   constexpr double kTiny = 1e-300;
   const auto inverted = [](double v) { return 1.0 / (std::abs(v) < kTiny ? kTiny : v); };
@@ -39,7 +39,7 @@ double incompleteBeta(double a, double b, double x) {
          betaFraction(a, b, x) / a;
 }
 
-// z with P(Z <= z) = probability.
+// Returns z with P(Z <= z) = probability for the standard normal distribution.
 double normalQuantile(double probability) {
   double low = -40.0, high = 40.0;
   for (int i = 0; i < 100; ++i) {
@@ -51,17 +51,17 @@ double normalQuantile(double probability) {
 
 }  // namespace
 
-double studentTwoSided(double t, double freedom) {
-  return incompleteBeta(0.5 * freedom, 0.5, freedom / (freedom + t * t));
+double studentTwoSided(double t, double degreesOfFreedom) {
+  return incompleteBeta(0.5 * degreesOfFreedom, 0.5, degreesOfFreedom / (degreesOfFreedom + t * t));
 }
 
 double fisherQuantile(double probability, double a, double b) {
-  // The fraction converges after some sqrt(a + b) terms; beyond `kMany` degrees of freedom nothing changes that matters
-  // here, as long as the other is small.
+  // The continued fraction needs about sqrt(a + b) terms. More than kMany degrees of freedom do not change the result
+  // noticeably as long as the other number is small.
   constexpr double kSome = 200.0, kMany = 4000.0;
   if (a > kSome && b > kSome) {
-    // Both cube roots are all but normal (E. Paulson, "An Approximate Normalization of the Analysis of Variance
-    // Distribution", 1942): the root of (1 - v) x - (1 - u) = z sqrt(v x² + u) in x³ = F.
+    // The cube roots of both mean squares are nearly normal (E. Paulson, "An Approximate Normalization of the Analysis
+    // of Variance Distribution", 1942): solve (1 - v) x - (1 - u) = z sqrt(v x² + u) for x, with x³ = F.
     const double u = 2.0 / (9.0 * a), v = 2.0 / (9.0 * b), z = normalQuantile(probability);
     const double p = (1.0 - v) * (1.0 - v) - z * z * v, q = (1.0 - u) * (1.0 - v),
                  r = (1.0 - u) * (1.0 - u) - z * z * u;
@@ -70,7 +70,7 @@ double fisherQuantile(double probability, double a, double b) {
   }
   a = std::min(a, kMany);
   b = std::min(b, kMany);
-  // I_y(a/2, b/2) with y = a x / (a x + b) rises with y.
+  // I_y(a/2, b/2) with y = a x / (a x + b) increases with y.
   double low = 0.0, high = 1.0;
   for (int i = 0; i < 64; ++i) {
     const double y = 0.5 * (low + high);
@@ -82,10 +82,10 @@ double fisherQuantile(double probability, double a, double b) {
 
 double sidak(double level, std::size_t n) { return -std::expm1(std::log1p(-level) / static_cast<double>(n)); }
 
-double significance(double difference, double error, double floor, double freedom) {
+double significance(double difference, double error, double floor, double degreesOfFreedom) {
   if (std::abs(difference) <= floor) return 1.0;
   if (error <= 0.0) return 0.0;
-  return studentTwoSided((std::abs(difference) - floor) / error, freedom);
+  return studentTwoSided((std::abs(difference) - floor) / error, degreesOfFreedom);
 }
 
 }  // namespace quintet

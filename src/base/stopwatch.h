@@ -1,4 +1,4 @@
-// Wall clock since it was made, or since it was last asked for a lap.
+// Wall-clock time since construction and since the last lap.
 #ifndef QUINTET_BASE_STOPWATCH_H
 #define QUINTET_BASE_STOPWATCH_H
 
@@ -10,7 +10,7 @@ namespace quintet {
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-  // Seconds since the last lap, or since the start.
+  // Returns the seconds since the last lap (since construction for the first) and starts a new lap.
   double lap() {
     const Clock::time_point now = Clock::now();
     return std::chrono::duration<double>(now - std::exchange(lapStart_, now)).count();

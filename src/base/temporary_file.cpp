@@ -17,16 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names are tried in their order, so what others have left is found without reading the folder. The length does not
-// depend on the target's, which may leave no room for a suffix.
+// Writers try the numbers in ascending order, so files of killed processes are found without reading the folder. The
+// name contains a hash, because the name of the target may be too long for a suffix.
 fs::path nameOf(const fs::path& target, unsigned number) {
   const std::string hash = Hasher().add(target.filename().string()).finish().hex().substr(0, 16);
   return (target.has_parent_path() ? target.parent_path() : fs::path(".")) /
          (".quintet-" + hash + "-" + std::to_string(number) + ".tmp");
 }
 
-// Between its opening and its locking the name may have gone to somebody else.
-bool isStill(int fd, const fs::path& path) {
+// Returns whether `path` still names the open file. Another process can replace it between open and lock.
+bool stillNames(int fd, const fs::path& path) {
   struct stat open {
   }, named{};
   return ::fstat(fd, &open) == 0 && ::lstat(path.c_str(), &named) == 0 && open.st_dev == named.st_dev &&
@@ -35,15 +35,16 @@ bool isStill(int fd, const fs::path& path) {
 
 bool lock(int fd) { return ::flock(fd, LOCK_EX | LOCK_NB) == 0; }
 
-// True: the file is not there (any more). False: somebody writes it, or it is none of ours, or that cannot be known.
+// Returns true if the file does not exist afterwards; false if it is being written, is not a regular file or is
+// unknown.
 bool removeLeftover(const fs::path& path) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) return errno == ENOENT;
   struct stat info {};
-  const bool left = ::fstat(fd, &info) == 0 && S_ISREG(info.st_mode) && lock(fd) && isStill(fd, path);
-  const bool gone = left && ::unlink(path.c_str()) == 0;
+  const bool abandoned = ::fstat(fd, &info) == 0 && S_ISREG(info.st_mode) && lock(fd) && stillNames(fd, path);
+  const bool removed = abandoned && ::unlink(path.c_str()) == 0;
   ::close(fd);
-  return gone;
+  return removed;
 }
 
 }  // namespace
@@ -55,10 +56,10 @@ TemporaryFile::TemporaryFile(const fs::path& target) : target_(target) {
     fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd_ < 0 && errno == EEXIST) continue;
     if (fd_ < 0) throw std::system_error(errno, std::generic_category());
-    // Another one that looks for leftovers may have been faster; then it is removed. Where a file system knows no
-    // locks, nothing is a leftover for anybody.
+    // Another process that removes leftovers may have locked or removed the file before this one locked it. On file
+    // systems without locks, removeLeftover() cannot lock a file and therefore keeps all of them.
     const bool taken = !lock(fd_) && errno == EWOULDBLOCK;
-    if (taken || !isStill(fd_, path_)) ::close(std::exchange(fd_, -1));
+    if (taken || !stillNames(fd_, path_)) ::close(std::exchange(fd_, -1));
   }
   removeLeftovers(target);
 }
@@ -70,7 +71,7 @@ TemporaryFile::~TemporaryFile() {
 
 int TemporaryFile::flush() {
   if (::fsync(fd_) != 0 && errno != EINVAL && errno != ENOTSUP) return errno;
-  // NFS tells when a descriptor is closed that a write was lost. This one stays open, with its lock.
+  // NFS reports a lost write when a descriptor is closed. Closing a copy keeps this descriptor open and locked.
   const int copy = ::dup(fd_);
   return copy < 0 || ::close(copy) == 0 ? 0 : errno;
 }
@@ -82,7 +83,7 @@ int TemporaryFile::renameToTarget() {
 }
 
 void TemporaryFile::removeLeftovers(const fs::path& target) {
-  constexpr unsigned kGap = 4;  // names of other writers that have ended well are missing in between
+  constexpr unsigned kGap = 4;  // unused numbers between used ones: their writers have finished
   struct stat info {};
   for (unsigned number = 0, missing = 0; missing < kGap; ++number) {
     const fs::path path = nameOf(target, number);

@@ -1,6 +1,6 @@
-// The file that is written in place of another one until it is whole: beside it, hidden, with a name that follows from
-// the other's. Its process holds a lock on it (flock), which ends with the process: so one that a killed process has left
-// is told from one that is being written, and the next writer of the same file removes it.
+// A hidden temporary file beside the target file that it replaces once it is complete. Its name is derived from the
+// target's. The writing process holds a lock on it (flock), which ends with the process. A file without a lock was left
+// by a killed process, and the next writer of the same target removes it.
 #ifndef QUINTET_BASE_TEMPORARY_FILE_H
 #define QUINTET_BASE_TEMPORARY_FILE_H
 
@@ -10,19 +10,19 @@ namespace quintet {
 
 class TemporaryFile {
  public:
-  // Empty, open for writing. Throws std::system_error.
+  // Creates an empty file that is open for writing. Throws std::system_error.
   explicit TemporaryFile(const std::filesystem::path& target);
-  // Closes it, and removes it unless it was renamed.
+  // Closes the file and removes it unless it was renamed.
   ~TemporaryFile();
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   int descriptor() const { return fd_; }
-  // Each 0 or the error's code. flush(): all is on the disk, or it is known what is lost.
+  // Both return 0 or the error code. After flush() all data is on the disk, or the error has been reported.
   int flush();
   int renameToTarget();
 
-  // Removes what killed processes have left beside `target`, and nothing that somebody is writing.
+  // Removes the files of killed processes beside `target`, but not those of running writers.
   static void removeLeftovers(const std::filesystem::path& target);
 
  private:

@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "gpu/commands.h"
+#include "gpu/barrier.h"
 #include "gpu/error.h"
-#include "gpu/memory.h"
 #include "gpu/vma.h"
 
 namespace quintet::gpu {
-
 namespace {
 
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize{8} << 20;  // of one step of a blocking copy
@@ -27,7 +26,7 @@ VkDeviceSize alignmentOf(const Context& context, const BufferOptions& options) {
   return alignment;
 }
 
-void refuseAbsurdSize(const Context& context, const BufferOptions& options) {
+void validateSize(const Context& context, const BufferOptions& options) {
   const DeviceInfo& info = context.info();
   const double size = static_cast<double>(options.size) / kMiB;
   if (options.memory == Memory::device && options.size > info.memoryBytes)
@@ -36,7 +35,7 @@ void refuseAbsurdSize(const Context& context, const BufferOptions& options) {
   if (options.size > info.maxBufferBytes)
     throw MemoryError(fmt::format("buffer '{}' of {:.1f} MiB is larger than the device's limit of {:.1f} MiB",
                                   options.name, size, static_cast<double>(info.maxBufferBytes) / kMiB));
-  refuseOvercommitment(context, options.size, fmt::format("buffer '{}'", options.name));
+  context.allocator().checkFreeMemory(options.size, fmt::format("buffer '{}'", options.name));
 }
 
 VmaAllocationCreateInfo allocationInfo(Memory memory, bool ownBlock) {
@@ -50,21 +49,27 @@ VmaAllocationCreateInfo allocationInfo(Memory memory, bool ownBlock) {
   return info;
 }
 
+void copyAndWait(Context& context, VkBuffer source, VkBuffer destination, const VkBufferCopy& region) {
+  context.wait(context.submitRaw(
+      [&](VkCommandBuffer commands) { context.vk().vkCmdCopyBuffer(commands, source, destination, 1, &region); }));
+}
+
 }  // namespace
 
 Buffer::Buffer(Context& context, const BufferOptions& options) : context_(&context) {
-  refuseAbsurdSize(context, options);
+  validateSize(context, options);
   size_ = std::max<VkDeviceSize>(options.size, 4);
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   info.size = size_;
   info.usage = options.usage | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
                VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
-  const VmaAllocationCreateInfo allocation = allocationInfo(options.memory, getsOwnBlock(context, size_));
+  const VmaAllocationCreateInfo allocation = allocationInfo(options.memory, context.allocator().needsOwnBlock(size_));
   VmaAllocationInfo allocated{};
-  const VkResult result = vmaCreateBufferWithAlignment(
-      context.allocator(), &info, &allocation, alignmentOf(context, options), &handle_, &allocation_, &allocated);
+  const VkResult result =
+      vmaCreateBufferWithAlignment(context.allocator().handle(), &info, &allocation, alignmentOf(context, options),
+                                   &handle_, &allocation_, &allocated);
   check(result, fmt::format("allocate {:.1f} MiB for buffer", static_cast<double>(size_) / kMiB), options.name);
-  book(context, allocation_, options.purpose);
+  context.allocator().track(allocation_, options.purpose);
   mapped_ = static_cast<std::byte*>(allocated.pMappedData);
   VkBufferDeviceAddressInfo addressInfo{VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO};
   addressInfo.buffer = handle_;
@@ -91,8 +96,8 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 void Buffer::release() {
   if (!handle_) return;
   context_->retire([context = context_, handle = handle_, allocation = allocation_] {
-    unbook(*context, allocation);
-    vmaDestroyBuffer(context->allocator(), handle, allocation);
+    context->allocator().untrack(allocation);
+    vmaDestroyBuffer(context->allocator().handle(), handle, allocation);
   });
   handle_ = VK_NULL_HANDLE;
 }
@@ -103,7 +108,8 @@ void Buffer::upload(std::span<const std::byte> data, VkDeviceSize offset) {
   if (mapped_) {
     context_->wait(context_->submitted());
     std::memcpy(mapped_ + offset, data.data(), data.size());
-    check(vmaFlushAllocation(context_->allocator(), allocation_, offset, data.size()), "flush a mapped buffer");
+    check(vmaFlushAllocation(context_->allocator().handle(), allocation_, offset, data.size()),
+          "flush a mapped buffer");
     return;
   }
   Buffer staging(*context_, {.size = std::min<VkDeviceSize>(data.size(), kStagingBytes),
@@ -113,7 +119,7 @@ void Buffer::upload(std::span<const std::byte> data, VkDeviceSize offset) {
   for (std::size_t done = 0; done < data.size();) {
     const std::size_t step = std::min<std::size_t>(data.size() - done, staging.size());
     staging.upload(data.subspan(done, step));
-    context_->submitAndWait([&](Commands& commands) { commands.copy(staging, *this, step, 0, offset + done); });
+    copyAndWait(*context_, staging.handle_, handle_, {0, offset + done, step});
     done += step;
   }
 }
@@ -122,8 +128,10 @@ void Buffer::download(std::span<std::byte> data, VkDeviceSize offset) const {
   assert(handle_ && offset + data.size() <= size_);
   if (data.empty()) return;
   if (mapped_) {
-    context_->submitAndWait([](Commands& commands) { commands.toHost(Stage::all); });
-    check(vmaInvalidateAllocation(context_->allocator(), allocation_, offset, data.size()), "read a mapped buffer");
+    context_->wait(context_->submitRaw(
+        [&](VkCommandBuffer commands) { recordBarrier(context_->vk(), commands, Stage::all, Stage::host); }));
+    check(vmaInvalidateAllocation(context_->allocator().handle(), allocation_, offset, data.size()),
+          "read a mapped buffer");
     std::memcpy(data.data(), mapped_ + offset, data.size());
     return;
   }
@@ -135,7 +143,7 @@ void Buffer::download(std::span<std::byte> data, VkDeviceSize offset, const Buff
   if (mapped_) return download(data, offset);
   for (std::size_t done = 0; done < data.size();) {
     const std::size_t step = std::min<std::size_t>(data.size() - done, staging.size());
-    context_->submitAndWait([&](Commands& commands) { commands.copy(*this, staging, step, offset + done, 0); });
+    copyAndWait(*context_, handle_, staging.handle_, {offset + done, 0, step});
     staging.download(data.subspan(done, step));
     done += step;
   }

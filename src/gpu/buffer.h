@@ -1,35 +1,30 @@
-// A buffer with its memory. Destroying one is safe at any time: its memory is freed when the work
-// submitted so far has ended.
+// A buffer with its memory. A buffer can be destroyed at any time: its memory is freed after the work that is submitted
+// so far has ended.
 #ifndef QUINTET_GPU_BUFFER_H
 #define QUINTET_GPU_BUFFER_H
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "gpu/context.h"
 
-VK_DEFINE_HANDLE(VmaAllocation)
-
 namespace quintet::gpu {
 
 enum class Memory {
-  device,    // fastest for the device; fill with Buffer::upload or an Uploader
-  upload,    // host writes (mapped), device reads
-  readback,  // device writes, host reads (mapped, cached)
+  device,    // fastest for the device; filled by Buffer::upload or an Uploader
+  upload,    // written by the host (mapped), read by the device
+  readback,  // written by the device, read by the host (mapped, cached)
 };
 
 struct BufferOptions {
   VkDeviceSize size = 0;  // bytes; 0 is rounded up to 4
   Memory memory = Memory::device;
-  // Storage, transfer source and destination and device address are always included.
+  // Storage, transfer source, transfer destination and device address are always added.
   VkBufferUsageFlags usage = 0;
-  VkDeviceSize alignment = 0;  // bytes of the address; 0: what the usage needs
+  VkDeviceSize alignment = 0;  // of the address in bytes; at least what the usage requires
   std::string name;
   Purpose purpose = Purpose::tables;
 };
@@ -48,12 +43,13 @@ class Buffer {
   std::byte* mapped() const { return mapped_; }  // null for Memory::device
   explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
 
-  // Blocking copies through a staging buffer (or the mapping): for set-up and tests.
+  // Blocking copies through a staging buffer or the mapping, for setup and tests.
   void upload(std::span<const std::byte> data, VkDeviceSize offset = 0);
   void download(std::span<std::byte> data, VkDeviceSize offset = 0) const;
-  // Through the caller's staging (Memory::readback): making one takes longer than reading some megabytes.
+  // Copies through `staging` (Memory::readback). Creating a staging buffer takes longer than reading a few megabytes.
   void download(std::span<std::byte> data, VkDeviceSize offset, const Buffer& staging) const;
-  static Buffer makeReadback(Context& context, VkDeviceSize size);  // of a staging's usual size at most
+  // Creates a staging buffer for downloads of `size` bytes. It can be smaller; download then copies in steps.
+  static Buffer makeReadback(Context& context, VkDeviceSize size);
 
   template <class T>
   void uploadAs(std::span<const T> data) {
@@ -76,33 +72,12 @@ class Buffer {
   std::byte* mapped_ = nullptr;
 };
 
-// A device buffer that holds `data` (copied before this returns). Empty data gives a 4-byte buffer.
+// Creates a device buffer that contains `data`; the copy is complete on return. Empty data gives a buffer of 4 bytes.
 Buffer makeBuffer(Context& context, std::span<const std::byte> data, VkBufferUsageFlags usage, const std::string& name);
 template <class T>
 Buffer makeBufferOf(Context& context, const std::vector<T>& data, VkBufferUsageFlags usage, const std::string& name) {
   return makeBuffer(context, std::as_bytes(std::span<const T>(data)), usage, name);
 }
-
-// Many copies in few submissions: fills device buffers and images through a staging ring of fixed size.
-// `data` is read before upload returns; a destination must live until the flush.
-class Uploader {
- public:
-  explicit Uploader(Context& context, VkDeviceSize stagingBytes = VkDeviceSize{16} << 20);
-  ~Uploader();  // flushes
-  Uploader(const Uploader&) = delete;
-  Uploader& operator=(const Uploader&) = delete;
-  void upload(const Buffer& destination, std::span<const std::byte> data, VkDeviceSize offset = 0);
-  // All pixels of the image, row after row, tightly packed; leaves it in SHADER_READ_ONLY_OPTIMAL.
-  void upload(const class Image& destination, std::span<const std::byte> pixels);
-  // The same, made where they are copied from: write(first, rows) fills `rows`, whole rows of pixels from `first` on.
-  using WriteRows = std::function<void(std::uint32_t first, std::span<std::byte> rows)>;
-  void upload(const class Image& destination, const WriteRows& write);
-  void flush();  // submits and waits
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
 
 }  // namespace quintet::gpu
 #endif

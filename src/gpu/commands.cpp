@@ -3,44 +3,9 @@
 #include <cassert>
 
 namespace quintet::gpu {
-
 namespace {
 
-struct StageMasks {
-  VkPipelineStageFlags2 stages;
-  VkAccessFlags2 writes;
-  VkAccessFlags2 reads;
-};
-
-StageMasks masksOf(Stage stage) {
-  constexpr VkAccessFlags2 kShaderReads = VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT;
-  switch (stage) {
-    case Stage::host: return {VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_WRITE_BIT, VK_ACCESS_2_HOST_READ_BIT};
-    case Stage::transfer:
-      return {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
-    case Stage::compute: return {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_WRITE_BIT, kShaderReads};
-    case Stage::rayTracing:
-      // Shader binding tables are read as shader memory (without ray_tracing_maintenance1's own bit).
-      return {VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR, VK_ACCESS_2_SHADER_WRITE_BIT,
-              kShaderReads | VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
-    case Stage::accelerationStructureBuild:
-      // SHADER_READ: vertices, indices, transforms and instances.
-      return {VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-              VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
-              VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR | VK_ACCESS_2_SHADER_READ_BIT};
-    case Stage::all: break;
-  }
-  return {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_ACCESS_2_MEMORY_READ_BIT};
-}
-
-void memoryBarrier(Context& context, VkCommandBuffer commands, const VkMemoryBarrier2& barrier) {
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.memoryBarrierCount = 1;
-  info.pMemoryBarriers = &barrier;
-  context.vk().vkCmdPipelineBarrier2(commands, &info);
-}
-
-// All of a colour image with one mip level.
+// A color image with one mip level.
 constexpr VkImageSubresourceLayers kColorLayer{VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
 
 VkBufferImageCopy wholeImage(const Image& image, VkDeviceSize bufferOffset) {
@@ -53,18 +18,13 @@ VkBufferImageCopy wholeImage(const Image& image, VkDeviceSize bufferOffset) {
 
 }  // namespace
 
-void Commands::barrier(Stage before, Stage after) {
-  const StageMasks source = masksOf(before);
-  const StageMasks destination = masksOf(after);
-  VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
-  barrier.srcStageMask = source.stages;
-  barrier.srcAccessMask = source.writes;
-  barrier.dstStageMask = destination.stages;
-  barrier.dstAccessMask = destination.reads | destination.writes;
-  memoryBarrier(context_, handle_, barrier);
+// Defined here and not in context.cpp: the Context does not depend on Commands.
+std::uint64_t Context::submit(const std::function<void(Commands&)>& record) {
+  return submitRaw([&](VkCommandBuffer handle) {
+    Commands commands(*this, handle);
+    record(commands);
+  });
 }
-
-void Commands::toHost(Stage before) { barrier(before, Stage::host); }
 
 void Commands::transition(const Image& image, VkImageLayout from, VkImageLayout to) {
   VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};

@@ -6,7 +6,6 @@
 #include "gpu/pipeline_store.h"
 
 namespace quintet::gpu {
-
 namespace {
 
 VkPipeline make(Context& context, const BindlessSet& set, std::span<const std::uint32_t> spirv, VkPipelineCache cache,
@@ -44,7 +43,7 @@ ComputePipeline::ComputePipeline(Context& context, const BindlessSet& set, std::
 
 ComputePipeline::~ComputePipeline() {
   if (stored_)
-    context_.pipelines().release(context_, key_);
+    context_.pipelines().release(key_);
   else
     context_.retire([&context = context_, pipeline = pipeline_] {
       context.vk().vkDestroyPipeline(context.device(), pipeline, nullptr);

@@ -1,8 +1,11 @@
-// A compute pipeline over the bindless set's layout: film passes, tests of shader functions.
+// A compute pipeline with the layout of the bindless set, for film passes and tests of shader functions.
 #ifndef QUINTET_GPU_COMPUTE_H
 #define QUINTET_GPU_COMPUTE_H
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string>
 
 #include "base/hash.h"
 #include "gpu/commands.h"
@@ -12,7 +15,8 @@ namespace quintet::gpu {
 
 class ComputePipeline {
  public:
-  // Of Context::pipelines(), unless `cache` is to hold what the driver makes of it. Throws VulkanError.
+  // The pipeline comes from Context::pipelines() if `cache` is null; otherwise it is created with `cache`. Throws
+  // VulkanError.
   ComputePipeline(Context& context, const BindlessSet& set, std::span<const std::uint32_t> spirv, VkPipelineCache cache,
                   const std::string& name);
   ~ComputePipeline();
@@ -28,7 +32,7 @@ class ComputePipeline {
   const BindlessSet& set_;
   VkPipeline pipeline_ = VK_NULL_HANDLE;
   Hash key_;
-  bool stored_ = false;  // in Context::pipelines()
+  bool stored_ = false;  // whether Context::pipelines() owns the pipeline
 };
 
 }  // namespace quintet::gpu

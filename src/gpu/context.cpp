@@ -1,21 +1,15 @@
 #include "gpu/context.h"
 
 #include <cstdlib>
-#include <optional>
+#include <utility>
 
-#include "gpu/commands.h"
-#include "gpu/context_validation.h"
-#include "gpu/device_choice.h"
 #include "gpu/device_query.h"
 #include "gpu/error.h"
 #include "gpu/instance.h"
-#include "gpu/memory.h"
 #include "gpu/pipeline_store.h"
 #include "gpu/submissions.h"
-#include "gpu/vma.h"
 
 namespace quintet::gpu {
-
 namespace {
 
 std::string environment(const char* name) {
@@ -30,7 +24,7 @@ FoundDevice findDevice(VkInstance instance, const std::string& request) {
   return devices[chooseDevice(infos, request.empty() ? environment("QUINTET_DEVICE") : request)];
 }
 
-// The logical device with one queue; destroys itself.
+// The logical device with one queue.
 struct Device {
   explicit Device(FoundDevice& found) {
     const float priority = 1.0f;
@@ -60,43 +54,9 @@ struct Device {
   VkQueue queue = VK_NULL_HANDLE;
 };
 
-struct Allocator {
-  Allocator(VkInstance instance, const FoundDevice& found, VkDevice device) {
-    VmaDeviceMemoryCallbacks callbacks{};
-    callbacks.pUserData = &account;
-    callbacks.pfnAllocate = [](VmaAllocator, std::uint32_t, VkDeviceMemory, VkDeviceSize size, void* user) {
-      static_cast<MemoryAccount*>(user)->addBlock(size);
-    };
-    callbacks.pfnFree = [](VmaAllocator, std::uint32_t, VkDeviceMemory, VkDeviceSize size, void* user) {
-      static_cast<MemoryAccount*>(user)->removeBlock(size);
-    };
-    VmaVulkanFunctions functions{};
-    functions.vkGetInstanceProcAddr = vkGetInstanceProcAddr;
-    functions.vkGetDeviceProcAddr = vkGetDeviceProcAddr;
-    VmaAllocatorCreateInfo info{};
-    info.flags = VMA_ALLOCATOR_CREATE_BUFFER_DEVICE_ADDRESS_BIT;
-    if (found.capabilities.has(VK_EXT_MEMORY_BUDGET_EXTENSION_NAME))
-      info.flags |= VMA_ALLOCATOR_CREATE_EXT_MEMORY_BUDGET_BIT;
-    info.physicalDevice = found.handle;
-    info.device = device;
-    info.instance = instance;
-    info.pVulkanFunctions = &functions;
-    info.vulkanApiVersion = VK_API_VERSION_1_3;
-    info.pDeviceMemoryCallbacks = &callbacks;
-    info.preferredLargeHeapBlockSize = kBlockBytes;
-    check(vmaCreateAllocator(&info, &handle), "create the memory allocator");
-  }
-  ~Allocator() { vmaDestroyAllocator(handle); }
-  Allocator(const Allocator&) = delete;
-  Allocator& operator=(const Allocator&) = delete;
-
-  MemoryAccount account;
-  VmaAllocator handle = VK_NULL_HANDLE;
-};
-
 }  // namespace
 
-// Destroyed from the last member to the first.
+// Not destroyed if the device hangs (see ~Context), otherwise from the last member to the first.
 struct Context::Impl {
   explicit Impl(const ContextOptions& options)
       : log(options.log),
@@ -106,7 +66,7 @@ struct Context::Impl {
         device(found),
         allocator(instance.handle(), found, device.handle),
         submissions(device.vk, device.handle, device.queue, found.queueFamily),
-        pipelines(device.vk, device.handle) {}
+        pipelines(device.vk, device.handle, [this](auto destroy) { submissions.retire(std::move(destroy)); }) {}
 
   LogSink log;
   ValidationSink sink;
@@ -126,7 +86,7 @@ bool ContextOptions::validationRequested() {
 Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 
 Context::~Context() {
-  // A hung device still uses its objects, and destroying the device would wait for ever: leave them.
+  // A hung device still uses its objects, and destroying it would wait forever, so the objects are leaked.
   if (!impl_->submissions.shutDown()) static_cast<void>(impl_.release());
 }
 
@@ -146,19 +106,18 @@ const VolkDeviceTable& Context::vk() const { return impl_->device.vk; }
 VkInstance Context::instance() const { return impl_->instance.handle(); }
 VkPhysicalDevice Context::physicalDevice() const { return impl_->found.handle; }
 VkDevice Context::device() const { return impl_->device.handle; }
-VmaAllocator Context::allocator() const { return impl_->allocator.handle; }
+Allocator& Context::allocator() const { return impl_->allocator; }
 VkQueue Context::queue() const { return impl_->device.queue; }
 std::uint32_t Context::queueFamily() const { return impl_->found.queueFamily; }
 const LogSink& Context::log() const { return impl_->log; }
-DeviceMemory Context::memory() const { return impl_->allocator.account.memory(); }
-MemoryAccount& Context::memoryAccount() { return impl_->allocator.account; }
+DeviceMemory Context::memory() const { return impl_->allocator.account().memory(); }
 PipelineStore& Context::pipelines() { return impl_->pipelines; }
 
 std::uint32_t Context::validationMessageCount() const { return impl_->sink.count(); }
 std::vector<std::string> Context::validationMessages() const { return impl_->sink.messages(); }
 
-std::uint64_t Context::submit(const std::function<void(Commands&)>& record) {
-  return impl_->submissions.submit(*this, record);
+std::uint64_t Context::submitRaw(const std::function<void(VkCommandBuffer)>& record) {
+  return impl_->submissions.submit(record);
 }
 void Context::wait(std::uint64_t value, double timeoutSeconds) { impl_->submissions.wait(value, timeoutSeconds); }
 std::uint64_t Context::completed() const { return impl_->submissions.completed(); }

@@ -9,11 +9,10 @@
 #include "quintet/shared/bindings.h"
 
 namespace quintet::gpu {
-
 namespace {
 
-// Room for textures in the layout; a set has as many as it was made with. Equal layouts are
-// compatible, so a pipeline survives a scene with another number of textures.
+// Textures of the layout. A set has the number that it was created with. Because all layouts are equal, a pipeline can
+// be used with scenes of any number of textures.
 constexpr std::uint32_t kLayoutTextures = 16384;
 
 constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADER_STAGE_ANY_HIT_BIT_KHR |
@@ -90,11 +89,11 @@ VkDescriptorSet allocateSet(Context& context, VkDescriptorPool pool, VkDescripto
 
 BindlessSet::BindlessSet(Context& context, std::uint32_t textureCount, std::uint32_t pushConstantBytes)
     : context_(context), textureCount_(std::max(textureCount, 1u)), pushConstantBytes_(pushConstantBytes) {
-  const std::uint32_t room = std::min(kLayoutTextures, context.info().maxTextures);
-  if (textureCount_ > room)
-    throw MemoryError(fmt::format("{} textures: at most {} are possible on this device", textureCount_, room));
+  const std::uint32_t capacity = std::min(kLayoutTextures, context.info().maxTextures);
+  if (textureCount_ > capacity)
+    throw MemoryError(fmt::format("{} textures are too many for this device; at most {}", textureCount_, capacity));
   try {
-    layout_ = createLayout(context, room);
+    layout_ = createLayout(context, capacity);
     pipelineLayout_ = createPipelineLayout(context, layout_, pushConstantBytes);
     pool_ = createPool(context, textureCount_);
     set_ = allocateSet(context, pool_, layout_, textureCount_);

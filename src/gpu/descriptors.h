@@ -1,15 +1,17 @@
-// The one descriptor set of the project: the TLAS and a bindless array of textures. Everything else
-// reaches shaders by device address (docs/design/structure.md). Binding numbers: shaders/quintet/shared/bindings.h.
+// The only descriptor set: the TLAS and a bindless array of textures. Shaders access everything else by device address
+// (docs/design/structure.md). Binding numbers are in shaders/quintet/shared/bindings.h.
 #ifndef QUINTET_GPU_DESCRIPTORS_H
 #define QUINTET_GPU_DESCRIPTORS_H
+
+#include <cstdint>
 
 #include "gpu/image.h"
 
 namespace quintet::gpu {
 
-// Layout: binding 0 an acceleration structure, binding 1 `textureCount` combined image samplers
-// (partially bound, non-uniformly indexed); push constants of `pushConstantBytes` for all stages.
-// Sets of any two texture counts have compatible layouts: a pipeline made with one works with the other.
+// Binding 0 is an acceleration structure, binding 1 has `textureCount` combined image samplers (partially bound,
+// non-uniformly indexed), and `pushConstantBytes` bytes of push constants are visible to all stages. Sets with
+// different texture counts have compatible layouts, so they can share a pipeline.
 class BindlessSet {
  public:
   BindlessSet(Context& context, std::uint32_t textureCount, std::uint32_t pushConstantBytes);
@@ -21,10 +23,10 @@ class BindlessSet {
   VkPipelineLayout pipelineLayout() const { return pipelineLayout_; }
   VkDescriptorSet set() const { return set_; }
   std::uint32_t pushConstantBytes() const { return pushConstantBytes_; }
-  static VkShaderStageFlags
-  stages();  // of the bindings and of the push constants: vkCmdPushConstants wants all of them
+  // The stages of the bindings and the push constants. vkCmdPushConstants requires all of them.
+  static VkShaderStageFlags stages();
 
-  // The set must not be in use by pending work.
+  // Pending work must not use the set.
   void setAccelerationStructure(VkAccelerationStructureKHR structure);
   void setTexture(std::uint32_t index, const Image& image, const Sampler& sampler);
 

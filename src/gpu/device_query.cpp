@@ -4,13 +4,61 @@
 #include <cstring>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include "gpu/device_choice.h"
 #include "gpu/error.h"
 
 namespace quintet::gpu {
-
 namespace {
+
+constexpr const char* kRequiredExtensions[] = {
+    VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME,
+    VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+    VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+};
+constexpr const char* kOptionalExtensions[] = {
+    VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME,       // copies of acceleration structures, SBT access bit
+    VK_KHR_PIPELINE_LIBRARY_EXTENSION_NAME,                // hit groups that are compiled separately
+    VK_EXT_MEMORY_BUDGET_EXTENSION_NAME,                   // errors instead of the system's OOM killer
+    VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME,  // registers and stack sizes of a pipeline
+};
+
+// A member of DeviceFeatures with its name for messages.
+struct Feature {
+  const char* name;
+  VkBool32& (*member)(DeviceFeatures&);
+};
+#define QUINTET_FEATURE(group, field)                                     \
+  Feature {                                                               \
+#field, [](DeviceFeatures & f) -> VkBool32& { return f.group.field; } \
+  }
+
+const Feature kRequiredFeatures[] = {
+    QUINTET_FEATURE(core.features, shaderInt64),
+    QUINTET_FEATURE(vulkan12, bufferDeviceAddress),
+    QUINTET_FEATURE(vulkan12, descriptorIndexing),
+    QUINTET_FEATURE(vulkan12, runtimeDescriptorArray),
+    QUINTET_FEATURE(vulkan12, descriptorBindingPartiallyBound),
+    QUINTET_FEATURE(vulkan12, descriptorBindingVariableDescriptorCount),
+    QUINTET_FEATURE(vulkan12, shaderSampledImageArrayNonUniformIndexing),
+    QUINTET_FEATURE(vulkan12, scalarBlockLayout),
+    QUINTET_FEATURE(vulkan12, timelineSemaphore),
+    QUINTET_FEATURE(vulkan13, synchronization2),
+    QUINTET_FEATURE(vulkan13, maintenance4),
+    QUINTET_FEATURE(accelerationStructure, accelerationStructure),
+    QUINTET_FEATURE(rayTracingPipeline, rayTracingPipeline),
+};
+const Feature kOptionalFeatures[] = {
+    QUINTET_FEATURE(rayTracingPipeline, rayTraversalPrimitiveCulling),
+    QUINTET_FEATURE(rayTracingPipeline, rayTracingPipelineTraceRaysIndirect),  // launch sizes in device memory
+    QUINTET_FEATURE(rayTracingMaintenance1, rayTracingMaintenance1),
+    QUINTET_FEATURE(pipelineExecutables, pipelineExecutableInfo),
+};
+#undef QUINTET_FEATURE
+
+bool contains(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 std::vector<std::string> extensionNames(VkPhysicalDevice device) {
   std::uint32_t count = 0;
@@ -23,7 +71,7 @@ std::vector<std::string> extensionNames(VkPhysicalDevice device) {
   return names;
 }
 
-// A family with compute (which implies transfer), with graphics too if there is one: it can present.
+// Finds a queue family with compute (which implies transfer), preferably with graphics, because it can present.
 bool findQueueFamily(VkPhysicalDevice device, std::uint32_t& family, std::uint32_t& timestampBits) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
@@ -53,7 +101,7 @@ std::uint64_t largestDeviceHeap(VkPhysicalDevice device) {
 std::string driverText(const VkPhysicalDeviceDriverProperties& driver) {
   std::string name = driver.driverName;
   std::string version = driver.driverInfo;
-  if (driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE) name = "lavapipe";  // the Vulkan driver's own name
+  if (driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE) name = "lavapipe";  // llvmpipe is Mesa's OpenGL driver
   if (version.starts_with("Mesa ")) version.erase(0, 5);
   return fmt::format("{} {}", name, version);
 }
@@ -61,7 +109,6 @@ std::string driverText(const VkPhysicalDeviceDriverProperties& driver) {
 Quirks quirksOf(VkDriverId driver) {
   Quirks quirks;
   if (driver != VK_DRIVER_ID_MESA_LLVMPIPE) return quirks;
-  quirks.software = true;
   quirks.keepsPrimitiveOrder = true;
   quirks.corruptsHitAttributes = true;
   quirks.noCompaction = true;
@@ -71,7 +118,7 @@ Quirks quirksOf(VkDriverId driver) {
   return quirks;
 }
 
-// The property structs that describe a device, as one chain.
+// The property structs of a device as one chain.
 struct DeviceProperties {
   VkPhysicalDeviceProperties2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
   VkPhysicalDeviceVulkan11Properties vulkan11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
@@ -122,7 +169,7 @@ DeviceInfo describe(VkPhysicalDevice device, const Capabilities& capabilities, s
   info.apiVersion = capabilities.apiVersion;
   info.memoryBytes = largestDeviceHeap(device);
   info.maxBufferBytes = std::min(properties.maintenance4.maxBufferSize, properties.vulkan11.maxMemoryAllocationSize);
-  info.refusal = refusalReason(capabilities);
+  info.unusableReason = unusableReason(capabilities);
   info.limits = properties.rayTracingLimits();
   info.rayQuery = capabilities.has(VK_KHR_RAY_QUERY_EXTENSION_NAME);
   info.pipelineStatistics = capabilities.features.pipelineExecutables.pipelineExecutableInfo == VK_TRUE;
@@ -135,6 +182,7 @@ DeviceInfo describe(VkPhysicalDevice device, const Capabilities& capabilities, s
                                core.limits.maxDescriptorSetSamplers, core.limits.maxPerStageResources - 1});
   info.subgroupSize = properties.vulkan11.subgroupSize;
   std::memcpy(info.pipelineCacheUuid.data(), core.pipelineCacheUUID, info.pipelineCacheUuid.size());
+  info.software = properties.driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
   info.quirks = quirksOf(properties.driver.driverID);
   return info;
 }
@@ -157,12 +205,62 @@ FoundDevice inspect(VkPhysicalDevice device) {
 
 }  // namespace
 
+VkPhysicalDeviceFeatures2* DeviceFeatures::chain(const std::vector<std::string>& extensions) {
+  void** tail = &core.pNext;
+  const auto append = [&](auto& features) {
+    features.pNext = nullptr;
+    *tail = &features;
+    tail = &features.pNext;
+  };
+  append(vulkan12);
+  append(vulkan13);
+  if (contains(extensions, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME)) append(accelerationStructure);
+  if (contains(extensions, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME)) append(rayTracingPipeline);
+  if (contains(extensions, VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME)) append(rayTracingMaintenance1);
+  if (contains(extensions, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) append(pipelineExecutables);
+  return &core;
+}
+
+bool Capabilities::has(const char* extension) const { return contains(extensions, extension); }
+
+std::string unusableReason(const Capabilities& capabilities) {
+  std::vector<std::string> reasons;
+  if (capabilities.apiVersion < VK_API_VERSION_1_3)
+    reasons.push_back(fmt::format("Vulkan {}.{} (1.3 is required)", VK_API_VERSION_MAJOR(capabilities.apiVersion),
+                                  VK_API_VERSION_MINOR(capabilities.apiVersion)));
+  for (const char* extension : kRequiredExtensions)
+    if (!capabilities.has(extension)) reasons.push_back(fmt::format("no {}", extension));
+  // Missing features of a missing extension or of an old Vulkan version add no information.
+  if (reasons.empty()) {
+    DeviceFeatures features = capabilities.features;
+    for (const Feature& feature : kRequiredFeatures)
+      if (!feature.member(features)) reasons.push_back(fmt::format("no feature {}", feature.name));
+  }
+  if (!capabilities.computeQueue) reasons.push_back("no compute queue");
+  return fmt::format("{}", fmt::join(reasons, ", "));
+}
+
+std::vector<const char*> extensionsToEnable(const Capabilities& capabilities) {
+  std::vector<const char*> result(std::begin(kRequiredExtensions), std::end(kRequiredExtensions));
+  for (const char* extension : kOptionalExtensions)
+    if (capabilities.has(extension)) result.push_back(extension);
+  return result;
+}
+
+DeviceFeatures featuresToEnable(const Capabilities& capabilities) {
+  DeviceFeatures available = capabilities.features;
+  DeviceFeatures result;
+  for (const Feature& feature : kRequiredFeatures) feature.member(result) = VK_TRUE;
+  for (const Feature& feature : kOptionalFeatures) feature.member(result) = feature.member(available);
+  return result;
+}
+
 std::vector<FoundDevice> findDevices(VkInstance instance) {
   std::uint32_t count = 0;
   VkResult result = vkEnumeratePhysicalDevices(instance, &count, nullptr);
   std::vector<VkPhysicalDevice> handles(count);
   if (result == VK_SUCCESS && count > 0) result = vkEnumeratePhysicalDevices(instance, &count, handles.data());
-  // The loader's answer when all drivers refuse to start, as on a machine without any device.
+  // The loader returns this if all drivers fail to start, as on a machine without a device.
   if (result == VK_ERROR_INITIALIZATION_FAILED) return {};
   check(result, "list the Vulkan devices");
   handles.resize(count);

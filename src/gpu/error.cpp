@@ -1,9 +1,10 @@
 #include "gpu/error.h"
 
+#include <string>
+
 #include <fmt/format.h>
 
 namespace quintet::gpu {
-
 namespace {
 
 std::string describe(VkResult result, std::string_view operation, std::string_view object) {
@@ -68,7 +69,8 @@ void check(VkResult result, std::string_view operation, std::string_view object)
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
     case VK_ERROR_OUT_OF_POOL_MEMORY: throw MemoryError(describe(result, operation, object));
     case VK_ERROR_DEVICE_LOST:
-      throw DeviceLostError(describe(result, operation, object) + " (the driver gave up; the work may have hung)");
+      throw DeviceLostError(describe(result, operation, object) +
+                            " (the driver reset the device; a shader may have hung)");
     default: throw VulkanError(result, operation, object);
   }
 }

@@ -1,4 +1,4 @@
-// Failures of Vulkan, with the operation, the object's name and the VkResult's name.
+// Exceptions for failed Vulkan calls. Messages contain the operation, the object and the VkResult.
 #ifndef QUINTET_GPU_ERROR_H
 #define QUINTET_GPU_ERROR_H
 
@@ -9,7 +9,7 @@
 
 namespace quintet::gpu {
 
-// "cannot create buffer 'film': VK_ERROR_OUT_OF_DEVICE_MEMORY"
+// A failed call, such as "cannot create buffer 'film': VK_ERROR_TOO_MANY_OBJECTS".
 class VulkanError : public Error {
  public:
   VulkanError(VkResult result, std::string_view operation, std::string_view object);
@@ -19,7 +19,7 @@ class VulkanError : public Error {
   VkResult result_;
 };
 
-// No device fits; the message lists each device found with the reason for its refusal.
+// No usable device. The message lists all devices with the reason why each cannot be used.
 class NoDeviceError : public Error {
  public:
   using Error::Error;
@@ -31,7 +31,7 @@ class DeviceLostError : public Error {
   using Error::Error;
 };
 
-// It did not finish in time, and still works on it: what it uses must not be destroyed.
+// The device did not finish in time and is still working: objects that it uses must not be destroyed.
 class TimeoutError : public DeviceLostError {
  public:
   explicit TimeoutError(double seconds);

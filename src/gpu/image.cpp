@@ -5,11 +5,9 @@
 #include <fmt/format.h>
 
 #include "gpu/error.h"
-#include "gpu/memory.h"
 #include "gpu/vma.h"
 
 namespace quintet::gpu {
-
 namespace {
 
 constexpr double kMiB = 1024.0 * 1024.0;
@@ -29,20 +27,20 @@ VkImageCreateInfo createInfo(const ImageOptions& options) {
   return info;
 }
 
-void refuseAbsurdSize(const Context& context, const ImageOptions& options, VkDeviceSize bytes) {
+void validateSize(const Context& context, const ImageOptions& options, VkDeviceSize bytes) {
   const DeviceInfo& device = context.info();
   if (options.width == 0 || options.height == 0 || options.width > device.maxImageSize ||
       options.height > device.maxImageSize)
-    throw MemoryError(fmt::format("image '{}' of {} × {} pixels: the device takes 1 to {} each way", options.name,
-                                  options.width, options.height, device.maxImageSize));
+    throw MemoryError(fmt::format("image '{}' of {} × {} pixels: the device supports 1 to {} pixels per side",
+                                  options.name, options.width, options.height, device.maxImageSize));
   if (bytes > device.memoryBytes)
     throw MemoryError(fmt::format("image '{}' of {:.1f} MiB is larger than the device's memory of {:.1f} MiB",
                                   options.name, static_cast<double>(bytes) / kMiB,
                                   static_cast<double>(device.memoryBytes) / kMiB));
-  refuseOvercommitment(context, bytes, fmt::format("image '{}'", options.name));
+  context.allocator().checkFreeMemory(bytes, fmt::format("image '{}'", options.name));
 }
 
-void refuseUnsupported(const Context& context, const VkImageCreateInfo& info, const std::string& name) {
+void validateFormat(const Context& context, const VkImageCreateInfo& info, const std::string& name) {
   VkImageFormatProperties properties{};
   check(vkGetPhysicalDeviceImageFormatProperties(context.physicalDevice(), info.format, info.imageType, info.tiling,
                                                  info.usage, info.flags, &properties),
@@ -52,15 +50,15 @@ void refuseUnsupported(const Context& context, const VkImageCreateInfo& info, co
 }  // namespace
 
 Image::Image(Context& context, const ImageOptions& options) : context_(&context), options_(options) {
-  refuseAbsurdSize(context, options, byteSize());
+  validateSize(context, options, byteSize());
   const VkImageCreateInfo info = createInfo(options);
-  refuseUnsupported(context, info, options.name);
+  validateFormat(context, info, options.name);
   VmaAllocationCreateInfo allocation{};
   allocation.usage = VMA_MEMORY_USAGE_AUTO_PREFER_DEVICE;
-  if (getsOwnBlock(context, byteSize())) allocation.flags = VMA_ALLOCATION_CREATE_DEDICATED_MEMORY_BIT;
-  check(vmaCreateImage(context.allocator(), &info, &allocation, &handle_, &allocation_, nullptr),
+  if (context.allocator().needsOwnBlock(byteSize())) allocation.flags = VMA_ALLOCATION_CREATE_DEDICATED_MEMORY_BIT;
+  check(vmaCreateImage(context.allocator().handle(), &info, &allocation, &handle_, &allocation_, nullptr),
         fmt::format("allocate {:.1f} MiB for image", static_cast<double>(byteSize()) / kMiB), options.name);
-  book(context, allocation_, Purpose::textures);
+  context.allocator().track(allocation_, Purpose::textures);
 
   VkImageViewCreateInfo view{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
   view.image = handle_;
@@ -92,8 +90,8 @@ void Image::release() {
   if (!handle_) return;
   context_->retire([context = context_, handle = handle_, view = view_, allocation = allocation_] {
     context->vk().vkDestroyImageView(context->device(), view, nullptr);
-    unbook(*context, allocation);
-    vmaDestroyImage(context->allocator(), handle, allocation);
+    context->allocator().untrack(allocation);
+    vmaDestroyImage(context->allocator().handle(), handle, allocation);
   });
   handle_ = VK_NULL_HANDLE;
   view_ = VK_NULL_HANDLE;
@@ -128,7 +126,7 @@ std::uint32_t bytesPerPixel(VkFormat format) {
     case VK_FORMAT_R32G32_SFLOAT: return 8;
     case VK_FORMAT_R32G32B32A32_UINT:
     case VK_FORMAT_R32G32B32A32_SFLOAT: return 16;
-    default: throw UsageError(fmt::format("image format {} (VkFormat) is not one that Quintet uses", int{format}));
+    default: throw UsageError(fmt::format("image format {} (VkFormat) is not supported", int{format}));
   }
 }
 

@@ -1,10 +1,11 @@
-// 2D images with one view, and samplers.
+// 2D images with one view, and samplers. Both can be destroyed at any time, like buffers.
 #ifndef QUINTET_GPU_IMAGE_H
 #define QUINTET_GPU_IMAGE_H
 
+#include <cstdint>
 #include <string>
 
-#include "gpu/buffer.h"
+#include "gpu/context.h"
 
 namespace quintet::gpu {
 
@@ -12,11 +13,11 @@ struct ImageOptions {
   std::uint32_t width = 1;
   std::uint32_t height = 1;
   VkFormat format = VK_FORMAT_R8G8B8A8_UNORM;
-  VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT;  // transfer source and destination are always included
+  VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT;  // transfer source and destination are always added
   std::string name;
 };
 
-// Bytes of one pixel in memory; throws UsageError for formats that Quintet does not use.
+// Returns the bytes per pixel; throws UsageError for formats that Quintet does not use.
 std::uint32_t bytesPerPixel(VkFormat format);
 
 class Image {

@@ -1,26 +1,45 @@
 #include "gpu/instance.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <cstring>
-#include <mutex>
-#include <vector>
 
 #include <fmt/format.h>
 
-#include "gpu/context_validation.h"
-#include "gpu/driver_environment.h"
+#include "base/parallel.h"
 #include "gpu/error.h"
 
 namespace quintet::gpu {
-
 namespace {
+
+// ---- Environment of drivers
+
+constexpr unsigned kThreadsPerCore = 8;
+constexpr unsigned kMaxLavapipeThreads = 32;  // LP_MAX_THREADS of Mesa, which starts no more
+
+void setUnlessSet(const char* name, const std::string& value) { ::setenv(name, value.c_str(), /*overwrite=*/0); }
+
+// ---- Validation messages
+
+constexpr std::size_t kKeptMessages = 256;  // limits the memory that repeated messages take
+
+// A message that a layer reports for correct use. Each entry needs a comment with the layer version and the reason.
+// Both strings must match.
+struct FalseAlarm {
+  std::string_view id;
+  std::string_view text;
+};
+constexpr std::array<FalseAlarm, 0> kFalseAlarms{};
+
+// ---- Loader and instance
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 [[noreturn]] void throwNoDriver(std::string_view reason) {
   throw NoDeviceError(
-      fmt::format("no Vulkan driver found: {}; install mesa-vulkan-drivers (CPU) or your GPU's driver, "
-                  "then look at `quintet info`",
+      fmt::format("no Vulkan driver found: {}; install mesa-vulkan-drivers (CPU) or the driver of your GPU, then check "
+                  "the output of `quintet info`",
                   reason));
 }
 
@@ -33,8 +52,8 @@ void loadLoader() {
   loaded = true;
 }
 
-// The loader's functions for core Vulkan dispatch by handle, so those of the first instance serve
-// all others. Functions of extensions do not: each Instance fetches its own.
+// The loader's functions for core Vulkan dispatch by handle, so all instances use those of the first one. Functions of
+// extensions are not shared; each Instance loads its own.
 void loadInstanceFunctions(VkInstance instance) {
   static std::once_flag once;
   std::call_once(once, [&] { volkLoadInstanceOnly(instance); });
@@ -57,15 +76,81 @@ Function instanceFunction(VkInstance instance, const char* name) {
 
 }  // namespace
 
+unsigned lavapipeThreads(unsigned cores) {
+  return std::min(kThreadsPerCore * std::max(cores, 1u), kMaxLavapipeThreads);
+}
+
+void prepareDriverEnvironment() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    const char* off = std::getenv("QUINTET_NO_DRIVER_WORKAROUNDS");
+    if (off && std::string_view(off) != "0") return;
+#if defined(__x86_64__)
+    // LLVM 15 miscompiles integer code for AVX-512. Mesa interprets "avx" as "no AVX-512".
+    setUnlessSet("GALLIUM_OVERRIDE_CPU_CAPS", "avx");
+#endif
+    // lavapipe splits a launch into one contiguous part per thread. More parts than cores balance the load.
+    setUnlessSet("LP_NUM_THREADS", std::to_string(lavapipeThreads(hardwareThreads())));
+  });
+}
+
+bool isFalseAlarm(std::string_view messageId, std::string_view text) {
+  return std::any_of(kFalseAlarms.begin(), kFalseAlarms.end(), [&](const FalseAlarm& alarm) {
+    return messageId == alarm.id && text.find(alarm.text) != std::string_view::npos;
+  });
+}
+
+VkDebugUtilsMessengerCreateInfoEXT ValidationSink::messengerInfo() {
+  VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
+  info.messageSeverity =
+      VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+  info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+  info.pfnUserCallback = &ValidationSink::callback;
+  info.pUserData = this;
+  return info;
+}
+
+VKAPI_ATTR VkBool32 VKAPI_CALL ValidationSink::callback(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                        VkDebugUtilsMessageTypeFlagsEXT types,
+                                                        const VkDebugUtilsMessengerCallbackDataEXT* data, void* self) {
+  const std::string_view id = data->pMessageIdName ? data->pMessageIdName : "";
+  const std::string_view text = data->pMessage ? data->pMessage : "";
+  // General messages come from the loader, for example if it cannot load a driver. They are not errors of this program.
+  const bool counts = (types & VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT) != 0;
+  if (!isFalseAlarm(id, text)) static_cast<ValidationSink*>(self)->receive(id, text, counts);
+  return VK_FALSE;
+}
+
+void ValidationSink::receive(std::string_view id, std::string_view text, bool counts) {
+  std::string line = fmt::format("{}: {}: {}", counts ? "Vulkan validation" : "Vulkan", id, text);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  if (counts) {
+    const std::lock_guard lock(mutex_);
+    ++count_;
+    if (messages_.size() < kKeptMessages) messages_.push_back(line);
+  }
+  if (log_) log_(LogLevel::warning, line);
+}
+
+std::uint32_t ValidationSink::count() const {
+  const std::lock_guard lock(mutex_);
+  return count_;
+}
+
+std::vector<std::string> ValidationSink::messages() const {
+  const std::lock_guard lock(mutex_);
+  return messages_;
+}
+
 Instance::Instance(ValidationSink* sink) {
   prepareDriverEnvironment();
   loadLoader();
   const std::uint32_t version = volkGetInstanceVersion();
   if (version < VK_API_VERSION_1_3)
-    throwNoDriver(fmt::format("the Vulkan loader is of version {}.{}, 1.3 is needed", VK_API_VERSION_MAJOR(version),
+    throwNoDriver(fmt::format("the Vulkan loader has version {}.{}; 1.3 is required", VK_API_VERSION_MAJOR(version),
                               VK_API_VERSION_MINOR(version)));
   if (sink && !hasLayer(kValidationLayer))
-    throw Error(fmt::format("validation was asked for, but {} is not installed (package vulkan-validationlayers)",
+    throw Error(fmt::format("validation requires {}, which is not installed (package vulkan-validationlayers)",
                             kValidationLayer));
 
   VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
@@ -89,7 +174,7 @@ Instance::Instance(ValidationSink* sink) {
     info.ppEnabledExtensionNames = extensions;
   }
   const VkResult result = vkCreateInstance(&info, nullptr, &handle_);
-  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throwNoDriver("the Vulkan loader knows of no driver that works");
+  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throwNoDriver("the Vulkan loader found no working driver");
   check(result, "create the Vulkan instance");
   loadInstanceFunctions(handle_);
   if (sink) addMessenger(*sink);
@@ -102,7 +187,7 @@ void Instance::addMessenger(ValidationSink& sink) {
   const VkResult result = create ? create(handle_, &info, nullptr, &messenger_) : VK_ERROR_EXTENSION_NOT_PRESENT;
   if (result == VK_SUCCESS) return;
   vkDestroyInstance(handle_, nullptr);
-  check(result, "listen to the validation layers");
+  check(result, "register for messages of the validation layers");
 }
 
 Instance::~Instance() {

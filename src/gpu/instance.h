@@ -1,17 +1,55 @@
-// The Vulkan loader and an instance, with the debug messenger when validation is asked for.
+// The Vulkan instance: environment variables of drivers, the loader, and the messages of the validation layers.
 #ifndef QUINTET_GPU_INSTANCE_H
 #define QUINTET_GPU_INSTANCE_H
 
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/log.h"
 #include "gpu/vulkan.h"
 
 namespace quintet::gpu {
 
-class ValidationSink;
+// Sets the environment variables that docs/design/quirks.md lists, once per process. Drivers read them when they are
+// loaded, so this runs before the first instance is created. Variables that the user has set keep their values, and
+// QUINTET_NO_DRIVER_WORKAROUNDS=1 disables this function. Call it before the program starts threads, because setenv is
+// not safe while other threads call getenv.
+void prepareDriverEnvironment();
+
+// Returns the number of threads that lavapipe should use on `cores` cores.
+unsigned lavapipeThreads(unsigned cores);
+
+// Returns whether a validation layer reports this message for correct use; the list is in instance.cpp.
+bool isFalseAlarm(std::string_view messageId, std::string_view text);
+
+// Counts and keeps messages of the validation layers and passes them to the log. Thread-safe; it must outlive the
+// instance.
+class ValidationSink {
+ public:
+  explicit ValidationSink(LogSink log) : log_(std::move(log)) {}
+  VkDebugUtilsMessengerCreateInfoEXT messengerInfo();
+  std::uint32_t count() const;
+  std::vector<std::string> messages() const;
+
+ private:
+  void receive(std::string_view id, std::string_view text, bool counts);
+  static VKAPI_ATTR VkBool32 VKAPI_CALL callback(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                                 VkDebugUtilsMessageTypeFlagsEXT types,
+                                                 const VkDebugUtilsMessengerCallbackDataEXT* data, void* self);
+  LogSink log_;
+  mutable std::mutex mutex_;
+  std::uint32_t count_ = 0;
+  std::vector<std::string> messages_;
+};
 
 class Instance {
  public:
-  // `sink` null: no validation. Throws NoDeviceError when there is no loader or no driver, and Error
-  // when validation is asked for and the layer is missing.
+  // A null `sink` disables validation. Throws NoDeviceError without a loader or driver, and Error if the validation
+  // layer is required but missing.
   explicit Instance(ValidationSink* sink);
   ~Instance();
   Instance(const Instance&) = delete;

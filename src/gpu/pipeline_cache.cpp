@@ -1,7 +1,8 @@
-// The file: 8 bytes of magic and version, 16 bytes of the data's hash, then the driver's data. The
-// hash keeps a torn or edited file from the driver, which checks no more than its 32 bytes of header.
+// File format: 8 bytes with magic and version, 16 bytes with the hash of the data, then the data of the driver. Drivers
+// check only their header of 32 bytes; the hash protects them from corrupt files.
 #include "gpu/pipeline_cache.h"
 
+#include <array>
 #include <cstring>
 #include <span>
 #include <vector>
@@ -13,7 +14,6 @@
 #include "gpu/error.h"
 
 namespace quintet::gpu {
-
 namespace {
 
 constexpr std::array<char, 8> kMagic = {'Q', 'T', 'P', 'C', '0', '0', '0', '1'};
@@ -28,7 +28,7 @@ std::filesystem::path fileIn(const std::filesystem::path& folder, const Context&
 
 Hash hashOf(std::span<const std::byte> data) { return Hasher().add(data).finish(); }
 
-// True if this device's driver wrote the data (VkPipelineCacheHeaderVersionOne).
+// Returns whether the driver of this device wrote the data (VkPipelineCacheHeaderVersionOne).
 bool isForDevice(std::span<const std::byte> data, const Context& context) {
   VkPipelineCacheHeaderVersionOne header{};
   if (data.size() < sizeof header) return false;
@@ -40,7 +40,7 @@ bool isForDevice(std::span<const std::byte> data, const Context& context) {
          std::memcmp(header.pipelineCacheUUID, device.pipelineCacheUUID, VK_UUID_SIZE) == 0;
 }
 
-// The driver's data in the file; empty if there is none or it is broken or foreign.
+// Returns the driver's data; empty if the file is missing, corrupt or from a different device.
 std::vector<std::byte> load(const std::filesystem::path& file, const Context& context) {
   std::error_code error;
   if (file.empty() || !std::filesystem::is_regular_file(file, error)) return {};

@@ -1,8 +1,9 @@
-// VkPipelineCache kept on disk, one file per device and driver version. Broken or foreign files are
-// ignored; writing is atomic; a folder that cannot be written costs nothing but the cache.
+// A VkPipelineCache that is stored in one file per device and driver version. Corrupt files and files of different
+// devices are ignored. Files are written atomically, and a folder that cannot be written only disables the cache.
 #ifndef QUINTET_GPU_PIPELINE_CACHE_H
 #define QUINTET_GPU_PIPELINE_CACHE_H
 
+#include <cstddef>
 #include <filesystem>
 
 #include "gpu/context.h"
@@ -11,13 +12,13 @@ namespace quintet::gpu {
 
 class PipelineCache {
  public:
-  // `folder` empty: memory only.
+  // An empty `folder` keeps the cache in memory only.
   PipelineCache(Context& context, const std::filesystem::path& folder);
-  ~PipelineCache();  // saves if it has grown
+  ~PipelineCache();  // calls save()
   PipelineCache(const PipelineCache&) = delete;
   PipelineCache& operator=(const PipelineCache&) = delete;
   VkPipelineCache handle() const { return handle_; }
-  void save();
+  void save();  // writes the file if the cache has grown
 
  private:
   Context& context_;

@@ -3,8 +3,6 @@
 #include <cassert>
 #include <limits>
 
-#include "gpu/context.h"
-
 namespace quintet::gpu {
 
 PipelineStore::~PipelineStore() {
@@ -20,7 +18,7 @@ VkPipeline PipelineStore::acquire(const Hash& key, const std::function<VkPipelin
     const std::lock_guard lock(mutex_);
     if (const auto known = entries_.find(key); known != entries_.end()) return use(known->second);
   }
-  const VkPipeline made = make();  // long: others need not wait
+  const VkPipeline made = make();  // takes long, so it runs without the lock
   const std::lock_guard lock(mutex_);
   const auto [known, isNew] = entries_.try_emplace(key, Entry{made, 1, 0});
   if (isNew) return made;
@@ -28,7 +26,7 @@ VkPipeline PipelineStore::acquire(const Hash& key, const std::function<VkPipelin
   return use(known->second);
 }
 
-void PipelineStore::release(Context& context, const Hash& key) {
+void PipelineStore::release(const Hash& key) {
   const std::lock_guard lock(mutex_);
   Entry& entry = entries_.at(key);
   assert(entry.users > 0);
@@ -39,9 +37,8 @@ void PipelineStore::release(Context& context, const Hash& key) {
   std::uint64_t first = std::numeric_limits<std::uint64_t>::max();
   for (auto e = entries_.begin(); e != entries_.end(); ++e)
     if (e->second.users == 0 && e->second.released < first) oldest = e, first = e->second.released;
-  context.retire([&context, handle = oldest->second.handle] {
-    context.vk().vkDestroyPipeline(context.device(), handle, nullptr);
-  });
+  retire_(
+      [&vk = vk_, device = device_, handle = oldest->second.handle] { vk.vkDestroyPipeline(device, handle, nullptr); });
   entries_.erase(oldest);
   --unused_;
 }

@@ -4,14 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include <fmt/format.h>
-
-#include "gpu/commands.h"
+#include "gpu/barrier.h"
 #include "gpu/error.h"
 
 namespace quintet::gpu {
-
 namespace {
 
 constexpr std::size_t kMaxPending = 64;  // command buffers in flight before submit waits for the oldest
@@ -37,7 +35,7 @@ Submissions::~Submissions() {
   vk_.vkDestroySemaphore(device_, timeline_, nullptr);
 }
 
-std::uint64_t Submissions::submit(Context& context, const std::function<void(Commands&)>& record) {
+std::uint64_t Submissions::submit(const std::function<void(VkCommandBuffer)>& record) {
   collect();
   Slot& slot = acquireSlot();
   try {
@@ -45,9 +43,8 @@ std::uint64_t Submissions::submit(Context& context, const std::function<void(Com
     VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     check(vk_.vkBeginCommandBuffer(slot.commands, &begin), "begin a command buffer");
-    Commands commands(context, slot.commands);
-    commands.barrier(Stage::all, Stage::all);  // what earlier submissions wrote is visible to this one
-    record(commands);
+    recordBarrier(vk_, slot.commands, Stage::all, Stage::all);  // see the memory that earlier submissions wrote
+    record(slot.commands);
     check(vk_.vkEndCommandBuffer(slot.commands), "end a command buffer");
     const std::lock_guard lock(mutex_);
     enqueue(slot);
@@ -150,7 +147,7 @@ void Submissions::wait(std::uint64_t value, double timeoutSeconds) {
 
 std::uint64_t Submissions::completed() const {
   std::uint64_t value = 0;
-  check(vk_.vkGetSemaphoreCounterValue(device_, timeline_, &value), "ask the device for its progress");
+  check(vk_.vkGetSemaphoreCounterValue(device_, timeline_, &value), "query the progress of the device");
   return value;
 }
 
@@ -162,7 +159,7 @@ void Submissions::retire(std::function<void()> destroy) {
   collect();
 }
 
-// Called from destructors too: never throws. On a lost device everything waits for shutDown.
+// Destructors call this, so it never throws. On a lost device retired objects stay until shutDown.
 void Submissions::collect() {
   std::uint64_t done = 0;
   if (vk_.vkGetSemaphoreCounterValue(device_, timeline_, &done) != VK_SUCCESS) return;
@@ -180,10 +177,10 @@ void Submissions::collect() {
 bool Submissions::shutDown() {
   const double timeout = longestTimeout_.load();
   try {
-    // After a timeout the device gets the same time once more: a process must end, hung device or not.
+    // After a timeout the device gets the same time once more, so that the process ends even if the device hangs.
     if (timeout > 0.0 && !reached(submitted(), timeout)) return false;
   } catch (const Error&) {
-    // Lost: its objects may be destroyed.
+    // The objects of a lost device may be destroyed.
   }
   vk_.vkDeviceWaitIdle(device_);
   while (!retired_.empty()) {

@@ -1,5 +1,5 @@
-// The queue: recycled command buffers, the timeline semaphore that counts submissions, and the list
-// of objects to destroy when the work that may use them has ended.
+// Submissions to the queue: recycled command buffers, the timeline semaphore that counts submissions, and the objects
+// to destroy after the work that may use them.
 #ifndef QUINTET_GPU_SUBMISSIONS_H
 #define QUINTET_GPU_SUBMISSIONS_H
 
@@ -15,29 +15,27 @@
 
 namespace quintet::gpu {
 
-class Commands;
-class Context;
-
-// Thread-safe. `record` runs without the lock, so it may use the context in any way.
+// Thread-safe. `record` is called without the lock, so it can use the context in any way.
 class Submissions {
  public:
   Submissions(const VolkDeviceTable& vk, VkDevice device, VkQueue queue, std::uint32_t queueFamily);
-  ~Submissions();  // after shutDown
+  ~Submissions();  // call shutDown first
   Submissions(const Submissions&) = delete;
   Submissions& operator=(const Submissions&) = delete;
 
-  std::uint64_t submit(Context& context, const std::function<void(Commands&)>& record);
+  // These functions are documented in Context.
+  std::uint64_t submit(const std::function<void(VkCommandBuffer)>& record);
   void wait(std::uint64_t value, double timeoutSeconds);
   std::uint64_t completed() const;
   std::uint64_t submitted() const { return submitted_.load(); }
   void retire(std::function<void()> destroy);
 
-  // Waits for all work and runs all that is retired. False: the device hangs (a wait has timed out
-  // before and the work has not ended since), nothing was destroyed and nothing may be.
+  // Waits for all work and destroys all retired objects. Returns false if the device hangs: a wait has timed out and
+  // the work has not ended since. Then nothing was destroyed, and nothing may be.
   bool shutDown();
 
  private:
-  // One command buffer with its pool; free again when `value` is reached.
+  // One command buffer with its pool. It can be reused when `value` is reached.
   struct Slot {
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -45,7 +43,7 @@ class Submissions {
     bool recording = false;
   };
   struct Retired {
-    std::uint64_t value;  // kOpen: not known before the open recordings are submitted
+    std::uint64_t value;  // kOpen until the open recordings are submitted
     std::function<void()> destroy;
   };
   static constexpr std::uint64_t kOpen = ~std::uint64_t{0};
@@ -53,7 +51,7 @@ class Submissions {
   Slot& acquireSlot();
   Slot& addSlot();
   void enqueue(Slot& slot);
-  void closeRecording(Slot& slot);  // with the lock held
+  void closeRecording(Slot& slot);  // requires the lock
   void collect();
   bool reached(std::uint64_t value, double timeoutSeconds) const;
 
@@ -67,7 +65,7 @@ class Submissions {
   std::deque<Retired> retired_;
   unsigned openRecordings_ = 0;
   std::atomic<std::uint64_t> submitted_{0};
-  std::atomic<double> longestTimeout_{0.0};  // seconds, of the waits that failed
+  std::atomic<double> longestTimeout_{0.0};  // seconds, of the waits that timed out
 };
 
 }  // namespace quintet::gpu

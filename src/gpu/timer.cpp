@@ -46,7 +46,7 @@ double Timer::stamp(std::uint32_t index) const {
 double Timer::seconds(std::uint32_t first, std::uint32_t second) const {
   assert(first < count_ && second < count_);
   if (!pool_) return 0.0;
-  // The counter wraps at its valid bits; so does the difference.
+  // The counter wraps around at its valid bits, and so does the difference.
   const std::uint32_t bits = context_.info().timestampBits;
   const std::uint64_t mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
   const std::uint64_t difference = (ticks(second) - ticks(first)) & mask;

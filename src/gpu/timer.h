@@ -1,6 +1,8 @@
-// GPU time between marks, by timestamp queries.
+// Measures GPU time with timestamp queries.
 #ifndef QUINTET_GPU_TIMER_H
 #define QUINTET_GPU_TIMER_H
+
+#include <cstdint>
 
 #include "gpu/commands.h"
 
@@ -12,11 +14,12 @@ class Timer {
   ~Timer();
   Timer(const Timer&) = delete;
   Timer& operator=(const Timer&) = delete;
-  void reset(Commands& commands);  // before the first mark of a submission
+  void reset(Commands& commands);  // required before the first mark of a submission
   void mark(Commands& commands, std::uint32_t index);
-  // Seconds of a mark since some fixed moment of the device, of a submission that has ended; 0 without timestamps.
+  // The submission with the marks must have ended. Without timestamps both functions return 0.
+  // Returns the seconds since a fixed time of the device.
   double stamp(std::uint32_t index) const;
-  // Seconds between two marks of a submission that has ended; 0 if the device has no timestamps.
+  // Returns the seconds between two marks.
   double seconds(std::uint32_t first, std::uint32_t second) const;
 
  private:

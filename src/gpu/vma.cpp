@@ -1,4 +1,4 @@
-// The one translation unit that holds the Vulkan Memory Allocator's code; its warnings are not ours.
+// Implementation of the Vulkan Memory Allocator, compiled without warnings.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
 #pragma GCC diagnostic ignored "-Wextra"

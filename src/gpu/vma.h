@@ -1,5 +1,5 @@
-// The Vulkan Memory Allocator, for this folder's .cpp files only. It finds its functions by
-// vkGetInstanceProcAddr and vkGetDeviceProcAddr, so nothing links to the Vulkan loader.
+// The Vulkan Memory Allocator, for the .cpp files of src/gpu only. It loads its functions with vkGetInstanceProcAddr
+// and vkGetDeviceProcAddr, so nothing links to the Vulkan loader.
 #ifndef QUINTET_GPU_VMA_H
 #define QUINTET_GPU_VMA_H
 

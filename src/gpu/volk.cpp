@@ -1,3 +1,3 @@
-// The one translation unit that holds volk's functions and its instance-level function pointers.
+// Implementation of volk.
 #define VOLK_IMPLEMENTATION
 #include <volk.h>

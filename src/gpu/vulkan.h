@@ -1,5 +1,5 @@
-// Vulkan's declarations without prototypes: functions come from Context::vk() (a table per device,
-// so that several devices can live in one process). Only this folder includes volk and VMA.
+// Vulkan's declarations without prototypes. Functions come from Context::vk(), a table per device, so that one process
+// can use several devices. Only src/gpu includes volk and VMA.
 #ifndef QUINTET_GPU_VULKAN_H
 #define QUINTET_GPU_VULKAN_H
 

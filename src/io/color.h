@@ -1,5 +1,5 @@
-// The sRGB transfer functions (IEC 61966-2-1:1999, equations 5 to 8 with the rounded constants of its
-// amendment 1). Only the curve: primaries are always Rec. 709's.
+// The sRGB transfer functions (IEC 61966-2-1:1999, equations 5 to 8 with the rounded constants of amendment 1). The
+// primaries are always those of Rec. 709.
 #ifndef QUINTET_IO_COLOR_H
 #define QUINTET_IO_COLOR_H
 
@@ -8,17 +8,17 @@
 
 namespace quintet::io {
 
-// Display value -> light, [0,1] -> [0,1]. Both curves continue beyond: linearly below 0, by the power above 1.
+// Decodes a display value: [0,1] -> [0,1]. Both functions are also defined outside: linear below 0, the power above 1.
 inline float linearFromSrgb(float encoded) {
   return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
-// Light -> display value.
+// Encodes linear light as a display value.
 inline float srgbFromLinear(float linear) {
   return linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
-// [0,1] -> 0 … 255, rounded to nearest; clamps, NaN gives 0.
+// Converts [0,1] to 0 … 255, rounded to nearest. Values outside are clamped; NaN becomes 0.
 inline std::uint8_t byteFromUnit(float value) {
   return static_cast<std::uint8_t>(!(value > 0.0f) ? 0.0f : value >= 1.0f ? 255.0f : value * 255.0f + 0.5f);
 }

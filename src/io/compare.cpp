@@ -10,30 +10,30 @@
 
 #include "base/error.h"
 #include "io/color.h"
-#include "io/compare_input.h"
+#include "io/flip.h"
 
 namespace quintet::io {
 namespace {
 
-// Below, a filter is a single pixel; above, it is larger than any picture.
+// Below this range the filter is a single pixel, above it is larger than any image.
 constexpr float kMinPixelsPerDegree = 1.0f;
 constexpr float kMaxPixelsPerDegree = 1000.0f;
 
-void check(const Image& a, const Image& b, float pixelsPerDegree) {
+void checkInputs(const Image& a, const Image& b, float pixelsPerDegree) {
   if (a.pixelCount() == 0 || b.pixelCount() == 0) throw UsageError("an image without pixels cannot be compared");
   if (a.width != b.width || a.height != b.height)
     throw UsageError(fmt::format("images of different sizes cannot be compared: {} x {} and {} x {} pixels", a.width,
                                  a.height, b.width, b.height));
   if (!(pixelsPerDegree >= kMinPixelsPerDegree && pixelsPerDegree <= kMaxPixelsPerDegree))
-    throw UsageError(fmt::format("FLIP takes {} to {} pixels per degree, not {}", kMinPixelsPerDegree,
+    throw UsageError(fmt::format("FLIP supports {} to {} pixels per degree, not {}", kMinPixelsPerDegree,
                                  kMaxPixelsPerDegree, pixelsPerDegree));
 }
 
-// Linear RGB over black.
+// Returns linear RGB over black.
 Image overBlack(const Image& image) { return toChannels(toPremultiplied(image), 3); }
 
 Image clampToDisplay(Image image) {
-  for (float& value : image.samples<float>()) value = value > 0.0f ? std::min(value, 1.0f) : 0.0f;  // NaN: 0
+  for (float& value : image.samples<float>()) value = value > 0.0f ? std::min(value, 1.0f) : 0.0f;  // NaN becomes 0
   return image;
 }
 
@@ -110,7 +110,7 @@ std::array<float, 3> linearFromOklab(float lightness, float a, float b) {
           -0.0041960863f * l - 0.7034186147f * m + 1.7076147010f * s};
 }
 
-// Lightness rises with t; the hue turns from blue-violet over red to yellow.
+// The lightness increases with t; the hue goes from blue-violet over red to yellow.
 std::array<std::uint8_t, 3> mapColor(float t) {
   const float hue = (290.0f + 175.0f * std::pow(t, 1.5f)) * std::numbers::pi_v<float> / 180.0f;
   const float chroma = 0.18f * std::sin(std::numbers::pi_v<float> * std::pow(t, 0.8f)) + 0.08f * t;
@@ -123,12 +123,12 @@ std::array<std::uint8_t, 3> mapColor(float t) {
 }  // namespace
 
 Image flipMap(const Image& a, const Image& b, float pixelsPerDegree) {
-  check(a, b, pixelsPerDegree);
+  checkInputs(a, b, pixelsPerDegree);
   return flipOfDisplayable(clampToDisplay(overBlack(a)), clampToDisplay(overBlack(b)), pixelsPerDegree);
 }
 
 Comparison compareImages(const Image& a, const Image& b, float pixelsPerDegree) {
-  check(a, b, pixelsPerDegree);
+  checkInputs(a, b, pixelsPerDegree);
   Comparison result;
   Image linearA = overBlack(a);
   Image linearB = overBlack(b);
@@ -145,12 +145,12 @@ Image colorMap(const Image& map) {
   const Image values = toChannels(toFloat(map), 1);
   std::array<std::array<std::uint8_t, 3>, 256> table;
   for (std::size_t i = 0; i < table.size(); ++i) table[i] = mapColor(static_cast<float>(i) / 255.0f);
-  Image picture = makeImage(map.width, map.height, 3, PixelType::u8, ColorEncoding::sRgb);
-  const std::span<std::uint8_t> out = picture.samples<std::uint8_t>();
+  Image image = makeImage(map.width, map.height, 3, PixelType::u8, ColorEncoding::sRgb);
+  const std::span<std::uint8_t> out = image.samples<std::uint8_t>();
   for (std::size_t i = 0; i < values.pixelCount(); ++i)
     std::ranges::copy(table[byteFromUnit(values.samples<float>()[i])],
                       out.begin() + static_cast<std::ptrdiff_t>(3 * i));
-  return picture;
+  return image;
 }
 
 }  // namespace quintet::io

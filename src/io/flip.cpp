@@ -1,28 +1,30 @@
-// LDR-FLIP, written from the equations of Andersson et al., "FLIP: A Difference Evaluator for Alternating
-// Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2), HPG 2020, https://doi.org/10.1145/3406183
-// (section and table numbers below are that paper's).
+// LDR-FLIP from the equations of Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", Proc. ACM
+// Comput. Graph. Interact. Tech. 3(2), HPG 2020, https://doi.org/10.1145/3406183. Section and table numbers refer to
+// it.
+#include "io/flip.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "base/math.h"
 #include "base/parallel.h"
-#include "io/compare.h"
-#include "io/compare_input.h"
-#include "io/convolve.h"
 
 namespace quintet::io {
 namespace {
 
-// Section 4.1.4 and 4.2: exponents and the remapping of colour errors.
+// Sections 4.1.4 and 4.2: exponents and the remapping of color errors.
 constexpr float kColorExponent = 0.7f;    // q_c
 constexpr float kFeatureExponent = 0.5f;  // q_f
-constexpr float kRemapFrom = 0.4f;        // p_c, part of the largest error
+constexpr float kRemapFrom = 0.4f;        // p_c, fraction of the largest error
 constexpr float kRemapTo = 0.95f;         // p_t
 constexpr float kFeatureWidth = 0.082f;   // w, degrees
 
-// One Gaussian a·sqrt(π/b)·exp(-π²x²/b) of a contrast sensitivity function, x in degrees (Table 1).
+// One Gaussian a·sqrt(π/b)·exp(-π²x²/b) of a contrast sensitivity function; x is in degrees (Table 1).
 struct Gaussian {
   float a;
   float b;
@@ -31,13 +33,13 @@ constexpr Gaussian kAchromatic{1.0f, 0.0047f};
 constexpr Gaussian kRedGreen{1.0f, 0.0053f};
 constexpr std::array<Gaussian, 2> kBlueYellow{{{34.1f, 0.04f}, {13.5f, 0.025f}}};
 
-// Linear RGB to XYZ for Rec. 709's primaries and white (x 0.3127, y 0.3290); columns are R, G, B.
+// Linear RGB to XYZ for the primaries and the white of Rec. 709 (x 0.3127, y 0.3290). The columns are R, G, B.
 const mat3 kXyzFromRgb{0.4123908f, 0.2126390f, 0.0193308f, 0.3575843f, 0.7151687f,
                        0.1191948f, 0.1804808f, 0.0721923f, 0.9505322f};
 const mat3 kRgbFromXyz = glm::inverse(kXyzFromRgb);
 const vec3 kWhite = kXyzFromRgb * vec3(1.0f);
 
-// YCxCz, a linear form of CIELAB (section 4.1.1).
+// YCxCz, a linear variant of CIELAB (section 4.1.1).
 vec3 opponentFromRgb(const vec3& rgb) {
   const vec3 t = kXyzFromRgb * rgb / kWhite;
   return {116.0f * t.y - 16.0f, 500.0f * (t.x - t.y), 200.0f * (t.y - t.z)};
@@ -58,7 +60,7 @@ vec3 labFromRgb(const vec3& rgb) {
   return {116.0f * f(t.y) - 16.0f, 500.0f * (f(t.x) - f(t.y)), 200.0f * (f(t.y) - f(t.z))};
 }
 
-// Colours seem paler where it is darker (Hunt effect, section 4.1.2).
+// CIELAB with the Hunt effect: colors appear less saturated at low luminance (section 4.1.2).
 vec3 huntFromRgb(const vec3& rgb) {
   const vec3 lab = labFromRgb(rgb);
   return {lab.x, 0.01f * lab.x * lab.y, 0.01f * lab.x * lab.z};
@@ -68,6 +70,52 @@ vec3 huntFromRgb(const vec3& rgb) {
 float colorDistance(const vec3& a, const vec3& b) {
   const float distance = std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
   return std::pow(distance, kColorExponent);
+}
+
+// ---- Separable convolution of planes; pixels outside repeat the border
+
+struct Plane {
+  Plane(std::size_t planeWidth, std::size_t planeHeight)
+      : width(planeWidth), height(planeHeight), values(planeWidth * planeHeight) {}
+  float* row(std::size_t y) { return values.data() + y * width; }
+  const float* row(std::size_t y) const { return values.data() + y * width; }
+
+  std::size_t width;
+  std::size_t height;
+  std::vector<float> values;
+};
+
+// 2 r + 1 weights; kernel[r] is the center: out(x) = Σ kernel[r + i] in(x + i).
+using Kernel = std::vector<float>;
+
+Plane convolveRows(const Plane& in, const Kernel& kernel) {
+  Plane out(in.width, in.height);
+  const std::size_t radius = kernel.size() / 2;
+  parallelFor(in.height, [&](std::size_t y) {
+    std::vector<float> padded(in.width + 2 * radius);
+    const float* from = in.row(y);
+    std::fill_n(padded.begin(), radius, from[0]);
+    std::copy_n(from, in.width, padded.data() + radius);
+    std::fill_n(padded.end() - static_cast<std::ptrdiff_t>(radius), radius, from[in.width - 1]);
+    float* to = out.row(y);
+    for (std::size_t i = 0; i < kernel.size(); ++i)
+      for (std::size_t x = 0; x < in.width; ++x) to[x] += kernel[i] * padded[x + i];
+  });
+  return out;
+}
+
+Plane convolveColumns(const Plane& in, const Kernel& kernel) {
+  Plane out(in.width, in.height);
+  const std::size_t radius = kernel.size() / 2;
+  parallelFor(in.height, [&](std::size_t y) {
+    float* to = out.row(y);
+    for (std::size_t i = 0; i < kernel.size(); ++i) {
+      const std::size_t below = y + i < radius ? 0 : y + i - radius;
+      const float* from = in.row(std::min(below, in.height - 1));
+      for (std::size_t x = 0; x < in.width; ++x) to[x] += kernel[i] * from[x];
+    }
+  });
+  return out;
 }
 
 struct Opponent {
@@ -88,7 +136,7 @@ Opponent opponentPlanes(const Image& rgb) {
   return planes;
 }
 
-// ---- Colour: what of it the eye resolves at this distance, and how different that is ----
+// ---- Color difference after the contrast sensitivity functions (section 4.1)
 
 Kernel gaussianKernel(float b, std::size_t radius, float pixelsPerDegree, float& sum) {
   Kernel kernel(2 * radius + 1);
@@ -101,9 +149,9 @@ Kernel gaussianKernel(float b, std::size_t radius, float pixelsPerDegree, float&
   return kernel;
 }
 
-// The sum of Gaussians is applied as such: each of them is separable, the sum is not.
+// Applies the Gaussians one by one, because each of them is separable and their sum is not.
 Plane filterBySensitivity(const Plane& plane, std::span<const Gaussian> gaussians, float pixelsPerDegree) {
-  // 3 σ of the widest Gaussian of all channels.
+  // 3 σ of the widest Gaussian of all three channels.
   const float sigma = std::sqrt(kBlueYellow[0].b / (2.0f * kPi * kPi));
   const auto radius = static_cast<std::size_t>(std::ceil(3.0f * sigma * pixelsPerDegree));
   Plane result(plane.width, plane.height);
@@ -131,16 +179,16 @@ vec3 huntAt(const Opponent& planes, std::size_t i) {
   return huntFromRgb(glm::clamp(rgb, 0.0f, 1.0f));
 }
 
-// The largest error, between green and blue, becomes 1; small ones get most of the range (section 4.1.4).
+// Maps the largest error, between green and blue, to 1; small errors get most of the range (section 4.1.4).
 float remapColorError(float error, float largest) {
   const float knee = kRemapFrom * largest;
   if (error < knee) return kRemapTo / knee * error;
   return kRemapTo + (error - knee) / (largest - knee) * (1.0f - kRemapTo);
 }
 
-// ---- Features: edges and points in the achromatic channel (section 4.2) ----
+// ---- Feature difference: edges and points in the achromatic channel (section 4.2)
 
-// The Gaussian, and its first or second derivative with the positive weights summing to 1, the negative to -1.
+// The Gaussian or its first or second derivative. The positive weights sum to 1, the negative ones to -1.
 Kernel featureKernel(int derivative, float pixelsPerDegree) {
   const float sigma = 0.5f * kFeatureWidth * pixelsPerDegree;
   const auto radius = static_cast<std::size_t>(std::ceil(3.0f * sigma));

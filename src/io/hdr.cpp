@@ -1,6 +1,6 @@
-// Radiance HDR (RGBE), after the format's description in Radiance's "File Formats" (Ward 2006) and "Real
-// Pixels" (Graphics Gems II, 1991). Of our own, because stb_image takes only one orientation, knows one of
-// the two run-length encodings, ignores EXPOSURE, and reads zeros where the data ends.
+// Radiance HDR (RGBE), from the descriptions in Radiance's "File Formats" (Ward 2006) and "Real Pixels" (Graphics Gems
+// II, 1991). This is an own implementation because stb_image supports one orientation and one of the two run-length
+// encodings, ignores EXPOSURE, and returns zeros for truncated data.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/codec.h"
 #include "io/formats.h"
 
 namespace quintet::io {
@@ -16,11 +17,11 @@ namespace {
 
 using Rgbe = std::array<std::uint8_t, 4>;
 
-constexpr std::uint32_t kMinRunWidth = 8;  // scan lines outside these widths use the old encoding
+constexpr std::uint32_t kMinRunWidth = 8;  // scan lines of other widths use the old encoding
 constexpr std::uint32_t kMaxRunWidth = 32767;
 
 struct Header {
-  std::uint32_t width = 0;  // of the picture as shown
+  std::uint32_t width = 0;  // of the decoded image
   std::uint32_t height = 0;
   bool columns = false;      // scan lines run along y ("+X 8 -Y 4")
   bool rightToLeft = false;  // -X
@@ -33,7 +34,7 @@ struct Header {
 
 bool matches(const Source& source) { return source.has(0, "#?RADIANCE") || source.has(0, "#?RGBE"); }
 
-// The line at `at`, which moves behind its newline.
+// Returns the line at `at` and moves `at` behind the newline.
 std::string_view readLine(const Source& source, std::size_t& at) {
   const std::string_view text(reinterpret_cast<const char*>(source.data()), source.size());
   const std::size_t end = text.find('\n', at);
@@ -52,7 +53,7 @@ bool parse(std::string_view text, Number& value) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-// "-Y 512 +X 1024"; the first axis is the one that changes from scan line to scan line.
+// Parses "-Y 512 +X 1024". The first axis is the one that changes from scan line to scan line.
 bool parseResolution(std::string_view line, Header& header) {
   for (int axis = 0; axis < 2; ++axis) {
     if (line.size() < 4 || (line[0] != '-' && line[0] != '+') || line[2] != ' ') return false;
@@ -86,23 +87,23 @@ Header readHeader(const Source& source) {
   }
   const std::size_t start = at;
   if (!parseResolution(readLine(source, at), header))
-    source.fail(start, "broken Radiance HDR: the resolution line does not read like '-Y 512 +X 1024'");
+    source.fail(start, "broken Radiance HDR: invalid resolution line (expected for example '-Y 512 +X 1024')");
   source.checkSize(header.width, header.height, 3 * sizeof(float));
   header.pixels = at;
   return header;
 }
 
-// Decodes the scan lines in the file's order.
+// Decodes the scan lines in the order of the file.
 class LineReader {
  public:
   LineReader(const Source& source, std::size_t offset) : source_(source), at_(offset) {}
 
   void readLine(std::span<Rgbe> line) {
-    const bool mayRun = line.size() >= kMinRunWidth && line.size() <= kMaxRunWidth;
+    const bool mayBeEncoded = line.size() >= kMinRunWidth && line.size() <= kMaxRunWidth;
     need(4);
-    if (!mayRun || source_[at_] != 2 || source_[at_ + 1] != 2 || source_[at_ + 2] >= 128) return readOld(line);
+    if (!mayBeEncoded || source_[at_] != 2 || source_[at_ + 1] != 2 || source_[at_ + 2] >= 128) return readOld(line);
     if ((source_[at_ + 2] << 8 | source_[at_ + 3]) != static_cast<int>(line.size()))
-      source_.fail(at_, "broken Radiance HDR: a scan line of another width");
+      source_.fail(at_, "broken Radiance HDR: a scan line has a wrong width");
     at_ += 4;
     for (std::size_t component = 0; component < 4; ++component) readComponent(line, component);
   }
@@ -119,7 +120,7 @@ class LineReader {
       const bool run = code > 128;
       const std::size_t count = run ? code - 128 : code;
       if (count == 0 || count > line.size() - x)
-        source_.fail(at_ - 1, "broken Radiance HDR: a run leaves its scan line");
+        source_.fail(at_ - 1, "broken Radiance HDR: a run exceeds its scan line");
       need(run ? 1 : count);
       for (std::size_t i = 0; i < count; ++i) line[x + i][component] = source_[at_ + (run ? 0 : i)];
       at_ += run ? 1 : count;
@@ -127,7 +128,8 @@ class LineReader {
     }
   }
 
-  // Pixels one by one; (1,1,1,n) repeats the one before n times, and further ones count in higher bytes.
+  // Reads pixels one by one. (1,1,1,n) repeats the previous pixel n times; consecutive repetitions are higher bytes of
+  // n.
   void readOld(std::span<Rgbe> line) {
     int shift = 0;
     for (std::size_t x = 0; x < line.size(); at_ += 4) {
@@ -139,7 +141,7 @@ class LineReader {
         continue;
       }
       const std::size_t count = shift > 16 ? line.size() + 1 : static_cast<std::size_t>(pixel[3]) << shift;
-      if (x == 0 || count > line.size() - x) source_.fail(at_, "broken Radiance HDR: a run leaves its scan line");
+      if (x == 0 || count > line.size() - x) source_.fail(at_, "broken Radiance HDR: a run exceeds its scan line");
       std::fill_n(line.begin() + static_cast<std::ptrdiff_t>(x), count, line[x - 1]);
       x += count;
       shift += 8;
@@ -157,7 +159,7 @@ ImageInfo probe(const Source& source) {
 
 Image decode(const Source& source) {
   const Header header = readHeader(source);
-  // The buffer grows with what was read: a header alone cannot make it large.
+  // The buffer grows with the data that was read, so that a header alone cannot make it large.
   std::vector<Rgbe> pixels;
   LineReader reader(source, header.pixels);
   for (std::uint32_t i = 0; i < header.lineCount(); ++i) {
@@ -165,7 +167,7 @@ Image decode(const Source& source) {
     reader.readLine(std::span(pixels).last(header.lineLength()));
   }
 
-  std::array<float, 256> scale{};  // by exponent; 0 stands for black
+  std::array<float, 256> scale{};  // by exponent; exponent 0 is black
   for (int e = 1; e < 256; ++e)
     scale[e] = static_cast<float>(std::min(std::ldexp(1.0, e - 136) / header.exposure,
                                            static_cast<double>(std::numeric_limits<float>::max()) / 255.0));
@@ -200,7 +202,7 @@ Rgbe toRgbe(std::span<const float> rgb) {
   return pixel;
 }
 
-// Runs of at least three equal bytes as (128 + length, value), the rest as (length, values…).
+// Appends runs of at least three equal bytes as (128 + length, value), other bytes as (length, values…).
 void appendComponent(std::vector<std::byte>& out, std::span<const Rgbe> line, std::size_t component) {
   const auto at = [&](std::size_t i) { return std::byte{line[i][component]}; };
   const auto runAt = [&](std::size_t begin) {

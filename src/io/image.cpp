@@ -2,22 +2,25 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <type_traits>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "io/color.h"
 
 namespace quintet::io {
 namespace {
 
-// Rec. ITU-R BT.709-6, item 3.2.
+// Luminance weights of Rec. ITU-R BT.709-6, item 3.2.
 constexpr std::array<float, 3> kLuminance{0.2126f, 0.7152f, 0.0722f};
 
 template <class T>
 constexpr float kUnit = std::is_same_v<T, float> ? 1.0f
                                                  : static_cast<float>(std::is_same_v<T, std::uint8_t> ? 255 : 65535);
 
-// Calls function(T{}) with T the image's sample type.
+// Calls function(T{}), where T is the sample type.
 template <class Function>
 auto withType(PixelType type, Function&& function) {
   switch (type) {
@@ -73,6 +76,59 @@ float encodedLuminance(const T* rgb, ColorEncoding encoding) {
   if (encoding == ColorEncoding::linear) return luminance(value);
   for (float& v : value) v = linearFromSrgb(v);
   return srgbFromLinear(luminance(value));
+}
+
+// ---- resizeBox: first along the rows, then along the columns
+
+// The input pixels from `first` on that an output pixel covers, with weights that sum to 1.
+struct Taps {
+  std::size_t first;
+  std::vector<float> weights;
+};
+
+std::vector<Taps> makeTaps(std::uint32_t from, std::uint32_t to) {
+  std::vector<Taps> taps(to);
+  for (std::uint32_t i = 0; i < to; ++i) {
+    // All positions are integers in units of 1/to of an input pixel, so rounding loses no pixel.
+    const std::uint64_t begin = std::uint64_t{i} * from;
+    const std::uint64_t end = begin + from;
+    taps[i].first = begin / to;
+    for (std::uint64_t p = taps[i].first; p * to < end; ++p) {
+      const std::uint64_t overlap = std::min(end, (p + 1) * to) - std::max(begin, p * to);
+      taps[i].weights.push_back(static_cast<float>(static_cast<double>(overlap) / from));
+    }
+  }
+  return taps;
+}
+
+Image resizeRows(const Image& in, std::uint32_t width) {
+  Image out = makeImage(width, in.height, in.channels, PixelType::f32, ColorEncoding::linear);
+  const std::vector<Taps> taps = makeTaps(in.width, width);
+  float* to = out.samples<float>().data();
+  for (std::uint32_t y = 0; y < in.height; ++y) {
+    const float* row = in.samples<float>().data() + static_cast<std::size_t>(y) * in.width * in.channels;
+    for (const Taps& tap : taps) {
+      const float* from = row + tap.first * in.channels;
+      for (const float weight : tap.weights)
+        for (std::uint32_t c = 0; c < in.channels; ++c) to[c] += weight * *from++;
+      to += in.channels;
+    }
+  }
+  return out;
+}
+
+Image resizeColumns(const Image& in, std::uint32_t height) {
+  Image out = makeImage(in.width, height, in.channels, PixelType::f32, ColorEncoding::linear);
+  const std::vector<Taps> taps = makeTaps(in.height, height);
+  const std::size_t row = static_cast<std::size_t>(in.width) * in.channels;
+  float* to = out.samples<float>().data();
+  for (const Taps& tap : taps) {
+    const float* from = in.samples<float>().data() + tap.first * row;
+    for (const float weight : tap.weights)
+      for (std::size_t i = 0; i < row; ++i) to[i] += weight * *from++;
+    to += row;
+  }
+  return out;
 }
 
 }  // namespace
@@ -157,6 +213,21 @@ Image toPremultiplied(const Image& image) {
   const std::span<float> samples = result.samples<float>();
   for (std::size_t i = 0; i < samples.size(); i += result.channels)
     for (std::uint32_t c = 0; c < result.colorChannels(); ++c) samples[i + c] *= samples[i + result.channels - 1];
+  return result;
+}
+
+Image resizeBox(const Image& image, std::uint32_t width, std::uint32_t height) {
+  if (width == 0 || height == 0 || image.empty()) throw UsageError("an image cannot be resized from or to 0 pixels");
+  Image result = resizeColumns(resizeRows(toPremultiplied(image), width), height);
+  if (!result.hasAlpha()) return result;
+  result.premultiplied = image.premultiplied;
+  if (result.premultiplied) return result;
+  const std::span<float> samples = result.samples<float>();
+  for (std::size_t i = 0; i < samples.size(); i += result.channels) {
+    const float alpha = samples[i + result.channels - 1];
+    if (alpha > 0.0f)
+      for (std::uint32_t c = 0; c < result.colorChannels(); ++c) samples[i + c] /= alpha;
+  }
   return result;
 }
 

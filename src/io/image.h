@@ -1,6 +1,6 @@
-// A picture in host memory, and the conversions between its forms. Rows run top to bottom, pixels are
-// tightly packed, samples are in host byte order. Channels: 1 grey, 2 grey + alpha, 3 RGB, 4 RGBA;
-// Rec. 709 primaries. Alpha is coverage in [0,1], never under the sRGB curve.
+// An image in host memory and conversions between sample types, encodings and channel counts. Rows run from top to
+// bottom, pixels are tightly packed, samples are in host byte order. Channels are gray, gray + alpha, RGB or RGBA with
+// Rec. 709 primaries. Alpha is coverage in [0,1] and always linear.
 #ifndef QUINTET_IO_IMAGE_H
 #define QUINTET_IO_IMAGE_H
 
@@ -8,12 +8,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace quintet::io {
 
-// u8 and u16 are unsigned normalised: 255 or 65535 stand for 1.
+inline constexpr std::uint32_t kMaxImageSide = 65536;                // pixels
+inline constexpr std::size_t kMaxImageBytes = std::size_t{1} << 30;  // of a decoded image
+
+// u8 and u16 are unsigned normalized: 255 or 65535 represent 1.
 enum class PixelType : std::uint8_t { u8, u16, f32 };
 enum class ColorEncoding : std::uint8_t { sRgb, linear };
 
@@ -26,7 +32,7 @@ struct Image {
   PixelType type = PixelType::u8;
   ColorEncoding encoding = ColorEncoding::sRgb;
   std::vector<std::byte> data;  // height · rowBytes()
-  // True: colour is already multiplied by alpha (the rule in EXR). False: straight (PNG, WebP).
+  // True if color is premultiplied by alpha (EXR), false if alpha is straight (PNG, WebP).
   bool premultiplied = false;
 
   bool empty() const { return data.empty(); }
@@ -36,7 +42,7 @@ struct Image {
   std::size_t sampleCount() const { return pixelCount() * channels; }
   std::size_t rowBytes() const { return static_cast<std::size_t>(width) * channels * bytesPerSample(type); }
 
-  // All samples; T is std::uint8_t, std::uint16_t or float and must be what `type` says.
+  // All samples. T is std::uint8_t, std::uint16_t or float and must match `type`.
   template <class T>
   std::span<T> samples() {
     checkType<T>();
@@ -47,7 +53,7 @@ struct Image {
     checkType<T>();
     return {reinterpret_cast<const T*>(data.data()), sampleCount()};
   }
-  // The `channels` samples of one pixel; (0,0) is the top left.
+  // The `channels` samples of one pixel. (0,0) is the top left pixel.
   template <class T>
   std::span<T> pixel(std::uint32_t x, std::uint32_t y) {
     return samples<T>().subspan(offset(x, y), channels);
@@ -70,28 +76,41 @@ struct Image {
   }
 };
 
-// All samples 0.
+// Properties of an image file as its header states them.
+struct ImageInfo {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint32_t channels = 0;  // of the decoded image
+  PixelType type = PixelType::u8;
+  std::string_view format;  // "PNG", "JPEG", "WebP", "Radiance HDR", "OpenEXR"
+};
+
+// Keywords and texts in the order of the file. Keywords have 1 to 79 bytes of printable ASCII; texts are UTF-8.
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+
+// Returns an image with all samples 0.
 Image makeImage(std::uint32_t width, std::uint32_t height, std::uint32_t channels, PixelType type,
                 ColorEncoding encoding);
 
-// Linear floats: the sRGB curve is undone where `encoding` says so. Alpha stays premultiplied or straight.
+// Converts to linear floats; sRGB-encoded samples are decoded. Alpha stays premultiplied or straight.
 Image toFloat(const Image& image);
 
-// sRGB-encoded bytes with straight alpha; values outside [0,1] are clamped, NaN gives 0. No tone mapping.
+// Converts to sRGB-encoded bytes with straight alpha, without tone mapping. Values are clamped to [0,1]; NaN becomes 0.
 Image toSrgb8(const Image& image);
 
-// The same picture with another channel count; type and encoding stay. Grey is repeated; missing alpha
-// is 1; RGB becomes grey by its luminance (Rec. 709 weights, linear light); alpha that does not fit is dropped.
+// Converts to a different number of channels; type and encoding stay. Gray is repeated, missing alpha is 1, RGB becomes
+// gray by its luminance (Rec. 709 weights, linear light), and alpha is dropped for 1 and 3 channels.
 Image toChannels(const Image& image, std::uint32_t channels);
 
-// The same, but only the rows from `first` on, as many as `rows` has room for; `rows` holds whole ones. On all cores.
+// Writes the rows from `first` on with `channels` channels to `rows`, whose size must be a multiple of the row size.
+// Runs on all cores.
 void writeChannels(const Image& image, std::uint32_t channels, std::uint32_t first, std::span<std::byte> rows);
 
-// Colour times alpha, in linear floats. No alpha: only toFloat.
+// Converts to linear floats and multiplies color by alpha.
 Image toPremultiplied(const Image& image);
 
-// Resampled by exact pixel areas (box filter), in linear light with premultiplied alpha, so that mean
-// values are kept; straight input gives straight output. Linear floats. Throws UsageError if a size is 0.
+// Resizes with a box filter of exact pixel areas in linear light with premultiplied alpha, which preserves the mean.
+// The result has linear floats, and straight alpha if the input has. Throws UsageError if a size is 0.
 Image resizeBox(const Image& image, std::uint32_t width, std::uint32_t height);
 
 }  // namespace quintet::io

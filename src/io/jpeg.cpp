@@ -9,8 +9,8 @@
 namespace quintet::io {
 namespace {
 
-// Pixels per byte: each block of 64 takes at least one bit, so 512. (Arithmetic coding could do better for a
-// picture of one colour; none such is known.)
+// Pixels per byte: each block of 64 pixels takes at least one bit. (Arithmetic coding could compress an image of one
+// color further, but no such file is known.)
 constexpr std::uint64_t kBestRatio = 512;
 
 struct Destroy {
@@ -30,15 +30,15 @@ Decoder makeDecoder() {
   return decoder;
 }
 
-// TurboJPEG puts its function's name in front of some messages.
+// Some messages of TurboJPEG start with the name of a function.
 [[noreturn]] void failWith(const Source& source, const std::string& message) {
   if (message.find("Premature end") != std::string::npos) source.fail(source.size(), "JPEG data ends early");
   const std::size_t name = message.find("(): ");
   source.fail("broken JPEG: " + (name == std::string::npos ? message : message.substr(name + 4)));
 }
 
-// What libjpeg calls a warning is lost data that it has painted over, and an error here. One is harmless and
-// common: padding between the segments.
+// A warning of libjpeg means lost data that it has filled in, which is an error here. One warning is harmless and
+// common: padding between segments.
 bool onlyPadding(void* decoder) {
   return tjGetErrorCode(decoder) == TJERR_WARNING &&
          std::string_view(tjGetErrorStr2(decoder)).find("extraneous bytes before marker") != std::string_view::npos;
@@ -83,7 +83,7 @@ Image decode(const Source& source) {
                          reinterpret_cast<unsigned char*>(image.data.data()), header.width, 0, header.height,
                          header.channels == 1 ? TJPF_GRAY : TJPF_RGB, flags | TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS);
   };
-  // Warnings behind a first, harmless one show only if decoding goes on.
+  // Decoding must continue after a harmless warning, because only then later warnings are reported.
   if (run(TJFLAG_STOPONWARNING) != 0 && !(onlyPadding(decoder.get()) && (run(0) == 0 || onlyPadding(decoder.get()))))
     failWith(source, tjGetErrorStr2(decoder.get()));
   return image;

@@ -1,4 +1,4 @@
-// PNG through libspng, fed by a reader of our own so that errors can name the place.
+// PNG through libspng, with an own read callback so that errors contain the offset.
 #include <fmt/format.h>
 #include <spng.h>
 
@@ -7,18 +7,19 @@
 #include <memory>
 
 #include "base/error.h"
+#include "io/codec.h"
 #include "io/formats.h"
 
 namespace quintet::io {
 namespace {
 
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
-// DEFLATE's best case: a match of 258 bytes takes two bits (RFC 1951, 3.2.5).
+// Best case of DEFLATE: a match of 258 bytes takes two bits (RFC 1951, 3.2.5).
 constexpr std::uint64_t kBestDeflate = 1032;
-// Profiles and text beyond this are refused: they inflate to anything.
+// Limit for profiles and text, which can inflate to any size.
 constexpr std::size_t kMaxChunkBytes = std::size_t{64} << 20;
 
-// zlib's level: 6, its default, takes twice the time for 1 % (noisy pictures).
+// zlib's level. Its default, 6, takes twice as long and saves 1 % (noisy images).
 constexpr int kCompression = 4;
 
 struct FreeContext {
@@ -54,13 +55,14 @@ class Reader {
     source_.fail(offset_, fmt::format("broken PNG: {}", spng_strerror(error)));
   }
 
-  // To the end of the file: a lost tail shows only here. libspng forgives that of the last checksum.
+  // Reads to the end of the file, which detects a missing tail. libspng accepts a truncated last checksum; this does
+  // not.
   void finish() const {
     check(spng_decode_chunks(ctx_.get()));
     if (ended_) check(SPNG_IO_EOF);
   }
 
-  // True if a tRNS chunk gives a picture without alpha channel its transparency.
+  // Returns whether a tRNS chunk adds transparency to an image without an alpha channel.
   bool transparent() const {
     spng_trns ignored;
     const int error = spng_get_trns(ctx_.get(), &ignored);
@@ -94,12 +96,12 @@ class Reader {
 
   const Source& source_;
   std::size_t offset_ = 0;
-  bool ended_ = false;  // more was asked for than there is
+  bool ended_ = false;  // a read went beyond the end of the data
   spng_ihdr header_{};
   Context ctx_;
 };
 
-// libspng's name for `channels` samples; SPNG_FMT_PNG where the file already has them.
+// Returns the libspng format for `channels` samples; SPNG_FMT_PNG if the file already has them.
 int decodingFormat(const Reader& reader, std::uint32_t channels) {
   const bool wide = reader.header().bit_depth == 16;
   if (reader.header().color_type == SPNG_COLOR_TYPE_INDEXED) return channels == 4 ? SPNG_FMT_RGBA8 : SPNG_FMT_RGB8;
@@ -147,14 +149,14 @@ Metadata metadata(const Source& source) {
 
 void check(int error) {
   if (error == SPNG_EMEM) throw std::bad_alloc();
-  if (error != SPNG_OK) throw Error(fmt::format("a PNG could not be made: {}", spng_strerror(error)));
+  if (error != SPNG_OK) throw Error(fmt::format("cannot encode a PNG file: {}", spng_strerror(error)));
 }
 
 bool isAscii(const std::string& text) {
   return std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 128; });
 }
 
-// `texts` must outlive the encoding: libspng keeps the pointers.
+// libspng keeps pointers to `texts` until the encoding ends.
 void addText(spng_ctx* ctx, Metadata& texts) {
   std::vector<spng_text> chunks(texts.size());
   static char empty[] = "";
@@ -178,8 +180,8 @@ const Format kPng{"PNG", matches, probe, decode, metadata};
 std::vector<std::byte> encodePng(const Image& image, const Metadata& metadata) {
   checkEncodable(image, "PNG");
   checkMetadata(metadata);
-  if (image.type == PixelType::f32) throw UsageError("PNG holds 8 or 16 bit samples, not floats");
-  if (image.premultiplied && image.hasAlpha()) throw UsageError("PNG holds straight alpha, not premultiplied");
+  if (image.type == PixelType::f32) throw UsageError("PNG stores 8 or 16 bit samples, not floats");
+  if (image.premultiplied && image.hasAlpha()) throw UsageError("PNG stores straight alpha, not premultiplied alpha");
 
   constexpr std::uint8_t kColorTypes[]{SPNG_COLOR_TYPE_GRAYSCALE, SPNG_COLOR_TYPE_GRAYSCALE_ALPHA,
                                        SPNG_COLOR_TYPE_TRUECOLOR, SPNG_COLOR_TYPE_TRUECOLOR_ALPHA};
@@ -191,7 +193,7 @@ std::vector<std::byte> encodePng(const Image& image, const Metadata& metadata) {
 
   const Context ctx = makeContext(SPNG_CTX_ENCODER);
   Metadata texts = metadata;
-  std::erase_if(texts, [](const auto& entry) { return entry.second.empty(); });  // libspng takes none
+  std::erase_if(texts, [](const auto& entry) { return entry.second.empty(); });  // libspng rejects empty text
   check(spng_set_option(ctx.get(), SPNG_ENCODE_TO_BUFFER, 1));
   check(spng_set_option(ctx.get(), SPNG_IMG_COMPRESSION_LEVEL, kCompression));
   check(spng_set_ihdr(ctx.get(), &header));

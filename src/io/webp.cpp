@@ -1,5 +1,5 @@
-// WebP (lossy, lossless, alpha) through libwebp. libwebp forgives some lost bytes at the end; the RIFF
-// container says how many there should be, so the container is checked here.
+// WebP (lossy, lossless, alpha) through libwebp. libwebp accepts some missing bytes at the end, so the sizes in the
+// RIFF container are checked here.
 #include <webp/decode.h>
 
 #include <cstring>
@@ -26,7 +26,7 @@ std::size_t littleEndian32(const Source& source, std::size_t offset) {
 
 bool matches(const Source& source) { return source.has(0, "RIFF") && source.has(8, "WEBP"); }
 
-// Every chunk must be there in full.
+// Fails unless every chunk is complete.
 void checkContainer(const Source& source) {
   const std::size_t end = littleEndian32(source, 4) + kChunkHeader;
   if (end > source.size()) source.fail(source.size(), "WebP data ends early");
@@ -69,12 +69,12 @@ ImageInfo probe(const Source& source) {
 Image decode(const Source& source) {
   checkContainer(source);
   WebPDecoderConfig config;
-  if (!WebPInitDecoderConfig(&config)) source.fail("libwebp is of another version than its headers");
+  if (!WebPInitDecoderConfig(&config)) source.fail("the libwebp library and its headers have different versions");
   config.input = readHeader(source);
   const bool alpha = config.input.has_alpha != 0;
   config.output.colorspace = alpha ? MODE_RGBA : MODE_RGB;
-  // libwebp's own buffer, copied: it is not touched before there are pixels, so that a header alone, which
-  // may promise 16383 x 16383 of them in 30 bytes, costs nothing.
+  // libwebp allocates its own buffer and touches it only when pixels are decoded. A file of 30 bytes whose header
+  // declares 16383 x 16383 pixels therefore costs no memory.
   const VP8StatusCode status = WebPDecode(source.data(), source.size(), &config);
   const std::unique_ptr<WebPDecBuffer, FreeBuffer> buffer(&config.output);
   if (status != VP8_STATUS_OK) failWith(source, status);

@@ -21,7 +21,8 @@ std::string_view trimmed(std::string_view line) {
   return first == line.npos ? std::string_view() : line.substr(first);
 }
 
-// Where the lines end that must stay first: #version, #extension, comments and blank lines before the last of them.
+// The lines that must stay first: those up to the last of the leading #version and #extension lines, with the comments and
+// blank lines between them.
 struct Head {
   std::size_t bytes = 0;
   int lines = 0;
@@ -53,12 +54,8 @@ Head findHead(std::string_view source) {
 
 }  // namespace
 
-bool isInstrumented(shader::Stage stage) {
-  return stage != shader::Stage::intersection && stage != shader::Stage::callable;
-}
-
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index) {
-  if (!isInstrumented(stage)) return source;
+  if (stage == shader::Stage::intersection || stage == shader::Stage::callable) return source;
   const Head head = findHead(source);
   const bool lecture = source.find("#include <quintet/gsn.glsl>") != source.npos;
   std::string result = source.substr(0, head.bytes);

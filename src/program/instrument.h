@@ -1,5 +1,5 @@
-// Checks that only running can make: puts quintet/instrument.glsl around a stage's source. The renderer reads what the
-// shaders wrote (render/instrument.h).
+// Instruments shaders with checks at run time: wraps quintet/instrument.glsl around the source of a stage. The renderer
+// reads what the shaders wrote (render/renderer/instrument.h).
 #ifndef QUINTET_PROGRAM_INSTRUMENT_H
 #define QUINTET_PROGRAM_INSTRUMENT_H
 
@@ -9,13 +9,10 @@
 
 namespace quintet::program {
 
-// The source of stage number `index` with the checks. Lines keep their numbers in messages. A lecture-form stage
-// includes quintet/gsn.glsl, which brings the checks in at the right place itself; other sources get them behind their
-// leading #version and #extension lines.
+// Returns the source of stage number `index` with the checks; intersection and callable shaders have none. Messages keep
+// their line numbers. A lecture-form stage includes quintet/gsn.glsl, which includes the checks itself; other sources get
+// them after their leading #version and #extension lines.
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index);
-
-// Sources that instrumentation leaves as they are: no checks for intersection and callable shaders.
-bool isInstrumented(shader::Stage stage);
 
 }  // namespace quintet::program
 #endif

@@ -14,21 +14,7 @@
 namespace quintet::rt {
 namespace {
 
-VkShaderStageFlagBits stageBit(shader::Stage stage) {
-  switch (stage) {
-    case shader::Stage::rayGeneration: return VK_SHADER_STAGE_RAYGEN_BIT_KHR;
-    case shader::Stage::intersection: return VK_SHADER_STAGE_INTERSECTION_BIT_KHR;
-    case shader::Stage::anyHit: return VK_SHADER_STAGE_ANY_HIT_BIT_KHR;
-    case shader::Stage::closestHit: return VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR;
-    case shader::Stage::miss: return VK_SHADER_STAGE_MISS_BIT_KHR;
-    case shader::Stage::callable: return VK_SHADER_STAGE_CALLABLE_BIT_KHR;
-    case shader::Stage::compute: break;
-  }
-  assert(false && "not a ray tracing stage");
-  return VK_SHADER_STAGE_RAYGEN_BIT_KHR;
-}
-
-// One shader module per stage; needed only while the pipeline is made.
+// One shader module per stage. Modules are only needed while the pipeline is created.
 class Modules {
  public:
   Modules(gpu::Context& context, const std::vector<PipelineStage>& stages) : context_(context) {
@@ -63,18 +49,19 @@ class Modules {
   std::vector<VkShaderModule> handles_;
 };
 
-// Stage entries and groups. An intersection shader gets an entry for each any-hit shader that it is
-// combined with: lavapipe (Mesa 25.0) calls the first group's any-hit shader for all groups that share
-// one intersection entry. Test: RtPipeline.GroupsShareAnIntersectionShader.
+// Stage entries and groups. Workaround for Quirks::sharesAnyHit: an intersection shader gets a separate entry for each
+// any-hit shader that it is combined with.
 class Groups {
  public:
-  Groups(const PipelineOptions& options, const Modules& modules) : options_(options), modules_(modules) {
+  Groups(const PipelineOptions& options, const Modules& modules, const gpu::Quirks& quirks)
+      : options_(options), modules_(modules), splitsIntersections_(quirks.sharesAnyHit) {
     for (const PipelineGroup& group : options.groups) add(group);
   }
   const std::vector<VkPipelineShaderStageCreateInfo>& stages() const { return stages_; }
   const std::vector<VkRayTracingShaderGroupCreateInfoKHR>& groups() const { return groups_; }
 
  private:
+  // Returns the index of the entry of a stage; entries with a different `partner` are separate.
   std::uint32_t entry(int stage, int partner = kNoStage) {
     if (stage == kNoStage) return VK_SHADER_UNUSED_KHR;
     assert(stage >= 0 && static_cast<std::size_t>(stage) < options_.stages.size());
@@ -82,7 +69,7 @@ class Groups {
     if (isNew) {
       const auto index = static_cast<std::size_t>(stage);
       VkPipelineShaderStageCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
-      info.stage = stageBit(options_.stages[index].stage);
+      info.stage = options_.stages[index].stage;
       info.module = modules_[index];
       info.pName = "main";
       stages_.push_back(info);
@@ -100,12 +87,13 @@ class Groups {
     info.generalShader = entry(group.general);
     info.closestHitShader = entry(group.closestHit);
     info.anyHitShader = entry(group.anyHit);
-    info.intersectionShader = entry(group.intersection, group.anyHit);
+    info.intersectionShader = entry(group.intersection, splitsIntersections_ ? group.anyHit : kNoStage);
     groups_.push_back(info);
   }
 
   const PipelineOptions& options_;
   const Modules& modules_;
+  const bool splitsIntersections_;
   std::map<std::pair<int, int>, std::uint32_t> entries_;
   std::vector<VkPipelineShaderStageCreateInfo> stages_;
   std::vector<VkRayTracingShaderGroupCreateInfoKHR> groups_;
@@ -113,11 +101,11 @@ class Groups {
 
 void checkOptions(const gpu::RayTracingLimits& limits, const PipelineOptions& options) {
   if (options.maxRecursionDepth > limits.maxRecursionDepth)
-    throw UsageError(fmt::format("pipeline '{}' needs a recursion depth of {}, the device allows {}", options.name,
+    throw UsageError(fmt::format("pipeline '{}' needs a recursion depth of {}; the device supports {}", options.name,
                                  options.maxRecursionDepth, limits.maxRecursionDepth));
   const auto isRayGeneration = [&](const PipelineGroup& group) {
     return group.general != kNoStage &&
-           options.stages[static_cast<std::size_t>(group.general)].stage == shader::Stage::rayGeneration;
+           options.stages[static_cast<std::size_t>(group.general)].stage == VK_SHADER_STAGE_RAYGEN_BIT_KHR;
   };
   if (std::ranges::none_of(options.groups, isRayGeneration))
     throw UsageError(fmt::format("pipeline '{}' has no ray generation group", options.name));
@@ -126,7 +114,7 @@ void checkOptions(const gpu::RayTracingLimits& limits, const PipelineOptions& op
 VkPipeline make(gpu::Context& context, const gpu::BindlessSet& set, const PipelineOptions& options,
                 bool keepsStatistics, const gpu::PipelineCache* cache) {
   const Modules modules(context, options.stages);
-  const Groups groups(options, modules);
+  const Groups groups(options, modules, context.info().quirks);
   VkRayTracingPipelineCreateInfoKHR info{VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR};
   info.stageCount = static_cast<std::uint32_t>(groups.stages().size());
   info.pStages = groups.stages().data();
@@ -144,7 +132,8 @@ VkPipeline make(gpu::Context& context, const gpu::BindlessSet& set, const Pipeli
   return pipeline;
 }
 
-// All that make() depends on; the layouts of all sets are compatible if their push constants are as large.
+// Hash of everything that make() depends on. The layouts of sets are compatible if their push constants have the same
+// size.
 Hash keyOf(const gpu::BindlessSet& set, const PipelineOptions& options, bool keepsStatistics) {
   Hasher hasher;
   hasher.add("ray tracing").add(set.pushConstantBytes()).add(options.maxRecursionDepth).add(keepsStatistics ? 1u : 0u);
@@ -176,12 +165,12 @@ Pipeline::Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const Pip
             context.device(), handle_, 0, static_cast<std::uint32_t>(groups_.size()), handles_.size(), handles_.data()),
         "get the shader group handles", options.name);
   } catch (...) {
-    context.pipelines().release(context, key_);
+    context.pipelines().release(key_);
     throw;
   }
 }
 
-Pipeline::~Pipeline() { context_.pipelines().release(context_, key_); }
+Pipeline::~Pipeline() { context_.pipelines().release(key_); }
 
 ShaderBindingTable::ShaderBindingTable(gpu::Context& context, const Pipeline& pipeline, const SbtContents& contents,
                                        const std::string& name)
@@ -205,7 +194,8 @@ void trace(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindin
   const std::uint64_t limit = context.info().limits.maxLaunchInvocations;
   const std::uint64_t plane = std::uint64_t{width} * height;
   if (plane > limit || plane * depth > limit)
-    throw UsageError(fmt::format("a launch of {} x {} x {} rays: the device allows {}", width, height, depth, limit));
+    throw UsageError(fmt::format("a launch of {} x {} x {} rays is too large; the device supports {} rays", width,
+                                 height, depth, limit));
   if (plane * depth == 0) return;
   assert(constants.size() <= pipeline.set().pushConstantBytes());
 
@@ -223,6 +213,78 @@ void trace(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindin
                                         miss = table.region(layout.miss), hit = table.region(layout.hit),
                                         callable = table.region(layout.callable);
   vk.vkCmdTraceRaysKHR(commands.handle(), &rayGeneration, &miss, &hit, &callable, width, height, depth);
+}
+
+namespace {
+
+double asNumber(const VkPipelineExecutableStatisticKHR& statistic) {
+  switch (statistic.format) {
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_BOOL32_KHR: return statistic.value.b32 ? 1.0 : 0.0;
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_INT64_KHR: return static_cast<double>(statistic.value.i64);
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_UINT64_KHR: return static_cast<double>(statistic.value.u64);
+    case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_FLOAT64_KHR: return statistic.value.f64;
+    default: return 0.0;
+  }
+}
+
+std::vector<VkPipelineExecutableStatisticKHR> statisticsOf(const gpu::Context& context, VkPipeline pipeline,
+                                                           std::uint32_t executable) {
+  VkPipelineExecutableInfoKHR info{VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR};
+  info.pipeline = pipeline;
+  info.executableIndex = executable;
+  std::uint32_t count = 0;
+  gpu::check(context.vk().vkGetPipelineExecutableStatisticsKHR(context.device(), &info, &count, nullptr),
+             "count a pipeline's statistics");
+  std::vector<VkPipelineExecutableStatisticKHR> statistics(count,
+                                                           {VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR});
+  gpu::check(context.vk().vkGetPipelineExecutableStatisticsKHR(context.device(), &info, &count, statistics.data()),
+             "get a pipeline's statistics");
+  return statistics;
+}
+
+}  // namespace
+
+std::vector<PipelineExecutable> pipelineStatistics(const Pipeline& pipeline) {
+  const gpu::Context& context = pipeline.context();
+  if (!pipeline.keepsStatistics()) return {};
+  VkPipelineInfoKHR info{VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR};
+  info.pipeline = pipeline.handle();
+  std::uint32_t count = 0;
+  gpu::check(context.vk().vkGetPipelineExecutablePropertiesKHR(context.device(), &info, &count, nullptr),
+             "count a pipeline's executables");
+  std::vector<VkPipelineExecutablePropertiesKHR> properties(count,
+                                                            {VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR});
+  gpu::check(context.vk().vkGetPipelineExecutablePropertiesKHR(context.device(), &info, &count, properties.data()),
+             "list a pipeline's executables");
+  std::vector<PipelineExecutable> executables;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    PipelineExecutable& executable = executables.emplace_back();
+    executable.name = properties[i].name;
+    executable.subgroupSize = properties[i].subgroupSize;
+    for (const VkPipelineExecutableStatisticKHR& statistic : statisticsOf(context, pipeline.handle(), i))
+      executable.statistics.emplace_back(statistic.name, asNumber(statistic));
+  }
+  return executables;
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> groupStackSizes(const Pipeline& pipeline) {
+  const gpu::Context& context = pipeline.context();
+  std::vector<std::pair<std::string, std::uint64_t>> sizes;
+  for (std::uint32_t i = 0; i < pipeline.groups().size(); ++i) {
+    const PipelineGroup& group = pipeline.groups()[i];
+    std::uint64_t size = 0;
+    const auto addStage = [&](int stage, VkShaderGroupShaderKHR shader) {
+      if (stage != kNoStage)
+        size = std::max<std::uint64_t>(
+            size, context.vk().vkGetRayTracingShaderGroupStackSizeKHR(context.device(), pipeline.handle(), i, shader));
+    };
+    addStage(group.general, VK_SHADER_GROUP_SHADER_GENERAL_KHR);
+    addStage(group.closestHit, VK_SHADER_GROUP_SHADER_CLOSEST_HIT_KHR);
+    addStage(group.anyHit, VK_SHADER_GROUP_SHADER_ANY_HIT_KHR);
+    addStage(group.intersection, VK_SHADER_GROUP_SHADER_INTERSECTION_KHR);
+    sizes.emplace_back(group.name, size);
+  }
+  return sizes;
 }
 
 }  // namespace quintet::rt

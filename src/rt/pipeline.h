@@ -1,10 +1,12 @@
-// Ray tracing pipeline, its shader binding table on the device, and the trace itself.
+// Ray tracing pipelines, their shader binding tables on the device, their statistics, and traces.
 #ifndef QUINTET_RT_PIPELINE_H
 #define QUINTET_RT_PIPELINE_H
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/hash.h"
@@ -12,25 +14,24 @@
 #include "gpu/descriptors.h"
 #include "gpu/pipeline_cache.h"
 #include "rt/sbt_layout.h"
-#include "shader/compiler.h"
 
 namespace quintet::rt {
 
 struct PipelineStage {
-  shader::Stage stage = shader::Stage::rayGeneration;
+  VkShaderStageFlagBits stage = VK_SHADER_STAGE_RAYGEN_BIT_KHR;
   std::span<const std::uint32_t> spirv;
   std::string name;
 };
 
 inline constexpr int kNoStage = -1;
 
-// A shader group: general (one of ray generation, miss, callable) or a hit group. Numbers are
-// indices into PipelineOptions::stages.
+// A shader group: general (ray generation, miss or callable) or a hit group. The members are indices of
+// PipelineOptions::stages.
 struct PipelineGroup {
   int general = kNoStage;
   int closestHit = kNoStage;
   int anyHit = kNoStage;
-  int intersection = kNoStage;  // set: a procedural hit group
+  int intersection = kNoStage;  // makes it a procedural hit group
   std::string name = {};        // for groupStackSizes
 };
 
@@ -39,12 +40,13 @@ struct PipelineOptions {
   std::vector<PipelineGroup> groups;
   std::uint32_t maxRecursionDepth = 1;
   std::string name;
-  bool captureStatistics = false;  // for pipelineStatistics; where the driver can
+  bool captureStatistics = false;  // for pipelineStatistics, if the driver supports it
 };
 
 class Pipeline {
  public:
-  // Throws UsageError when the recursion depth exceeds the device's, VulkanError otherwise.
+  // Throws UsageError without a ray generation group or if the device does not support the recursion depth, VulkanError
+  // for failures of the driver.
   Pipeline(gpu::Context& context, const gpu::BindlessSet& set, const PipelineOptions& options,
            const gpu::PipelineCache* cache);
   ~Pipeline();
@@ -61,14 +63,14 @@ class Pipeline {
  private:
   gpu::Context& context_;
   const gpu::BindlessSet& set_;
-  VkPipeline handle_ = VK_NULL_HANDLE;  // of Context::pipelines()
+  VkPipeline handle_ = VK_NULL_HANDLE;  // owned by Context::pipelines()
   Hash key_;
   std::vector<std::byte> handles_;
   std::vector<PipelineGroup> groups_;
   bool keepsStatistics_ = false;
 };
 
-// The table on the device.
+// A shader binding table on the device.
 class ShaderBindingTable {
  public:
   ShaderBindingTable(gpu::Context& context, const Pipeline& pipeline, const SbtContents& contents,
@@ -81,10 +83,26 @@ class ShaderBindingTable {
   SbtLayout layout_;
 };
 
-// Binds pipeline and set, pushes `constants` and launches width × height × depth rays. Throws
-// UsageError beyond the device's limit of invocations. No barrier: the caller knows what follows.
+// Binds pipeline and set, pushes `constants` and launches width × height × depth rays, without barriers. Throws
+// UsageError for more invocations than the device supports.
 void trace(gpu::Commands& commands, const Pipeline& pipeline, const ShaderBindingTable& table,
            std::span<const std::byte> constants, std::uint32_t width, std::uint32_t height, std::uint32_t depth = 1);
+
+// One piece of machine code of a pipeline (VK_KHR_pipeline_executable_properties): registers, stack, code size. The
+// driver decides which statistics exist and how they are named.
+struct PipelineExecutable {
+  std::string name;
+  std::uint32_t subgroupSize = 0;
+  std::vector<std::pair<std::string, double>> statistics;
+};
+
+// Returns an empty list if the device does not support it (DeviceInfo::pipelineStatistics) or the pipeline was created
+// without captureStatistics.
+std::vector<PipelineExecutable> pipelineStatistics(const Pipeline& pipeline);
+
+// Returns the bytes of stack that one call of each group needs, with the name of the group. For hit groups it is the
+// largest of the group's shaders.
+std::vector<std::pair<std::string, std::uint64_t>> groupStackSizes(const Pipeline& pipeline);
 
 }  // namespace quintet::rt
 #endif

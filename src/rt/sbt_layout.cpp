@@ -15,19 +15,20 @@ std::uint64_t alignUp(std::uint64_t value, std::uint64_t alignment) {
   return (value + alignment - 1) / alignment * alignment;
 }
 
-// The least stride that holds the largest record of a table; 0 for an empty table.
+// Returns the smallest stride for the largest record of a table; 0 for an empty table.
 std::uint64_t strideOf(std::span<const SbtRecord> records, const char* table, const gpu::RayTracingLimits& limits) {
   if (records.empty()) return 0;
   std::uint64_t largest = 0;
   for (const SbtRecord& record : records) largest = std::max<std::uint64_t>(largest, record.data.size());
   const std::uint64_t stride = alignUp(limits.handleSize + largest, limits.handleAlignment);
   if (stride > limits.maxRecordStride)
-    throw UsageError(fmt::format("a {} record has {} bytes of data: {} bytes with its handle, the device allows {}",
-                                 table, largest, stride, limits.maxRecordStride));
+    throw UsageError(
+        fmt::format("a {} record with {} bytes of data needs {} bytes with its handle; the device supports {}", table,
+                    largest, stride, limits.maxRecordStride));
   return stride;
 }
 
-// Places a table at the end of the layout.
+// Appends a table to the layout.
 SbtRegion append(SbtLayout& layout, std::uint64_t stride, std::size_t count, const gpu::RayTracingLimits& limits) {
   if (count == 0) return {};
   const SbtRegion region{alignUp(layout.size, limits.baseAlignment), stride, stride * count};
@@ -53,7 +54,7 @@ void fill(std::vector<std::byte>& table, const SbtRegion& region, std::span<cons
 SbtLayout layoutSbt(const SbtContents& contents, const gpu::RayTracingLimits& limits) {
   SbtLayout layout;
   const std::span rayGeneration(&contents.rayGeneration, 1);
-  // Its size has to equal its stride, and the next table starts at a multiple of baseAlignment anyway.
+  // The size of this region must equal its stride, and the next region starts at a multiple of baseAlignment.
   const std::uint64_t stride = strideOf(rayGeneration, "ray generation", limits);
   layout.rayGeneration = append(layout, alignUp(stride, limits.baseAlignment), 1, limits);
   layout.miss = append(layout, strideOf(contents.miss, "miss", limits), contents.miss.size(), limits);

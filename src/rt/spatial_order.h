@@ -1,8 +1,9 @@
-// A spatially coherent order of primitives or instances for builders that keep the input order
-// (lavapipe: the tree halves the index range; docs/design/quirks.md).
+// A spatially coherent order of primitives or instances for drivers that build a tree over the input order by halving
+// the index range (Quirks::keepsPrimitiveOrder).
 #ifndef QUINTET_RT_SPATIAL_ORDER_H
 #define QUINTET_RT_SPATIAL_ORDER_H
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,19 +12,18 @@
 
 namespace quintet::rt {
 
-// A permutation of [0, bounds.size()): element k is the index of the box that comes k-th. Halving the
-// index range again and again gives compact halves; of an odd count the left half gets one more, as
-// in lavapipe, whose last index is inclusive: (first + last) / 2. Boxes should be finite (others
-// count as a point in the origin). The result does not depend on the number of threads.
+// Returns a permutation of [0, bounds.size()): element k is the index of the k-th box. Halving the index range
+// recursively gives compact halves. The left half of an odd count has one more box, as in lavapipe, where the last
+// index is inclusive: (first + last) / 2. Non-finite boxes are treated as a point at the origin. The result does not
+// depend on the number of threads.
 std::vector<std::uint32_t> spatialOrder(std::span<const Bounds3> bounds);
 
-// The same for consecutive groups (the geometries of one BLAS, which share one tree): every box stays
-// within the index range of its group. The sizes add up to bounds.size().
+// The same for consecutive groups, the geometries of one BLAS, which share one tree: each box stays within the index
+// range of its group. The sum of the sizes is bounds.size().
 std::vector<std::uint32_t> spatialOrder(std::span<const Bounds3> bounds, std::span<const std::size_t> groupSizes);
 
-// Surface areas of all nodes of the tree that halves the index range over boxes[order[0]], …, divided
-// by the root's: the expected number of boxes that a ray through the root meets (Goldsmith and Salmon,
-// 1987). The measure by which orders are compared.
+// Returns the sum of the surface areas of all nodes of the halving tree over boxes[order[0]], …, divided by the area of
+// the root: the expected number of boxes that a ray through the root intersects (Goldsmith and Salmon, 1987).
 double halvingTreeCost(std::span<const Bounds3> bounds, std::span<const std::uint32_t> order);
 
 }  // namespace quintet::rt

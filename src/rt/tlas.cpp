@@ -1,13 +1,44 @@
+#include "rt/tlas.h"
+
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "rt/build_description.h"
-#include "rt/instance_data.h"
+#include "rt/acceleration_structure.h"
+#include "rt/spatial_order.h"
 
 namespace quintet::rt {
 namespace {
+
+constexpr std::uint32_t kMax24Bits = (1u << 24) - 1;
+
+void checkBits(const char* field, std::uint32_t value, std::uint32_t largest) {
+  if (value > largest) throw UsageError(fmt::format("instance: {} is {}; the maximum is {}", field, value, largest));
+}
+
+// Returns an invisible instance that replaces an inactive one. Its transform and its BLAS are those of an active
+// instance, because some drivers fail on inactive instances in a build.
+VkAccelerationStructureInstanceKHR placeholder(const InstanceInput& active) {
+  InstanceInput hidden;
+  hidden.worldFromObject = active.worldFromObject;
+  hidden.blas = active.blas;
+  hidden.mask = 0;
+  return packInstance(hidden);
+}
+
+std::vector<VkAccelerationStructureInstanceKHR> packNumbered(std::span<const InstanceInput> instances) {
+  std::vector<VkAccelerationStructureInstanceKHR> packed;
+  const auto anyActive = std::ranges::find_if(instances, isActive);
+  for (const InstanceInput& instance : instances) {
+    packed.push_back(packInstance(instance));  // also checks instances that are skipped
+    if (!isActive(instance) && anyActive != instances.end()) packed.back() = placeholder(*anyActive);
+  }
+  if (anyActive == instances.end()) packed.clear();
+  return packed;
+}
 
 BuildDescription describe(VkDeviceAddress instances, std::uint32_t count) {
   BuildDescription description;
@@ -24,11 +55,58 @@ BuildDescription describe(VkDeviceAddress instances, std::uint32_t count) {
 
 }  // namespace
 
+bool isActive(const InstanceInput& instance) {
+  if (!instance.blas || instance.blas->bounds().empty()) return false;
+  const mat4& m = instance.worldFromObject;
+  for (glm::length_t column = 0; column < 4; ++column)
+    if (!isFinite(vec3(m[column]))) return false;
+  const float determinant = glm::determinant(mat3(m));
+  return std::isfinite(determinant) && std::isfinite(1.0f / determinant);
+}
+
+VkAccelerationStructureInstanceKHR packInstance(const InstanceInput& instance) {
+  checkBits("customIndex", instance.customIndex, kMax24Bits);
+  checkBits("recordOffset", instance.recordOffset, kMax24Bits);
+  checkBits("mask", instance.mask, 0xFF);
+  checkBits("flags", instance.flags, 0xFF);
+  VkAccelerationStructureInstanceKHR packed{};
+  for (glm::length_t row = 0; row < 3; ++row)
+    for (glm::length_t column = 0; column < 4; ++column)
+      packed.transform.matrix[row][column] = instance.worldFromObject[column][row];
+  packed.instanceCustomIndex = instance.customIndex & kMax24Bits;
+  packed.mask = instance.mask & 0xFF;
+  packed.instanceShaderBindingTableRecordOffset = instance.recordOffset & kMax24Bits;
+  packed.flags = instance.flags & 0xFF;
+  packed.accelerationStructureReference = instance.blas ? instance.blas->address() : 0;
+  return packed;
+}
+
+std::vector<VkAccelerationStructureInstanceKHR> packInstances(std::span<const InstanceInput> instances,
+                                                              InstanceOrder order) {
+  if (order == InstanceOrder::numbered) return packNumbered(instances);
+  const bool spatial = order == InstanceOrder::spatial;
+  std::vector<VkAccelerationStructureInstanceKHR> packed;
+  std::vector<Bounds3> bounds;
+  packed.reserve(instances.size());
+  for (const InstanceInput& instance : instances) {
+    const VkAccelerationStructureInstanceKHR one = packInstance(instance);  // also checks instances that are skipped
+    if (!isActive(instance)) continue;
+    packed.push_back(one);
+    if (spatial) bounds.push_back(instance.blas->bounds().transformed(instance.worldFromObject));
+  }
+  if (!spatial) return packed;
+  std::vector<VkAccelerationStructureInstanceKHR> ordered;
+  ordered.reserve(packed.size());
+  for (const std::uint32_t k : spatialOrder(bounds)) ordered.push_back(packed[k]);
+  return ordered;
+}
+
 Tlas::Tlas(gpu::Context& context, std::uint32_t capacity, const std::string& name)
     : context_(context), capacity_(capacity), name_(name) {
   const gpu::RayTracingLimits& limits = context.info().limits;
   if (capacity > limits.maxInstances)
-    throw UsageError(fmt::format("'{}' for {} instances: the device allows {}", name, capacity, limits.maxInstances));
+    throw UsageError(fmt::format("'{}' has a capacity of {} instances; the device supports {}", name, capacity,
+                                 limits.maxInstances));
   const auto sizes = describe(0, capacity).sizes(context, name);
   scratch_ = gpu::Buffer(context, {.size = sizes.buildScratchSize,
                                    .alignment = limits.scratchAlignment,
@@ -42,13 +120,14 @@ Tlas::~Tlas() { retireStructure(context_, handle_); }
 
 void Tlas::build(gpu::Commands& commands, std::span<const InstanceInput> instances) {
   if (instances.size() > capacity_)
-    throw UsageError(fmt::format("'{}' has room for {} instances, {} were given", name_, capacity_, instances.size()));
+    throw UsageError(
+        fmt::format("'{}' has a capacity of {} instances; {} were given", name_, capacity_, instances.size()));
   const InstanceOrder order = keepInputOrder_                              ? InstanceOrder::numbered
                               : context_.info().quirks.keepsPrimitiveOrder ? InstanceOrder::spatial
                                                                            : InstanceOrder::given;
   const std::vector<VkAccelerationStructureInstanceKHR> packed = packInstances(instances, order);
   const std::span<const std::byte> bytes = std::as_bytes(std::span(packed));
-  // Freed when this submission has ended: no ring to run out of, whatever is in flight.
+  // The buffer is freed after this submission, so any number of rebuilds can be pending.
   const gpu::Buffer buffer(context_,
                            {.size = std::max<VkDeviceSize>(bytes.size(), sizeof(VkAccelerationStructureInstanceKHR)),
                             .memory = gpu::Memory::upload,
@@ -61,8 +140,8 @@ void Tlas::build(gpu::Commands& commands, std::span<const InstanceInput> instanc
   info.dstAccelerationStructure = handle_;
   info.scratchData.deviceAddress = scratch_.address();
   const VkAccelerationStructureBuildRangeInfoKHR* ranges = description.ranges.data();
-  commands.barrier(gpu::Stage::all,
-                   gpu::Stage::accelerationStructureBuild);  // earlier traces, BLAS builds, our scratch
+  // Wait for earlier traces and BLAS builds, and for earlier uses of the scratch buffer.
+  commands.barrier(gpu::Stage::all, gpu::Stage::accelerationStructureBuild);
   context_.vk().vkCmdBuildAccelerationStructuresKHR(commands.handle(), 1, &info, &ranges);
   commands.barrier(gpu::Stage::accelerationStructureBuild, gpu::Stage::all);
 }

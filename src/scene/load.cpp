@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <string_view>
+#include <utility>
 
 #include "base/file.h"
-#include "scene/gltf.h"
-#include "scene/scene_toml.h"
+#include "scene/gltf/gltf.h"
+#include "scene/toml/scene_toml.h"
 
 namespace quintet::scene {
 
@@ -24,15 +25,14 @@ SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::
   return text[first] == '[' || text[first] == '#' ? SceneFormat::toml : SceneFormat::none;
 }
 
-Scene loadScene(const std::filesystem::path& file, const Described& described) {
-  // Only a name that says nothing needs a look inside.
+PendingScene beginLoading(const std::filesystem::path& file) {
+  // The content is read only if the name does not determine the format.
   SceneFormat format = sceneFormat(file, {});
   if (format == SceneFormat::none) format = sceneFormat(file, readFile(file));
-  if (format != SceneFormat::toml)
-    return loadGltf(file, {.described = described});  // also says what is wrong with a file of no format
-  Scene scene = loadSceneToml(file);
-  if (described) described(scene);
-  return scene;
+  if (format == SceneFormat::toml) return PendingScene(loadSceneToml(file));
+  return beginLoadingGltf(file);  // also reports the problem of a file without a known format
 }
+
+Scene loadScene(const std::filesystem::path& file) { return beginLoading(file).finish(); }
 
 }  // namespace quintet::scene

@@ -1,4 +1,4 @@
-// Any scene file, told apart by its name, else by its content.
+// Loads a scene file of any supported format: glTF (.gltf, .glb) or a scene file in TOML.
 #ifndef QUINTET_SCENE_LOAD_H
 #define QUINTET_SCENE_LOAD_H
 
@@ -6,18 +6,23 @@
 #include <filesystem>
 #include <span>
 
-#include "scene/gltf.h"
+#include "scene/model/scene.h"
+#include "scene/pending_scene.h"
 
 namespace quintet::scene {
 
 enum class SceneFormat { none, gltf, toml };
 
-// .gltf, .glb and .toml by the name; else a GLB's magic number, JSON's brace, or TOML's bracket or comment at
-// the beginning.
+// The format by the extension of the name (.gltf, .glb, .toml), else by the content: GLB's magic number, an opening
+// brace of JSON, or a bracket or comment of TOML at the beginning.
 SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::byte> content);
 
-// Throws FileError with the place in the file ("/accessors/3/bufferView", "line 3"), MemoryError.
-Scene loadScene(const std::filesystem::path& file, const Described& described = {});
+// Reads the file except for its image data; a TOML scene is read completely. Throws FileError with the location in the
+// file ("/accessors/3/bufferView", "line 3"), MemoryError.
+PendingScene beginLoading(const std::filesystem::path& file);
+
+// Both steps.
+Scene loadScene(const std::filesystem::path& file);
 
 }  // namespace quintet::scene
 #endif

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "base/error.h"
-
 namespace quintet::scene {
 namespace {
 
@@ -20,7 +18,7 @@ MemoryBudget::MemoryBudget(const std::filesystem::path& file, std::size_t limit)
     : file_(file), limit_(limit ? limit : machineMemory()) {}
 
 void MemoryBudget::take(std::size_t bytes) {
-  // Each request is far below 2^60 and the first one over the limit throws: no overflow.
+  // No overflow: each request is far below 2^60, and the first one above the limit throws.
   if (bytes > limit_ || taken_.fetch_add(bytes) + bytes > limit_)
     throw MemoryError(fmt::format("{}: the scene needs more than {:.1f} GiB of memory", file_.string(),
                                   static_cast<double>(limit_) / (1024.0 * 1024.0 * 1024.0)));

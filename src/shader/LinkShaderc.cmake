@@ -1,6 +1,6 @@
-# Finds a way to link shaderc. Debian's and Ubuntu's packages (2023.2) leave glslang and SPIRV-Tools
-# out of libshaderc.so and libshaderc_combined.a alike, so that neither links alone; elsewhere the
-# combined archive is complete. Static first: a program then runs where shaderc is not installed.
+# Finds a way to link shaderc. In the packages of Debian and Ubuntu (2023.2), neither libshaderc.so nor
+# libshaderc_combined.a contains glslang and SPIRV-Tools, so neither links alone. On other systems the combined archive is
+# complete. Static linking is preferred: the binary then runs where shaderc is not installed.
 include(CheckCXXSourceCompiles)
 
 function(quintet_try_shaderc RESULT)

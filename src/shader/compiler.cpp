@@ -1,29 +1,36 @@
-// A compilation: check the source, find every file that it may include, look the key up in the
-// cache, and only then start glslang.
+// A compilation validates the source, finds the files that it can include, looks up the key in the cache, and runs
+// glslang and spirv-opt only if that fails.
 #include "shader/compiler.h"
+
+#include <pthread.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <deque>
+#include <functional>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include <shaderc/shaderc.hpp>
 
-#include "shader/diagnostics.h"
-#include "shader/embedded_library.h"
-#include "shader/glslang_run.h"
+#include "shader/compiler_messages.h"
+#include "shader/include_resolver.h"
+#include "shader/library.h"
 #include "shader/spirv_cache.h"
 #include "shader/stage_builtins.h"
+#include "spirv/source_text.h"
 
 namespace quintet::shader {
 namespace {
 
-constexpr std::uint64_t kCacheFormat = 1;  // to be raised when options or the entry's layout change
+constexpr std::uint64_t kCacheFormat = 1;  // increase it when the options or the layout of an entry change
 constexpr std::size_t kMaxTextBytes = std::size_t{4} << 20;
 constexpr std::size_t kMaxFiles = 4096;
+constexpr std::size_t kMaxIncludeDepth = 64;
+constexpr std::size_t kMaxIncludes = 4096;  // two includes in each of 30 files would make 2^30
 
-// What a compilation may read, found without running the preprocessor: a superset of what it reads.
+// The files that a compilation can read, found without the preprocessor: a superset of those that it reads.
 struct Inputs {
   Hash key;
   std::size_t textBytes = 0;
@@ -62,41 +69,201 @@ Inputs findInputs(const Source& source, const CompilerOptions& options, IncludeR
   return inputs;
 }
 
-int lineOf(std::string_view text, std::size_t position) {
+int lineNumberAt(std::string_view text, std::size_t position) {
   return 1 + static_cast<int>(std::ranges::count(text.substr(0, position), '\n'));
 }
 
 bool isMacroName(std::string_view name) {
-  const auto isWord = [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_';
-  };
-  return !name.empty() && !(name.front() >= '0' && name.front() <= '9') && std::ranges::all_of(name, isWord);
+  return !name.empty() && !(name.front() >= '0' && name.front() <= '9') &&
+         std::ranges::all_of(name, spirv::isWordCharacter);
 }
 
-// What must not reach glslang.
-std::optional<Diagnostic> refusal(const Source& source, const SourceFile& root) {
+// Returns an error for input that must not reach glslang.
+std::optional<Diagnostic> validate(const Source& source, const SourceFile& root) {
   Diagnostic d{Severity::error, root.name, 0, 0, "GLSL", {}};
   if (source.text.size() > kMaxTextBytes) {
-    d.text = "the source is larger than 4 MiB";
+    d.text = "shader source is larger than 4 MiB";
     return d;
   }
   if (const std::size_t nul = source.text.find('\0'); nul != std::string::npos) {
-    d.line = lineOf(source.text, nul);
-    d.text = "the source holds a NUL byte (is it a text file?)";
+    d.line = lineNumberAt(source.text, nul);
+    d.text = "shader source contains a NUL byte; check that it is a text file";
     return d;
   }
   for (const auto& [name, value] : source.defines) {
     if (isMacroName(name) && value.find_first_of(std::string_view("\n\r\0", 3)) == std::string::npos) continue;
-    d.text = "'" + name + "' cannot be defined: a name of letters, digits and '_', and a value of one line, are needed";
+    d.text = "invalid define '" + name +
+             "': the name must consist of letters, digits and '_', the value must be a single line";
     return d;
   }
   return {};
 }
 
-// Deep enough for any source of that size: a level of an expression takes 2 characters ("+a") and
-// about 2 KiB of stack. Only touched pages cost memory.
+// Returns a stack size that is sufficient for any source of that size: one nesting level of an expression takes at
+// least 2 characters ("+a") and about 2 KiB of stack. Untouched pages cost no memory.
 std::size_t stackBytesFor(std::size_t textBytes) {
   return std::min((std::size_t{64} << 20) + textBytes * 1024, std::size_t{1} << 30);
+}
+
+// Calls `body` on a thread with a stack of `bytes`, or the largest that the system grants: glslang recurses as deep as
+// the expressions of the source. `body` must not throw.
+void runOnDeepStack(std::size_t bytes, const std::function<void()>& body) {
+  const auto entry = [](void* argument) -> void* {
+    (*static_cast<const std::function<void()>*>(argument))();
+    return nullptr;
+  };
+  constexpr std::size_t kSmallest = std::size_t{8} << 20;
+  for (; bytes >= kSmallest; bytes /= 2) {
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_t thread{};
+    const bool started = pthread_attr_setstacksize(&attributes, bytes) == 0 &&
+                         pthread_create(&thread, &attributes, entry, const_cast<std::function<void()>*>(&body)) == 0;
+    pthread_attr_destroy(&attributes);
+    if (started) {
+      pthread_join(thread, nullptr);
+      return;
+    }
+  }
+  body();
+}
+
+// The result of one run of glslang and spirv-opt.
+struct GlslangRun {
+  std::vector<std::uint32_t> spirv;  // empty if it failed
+  std::vector<Diagnostic> diagnostics;
+  // Includes that the preprocessor followed, as (including file, included file), to check that the cache key covers
+  // all of them.
+  std::vector<std::pair<std::string, std::string>> includes;
+};
+
+shaderc_shader_kind kindOf(Stage stage) {
+  switch (stage) {
+    case Stage::rayGeneration: return shaderc_raygen_shader;
+    case Stage::intersection: return shaderc_intersection_shader;
+    case Stage::anyHit: return shaderc_anyhit_shader;
+    case Stage::closestHit: return shaderc_closesthit_shader;
+    case Stage::miss: return shaderc_miss_shader;
+    case Stage::callable: return shaderc_callable_shader;
+    case Stage::compute: break;
+  }
+  return shaderc_compute_shader;
+}
+
+std::string joined(const std::vector<std::string>& parts, std::string_view separator) {
+  std::string result;
+  for (const std::string& part : parts) result.append(result.empty() ? "" : separator).append(part);
+  return result;
+}
+
+// Include callbacks of glslang. It requests a quoted name that is not found twice: as "x", then as <x>.
+class Includer : public shaderc::CompileOptions::IncluderInterface {
+ public:
+  Includer(IncludeResolver& files, GlslangRun& run) : files_(files), run_(run) {}
+
+  shaderc_include_result* GetInclude(const char* requested, shaderc_include_type type, const char* requesting,
+                                     std::size_t depth) override {
+    auto answer = std::make_unique<Answer>();
+    fill(*answer, {requested, type == shaderc_include_type_relative}, requesting, depth);
+    answer->result.source_name = answer->name.data();
+    answer->result.source_name_length = answer->name.size();
+    answer->result.content = answer->text.data();
+    answer->result.content_length = answer->text.size();
+    answer->result.user_data = answer.get();
+    return &answer.release()->result;
+  }
+  void ReleaseInclude(shaderc_include_result* data) override {
+    std::unique_ptr<Answer>(static_cast<Answer*>(data->user_data)).reset();
+  }
+
+ private:
+  struct Answer {
+    shaderc_include_result result{};
+    std::string_view name;  // empty if `text` is an error message
+    std::string_view text;
+    std::string message;
+  };
+
+  void fail(Answer& answer, std::string message) {
+    answer.message = std::move(message);
+    answer.text = answer.message;
+  }
+
+  void fill(Answer& answer, const IncludeDirective& include, std::string_view requesting, std::size_t depth) {
+    const SourceFile* from = files_.find(requesting);
+    if (!from) from = &files_.root();
+    chain_.resize(std::min(chain_.size(), depth > 0 ? depth - 1 : 0));
+    chain_.push_back(from->name);
+    if (depth > kMaxIncludeDepth) return fail(answer, tooDeep(include));
+    if (run_.includes.size() >= kMaxIncludes) return fail(answer, "more than 4096 includes");
+    const SourceFile* file = files_.resolve(*from, include);
+    if (!file) {
+      if (!include.quoted) noteMissing(*from, include);  // a quoted name is requested again, as <x>
+      missedQuoted_ = include.quoted ? include.name : "";
+      return fail(answer, "file not found");
+    }
+    run_.includes.emplace_back(from->name, file->name);
+    answer.name = file->name;
+    answer.text = file->text;
+  }
+
+  // The message shows the end of the chain up to its repetition: "a.glsl -> b.glsl -> a.glsl".
+  std::string tooDeep(const IncludeDirective& include) const {
+    std::vector<std::string> cycle{chain_.back()};
+    for (std::size_t k = chain_.size() - 1; k-- > 0 && cycle.size() < 8;) {
+      cycle.insert(cycle.begin(), chain_[k]);
+      if (chain_[k] == chain_.back()) break;
+    }
+    const bool repeats = cycle.size() > 1 && cycle.front() == cycle.back();
+    return "includes are nested deeper than 64: " + joined(cycle, " -> ") + (repeats ? " (add include guards)" : "") +
+           ", then " + std::string(include.name);
+  }
+
+  void noteMissing(const SourceFile& from, const IncludeDirective& include) {
+    Diagnostic note{.severity = Severity::note, .file = from.name, .line = 0, .column = 0, .id = "GLSL", .text = {}};
+    note.text = "searched for '" + std::string(include.name) + "' in " +
+                joined(files_.searchedFolders(from, missedQuoted_ == include.name), ", ");
+    run_.diagnostics.push_back(std::move(note));
+  }
+
+  IncludeResolver& files_;
+  GlslangRun& run_;
+  std::vector<std::string> chain_;  // names of the open files, outermost first
+  std::string missedQuoted_;
+};
+
+shaderc::CompileOptions optionsFor(const Source& source, const CompilerOptions& options) {
+  shaderc::CompileOptions result;
+  result.SetTargetEnvironment(shaderc_target_env_vulkan, shaderc_env_version_vulkan_1_3);
+  result.SetTargetSpirv(shaderc_spirv_version_1_6);
+  // With any other version, or without one, glslang 12 prints its own built-ins to standard output.
+  result.SetForcedVersionProfile(460, shaderc_profile_core);
+  result.SetOptimizationLevel(options.optimize ? shaderc_optimization_level_performance
+                                               : shaderc_optimization_level_zero);
+  if (options.debugInfo) result.SetGenerateDebugInfo();
+  for (const auto& [name, value] : source.defines) result.AddMacroDefinition(name, value);
+  return result;
+}
+
+GlslangRun runGlslang(const shaderc::Compiler& compiler, const Source& source, const CompilerOptions& options,
+                      IncludeResolver& files) {
+  GlslangRun run;
+  shaderc::CompileOptions glslangOptions = optionsFor(source, options);
+  glslangOptions.SetIncluder(std::make_unique<Includer>(files, run));
+  const shaderc::SpvCompilationResult result = compiler.CompileGlslToSpv(
+      source.text.data(), source.text.size(), kindOf(source.stage), files.root().name.c_str(), "main", glslangOptions);
+
+  std::vector<Diagnostic> diagnostics = parseMessages(result.GetErrorMessage(), files);
+  diagnostics.insert(diagnostics.end(), run.diagnostics.begin(), run.diagnostics.end());
+  dropFollowUpErrors(diagnostics);
+  run.diagnostics = std::move(diagnostics);
+  if (result.GetCompilationStatus() == shaderc_compilation_status_success)
+    run.spirv.assign(result.begin(), result.end());
+  const auto isError = [](const Diagnostic& d) { return d.severity == Severity::error; };
+  if (run.spirv.empty() && std::ranges::none_of(run.diagnostics, isError))
+    run.diagnostics.push_back(
+        {Severity::error, files.root().name, 0, 0, "GLSL", "the compiler failed without a message"});
+  return run;
 }
 
 }  // namespace
@@ -106,7 +273,7 @@ struct Compiler::Impl {
     const char* path = std::getenv("QUINTET_SHADER_PATH");
     if (options.libraryOverride.empty() && path) options.libraryOverride = path;
   }
-  // Made on the first miss: it starts glslang.
+  // Created on the first cache miss, since it starts glslang.
   const shaderc::Compiler& shadercCompiler() {
     std::call_once(once, [this] { compiler.emplace(); });
     return *compiler;
@@ -126,7 +293,7 @@ Compiler& Compiler::operator=(Compiler&&) noexcept = default;
 Result Compiler::compile(const Source& source) const {
   Result result;
   IncludeResolver files(source, impl_->options, embeddedShaderLibrary());
-  if (auto problem = refusal(source, files.root())) {
+  if (auto problem = validate(source, files.root())) {
     result.diagnostics.push_back(std::move(*problem));
     return result;
   }
@@ -139,7 +306,7 @@ Result Compiler::compile(const Source& source) const {
     GlslangRun run;
     const shaderc::Compiler& compiler = impl_->shadercCompiler();
     runOnDeepStack(stackBytesFor(inputs.textBytes), [&] { run = runGlslang(compiler, source, impl_->options, files); });
-    // An include that findIncludes does not see (after a comment, say) is not part of the key.
+    // The key does not cover includes that findIncludes misses, such as those after a comment.
     const bool keyCoversAll =
         std::ranges::all_of(run.includes, [&](const auto& i) { return inputs.includes.contains(i); });
     if (keyCoversAll) impl_->cache.store(inputs.key, {run.spirv, run.diagnostics});
@@ -147,7 +314,7 @@ Result Compiler::compile(const Source& source) const {
     result.diagnostics = std::move(run.diagnostics);
   }
   explainMissingBuiltIns(result.diagnostics, source.stage);
-  explainPayloadOfAnotherStage(result.diagnostics, source.stage, files);
+  explainOutgoingPayload(result.diagnostics, source.stage, files);
   for (const SourceFile* file : files.files())
     if (file != &files.root() && !file->diskPath.empty()) {
       result.files.push_back(file->diskPath);

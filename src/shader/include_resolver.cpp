@@ -11,10 +11,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Shaders are small; this keeps a wrong path (a model, a log) out of the compiler.
+// Shaders are small. The limit rejects wrong paths, such as a model or a log file.
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{4} << 20;
 
-// The preprocessor repeats names in #line "name" directives: nothing may end that string.
+// The preprocessor writes names into #line "name" directives, so they must not end that string.
 std::string printable(std::string name) {
   for (char& c : name)
     if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = '_';
@@ -90,7 +90,7 @@ const SourceFile* IncludeResolver::onDisk(const fs::path& path, const std::strin
     return keep(
         {.name = name, .libraryPath = libraryPath, .diskPath = path, .text = {}, .storage = readTextFile(path)});
   } catch (const FileError&) {
-    return nullptr;  // removed meanwhile, or unreadable
+    return nullptr;  // unreadable, or removed in the meantime
   }
 }
 
@@ -107,7 +107,7 @@ const SourceFile* IncludeResolver::inLibrary(const std::string& name) {
   return nullptr;
 }
 
-// A virtual file is named by where it would be: a program's file may include what lies outside of its folder.
+// A virtual file has the path that it would have on disk: a file of a program can include files outside of its folder.
 std::optional<fs::path> IncludeResolver::folderOnDisk(const SourceFile& from) const {
   if (!from.diskPath.empty()) return from.diskPath.parent_path();
   if (from.libraryPath.empty() || !source_.virtualFiles.contains(from.libraryPath)) return std::nullopt;
@@ -151,16 +151,16 @@ std::vector<const SourceFile*> IncludeResolver::files() const {
   return all;
 }
 
-std::vector<std::string> IncludeResolver::searchedPlaces(const SourceFile& from, bool quoted) const {
-  std::vector<std::string> places;
+std::vector<std::string> IncludeResolver::searchedFolders(const SourceFile& from, bool quoted) const {
+  std::vector<std::string> folders;
   if (const std::optional<fs::path> folder = folderOnDisk(from); quoted && folder) {
     const std::string name = normalized(*folder);
-    places.push_back(name.empty() ? "." : name);
+    folders.push_back(name.empty() ? "." : name);
   }
-  if (!options_.libraryOverride.empty()) places.push_back(options_.libraryOverride.generic_string());
-  places.push_back(library_.empty() ? "the built-in library (empty)" : "the built-in library");
-  for (const fs::path& folder : options_.includeFolders) places.push_back(folder.generic_string());
-  return places;
+  if (!options_.libraryOverride.empty()) folders.push_back(options_.libraryOverride.generic_string());
+  folders.push_back(library_.empty() ? "the built-in library (empty)" : "the built-in library");
+  for (const fs::path& folder : options_.includeFolders) folders.push_back(folder.generic_string());
+  return folders;
 }
 
 }  // namespace quintet::shader

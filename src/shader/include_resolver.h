@@ -1,24 +1,29 @@
-// Where an #include leads, for one compilation: virtual files, the folders on disk, the embedded
-// library. Keeps the text of every file that it has found.
+// Resolves the #include directives of one compilation and keeps the texts of the files that it found.
 //
-// #include <x>  virtual files, the override folder, the embedded library, the include folders.
-// #include "x"  first relative to the including file (on disk, or within the library), then as <x>.
+// #include <x>  searches the virtual files, the override folder, the embedded library, the include folders.
+// #include "x"  searches relative to the including file (on disk or in the library), then as <x>.
 #ifndef QUINTET_SHADER_INCLUDE_RESOLVER_H
 #define QUINTET_SHADER_INCLUDE_RESOLVER_H
 
+#include <filesystem>
+#include <map>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "base/embedded.h"
-#include "shader/compiler.h"
+#include "shader/source.h"
 
 namespace quintet::shader {
 
 struct SourceFile {
-  std::string name;                // in diagnostics: a path, or "<quintet/bsdf/ggx.glsl>" if in memory
-  std::string libraryPath;         // name in the library: "quintet/bsdf/ggx.glsl"; empty: not part of it
-  std::filesystem::path diskPath;  // empty: in memory
+  std::string name;                // in diagnostics: a path, or "<quintet/bsdf/ggx.glsl>" for a file in memory
+  std::string libraryPath;         // path in the library: "quintet/bsdf/ggx.glsl"; empty if it is not part of it
+  std::filesystem::path diskPath;  // empty for a file in memory
   std::string_view text;
-  std::string storage;  // holds `text` if it was read from disk
+  std::string storage;  // owns `text` if it was read from disk
 };
 
 struct IncludeDirective {
@@ -27,7 +32,7 @@ struct IncludeDirective {
   auto operator<=>(const IncludeDirective&) const = default;
 };
 
-// Every #include line of a text, also those that comments or #if switch off.
+// Returns all #include lines of a text, including those in comments and in disabled branches of #if.
 std::vector<IncludeDirective> findIncludes(std::string_view text);
 
 class IncludeResolver {
@@ -36,20 +41,20 @@ class IncludeResolver {
   IncludeResolver(const Source& source, const CompilerOptions& options, std::span<const EmbeddedFile> library);
 
   const SourceFile& root() const { return root_; }
-  // Null: not found. The file stays valid as long as the resolver.
+  // Returns null if the file is not found. The result is valid as long as the resolver.
   const SourceFile* resolve(const SourceFile& from, const IncludeDirective& include);
-  // The file that diagnostics call `name`; null: none.
+  // Returns the file with this name in diagnostics; null if unknown.
   const SourceFile* find(std::string_view name) const;
-  // The text of the file that diagnostics call `name`: one of those, or a virtual file that the source names by
-  // #line "name"; empty: none.
+  // Returns the text of the file with this name in diagnostics, including virtual files that the source only names in
+  // #line "name"; empty if unknown.
   std::string_view textOf(std::string_view name) const;
-  // Every file found so far and the root.
+  // The root and all files found so far.
   std::vector<const SourceFile*> files() const;
-  // Where resolve looks, in order, for an error message.
-  std::vector<std::string> searchedPlaces(const SourceFile& from, bool quoted) const;
+  // The folders that resolve() searches, in order, for an error message.
+  std::vector<std::string> searchedFolders(const SourceFile& from, bool quoted) const;
 
  private:
-  // Where a quoted include is looked for on disk; nothing: nowhere.
+  // The folder on disk where quoted includes are searched; nullopt if there is none.
   std::optional<std::filesystem::path> folderOnDisk(const SourceFile& from) const;
   const SourceFile* inVirtualFiles(const std::string& name);
   const SourceFile* inLibrary(const std::string& name);

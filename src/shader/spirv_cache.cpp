@@ -37,7 +37,7 @@ class Writer {
   std::vector<std::byte> data_;
 };
 
-// Every read tells whether the bytes were there.
+// Each read returns false if the data is too short.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> data) : data_(data) {}
@@ -119,7 +119,7 @@ std::optional<SpirvEntry> SpirvCache::load(const Hash& key) const {
   Hash storedKey, storedChecksum;
   if (!in.value(magic) || magic != kMagic || !in.value(storedKey) || storedKey != key) return {};
   if (!in.value(storedChecksum) || storedChecksum != checksum(in.rest())) return {};
-  fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);  // "used", for prune
+  fs::last_write_time(file, fs::file_time_type::clock::now(), ignored);  // time of the last use, for prune()
   return parsePayload(in.rest());
 }
 
@@ -136,7 +136,7 @@ void SpirvCache::store(const Hash& key, const SpirvEntry& entry) const {
     fs::create_directories(folder_, ignored);
     writeFile(fileOf(key), out.data());
   } catch (const std::exception&) {
-    return;  // no permission, disk full: the next run compiles again
+    return;  // e.g. no permission or disk full; the next run compiles again
   }
   if (stores_++ % kStoresBetweenPruning == 0) prune();
 }

@@ -1,12 +1,16 @@
-// SPIR-V on disk, one file per key: "<folder>/<32 hex digits>.qspv". Entries are verified when read;
-// a broken one counts as absent. Failures to write cost nothing but the cache.
+// Disk cache of SPIR-V with one file per key: "<folder>/<32 hex digits>.qspv". Entries are verified when they are
+// read; a corrupt entry counts as missing. Failures to write are ignored.
 #ifndef QUINTET_SHADER_SPIRV_CACHE_H
 #define QUINTET_SHADER_SPIRV_CACHE_H
 
 #include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
 
+#include "base/diagnostic.h"
 #include "base/hash.h"
-#include "shader/compiler.h"
 
 namespace quintet::shader {
 
@@ -19,13 +23,13 @@ class SpirvCache {
  public:
   static constexpr std::uintmax_t kMaxBytes = std::uintmax_t{256} << 20;
 
-  // `folder` empty: no cache. It is made on the first store.
+  // An empty folder disables the cache. The folder is created by the first store.
   explicit SpirvCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   std::optional<SpirvEntry> load(const Hash& key) const;
   void store(const Hash& key, const SpirvEntry& entry) const;
 
-  // Removes the entries that were not used for longest until at most `maxBytes` remain.
+  // Removes the least recently used entries until at most `maxBytes` remain.
   void prune(std::uintmax_t maxBytes = kMaxBytes) const;
 
  private:

@@ -1,7 +1,6 @@
-// Names and file extensions of the shader stages.
-#include <array>
+#include "shader/stage.h"
 
-#include "shader/compiler.h"
+#include <array>
 
 namespace quintet::shader {
 namespace {

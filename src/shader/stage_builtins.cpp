@@ -49,14 +49,14 @@ constexpr StageBuiltIn kBuiltIns[] = {
 constexpr std::array kStages{Stage::rayGeneration, Stage::intersection, Stage::anyHit,
                              Stage::closestHit,    Stage::miss,         Stage::callable};
 
-// The name between the first quotes of a message, "gl_HitTEXT" of "'gl_HitTEXT' : undeclared identifier".
+// Returns the name that a message starts with: "gl_HitTEXT" for "'gl_HitTEXT' : undeclared identifier".
 std::string_view quotedName(std::string_view message) {
   if (!message.starts_with('\'')) return {};
   const std::size_t close = message.find('\'', 1);
   return close == message.npos ? std::string_view{} : message.substr(1, close - 1);
 }
 
-std::string aShader(Stage stage) {
+std::string withArticle(Stage stage) {
   const std::string name(stageName(stage));
   const bool vowel = name.starts_with('a') || name.starts_with('i');
   return (vowel ? "an " : "a ") + name + " shader";
@@ -95,15 +95,15 @@ void explainMissingBuiltIns(std::vector<Diagnostic>& diagnostics, Stage stage) {
     const std::string name(quotedName(d.text));
     if (name == "hitAttributeEXT") {
       d.id = "Q204";
-      d.text =
-          "hitAttributeEXT in " + aShader(stage) + ": only intersection, any-hit and closest-hit shaders have a hit";
+      d.text = "hitAttributeEXT in " + withArticle(stage) +
+               "; hit attributes exist only in intersection, any-hit and closest-hit shaders";
       continue;
     }
     const StageBuiltIn* builtIn = findStageBuiltIn(name);
     if (builtIn == nullptr || stage == Stage::compute || builtIn->availableIn(stage)) continue;
     d.id = "Q706";
-    d.text = name + (builtIn->function ? " cannot be used in " : " is not readable in ") + aShader(stage) +
-             "; it is in " + stagesWith(*builtIn) + " shaders";
+    d.text = name + (builtIn->function ? " cannot be used in " : " does not exist in ") + withArticle(stage) +
+             "; available in " + stagesWith(*builtIn) + " shaders";
   }
 }
 

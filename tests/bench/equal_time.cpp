@@ -1,9 +1,9 @@
-// quintet_equal_time A B: the error that two builds of quintet leave when they render for the same time.
+// quintet_equal_time A B: compares the error of two builds of quintet that render for the same time.
 //
-// Of each scene a long reference is rendered once and kept. Both builds then render with so many samples as fit
-// into --seconds, several seeds, in turn. Starting up, compiling and the first batch do not count: a build's seconds
-// per sample are the difference between a run of N and a run of 4 samples. Error x time compares them fairly where
-// the times differ a little.
+// A long reference of each scene is rendered once and kept. Then both builds alternately render several seeds with as
+// many samples as fit into --seconds. Startup, compilation and the first batch are excluded: the seconds per sample are
+// the difference between a run of N samples and a run of 4 samples. The product of error and time compensates for small
+// differences in time.
 #include <algorithm>
 #include <cstdio>
 
@@ -20,7 +20,7 @@ namespace quintet::bench {
 namespace {
 
 constexpr std::uint32_t kReferenceSeed = 0x9E3779B9u;
-constexpr std::uint64_t kShort = 4;  // samples of the run that stands for what comes once
+constexpr std::uint64_t kShort = 4;  // samples of the run that measures the fixed cost
 
 struct Options {
   std::filesystem::path a, b, scenes, list, out = "equal_time", references;
@@ -33,7 +33,7 @@ struct Options {
   Clock time() const { return clock == "cpu" ? Clock::cpu : Clock::device; }
 };
 
-// What is known of one build on one scene.
+// Measurements of one build on one scene.
 struct Side {
   RenderCall call;
   double once = 0;  // seconds of a run of kShort samples
@@ -49,16 +49,16 @@ RenderCost renderSamples(Side& side, std::uint64_t samples, std::uint32_t seed) 
   return render(side.call);
 }
 
-// Chooses the number of samples.
+// Measures the fixed cost and chooses the number of samples.
 void calibrate(Side& side, const Options& options) {
-  renderSamples(side, kShort, 1);  // compiles
+  renderSamples(side, kShort, 1);  // fills the shader caches
   side.once = std::min(renderSamples(side, kShort, 1).seconds(options.time()),
                        renderSamples(side, kShort, 2).seconds(options.time()));
   side.samples = options.samples;
   if (options.samples > 0) return;
   double perSample = 0;
   std::uint64_t samples = 4 * kShort;
-  for (;; samples *= 4) {  // long enough to tell
+  for (;; samples *= 4) {  // until the run is long enough to measure
     const double spent = renderSamples(side, samples, 1).seconds(options.time()) - side.once;
     perSample = spent / static_cast<double>(samples - kShort);
     if (spent > 0.25 * options.seconds || samples >= (1u << 20)) break;
@@ -71,7 +71,7 @@ void measure(Side& side, std::uint32_t seed, const io::Image& reference, const O
   const double spent = renderSamples(side, side.samples, seed).seconds(options.time());
   const auto samples = static_cast<double>(side.samples);
   side.perSample.push_back(side.samples > 2 * kShort ? (spent - side.once) / (samples - kShort) : spent / samples);
-  const PictureError error = pictureError(io::readImage(side.call.output), reference, middleExposure(reference));
+  const ImageError error = imageError(io::readImage(side.call.output), reference, middleExposure(reference));
   side.relMse.push_back(error.relMse);
   side.trimmed.push_back(error.trimmed);
   side.flip.push_back(error.flip);
@@ -115,40 +115,46 @@ std::string compareScene(const BenchScene& scene, const Options& options) {
     measure(a, seed, reference, options);
     measure(b, seed, reference, options);
     if (seed > 1) continue;
-    const io::Image pictures =
-        threePictures(io::readImage(a.call.output), io::readImage(b.call.output), reference, middleExposure(reference));
-    writeFile(options.out / (scene.name + ".png"), io::encodePng(pictures));
+    const io::Image images =
+        sideBySide(io::readImage(a.call.output), io::readImage(b.call.output), reference, middleExposure(reference));
+    writeFile(options.out / (scene.name + ".png"), io::encodePng(images));
   }
   const Estimate meanA = estimate(a.mean), meanB = estimate(b.mean);
-  fmt::print(stderr, "{}: mean luminance over the reference's: A {:.4f} ± {:.4f}, B {:.4f} ± {:.4f}\n", scene.name,
+  fmt::print(stderr, "{}: mean luminance relative to the reference: A {:.4f} ± {:.4f}, B {:.4f} ± {:.4f}\n", scene.name,
              meanA.mean, meanA.error, meanB.mean, meanB.error);
   for (const Side* side : {&a, &b}) std::filesystem::remove(side->call.output);
   return row(scene, a, b);
 }
 
 void declare(CLI::App& app, Options& options) {
-  app.add_option("A", options.a, "A quintet binary, e.g. the state before")->required()->check(CLI::ExistingFile);
-  app.add_option("B", options.b, "Another one; renders the references, too")->required()->check(CLI::ExistingFile);
-  app.add_option("--scenes", options.scenes, "Folder that quintet_make_scenes has filled")
+  app.add_option("A", options.a, "First quintet binary, such as the previous version")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("B", options.b, "Second quintet binary; also renders the references")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--scenes", options.scenes, "Folder with the output of quintet_make_scenes")
       ->required()
       ->check(CLI::ExistingDirectory);
-  app.add_option("--list", options.list, "Names, files and options (default: scenes.txt in --scenes)");
-  app.add_option("--only", options.only, "Only these scenes of the list")->delimiter(',');
+  app.add_option("--list", options.list, "List of names, files and options (default: scenes.txt in --scenes)");
+  app.add_option("--only", options.only, "Scenes of the list to render, separated by commas")->delimiter(',');
   app.add_option("--references", options.references,
-                 "Folder of the references; those absent are rendered (default: OUT)");
-  app.add_option("--out", options.out, "Folder for pictures: A | B | reference, first seed")->capture_default_str();
-  app.add_option("--size", options.size, "WxH")->capture_default_str();
-  app.add_option("--seconds", options.seconds, "Each build renders a picture for so long")->capture_default_str();
-  app.add_option("--spp", options.samples, "Both builds take so many samples instead")->check(CLI::Range(1, 1 << 22));
-  app.add_option("--seeds", options.seeds, "Pictures of each build")->capture_default_str();
-  app.add_option("--reference-seconds", options.referenceSeconds, "For a reference")->capture_default_str();
-  app.add_option("--reference-spp", options.referenceSamples, "For a reference, instead of seconds");
-  app.add_flag("--references-only", options.referencesOnly, "Render the references that are absent, and leave");
+                 "Folder of the references; missing ones are rendered (default: OUT)");
+  app.add_option("--out", options.out, "Folder for images: A | B | reference, first seed")->capture_default_str();
+  app.add_option("--size", options.size, "Image size, WxH")->capture_default_str();
+  app.add_option("--seconds", options.seconds, "Seconds per render")->capture_default_str();
+  app.add_option("--spp", options.samples, "Number of samples per pixel of both builds, instead of --seconds")
+      ->check(CLI::Range(1, 1 << 22));
+  app.add_option("--seeds", options.seeds, "Number of renders per build")->capture_default_str();
+  app.add_option("--reference-seconds", options.referenceSeconds, "Seconds per reference")->capture_default_str();
+  app.add_option("--reference-spp", options.referenceSamples,
+                 "Number of samples per pixel of a reference, instead of seconds");
+  app.add_flag("--references-only", options.referencesOnly, "Render the missing references and exit");
   app.add_option("--clock", options.clock,
-                 "device: time stamps; cpu: processor time of the process (a busy machine without a GPU)")
+                 "Clock: device (time stamps), or cpu (processor time, for a busy machine without a GPU)")
       ->check(CLI::IsMember({"device", "cpu"}))
       ->capture_default_str();
-  app.add_option("--more", options.more, "A further option for every rendering, e.g. --more=--device=h200")
+  app.add_option("--more", options.more, "Additional option for every render, such as --more=--device=h200")
       ->expected(1)
       ->take_all();
 }
@@ -174,7 +180,7 @@ int run(const Options& given) {
 }  // namespace quintet::bench
 
 int main(int argc, char** argv) {
-  CLI::App app("Compares the error of two builds of quintet in equal time. Prints a table; above 1, B is better.");
+  CLI::App app("Compare the error of two builds of quintet at equal time. Prints a table; above 1, B is better.");
   quintet::bench::Options options;
   quintet::bench::declare(app, options);
   CLI11_PARSE(app, argc, argv);

@@ -28,10 +28,10 @@ io::Image exposed(io::Image rgb, float exposure) {
 
 }  // namespace
 
-PictureError pictureError(const io::Image& image, const io::Image& reference, float exposure) {
+ImageError imageError(const io::Image& image, const io::Image& reference, float exposure) {
   const io::Image a = linearRgb(image);
   const io::Image r = linearRgb(reference);
-  if (a.width != r.width || a.height != r.height) throw UsageError("picture and reference differ in size");
+  if (a.width != r.width || a.height != r.height) throw UsageError("image and reference differ in size");
   const double level = meanLuminance(r);
   const double eps = 0.01 * level * level;
   std::vector<double> errors(a.pixelCount(), 0.0);
@@ -40,7 +40,7 @@ PictureError pictureError(const io::Image& image, const io::Image& reference, fl
     const double difference = a.samples<float>()[i] - reference64;
     errors[i / 3] += difference * difference / (reference64 * reference64 + eps) / 3.0;
   }
-  PictureError result;
+  ImageError result;
   std::ranges::sort(errors);
   const std::size_t kept = errors.size() - errors.size() / 1000;
   const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(kept);
@@ -58,7 +58,7 @@ float middleExposure(const io::Image& reference) {
   return level > 0 ? static_cast<float>(0.25 / level) : 1.0f;
 }
 
-io::Image threePictures(const io::Image& a, const io::Image& b, const io::Image& reference, float exposure) {
+io::Image sideBySide(const io::Image& a, const io::Image& b, const io::Image& reference, float exposure) {
   constexpr std::uint32_t kGap = 4;
   io::Image result = io::makeImage(3 * a.width + 2 * kGap, a.height, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
   std::uint32_t left = 0;

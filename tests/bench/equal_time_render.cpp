@@ -22,7 +22,7 @@ namespace {
 
 double secondsOf(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
 
-// Runs `command`, standard output to a file. The processor seconds that it took.
+// Runs `command` with standard output to a file. Returns its processor time in seconds.
 double runToFile(std::vector<std::string>& command, const std::filesystem::path& out) {
   std::vector<char*> arguments;
   for (std::string& text : command) arguments.push_back(text.data());
@@ -59,7 +59,7 @@ std::vector<BenchScene> readScenes(const std::filesystem::path& list, const std:
     }
     scenes.push_back(std::move(scene));
   }
-  if (scenes.empty()) throw FileError(list, "it names no scenes");
+  if (scenes.empty()) throw FileError(list, "no scenes in the list");
   return scenes;
 }
 

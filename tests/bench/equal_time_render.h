@@ -1,4 +1,4 @@
-// One call of a quintet binary, and what it cost.
+// Runs a quintet binary and measures its cost.
 #ifndef QUINTET_TESTS_BENCH_EQUAL_TIME_RENDER_H
 #define QUINTET_TESTS_BENCH_EQUAL_TIME_RENDER_H
 
@@ -12,10 +12,10 @@ namespace quintet::bench {
 struct BenchScene {
   std::string name;
   std::filesystem::path file;
-  std::vector<std::string> options;  // of `quintet render`; files among them with their folder
+  std::vector<std::string> options;  // of `quintet render`; file names include their folder
 };
 
-// The lines of a list like scenes.txt; scenes and skies lie in `folder`. Throws FileError.
+// Reads a list such as scenes.txt; scene and environment files are in `folder`. Throws FileError.
 std::vector<BenchScene> readScenes(const std::filesystem::path& list, const std::filesystem::path& folder);
 
 enum class Clock { device, cpu };
@@ -24,8 +24,8 @@ struct RenderCall {
   std::filesystem::path binary;
   const BenchScene* scene = nullptr;
   std::string size;           // WxH
-  std::uint64_t samples = 0;  // per pixel; 0: `seconds`
-  double seconds = 0;         // --time
+  std::uint64_t samples = 0;  // per pixel; 0 means that `seconds` applies
+  double seconds = 0;         // --time; 0 means that `samples` applies
   std::uint32_t seed = 0;
   std::filesystem::path output;   // .exr
   std::vector<std::string> more;  // further options
@@ -33,13 +33,13 @@ struct RenderCall {
 
 struct RenderCost {
   std::uint64_t samples = 0;  // per pixel
-  double deviceSeconds = 0;   // on the device, of all launches
+  double deviceSeconds = 0;   // sum of all launches
   double cpuSeconds = 0;      // user and system time of the process
   std::string device;
   double seconds(Clock clock) const { return clock == Clock::device ? deviceSeconds : cpuSeconds; }
 };
 
-// Runs it and waits. Throws Error if it fails or says nothing.
+// Runs the binary and waits for it. Throws Error if it fails.
 RenderCost render(const RenderCall& call);
 
 }  // namespace quintet::bench

@@ -1,7 +1,10 @@
 #!/bin/bash
-# How long from file to first pixel, and how much memory: tests/bench/loading.sh BIN [FOLDER] [TRIANGLES]
-# BIN has quintet and quintet_make_large. Scenes and caches are made in FOLDER (a new one in /tmp) and removed. The first
-# run of each scene finds empty caches of shaders and pipelines; files were just written, so they are in the page cache.
+# Measures the time from file to first pixel, and the memory.
+#
+#   tests/bench/loading.sh BIN [FOLDER] [TRIANGLES]
+#
+# BIN contains quintet and quintet_make_large. Scenes and caches are created in a new folder in FOLDER (/tmp) and removed.
+# The first run of each scene has empty shader and pipeline caches. The scene files are in the page cache.
 set -e
 bin=${1:?usage: tests/bench/loading.sh BIN [FOLDER] [TRIANGLES]}
 folder=$(mktemp -d "${2:-/tmp}/loading-XXXXXX")
@@ -26,7 +29,7 @@ render() {  # LABEL SCENE CACHE
   [ -z "$QUIET" ] || return 0
   echo "  $(sed 's/"stages":{//; s/[}"]//g' <<<"$stages" | awk -F, '{ for (i = 1; i <= NF; ++i) { split($i, p, ":"); printf "%s %.3f  ", p[1], p[2] } }')"
   echo "  $(sed 's/"memory":{//; s/[}"]//g' <<<"$memory" | awk -F, '{ for (i = 1; i <= NF; ++i) { split($i, p, ":"); printf (p[1] ~ /Bytes/ ? "%s %.0f MB  " : ""), p[1], p[2] / 1e6 } }')"
-  echo "  peak of the device: $(sed 's/"devicePeak":{//; s/Bytes//g; s/[}"]//g' <<<"$peak" | awk -F, '{ for (i = 1; i <= NF; ++i) { split($i, p, ":"); printf "%s %.0f MB  ", p[1], p[2] / 1e6 } }')"
+  echo "  peak device memory: $(sed 's/"devicePeak":{//; s/Bytes//g; s/[}"]//g' <<<"$peak" | awk -F, '{ for (i = 1; i <= NF; ++i) { split($i, p, ":"); printf "%s %.0f MB  ", p[1], p[2] / 1e6 } }')"
 }
 
 uname -m; nproc

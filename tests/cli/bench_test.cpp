@@ -1,4 +1,4 @@
-// `bench --profile`: what it measures fits together.
+// `bench --profile`: the measurements are consistent.
 #include "fixtures.h"
 
 namespace quintet::test {
@@ -16,7 +16,7 @@ class Bench : public CliTest {
   }
 };
 
-TEST_F(Bench, ProfileCountsRaysByKind) {
+TEST_F(Bench, CountsRaysByKind) {
   const nlohmann::json tracer = profile()["pathTracer"];
   const nlohmann::json& rays = tracer["rays"];
   EXPECT_EQ(rays["camera"]["rays"], 32 * 24);
@@ -26,9 +26,9 @@ TEST_F(Bench, ProfileCountsRaysByKind) {
     EXPECT_EQ(rays[kind]["hits"].get<std::uint64_t>() + rays[kind]["misses"].get<std::uint64_t>(), count) << kind;
     sum += count;
   }
-  EXPECT_EQ(sum, tracer["raysPerSample"].get<std::uint64_t>());  // the film's own count
+  EXPECT_EQ(sum, tracer["raysPerSample"].get<std::uint64_t>());  // as the film counts
   EXPECT_EQ(tracer["replayedRays"], tracer["raysPerSample"]);
-  // One quad: something is hit, something missed, and each path that goes on does so from a hit.
+  // One quad: some rays hit it and some miss it, and each continuation ray starts at a hit.
   const auto hits = rays["camera"]["hits"].get<std::uint64_t>();
   EXPECT_GT(hits, 0u);
   EXPECT_GT(rays["camera"]["misses"].get<std::uint64_t>(), 0u);
@@ -36,7 +36,7 @@ TEST_F(Bench, ProfileCountsRaysByKind) {
             hits + rays["continuation"]["hits"].get<std::uint64_t>());
 }
 
-TEST_F(Bench, ProfileOfPassesAndLaunchesAddsUp) {
+TEST_F(Bench, PassesAddUpToTheTotal) {
   const nlohmann::json p = profile()["profile"];
   for (const char* pass : {"uploadSeconds", "orderSeconds", "bottomLevelBuildSeconds", "topLevelBuildSeconds",
                            "beginBatchSeconds", "traceSeconds", "filmAddSeconds", "downloadSeconds", "toneMapSeconds"})
@@ -45,7 +45,7 @@ TEST_F(Bench, ProfileOfPassesAndLaunchesAddsUp) {
   EXPECT_GT(trace, 0.0);
   EXPECT_NEAR(
       busy, trace + p["passes"]["beginBatchSeconds"].get<double>() + p["passes"]["filmAddSeconds"].get<double>(), 1e-9);
-  EXPECT_LE(busy + p["deviceIdleSeconds"].get<double>(), 1.05 * wall + 0.002);  // two clocks
+  EXPECT_LE(busy + p["deviceIdleSeconds"].get<double>(), 1.05 * wall + 0.002);  // different clocks
   EXPECT_NEAR(p["busyShare"].get<double>(), busy / wall, 1e-6);
   EXPECT_NEAR(p["samplesPerSecond"].get<double>(), 32.0 * 24 * 4 * 2 / wall, 1.0);
   EXPECT_GE(p["launches"]["count"].get<int>(), 2);  // two batches
@@ -53,16 +53,17 @@ TEST_F(Bench, ProfileOfPassesAndLaunchesAddsUp) {
   EXPECT_LE(p["launches"]["medianSeconds"].get<double>(), p["launches"]["largestSeconds"].get<double>());
 }
 
-TEST_F(Bench, ProfileTellsOfThePipeline) {
+TEST_F(Bench, ReportsThePipeline) {
   const nlohmann::json pipeline = profile({"--program", "naive"})["profile"]["pipeline"];
-  EXPECT_TRUE(pipeline["executables"].is_object() || pipeline["executables"] == "not told by the driver") << pipeline;
+  const nlohmann::json& executables = pipeline["executables"];  // a text if the driver reports none
+  EXPECT_TRUE((executables.is_object() && !executables.empty()) || executables.is_string()) << pipeline;
   EXPECT_TRUE(pipeline["stackBytes"].contains("ray generation")) << pipeline;
-  EXPECT_GE(pipeline["stackBytes"].size(), 3u);  // a miss and a hit group at least
+  EXPECT_GE(pipeline["stackBytes"].size(), 3u);  // ray generation, miss and hit group
   EXPECT_EQ(pipeline["payloadBytes"]["HitPayload"], 24)
-      << pipeline;  // t, three indices, two coordinates: one opaque quad
+      << pipeline;  // t, three indices and two coordinates, for opaque triangles
 }
 
-TEST_F(Bench, ProfileAsTable) {
+TEST_F(Bench, PrintsATable) {
   const RunResult result = quintet({"bench", "scene.gltf", "--size", "16x16", "--repeat", "1", "--profile"});
   ASSERT_EQ(result.status, 0) << result.err;
   for (const char* line : {"\npathTracer.ratio ", "\npathTracer.rays.shadow.hits ", "\nprofile.passes.filmAddSeconds ",

@@ -1,4 +1,4 @@
-// The camera in OpenEXR files, as oiiotool shows it: what a layer says is at a pixel is projected to that pixel.
+// The camera attributes of OpenEXR files, as oiiotool reads them: they project the position of each pixel to that pixel.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 
 #include "base/file.h"
 #include "fixtures.h"
-#include "io/exr.h"
-#include "render/film_file.h"
+#include "io/exr/exr.h"
+#include "render/film/film_file.h"
 
 namespace quintet::test {
 namespace {
 
 using ::testing::HasSubstr;
-using Matrix = std::array<double, 16>;  // rows, for row vectors
+using Matrix = std::array<double, 16>;  // row by row, for row vectors
 
 constexpr std::uint32_t kWidth = 24, kHeight = 16;
 
@@ -66,20 +66,20 @@ class CameraExr : public CliTest {
     return m;
   }
 
-  // Every pixel of the file that sees something; how many there are.
-  int expectPixelsFound(const std::string& file) {
-    const io::ExrPicture picture = io::decodeExr(readFile(folder_ / file), file);
+  // Checks every pixel that shows a surface, and returns their number; -1 without camera attributes.
+  int checkProjection(const std::string& file) {
+    const io::ExrImage image = io::decodeExr(readFile(folder_ / file), file);
     const auto at = [&](const char* name, std::size_t i) -> double {
-      return std::ranges::find(picture.channels, name, &io::ExrChannel::name)->samples[i];
+      return std::ranges::find(image.channels, name, &io::ExrChannel::name)->samples[i];
     };
     const std::optional<Matrix> toNdc = matrix(file, "worldToNDC"), toCamera = matrix(file, "worldToCamera");
     if (!toNdc || !toCamera) return -1;
-    EXPECT_EQ(picture.width, kWidth);  // the display window
-    EXPECT_EQ(picture.height, kHeight);
-    int found = 0;
+    EXPECT_EQ(image.width, kWidth);  // the display window
+    EXPECT_EQ(image.height, kHeight);
+    int count = 0;
     for (std::size_t i = 0; i < std::size_t{kWidth} * kHeight; ++i) {
       if (at("instance_id.X", i) == 0) continue;
-      ++found;
+      ++count;
       const std::array<double, 4> world{at("position.X", i), at("position.Y", i), at("position.Z", i), 1};
       const std::array<double, 4> ndc = multiply(world, *toNdc), camera = multiply(world, *toCamera);
       EXPECT_NEAR(ndc[0] / ndc[3] * kWidth, static_cast<double>(i % kWidth) + 0.5, 2e-3) << i;
@@ -87,26 +87,26 @@ class CameraExr : public CliTest {
       EXPECT_NEAR(camera[2], at("depth.Z", i), 1e-4) << i;  // positive in front
       EXPECT_EQ(camera[3], 1.0);
     }
-    return found;
+    return count;
   }
 };
 
-TEST_F(CameraExr, ProjectsWhatIsSeenToItsPixel) {
+TEST_F(CameraExr, ProjectsPositionsToTheirPixels) {
   for (const char* scene : {"turned.gltf", "parallel.gltf"}) {
     render(scene, "a.exr");
-    const int all = expectPixelsFound("a.exr");
+    const int all = checkProjection("a.exr");
     EXPECT_GT(all, 80) << scene;
     EXPECT_LT(all, static_cast<int>(kWidth * kHeight)) << scene;
     const auto whole = matrix("a.exr", "worldToNDC");
     render(scene, "a.exr", {"--region", "7,5,11,6"});
-    const int part = expectPixelsFound("a.exr");
+    const int part = checkProjection("a.exr");
     EXPECT_GT(part, 20) << scene;
     EXPECT_LE(part, 11 * 6) << scene;
     EXPECT_EQ(matrix("a.exr", "worldToNDC"), whole) << scene;
   }
 }
 
-TEST_F(CameraExr, IsInEveryPartAndEveryPicture) {
+TEST_F(CameraExr, IsInEveryPartAndEveryFile) {
   render("turned.gltf", "a.exr", {"--exr-compression", "dwaa"});
   const std::string text = info("a.exr");
   EXPECT_THAT(text, HasSubstr("2 subimages"));
@@ -118,11 +118,10 @@ TEST_F(CameraExr, IsInEveryPartAndEveryPicture) {
   EXPECT_THAT(quintet({"info", "a.exr"}).out, HasSubstr("worldToCamera "));
 }
 
-TEST_F(CameraExr, MergedPicturesHaveIt) {
-  const auto without = [&](const char* name) {  // as films were before
+TEST_F(CameraExr, IsKeptByFilms) {
+  const auto removeCamera = [&](const char* name) {
     render::FilmFile file = render::readFilm(folder_ / name);
-    const auto old = std::erase_if(file.notes, [](const auto& note) { return note.first.starts_with("world to "); });
-    EXPECT_EQ(old, 2u);
+    EXPECT_EQ(std::erase_if(file.notes, [](const auto& note) { return note.first.starts_with("world to "); }), 2u);
     render::writeFilm(folder_ / name, file);
   };
   const auto merge = [&](std::vector<std::string> arguments) {
@@ -136,37 +135,37 @@ TEST_F(CameraExr, MergedPicturesHaveIt) {
   const std::vector<std::byte> part = readFile(folder_ / "b.qfilm");
   merge({"a.qfilm", "b.qfilm", "-o", "ab.qfilm"});
   merge({"ab.qfilm", "-o", "ab.exr"});
-  const auto same = [&](const char* file) {
+  const auto expectSameCamera = [&](const char* file) {
     for (const char* name : {"worldToCamera", "worldToNDC"}) {
       EXPECT_TRUE(matrix(file, name)) << file;
       EXPECT_EQ(matrix(file, name), matrix("whole.exr", name)) << file;
     }
   };
-  same("ab.exr");
-  EXPECT_GT(expectPixelsFound("ab.exr"), 20);
-  // Whichever part tells it. Films that say nothing of it are as good as ever, but for that.
-  without("b.qfilm");
+  expectSameCamera("ab.exr");
+  EXPECT_GT(checkProjection("ab.exr"), 20);
+  // One part with the camera is enough. Without any, the image has no camera.
+  removeCamera("b.qfilm");
   for (const auto& order : {std::pair("a.qfilm", "b.qfilm"), std::pair("b.qfilm", "a.qfilm")}) {
     merge({order.first, order.second, "-o", "m.exr"});
-    same("m.exr");
+    expectSameCamera("m.exr");
   }
-  without("a.qfilm");
+  removeCamera("a.qfilm");
   merge({"a.qfilm", "b.qfilm", "-o", "m.exr"});
   EXPECT_FALSE(matrix("m.exr", "worldToNDC"));
   write(folder_ / "b.qfilm", part);
   EXPECT_EQ(render::readFilm(folder_ / "a.qfilm").identity, render::readFilm(folder_ / "b.qfilm").identity);
 }
 
-TEST_F(CameraExr, NotesThatAreNoMatricesAreRefused) {
+TEST_F(CameraExr, RejectsFilmsWithInvalidMatrices) {
   render("turned.gltf", "a.qfilm");
   const render::FilmFile good = render::readFilm(folder_ / "a.qfilm");
-  for (const char* text : {"", "1 2 3", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 x", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 nan",
+  for (const char* text : {"1 2 3", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 x", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 nan",
                            "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 7"}) {
     render::FilmFile file = good;
     for (auto& [name, value] : file.notes)
       if (name == "world to NDC") value = text;
     render::writeFilm(folder_ / "b.qfilm", file);
-    expectError(quintet({"merge", "b.qfilm", "-q", "-o", "m.exr"}), 1, {"b.qfilm: header: world to NDC: "});
+    expectError(quintet({"merge", "b.qfilm", "-q", "-o", "m.exr"}), 1, {"b.qfilm: header", "world to NDC"});
     EXPECT_FALSE(std::filesystem::exists(folder_ / "m.exr")) << text;
   }
 }

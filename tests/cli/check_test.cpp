@@ -1,4 +1,4 @@
-// `check` and `explain`, and how `run` and `render` say that a program does not compile.
+// `check` and `explain`, and the diagnostics of `run` and `render` for programs that do not compile.
 #include <gmock/gmock.h>
 
 #include "sky_program.h"
@@ -19,19 +19,20 @@ class Check : public CliTest {
   }
 };
 
-constexpr const char* kShown =
-    "bad/sky.rmiss:6:11: error: 'colour' : no such field in structure 'payload' [GLSL]\n"
-    "    6 |   payload.colour = vec3(0.5);\n"
+// What all commands print about a program whose miss shader writes payload.tint.
+constexpr const char* kDiagnostic =
+    "bad/sky.rmiss:6:11: error: 'tint' : no such field in structure 'payload' [GLSL]\n"
+    "    6 |   payload.tint = vec3(0.5);\n"
     "      |           ^\n";
 
-TEST_F(Check, CleanProgramsOfAllKinds) {
+TEST_F(Check, AcceptsFoldersAndBuiltInPrograms) {
   const RunResult result = quintet({"check", "good", "ao", "pathtracer"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "good: clean\nao: clean\npathtracer: clean\n");
   EXPECT_EQ(quintet({"check", "good", "scene.gltf", "--json"}).out, "[]\n");
 }
 
-TEST_F(Check, EveryBuiltInProgramIsClean) {
+TEST_F(Check, BuiltInProgramsHaveNoWarnings) {
   std::vector<std::string> arguments{"check", "--strict"};
   for (const auto& entry : nlohmann::json::parse(quintet({"run", "--list", "--json"}).out))
     arguments.push_back(entry["name"]);
@@ -39,7 +40,7 @@ TEST_F(Check, EveryBuiltInProgramIsClean) {
   EXPECT_EQ(result.status, 0) << result.err;
 }
 
-TEST_F(Check, FoldersOfPrograms) {
+TEST_F(Check, SearchesFoldersForPrograms) {
   writeProgram("all/one", "payload.color", "sky.rmiss");
   writeProgram("all/deep/two", "payload.color", "sky.rmiss");
   write(folder_ / "all" / "three.rt.glsl",
@@ -50,14 +51,14 @@ TEST_F(Check, FoldersOfPrograms) {
   std::filesystem::create_directory(folder_ / "empty");
   const RunResult empty = quintet({"check", "empty"});
   EXPECT_EQ(empty.status, 1);
-  EXPECT_THAT(empty.err, HasSubstr("has no program.toml"));
+  EXPECT_THAT(empty.err, HasSubstr("program.toml"));
 }
 
-TEST_F(Check, ErrorsWithSourceAndCaret) {
-  writeProgram("bad", "payload.colour", "sky.rmiss");
+TEST_F(Check, ErrorsHaveTheSourceLine) {
+  writeProgram("bad", "payload.tint", "sky.rmiss");
   const RunResult result = quintet({"check", "bad"});
   EXPECT_EQ(result.status, 1);
-  EXPECT_EQ(result.err, std::string(kShown) + "bad: 1 error\n");
+  EXPECT_EQ(result.err, std::string(kDiagnostic) + "bad: 1 error\n");
   const RunResult json = quintet({"check", "bad", "good", "--json"});
   EXPECT_EQ(json.status, 1);
   EXPECT_EQ(json.err, "");
@@ -70,15 +71,15 @@ TEST_F(Check, ErrorsWithSourceAndCaret) {
   EXPECT_EQ(array[0]["id"], "GLSL");
 }
 
-TEST_F(Check, RunAndRenderSayTheSameAndWriteNothing) {
-  writeProgram("bad", "payload.colour", "sky.rmiss");
+TEST_F(Check, RunAndRenderPrintTheSameErrors) {
+  writeProgram("bad", "payload.tint", "sky.rmiss");
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"run", "bad", "--size", "8x8", "-o", "out.png"},
         {"render", "scene.gltf", "--program", "bad", "--size", "8x8", "-q", "-o", "out.png"}}) {
     const RunResult result = quintet(arguments);
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(result.out, "");
-    EXPECT_EQ(result.err, std::string(kShown) + "quintet: bad: 1 error\n");
+    EXPECT_EQ(result.err, std::string(kDiagnostic) + "quintet: bad: 1 error\n");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
   }
   const RunResult json = quintet({"run", "bad", "--size", "8x8", "--json", "-o", "out.png"});
@@ -86,7 +87,7 @@ TEST_F(Check, RunAndRenderSayTheSameAndWriteNothing) {
   EXPECT_EQ(nlohmann::json::parse(json.out)[0]["file"], "bad/sky.rmiss");
 }
 
-// An included file of the program is named as the user knows it, and shown.
+// Included files have the path that the user knows.
 TEST_F(Check, ErrorsInIncludedFiles) {
   writeProgram("bad", "payload.color", "sky.rmiss");
   write(folder_ / "bad" / "payload.glsl", "struct Payload {\n  vec3 color;\n  vec5 more;\n};\n");
@@ -97,8 +98,8 @@ TEST_F(Check, ErrorsInIncludedFiles) {
   EXPECT_THAT(result.err, HasSubstr("    3 |   vec5 more;\n"));
 }
 
-// What no compiler sees: two shaders that meet at run time and differ in their payload.
-TEST_F(Check, TheLinkIsCheckedBeforeTheFirstRay) {
+// No compiler finds this: a ray generation shader and a miss shader with different payload types.
+TEST_F(Check, ErrorsAcrossStages) {
   writeProgram("bad", "payload.color", "sky.rmiss");
   write(folder_ / "bad" / "sky.rmiss",
         "#version 460\n#extension GL_EXT_ray_tracing : require\n"
@@ -116,15 +117,15 @@ TEST_F(Check, TheLinkIsCheckedBeforeTheFirstRay) {
   }
 }
 
-// A warning is told and does not stop `run`; --strict makes `check` fail.
-TEST_F(Check, WarningsAreToldOnce) {
+// A warning does not stop `run`. With --strict it makes `check` fail.
+TEST_F(Check, Warnings) {
   writeProgram("odd", "payload.color", "sky.rmiss");
   write(folder_ / "odd" / "unused.rchit",
         "#version 460\n#extension GL_EXT_ray_tracing : require\n"
         "#include \"payload.glsl\"\nlayout(location = 0) rayPayloadInEXT Payload payload;\n"
         "void main() { payload.color = vec3(1.0); }\n");
   write(folder_ / "odd" / "program.toml", skyToml("sky.rmiss") +
-                                              "[[hit_group]]\nname = \"surface\"\nprimitives = \"nobody has this "
+                                              "[[hit_group]]\nname = \"surface\"\nprimitives = \"unknown "
                                               "name\"\nprimary = { closest_hit = \"unused.rchit\" }\n"
                                               "[[hit_group]]\nname = \"rest\"\nprimary = { }\n");
   EXPECT_EQ(quintet({"check", "odd", "scene.gltf"}).status, 0);
@@ -137,11 +138,11 @@ TEST_F(Check, WarningsAreToldOnce) {
   EXPECT_TRUE(std::ranges::any_of(found, [](const auto& d) { return d["id"] == "Q802"; })) << found;
 }
 
-TEST_F(Check, DescriptionsThatAreWrong) {
+TEST_F(Check, ErrorsInDescriptions) {
   writeProgram("bad", "payload.color", "skyy.rmiss");
   const RunResult result = quintet({"check", "bad"});
   EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("bad/program.toml:6: error: there is no file 'skyy.rmiss'"));
+  EXPECT_THAT(result.err, ::testing::ContainsRegex("bad/program\\.toml:6: error: .*'skyy\\.rmiss'.*'sky\\.rmiss'"));
   EXPECT_THAT(result.err, HasSubstr("    6 | miss = \"skyy.rmiss\"\n"));
   const auto array = nlohmann::json::parse(quintet({"run", "bad", "--json"}).out);
   EXPECT_EQ(array[0]["file"], "bad/program.toml");
@@ -150,33 +151,35 @@ TEST_F(Check, DescriptionsThatAreWrong) {
   EXPECT_EQ(scene[0]["file"], "none.glb");
 }
 
-TEST_F(Check, ColourOnATerminalOnly) {
-  writeProgram("bad", "payload.colour", "sky.rmiss");
+TEST_F(Check, UsesColorsOnTerminalsOnly) {
+  writeProgram("bad", "payload.tint", "sky.rmiss");
   TerminalRun terminal({"check", "bad"}, folder_.path());
   EXPECT_THAT(terminal.finish().err, HasSubstr("\x1b[1;31merror: "));
   EXPECT_THAT(quintet({"check", "bad"}).err, Not(HasSubstr("\x1b")));
 }
 
-TEST_F(Check, WhatMakesNoSense) {
-  expectError(quintet({"check"}), 2, {"no program"});
-  expectError(quintet({"check", "scene.gltf"}), 2, {"no program"});
-  expectError(quintet({"check", "pathtracr"}), 2, {"did you mean 'pathtracer'?"});
-  expectError(quintet({"check", "good", "--jsn"}), 2, {"did you mean '--json'?"});
+TEST_F(Check, InvalidCommandLines) {
+  expectError(quintet({"check"}), 2, {"program", "--help"});
+  expectError(quintet({"check", "scene.gltf"}), 2, {"program", "--help"});
+  expectError(quintet({"check", "pathtracr"}), 2, {"'pathtracr'", "'pathtracer'"});
+  expectError(quintet({"check", "good", "--jsn"}), 2, {"'--jsn'", "'--json'"});
 }
 
 TEST_F(Check, Explain) {
   const RunResult list = quintet({"explain"});
   EXPECT_EQ(list.status, 0);
-  EXPECT_THAT(list.out, HasSubstr("Q101  error    payload type differs"));
+  EXPECT_THAT(list.out, ::testing::ContainsRegex("\nQ101 +error +payload type"));
   for (const auto& entry : nlohmann::json::parse(quintet({"explain", "--json"}).out)) {
     const std::string id = entry["id"];
     EXPECT_THAT(list.out, HasSubstr(id + "  "));
+    for (const char* key : {"severity", "title", "why", "fix", "rule"})
+      EXPECT_NE(entry.at(key), "") << id << ' ' << key;
     const RunResult page = quintet({"explain", id});
     EXPECT_EQ(page.status, 0);
     EXPECT_TRUE(page.out.starts_with("# " + id + ": ")) << page.out;
   }
   EXPECT_EQ(quintet({"explain", "q101"}).out, quintet({"explain", "Q101"}).out);
-  expectError(quintet({"explain", "Q1O1"}), 2, {"'Q1O1'", "did you mean 'Q101'?"});
+  expectError(quintet({"explain", "Q1O1"}), 2, {"'Q1O1'", "'Q101'"});
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "io/codec.h"
-#include "render/film_file.h"
+#include "render/film/film_file.h"
 
 namespace quintet::test {
 namespace {
@@ -138,14 +138,14 @@ std::vector<std::byte> encodeJpeg(const io::Image& image) {
       tjCompress2(encoder, reinterpret_cast<const unsigned char*>(image.data.data()), static_cast<int>(image.width), 0,
                   static_cast<int>(image.height), TJPF_RGB, &data, &size, TJSAMP_444, 90, 0);
   tjDestroy(encoder);
-  if (failed) throw std::runtime_error("no JPEG");
+  if (failed) throw std::runtime_error("cannot encode a JPEG file");
   const auto* bytes = reinterpret_cast<const std::byte*>(data);
   std::vector<std::byte> result(bytes, bytes + size);
   tjFree(data);
   return result;
 }
 
-std::vector<std::byte> pngOfClaimedSize(std::uint32_t width, std::uint32_t height) {
+std::vector<std::byte> pngWithStatedSize(std::uint32_t width, std::uint32_t height) {
   std::vector<std::byte> bytes = io::encodePng(testImage(4, 4));
   const std::span<std::byte> header(bytes.data() + 12, 17);  // "IHDR" and its 13 bytes
   storeBigEndian(header.subspan(4, 4), width);
@@ -161,12 +161,12 @@ void expectError(const RunResult& result, int status, const std::vector<std::str
   EXPECT_TRUE(result.err.starts_with("quintet: ")) << result.err;
   EXPECT_TRUE(result.err.ends_with('\n')) << result.err;
   for (const std::string& part : parts)
-    EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' is not in: " << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' not found in: " << result.err;
 }
 
-io::Image CliTest::picture(const std::string& name) const { return io::readImage(folder_ / name); }
+io::Image CliTest::readImage(const std::string& name) const { return io::readImage(folder_ / name); }
 
-std::string CliTest::timeForABatch(const std::string& checkpoint) const {
+std::string CliTest::timeForOneBatch(const std::string& checkpoint) const {
   if (!std::filesystem::exists(folder_ / checkpoint)) return "0";
   render::FilmFile file = render::readFilm(folder_ / checkpoint);
   for (auto& [name, value] : file.notes)

@@ -1,4 +1,4 @@
-// Files that the tests of the command line feed it, and what every test expects of an error.
+// Input files for the tests of the command line, and the form that every error message has.
 #ifndef QUINTET_TESTS_CLI_FIXTURES_H
 #define QUINTET_TESTS_CLI_FIXTURES_H
 
@@ -19,32 +19,32 @@
 
 namespace quintet::test {
 
-// A coloured quad at z = 0 before a camera "front", and a second camera "side" without aspect. 3 KB of JSON
-// with its one buffer inside.
+// A colored quad at z = 0, a camera "front" that looks at it, and a camera "side" without an aspect ratio. 3 KB of JSON
+// with an embedded buffer.
 nlohmann::json quadScene();
 
-// A GLB of this JSON and binary chunk.
+// A GLB with this JSON and this binary chunk.
 std::string glb(const nlohmann::json& json, std::string_view binary);
 
-// The quad with a texture whose file is these bytes, as GLB.
+// The quad with an embedded texture file, as GLB.
 std::string texturedGlb(std::span<const std::byte> image, const std::string& mimeType);
 
 void write(const std::filesystem::path& file, std::string_view text);
 void write(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
-// A gradient, u8 RGB.
+// A gradient of 8-bit RGB pixels.
 io::Image testImage(std::uint32_t width, std::uint32_t height);
 
-std::vector<std::byte> encodeJpeg(const io::Image& image);  // of u8 RGB
+std::vector<std::byte> encodeJpeg(const io::Image& image);  // 8-bit RGB
 
-// PNG bytes whose header claims another size, with a right checksum.
-std::vector<std::byte> pngOfClaimedSize(std::uint32_t width, std::uint32_t height);
+// A PNG file whose header states this size instead of the real one, with a valid checksum.
+std::vector<std::byte> pngWithStatedSize(std::uint32_t width, std::uint32_t height);
 
-// Exit status, nothing on standard output, and exactly one line "quintet: …" on standard error that
-// contains each of `parts`.
+// Expects this exit status, no standard output, and exactly one line "quintet: …" on standard error that contains each
+// of `parts`.
 void expectError(const RunResult& result, int status, const std::vector<std::string>& parts);
 
-// A folder with scene.gltf in it. Small and quick arguments for `render` come from `quick`.
+// A folder that contains scene.gltf.
 class CliTest : public ::testing::Test {
  protected:
   CliTest() { write(folder_ / "scene.gltf", quadScene().dump()); }
@@ -53,7 +53,8 @@ class CliTest : public ::testing::Test {
     options.folder = folder_.path();
     return run(arguments, options);
   }
-  // render scene.gltf with the program `normals`, 32x24, 1 sample, quietly; later options win.
+  // The arguments of a short render of scene.gltf: program `normals`, 32x24 pixels, 1 sample, quiet. `more` replaces size
+  // and limits.
   static std::vector<std::string> quick(const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"render", "scene.gltf", "--program", "normals", "--quiet"};
     const auto has = [&more](const char* name) { return std::find(more.begin(), more.end(), name) != more.end(); };
@@ -62,11 +63,11 @@ class CliTest : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
-  io::Image picture(const std::string& name) const;
-  std::vector<std::string> fileNames() const;  // sorted, hidden ones too
-  // A value of --time for which the rendering of this checkpoint gets one more batch; 0 where there is none. The file then
-  // says that the last batch took no time, so that another one fits.
-  std::string timeForABatch(const std::string& checkpoint) const;
+  io::Image readImage(const std::string& name) const;
+  std::vector<std::string> fileNames() const;  // sorted, with hidden files
+  // A value of --time with which this checkpoint is continued by exactly one batch; "0" if it does not exist. Changes the
+  // checkpoint: its last batch took no time, so that another batch fits.
+  std::string timeForOneBatch(const std::string& checkpoint) const;
 
   TempFolder folder_;
 };

@@ -1,4 +1,4 @@
-// `run` with programs that draw frame after frame: how many, which are written, under which names.
+// `run` with programs that render frame by frame: number of frames, written frames, file names.
 #include <csignal>
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// Red: this frame; green: the mean of 16 · frameID so far, by the previous pixel; blue: the number of frames.
+// Red: the current frame. Green: mean of 16 · frameID, accumulated with gsnGetPreviousPixel. Blue: number of frames.
 constexpr const char* kProgram = R"(
 void main() { /**** RAY GENERATION SHADER ****/
   float sum = gsnGetPreviousPixel().g * 255.0 * float(frameID) + 16.0 * float(frameID);
@@ -24,37 +24,37 @@ void main() { /**** RAY GENERATION SHADER ****/
 class Frames : public CliTest {
  protected:
   Frames() { write(folder_ / "count.rt.glsl", kProgram); }
-  RunResult count(const std::vector<std::string>& more) {
+  RunResult runCount(const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"run", "count.rt.glsl", "--size", "8x8"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return quintet(arguments);
   }
   std::vector<int> pixel(const std::string& file) const {
-    const auto bytes = picture(file).pixel<std::uint8_t>(3, 5);
+    const auto bytes = readImage(file).pixel<std::uint8_t>(3, 5);
     return {bytes[0], bytes[1], bytes[2]};
   }
 };
 
 TEST_F(Frames, OneByDefault) {
-  const RunResult result = count({});
+  const RunResult result = runCount({});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("count.png: 8x8, 1 frame, "));
   EXPECT_THAT(pixel("count.png"), ElementsAre(0, 0, 1));
 }
 
-TEST_F(Frames, TheLastOneIsWritten) {
-  const RunResult result = count({"--frames", "5"});
+TEST_F(Frames, WritesTheLastFrame) {
+  const RunResult result = runCount({"--frames", "5"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("count.png: 8x8, 5 frames, "));
   EXPECT_THAT(pixel("count.png"), ElementsAre(64, 32, 5));
   EXPECT_EQ(fileNames(), (std::vector<std::string>{"count.png", "count.rt.glsl", "scene.gltf"}));
-  ASSERT_EQ(count({"--spp", "3", "-q"}).status, 0);  // the same as --frames
+  ASSERT_EQ(runCount({"--spp", "3", "-q"}).status, 0);  // as --frames
   EXPECT_THAT(pixel("count.png"), ElementsAre(32, 16, 3));
 }
 
-TEST_F(Frames, EachIsWritten) {
-  ASSERT_EQ(count({"--frames", "3", "-o", "a_%02d.png", "-q"}).status, 0);
-  ASSERT_EQ(count({"--frames", "2", "--all-frames", "-o", "b.png", "-q"}).status, 0);
+TEST_F(Frames, WritesAllFrames) {
+  ASSERT_EQ(runCount({"--frames", "3", "-o", "a_%02d.png", "-q"}).status, 0);
+  ASSERT_EQ(runCount({"--frames", "2", "--all-frames", "-o", "b.png", "-q"}).status, 0);
   EXPECT_EQ(fileNames(), (std::vector<std::string>{"a_00.png", "a_01.png", "a_02.png", "b.0000.png", "b.0001.png",
                                                    "count.rt.glsl", "scene.gltf"}));
   EXPECT_THAT(pixel("a_00.png"), ElementsAre(0, 0, 3));
@@ -64,32 +64,31 @@ TEST_F(Frames, EachIsWritten) {
   EXPECT_NE(std::ranges::find(data, std::pair<std::string, std::string>("Frame", "1")), data.end());
 }
 
-TEST_F(Frames, RenderDrawsSppOfThem) {
+TEST_F(Frames, RenderCommandRendersSppFrames) {
   const RunResult result =
       quintet({"render", "scene.gltf", "--program", "count.rt.glsl", "--spp", "5", "--size", "8x8", "-q"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(pixel("scene.png"), ElementsAre(64, 32, 5));
 }
 
-TEST_F(Frames, UntilTheTimeIsOver) {
-  const RunResult result = count({"--time", "0.2", "-q", "--json"});
+TEST_F(Frames, StopsAtTheTimeLimit) {
+  const RunResult result = runCount({"--time", "0.2", "-q", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_GE(nlohmann::json::parse(result.out)["samples"], 2);
-  EXPECT_EQ(pixel("count.png")[2], 0);  // no end known
+  EXPECT_EQ(pixel("count.png")[2], 0);  // the number of frames is unknown
 }
 
-TEST_F(Frames, InterruptedWritesWhatThereIs) {
+TEST_F(Frames, InterruptWritesTheCurrentFrame) {
   TerminalRun process({"run", "count.rt.glsl", "--size", "64x64", "--time", "100000"}, folder_.path());
   ASSERT_TRUE(process.waitFor(" left"));
   process.signal(SIGINT);
   const RunResult result = process.finish();
   EXPECT_EQ(result.status, 130) << result.err;
   EXPECT_THAT(result.err, HasSubstr("interrupted"));
-  EXPECT_EQ(picture("count.png").width, 64u);
+  EXPECT_EQ(readImage("count.png").width, 64u);
 }
 
-// An edit begins the animation anew.
-TEST_F(Frames, WatchRestarts) {
+TEST_F(Frames, WatchRestartsTheAnimation) {
   TerminalRun process({"run", "count.rt.glsl", "--size", "8x8", "--frames", "4", "--watch"}, folder_.path());
   ASSERT_TRUE(process.waitForNext("8x8, 4 frames"));
   EXPECT_THAT(pixel("count.png"), ElementsAre(48, 24, 4));
@@ -99,15 +98,15 @@ TEST_F(Frames, WatchRestarts) {
   ASSERT_TRUE(process.waitForNext("count.rt.glsl saved: "));
   ASSERT_TRUE(process.waitForNext("8x8, 4 frames"));
   EXPECT_THAT(pixel("count.png"), ElementsAre(48, 24, 200));
-  text.replace(text.find("200.0"), 5, "nothing");
+  text.replace(text.find("200.0"), 5, "undefined");
   write(folder_ / "count.rt.glsl", text);
   ASSERT_TRUE(process.waitForNext("count.rt.glsl:4:"));
   process.signal(SIGINT);
   EXPECT_EQ(process.finish().status, 0);
 }
 
-// An animation of a film program: a quad that moves past the camera.
-TEST_F(Frames, MovingScenes) {
+// A program without accumulation of its own, and a quad that moves out of the image.
+TEST_F(Frames, AnimatedScenes) {
   write(folder_ / "moving.scene.toml",
         "[[file]]\nname = \"quad\"\npath = \"scene.gltf\"\n"
         "[[instance]]\nof = \"quad\"\n"
@@ -120,20 +119,29 @@ TEST_F(Frames, MovingScenes) {
   last.insert(last.end(), {"--frames", "3", "-o", "last.exr"});
   const RunResult result = quintet(all);
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NEAR(picture("m.0.exr").pixel<float>(8, 6)[2], 1.0f, 0.01f);  // the quad faces the camera
-  EXPECT_NEAR(picture("m.2.exr").pixel<float>(8, 6)[2], 0.0f, 0.01f);  // gone
-  EXPECT_NE(picture("m.1.exr").data, picture("m.0.exr").data);
+  EXPECT_NEAR(readImage("m.0.exr").pixel<float>(8, 6)[2], 1.0f, 0.01f);  // normal of the quad, which faces the camera
+  EXPECT_NEAR(readImage("m.2.exr").pixel<float>(8, 6)[2], 0.0f, 0.01f);  // outside of the image
+  EXPECT_NE(readImage("m.1.exr").data, readImage("m.0.exr").data);
   ASSERT_EQ(quintet(last).status, 0);
-  EXPECT_EQ(picture("last.exr").data, picture("m.2.exr").data);
+  EXPECT_EQ(readImage("last.exr").data, readImage("m.2.exr").data);
 }
 
-TEST_F(Frames, WhatMakesNoSense) {
-  expectError(count({"--frames", "0"}), 2, {"--frames"});
-  expectError(count({"--frames", "1.5"}), 2, {"--frames", "whole"});
-  expectError(count({"-o", "%d_%d.png", "--frames", "2"}), 2, {"%d_%d.png"});
-  expectError(count({"--all-frames", "-o", "-"}), 2, {"--all-frames"});
+// A scene without animation has one frame, whose name gets no number.
+TEST_F(Frames, AllFramesOfAStillScene) {
+  const std::vector<std::string> arguments{"run", "normals", "scene.gltf", "--size", "8x8",   "--spp",       "1",
+                                           "-q",  "--env",   "none",       "-o",     "a.png", "--all-frames"};
+  const RunResult result = quintet(arguments);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"a.png", "count.rt.glsl", "scene.gltf"}));
+}
+
+TEST_F(Frames, InvalidOptions) {
+  expectError(runCount({"--frames", "0"}), 2, {"--frames"});
+  expectError(runCount({"--frames", "1.5"}), 2, {"--frames", "1.5"});
+  expectError(runCount({"-o", "%d_%d.png", "--frames", "2"}), 2, {"%d_%d.png"});
+  expectError(runCount({"--all-frames", "-o", "-"}), 2, {"standard output"});
   expectError(quintet({"run", "normals", "scene.gltf", "--frames", "2", "--size", "8x8", "-q", "--env", "none"}), 2,
-              {"--frames", "same"});
+              {"frames"});
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Scenes and pictures that are missing or broken: status 1, one line with the file and the place in it.
+// Missing and broken scenes and images: status 1 and one line with the file and the location in it.
 #include "fixtures.h"
 #include "io/codec.h"
 
@@ -7,103 +7,104 @@ namespace {
 
 class Input : public CliTest {
  protected:
-  // What `info` and `render` both say.
-  void expectRefused(const std::string& file, const std::vector<std::string>& parts) {
+  // Expects the same error from `info` and `render`.
+  void expectRejected(const std::string& file, const std::vector<std::string>& parts) {
     expectError(quintet({"info", file}), 1, parts);
     expectError(quintet({"render", file, "--program", "normals", "--size", "8x8", "--spp", "1", "-q", "-o", "out.png"}),
                 1, parts);
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
   }
-  void expectSceneRefused(const nlohmann::json& json, const std::vector<std::string>& parts) {
+  void expectSceneRejected(const nlohmann::json& json, const std::vector<std::string>& parts) {
     write(folder_ / "bad.gltf", json.dump());
-    expectRefused("bad.gltf", parts);
+    expectRejected("bad.gltf", parts);
   }
 };
 
-TEST_F(Input, MissingFile) { expectRefused("nothing.glb", {"nothing.glb", "No such file"}); }
+TEST_F(Input, MissingFile) { expectRejected("missing.glb", {"missing.glb", "No such file"}); }
 
 TEST_F(Input, Folder) {
   std::filesystem::create_directory(folder_ / "folder.glb");
-  expectRefused("folder.glb", {"folder.glb", "directory"});
+  expectRejected("folder.glb", {"folder.glb", "directory"});
 }
 
-TEST_F(Input, Empty) {
+TEST_F(Input, EmptyFile) {
   write(folder_ / "empty.glb", "");
-  expectRefused("empty.glb", {"empty.glb"});
+  expectRejected("empty.glb", {"empty.glb"});
 }
 
 TEST_F(Input, BrokenJson) {
   write(folder_ / "bad.gltf", "{\n  \"asset\": {\"version\": \"2.0\"},\n  \"nodes\": [}\n");
-  expectRefused("bad.gltf", {"bad.gltf", "line 3"});
+  expectRejected("bad.gltf", {"bad.gltf", "line 3"});
 }
 
 TEST_F(Input, BrokenSceneFile) {
   write(folder_ / "bad.scene.toml", "[[material]]\nname = 'm'\nrougness = 1\n");
-  expectRefused("bad.scene.toml", {"bad.scene.toml: line 3", "did you mean 'roughness'"});
+  expectRejected("bad.scene.toml", {"bad.scene.toml: line 3", "did you mean 'roughness'"});
 }
 
-TEST_F(Input, NeitherSceneNorPicture) {
+TEST_F(Input, NeitherSceneNorImage) {
   write(folder_ / "text.txt", "some text");
   expectError(quintet({"info", "text.txt"}), 1, {"text.txt"});
 }
 
-TEST_F(Input, IndexThatDoesNotExist) {
+TEST_F(Input, IndexOutOfRange) {
   nlohmann::json json = quadScene();
   json["nodes"][0]["mesh"] = 5;
-  expectSceneRefused(json, {"bad.gltf: /nodes/0/mesh", "5"});
+  expectSceneRejected(json, {"bad.gltf: /nodes/0/mesh", "5"});
   json = quadScene();
   json["accessors"][0]["bufferView"] = 17;
-  expectSceneRefused(json, {"bad.gltf: /accessors/0/bufferView", "17"});
+  expectSceneRejected(json, {"bad.gltf: /accessors/0/bufferView", "17"});
 }
 
-TEST_F(Input, AccessorBeyondItsBuffer) {
+TEST_F(Input, AccessorPastTheEndOfItsBuffer) {
   nlohmann::json json = quadScene();
   json["accessors"][0]["count"] = 5;
-  expectSceneRefused(json, {"bad.gltf: /accessors/0", "bytes"});
+  expectSceneRejected(json, {"bad.gltf: /accessors/0", "bytes"});
   json = quadScene();
   json["bufferViews"][2]["byteLength"] = 4000;
-  expectSceneRefused(json, {"bad.gltf: /bufferViews/2"});
+  expectSceneRejected(json, {"bad.gltf: /bufferViews/2"});
 }
 
 TEST_F(Input, MissingBuffer) {
   nlohmann::json json = quadScene();
   json["buffers"][0]["uri"] = "data.bin";
-  expectSceneRefused(json, {"data.bin"});
+  expectSceneRejected(json, {"data.bin"});
 }
 
-TEST_F(Input, CutPngInsideGlb) {
+TEST_F(Input, TruncatedPngInGlb) {
   std::vector<std::byte> png = io::encodePng(testImage(64, 64));
   png.resize(png.size() / 2);
   write(folder_ / "bad.glb", texturedGlb(png, "image/png"));
-  expectRefused("bad.glb", {"bad.glb: /images/0", "PNG"});
+  expectRejected("bad.glb", {"bad.glb: /images/0", "PNG"});
 }
 
-TEST_F(Input, CutJpegInsideGlb) {
+TEST_F(Input, TruncatedJpegInGlb) {
   std::vector<std::byte> jpeg = encodeJpeg(testImage(64, 64));
   write(folder_ / "good.glb", texturedGlb(jpeg, "image/jpeg"));
   EXPECT_EQ(quintet({"info", "good.glb"}).status, 0);
   jpeg.resize(jpeg.size() * 3 / 4);
   write(folder_ / "bad.glb", texturedGlb(jpeg, "image/jpeg"));
-  expectRefused("bad.glb", {"bad.glb: /images/0", "JPEG"});
+  expectRejected("bad.glb", {"bad.glb: /images/0", "JPEG"});
 }
 
-TEST_F(Input, AbsurdImageSize) {
-  write(folder_ / "bad.glb", texturedGlb(pngOfClaimedSize(60000, 60000), "image/png"));
-  expectRefused("bad.glb", {"bad.glb: /images/0", "60000"});
-  write(folder_ / "bad.png", pngOfClaimedSize(2000000000, 2000000000));
+TEST_F(Input, ExcessiveImageSize) {
+  write(folder_ / "bad.glb", texturedGlb(pngWithStatedSize(60000, 60000), "image/png"));
+  expectRejected("bad.glb", {"bad.glb: /images/0", "60000"});
+  write(folder_ / "bad.png", pngWithStatedSize(2000000000, 2000000000));
   expectError(quintet({"info", "bad.png"}), 1, {"bad.png"});
   expectError(quintet({"compare", "bad.png", "bad.png"}), 1, {"bad.png"});
 }
 
-TEST_F(Input, EnvironmentThatIsNoPicture) {
+TEST_F(Input, InvalidEnvironment) {
   expectError(quintet(quick({"--env", "missing.hdr", "-o", "out.png"})), 1, {"missing.hdr", "No such file"});
   write(folder_ / "sky.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n");
   expectError(quintet(quick({"--env", "sky.hdr", "-o", "out.png"})), 1, {"sky.hdr"});
-  expectError(quintet(quick({"--env", "1,-1,1", "-o", "out.png"})), 2, {"negative"});
+  expectError(quintet(quick({"--env", "1,-1,1", "-o", "out.png"})), 2, {"environment", "1,-1,1"});
+  expectError(quintet(quick({"--env", "1,x,1", "-o", "out.png"})), 2, {"environment", "1,x,1"});
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
 }
 
-TEST_F(Input, ProgramThatDoesNotCompile) {
+TEST_F(Input, ProgramWithAShaderError) {
   std::filesystem::create_directory(folder_ / "mine");
   write(folder_ / "mine" / "program.toml", R"([program]
 ray_generation = "mine.rgen"
@@ -128,7 +129,7 @@ name = "color"
               {"program.toml", "line 1"});
 }
 
-TEST_F(Input, ControlCharactersOfAFileStayInIt) {
+TEST_F(Input, ControlCharactersOfAFileAreNotPrinted) {
   nlohmann::json json = quadScene();
   json["extensionsRequired"] = {"EXT_\x1b[31m\nred"};
   json["extensionsUsed"] = {"EXT_\x1b[31m\nred"};

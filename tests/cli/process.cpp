@@ -22,7 +22,7 @@ struct Pipe {
   int write = -1;
   Pipe() {
     std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("cannot create a pipe");
     read = ends[0];
     write = ends[1];
   }
@@ -38,7 +38,7 @@ struct Pipe {
   }
 };
 
-// Both streams to their ends, whichever comes first.
+// Reads both streams to their ends, in the order in which data arrives.
 void readBoth(int out, std::string& outText, int err, std::string& errText) {
   std::array<pollfd, 2> waiting{{{out, POLLIN, 0}, {err, POLLIN, 0}}};
   const std::array<std::string*, 2> texts{&outText, &errText};
@@ -57,6 +57,8 @@ void readBoth(int out, std::string& outText, int err, std::string& errText) {
   }
 }
 
+constexpr int kSilence = 120'000;  // milliseconds without output after which a test gives up
+
 std::vector<std::string> environmentWith(const std::vector<std::pair<std::string, std::string>>& added) {
   std::vector<std::string> result;
   for (char** entry = environ; *entry; ++entry) result.emplace_back(*entry);
@@ -74,7 +76,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return result;
 }
 
-// posix_spawn cannot change the folder portably: a shell does, and is replaced by the binary.
+// posix_spawn cannot change the working directory portably. A shell does it and then executes the binary.
 std::vector<std::string> commandOf(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                                    const std::string& shell) {
   const std::string change = folder.empty() ? "" : "cd \"$0\" && ";
@@ -126,12 +128,13 @@ RunResult run(const std::vector<std::string>& arguments, const RunOptions& optio
   return result;
 }
 
-TerminalRun::TerminalRun(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
+TerminalRun::TerminalRun(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                         unsigned short columns) {
   int child = -1;
   winsize size{};
-  size.ws_col = 100;
+  size.ws_col = columns;
   size.ws_row = 24;
-  if (::openpty(&terminal_, &child, nullptr, nullptr, &size) != 0) throw std::runtime_error("no terminal");
+  if (::openpty(&terminal_, &child, nullptr, nullptr, &size) != 0) throw std::runtime_error("cannot open a terminal");
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -151,25 +154,29 @@ TerminalRun::~TerminalRun() {
   ::close(terminal_);
 }
 
-bool TerminalRun::readSome() {
+bool TerminalRun::readSome(int timeoutMilliseconds) {
+  pollfd waiting{terminal_, POLLIN, 0};
+  const int ready = ::poll(&waiting, 1, timeoutMilliseconds);
+  if (ready < 0 && errno == EINTR) return true;
+  if (ready <= 0) return false;
   std::array<char, 4096> buffer{};
   const ssize_t got = ::read(terminal_, buffer.data(), buffer.size());
   if (got < 0 && errno == EINTR) return true;
-  if (got <= 0) return false;  // EIO: nobody has the terminal open any more
+  if (got <= 0) return false;  // EIO: no process has the terminal open
   text_.append(buffer.data(), static_cast<std::size_t>(got));
   return true;
 }
 
 bool TerminalRun::waitFor(const std::string& text) {
   while (text_.find(text) == std::string::npos)
-    if (!readSome()) return false;
+    if (!readSome(kSilence)) return false;
   return true;
 }
 
 bool TerminalRun::waitForNext(const std::string& text) {
   std::size_t found = text_.find(text, seen_);
   for (; found == std::string::npos; found = text_.find(text, seen_))
-    if (!readSome()) return false;
+    if (!readSome(kSilence)) return false;
   seen_ = found + text.size();
   return true;
 }
@@ -177,7 +184,7 @@ bool TerminalRun::waitForNext(const std::string& text) {
 void TerminalRun::signal(int number) { ::kill(process_, number); }
 
 RunResult TerminalRun::finish() {
-  while (readSome()) {
+  while (readSome(-1)) {
   }
   const int status = waitStatus(process_);
   process_ = -1;

@@ -1,4 +1,4 @@
-// Runs the quintet binary as a process of its own and keeps what it says.
+// Runs the quintet binary as a separate process and returns its output.
 #ifndef QUINTET_TESTS_CLI_PROCESS_H
 #define QUINTET_TESTS_CLI_PROCESS_H
 
@@ -18,31 +18,32 @@ struct RunResult {
 };
 
 struct RunOptions {
-  std::filesystem::path folder;                                  // to run in
-  std::vector<std::pair<std::string, std::string>> environment;  // added
-  std::filesystem::path out;  // standard output goes to this file instead of RunResult
-  std::string shell;          // a line of sh before the binary takes over: "exec >&-", "ulimit -f 0"
+  std::filesystem::path folder;                                  // working directory
+  std::vector<std::pair<std::string, std::string>> environment;  // additional variables
+  std::filesystem::path out;                                     // file for standard output, instead of RunResult::out
+  std::string shell;  // shell command that runs before the binary: "exec >&-", "ulimit -f 0"
 };
 
 RunResult run(const std::vector<std::string>& arguments, const RunOptions& options = {});
 
-// A process whose standard error is a terminal of 100 columns.
+// A process whose standard error is a terminal.
 class TerminalRun {
  public:
-  TerminalRun(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
-  ~TerminalRun();  // ends the process if it still runs
+  TerminalRun(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+              unsigned short columns = 100);
+  ~TerminalRun();  // kills the process if it still runs
   TerminalRun(const TerminalRun&) = delete;
   TerminalRun& operator=(const TerminalRun&) = delete;
 
-  // Reads until `text` has been written; false if the process ended before.
+  // Reads until `text` appears. False: the process ended before, or wrote nothing for two minutes.
   bool waitFor(const std::string& text);
-  // The same, but only in what comes after the last match of this function.
+  // The same, in the output after the last match of this function.
   bool waitForNext(const std::string& text);
   void signal(int number);
-  RunResult finish();  // waits for the end; `err` holds everything written to the terminal
+  RunResult finish();  // waits for the end; `err` is the output to the terminal
 
  private:
-  bool readSome();  // false: the other side is closed
+  bool readSome(int timeoutMilliseconds);  // -1: no timeout. False: the terminal is closed, or the time is over
   pid_t process_ = -1;
   int terminal_ = -1;
   std::string text_;

@@ -1,4 +1,4 @@
-// What `render` writes: pixels, formats, metadata, JSON, notes.
+// Output of `render`: pixels, file formats, metadata, JSON and notes.
 #include <gmock/gmock.h>
 
 #include "base/file.h"
@@ -17,45 +17,45 @@ class Render : public CliTest {
       if (key == keyword) return text;
     return "(none)";
   }
-  void succeed(const std::vector<std::string>& arguments) {
+  void runOk(const std::vector<std::string>& arguments) {
     const RunResult result = quintet(arguments);
     ASSERT_EQ(result.status, 0) << result.err;
   }
 };
 
-TEST_F(Render, DefaultOutputIsTheScenesName) {
-  succeed(quick({}));
+TEST_F(Render, NamesTheOutputAfterTheScene) {
+  runOk(quick({}));
   EXPECT_EQ(fileNames(), (std::vector<std::string>{"scene.gltf", "scene.png"}));
-  const io::Image image = picture("scene.png");
+  const io::Image image = readImage("scene.png");
   EXPECT_EQ(image.width, 32u);
   EXPECT_EQ(image.height, 24u);
   EXPECT_EQ(image.channels, 3u);
 }
 
-TEST_F(Render, SizeFollowsTheCamera) {
-  succeed(quick({"--size", "40", "-o", "front.png"}));
-  EXPECT_EQ(picture("front.png").height, 25u);  // aspect 1.6
-  succeed(quick({"--size", "40", "--camera", "side", "-o", "side.png"}));
-  EXPECT_EQ(picture("side.png").height, 23u);  // none: 16:9
+TEST_F(Render, DerivesTheHeightFromTheCamera) {
+  runOk(quick({"--size", "40", "-o", "front.png"}));
+  EXPECT_EQ(readImage("front.png").height, 25u);  // aspect ratio 1.6
+  runOk(quick({"--size", "40", "--camera", "side", "-o", "side.png"}));
+  EXPECT_EQ(readImage("side.png").height, 23u);  // the camera has no aspect ratio: 16:9
 }
 
-TEST_F(Render, SameCommandSamePixels) {
+TEST_F(Render, IsDeterministic) {
   const std::vector<std::string> arguments{"render", "scene.gltf", "--size",    "24x16", "--spp",
                                            "5",      "-q",         "--bounces", "2"};
-  auto first = arguments, second = arguments, other = arguments;
+  auto first = arguments, second = arguments, otherSeed = arguments;
   first.insert(first.end(), {"-o", "first.png"});
   second.insert(second.end(), {"-o", "second.png"});
-  other.insert(other.end(), {"-o", "other.png", "--seed", "1"});
-  succeed(first), succeed(second), succeed(other);
-  EXPECT_EQ(picture("first.png").data, picture("second.png").data);
-  EXPECT_NE(picture("first.png").data, picture("other.png").data);
+  otherSeed.insert(otherSeed.end(), {"-o", "other.png", "--seed", "1"});
+  runOk(first), runOk(second), runOk(otherSeed);
+  EXPECT_EQ(readImage("first.png").data, readImage("second.png").data);
+  EXPECT_NE(readImage("first.png").data, readImage("other.png").data);
 }
 
-TEST_F(Render, RegionIsTheCropOfTheWhole) {
-  succeed(quick({"-o", "whole.png", "--spp", "3"}));
-  succeed(quick({"-o", "part.png", "--spp", "3", "--region", "5,7,19,11"}));
-  const io::Image whole = picture("whole.png");
-  const io::Image part = picture("part.png");
+TEST_F(Render, RegionEqualsTheCroppedImage) {
+  runOk(quick({"-o", "whole.png", "--spp", "3"}));
+  runOk(quick({"-o", "part.png", "--spp", "3", "--region", "5,7,19,11"}));
+  const io::Image whole = readImage("whole.png");
+  const io::Image part = readImage("part.png");
   ASSERT_EQ(part.width, 19u);
   ASSERT_EQ(part.height, 11u);
   for (std::uint32_t y = 0; y < part.height; ++y)
@@ -67,7 +67,7 @@ TEST_F(Render, RegionIsTheCropOfTheWhole) {
   EXPECT_EQ(metadata("part.png", "Region"), "5,7,19,11");
 }
 
-TEST_F(Render, StandardOutputGetsPng) {
+TEST_F(Render, WritesPngToStandardOutput) {
   const RunResult result = quintet(quick({"-o", "-"}));
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");
@@ -76,37 +76,38 @@ TEST_F(Render, StandardOutputGetsPng) {
   EXPECT_EQ(fileNames(), std::vector<std::string>{"scene.gltf"});
 }
 
-TEST_F(Render, ExrAndHdrHoldTheSameRadiance) {
-  succeed(quick({"-o", "out.exr"}));
-  succeed(quick({"-o", "out.HDR"}));
-  const io::Image exr = picture("out.exr");
-  const io::Image hdr = picture("out.HDR");
+TEST_F(Render, ExrAndHdrContainTheSameRadiance) {
+  runOk(quick({"-o", "out.exr"}));
+  runOk(quick({"-o", "out.HDR"}));
+  const io::Image exr = readImage("out.exr");
+  const io::Image hdr = readImage("out.HDR");
   ASSERT_EQ(exr.sampleCount(), hdr.sampleCount());
   for (std::size_t i = 0; i < exr.sampleCount(); ++i)
     EXPECT_NEAR(exr.samples<float>()[i], hdr.samples<float>()[i], 0.01f);
   EXPECT_EQ(metadata("out.exr", "Samples"), "1");
 }
 
-TEST_F(Render, TransparentHasAlpha) {
-  succeed(quick({"-o", "out.png", "--transparent"}));
-  const io::Image image = picture("out.png");
+TEST_F(Render, TransparentImagesHaveAlpha) {
+  runOk(quick({"-o", "out.png", "--transparent"}));
+  const io::Image image = readImage("out.png");
   ASSERT_EQ(image.channels, 4u);
   EXPECT_EQ(image.pixel<std::uint8_t>(0, 0)[3], 0);
   EXPECT_EQ(image.pixel<std::uint8_t>(16, 12)[3], 255);
 }
 
-TEST_F(Render, ExposureAndToneMapChangeThePicture) {
-  succeed(quick({"-o", "plain.png", "--tonemap", "linear"}));
-  succeed(quick({"-o", "dark.png", "--tonemap", "linear", "--exposure", "-2"}));
-  succeed(quick({"-o", "aces.png", "--tonemap", "aces"}));
-  EXPECT_LT(picture("dark.png").pixel<std::uint8_t>(16, 12)[0], picture("plain.png").pixel<std::uint8_t>(16, 12)[0]);
-  EXPECT_NE(picture("aces.png").data, picture("plain.png").data);
+TEST_F(Render, ExposureAndToneMapChangeTheImage) {
+  runOk(quick({"-o", "plain.png", "--tonemap", "linear"}));
+  runOk(quick({"-o", "dark.png", "--tonemap", "linear", "--exposure", "-2"}));
+  runOk(quick({"-o", "aces.png", "--tonemap", "aces"}));
+  EXPECT_LT(readImage("dark.png").pixel<std::uint8_t>(16, 12)[0],
+            readImage("plain.png").pixel<std::uint8_t>(16, 12)[0]);
+  EXPECT_NE(readImage("aces.png").data, readImage("plain.png").data);
   EXPECT_EQ(metadata("dark.png", "Exposure"), "-2");
   EXPECT_EQ(metadata("aces.png", "ToneMap"), "aces");
 }
 
-TEST_F(Render, MetadataSaysHowItWasMade) {
-  succeed(quick({"-o", "out.png", "--seed", "7", "--spp", "6"}));
+TEST_F(Render, MetadataRecordsTheCommandAndSettings) {
+  runOk(quick({"-o", "out.png", "--seed", "7", "--spp", "6"}));
   EXPECT_THAT(metadata("out.png", "Software"), HasSubstr("quintet 0."));
   EXPECT_EQ(metadata("out.png", "Command"),
             "quintet render scene.gltf --program normals --quiet --size 32x24 -o out.png --seed 7 --spp 6");
@@ -119,7 +120,7 @@ TEST_F(Render, MetadataSaysHowItWasMade) {
     EXPECT_NE(metadata("out.png", keyword), "(none)") << keyword;
 }
 
-TEST_F(Render, JsonSaysTheSame) {
+TEST_F(Render, JsonReportsTheRender) {
   const RunResult result = quintet(quick({"-o", "out.png", "--json", "--spp", "2"}));
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
@@ -135,7 +136,7 @@ TEST_F(Render, JsonSaysTheSame) {
   EXPECT_EQ(json["interrupted"], false);
 }
 
-TEST_F(Render, JsonSaysWhatWasHeldInMemory) {
+TEST_F(Render, JsonReportsMemory) {
   const RunResult result = quintet(quick({"-o", "out.png", "--json"}));
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
@@ -147,9 +148,9 @@ TEST_F(Render, JsonSaysWhatWasHeldInMemory) {
   const std::uint64_t needed = bytes("geometryBytes") + bytes("textureBytes") + bytes("accelerationBytes");
   EXPECT_GE(bytes("peakDeviceBytes"), needed + json["bytes"]["film"].get<std::uint64_t>());
   EXPECT_GT(bytes("peakHostBytes"), 0u);
-  std::uint64_t parts = 0;
-  for (const auto& [purpose, size] : json["devicePeak"].items()) parts += size.get<std::uint64_t>();
-  EXPECT_EQ(parts, bytes("peakDeviceBytes"));
+  std::uint64_t sum = 0;
+  for (const auto& [purpose, size] : json["devicePeak"].items()) sum += size.get<std::uint64_t>();
+  EXPECT_EQ(sum, bytes("peakDeviceBytes"));
   EXPECT_EQ(json["devicePeak"].size(), 8u);
   const std::uint64_t peak = memory["deviceIsHost"].get<bool>()
                                  ? bytes("peakHostBytes")
@@ -164,8 +165,8 @@ TEST_F(Render, JsonSaysWhatWasHeldInMemory) {
     EXPECT_GE(json["stages"][stage].get<double>(), 0.0) << stage;
 }
 
-// What the device holds beyond scene and film: staging of a download, tables, room in blocks.
-TEST_F(Render, LittleIsHeldBesideSceneAndFilm) {
+// Besides scene and film the device has staging buffers, tables and free space in memory blocks.
+TEST_F(Render, NeedsLittleMemoryBesidesSceneAndFilm) {
   const RunResult result = quintet({"render", "scene.gltf", "--program", "normals", "--size", "640x360", "--spp", "1",
                                     "-q", "--json", "-o", "out.png"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -178,20 +179,20 @@ TEST_F(Render, LittleIsHeldBesideSceneAndFilm) {
   EXPECT_LE(bytes("peakDeviceBytes"), needed + film + (std::uint64_t{20} << 20));
 }
 
-TEST_F(Render, TheDefaultEnvironmentIsSaid) {
+TEST_F(Render, NotesTheDefaultEnvironment) {
   const std::vector<std::string> arguments{"render", "scene.gltf", "--program", "normals",
                                            "--size", "8x8",        "--spp",     "1"};
-  const RunResult told = quintet(arguments);
-  EXPECT_THAT(told.err, HasSubstr("default environment"));
-  EXPECT_THAT(told.err, HasSubstr("scene.png: 8x8, 1 samples"));
-  EXPECT_EQ(told.err.find('\x1b'), std::string::npos);
+  const RunResult result = quintet(arguments);
+  EXPECT_THAT(result.err, HasSubstr("default environment"));
+  EXPECT_THAT(result.err, HasSubstr("scene.png: 8x8, 1 sample"));
+  EXPECT_EQ(result.err.find('\x1b'), std::string::npos);
   EXPECT_EQ(quintet(quick({})).err, "");
   auto none = arguments;
   none.insert(none.end(), {"--env", "none"});
   EXPECT_EQ(quintet(none).err.find("environment"), std::string::npos);
 }
 
-TEST_F(Render, TimeEndsTheRendering) {
+TEST_F(Render, StopsAtTheTimeLimit) {
   const RunResult result = quintet(quick({"-o", "out.png", "--json", "--time", "0.5"}));
   ASSERT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
@@ -202,19 +203,19 @@ TEST_F(Render, TimeEndsTheRendering) {
   EXPECT_EQ(both["samples"], 2);
 }
 
-TEST_F(Render, ViewFromTheCommandLine) {
-  succeed(quick({"-o", "file.png"}));
-  succeed(quick({"-o", "same.png", "--look-from", "0,0,4", "--look-at", "0,0,0", "--fov", "45.8366236"}));
-  succeed(quick({"-o", "away.png", "--look-from=0,0,4", "--look-at", "0,0,8"}));
+TEST_F(Render, UsesTheCameraOfTheCommandLine) {
+  runOk(quick({"-o", "file.png"}));
+  runOk(quick({"-o", "same.png", "--look-from", "0,0,4", "--look-at", "0,0,0", "--fov", "45.8366236"}));
+  runOk(quick({"-o", "away.png", "--look-from=0,0,4", "--look-at", "0,0,8"}));
   const auto json = nlohmann::json::parse(quintet({"compare", "file.png", "same.png", "--json"}).out);
   EXPECT_LT(json["mae8"], 0.5);
-  EXPECT_EQ(picture("away.png").pixel<std::uint8_t>(16, 12)[0], 0);
+  EXPECT_EQ(readImage("away.png").pixel<std::uint8_t>(16, 12)[0], 0);
 }
 
-TEST_F(Render, EnvironmentOfOneColour) {
-  succeed({"render", "scene.gltf", "--size", "8x8", "--spp", "1", "-q", "-o", "sky.exr", "--look-from", "0,0,4",
-           "--look-at", "0,0,8", "--env", "0.25,0.5,1", "--env-intensity", "2"});
-  const io::Image image = picture("sky.exr");
+TEST_F(Render, UsesAConstantEnvironment) {
+  runOk({"render", "scene.gltf", "--size", "8x8", "--spp", "1", "-q", "-o", "sky.exr", "--look-from", "0,0,4",
+         "--look-at", "0,0,8", "--env", "0.25,0.5,1", "--env-intensity", "2"});
+  const io::Image image = readImage("sky.exr");
   EXPECT_NEAR(image.pixel<float>(4, 4)[0], 0.5f, 1e-3f);
   EXPECT_NEAR(image.pixel<float>(4, 4)[2], 2.0f, 1e-2f);
 }

@@ -1,4 +1,4 @@
-// A small program folder: a sky without surfaces, whose colour is one line of sky.rmiss.
+// A small program in a folder: a sky without surfaces, whose color is set by one line of sky.rmiss.
 #ifndef QUINTET_TESTS_CLI_SKY_PROGRAM_H
 #define QUINTET_TESTS_CLI_SKY_PROGRAM_H
 
@@ -6,7 +6,7 @@
 
 namespace quintet::test {
 
-// The miss shader; `line` is its line 6: "payload.color = vec3(0.5);".
+// The miss shader. `line` becomes line 6: "payload.color = vec3(0.5);".
 inline std::string skyMiss(const std::string& line) {
   return "#version 460\n#extension GL_EXT_ray_tracing : require\n#include \"payload.glsl\"\n"
          "layout(location = 0) rayPayloadInEXT Payload payload;\nvoid main() {\n  " +

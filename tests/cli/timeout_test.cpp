@@ -1,4 +1,4 @@
-// A shader that loops for ever ends in one clear line within the stated time.
+// A shader with an infinite loop: one line of error within the time limit.
 #include <chrono>
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// Each turn writes to memory and its end depends on what is in memory: no compiler removes it.
+// The loop depends on memory that it writes, so that no compiler removes it.
 constexpr const char* kEndless = R"(#version 460
 #extension GL_EXT_ray_tracing : require
 #include <quintet/output.glsl>
@@ -32,29 +32,28 @@ class Timeout : public CliTest {
     writeSkyProgram(folder_ / "loop", "payload.color = vec3(0.5);");
     write(folder_ / "loop" / "sky.rgen", kEndless);
   }
-  // The seconds it took.
-  double expectHang(const std::vector<std::string>& arguments) {
+  // Returns the duration of the command in seconds.
+  double expectTimeout(const std::vector<std::string>& arguments) {
     const auto start = std::chrono::steady_clock::now();
     const RunResult result = quintet(arguments);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     EXPECT_EQ(result.status, 1) << result.err;
-    EXPECT_THAT(result.err,
-                HasSubstr("quintet: loop: the launch did not end within 2 s: does a shader loop for ever?"));
-    EXPECT_TRUE(result.err.ends_with(")\n")) << result.err;
+    EXPECT_THAT(result.err, ::testing::ContainsRegex("quintet: loop: .* 2 s.*--timeout"));
+    EXPECT_TRUE(result.err.ends_with('\n')) << result.err;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
     return seconds;
   }
 };
 
-TEST_F(Timeout, RunAndRenderEndInTime) {
-  // The launch's two seconds, and what comes before it: starting a device, compiling, on a busy machine.
-  EXPECT_LT(expectHang({"run", "loop", "--timeout", "2", "--size", "64x64", "-q", "-o", "out.png"}), 20.0);
-  EXPECT_LT(expectHang({"render", "scene.gltf", "--program", "loop", "--timeout", "2", "--size", "64x64", "-q", "-o",
-                        "out.png"}),
+TEST_F(Timeout, EndsRunAndRender) {
+  // Two seconds for the launch; the rest is for device start and compilation on a busy machine.
+  EXPECT_LT(expectTimeout({"run", "loop", "--timeout", "2", "--size", "64x64", "-q", "-o", "out.png"}), 20.0);
+  EXPECT_LT(expectTimeout({"render", "scene.gltf", "--program", "loop", "--timeout", "2", "--size", "64x64", "-q", "-o",
+                           "out.png"}),
             20.0);
 }
 
-TEST_F(Timeout, JsonToo) {
+TEST_F(Timeout, IsADiagnosticInJson) {
   const RunResult result = quintet({"run", "loop", "--timeout", "2", "--size", "8x8", "--json", "-o", "out.png"});
   EXPECT_EQ(result.status, 1);
   const auto array = nlohmann::json::parse(result.out);
@@ -62,17 +61,17 @@ TEST_F(Timeout, JsonToo) {
   EXPECT_EQ(array[0]["file"], "loop/sky.rgen");
 }
 
-TEST_F(Timeout, WatchLeavesWithTheLastGoodPicture) {
+TEST_F(Timeout, EndsWatchAndKeepsTheLastImage) {
   TerminalRun process({"run", "good", "--watch", "--timeout", "2", "--size", "16x16", "--spp", "1", "-o", "out.png"},
                       folder_.path());
   ASSERT_TRUE(process.waitForNext("out.png: 16x16"));
   write(folder_ / "good" / "sky.rgen", kEndless);
-  ASSERT_TRUE(process.waitForNext("did not end within 2 s"));
+  ASSERT_TRUE(process.waitForNext("within 2 s"));
   EXPECT_EQ(process.finish().status, 1);
-  EXPECT_EQ(picture("out.png").width, 16u);
+  EXPECT_EQ(readImage("out.png").width, 16u);
 }
 
-TEST_F(Timeout, LongEnoughIsFine) {
+TEST_F(Timeout, DoesNotAffectShortLaunches) {
   const RunResult result = quintet({"run", "good", "--timeout", "60", "--size", "16x16", "-q", "-o", "out.png"});
   EXPECT_EQ(result.status, 0) << result.err;
 }

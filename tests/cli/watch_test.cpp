@@ -1,4 +1,4 @@
-// `run --watch` as a real process: save, see the new picture, break it, see the diagnostics, mend it.
+// `run --watch` as a process: saved files start a new image, errors print diagnostics, fixed files render again.
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -19,7 +19,7 @@ class Watch : public CliTest {
  protected:
   Watch() { writeSkyProgram(folder_ / "sky", "payload.color = vec3(0.5);"); }
 
-  // As editors do: a new file, renamed over the old one.
+  // Replaces the file by a rename, like editors.
   void save(const std::string& file, const std::string& text) {
     write(folder_ / (file + "~"), text);
     fs::rename(folder_ / (file + "~"), folder_ / file);
@@ -31,9 +31,9 @@ class Watch : public CliTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
-  // The colour in a corner, where the default scene has no surface.
+  // The color of a corner, where the default scene has no surface.
   vec3 sky() const {
-    const io::Image image = picture("out.exr");
+    const io::Image image = readImage("out.exr");
     const auto pixel = image.pixel<float>(1, 1);
     return {pixel[0], pixel[1], pixel[2]};
   }
@@ -43,7 +43,7 @@ class Watch : public CliTest {
   }
 };
 
-TEST_F(Watch, SaveBreakMend) {
+TEST_F(Watch, SaveBreakAndFix) {
   TerminalRun process(watch(), folder_.path());
   ASSERT_TRUE(process.waitForNext("watching"));
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
@@ -54,18 +54,18 @@ TEST_F(Watch, SaveBreakMend) {
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
   expectSky({1.0f, 0.25f, 0.0f});
 
-  saveSky("payload.colour = vec3(0.0);");
+  saveSky("payload.colr = vec3(0.0);");
   ASSERT_TRUE(process.waitForNext("sky/sky.rmiss:6:11: "));
-  ASSERT_TRUE(process.waitForNext("no such field"));
+  ASSERT_TRUE(process.waitForNext("'colr'"));
   ASSERT_TRUE(process.waitForNext("sky: 1 error"));
   expectSky({1.0f, 0.25f, 0.0f});
 
   save("sky/program.toml", skyToml("nothing.rmiss"));
-  ASSERT_TRUE(process.waitForNext("no file 'nothing.rmiss'"));
+  ASSERT_TRUE(process.waitForNext("'nothing.rmiss'"));
   save("sky/program.toml", skyToml("sky.rmiss"));
   ASSERT_TRUE(process.waitForNext("sky: 1 error"));
 
-  // In place this time.
+  // Overwrites the file instead of renaming.
   write(folder_ / "sky" / "sky.rmiss", skyMiss("payload.color = vec3(0.0, 0.0, 0.75);"));
   ASSERT_TRUE(process.waitForNext("sky.rmiss saved"));
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
@@ -77,7 +77,7 @@ TEST_F(Watch, SaveBreakMend) {
   expectSky({0.0f, 0.0f, 0.75f});
 }
 
-TEST_F(Watch, StartsBroken) {
+TEST_F(Watch, StartsWithAnError) {
   saveSky("nonsense;");
   TerminalRun process(watch(), folder_.path());
   ASSERT_TRUE(process.waitForNext("sky: 1 error"));
@@ -90,7 +90,7 @@ TEST_F(Watch, StartsBroken) {
   EXPECT_EQ(process.finish().status, 0);
 }
 
-// The file that another file includes, a new file, and a file outside of the program's folder.
+// An included file outside the program's folder, with and without an error, and a new file in the folder.
 TEST_F(Watch, IncludedFiles) {
   write(folder_ / "shared.glsl", "const vec3 kColor = vec3(0.25);\n");
   saveSky("payload.color = kColor;");
@@ -102,6 +102,13 @@ TEST_F(Watch, IncludedFiles) {
   ASSERT_TRUE(process.waitForNext("shared.glsl saved: "));
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
   expectSky({0.75f, 0.75f, 0.75f});
+  save("shared.glsl", "const vec3 kColor = nonsense;\n");
+  ASSERT_TRUE(process.waitForNext("shared.glsl:1:"));
+  ASSERT_TRUE(process.waitForNext("sky: "));  // the number of errors
+  save("shared.glsl", "const vec3 kColor = vec3(0.5);\n");
+  ASSERT_TRUE(process.waitForNext("shared.glsl saved: "));
+  ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
+  expectSky({0.5f, 0.5f, 0.5f});
   save("sky/payload.glsl", "#include \"more.glsl\"\nstruct Payload {\n  vec3 color;\n};\n");
   ASSERT_TRUE(process.waitForNext("more.glsl"));
   write(folder_ / "sky" / "more.glsl", "const vec3 kColor = vec3(1.0);\n");
@@ -110,42 +117,42 @@ TEST_F(Watch, IncludedFiles) {
   expectSky({1.0f, 1.0f, 1.0f});
 }
 
-TEST_F(Watch, TheSceneToo) {
+TEST_F(Watch, SceneFile) {
   // normals.exr shows the quad's normal (0, 0, 1) as (0.5, 0.5, 1) until the node is turned.
   TerminalRun process({"run", "normals", "scene.gltf", "--watch", "--size", "32x24", "--spp", "4", "-o", "out.exr"},
                       folder_.path());
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
-  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
+  EXPECT_NEAR(readImage("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
   nlohmann::json json = quadScene();
   json["nodes"][0]["rotation"] = {0.0, 0.38268343, 0.0, 0.92387953};  // 45 degrees about y
   save("scene.gltf", json.dump());
   ASSERT_TRUE(process.waitForNext("scene.gltf saved: "));
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
-  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 0.5f + 0.5f * 0.70710678f, 0.01f);
+  EXPECT_NEAR(readImage("out.exr").pixel<float>(16, 12)[2], 0.5f + 0.5f * 0.70710678f, 0.01f);
   save("scene.gltf", "{");
   ASSERT_TRUE(process.waitForNext("scene.gltf"));
   ASSERT_TRUE(process.waitForNext("1 error"));
   save("scene.gltf", quadScene().dump());
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
-  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
+  EXPECT_NEAR(readImage("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
 }
 
-TEST_F(Watch, TheFilesOfASceneFile) {
+TEST_F(Watch, FilesOfASceneFile) {
   write(folder_ / "s.scene.toml", "[[file]]\nname = 'quad'\npath = 'scene.gltf'\n");
   TerminalRun process({"run", "normals", "s.scene.toml", "--watch", "--size", "32x24", "--spp", "4", "-o", "out.exr"},
                       folder_.path());
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
-  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
+  EXPECT_NEAR(readImage("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
   nlohmann::json json = quadScene();
   json["nodes"][0]["rotation"] = {0.0, 0.38268343, 0.0, 0.92387953};
   save("scene.gltf", json.dump());
   ASSERT_TRUE(process.waitForNext("scene.gltf saved: "));
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
-  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 0.5f + 0.5f * 0.70710678f, 0.01f);
+  EXPECT_NEAR(readImage("out.exr").pixel<float>(16, 12)[2], 0.5f + 0.5f * 0.70710678f, 0.01f);
 }
 
-// A buffer that a glTF file names, and the picture of --env.
-TEST_F(Watch, FilesThatTheSceneNeeds) {
+// A buffer of a glTF file, and the image of --env.
+TEST_F(Watch, BuffersAndEnvironments) {
   nlohmann::json json = quadScene();
   json["buffers"][0]["uri"] = "quad.bin";
   save("scene.gltf", json.dump());
@@ -162,18 +169,18 @@ TEST_F(Watch, FilesThatTheSceneNeeds) {
       {"run", "normals", "scene.gltf", "--watch", "--size", "32x24", "--spp", "4", "--env", "sky.png", "-o", "out.exr"},
       folder_.path());
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
-  EXPECT_NEAR(picture("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
+  EXPECT_NEAR(readImage("out.exr").pixel<float>(16, 12)[2], 1.0f, 0.01f);
   save("quad.bin", quad(9.0f));  // behind the camera
   ASSERT_TRUE(process.waitForNext("quad.bin saved: "));
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
-  EXPECT_LT(picture("out.exr").pixel<float>(16, 12)[2], 0.9f);
+  EXPECT_LT(readImage("out.exr").pixel<float>(16, 12)[2], 0.9f);
   write(folder_ / "sky.png", io::encodePng(testImage(16, 8)));
   ASSERT_TRUE(process.waitForNext("sky.png saved: "));
   ASSERT_TRUE(process.waitForNext("out.exr: 32x24"));
 }
 
-// A save during a long rendering starts over at once.
-TEST_F(Watch, SavesWhileItRenders) {
+// A saved file stops a long render, which starts over.
+TEST_F(Watch, SaveDuringARender) {
   TerminalRun process({"run", "sky", "--watch", "--size", "400x300", "--time", "100000", "-o", "out.exr"},
                       folder_.path());
   ASSERT_TRUE(process.waitForNext(" left"));
@@ -187,8 +194,8 @@ TEST_F(Watch, SavesWhileItRenders) {
   expectSky({0.0f, 1.0f, 0.0f});
 }
 
-// The picture lies in the program's folder: writing it is no edit.
-TEST_F(Watch, PicturesInTheFolderDoNotMatter) {
+// An image that the command writes to the program's folder does not start another render.
+TEST_F(Watch, IgnoresImagesInTheFolder) {
   TerminalRun process({"run", "sky", "--watch", "--size", "16x16", "--spp", "1", "-o", "sky/out.exr"}, folder_.path());
   ASSERT_TRUE(process.waitForNext("out.exr: 16x16"));
   saveSky("payload.color = vec3(0.25);");
@@ -203,10 +210,10 @@ TEST_F(Watch, PicturesInTheFolderDoNotMatter) {
   EXPECT_EQ(result.err.find("out.exr: 16x16", second + 1), std::string::npos) << result.err;
 }
 
-// The picture that a parameter names.
+// The image file of a parameter.
 TEST_F(Watch, ImagesOfParameters) {
   write(folder_ / "image.rt.glsl",
-        "uniform sampler2D picture;\nvoid main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(texture(picture, "
+        "uniform sampler2D photo;\nvoid main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(texture(photo, "
         "vec2(0.5))); }\n");
   io::Image flat = io::makeImage(2, 2, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
   const auto save = [&](std::uint8_t value) {
@@ -215,19 +222,19 @@ TEST_F(Watch, ImagesOfParameters) {
     fs::rename(folder_ / "new.png", folder_ / "flat.png");
   };
   save(0);
-  TerminalRun process({"run", "image", "--watch", "--size", "8x8", "--set", "picture=flat.png", "-o", "out.png"},
+  TerminalRun process({"run", "image", "--watch", "--size", "8x8", "--set", "photo=flat.png", "-o", "out.png"},
                       folder_.path());
   ASSERT_TRUE(process.waitForNext("out.png: 8x8"));
-  EXPECT_EQ(picture("out.png").pixel<std::uint8_t>(1, 1)[0], 0);
+  EXPECT_EQ(readImage("out.png").pixel<std::uint8_t>(1, 1)[0], 0);
   save(255);
   ASSERT_TRUE(process.waitForNext("flat.png saved: "));
   ASSERT_TRUE(process.waitForNext("out.png: 8x8"));
-  EXPECT_EQ(picture("out.png").pixel<std::uint8_t>(1, 1)[0], 255);
+  EXPECT_EQ(readImage("out.png").pixel<std::uint8_t>(1, 1)[0], 255);
 }
 
-TEST_F(Watch, WhatMakesNoSense) {
+TEST_F(Watch, RejectsStandardOutputAndUnknownPrograms) {
   expectError(quintet({"run", "sky", "--watch", "-o", "-"}), 2, {"--watch"});
-  expectError(quintet({"run", "nothing", "--watch"}), 2, {"no program 'nothing'"});
+  expectError(quintet({"run", "nothing", "--watch"}), 2, {"'nothing'"});
 }
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "harness.h"
 
+#include <dlfcn.h>
+#include <link.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -9,18 +12,39 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "driver_leaks.h"
 #include "shader/compiler.h"
 
-namespace quintet::test {
+#if defined(__SANITIZE_ADDRESS__)
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libvulkan\nleak:libVkLayer\nleak:libLLVM\nleak:libgallium\nleak:libnvidia\nleak:libGLX_nvidia\n";
+}
+#endif
 
+namespace quintet::test {
 namespace {
 
 constexpr std::uint32_t kGroupSize = 64;
-constexpr std::uint32_t kRowGroups = 16384;  // groups per row of a dispatch: the limit is 65,535 each way
+constexpr std::uint32_t kRowGroups = 16384;  // groups per row of a dispatch; Vulkan guarantees 65,535
 constexpr double kTimeout = 300.0;           // seconds for one dispatch
 
-// The process's device and what is kept for it, in the order of construction.
+// Drivers and layers keep memory until the process ends. AddressSanitizer recognizes these leaks by the name of the
+// file (__lsan_default_suppressions above), so the files must stay loaded until its leak check at the end.
+void keepDriversLoaded() {
+#if defined(__SANITIZE_ADDRESS__)
+  std::vector<std::string> files;
+  ::dl_iterate_phdr(
+      [](dl_phdr_info* info, std::size_t, void* data) {
+        if (info->dlpi_name && *info->dlpi_name)
+          static_cast<std::vector<std::string>*>(data)->push_back(info->dlpi_name);
+        return 0;
+      },
+      &files);
+  for (const std::string& file : files) ::dlopen(file.c_str(), RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
+#endif
+}
+
+// The device of this process with its descriptor set and pipelines.
 struct Device {
   explicit Device(const gpu::ContextOptions& options) : context(options), set(context, 0, 128) {}
   gpu::Context context;
@@ -28,7 +52,7 @@ struct Device {
   std::map<std::string, std::unique_ptr<gpu::ComputePipeline>> pipelines;  // by source, for `set`
 };
 
-// Outlives the device: destroying it may give messages too.
+// Exists longer than the device, because destroying the device can cause messages too.
 std::vector<std::string> validationLog;
 std::mutex validationMutex;
 std::unique_ptr<Device> device;
@@ -111,8 +135,8 @@ uint64_t testAddress(uint index);
 #line 1
 )";
 
-// The block holds data addresses because a shader has one block of push constants, and the shader
-// library's frame.glsl declares it.
+// The data is in a buffer because a shader has only one block of push constants, which frame.glsl of the shader library
+// declares.
 constexpr const char* kAfter = R"(
 #line 1
 #ifndef QUINTET_SHARED_FRAME_H
@@ -127,7 +151,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Tes
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer TestSizes { uint at[2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer TestOutputs { Out at[]; };
-// Their sizes differ by that of one array element.
+// The sizes of these differ by the size of one array element.
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer TestOutputs2 { Out at[2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer TestOutputs3 { Out at[3]; };
 #ifdef TEST_HAS_INPUT
@@ -154,7 +178,7 @@ void main() {
 
 void checkSize(const char* name, std::size_t host, std::uint32_t shader) {
   if (host != shader)
-    throw std::runtime_error(fmt::format("runCompute: {} has {} bytes in C++, {} in GLSL", name, host, shader));
+    throw std::runtime_error(fmt::format("runCompute: {} has {} bytes in C++ and {} in GLSL", name, host, shader));
 }
 
 }  // namespace
@@ -172,7 +196,7 @@ std::vector<std::uint32_t> compileCompute(const std::string& glsl, const Defines
   shader::Result result = compiler.compile(source);
   if (result.ok()) return std::move(result.spirv);
   std::string text = "the shader does not compile:";
-  for (const shader::Diagnostic& diagnostic : result.diagnostics) text += "\n" + diagnostic.format();
+  for (const Diagnostic& diagnostic : result.diagnostics) text += "\n" + diagnostic.format();
   throw std::runtime_error(text);
 }
 
@@ -201,7 +225,7 @@ std::vector<std::byte> detail::runCompute(const ComputeCall& call) {
   const Launch launch{call.options.frame, blockBuffer.address()};
   const auto constants = std::as_bytes(std::span(&launch, 1));
 
-  // With count 0 nothing but the sizes is written: wrong ones must not write beyond the outputs.
+  // With count 0 only the sizes are written. A shader with wrong sizes must not write behind the outputs.
   runPipeline(pipeline, constants, 1, 1, 1);
   const auto deviceSizes = sizes.downloadAs<std::uint32_t>(2);
   checkSize("Out", call.outputSize, deviceSizes[0]);
@@ -218,7 +242,7 @@ std::vector<std::byte> detail::runCompute(const ComputeCall& call) {
 int runDeviceTests() {
   testing::AddGlobalTestEnvironment(new DeviceEnvironment);
   const int result = RUN_ALL_TESTS();
-  // A filter that matches nothing has shown nothing.
+  // A filter that matches no test is an error.
   return testing::UnitTest::GetInstance()->test_to_run_count() == 0 && !testing::GTEST_FLAG(list_tests) ? 1 : result;
 }
 

@@ -1,5 +1,5 @@
-// What every device test needs: one Context per process, and functions of the shader library run in
-// compute shaders, from vectors to vectors.
+// Harness of the device tests: one Context per process, and functions of the shader library that run in compute shaders
+// and map vectors to vectors.
 //
 //   struct In { float roughness; vec3 wo; };                 // C++: the same bytes as GLSL's scalar layout
 //   const std::vector<In> inputs = …;
@@ -10,8 +10,8 @@
 //     Out run(uint index, In value) { return ggxSample(value.wo, value.roughness, randomAt(index)); }
 //   )", inputs, 1'000'000);                                  // invocation i gets inputs[i % inputs.size()]
 //
-// `input` and `output` are reserved words of GLSL. Sizes of In and Out that differ between C++ and GLSL
-// are an error that says both. Lines in compile errors count from the body's first line.
+// `input` and `output` are reserved words of GLSL. If the sizes of In or Out differ between C++ and GLSL, the error
+// states both. Lines in compile errors count from the first line of the body.
 #ifndef QUINTET_TESTS_GPU_HARNESS_H
 #define QUINTET_TESTS_GPU_HARNESS_H
 
@@ -30,23 +30,23 @@
 
 namespace quintet::test {
 
-// The device of this process ($QUINTET_DEVICE), made at the first call; validated if $QUINTET_VALIDATE is
-// set. Throws NoDeviceError: the test fails. Its validation messages fail the run at the end.
+// Returns the device of this process ($QUINTET_DEVICE), which the first call creates; with validation if
+// $QUINTET_VALIDATE is set. Validation messages make the run fail at the end. Throws NoDeviceError.
 gpu::Context& testContext();
 
-// RUN_ALL_TESTS with the device torn down at the end; validation messages, or no test at all, are failures.
+// RUN_ALL_TESTS, then destroys the device. Fails for validation messages and if no test runs.
 int runDeviceTests();
 
-// The set that shaders run with unless they are given one: no TLAS, no textures, 128 bytes of constants.
+// The default descriptor set of shaders: no TLAS, no textures, 128 bytes of push constants.
 const gpu::BindlessSet& testSet();
 
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
-// SPIR-V of a whole compute shader; #include finds the shader library. Throws with the diagnostics.
+// Compiles a complete compute shader, which can include the shader library. Throws an exception with the diagnostics.
 std::vector<std::uint32_t> compileCompute(const std::string& glsl, const Defines& defines = {});
 
-// Runs a whole compute shader and waits for it. `constants` (128 bytes at most) are its push constants,
-// e.g. a struct of buffer addresses.
+// Runs a complete compute shader and waits. `constants` (at most 128 bytes) are its push constants, for example a
+// struct of buffer addresses.
 void dispatchCompute(const std::string& glsl, std::span<const std::byte> constants, std::uint32_t groupsX,
                      std::uint32_t groupsY = 1, std::uint32_t groupsZ = 1);
 
@@ -54,15 +54,15 @@ struct ComputeOptions {
   Defines defines = {};
   const gpu::BindlessSet* set = nullptr;       // for textures; at least 32 bytes of push constants
   VkDeviceAddress frame = 0;                   // launch.frame of <quintet/frame.glsl>
-  std::array<VkDeviceAddress, 8> addresses{};  // what testAddress(0) … testAddress(7) return in GLSL
+  std::array<VkDeviceAddress, 8> addresses{};  // values of testAddress(0) … testAddress(7) in GLSL
 };
 
 namespace detail {
 struct ComputeCall {
   const std::string& body;
-  std::span<const std::byte> inputs;  // empty: the body defines run(uint index)
-  std::size_t inputSize;              // bytes of one
-  std::size_t outputSize;             // bytes of one
+  std::span<const std::byte> inputs;  // empty if the body defines run(uint index)
+  std::size_t inputSize;              // bytes per input
+  std::size_t outputSize;             // bytes per output
   std::size_t count;                  // invocations
   const ComputeOptions& options;
 };
@@ -78,7 +78,7 @@ std::vector<Out> runComputeAs(const ComputeCall& call) {
 }
 }  // namespace detail
 
-// Runs `Out run(uint index, In value)` of `body` for index 0 … count-1 and returns what it returned.
+// Runs `Out run(uint index, In value)` of `body` for index 0 … count-1 and returns the results.
 template <class Out, class In>
 std::vector<Out> runCompute(const std::string& body, const std::vector<In>& inputs, std::size_t count,
                             const ComputeOptions& options = {}) {

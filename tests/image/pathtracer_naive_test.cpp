@@ -1,7 +1,7 @@
-// The path tracer against brute force: both must converge to the same picture. Welch's t-test per block of
+// The path tracer against brute force: both must converge to the same image. Welch's t-test per block of
 // pixels and channel, Šidák-corrected at 0.01 (Subr & Arvo 2007, "Statistical Hypothesis Testing for Assessing
-// Monte Carlo Estimators"; per pixel in Mitsuba 3's test_renders.py). Blocks and long batches instead of pixels:
-// a pixel of `naive` finds small lights so seldom that its means are not normal.
+// Monte Carlo Estimators"; per pixel in Mitsuba 3's test_renders.py). The test uses blocks and long batches instead of
+// pixels: a pixel of `naive` finds small lights so seldom that its means are not normally distributed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 #include <iostream>
 
 #include "harness.h"
-#include "picture.h"
+#include "program/load.h"
+#include "rendered_image.h"
 #include "scenes.h"
 
 namespace quintet::test {
@@ -26,13 +27,13 @@ struct Blocks {
 Blocks render(const ImageScene& s, render::DeviceScene& device, const scene::Camera& camera,
               const program::Program& program, std::uint32_t samples, bool asRendered = false) {
   constexpr std::uint32_t kLongBatches = 32;
-  PictureOptions options;
+  ImageOptions options;
   options.program = program;
   options.set = {"bounces=8"};
   if (asRendered) options.plannedSamples = samples;
   options.width = s.width;
   options.height = s.height;
-  render::Renderer renderer(device, program, testCompiler(), nullptr, settingsFor(camera, options));
+  render::Renderer renderer = makeRenderer(device, program, settingsFor(camera, options));
   Blocks blocks;
   blocks.columns = s.width / s.block;
   blocks.means.resize(std::size_t{blocks.columns} * (s.height / s.block));
@@ -58,9 +59,9 @@ Blocks render(const ImageScene& s, render::DeviceScene& device, const scene::Cam
   return blocks;
 }
 
-// The path tracer as `render --spp` plans it. Its pixels share their numbers, so that errors cancel in a block, and neither
-// the spread of a pixel's batches nor that of neighbours says by how much. The means of blocks scatter less than those of
-// independent pixels, at most as much (BlueNoise.*, docs/measurements.md): `independent` lends its spread.
+// The path tracer as `render --spp` plans it. Its pixels share random numbers, so errors cancel in a block. The variance of a
+// pixel's batches does not measure this. The means of blocks vary at most as much as those of independent pixels
+// (BlueNoise.*, docs/measurements.md), so the test uses the variance of `independent`.
 Blocks renderAsPlanned(const ImageScene& s, render::DeviceScene& device, const scene::Camera& camera,
                        const Blocks& independent) {
   Blocks blocks = render(s, device, camera, program::loadProgram("pathtracer"), s.pathtracerSamples, true);
@@ -121,10 +122,10 @@ program::Program wrongWeights() {
 
 class PathtracerAgainstNaive : public testing::TestWithParam<ImageScene> {};
 
-TEST_P(PathtracerAgainstNaive, ConvergesToTheSamePicture) {
+TEST_P(PathtracerAgainstNaive, ConvergesToTheSameImage) {
   const ImageScene& s = GetParam();
   const SceneBuilder scene = s.make();
-  render::DeviceScene device(testContext(), scene.scene, scene.environment);
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
   const scene::Camera& camera = scene.scene.cameras.at(0);
   const Blocks naive = render(s, device, camera, program::loadProgram("naive"), s.naiveSamples);
   const Blocks independent = render(s, device, camera, program::loadProgram("pathtracer"), s.pathtracerSamples);
@@ -137,7 +138,7 @@ TEST_P(PathtracerAgainstNaive, ConvergesToTheSamePicture) {
   std::cout << planned << "\n";
   EXPECT_FALSE(planned.rejected) << planned;
 
-  // The test's own test.
+  // Wrong weights must be detected.
   const Verdict wrong = compare(render(s, device, camera, wrongWeights(), s.pathtracerSamples), naive);
   std::cout << wrong << "\n";
   EXPECT_TRUE(wrong.rejected) << wrong;

@@ -1,5 +1,5 @@
-// Lights are large and scenes open, so that `naive` meets light often enough. No point, spot and directional lights:
-// it cannot meet them.
+// Lights are large and scenes are open, so that `naive` finds light often enough. There are no point, spot or directional
+// lights, because `naive` cannot find them.
 #include "scenes.h"
 
 #include <unistd.h>
@@ -12,8 +12,8 @@
 
 #include "base/file.h"
 #include "demo/test_scenes.h"
-#include "scene/default_environment.h"
-#include "scene/gltf.h"
+#include "scene/defaults/default_environment.h"
+#include "scene/gltf/gltf.h"
 
 namespace quintet::test {
 namespace {
@@ -89,7 +89,7 @@ SceneBuilder stage(const vec3& panel = vec3(3.0f), const vec3& sky = vec3(0.3f))
 
 // --- scenes ------------------------------------------------------------------------------------------------------------
 
-// Colour, roughness and metalness from textures, and a bumpy normal map.
+// Color, roughness and metalness from textures, and a bumpy normal map.
 SceneBuilder textures() {
   SceneBuilder scene = stage();
   std::mt19937 random(3);
@@ -108,7 +108,7 @@ SceneBuilder textures() {
   return scene;
 }
 
-// Lacquer over metal, over a diffuse ball, and over what gives the light.
+// Clearcoat over metal, over a diffuse ball, and over the emitter.
 SceneBuilder clearcoat() {
   SceneBuilder scene = stage();
   scene::Material red = plastic({0.8f, 0.1f, 0.1f}, 0.5f), panel = emitter({2, 4, 3});
@@ -122,7 +122,7 @@ SceneBuilder clearcoat() {
   return scene;
 }
 
-// Frosted, coloured glass around light, and a clear ball.
+// Frosted, colored glass around light, and a clear ball.
 SceneBuilder roughGlass() {
   SceneBuilder scene = stage(vec3(3.0f), vec3(0.6f));
   scene::Material frosted = clearGlass(1.5f, 1.0f), clear = clearGlass(1.3f, 1.0f);
@@ -164,7 +164,7 @@ void addSet(SceneBuilder& scene, scene::PrimitiveSet set) {
   scene.scene.meshes.emplace_back().primitiveSets.push_back(std::move(set));
 }
 
-// Solids of all kinds, three of which give light, and a box with a ball cut out of it.
+// Solids of all kinds, three of which emit light, and a box with a ball cut out of it.
 SceneBuilder solids() {
   using enum scene::PrimitiveType;
   SceneBuilder scene = stage(vec3(0.5f), vec3(0.2f));
@@ -172,18 +172,18 @@ SceneBuilder solids() {
     scene.scene.materials.push_back(m);
     return static_cast<int>(scene.scene.materials.size()) - 1;
   };
-  const int light = material(emitter({4, 3, 2})), grey = material(lambert(vec3(0.6f))),
+  const int light = material(emitter({4, 3, 2})), gray = material(lambert(vec3(0.6f))),
             metal = material(plastic(vec3(0.9f), 0.4f, 1.0f));
   scene::PrimitiveSet set;
   set.primitives = {solid(sphere, {-1.6f, 0.6f, 0.5f}, vec3(0.6f), light),
                     solid(box, {1.9f, 0.4f, 0.2f}, {0.3f, 0.4f, 0.3f}, light),
                     solid(torus, {0.2f, 0.25f, 1.0f}, vec3(0.45f), light),
                     solid(cone, {-0.6f, 0.6f, -0.8f}, {0.4f, 0.6f, 0.4f}, metal),
-                    solid(cylinder, {1.0f, 0.6f, -0.9f}, {0.3f, 0.6f, 0.3f}, grey)};
+                    solid(cylinder, {1.0f, 0.6f, -0.9f}, {0.3f, 0.6f, 0.3f}, gray)};
   addSet(scene, set);
   scene::PrimitiveSet tree;
   tree.kind = scene::PrimitiveSetKind::csg;
-  tree.primitives = {solid(box, {0.2f, 0.7f, -0.1f}, vec3(0.5f), grey),
+  tree.primitives = {solid(box, {0.2f, 0.7f, -0.1f}, vec3(0.5f), gray),
                      solid(sphere, {0.2f, 1.0f, 0.3f}, vec3(0.5f), metal)};
   tree.nodes = {{scene::CsgOperation::leaf, 0}, {scene::CsgOperation::leaf, 1}, {scene::CsgOperation::subtract, 0}};
   tree.trees = {{0, 3}};

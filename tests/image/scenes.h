@@ -14,10 +14,10 @@ struct ImageScene {
   const char* name;
   SceneBuilder (*make)();  // with one camera
   std::uint32_t width, height;
-  std::uint32_t block;                            // pixels a side; divides both
+  std::uint32_t block;                            // pixels per side; divides width and height
   std::uint32_t pathtracerSamples, naiveSamples;  // multiples of 128
-  // Light samples matter. Also rendered with its number of samples planned, and with wrong MIS weights, which must be
-  // noticed: costs time.
+  // Light sampling matters. The scene is also rendered with a planned number of samples, and with wrong MIS weights, which
+  // the test must detect.
   bool lightSamples;
 };
 

@@ -1,4 +1,4 @@
-# Installs Quintet into an empty folder, and builds and runs examples/cpp against it, as a user would:
+# Installs Quintet into an empty folder, then builds and runs examples/cpp and consumer/ with the installed package:
 #   cmake -DBUILD=… -DSOURCE=… -P run.cmake
 set(work ${BUILD}/tests/install-test)
 file(REMOVE_RECURSE ${work})
@@ -17,11 +17,11 @@ run(${CMAKE_COMMAND} -S ${SOURCE}/examples/cpp -B ${work}/build -DCMAKE_PREFIX_P
 run(${CMAKE_COMMAND} --build ${work}/build)
 run(${work}/build/first_ray)
 run(${work}/prefix/bin/quintet info first_ray.png)
-# The same picture as the command's.
+# The command-line program must render the same image.
 run(${work}/prefix/bin/quintet run lessons/01_first_ray -o command.png --size 480x320)
 run(${work}/prefix/bin/quintet compare first_ray.png command.png --max 0)
 
-# The rest of the API, from outside.
+# Other parts of the API.
 run(${CMAKE_COMMAND} -S ${SOURCE}/tests/install/consumer -B ${work}/consumer -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=Release)
 run(${CMAKE_COMMAND} --build ${work}/consumer)
 run(${work}/consumer/consumer)

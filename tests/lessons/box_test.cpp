@@ -1,4 +1,4 @@
-// Lessons 12, 13 and 14: box, triangle and combined solids by intersection shaders, against the host's.
+// Lessons 12, 13 and 14: box, triangle and combined solids with intersection shaders, compared with the host.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -16,7 +16,7 @@ struct BoxHit {
   dvec2 texCoord{0};
 };
 
-// By the faces one after the other: another way than slabs.
+// Returns the nearest face by testing each face, which is independent of the slab method.
 BoxHit nearestFace(const scene::Scene& scene, const HostRay& ray, double tmin, bool& decided) {
   BoxHit best;
   for (const scene::Instance& instance : scene.instances) {
@@ -73,18 +73,18 @@ void expectBoxes(const dvec3& eye, int show, const std::function<dvec3(const Box
   EXPECT_GT(hits, 150);
 }
 
-TEST(LessonBox, Normals) {
+TEST(LessonBox, ShowsNormals) {
   expectBoxes({0, 0.5, 6}, 1, [](const BoxHit& h) { return 0.5 + 0.5 * h.normal; });
 }
-TEST(LessonBox, TextureCoordinates) {
+TEST(LessonBox, ShowsTextureCoordinates) {
   expectBoxes({0, 0.5, 6}, 2, [](const BoxHit& h) { return dvec3(h.texCoord, 0); });
 }
-TEST(LessonBox, FromInside) {
+TEST(LessonBox, ShowsTheInside) {
   expectBoxes({-1.4, 0.3, 0.1}, 1, [](const BoxHit& h) { return 0.5 + 0.5 * h.normal; });
 }
 
-TEST(LessonTriangle, IsWhatTheBuiltInOneIs) {
-  // The host's triangles: the mesh's own, and for a box the one inside it.
+TEST(LessonTriangle, AgreesWithTheBuiltInTest) {
+  // The triangles on the host: those of the mesh, and for a box the one inside it.
   scene::Scene scene = lessonScene("13_triangle");
   std::map<int, bool> builtIn;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -125,8 +125,8 @@ TEST(LessonTriangle, IsWhatTheBuiltInOneIs) {
   }
 }
 
-// The first point in [tmin, ∞) at which membership in the combined solid changes, by the candidates' own sides.
-TEST(LessonCsg, UnionIntersectionDifference) {
+// Finds the first candidate in [tmin, ∞) with different membership in the combined solid on its two sides.
+TEST(LessonCsg, ShowsUnionIntersectionAndDifference) {
   const scene::Scene scene = lessonScene("14_csg");
   const std::vector<Bounds3>& boxes = scene.meshes.front().primitiveSets.front().boxes;
   const dvec3 eye(0, 2.5, 7);
@@ -155,7 +155,7 @@ TEST(LessonCsg, UnionIntersectionDifference) {
           add(sphereInterval(ray, center, radius), true);
           for (const auto& [t, ball] : candidates) {
             for (const auto& [other, unused] : candidates)
-              if (other != t && std::abs(other - t) < 2e-2) return kUndecided;  // an edge or the outline
+              if (other != t && std::abs(other - t) < 2e-2) return kUndecided;  // near an edge or the outline
             if (t < 0.001 || t >= best) continue;
             if (inside(ray.origin + (t - 1e-4) * ray.direction) == inside(ray.origin + (t + 1e-4) * ray.direction))
               continue;

@@ -1,8 +1,8 @@
-// Lessons 17 and 20: the folder programs, against the host.
+// Lessons 17 and 20: the folder programs, compared with the host.
 #include <gtest/gtest.h>
 
 #include "lesson.h"
-#include "scene/auto_camera.h"
+#include "scene/defaults/auto_camera.h"
 
 namespace quintet::test {
 namespace {
@@ -27,9 +27,9 @@ Blocked blockers(const scene::Scene& scene, const HostRay& ray, bool& decided) {
   }
 }
 
-TEST(LessonRecords, HitGroupsRayTypesAndTheirNumbers) {
+TEST(LessonRecords, UsesHitGroupsRayTypesAndRecordData) {
   const scene::Scene scene = lessonScene("17_records");
-  const LessonPicture picture = renderLesson("17_records");
+  const LessonImage image = renderLesson("17_records");
   const dvec3 toSun(0.48, 0.8, 0.36);
   int stripes = 0, tinted = 0, free = 0;
   const auto pixel = [&](dvec2 point, bool wantFree) {
@@ -55,7 +55,7 @@ TEST(LessonRecords, HitGroupsRayTypesAndTheirNumbers) {
       base = dvec3(0.85, 0.35, 0.15) * (part < 0.5 ? 0.4 : 1.0);
       stripes += part < 0.5;
     }
-    // A surface that looks away from the sun is dark whatever is in between.
+    // A surface that faces away from the sun is dark regardless of what is in between.
     const double cosine = std::max(0.0, glm::dot(normal, toSun));
     const Blocked blocked = blockers(
         scene, {s.position + 1e-6 * (glm::dot(toSun, geometric) < 0 ? -geometric : geometric), toSun}, decided);
@@ -65,15 +65,15 @@ TEST(LessonRecords, HitGroupsRayTypesAndTheirNumbers) {
     return glm::dvec4(base * (0.2 + 0.8 * sun * cosine), 1);
   };
   expectPixels(
-      picture, [&](dvec2 p) { return pixel(p, false); }, 1e-4, 0.15, 0);
+      image, [&](dvec2 p) { return pixel(p, false); }, 1e-4, 0.15, 0);
   expectPixels(
-      picture, [&](dvec2 p) { return pixel(p, true); }, 1e-3, 0.15, 1);
+      image, [&](dvec2 p) { return pixel(p, true); }, 1e-3, 0.15, 1);
   EXPECT_GT(stripes, 20);
   EXPECT_GT(tinted, 10);
   EXPECT_GT(free, 10);
 }
 
-TEST(LessonLambert, MirrorsShadowsAndTheGradient) {
+TEST(LessonLambert, ShowsMirrorsShadowsAndTheGradient) {
   const scene::Scene scene = lessonScene("20_lambert");
   const dvec3 toLight = glm::normalize(dvec3(0.4, 1, 0.6));
   const dvec3 base[5] = {{0.7, 0.68, 0.6}, {0.9, 0.9, 0.92}, {0.85, 0.4, 0.15}, {0.85, 0.4, 0.15}, {0.9, 0.9, 0.92}};

@@ -1,4 +1,4 @@
-// Lesson 01: the silhouette is that of the triangles, pixel for pixel.
+// Lesson 01: every pixel shows whether its ray hits a triangle.
 #include <gtest/gtest.h>
 
 #include "lesson.h"
@@ -6,19 +6,19 @@
 namespace quintet::test {
 namespace {
 
-constexpr double kUndecided = 1e-4;  // an edge passes so near to the pixel's centre that floats decide
+constexpr double kUndecided = 1e-4;  // below this margin, float rounding decides
 
-void expectSilhouette(const LessonPicture& picture, const scene::Scene& scene, double fieldOfView, const vec3& color) {
-  const double aspect = static_cast<double>(picture.width) / picture.height;
+void expectSilhouette(const LessonImage& image, const scene::Scene& scene, double fieldOfView, const vec3& color) {
+  const double aspect = static_cast<double>(image.width) / image.height;
   int hits = 0, misses = 0;
-  for (std::uint32_t y = 0; y < picture.height; ++y) {
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
-      const dvec2 point((x + 0.5) / picture.width, (y + 0.5) / picture.height);
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      const dvec2 point((x + 0.5) / image.width, (y + 0.5) / image.height);
       const HostHit hit = closestTriangle(
           scene, cameraRay(dvec3(0), dvec3(0, 0, -1), dvec3(0, 1, 0), fieldOfView, aspect, point), 0.001, 1000);
       if (hit.margin < kUndecided) continue;
       const vec3 expected = hit.t > 0 ? color : vec3(0);
-      EXPECT_LT(glm::length(vec3(picture.at(x, y)) - expected), 1e-5f) << x << ", " << y;
+      EXPECT_LT(glm::length(vec3(image.at(x, y)) - expected), 1e-5f) << x << ", " << y;
       (hit.t > 0 ? hits : misses)++;
     }
   }
@@ -30,7 +30,7 @@ TEST(LessonFirstRay, ShowsTheSilhouette) {
   expectSilhouette(renderLesson("01_first_ray"), lessonScene("01_first_ray"), 45, {1, 0, 0});
 }
 
-TEST(LessonFirstRay, FollowsItsParametersAndTheAspect) {
+TEST(LessonFirstRay, FollowsItsParametersAndAspectRatio) {
   LessonOptions options;
   options.width = 20;
   options.height = 60;

@@ -1,10 +1,10 @@
-// Lessons 09 and 19: what changes from frame to frame.
+// Lessons 09 and 19: changes from frame to frame.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
 
 #include "lesson.h"
-#include "scene/keyframes.h"
+#include "scene/animation/keyframes.h"
 
 namespace quintet::test {
 namespace {
@@ -17,7 +17,7 @@ double halton(int index, int base) {
   return value;
 }
 
-// One sample of lesson 09.
+// Returns one sample of lesson 09.
 glm::dvec4 progressiveSample(const scene::Scene& scene, const dvec2& point) {
   const HostHit hit = closestTriangle(scene, cameraRay({0, 1, 6}, {0, 1, 0}, {0, 1, 0}, 30, 1.5, point), 0.001, 1000);
   if (hit.margin < 2e-4) return kUndecided;
@@ -26,14 +26,14 @@ glm::dvec4 progressiveSample(const scene::Scene& scene, const dvec2& point) {
   return glm::dvec4(dvec3(0.9, 0.6, 0.3) * (0.3 + 0.7 * cosine), 1);
 }
 
-TEST(LessonProgressive, HaltonHasTheTablesValues) {
+TEST(LessonProgressive, HaltonHasTheValuesOfTheTables) {
   const double two[] = {0.5, 0.25, 0.75, 0.125, 0.625, 0.375, 0.875};
   const double three[] = {1 / 3., 2 / 3., 1 / 9., 4 / 9., 7 / 9., 2 / 9., 5 / 9., 8 / 9.};
   for (int i = 0; i < 7; ++i) EXPECT_DOUBLE_EQ(halton(i + 1, 2), two[i]);
   for (int i = 0; i < 8; ++i) EXPECT_NEAR(halton(i + 1, 3), three[i], 1e-15);
 }
 
-TEST(LessonProgressive, IsTheAverageOfItsFrames) {
+TEST(LessonProgressive, AveragesItsFrames) {
   const scene::Scene scene = lessonScene("09_progressive");
   LessonOptions options;
   options.frames = 5;
@@ -53,42 +53,42 @@ TEST(LessonProgressive, IsTheAverageOfItsFrames) {
       5e-5, 0.1);
 }
 
-TEST(LessonProgressive, TheErrorFalls) {
+TEST(LessonProgressive, ConvergesFasterThanRandomSamples) {
   LessonOptions options;
   options.frames = 256;
-  const LessonPicture reference = renderLesson("09_progressive", options);
+  const LessonImage reference = renderLesson("09_progressive", options);
   const auto error = [&](std::uint32_t frames) {
     options.frames = frames;
-    const LessonPicture picture = renderLesson("09_progressive", options);
+    const LessonImage image = renderLesson("09_progressive", options);
     double sum = 0;
-    for (std::uint32_t y = 0; y < picture.height; ++y)
-      for (std::uint32_t x = 0; x < picture.width; ++x) {
-        const vec3 d(picture.at(x, y) - reference.at(x, y));
+    for (std::uint32_t y = 0; y < image.height; ++y)
+      for (std::uint32_t x = 0; x < image.width; ++x) {
+        const vec3 d(image.at(x, y) - reference.at(x, y));
         sum += glm::dot(d, d);
       }
-    return std::sqrt(sum / (3.0 * picture.width * picture.height));
+    return std::sqrt(sum / (3.0 * image.width * image.height));
   };
   const double one = error(1), four = error(4), sixteen = error(16), many = error(64);
   RecordProperty("errors", fmt::format("{:.4f} {:.4f} {:.4f} {:.4f}", one, four, sixteen, many));
-  // Better than random samples, whose error halves with four times as many.
+  // The error of random samples halves with four times as many.
   EXPECT_LT(four, 0.75 * one);
   EXPECT_LT(sixteen, one / 4);
   EXPECT_LT(many, one / 8);
 }
 
-TEST(LessonDynamic, InstancesMove) {
+TEST(LessonDynamic, MovesInstances) {
   for (const std::uint32_t frame : {0u, 7u, 25u}) {
     scene::Scene scene = lessonScene("19_dynamic");
     LessonOptions options;
     options.frames = frame + 1;
-    const LessonPicture picture = renderLesson("19_dynamic", options);
+    const LessonImage image = renderLesson("19_dynamic", options);
     for (scene::Instance& instance : scene.instances)
       instance.worldFromObject = scene::worldFromObjectAt(instance, static_cast<float>(frame));
     const dvec3 toSun = glm::normalize(dvec3(0.5, 1, 0.4));
     const dvec3 base[3] = {{0.6, 0.62, 0.6}, {0.85, 0.45, 0.2}, {0.2, 0.5, 0.75}};
     int moving = 0;
     expectPixels(
-        picture,
+        image,
         [&](dvec2 point) {
           const dvec2 plane = (2.0 * point - 1.0) * dvec2(1.5, 1) * std::tan(glm::radians(20.0)) - dvec2(0, 0.35);
           const HostRay ray{{0, 3.5, 8}, glm::normalize(dvec3(plane, -1))};

@@ -9,19 +9,20 @@
 
 #include "harness.h"
 #include "io/color.h"
-#include "picture.h"
-#include "scene/auto_camera.h"
-#include "scene/default_environment.h"
-#include "scene/scene_toml.h"
+#include "program/load.h"
+#include "rendered_image.h"
+#include "scene/defaults/auto_camera.h"
+#include "scene/defaults/default_environment.h"
+#include "scene/toml/scene_toml.h"
 
 namespace quintet::test {
 
-vec4 LessonPicture::fromTop(std::uint32_t x, std::uint32_t y, std::size_t output) const {
+vec4 LessonImage::fromTop(std::uint32_t x, std::uint32_t y, std::size_t output) const {
   const std::span<const float> p = outputs[output].pixel<float>(x, y);
   return {p[0], p[1], p[2], p[3]};
 }
 
-vec4 LessonPicture::at(std::uint32_t x, std::uint32_t y, std::size_t output) const {
+vec4 LessonImage::at(std::uint32_t x, std::uint32_t y, std::size_t output) const {
   return fromTop(x, height - 1 - y, output);
 }
 
@@ -32,7 +33,7 @@ scene::Scene lessonScene(const std::string& name) {
   return scene::parseSceneToml(program.files.at(program.scene), program.path(program.scene), {});
 }
 
-LessonPicture renderLesson(const std::string& name, const LessonOptions& options) {
+LessonImage renderLesson(const std::string& name, const LessonOptions& options) {
   const program::Program program = lesson(name);
   const scene::Scene scene = options.scene ? *options.scene : lessonScene(name);
   render::RenderSettings settings;
@@ -46,23 +47,23 @@ LessonPicture renderLesson(const std::string& name, const LessonOptions& options
   settings.parameters = program::ParameterValues(program.parameters);
   for (const auto& [parameter, value] : options.set) settings.parameters.set(parameter, value);
 
-  render::DeviceScene deviceScene(testContext(), scene, scene::environmentInUse(scene));
+  render::DeviceScene deviceScene(testContext(), scene::Scene(scene), scene::effectiveEnvironment(scene));
   const bool framewise = program.accumulation == program::Accumulation::program;
-  render::Renderer renderer(deviceScene, program, testCompiler(), nullptr, settings);
+  render::Renderer renderer = makeRenderer(deviceScene, program, settings);
   for (std::uint32_t done = 0; done < options.frames;) {
     if (framewise) deviceScene.setFrame(static_cast<float>(done));
     const std::uint32_t count = framewise ? 1u : std::min(render::kBatchSamples, options.frames - done);
     renderer.renderBatch(count);
     done += count;
   }
-  LessonPicture picture{options.width, options.height, {}};
+  LessonImage result{options.width, options.height, {}};
   for (std::size_t i = 0; i < program.outputs.size(); ++i) {
-    io::Image& image = picture.outputs.emplace_back(renderer.image(i));
+    io::Image& image = result.outputs.emplace_back(renderer.image(i));
     if (program.outputs[i].kind != program::OutputKind::display) continue;
-    // Back from linear light to what the shader wrote.
+    // Encode linear values as the shader wrote them.
     for (float& value : image.samples<float>()) value = io::srgbFromLinear(value);
   }
-  return picture;
+  return result;
 }
 
 HostRay cameraRay(const dvec3& eye, const dvec3& lookAt, const dvec3& up, double fieldOfViewYDegrees, double aspect,
@@ -130,18 +131,18 @@ HostSurface surfaceAt(const scene::Scene& scene, const HostHit& hit) {
   return s;
 }
 
-void expectPixels(const LessonPicture& picture, const std::function<glm::dvec4(dvec2)>& expected, double tolerance,
+void expectPixels(const LessonImage& image, const std::function<glm::dvec4(dvec2)>& expected, double tolerance,
                   double undecided, std::size_t output) {
   int skipped = 0, failed = 0;
   std::string text;
-  for (std::uint32_t y = 0; y < picture.height; ++y) {
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
-      const glm::dvec4 want = expected(dvec2((x + 0.5) / picture.width, (y + 0.5) / picture.height));
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      const glm::dvec4 want = expected(dvec2((x + 0.5) / image.width, (y + 0.5) / image.height));
       if (want.w == 0) {
         skipped++;
         continue;
       }
-      const dvec3 got(picture.at(x, y, output));
+      const dvec3 got(image.at(x, y, output));
       const dvec3 difference = glm::abs(got - dvec3(want));
       if (std::max({difference.x, difference.y, difference.z}) <= tolerance) continue;
       if (failed++ < 8)
@@ -149,7 +150,7 @@ void expectPixels(const LessonPicture& picture, const std::function<glm::dvec4(d
                             got.y, got.z, want.x, want.y, want.z);
     }
   }
-  const int pixels = static_cast<int>(picture.width * picture.height);
+  const int pixels = static_cast<int>(image.width * image.height);
   EXPECT_EQ(failed, 0) << "of " << pixels << " pixels, " << skipped << " of them undecided:\n" << text;
   EXPECT_LE(skipped, undecided * pixels);
 }

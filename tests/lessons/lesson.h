@@ -1,5 +1,5 @@
-// Runs a lesson as `quintet run` does, small, and hands back what its ray generation shader wrote; and the host's
-// own geometry, in double precision, to compare with.
+// Runs a lesson at a small size as `quintet run` does and returns what its ray generation shader wrote; and geometry on the
+// host in double precision as the reference.
 #ifndef QUINTET_TESTS_LESSON_H
 #define QUINTET_TESTS_LESSON_H
 
@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "io/image.h"
-#include "program/program.h"
-#include "render/renderer.h"
-#include "scene/scene.h"
+#include "program/description/program.h"
+#include "render/renderer/renderer.h"
+#include "scene/model/scene.h"
 
 namespace quintet::test {
 
@@ -23,18 +23,18 @@ using glm::dvec3;
 struct LessonOptions {
   std::uint32_t width = 48;
   std::uint32_t height = 32;
-  std::uint32_t frames = 1;  // of a lecture program; samples per pixel of others
+  std::uint32_t frames = 1;  // frames of a lecture program, samples per pixel of other programs
   std::uint32_t seed = 0;
   std::vector<std::pair<std::string, std::string>> set;  // parameters
-  std::optional<scene::Scene> scene;                     // instead of the lesson's own
+  std::optional<scene::Scene> scene;                     // instead of the lesson's scene
   std::optional<scene::Camera> camera;                   // for programs that use the scene's camera
 };
 
-struct LessonPicture {
+struct LessonImage {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<io::Image> outputs;
-  // As the shader counts: (0, 0) is the bottom left pixel, as gl_LaunchIDEXT in a lecture program.
+  // (0, 0) is the bottom left pixel, as gl_LaunchIDEXT in a lecture program.
   vec4 at(std::uint32_t x, std::uint32_t y, std::size_t output = 0) const;
   // (0, 0) is the top left pixel.
   vec4 fromTop(std::uint32_t x, std::uint32_t y, std::size_t output = 0) const;
@@ -42,28 +42,28 @@ struct LessonPicture {
 
 program::Program lesson(const std::string& name);  // "01_first_ray"
 scene::Scene lessonScene(const std::string& name);
-LessonPicture renderLesson(const std::string& name, const LessonOptions& options = {});
+LessonImage renderLesson(const std::string& name, const LessonOptions& options = {});
 
 struct HostRay {
   dvec3 origin;
   dvec3 direction;
 };
-// Camera at `eye` looking along `forward` (unit) with `up`; `point` in [0,1]², (0,0) at the bottom left.
+// Returns the ray of a camera at `eye` through `point` in [0,1]², with (0,0) at the bottom left.
 HostRay cameraRay(const dvec3& eye, const dvec3& lookAt, const dvec3& up, double fieldOfViewYDegrees, double aspect,
                   const dvec2& point);
 
 struct HostHit {
-  double t = -1;  // < 0: none
+  double t = -1;  // negative if the ray misses
   int instance = -1;
   int geometry = -1;
   int primitive = -1;
   dvec2 barycentric{0};  // weights of vertices 1 and 2
-  double margin = 1e30;  // smallest distance, in barycentric units, of any edge test from its decision along the ray
+  double margin = 1e30;  // smallest distance of any edge test from zero along the ray, in barycentric units
 };
-// Every triangle of every instance, one after the other (Möller and Trumbore 1997).
+// Returns the closest hit by testing every triangle of every instance (Möller and Trumbore 1997).
 HostHit closestTriangle(const scene::Scene& scene, const HostRay& ray, double tmin = 1e-6, double tmax = 1e30);
 
-// What the hit's mesh says there; world space.
+// The surface at a hit, in world space.
 struct HostSurface {
   dvec3 position;
   dvec3 normal;      // interpolated, unit
@@ -72,9 +72,9 @@ struct HostSurface {
 };
 HostSurface surfaceAt(const scene::Scene& scene, const HostHit& hit);
 
-// Every pixel against expected(point), point in [0,1]² from the bottom left; a result whose w is 0 is undecided (an
-// edge is too near) and left out, which at most `undecided` of all pixels may be.
-void expectPixels(const LessonPicture& picture, const std::function<glm::dvec4(dvec2)>& expected, double tolerance,
+// Compares every pixel with expected(point), where point is in [0,1]² from the bottom left. A result with w = 0 is undecided,
+// because an edge is too close, and is skipped. At most the fraction `undecided` of all pixels can be undecided.
+void expectPixels(const LessonImage& image, const std::function<glm::dvec4(dvec2)>& expected, double tolerance,
                   double undecided = 0.05, std::size_t output = 0);
 
 }  // namespace quintet::test

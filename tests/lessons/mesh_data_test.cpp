@@ -1,4 +1,4 @@
-// Lesson 03: positions, normals, texture coordinates and barycentrics of the triangle that was hit.
+// Lesson 03: positions, normals, texture coordinates and barycentrics of the hit triangle.
 #include <gtest/gtest.h>
 
 #include "lesson.h"
@@ -22,22 +22,22 @@ void expectData(int show, const std::function<dvec3(const HostHit&, const HostSu
       1e-4, 0.2);
 }
 
-TEST(LessonMeshData, Positions) {
+TEST(LessonMeshData, ShowsPositions) {
   expectData(0, [](const HostHit&, const HostSurface& s) { return 0.5 + 0.2 * s.position; });
 }
-TEST(LessonMeshData, NormalsBelongToTheSquashedSphereToo) {
+TEST(LessonMeshData, ShowsNormalsOfTheScaledSphere) {
   expectData(1, [](const HostHit&, const HostSurface& s) { return 0.5 + 0.5 * s.normal; });
 }
-// glTF counts v from the top of a picture, the lecture form from the bottom.
-TEST(LessonMeshData, TextureCoordinates) {
+// In glTF, v = 0 is the top of an image; in the lecture form, t = 0 is the bottom.
+TEST(LessonMeshData, ShowsTextureCoordinates) {
   expectData(2, [](const HostHit&, const HostSurface& s) { return dvec3(s.texCoord.x, 1 - s.texCoord.y, 0); });
 }
-TEST(LessonMeshData, Barycentrics) {
+TEST(LessonMeshData, ShowsBarycentrics) {
   expectData(3, [](const HostHit& h, const HostSurface&) {
     return dvec3(1 - h.barycentric.x - h.barycentric.y, h.barycentric);
   });
 }
-TEST(LessonMeshData, FaceNormals) {
+TEST(LessonMeshData, ShowsFaceNormals) {
   expectData(4, [](const HostHit&, const HostSurface& s) { return 0.5 + 0.5 * s.faceNormal; });
 }
 

@@ -1,5 +1,5 @@
-// Lessons 21 and 22: path tracers, against path tracers on the host with other random numbers (and for 22 another
-// method: no next-event estimation). Blocks of pixels are compared by their standard errors.
+// Lessons 21 and 22: path tracers, compared with path tracers on the host that use other random numbers and, for lesson 22,
+// no next-event estimation. The comparison uses blocks of pixels and their standard errors.
 #include <gtest/gtest.h>
 
 #include <mutex>
@@ -32,14 +32,14 @@ struct Random {
 
 using HostPath = std::function<dvec3(dvec2 point, Random& random)>;
 
-// `toLinear`: from what the lesson shows. Several runs with different seeds would need a seed: independent frames do.
+// `toLinear` decodes the values of the lesson.
 void expectBlocks(const std::string& name, const LessonOptions& given, std::uint32_t frames, int hostSamples,
                   const HostPath& path, const std::function<double(double)>& toLinear) {
   LessonOptions options = given;
   options.width = kWidth;
   options.height = kHeight;
   options.frames = frames;
-  const LessonPicture picture = renderLesson(name, options);
+  const LessonImage image = renderLesson(name, options);
 
   constexpr std::uint32_t kColumns = kWidth / kBlock, kRows = kHeight / kBlock;
   std::vector<Mean> host(kColumns * kRows);
@@ -57,14 +57,14 @@ void expectBlocks(const std::string& name, const LessonOptions& given, std::uint
   for (std::size_t block = 0; block < host.size(); ++block) {
     Mean device;
     for (std::uint32_t i = 0; i < kBlock * kBlock; ++i) {
-      const vec4 c = picture.at(static_cast<std::uint32_t>(block % kColumns) * kBlock + i % kBlock,
-                                static_cast<std::uint32_t>(block / kColumns) * kBlock + i / kBlock);
+      const vec4 c = image.at(static_cast<std::uint32_t>(block % kColumns) * kBlock + i % kBlock,
+                              static_cast<std::uint32_t>(block / kColumns) * kBlock + i / kBlock);
       device.add((toLinear(c.x) + toLinear(c.y) + toLinear(c.z)) / 3);
     }
-    // The device takes as many samples per pixel as the host or more: its error is at most the host's.
+    // The device takes at least as many samples per pixel as the host, so its error is at most that of the host.
     const double error = std::sqrt(2 * host[block].variance());
     EXPECT_NEAR(device.value(), host[block].value(), 4.5 * error + 1e-4) << "block " << block;
-    EXPECT_LT(error, 0.06 * host[block].value()) << "block " << block << ": the comparison is too weak";
+    EXPECT_LT(error, 0.06 * host[block].value()) << "block " << block << ": the standard error is too large";
   }
 }
 
@@ -85,7 +85,7 @@ dvec3 cornellPath(const scene::Scene& scene, dvec2 point, Random& random) {
   return dvec3(0);
 }
 
-TEST(LessonPathTracer, ConvergesToTheSameAsWithoutSamplingTheLamp) {
+TEST(LessonPathTracer, ConvergesToTheImageWithoutNextEventEstimation) {
   const scene::Scene scene = lessonScene("22_path_tracer");
   LessonOptions options;
   options.set = {{"bounces", "3"}, {"samples", "32"}};
@@ -104,7 +104,7 @@ std::uint32_t hashed(std::uint32_t x) {
 }
 
 struct Material {
-  char kind;  // m matt, M metal, g glass
+  char kind;  // m diffuse, M metal, g glass
   dvec3 color;
   double fuzz;
 };
@@ -172,7 +172,7 @@ dvec3 weekendPath(const std::vector<Bounds3>& boxes, dvec2 point, Random& random
   return dvec3(0);
 }
 
-TEST(LessonOneWeekend, ConvergesToTheHostsPicture) {
+TEST(LessonOneWeekend, ConvergesToTheImageOfTheHost) {
   const scene::Scene scene = lessonScene("21_one_weekend");
   const std::vector<Bounds3>& boxes = scene.meshes.front().primitiveSets.front().boxes;
   ASSERT_GT(boxes.size(), 400u);

@@ -1,4 +1,4 @@
-// Lessons 04 to 07: light, shadow and reflection, computed again on the host.
+// Lessons 04 to 07: light, shadow and reflection, compared with the host.
 #include <gtest/gtest.h>
 
 #include "lesson.h"
@@ -14,7 +14,7 @@ const dvec3 kAmbient(0.1, 0.1, 0.12);
 
 HostRay eyeRay(dvec2 point, double aspect) { return cameraRay(kEye, kTarget, {0, 1, 0}, 35, aspect, point); }
 
-// Is the lamp seen from just above the surface? `decided` is cleared where an edge is too near.
+// Returns whether the lamp is visible from just above the surface. Clears `decided` if an edge is too close.
 bool seesLamp(const scene::Scene& scene, const dvec3& position, const dvec3& lamp, bool& decided) {
   const double distance = glm::length(lamp - position);
   const HostHit hit = closestTriangle(scene, {position, (lamp - position) / distance}, 0, distance);
@@ -24,9 +24,9 @@ bool seesLamp(const scene::Scene& scene, const dvec3& position, const dvec3& lam
 
 TEST(LessonDiffuse, FollowsLambert) {
   const scene::Scene scene = lessonScene("04_diffuse");
-  const LessonPicture picture = renderLesson("04_diffuse");
+  const LessonImage image = renderLesson("04_diffuse");
   expectPixels(
-      picture,
+      image,
       [&](dvec2 point) {
         const HostHit hit = closestTriangle(scene, eyeRay(point, 1.5), 0.001, 1000);
         if (hit.margin < kUndecided) return glm::dvec4(0);
@@ -66,18 +66,18 @@ void expectShadow(std::uint32_t frame) {
   EXPECT_GT(dark, 100);
 }
 
-TEST(LessonShadow, FirstFrame) { expectShadow(0); }
-TEST(LessonShadow, TheLampHasMoved) { expectShadow(16); }
-TEST(LessonShadow, AfterAWholeTurn) {
+TEST(LessonShadow, CastsShadowsInTheFirstFrame) { expectShadow(0); }
+TEST(LessonShadow, MovesTheLamp) { expectShadow(16); }
+TEST(LessonShadow, RepeatsAfterAWholeTurn) {
   LessonOptions options;
   options.width = 24;
   options.height = 16;
-  const LessonPicture first = renderLesson("05_shadow", options);
+  const LessonImage first = renderLesson("05_shadow", options);
   options.frames = 46;
   EXPECT_EQ(renderLesson("05_shadow", options).outputs[0].data, first.outputs[0].data);
 }
 
-// The mirror path of lessons 06 and 07.
+// Returns the color of the mirror path of lessons 06 and 07.
 glm::dvec4 mirrorColor(const scene::Scene& scene, HostRay ray, double reflectance, int maxLevel) {
   const dvec3 lamp(3, 5, 3);
   const dvec3 base[3] = {{0.55, 0.55, 0.5}, {0.15, 0.3, 0.6}, {0.7, 0.35, 0.1}};
@@ -111,10 +111,10 @@ void expectMirrors(const std::string& name, double reflectance) {
 }
 
 TEST(LessonMirrorLoop, FollowsTheReflections) { expectMirrors("06_mirror_loop", 0.4); }
-TEST(LessonMirrorLoop, StopsWhereNothingIsLeft) { expectMirrors("06_mirror_loop", 0.0); }
+TEST(LessonMirrorLoop, StopsWithoutReflectance) { expectMirrors("06_mirror_loop", 0.0); }
 TEST(LessonMirrorRecursion, FollowsTheReflections) { expectMirrors("07_mirror_recursion", 0.4); }
-TEST(LessonMirrorRecursion, IsThePictureOfTheLoop) {
-  const LessonPicture loop = renderLesson("06_mirror_loop"), recursion = renderLesson("07_mirror_recursion");
+TEST(LessonMirrorRecursion, GivesTheImageOfTheLoop) {
+  const LessonImage loop = renderLesson("06_mirror_loop"), recursion = renderLesson("07_mirror_recursion");
   double worst = 0;
   for (std::uint32_t y = 0; y < loop.height; ++y)
     for (std::uint32_t x = 0; x < loop.width; ++x)

@@ -1,4 +1,4 @@
-// The host's own solids for the lessons with intersection shaders: interval of a line, normal, texture coordinates.
+// Solids on the host for the lessons with intersection shaders: the interval of a ray, and normals.
 #ifndef QUINTET_TESTS_LESSON_SOLIDS_H
 #define QUINTET_TESTS_LESSON_SOLIDS_H
 

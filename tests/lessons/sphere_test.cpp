@@ -1,4 +1,4 @@
-// Lessons 08, 10 and 11: spheres by intersection shaders, against their closed form.
+// Lessons 08, 10 and 11: spheres with intersection shaders, compared with the closed form.
 #include <gtest/gtest.h>
 
 #include "solids.h"
@@ -8,11 +8,11 @@ namespace {
 
 const glm::dvec4 kUndecided(0);
 
-// What lesson 10 shows of the nearest sphere.
+// The data of the nearest sphere that lesson 10 shows.
 struct SphereHit {
   double t = 1e30;
-  dvec3 normal{0};  // world
-  dvec3 local{0};   // of the point on the unit sphere
+  dvec3 normal{0};  // world space
+  dvec3 local{0};   // point on the unit sphere
   bool entering = true;
   bool decided = true;
 };
@@ -25,7 +25,7 @@ SphereHit nearestSphere(const scene::Scene& scene, const HostRay& ray) {
       const double radius = 0.5 * (double(box.max.x) - box.min.x);
       const HostRay local = toObject(ray, instance.worldFromObject);
       const auto interval = sphereInterval(local, center, radius);
-      // Near the outline a float decides otherwise.
+      // Near the outline, floats can decide differently.
       const double a = glm::dot(local.direction, local.direction);
       const dvec3 nearest =
           local.origin - center - glm::dot(local.origin - center, local.direction) / a * local.direction;
@@ -43,7 +43,7 @@ SphereHit nearestSphere(const scene::Scene& scene, const HostRay& ray) {
 
 void expectSpheres(int show, bool worldSpace, const std::function<dvec3(const SphereHit&)>& color, double tolerance) {
   scene::Scene scene = lessonScene("10_sphere");
-  if (worldSpace) scene.instances.pop_back();  // the ellipsoid: world space cannot do it
+  if (worldSpace) scene.instances.pop_back();  // without the ellipsoid, which needs object space
   LessonOptions options;
   options.scene = scene;
   options.set = {{"show", std::to_string(show)}, {"worldSpace", worldSpace ? "true" : "false"}};
@@ -63,11 +63,11 @@ void expectSpheres(int show, bool worldSpace, const std::function<dvec3(const Sp
 const auto kNormal = [](const SphereHit& h) { return 0.5 + 0.5 * h.normal; };
 const auto kDistance = [](const SphereHit& h) { return dvec3(h.t / 10, h.entering ? 1 : 2, 0); };
 
-TEST(LessonSphere, NormalsInObjectSpace) { expectSpheres(1, false, kNormal, 1e-4); }
-TEST(LessonSphere, NormalsInWorldSpace) { expectSpheres(1, true, kNormal, 1e-4); }
-TEST(LessonSphere, DistancesInObjectSpace) { expectSpheres(3, false, kDistance, 2e-5); }
-TEST(LessonSphere, DistancesInWorldSpace) { expectSpheres(3, true, kDistance, 2e-5); }
-TEST(LessonSphere, TextureCoordinates) {
+TEST(LessonSphere, ShowsNormalsInObjectSpace) { expectSpheres(1, false, kNormal, 1e-4); }
+TEST(LessonSphere, ShowsNormalsInWorldSpace) { expectSpheres(1, true, kNormal, 1e-4); }
+TEST(LessonSphere, ShowsDistancesInObjectSpace) { expectSpheres(3, false, kDistance, 2e-5); }
+TEST(LessonSphere, ShowsDistancesInWorldSpace) { expectSpheres(3, true, kDistance, 2e-5); }
+TEST(LessonSphere, ShowsTextureCoordinates) {
   expectSpheres(
       2, false,
       [](const SphereHit& h) {
@@ -84,7 +84,7 @@ dvec3 colorOf(std::uint32_t primitive) {
   return 0.2 + 0.7 * dvec3(h & 255u, (h >> 8u) & 255u, (h >> 16u) & 255u) / 255.0;
 }
 
-TEST(LessonManySpheres, TenThousandAgainstBruteForce) {
+TEST(LessonManySpheres, AgreesWithBruteForce) {
   const scene::Scene scene = lessonScene("11_many_spheres");
   const std::vector<Bounds3>& boxes = scene.meshes.front().primitiveSets.front().boxes;
   ASSERT_EQ(boxes.size(), 10000u);
@@ -131,7 +131,7 @@ TEST(LessonManySpheres, TenThousandAgainstBruteForce) {
   EXPECT_GT(dark, 50);
 }
 
-// The path of lesson 08: floor, sphere, sky.
+// Returns the color of the path of lesson 08: floor, sphere, sky.
 glm::dvec4 refractionColor(HostRay ray, double inside, double outside) {
   const dvec3 center(0, 1.5, 0);
   const double radius = 1.2;
@@ -159,7 +159,7 @@ glm::dvec4 refractionColor(HostRay ray, double inside, double outside) {
       return glm::dvec4(glm::mix(dvec3(0.9, 0.75, 0.6), dvec3(0.25, 0.45, 0.8), 0.5 + 0.5 * ray.direction.y), 1);
     const dvec3 position = ray.origin + t * ray.direction;
     const dvec3 normal = (entering ? 1.0 : -1.0) * (position - center) / radius;
-    // Snell's law by angles rather than by refract().
+    // Snell's law with angles instead of refract().
     const double eta = entering ? outside / inside : inside / outside;
     const double cosine = -glm::dot(ray.direction, normal);
     const double sine = eta * std::sqrt(std::max(0.0, 1 - cosine * cosine));
@@ -184,9 +184,9 @@ void expectRefraction(double inside, double outside) {
       5e-3, 0.25);
 }
 
-TEST(LessonRefraction, GlassInAir) { expectRefraction(1.5, 1.0); }
-TEST(LessonRefraction, AirInWaterReflectsTotally) { expectRefraction(1.0, 1.33); }
-TEST(LessonRefraction, EqualMediaAreInvisible) { expectRefraction(1.2, 1.2); }
+TEST(LessonRefraction, RefractsGlassInAir) { expectRefraction(1.5, 1.0); }
+TEST(LessonRefraction, ReflectsAirInWaterTotally) { expectRefraction(1.0, 1.33); }
+TEST(LessonRefraction, PassesEqualMedia) { expectRefraction(1.2, 1.2); }
 
 }  // namespace
 }  // namespace quintet::test

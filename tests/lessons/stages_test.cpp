@@ -9,7 +9,7 @@ namespace {
 const glm::dvec4 kUndecided(0);
 constexpr double kMargin = 2e-4;
 
-// All hits of a ray, near to far.
+// Returns all hits of a ray, sorted by distance.
 std::vector<HostHit> allHits(const scene::Scene& scene, const HostRay& ray, bool& decided) {
   std::vector<HostHit> hits;
   double from = 1e-9;
@@ -35,7 +35,7 @@ bool passes(const scene::Scene& scene, const HostHit& hit, bool& decided) {
   return distance < 0.35;
 }
 
-TEST(LessonAnyHit, HolesInPlatesAndShadows) {
+TEST(LessonAnyHit, CutsHolesIntoPlatesAndShadows) {
   const scene::Scene scene = lessonScene("15_any_hit");
   const dvec3 base[3] = {{0.7, 0.7, 0.65}, {0.8, 0.4, 0.2}, {0.25, 0.45, 0.7}};
   int through = 0, shadowed = 0;
@@ -70,7 +70,7 @@ TEST(LessonAnyHit, HolesInPlatesAndShadows) {
   EXPECT_GT(shadowed, 50);
 }
 
-TEST(LessonAnyHit, WhatItWroteBeforeIgnoringStays) {
+TEST(LessonAnyHit, KeepsPayloadWritesOfIgnoredHits) {
   const scene::Scene scene = lessonScene("15_any_hit");
   LessonOptions options;
   options.set = {{"mode", "1"}};
@@ -88,19 +88,18 @@ TEST(LessonAnyHit, WhatItWroteBeforeIgnoringStays) {
   EXPECT_GT(several, 50);
 }
 
-TEST(LessonAnyHit, TerminateEndsAtOneOfTheCandidates) {
+TEST(LessonAnyHit, TerminatesAtOneOfTheCandidates) {
   const scene::Scene scene = lessonScene("15_any_hit");
   LessonOptions options;
   options.set = {{"mode", "2"}};
-  const LessonPicture picture = renderLesson("15_any_hit", options);
+  const LessonImage image = renderLesson("15_any_hit", options);
   const vec3 base[3] = {{0.7f, 0.7f, 0.65f}, {0.8f, 0.4f, 0.2f}, {0.25f, 0.45f, 0.7f}};
-  for (std::uint32_t y = 0; y < picture.height; ++y) {
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
       bool decided = true;
-      const auto hits =
-          allHits(scene, anyHitRay(dvec2((x + 0.5) / picture.width, (y + 0.5) / picture.height)), decided);
+      const auto hits = allHits(scene, anyHitRay(dvec2((x + 0.5) / image.width, (y + 0.5) / image.height)), decided);
       if (!decided) continue;
-      const vec3 color(picture.at(x, y));
+      const vec3 color(image.at(x, y));
       bool possible = hits.empty() && glm::length(color - vec3(0.35f, 0.45f, 0.6f)) < 1e-4f;
       for (const HostHit& hit : hits) possible = possible || glm::length(color - base[hit.instance]) < 1e-4f;
       EXPECT_TRUE(possible) << "pixel " << x << ", " << y;
@@ -108,7 +107,7 @@ TEST(LessonAnyHit, TerminateEndsAtOneOfTheCandidates) {
   }
 }
 
-TEST(LessonCallable, EachInstanceCallsItsMaterial) {
+TEST(LessonCallable, CallsTheMaterialOfEachInstance) {
   const scene::Scene scene = lessonScene("16_callable");
   const dvec3 toLight = glm::normalize(dvec3(0.4, 0.8, 0.45));
   int count[3] = {0, 0, 0};
@@ -138,8 +137,8 @@ TEST(LessonCallable, EachInstanceCallsItsMaterial) {
   for (const int n : count) EXPECT_GT(n, 80);
 }
 
-// The rules of the Vulkan specification: facing by the winding in object space, flipped by the instance's flag; culled
-// unless the instance disables that; seen if the masks share a bit.
+// Applies the rules of the Vulkan specification: the winding in object space and the flag of the instance determine the
+// facing; the instance can disable culling; the ray sees an instance if their masks share a bit.
 void expectInstances(int mask, bool cullBack) {
   const scene::Scene all = lessonScene("18_instances");
   LessonOptions options;
@@ -148,7 +147,7 @@ void expectInstances(int mask, bool cullBack) {
   int seen = 0, back = 0;
   const auto isFront = [&](const HostHit& hit, const HostRay& ray) {
     const scene::Instance& instance = all.instances[static_cast<std::size_t>(hit.instance)];
-    // faceNormal is transformed by the inverse transpose, as a normal: its sign against the ray is that of object space.
+    // The inverse transpose transforms faceNormal, so its sign relative to the ray is the same as in object space.
     const bool front = glm::dot(surfaceAt(all, hit).faceNormal, ray.direction) < 0;
     return front != ((instance.flags & scene::kInstanceFlipFacing) != 0);
   };
@@ -176,9 +175,9 @@ void expectInstances(int mask, bool cullBack) {
   EXPECT_GT(back, cullBack ? 2 : 8);
 }
 
-TEST(LessonInstances, CustomIndexAndFacing) { expectInstances(255, false); }
-TEST(LessonInstances, BackFacesAreCulled) { expectInstances(255, true); }
-TEST(LessonInstances, OnlyTwoRowsByTheMask) { expectInstances(5, false); }
+TEST(LessonInstances, ShowsCustomIndexAndFacing) { expectInstances(255, false); }
+TEST(LessonInstances, CullsBackFaces) { expectInstances(255, true); }
+TEST(LessonInstances, MasksRows) { expectInstances(5, false); }
 
 }  // namespace
 }  // namespace quintet::test

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tests of tests/mutation/run, in a tree of its own with a stand-in for the test binary: no build, no device.
+# Tests of tests/mutation/run in a temporary tree with a fake test binary. Needs no build and no device.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 scratch=$(mktemp -d)
@@ -7,7 +7,7 @@ trap 'rm -rf "$scratch"' EXIT
 mkdir -p "$scratch"/{tests/mutation,shaders,programs,bin}
 cp "$here/run" "$scratch/tests/mutation"
 printf 'one\ntwo\ntwo\nthree\n' > "$scratch/shaders/a.glsl"
-# Does what its shader says: fails a test, hangs, hangs unless it did before, or fails for no reason.
+# Behaves as the text of the shader says: fails a test, hangs, hangs only once, or crashes.
 cat > "$scratch/bin/quintet_gpu_tests" << 'END'
 #!/usr/bin/env bash
 if grep -q BUG "$QUINTET_SHADER_PATH/a.glsl"; then echo "[  FAILED  ] Some.Test"; exit 1; fi
@@ -21,9 +21,9 @@ END
 chmod +x "$scratch/bin/quintet_gpu_tests"
 
 failed=0
-# entry NAME OLD NEW [FILE]: one of the table that expect uses next.
+# entry NAME OLD NEW [FILE]: appends an entry to the table of the next `expect`.
 entry() { printf '[%s]\nfile %s\nold %s\nnew %s\ntests gpu Some.*\n' "$1" "${4-shaders/a.glsl}" "$2" "$3" >> "$scratch/table"; }
-# expect STATUS TEXT ARGUMENT...: runs with that table and empties it.
+# expect STATUS TEXT ARGUMENT...: runs the script with the table, checks status and output, and removes the table.
 expect() {
   local wanted=$1 text=$2 output status=0
   shift 2

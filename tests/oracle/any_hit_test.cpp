@@ -1,11 +1,11 @@
-// Any-hit shaders: what ignoring and terminating leave behind, and which candidates they see.
+// Any-hit shaders: effects of ignoring and terminating, and the candidates that they receive.
 #include "checks.h"
 #include "probe.h"
 
 namespace quintet::oracle {
 namespace {
 
-// What the any-hit shader does with a candidate: the instance's custom index.
+// Action of the any-hit shader; it is the custom index of the instance.
 enum Action : std::uint32_t {
   kAccept = 0,
   kIgnore = 1,
@@ -15,7 +15,7 @@ enum Action : std::uint32_t {
 };
 
 struct Result {
-  std::uint32_t before, after;              // counted in the payload, around the statement
+  std::uint32_t before, after;              // counted in the payload, before and after the statement
   std::uint32_t bufferBefore, bufferAfter;  // counted in memory
   std::uint32_t closest, missed;
   float t;
@@ -89,7 +89,7 @@ const Program& program() {
   return *made;
 }
 
-// Columns 4 apart; in each, layers with the given actions at z = 0, -2, -4, …
+// Columns at a distance of 4, each with layers of the given actions at z = 0, -2, -4, …
 Scene columns(const std::vector<std::vector<Action>>& actions, bool boxes) {
   Scene scene;
   const std::size_t blas = boxes ? scene.addBlas({Boxes{{boxAt({0, 0, 0})}, false, true}}) : scene.addBlas({[] {
@@ -106,7 +106,7 @@ Scene columns(const std::vector<std::vector<Action>>& actions, bool boxes) {
   return scene;
 }
 
-// Every column of one, two and three layers.
+// All columns of one, two and three layers.
 std::vector<std::vector<Action>> allColumns() {
   constexpr Action all[] = {kAccept, kIgnore, kTerminate, kIgnoreInFunction, kTerminateInFunction};
   std::vector<std::vector<Action>> columns;
@@ -122,14 +122,14 @@ std::vector<std::vector<Action>> allColumns() {
 bool ignores(Action a) { return a == kIgnore || a == kIgnoreInFunction; }
 bool terminates(Action a) { return a == kTerminate || a == kTerminateInFunction; }
 
-// The order of candidates is free. What holds in any order:
+// Checks what holds for any order of the candidates, which is implementation-dependent.
 void checkColumn(Checks& checks, const std::vector<Action>& column, const Result& r, std::uint32_t flags,
                  const std::string& what) {
   std::size_t accepting = 0, ending = 0, layers = column.size();
   for (const Action a : column) ending += terminates(a), accepting += a == kAccept;
   checks.equal(r.before, r.bufferBefore, "{}: writes before the statement stay in the payload", what);
   checks.equal(r.after, r.bufferAfter, "{}: counts after the statement", what);
-  checks.that(r.after <= accepting, "{}: {} any-hit calls went on, {} layers accept", what, r.after, accepting);
+  checks.that(r.after <= accepting, "{}: {} any-hit calls continued, {} layers accept", what, r.after, accepting);
   checks.that(r.before >= 1 && r.before <= layers, "{}: {} any-hit calls for {} layers", what, r.before, layers);
   const bool hit = accepting + ending > 0, skips = flags & kSkipClosestHit;
   checks.equal(r.missed, hit ? 0u : 1u, "{}: miss shader", what);
@@ -142,7 +142,7 @@ void checkColumn(Checks& checks, const std::vector<Action>& column, const Result
   if (index >= layers) return checks.that(false, "{}: layer {}", what, index);
   checks.equal(r.custom, static_cast<std::uint32_t>(column[index]), "{}: the hit's own custom index", what);
   checks.that(!ignores(column[index]), "{}: an ignored candidate was committed", what);
-  if (ending == 0 && !(flags & kTerminateOnFirstHit))  // then the nearest accepted layer
+  if (ending == 0 && !(flags & kTerminateOnFirstHit))  // the hit is the nearest accepted layer
     for (std::size_t k = 0; k < index; ++k) checks.that(column[k] != kAccept, "{}: layer {} is nearer", what, k);
 }
 
@@ -162,11 +162,11 @@ void checkColumns(bool boxes) {
   checks.done();
 }
 
-TEST(AnyHit, IgnoringAndTerminatingTriangles) { checkColumns(false); }
-TEST(AnyHit, IgnoringAndTerminatingBoxes) { checkColumns(true); }
+TEST(AnyHit, IgnoresAndTerminatesTriangles) { checkColumns(false); }
+TEST(AnyHit, IgnoresAndTerminatesBoxes) { checkColumns(true); }
 
-// One layer: everything is determined.
-TEST(AnyHit, OneCandidateIsJudgedExactly) {
+// With one layer all values are determined.
+TEST(AnyHit, HandlesOneCandidateExactly) {
   struct Expected {
     Action action;
     std::uint32_t before, after, closest, missed;

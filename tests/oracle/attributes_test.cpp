@@ -1,6 +1,6 @@
-// Hit attributes belong to the committed hit, whatever candidates come after it. Where they do not, the two workarounds
-// of the shader library have to be right: recompute them in closest-hit from the ray and t (shaders/quintet/hit.glsl),
-// or write them only for a t in range and have no any-hit shader.
+// Hit attributes must belong to the committed hit, not to later candidates. Where they do not, the two workarounds of
+// the shader library must work: recompute the attributes in closest-hit from the ray and t (shaders/quintet/hit.glsl),
+// or write them only for t in range and use no any-hit shader.
 #include <random>
 
 #include "checks.h"
@@ -15,13 +15,13 @@ constexpr std::uint32_t kLayers = 8;
 struct Ray {
   vec3 origin{0};
   vec3 direction{0};
-  std::uint32_t ignored = 0;  // a bit for each layer
+  std::uint32_t ignored = 0;  // one bit per layer
   std::uint32_t flags = 0;
 };
 struct Result {
   float t;
   std::uint32_t layer;
-  vec2 attributes;  // as the closest-hit shader finds them
+  vec2 attributes;  // as the closest-hit shader reads them
   vec2 recomputed;
 };
 
@@ -48,7 +48,7 @@ void main() {
   if ((launch.inputs.at[launchIndex()].ignored >> gl_PrimitiveID & 1u) != 0u) ignoreIntersectionEXT;
 }
 )";
-// Looks at the candidate's barycentrics, as an alpha test does.
+// Reads the barycentrics of the candidate, like an alpha test.
 constexpr char kTriangleAnyHit[] = R"(
 hitAttributeEXT vec2 attributes;
 void main() {
@@ -56,7 +56,7 @@ void main() {
   if (!inside || (launch.inputs.at[launchIndex()].ignored >> gl_PrimitiveID & 1u) != 0u) ignoreIntersectionEXT;
 }
 )";
-// Barycentrics by two ratios of areas, in object space.
+// Computes barycentrics as ratios of areas in object space.
 constexpr char kTriangleClosestHit[] = R"(
 layout(location = 0) rayPayloadInEXT Output result;
 hitAttributeEXT vec2 attributes;
@@ -67,7 +67,7 @@ void main() {
   result = Output(gl_HitTEXT, gl_PrimitiveID, attributes, vec2(dot(cross(p, ac), n), dot(cross(ab, p), n)) / dot(n, n));
 }
 )";
-// Layer i is the plane z = -2 i of a box around it. The attributes are (layer, t).
+// Layer i is the plane z = -2 i, inside a box. The attributes are (layer, t).
 constexpr char kBoxClosestHit[] = R"(
 layout(location = 0) rayPayloadInEXT Output result;
 hitAttributeEXT vec2 attributes;
@@ -85,7 +85,7 @@ void main() {
          "  attributes = vec2(gl_PrimitiveID, t);\n  reportIntersectionEXT(t, 1u);\n}\n";
 }
 
-// Every set of ignored layers, from both sides.
+// Rays from both sides for every set of ignored layers.
 std::vector<Ray> allRays(std::uint32_t flags) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-0.2f, 0.2f);
@@ -98,7 +98,7 @@ std::vector<Ray> allRays(std::uint32_t flags) {
   return rays;
 }
 
-// The nearest layer that is not ignored; kLayers: none.
+// Returns the nearest layer that is not ignored; kLayers if all are ignored.
 std::uint32_t expectedLayer(const Ray& ray) {
   const bool below = ray.direction.z > 0;
   for (std::uint32_t k = 0; k < kLayers; ++k) {
@@ -124,8 +124,8 @@ const Program& program() {
   return *made;
 }
 
-// Each layer a triangle of another shape: the same point has other barycentrics in each. They slope, so that their boxes
-// overlap and a builder cannot sort them along the ray; where the rays are they keep their order.
+// The layers are triangles of different shapes, so a point has different barycentrics in each. They are tilted, so that
+// their boxes overlap and a builder cannot sort them along the ray. Along the test rays they keep their order.
 Triangles layers() {
   Triangles result{.opaque = false};
   for (std::uint32_t k = 0; k < kLayers; ++k) {
@@ -168,15 +168,15 @@ void checkTriangles(Source source) {
   checks.done();
 }
 
-// Among triangles alone lavapipe is right; boxes beside them spoil it.
-TEST(Attributes, BarycentricsAreThoseOfTheCommittedTriangle) { checkTriangles(Source::attributes); }
-TEST(Attributes, BarycentricsRecomputedFromTheRay) { checkTriangles(Source::recomputed); }
+// lavapipe is correct for triangles alone, but not for triangles next to boxes.
+TEST(Attributes, KeepsBarycentricsOfTheCommittedTriangle) { checkTriangles(Source::attributes); }
+TEST(Attributes, RecomputesBarycentricsFromTheRay) { checkTriangles(Source::recomputed); }
 
-// A triangle before the plane that the intersection shader of a box around both reports: out of range once the triangle
-// is committed.
+// A triangle in front of a plane that the intersection shader of a box around both reports. The plane is out of range
+// after the triangle is committed.
 void checkTriangleBeforeBox(Source source, const KnownQuirk* quirk) {
   Triangles triangle = triangleAt(0, 0, 0);
-  for (vec3& p : triangle.positions) p.z = 0.25f + 1.25f * p.x;  // its box begins before the other one
+  for (vec3& p : triangle.positions) p.z = 0.25f + 1.25f * p.x;  // its box starts in front of the other box
   const gpu::Buffer vertices = gpu::makeBufferOf(test::testContext(), triangle.positions, 0, "vertices");
   Checks checks;
   for (const bool boxFirst : {false, true}) {
@@ -202,8 +202,8 @@ void checkTriangleBeforeBox(Source source, const KnownQuirk* quirk) {
   quirk ? checks.done(*quirk) : checks.done();
 }
 
-TEST(Attributes, BarycentricsBesideABox) { checkTriangleBeforeBox(Source::attributes, &kLooseAttributes); }
-TEST(Attributes, BarycentricsBesideABoxRecomputed) { checkTriangleBeforeBox(Source::recomputed, nullptr); }
+TEST(Attributes, KeepsBarycentricsNextToABox) { checkTriangleBeforeBox(Source::attributes, &kLooseAttributes); }
+TEST(Attributes, RecomputesBarycentricsNextToABox) { checkTriangleBeforeBox(Source::recomputed, nullptr); }
 
 void checkBoxes(std::uint32_t group, std::uint32_t flags, Source source, const KnownQuirk* quirk) {
   Scene scene;
@@ -230,10 +230,12 @@ void checkBoxes(std::uint32_t group, std::uint32_t flags, Source source, const K
   quirk ? checks.done(*quirk) : checks.done();
 }
 
-TEST(Attributes, BoxesWithAnAnyHitShader) { checkBoxes(1, 0, Source::attributes, &kLooseAttributes); }
-TEST(Attributes, BoxesWithAnAnyHitShaderRecomputed) { checkBoxes(1, 0, Source::recomputed, nullptr); }
-TEST(Attributes, BoxesReportedOutOfRange) { checkBoxes(1, kOpaque, Source::attributes, &kLooseAttributes); }
-TEST(Attributes, BoxesWrittenOnlyInRange) { checkBoxes(2, kOpaque, Source::attributes, nullptr); }
+TEST(Attributes, KeepsAttributesOfBoxesWithAnAnyHitShader) { checkBoxes(1, 0, Source::attributes, &kLooseAttributes); }
+TEST(Attributes, RecomputesAttributesOfBoxesWithAnAnyHitShader) { checkBoxes(1, 0, Source::recomputed, nullptr); }
+TEST(Attributes, KeepsAttributesIfBoxesReportOutOfRange) {
+  checkBoxes(1, kOpaque, Source::attributes, &kLooseAttributes);
+}
+TEST(Attributes, KeepsAttributesThatAreWrittenOnlyInRange) { checkBoxes(2, kOpaque, Source::attributes, nullptr); }
 
 }  // namespace
 }  // namespace quintet::oracle

@@ -4,7 +4,7 @@
 
 #include "gpu/error.h"
 #include "harness.h"
-#include "rt/build_description.h"
+#include "rt/acceleration_structure.h"
 
 namespace quintet::oracle {
 namespace {

@@ -1,18 +1,22 @@
-// Vulkan without the library's workarounds, for the tests of what a driver itself does.
+// Vulkan without the workarounds of the library, for tests of the driver itself.
 #ifndef QUINTET_TESTS_ORACLE_BARE_H
 #define QUINTET_TESTS_ORACLE_BARE_H
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "program.h"
 
 namespace quintet::oracle {
 
-// One geometry, built as it is: nothing is dropped, sorted or checked.
+// One geometry, built without removing, sorting or checking primitives.
 struct BareGeometry {
   std::vector<vec3> positions = {};
-  std::vector<std::uint32_t> indices = {};  // empty: three positions for each triangle
-  std::vector<Bounds3> boxes = {};          // not empty: a geometry of boxes
+  std::vector<std::uint32_t> indices = {};  // empty means three positions per triangle
+  std::vector<Bounds3> boxes = {};          // makes it a geometry of boxes
   std::uint32_t primitiveCount = 0;
   std::uint32_t primitiveOffset = 0;  // bytes
   std::uint32_t firstVertex = 0;
@@ -38,15 +42,15 @@ class BareStructure {
   VkAccelerationStructureKHR handle_ = VK_NULL_HANDLE;
 };
 
-// An instance with the identity, all mask bits and no flags.
+// Returns an instance with the identity transform, all mask bits and no flags.
 VkAccelerationStructureInstanceKHR bareInstance(VkDeviceAddress blas, std::uint32_t recordOffset = 0);
 
-// A pipeline with just the stages and groups that it is given.
+// A pipeline with exactly the given stages and groups.
 struct BareStage {
   VkShaderStageFlagBits stage;
   std::vector<std::uint32_t> spirv;
 };
-struct BareGroup {  // numbers of stages
+struct BareGroup {  // indices of stages
   std::uint32_t general = VK_SHADER_UNUSED_KHR, closestHit = VK_SHADER_UNUSED_KHR, anyHit = VK_SHADER_UNUSED_KHR,
                 intersection = VK_SHADER_UNUSED_KHR;
 };
@@ -65,17 +69,17 @@ class BarePipeline {
   VkPipeline handle_ = VK_NULL_HANDLE;
 };
 
-// The regions of the four tables, as addresses.
+// Device addresses of the four tables.
 struct BareRegions {
   VkStridedDeviceAddressRegionKHR rayGeneration{}, miss{}, hit{}, callable{};
 };
-// Tables laid out by the library's arithmetic, with the handles of a bare pipeline.
+// Tables with the layout of rt::layoutSbt and the handles of a bare pipeline.
 struct BareTable {
   BareTable(const rt::SbtContents& contents, std::span<const std::byte> handles);
   gpu::Buffer buffer;
   BareRegions regions;
 };
-// One invocation for each of `inputs`; push constants as in program.h.
+// Runs one invocation per input with the push constants of program.h.
 std::vector<std::byte> bareTrace(VkPipeline pipeline, const BareRegions& regions, VkAccelerationStructureKHR tlas,
                                  std::span<const std::byte> inputs, std::uint32_t count, std::size_t outputSize);
 

@@ -1,5 +1,7 @@
-// The built-in variables of every stage against the host's values, and what becomes of them when the shader
-// traces again: closest-hit and miss shaders read them before a nested trace, or only after it.
+// The built-in variables of every stage. Closest-hit and miss shaders read them before a nested trace, or only after
+// it.
+#include <algorithm>
+
 #include "checks.h"
 #include "program.h"
 
@@ -16,7 +18,7 @@ struct RayArguments {
 
 struct RayPair {
   RayArguments outer, inner;
-  std::uint32_t after = 0;  // 1: closest-hit and miss read after the inner trace
+  std::uint32_t after = 0;  // 1 if closest-hit and miss read after the inner trace
 };
 
 struct BuiltIns {
@@ -63,7 +65,8 @@ void main() {
 }
 )";
 
-// %1: declarations, %2: before, %3: after, %4: member of the result
+// Returns a stage that reads built-ins with the macro `read` before or after a nested trace and stores them in
+// `member`.
 std::string nestingStage(const std::string& read, bool after, const std::string& member) {
   const std::string copy = "BuiltIns b; " + read + "(b)\n";
   return "layout(location = 0) rayPayloadInEXT uint outerPayload;\n"
@@ -109,11 +112,11 @@ void main() {
 }
 )";
 
-// What a ray can be aimed at. Object space: primitive i of geometry g is around (3 i, 3 g, 0).
+// Target of a ray. In object space primitive i of geometry g is at (3 i, 3 g, 0).
 struct Target {
   std::uint32_t instance = 0, geometry = 0, primitive = 0;
   bool fromBelow = false;
-  bool none = false;  // a ray into nothing
+  bool none = false;  // a ray that misses
 };
 constexpr std::uint32_t kGeometries = 2, kPrimitives = 2, kCustom[] = {0xABCDEF, 0x000123, 0xFFFFFF, 0x800001};
 constexpr bool kIsBoxes[] = {false, true, false, true};
@@ -135,7 +138,8 @@ std::vector<Target> allTargets() {
   return targets;
 }
 
-// From 3 above (or below) the middle, a little oblique: meets the plane z = 0 of object space at t = 3.
+// Returns a slightly oblique ray from 3 above (or below) the center; it intersects the plane z = 0 of object space at t
+// = 3.
 RayArguments rayAt(const Target& target, std::uint32_t flags) {
   if (target.none) return {{0, 0, 1000}, 0.125f, {0, 0.5f, 0.5f}, 77.0f, flags};
   const vec3 center(3.0f * static_cast<float>(target.primitive), 3.0f * static_cast<float>(target.geometry), 0);
@@ -175,7 +179,7 @@ struct Experiment {
 Experiment runExperiment(bool after) {
   const std::string closest = nestingStage("READ_HIT", after, "closestHit"),
                     miss = nestingStage("READ_RAY", after, "miss");
-  // Both variants are in one table, at the records that `after` selects; this run needs only its own.
+  // `after` selects the record offset and the miss index, so the table has the same records twice.
   const Program program({.common = kCommon,
                          .rayGeneration = kRayGeneration,
                          .miss = {miss, kInnerMiss},
@@ -191,7 +195,7 @@ Experiment runExperiment(bool after) {
     for (std::size_t step = 1; step < targets.size(); step += 3) {
       e.outer.push_back(targets[k]);
       e.inner.push_back(targets[(k + step) % targets.size()]);
-      // Flags without effect here tell the two rays apart.
+      // Flags that have no effect here distinguish the two rays.
       e.rays.push_back({rayAt(e.outer.back(), 0x2), rayAt(e.inner.back(), 0x0), after});
     }
   const uvec3 size(11, 3, static_cast<std::uint32_t>(e.rays.size() / 33));
@@ -221,7 +225,7 @@ void checkRay(Checks& checks, const BuiltIns& b, std::size_t k, const RayArgumen
   checks.equal(b.flags, ray.flags, "ray {}, {}: flags", k, stage);
 }
 
-// What depends on the hit. With `inner`: or what belongs to the hit of the inner trace instead.
+// Checks built-ins that depend on the hit. With `inner`, the values of the inner hit are the documented wrong ones.
 void checkObject(Checks& checks, const BuiltIns& b, std::size_t k, const Target& target, const Target* inner,
                  const std::string& stage) {
   const Target& other = inner && !inner->none ? *inner : target;
@@ -282,14 +286,14 @@ void checkAll(Checks& checks, const Experiment& e, bool after) {
   }
 }
 
-// The workaround for the quirk below: copied to locals before the nested trace.
-TEST(BuiltIns, EveryStageReadBeforeANestedTrace) {
+// Workaround for the defect of the next test: copy the built-ins to locals before the nested trace.
+TEST(BuiltIns, KeepsValuesThatAreReadBeforeANestedTrace) {
   Checks checks;
   checkAll(checks, runExperiment(false), false);
   checks.done();
 }
 
-TEST(BuiltIns, ReadAfterANestedTrace) {
+TEST(BuiltIns, KeepsValuesAfterANestedTrace) {
   Checks checks;
   checkAll(checks, runExperiment(true), true);
   checks.done(kStaleBuiltIns);

@@ -7,10 +7,10 @@
 #include "harness.h"
 
 namespace quintet::oracle {
-
 namespace {
 
-// "Mesa 25.0.7-2 (LLVM 15)", "580.159.04": the first numbers. (lavapipe's VkPhysicalDeviceProperties::driverVersion is 1.)
+// Returns the first version in a text such as "Mesa 25.0.7-2 (LLVM 15)" or "580.159.04". VkPhysicalDeviceProperties has
+// no version of lavapipe: its driverVersion is 1.
 std::uint32_t versionIn(const std::string& text) {
   std::uint32_t numbers[3] = {};
   const std::size_t first = text.find_first_of("0123456789");
@@ -31,11 +31,11 @@ Driver testDriver() {
 Verdict judge(const Driver& driver, const KnownQuirk* quirk, std::size_t wrong) {
   const bool affected = quirk && quirk->driver == driver.id;
   if (wrong > 0) return affected ? Verdict::knownQuirk : Verdict::fail;
-  return affected && !quirk->sporadic && driver.version >= quirk->version ? Verdict::mended : Verdict::pass;
+  return affected && !quirk->sporadic && driver.version >= quirk->version ? Verdict::fixed : Verdict::pass;
 }
 
 Checks::~Checks() {
-  if (!finished_ && !std::uncaught_exceptions()) ADD_FAILURE() << "the test does not end with Checks::done()";
+  if (!finished_ && !std::uncaught_exceptions()) ADD_FAILURE() << "the test must end with Checks::done()";
 }
 
 void Checks::finish(const KnownQuirk* quirk) {
@@ -43,16 +43,17 @@ void Checks::finish(const KnownQuirk* quirk) {
   const std::size_t total = hard_.total + soft_.total;
   testing::Test::RecordProperty("values", fmt::format("{}", total));
   if (quirk) testing::Test::RecordProperty("quirk", std::string(quirk->id));
-  if (total == 0) ADD_FAILURE() << "the test compares nothing";
+  if (total == 0) ADD_FAILURE() << "the test compares no values";
   if (hard_.wrong > 0)
     ADD_FAILURE() << fmt::format("{} of {} values are wrong:\n  {}", hard_.wrong, hard_.total,
                                  fmt::join(hard_.messages, "\n  "));
   switch (judge(testDriver(), quirk, soft_.wrong)) {
     case Verdict::pass: break;
     case Verdict::knownQuirk: testing::Test::RecordProperty("wrong", fmt::format("{}", soft_.wrong)); break;
-    case Verdict::mended:
-      ADD_FAILURE() << fmt::format("mended: remove the workaround for '{}' ({}): docs/design/quirks.md", quirk->id,
-                                   quirk->text);
+    case Verdict::fixed:
+      ADD_FAILURE() << fmt::format(
+          "the driver is fixed: remove the workaround for '{}' ({}), see docs/design/quirks.md", quirk->id,
+          quirk->text);
       break;
     case Verdict::fail:
       ADD_FAILURE() << fmt::format("{} of {} values are wrong:\n  {}", soft_.wrong, soft_.total,

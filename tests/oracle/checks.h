@@ -1,11 +1,13 @@
-// Compares what a device computed with what the specification says, and judges the differences: see
-// known_quirks.h. Every test makes one Checks and ends with one of its done().
+// Compares the values of a device with those of the specification and evaluates the differences with known_quirks.h.
+// Every test creates one Checks object and ends with a call of done().
 #ifndef QUINTET_TESTS_ORACLE_CHECKS_H
 #define QUINTET_TESTS_ORACLE_CHECKS_H
 
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -34,17 +36,17 @@ std::string textOf(const T& value) {
 class Checks {
  public:
   Checks() = default;
-  ~Checks();  // a failure if no done() was called
+  ~Checks();  // fails the test if done() was not called
   Checks(const Checks&) = delete;
   Checks& operator=(const Checks&) = delete;
 
-  // Right on every device.
+  // These must be correct on every device.
   template <class T, class... A>
   void equal(const T& got, const std::type_identity_t<T>& expected, fmt::format_string<A...> what, A&&... arguments) {
     count(hard_, got == expected,
           [&] { return difference(got, expected, fmt::format(what, std::forward<A>(arguments)...)); });
   }
-  // Not finite is never near.
+  // Fails for values that are not finite.
   template <class... A>
   void near(float got, float expected, float tolerance, fmt::format_string<A...> what, A&&... arguments) {
     count(hard_, std::abs(got - expected) <= tolerance,
@@ -61,14 +63,14 @@ class Checks {
     count(hard_, right, [&] { return fmt::format(what, std::forward<A>(arguments)...); });
   }
 
-  // Right, except on drivers with the quirk that done() names. There, `documented` may come instead …
+  // Must be correct, except on drivers with the quirk passed to done(), where `documented` is also accepted.
   template <class T, class... A>
   void quirk(const T& got, const std::type_identity_t<T>& expected, const std::type_identity_t<T>& documented,
              fmt::format_string<A...> what, A&&... arguments) {
     const auto text = [&] { return difference(got, expected, fmt::format(what, std::forward<A>(arguments)...)); };
     got == documented || got == expected ? count(soft_, got == expected, text) : count(hard_, false, text);
   }
-  // … or anything else.
+  // The same, but any wrong value is accepted on these drivers.
   template <class... A>
   void quirkThat(bool right, fmt::format_string<A...> what, A&&... arguments) {
     count(soft_, right, [&] { return fmt::format(what, std::forward<A>(arguments)...); });
@@ -80,7 +82,7 @@ class Checks {
  private:
   struct Tally {
     std::size_t total = 0, wrong = 0;
-    std::vector<std::string> messages;  // the first ones
+    std::vector<std::string> messages;  // the first kMessages
   };
   template <class Text>
   static void count(Tally& tally, bool right, const Text& text) {

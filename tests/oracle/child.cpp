@@ -11,7 +11,7 @@
 namespace quintet::oracle {
 namespace {
 
-// This process's environment with some variables replaced.
+// Returns the environment of this process with some variables replaced.
 std::vector<std::string> environmentWith(const Variables& changes) {
   std::vector<std::string> result;
   for (char** entry = ::environ; *entry; ++entry) {

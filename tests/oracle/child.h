@@ -1,4 +1,5 @@
-// Runs one test of this binary in a process of its own: for what may crash, or needs another environment.
+// Runs one test of this executable in a separate process, for tests that can crash or need different environment
+// variables.
 #ifndef QUINTET_TESTS_ORACLE_CHILD_H
 #define QUINTET_TESTS_ORACLE_CHILD_H
 
@@ -11,7 +12,7 @@ namespace quintet::oracle {
 
 enum class ChildEnd { passed, failed, crashed };
 
-// `test`: "Suite.DISABLED_Name". `environment`: variables to set, or to unset (no value).
+// `test` has the form "Suite.DISABLED_Name". Variables of `environment` without a value are unset.
 using Variables = std::vector<std::pair<std::string, std::optional<std::string>>>;
 ChildEnd runInChild(const std::string& test, const Variables& environment = {});
 

@@ -1,5 +1,5 @@
-// Which candidates a ray meets: every combination of facing, ray flags, instance flags and geometry flags, with the
-// answer computed from the rules of Vulkan 1.3, "Ray Culling" and "Ray Opacity".
+// Candidates of a ray for every combination of facing, ray flags, instance flags and geometry flags. The expected
+// values follow Vulkan 1.3, "Ray Culling" and "Ray Opacity".
 #include "checks.h"
 #include "probe.h"
 
@@ -11,9 +11,9 @@ constexpr std::uint32_t kNoFacingCull = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CUL
 constexpr std::uint32_t kForceOpaque = VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR;
 constexpr std::uint32_t kForceNoOpaque = VK_GEOMETRY_INSTANCE_FORCE_NO_OPAQUE_BIT_KHR;
 
-struct Target {  // an instance and the geometry in it
+struct Target {  // an instance and its geometry
   std::uint32_t flags = 0;
-  bool opaque = true;  // the geometry's flag
+  bool opaque = true;  // flag of the geometry
   bool mirrored = false;
 };
 
@@ -31,8 +31,8 @@ bool isOpaque(const Target& target, std::uint32_t rayFlags) {
   return opaque;
 }
 
-// `fromFront`: the ray meets the side from which the vertices, in object space and a right-handed frame, are
-// counterclockwise. Mirroring the instance changes nothing.
+// `fromFront` means that the vertices are counterclockwise in object space, as seen by the ray, in a right-handed
+// frame. A mirrored instance makes no difference.
 Expected expectedOn(const Target& target, bool triangle, bool fromFront, std::uint32_t rayFlags) {
   const bool opaque = isOpaque(target, rayFlags);
   if ((rayFlags & kCullOpaque) && opaque) return {};
@@ -57,8 +57,8 @@ std::vector<Target> allTargets(bool triangles) {
   return targets;
 }
 
-// Valid combinations only: at most one of the four about opacity, one of the two about faces, one of the two that skip;
-// none about faces together with skipping triangles.
+// Returns all valid combinations: at most one of the four opacity flags, one of the two face flags, and one of the two
+// skip flags, but no face flag if triangles are skipped.
 std::vector<std::uint32_t> allRayFlags(bool skips) {
   std::vector<std::uint32_t> all;
   using Flags = std::vector<std::uint32_t>;
@@ -70,7 +70,7 @@ std::vector<std::uint32_t> allRayFlags(bool skips) {
   return all;
 }
 
-// One instance per target, 4 apart.
+// One instance per target, at distances of 4.
 Scene sceneOf(const std::vector<Target>& targets, bool triangles) {
   Scene scene;
   const std::size_t blas[] = {
@@ -113,11 +113,11 @@ void checkTable(bool triangles, bool skips) {
   checks.done();
 }
 
-TEST(Culling, TrianglesMeetEveryCombinationOfFlags) { checkTable(true, false); }
-TEST(Culling, BoxesMeetEveryCombinationOfFlags) { checkTable(false, false); }
-// With the feature rayTraversalPrimitiveCulling, which Quintet enables where it is there.
-TEST(Culling, SkippedTriangles) { checkTable(true, true); }
-TEST(Culling, SkippedBoxes) { checkTable(false, true); }
+TEST(Culling, AppliesEveryCombinationOfFlagsToTriangles) { checkTable(true, false); }
+TEST(Culling, AppliesEveryCombinationOfFlagsToBoxes) { checkTable(false, false); }
+// These use the feature rayTraversalPrimitiveCulling, which Quintet enables if it is supported.
+TEST(Culling, SkipsTriangles) { checkTable(true, true); }
+TEST(Culling, SkipsBoxes) { checkTable(false, true); }
 
 }  // namespace
 }  // namespace quintet::oracle

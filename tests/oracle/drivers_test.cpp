@@ -1,5 +1,5 @@
-// What drivers make of acceleration structures, without the workarounds of rt::BlasBuilder (suite BareDriver), and with
-// them (suite Workarounds). Pipeline caches, too.
+// Acceleration structures and pipeline caches of drivers without the workarounds of rt::BlasBuilder (suite BareDriver)
+// and with them (suite Workarounds).
 #include <algorithm>
 #include <limits>
 #include <random>
@@ -13,9 +13,9 @@
 namespace quintet::oracle {
 namespace {
 
-// ---- Build ranges.
+// ---- Build ranges
 
-// Triangles at x = 0, 4, 8, …
+// Returns triangles at x = 0, 4, 8, …
 std::vector<vec3> rowOfTriangles(std::uint32_t count) {
   std::vector<vec3> positions;
   for (std::uint32_t k = 0; k < count; ++k)
@@ -30,8 +30,8 @@ std::vector<ProbeHit> traceRow(VkDeviceAddress blas, std::uint32_t count, std::u
   return traceProbe(tlas.handle(), rays);
 }
 
-// Triangle 2 of 6 alone, by `firstVertex`. Applied twice it is triangle 4.
-TEST(BareDriver, FirstVertexOfABuildRange) {
+// Selects triangle 2 of 6 with `firstVertex`. If it is applied twice, the result is triangle 4.
+TEST(BareDriver, AppliesFirstVertexOnce) {
   Checks checks;
   for (const bool indexed : {false, true}) {
     BareGeometry geometry{.positions = rowOfTriangles(6), .primitiveCount = 1, .firstVertex = 6};
@@ -46,8 +46,8 @@ TEST(BareDriver, FirstVertexOfABuildRange) {
   checks.done(kFirstVertexTwice);
 }
 
-// What the library does instead: firstVertex 0, offsets in the address or in bytes of the range.
-TEST(Workarounds, PrimitiveOffsetOfABuildRange) {
+// The library uses firstVertex 0, and offsets in the address or the primitiveOffset of the range.
+TEST(Workarounds, AppliesPrimitiveOffsets) {
   Checks checks;
   for (const bool indexed : {false, true}) {
     BareGeometry geometry{.positions = rowOfTriangles(6), .primitiveCount = 1};
@@ -62,7 +62,7 @@ TEST(Workarounds, PrimitiveOffsetOfABuildRange) {
   checks.done();
 }
 
-// ---- Inactive primitives: the x of their vertices (or of their minimum) is not a number.
+// ---- Inactive primitives: x of their vertices (or of their minimum) is NaN
 
 constexpr std::uint32_t kRow = 16;
 constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
@@ -83,7 +83,7 @@ std::vector<Bounds3> boxesWithHoles() {
   return boxes;
 }
 
-TEST(BareDriver, InactivePrimitives) {
+TEST(BareDriver, KeepsPrimitivesNextToInactiveOnes) {
   Checks checks;
   std::vector<std::uint32_t> indices;
   for (std::uint32_t k = 0; k < 3 * kRow; ++k) indices.push_back(k);
@@ -110,8 +110,8 @@ TEST(BareDriver, InactivePrimitives) {
   checks.done(kInactiveTakesOthers);
 }
 
-// The library drops them before the build and keeps a map.
-TEST(Workarounds, InactivePrimitives) {
+// The library removes inactive primitives before the build and keeps a map.
+TEST(Workarounds, KeepsPrimitivesNextToInactiveOnes) {
   Scene scene;
   Triangles triangles{.positions = rowWithHoles()};
   for (std::uint32_t k = 0; k < kRow; ++k) triangles.indices.push_back(uvec3(3 * k, 3 * k + 1, 3 * k + 2));
@@ -127,8 +127,8 @@ TEST(Workarounds, InactivePrimitives) {
   checks.done();
 }
 
-// An instance that refers to nothing is inactive; the others are met.
-TEST(BareDriver, InactiveInstances) {
+// An instance without a BLAS is inactive and does not affect others.
+TEST(BareDriver, KeepsInstancesNextToInactiveOnes) {
   const BareStructure blas({BareGeometry{.positions = rowOfTriangles(1), .primitiveCount = 1}});
   std::vector<VkAccelerationStructureInstanceKHR> instances;
   std::vector<ProbeRay> rays;
@@ -147,8 +147,8 @@ TEST(BareDriver, InactiveInstances) {
   checks.done();
 }
 
-// ---- The order of primitives. All boxes lie on one ray and are ignored, so that each is a candidate; they are met
-// from the root of the tree down, the nearer child first. That shows which boxes share a node.
+// ---- Order of primitives. All boxes are on one ray, and the any-hit shader ignores them, so each is a candidate. The
+// traversal visits the nearer child of each node first, so the order of the candidates shows which boxes share a node.
 
 constexpr std::uint32_t kMostBoxes = 12, kRoom = 64;
 struct Order {
@@ -167,11 +167,11 @@ void main() {
 }
 )";
 
-// The order in which a tree that halves the range [first, last] meets them, by their distances.
+// Computes the order of the candidates for a tree that halves the range [first, last], from their distances.
 void meetHalves(const std::vector<float>& distances, std::size_t first, std::size_t last,
                 std::vector<std::uint32_t>& order) {
   if (first == last) return order.push_back(static_cast<std::uint32_t>(first));
-  const std::size_t middle = (first + last) / 2;  // of the left half
+  const std::size_t middle = (first + last) / 2;  // last index of the left half
   const auto at = distances.begin();
   const bool leftFirst =
       *std::min_element(at + first, at + middle + 1) < *std::min_element(at + middle + 1, at + last + 1);
@@ -180,7 +180,7 @@ void meetHalves(const std::vector<float>& distances, std::size_t first, std::siz
   if (!leftFirst) meetHalves(distances, first, middle, order);
 }
 
-TEST(BareDriver, TheBuilderFindsAnOrderOfItsOwn) {
+TEST(BareDriver, SortsPrimitives) {
   const Program program({.common = kOrderCommon,
                          .rayGeneration = kOrderRayGeneration,
                          .miss = {"void main() {}"},
@@ -207,9 +207,9 @@ TEST(BareDriver, TheBuilderFindsAnOrderOfItsOwn) {
   checks.done(kKeepsOrder);
 }
 
-// ---- Sizes.
+// ---- Sizes
 
-TEST(BareDriver, CompactionSavesMemory) {
+TEST(BareDriver, SavesMemoryByCompaction) {
   const BareStructure blas({BareGeometry{.positions = rowOfTriangles(5000), .primitiveCount = 5000}}, true);
   Checks checks;
   checks.that(blas.compactedSize() > 0 && blas.compactedSize() <= blas.size(), "{} of {} bytes", blas.compactedSize(),
@@ -220,7 +220,7 @@ TEST(BareDriver, CompactionSavesMemory) {
 
 constexpr char kStoreIndex[] = "void main() { launch.outputs.at[launchIndex()].a = launchIndex(); }\n";
 
-TEST(BareDriver, PipelineCacheHoldsThePipeline) {
+TEST(BareDriver, StoresPipelinesInThePipelineCache) {
   const VolkDeviceTable& vk = test::testContext().vk();
   const VkDevice device = test::testContext().device();
   VkPipelineCacheCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};

@@ -1,5 +1,5 @@
-// Hit groups and pipelines as Vulkan makes them, without the workarounds of rt::Pipeline (suite BareDriver), and with
-// them (suite Workarounds).
+// Hit groups and pipelines without the workarounds of rt::Pipeline (suite BareDriver) and with them (suite
+// Workarounds).
 #include <optional>
 
 #include "bare.h"
@@ -10,7 +10,7 @@
 namespace quintet::oracle {
 namespace {
 
-// ---- Two hit groups share an intersection stage; their any-hit shaders differ.
+// ---- Two hit groups with the same intersection stage and different any-hit shaders
 
 constexpr char kGroupCommon[] = "struct Input { float x; }; struct Output { uint end; };\n";
 constexpr char kGroupRayGeneration[] = R"(
@@ -28,7 +28,7 @@ constexpr char kGroupIntersection[] =
 constexpr char kIgnoreAll[] = "void main() { ignoreIntersectionEXT; }\n";
 constexpr char kAcceptAll[] = "void main() {}\n";
 
-// Two boxes, at x = 0 with record 0 and at x = 10 with record 1.
+// Two boxes: at x = 0 with record 0, and at x = 10 with record 1.
 Scene twoBoxes() {
   Scene scene;
   const std::size_t blas = scene.addBlas({Boxes{{boxAt({0, 0, 0})}, false}});
@@ -66,19 +66,19 @@ std::vector<std::uint32_t> traceSharedStage(bool firstIgnores) {
   return ends;
 }
 
-TEST(BareDriver, GroupsThatShareAnIntersectionStage) {
+TEST(BareDriver, RunsTheAnyHitShaderOfEachGroup) {
   Checks checks;
   for (const bool firstIgnores : {true, false}) {
     const auto ends = traceSharedStage(firstIgnores);
     const std::uint32_t first = firstIgnores ? kMissed : kHit, second = firstIgnores ? kHit : kMissed;
-    checks.equal(ends[0], first, "first group, it ignores: {}", firstIgnores);
+    checks.equal(ends[0], first, "first group, ignores: {}", firstIgnores);
     checks.quirk(ends[1], second, first, "second group, first ignores: {}", firstIgnores);
   }
   checks.done(kSharedAnyHit);
 }
 
-// rt::Pipeline makes an entry of its own for each pair of intersection and any-hit shader.
-TEST(Workarounds, GroupsThatShareAnIntersectionStage) {
+// rt::Pipeline creates a separate stage entry for each pair of intersection and any-hit shader.
+TEST(Workarounds, RunsTheAnyHitShaderOfEachGroup) {
   Checks checks;
   const Scene scene = twoBoxes();
   for (const bool firstIgnores : {true, false}) {
@@ -89,15 +89,15 @@ TEST(Workarounds, GroupsThatShareAnIntersectionStage) {
                            .miss = {kGroupMiss},
                            .hit = {firstIgnores ? ignores : accepts, firstIgnores ? accepts : ignores}});
     const auto ends = run<std::uint32_t>(program, scene, std::vector<float>{0, 10});
-    checks.equal(ends[0], firstIgnores ? kMissed : kHit, "first group, it ignores: {}", firstIgnores);
+    checks.equal(ends[0], firstIgnores ? kMissed : kHit, "first group, ignores: {}", firstIgnores);
     checks.equal(ends[1], firstIgnores ? kHit : kMissed, "second group, first ignores: {}", firstIgnores);
   }
   checks.done();
 }
 
-// ---- Pipeline libraries.
+// ---- Pipeline libraries
 
-// Hit and miss groups from a library; the ray generation stage in the pipeline, or in a library too.
+// Hit and miss groups are in a library, the ray generation stage in the pipeline or in a library.
 void traceWithLibraries(bool rayGenerationToo) {
   const auto compiled = [](VkShaderStageFlagBits bit, shader::Stage kind, const char* text) {
     return BareStage{bit, compileStage(kind, kGroupCommon, text)};
@@ -133,11 +133,11 @@ void traceWithLibraries(bool rayGenerationToo) {
   checks.done();
 }
 
-TEST(BareDriver, DISABLED_EveryStageFromLibraries) { traceWithLibraries(true); }
-TEST(Workarounds, RayGenerationStageBesideLibraries) { traceWithLibraries(false); }
+TEST(BareDriver, DISABLED_SupportsEveryStageInLibraries) { traceWithLibraries(true); }
+TEST(Workarounds, SupportsLibrariesExceptForRayGeneration) { traceWithLibraries(false); }
 
-TEST(BareDriver, EveryStageFromLibraries) {
-  const ChildEnd end = runInChild("BareDriver.DISABLED_EveryStageFromLibraries");
+TEST(BareDriver, SupportsEveryStageInLibraries) {
+  const ChildEnd end = runInChild("BareDriver.DISABLED_SupportsEveryStageInLibraries");
   Checks checks;
   checks.quirkThat(end == ChildEnd::passed, "the process {}", end == ChildEnd::crashed ? "crashed" : "failed");
   checks.done(kLibrariesCrash);

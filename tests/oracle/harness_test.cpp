@@ -1,4 +1,4 @@
-// The oracle's own judgement.
+// Tests of the oracle itself.
 #include <algorithm>
 
 #include "checks.h"
@@ -10,7 +10,7 @@ constexpr std::uint32_t version(std::uint32_t major, std::uint32_t minor, std::u
   return VK_MAKE_API_VERSION(0, major, minor, patch);
 }
 
-TEST(Harness, JudgesQuirksByDriverAndVersion) {
+TEST(Harness, EvaluatesQuirksByDriverAndVersion) {
   constexpr KnownQuirk quirk{.id = "test", .text = "for this test", .version = version(25, 0, 7)};
   constexpr KnownQuirk sporadic{.id = "test", .text = "for this test", .sporadic = true, .version = version(25, 0, 7)};
   const Driver same{quirk.driver, version(25, 0, 7)}, older{quirk.driver, version(24, 3, 0)},
@@ -27,15 +27,15 @@ TEST(Harness, JudgesQuirksByDriverAndVersion) {
     verdict(driver, &sporadic, 0, Verdict::pass);
   }
   verdict(older, &quirk, 0, Verdict::pass);
-  verdict(same, &quirk, 0, Verdict::mended);
-  verdict(newer, &quirk, 0, Verdict::mended);
+  verdict(same, &quirk, 0, Verdict::fixed);
+  verdict(newer, &quirk, 0, Verdict::fixed);
   verdict(other, &quirk, 0, Verdict::pass);
   verdict(other, &quirk, 1, Verdict::fail);
   verdict(other, &sporadic, 1, Verdict::fail);
   checks.done();
 }
 
-TEST(Harness, QuirksHaveNamesOfTheirOwn) {
+TEST(Harness, HasUniqueQuirkIds) {
   Checks checks;
   for (const KnownQuirk& quirk : kAllQuirks)
     checks.equal(std::ranges::count(kAllQuirks, quirk.id, &KnownQuirk::id), std::ptrdiff_t{1}, "{}", quirk.id);

@@ -1,5 +1,5 @@
-// Integer arithmetic of ray tracing shaders against the host's: once as the library runs drivers, and once, in a process
-// of its own, without the environment variables that it sets.
+// Integer arithmetic of ray tracing shaders, with the environment variables that the library sets for drivers and, in a
+// separate process, without them.
 #include "checks.h"
 #include "child.h"
 #include "probe.h"
@@ -14,7 +14,7 @@ struct Result {
   std::uint32_t spread, unspread;  // bits interleaved (Morton) and back
   std::uint32_t a, b, c, d;
   std::uint32_t hit;     // computed in closest-hit, from a payload
-  std::uint32_t stored;  // counts the invocations that wrote here, by the swapped pixel
+  std::uint32_t stored;  // number of invocations with this swapped pixel
 };
 
 constexpr char kCommon[] = R"(
@@ -48,7 +48,7 @@ void main() {
   launch.outputs.at[i].c = (h & ~(0xFFu << (i & 15u))) + ((h >> 7) & 63u) * 3u;
   launch.outputs.at[i].d = mix3(h, i);
   launch.outputs.at[i].hit = payload.x;
-  // Beyond the picture if a mask is lost: kept inside, and counted by the host.
+  // Outside the image if a mask is lost. The index is clamped, and the host checks the counts.
   uint to = min(pixel.y * gl_LaunchSizeEXT.x + pixel.x, gl_LaunchSizeEXT.x * gl_LaunchSizeEXT.y - 1u);
   atomicAdd(launch.outputs.at[to].stored, 1u);
 }
@@ -118,12 +118,12 @@ void checkIntegers() {
   checks.done();
 }
 
-TEST(Integers, ShiftsMasksAndProductsAreTheHosts) { checkIntegers(); }
+TEST(Integers, ComputesShiftsMasksAndProductsLikeTheHost) { checkIntegers(); }
 
-TEST(BareDriver, DISABLED_IntegersWithoutOurEnvironment) { checkIntegers(); }
-TEST(BareDriver, IntegersWithoutOurEnvironment) {
+TEST(BareDriver, DISABLED_ComputesIntegersWithoutEnvironmentVariables) { checkIntegers(); }
+TEST(BareDriver, ComputesIntegersWithoutEnvironmentVariables) {
   const ChildEnd end =
-      runInChild("BareDriver.DISABLED_IntegersWithoutOurEnvironment",
+      runInChild("BareDriver.DISABLED_ComputesIntegersWithoutEnvironmentVariables",
                  {{"QUINTET_NO_DRIVER_WORKAROUNDS", "1"}, {"GALLIUM_OVERRIDE_CPU_CAPS", {}}, {"LP_NUM_THREADS", {}}});
   Checks checks;
   checks.quirkThat(end == ChildEnd::passed, "the process {}", end == ChildEnd::crashed ? "crashed" : "failed");

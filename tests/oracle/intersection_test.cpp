@@ -1,20 +1,20 @@
-// Intersection shaders: what reportIntersectionEXT returns, and gl_RayTmaxEXT and the attributes around it.
+// Intersection shaders: the result of reportIntersectionEXT, gl_RayTmaxEXT and the attributes before and after it.
 #include "checks.h"
 #include "probe.h"
 
 namespace quintet::oracle {
 namespace {
 
-// A list of reports that the intersection shader makes one after the other.
+// Reports that the intersection shader makes in this order.
 constexpr std::uint32_t kReports = 6;
 struct Script {
   float tMin = 0, tMax = 100;
   std::uint32_t flags = 0;
   float t[kReports] = {};
-  std::uint32_t ignore[kReports] = {};  // by the any-hit shader: 1 ignores, 2 terminates
+  std::uint32_t ignore[kReports] = {};  // action of the any-hit shader: 1 ignores, 2 terminates
 };
 struct Result {
-  std::uint32_t returned[kReports];  // 1 false, 2 true, 0 not reached
+  std::uint32_t returned[kReports];  // 1 for false, 2 for true, 0 if not reached
   float tMaxBefore[kReports], tMaxAfter[kReports];
   float t;
   std::uint32_t kind, end;
@@ -48,7 +48,7 @@ void main() {
   }
 }
 )";
-// The workaround: reports only what is nearer than all that were accepted, and tracks that itself.
+// Workaround: tracks the nearest accepted t and reports only smaller values.
 constexpr char kTrackingIntersection[] = R"(
 hitAttributeEXT vec2 attributes;
 void main() {
@@ -90,26 +90,26 @@ void main() {
 std::vector<Script> scripts() {
   const Script all[] = {
       {.t = {5, -1}},                                     // in range
-      {.tMin = 2, .tMax = 8, .t = {1, 9, 2, -1}},         // before tmin, beyond tmax, on tmin
-      {.tMin = 2, .tMax = 8, .t = {1.999f, 8.001f, -1}},  // both outside: a miss
+      {.tMin = 2, .tMax = 8, .t = {1, 9, 2, -1}},         // below tmin, above tmax, equal to tmin
+      {.tMin = 2, .tMax = 8, .t = {1.999f, 8.001f, -1}},  // both outside, a miss
       {.t = {0, -1}},                                     // t = tmin = 0
       {.t = {5, 6, 4, 4.5f, 3, -1}},                      // later ones must be nearer
       {.t = {5, -1}, .ignore = {1}},                      // ignored
       {.t = {5, 4, 6, -1}, .ignore = {0, 1, 0}},          // accepted, ignored, beyond the accepted one
-      {.t = {5, 7, 9, 8, -1}, .ignore = {1, 1, 0, 0}},    // an ignored one does not shorten the ray
-      {.t = {5, 4, 3, -1}, .ignore = {0, 2, 0}},          // terminated: never comes back
+      {.t = {5, 7, 9, 8, -1}, .ignore = {1, 1, 0, 0}},    // ignored candidates do not shorten the ray
+      {.t = {5, 4, 3, -1}, .ignore = {0, 2, 0}},          // terminated: the report does not return
       {.t = {5, 4, -1}, .ignore = {2, 0}},
-      {.flags = kOpaque, .t = {5, 6, 4, -1}, .ignore = {1, 1, 1}},  // opaque: the any-hit shader is not asked
-      {.flags = kTerminateOnFirstHit, .t = {5, 4, -1}},             // terminate on the first hit: never comes back
+      {.flags = kOpaque, .t = {5, 6, 4, -1}, .ignore = {1, 1, 1}},  // opaque: the any-hit shader is not called
+      {.flags = kTerminateOnFirstHit, .t = {5, 4, -1}},             // terminates on the first hit
       {.flags = kOpaque | kTerminateOnFirstHit, .t = {5, 4, -1}},
-      {.flags = kTerminateOnFirstHit, .t = {5, 4, 3, -1}, .ignore = {1, 0, 0}},  // the first one does not count
-      {.t = {-1}},                                                               // no report: a miss
+      {.flags = kTerminateOnFirstHit, .t = {5, 4, 3, -1}, .ignore = {1, 0, 0}},  // the first candidate is ignored
+      {.t = {-1}},                                                               // no report, a miss
       {.tMax = 6, .t = {5.5f, 5.25f, 5.75f, 5, 5.125f, 1}},
   };
   return {std::begin(all), std::end(all)};
 }
 
-// By the rules of GLSL_EXT_ray_tracing; the state after all of them in `r`.
+// Applies the rules of GLSL_EXT_ray_tracing.
 Result expectedOf(const Script& script) {
   Result r{};
   r.end = 2;
@@ -140,7 +140,7 @@ std::vector<Result> runScripts(const std::vector<Script>& inputs, const char* in
   return run<Result>(program, scene, inputs);
 }
 
-TEST(Intersection, ReportsTellWhetherTheyCount) {
+TEST(Intersection, ReturnsWhetherReportsAreAccepted) {
   const auto inputs = scripts();
   const auto results = runScripts(inputs);
   Checks checks;
@@ -148,8 +148,8 @@ TEST(Intersection, ReportsTellWhetherTheyCount) {
     const Result expected = expectedOf(inputs[s]);
     const Result& r = results[s];
     for (std::uint32_t k = 0; k < kReports; ++k) {
-      // No specification says whether a report that ends the search by the ray's flag comes back. If it does, it has
-      // counted, and no later one does.
+      // No specification defines whether a report returns if it ends the traversal by the ray flag. If it returns, it
+      // is accepted and later ones are not.
       const bool ended = (inputs[s].flags & kTerminateOnFirstHit) && k >= expected.kind;
       if (ended)
         checks.that(r.returned[k] == 0 || r.returned[k] == (k == expected.kind ? 2 : 1), "script {}, report {}", s, k);
@@ -164,7 +164,7 @@ TEST(Intersection, ReportsTellWhetherTheyCount) {
   checks.done();
 }
 
-TEST(Intersection, TmaxIsTheNearestAcceptedReport) {
+TEST(Intersection, LowersTmaxToTheNearestAcceptedReport) {
   const auto inputs = scripts();
   const auto results = runScripts(inputs);
   Checks checks;
@@ -180,7 +180,7 @@ TEST(Intersection, TmaxIsTheNearestAcceptedReport) {
   checks.done(kTmaxNotLowered);
 }
 
-TEST(Intersection, TmaxTrackedByTheShader) {
+TEST(Intersection, SupportsShadersThatTrackTmax) {
   const auto inputs = scripts();
   const auto results = runScripts(inputs, kTrackingIntersection);
   Checks checks;
@@ -200,7 +200,7 @@ TEST(Intersection, TmaxTrackedByTheShader) {
   checks.done();
 }
 
-TEST(Intersection, AttributesAreThoseOfTheCommittedReport) {
+TEST(Intersection, KeepsAttributesOfTheCommittedReport) {
   const auto inputs = scripts();
   const auto results = runScripts(inputs);
   Checks checks;

@@ -1,4 +1,6 @@
-// Launches whose size the device reads itself: vkCmdTraceRaysIndirectKHR.
+// Launches whose size is in device memory: vkCmdTraceRaysIndirectKHR.
+#include <iterator>
+
 #include "checks.h"
 #include "harness.h"
 #include "program.h"
@@ -6,7 +8,7 @@
 namespace quintet::oracle {
 namespace {
 
-TEST(Launches, SizeFromMemory) {
+TEST(Launches, ReadsTheSizeFromMemory) {
   gpu::Context& context = test::testContext();
   VkPhysicalDeviceRayTracingPipelineFeaturesKHR rayTracing{
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR};
@@ -14,7 +16,7 @@ TEST(Launches, SizeFromMemory) {
   features.pNext = &rayTracing;
   vkGetPhysicalDeviceFeatures2(context.physicalDevice(), &features);
   Checks checks;
-  // Both devices that were measured have it.
+  // lavapipe and the H200 both have this feature.
   checks.that(rayTracing.rayTracingPipelineTraceRaysIndirect, "the device has rayTracingPipelineTraceRaysIndirect");
   constexpr uvec3 kSizes[] = {{1, 1, 1}, {7, 5, 3}, {64, 1, 1}, {1, 33, 1}, {1, 1, 9}, {0, 1, 1}, {16, 16, 1}};
   const Program program({.common = "struct Input { uint unused; }; struct Output { uint count; uint size; };\n",

@@ -1,4 +1,5 @@
-// Local arrays with dynamic indices, in use across reports, while the any-hit shader has such an array too.
+// Dynamically indexed local arrays of an intersection shader across reports, while the any-hit shader uses such an
+// array too.
 #include "checks.h"
 #include "program.h"
 
@@ -34,7 +35,7 @@ void main() {
   launch.outputs.at[i].wrong = wrong;
 }
 )";
-// The workaround: the same values in vectors, reached by constant indices.
+// Workaround: the same values in vectors with constant indices.
 constexpr char kVectorIntersection[] = R"(
 hitAttributeEXT vec2 attributes;
 uvec4 a, b, c, d;
@@ -91,8 +92,8 @@ void checkStacks(const char* intersection, const KnownQuirk* quirk) {
   quirk ? checks.done(*quirk) : checks.done();
 }
 
-TEST(LocalArrays, OutliveReports) { checkStacks(kStackIntersection, &kSharedArrays); }
-TEST(LocalArrays, AsVectorsOutliveReports) { checkStacks(kVectorIntersection, nullptr); }
+TEST(LocalArrays, KeepsArraysAcrossReports) { checkStacks(kStackIntersection, &kSharedArrays); }
+TEST(LocalArrays, KeepsVectorsAcrossReports) { checkStacks(kVectorIntersection, nullptr); }
 
 }  // namespace
 }  // namespace quintet::oracle

@@ -1,4 +1,4 @@
-// quintet_oracle_tests: all options of GoogleTest, and --table (table.h).
+// quintet_oracle_tests: supports the options of GoogleTest and --table (table.h).
 #include <cstdio>
 #include <string_view>
 
@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   const bool all = testing::GTEST_FLAG(filter) == "*" && !testing::GTEST_FLAG(list_tests);
   if (all)
     for (const std::string& id : table->untestedQuirks()) {
-      std::fprintf(stderr, "no test has named the known quirk '%s'\n", id.c_str());
+      std::fprintf(stderr, "no test uses the known quirk '%s'\n", id.c_str());
       result = 1;
     }
   return result;

@@ -1,12 +1,13 @@
-// Payloads and callable data: sizes from 4 to 256 bytes, several at several locations, and what comes back through
-// nested traces and calls.
+// Payloads and callable data: sizes from 4 to 256 bytes, several locations, nested traces and calls.
+#include <iterator>
+
 #include "checks.h"
 #include "program.h"
 
 namespace quintet::oracle {
 namespace {
 
-// One payload of each size, at locations that are neither in order nor without gaps.
+// One payload of each size, at unordered locations with gaps.
 struct Slot {
   std::uint32_t words, location;
 };
@@ -31,8 +32,8 @@ std::string declare(const char* qualifier, std::uint32_t location, std::uint32_t
                      words, location, qualifier);
 }
 
-// Each size is filled, traced with its own hit and miss record, and written out. The payloads of the other locations
-// must not change: all are filled before the first trace.
+// Fills a payload of each size, traces with its own hit and miss record, and stores the result. Payloads at other
+// locations, which are filled before the first trace, must not change.
 std::string rayGeneration() {
   std::string text, fill, trace, write;
   for (std::uint32_t k = 0; k < kSlotCount; ++k) {
@@ -51,12 +52,12 @@ std::string rayGeneration() {
   return text + "void main() {\n  Input aim = launch.inputs.at[launchIndex()];\n" + fill + trace + write + "}\n";
 }
 std::string stage(std::uint32_t words, const std::string& value) {
-  // The location of an incoming payload does not matter.
+  // The location of an incoming payload is irrelevant.
   return declare("rayPayloadInEXT", words % 7, words) +
          fmt::format("void main() {{\n  for (uint k = 0u; k < {0}u; ++k) payload{0}.w[k] = {1};\n}}\n", words, value);
 }
 
-TEST(Payloads, FourTo256BytesAtManyLocations) {
+TEST(Payloads, SupportsFourTo256BytesAtManyLocations) {
   ProgramText text{.common = kCommon, .rayGeneration = rayGeneration(), .miss = {}, .hit = {}};
   for (const Slot& slot : kSlots) {
     const std::string payload = fmt::format("payload{}.w[k]", slot.words);
@@ -83,7 +84,7 @@ TEST(Payloads, FourTo256BytesAtManyLocations) {
   checks.done();
 }
 
-// ---- Nested traces with payloads of their own: what the outer stage holds in locals and in its payload survives.
+// ---- Nested traces with their own payloads keep the locals and the payload of the outer stage
 
 constexpr char kNestedRayGeneration[] = R"(
 layout(location = 3) rayPayloadEXT uvec4 outer;
@@ -94,7 +95,7 @@ void main() {
   for (uint k = 0u; k < 4u; ++k) launch.outputs.at[launchIndex()].words[k] = outer[k];
 }
 )";
-// Traces twice with different payloads, back and forth between its own incoming payload and the others.
+// Traces twice with different payloads and uses its incoming payload in between.
 std::string nestingStage(std::uint32_t tag) {
   return fmt::format(R"(
 layout(location = 0) rayPayloadInEXT uvec4 incoming;
@@ -115,7 +116,7 @@ void main() {{
                      tag);
 }
 
-TEST(Payloads, NestedTracesLeaveTheOuterStageAlone) {
+TEST(Payloads, KeepsStateOfTheOuterStageInNestedTraces) {
   const std::string first =
       "layout(location = 5) rayPayloadInEXT vec3 p;\nvoid main() { p = vec3(p.x + 1.0, 3.0, p.z); }\n";
   const std::string second = "layout(location = 6) rayPayloadInEXT uint p;\nvoid main() { p = p * 2u + 1u; }\n";
@@ -138,7 +139,7 @@ TEST(Payloads, NestedTracesLeaveTheOuterStageAlone) {
   checks.done();
 }
 
-// ---- Callable shaders.
+// ---- Callable shaders
 
 constexpr char kCallableRayGeneration[] = R"(
 layout(location = 0) callableDataEXT uint small;
@@ -149,7 +150,7 @@ void main() {
   uint i = launchIndex();
   small = aim.seed;
   for (uint k = 0u; k < 3u; ++k) vectors[k] = vec4(float(aim.seed), float(k), 0.0, 0.0);
-  executeCallableEXT(aim.seed % 3u, 0);              // differs between neighbours
+  executeCallableEXT(aim.seed % 3u, 0);              // differs between neighbors
   executeCallableEXT(3u, 7);
   payload = uvec2(aim.seed, 0u);
   traceRayEXT(tlas, 0u, 0xFFu, 0u, 0u, 0u, vec3(aim.x, 0.0, 3.0), 0.0, vec3(0.0, 0.0, -1.0), 100.0, 1);
@@ -163,7 +164,7 @@ std::string addingCallable(std::uint32_t number) {
   return fmt::format("layout(location = 2) callableDataInEXT uint data;\nvoid main() {{ data = data * 10u + {}u; }}\n",
                      number);
 }
-// Calls others, with data of its own, and goes on with its own locals.
+// Calls other callables with its own data and then uses its own locals.
 constexpr char kVectorCallable[] = R"(
 layout(location = 0) callableDataInEXT vec4 vectors[3];
 layout(location = 1) callableDataEXT uint inner;
@@ -200,7 +201,7 @@ void main() {{
 
 std::uint32_t nestedCall(std::uint32_t data) { return data + data * 10 + data % 3; }
 
-TEST(Callables, CallCallablesFromEveryStageThatMay) {
+TEST(Callables, AreCallableFromEveryAllowedStage) {
   const Program program(
       {.common = kCommon,
        .rayGeneration = kCallableRayGeneration,

@@ -42,7 +42,7 @@ layout(location = 0) rayPayloadInEXT Output result;
 void main() { result.anyHits++; }
 )";
 
-// Box i of geometry g is the unit cube around (3 i, 3 g, 0). Slabs (Kay and Kajiya, 1986).
+// Box i of geometry g is the unit cube at (3 i, 3 g, 0). Slab test (Kay and Kajiya, 1986).
 constexpr char kIntersection[] = R"(
 hitAttributeEXT vec2 attributes;
 void main() {

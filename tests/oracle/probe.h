@@ -1,12 +1,15 @@
-// The program that many cases share: rays with all arguments of traceRayEXT in, what happened out.
+// A program that many tests share: it maps rays with all arguments of traceRayEXT to hits.
 #ifndef QUINTET_TESTS_ORACLE_PROBE_H
 #define QUINTET_TESTS_ORACLE_PROBE_H
+
+#include <cstdint>
+#include <vector>
 
 #include "program.h"
 
 namespace quintet::oracle {
 
-// Bits of traceRayEXT's flags (SPIR-V "Ray Flags").
+// Ray flags of traceRayEXT (SPIR-V "Ray Flags").
 enum RayFlag : std::uint32_t {
   kOpaque = 0x1,
   kNoOpaque = 0x2,
@@ -34,12 +37,12 @@ struct ProbeRay {
   std::uint32_t miss = 0;
 };
 
-// The stage that wrote the result last.
+// The last stage that wrote the result.
 enum ProbeEnd : std::uint32_t { kNothing = 0, kHit = 1, kMissed = 2 };
 
 struct ProbeHit {
   std::uint32_t end = kNothing;
-  std::uint32_t anyHits = 0;  // calls of any-hit shaders
+  std::uint32_t anyHits = 0;  // number of any-hit calls
   float t = 0;
   std::uint32_t kind = 0;
   std::uint32_t primitive = 0;
@@ -50,13 +53,14 @@ struct ProbeHit {
   vec2 attributes{0};
 };
 
-// Hit groups: 0 triangles, 1 boxes (the intersection shader reports where the ray enters the box, or tMin
-// when it starts inside; hit kind 7). Box i of geometry g has to be the unit cube around (3 i, 3 g, 0). Both count their any-hit calls. Records carry a uint, the tag.
+// Hit group 0 is for triangles, 1 for boxes. The intersection shader reports the t where the ray enters the box, or
+// tMin if it starts inside, with hit kind 7. Box i of geometry g must be the unit cube at (3 i, 3 g, 0). Any-hit
+// shaders count their calls. The data of a record is its tag, a uint.
 const Program& probe();
 enum ProbeGroup : std::uint32_t { kProbeTriangles = 0, kProbeBoxes = 1 };
 
 std::vector<ProbeHit> traceProbe(const Scene& scene, const std::vector<ProbeRay>& rays, const Table& table);
-// One hit record for each group and one miss record, with tags 0.
+// Use one hit record per group and one miss record with the tag 0.
 std::vector<ProbeHit> traceProbe(const Scene& scene, const std::vector<ProbeRay>& rays);
 std::vector<ProbeHit> traceProbe(VkAccelerationStructureKHR tlas, const std::vector<ProbeRay>& rays);
 

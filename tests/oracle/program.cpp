@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "harness.h"
+#include "program/linked/device_stages.h"
 
 namespace quintet::oracle {
 namespace {
@@ -39,7 +40,8 @@ class Assembler {
       options_.groups.push_back({.general = stage(shader::Stage::callable, callable)});
     options_.maxRecursionDepth = text.recursion;
     options_.name = "oracle";
-    for (std::size_t k = 0; k < spirv_.size(); ++k) options_.stages.push_back({kinds_[k], spirv_[k], "oracle"});
+    for (std::size_t k = 0; k < spirv_.size(); ++k)
+      options_.stages.push_back({program::vulkanStage(kinds_[k]), spirv_[k], "oracle"});
   }
   const rt::PipelineOptions& options() const { return options_; }
 
@@ -65,7 +67,8 @@ std::uint32_t countOf(std::size_t n) { return static_cast<std::uint32_t>(n); }
 }  // namespace
 
 std::vector<std::uint32_t> compileStage(shader::Stage stage, const std::string& common, const std::string& text) {
-  // As written: the optimizer merges reads of a built-in before and after a trace or a report (SPIRV-Tools 2023.2).
+  // Without optimization, because the optimizer merges reads of a built-in before and after a trace or a report
+  // (SPIRV-Tools 2023.2).
   static const shader::Compiler compiler{shader::CompilerOptions{.optimize = false}};
   shader::Source source;
   source.stage = stage;
@@ -73,7 +76,7 @@ std::vector<std::uint32_t> compileStage(shader::Stage stage, const std::string& 
   source.name = "oracle" + std::string(shader::stageExtension(stage));
   shader::Result result = compiler.compile(source);
   std::string messages;
-  for (const shader::Diagnostic& d : result.diagnostics) messages += "\n" + d.format();
+  for (const Diagnostic& d : result.diagnostics) messages += "\n" + d.format();
   if (!result.ok()) throw std::runtime_error("the shader does not compile:" + messages + "\n" + text);
   return std::move(result.spirv);
 }
@@ -115,7 +118,7 @@ rt::SbtContents Program::contents(const Table& table) const {
   const auto fill = [](std::vector<rt::SbtRecord>& to, const std::vector<Record>& from, std::uint32_t first,
                        std::uint32_t count) {
     for (const Record& record : from) {
-      if (record.shader >= count) throw std::out_of_range("oracle: a record of a shader that does not exist");
+      if (record.shader >= count) throw std::out_of_range("oracle: a record refers to an unknown shader");
       to.push_back({first + record.shader, record.data});
     }
   };

@@ -1,25 +1,32 @@
-// The tiny programs of the oracle: GLSL stages, a scene, one launch, an array of results.
+// The small programs of the oracle: GLSL stages, one launch, and an array of results.
 //
-// Before every stage comes a header: GL_EXT_ray_tracing and scalar layout, `tlas`, and the program's
-// `common` text, which declares `struct Input` and `struct Output`. Then every stage sees
+// The header of every stage enables GL_EXT_ray_tracing and scalar layout, declares `tlas`, and contains the `common`
+// text of the program, which declares `struct Input` and `struct Output`. Every stage can use
 //   launch.inputs.at[i], launch.outputs.at[i], launch.user (uvec4), launch.address[0 … 3],
-//   uint launchIndex()      // of this invocation, x fastest
-// Shader texts that are equal become one stage.
+//   uint launchIndex()      // of this invocation; x varies fastest
+// Equal shader texts become one stage.
 #ifndef QUINTET_TESTS_ORACLE_PROGRAM_H
 #define QUINTET_TESTS_ORACLE_PROGRAM_H
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <functional>
+#include <memory>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "rt/pipeline.h"
 #include "scene.h"
+#include "shader/compiler.h"
 
 namespace quintet::oracle {
 
 struct HitGroupText {
-  std::string closestHit = {}, anyHit = {}, intersection = {};  // empty: none
+  std::string closestHit = {}, anyHit = {}, intersection = {};  // empty means none
 };
 
 struct ProgramText {
@@ -31,8 +38,8 @@ struct ProgramText {
   std::uint32_t recursion = 1;
 };
 
-// A record of the shader binding table: the number of a miss shader, hit group or callable shader of
-// the program, and its data.
+// A record of the shader binding table: the index of a miss shader, hit group or callable shader of the program, and
+// its data.
 struct Record {
   std::uint32_t shader = 0;
   std::vector<std::byte> data = {};
@@ -51,19 +58,19 @@ class Program {
  public:
   explicit Program(const ProgramText& text);
   const rt::Pipeline& pipeline() const { return *pipeline_; }
-  Table plainTable() const;  // each shader once, in order, without data
+  Table plainTable() const;  // one record per shader, in order, without data
   rt::SbtContents contents(const Table& table) const;
-  static gpu::BindlessSet& set();  // all programs' descriptors and push constants
+  static gpu::BindlessSet& set();  // descriptors and push constants of all programs
 
  private:
   std::uint32_t missCount_, hitCount_, callableCount_;
   std::unique_ptr<rt::Pipeline> pipeline_;
 };
 
-// Calls `destroy` after the last test, before the device goes; the last one registered first.
+// Calls `destroy` after the last test, before the device is destroyed, in reverse order of registration.
 void atEnd(std::function<void()> destroy);
 
-// SPIR-V of one stage with the header before it.
+// Compiles one stage with the header.
 std::vector<std::uint32_t> compileStage(shader::Stage stage, const std::string& common, const std::string& text);
 
 // Push constants of all programs: `launch` in GLSL.
@@ -74,11 +81,11 @@ struct LaunchConstants {
 };
 
 struct LaunchOptions {
-  uvec3 size{0};            // 0: one invocation for each input
-  std::size_t outputs = 0;  // 0: one for each invocation
+  uvec3 size{0};            // 0 means one invocation per input
+  std::size_t outputs = 0;  // 0 means one per invocation
   uvec4 user{0};
   std::array<VkDeviceAddress, 4> addresses{};
-  const Table* table = nullptr;  // null: plainTable()
+  const Table* table = nullptr;  // null means plainTable()
 };
 
 namespace detail {
@@ -87,7 +94,7 @@ std::vector<std::byte> launch(const Program& program, VkAccelerationStructureKHR
                               const LaunchOptions& options);
 }  // namespace detail
 
-// The outputs are zero before the launch.
+// Runs a program. Its outputs are zero before the launch.
 template <class Out, class In>
 std::vector<Out> run(const Program& program, VkAccelerationStructureKHR tlas, const std::vector<In>& inputs,
                      const LaunchOptions& options = {}) {

@@ -1,4 +1,6 @@
-// The arguments of traceRayEXT: origin, direction and its length, tmin and tmax, cull mask; and scenes without anything.
+// Arguments of traceRayEXT: origin, direction and its length, tmin, tmax and cull mask; and empty scenes.
+#include <algorithm>
+
 #include "checks.h"
 #include "probe.h"
 
@@ -7,7 +9,7 @@ namespace {
 
 mat4 scaled(float s) { return glm::scale(mat4(1.0f), vec3(s)); }
 
-// A triangle in the plane z = 0 (instance 0) and a cube (instance 1, 10 to the right), both in instances scaled by s.
+// A triangle in the plane z = 0 (instance 0) and a cube at x = 10 (instance 1), both scaled by s.
 Scene makeScene(float s) {
   Scene scene;
   scene.add(scene.addBlas({triangleAt(0, 0, 0)}), {.worldFromObject = scaled(s)});
@@ -16,7 +18,7 @@ Scene makeScene(float s) {
   return scene;
 }
 
-TEST(Rays, TScalesWithTheDirection) {
+TEST(Rays, ScalesTWithTheDirection) {
   Checks checks;
   for (const float size : {1.0f, 0.25f, 4.0f}) {
     std::vector<ProbeRay> rays;
@@ -34,7 +36,7 @@ TEST(Rays, TScalesWithTheDirection) {
   checks.done();
 }
 
-TEST(Rays, OriginInsideABoxReportsTmin) {
+TEST(Rays, StartsInsideBoxesAtTmin) {
   std::vector<ProbeRay> rays;
   for (const float tMin : {0.0f, 0.125f})
     for (const vec3 origin : {vec3(10, 0, 0), vec3(10.4f, 0.3f, -0.4f), vec3(9.6f, -0.25f, 0.45f), vec3(10, 0.49f, 0)})
@@ -53,8 +55,8 @@ TEST(Rays, OriginInsideABoxReportsTmin) {
   checks.done();
 }
 
-// The triangle is met at t = 4, the box from 3.5 to 4.5. What lies exactly on a limit is left out for triangles.
-TEST(Rays, TminAndTmaxBoundTheHits) {
+// Rays intersect the triangle at t = 4 and the box from 3.5 to 4.5. Triangles exactly at a limit are not tested.
+TEST(Rays, LimitsHitsToTminAndTmax) {
   struct Case {
     float tMin, tMax;
     bool triangle, box;
@@ -81,7 +83,7 @@ TEST(Rays, TminAndTmaxBoundTheHits) {
   checks.done();
 }
 
-TEST(Rays, GeometryBehindTheOriginIsNotMet) {
+TEST(Rays, MissesGeometryBehindTheOrigin) {
   std::vector<ProbeRay> rays;
   for (const float x : {0.0f, 10.0f}) rays.push_back({.origin = {x, 0, -1}, .direction = {0, 0, -1}});
   const auto hits = traceProbe(makeScene(1), rays);
@@ -90,7 +92,7 @@ TEST(Rays, GeometryBehindTheOriginIsNotMet) {
   checks.done();
 }
 
-TEST(Rays, CullMaskUsesEightBits) {
+TEST(Rays, UsesEightBitsOfTheCullMask) {
   std::vector<std::uint32_t> masks = {0, 0xFF, 0x55, 0xAA, 0x0F, 0x81};
   for (std::uint32_t bit = 0; bit < 8; ++bit) masks.push_back(1u << bit);
   std::vector<std::uint32_t> rayMasks = masks;
@@ -117,7 +119,7 @@ TEST(Rays, CullMaskUsesEightBits) {
   checks.done();
 }
 
-TEST(Rays, EmptyScenesMiss) {
+TEST(Rays, MissesEmptyScenes) {
   std::vector<ProbeRay> rays;
   for (int k = 0; k < 64; ++k)
     rays.push_back({.origin = {0.1f * static_cast<float>(k), 0, 0},
@@ -133,8 +135,8 @@ TEST(Rays, EmptyScenesMiss) {
   checks.done();
 }
 
-// Boxes without volume may be met or not; those beside them are.
-TEST(Rays, FlatBoxesDisturbNoOthers) {
+// Boxes without volume may be hit or not, but must not affect other boxes.
+TEST(Rays, HitsBoxesNextToFlatOnes) {
   Scene scene;
   Boxes boxes;
   for (std::uint32_t k = 0; k < 24; ++k) {
@@ -154,8 +156,8 @@ TEST(Rays, FlatBoxesDisturbNoOthers) {
   checks.done();
 }
 
-// The nearest of many layers is the closest hit, in whatever order they were built.
-TEST(Rays, TheNearestHitWins) {
+// The closest hit is the nearest of many layers, independent of their order in the build.
+TEST(Rays, FindsTheNearestHit) {
   Scene scene;
   Triangles layers;
   Boxes boxes;

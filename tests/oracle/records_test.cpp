@@ -1,6 +1,6 @@
-// The shader binding table: which record a hit, a miss or a callable reaches, and what the shader reads there.
-// Vulkan 1.3, "Hit Shader Binding Table": record = instance offset (24 bits) + geometry index · stride (4 bits) + offset
-// (4 bits); miss index: 16 bits. Bits of the arguments beyond these are not used.
+// The shader binding table: the record of a hit, a miss or a callable, and its data. Vulkan 1.3, "Hit Shader Binding
+// Table": record = instance offset (24 bits) + geometry index · stride (4 bits) + offset (4 bits). The miss index has
+// 16 bits. Higher bits of the arguments are not used.
 #include <algorithm>
 
 #include "bare.h"
@@ -11,15 +11,15 @@
 namespace quintet::oracle {
 namespace {
 
-// Sixteen geometries of one triangle each, 4 apart in x.
+// Returns geometries with one triangle each, at distances of 4 in x.
 std::vector<Triangles> geometries(std::uint32_t count) {
   std::vector<Triangles> result;
   for (std::uint32_t g = 0; g < count; ++g) result.push_back(triangleAt(4.0f * static_cast<float>(g), 0, 0));
   return result;
 }
 
-// Every offset and stride of 4 bits, some with higher bits set, on 5 geometries of 3 instances.
-TEST(Records, HitRecordIsInstancePlusGeometryTimesStridePlusOffset) {
+// Every offset and stride of 4 bits, with 5 geometries and 3 instances.
+TEST(Records, AddsInstanceOffsetGeometryTimesStrideAndRayOffset) {
   constexpr std::uint32_t kGeometries = 5, kInstanceOffsets[] = {0, 7, 100};
   Scene scene;
   const std::size_t blas = scene.addBlas(geometries(kGeometries));
@@ -47,7 +47,7 @@ TEST(Records, HitRecordIsInstancePlusGeometryTimesStridePlusOffset) {
   checks.done();
 }
 
-TEST(Records, BitsBeyondTheFourAreNotUsed) {
+TEST(Records, IgnoresHigherBitsOfOffsetAndStride) {
   Scene scene;
   scene.add(scene.addBlas(geometries(3)));
   Table table{.miss = {recordOf(0, 0u)}, .hit = {}};
@@ -67,7 +67,7 @@ TEST(Records, BitsBeyondTheFourAreNotUsed) {
   checks.done();
 }
 
-TEST(Records, MissIndexHasSixteenBits) {
+TEST(Records, Uses16BitsOfTheMissIndex) {
   Table table{.miss = {}, .hit = {recordOf(kProbeTriangles, 0u)}};
   for (std::uint32_t k = 0; k < 65536; ++k) table.miss.push_back(recordOf(0, k ^ 0xABCDEF));
   Scene scene;
@@ -88,9 +88,9 @@ TEST(Records, MissIndexHasSixteenBits) {
   checks.done();
 }
 
-// Instance offsets up to 24 bits, alone and with the largest stride and offset: a table of 2^24 + 256 records, of which
-// only those that count are written.
-TEST(Records, InstanceOffsetHas24Bits) {
+// Instance offsets of up to 24 bits, without and with the largest stride and offset. Of the 2^24 + 256 records of the
+// table only the used ones are written.
+TEST(Records, Uses24BitsOfTheInstanceOffset) {
   const gpu::RayTracingLimits& limits = test::testContext().info().limits;
   const rt::SbtContents contents =
       probe().contents({.miss = {recordOf(0, 0u)}, .hit = {recordOf(kProbeTriangles, 0u)}});
@@ -142,7 +142,7 @@ TEST(Records, InstanceOffsetHas24Bits) {
   checks.done();
 }
 
-// ---- What the records hold.
+// ---- Data of the records
 
 constexpr std::uint32_t kWords = 24;
 constexpr char kDataCommon[] = R"(
@@ -173,8 +173,8 @@ struct DataResult {
   std::array<std::uint32_t, kWords> words, any, intersection;
 };
 
-// 96 bytes in every record; ten instances of triangles and of boxes, each with a record of its own.
-TEST(Records, EveryStageReadsTheDataOfItsRecord) {
+// Records with 96 bytes of data, one for each of ten instances of triangles and of boxes.
+TEST(Records, ReadsDataInEveryStage) {
   const std::string end = "  launch.outputs.at[launchIndex()].stage = ";
   const HitGroupText triangles{.closestHit = copyRecord("words", {}, end + "1u;\n"), .anyHit = copyRecord("any")};
   HitGroupText boxes = triangles;
@@ -217,8 +217,8 @@ TEST(Records, EveryStageReadsTheDataOfItsRecord) {
   checks.done();
 }
 
-// A record of zeros: nothing is called, the payload stays.
-TEST(Records, UnusedRecordsCallNothing) {
+// A record of zeros calls no shader, and the payload does not change.
+TEST(Records, CallsNoShaderForUnusedRecords) {
   Scene scene;
   const std::size_t blas = scene.addBlas({triangleAt(0, 0, 0)});
   scene.add(blas);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "harness.h"
-#include "rt/build_description.h"
+#include "rt/acceleration_structure.h"
 
 namespace quintet::oracle {
 

@@ -1,13 +1,15 @@
-// Geometry and instances of an oracle test. Primitives and instances keep their order on every device,
-// so that gl_PrimitiveID and gl_InstanceID are the positions here.
+// Geometry and instances of an oracle test. Primitives and instances keep their order on every device, so
+// gl_PrimitiveID and gl_InstanceID are the indices in the scene.
 #ifndef QUINTET_TESTS_ORACLE_SCENE_H
 #define QUINTET_TESTS_ORACLE_SCENE_H
 
+#include <cstddef>
 #include <deque>
 #include <memory>
 #include <vector>
 
-#include "rt/acceleration_structure.h"
+#include "rt/blas_builder.h"
+#include "rt/tlas.h"
 
 namespace quintet::oracle {
 
@@ -23,25 +25,26 @@ struct Boxes {
   bool singleAnyHit = false;
 };
 
-// One triangle around (x, y) in the plane z, `size` from the middle to the sides: from +z it is counterclockwise.
+// Returns a triangle at (x, y) in the plane z with a distance of `size` from the center to the sides, counterclockwise
+// as seen from +z.
 Triangles triangleAt(float x, float y, float z, float size = 1.0f, bool opaque = true);
-// The cube around `center`.
+// Returns the cube around `center`.
 Bounds3 boxAt(const vec3& center, float halfSize = 0.5f);
 
 class Scene {
  public:
-  // Each returns the number of the BLAS, for add().
+  // Both return the index of the BLAS, for add().
   std::size_t addBlas(const std::vector<Triangles>& geometries);
   std::size_t addBlas(const std::vector<Boxes>& geometries);
-  // With `instance.blas` left empty.
+  // Sets `instance.blas`.
   void add(std::size_t blas, rt::InstanceInput instance = {});
-  // The TLAS; built at the first call, nothing may be added after it.
+  // Returns the TLAS. The first call builds it; nothing can be added afterwards.
   VkAccelerationStructureKHR handle() const;
   VkDeviceAddress address() const;
 
  private:
   std::size_t build(const rt::BlasInput& input);
-  std::deque<rt::Blas> blas_;  // addresses stay
+  std::deque<rt::Blas> blas_;  // keeps addresses valid
   std::vector<rt::InstanceInput> instances_;
   mutable std::unique_ptr<rt::Tlas> tlas_;
 };

@@ -13,9 +13,9 @@ namespace quintet::oracle {
 class TableListener : public testing::EmptyTestEventListener {
  public:
   void OnTestEnd(const testing::TestInfo& test) override;
-  // A row for each test, then the sums; failures in full below.
+  // Returns one row per test, then the sums and the complete failures.
   std::string markdown(const std::string& device) const;
-  // Ids of the entries of kAllQuirks that no test has named.
+  // Returns the ids of the entries of kAllQuirks that no test used.
   std::vector<std::string> untestedQuirks() const;
 
  private:

@@ -1,5 +1,4 @@
-// Traces as a whole: recursion down to the device's limit, several scenes in one launch, gl_RayTmaxEXT from candidate to
-// candidate.
+// Recursion up to the limit of the device, several scenes in one launch, and gl_RayTmaxEXT from candidate to candidate.
 #include <algorithm>
 
 #include "checks.h"
@@ -9,7 +8,7 @@
 namespace quintet::oracle {
 namespace {
 
-// ---- Recursion.
+// ---- Recursion
 
 struct Depth {
   std::uint32_t depth, pattern;
@@ -23,7 +22,7 @@ struct Input { uint depth; uint pattern; };
 struct Output { uint sum; uint deepest; uint order; };
 struct Payload { uint depth; uint sum; uint order; };
 )";
-// Bit d of the pattern: the trace of depth d goes into the void.
+// Bit d of the pattern means that the trace of depth d misses.
 constexpr char kDepthRayGeneration[] = R"(
 layout(location = 0) rayPayloadEXT Payload result;
 void main() {
@@ -35,7 +34,7 @@ void main() {
   launch.outputs.at[launchIndex()].order = result.order;
 }
 )";
-// Traces deeper, and adds to what comes back what it knew before: its depth, its kind, its payload.
+// Traces recursively and adds its own depth, kind and payload to the result.
 std::string deeperStage(std::uint32_t kind) {
   return fmt::format(R"(
 layout(location = 0) rayPayloadInEXT Payload incoming;
@@ -54,7 +53,7 @@ void main() {{
                      kind);
 }
 
-TEST(Traces, RecursionDownToTheDevicesLimit) {
+TEST(Traces, SupportsRecursionUpToTheLimit) {
   const std::uint32_t limit = test::testContext().info().limits.maxRecursionDepth, deepest = std::min(31u, limit);
   const Program program({.common = kDepthCommon,
                          .rayGeneration = kDepthRayGeneration,
@@ -85,7 +84,7 @@ TEST(Traces, RecursionDownToTheDevicesLimit) {
   checks.done();
 }
 
-// ---- Several top-level structures, chosen by each invocation, with masks that differ, too.
+// ---- Several TLAS, selected by each invocation, with different masks
 
 constexpr char kDivergentCommon[] = R"(
 struct Input { uint scene; uint mask; };
@@ -101,14 +100,14 @@ void main() {
 }
 )";
 
-TEST(Traces, EveryInvocationChoosesItsScene) {
+TEST(Traces, SelectsTheSceneInEachInvocation) {
   const Program program(
       {.common = kDivergentCommon,
        .rayGeneration = kDivergentRayGeneration,
        .miss = {"layout(location = 0) rayPayloadInEXT uint custom;\nvoid main() { custom = 999u; }\n"},
        .hit = {{.closestHit = "layout(location = 0) rayPayloadInEXT uint custom;\nvoid main() { custom = "
                               "gl_InstanceCustomIndexEXT; }\n"}}});
-  // Scene s has s layers, the nearest one on top; layer k has mask 1 << k.
+  // Scene s has s layers, with the nearest on top. Layer k has the mask 1 << k.
   std::vector<Scene> scenes(4);
   LaunchOptions options;
   for (std::uint32_t s = 0; s < 4; ++s) {
@@ -136,7 +135,7 @@ TEST(Traces, EveryInvocationChoosesItsScene) {
   checks.done();
 }
 
-// ---- gl_RayTmaxEXT: what was traced, then the nearest accepted candidate so far.
+// ---- gl_RayTmaxEXT is the traced tmax, then t of the nearest accepted candidate
 
 constexpr std::uint32_t kEvents = 32;
 struct Event {
@@ -144,7 +143,7 @@ struct Event {
   float before;
   float t;
   std::uint32_t accepted;
-};  // kind 1: intersection, 2: any-hit
+};  // kind is 1 for intersection, 2 for any-hit
 struct Log {
   std::uint32_t count;
   float closest, miss;
@@ -188,7 +187,7 @@ void main() {
 }
 )";
 
-TEST(Traces, TmaxIsTheNearestHitSoFar) {
+TEST(Traces, LowersTmaxToTheNearestHit) {
   const std::string function = kLogFunction;
   const Program program(
       {.common = kLogCommon,
@@ -217,7 +216,7 @@ TEST(Traces, TmaxIsTheNearestHitSoFar) {
     checks.that(log.count <= kEvents, "ray {}: {} events", k, log.count);
     for (std::uint32_t e = 0; e < std::min(log.count, kEvents); ++e) {
       const Event& event = log.events[e];
-      // An any-hit call is noted before the intersection shader that reported: tmax is the candidate's t already.
+      // The event of an any-hit call precedes that of the reporting intersection shader; its tmax is the candidate's t.
       if (event.kind == 2) {
         checks.equal(event.before, event.t, "ray {}, event {}: any-hit sees the candidate's t", k, e);
         checks.that(event.t <= nearest, "ray {}, event {}: any-hit of t {} beyond {}", k, e, event.t, nearest);

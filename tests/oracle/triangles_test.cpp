@@ -1,4 +1,4 @@
-// Triangles: barycentrics, watertight fans, edges that two triangles share, triangles without area.
+// Triangles: barycentrics, watertight fans, shared edges, triangles without area.
 #include <random>
 
 #include "checks.h"
@@ -7,8 +7,8 @@
 namespace quintet::oracle {
 namespace {
 
-// p = (1 - u - v) v0 + u v1 + v v2, in instances that are turned, sheared and mirrored.
-TEST(TriangleHits, BarycentricsWeighTheSecondAndTheThirdVertex) {
+// p = (1 - u - v) v0 + u v1 + v v2, in rotated, sheared and mirrored instances.
+TEST(TriangleHits, ReturnsBarycentricsOfTheSecondAndThirdVertex) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> unit(0, 1);
   const auto point = [&] { return vec3(unit(random), unit(random), unit(random)) * 2.0f - 1.0f; };
@@ -18,7 +18,7 @@ TEST(TriangleHits, BarycentricsWeighTheSecondAndTheThirdVertex) {
   std::vector<vec2> expected;
   for (std::size_t k = 0; k < kInstances; ++k) {
     vec3 v[3], normal(0);
-    while (glm::length(normal) < 0.5f) {  // no slivers: their barycentrics magnify rounding
+    while (glm::length(normal) < 0.5f) {  // no slivers, whose barycentrics amplify rounding errors
       for (vec3& corner : v) corner = point();
       normal = glm::cross(v[1] - v[0], v[2] - v[0]);
     }
@@ -47,7 +47,7 @@ TEST(TriangleHits, BarycentricsWeighTheSecondAndTheThirdVertex) {
   checks.done();
 }
 
-// `count` triangles around the origin, radius 1, the rim in three waves.
+// Returns `count` triangles around the origin with radius 1 and a wavy rim.
 Triangles fan(std::uint32_t count, bool opaque) {
   Triangles triangles{.positions = {vec3(0, 0, 0.25f)}, .indices = {}, .opaque = opaque};
   for (std::uint32_t k = 0; k < count; ++k) {
@@ -60,7 +60,7 @@ Triangles fan(std::uint32_t count, bool opaque) {
 
 enum class Aim { inside, edges };
 
-// Rays from above, straight or oblique, at points of the fan that every triangulation of its vertices covers.
+// Returns straight and oblique rays from above at points that every triangulation of the vertices covers.
 std::vector<ProbeRay> raysAt(const Triangles& fan, Aim aim, std::size_t count) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(0, 1);
@@ -97,11 +97,11 @@ void checkFans(Aim aim) {
   checks.done();
 }
 
-TEST(TriangleHits, FansAreWatertightInside) { checkFans(Aim::inside); }
-TEST(TriangleHits, FansAreWatertightOnTheirEdges) { checkFans(Aim::edges); }
+TEST(TriangleHits, FindsNoHolesInFans) { checkFans(Aim::inside); }
+TEST(TriangleHits, FindsNoHolesOnEdgesOfFans) { checkFans(Aim::edges); }
 
-// A ball of 40 × 20 cells, closed, and rays from outside at its vertices.
-TEST(TriangleHits, VerticesAreWatertight) {
+// Rays from outside at the vertices of a closed sphere of 40 × 20 cells.
+TEST(TriangleHits, FindsNoHolesAtVertices) {
   Triangles ball;
   constexpr std::uint32_t kAround = 40, kDown = 20;
   for (std::uint32_t y = 0; y <= kDown; ++y)
@@ -124,9 +124,9 @@ TEST(TriangleHits, VerticesAreWatertight) {
   while (rays.size() < 65536) {
     const vec3 from(3 * unit(random), 3 * unit(random), 3 * unit(random)), middle(0.3f, -0.7f, 0);
     if (glm::distance(from, middle) < 1.1f) continue;
-    // Within a row of vertices no pole: many share that one.
+    // No poles, where many triangles share a vertex.
     const vec3 target = ball.positions[kAround + static_cast<std::uint32_t>(random()) % (kAround * (kDown - 1))];
-    // Not along the silhouette, where missing is right.
+    // Not at the silhouette, where a miss is correct.
     if (glm::dot(glm::normalize(from - target), target - middle) < 0.2f) continue;
     rays.push_back({.origin = from, .direction = target - from});
   }
@@ -137,7 +137,7 @@ TEST(TriangleHits, VerticesAreWatertight) {
   checks.done(kVertexLeaks);
 }
 
-// All candidates of a ray are counted: its any-hit shader ignores each.
+// Counts all candidates of a ray: the any-hit shader ignores them.
 constexpr char kCountCommon[] = R"(
 struct Input { vec3 origin; float tMin; vec3 direction; float tMax; uint flags; uint mask; uint offset; uint stride; uint miss; };
 struct Output { uint calls; uint first; uint others; };
@@ -174,8 +174,8 @@ std::vector<Counts> countCandidates(const Triangles& triangles, const std::vecto
   return run<Counts>(program, scene, rays);
 }
 
-// Without the flag an implementation may call an any-hit shader again for the same primitive, but not for none.
-TEST(TriangleHits, EveryLayerIsACandidate) {
+// With NO_DUPLICATE_ANY_HIT_INVOCATION the any-hit shader runs exactly once per layer.
+TEST(TriangleHits, ReportsEveryLayerAsACandidate) {
   Triangles layers{.opaque = false, .singleAnyHit = true};
   for (std::uint32_t k = 0; k < 20; ++k) {
     const Triangles layer = triangleAt(0, 0, -static_cast<float>(k));
@@ -191,7 +191,7 @@ TEST(TriangleHits, EveryLayerIsACandidate) {
   checks.done();
 }
 
-TEST(TriangleHits, ASharedEdgeIsMetOnce) {
+TEST(TriangleHits, HitsASharedEdgeOnce) {
   Checks checks;
   for (const std::uint32_t count : {4u, 16u, 100u}) {
     Triangles triangles = fan(count, false);
@@ -201,11 +201,11 @@ TEST(TriangleHits, ASharedEdgeIsMetOnce) {
       checks.quirkThat(c.calls == 1, "{} triangles: {} candidates", count, c.calls);
     }
   }
-  checks.done(kEdgesMeetTwice);
+  checks.done(kEdgesHitTwice);
 }
 
-// Points, lines and needles between valid triangles: never met, and nothing else is lost.
-TEST(TriangleHits, TrianglesWithoutAreaAreNotMet) {
+// Points and lines between valid triangles are never hit and do not affect the valid ones.
+TEST(TriangleHits, MissesTrianglesWithoutArea) {
   Triangles mixed;
   constexpr std::uint32_t kCount = 48;
   std::vector<ProbeRay> rays;

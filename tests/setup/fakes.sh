@@ -1,10 +1,10 @@
 # shellcheck shell=bash
-# A pretended system for tests of scripts/setup.sh: os-release, what dpkg has, what apt offers, apt's sources, the user.
-# Sourced by run.sh. Each test calls 'newSystem', says what is on it, and then runs setup.sh with 'setup ARGUMENTS'.
-# The pretended programs come first in the PATH and read the files below $system; apt-get writes its calls to
-# $system/calls, and 'installs' on install.
+# A simulated system for tests of scripts/setup.sh: os-release, installed packages, packages and sources of apt, the
+# user. Sourced by run.sh. Each test calls 'newSystem', describes the system, and runs setup.sh with 'setup ARGUMENTS'.
+# The simulated programs come first in the PATH and read the files below $system. apt-get logs its calls in
+# $system/calls and updates $system/installed.
 
-# shellcheck disable=SC2154,SC2034  # 'scratch' comes from run.sh, which reads 'output' and 'status'
+# shellcheck disable=SC2154,SC2034  # run.sh sets 'scratch' and reads 'output' and 'status'
 # shellcheck disable=SC2016  # texts of programs
 
 repo=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -14,8 +14,8 @@ newSystem() {
     system=$(mktemp -d "$scratch/system.XXXXXX")
     mkdir -p "$system"/{bin,apt/sources.list.d,apt/preferences.d}
     : >"$system/installed" # package version
-    : >"$system/offered"   # package version [suite]: without a suite, or with one that is there, it is offered
-    : >"$system/suites"    # codename, uri, place of the source
+    : >"$system/offered"   # package version [suite]; apt offers it without a suite or with an available one
+    : >"$system/suites"    # codename, URI, location of the source
     : >"$system/calls"
     echo 0 >"$system/uid"
     touch "$system/lists"
@@ -25,7 +25,7 @@ newSystem() {
 [[ $1 != --print-architecture ]] || { echo amd64; exit; }
 exec "$realDpkg" "$@"
 SH
-    # As the real one: a line for each package asked for that is known, status 1 if some are not.
+    # Like the real one: prints a line for each known package, status 1 if some are unknown.
     fake dpkg-query <<'SH'
 while read -r package version; do
     [[ " $* " != *" $package "* ]] || printf '%s\tinstalled\tamd64\t%s\n' "$package" "$version"
@@ -43,7 +43,7 @@ fi
 declare -A candidate=()
 while read -r package version suite; do
     [[ -e $system/lists ]] || break
-    # Of backports and the like, nothing is the candidate by itself.
+    # Packages of backports are no candidates by default.
     [[ -n $suite && ! -e $system/apt/preferences.d/quintet-$suite ]] || candidate[$package]=$version
 done <"$system/offered"
 for name in "$@"; do
@@ -112,7 +112,7 @@ SH
     fake id <<<'cat "$system/uid"'
 }
 
-# fake NAME: a program in the pretended system; its text comes from standard input.
+# fake NAME: creates a program of the simulated system with the text from standard input.
 fake() {
     { printf '#!%s\n' "$BASH"; cat; } >"$system/bin/$1"
     chmod +x "$system/bin/$1"
@@ -124,7 +124,7 @@ osRelease() {
         >"$system/os-release"
 }
 
-# offer PACKAGE VERSION [SUITE], installed PACKAGE VERSION: replace what was said of it before.
+# offer PACKAGE VERSION [SUITE], installed PACKAGE VERSION: replace earlier entries of the package; 'none' removes it.
 offer() {
     [[ -n ${3-} ]] || sed -i "/^$1 [^ ]*$/d" "$system/offered"
     [[ $2 == none ]] || printf '%s %s %s\n' "$1" "$2" "${3-}" | sed 's/ *$//' >>"$system/offered"
@@ -134,17 +134,17 @@ installed() {
     [[ $2 == none ]] || printf '%s %s\n' "$1" "$2" >>"$system/installed"
 }
 
-# suite CODENAME URI PLACE: among apt's sources.
+# suite CODENAME URI LOCATION: adds a source of apt.
 suite() { printf '%s %s %s\n' "$1" "$2" "$3" >>"$system/suites"; }
 
-# Every package of the list, offered in a version that fits.
+# Offers or installs every package of the list in a sufficient version.
 offerAll() { namesInList | sed 's/$/ 9:99/' >>"$system/offered"; }
 installAll() { namesInList | sed 's/$/ 9:99/' >"$system/installed"; }
 namesInList() {
     sed 's/#.*//; s/|.*//; s/>=.*//; s/optional//; s/ *$//; /^$/d' "$repo/scripts/lib/packages.txt"
 }
 
-# setup ARGUMENTS: runs setup.sh; its output, both streams, in $output, its exit status in $status.
+# setup ARGUMENTS: runs setup.sh. $output has both output streams, $status the exit status.
 setup() {
     status=0
     output=$(PATH="${onlyPath:-$system/bin:$PATH}" \
@@ -152,7 +152,7 @@ setup() {
         "$BASH" "$repo/scripts/setup.sh" "$@" 2>&1 </dev/null) || status=$?
 }
 
-# What apt-get was asked to do, without options and indextargets.
+# Prints the calls of apt-get without options and indextargets.
 calls() {
     sed -n 's/ -o [^ ]*//g; s/ -q//; s/ -y//; s/ --no-install-recommends//; /indextargets/d; p' "$system/calls"
 }

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Tests of scripts/setup.sh on pretended systems (fakes.sh): no network, no root, nothing is installed.
-# Exit status 77: skipped, as this system has no dpkg to compare versions with.
+# Tests of scripts/setup.sh on simulated systems (fakes.sh): without network and root, and nothing is installed.
+# Exit status 77 means skipped, because dpkg is not installed, which compares versions.
 set -euo pipefail
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-realDpkg=$(command -v dpkg) || { echo "skipped: no dpkg here"; exit 77; }
+realDpkg=$(command -v dpkg) || { echo "skipped: dpkg is not installed"; exit 77; }
 export realDpkg
 unset QUINTET_SETUP
 # shellcheck source=tests/setup/fakes.sh
@@ -18,12 +18,12 @@ complain() {
     failed=$((failed + 1))
 }
 expectStatus() { [[ $status == "$1" ]] || complain "status $1 expected"; }
-expectOutput() { [[ $output == *"$1"* ]] || complain "not said: $1"; }
-expectNoOutput() { [[ $output != *"$1"* ]] || complain "said: $1"; }
-expectCalls() { [[ $(calls) == "$1" ]] || complain "other calls expected: $1"; }
+expectOutput() { [[ $output == *"$1"* ]] || complain "missing in the output: $1"; }
+expectNoOutput() { [[ $output != *"$1"* ]] || complain "unexpected in the output: $1"; }
+expectCalls() { [[ $(calls) == "$1" ]] || complain "expected calls: $1"; }
 
 # ---- Systems --------------------------------------------------------------------------------------------------------
-# The real versions of those packages that decide something.
+# The real versions of the packages that affect the plan.
 bookworm() {
     newSystem
     osRelease debian 12 bookworm
@@ -56,7 +56,7 @@ bookwormPlan() {
     setup --plan
     expectStatus 0
     expectOutput "add bookworm-backports to the sources"
-    expectOutput "add trixie to the sources of apt for the next step, then take it out again"
+    expectOutput "add trixie to the sources of apt for the next step, then remove it"
     expectOutput "install from bookworm-backports: mesa-vulkan-drivers"
     expectOutput "install from trixie: libvulkan-memory-allocator-dev"
     expectOutput "install: g++ cmake make ninja-build pkg-config git ccache"
@@ -77,25 +77,25 @@ apt-get install libvulkan-memory-allocator-dev
 apt-get install -t bookworm-backports mesa-vulkan-drivers
 apt-get install ${all% }"
     grep -qx 'URIs: http://mirror.test/debian/' "$system/seen-quintet-trixie.sources" || complain "not apt's own mirror"
-    grep -qx 'Signed-By: /keys/a.gpg' "$system/seen-quintet-trixie.sources" || complain "key not taken over"
+    grep -qx 'Signed-By: /keys/a.gpg' "$system/seen-quintet-trixie.sources" || complain "key not copied"
     grep -qx 'Suites: bookworm-backports' "$system/apt/sources.list.d/quintet-bookworm-backports.sources" ||
         complain "backports not kept"
-    # While trixie was there: nothing of it, but for the one package.
+    # While trixie was a source, only one package could come from it.
     local pins
     pins=$(sed '/^#/d' "$system/seen-pins" | tr '\n' ' ')
     [[ $pins == "Package: * Pin: release n=trixie Pin-Priority: -1  \
 Package: libvulkan-memory-allocator-dev Pin: release n=trixie Pin-Priority: 500 " ]] || complain "pins: $pins"
-    [[ ! -e $system/apt/sources.list.d/quintet-trixie.sources ]] || complain "trixie's source is left"
-    [[ ! -e $system/apt/preferences.d/quintet-trixie ]] || complain "trixie's pin is left"
+    [[ ! -e $system/apt/sources.list.d/quintet-trixie.sources ]] || complain "the source of trixie was not removed"
+    [[ ! -e $system/apt/preferences.d/quintet-trixie ]] || complain "the pin of trixie was not removed"
 
-    : >"$system/calls" # the second time, there is nothing to do
+    : >"$system/calls" # the second run has nothing to do
     setup
     expectStatus 0
     expectOutput "nothing to install"
     expectCalls ''
 }
 
-bookwormWithBackports() { # as in Debian's own cloud images
+bookwormWithBackports() { # like the cloud images of Debian
     bookworm
     suite bookworm-backports http://mirror.test/debian/ "$system/apt/sources.list:2"
     setup
@@ -104,7 +104,7 @@ bookwormWithBackports() { # as in Debian's own cloud images
     expectOutput "install from bookworm-backports: mesa-vulkan-drivers"
 }
 
-bookwormOldMesaInstalled() { # a desktop, that has Mesa 22
+bookwormOldMesaInstalled() { # a desktop with Mesa 22
     bookworm
     installAll
     installed mesa-vulkan-drivers 22.3.6-1+deb12u1
@@ -116,7 +116,7 @@ apt-get update
 apt-get install -t bookworm-backports mesa-vulkan-drivers"
 }
 
-keyWithinTheSource() { # deb822: the second of two paragraphs, and the key itself in it
+keyWithinTheSource() { # deb822 with the key in the second of two paragraphs
     bookworm
     cat >"$system/apt/sources.list.d/debian.sources" <<'SOURCES'
 # First
@@ -170,7 +170,7 @@ otherNameTaken() {
     offer pkgconf 1.8.1-4
     setup
     expectStatus 0
-    grep -q '^pkgconf ' "$system/installed" || complain "pkgconf not taken"
+    grep -q '^pkgconf ' "$system/installed" || complain "pkgconf not installed"
     : >"$system/calls"
     setup
     expectOutput "nothing to install"
@@ -184,7 +184,7 @@ nobleWithUpdates() {
     expectNoOutput "to the sources"
 }
 
-nobleWithoutUpdates() { # Mesa 24.0: installed all the same, said clearly, and not tried again and again
+nobleWithoutUpdates() { # Mesa 24.0 is installed with a warning, and only once
     noble 24.0.5-1ubuntu1
     setup
     expectStatus 0
@@ -209,7 +209,7 @@ tooOldASystem() {
     expectOutput "CANNOT install g++ >= 12: apt offers 4:11.2.0-1ubuntu1"
     setup
     expectStatus 1
-    expectOutput "Nothing was installed"
+    expectOutput "no package was installed"
     expectCalls "apt-get update"
 }
 
@@ -253,17 +253,17 @@ offline() {
     touch "$system/offline"
     setup
     expectStatus 1
-    expectOutput "apt has no package lists: apt-get update failed"
-    expectOutput "Is there a network?"
+    expectOutput "apt-get update failed"
+    expectOutput network
 }
 
-aptInUse() { # as on a machine that has just booted
+aptInUse() { # like a machine that has just booted
     bookworm
     rm "$system/lists"
     touch "$system/locked"
     setup
     expectStatus 0
-    expectOutput "another program is using apt: waiting for it"
+    expectOutput "another program is using apt"
     expectNoOutput warning
     expectOutput "setup: done"
 }
@@ -275,13 +275,14 @@ noRootNoSudo() {
     setup
     expectStatus 1
     expectOutput "missing or too old: g++ >= 12, cmake >= 3.25"
-    expectOutput "installing needs root, and there is no sudo. As root, run: bash scripts/setup.sh"
+    expectOutput "sudo is not installed"
+    expectOutput "bash scripts/setup.sh"
     expectCalls ''
     installAll
     installed ccache none
-    setup # only something optional is missing
+    setup # only an optional package is missing
     expectStatus 0
-    expectOutput "going on without"
+    expectOutput optional
 }
 
 sudoRefuses() {
@@ -290,7 +291,7 @@ sudoRefuses() {
     fake sudo <<<'exit 1'
     setup
     expectStatus 1
-    expectOutput "installing needs root, and sudo did not work"
+    expectOutput "sudo did not work"
     expectCalls ''
 }
 
@@ -299,14 +300,14 @@ withSudo() {
     echo 1000 >"$system/uid"
     fake sudo <<'SH'
 echo "sudo $*" >>"$system/sudo"
-[[ $1 == -n ]] || exit 1 # no terminal: must not ask
+[[ $1 == -n ]] || exit 1 # without a terminal it must not ask
 shift
 exec "$@"
 SH
     setup
     expectStatus 0
     expectOutput "setup: done"
-    grep -q 'apt-get .*install' "$system/sudo" || complain "not installed by sudo"
+    grep -q 'apt-get .*install' "$system/sudo" || complain "not installed with sudo"
 }
 
 noApt() {
@@ -331,7 +332,7 @@ skipped() {
     expectCalls ''
 }
 
-noHostNames() { # mirrors come from the system, never from the scripts
+noHostNames() { # mirrors come from the system, not from the scripts
     local found
     found=$(grep -rnE '://|debian\.(org|net)|ubuntu\.com' "$repo"/{scripts,Makefile,.ci/run} || true)
     status=0 output=$found
@@ -341,12 +342,12 @@ noHostNames() { # mirrors come from the system, never from the scripts
 versions() {
     status=0 output=$(
         source "$repo/scripts/lib/plan.sh"
-        versionFits 3.25 3.25 || echo "equal is not enough"
-        versionFits 4:12.2.0-3 4:12 || echo "later is not enough"
-        versionFits 25.0.7-2~bpo12+1 25.0 || echo "a backport is not enough"
-        versionFits 1 '' || echo "any is not enough"
-        ! versionFits 3.9 3.25 || echo "compared as text"
-        ! versionFits '' '' || echo "none is enough"
+        versionFits 3.25 3.25 || echo "an equal version must fit"
+        versionFits 4:12.2.0-3 4:12 || echo "a later version must fit"
+        versionFits 25.0.7-2~bpo12+1 25.0 || echo "a backport must fit"
+        versionFits 1 '' || echo "any version must fit an empty minimum"
+        ! versionFits 3.9 3.25 || echo "versions must not be compared as text"
+        ! versionFits '' '' || echo "an empty version must not fit"
     )
     [[ -z $output ]] || complain "versions"
 }
@@ -369,7 +370,7 @@ hideSudo() {
     onlyPath=$system/bin
 }
 
-# All at once, each in a shell of its own, with its own pretended system; told in this order.
+# All tests run in parallel, each in its own shell with its own simulated system. Results are printed in this order.
 tests=(bookwormPlan bookwormInstalls bookwormWithBackports bookwormOldMesaInstalled keyWithinTheSource noMirrorOfDebian
     trixiePlan otherNameTaken nobleWithUpdates nobleWithoutUpdates tooOldASystem neededNotOffered optionalNotOffered
     noListsYet offline aptInUse noRootNoSudo sudoRefuses withSudo noApt skipped noHostNames versions badList)

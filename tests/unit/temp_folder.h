@@ -1,12 +1,14 @@
-// A folder for one test's files, removed at its end.
+// A temporary folder that is removed at the end of a test.
 #ifndef QUINTET_TESTS_TEMP_FOLDER_H
 #define QUINTET_TESTS_TEMP_FOLDER_H
 
 #include <unistd.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 namespace quintet::test {
 
@@ -14,7 +16,7 @@ class TempFolder {
  public:
   TempFolder() {
     std::string pattern = (std::filesystem::temp_directory_path() / "quintet-test-XXXXXX").string();
-    if (!mkdtemp(pattern.data())) throw std::runtime_error("no temporary folder");
+    if (!mkdtemp(pattern.data())) throw std::runtime_error("cannot create a temporary folder");
     path_ = pattern;
   }
   ~TempFolder() {
@@ -27,7 +29,7 @@ class TempFolder {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
-  // Entries directly inside, hidden ones too: a left-over temporary file shows here.
+  // Number of entries directly inside, including hidden files such as abandoned temporary files.
   std::size_t entryCount() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
   }

@@ -1,22 +1,22 @@
-// Lesson 02: a camera anywhere. Three ways to the same ray: a frame of vectors (look-at), the inverse of the
-// model-view-projection matrix, and a point on the far plane. The colour is the ray's direction where nothing is
-// met, and the distance where something is.
+// Lesson 02: a camera anywhere. Three ways to compute the same camera ray: a frame of vectors (look-at), the inverse of
+// the model-view-projection matrix, and a point on the far plane. The color is the distance of a hit, or the direction
+// of a ray that misses.
 // scene: cameras.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;
 };
 
-uniform int way;          // defaultval="0" min="0" max="2" help="0: look-at frame, 1: inverse of the MVP matrix, 2: point on the far plane"
-uniform vec3 eye;         // defaultval="3, 2, 4" unit="m" help="Where the camera is"
-uniform vec3 target;      // defaultval="0, 0.5, 0" unit="m" help="What it looks at"
+uniform int way;          // defaultval="0" min="0" max="2" help="Method: 0 look-at frame, 1 inverse of the MVP matrix, 2 point on the far plane"
+uniform vec3 eye;         // defaultval="3, 2, 4" unit="m" help="Position of the camera"
+uniform vec3 target;      // defaultval="0, 0.5, 0" unit="m" help="Point that the camera looks at"
 uniform float fieldOfView; // defaultval="40" min="1" max="179" unit="deg" help="Vertical field of view"
 
 const float nearPlane = 0.1;
 const float farPlane = 100.0;
 /**** COMMON END ****/
 
-// From camera space (x right, y up, looking along -z) to world space.
+// Transforms from camera space (x right, y up, looking along -z) to world space.
 mat4 worldFromCamera() {
   vec3 back = normalize(eye - target);
   vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), back));
@@ -34,14 +34,14 @@ mat4 clipFromCamera(float aspect) {
               0.0, 0.0, 2.0 * farPlane * nearPlane / depth, 0.0);
 }
 
-// 0: the image plane in the camera's own frame.
+// 0: a point of the image plane in camera space.
 vec3 byLookAt(vec2 ndc, float aspect) {
   float halfHeight = tan(0.5 * radians(fieldOfView));
   vec3 inCamera = vec3(ndc * vec2(aspect, 1.0) * halfHeight, -1.0);
   return normalize(mat3(worldFromCamera()) * inCamera);
 }
 
-// 1: the pixel's points on the near and the far plane, taken back by the inverse of the whole matrix.
+// 1: the pixel's points on the near and the far plane, transformed to world space by the inverse of the whole matrix.
 vec3 byInverseMatrix(vec2 ndc, float aspect) {
   mat4 worldFromClip = inverse(clipFromCamera(aspect) * inverse(worldFromCamera()));
   vec4 a = worldFromClip * vec4(ndc, -1.0, 1.0);
@@ -49,7 +49,7 @@ vec3 byInverseMatrix(vec2 ndc, float aspect) {
   return normalize(b.xyz / b.w - a.xyz / a.w);
 }
 
-// 2: the point on the far plane in camera space by the inverse projection; its direction to world space.
+// 2: the pixel's point on the far plane in camera space, by the inverse projection; its direction in world space.
 vec3 byFarPlane(vec2 ndc, float aspect) {
   vec4 far = inverse(clipFromCamera(aspect)) * vec4(ndc, 1.0, 1.0);
   return normalize((worldFromCamera() * vec4(far.xyz / far.w, 0.0)).xyz);

@@ -1,13 +1,13 @@
-// Lesson 03: what a hit knows about the mesh. The built-ins name the instance and the triangle; the functions below
-// fetch its three vertices; barycentric coordinates blend them.
+// Lesson 03: mesh data at a hit. The built-ins give the instance and the triangle, functions fetch its three vertices,
+// and barycentric coordinates interpolate between them.
 // scene: mesh_data.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;
 };
 
-uniform int show;         // defaultval="1" min="0" max="4" help="0: position, 1: normal, 2: texture coordinate, 3: barycentrics, 4: face normal"
-uniform vec3 eye;         // defaultval="0, 1.5, 5" unit="m" help="Where the camera is; it looks along -z"
+uniform int show;         // defaultval="1" min="0" max="4" help="Quantity to show: 0 position, 1 normal, 2 texture coordinate, 3 barycentrics, 4 face normal"
+uniform vec3 eye;         // defaultval="0, 1.5, 5" unit="m" help="Position of the camera, which looks along -z"
 uniform float fieldOfView; // defaultval="40" min="1" max="179" unit="deg" help="Vertical field of view"
 /**** COMMON END ****/
 
@@ -33,7 +33,8 @@ void main() { /**** CLOSEST-HIT SHADER ****/
   vec3 localNormal = weights.x * n0 + weights.y * n1 + weights.z * n2;
   vec2 texCoord = weights.x * t0 + weights.y * t1 + weights.z * t2;
 
-  // Points go to world space by the matrix, normals by its inverse transpose: a scaled sphere shows the difference.
+  // The matrix transforms points to world space; its inverse transpose transforms normals. A scaled sphere shows the
+  // difference.
   vec3 position = gl_ObjectToWorldEXT * vec4(localPosition, 1.0);
   mat3 normalMatrix;
   gsnGetNormal3x3Matrix(gl_InstanceID, normalMatrix);

@@ -1,15 +1,15 @@
-// Lesson 04: light. Each surface is lit by one lamp (Lambert's cosine law) and by an ambient term; nothing casts a
-// shadow yet.
+// Lesson 04: diffuse light. One lamp lights each surface by Lambert's cosine law, plus an ambient term, without
+// shadows.
 // scene: diffuse.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;
 };
 
-uniform vec3 lightPosition; // defaultval="3, 5, 3" unit="m" help="Of the lamp"
-uniform vec3 baseColor;     // defaultval="0.8, 0.7, 0.55" type="color" help="Of all surfaces"
-uniform vec3 ambientColor;  // defaultval="0.1, 0.1, 0.12" type="color" help="Light that comes from everywhere"
-uniform vec3 background;    // defaultval="0.3, 0.35, 0.45" type="color" help="Where nothing is"
+uniform vec3 lightPosition; // defaultval="3, 5, 3" unit="m" help="Position of the lamp"
+uniform vec3 baseColor;     // defaultval="0.8, 0.7, 0.55" type="color" help="Color of all surfaces"
+uniform vec3 ambientColor;  // defaultval="0.1, 0.1, 0.12" type="color" help="Ambient light"
+uniform vec3 background;    // defaultval="0.3, 0.35, 0.45" type="color" help="Color of the background"
 /**** COMMON END ****/
 
 vec3 lookAtDirection(vec2 point, vec3 eye, vec3 target, float fieldOfView, float aspect) {

@@ -1,5 +1,5 @@
-// Lesson 05: shadow. At each surface a second ray asks whether the lamp can be seen: it stops at the first hit, calls
-// no closest-hit shader, and the miss shader answers. The lamp goes round once in 45 frames.
+// Lesson 05: shadow. At each surface a second ray tests whether the lamp is visible. It stops at the first hit and runs
+// no closest-hit shader; the miss shader reports that the lamp is visible. The lamp circles once in 45 frames.
 // scene: shadow.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
@@ -9,9 +9,9 @@ struct RayPayloadType {
 
 const int framesPerTurn = 45;
 uniform float lampRadius;   // defaultval="4" min="0.1" max="100" unit="m" help="Radius of the lamp's circle, 5 m above the floor"
-uniform vec3 baseColor;     // defaultval="0.8, 0.7, 0.55" type="color" help="Of all surfaces"
-uniform vec3 ambientColor;  // defaultval="0.1, 0.1, 0.12" type="color" help="Light that comes from everywhere"
-uniform vec3 background;    // defaultval="0.3, 0.35, 0.45" type="color" help="Where nothing is"
+uniform vec3 baseColor;     // defaultval="0.8, 0.7, 0.55" type="color" help="Color of all surfaces"
+uniform vec3 ambientColor;  // defaultval="0.1, 0.1, 0.12" type="color" help="Ambient light"
+uniform vec3 background;    // defaultval="0.3, 0.35, 0.45" type="color" help="Color of the background"
 /**** COMMON END ****/
 
 vec3 lookAtDirection(vec2 point, vec3 eye, vec3 target, float fieldOfView, float aspect) {
@@ -43,7 +43,7 @@ void main() { /**** CLOSEST-HIT SHADER ****/
   vec3 toLamp = lamp - position;
   float lampDistance = length(toLamp);
 
-  // The shadow ray begins a little above the surface, on the side that the viewer sees, and ends at the lamp.
+  // The shadow ray starts slightly above the surface, on the side that the viewer sees, and ends at the lamp.
   vec3 side = dot(normal, gl_WorldRayDirectionEXT) < 0.0 ? normal : -normal;
   payload.lampIsSeen = false;
   traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, 0u, 0u, 0u,

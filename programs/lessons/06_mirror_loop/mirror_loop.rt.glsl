@@ -1,20 +1,20 @@
-// Lesson 06: reflection as a loop. The closest-hit shader returns the light that the surface itself gives, and the
-// ray that goes on; the ray generation shader follows it, five times at most, or until the rest is not worth it.
+// Lesson 06: reflection as a loop. The closest-hit shader returns the direct light of the surface and the reflected
+// ray. The ray generation shader traces five rays at most and stops when the remaining weight is negligible.
 // scene: mirror_loop.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 directLight;      // of this surface
   vec3 nextOrigin;
-  vec3 nextDirection;    // zero: the path ends here
-  float reflectance;     // weight of what the next ray finds
+  vec3 nextDirection;    // zero if the path ends here
+  float reflectance;     // weight of the next ray
   bool lampIsSeen;
 };
 
-uniform vec3 lampPosition;  // defaultval="3, 5, 3" unit="m" help="Of the lamp"
-uniform vec3 ambientColor;  // defaultval="0.1, 0.1, 0.12" type="color" help="Light that comes from everywhere"
-uniform vec3 background;    // defaultval="0.3, 0.35, 0.45" type="color" help="Where nothing is"
-uniform float reflectance;  // defaultval="0.4" min="0" max="1" help="Of all surfaces"
-uniform int maxLevel;       // defaultval="5" min="1" max="16" help="Rays of a path, shadow rays aside"
+uniform vec3 lampPosition;  // defaultval="3, 5, 3" unit="m" help="Position of the lamp"
+uniform vec3 ambientColor;  // defaultval="0.1, 0.1, 0.12" type="color" help="Ambient light"
+uniform vec3 background;    // defaultval="0.3, 0.35, 0.45" type="color" help="Color of the background"
+uniform float reflectance;  // defaultval="0.4" min="0" max="1" help="Reflectance of all surfaces"
+uniform int maxLevel;       // defaultval="5" min="1" max="16" help="Maximum number of rays of a path, without shadow rays"
 
 const float smallestContribution = 0.001;
 const float bias = 0.001;

@@ -1,7 +1,7 @@
 // gsnShaderOptions: precompiler="GL_EXT_ray_tracing, recursion: 6"
-// Lesson 07: reflection by recursion. The picture of lesson 06, but the closest-hit shader traces the reflected ray
-// itself and adds what it finds. The payload carries the level down and the colour up; what a shader still needs
-// after a nested trace it must keep in its own variables, because the nested shaders write the same payload.
+// Lesson 07: reflection by recursion. The image of lesson 06, but the closest-hit shader traces the reflected ray
+// itself and adds its color. The payload carries the level down and the color up. Nested shaders write the same
+// payload, so a shader must copy what it needs after a nested trace to local variables.
 // scene: mirror_recursion.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
@@ -11,13 +11,13 @@ struct RayPayloadType {
   bool lampIsSeen;
 };
 
-uniform vec3 lampPosition;  // defaultval="3, 5, 3" unit="m" help="Of the lamp"
-uniform vec3 ambientColor;  // defaultval="0.1, 0.1, 0.12" type="color" help="Light that comes from everywhere"
-uniform vec3 background;    // defaultval="0.3, 0.35, 0.45" type="color" help="Where nothing is"
-uniform float reflectance;  // defaultval="0.4" min="0" max="1" help="Of all surfaces"
+uniform vec3 lampPosition;  // defaultval="3, 5, 3" unit="m" help="Position of the lamp"
+uniform vec3 ambientColor;  // defaultval="0.1, 0.1, 0.12" type="color" help="Ambient light"
+uniform vec3 background;    // defaultval="0.3, 0.35, 0.45" type="color" help="Color of the background"
+uniform float reflectance;  // defaultval="0.4" min="0" max="1" help="Reflectance of all surfaces"
 
-// The pipeline is made for this depth ("recursion: 6" above), so it cannot be a parameter: a ray at each of five
-// levels, and the shadow ray of the last one.
+// The pipeline is created for this depth ("recursion: 6" above: a ray at each of five levels, and the shadow ray of the
+// last one), so it cannot be a parameter.
 const int maxLevel = 5;
 const float smallestContribution = 0.001;
 const float bias = 0.001;
@@ -47,7 +47,7 @@ void main() { /**** RAY GENERATION SHADER ****/
 }
 
 void main() { /**** CLOSEST-HIT SHADER ****/
-  // Kept here: the nested rays overwrite the payload.
+  // Copied, because the nested rays overwrite the payload.
   int level = payload.level;
   float contribution = payload.contribution;
   vec3 incoming = gl_WorldRayDirectionEXT;

@@ -1,19 +1,19 @@
-// Lesson 08: refraction. Rays bend where they enter and leave a sphere (Snell's law); where they cannot leave, they
-// are reflected inside (total internal reflection). Two media: `inside` and `outside` of the sphere.
+// Lesson 08: refraction. Rays change direction where they enter and leave a sphere (Snell's law) and are reflected
+// inside where they cannot leave (total internal reflection). The two media are `inside` and `outside` the sphere.
 // scene: refraction.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
-  vec3 color;          // what ends the path
+  vec3 color;          // color at the end of the path
   vec3 nextOrigin;
-  vec3 nextDirection;  // zero: the path ends here
+  vec3 nextDirection;  // zero if the path ends here
 };
 struct HitAttributeType {
   vec3 normal;         // outward, object space
 };
 
 uniform float inside;   // defaultval="1.5" min="1" max="3" help="Index of refraction of the sphere"
-uniform float outside;  // defaultval="1.0" min="1" max="3" help="Index of refraction of what surrounds it"
-uniform int maxLevel;   // defaultval="8" min="1" max="32" help="Rays of a path"
+uniform float outside;  // defaultval="1.0" min="1" max="3" help="Index of refraction of the surroundings"
+uniform int maxLevel;   // defaultval="8" min="1" max="32" help="Maximum number of rays of a path"
 
 const uint kindEntering = 1u;
 const uint kindLeaving = 2u;
@@ -41,12 +41,12 @@ void main() { /**** INTERSECTION SHADER ****/
   vec3 center = 0.5 * (boxMin + boxMax);
   float radius = 0.5 * (boxMax.x - boxMin.x);
 
-  // |o + t d|² = r² in object space; the direction keeps its length, so t is that of the world.
+  // |o + t d|² = r² in object space. The direction is not normalized, so t is the same as in world space.
   vec3 o = gl_ObjectRayOriginEXT - center;
   vec3 d = gl_ObjectRayDirectionEXT;
   float a = dot(d, d);
   float b = dot(o, d);
-  vec3 nearest = o - (b / a) * d;  // of the ray to the centre: this way little is lost to rounding
+  vec3 nearest = o - (b / a) * d;  // point of the ray closest to the center; keeps rounding errors small
   float discriminant = a * (radius * radius - dot(nearest, nearest));
   if (discriminant < 0.0) return;
   float q = sqrt(discriminant);
@@ -61,7 +61,7 @@ void main() { /**** INTERSECTION SHADER ****/
 void main() { /**** CLOSEST-HIT SHADER ****/
   vec3 position = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;
   if (gl_HitKindEXT == gl_HitKindFrontFacingTriangleEXT || gl_HitKindEXT == gl_HitKindBackFacingTriangleEXT) {
-    // The floor: a chessboard with fields of 0.5 m.
+    // The floor: a checkerboard with squares of 0.5 m.
     bool dark = (int(floor(2.0 * position.x)) + int(floor(2.0 * position.z)) & 1) != 0;
     payload.color = dark ? vec3(0.1, 0.15, 0.2) : vec3(0.85, 0.8, 0.7);
     payload.nextDirection = vec3(0.0);
@@ -74,12 +74,12 @@ void main() { /**** CLOSEST-HIT SHADER ****/
   bool entering = gl_HitKindEXT == kindEntering;
   if (!entering) normal = -normal;
 
-  // Snell's law: sin(refracted) = eta · sin(incoming). No solution: refract() gives zero.
+  // Snell's law: sin(refracted) = eta · sin(incoming). refract() returns zero if there is no solution.
   float eta = entering ? outside / inside : inside / outside;
   vec3 next = refract(direction, normal, eta);
   bool reflected = next == vec3(0.0);
   if (reflected) next = reflect(direction, normal);
-  payload.color = vec3(0.0);  // if the path is cut off here
+  payload.color = vec3(0.0);  // used if the path is cut off here
   payload.nextOrigin = position + (reflected ? 1e-4 : -1e-4) * normal;
   payload.nextDirection = next;
 }

@@ -1,15 +1,15 @@
-// Lesson 09: smooth edges, frame by frame. Each frame takes one sample somewhere in the pixel, by the Halton
-// sequence in the bases 2 and 3; the picture is the average of all frames so far.
+// Lesson 09: smooth edges, frame by frame. Each frame takes one sample in the pixel at a point of the Halton sequence
+// in bases 2 and 3. The image is the average of all frames so far.
 // scene: progressive.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;
 };
 
-uniform bool jitter;  // defaultval="true" help="Sample all over the pixel; else always its middle"
+uniform bool jitter;  // defaultval="true" help="Sample the area of the pixel instead of only its center"
 /**** COMMON END ****/
 
-// The radical inverse: the digits of `index` in this base, mirrored at the point (Halton 1960).
+// Returns the radical inverse: the digits of `index` in this base, mirrored at the radix point (Halton 1960).
 float halton(int index, int base) {
   float value = 0.0;
   float digit = 1.0;
@@ -21,7 +21,7 @@ float halton(int index, int base) {
 }
 
 void main() { /**** RAY GENERATION SHADER ****/
-  // From index 1: index 0 would give the pixel's corner.
+  // Starts at index 1, because index 0 is the corner of the pixel.
   vec2 offset = jitter ? vec2(halton(frameID + 1, 2), halton(frameID + 1, 3)) : vec2(0.5);
   vec2 ndc = 2.0 * (vec2(gl_LaunchIDEXT.xy) + offset) / vec2(gl_LaunchSizeEXT.xy) - 1.0;
   float aspect = float(gl_LaunchSizeEXT.x) / float(gl_LaunchSizeEXT.y);

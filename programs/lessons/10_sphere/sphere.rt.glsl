@@ -1,5 +1,5 @@
-// Lesson 10: a sphere by an intersection shader, in world space and in object space. The acceleration structure knows
-// only boxes; what is in a box, the intersection shader decides and reports.
+// Lesson 10: a sphere with an intersection shader, in world space and in object space. The acceleration structure holds
+// only boxes; the intersection shader computes and reports the hit inside a box.
 // scene: sphere.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
@@ -7,11 +7,11 @@ struct RayPayloadType {
 };
 struct HitAttributeType {
   vec3 normal;    // outward, unit, in the space of the computation
-  vec2 texCoord;  // longitude and latitude in [0, 1], z is the axis
+  vec2 texCoord;  // longitude and latitude in [0, 1]; the axis is z
 };
 
-uniform bool worldSpace;  // defaultval="false" help="Intersect in world space; right only for instances of uniform scale"
-uniform int show;         // defaultval="0" min="0" max="3" help="0: shaded, 1: normal, 2: texture coordinate, 3: distance / 10 and hit kind"
+uniform bool worldSpace;  // defaultval="false" help="Intersect in world space; correct only for instances with uniform scale"
+uniform int show;         // defaultval="0" min="0" max="3" help="Quantity to show: 0 shaded, 1 normal, 2 texture coordinate, 3 distance / 10 and hit kind"
 
 const float pi = 3.14159265359;
 /**** COMMON END ****/
@@ -24,11 +24,12 @@ void main() { /**** RAY GENERATION SHADER ****/
   gsnSetPixel(vec4(payload.color, 1.0));
 }
 
-// The nearer of the two crossings of |o + t d|² = r² that lies in [tmin, tmax]; kind 1: the ray enters, 2: it leaves, 0: none.
+// Finds the nearest solution of |o + t d|² = r² in [tmin, tmax]. Returns 1 if the ray enters the sphere there, 2 if it
+// leaves, 0 if it misses.
 uint crossSphere(vec3 o, vec3 d, float radius, float tmin, float tmax, out float t) {
   float a = dot(d, d);
   float b = dot(o, d);
-  vec3 nearest = o - (b / a) * d;  // of the ray to the centre: this way little is lost to rounding
+  vec3 nearest = o - (b / a) * d;  // point of the ray closest to the center; keeps rounding errors small
   float discriminant = a * (radius * radius - dot(nearest, nearest));
   t = 0.0;
   if (discriminant < 0.0) return 0u;
@@ -42,18 +43,18 @@ uint crossSphere(vec3 o, vec3 d, float radius, float tmin, float tmax, out float
 void main() { /**** INTERSECTION SHADER ****/
   vec3 boxMin, boxMax;
   gsnGetIntersectionBox(gl_InstanceID, gl_PrimitiveID, boxMin, boxMax);
-  // All sides of the box must be equally long; an ellipsoid is a sphere whose instance is scaled.
+  // All sides of the box must have the same length. An ellipsoid is a sphere with a scaled instance.
   vec3 center = 0.5 * (boxMin + boxMax);
   float radius = 0.5 * (boxMax.x - boxMin.x);
 
   vec3 o, d;
   if (worldSpace) {
-    // Centre and radius go to the ray. The length of any axis of the matrix is the scale.
+    // Transform center and radius to world space. The length of any column of the matrix is the scale.
     radius *= length(gl_ObjectToWorldEXT * vec4(1.0, 0.0, 0.0, 0.0));
     o = gl_WorldRayOriginEXT - gl_ObjectToWorldEXT * vec4(center, 1.0);
     d = gl_WorldRayDirectionEXT;
   } else {
-    // The ray comes to the sphere. Its direction is *not* normalised: so t means the same in both spaces.
+    // Use the ray in object space. Its direction is *not* normalized, so t is the same in both spaces.
     o = gl_ObjectRayOriginEXT - center;
     d = gl_ObjectRayDirectionEXT;
   }
@@ -61,7 +62,7 @@ void main() { /**** INTERSECTION SHADER ****/
   uint kind = crossSphere(o, d, radius, gl_RayTminEXT, gl_RayTmaxEXT, t);
   if (kind == 0u) return;
   vec3 normal = (o + t * d) / radius;
-  // Points go from world to object space by the inverse matrix; this vector from the centre does, too.
+  // The inverse matrix transforms points from world to object space, and this vector from the center too.
   vec3 local = worldSpace ? normalize(gl_WorldToObjectEXT * vec4(normal, 0.0)) : normal;
   hit.normal = normal;
   hit.texCoord = vec2(fract(atan(local.y, local.x) / (2.0 * pi)), acos(clamp(-local.z, -1.0, 1.0)) / pi);

@@ -1,5 +1,5 @@
-// Lesson 11: 10,000 spheres. One instance, one bottom-level structure of 10,000 boxes; gl_PrimitiveID says which box
-// the intersection shader is asked about.
+// Lesson 11: 10,000 spheres. One instance shows one BLAS of 10,000 boxes; gl_PrimitiveID is the box that the
+// intersection shader tests.
 // scene: many_spheres.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
@@ -10,9 +10,9 @@ struct HitAttributeType {
   vec3 normal;
 };
 
-uniform vec3 lampPosition; // defaultval="40, 60, 50" unit="m" help="Of the lamp"
+uniform vec3 lampPosition; // defaultval="40, 60, 50" unit="m" help="Position of the lamp"
 
-// A colour for each sphere.
+// Returns a color for each sphere.
 vec3 colorOf(int primitive) {
   uint h = uint(primitive) * 747796405u + 2891336453u;
   h = ((h >> ((h >> 28u) + 4u)) ^ h) * 277803737u;
@@ -29,11 +29,12 @@ void main() { /**** RAY GENERATION SHADER ****/
   gsnSetPixel(vec4(payload.color, 1.0));
 }
 
-// The nearer of the two crossings of |o + t d|² = r² that lies in [tmin, tmax]; kind 1: the ray enters, 2: it leaves, 0: none.
+// Finds the nearest solution of |o + t d|² = r² in [tmin, tmax]. Returns 1 if the ray enters the sphere there, 2 if it
+// leaves, 0 if it misses.
 uint crossSphere(vec3 o, vec3 d, float radius, float tmin, float tmax, out float t) {
   float a = dot(d, d);
   float b = dot(o, d);
-  vec3 nearest = o - (b / a) * d;  // of the ray to the centre: this way little is lost to rounding
+  vec3 nearest = o - (b / a) * d;  // point of the ray closest to the center; keeps rounding errors small
   float discriminant = a * (radius * radius - dot(nearest, nearest));
   t = 0.0;
   if (discriminant < 0.0) return 0u;

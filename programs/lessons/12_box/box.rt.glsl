@@ -1,5 +1,5 @@
-// Lesson 12: a box by slabs. Each pair of parallel faces bounds a slab; the ray is inside the box where it is inside
-// all three (Kay and Kajiya 1986).
+// Lesson 12: a box from three slabs. Each pair of parallel faces bounds a slab; the ray is inside the box where it is
+// inside all three slabs (Kay and Kajiya 1986).
 // scene: box.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
@@ -10,8 +10,8 @@ struct HitAttributeType {
   vec2 texCoord;  // on the face, [0, 1]
 };
 
-uniform int show;   // defaultval="0" min="0" max="2" help="0: shaded, 1: normal, 2: texture coordinate"
-uniform vec3 eye;   // defaultval="0, 0.5, 6" unit="m" help="Where the camera is; it looks along -z"
+uniform int show;   // defaultval="0" min="0" max="2" help="Quantity to show: 0 shaded, 1 normal, 2 texture coordinate"
+uniform vec3 eye;   // defaultval="0, 0.5, 6" unit="m" help="Position of the camera, which looks along -z"
 /**** COMMON END ****/
 
 void main() { /**** RAY GENERATION SHADER ****/
@@ -26,7 +26,7 @@ void main() { /**** INTERSECTION SHADER ****/
   vec3 a, b;
   gsnGetIntersectionBox(gl_InstanceID, gl_PrimitiveID, a, b);
 
-  // Where the ray crosses the six planes. A direction parallel to a slab gives infinities, which compare as they should.
+  // Parameters t at the six planes. A direction parallel to a slab gives infinities, which compare correctly.
   vec3 inverse = 1.0 / gl_ObjectRayDirectionEXT;
   vec3 ta = (a - gl_ObjectRayOriginEXT) * inverse;
   vec3 tb = (b - gl_ObjectRayOriginEXT) * inverse;
@@ -36,17 +36,17 @@ void main() { /**** INTERSECTION SHADER ****/
   float tOut = min(last.x, min(last.y, last.z));
   if (!(tIn <= tOut)) return;
 
-  bool entering = tIn >= gl_RayTminEXT;  // else the ray starts inside
+  bool entering = tIn >= gl_RayTminEXT;  // otherwise the ray starts inside
   float t = entering ? tIn : tOut;
   if (t < gl_RayTminEXT || t > gl_RayTmaxEXT) return;
 
-  // The face is the one whose plane is crossed at t.
+  // The hit face is the one whose plane has this t.
   vec3 planes = entering ? first : last;
   int axis = planes.x == t ? 0 : planes.y == t ? 1 : 2;
   vec3 normal = vec3(0.0);
   normal[axis] = (gl_ObjectRayDirectionEXT[axis] > 0.0) == entering ? -1.0 : 1.0;
 
-  // Position in the box, [0, 1] on each axis. Seen from outside, s goes to the right and t up.
+  // Position in the box, [0, 1] on each axis. Seen from outside, s increases to the right and t upwards.
   vec3 p = (gl_ObjectRayOriginEXT + t * gl_ObjectRayDirectionEXT - a) / (b - a);
   if (axis == 0) hit.texCoord = vec2(normal.x > 0.0 ? 1.0 - p.z : p.z, p.y);
   else if (axis == 1) hit.texCoord = vec2(p.x, normal.y > 0.0 ? 1.0 - p.z : p.z);

@@ -1,6 +1,6 @@
-// Lesson 13: a triangle by an intersection shader, as Möller and Trumbore (1997) compute it, to see what the built-in
-// one does. Half of the scene's triangles are built in, half are boxes with a triangle inside; the colours are the
-// barycentric coordinates of both.
+// Lesson 13: a triangle with an intersection shader, by the method of Möller and Trumbore (1997). Half of the scene's
+// triangles use the built-in test, half are boxes with a triangle inside. The colors are the barycentric coordinates of
+// both.
 // scene: triangle.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
@@ -10,7 +10,7 @@ struct HitAttributeType {
   vec2 barycentric;
 };
 
-uniform int show;  // defaultval="0" min="0" max="1" help="0: barycentrics, 1: distance / 10 and side (green: front)"
+uniform int show;  // defaultval="0" min="0" max="1" help="Quantity to show: 0 barycentrics, 1 distance / 10 and side (green is front)"
 /**** COMMON END ****/
 
 void main() { /**** RAY GENERATION SHADER ****/
@@ -30,13 +30,13 @@ void main() { /**** INTERSECTION SHADER ****/
   vec3 b = boxMin + vec3(size.x, 0.0, 0.5 * size.z);
   vec3 c = boxMin + vec3(0.5 * size.x, size.y, 0.5 * size.z);
 
-  // a + u (b - a) + v (c - a) = o + t d, three equations for t, u and v, solved by Cramer's rule.
+  // a + u (b - a) + v (c - a) = o + t d: three equations for t, u and v, solved by Cramer's rule.
   vec3 i = b - a;
   vec3 j = c - a;
   vec3 k = gl_ObjectRayOriginEXT - a;
   vec3 d = gl_ObjectRayDirectionEXT;
   vec3 dxj = cross(d, j);
-  float determinant = dot(dxj, i);  // its sign: from which side the ray comes
+  float determinant = dot(dxj, i);  // its sign is the side from which the ray comes
   if (determinant == 0.0) return;   // parallel
   float u = dot(dxj, k) / determinant;
   if (u < 0.0 || u > 1.0) return;
@@ -46,7 +46,7 @@ void main() { /**** INTERSECTION SHADER ****/
   float t = dot(kxi, j) / determinant;
   if (t < gl_RayTminEXT || t > gl_RayTmaxEXT) return;
   hit.barycentric = vec2(u, v);
-  reportIntersectionEXT(t, determinant > 0.0 ? 0x7Eu : 0x7Fu);  // the built-in kinds 0xFE and 0xFF, less the reserved bit
+  reportIntersectionEXT(t, determinant > 0.0 ? 0x7Eu : 0x7Fu);  // the built-in kinds 0xFE and 0xFF without the reserved bit
 }
 
 void main() { /**** CLOSEST-HIT SHADER ****/

@@ -1,17 +1,17 @@
-// Lesson 14: constructive solid geometry. Union, intersection and difference of a sphere and a box inside one
-// intersection shader: each solid gives the interval of t in which the ray is inside; the operation combines them.
+// Lesson 14: constructive solid geometry. One intersection shader computes union, intersection and difference of a
+// sphere and a box. Each solid has an interval of t in which the ray is inside; the operation combines the intervals.
 // scene: csg.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;
 };
 struct HitAttributeType {
-  vec3 normal;  // outward of the combined solid, object space
-  float solid;  // whose surface it is: 0 the box, 1 the sphere
+  vec3 normal;  // pointing out of the combined solid, object space
+  float solid;  // whose surface is hit: 0 the box, 1 the sphere
 };
 
-uniform vec3 eye;         // defaultval="0, 2.5, 7" unit="m" help="Where the camera is"
-uniform float sphereSize; // defaultval="1.25" min="0.5" max="1.7" help="Radius of the spheres over half the side of the boxes"
+uniform vec3 eye;         // defaultval="0, 2.5, 7" unit="m" help="Position of the camera"
+uniform float sphereSize; // defaultval="1.25" min="0.5" max="1.7" help="Radius of the spheres divided by half the side of the boxes"
 
 const int opUnion = 0;
 const int opIntersection = 1;
@@ -30,7 +30,7 @@ void main() { /**** RAY GENERATION SHADER ****/
   gsnSetPixel(vec4(payload.color, 1.0));
 }
 
-// The interval of the sphere about the origin; x > y: missed.
+// Returns the interval of a sphere centered at the origin; x > y if the ray misses.
 vec2 sphereInterval(vec3 o, vec3 d, float radius) {
   float a = dot(d, d);
   float b = dot(o, d);
@@ -41,7 +41,7 @@ vec2 sphereInterval(vec3 o, vec3 d, float radius) {
   return vec2(-b - q, -b + q) / a;
 }
 
-// Of the cube [-h, h]³.
+// Returns the interval of the cube [-h, h]³; x > y if the ray misses.
 vec2 cubeInterval(vec3 o, vec3 d, float h) {
   vec3 ta = (vec3(-h) - o) / d;
   vec3 tb = (vec3(h) - o) / d;
@@ -52,7 +52,7 @@ vec2 cubeInterval(vec3 o, vec3 d, float h) {
 
 bool contains(vec2 interval, float t) { return interval.x <= t && t < interval.y; }
 
-// Is the point just behind t inside the combined solid?
+// Returns whether the point just after t is inside the combined solid.
 bool insideAfter(int op, vec2 box, vec2 ball, float t) {
   bool inBox = contains(box, t);
   bool inBall = contains(ball, t);
@@ -64,7 +64,7 @@ void main() { /**** INTERSECTION SHADER ****/
   gsnGetIntersectionBox(gl_InstanceID, gl_PrimitiveID, boxMin, boxMax);
   vec3 o = gl_ObjectRayOriginEXT - 0.5 * (boxMin + boxMax);
   vec3 d = gl_ObjectRayDirectionEXT;
-  // The boxes of the scene leave room for the union: the cube is 0.55 of them.
+  // The boxes of the scene leave room for the union: the side of the cube is 0.55 of theirs.
   float halfSide = 0.55 * 0.5 * (boxMax.x - boxMin.x);
   float radius = sphereSize * halfSide;
   int op = gl_PrimitiveID % 3;
@@ -73,14 +73,14 @@ void main() { /**** INTERSECTION SHADER ****/
   vec2 ball = sphereInterval(o, d, radius);
   if (box.x > box.y) box = vec2(never, -never);
 
-  // The candidates are the four ends of the intervals. The hit is the first of them in [tmin, tmax] at which the ray
-  // passes from inside to outside or back. (A difference has up to two pieces: none of them is forgotten this way.)
+  // The candidates are the four ends of the intervals. The hit is the first one in [tmin, tmax] at which the ray passes
+  // from inside to outside or back. This finds both pieces of a difference that consists of two.
   float t = never;
   bool ofBall = false;
   for (int i = 0; i < 4; ++i) {
     float candidate = i == 0 ? box.x : i == 1 ? box.y : i == 2 ? ball.x : ball.y;
     if (!(candidate >= gl_RayTminEXT && candidate <= gl_RayTmaxEXT && candidate < t)) continue;
-    // Just before: the state behind the latest earlier end.
+    // The state just before the candidate is the state after the latest earlier end.
     float before = -never;
     if (box.x < candidate) before = max(before, box.x);
     if (box.y < candidate) before = max(before, box.y);
@@ -100,7 +100,7 @@ void main() { /**** INTERSECTION SHADER ****/
     vec3 q = abs(p);
     normal = q.x >= q.y && q.x >= q.z ? vec3(sign(p.x), 0.0, 0.0) : q.y >= q.z ? vec3(0.0, sign(p.y), 0.0) : vec3(0.0, 0.0, sign(p.z));
   }
-  if (op == opDifference && ofBall) normal = -normal;  // the hole's surface looks inwards
+  if (op == opDifference && ofBall) normal = -normal;  // the normal of the hole points into the sphere
   hit.normal = normal;
   hit.solid = ofBall ? 1.0 : 0.0;
   reportIntersectionEXT(t, dot(normal, d) < 0.0 ? 1u : 2u);

@@ -1,16 +1,16 @@
-// Lesson 15: the any-hit shader. It is asked about every candidate and may refuse it: a fence of plates with holes,
-// through which camera rays and shadow rays pass. With `countLayers` it accepts nothing and counts instead; with
-// `firstOfAny` it ends the search at the first candidate, whichever that is.
+// Lesson 15: the any-hit shader. It runs for every candidate hit and can ignore it, so camera rays and shadow rays pass
+// through the holes in the plates. Mode 1 ignores all candidates and counts them; mode 2 ends the search at the first
+// candidate found, which is not necessarily the nearest.
 // scene: any_hit.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;
   bool lampIsSeen;
-  int layers;  // candidates counted
+  int layers;  // number of candidates
 };
 
-uniform int mode;          // defaultval="0" min="0" max="2" help="0: holes, 1: count the layers without holes, 2: end at the first candidate"
-uniform float holeRadius;  // defaultval="0.35" min="0" max="0.5" help="Of the holes, in texture coordinates of a field"
+uniform int mode;          // defaultval="0" min="0" max="2" help="Mode: 0 holes, 1 count the layers without holes, 2 end at the first candidate"
+uniform float holeRadius;  // defaultval="0.35" min="0" max="0.5" help="Radius of the holes, in texture coordinates of a grid cell"
 
 bool inHole(vec2 texCoord) {
   vec2 field = fract(texCoord * 4.0) - 0.5;
@@ -35,7 +35,7 @@ void main() { /**** ANY-HIT SHADER ****/
   vec2 texCoord = t0 * (1.0 - baryCoord.x - baryCoord.y) + t1 * baryCoord.x + t2 * baryCoord.y;
   if (mode == 0 && gl_InstanceID > 0 && inHole(texCoord)) ignoreIntersectionEXT;
   if (mode == 1) {
-    // What is written before the statement stays written; nothing behind it is executed.
+    // Payload writes before this statement stay; nothing after it runs.
     payload.layers++;
     ignoreIntersectionEXT;
   }

@@ -1,13 +1,13 @@
-// Lesson 16: callable shaders. A material is a shader of its own, chosen at run time by a number: the closest-hit
-// shader says where it is and calls material number gl_InstanceID.
+// Lesson 16: callable shaders. Each material is a callable shader, selected by an index at run time: the closest-hit
+// shader passes position and normal to material number gl_InstanceID.
 // scene: callable.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;
 };
 struct CallableDataType {
-  vec3 position;  // in: of the surface, world
-  vec3 normal;    // in: unit, world
+  vec3 position;  // in: point on the surface, world space
+  vec3 normal;    // in: unit, world space
   vec3 color;     // out
 };
 
@@ -37,12 +37,12 @@ void main() { /**** MISS SHADER ****/
   payload.color = vec3(0.08, 0.09, 0.12);
 }
 
-// 0: matt.
+// 0: diffuse.
 void main() { /**** CALLABLE SHADER ****/
   callableData.color = vec3(0.8, 0.3, 0.2) * max(dot(callableData.normal, normalize(toLight)), 0.0);
 }
 
-// 1: a chessboard in space.
+// 1: a checkerboard in 3D.
 void main() { /**** CALLABLE SHADER ****/
   ivec3 cell = ivec3(floor(callableData.position * 3.0));
   vec3 base = ((cell.x + cell.y + cell.z) & 1) != 0 ? vec3(0.9) : vec3(0.1, 0.2, 0.3);

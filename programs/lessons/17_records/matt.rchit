@@ -1,4 +1,4 @@
-// A matt surface in the sun. Colour and stripes come from the record of the hit group.
+// A diffuse surface in the sun. Color and stripes come from the record of the hit group.
 #version 460
 #extension GL_EXT_ray_tracing : require
 #include <quintet/hit.glsl>
@@ -20,7 +20,7 @@ void main() {
   vec3 base = record.tint;
   if (record.stripes > 0.0 && fract(surface.position.y * record.stripes) < 0.5) base *= 0.4;
 
-  // Foil in between is asked by its any-hit shader; any-hit shaders run for geometry that is not opaque.
+  // Foil on the way runs its any-hit shader, because its geometry is not opaque.
   transmittance = Transmittance(vec3(1.0), false);
   traceRayEXT(topLevelAS, gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, kRay_shadow, kRayTypeCount, kMiss_shadow,
               offsetOrigin(surface, toSun), 0.0, toSun, kInfinity, 1);

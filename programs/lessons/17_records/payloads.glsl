@@ -1,7 +1,7 @@
 // One payload per ray type, each at its own location.
 struct Radiance {
   vec3 color;
-  float free;  // metres
+  float free;  // m
 };
 struct Transmittance {
   vec3 value;

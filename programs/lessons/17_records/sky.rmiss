@@ -6,5 +6,5 @@
 
 layout(location = 0) rayPayloadInEXT Radiance radiance;
 
-// The record of this ray type's miss shader has the colour.
+// The color is in the record of this ray type's miss shader.
 void main() { radiance = Radiance(record.tint, 0.0); }

@@ -1,13 +1,13 @@
-// Lesson 18: instances. The same mesh many times, each with a transform, a mask, flags and a custom index. The colour
-// is looked up by the custom index; rays see only instances whose mask shares a bit with their cull mask.
+// Lesson 18: instances. Many instances of one mesh, each with a transform, a mask, flags and a custom index. The custom
+// index selects the color; a ray sees only instances whose mask shares a bit with its cull mask.
 // scene: instances.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;
 };
 
-uniform int cullMask;      // defaultval="255" min="0" max="255" help="Only instances with one of these bits are seen: 1, 2, 4 are the three rows"
-uniform bool cullBack;     // defaultval="false" help="Do not see triangles from behind"
+uniform int cullMask;      // defaultval="255" min="0" max="255" help="Cull mask of the rays: bits 1, 2 and 4 show the three rows"
+uniform bool cullBack;     // defaultval="false" help="Cull back-facing triangles"
 
 const vec3 palette[4] = vec3[](vec3(0.8, 0.25, 0.2), vec3(0.25, 0.6, 0.3), vec3(0.2, 0.4, 0.8), vec3(0.8, 0.7, 0.2));
 /**** COMMON END ****/
@@ -22,7 +22,7 @@ void main() { /**** RAY GENERATION SHADER ****/
 }
 
 void main() { /**** CLOSEST-HIT SHADER ****/
-  // gl_InstanceID is the place in the scene, gl_InstanceCustomIndexEXT a number of your choice (24 bits).
+  // gl_InstanceID is the index in the scene, gl_InstanceCustomIndexEXT a number of your choice (24 bits).
   vec3 base = palette[gl_InstanceCustomIndexEXT & 3];
   float stripe = (gl_InstanceID & 1) != 0 ? 1.0 : 0.8;
   vec3 p0, p1, p2;
@@ -30,7 +30,7 @@ void main() { /**** CLOSEST-HIT SHADER ****/
   mat3 normalMatrix;
   gsnGetNormal3x3Matrix(gl_InstanceID, normalMatrix);
   vec3 normal = normalize(normalMatrix * cross(p1 - p0, p2 - p0));
-  // Which side the driver takes for the front: the winding in object space, turned round by the flip_facing flag.
+  // The winding in object space determines the front; the flip_facing flag reverses it.
   bool front = gl_HitKindEXT == gl_HitKindFrontFacingTriangleEXT;
   payload.color = base * stripe * (0.25 + 0.75 * abs(dot(normal, normalize(vec3(1.0, 1.0, 2.0))))) * (front ? 1.0 : 0.5);
 }

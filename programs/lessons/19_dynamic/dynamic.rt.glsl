@@ -1,5 +1,5 @@
-// Lesson 19: a scene that moves. The bottom-level structures stay as they are; the top level is built again for each
-// frame from the new transforms. The shaders need not know: they see the matrices of the moment.
+// Lesson 19: a scene that moves. The BLASes stay the same; the TLAS is rebuilt for each frame from the new transforms.
+// The shaders need no changes: they read the matrices of the current frame.
 // scene: dynamic.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {

@@ -1,4 +1,5 @@
-// The custom index of the instance leads to its mesh and material buffers; textures are chosen by an index at run time.
+// Mesh and material buffers are found from the custom index of the instance; textures are selected by an index at run
+// time.
 #version 460
 #extension GL_EXT_ray_tracing : require
 #include <quintet/hit.glsl>

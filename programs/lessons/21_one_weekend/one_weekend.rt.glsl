@@ -1,26 +1,26 @@
-// Lesson 21: the final scene of "Ray Tracing in One Weekend" (Shirley 2016), as five shaders: random spheres, matt,
-// metal and glass, depth of field. Each frame takes 8 samples per pixel of at most 16 bounces and is averaged with the
-// frames before.
+// Lesson 21: the final scene of "Ray Tracing in One Weekend" (Shirley 2016): random diffuse, metal and glass spheres
+// with depth of field, in four shaders. Each frame takes 8 samples per pixel with at most 16 bounces and is averaged
+// with the frames before.
 // scene: one_weekend.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
-  float t;        // < 0: nothing was met
-  vec3 normal;    // outward, unit, world
-  int sphere;     // which one
+  float t;        // negative if the ray misses
+  vec3 normal;    // outward, unit, world space
+  int sphere;     // index
 };
 struct HitAttributeType {
   vec3 normal;
 };
 
 uniform int samples;       // defaultval="8" min="1" max="64" help="Samples per pixel and frame"
-uniform int bounces;       // defaultval="16" min="1" max="64" help="Bounces of a path at most"
+uniform int bounces;       // defaultval="16" min="1" max="64" help="Maximum number of bounces of a path"
 uniform float aperture;    // defaultval="0.1" min="0" max="2" unit="m" help="Diameter of the lens"
-uniform float focus;       // defaultval="10" min="0.1" max="1000" unit="m" help="Distance that is sharp"
+uniform float focus;       // defaultval="10" min="0.1" max="1000" unit="m" help="Distance that is in focus"
 /**** COMMON END ****/
 
 const float pi = 3.14159265359;
 
-// PCG (O'Neill 2014; Jarzynski and Olano 2020): a state for each path, started from pixel and sample.
+// PCG (O'Neill 2014; Jarzynski and Olano 2020). Each path has its own state, seeded from pixel and sample.
 uint randomState;
 uint hash(uint x) {
   x = x * 747796405u + 2891336453u;
@@ -38,8 +38,9 @@ vec3 randomUnit() {
   return vec3(sqrt(max(0.0, 1.0 - z * z)) * vec2(cos(angle), sin(angle)), z);
 }
 
-// What sphere i is made of. 0 is the ground, 1 to 3 the large ones: glass, matt, metal; the others by chance.
-const int matt = 0;
+// The material of sphere i: 0 is the ground, 1 to 3 are the large spheres (glass, diffuse, metal), all others are
+// random.
+const int diffuse = 0;
 const int metal = 1;
 const int glass = 2;
 struct Material {
@@ -48,32 +49,32 @@ struct Material {
   float fuzz;
 };
 Material materialOf(int i) {
-  if (i == 0) return Material(matt, vec3(0.5), 0.0);
+  if (i == 0) return Material(diffuse, vec3(0.5), 0.0);
   if (i == 1) return Material(glass, vec3(1.0), 0.0);
-  if (i == 2) return Material(matt, vec3(0.4, 0.2, 0.1), 0.0);
+  if (i == 2) return Material(diffuse, vec3(0.4, 0.2, 0.1), 0.0);
   if (i == 3) return Material(metal, vec3(0.7, 0.6, 0.5), 0.0);
   uint h = hash(uint(i));
   vec3 a = vec3(h & 1023u, (h >> 10u) & 1023u, (h >> 20u) & 1023u) / 1023.0;
   h = hash(h);
   vec3 b = vec3(h & 1023u, (h >> 10u) & 1023u, (h >> 20u) & 1023u) / 1023.0;
   float choice = float(hash(h + 1u) >> 8u) / 16777216.0;
-  if (choice < 0.8) return Material(matt, a * b, 0.0);
+  if (choice < 0.8) return Material(diffuse, a * b, 0.0);
   if (choice < 0.95) return Material(metal, 0.5 + 0.5 * a, 0.5 * b.x);
   return Material(glass, vec3(1.0), 0.0);
 }
 
-// Schlick's approximation of Fresnel's reflectance.
+// Schlick's approximation of the Fresnel reflectance.
 float reflectance(float cosine, float eta) {
   float r0 = (1.0 - eta) / (1.0 + eta);
   r0 *= r0;
   return r0 + (1.0 - r0) * pow(1.0 - cosine, 5.0);
 }
 
-// The direction in which the path goes on; false: it is absorbed.
+// Computes the next direction of the path; returns false if the path is absorbed.
 bool scatter(Material m, vec3 incoming, vec3 outward, out vec3 direction) {
   bool front = dot(incoming, outward) < 0.0;
   vec3 normal = front ? outward : -outward;
-  if (m.kind == matt) {
+  if (m.kind == diffuse) {
     direction = normal + randomUnit();
     if (dot(direction, direction) < 1e-12) direction = normal;
     return true;
@@ -104,7 +105,7 @@ vec3 pathColor(vec3 origin, vec3 direction) {
     if (!scatter(m, direction, normal, next)) return vec3(0.0);
     weight *= m.color;
     direction = normalize(next);
-    // Off the surface, to the side of the new ray.
+    // Offset from the surface, to the side of the new ray.
     origin = position + (dot(direction, normal) > 0.0 ? 1e-3 : -1e-3) * normal;
   }
   return vec3(0.0);
@@ -129,7 +130,7 @@ void main() { /**** RAY GENERATION SHADER ****/
     vec3 target = eye + focus * (plane.x * right + plane.y * up - back);
     sum += pathColor(origin, normalize(target - origin));
   }
-  // Averaged in linear light; shown with gamma 2, as in the book.
+  // Averaged in linear values, stored with gamma 2 as in the book.
   vec3 before = gsnGetPreviousPixel().rgb;
   vec3 linear = (before * before * float(frameID) + sum / float(samples)) / float(frameID + 1);
   gsnSetPixel(vec4(sqrt(linear), 1.0));

@@ -1,22 +1,22 @@
-// Lesson 22: a path tracer in one file. Matt surfaces and a lamp in the Cornell box; at each surface the lamp is sampled
-// directly (next-event estimation) and the path goes on in a direction drawn by the cosine. Unbiased: the average
-// over the frames converges to the right picture.
+// Lesson 22: a path tracer in one file. Diffuse surfaces and a lamp in the Cornell box. At each surface the lamp is
+// sampled directly (next-event estimation), and the path continues in a direction with cosine-weighted density. The
+// estimate is unbiased: the average over the frames converges to the exact image.
 // scene: path_tracer.scene.toml
 /**** COMMON START ****/
 struct RayPayloadType {
-  float t;       // < 0: nothing was met
-  vec3 normal;   // of the triangle, unit, towards the ray's origin, world
+  float t;       // negative if the ray misses
+  vec3 normal;   // of the triangle, unit, on the side of the ray's origin, world space
   int instance;
 };
 
 uniform int samples;  // defaultval="4" min="1" max="256" help="Samples per pixel and frame"
-uniform int bounces;  // defaultval="8" min="0" max="64" help="Scatterings of a path at most"
+uniform int bounces;  // defaultval="8" min="0" max="64" help="Maximum number of scattering events of a path"
 uniform vec3 emission; // defaultval="16, 13, 9" help="Radiance of the lamp"
 /**** COMMON END ****/
 
 const float pi = 3.14159265359;
 
-// The lamp: a square below the ceiling that looks down (instance 1 of the scene).
+// The lamp: a square below the ceiling that faces down (instance 1 of the scene).
 const int lampInstance = 1;
 const vec3 lampCenter = vec3(0.0, 1.98, 0.0);
 const float lampHalf = 0.25;
@@ -34,12 +34,12 @@ float random() {
   return float(((x >> 22u) ^ x) >> 8u) / 16777216.0;
 }
 
-// By instance: 0 white walls, 1 lamp (its back), 2 red wall, 3 green wall, 4 and 5 blocks.
+// By instance: 0 white walls, 1 lamp (back side), 2 red wall, 3 green wall, 4 and 5 blocks.
 vec3 albedoOf(int instance) {
   return instance == 2 ? vec3(0.63, 0.065, 0.05) : instance == 3 ? vec3(0.14, 0.45, 0.091) : vec3(0.73);
 }
 
-// Cosine-weighted about n: a point on the unit sphere around n's tip.
+// Returns a cosine-weighted direction about n: a point on the unit sphere around the tip of n.
 vec3 cosineDirection(vec3 n) {
   float z = 1.0 - 2.0 * random();
   float angle = 2.0 * pi * random();
@@ -47,15 +47,15 @@ vec3 cosineDirection(vec3 n) {
   return dot(d, d) > 1e-12 ? normalize(d) : n;
 }
 
-// Radiance that the path from here on brings. The lamp's emission counts when it is met by a camera ray only: all later
-// meetings are what the samples of the lamp stand for.
+// Returns the radiance of a path. The lamp's emission counts only if a camera ray hits it, because the samples of the
+// lamp already include all later hits.
 vec3 pathRadiance(vec3 origin, vec3 direction) {
   vec3 radiance = vec3(0.0);
   vec3 weight = vec3(1.0);
-  // One call of traceRayEXT for both kinds of rays: each call costs compile time.
+  // One traceRayEXT serves both kinds of rays, because each call costs compile time.
   bool shadow = false;
   float tmax = 1e4;
-  vec3 pending = vec3(0.0);  // what the shadow ray brings if it meets nothing
+  vec3 pending = vec3(0.0);  // contribution of the lamp if the shadow ray misses
   vec3 nextOrigin = vec3(0.0);
   vec3 nextDirection = vec3(0.0);
   for (int depth = 0; depth <= bounces;) {
@@ -81,7 +81,7 @@ vec3 pathRadiance(vec3 origin, vec3 direction) {
     vec3 position = origin + payload.t * direction + 1e-4 * normal;
     weight *= albedoOf(instance);
 
-    // A point of the lamp, uniform over its area: the estimate is f · L · cos · cos' · area / distance².
+    // A point of the lamp, uniform over its area. The estimate is f · L · cos · cos' · area / distance².
     vec3 target = lampCenter + lampHalf * vec3(2.0 * random() - 1.0, 0.0, 2.0 * random() - 1.0);
     vec3 toLamp = target - position;
     float squared = dot(toLamp, toLamp);
@@ -109,7 +109,7 @@ void main() { /**** RAY GENERATION SHADER ****/
     vec3 direction = normalize(vec3(ndc * vec2(aspect, 1.0) * tan(0.5 * radians(38.0)), -1.0));
     sum += pathRadiance(vec3(0.0, 1.0, 3.9), direction);
   }
-  // Averaged in linear light; shown with gamma 2.2.
+  // Averaged in linear values, stored with gamma 2.2.
   vec3 before = pow(gsnGetPreviousPixel().rgb, vec3(2.2));
   vec3 linear = (before * float(frameID) + sum / float(samples)) / float(frameID + 1);
   gsnSetPixel(vec4(pow(linear, vec3(1.0 / 2.2)), 1.0));

@@ -1,12 +1,12 @@
-// Directional albedos from the tables at Frame::albedoTables (shared/albedo.h has their layout), for
-// putting back the energy that single scattering loses and for coupling layers.
+// Directional albedos from the tables at Frame::albedoTables (layout: shared/albedo.h). They compensate for the energy that
+// single scattering loses, and they couple layers.
 #ifndef QUINTET_BSDF_ALBEDO_GLSL
 #define QUINTET_BSDF_ALBEDO_GLSL
 
 #include "ggx.glsl"
 #include "../shared/albedo.h"
 
-// A cell of a table axis: the index of its first node and the position in it, [0,1].
+// A cell of a table axis: the index of its first node, and the position in the cell, [0,1].
 struct AlbedoCell {
   uint index;
   float offset;
@@ -18,7 +18,7 @@ AlbedoCell albedoCell(float position, uint nodeCount) {
   return AlbedoCell(index, x - float(index));
 }
 
-// Bilinear value of the vec2 table with `columns` cosines that starts at `table`.
+// Returns the bilinearly interpolated value of the vec2 table at `table` with `columns` cosines.
 vec2 albedoFetch(Address table, uint columns, AlbedoCell row, AlbedoCell column) {
   Vec2Array values = Vec2Array(table);
   uint i = row.index * columns + column.index;
@@ -27,7 +27,7 @@ vec2 albedoFetch(Address table, uint columns, AlbedoCell row, AlbedoCell column)
              mix(values.at[j], values.at[j + 1u], column.offset), row.offset);
 }
 
-// Of an axis of cos^(1/4) or alpha^(1/4).
+// Coordinate of an axis of cos^(1/4) or alpha^(1/4).
 float albedoRoot(float x) { return sqrt(sqrt(max(x, 0.0))); }
 AlbedoCell albedoRow(float alpha, uint nodeCount) {
   float first = albedoRoot(kDeltaAlpha);
@@ -35,22 +35,22 @@ AlbedoCell albedoRow(float alpha, uint nodeCount) {
 }
 AlbedoCell albedoRow(float alpha) { return albedoRow(alpha, kAlbedoRoughnesses); }
 
-// (L, B): single scattering by GGX with Schlick's Fresnel reflects f0 (1 - L - B) + f90 B of a parallel light and loses
-// L for f0 = f90 = 1.
+// Returns (L, B). The albedo of single scattering by GGX with Schlick's Fresnel is f0 (1 - L - B) + f90 B; L is the loss
+// for f0 = f90 = 1.
 vec2 albedoSchlick(AlbedoCell row, float cosine) {
   return albedoFetch(frame.albedoTables, kAlbedoCosines, row, albedoCell(albedoRoot(cosine), kAlbedoCosines));
 }
 
 vec3 albedoSingle(vec3 f0, float f90, vec2 lb) { return f0 * (1.0 - lb.x - lb.y) + f90 * lb.y; }
 
-// Cosine-weighted averages of L and B over the hemisphere.
+// Returns the cosine-weighted averages of L and B over the hemisphere.
 vec2 albedoAverage(AlbedoCell row) {
   Vec2Array values = Vec2Array(frame.albedoTables + 4u * kAlbedoAverageOffset);
   return mix(values.at[row.index], values.at[row.index + 1u], row.offset);
 }
 
-// Albedo of rough glass under single scattering: x with Fresnel's reflectance, y with none but total
-// reflection. `ior` is the material's; outside: the light's side is not the material's.
+// Returns the albedo of rough glass with single scattering: x with Fresnel's reflectance, y with total reflection only.
+// `ior` is the material's. `outside`: wo is outside the solid.
 vec2 albedoGlass(float cosine, float alpha, float ior, bool outside) {
   float edge = outside ? 1.0 : sqrt(max(1.0 - 1.0 / (ior * ior), 1e-6));
   float inner = cosine < edge ? 0.5 * albedoRoot(cosine / edge) : 0.5 + 0.5 * sqrt((cosine - edge) / max(1.0 - edge, 1e-6));

@@ -1,6 +1,7 @@
-// Clear lacquer over everything else: GGX with f0 = 0.04 around a normal of its own (KHR_materials_clearcoat).
-// What lies below is scaled by 1 - weight E(wo), E the coat's albedo: as the extension's formula, which takes
-// Fresnel at the normal, with nothing lost or gained for rough coats; a factor of wo alone, not reciprocal.
+// Clearcoat lobe: a clear layer over all other lobes (KHR_materials_clearcoat). GGX with f0 = 0.04 around its own normal.
+// The lobes below are scaled by 1 - weight E(wo), where E is the coat's albedo. The extension's formula uses Fresnel at
+// the normal instead of E; with E no energy is lost or gained for rough coats. The factor depends on wo alone, so it is
+// not reciprocal.
 #ifndef QUINTET_BSDF_CLEARCOAT_GLSL
 #define QUINTET_BSDF_CLEARCOAT_GLSL
 
@@ -12,26 +13,32 @@ const float kClearcoatF0 = 0.04;
 
 struct ClearcoatLobe {
   vec3 normal;   // in the local frame of the shading normal
-  float weight;  // 0: no coat on this side
+  float weight;  // 0 means no coat on this side
   float alpha;
+  bool delta;
 };
 
 float clearcoatFresnel(ClearcoatLobe lobe, float cosine) {
   return lobe.weight * mix(kClearcoatF0, 1.0, schlickWeight(cosine));
 }
 
-// The part of light from wo that the coat reflects.
-float clearcoatAlbedo(ClearcoatLobe lobe, vec3 wo, bool delta) {
+// Returns the fraction of light from wo that the coat reflects.
+float clearcoatAlbedo(ClearcoatLobe lobe, vec3 wo) {
   float cosine = dot(wo, lobe.normal);
   vec2 lb = albedoSchlick(albedoRow(lobe.alpha), cosine);
-  return delta ? clearcoatFresnel(lobe, cosine) : lobe.weight * albedoSingle(vec3(kClearcoatF0), 1.0, lb).x;
+  return lobe.delta ? clearcoatFresnel(lobe, cosine) : lobe.weight * albedoSingle(vec3(kClearcoatF0), 1.0, lb).x;
 }
 
-// What light that the surface itself emits keeps on its way out: 1 - E, at `cosine` to the normal. So a coat over a
-// black body emits as much as it absorbs (Kirchhoff's law), and as much as any light from below (bsdf underCoat).
+// `alpha`: clearcoatRoughness squared. `coated`: this side has a coat.
+ClearcoatLobe makeClearcoat(vec3 normal, float weight, float alpha, bool coated) {
+  return ClearcoatLobe(normal, coated ? weight : 0.0, max(alpha, kDeltaAlpha), alpha < kDeltaAlpha);
+}
+
+// Returns the fraction 1 - E of emitted light that passes the coat, at `cosine` to the normal. So a coated black body
+// emits as much as it absorbs (Kirchhoff's law). It is the same factor as for all light from below (Bsdf::underCoat).
 float clearcoatPassed(float weight, float alpha, float cosine) {
-  ClearcoatLobe lobe = ClearcoatLobe(vec3(0.0, 0.0, 1.0), weight, max(alpha, kDeltaAlpha));
-  return 1.0 - clearcoatAlbedo(lobe, vec3(0.0, 0.0, cosine), alpha < kDeltaAlpha);
+  ClearcoatLobe lobe = makeClearcoat(vec3(0.0, 0.0, 1.0), weight, alpha, true);
+  return 1.0 - clearcoatAlbedo(lobe, vec3(0.0, 0.0, cosine));
 }
 
 float clearcoatDistribution(ClearcoatLobe lobe, vec3 h) {
@@ -47,7 +54,7 @@ float clearcoatEval(ClearcoatLobe lobe, vec3 wo, vec3 wi) {
   return cosI > 0.0 && wi.z > 0.0 ? f * clearcoatFresnel(lobe, 0.5 * length(h)) : 0.0;
 }
 
-// m: drawn in the frame of the coat's normal by ggxSample with the bound ggxBound.
+// m: sampled in the frame of the coat's normal by ggxSample with the bound ggxBound.
 vec3 clearcoatSample(ClearcoatLobe lobe, vec3 wo, vec3 m) { return reflect(-wo, m); }
 
 float clearcoatPdf(ClearcoatLobe lobe, vec3 wo, vec3 wi) {

@@ -1,22 +1,23 @@
-// Lambert's diffuse reflection under a specular layer. The two are coupled by the layer's albedo E, multiple
-// scattering included, so that what the layer does not reflect reaches the diffuse base and a white base loses
-// nothing: f = color (1 - E(wo)) (1 - E(wi)) / (pi (1 - E_average)); reciprocal.
+// Diffuse lobe: Lambert's reflection under a specular layer. The layer's albedo E couples the two, multiple scattering
+// included. What the layer does not reflect reaches the diffuse base, so a white base loses nothing:
+// f = color (1 - E(wo)) (1 - E(wi)) / (pi (1 - E_average)). This is reciprocal.
 // Kelemen and Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance
 // Sampling", eq. 3 and 4.
 #ifndef QUINTET_BSDF_DIFFUSE_GLSL
 #define QUINTET_BSDF_DIFFUSE_GLSL
 
-#include "albedo.glsl"
+#include "base.glsl"
 
 struct DiffuseLobe {
-  vec3 color;    // all of f that does not depend on wi, without 1/pi
+  vec3 color;    // factors of f that do not depend on wi, without 1/pi
   vec3 passing;  // layerPassing
 };
 
-// (a, b, c) with 1 - E = a + b L + c B, for a layer whose multiple scattering has the factor `multiple`: E is
-// f0 (1 - L - B) + f90 B + multiple L (albedoSchlick has L and B).
-vec3 layerPassing(float f0, float f90, float multiple) { return vec3(1.0 - f0, f0 - multiple, f0 - f90); }
-float layerPassed(vec3 passing, vec2 lb) { return max(passing.x + dot(passing.yz, lb), 0.0); }
+// `albedo`: estimate of the lobe's albedo, for the choice of a lobe.
+DiffuseLobe makeDiffuse(BaseLayer base, out float albedo) {
+  albedo = base.underCoat * base.opaque * luminance(base.color) * base.passed;
+  return DiffuseLobe(base.opaque * base.color * (base.passed / max(layerPassed(base.passing, base.average), 1e-4)), base.passing);
+}
 
 // `lb`: the layer's albedoSchlick at wi.
 vec3 diffuseEval(DiffuseLobe lobe, vec3 wi, vec2 lb) {

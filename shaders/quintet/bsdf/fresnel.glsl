@@ -1,4 +1,4 @@
-// Fresnel reflectance: the exact one for dielectrics, Schlick's for everything else.
+// Fresnel reflectance: exact for dielectrics, Schlick's approximation for all others.
 #ifndef QUINTET_BSDF_FRESNEL_GLSL
 #define QUINTET_BSDF_FRESNEL_GLSL
 
@@ -9,15 +9,15 @@ float schlickWeight(float cosine) {
   return x * x * x * x * x;
 }
 
-// Reflectance at normal incidence. 0 as index of refraction gives 1, as KHR_materials_ior asks.
+// Returns the reflectance at normal incidence. An ior of 0 gives 1, as KHR_materials_ior specifies.
 float reflectanceFromIor(float ior) {
   float r = (ior - 1.0) / (ior + 1.0);
   return r * r;
 }
 
-// Unpolarised reflectance of a smooth interface; eta: index on the far side over the near side.
+// Unpolarized reflectance of a smooth interface; eta: index on the far side over the near side.
 // Walter, Marschner, Li, Torrance 2007, "Microfacet Models for Refraction through Rough Surfaces", eq. 22.
-// 1 where reflection is total.
+// Returns 1 for total reflection.
 float fresnelDielectric(float cosine, float eta) {
   float g2 = eta * eta - 1.0 + cosine * cosine;
   float g = sqrt(max(g2, 0.0));

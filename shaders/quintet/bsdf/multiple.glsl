@@ -1,23 +1,23 @@
-// Light that meets a rough surface more than once. Single scattering loses L(wo) of it for f0 = f90 = 1
-// (albedoSchlick); that leaves by f = F L(wo) L(wi) / (pi M), M the average of L, which is reciprocal and reflects
-// F L(wo): Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks".
+// Multiple scattering at a rough surface. For f0 = f90 = 1 single scattering loses the fraction L(wo) of the light
+// (albedoSchlick). This lobe returns it: f = F L(wo) L(wi) / (pi M), where M is the average of L. It is reciprocal and
+// its albedo is F L(wo). Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks".
 #ifndef QUINTET_BSDF_MULTIPLE_GLSL
 #define QUINTET_BSDF_MULTIPLE_GLSL
 
 #include "albedo.glsl"
 
-// F: each meeting reflects Schlick's average (20 f0 + f90) / 21, each but the first lets 1 - M of the light escape; the
-// sum over two and more of them. 1 for a white mirror.
+// Returns F. Each scattering reflects the average of Schlick's Fresnel, (20 f0 + f90) / 21. After each one except the
+// first, the fraction 1 - M escapes. F is the sum over all orders from the second on; it is 1 for a white mirror.
 vec3 multipleFactor(vec3 f0, float f90, float lostAverage) {
   vec3 f = (20.0 * f0 + f90) / 21.0;
-  return min(f * f * (1.0 - lostAverage) / (1.0 - f * lostAverage), vec3(1.0));  // a device's quotient may exceed 1
+  return min(f * f * (1.0 - lostAverage) / (1.0 - f * lostAverage), vec3(1.0));  // rounding may exceed 1
 }
 
 // f cos_i without F L(wo) / M. `lb`: the layer's albedoSchlick at wi.
 float multipleEval(vec3 wi, vec2 lb) { return lb.x * abs(wi.z) / kPi; }
 
-// L is nearly proportional to 1 / (cos^2 + a^2) with a^2 = 2 alpha^2, and that times the cosine can be drawn:
-// no sample is worth more than twice the average, at any roughness.
+// L is nearly proportional to 1 / (cos^2 + a^2) with a^2 = 2 alpha^2. The product with the cosine can be sampled.
+// No sample then has a weight above twice the average, at any roughness.
 float multipleWidth(float alpha) { return 2.0 * alpha * alpha; }
 
 vec3 multipleSample(float alpha, vec2 u) {

@@ -1,20 +1,30 @@
-// Transmission through a thin wall: straight on, roughened like the reflection. The lobe is the base's GGX
-// reflection mirrored at the surface, times 1 - F per micronormal (KHR_materials_transmission, "Implementation
-// notes": one interface). What of multiple scattering is not reflected is transmitted, so that reflection and
-// transmission of a white wall sum to 1. No radiance scaling: both sides are the same medium.
+// Transmission through a thin wall, without refraction. It is the base's GGX reflection mirrored at the surface, times
+// 1 - F per micronormal (KHR_materials_transmission, "Implementation notes": one interface). Multiple scattering that
+// is not reflected is transmitted, so reflection and transmission of a white wall sum to 1. Both sides are the same
+// medium, so radiance is not scaled. One of the two forms of the transmission lobe (transmission.glsl).
 #ifndef QUINTET_BSDF_THIN_GLSL
 #define QUINTET_BSDF_THIN_GLSL
 
-#include "specular.glsl"
+#include "base.glsl"
+#include "fresnel.glsl"
+#include "ggx.glsl"
+#include "multiple.glsl"
 
 struct ThinLobe {
-  vec3 color;            // tint
+  vec3 color;                 // tint
   float f0;
   float f90;
   float alpha;
-  vec3 multiple;         // all of multiple scattering but multipleEval
-  float multipleChance;  // of sampling it
+  vec3 multiple;              // multiple scattering divided by multipleEval
+  float multipleProbability;  // of sampling multiple scattering
 };
+
+ThinLobe makeThin(BaseLayer base) {
+  vec3 color = base.clear * base.color;
+  float through = base.lb.x * (1.0 - base.layerMultiple);
+  return ThinLobe(color, base.f0, base.specular, base.alpha, through / base.average.x * color,
+                  min(through / max(base.passed, 1e-20), 1.0));
+}
 
 vec3 thinTransmittance(ThinLobe lobe, float cosine) {
   return lobe.color * max(1.0 - mix(lobe.f0, lobe.f90, schlickWeight(cosine)), 0.0);
@@ -28,9 +38,9 @@ vec3 thinEval(ThinLobe lobe, vec3 wo, vec3 wi, vec2 lb) {
   return wi.z < 0.0 ? single + lobe.multiple * multipleEval(wi, lb) : vec3(0.0);
 }
 
-// m: drawn by ggxSample with the bound ggxBound; uPart chooses between single and multiple scattering.
+// m: sampled by ggxSample with the bound ggxBound. uPart chooses between single and multiple scattering.
 vec3 thinSample(ThinLobe lobe, vec3 wo, vec3 m, float uPart, vec2 u) {
-  vec3 r = uPart < lobe.multipleChance ? multipleSample(lobe.alpha, u) : reflect(-wo, m);
+  vec3 r = uPart < lobe.multipleProbability ? multipleSample(lobe.alpha, u) : reflect(-wo, m);
   return vec3(r.xy, -r.z);
 }
 
@@ -38,7 +48,7 @@ float thinPdf(ThinLobe lobe, vec3 wo, vec3 wi) {
   vec3 h = wo + vec3(wi.xy, -wi.z);
   float d = ggxDistribution(h.z * h.z, dot(h.xy, h.xy), lobe.alpha);
   float single = ggxReflectionPdf(d, wo.z, lobe.alpha, ggxBound(wo.z, lobe.alpha));
-  return wi.z < 0.0 ? mix(single, multiplePdf(wi, lobe.alpha), lobe.multipleChance) : 0.0;
+  return wi.z < 0.0 ? mix(single, multiplePdf(wi, lobe.alpha), lobe.multipleProbability) : 0.0;
 }
 
 #endif

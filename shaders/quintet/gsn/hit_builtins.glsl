@@ -1,6 +1,6 @@
-// The built-ins of a hit, copied when the shader begins: drivers exist where a nested trace overwrites them
-// (docs/design/quirks.md). Primitives and instances are named by their index in the scene, whatever order the
-// acceleration structure has.
+// The built-ins of a hit, copied at the start of the shader, because a nested trace overwrites them on some drivers
+// (docs/design/quirks.md). Indices of primitives and instances are those of the scene, which can differ from the order
+// in the acceleration structure.
 uint gsnPrimitive_;
 uint gsnInstance_;
 uint gsnGeometryIndex_;
@@ -29,7 +29,8 @@ GeometryData gsnHitGeometry_() {
 hitAttributeEXT vec2 gsnBaryAttribute_;
 vec2 baryCoord;
 
-// By Cramer's rule from the ray, where the attribute may be that of a candidate that was rejected later.
+// Computes the barycentrics from the ray by Cramer's rule, for drivers where the attribute can be that of a rejected
+// candidate.
 vec2 gsnBaryFromRay_(GeometryData geometry) {
   const uvec3 v = Uvec3Array(geometry.triangles).at[gsnPrimitive_];
   Vec3Array positions = Vec3Array(geometry.positions);
@@ -53,7 +54,7 @@ const bool gsnCorruptsAttributes_ = true;
 #else
 const bool gsnCorruptsAttributes_ = false;
 #endif
-float gsnNearest_;  // the closest hit so far, with those that this invocation has reported
+float gsnNearest_;  // t of the closest hit so far, including reports of this invocation
 bool gsnInRange_(float t) { return t >= gl_RayTminEXT && t <= gsnNearest_; }
 bool gsnReportRaw_(float t, uint hitKind) { return reportIntersectionEXT(t, hitKind); }
 #endif

@@ -1,5 +1,5 @@
-// Images of a program of the lecture form: a uniform sampler2D is an index into the textures. The program's word
-// sampler2D means gsnImage. Look-ups are GLSL's, of the finest level, with t upwards: (0, 0) is the lower left corner.
+// Images of the lecture form: a uniform sampler2D is an index into the textures, and sampler2D in the program means
+// gsnImage. Lookups are those of GLSL at the finest mip level, with t upwards: (0, 0) is the lower left corner.
 struct gsnImage {
   uint index;
 };

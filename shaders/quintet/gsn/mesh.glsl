@@ -1,5 +1,5 @@
-// Data of a mesh by instance and primitive, both by their index in the scene; zeros for indices out of range. A
-// mesh of several geometries: in the shaders of a hit that of the hit, elsewhere the first one.
+// Mesh data by instance and primitive, both as indices in the scene; zeros for indices out of range. For a mesh with
+// several geometries, shaders of a hit read the geometry of the hit, other shaders the first one.
 uint gsnGeometryOf_(int inst) {
 #ifdef QUINTET_GSN_HIT
   if (uint(inst) == gsnInstance_) return gsnGeometryIndex_;
@@ -14,7 +14,7 @@ bool gsnGeometryAt_(int inst, int prim, out GeometryData geometry) {
   return uint(prim) < geometry.triangleCount;
 }
 
-// False if there is no such triangle.
+// Returns false if the triangle does not exist.
 bool gsnTriangleAt_(int inst, int prim, out GeometryData geometry, out uvec3 vertices) {
   vertices = uvec3(0u);
   if (!gsnGeometryAt_(inst, prim, geometry) || geometry.triangles == 0ul) return false;
@@ -22,7 +22,7 @@ bool gsnTriangleAt_(int inst, int prim, out GeometryData geometry, out uvec3 ver
   return true;
 }
 
-// The triangle's vertices in object space.
+// Vertices of the triangle in object space.
 void gsnGetPositions(int inst, int prim, out vec3 p0, out vec3 p1, out vec3 p2) {
   p0 = p1 = p2 = vec3(0.0);
   GeometryData geometry;
@@ -34,7 +34,7 @@ void gsnGetPositions(int inst, int prim, out vec3 p0, out vec3 p1, out vec3 p2) 
   p2 = positions.at[v.z];
 }
 
-// Normals of the vertices in object space; the triangle's own where the mesh has none.
+// Vertex normals in object space; the face normal if the mesh has no normals.
 void gsnGetNormals(int inst, int prim, out vec3 n0, out vec3 n1, out vec3 n2) {
   n0 = n1 = n2 = vec3(0.0);
   GeometryData geometry;
@@ -53,7 +53,7 @@ void gsnGetNormals(int inst, int prim, out vec3 n0, out vec3 n1, out vec3 n2) {
   n2 = normals.at[v.z];
 }
 
-// The first set, t upwards; zeros where the mesh has none.
+// Texture coordinates of the first set, t upwards; zeros if the mesh has none.
 void gsnGetTexCoords(int inst, int prim, out vec2 t0, out vec2 t1, out vec2 t2) {
   t0 = t1 = t2 = vec2(0.0);
   GeometryData geometry;
@@ -75,7 +75,7 @@ void gsnGetIntersectionBox(int inst, int prim, out vec3 aabbMin, out vec3 aabbMa
   aabbMax = box.max;
 }
 
-// mat3(transpose(inverse(objectToWorld))): takes normals from object to world space.
+// mat3(transpose(inverse(objectToWorld))), which transforms normals from object to world space.
 void gsnGetNormal3x3Matrix(int inst, out mat3 normalMatrix) {
   normalMatrix = mat3(1.0);
   if (uint(inst) >= frame.instanceCount) return;

@@ -1,4 +1,4 @@
-// Names of the library that a program of the lecture form may want for itself: renamed from here to names_end.glsl.
+// Renames names of the library that a lecture-form program can use itself, up to names_end.glsl.
 #define AliasArray gsnAliasArray_
 #define AliasEntry gsnAliasEntry_
 #define BoxArray gsnBoxArray_

@@ -1,5 +1,5 @@
-// Takes the renaming back, and puts the program's view over the built-ins that differ between drivers, strips and
-// orders of primitives: from here on gl_PrimitiveID is the index in the scene's own order, and so on.
+// Ends the renaming of names_begin.glsl, and replaces built-ins that depend on the driver, the launch strip or the order of
+// primitives: from here on gl_PrimitiveID is the index in the scene, and so on.
 #ifndef QUINTET_GSN_OPEN
 #undef AliasArray
 #undef AliasEntry

@@ -1,5 +1,5 @@
-// Directional light of KHR_lights_punctual: parallel rays, infinitely far; its intensity is the irradiance of
-// a surface that faces it.
+// Directional light of KHR_lights_punctual: parallel rays from infinity. The intensity is the irradiance of a surface that
+// faces the light.
 #ifndef QUINTET_LIGHTS_DIRECTIONAL_GLSL
 #define QUINTET_LIGHTS_DIRECTIONAL_GLSL
 

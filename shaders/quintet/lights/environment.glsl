@@ -1,7 +1,6 @@
-// The environment: an equirectangular texture (bilinear) or a constant, and its importance sampling. A cell of the
-// table is drawn by its probability, then a direction uniform in solid angle within the cell: uniform
-// in u and in cos θ. So the density in a cell is its probability over its solid angle; that is
-// where the sin θ of the map's Jacobian went.
+// The environment, an equirectangular texture (bilinear) or a constant, and its importance sampling. A cell of the table
+// is sampled by its probability, then a direction within the cell, uniform in solid angle: uniform in u and in cos θ. The
+// density in a cell is its probability divided by its solid angle, which contains the sin θ of the map's Jacobian.
 #ifndef QUINTET_LIGHTS_ENVIRONMENT_GLSL
 #define QUINTET_LIGHTS_ENVIRONMENT_GLSL
 
@@ -16,7 +15,7 @@ vec3 environmentRadiance(vec3 direction) {
   return e.scale * textureLod(textures[nonuniformEXT(e.texture)], equirectFromDirection(e, direction), 0.0).rgb;
 }
 
-// (cos θ_top - cos θ_bottom) / 2 of a row, as a product without cancellation, from the nearer pole.
+// Returns (cos θ_top - cos θ_bottom) / 2 of a row. The product form from the nearer pole avoids cancellation.
 float environmentRowHeight(EnvironmentData e, uint row) {
   const float halfStep = 0.5 * kPi / float(e.height);
   const uint fromPole = min(row, e.height - 1u - row);
@@ -25,12 +24,12 @@ float environmentRowHeight(EnvironmentData e, uint row) {
 
 float environmentCellAngle(EnvironmentData e, uint row) {
 #ifdef QUINTET_WRONG_ENVIRONMENT_PDF
-  return 4.0 * kPi / float(e.width * e.height);  // for the tests of the tests: forgets sin θ
+  return 4.0 * kPi / float(e.width * e.height);  // a wrong pdf without sin θ, for tests
 #endif
   return 4.0 * kPi / float(e.width) * environmentRowHeight(e, row);
 }
 
-// Density per solid angle of environmentSample.
+// Returns the density per solid angle of environmentSample.
 float environmentPdf(vec3 direction) {
   const EnvironmentData e = frame.environment;
   if (e.table == 0ul) return 0.0;
@@ -39,8 +38,8 @@ float environmentPdf(vec3 direction) {
   return AliasArray(e.table).at[cell.y * e.width + cell.x].probability / environmentCellAngle(e, cell.y);
 }
 
-// A direction and its density. (u.x, u.y) is read as a point of the map, so stratified u stays stratified where
-// the table keeps its entries; the choice between entry and alias takes `bits`, independent of u.
+// Returns a direction and its density. u is a point of the map, so stratified u stays stratified where the table keeps its
+// entries. `bits`, independent of u, choose between entry and alias.
 vec3 environmentSample(vec2 u, uint bits, out float pdf) {
   const EnvironmentData e = frame.environment;
   uvec2 fraction;
@@ -53,7 +52,7 @@ vec3 environmentSample(vec2 u, uint bits, out float pdf) {
   column = cell - row * e.width;
   pdf = probability / environmentCellAngle(e, row);
 
-  // sin²(θ/2) = (1 - cos θ)/2, from the nearer pole, keeps its digits there.
+  // sin²(θ/2) = (1 - cos θ)/2 from the nearer pole is precise close to the pole.
   const bool below = 2u * row >= e.height;
   const uint fromPole = below ? e.height - 1u - row : row;
   const float top = preciseSin(float(fromPole) * 0.5 * kPi / float(e.height));

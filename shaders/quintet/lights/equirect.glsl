@@ -1,7 +1,7 @@
-// Directions and equirectangular texture coordinates: u = atan2(d.z, d.x) / 2pi + 0.5, v = acos(d.y) / pi, with d
-// in the environment's frame (EnvironmentData: rotated about +y). Written for the poles, where acos(y) loses
-// its digits, and with functions of our own: Vulkan allows an error of 2^-11 in sin and cos and of 4096 ulp
-// in atan, more than a texel of a large map. Our minimax fits (Remez): relative errors 4e-9 and 9e-8.
+// Directions and equirectangular texture coordinates: u = atan2(d.z, d.x) / 2pi + 0.5, v = acos(d.y) / pi. d is in the
+// environment's frame (EnvironmentData: rotated about +y). The formulas are precise at the poles, where acos(y) is not.
+// They do not use the built-in functions: Vulkan allows an error of 2^-11 in sin and cos and of 4096 ulp in atan, more
+// than a texel of a large map. The minimax fits (Remez) have relative errors of 4e-9 and 9e-8.
 #ifndef QUINTET_LIGHTS_EQUIRECT_GLSL
 #define QUINTET_LIGHTS_EQUIRECT_GLSL
 
@@ -17,7 +17,7 @@ float preciseSin(float x) {
   return p * x;
 }
 
-// On [0,1] a polynomial for atan(x)/x in x²; the octants by symmetry.
+// A polynomial in x² for atan(x)/x on [0,1]; other octants by symmetry.
 float preciseAtan2(float y, float x) {
   const float high = max(abs(x), abs(y));
   const float low = min(abs(x), abs(y));
@@ -42,7 +42,8 @@ vec2 equirectFromDirection(EnvironmentData e, vec3 d) {
   return vec2(preciseAtan2(z, x) * (0.5 / kPi) + 0.5, preciseAtan2(length(d.xz), d.y) * (1.0 / kPi));
 }
 
-// Direction at horizontal coordinate u with polar angle θ given as sin²(θ/2), from the pole +y or (below) -y.
+// Returns the direction at horizontal coordinate u. The polar angle θ is given as sin²(θ/2), from the pole +y, or from -y
+// if `below`.
 vec3 directionFromEquirect(EnvironmentData e, float u, float halfSineSquared, bool below) {
   const float phi = 2.0 * kPi * (u - 0.5);
   const float r = 2.0 * sqrt(halfSineSquared * (1.0 - halfSineSquared));

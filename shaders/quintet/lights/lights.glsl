@@ -1,6 +1,5 @@
-// All lights of the scene behind one door. selection.glsl chooses a light for a receiver; each type is sampled by its
-// own file. A sampler returns false when the drawn light gives nothing to the receiver; that outcome counts as an
-// estimate of 0.
+// Sampling of all lights of the scene. selection.glsl chooses a light; each type of light has its own file. A sampler
+// returns false if the chosen light does not contribute; the estimate is then 0.
 #ifndef QUINTET_LIGHTS_LIGHTS_GLSL
 #define QUINTET_LIGHTS_LIGHTS_GLSL
 
@@ -13,16 +12,16 @@
 #include "spot.glsl"
 #include "triangle.glsl"
 
-// uLight chooses the light, u the point on it, each in [0,1). Estimator: f · radiance / pdf.
-bool sampleLight(LightReceiver receiver, float uLight, vec2 u, out LightSample s) {
+// uLight chooses the light, u the point on it; both in [0,1). Estimator: f · radiance / pdf.
+bool sampleLight(LightSampleContext context, float uLight, vec2 u, out LightSample s) {
   if (frame.lightCount == 0u) return false;
-  // Digits beyond the 24 of uLight and u: a hash of all three, so unrelated to each of them.
+  // Bits beyond the 24 of uLight and u: a hash of all three numbers, so uncorrelated with each of them.
   const uint bits = hashCombine(hashCombine(floatBitsToUint(uLight), floatBitsToUint(u.x)), floatBitsToUint(u.y));
   float probability;
-  const uint index = chooseLight(receiver, uLight, bits, probability);
+  const uint index = chooseLight(context, uLight, bits, probability);
   if (index == kNoLight) return false;
   const LightData light = LightArray(frame.lights).at[index];
-  const vec3 position = receiver.position;
+  const vec3 position = context.position;
 
   bool useful = false;
   if (kHasTriangleLights && light.type == kLightTriangle) useful = sampleTriangleLight(light, position, u, s);
@@ -37,13 +36,13 @@ bool sampleLight(LightReceiver receiver, float uLight, vec2 u, out LightSample s
   return useful && s.pdf > 0.0;
 }
 
-// For a receiver without a surface.
+// For a point without a surface.
 bool sampleLight(vec3 position, float uLight, vec2 u, out LightSample s) {
-  return sampleLight(lightReceiver(position), uLight, u, s);
+  return sampleLight(lightSampleContext(position), uLight, u, s);
 }
 
-// Index of the light that a ray has met: the environment if it has left the scene (hit.t < 0); kNoLight if light
-// samples do not find what it has met.
+// Returns the index of the light that a ray has hit: the environment if the ray has left the scene (hit.t < 0), kNoLight
+// if light sampling cannot find the surface.
 uint lightOfHit(HitPayload hit) {
   if (hit.t < 0.0) return kHasEnvironment ? frame.environmentLight : kNoLight;
   if (!kHasTriangleLights && !kHasSolidLights) return kNoLight;
@@ -52,8 +51,8 @@ uint lightOfHit(HitPayload hit) {
   return slot == kNoLight ? kNoLight : slot + hit.primitive;
 }
 
-// Density per solid angle of the point of the hit, drawn on the light that was met, seen from `position` at `distance`
-// along a unit ray with cosine = |ray · normal|.
+// Returns the density per solid angle at `position` with which sampling the light that was hit finds the point of the hit,
+// at `distance` along a unit ray with cosine = |ray · normal|.
 float pdfLightPoint(HitPayload hit, vec3 position, float distance, float cosine) {
   const InstanceData instance = InstanceArray(frame.instances).at[hit.instance];
   const GeometryData geometry = GeometryArray(frame.geometries).at[instance.firstGeometry + hit.geometry];
@@ -68,16 +67,16 @@ float pdfLightPoint(HitPayload hit, vec3 position, float distance, float cosine)
   return kHasTriangleLights ? pdfTriangle(fetchLightTriangle(instance, geometry, hit.primitive).area, distance, cosine) : 0.0;
 }
 
-// Density with which sampleLight finds the surface point that a ray, drawn from the BSDF at `receiver`, has met.
-float pdfLightHit(HitPayload hit, LightReceiver receiver, float distance, float cosine) {
-  const float probability = lightProbability(lightOfHit(hit), receiver);
-  return probability > 0.0 ? probability * pdfLightPoint(hit, receiver.position, distance, cosine) : 0.0;
+// Returns the density with which sampleLight finds the surface point that a BSDF-sampled ray has hit.
+float pdfLightHit(HitPayload hit, LightSampleContext context, float distance, float cosine) {
+  const float probability = lightProbability(lightOfHit(hit), context);
+  return probability > 0.0 ? probability * pdfLightPoint(hit, context.position, distance, cosine) : 0.0;
 }
 
-// Density with which sampleLight finds the direction of a BSDF-sampled ray that has left the scene.
-float pdfLightEnvironment(vec3 direction, LightReceiver receiver) {
+// Returns the density with which sampleLight finds the direction of a BSDF-sampled ray that has left the scene.
+float pdfLightEnvironment(vec3 direction, LightSampleContext context) {
   if (!kHasEnvironment || frame.environmentLight == kNoLight) return 0.0;
-  return lightProbability(frame.environmentLight, receiver) * environmentPdf(direction);
+  return lightProbability(frame.environmentLight, context) * environmentPdf(direction);
 }
 
 #endif

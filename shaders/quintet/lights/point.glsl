@@ -1,5 +1,5 @@
-// Point light of KHR_lights_punctual: the same radiant intensity in all directions, inverse square law. The file's
-// `range` is a hint for rasterisers and has no effect.
+// Point light of KHR_lights_punctual: the same radiant intensity in all directions, inverse square law. The property
+// `range` is a hint for rasterization and has no effect.
 #ifndef QUINTET_LIGHTS_POINT_GLSL
 #define QUINTET_LIGHTS_POINT_GLSL
 

@@ -1,6 +1,7 @@
-// Emissive sphere, box, cylinder, cone or torus; emits the material's emission on both sides. A ball that is round in
-// the world, from outside: its near side (ball.glsl). All else: a point of the surface, near or far side, with the
-// density that its transform leaves.
+// Light sampling of emissive spheres, boxes, cylinders, cones and tori, which emit on both sides. A sphere in world space
+// that is seen from outside is sampled on its near side (ball.glsl). For all others, a point of the whole surface is
+// sampled: uniform by area on the canonical sphere, cylinder and cone, by the areas of the faces in world space on a box,
+// and uniform in both angles on a torus. The transform changes its density.
 #ifndef QUINTET_LIGHTS_SOLID_GLSL
 #define QUINTET_LIGHTS_SOLID_GLSL
 
@@ -12,7 +13,7 @@
 
 #ifndef QUINTET_NO_PROCEDURALS
 
-// Columns of the linear part of worldFromPrimitive.
+// Returns the linear part of worldFromPrimitive.
 mat3 worldFromPrimitive(InstanceData instance, PrimitiveData primitive) {
   mat3 m;
   for (int i = 0; i < 3; ++i) {
@@ -27,16 +28,16 @@ vec3 solidCenter(InstanceData instance, PrimitiveData primitive) {
   return rowsTimesPoint(instance.worldFromObject, center);
 }
 
-// Area vector that m makes of a unit of area with normal n (cofactors): its length is the stretch.
+// Returns the area vector of a transformed unit area with normal n, by the cofactors of m. Its length is the area ratio.
 vec3 areaVector(mat3 m, vec3 n) { return n.x * cross(m[1], m[2]) + n.y * cross(m[2], m[0]) + n.z * cross(m[0], m[1]); }
 
-// World areas of the box's faces along each axis, as parts of 1.
+// Returns the world areas of the box's faces along each axis, as fractions of their sum.
 vec3 boxFaceParts(mat3 m) {
   const vec3 areas = vec3(length(cross(m[1], m[2])), length(cross(m[2], m[0])), length(cross(m[0], m[1])));
   return areas / (areas.x + areas.y + areas.z);
 }
 
-// Density of canonicalPoint per canonical area; `p` is on the surface.
+// Returns the density of canonicalPoint per canonical area; `p` is on the surface.
 float canonicalDensity(uint type, float parameter, mat3 m, uint face, vec3 p) {
   if (type == kPrimitiveSphere) return 1.0 / (4.0 * kPi);
   if (type == kPrimitiveBox) return 0.125 * boxFaceParts(m)[face >> 1];
@@ -45,7 +46,7 @@ float canonicalDensity(uint type, float parameter, mat3 m, uint face, vec3 p) {
   return 1.0 / (4.0 * kPi * kPi * parameter * length(p.xz));
 }
 
-// A point of the canonical surface by two numbers.
+// Returns a point of the canonical surface for two random numbers.
 vec3 canonicalPoint(uint type, float parameter, mat3 m, vec2 u, out uint face) {
   face = kFaceSide;
   if (type == kPrimitiveSphere) return sampleSphere(u);
@@ -82,14 +83,14 @@ vec3 canonicalPoint(uint type, float parameter, mat3 m, vec2 u, out uint face) {
   return vec3(radius * around.x, base ? -1.0 : 1.0 - 2.0 * radius, radius * around.y);
 }
 
-// Density per solid angle of sampleSolidLight for the point of the hit, met from `receiver` at `distance` along a unit
-// ray with cosine = |ray · normal|, on its outside (`front`) or inside. Of a ball seen from outside the far side, which
-// alpha and panes show, is not drawn.
-float pdfSolid(InstanceData instance, PrimitiveData primitive, uint face, vec2 coordinates, bool front, vec3 receiver, float distance,
+// Returns the density per solid angle at `from` with which sampleSolidLight finds the point of the hit, at `distance` along
+// a unit ray with cosine = |ray · normal|, on the outside (`front`) or inside. The far side of a ball seen from outside,
+// which alpha and panes can show, is not sampled.
+float pdfSolid(InstanceData instance, PrimitiveData primitive, uint face, vec2 coordinates, bool front, vec3 from, float distance,
                float cosine) {
   const mat3 m = worldFromPrimitive(instance, primitive);
   const float radius = ballRadius(primitive.type, m);
-  const vec3 toCenter = solidCenter(instance, primitive) - receiver;
+  const vec3 toCenter = solidCenter(instance, primitive) - from;
   if (seesBallFromOutside(radius, toCenter)) return front ? pdfBall(toCenter, radius) : 0.0;
   const SolidPoint point = solidPoint(primitive.type, primitive.parameter, face, coordinates);
   const float stretch = length(areaVector(m, normalize(point.normal)));

@@ -1,11 +1,11 @@
-// Spot light of KHR_lights_punctual: a point light with a smooth cone, full intensity within the inner
-// angle, none beyond the outer one.
+// Spot light of KHR_lights_punctual: a point light with a smooth cone. It has full intensity within the inner angle and
+// none outside the outer angle.
 #ifndef QUINTET_LIGHTS_SPOT_GLSL
 #define QUINTET_LIGHTS_SPOT_GLSL
 
 #include "light_sample.glsl"
 
-// The extension's angular attenuation: ((cos - cosOuter) / max(0.001, cosInner - cosOuter)) clamped, squared.
+// Angular attenuation of the extension: ((cos - cosOuter) / max(0.001, cosInner - cosOuter)) clamped, squared.
 float spotAttenuation(LightData light, float cosine) {
   const float a = clamp((cosine - light.cosOuter) / max(0.001, light.cosInner - light.cosOuter), 0.0, 1.0);
   return a * a;

@@ -1,4 +1,4 @@
-// Emissive triangle: uniform over the world-space area, emits the material's emission on both sides.
+// Light sampling of emissive triangles, uniform over the world-space area. They emit on both sides.
 #ifndef QUINTET_LIGHTS_TRIANGLE_GLSL
 #define QUINTET_LIGHTS_TRIANGLE_GLSL
 
@@ -12,7 +12,7 @@ struct LightTriangle {
   vec3 p0, p1, p2;  // object space
   uvec3 vertices;
   vec3 normal;      // world, unit; either side
-  float area;       // world, m²; 0: degenerate
+  float area;       // world, m²; 0 means degenerate
 };
 
 LightTriangle fetchLightTriangle(InstanceData instance, GeometryData geometry, uint primitive) {
@@ -24,7 +24,7 @@ LightTriangle fetchLightTriangle(InstanceData instance, GeometryData geometry, u
   t.p2 = positions.at[t.vertices.z];
   const vec3 edge1 = rowsTimesVector(instance.worldFromObject, t.p1 - t.p0);
   const vec3 edge2 = rowsTimesVector(instance.worldFromObject, t.p2 - t.p0);
-  // Normalised first: products of tiny edges would underflow.
+  // Normalize first, because products of tiny edges would underflow.
   const float size = max(maxComponent(abs(edge1)), maxComponent(abs(edge2)));
   const vec3 n = cross(edge1 / size, edge2 / size);
   const float sine = length(n);
@@ -37,10 +37,9 @@ float lightTexture(TextureData use, vec2 uv0, vec2 uv1, int channel) {
   return use.index == kNoTexture ? 1.0 : sampleTexture(use, use.uvSet == 0u ? uv0 : uv1)[channel];
 }
 
-// What a surface of this material emits, times the probability that alpha mask or blend leaves it there: an any-hit
-// shader does not see the end of a shadow ray. On an instance that is forced to be opaque none runs, and all is there.
-// `alpha`: of the vertex colour; `cosine`: of the light's direction to the interpolated normal (the coat's normal map
-// plays no part).
+// Returns the emission of a surface of this material, times its alpha coverage: any-hit shaders do not run at the end of a
+// shadow ray. On an instance that is forced to be opaque they never run, so the coverage is 1. `alpha` is the vertex
+// color's. `cosine` is between the light's direction and the interpolated normal; the clearcoat's normal map is ignored.
 vec3 surfaceEmission(InstanceData instance, uint material, float alpha, vec2 uv0, vec2 uv1, float cosine) {
   const MaterialData m = MaterialArray(frame.materials).at[material];
   vec3 emission = m.emissive;
@@ -58,7 +57,7 @@ vec3 surfaceEmission(InstanceData instance, uint material, float alpha, vec2 uv0
   return clamp(alpha, 0.0, 1.0) * emission;
 }
 
-// Towards `wi`; `normal` is the triangle's.
+// Returns the emission in direction -wi. `normal` is the triangle's.
 vec3 lightTriangleEmission(InstanceData instance, GeometryData geometry, uvec3 v, vec3 b, vec3 wi, vec3 normal) {
   float alpha = 1.0;
   if (kHasAlpha && kHasVertexColors && geometry.colors != 0ul) {
@@ -74,11 +73,11 @@ vec3 lightTriangleEmission(InstanceData instance, GeometryData geometry, uvec3 v
   return surfaceEmission(instance, geometry.material, alpha, uv0, interpolateUv(geometry, v, b, 1u), abs(dot(normal, wi)));
 }
 
-// Density per solid angle of a uniform point on the triangle, at distance d along a unit ray with
-// cosine = |ray · normal|; 0 where it is not finite, as the sampler then gives nothing.
+// Returns the density per solid angle of a uniform point on the triangle, at distance d along a unit ray with
+// cosine = |ray · normal|. Returns 0 where the density is not finite; the sampler then fails.
 float pdfTriangle(float area, float d, float cosine) {
 #ifdef QUINTET_WRONG_TRIANGLE_PDF
-  return area > 0.0 ? d * d / area : 0.0;  // for the tests of the tests: forgets the cosine
+  return area > 0.0 ? d * d / area : 0.0;  // a wrong pdf without the cosine, for tests
 #endif
   const float projected = area * cosine;
   const float pdf = d * d / projected;

@@ -1,4 +1,5 @@
-// total += batch, squares += batch² / samples; one invocation per pixel. Compute main; see src/render/film.h.
+// total += batch, squares += batch² / samples. A compute shader with one invocation per pixel; see
+// src/render/film/film.h.
 #extension GL_EXT_scalar_block_layout : require
 #include <quintet/passes/fixed_sum.glsl>
 
@@ -15,11 +16,11 @@ void main() {
   const uint i = gl_GlobalInvocationID.y * (kFilmColumns * kFilmGroupSize) + gl_GlobalInvocationID.x;
   if (i >= pass.count) return;
   const vec4 batch = PixelArray(pass.batch).at[i];
-  if (batch == vec4(0.0)) return;  // as adaptive sampling leaves it
+  if (batch == vec4(0.0)) return;  // also pixels that adaptive sampling skips
   for (uint c = 0u; c < 4u; ++c) {
     add(pass.total, 4u * i + c, batch[c]);
     if (pass.squares == 0ul) continue;
-    // What fixedFromFloat would clamp must not pass for a small variance.
+    // A clamped square would understate the variance: mark it as not finite.
     const float square = batch[c] * batch[c] * pass.inverseSamples;
     add(pass.squares, 4u * i + c, square < kFixedLimit ? square : uintBitsToFloat(0x7F800000u));
   }

@@ -1,4 +1,4 @@
-// Counts the ids of a batch's samples; one invocation per pixel. Compute main.
+// Counts the ids of a batch's samples. A compute shader with one invocation per pixel.
 #extension GL_EXT_scalar_block_layout : require
 #include <quintet/shared/film.h>
 
@@ -7,8 +7,8 @@ layout(push_constant, scalar) uniform FilmCoverageBlock { FilmCoverage pass; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer IdArray { uint at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SlotArray { CoverageSlot at[]; };
 
-// Keeps the slots sorted by id, empty ones last. Of more ids than slots the smallest stay: that rule alone
-// gives the same slots whatever the order of the samples and the number of parts.
+// Keeps the slots sorted by id, with empty slots last. If there are more ids than slots, the smallest ids are kept. The
+// result then does not depend on the order of the samples or on the number of parts.
 void count(SlotArray slots, uint first, uint id) {
   uint slot = 0u;
   while (slot < kCoverageSlots && slots.at[first + slot].samples > 0u && slots.at[first + slot].id < id) ++slot;

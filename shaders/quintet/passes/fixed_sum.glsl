@@ -1,4 +1,4 @@
-// Arithmetic of FixedSum (quintet/shared/film.h); src/render/fixed_sum.h is the same on the host.
+// Arithmetic of FixedSum (quintet/shared/film.h); src/render/film/fixed_sum.h does the same on the host.
 #ifndef QUINTET_PASSES_FIXED_SUM_GLSL
 #define QUINTET_PASSES_FIXED_SUM_GLSL
 
@@ -6,7 +6,7 @@
 
 const float kFixedLimit = 4611686018427387904.0;  // 2^62
 
-// To the nearest unit of 2^-64; beyond ±2^62: that. Not finite: the value that says so.
+// Rounds to the nearest multiple of 2^-64 and clamps to ±2^62. Inf and NaN give the value that marks "not finite".
 FixedSum fixedFromFloat(float value) {
   const uint bits = floatBitsToUint(value);
   const uint exponent = (bits >> 23) & 0xFFu;
@@ -16,7 +16,7 @@ FixedSum fixedFromFloat(float value) {
     return sum;
   }
   uint mantissa = (bits & 0x7FFFFFu) | 0x800000u;
-  // value = mantissa · 2^(exponent - 150), so the unit's number is mantissa · 2^shift.
+  // value = mantissa · 2^(exponent - 150), so in units of 2^-64 it is mantissa · 2^shift.
   int shift = int(exponent) - 86;
   if (shift > 102) {
     mantissa = 0x800000u;
@@ -51,7 +51,7 @@ FixedSum addFixed(FixedSum a, FixedSum b) {
     a.word[i] = uaddCarry(a.word[i], b.word[i], second);
     carry = first + second;
   }
-  // Both of one sign and the sum of the other: beyond the range.
+  // Overflow: both terms have the same sign and the sum has the opposite one.
   if ((((high ^ a.word[3]) & (b.word[3] ^ a.word[3])) >> 31) != 0u) return FixedSum(uint[4](0u, 0u, 0u, kNotFiniteWord));
   return a;
 }

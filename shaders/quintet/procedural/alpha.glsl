@@ -1,5 +1,5 @@
-// Alpha in any-hit shaders on solids and trees. As in quintet/alpha.glsl, the test's answer depends only on the ray's
-// seed and on the surface, which is computed from the ray and the candidate's t.
+// Alpha in any-hit shaders on solids and CSG trees. As in quintet/alpha.glsl, the result of the test depends only on
+// the ray's seed and on the surface point, which is computed from the ray and the candidate's t.
 #ifndef QUINTET_PROCEDURAL_ALPHA_GLSL
 #define QUINTET_PROCEDURAL_ALPHA_GLSL
 
@@ -8,7 +8,7 @@
 #include "../texture.glsl"
 #include "hit.glsl"
 
-// How much of the surface at `hit`, the candidate, is there.
+// Coverage of the candidate `hit`.
 float solidCoverage(HitPayload hit) {
   const PrimitiveData primitive = PrimitiveArray(hitGeometry().primitives).at[hit.part & kPartPrimitiveMask];
   const MaterialData material = MaterialArray(frame.materials).at[primitive.material];
@@ -21,10 +21,10 @@ float solidCoverage(HitPayload hit) {
   return coverageOf(material, alpha);
 }
 
-// True if the candidate is not there: alpha mask below its cut-off, or blend with probability 1 - alpha.
+// True if the candidate must be ignored: alpha mask below its cutoff, or blend with probability 1 - alpha.
 bool solidAlphaRejects(uint seed) {
   const HitPayload hit = solidHit(seed);
-  // Independent of every other number of the path, and of the ray's other crossings of the same solid.
+  // Independent of all other random numbers of the path, and of the ray's other crossings of the same solid.
   const uint surface = hashCombine(hashCombine(hit.part, hit.primitive), hit.geometry);
   const uint random = hashCombine(hashCombine(seed, hit.instance), hashCombine(surface, floatBitsToUint(hit.t)));
   return float(random >> 8) * (1.0 / 16777216.0) >= solidCoverage(hit);

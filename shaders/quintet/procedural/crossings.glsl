@@ -12,8 +12,8 @@ vec3 primitivePoint(vec4 rows[3], vec3 p) {
 }
 vec3 primitiveVector(vec4 rows[3], vec3 v) { return vec3(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v)); }
 
-// Ascending t, entering and leaving in turn; kInfinity after the last. The ray is in object space, t counts in its
-// direction, which is not normalised.
+// Crossings in ascending t, alternately entering and leaving; kInfinity after the last one. The ray is in object space.
+// t is in units of its direction, which need not be normalized.
 vec4 primitiveCrossings(PrimitiveData primitive, vec3 origin, vec3 direction) {
   const vec3 o = primitivePoint(primitive.primitiveFromObject, origin);
   const vec3 d = primitiveVector(primitive.primitiveFromObject, direction);
@@ -24,7 +24,7 @@ vec4 primitiveCrossings(PrimitiveData primitive, vec3 origin, vec3 direction) {
   return inside.x < inside.y ? vec4(inside, kInfinity, kInfinity) : vec4(kInfinity);
 }
 
-// For the walk along the crossings: is the ray inside just after t, and where is the next crossing?
+// For iterating over the crossings: whether the ray is inside just after t, and the t of the next crossing.
 bool insideAfter(vec4 crossings, float t) {
   return (crossings.x <= t && t < crossings.y) || (crossings.z <= t && t < crossings.w);
 }

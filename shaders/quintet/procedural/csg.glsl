@@ -1,19 +1,20 @@
-// Trees of solids: which of their crossings are the tree's, and whose surface is at one. No lists: the walk goes from
-// crossing to crossing, and evaluates the whole tree for one t in one pass over its postfix nodes, with a stack of
-// bits. (Arrays with computed indices are slow, and lavapipe shares them between intersection and any-hit shaders.)
+// CSG trees: which crossings of the solids are crossings of the tree, and which solid's surface is at a crossing. The
+// algorithm stores no lists of crossings. It steps from crossing to crossing, and evaluates the whole tree for one t in
+// one pass over its postfix nodes with a stack of bits. (Arrays with computed indices are slow, and lavapipe shares
+// them between intersection and any-hit shaders.)
 #ifndef QUINTET_PROCEDURAL_CSG_GLSL
 #define QUINTET_PROCEDURAL_CSG_GLSL
 
 #include "crossings.glsl"
 
-// Crossings nearer to each other than this, in units of the direction, are taken for one: surfaces that coincide
-// must change sides together, or films as thin as a rounding would be left. 8 roundings of the point's coordinates.
+// Crossings closer to each other than this, in units of the direction, count as one. Without it, rounding would leave
+// thin layers between coincident surfaces. The value is 8 rounding errors of the point's coordinates.
 float csgTolerance(vec3 origin, vec3 direction, float t) {
   const vec3 size = abs(origin) + abs(t * direction);
   return 4.8e-7 * maxComponent(size) * inversesqrt(dot(direction, direction));
 }
 
-// The top two bits of `stack` combined; bit 0 is the top.
+// Replaces the top two bits of `stack` by the result of the operation; bit 0 is the top.
 uint csgCombine(uint operation, uint stack) {
   const uint b = stack & 1u;
   const uint a = (stack >> 1) & 1u;
@@ -38,10 +39,12 @@ bool csgInsideAfter(GeometryData geometry, CsgTreeData tree, vec3 origin, vec3 d
   return (stack & 1u) != 0u;
 }
 
-// Whose surface the tree shows at its crossing t: an index in GeometryData::primitives. `entering`: the ray enters that
-// solid there. Where surfaces coincide, the operand that decides, the first of two.
+// The solid whose surface is the tree's surface at its crossing t: an index in GeometryData::primitives. `entering`:
+// the ray enters that solid there. If surfaces coincide, it is the operand that determines the result, or the first of
+// two.
 uint csgLeaf(GeometryData geometry, CsgTreeData tree, vec3 origin, vec3 direction, float t, out bool entering) {
-  // What crosses with the surface lies between: the group of the walk, and the roundings of two compilations.
+  // All crossings that count as one with t lie in between. The interval also covers rounding differences between the
+  // two compilations of this code.
   const float tolerance = csgTolerance(origin, direction, t);
   const float before = t - 0.5 * tolerance;
   const float after = t + 1.5 * tolerance;
@@ -51,7 +54,8 @@ uint csgLeaf(GeometryData geometry, CsgTreeData tree, vec3 origin, vec3 directio
   uint crossingCount = 0u;
   float distance = kInfinity;
   for (bool whole = true;; whole = false) {
-    // Both stacks of the nodes before `last`: its operands are their top two; of a leaf there is none.
+    // Stacks before and after the crossing, for the nodes before `last`. Its operands are the top two bits, unless it
+    // is a leaf.
     uint stackBefore = 0u;
     uint stackAfter = 0u;
     const CsgNodeData top = CsgNodeArray(geometry.nodes).at[last];

@@ -1,5 +1,6 @@
-// For closest-hit and any-hit shaders on solids and trees: which surface was met, and where. Everything is computed
-// again from the ray and t: hit attributes are not used, drivers exist that mix them up (docs/design/quirks.md).
+// For closest-hit and any-hit shaders on solids and CSG trees: the surface that was hit, and the point on it.
+// Everything is computed from the ray and t. Hit attributes are not used, because some drivers corrupt them
+// (docs/design/quirks.md).
 #ifndef QUINTET_PROCEDURAL_HIT_GLSL
 #define QUINTET_PROCEDURAL_HIT_GLSL
 
@@ -10,7 +11,7 @@
 #include "csg.glsl"
 #endif
 
-// The payload of the hit at gl_HitTEXT (in any-hit shaders: of the candidate); `seed` is kept.
+// The payload of the hit (in any-hit shaders: the candidate) at gl_HitTEXT; `seed` is kept.
 HitPayload solidHit(uint seed) {
   const GeometryData geometry = hitGeometry();
   HitPayload hit = hitOf(geometry, seed);

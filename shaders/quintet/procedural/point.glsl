@@ -1,13 +1,13 @@
-// Points on canonical solids: finding the one that a ray has met, two numbers that name it, and what the surface is
-// like there. A point made from its numbers lies on the surface up to a few roundings, however far the ray came.
+// Points on canonical solids: the point that a ray has hit, its two coordinates, and the surface at it. A point
+// computed from its coordinates lies on the surface up to a few rounding errors, for any distance of the ray's origin.
 //
 // Texture coordinates, upright on each surface seen from outside with y up, v downwards as in glTF:
 //   sphere    u = 1/2 + atan2(x, z)/2π (seam at -z), v = acos(y)/π
-//   box       each face has the unit square; top and bottom as seen by tipping the front (+z) face over
+//   box       each face has the unit square; top and bottom are oriented as if rotated from the front (+z) face
 //   cylinder  side: u as on the sphere, v = (1 - y)/2; caps: the square around them, as top and bottom of the box
 //   cone      as the cylinder
 //   torus     u as on the sphere, v = 1/2 - atan2(y, ρ - 1)/2π, the outer equator at 1/2
-// The tangent is the direction of growing u.
+// The tangent is the direction of increasing u.
 #ifndef QUINTET_PROCEDURAL_POINT_GLSL
 #define QUINTET_PROCEDURAL_POINT_GLSL
 
@@ -16,24 +16,24 @@
 // HitPayload::part
 const uint kPartPrimitiveMask = 0x07FFFFFFu;  // index in GeometryData::primitives
 const uint kPartFaceShift = 27u;              // 3 bits: face
-const uint kPartFlipped = 0x40000000u;        // the surface of a subtrahend: the solid is on the normal's side
-const uint kPartFront = 0x80000000u;          // the ray came from outside
+const uint kPartFlipped = 0x40000000u;        // surface of a subtracted solid: the outward normal points into the solid
+const uint kPartFront = 0x80000000u;          // the ray comes from outside
 
-// Faces: box 2 axis + (1 if positive); cylinder and cone: the curved side, or the caps as the box's.
+// Faces. Box: 2 axis + (1 if positive). Cylinder and cone: the curved side, or the caps, numbered as for the box.
 const uint kFaceSide = 6u;
 const uint kFaceBottom = 2u;
 const uint kFaceTop = 3u;
 
 struct SolidPoint {
   vec3 position;   // canonical space
-  vec3 normal;     // out of the solid, of any length
-  vec3 tangent;    // along u, of any length
+  vec3 normal;     // out of the solid, not normalized
+  vec3 tangent;    // along u, not normalized
   vec3 bitangent;  // along -v
   vec2 uv;
 };
 
-// Angle around y as (sin, cos) = (x, z)/ρ in one number in [-2, 2]: the way along the square |x| + |z| = 1, whose
-// parts are as long as those of the circle up to a factor of 2.
+// Angle around y, (sin, cos) = (x, z)/ρ, as one number in [-2, 2]: the arc length along the square |x| + |z| = 1. It is
+// proportional to the arc length on the circle up to a factor of 2.
 float squareAngle(vec2 zx) {
   const float s = abs(zx.x) + abs(zx.y);
   const float x = s > 0.0 ? zx.y / s : 0.0;
@@ -44,7 +44,7 @@ vec2 fromSquareAngle(float a) {  // unit (z, x)
   return normalize(p);
 }
 
-// Octahedral map of the sphere (Cigolle et al. 2014), in full floats.
+// Octahedral map of the sphere (Cigolle et al. 2014), in 32-bit floats.
 vec2 octahedral(vec3 n) {
   const vec2 p = n.xz / (abs(n.x) + abs(n.y) + abs(n.z));
   return n.y >= 0.0 ? p : (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
@@ -62,15 +62,15 @@ vec3 faceNormal(uint face) {
   return n;
 }
 
-// Which face a point near the surface belongs to. d: the ray's direction, `entering`: it goes into this solid there;
-// only faces that such a ray can meet are asked.
+// The face that a point near the surface belongs to. d: direction of the ray; `entering`: the ray enters this solid at
+// p. Considers only the faces that such a ray can hit.
 uint nearestFace(uint type, vec3 p, vec3 d, bool entering) {
   if (type == kPrimitiveSphere || type == kPrimitiveTorus) return kFaceSide;
   const vec3 facing = entering ? -d : d;  // the normal's side
   const vec3 height = vec3(facing.x >= 0.0 ? p.x : -p.x, facing.y >= 0.0 ? p.y : -p.y, facing.z >= 0.0 ? p.z : -p.z);
   const uint cap = facing.y >= 0.0 ? kFaceTop : kFaceBottom;
   if (type == kPrimitiveBox) {
-    // A face edge on to the ray is not met.
+    // A ray parallel to a face does not hit it.
     const vec3 gap = vec3(d.x == 0.0 ? 4.0 : 1.0 - height.x, d.y == 0.0 ? 4.0 : 1.0 - height.y, d.z == 0.0 ? 4.0 : 1.0 - height.z);
     if (abs(gap.x) <= abs(gap.y) && abs(gap.x) <= abs(gap.z)) return facing.x >= 0.0 ? 1u : 0u;
     if (abs(gap.y) <= abs(gap.z)) return cap;
@@ -84,7 +84,7 @@ uint nearestFace(uint type, vec3 p, vec3 d, bool entering) {
   return capMet && (abs(1.0 - height.y) < abs(sideGap) || slope < 0.0) ? cap : kFaceSide;
 }
 
-// The two numbers of the surface's point nearest to p.
+// The two coordinates of the surface point nearest to p.
 vec2 pointCoordinates(uint type, uint face, vec3 p) {
   if (type == kPrimitiveSphere) return octahedral(p);
   if (type == kPrimitiveTorus) return vec2(squareAngle(p.zx), squareAngle(vec2(length(p.xz) - 1.0, p.y)));
@@ -93,7 +93,8 @@ vec2 pointCoordinates(uint type, uint face, vec3 p) {
     return type == kPrimitiveBox ? clamp(q, -1.0, 1.0) : q / max(1.0, length(q));
   }
   if (type == kPrimitiveCylinder) return vec2(squareAngle(p.zx), clamp(p.y, -1.0, 1.0));
-  // Cone: down the normal in the plane of the axis. From the apex two numbers of the size of the distance: no loss.
+  // Cone: project along the normal in the plane of the axis. Near the apex, both coordinates are as small as the
+  // distance to it, so that they keep their relative precision.
   const float radius = length(p.xz);
   const float along = clamp(radius - 0.8 * (radius - 0.5 * (1.0 - p.y)), 0.0, 1.0);
   return radius > 0.0 ? p.xz * (along / radius) : vec2(along, 0.0);

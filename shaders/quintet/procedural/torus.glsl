@@ -1,6 +1,6 @@
-// Where a line crosses the canonical torus (about the y axis, major radius 1, minor radius r): up to four times.
-// The signed distance decides what is inside and where the surface is, so that nothing is lost to the quartic's
-// coefficients; the quartic's extrema, the roots of a depressed cubic, only separate its roots.
+// Crossings of a line with the canonical torus (about the y axis, major radius 1, minor radius r): up to four. The
+// signed distance defines inside and surface, so that rounding of the quartic's coefficients has no effect. The extrema
+// of the quartic, which are roots of a depressed cubic, only separate its roots.
 #ifndef QUINTET_PROCEDURAL_TORUS_GLSL
 #define QUINTET_PROCEDURAL_TORUS_GLSL
 
@@ -11,7 +11,8 @@ float torusDistance(vec3 p, float r) {
   return sqrt(ring * ring + p.y * p.y) - r;
 }
 
-// The root of t³ + p t - q in [low, high], where the cubic is monotonic; the end nearer to it if there is none.
+// The root of t³ + p t - q in [low, high], where the cubic is monotonic; the nearer end of the interval if there is
+// none.
 float cubicRoot(float p, float q, float low, float high) {
   const bool rising = (low * low + p) * low < (high * high + p) * high;
   for (int i = 0; i < 24; ++i) {
@@ -34,7 +35,7 @@ float torusRoot(vec3 o, vec3 d, float r, float low, float high, bool insideLow) 
     const float value = tube - r;
     if ((value < 0.0) == insideLow) low = t;
     else high = t;
-    // Newton's step, or the middle where it leaves the bracket.
+    // Newton step, or bisection if it leaves the bracket.
     const float slope = (ring * (p.x * d.x + p.z * d.z) / max(radius, 1e-20) + p.y * d.y) / max(tube, 1e-20);
     const float next = t - value / nonZero(slope);
     const float before = t;
@@ -44,10 +45,10 @@ float torusRoot(vec3 o, vec3 d, float r, float low, float high, bool insideLow) 
   return t;
 }
 
-// Ascending t of the crossings of o + t d, the first one entering; kInfinity where there are fewer than four.
+// Crossings of o + t d in ascending t; the first one enters. kInfinity fills up the missing ones.
 vec4 torusCrossings(vec3 o, vec3 d, float r) {
   vec4 crossings = vec4(kInfinity);
-  // From the point nearest to the centre, with a direction of length 1: numbers around 1 from here on.
+  // Move the origin to the point nearest to the center and normalize the direction: all numbers below are around 1.
   const float scale = 1.0 / length(d);
   const vec3 u = d * scale;
   const float shift = -dot(o, u);
@@ -70,7 +71,7 @@ vec4 torusCrossings(vec3 o, vec3 d, float r) {
     const float high = left.x;
     left = vec4(left.yzw, 0.0);
     const bool insideHigh = i < 3 && torusDistance(m + high * u, r) < 0.0;
-    // Filled from the back; the order comes out right after four turns.
+    // Shift new crossings in from the back; the loop below moves them to the front.
     if (insideHigh != insideLow) crossings = vec4(crossings.yzw, (shift + torusRoot(m, u, r, low, high, insideLow)) * scale);
     low = high;
     insideLow = insideHigh;

@@ -13,7 +13,7 @@ uint hash(uint x) {
   return x;
 }
 
-// One value from two. For a fixed `b` a bijection of `a` and the other way round.
+// One value from two. For a fixed `b`, a bijection of `a`, and vice versa.
 uint hashCombine(uint a, uint b) { return hash(a ^ hash(b + 0x9E3779B9u)); }
 
 // The upper 24 bits as a number in [0,1): exact, and never rounded up to 1.

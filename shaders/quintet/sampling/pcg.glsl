@@ -1,7 +1,7 @@
-// Independent random numbers, for `naive` and for tests. Counter-based: the number of (pixel, sample,
-// dimension, seed) is a bijective mix of these 128 bits, so no two streams can overlap, however
-// many samples are taken. Mixer: pcg4d of M. Jarzynski & M. Olano, "Hash Functions for GPU Rendering",
-// JCGT 9(3), 2020, https://jcgt.org/published/0009/03/02/ (after M. O'Neill's PCG, 2014).
+// Independent random numbers, for `naive` and for tests. The generator is counter-based: a number is a bijective mix of
+// the 128 bits of (pixel, sample, dimension, seed). Two streams therefore never overlap, for any number of samples.
+// Mixer: pcg4d of M. Jarzynski & M. Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020,
+// https://jcgt.org/published/0009/03/02/ (after M. O'Neill's PCG, 2014).
 #ifndef QUINTET_SAMPLING_PCG_GLSL
 #define QUINTET_SAMPLING_PCG_GLSL
 
@@ -31,7 +31,7 @@ Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed) {
   return Sampler(pixel.x | pixel.y << 16, sampleIndex, 0u, seed);
 }
 
-// As in sobol.glsl: pixels are independent here, whatever is planned.
+// Same interface as sobol.glsl. Here pixels are always independent.
 Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed, uint plannedSamples) {
   return makeSampler(pixel, sampleIndex, seed);
 }

@@ -1,10 +1,10 @@
-// What the two samplers share: one interface, `struct Sampler` with
+// The common interface of the two samplers: `struct Sampler` with
 //   Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed)                       pixels are independent
 //   Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed, uint plannedSamples)  their errors are blue noise;
 //                                                                         frame.plannedSamples
 //   float next1D(inout Sampler)   vec2 next2D(inout Sampler)   in [0,1)
 //   uint nextBits(inout Sampler)  32 independent bits, e.g. a ray's seed
-// A program includes sobol.glsl (converges faster) or pcg.glsl (plainly independent), never both.
+// A program includes either sobol.glsl (converges faster) or pcg.glsl (independent numbers), not both.
 #ifdef QUINTET_SAMPLER
 #error "include either quintet/sampling/sobol.glsl or quintet/sampling/pcg.glsl"
 #endif
@@ -12,5 +12,5 @@
 
 #include "hash.glsl"
 
-// A bijection of pixels up to 65536 x 65536 for each seed: no two pixels of an image share a value.
+// For each seed a bijection on pixels up to 65536 x 65536: no two pixels of an image share a value.
 uint pixelSeed(uvec2 pixel, uint seed) { return hashCombine(hash(pixel.x | pixel.y << 16), seed); }

@@ -1,5 +1,5 @@
-// Maps from the unit square to other domains that keep relative areas, so that the density of the result is
-// constant (or cosine-weighted) and well stratified points stay so. u in [0,1)²; z is the local up.
+// Area-preserving maps from the unit square to other domains: the density of the result is constant (or
+// cosine-weighted), and stratified points stay stratified. u in [0,1)²; z is the local up direction.
 #ifndef QUINTET_SAMPLING_WARP_GLSL
 #define QUINTET_SAMPLING_WARP_GLSL
 
@@ -22,8 +22,8 @@ vec3 sampleCosineHemisphere(vec2 u) {
   return vec3(d, sqrt(max(0.0, 1.0 - dot(d, d))));
 }
 
-// Directions within the cone z ≥ cosMax, density 1 / (2 pi (1 - cosMax)). Works with 1 - z, which
-// keeps its digits in narrow cones.
+// Directions within the cone z ≥ cosMax, density 1 / (2 pi (1 - cosMax)). Computes with 1 - z, which is precise in
+// narrow cones.
 vec3 sampleCone(vec2 u, float cosMax) {
   const float h = u.x * (1.0 - cosMax);
   const float r = sqrt(max(0.0, h * (2.0 - h)));

@@ -1,4 +1,4 @@
-// The one descriptor set and its bindings; everything else travels by address (shared/frame.h).
+// Bindings of the only descriptor set. All other data is passed by buffer address (shared/frame.h).
 #ifndef QUINTET_SHARED_BINDINGS_H
 #define QUINTET_SHARED_BINDINGS_H
 

@@ -1,4 +1,4 @@
-// The film's memory and the push constants of its passes (src/render/film.h says what they are for).
+// Memory layout of the film, and push constants of its passes (see src/render/film/film.h).
 #ifndef QUINTET_SHARED_FILM_H
 #define QUINTET_SHARED_FILM_H
 
@@ -7,14 +7,15 @@
 QT_SHARED_BEGIN
 
 // A sum that does not depend on the order of its terms: a signed integer of 128 bits in units of 2^-64, two's complement,
-// lowest word first. Its most negative value stands for "a term was not finite" and stays.
+// lowest word first. The most negative value means that a term was not finite; adding to it does not change it.
 struct FixedSum {
   uint word[4];
 };
 QT_SHARED_SIZE(FixedSum, 16);
 QT_CONSTANT kNotFiniteWord = 0x80000000u;  // word[3] of that value
 
-// Workgroups of a film pass form rows of kFilmColumns: one dimension alone would exceed the limit for large images.
+// Workgroups of a film pass form rows of kFilmColumns, because a single dimension would exceed the device limit for
+// large images.
 QT_CONSTANT kFilmGroupSize = 64;
 QT_CONSTANT kFilmColumns = 32768;
 
@@ -28,18 +29,18 @@ struct FilmAdd {
 };
 QT_SHARED_SIZE(FilmAdd, 32);
 
-// One id and how many samples met it. 0 samples: an empty slot.
+// An id and the number of samples that hit it. 0 samples: an empty slot.
 struct CoverageSlot {
   uint id;
   uint samples;
 };
 QT_SHARED_SIZE(CoverageSlot, 8);
-QT_CONSTANT kCoverageSlots = 12u;  // per pixel, sorted by id; of more ids the smallest stay
+QT_CONSTANT kCoverageSlots = 12u;  // per pixel, sorted by id; if there are more ids, the smallest are kept
 
 // Push constants of the pass that counts the ids of a batch.
 struct FilmCoverage {
   Address total;     // CoverageSlot[kCoverageSlots · count]
-  Address batch;     // uint[kBatchSamples · count]; 0: nothing
+  Address batch;     // uint[kBatchSamples · count]; 0: no hit
   uint count;        // pixels
   uint padding;
 };

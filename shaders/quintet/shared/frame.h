@@ -1,4 +1,4 @@
-// What a program sees of a frame: camera, film, and the addresses of the scene's arrays. One Frame per
+// The data of a frame that programs read: camera, film, and the addresses of the scene's arrays. There is one Frame per
 // image; its address is the first push constant.
 #ifndef QUINTET_SHARED_FRAME_H
 #define QUINTET_SHARED_FRAME_H
@@ -11,8 +11,8 @@
 QT_SHARED_BEGIN
 
 // InstanceData::flags
-QT_CONSTANT kInstanceMirrored = 1u;  // negative determinant: winding flips
-QT_CONSTANT kInstanceOpaque = 2u;    // forced to be: no any-hit shader runs
+QT_CONSTANT kInstanceMirrored = 1u;  // negative determinant: reverses the winding
+QT_CONSTANT kInstanceOpaque = 2u;    // forced opaque: no any-hit shader runs
 
 // One per TLAS instance, indexed by gl_InstanceCustomIndexEXT.
 struct InstanceData {
@@ -21,11 +21,11 @@ struct InstanceData {
   uint firstGeometry;       // GeometryData of geometry g: firstGeometry + g
   uint firstLightSlot;      // light slot of geometry g: firstLightSlot + g (Frame::lightSlots)
   uint flags;               // kInstance…
-  uint customIndex;         // the user's own: scene::Instance::customIndex
+  uint customIndex;         // set by the user: scene::Instance::customIndex
 };
 QT_SHARED_SIZE(InstanceData, 112);
 
-// One geometry of a mesh: triangles, or boxes that hold something else. Addresses of absent attributes are 0.
+// One geometry of a mesh: triangles, or boxes of procedural primitives. Addresses of absent attributes are 0.
 struct GeometryData {
   Address positions;     // vec3[]
   Address triangles;     // uvec3[], in the scene's order
@@ -34,12 +34,12 @@ struct GeometryData {
   Address uvs[2];        // vec2[]
   Address colors;        // vec4[], linear
   Address primitiveMap;  // uint[]: gl_PrimitiveID → index in triangles, or boxes; 0: identity
-  Address boxes;         // BoxData[], kinds other than triangles, in the scene's order; as the scene says: not padded
+  Address boxes;         // BoxData[], kinds other than triangles, in the scene's order; not padded
   Address primitives;    // PrimitiveData[]; solids: box i holds primitives[i]
   Address nodes;         // CsgNodeData[]
   Address trees;         // CsgTreeData[]; csg: box i holds trees[i]
-  uint material;         // triangles, custom; solids have their own
-  uint triangleCount;    // or boxes
+  uint material;         // of triangles and custom boxes; solids have materials of their own
+  uint triangleCount;    // number of triangles or boxes
   uint kind;             // kGeometry…
   uint padding;
 };
@@ -48,18 +48,18 @@ QT_SHARED_SIZE(GeometryData, 112);
 // Pinhole, thin lens or orthographic; see quintet/camera.glsl.
 struct CameraData {
   vec4 worldFromCamera[3];  // rows; looks along -z, y up
-  vec2 halfSize;            // perspective: half extent of the image plane at distance 1; orthographic: metres
-  float apertureRadius;     // metres; 0: pinhole
-  float focusDistance;      // metres
+  vec2 halfSize;            // perspective: half extent of the image plane at distance 1; orthographic: meters
+  float apertureRadius;     // meters; 0: pinhole
+  float focusDistance;      // meters
   uint orthographic;
   uint padding;
 };
 QT_SHARED_SIZE(CameraData, 72);
 
 // Frame::flags
-QT_CONSTANT kFrameTransparent = 1u;  // camera rays that leave the scene give 0 with alpha 0
+QT_CONSTANT kFrameTransparent = 1u;  // camera rays that miss the scene give 0 with alpha 0
 
-// Frame::plannedSamples: the random numbers of different pixels are independent, which costs blue noise.
+// Frame::plannedSamples: the random numbers of different pixels are independent; the error is then not blue noise.
 QT_CONSTANT kIndependentPixels = 0xFFFFFFFFu;
 
 QT_CONSTANT kMaxOutputs = 32u;
@@ -70,7 +70,7 @@ QT_CONSTANT kRecordEnd = 0u;      // no further ray of this pixel
 QT_CONSTANT kRecordClosest = 1u;
 QT_CONSTANT kRecordShadow = 2u;
 
-// A ray that a program traced (QUINTET_RECORD_RAYS), to be traced again by the program `replay`.
+// A ray that a program traced (QUINTET_RECORD_RAYS). The program `replay` traces it again.
 struct RayRecord {
   vec3 origin;
   float tmax;
@@ -79,20 +79,21 @@ struct RayRecord {
 };
 QT_SHARED_SIZE(RayRecord, 32);
 
-// Before the records: all rays by kind, also those for which there was no room.
+// Counts before the records: all rays by kind, including rays that were not recorded for lack of space.
 struct RayKinds {
   uint camera;             // the first ray of each pixel
   uint cameraHits;
-  uint continuation;       // other rays that look for the closest surface
+  uint continuation;       // other closest-hit rays
   uint continuationHits;
   uint shadow;
-  uint shadowHits;         // something lies in between
+  uint shadowHits;         // occluded
 };
 QT_SHARED_SIZE(RayKinds, 24);
 
 QT_CONSTANT kNoLight = 0xFFFFFFFFu;
 
-// Ids that pathtracer counts (pixel = "coverage"): this + index. A bit pattern of a usual float, which no device alters.
+// Ids that pathtracer counts (pixel = "coverage"): this + index. The bit pattern is a normal float, which no device
+// alters.
 QT_CONSTANT kCoverageId = 0x3F800000u;
 
 struct Frame {
@@ -106,10 +107,10 @@ struct Frame {
   Address statistics;   // uvec2[filmWidth · filmHeight]: rays traced, samples dropped; 0: do not count
   Address rayRecords;   // RayKinds, then RayRecord[filmWidth · filmHeight · rayRecordCapacity], for benchmarks; else 0
   Address instrument;   // Instrument and its pixels (shared/instrument.h); 0: not instrumented
-  // vec4[filmWidth · filmHeight], rows top to bottom: sums of this batch, or as the output's rule says
-  // (program::OutputPixel); 0: an optional output that nobody asked for.
+  // vec4[filmWidth · filmHeight], rows top to bottom: sums of this batch, or as the output's rule defines
+  // (program::OutputPixel); 0: an optional output that was not requested.
   Address outputs[kMaxOutputs];
-  Address previousOutputs[kMaxOutputs];  // vec4[…]: the frame before, where the program accumulates; 0: there is none
+  Address previousOutputs[kMaxOutputs];  // vec4[…]: of the previous frame, if the program accumulates; 0: none
   EnvironmentData environment;
   CameraData camera;
   uint width;           // pixels of the whole image
@@ -123,20 +124,20 @@ struct Frame {
   uint flags;           // kFrame…
   uint rayRecordCapacity;  // records per pixel
   uint instanceCount;
-  uint frameCount;      // frames of this run, where the program accumulates; 0: it has no end
-  uint plannedSamples;  // per pixel in all, 0: not known, or kIndependentPixels; for the sampler
-  Address lightNodes;   // LightNode[]: the tree from which lights are drawn
-  Address previousInstances;  // InstanceData[] of the frame before, of an animation; 0: nothing moves
+  uint frameCount;      // frames of this run, if the program accumulates; 0: unlimited
+  uint plannedSamples;  // for the sampler: total per pixel, 0 if unknown, or kIndependentPixels
+  Address lightNodes;   // LightNode[]: the tree for sampling lights
+  Address previousInstances;  // InstanceData[] of the previous frame of an animation; 0: no motion
 };
 QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 16);
 
-// Adaptive sampling: the image is cut in squares of kTileSize pixels from the film's first one on. Each has two cells, the
-// pixels with an even and with an odd x + y, which get samples of their own number.
+// Adaptive sampling divides the image into squares of kTileSize pixels, starting at the film's first pixel. Each has
+// two cells, the pixels with even and with odd x + y. Each cell has its own number of samples.
 QT_CONSTANT kTileSize = 32u;
 struct FilmTile {
-  uint x;            // of its first pixel, relative to the film
+  uint x;            // position of the first pixel, relative to the film
   uint y;
-  uint drawn[2];     // 1: the cell takes part in this batch
+  uint drawn[2];     // 1: the cell is sampled in this batch
 };
 QT_SHARED_SIZE(FilmTile, 16);
 
@@ -145,9 +146,9 @@ struct Launch {
   Address frame;        // Frame
   Address parameters;   // the program's parameter block (generated struct Parameters)
   uvec2 offset;         // pixel of launch invocation (0,0)
-  uint firstSample;     // index of the first sample of this launch; of the frame, where the program accumulates
+  uint firstSample;     // index of the first sample of this launch; index of the frame, if the program accumulates
   uint sampleCount;     // samples to take per pixel in this launch
-  Address tiles;        // FilmTile[]: the launch covers these, one a row; 0: a rectangle of pixels
+  Address tiles;        // FilmTile[]: the launch covers these, one per row; 0: a rectangle of pixels
 };
 QT_SHARED_SIZE(Launch, 40);
 

@@ -1,5 +1,5 @@
-// What an instrumented program (quintet check --instrument) writes at Frame::instrument: one Instrument, then
-// kInstrumentReports InstrumentReport, then one InstrumentPixel per pixel of the film.
+// Data that an instrumented program (quintet check --instrument) writes at Frame::instrument: one Instrument, then
+// kInstrumentReports InstrumentReports, then one InstrumentPixel per pixel of the film.
 #ifndef QUINTET_SHARED_INSTRUMENT_H
 #define QUINTET_SHARED_INSTRUMENT_H
 
@@ -7,19 +7,19 @@
 
 QT_SHARED_BEGIN
 
-// InstrumentReport::kind: what was wrong, by the digits of its diagnostic.
-QT_CONSTANT kReportRay = 1u;      // Q001: origin, direction, tmin or tmax not finite, or no direction
-QT_CONSTANT kReportDepth = 3u;    // Q003: a trace deeper than the pipeline was made for (not executed)
+// InstrumentReport::kind: the number of the diagnostic.
+QT_CONSTANT kReportRay = 1u;      // Q001: origin, direction, tmin or tmax not finite, or direction 0
+QT_CONSTANT kReportDepth = 3u;    // Q003: a trace deeper than the pipeline's recursion depth (not executed)
 QT_CONSTANT kReportMiss = 4u;     // Q004: a miss index beyond the table (the trace is not executed)
 QT_CONSTANT kReportSelfHit = 5u;  // Q005: a hit on the primitive just left, closer than the rounding error
 
-QT_CONSTANT kInstrumentReports = 64u;  // kept; the others are only counted
+QT_CONSTANT kInstrumentReports = 64u;  // maximum stored; further reports are only counted
 
 struct InstrumentReport {
   uint kind;
   uint stage;   // index of the compiled stage
-  uint line;    // of the trace in that stage's file or in what it includes; 0: not at a trace
-  uint depth;   // of nested traces there; 1: by the ray generation shader
+  uint line;    // of the trace, in the stage's file or an included file; 0: not at a trace
+  uint depth;   // nesting depth of traces; 1: called by the ray generation shader
   uvec2 pixel;
   float distance;  // Q005
   uint index;   // Q004: of the miss shader
@@ -29,22 +29,22 @@ struct InstrumentReport {
 QT_SHARED_SIZE(InstrumentReport, 56);
 
 struct Instrument {
-  uint reportCount;    // all, kept or not
+  uint reportCount;    // all, stored or not
   uint traceCount;
   uint anyHitCount;
-  uint mostAnyHits;    // of one pixel
-  uint deepest;        // nested traces
+  uint mostAnyHits;    // maximum over the pixels
+  uint deepest;        // maximum nesting depth of traces
   uint pixelCount;
-  uint missCount;      // in: miss shaders of the table
-  uint depthLimit;     // in: of the pipeline
+  uint missCount;      // in: number of miss shaders in the table
+  uint depthLimit;     // in: recursion depth of the pipeline
   uint recordPairs[8];  // bit offset + 16 · stride: used by a trace (both taken modulo 16, as Vulkan does)
 };
 QT_SHARED_SIZE(Instrument, 64);
 
 struct InstrumentPixel {
-  uint depth;      // of the traces that are running
+  uint depth;      // nesting depth of active traces
   uint anyHits;
-  uint instance;   // of the closest hit before, + 1; 0: none
+  uint instance;   // of the previous closest hit, + 1; 0: none
   uint geometry;
   uint primitive;
 };

@@ -1,4 +1,4 @@
-// Materials as the device sees them (scene::Material says meaning, units and ranges).
+// Materials on the device (scene::Material documents meaning, units and ranges).
 #ifndef QUINTET_SHARED_MATERIAL_H
 #define QUINTET_SHARED_MATERIAL_H
 
@@ -20,13 +20,13 @@ QT_SHARED_SIZE(TextureData, 32);
 // MaterialData::flags
 QT_CONSTANT kMaterialMask = 1u;         // alpha < alphaCutoff: no surface
 QT_CONSTANT kMaterialBlend = 2u;        // a hit counts with probability alpha
-QT_CONSTANT kMaterialUnlit = 4u;        // base colour is the outgoing radiance
+QT_CONSTANT kMaterialUnlit = 4u;        // base color is the outgoing radiance
 QT_CONSTANT kMaterialThin = 8u;         // transmission without refraction (no volume)
 QT_CONSTANT kMaterialEmissive = 16u;    // emissive factor is not zero
-QT_CONSTANT kMaterialPane = 64u;        // thin, and smooth somewhere: light may go straight through
-QT_CONSTANT kMaterialDoubleSided = 32u;  // for the record: every surface is rendered on both sides
+QT_CONSTANT kMaterialPane = 64u;        // thin, and smooth in some places: can transmit light without deflection
+QT_CONSTANT kMaterialDoubleSided = 32u;  // informative only: every surface is rendered on both sides
 
-// Bit kMaterialTextureShift + k of the flags is set if the k-th texture of MaterialData is there.
+// Bit kMaterialTextureShift + k of the flags is set if the k-th texture of MaterialData exists.
 QT_CONSTANT kMaterialTextureShift = 16;
 QT_CONSTANT kTextureBaseColor = 0;
 QT_CONSTANT kTextureMetallicRoughness = 1;
@@ -39,7 +39,7 @@ QT_CONSTANT kTextureClearcoat = 7;
 QT_CONSTANT kTextureClearcoatRoughness = 8;
 QT_CONSTANT kTextureClearcoatNormal = 9;
 QT_CONSTANT kTextureCount = 10;
-QT_CONSTANT kMaterialTextureOffset = 96;  // bytes of the first texture in MaterialData
+QT_CONSTANT kMaterialTextureOffset = 96;  // byte offset of the first texture in MaterialData
 
 struct MaterialData {
   vec4 baseColor;

@@ -1,5 +1,4 @@
-// Analytic solids and trees of them (constructive solid geometry) as the device sees them; scene/procedural.h
-// says what they mean.
+// Analytic solids and CSG trees (constructive solid geometry) on the device; scene/model/procedural.h documents them.
 #ifndef QUINTET_SHARED_PRIMITIVE_H
 #define QUINTET_SHARED_PRIMITIVE_H
 
@@ -11,7 +10,7 @@ QT_SHARED_BEGIN
 QT_CONSTANT kGeometryTriangles = 0u;
 QT_CONSTANT kGeometrySolids = 1u;
 QT_CONSTANT kGeometryCsg = 2u;
-QT_CONSTANT kGeometryCustom = 3u;  // boxes whose surface a user's intersection shader defines
+QT_CONSTANT kGeometryCustom = 3u;  // boxes with a surface defined by a user's intersection shader
 
 // PrimitiveData::type
 QT_CONSTANT kPrimitiveSphere = 0u;
@@ -37,10 +36,10 @@ QT_CONSTANT kCsgUnite = 1u;
 QT_CONSTANT kCsgIntersect = 2u;
 QT_CONSTANT kCsgSubtract = 3u;
 
-// A node of a tree in postfix order; at most 32 operands wait on the stack.
+// A node of a tree in postfix order; at most 32 operands are on the stack.
 struct CsgNodeData {
   uint operation;
-  uint operand;  // leaf: index in GeometryData::primitives; else how many nodes the second operand has
+  uint operand;  // leaf: index in GeometryData::primitives; else the number of nodes of the second operand
 };
 QT_SHARED_SIZE(CsgNodeData, 8);
 

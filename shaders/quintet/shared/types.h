@@ -1,7 +1,7 @@
-// The words that C++ and GLSL share: a struct declared once in shaders/quintet/shared/*.h means the same
-// bytes on both sides. Rules: layout(scalar), 8-byte members first, explicit padding to a multiple
-// of 8 bytes where a struct holds a 64-bit member, static_assert(sizeof) below each struct, and a round
-// trip in tests/gpu/shared. Addresses are buffer device addresses of tightly packed arrays.
+// Types and macros that C++ and GLSL share. A struct in shaders/quintet/shared/*.h is declared once and has the same
+// layout in both languages. Rules: layout(scalar), 8-byte members first, explicit padding to a multiple of 8 bytes if a
+// struct has a 64-bit member, static_assert(sizeof) below each struct, and a round-trip test in tests/gpu/shared. An
+// Address is the buffer device address of a tightly packed array.
 #ifndef QUINTET_SHARED_TYPES_H
 #define QUINTET_SHARED_TYPES_H
 

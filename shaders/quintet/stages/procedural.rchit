@@ -1,4 +1,4 @@
-// Says which solid was hit, of a tree, too; the ray generation shader does the rest.
+// Stores which solid was hit, also in a CSG tree. The ray generation shader does the shading.
 #include <quintet/features.glsl>
 #include <quintet/frame.glsl>
 #include <quintet/payload.glsl>

@@ -1,4 +1,4 @@
-// The ray left the scene: t stays negative.
+// The ray missed the scene: t is negative.
 #include <quintet/frame.glsl>
 #include <quintet/payload.glsl>
 

@@ -1,4 +1,4 @@
-// Nothing is in the way.
+// The shadow ray is not occluded.
 #include <quintet/frame.glsl>
 #include <quintet/payload.glsl>
 

@@ -1,4 +1,4 @@
-// Says which triangle was hit; the ray generation shader does the rest.
+// Stores which triangle was hit. The ray generation shader does the shading.
 #include <quintet/hit.glsl>
 
 layout(location = 0) rayPayloadInEXT HitPayload payload;

@@ -1,5 +1,5 @@
-// The albedo tables, as the shader looks them up, against an oracle in double precision that shares nothing
-// with src/render/albedo_tables.cpp: it integrates Walter's BSDF over all micronormals, by D cos theta.
+// The albedo tables, as the shader interpolates them, against an oracle in double precision. The oracle shares no code
+// with src/render/scene/albedo_tables.cpp. It integrates Walter's BSDF over all micronormals, weighted by D cos theta.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -37,8 +37,8 @@ double masking(double cosine, double alpha) {
   return 2.0 / (1.0 + std::sqrt(1.0 + alpha * alpha * tan2));
 }
 
-// (A, B, glass, glass without Fresnel), by the micronormals' density D cos theta: f cos_i D^-1 integrates to
-// the mean of F G (wo.m) / (cos_o cos_m).
+// Returns (A, B, glass, glass without Fresnel). With micronormals of density D cos theta, the albedo is the mean of
+// F G (wo.m) / (cos_o cos_m).
 glm::dvec4 integrate(const Query& q) {
   const double alpha = q.alpha, cosO = q.cosine, sinO = std::sqrt(1.0 - cosO * cosO);
   const double eta = q.outside ? q.ior : 1.0 / q.ior;
@@ -98,7 +98,7 @@ TEST_F(BsdfAlbedo, TablesAgreeWithTheOracle) {
   }
 }
 
-// The average is that of the albedo as it is looked up: the coupling of the diffuse base relies on it.
+// The average equals that of the interpolated albedo. The coupling of the diffuse base relies on this.
 TEST_F(BsdfAlbedo, AverageIsThatOfTheRow) {
   constexpr int kPoints = 4096;
   for (const float alpha : {0.0005f, 0.05f, 0.4f, 1.0f}) {

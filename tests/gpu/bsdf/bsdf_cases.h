@@ -1,4 +1,4 @@
-// Materials and directions that the tests of quintet/bsdf share, and the shader text around them.
+// Materials and directions that the tests of quintet/bsdf share, and the GLSL that runs them.
 #ifndef QUINTET_TESTS_GPU_BSDF_CASES_H
 #define QUINTET_TESTS_GPU_BSDF_CASES_H
 
@@ -14,7 +14,7 @@
 #include "gpu/buffer.h"
 #include "harness.h"
 #include "quintet/shared/frame.h"
-#include "render/albedo_tables.h"
+#include "render/scene/albedo_tables.h"
 
 namespace quintet::test {
 
@@ -40,16 +40,18 @@ inline vec3 directionAt(float cosine, float azimuth = 0.7f) {
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
 
-// What every test goes through: the narrowest lobe that is no delta to the roughest, straight on to grazing.
+// From the narrowest lobe that is not a delta to the roughest; from normal incidence to grazing angles.
 inline const std::vector<float> kRoughAlphas = {0.0005f, 0.003f, 0.02f, 0.1f, 0.4f, 1.0f};
 inline const std::vector<float> kCosines = {1.0f, 0.75f, 0.3f, 0.05f, 0.001f};
 
 struct NamedCase {
   std::string name;
   BsdfCase material;
+  bool inReference = true;  // reference.cpp implements the lobes of this material
 };
 
-// Every lobe alone, as far as a material can have it alone, and mixtures of them; all with roughness `alpha`.
+// Returns materials with one lobe each, as far as possible, and mixtures of all lobes; the width is `alpha`. A new lobe
+// needs a case here: all suites of this folder run these materials.
 inline std::vector<NamedCase> materialsAt(float alpha, const vec3& wo) {
   BsdfCase base;
   base.alpha = alpha;
@@ -86,7 +88,7 @@ inline std::vector<NamedCase> materialsAt(float alpha, const vec3& wo) {
   return cases;
 }
 
-// One sample of a lobe or of the mixture, as the shader's struct Sample below.
+// A sample of the BSDF, as the shader's struct Sample below.
 struct BsdfSampleOut {
   vec3 wi;
   std::uint32_t valid;  // 0: rejected
@@ -96,7 +98,7 @@ struct BsdfSampleOut {
   std::uint32_t transmitted;
 };
 
-// The frame with the albedo tables; made once.
+// The frame with the albedo tables.
 class BsdfFrame {
  public:
   BsdfFrame()
@@ -114,7 +116,7 @@ class BsdfFrame {
   gpu::Buffer frame_;
 };
 
-// What every body starts with.
+// The beginning of every shader.
 inline const std::string kBsdfPrelude = R"(
 #include <quintet/bsdf/bsdf.glsl>
 struct Case {
@@ -153,7 +155,7 @@ Out run(uint index, In c) {
 }
 )";
 
-// Has the frame at hand; each suite derives from it.
+// Base of the suites; owns the frame.
 class BsdfTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { frame_ = std::make_unique<BsdfFrame>(); }

@@ -1,6 +1,6 @@
-// White furnace: in a uniform light of radiance 1 a white surface looks exactly like the light. The mean of
-// the sample weights is the albedo; where light refracts, 1/eta² is taken off again, since in
-// equilibrium the radiance inside a solid is eta² times that outside.
+// White furnace: in uniform light of radiance 1 a white surface reflects radiance 1. The mean of the sample weights is the
+// albedo. For refraction the factor 1/eta² is divided out, because in equilibrium the radiance inside a solid is eta²
+// times that outside.
 #include <gtest/gtest.h>
 
 #include <random>

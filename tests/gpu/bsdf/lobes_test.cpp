@@ -1,5 +1,5 @@
-// What the lobes promise at single pairs of directions: weights, reciprocity, deltas, total reflection,
-// sides; and that no parameters make them fail.
+// Properties of the lobes at single pairs of directions: weights, reciprocity, deltas, total reflection, sides. No
+// parameters may lead to invalid results.
 #include <gtest/gtest.h>
 
 #include "bsdf/bsdf_cases.h"
@@ -20,7 +20,7 @@ class BsdfLobes : public BsdfTest {
   }
 };
 
-// The functions that a program calls agree with one another on what was sampled.
+// bsdfSample, bsdfEval and bsdfPdf agree.
 TEST_F(BsdfLobes, WeightIsEvalOverPdf) {
   struct Out {
     vec3 weight;
@@ -54,9 +54,9 @@ TEST_F(BsdfLobes, WeightIsEvalOverPdf) {
   EXPECT_GT(valid, cases.size() * 850);
 }
 
-// f(wo, wi) = f(wi, wo) for all materials, without two factors of wo alone: that of glass for multiple scattering and
-// that of the coat for what lies below it. f / (index at wo)^2 for refraction (Veach 1997, eq. 5.14). The coat has the
-// surface's normal: where they differ, f carries one cosine and the light another.
+// f(wo, wi) = f(wi, wo) for all materials, except for two factors that depend on wo alone: that of glass for multiple
+// scattering and that of the clearcoat for the lobes below. For refraction f / (index at wo)^2 is compared (Veach 1997,
+// eq. 5.14). The clearcoat gets the surface's normal here, because f has the cosine to only one of the normals.
 const std::string kBothWays = kBsdfPrelude + R"(
   struct Out_ { vec3 forward; vec3 backward; };
   #define In Case
@@ -67,10 +67,10 @@ const std::string kBothWays = kBsdfPrelude + R"(
     Bsdf b = makeBsdfOf(c);
   #ifndef AS_IT_IS
     b.underCoat = 1.0;
-    b.dielectric.color /= max(b.dielectric.compensation, 1e-20);
-    b.dielectric.compensation = 1.0;
+    b.transmission.dielectric.color /= max(b.transmission.dielectric.compensation, 1e-20);
+    b.transmission.dielectric.compensation = 1.0;
   #endif
-    return bsdfEval(b, wo, wi) / (abs(wi.z) * (b.refractive && c.entering == 0u ? c.ior * c.ior : 1.0));
+    return bsdfEval(b, wo, wi) / (abs(wi.z) * (b.transmission.refractive && c.entering == 0u ? c.ior * c.ior : 1.0));
   }
   Out run(uint index, In c) {
     vec3 wo = uniformDirection(randomAt(index, 3u).xy);
@@ -78,15 +78,15 @@ const std::string kBothWays = kBsdfPrelude + R"(
     wo = normalize(wo);
     vec3 wi = uniformDirection(randomAt(index, 4u).xy);
   #ifdef IN_THE_LOBE
-    // As far off the mirrored or refracted direction as the lobe is wide: slopes of up to 5 alpha.
+    // Directions within the lobe around the mirrored or refracted one: slopes of up to 5 alpha.
     vec3 u = randomAt(index, 5u);
     float width = c.clearcoat > 0.0 && u.z < 0.5 ? c.clearcoatAlpha : c.alpha;
     vec3 m = normalize(vec3(width * 5.0 * u.x * vec2(cos(6.2831853 * u.y), sin(6.2831853 * u.y)), 1.0));
     wi = reflect(-wo, m);
     if (c.transmission > 0.0 && index % 2u == 0u)
       wi = c.thin != 0u ? vec3(wi.xy, -wi.z) : refract(-wo, m, c.entering != 0u ? 1.0 / c.ior : c.ior);
-    // Not where light leaves the solid near the critical angle: 1 - Fresnel is that of g^2 there, which goes to 0 as
-    // dot(wo, m)^2 does and has an absolute error of some 1e-7. 0: total reflection.
+    // Skip directions where light leaves the solid near the critical angle: 1 - Fresnel depends on g^2 there, which goes
+    // to 0 as dot(wo, m)^2 does and has an absolute error of about 1e-7. wi is 0 for total reflection.
     if (wi.z < 0.0 && c.thin == 0u && min(dot(wo, m), -dot(wi, m)) < 0.05) return Out(vec3(0.0), vec3(0.0));
     if (dot(wi, wi) == 0.0) return Out(vec3(0.0), vec3(0.0));
     wi = normalize(wi);
@@ -103,18 +103,18 @@ struct BothWays {
   vec3 backward;
 };
 
-// Once for any two directions, once for two in the lobe: of any two, narrow lobes hold a handful.
+// Tested with arbitrary directions and with directions in the lobe: few arbitrary ones are in a narrow lobe.
 TEST_F(BsdfLobes, Reciprocity) {
   for (const bool inTheLobe : {false, true}) {
     const Defines defines = inTheLobe ? Defines{{"IN_THE_LOBE", "1"}} : Defines{};
     for (const float alpha : kRoughAlphas) {
       for (NamedCase& named : materialsAt(alpha, vec3(0.0f, 0.0f, 1.0f))) {
-        // The coat covers solids on one side only.
+        // The clearcoat covers solids on one side only.
         if (named.material.transmission > 0.0f && !named.material.thin) named.material.clearcoat = 0.0f;
         std::size_t compared = 0;
         for (const BothWays& out : runCases<BothWays>(kBothWays, {named.material}, 20'000, defines)) {
           const double size = std::max(glm::length(out.forward), glm::length(out.backward));
-          if (size < 1e-3) continue;  // far off the peak of a narrow lobe float has few digits left
+          if (size < 1e-3) continue;  // far from the peak of a narrow lobe, float has few significant digits
           ++compared;
           ASSERT_LE(relativeDifference(out.forward, out.backward), 2e-3) << named.name << " " << inTheLobe;
         }
@@ -124,9 +124,9 @@ TEST_F(BsdfLobes, Reciprocity) {
   }
 }
 
-// What is not reciprocal, and by how much: stated, so that it does not grow. Glass: its multiple scattering is put back
-// by one factor of wo (Turquin 2019), since a reciprocal lobe would need tables of four dimensions. Coat: what lies
-// below is dimmed on the way out only, as KHR_materials_clearcoat says.
+// Limits of the lobes that are not reciprocal. Glass: a factor of wo compensates for multiple scattering (Turquin 2019),
+// because a reciprocal lobe would need tables of four dimensions. Clearcoat: the lobes below are scaled on the way out
+// only, as KHR_materials_clearcoat specifies.
 TEST_F(BsdfLobes, GlassAndCoatAreReciprocalUpToAFactor) {
   struct Limit {
     const char* name;
@@ -149,7 +149,7 @@ TEST_F(BsdfLobes, GlassAndCoatAreReciprocalUpToAFactor) {
       if (std::max(forward, backward) > 1e-3) largest = std::max({largest, forward / backward, backward / forward});
     }
     EXPECT_LE(largest, limit.ratio) << limit.name << ", alpha " << limit.material.alpha;
-    EXPECT_GT(largest, 1.01) << limit.name << " has become reciprocal: say so";
+    EXPECT_GT(largest, 1.01) << limit.name << " is reciprocal now: update this test and path-tracer.md";
     std::printf("  %s, alpha %g: f(wo, wi) / f(wi, wo) up to %.2f\n", limit.name,
                 static_cast<double>(limit.material.alpha), largest);
   }
@@ -171,7 +171,7 @@ TEST_F(BsdfLobes, MirrorReflectsByFresnel) {
   }
 }
 
-// Reflected and refracted shares, Snell's direction and the scaling of radiance, from both sides.
+// Reflected and refracted fractions, Snell's direction and the scaling of radiance, from both sides.
 TEST_F(BsdfLobes, SmoothGlassFollowsSnellAndFresnel) {
   for (const bool entering : {true, false}) {
     for (const float cosine : {1.0f, 0.9f, 0.8f}) {
@@ -214,7 +214,7 @@ TEST_F(BsdfLobes, TotalReflectionLosesNothing) {
   }
 }
 
-// KHR_materials_transmission: straight on, tinted, one interface.
+// KHR_materials_transmission: light passes straight on, tinted, through one interface.
 TEST_F(BsdfLobes, SmoothThinWallGoesStraightOn) {
   BsdfCase c;
   c.alpha = 0.0f;
@@ -233,7 +233,7 @@ TEST_F(BsdfLobes, SmoothThinWallGoesStraightOn) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(passed[i], (1.0 - fresnel) * c.baseColor[i], 0.01);
 }
 
-TEST_F(BsdfLobes, SmoothLobesAreAnnounced) {
+TEST_F(BsdfLobes, SmoothLobesAreReported) {
   const std::string body = kBsdfPrelude + R"(
     #define In Case
     #define Out uint
@@ -248,7 +248,7 @@ TEST_F(BsdfLobes, SmoothLobesAreAnnounced) {
             (std::vector<std::uint32_t>{0, 0, 1, 1}));
 }
 
-// Millions of random materials and directions, with the corners of the parameters over-represented.
+// Millions of random materials and directions. Parameters are often at the ends of their ranges.
 TEST_F(BsdfLobes, NothingIsInvalid) {
   struct Out {
     std::uint32_t faults;
@@ -257,7 +257,7 @@ TEST_F(BsdfLobes, NothingIsInvalid) {
   const std::string body = kBsdfPrelude + R"(
     struct Out_ { uint faults; float weight; };
     #define Out Out_
-    // In [0,1], with 0 and 1 often.
+    // In [0,1], often 0 or 1.
     float corner(uint index, uint dimension) { return clamp(randomAt(index, dimension).x * 1.4 - 0.2, 0.0, 1.0); }
     bool broken(vec3 v) { return !(dot(v, vec3(1.0)) >= 0.0 && dot(v, vec3(1.0)) < 1e30 && min(v.x, min(v.y, v.z)) >= 0.0); }
     Out run(uint index) {
@@ -280,8 +280,9 @@ TEST_F(BsdfLobes, NothingIsInvalid) {
       c.clearcoatNormal = a.y < 0.5 ? vec3(0.0, 0.0, 1.0) : uniformDirection(randomAt(index, 117u).xy);
       Bsdf b = makeBsdfOf(c);
       uint faults = 0u;
-      float chances = b.chance.x + b.chance.y + b.chance.z + b.chance.w;
-      if (!(abs(chances - 1.0) < 1e-5 || chances == 0.0)) faults |= 1u;
+      float sum = 0.0;
+      for (int i = 0; i < kLobeCount; ++i) sum += b.lobeProbability[i];
+      if (!(abs(sum - 1.0) < 1e-5 || sum == 0.0)) faults |= 1u;
       vec3 wi = uniformDirection(randomAt(index, 118u).xy);
       if (randomAt(index, 119u).x < 0.1) wi = -c.wo;
       if (randomAt(index, 119u).y < 0.1) wi = vec3(wi.xy * inversesqrt(max(dot(wi.xy, wi.xy), 1e-20)), 0.0);

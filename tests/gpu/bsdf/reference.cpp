@@ -50,7 +50,7 @@ double fresnel(double cosine, double eta) {
   return 0.5 * (s * s + p * p);
 }
 
-// Multiple scattering: reflected or, for another meeting, sent back; Kulla and Conty 2017.
+// Sum over the orders of multiple scattering from the second on; Kulla and Conty 2017.
 double multipleFactor(double f0, double f90, double lost) {
   const double f = f0 + (f90 - f0) / 21.0;
   double sum = 0.0, rest = f * f * (1.0 - lost);
@@ -119,8 +119,8 @@ dvec2 ReferenceBsdf::glass(const BsdfCase& c, double cosine) const {
   return sum;
 }
 
-// Walter et al. 2007, eq. 20 and 21, for radiance, without the cosine of wi; reflectance runs from the material's f0 to
-// 1 as Fresnel's does.
+// Walter et al. 2007, eq. 20 and 21, for radiance, without the cosine of wi. The reflectance goes from the material's f0
+// to 1 as Fresnel's does.
 dvec3 ReferenceBsdf::refractive(const BsdfCase& c, const dvec3& wo, const dvec3& wi) const {
   const double eta = c.entering ? double{c.ior} : 1.0 / c.ior;
   const double r = (c.ior - 1.0) / (c.ior + 1.0);
@@ -158,9 +158,9 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
   const dvec3 h = glm::normalize(wo + wi);
   dvec3 f(0.0);
 
-  // Single and multiple scattering by a layer, and what it lets pass.
+  // Multiple scattering by a layer, and the fraction of light that passes the layer.
   const auto multiple = [&](double a, double b) { return multipleFactor(a, b, mean.lost); };
-  const double spread = o.lost * i.lost / (kPi * mean.lost);
+  const double multipleShape = o.lost * i.lost / (kPi * mean.lost);
   const auto passed = [&](const Layer& l) {
     const double low = largest(f0);
     return 1.0 - low * (1.0 - l.lost - l.schlick) - f90 * l.schlick - multiple(low, f90) * l.lost;
@@ -171,7 +171,7 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
       const double shape = reflection(wo, wi, up, c.alpha), part = bends ? opaque : 1.0 - metal;
       f += shape * (metal * schlick(color, 1.0, glm::dot(wo, h)) + part * schlick(f0, f90, glm::dot(wo, h)));
       for (glm::length_t k = 0; k < 3; ++k)
-        f[k] += spread * (metal * multiple(color[k], 1.0) + part * multiple(f0[k], f90));
+        f[k] += multipleShape * (metal * multiple(color[k], 1.0) + part * multiple(f0[k], f90));
     }
   } else if (clear > 0.0 && c.thin && rough) {
     const dvec3 mirrored(wi.x, wi.y, -wi.z);
@@ -179,7 +179,7 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
     const double shape = reflection(wo, mirrored, up, c.alpha);
     f += clear * color *
          (shape * (1.0 - schlick(dvec3(largest(f0)), f90, glm::dot(wo, m)).x) +
-          spread * (1.0 - multiple(largest(f0), f90)));
+          multipleShape * (1.0 - multiple(largest(f0), f90)));
   }
   if (bends && rough) f += clear * refractive(c, wo, wi);
   f *= std::abs(wi.z);

@@ -1,6 +1,6 @@
-// The material's BSDF once more, in double precision and in the form of the papers: normalised half vectors, tangents,
-// Smith's Lambda, polarised Fresnel. Shares only the albedo tables with the shader, which have tests of their own
-// (albedo_test.cpp).
+// A second implementation of the BSDF, in double precision and in the form of the papers: normalized half vectors,
+// tangents, Smith's Lambda, polarized Fresnel. It shares only the albedo tables with the shader. albedo_test.cpp tests
+// the tables.
 #ifndef QUINTET_TESTS_GPU_BSDF_REFERENCE_H
 #define QUINTET_TESTS_GPU_BSDF_REFERENCE_H
 
@@ -12,7 +12,7 @@ namespace quintet::test {
 
 class ReferenceBsdf {
  public:
-  // f(wo, wi) |cos wi| of all lobes that are no deltas; wo is the material's.
+  // f(wo, wi) |cos wi| of all lobes that are not deltas; wo is the material's.
   glm::dvec3 eval(const BsdfCase& c, const glm::dvec3& wi) const;
 
  private:

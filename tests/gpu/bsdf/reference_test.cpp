@@ -1,4 +1,4 @@
-// bsdfEval against the same model written a second time on the host, for every material, roughness and angle.
+// bsdfEval against a second implementation of the model on the host, for every material, roughness and angle.
 #include "bsdf/reference.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ struct Answer {
   vec3 value;
 };
 
-// Directions of the sampler, where the lobes are, and uniform ones.
+// Sampled directions, which are in the lobes, and uniform ones.
 const std::string kEvaluation = kBsdfPrelude + R"(
   struct Answer { vec3 wi; vec3 value; };
   #define In Case
@@ -28,9 +28,10 @@ const std::string kEvaluation = kBsdfPrelude + R"(
 
 class BsdfReference : public BsdfTest {
  protected:
-  // The tolerance allows for what float leaves of half vectors: their error is 1e-7 over the length of the part across
-  // the normal, relative to alpha.
-  static void compare(const std::vector<NamedCase>& cases, double tolerance, int perCase) {
+  // The tolerance covers the rounding errors of half vectors: 1e-7 over the length of their tangential part, relative to
+  // alpha.
+  static void compare(std::vector<NamedCase> cases, double tolerance, int perCase) {
+    std::erase_if(cases, [](const NamedCase& named) { return !named.inReference; });
     const ReferenceBsdf reference;
     std::vector<BsdfCase> materials;
     for (const NamedCase& named : cases) materials.push_back(named.material);
@@ -60,7 +61,7 @@ TEST_F(BsdfReference, RoughMaterials) {
   compare(cases, 2e-3, 200);
 }
 
-// KHR_materials_ior with 0: reflectance is specular · specularColor, in a lobe as wide as the surface is rough.
+// KHR_materials_ior with 0: the reflectance is specular · specularColor, in a lobe of the surface's roughness.
 TEST_F(BsdfReference, FullReflectance) {
   std::vector<NamedCase> cases;
   for (const float alpha : {0.1f, 0.4f, 1.0f})
@@ -74,7 +75,7 @@ TEST_F(BsdfReference, FullReflectance) {
         c.transmission = 1.0f;
         cases.push_back({"glass of ior 0", c});
         c.specular = 0.7f, c.specularColor = {0.5f, 1.0f, 0.2f}, c.baseColor = {0.9f, 0.5f, 0.2f};
-        cases.push_back({"glass of ior 0, coloured", c});
+        cases.push_back({"glass of ior 0, colored", c});
         c.transmission = 0.6f, c.metallic = 0.3f, c.clearcoat = 0.5f, c.clearcoatAlpha = 0.2f;
         cases.push_back({"mixture of ior 0", c});
       }

@@ -1,10 +1,10 @@
-// Each lobe, and the mixture, draws directions with the density that its pdf states: a chi-square test of
-// counted against integrated density, which must sum to the part of the samples that is not rejected.
+// Each lobe, and the whole BSDF, samples directions with the density of its pdf: a chi-square test of counted against
+// integrated density. The integral must equal the fraction of the samples that is not rejected.
 //
-// The cells of a microfacet lobe are rings and sectors of micronormals, in slopes that are as wide as the lobe: they
-// fit the narrowest lobe at a grazing angle. For the diffuse lobe and mixtures those of each hemisphere are rings
-// and sectors around the direction where the density is narrowest, with radii in geometric progression up to the
-// horizon: they fit mirrors as well as diffuse lobes, but not at grazing angles, where the horizon is near.
+// The cells of a microfacet lobe are rings and sectors of micronormals, in slopes relative to the lobe's width. They fit
+// the narrowest lobe at a grazing angle. The cells of the diffuse lobe and of mixtures are rings and sectors of each
+// hemisphere around the direction where the density is narrowest. Their radii grow geometrically up to the horizon. They
+// fit mirrors and diffuse lobes, but not grazing angles, where the horizon is near.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -20,13 +20,13 @@ constexpr int kSectors = 16;
 constexpr int kPoints = 32;  // per cell and axis of the quadrature
 constexpr std::size_t kSamples = 120'000;
 
-// LOBE: 0 diffuse, 1 specular, 2 thin, 3 dielectric, 4 clearcoat, 5 all. WRONG: a mistake to be found.
+// LOBE: 0 diffuse, 1 specular, 2 thin, 3 dielectric, 4 clearcoat, 5 all. WRONG: a mistake that the test must find.
 const std::string kLobes = kBsdfPrelude + R"(
-// Single scattering; MultipleScatteringFollowsItsPdf and mixtures test the rest.
+// Single scattering only. MultipleScatteringFollowsItsPdf and the mixtures test multiple scattering.
 Bsdf lobesOf(Case c) {
   Bsdf b = makeBsdfOf(c);
-  if (LOBE == 1) b.specular.multipleChance = 0.0;
-  if (LOBE == 2) b.thin.multipleChance = 0.0;
+  if (LOBE == 1) b.specular.multipleProbability = 0.0;
+  if (LOBE == 2) b.transmission.thin.multipleProbability = 0.0;
   return b;
 }
 float pdfOf(Bsdf b, vec3 wo, vec3 wi) {
@@ -36,19 +36,21 @@ float pdfOf(Bsdf b, vec3 wo, vec3 wi) {
   vec3 h = normalize(wo + wi);
   return wi.z > 0.0 ? ggxReflectionPdf(ggxDistribution(h.z * h.z, dot(h.xy, h.xy), b.specular.alpha), wo.z, b.specular.alpha, 1.0) : 0.0;
 #elif defined(WRONG) && LOBE == 3
-  return dielectricPdf(b.dielectric, wo, wi) / (wi.z < 0.0 ? b.dielectric.eta * b.dielectric.eta : 1.0);
+  return dielectricPdf(b.transmission.dielectric, wo, wi) / (wi.z < 0.0 ? b.transmission.dielectric.eta * b.transmission.dielectric.eta : 1.0);
 #elif LOBE == 0
   return diffusePdf(wi);
 #elif LOBE == 1
   return specularPdf(b.specular, wo, wi);
 #elif LOBE == 2
-  return thinPdf(b.thin, wo, wi);
+  return thinPdf(b.transmission.thin, wo, wi);
 #elif LOBE == 3
-  return dielectricPdf(b.dielectric, wo, wi);
+  return dielectricPdf(b.transmission.dielectric, wo, wi);
 #elif LOBE == 4
   return clearcoatPdf(b.clearcoat, wo, wi);
 #elif defined(WRONG)
-  b.chance = mix(b.chance, b.chance.zyxw, 0.1);
+  float moved = 0.1 * (b.lobeProbability[kLobeDiffuse] - b.lobeProbability[kLobeClearcoat]);
+  b.lobeProbability[kLobeClearcoat] += moved;
+  b.lobeProbability[kLobeDiffuse] -= moved;
   return bsdfPdf(b, wo, wi);
 #else
   return bsdfPdf(b, wo, wi);
@@ -60,10 +62,10 @@ vec3 sampleOf(Bsdf b, vec3 wo, vec3 u) {
 #elif LOBE == 1
   return specularSample(b.specular, wo, ggxSample(wo, b.specular.alpha, ggxBound(wo.z, b.specular.alpha), u.xy), u.z, u.xy);
 #elif LOBE == 2
-  return thinSample(b.thin, wo, ggxSample(wo, b.thin.alpha, ggxBound(wo.z, b.thin.alpha), u.xy), u.z, u.xy);
+  return thinSample(b.transmission.thin, wo, ggxSample(wo, b.transmission.thin.alpha, ggxBound(wo.z, b.transmission.thin.alpha), u.xy), u.z, u.xy);
 #elif LOBE == 3
-  vec3 m = ggxSample(wo, b.dielectric.alpha, 1.0, u.xy);
-  vec3 wi = dielectricSample(b.dielectric, wo, m, u.z);
+  vec3 m = ggxSample(wo, b.transmission.dielectric.alpha, 1.0, u.xy);
+  vec3 wi = dielectricSample(b.transmission.dielectric, wo, m, u.z);
   return dot(wi, m) * wi.z > 0.0 ? wi : vec3(0.0);
 #elif LOBE == 4
   mat3 basis = localFrame(b.clearcoat.normal);
@@ -79,11 +81,12 @@ vec3 sampleOf(Bsdf b, vec3 wo, vec3 u) {
 mat3 frameOf(Bsdf b) { return LOBE == 4 ? localFrame(b.clearcoat.normal) : mat3(1.0); }
 float widthOf(Bsdf b) { return LOBE == 4 ? b.clearcoat.alpha : b.specular.alpha; }
 // Rings of equal steps of 1 - 1/sqrt(1 + p^2), p: tangent of the micronormal over the width.
-// Near the mirror direction of a grazing wo the digits of wi are as wide as a fifth of the narrowest lobe's cells: what
-// rounding has put on a grid is spread over its meshes again. (A compiler may do the same by turning a + (b - a) into b.)
+// Near the mirror direction of a grazing wo the spacing of floats is up to a fifth of a cell of the narrowest lobe. Random
+// numbers spread wi over the interval that rounding has mapped to one value. (A compiler may do the same by turning
+// a + (b - a) into b.)
 uint cellOf(Case c, Bsdf b, vec3 wi, vec2 u) {
   bool below = wi.z < 0.0;
-  vec3 h = LOBE == 2 ? c.wo + vec3(wi.xy, -wi.z) : LOBE == 3 && below ? c.wo + b.dielectric.eta * wi : c.wo + wi;
+  vec3 h = LOBE == 2 ? c.wo + vec3(wi.xy, -wi.z) : LOBE == 3 && below ? c.wo + b.transmission.dielectric.eta * wi : c.wo + wi;
   h.xy += (u - 0.5) * exp2(floor(log2(max(abs(wi.xy), 1e-20))) - 23.0);
   vec3 m = h * frameOf(b);
   if (m.z < 0.0) m = -m;
@@ -91,7 +94,7 @@ uint cellOf(Case c, Bsdf b, vec3 wi, vec2 u) {
   int ring = min(int((1.0 - inversesqrt(1.0 + dot(p, p))) * float(RINGS)), RINGS - 1);
   return uint((int(below) * RINGS + ring) * SECTORS + min(int(fract(atan(p.y, p.x) / 6.2831853) * float(SECTORS)), SECTORS - 1));
 }
-// pdf of the direction that belongs to the micronormal at (t, phi), per d(t, phi).
+// Density, per d(t, phi), of the direction for the micronormal at (t, phi).
 float densityAt(Case c, Bsdf b, bool below, float t, float phi) {
   float p = sqrt(t * (2.0 - t)) / (1.0 - t);
   vec3 m = normalize(vec3(p * widthOf(b) * vec2(cos(phi), sin(phi)), 1.0));
@@ -103,11 +106,11 @@ float densityAt(Case c, Bsdf b, bool below, float t, float phi) {
   float stretch = 4.0 * cosO;
   if (LOBE == 2) wi.z = -wi.z;
   if (LOBE == 3 && below) {
-    wi = refract(-c.wo, m, 1.0 / b.dielectric.eta);
+    wi = refract(-c.wo, m, 1.0 / b.transmission.dielectric.eta);
     float cosI = dot(wi, m);
     if (cosI == 0.0) return 0.0;
-    float h = cosO + b.dielectric.eta * cosI;
-    stretch = h * h / (b.dielectric.eta * b.dielectric.eta * -cosI);  // Walter et al. 2007, eq. 17
+    float h = cosO + b.transmission.dielectric.eta * cosI;
+    stretch = h * h / (b.transmission.dielectric.eta * b.transmission.dielectric.eta * -cosI);  // Walter et al. 2007, eq. 17
   }
   return below == (wi.z < 0.0) ? pdfOf(b, c.wo, wi) * stretch * solidAngle : 0.0;
 }
@@ -120,11 +123,11 @@ float integralOf(Case c, Bsdf b, int side, int ring, int sector) {
   return sum * 6.2831853 / float(RINGS * SECTORS * POINTS * POINTS);
 }
 #else
-// Where the density of a hemisphere is narrowest, inside the hemisphere.
+// The direction inside the hemisphere where the density is narrowest.
 vec3 poleOf(Case c, Bsdf b, bool below) {
   vec3 pole = reflect(-c.wo, vec3(0.0, 0.0, 1.0));
   if (below) {
-    pole = refract(-c.wo, vec3(0.0, 0.0, 1.0), b.refractive ? 1.0 / b.dielectric.eta : 1.0);
+    pole = refract(-c.wo, vec3(0.0, 0.0, 1.0), b.transmission.refractive ? 1.0 / b.transmission.dielectric.eta : 1.0);
     if (dot(pole, pole) == 0.0) pole = vec3(pole.xy, -0.05);
   }
   pole.z = below ? min(pole.z, -0.02) : max(pole.z, 0.02);
@@ -201,7 +204,7 @@ std::string describe(const BsdfCase& c, float alpha) {
 
 class BsdfSampling : public BsdfTest {
  protected:
-  // Compares counted and integrated density in all cells, and in one for what is rejected.
+  // Compares counted and integrated density in all cells; one more cell counts rejected samples.
   static ChiSquare test(const Named& named, bool wrong = false) {
     const float narrowest = named.lobe == 4 ? named.material.clearcoatAlpha : named.material.alpha;
     Defines defines = {{"LOBE", std::to_string(named.lobe)},
@@ -222,16 +225,16 @@ class BsdfSampling : public BsdfTest {
         << named.name << ": " << integral << ", accepted " << accepted;
 
     std::vector<double> expected(integrals.begin(), integrals.end());
-    // Where nothing is rejected, the quadrature's own error is no expectation.
+    // If no sample was rejected, the quadrature's error must not count as an expectation.
     expected.push_back(observed.back() == 0.0 ? 0.0 : std::max(1.0 - integral, 0.0));
     for (double& e : expected) e *= kSamples;
     return chiSquareTest(observed, expected);
   }
 };
 
-// Are the cells of mixtures fine enough? Where not, mixing_test.cpp and the lobes' own tests stand. A narrow coat
-// has its peak off the pole, around its own normal; at the most grazing angle the horizon is too near for narrow lobes,
-// and for what a solid refracts.
+// Returns true if the cells of mixtures are fine enough. For the other cases, mixing_test.cpp and the tests of single
+// lobes apply. A narrow clearcoat has its peak away from the pole, around its own normal. At the most grazing angle the
+// horizon is too near for narrow lobes and for refraction.
 bool cellsFit(const BsdfCase& c) {
   const bool solid = c.transmission > 0.0f && !c.thin;
   const float coat = c.clearcoat > 0.0f ? c.clearcoatAlpha : 1.0f;
@@ -255,7 +258,7 @@ std::vector<Named> lobeCases() {
       c.thin = 1;
       cases.push_back({"thin" + where, 2, c});
       c.thin = 0;
-      // Half vectors of the narrowest lobe at the most grazing angle have too few digits left for the outermost cells.
+      // Half vectors of the narrowest lobe at the most grazing angle have too few digits for the outermost cells.
       for (const float ior : {1.15f, 1.5f, 2.4f}) {
         if (alpha < 0.003f && cosine < 0.05f) continue;
         c.ior = ior;
@@ -272,14 +275,14 @@ std::vector<Named> lobeCases() {
       for (const NamedCase& named : materialsAt(alpha, base.wo))
         if (cellsFit(named.material)) cases.push_back({named.name, 5, named.material});
       c = base;
-      c.alpha = alpha, c.transmission = 1.0f, c.ior = 0.0f, c.specular = 0.7f;  // a rough lobe, and straight on
+      c.alpha = alpha, c.transmission = 1.0f, c.ior = 0.0f, c.specular = 0.7f;  // a rough lobe and a delta
       if (cellsFit(c)) cases.push_back({"glass of ior 0" + where, 5, c});
     }
   }
   return cases;
 }
 
-// All cases of one lobe. The levels are those for all lobes' tests together.
+// Tests all cases of one lobe. The significance level holds for the tests of all lobes together.
 template <class Test>
 void expectFollowsThePdf(int lobe, const Test& test) {
   const std::vector<Named> cases = lobeCases();
@@ -342,8 +345,8 @@ TEST_F(BsdfSampling, MultipleScatteringFollowsItsPdf) {
   }
 }
 
-// The test can fail: a uniform diffuse pdf, the pdf of unbounded visible normals, a Jacobian without eta²,
-// mixture weights off by a tenth.
+// The test fails for a uniform diffuse pdf, for the pdf of unbounded visible normals, for a Jacobian without eta², and
+// for lobe probabilities that are off by a tenth.
 TEST_F(BsdfSampling, FindsAWrongPdf) {
   BsdfCase c;
   c.wo = directionAt(0.6f);

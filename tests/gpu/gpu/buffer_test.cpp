@@ -1,4 +1,4 @@
-#include "gpu/buffer.h"
+#include "gpu/uploader.h"
 
 #include <numeric>
 
@@ -50,7 +50,7 @@ TEST(GpuBuffer, CopiesToAndFromAnOffset) {
   EXPECT_THAT(part, testing::ElementsAre(9, 7000, 7001, 7002, 13));
 }
 
-TEST(GpuBuffer, MayBeEmptyOrMoved) {
+TEST(GpuBuffer, CanBeEmptyOrMoved) {
   const Buffer none;
   EXPECT_FALSE(none);
   const Buffer empty = makeBuffer(test::testContext(), {}, 0, "empty");
@@ -59,7 +59,7 @@ TEST(GpuBuffer, MayBeEmptyOrMoved) {
   Buffer first = makeBufferOf(test::testContext(), counting(10), 0, "first");
   const VkDeviceAddress address = first.address();
   Buffer second = std::move(first);
-  EXPECT_FALSE(first);  // NOLINT: moved-from is empty by contract
+  EXPECT_FALSE(first);  // NOLINT: a moved-from buffer is empty
   EXPECT_EQ(second.address(), address);
   second = makeBufferOf(test::testContext(), counting(10, 5), 0, "other");
   EXPECT_EQ(second.downloadAs<std::uint32_t>(10), counting(10, 5));
@@ -80,7 +80,7 @@ TEST(GpuBuffer, HasAnAlignedAddress) {
   }
 }
 
-TEST(GpuBuffer, RefusesAbsurdSizes) {
+TEST(GpuBuffer, RejectsTooLargeSizes) {
   Context& context = test::testContext();
   EXPECT_THAT([&] { const Buffer b(context, {.size = VkDeviceSize{1} << 50, .name = "film"}); },
               ThrowsMessage<MemoryError>(
@@ -90,13 +90,13 @@ TEST(GpuBuffer, RefusesAbsurdSizes) {
     EXPECT_THROW(Buffer(context, {.size = context.info().maxBufferBytes + 1, .memory = memory, .name = "limit"}),
                  MemoryError);
   }
-  const Buffer after = makeBufferOf(context, counting(10), 0, "after");  // the context is as good as before
+  const Buffer after = makeBufferOf(context, counting(10), 0, "after");  // the context still works
   EXPECT_EQ(after.downloadAs<std::uint32_t>(10), counting(10));
 }
 
-TEST(GpuBuffer, RefusesMoreThanTheMemoryInTotal) {
+TEST(GpuBuffer, RejectsMoreThanTheTotalMemory) {
   Context& context = test::testContext();
-  if (!context.info().quirks.software) return;  // a real GPU's driver refuses by itself, after a while
+  if (!context.info().software) return;  // drivers of GPUs report this error themselves
   std::vector<Buffer> buffers;
   const VkDeviceSize size = context.info().maxBufferBytes;
   const std::size_t enough = context.info().memoryBytes / size + 2;
@@ -123,7 +123,7 @@ TEST(GpuUploader, FillsManyBuffersThroughASmallRing) {
     EXPECT_TRUE(buffers[i].downloadAs<std::uint32_t>(75'001) == counting(75'001, i));
 }
 
-TEST(GpuUploader, SplitsWhatIsLargerThanTheRing) {
+TEST(GpuUploader, SplitsUploadsThatAreLargerThanTheRing) {
   Context& context = test::testContext();
   const std::vector<std::uint32_t> data = counting(9 * kMiB / 4 + 1);
   const Buffer buffer(context, {.size = data.size() * 4 + 400, .name = "larger"});
@@ -151,8 +151,8 @@ TEST(GpuUploader, KeepsTheOrderOfOverlappingUploads) {
   EXPECT_EQ(buffer.downloadAs<std::uint32_t>(100), expected);
 }
 
-// Backwards, with holes, and again over some of it: what was said last is there.
-TEST(GpuUploader, KeepsTheOrderInAnyOrderOfPlaces) {
+// Uploads in descending order, with gaps and overlaps: the last upload wins.
+TEST(GpuUploader, KeepsTheOrderForAnyOrderOfOffsets) {
   Context& context = test::testContext();
   const Buffer buffer(context, {.size = 4 * 1000, .name = "patchwork"});
   std::vector<std::uint32_t> expected(1000);
@@ -169,8 +169,8 @@ TEST(GpuUploader, KeepsTheOrderInAnyOrderOfPlaces) {
   EXPECT_EQ(buffer.downloadAs<std::uint32_t>(1000), expected);
 }
 
-// An error on the way: destinations may be gone before the uploader.
-TEST(GpuUploader, CopiesNothingWhileAnExceptionIsOnItsWay) {
+// During stack unwinding, destinations can be destroyed before the uploader.
+TEST(GpuUploader, DiscardsCopiesDuringStackUnwinding) {
   Context& context = test::testContext();
   const Buffer kept = makeBufferOf(context, std::vector<std::uint32_t>(100, 5), 0, "kept");
   EXPECT_THROW(
@@ -186,7 +186,7 @@ TEST(GpuUploader, CopiesNothingWhileAnExceptionIsOnItsWay) {
   EXPECT_EQ(kept.downloadAs<std::uint32_t>(100), std::vector<std::uint32_t>(100, 5));
 }
 
-TEST(GpuUploader, FlushesNothingToo) {
+TEST(GpuUploader, FlushesWithoutUploads) {
   Uploader uploader(test::testContext());
   uploader.upload(makeBuffer(test::testContext(), {}, 0, "empty"), {});
   uploader.flush();

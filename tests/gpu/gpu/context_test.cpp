@@ -35,9 +35,9 @@ TEST(GpuContext, ListsDevicesInOrderOfPreference) {
 
 TEST(GpuContext, DescribesItsDevice) {
   const DeviceInfo& info = test::testContext().info();
-  EXPECT_TRUE(info.usable()) << info.refusal;
+  EXPECT_TRUE(info.usable()) << info.unusableReason;
   EXPECT_GE(info.apiVersion, VK_API_VERSION_1_3);
-  // Vulkan's minimum for a ray tracing device.
+  // Minimum limits of Vulkan for ray tracing devices.
   EXPECT_EQ(info.limits.handleSize, 32u);
   EXPECT_GE(info.limits.maxRecursionDepth, 1u);
   EXPECT_GE(info.limits.maxHitAttributeSize, 32u);
@@ -50,22 +50,22 @@ TEST(GpuContext, DescribesItsDevice) {
   EXPECT_GE(info.maxTextures, 16u);
   EXPECT_GE(info.maxImageSize, 4096u);
   EXPECT_GE(info.maxBufferBytes, std::uint64_t{1} << 30);
-  EXPECT_EQ(info.quirks.software, info.driver.starts_with("lavapipe"));
+  EXPECT_EQ(info.software, info.driver.starts_with("lavapipe"));
 }
 
-TEST(GpuContext, TakesADeviceByIndexAndByName) {
+TEST(GpuContext, SelectsADeviceByIndexAndName) {
   const DeviceInfo& info = test::testContext().info();
   EXPECT_EQ(Context({.device = std::to_string(info.index)}).info().uuid, info.uuid);
   EXPECT_EQ(Context({.device = info.name}).info().name, info.name);
 }
 
-TEST(GpuContext, NamesTheDevicesWhenARequestMatchesNone) {
+TEST(GpuContext, ListsTheDevicesIfNoneMatches) {
   EXPECT_THAT(
       [] { const Context context({.device = "voodoo"}); },
       ThrowsMessage<NoDeviceError>(AllOf(HasSubstr("no device 'voodoo'"), HasSubstr(test::testContext().info().name))));
 }
 
-TEST(GpuContext, LivesBesideAnother) {
+TEST(GpuContext, CanExistTwice) {
   Context& first = test::testContext();
   Context second({.device = first.info().name});
   const std::vector<int> numbers = {1, 2, 3};
@@ -75,29 +75,29 @@ TEST(GpuContext, LivesBesideAnother) {
   EXPECT_EQ(two.downloadAs<int>(3), numbers);
 }
 
-TEST(GpuContext, SetsLavapipesVariablesUnlessForbidden) {
-  if (!test::testContext().info().quirks.software || std::getenv("QUINTET_NO_DRIVER_WORKAROUNDS")) return;
+TEST(GpuContext, SetsLavapipeVariablesUnlessDisabled) {
+  if (!test::testContext().info().software || std::getenv("QUINTET_NO_DRIVER_WORKAROUNDS")) return;
   EXPECT_TRUE(std::getenv("LP_NUM_THREADS"));
 #if defined(__x86_64__)
   EXPECT_TRUE(std::getenv("GALLIUM_OVERRIDE_CPU_CAPS"));
 #endif
 }
 
-// A Context of its own, so that the process's stays clean.
+// A separate Context, so that the shared one has no validation messages.
 class GpuValidation : public testing::Test {
  protected:
   Context context{{.device = test::testContext().info().name, .validate = true}};
 };
 
-TEST_F(GpuValidation, IsSilentAboutCorrectUse) {
+TEST_F(GpuValidation, ReportsNothingForCorrectUse) {
   const Buffer buffer = makeBufferOf(context, std::vector<int>(1000, 7), 0, "sevens");
   EXPECT_EQ(buffer.downloadAs<int>(1000), std::vector<int>(1000, 7));
   EXPECT_EQ(context.validationMessageCount(), 0u);
 }
 
-TEST_F(GpuValidation, CountsAMistake) {
+TEST_F(GpuValidation, CountsMessages) {
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-  info.size = 16;  // but no usage
+  info.size = 16;  // without usage
   VkBuffer buffer = VK_NULL_HANDLE;
   ASSERT_EQ(context.vk().vkCreateBuffer(context.device(), &info, nullptr, &buffer), VK_SUCCESS);
   context.vk().vkDestroyBuffer(context.device(), buffer, nullptr);
@@ -106,7 +106,7 @@ TEST_F(GpuValidation, CountsAMistake) {
   EXPECT_THAT(context.validationMessages()[0], HasSubstr("VUID-VkBufferCreateInfo-usage"));
 }
 
-TEST_F(GpuValidation, FindsAMissingBarrier) {
+TEST_F(GpuValidation, FindsMissingBarriers) {
   const Buffer source = makeBufferOf(context, std::vector<int>(16, 1), 0, "source");
   const Buffer middle(context, {.size = 64, .name = "middle"});
   const Buffer target(context, {.size = 64, .name = "target"});
@@ -118,7 +118,7 @@ TEST_F(GpuValidation, FindsAMissingBarrier) {
   EXPECT_THAT(context.validationMessages()[0], HasSubstr("SYNC-HAZARD-READ-AFTER-WRITE"));
 }
 
-TEST_F(GpuValidation, IsSilentWithTheBarrier) {
+TEST_F(GpuValidation, AcceptsTheBarrier) {
   const Buffer source = makeBufferOf(context, std::vector<int>(16, 1), 0, "source");
   const Buffer middle(context, {.size = 64, .name = "middle"});
   const Buffer target(context, {.size = 64, .name = "target"});

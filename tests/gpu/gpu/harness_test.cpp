@@ -1,4 +1,4 @@
-// The helper that other tests build on: sizes, indices, defines, addresses, errors.
+// The test harness: sizes, indices, defines, addresses and errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ TEST(GpuHarness, RunsMoreInvocationsThanInputs) {
   EXPECT_EQ(wrong, 0u);
 }
 
-TEST(GpuHarness, NeedsNoInputs) {
+TEST(GpuHarness, RunsWithoutInputs) {
   const auto outputs = test::runCompute<std::uint64_t>(R"(
     #define Out uint64_t
     Out run(uint index) { return uint64_t(index) << 33; }
@@ -72,15 +72,15 @@ TEST(GpuHarness, PassesAddressesAndDefines) {
   EXPECT_EQ(outputs, (std::vector<float>{30, 10, 40, 10, 50}));
 }
 
-TEST(GpuHarness, RefusesStructsOfDifferentSize) {
+TEST(GpuHarness, RejectsStructsOfDifferentSize) {
   struct Out {
     float a, b;
   };
   EXPECT_THAT([] { test::runCompute<Out>("#define Out vec3\nOut run(uint index) { return vec3(1); }", 10); },
-              ThrowsMessage<std::runtime_error>(HasSubstr("Out has 8 bytes in C++, 12 in GLSL")));
+              ThrowsMessage<std::runtime_error>(HasSubstr("Out has 8 bytes in C++ and 12 in GLSL")));
 }
 
-TEST(GpuHarness, ReportsTheBodysLine) {
+TEST(GpuHarness, ReportsLinesOfTheBody) {
   EXPECT_THAT([] { test::runCompute<float>("#define Out float\nOut run(uint index) { return nothing; }", 10); },
               ThrowsMessage<std::runtime_error>(HasSubstr("test.comp:2")));
 }

@@ -10,6 +10,7 @@
 #include "gpu/commands.h"
 #include "gpu/descriptors.h"
 #include "gpu/error.h"
+#include "gpu/uploader.h"
 #include "harness.h"
 
 namespace quintet::gpu {
@@ -26,7 +27,7 @@ Image upload(const ImageOptions& options, std::span<const std::byte> pixels) {
   return image;
 }
 
-// The colours that GLSL's texture() gives at `uvs`, of texture `index` of the set.
+// Returns the samples of the texture `z` of the set at the texture coordinates `xy`.
 std::vector<vec4> sample(const BindlessSet& set, const std::vector<vec3>& uvsAndIndex) {
   test::ComputeOptions options;
   options.set = &set;
@@ -70,7 +71,7 @@ TEST(GpuImage, RoundTripsMoreThanTheRing) {
   EXPECT_TRUE(buffer.downloadAs<std::uint32_t>(pixels.size()) == pixels);
 }
 
-TEST(GpuImage, DecodesSrgbButNotAlphaWhenSampled) {
+TEST(GpuImage, DecodesSrgbExceptAlpha) {
   Context& context = test::testContext();
   std::vector<Texel> pixels(256);
   std::vector<vec3> uvs(256);
@@ -91,7 +92,7 @@ TEST(GpuImage, DecodesSrgbButNotAlphaWhenSampled) {
   const std::vector<vec4> raw = sample(set, uvs);
   for (int i = 0; i < 256; ++i) {
     const float c = static_cast<float>(i) / 255.0f;
-    // The H200 decodes to 8 bits: errors up to 0.0039 near white.
+    // The H200 decodes to 8 bits, with errors up to 0.0039 near white.
     EXPECT_NEAR(decoded[i].x, linearFromSrgb(c), 5e-3f) << i;
     EXPECT_NEAR(decoded[i].z, linearFromSrgb(1.0f - c), 5e-3f) << i;
     EXPECT_NEAR(decoded[i].w, c, 1e-6f) << i;
@@ -99,7 +100,7 @@ TEST(GpuImage, DecodesSrgbButNotAlphaWhenSampled) {
   }
 }
 
-TEST(GpuImage, FiltersAndWrapsAsTheSamplerSays) {
+TEST(GpuImage, AppliesFilterAndAddressModes) {
   Context& context = test::testContext();
   const std::vector<float> pixels = {0, 1, 2, 3};
   const Image ramp =
@@ -115,10 +116,10 @@ TEST(GpuImage, FiltersAndWrapsAsTheSamplerSays) {
   EXPECT_NEAR(colors[0].x, 1.5f, 1e-2f);  // between the middle texels
   EXPECT_NEAR(colors[1].x, 0.0f, 1e-2f);  // clamped
   EXPECT_NEAR(colors[2].x, 1.5f, 1e-2f);  // between the last and the first
-  EXPECT_NEAR(colors[3].x, 3.0f, 1e-2f);  // mirrored: 0.9
+  EXPECT_NEAR(colors[3].x, 3.0f, 1e-2f);  // mirrored to 0.9
 }
 
-TEST(GpuImage, KnowsWhatItCannotBe) {
+TEST(GpuImage, RejectsInvalidSizesAndFormats) {
   Context& context = test::testContext();
   EXPECT_THAT([&] { const Image i(context, {.width = 1u << 30, .name = "wide"}); },
               ThrowsMessage<MemoryError>(HasSubstr("image 'wide' of 1073741824 × 1 pixels")));
@@ -126,7 +127,7 @@ TEST(GpuImage, KnowsWhatItCannotBe) {
   EXPECT_THROW(Image(context, {.format = VK_FORMAT_D32_SFLOAT, .name = "depth"}), UsageError);
 }
 
-TEST(GpuDescriptors, IndexTexturesPerInvocation) {
+TEST(GpuDescriptors, IndexesTexturesPerInvocation) {
   Context& context = test::testContext();
   constexpr std::uint32_t kCount = 100;
   const Sampler sampler(context, {});
@@ -143,7 +144,7 @@ TEST(GpuDescriptors, IndexTexturesPerInvocation) {
   for (std::uint32_t i = 0; i < 1000; ++i) EXPECT_EQ(colors[i].x, uvs[i].z) << i;
 }
 
-TEST(GpuDescriptors, MayBeLeftUnbound) {
+TEST(GpuDescriptors, SupportsUnboundTextures) {
   Context& context = test::testContext();
   const float value = 42;
   const Image image = upload({.format = VK_FORMAT_R32_SFLOAT, .name = "only"}, std::as_bytes(std::span(&value, 1)));
@@ -153,7 +154,7 @@ TEST(GpuDescriptors, MayBeLeftUnbound) {
   EXPECT_EQ(sample(set, {{0.5f, 0.5f, 3.0f}})[0].x, 42.0f);
 }
 
-TEST(GpuDescriptors, RefuseMoreTexturesThanPossible) {
+TEST(GpuDescriptors, RejectsTooManyTextures) {
   EXPECT_THAT([] { const BindlessSet set(test::testContext(), 1'000'000'000, 128); },
               ThrowsMessage<MemoryError>(HasSubstr("1000000000 textures")));
 }

@@ -1,10 +1,10 @@
-// What is held of the device's memory, what for, and when it is given back. Each test has a context of its own.
-#include "gpu/memory_account.h"
+// The account of device memory: purposes, peaks, and when memory is freed. Each test has its own context.
+#include "gpu/memory.h"
 
 #include <gtest/gtest.h>
 
-#include "gpu/buffer.h"
 #include "gpu/image.h"
+#include "gpu/uploader.h"
 #include "harness.h"
 
 namespace quintet::gpu {
@@ -19,7 +19,7 @@ class GpuMemory : public testing::Test {
   Context context{{.device = test::testContext().info().name}};
 };
 
-TEST_F(GpuMemory, OfLargeBuffersIsGivenBack) {
+TEST_F(GpuMemory, FreesLargeBuffers) {
   const std::uint64_t before = now();
   {
     const Buffer buffer(context, {.size = 20 * kMiB, .name = "film", .purpose = Purpose::film});
@@ -32,16 +32,16 @@ TEST_F(GpuMemory, OfLargeBuffersIsGivenBack) {
   EXPECT_EQ(atPeak(Purpose::staging), 0u);
 }
 
-TEST_F(GpuMemory, SmallBuffersShareBlocks) {
+TEST_F(GpuMemory, SharesBlocksBetweenSmallBuffers) {
   std::vector<Buffer> buffers;
   for (int i = 0; i < 1000; ++i) buffers.emplace_back(context, BufferOptions{.size = 1000, .name = "small"});
-  EXPECT_LE(context.memoryAccount().blockCount(), 2u);
+  EXPECT_LE(context.allocator().account().blockCount(), 2u);
   EXPECT_LE(now(), 8 * kMiB);
 }
 
-TEST_F(GpuMemory, OfAnUploadersRingIsGivenBack) {
+TEST_F(GpuMemory, FreesTheRingOfAnUploader) {
   const Buffer buffer(context, {.size = 24 * kMiB, .name = "geometry", .purpose = Purpose::geometry});
-  const Image image(context, {.width = 1024, .height = 1024, .name = "picture"});
+  const Image image(context, {.width = 1024, .height = 1024, .name = "image"});
   const std::uint64_t before = now();
   {
     Uploader uploader(context, 16 * kMiB);
@@ -55,7 +55,7 @@ TEST_F(GpuMemory, OfAnUploadersRingIsGivenBack) {
   EXPECT_GE(atPeak(Purpose::textures), 4 * kMiB);
 }
 
-TEST_F(GpuMemory, BlockingCopiesNeedLittle) {
+TEST_F(GpuMemory, LimitsStagingOfBlockingCopies) {
   Buffer buffer(context, {.size = 64 * kMiB, .name = "large"});
   const std::uint64_t before = now();
   std::vector<std::uint32_t> data(buffer.size() / 4);
@@ -66,8 +66,8 @@ TEST_F(GpuMemory, BlockingCopiesNeedLittle) {
   EXPECT_EQ(now(), before);
 }
 
-// The sum of all purposes and of the room in blocks is the peak, whatever came and went.
-TEST_F(GpuMemory, TheAccountAddsUp) {
+// The peak is always the sum of all purposes and of the free space in blocks.
+TEST_F(GpuMemory, AddsUpToThePeak) {
   for (const std::uint64_t size : {3 * kMiB, 100 * kMiB / 1000, 7 * kMiB}) {
     const Buffer a(context, {.size = size, .name = "a", .purpose = Purpose::scratch});
     const Buffer b(context, {.size = size / 2, .memory = Memory::upload, .name = "b", .purpose = Purpose::staging});

@@ -21,7 +21,7 @@ class GpuPipelineCache : public testing::Test {
   }
   ~GpuPipelineCache() override { fs::remove_all(folder); }
 
-  // A pipeline made through the cache; the file that the cache wrote.
+  // Creates a pipeline with the cache.
   void use() {
     PipelineCache cache(test::testContext(), folder);
     const ComputePipeline pipeline(test::testContext(), test::testSet(),
@@ -45,10 +45,10 @@ TEST_F(GpuPipelineCache, WritesOneFilePerDevice) {
   ASSERT_FALSE(onlyFile().empty());
   const auto time = fs::last_write_time(onlyFile());
   use();
-  EXPECT_EQ(fs::last_write_time(onlyFile()), time) << "nothing new, nothing written";
+  EXPECT_EQ(fs::last_write_time(onlyFile()), time) << "an unchanged cache is not written";
 }
 
-TEST_F(GpuPipelineCache, IgnoresBrokenFiles) {
+TEST_F(GpuPipelineCache, IgnoresCorruptFiles) {
   use();
   const fs::path file = onlyFile();
   const std::vector<std::byte> good = readFile(file);
@@ -61,10 +61,10 @@ TEST_F(GpuPipelineCache, IgnoresBrokenFiles) {
   for (const std::vector<std::byte>& bytes : broken) {
     writeFile(file, std::span<const std::byte>(bytes));
     use();
-    EXPECT_NE(readFile(file), bytes) << "a good file must take its place";
+    EXPECT_NE(readFile(file), bytes) << "the corrupt file must be replaced";
     const auto time = fs::last_write_time(file);
     use();
-    EXPECT_EQ(fs::last_write_time(file), time) << "it is good";
+    EXPECT_EQ(fs::last_write_time(file), time) << "the new file must be valid";
   }
 }
 
@@ -76,8 +76,8 @@ TEST_F(GpuPipelineCache, WorksWithoutAFolder) {
   EXPECT_NE(cache.handle(), VkPipelineCache{VK_NULL_HANDLE});
 }
 
-TEST_F(GpuPipelineCache, WorksWhereNothingCanBeWritten) {
-  writeFile(folder, std::string_view("a file in the folder's place"));
+TEST_F(GpuPipelineCache, WorksIfNoFileCanBeWritten) {
+  writeFile(folder, std::string_view("a file instead of a folder"));
   use();
   EXPECT_TRUE(fs::is_regular_file(folder));
 }

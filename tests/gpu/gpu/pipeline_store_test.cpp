@@ -1,4 +1,4 @@
-// Pipelines are made once, whoever asks, and kept for a while.
+// The store creates each pipeline once and keeps released ones for a while.
 #include "gpu/pipeline_store.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 Context& context() { return test::testContext(); }
 
-// A compute pipeline that nobody else has.
+// Creates a compute pipeline.
 VkPipeline makePipeline() {
   const VolkDeviceTable& vk = context().vk();
   const auto spirv = test::compileCompute("#version 460\nlayout(local_size_x = 64) in; void main() {}");
@@ -34,16 +34,17 @@ VkPipeline makePipeline() {
 }
 
 struct Counted {
-  PipelineStore store{context().vk(), context().device()};
+  PipelineStore store{context().vk(), context().device(),
+                      [](std::function<void()> destroy) { context().retire(std::move(destroy)); }};
   int made = 0;
   VkPipeline acquire(std::uint64_t key) {
     return store.acquire(Hash{0, key}, [this] { return ++made, makePipeline(); });
   }
-  void release(std::uint64_t key) { store.release(context(), Hash{0, key}); }
+  void release(std::uint64_t key) { store.release(Hash{0, key}); }
 };
 
-// Those that are left at the end, in use or not, go with the store: else the layers name them when the device goes.
-TEST(GpuPipelineStore, MakesEachOnce) {
+// The store destroys all pipelines at the end; otherwise the validation layers would report them.
+TEST(GpuPipelineStore, CreatesEachPipelineOnce) {
   Counted counted;
   const VkPipeline first = counted.acquire(1);
   EXPECT_EQ(counted.acquire(1), first);
@@ -52,19 +53,19 @@ TEST(GpuPipelineStore, MakesEachOnce) {
   EXPECT_EQ(counted.made, 2);
   counted.release(1);
   counted.release(1);
-  EXPECT_EQ(counted.acquire(1), first) << "given back, but kept";
+  EXPECT_EQ(counted.acquire(1), first) << "released pipelines are kept";
   EXPECT_EQ(counted.made, 2);
 }
 
-TEST(GpuPipelineStore, ForgetsTheOneThatWaitedLongest) {
+TEST(GpuPipelineStore, DestroysTheOldestUnusedPipeline) {
   Counted counted;
   constexpr std::uint64_t kMany = PipelineStore::kKept + 2;
   const VkPipeline used = counted.acquire(1000);
   for (std::uint64_t key = 0; key < kMany; ++key) counted.acquire(key), counted.release(key);
   EXPECT_EQ(counted.made, static_cast<int>(kMany) + 1);
   for (std::uint64_t key = 2; key < kMany; ++key) counted.acquire(key), counted.release(key);
-  EXPECT_EQ(counted.acquire(1000), used) << "what is in use stays";
-  EXPECT_EQ(counted.made, static_cast<int>(kMany) + 1) << "the others were kept";
+  EXPECT_EQ(counted.acquire(1000), used) << "used pipelines are kept";
+  EXPECT_EQ(counted.made, static_cast<int>(kMany) + 1) << "other unused pipelines are kept";
   counted.acquire(0);
   EXPECT_EQ(counted.made, static_cast<int>(kMany) + 2);
 }

@@ -1,5 +1,5 @@
-// Driver defects that this layer works around (docs/design/quirks.md). With QUINTET_NO_DRIVER_WORKAROUNDS=1
-// the tests show whether the driver has mended them.
+// Driver defects that the environment variables of prepareDriverEnvironment() work around (docs/design/quirks.md). With
+// QUINTET_NO_DRIVER_WORKAROUNDS=1 the tests show whether a driver still has them.
 #include <gtest/gtest.h>
 
 #include "harness.h"
@@ -7,9 +7,9 @@
 namespace quintet::gpu {
 namespace {
 
-// lavapipe 25.0.7 with LLVM 15 on CPUs with AVX-512 loses the masks of this expression, which swaps the
-// pixels of 64 × 8 blocks, and writes beyond the picture.
-TEST(GpuQuirks, IntegerMasksSurviveTheCompiler) {
+// lavapipe 25.0.7 with LLVM 15 on CPUs with AVX-512 loses the masks of this expression, which swaps the pixels of 64 ×
+// 8 blocks, and writes outside the image.
+TEST(GpuQuirks, KeepsIntegerMasks) {
   struct Pair {
     std::uint32_t x, y;
   };
@@ -31,8 +31,8 @@ TEST(GpuQuirks, IntegerMasksSurviveTheCompiler) {
   EXPECT_EQ(wrong, 0u);
 }
 
-// Signed and unsigned shifts, masks and multiplications of many widths, against the host.
-TEST(GpuQuirks, IntegerArithmeticIsTheHosts) {
+// Signed and unsigned shifts, masks and multiplications of many widths.
+TEST(GpuQuirks, ComputesIntegersLikeTheHost) {
   struct Values {
     std::uint32_t a, b, c, d;
   };

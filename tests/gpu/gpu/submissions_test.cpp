@@ -1,4 +1,4 @@
-// Order, waiting, retirement and failures of submitted work.
+// Order, waiting, retirement and errors of submissions.
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-// A shader that keeps one invocation busy for a good part of a second.
+// A shader whose single invocation runs for a large part of a second.
 class Busy {
  public:
   explicit Busy(Context& context)
@@ -49,7 +49,7 @@ class Busy {
   Buffer result_;
 };
 
-TEST(GpuSubmissions, CountOnATimeline) {
+TEST(GpuSubmissions, CountsOnATimeline) {
   Context& context = test::testContext();
   const std::uint64_t before = context.submitted();
   const std::uint64_t first = context.submit([](Commands&) {});
@@ -59,15 +59,15 @@ TEST(GpuSubmissions, CountOnATimeline) {
   EXPECT_EQ(context.submitted(), second);
   context.wait(second);
   EXPECT_GE(context.completed(), second);
-  context.wait(first, 0.001);  // long reached
+  context.wait(first, 0.001);  // reached before
 }
 
-TEST(GpuSubmissions, SeeWhatEarlierOnesWrote) {
+TEST(GpuSubmissions, SeesMemoryOfEarlierSubmissions) {
   Context& context = test::testContext();
   const Buffer a(context, {.size = 4096, .name = "a"});
   const Buffer b(context, {.size = 4096, .name = "b"});
   std::uint64_t last = 0;
-  for (std::uint32_t i = 0; i < 200; ++i) {  // more than are kept in flight
+  for (std::uint32_t i = 0; i < 200; ++i) {  // more than the maximum in flight
     context.submit([&](Commands& commands) { commands.fill(a, i); });
     last = context.submit([&](Commands& commands) { commands.copy(a, b, 4096); });
   }
@@ -75,20 +75,20 @@ TEST(GpuSubmissions, SeeWhatEarlierOnesWrote) {
   EXPECT_EQ(b.downloadAs<std::uint32_t>(1024), std::vector<std::uint32_t>(1024, 199));
 }
 
-TEST(GpuSubmissions, GiveUpAfterTheTimeout) {
+TEST(GpuSubmissions, ThrowsAfterTheTimeout) {
   Context context({.device = test::testContext().info().name});
   const Busy busy(context);
   const std::uint64_t value = context.submit([&](Commands& commands) { busy.record(commands); });
   EXPECT_THAT([&] { context.wait(value, 0.001); },
               ThrowsMessage<DeviceLostError>(testing::StrEq("the device did not finish within 0.001 s")));
   EXPECT_LT(context.completed(), value);
-  context.wait(value);  // it was only slow
+  context.wait(value);  // the device was only slow
   EXPECT_EQ(context.completed(), value);
   const Buffer buffer = makeBufferOf(context, std::vector<int>{1}, 0, "still alive");
   EXPECT_EQ(buffer.downloadAs<int>(1), std::vector<int>{1});
 }
 
-TEST(GpuSubmissions, SurviveAnExceptionWhileRecording) {
+TEST(GpuSubmissions, RecoversFromExceptionsDuringRecording) {
   Context& context = test::testContext();
   const std::uint64_t before = context.submitted();
   const Buffer buffer(context, {.size = 64, .name = "half recorded"});
@@ -106,7 +106,7 @@ TEST(GpuSubmissions, SurviveAnExceptionWhileRecording) {
   EXPECT_EQ(buffer.downloadAs<std::uint32_t>(16), std::vector<std::uint32_t>(16, 2));
 }
 
-TEST(GpuSubmissions, RetireInOrderWhenTheWorkHasEnded) {
+TEST(GpuSubmissions, RetiresInOrderAfterTheWork) {
   Context& context = test::testContext();
   const Busy busy(context);
   context.wait(context.submitted());
@@ -116,7 +116,7 @@ TEST(GpuSubmissions, RetireInOrderWhenTheWorkHasEnded) {
   context.retire([&] { order.push_back(2); });
   const std::uint64_t second = context.submit([&](Commands& commands) { busy.record(commands); });
   context.retire([&] { order.push_back(3); });
-  EXPECT_TRUE(order.empty()) << "the device is busy for longer than this";
+  EXPECT_TRUE(order.empty()) << "the device is still busy";
   context.wait(first);
   EXPECT_THAT(order, ElementsAre(1, 2));
   context.wait(second);
@@ -125,20 +125,20 @@ TEST(GpuSubmissions, RetireInOrderWhenTheWorkHasEnded) {
   EXPECT_THAT(order, ElementsAre(1, 2, 3, 4)) << "nothing is pending";
 }
 
-TEST(GpuSubmissions, KeepWhatIsRetiredWhileRecordingUntilThatWorkEnds) {
+TEST(GpuSubmissions, RetiresAfterTheWorkThatIsBeingRecorded) {
   Context& context = test::testContext();
   const Busy busy(context);
   context.wait(context.submitted());
   const Buffer target(context, {.size = 1 << 20, .name = "target"});
   bool destroyed = false;
   const std::uint64_t value = context.submit([&](Commands& commands) {
-    const Buffer scratch(context, {.size = 1 << 20, .name = "dies while recording"});
+    const Buffer scratch(context, {.size = 1 << 20, .name = "destroyed during recording"});
     busy.record(commands);
     commands.fill(scratch, 5);
     commands.barrier(Stage::all, Stage::all);
     commands.copy(scratch, target, 1 << 20);
     context.retire([&] { destroyed = true; });
-    context.submit([](Commands&) {});  // a submission within: takes the value before ours
+    context.submit([](Commands&) {});  // a nested submission has the previous value
   });
   EXPECT_FALSE(destroyed);
   context.wait(value);
@@ -146,7 +146,7 @@ TEST(GpuSubmissions, KeepWhatIsRetiredWhileRecordingUntilThatWorkEnds) {
   EXPECT_EQ(target.downloadAs<std::uint32_t>(1 << 18), std::vector<std::uint32_t>(1 << 18, 5));
 }
 
-TEST(GpuSubmissions, RetireInTheDestructorAtTheLatest) {
+TEST(GpuSubmissions, RetiresInTheDestructor) {
   int destroyed = 0;
   {
     Context context({.device = test::testContext().info().name});
@@ -159,7 +159,7 @@ TEST(GpuSubmissions, RetireInTheDestructorAtTheLatest) {
   EXPECT_EQ(destroyed, 1);
 }
 
-TEST(GpuSubmissions, ComeFromManyThreads) {
+TEST(GpuSubmissions, SupportsManyThreads) {
   Context& context = test::testContext();
   const Buffer counter = makeBufferOf(context, std::vector<std::uint32_t>(8, 0), 0, "counters");
   std::vector<std::thread> threads;

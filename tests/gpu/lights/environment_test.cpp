@@ -72,7 +72,7 @@ std::vector<Query> query(const LightScene& scene, const std::vector<vec3>& direc
     struct Query { vec3 radiance; float pdf; };
     #define In vec3
     #define Out Query
-    Query run(uint i, vec3 d) { return Query(environmentRadiance(d), pdfLightEnvironment(d, lightReceiver(vec3(0.0)))); }
+    Query run(uint i, vec3 d) { return Query(environmentRadiance(d), pdfLightEnvironment(d, lightSampleContext(vec3(0.0)))); }
   )",
                            directions, directions.size(), scene.options(defines));
 }

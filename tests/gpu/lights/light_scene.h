@@ -11,8 +11,8 @@
 #include "bsdf/chi_square.h"
 #include "harness.h"
 #include "lights/tree_oracle.h"
-#include "render/device_scene.h"
-#include "render/light_table.h"
+#include "render/lights/light_table.h"
+#include "render/scene/device_scene.h"
 
 namespace quintet::test {
 
@@ -25,7 +25,7 @@ class LightScene {
  public:
   LightScene(const scene::Scene& scene, const scene::Environment& environment)
       : table(render::buildLightTable(scene, environment)),
-        device_(testContext(), scene, environment),
+        device_(testContext(), scene::Scene(scene), environment),
         frame_(gpu::makeBufferOf(testContext(), std::vector<shared::Frame>{device_.frameTemplate()}, 0, "frame")) {}
 
   ComputeOptions options(const Defines& defines = {}) const {

@@ -73,7 +73,7 @@ TEST(DirectionalLight, SameEverywhere) {
   }
 }
 
-// By power, lights are drawn as the table says; each is recognised by its place.
+// Selection by power samples lights by the table's probabilities. The position identifies each light.
 TEST(Lights, SelectionByPowerFollowsTheTable) {
   constexpr int kCount = 300;
   scene::Scene scene;

@@ -1,4 +1,4 @@
-// How a draw goes down the tree: against exact integers, where floats would round the number that decides.
+// Sampling of the tree against exact integer arithmetic. Floats would round the number that decides.
 #include <array>
 #include <random>
 
@@ -73,7 +73,7 @@ TEST(LightTreeDigits, DrawsAreThoseOfExactArithmetic) {
   }
   const LightScene scene(source, {});
   const std::string at =
-      "#include <quintet/lights/tree.glsl>\nLightReceiver here() { return lightReceiver(vec3(0.0)); }\n";
+      "#include <quintet/lights/tree.glsl>\nLightSampleContext here() { return lightSampleContext(vec3(0.0)); }\n";
   std::vector<std::uint32_t> nodes(scene.table.nodes.size());
   std::iota(nodes.begin(), nodes.end(), 0u);
   const auto chances = runCompute<std::uint32_t>(at + R"(
@@ -81,7 +81,7 @@ TEST(LightTreeDigits, DrawsAreThoseOfExactArithmetic) {
     #define Out uint
     uint run(uint i, uint node) {
       const uint link = LightNodeArray(frame.lightNodes).at[node].link;
-      return (link & kLightNodeLeaf) != 0u ? 0u : lightFirstChance(link & kLightNodeIndex, here());
+      return (link & kLightNodeLeaf) != 0u ? 0u : lightFirstProbability(link & kLightNodeIndex, here());
     }
   )",
                                                  nodes, nodes.size(), scene.options());

@@ -1,4 +1,4 @@
-// The probabilities of quintet/lights/tree.glsl again, in double precision and by angles instead of cosines.
+// The probabilities of quintet/lights/tree.glsl, computed in double precision and with angles instead of cosines.
 #ifndef QUINTET_TESTS_GPU_LIGHTS_TREE_ORACLE_H
 #define QUINTET_TESTS_GPU_LIGHTS_TREE_ORACLE_H
 
@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "quintet/shared/frame.h"
-#include "render/light_node.h"
-#include "render/light_tree.h"
+#include "render/lights/light_tree.h"
 
 namespace quintet::test {
 
-// LightReceiver of GLSL; the flag as a word.
+// LightSampleContext of GLSL. The flag is a 32-bit word.
 struct Receiver {
   vec3 position;
   vec3 normal{0.0f};  // 0: no surface
@@ -30,7 +29,7 @@ inline double oracleImportance(const shared::LightNode& node, const Receiver& re
   const double radius = node.radius + 5e-7 * (std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
   const dvec3 wi = distance > 0.0 ? d / distance : dvec3(0.0);
   const double within = infinite ? angle(cone.x) : distance > radius ? std::asin(radius / distance) : glm::pi<double>();
-  // Angles between centre and normals, and at least, anywhere in the ball.
+  // Angles between the direction to the center and the normals, and their minimum over the ball.
   double tilt = receiver.normal == vec3(0.0f) ? 0.0 : angle(glm::dot(dvec3(receiver.normal), wi));
   if (!receiver.opaque) tilt = std::min(tilt, glm::pi<double>() - tilt);
   const double leastTilt = std::max(0.0, tilt - within);
@@ -47,7 +46,7 @@ inline double oracleImportance(const shared::LightNode& node, const Receiver& re
   return std::clamp(strength / std::max(distance * distance, 0.125 * radius * radius), 1e-35, 1e30);
 }
 
-// Of each light; what is missing to 1 comes to lights that give nothing.
+// Returns the probability of each light. The rest up to 1 is that of nodes whose lights cannot contribute.
 inline std::vector<double> oracleProbabilities(const std::vector<shared::LightNode>& nodes, std::size_t lightCount,
                                                const Receiver& receiver) {
   std::vector<double> result(lightCount, 0.0);
@@ -67,11 +66,11 @@ inline std::vector<double> oracleProbabilities(const std::vector<shared::LightNo
     }
     const double a = oracleImportance(nodes[index], receiver), b = oracleImportance(nodes[index + 1], receiver);
     if (a == 0.0 && b == 0.0) continue;
-    double chance = a / (a + b);
+    double probability = a / (a + b);
     if (a > 0.0 && b > 0.0 && (nodes[index].link & shared::kLightNodeShare) != 0)
-      chance = receiver.opaque ? 0.15 + 0.7 * chance : 0.5;
-    if (a > 0.0) open.push_back({index, visit.probability * chance});
-    if (b > 0.0) open.push_back({index + 1, visit.probability * (1.0 - chance)});
+      probability = receiver.opaque ? 0.15 + 0.7 * probability : 0.5;
+    if (a > 0.0) open.push_back({index, visit.probability * probability});
+    if (b > 0.0) open.push_back({index + 1, visit.probability * (1.0 - probability)});
   }
   return result;
 }

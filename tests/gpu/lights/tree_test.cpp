@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "lights/light_scene.h"
-#include "scene/keyframes.h"
+#include "scene/animation/keyframes.h"
 
 namespace quintet::test {
 namespace {
@@ -101,7 +101,7 @@ std::vector<Receiver> receivers(const scene::Scene& scene) {
 const std::string kReceiver = R"(
   #include <quintet/lights/lights.glsl>
   struct In { vec3 position; vec3 normal; uint opaque; };
-  LightReceiver receiverOf(In v) { return LightReceiver(v.position, v.normal, v.opaque != 0u); }
+  LightSampleContext receiverOf(In v) { return LightSampleContext(v.position, v.normal, v.opaque != 0u); }
 )";
 
 // lightProbability of all lights, receiver by receiver.
@@ -117,7 +117,7 @@ std::vector<float> deviceProbabilities(const LightScene& scene, const std::vecto
     #include <quintet/lights/lights.glsl>
     struct In { vec3 position; vec3 normal; uint opaque; uint light; };
     #define Out float
-    float run(uint i, In v) { return lightProbability(v.light, LightReceiver(v.position, v.normal, v.opaque != 0u)); }
+    float run(uint i, In v) { return lightProbability(v.light, LightSampleContext(v.position, v.normal, v.opaque != 0u)); }
   )",
                            inputs, inputs.size(), scene.options());
 }

@@ -188,9 +188,9 @@ TEST(TriangleLight, DensityOfHitsIntegratesToItsProbability) {
   source.instances[1].worldFromObject = glm::translate(placement(1.0f), vec3(0, 0, 1.5f));
   source.lights.resize(1);
   const LightScene scene(source, {});
-  const std::vector<double> chances = scene.probabilities(vec3(0.0f));
+  const std::vector<double> probabilities = scene.probabilities(vec3(0.0f));
   double probability = 0.0;
-  for (std::size_t i = 1; i < 5; ++i) probability += chances[i];
+  for (std::size_t i = 1; i < 5; ++i) probability += probabilities[i];
   const std::string body = R"(
     #include <quintet/lights/lights.glsl>
     #include <quintet/sampling/pcg.glsl>
@@ -213,7 +213,7 @@ TEST(TriangleLight, DensityOfHitsIntegratesToItsProbability) {
           hit.instance = k >> 1;
           hit.geometry = 0u;
           hit.primitive = k & 1u;
-          sum += pdfLightHit(hit, lightReceiver(vec3(0.0)), x.x, abs(dot(d, t.normal)));
+          sum += pdfLightHit(hit, lightSampleContext(vec3(0.0)), x.x, abs(dot(d, t.normal)));
         }
       }
       return sum * 4.0 * kPi;
@@ -230,7 +230,7 @@ TEST(TriangleLight, DensityOfHitsIntegratesToItsProbability) {
     const double cosine = std::abs(glm::dot(s.normal, s.wi));
     bool matches = false;
     for (std::size_t i = 1; i < 5; ++i)
-      matches |= std::abs(chances[i] * s.distance * s.distance / cosine - s.pdf) < 1e-4 * s.pdf;
+      matches |= std::abs(probabilities[i] * s.distance * s.distance / cosine - s.pdf) < 1e-4 * s.pdf;
     EXPECT_TRUE(matches);  // each triangle has an area of 1 m²
   }
 }

@@ -1,4 +1,4 @@
-// Trees of solids against the host's oracle, and where surfaces coincide against what everybody would say.
+// CSG trees, compared with the oracle on the host, and with explicit expected values where surfaces coincide.
 #include <cstdio>
 #include <functional>
 
@@ -14,7 +14,7 @@ using scene::PrimitiveSet;
 using scene::PrimitiveSetKind;
 using scene::PrimitiveType;
 
-// Appends a random tree in postfix order; with `depth` 0 a leaf.
+// Appends a random tree in postfix order; a leaf if `depth` is 0.
 void addRandomTree(PrimitiveSet& set, Random& random, int depth, bool full) {
   if (depth == 0 || (!full && random.below(4) == 0)) {
     Primitive primitive;
@@ -58,7 +58,7 @@ std::vector<ProbeRay> raysAround(Random& random, std::size_t count, const mat4& 
   return rays;
 }
 
-// Of several trees in one set the nearest.
+// The nearest hit with any of the trees of a set.
 oracle::Crossings crossingsOfAll(const PrimitiveSet& set, const oracle::Ray& ray) {
   oracle::Crossings all;
   for (const scene::CsgTree& tree : set.trees) {
@@ -72,7 +72,7 @@ oracle::Crossings crossingsOfAll(const PrimitiveSet& set, const oracle::Ray& ray
 struct Round {
   int depth;
   int trees;
-  bool full;  // every branch as deep
+  bool full;  // all branches have the same depth
   std::size_t rays;
 };
 
@@ -112,7 +112,7 @@ TEST(Csg, AgreesWithTheOracle) {
   EXPECT_LT(doubtful, count / 100);
 }
 
-// ---- coinciding faces ----
+// ---- coincident faces ----
 
 Primitive boxFrom(const vec3& low, const vec3& high) {
   Primitive primitive;
@@ -135,12 +135,12 @@ PrimitiveSet treeOf(const std::vector<Primitive>& primitives, const std::vector<
   return set;
 }
 
-// What a ray down the z axis, from `start`, must meet.
+// The expected hit of a ray along -z from `start`.
 struct Coincidence {
   const char* name;
   PrimitiveSet set;
   float start;
-  float z;  // of the hit; > 99: none
+  float z;  // of the hit; > 99: no hit
   std::uint32_t leaf;
   bool front;
 };
@@ -150,31 +150,31 @@ std::vector<Coincidence> coincidences() {
                   top = boxFrom({-1, -1, 0}, {1, 1, 1}), bottom = boxFrom(vec3(-1), {1, 1, 0}),
                   above = boxFrom({-2, -2, 1}, {2, 2, 2}), low = boxFrom(vec3(-1), {1, 1, -0.5f});
   return {
-      {"a subtrahend that shares a face takes it away", treeOf({whole, upper}, {leaf(0), leaf(1), kSubtract}), 3, 0, 1,
-       true},
+      {"a subtrahend removes a common face", treeOf({whole, upper}, {leaf(0), leaf(1), kSubtract}), 3, 0, 1, true},
       {"the same from inside", treeOf({whole, upper}, {leaf(0), leaf(1), kSubtract}), -0.5f, -1, 0, false},
-      {"no wall where two that touch are united", treeOf({top, bottom}, {leaf(0), leaf(1), kUnite}), 0.5f, -1, 1,
+      {"a union of touching solids has no inner face", treeOf({top, bottom}, {leaf(0), leaf(1), kUnite}), 0.5f, -1, 1,
        false},
       {"a common face of an intersection", treeOf({whole, upper}, {leaf(0), leaf(1), kIntersect}), 3, 1, 0, true},
-      {"an intersection of two that touch is nothing", treeOf({top, bottom}, {leaf(0), leaf(1), kIntersect}), 3, 100, 0,
+      {"an intersection of touching solids is empty", treeOf({top, bottom}, {leaf(0), leaf(1), kIntersect}), 3, 100, 0,
        true},
-      {"a subtrahend that touches from outside leaves the face", treeOf({whole, above}, {leaf(0), leaf(1), kSubtract}),
-       0.5f, -1, 0, false},
-      {"and from there, too", treeOf({whole, above}, {leaf(0), leaf(1), kSubtract}), 3, 1, 0, true},
-      {"a thing minus itself is nothing", treeOf({whole, whole}, {leaf(0), leaf(1), kSubtract}), 3, 100, 0, true},
-      {"a thing with itself is itself", treeOf({whole, whole}, {leaf(0), leaf(1), kUnite}), 3, 1, 0, true},
-      {"the operand that decides shows", treeOf({top, whole, bottom}, {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}),
-       3, 0, 2, true},
-      {"three faces in one", treeOf({top, top, whole}, {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}), 3, 1, 2, true},
-      {"what is cut away twice", treeOf({whole, upper, top}, {leaf(0), leaf(1), kSubtract, leaf(2), kSubtract}), 3, 0,
-       1, true},
+      {"a subtrahend outside keeps the common face", treeOf({whole, above}, {leaf(0), leaf(1), kSubtract}), 0.5f, -1, 0,
+       false},
+      {"the same from outside", treeOf({whole, above}, {leaf(0), leaf(1), kSubtract}), 3, 1, 0, true},
+      {"a solid minus itself is empty", treeOf({whole, whole}, {leaf(0), leaf(1), kSubtract}), 3, 100, 0, true},
+      {"a solid united with itself is unchanged", treeOf({whole, whole}, {leaf(0), leaf(1), kUnite}), 3, 1, 0, true},
+      {"the deciding operand owns the surface",
+       treeOf({top, whole, bottom}, {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}), 3, 0, 2, true},
+      {"three coincident faces", treeOf({top, top, whole}, {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}), 3, 1, 2,
+       true},
+      {"a part that is subtracted twice",
+       treeOf({whole, upper, top}, {leaf(0), leaf(1), kSubtract, leaf(2), kSubtract}), 3, 0, 1, true},
       {"a hole down to a face",
        treeOf({whole, boxFrom({-0.9f, -0.9f, -2}, {0.9f, 0.9f, 2}), low},
               {leaf(0), leaf(1), kSubtract, leaf(2), kUnite}),
        3, -0.5f, 2, true}};
 }
 
-// Appends a tree, moved by m; a box is the same after a quarter turn about z, and its numbers are not.
+// Appends a tree, transformed by m. A box rotated by a quarter turn about z is the same solid with different numbers.
 void append(PrimitiveSet& to, const PrimitiveSet& set, const mat4& m, Random& random) {
   const auto firstPrimitive = static_cast<std::uint32_t>(to.primitives.size()),
              firstNode = static_cast<std::uint32_t>(to.nodes.size());
@@ -189,8 +189,8 @@ void append(PrimitiveSet& to, const PrimitiveSet& set, const mat4& m, Random& ra
   to.trees.push_back({firstNode, static_cast<std::uint32_t>(set.nodes.size())});
 }
 
-// The same arrangements under many transforms, so that every crossing is computed with other roundings.
-TEST(Csg, FacesThatCoincideActTogether) {
+// Tests the same arrangements under many transforms, so that the crossings have different rounding errors.
+TEST(Csg, HandlesCoincidentFaces) {
   constexpr int kRays = 192;
   Random random(11);
   const std::vector<Coincidence> cases = coincidences();
@@ -225,9 +225,9 @@ TEST(Csg, FacesThatCoincideActTogether) {
   }
 }
 
-// From a point on a tree's surface the way is what the oracle says it is from that very point, on both sides and however
-// flat; above all, not to the surface itself.
-TEST(Csg, IsNotMetByRaysThatLeaveIt) {
+// A ray that starts on the surface of a tree, on either side and at any angle, has the hit that the oracle computes for
+// exactly this origin. In particular, it does not hit the surface it starts from.
+TEST(Csg, IsNotHitByRaysLeavingIt) {
   Random random(17);
   std::size_t count = 0;
   for (int k = 0; k < 4; ++k) {
@@ -256,7 +256,7 @@ TEST(Csg, IsNotMetByRaysThatLeaveIt) {
       const bool same =
           hits[i].t >= 0.0f && expected && std::abs(hits[i].t - place) < 1e-3 * place + 30.0 * from[i]->error;
       if (same || (hits[i].t < 0.0f && !expected)) continue;
-      ++different;  // past an edge, or at one
+      ++different;  // near an edge
       itself += hits[i].t >= 0.0f && hits[i].leaf == from[i]->leaf && hits[i].face == from[i]->face &&
                 hits[i].t < 100.0f * from[i]->error;
     }
@@ -269,7 +269,7 @@ TEST(Csg, IsNotMetByRaysThatLeaveIt) {
 
 // ---- large trees ----
 
-// A plate with many holes: a chain of differences as long as it has holes, and a balanced tree of the same.
+// A plate with many holes, as a chain with one difference per hole and as a balanced tree.
 PrimitiveSet plate(int holesAcross, bool balanced) {
   PrimitiveSet set;
   set.kind = PrimitiveSetKind::csg;
@@ -303,7 +303,7 @@ PrimitiveSet plate(int holesAcross, bool balanced) {
   return set;
 }
 
-// A right-leaning chain: every solid waits on the stack, as many as it may hold.
+// A right-leaning chain, which fills the stack to its limit.
 PrimitiveSet fullStack() {
   PrimitiveSet set;
   set.kind = PrimitiveSetKind::csg;

@@ -1,4 +1,4 @@
-// What the oracle (csg_oracle.h, double precision on the host) says of a probe's ray, and how far a hit may be off.
+// The hit that the oracle (csg_oracle.h, double precision on the host) computes for a probe's ray, and the tolerances.
 #ifndef QUINTET_TESTS_GPU_PROCEDURAL_EXPECTATION_H
 #define QUINTET_TESTS_GPU_PROCEDURAL_EXPECTATION_H
 
@@ -14,7 +14,7 @@ using oracle::dvec3;
 
 struct Expected {
   std::optional<oracle::Crossing> hit;
-  bool doubtful = false;  // a ray a few roundings beside this one meets something else
+  bool doubtful = false;  // a ray that differs by a few rounding errors has a different hit
 };
 
 inline oracle::Ray toObject(const ProbeRay& ray, const mat4& worldFromObject) {
@@ -48,7 +48,7 @@ inline void compareHit(const ProbeHit& hit, const ProbeRay& ray, const Expected&
       << "t " << hit.t << " instead of " << (expected.hit ? expected.hit->t : -1.0);
   EXPECT_EQ(hit.visible, !expected.hit.has_value());
   if (!expected.hit) return;
-  // Roundings on the way there count as a length; a ray that grazes turns it into a longer way.
+  // Rounding errors are proportional to a length. For grazing rays, the error of t is larger by 1 / cosine.
   const dvec3 d(ray.direction);
   const dvec3 normal =
       glm::normalize(glm::transpose(glm::inverse(oracle::dmat3(dmat4(worldFromObject)))) * expected.hit->normal);
@@ -59,7 +59,7 @@ inline void compareHit(const ProbeHit& hit, const ProbeRay& ray, const Expected&
   EXPECT_EQ(hit.leaf, expected.hit->primitive);
   EXPECT_EQ(hit.front, expected.hit->entering);
   EXPECT_EQ(hit.flipped, expected.hit->flipped);
-  // On the side of the ray; the oracle's points out of the whole.
+  // The probe's normal is on the side of the ray; the oracle's normal points out of the tree.
   EXPECT_GT(glm::dot(dvec3(hit.normal), hit.front ? normal : -normal), 0.999);
   EXPECT_NEAR(glm::length(hit.normal), 1.0f, 1e-5f);
   const dvec3 point = dvec3(ray.origin) + static_cast<double>(hit.t) * d;

@@ -1,8 +1,9 @@
-// Lamps of which the far side shows: light samples and BSDF samples must share it as they find it.
+// Emissive solids whose far side is visible through the near side: light samples and BSDF samples must be weighted
+// consistently.
 #include <gtest/gtest.h>
 
 #include "probe.h"
-#include "render/picture.h"
+#include "render/rendered_image.h"
 
 namespace quintet::test {
 namespace {
@@ -22,7 +23,7 @@ scene::Primitive lampOf(PrimitiveType type, const mat4& place) {
   return lamp;
 }
 
-// Lamps above a floor, of which a small place is seen. One set of shaders for both materials.
+// Lamps above a floor; the camera sees a small part of the floor. Both materials use the same shaders.
 SceneBuilder above(const std::vector<scene::Primitive>& lamps, const scene::Material& material,
                    const scene::Material& other) {
   SceneBuilder scene;
@@ -44,15 +45,16 @@ scene::Material veiled(const vec3& radiance) {
   return m;
 }
 
-PictureOptions oneBounce(std::uint32_t batches) {
-  PictureOptions options;
+ImageOptions oneBounce(std::uint32_t batches) {
+  ImageOptions options;
   options.set = {"bounces=1"};
   options.batches = batches;
   return options;
 }
 
-// A large ball that is half there, by alpha or as a pane: of the far side, which light samples do not draw, the part
-// shows that its near side lets through. Of the light of a solid ball 1 - (1 - a)², and 1 + the pane's tint.
+// A large sphere that is half transparent, by alpha or as a pane. Light samples do not sample its far side, but the
+// camera sees the part of it that the near side transmits. Relative to an opaque sphere, the light is 1 - (1 - a)² for
+// alpha, and 1 + tint for a pane.
 TEST(SolidFarSide, ShowsThroughBalls) {
   const float radius = 1.5f;
   const vec3 center(0.6f, 2.0f, -0.3f), radiance(4.0f, 2.0f, 1.0f);
@@ -66,13 +68,13 @@ TEST(SolidFarSide, ShowsThroughBalls) {
   for (const auto& [ball, part] : {std::pair{veiled(radiance), 0.75f}, {pane, 1.5f}}) {
     const SceneBuilder scene =
         above({lampOf(PrimitiveType::sphere, place)}, ball, part < 1.0f ? pane : veiled(radiance));
-    expectUniform(renderPicture(scene, oneBounce(64)), vec4(part * irradiance / kPi * kAlbedo * radiance, 1.0f),
+    expectUniform(renderImage(scene, oneBounce(64)), vec4(part * irradiance / kPi * kAlbedo * radiance, 1.0f),
                   {.error = 0.015});
   }
 }
 
-// Of all other solids light samples draw the far side, too, and its near side dims them: convex ones of alpha a give
-// 1 - (1 - a)² of their light.
+// For all other solids, light samples also sample the far side, and the near side attenuates it: convex solids of alpha
+// a give 1 - (1 - a)² of their light.
 TEST(SolidFarSide, ShowsThroughOtherSolids) {
   const mat4 size = glm::rotate(mat4(1.0f), 0.8f, glm::normalize(vec3(1, 2, 0.5f))) * scaled(0.7f, 0.4f, -0.5f);
   const std::vector<scene::Primitive> lamps{lampOf(PrimitiveType::sphere, moved(1, 1.2f, 1) * size),
@@ -80,14 +82,14 @@ TEST(SolidFarSide, ShowsThroughOtherSolids) {
                                             lampOf(PrimitiveType::cylinder, moved(1, 1.2f, -1) * size),
                                             lampOf(PrimitiveType::cone, moved(-1, 1.2f, -1) * size)};
   const scene::Material whole = emitter(vec3(3.0f)), half = veiled(vec3(4.0f));
-  const Picture a = renderPicture(above(lamps, whole, half), oneBounce(96)),
-                b = renderPicture(above(lamps, half, whole), oneBounce(96));
+  const RenderedImage a = renderImage(above(lamps, whole, half), oneBounce(96)),
+                      b = renderImage(above(lamps, half, whole), oneBounce(96));
   Moments wholeLight, halfLight;
   for (std::uint32_t y = 0; y < a.height(); ++y)
     for (std::uint32_t x = 0; x < a.width(); ++x)
       wholeLight.add(a.at(x, y, 0).mean()), halfLight.add(b.at(x, y, 0).mean());
   EXPECT_GE(pValue(wholeLight, halfLight), 0.01) << wholeLight.mean() << " against " << halfLight.mean();
-  EXPECT_LT(halfLight.standardError(), 0.015 * halfLight.mean()) << "too noisy to tell";
+  EXPECT_LT(halfLight.standardError(), 0.015 * halfLight.mean()) << "too noisy for this test";
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
-// Solids and trees under light: furnaces, closed rooms, glass, lamps, alpha. What comes back is known without any
-// integral, or comes from triangles of the same shape.
+// Light transport on solids and CSG trees: furnaces, closed rooms, glass, lamps, alpha. Expected values are closed
+// forms, or images of triangle meshes of the same shape.
 #include <gtest/gtest.h>
 
 #include "probe.h"
-#include "render/picture.h"
+#include "program/load.h"
+#include "render/rendered_image.h"
 
 namespace quintet::test {
 namespace {
@@ -27,7 +28,7 @@ Primitive solid(PrimitiveType type, const mat4& objectFromPrimitive = mat4(1.0f)
 mat4 scaled(float x, float y, float z) { return glm::scale(mat4(1.0f), vec3(x, y, z)); }
 mat4 moved(float x, float y, float z) { return glm::translate(mat4(1.0f), vec3(x, y, z)); }
 
-// first minus all the others, in one tree.
+// One tree: the first solid minus all others.
 PrimitiveSet difference(const std::vector<Primitive>& primitives) {
   PrimitiveSet set;
   set.kind = PrimitiveSetKind::csg;
@@ -40,7 +41,7 @@ PrimitiveSet difference(const std::vector<Primitive>& primitives) {
   return set;
 }
 
-// One instance of a set that is all of one material.
+// One instance of a set in which all solids have one material.
 void add(SceneBuilder& scene, PrimitiveSet set, const scene::Material& material,
          const mat4& worldFromObject = mat4(1.0f)) {
   for (Primitive& primitive : set.primitives) primitive.material = static_cast<int>(scene.scene.materials.size());
@@ -51,9 +52,8 @@ void add(SceneBuilder& scene, PrimitiveSet set, const scene::Material& material,
   scene.scene.meshes.emplace_back().primitiveSets.push_back(std::move(set));
 }
 
-PictureOptions with(std::vector<std::string> set, std::uint32_t batches = 16,
-                    const std::string& program = "pathtracer") {
-  PictureOptions options;
+ImageOptions with(std::vector<std::string> set, std::uint32_t batches = 16, const std::string& program = "pathtracer") {
+  ImageOptions options;
   options.program = program::loadProgram(program);
   options.set = std::move(set);
   options.batches = batches;
@@ -62,7 +62,7 @@ PictureOptions with(std::vector<std::string> set, std::uint32_t batches = 16,
 
 constexpr std::array kConvex{PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone};
 
-void expectSame(const Picture& a, const Picture& b, double part) {
+void expectSame(const RenderedImage& a, const RenderedImage& b, double part) {
   const std::size_t tests = std::size_t{3} * a.width() * a.height();
   for (std::uint32_t y = 0; y < a.height(); ++y)
     for (std::uint32_t x = 0; x < a.width(); ++x)
@@ -71,7 +71,7 @@ void expectSame(const Picture& a, const Picture& b, double part) {
             << x << "," << y << ": " << a.at(x, y, c).mean() << " instead of " << b.at(x, y, c).mean();
 }
 
-// All convex solids side by side, and what shows of them fills the image.
+// All convex solids side by side. They fill the image.
 PrimitiveSet convexSolids() {
   return solidsOf({solid(PrimitiveType::sphere, moved(-1, 0, 1)), solid(PrimitiveType::box, moved(1, 0, 1)),
                    solid(PrimitiveType::cylinder, moved(-1, 0, -1)), solid(PrimitiveType::cone, moved(1, 0, -1))});
@@ -82,19 +82,20 @@ TEST(SolidLight, ConvexSolidsInAUniformSkyShowTheirAlbedo) {
                                    scaled(-2e4f, 1e4f, 1e4f)};
   for (std::size_t k = 0; k < 2; ++k) {
     for (const PrimitiveType type : kConvex) {
-      const mat4& m = places[(static_cast<std::size_t>(type) + 3 * k) % 4];  // not all pairs: each compiles for seconds
+      // Not all pairs, because each takes seconds to compile.
+      const mat4& m = places[(static_cast<std::size_t>(type) + 3 * k) % 4];
       SCOPED_TRACE(testing::Message() << static_cast<int>(type) << " " << k);
       SceneBuilder scene;
       add(scene, solidsOf({solid(type)}), lambert(kAlbedo), m);
       const float size = glm::length(vec3(m[1]));
       const vec3 middle = m[3];
       scene.sky(vec3(1.0f)).camera(orthographic(middle + vec3(0.3f, 0.2f, 1.0f) * 4.0f * size, middle, 0.3f * size));
-      expectUniform(renderPicture(scene, with({}, 6)), vec4(kAlbedo, 1.0f), {.error = 0.005});
+      expectUniform(renderImage(scene, with({}, 6)), vec4(kAlbedo, 1.0f), {.error = 0.005});
     }
   }
 }
 
-// White and concave: every path leaves at last and brings the sky's light, wherever it went before.
+// White concave solids: every path finally reaches the sky, with weight 1.
 TEST(SolidLight, WhiteBodiesAreInvisibleInAUniformSky) {
   const PrimitiveSet drilled =
       difference({solid(PrimitiveType::box), solid(PrimitiveType::cylinder, scaled(0.6f, 2, 0.6f)),
@@ -107,23 +108,23 @@ TEST(SolidLight, WhiteBodiesAreInvisibleInAUniformSky) {
     scene.sky(vec3(0.5f, 1.0f, 2.0f)).camera(perspective({1.5f, 2.0f, 4.0f}, vec3(0.0f), 30.0f));
     for (const char* program : {"pathtracer", "naive"}) {
       SCOPED_TRACE(program);
-      PictureOptions options = with({"bounces=10000"}, 16, program);
+      ImageOptions options = with({"bounces=10000"}, 16, program);
       if (options.program.name == "pathtracer") options.set.push_back("roulette_start=10000");
-      expectUniform(renderPicture(scene, options), vec4(0.5f, 1.0f, 2.0f, 1.0f), {.error = 0.01});
+      expectUniform(renderImage(scene, options), vec4(0.5f, 1.0f, 2.0f, 1.0f), {.error = 0.01});
     }
   }
 }
 
-// Inside closed surfaces with a bright world outside: nothing comes in, at any scale, also through the rims.
-TEST(SolidLight, IsDarkInside) {
+// No light enters closed surfaces from a bright environment, at any scale, including edges.
+TEST(SolidLight, IsBlackInside) {
   constexpr std::array kSizes{1e-3f, 1.0f, 1e4f};
   const auto look = [](PrimitiveSet set, float size) {
     SceneBuilder scene;
     add(scene, std::move(set), lambert(vec3(0.9f)), scaled(size, size, size));
     scene.sky(vec3(1000.0f)).camera(perspective(vec3(0.05f, -0.3f, 0.1f) * size, vec3(-1.0f) * size, 110.0f));
-    PictureOptions options = with({}, 8);
+    ImageOptions options = with({}, 8);
     options.width = options.height = 16;
-    expectBlack(renderPicture(scene, options));
+    expectBlack(renderImage(scene, options));
   };
   for (const PrimitiveType type : kConvex) {
     SCOPED_TRACE(static_cast<int>(type));
@@ -148,12 +149,12 @@ TEST(SolidLight, AlbedoSeriesInside) {
     SceneBuilder scene;
     add(scene, solidsOf({solid(type)}), m);
     scene.camera(perspective(vec3(0.1f, -0.2f, 0.05f), vec3(1, 1, 1), 90.0f));
-    expectUniform(renderPicture(scene, with({"bounces=3"}, 16)), vec4(sum, 1.0f), {.error = 0.01});
+    expectUniform(renderImage(scene, with({"bounces=3"}, 16)), vec4(sum, 1.0f), {.error = 0.01});
   }
 }
 
-// A lamp in the shape of a ball, above a plane: E = π L sin²α cos θ, as long as all of it is above the horizon.
-TEST(SolidLight, BallsLightAPlane) {
+// A spherical lamp above a plane: E = π L sin²α cos θ, if the whole lamp is above the horizon.
+TEST(SolidLight, SphereLampsMatchTheirFormula) {
   const float radius = 0.5f;
   const vec3 center(0.6f, 2.0f, -0.3f), radiance(4.0f, 2.0f, 1.0f);
   for (const mat4& turn : {mat4(1.0f), glm::rotate(mat4(1.0f), 1.0f, vec3(1, 2, 3)) * scaled(-1, 1, 1)}) {
@@ -164,13 +165,13 @@ TEST(SolidLight, BallsLightAPlane) {
     scene.camera(orthographic({0, 0.5f, 0}, vec3(0.0f), 1e-3f));
     const float squared = glm::dot(center, center);
     const float irradiance = kPi * radius * radius / squared * center.y / std::sqrt(squared);
-    expectUniform(renderPicture(scene, with({"bounces=1"}, 64)), vec4(irradiance / kPi * kAlbedo * radiance, 1.0f),
+    expectUniform(renderImage(scene, with({"bounces=1"}, 64)), vec4(irradiance / kPi * kAlbedo * radiance, 1.0f),
                   {.error = 0.02});
   }
 }
 
-// Lamps of every shape, stretched, over a plane and beside a mirror: light samples and BSDF samples, weighted, against
-// BSDF samples alone.
+// Stretched lamps of every shape above a plane and beside a mirror: light samples and BSDF samples with MIS weights,
+// compared with BSDF samples alone.
 TEST(SolidLight, LampsOfEveryShapeAgreeWithBruteForce) {
   const mat4 turn = glm::rotate(mat4(1.0f), 0.8f, glm::normalize(vec3(1, 2, 0.5f)));
   for (const PrimitiveType type : {PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder,
@@ -184,13 +185,13 @@ TEST(SolidLight, LampsOfEveryShapeAgreeWithBruteForce) {
     add(scene, solidsOf({solid(type, turn * scaled(0.9f, 0.4f, 0.6f))}), emitter({4.0f, 2.0f, 1.0f}),
         moved(0, 1.2f, 0) * scaled(1, 1, -1));
     scene.camera(perspective({0, 1.5f, 4.0f}, {0, 0.2f, 0}, 30.0f));
-    const Picture direct = renderPicture(scene, with({"bounces=2"}, 32));
-    const Picture naive = renderPicture(scene, with({"bounces=2"}, 192, "naive"));
+    const RenderedImage direct = renderImage(scene, with({"bounces=2"}, 32));
+    const RenderedImage naive = renderImage(scene, with({"bounces=2"}, 192, "naive"));
     expectSame(direct, naive, 1e-4);
   }
 }
 
-// A lamp behind a solid gives no light: the umbra of a point light is black.
+// The umbra of a point light behind a solid is black.
 TEST(SolidLight, SolidsAndTreesCastShadows) {
   scene::Light lamp;
   lamp.position = {0, 5, 0};
@@ -206,7 +207,7 @@ TEST(SolidLight, SolidsAndTreesCastShadows) {
     add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(3, 1, 3))}), lambert(vec3(0.5f)));
     add(scene, set, lambert(vec3(0.0f)));
     scene.light(lamp).camera(perspective({1.5f, 0.3f, 0}, vec3(0.0f), 3.0f));
-    expectBlack(renderPicture(scene, with({}, 4)));
+    expectBlack(renderImage(scene, with({}, 4)));
   }
 }
 
@@ -219,7 +220,7 @@ scene::Material glass() {
   return m;
 }
 
-// A body of glass before a wall of two colours and under a sky.
+// A glass solid in front of a wall of two colors, under a sky.
 SceneBuilder showcase() {
   SceneBuilder scene;
   scene.add(quad({-4, -4, -2}, {4, 0, 0}, {0, 8, 0}), emitter({2.0f, 0.5f, 0.1f}));
@@ -228,34 +229,34 @@ SceneBuilder showcase() {
   return scene;
 }
 
-TEST(SolidGlass, TheBoxIsTheBoxOfTriangles) {
+TEST(SolidGlass, BoxMatchesTheTriangleMesh) {
   const mat4 turn = glm::rotate(mat4(1.0f), 0.6f, glm::normalize(vec3(1, 2, 0.5f)));
   SceneBuilder triangles = showcase(), analytic = showcase(), tree = showcase();
   triangles.add(box(vec3(-1), vec3(1)), glass(), turn);
   add(analytic, solidsOf({solid(PrimitiveType::box, turn)}), glass());
-  // As the common part of a larger box and itself.
+  // As the intersection of itself and a larger box.
   PrimitiveSet common = difference(
       {solid(PrimitiveType::box, turn * scaled(1, 1, 1.3f)), solid(PrimitiveType::box, turn * scaled(1.2f, 1.0f, 1))});
   common.nodes.back().operation = CsgOperation::intersect;
   add(tree, common, glass());
-  const PictureOptions options = with({}, 64);
-  const Picture reference = renderPicture(triangles, options);
-  expectSame(renderPicture(analytic, options), reference, 1e-3);
-  expectSame(renderPicture(tree, options), reference, 1e-3);
+  const ImageOptions options = with({}, 64);
+  const RenderedImage reference = renderImage(triangles, options);
+  expectSame(renderImage(analytic, options), reference, 1e-3);
+  expectSame(renderImage(tree, options), reference, 1e-3);
 }
 
-TEST(SolidGlass, TheBallIsTheBallOfManyTriangles) {
+TEST(SolidGlass, SphereMatchesTheTriangleMesh) {
   SceneBuilder triangles = showcase(), analytic = showcase();
   scene::Geometry mesh = sphere(vec3(0.0f), 1.0f, 6);
   mesh.normals = mesh.positions;
   triangles.add(mesh, glass());
   add(analytic, solidsOf({solid(PrimitiveType::sphere)}), glass());
-  const PictureOptions options = with({}, 64);
-  expectSame(renderPicture(analytic, options), renderPicture(triangles, options), 0.01);
+  const ImageOptions options = with({}, 64);
+  expectSame(renderImage(analytic, options), renderImage(triangles, options), 0.01);
 }
 
-// A hollow ball, as a tree and as two spheres of triangles of which one is turned inside out.
-TEST(SolidGlass, TheHollowBallIsTheOneOfTriangles) {
+// A hollow sphere, as a tree and as two triangle meshes, one of them inside out.
+TEST(SolidGlass, HollowSphereMatchesTheTriangleMesh) {
   SceneBuilder triangles = showcase(), tree = showcase();
   for (const float radius : {1.0f, 0.7f}) {
     scene::Geometry mesh = sphere(vec3(0.0f), radius, 6);
@@ -266,14 +267,14 @@ TEST(SolidGlass, TheHollowBallIsTheOneOfTriangles) {
   }
   add(tree, difference({solid(PrimitiveType::sphere), solid(PrimitiveType::sphere, scaled(0.7f, 0.7f, 0.7f))}),
       glass());
-  const PictureOptions options = with({}, 64);
-  expectSame(renderPicture(tree, options), renderPicture(triangles, options), 0.015);
+  const ImageOptions options = with({}, 64);
+  expectSame(renderImage(tree, options), renderImage(triangles, options), 0.015);
 }
 
 // ---- alpha ----
 
-// Crossings along the view are there by chance, each for itself.
-TEST(SolidAlpha, EachCrossingCountsForItself) {
+// The alpha test is independent for each crossing of the ray.
+TEST(SolidAlpha, TestsEachCrossingIndependently) {
   struct Case {
     const char* name;
     PrimitiveSet set;
@@ -293,11 +294,11 @@ TEST(SolidAlpha, EachCrossingCountsForItself) {
     const float through = std::pow(0.6f, static_cast<float>(c.crossings));
     const vec3 exact = (1.0f - through) * vec3(2.0f, 1.0f, 0.5f) + through * vec3(0.5f, 0.25f, 4.0f);
     for (const char* program : {"pathtracer", "naive"})
-      expectUniform(renderPicture(scene, with({}, 64, program)), vec4(exact, 1.0f), {.error = 0.02});
+      expectUniform(renderImage(scene, with({}, 64, program)), vec4(exact, 1.0f), {.error = 0.02});
   }
 }
 
-TEST(SolidAlpha, ShadowsAreAsThinAsTheSurface) {
+TEST(SolidAlpha, AttenuatesShadowRays) {
   scene::Light lamp;
   lamp.type = scene::LightType::directional;
   lamp.direction = {0, -1, 0};
@@ -313,7 +314,7 @@ TEST(SolidAlpha, ShadowsAreAsThinAsTheSurface) {
       add(scene, tree ? difference({ball, solid(PrimitiveType::box, moved(5, 0, 0))}) : solidsOf({ball}), m);
       scene.light(lamp).camera(orthographic({0, 0.5f, 0}, vec3(0.0f), 0.1f));
       const float through = mode == scene::AlphaMode::blend ? 0.36f : mode == scene::AlphaMode::mask ? 1.0f : 0.0f;
-      expectUniform(renderPicture(scene, with({"bounces=1"}, 64)), vec4(through * kAlbedo, 1.0f), {.error = 0.02});
+      expectUniform(renderImage(scene, with({"bounces=1"}, 64)), vec4(through * kAlbedo, 1.0f), {.error = 0.02});
     }
   }
 }

@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "harness.h"
-#include "render/picture.h"
+#include "program/description/parser.h"
+#include "render/rendered_image.h"
 
 namespace quintet::test {
 namespace {
@@ -119,15 +120,15 @@ std::vector<ProbeHit> probe(const scene::Scene& scene, const std::vector<ProbeRa
     records[i] = {ray.origin, ray.tmax, ray.direction, std::bit_cast<std::uint32_t>(ray.tmin)};
   }
   const gpu::Buffer buffer = gpu::makeBufferOf(testContext(), records, 0, "rays");
-  render::DeviceScene device(testContext(), scene, scene::Environment{});
-  PictureOptions options;
+  render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{});
+  ImageOptions options;
   options.program = program::parseProgram(kDescription, "probe", "<test>", {{"probe.rgen", kRayGeneration}});
   options.width = kWidth;
   options.height = height;
   render::RenderSettings settings = settingsFor(scene::Camera{}, options);
   settings.rayRecords = &buffer;
   settings.rayRecordCapacity = 1;
-  render::Renderer renderer(device, options.program, testCompiler(), nullptr, settings);
+  render::Renderer renderer = makeRenderer(device, options.program, settings);
   renderer.renderBatch(1);
   std::array<std::vector<vec4>, 7> outputs;
   for (std::size_t i = 0; i < outputs.size(); ++i) outputs[i] = renderer.film().downloadBatch(i);

@@ -1,4 +1,4 @@
-// Rays of the host's choice through the library's stages: what each one meets, and the surface there.
+// Traces rays given by the host through the stages of the library, and returns the hit and the surface of each.
 #ifndef QUINTET_TESTS_GPU_PROCEDURAL_PROBE_H
 #define QUINTET_TESTS_GPU_PROCEDURAL_PROBE_H
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace quintet::test {
 
@@ -20,12 +20,12 @@ struct ProbeRay {
 struct ProbeHit {
   float t = -1.0f;  // < 0: miss
   std::uint32_t instance = 0;
-  std::uint32_t primitive = 0;  // solid or tree of the set; triangle
+  std::uint32_t primitive = 0;  // index of the solid or tree in the set, or of the triangle
   std::uint32_t leaf = 0;       // index in PrimitiveSet::primitives
   std::uint32_t face = 0;
   bool front = false;
   bool flipped = false;
-  bool visible = false;  // what a shadow ray from origin to tmax says
+  bool visible = false;  // result of a shadow ray from origin to tmax
   vec3 position{0};
   float error = 0;
   vec3 normal{0};  // geometric, on the ray's side
@@ -38,14 +38,14 @@ struct ProbeHit {
 
 std::vector<ProbeHit> probe(const scene::Scene& scene, const std::vector<ProbeRay>& rays);
 
-// The start of a ray that leaves the hit towards `direction`, as offsetOrigin computes it.
+// The origin of a ray that leaves the hit in `direction`, as offsetOrigin computes it.
 vec3 leave(const ProbeHit& hit, const vec3& direction);
 
-// A scene of one instance of one set.
+// A scene with one instance of the set.
 scene::Scene sceneOf(const scene::PrimitiveSet& set, const mat4& worldFromObject = mat4(1.0f));
 scene::PrimitiveSet solidsOf(const std::vector<scene::Primitive>& primitives);
 
-// Random things, the same for the same seed.
+// Random numbers, directions and transforms; equal for equal seeds.
 class Random {
  public:
   explicit Random(std::uint32_t seed) : engine_(seed) {}
@@ -54,7 +54,7 @@ class Random {
   vec3 inBox(float halfSize);
   vec3 onSphere();
   mat4 rotation();
-  // Rotation, scale and shear within `stretch`, mirrored by chance, moved by up to `distance`.
+  // Rotation, scale and shear within `stretch`, random mirroring, and a translation of up to `distance`.
   mat4 affine(float stretch, float distance);
 
  private:

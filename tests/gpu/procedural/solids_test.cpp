@@ -1,4 +1,4 @@
-// Each solid against the host's oracle: where, which way, which normal; and rays that leave a surface.
+// Each solid, compared with the oracle on the host: t, entering or leaving, normal; and rays that leave a surface.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -18,7 +18,7 @@ const char* nameOf(PrimitiveType type) {
   return kNames[static_cast<std::size_t>(type)];
 }
 
-// Rays from around, from inside, along an axis of the solid, with limits; directions of any length.
+// Rays from outside, from inside, along an axis of the solid, and with limits; with directions of any length.
 std::vector<ProbeRay> raysAround(Random& random, std::size_t count, const mat4& worldFromPrimitive) {
   std::vector<ProbeRay> rays;
   for (std::size_t i = 0; i < count; ++i) {
@@ -56,7 +56,7 @@ void compare(const ProbeHit& hit, const ProbeRay& ray, const Expected& expected,
              const mat4& worldFromObject) {
   compareHit(hit, ray, expected, worldFromObject);
   if (!expected.hit || hit.t < 0.0f) return;
-  // The point itself, from wherever the ray came, lies on the surface.
+  // The point lies on the surface, for any origin of the ray.
   const dmat4 worldFromPrimitive = dmat4(worldFromObject) * dmat4(primitive.objectFromPrimitive);
   const auto fromPoint =
       oracle::crossings(primitive, toObject({.origin = hit.position, .direction = hit.normal}, worldFromObject));
@@ -94,10 +94,10 @@ TEST_P(Solids, AgreeWithTheOracle) {
   EXPECT_LT(agreement.doubtful, count / 100);
 }
 
-// How a ray leaves: steeply, and so flat that the offset is all that keeps it off the surface.
+// Cosines of leaving rays: from steep to so grazing that only the offset keeps the ray off the surface.
 constexpr std::array kCosines{1.0f, 0.3f, 1e-2f, 1e-4f, 1e-6f};
 
-// In double: rounded, it keeps its cosine up to 1e-7.
+// Computed in double, so that the rounded direction has the right cosine up to 1e-7.
 vec3 flatDirection(Random& random, const vec3& normal, float cosine) {
   const dvec3 n(normal);
   const dvec3 along = glm::normalize(glm::cross(n, dvec3(random.onSphere())));
@@ -105,28 +105,28 @@ vec3 flatDirection(Random& random, const vec3& normal, float cosine) {
   return c * n + std::sqrt(1.0 - c * c) * along;
 }
 
-struct Place {
+struct Placement {
   const char* name;
   mat4 worldFromObject;
   mat4 objectFromPrimitive;
 };
 
-std::vector<Place> places(Random& random) {
+std::vector<Placement> placements(Random& random) {
   const mat4 one(1.0f);
-  return {{"as it is", one, one},
+  return {{"unchanged", one, one},
           {"small", one, glm::scale(one, vec3(1e-3f))},
           {"large", glm::scale(one, vec3(1e4f)), one},
-          {"far off in its object", one, glm::translate(one, vec3(700, -500, 510))},
-          {"far off in the world", glm::translate(one, vec3(700, -500, 510)), one},
-          {"turned and stretched", random.affine(3.0f, 5.0f), random.affine(3.0f, 5.0f)},
+          {"far from the object's origin", one, glm::translate(one, vec3(700, -500, 510))},
+          {"far from the world's origin", glm::translate(one, vec3(700, -500, 510)), one},
+          {"rotated and stretched", random.affine(3.0f, 5.0f), random.affine(3.0f, 5.0f)},
           {"flat", one, random.rotation() * glm::scale(one, vec3(1, 0.02f, 1))},
           {"flat in the world", random.rotation() * glm::scale(one, vec3(1, 1, 0.02f)), random.rotation()}};
 }
 
-// From a point on a convex solid, nothing of it lies outside; and whoever goes inside comes out again.
-TEST_P(Solids, AreNotMetByRaysThatLeaveThem) {
+// A ray that leaves a convex solid outwards never hits it again. A ray that goes inwards hits it once more.
+TEST_P(Solids, AreNotHitByRaysLeavingThem) {
   Random random(200 + static_cast<std::uint32_t>(GetParam()));
-  for (const Place& place : places(random)) {
+  for (const Placement& place : placements(random)) {
     SCOPED_TRACE(testing::Message() << nameOf(GetParam()) << " " << place.name);
     Primitive primitive;
     primitive.type = GetParam();
@@ -153,12 +153,12 @@ TEST_P(Solids, AreNotMetByRaysThatLeaveThem) {
       const bool goesOutside = from[i]->front == (i % 2 == 0);
       if (goesOutside) {
         ++outside;
-        // The torus may be met again: where its exact double says so.
+        // The ray may hit a torus again, if the oracle says so.
         const bool again =
             GetParam() == PrimitiveType::torus && oracle::firstHit(oracle::crossings(primitive, local), 0.0, 1e30);
         wrongOutside += hits[i].t >= 0.0f && !(again && hits[i].front);
       } else if (!oracle::inside(primitive, local.origin)) {
-        ++pastEdge;  // from the very edge of a face, or an apex
+        ++pastEdge;  // starts at the edge of a face, or at an apex
       } else {
         ++inside;
         wrongInside += hits[i].t < 0.0f || hits[i].front;

@@ -1,5 +1,6 @@
-// A program that averages itself sees the number of the frame and what the frame before stored.
+// A program that averages its own samples reads the frame number and the output of the previous frame.
 #include "harness.h"
+#include "program/description/parser.h"
 #include "run_program.h"
 
 namespace quintet::test {
@@ -22,14 +23,13 @@ std::vector<vec4> render(const std::string& accumulation, std::uint32_t frames) 
   const std::string toml =
       "[program]\nray_generation = \"main.rgen\"\naccumulation = \"" + accumulation +
       "\"\n[[ray]]\nname = \"r\"\nmiss = \"m.rmiss\"\n[[output]]\nname = \"first\"\n[[output]]\nname = \"second\"\n";
-  PictureOptions options;
+  ImageOptions options;
   options.program = program::parseProgram(toml, "test", "<test>", kFiles);
   options.width = 3;
   options.height = 1;
   const SceneBuilder scene = namedSquares({"a"});
-  render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  render::Renderer renderer(device, options.program, testCompiler(), nullptr,
-                            settingsFor(scene.scene.cameras[0], options));
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  render::Renderer renderer = makeRenderer(device, options.program, settingsFor(scene.scene.cameras[0], options));
   for (std::uint32_t i = 0; i < frames; ++i) renderer.renderBatch(1);
   std::vector<vec4> values;
   for (std::size_t output = 0; output < 2; ++output) {
@@ -40,13 +40,13 @@ std::vector<vec4> render(const std::string& accumulation, std::uint32_t frames) 
   return values;
 }
 
-TEST(Accumulation, ByTheProgramSeesTheFrameBefore) {
+TEST(Accumulation, ByTheProgramReadsThePreviousFrame) {
   const std::vector<vec4> values = render("program", 4);
   EXPECT_EQ(values[0], vec4(4.0f, 0 + 1 + 2 + 3, 0 + 10 + 11 + 12, 4 * 2));
   EXPECT_EQ(values[1], vec4(13.0f));
 }
 
-TEST(Accumulation, ByTheFilmHasNoFrameBefore) {
+TEST(Accumulation, ByTheFilmHasNoPreviousFrame) {
   const std::vector<vec4> values = render("film", 2);
   EXPECT_EQ(values[0].x, 1.0f) << "the mean";
   EXPECT_EQ(values[0].z, 0.0f);

@@ -1,12 +1,13 @@
-// Checks that only running can make: each mistake is found at its place, and nothing is found where there is none.
+// Checks at run time: each mistake is reported at its line, and correct programs give no reports.
 #include <gtest/gtest.h>
 
 #include "harness.h"
-#include "program/lecture.h"
-#include "render/picture.h"
-#include "render/program_scene.h"
-#include "scene/auto_camera.h"
-#include "scene/default_environment.h"
+#include "job/scene_source.h"
+#include "program/gsn/lecture.h"
+#include "program/load.h"
+#include "render/rendered_image.h"
+#include "scene/defaults/auto_camera.h"
+#include "scene/defaults/default_environment.h"
 
 namespace quintet::test {
 namespace {
@@ -26,66 +27,65 @@ std::string trace(const std::string& origin, const std::string& direction, const
   return "traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, " + miss + ", " + origin + ", 0.0, " + direction + ", 100.0, 0);";
 }
 
-std::vector<shader::Diagnostic> notesOf(const program::Program& program, const scene::Scene& scene,
-                                        std::uint32_t size = 16) {
-  render::DeviceScene deviceScene(testContext(), scene, scene::environmentInUse(scene));
+std::vector<Diagnostic> notesOf(const program::Program& program, const scene::Scene& scene, std::uint32_t size = 16) {
+  render::DeviceScene deviceScene(testContext(), scene::Scene(scene), scene::effectiveEnvironment(scene));
   render::RenderSettings settings;
   settings.width = settings.height = size;
   settings.camera = scene.cameras.empty() ? scene::frameScene(scene::worldBounds(scene), 1.0f) : scene.cameras.front();
   settings.instrument = true;
-  render::Renderer renderer(deviceScene, program, testCompiler(), nullptr, settings);
+  render::Renderer renderer = makeRenderer(deviceScene, program, settings);
   renderer.renderBatch(1);
-  return renderer.notes();
+  return renderer.runtimeDiagnostics();
 }
 
-std::vector<shader::Diagnostic> notesOf(const std::string& text) {
+std::vector<Diagnostic> notesOf(const std::string& text) {
   const program::Program program = program::parseLecture(text, "demo.rt.glsl", "here");
-  return notesOf(program, render::programScene(program));
+  return notesOf(program, job::loadScene(job::chooseSceneSource({}, program)));
 }
 
-std::string idsOf(const std::vector<shader::Diagnostic>& notes) {
+std::string idsOf(const std::vector<Diagnostic>& notes) {
   std::string ids;
-  for (const shader::Diagnostic& d : notes) ids += (ids.empty() ? "" : " ") + d.id + ":" + std::to_string(d.line);
+  for (const Diagnostic& d : notes) ids += (ids.empty() ? "" : " ") + d.id + ":" + std::to_string(d.line);
   return ids;
 }
 
-TEST(Instrument, NothingWhereNothingIsWrong) {
+TEST(Instrument, ReportsNothingForACorrectProgram) {
   EXPECT_EQ(idsOf(notesOf(kCommon + rayGeneration(trace("eye", "d")) + kHit + kMiss)), "");
 }
 
-TEST(Instrument, BuiltInProgramsAreRight) {
+TEST(Instrument, ReportsNothingForBuiltInPrograms) {
   for (const char* name :
        {"pathtracer", "ao", "lessons/07_mirror_recursion", "lessons/10_sphere", "lessons/17_records"}) {
     const program::Program program = program::loadProgram(name);
-    std::vector<shader::Diagnostic> notes = notesOf(program, render::programScene(program), 12);
-    std::erase_if(notes, [](const shader::Diagnostic& d) { return d.severity == shader::Severity::note; });
+    std::vector<Diagnostic> notes = notesOf(program, job::loadScene(job::chooseSceneSource({}, program)), 12);
+    std::erase_if(notes, [](const Diagnostic& d) { return d.severity == Severity::note; });
     EXPECT_EQ(idsOf(notes), "") << name << (notes.empty() ? "" : ": " + notes.front().text);
   }
 }
 
-TEST(Instrument, ARayThatIsNotFinite) {
+TEST(Instrument, ReportsRaysThatAreNotFinite) {
   const auto notes = notesOf(
       kCommon + rayGeneration("if (gl_LaunchIDEXT.x == 3u) d.y = sqrt(-p.x);\n" + trace("eye", "d")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q001:3");
-  EXPECT_EQ(notes[0].severity, shader::Severity::error);
+  EXPECT_EQ(notes[0].severity, Severity::error);
   EXPECT_NE(notes[0].text.find("pixel 3, "), std::string::npos) << notes[0].text;
   EXPECT_NE(notes[0].text.find("16 such"), std::string::npos) << notes[0].text;
 }
 
-// A trace in an included file has a line of that file, which is none of the program's: here line 2 of both.
-TEST(Instrument, ATraceInAnIncludedFileHasNoLine) {
+// The line of a trace in an included file is not a line of the program, so it is not reported: here line 2 of both files.
+TEST(Instrument, ReportsNoLineForATraceInAnIncludedFile) {
   const std::string text = kCommon + "void side() { vec2 unused = vec2(0.0); }\n#include \"far.glsl\"\n" +
                            rayGeneration("far(eye, 0.0 * d);") + kHit + kMiss;
   const std::string far = "void far(vec3 o, vec3 d) {\n" + trace("o", "d") + " }\n";
   const program::Program program = program::parseLecture(text, "demo.rt.glsl", "here", {{"far.glsl", far}});
-  EXPECT_EQ(idsOf(notesOf(program, render::programScene(program))), "Q001:0");
+  EXPECT_EQ(idsOf(notesOf(program, job::loadScene(job::chooseSceneSource({}, program)))), "Q001:0");
 }
 
-TEST(Instrument, ARayWithoutDirection) {
+TEST(Instrument, ReportsRaysWithoutDirection) {
   EXPECT_EQ(idsOf(notesOf(kCommon + rayGeneration(trace("eye", "0.0 * d")) + kHit + kMiss)), "Q001:2");
 }
 
-TEST(Instrument, AnOutputThatIsNotFinite) {
+TEST(Instrument, ReportsOutputsThatAreNotFinite) {
   const auto notes = notesOf(
       kCommon +
       rayGeneration(
@@ -95,7 +95,7 @@ TEST(Instrument, AnOutputThatIsNotFinite) {
   EXPECT_EQ(idsOf(notes), "Q002:0");
 }
 
-TEST(Instrument, RecursionDeeperThanDeclared) {
+TEST(Instrument, ReportsRecursionBeyondTheDeclaredDepth) {
   const std::string options = "// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: 3\"\n";
   const std::string hit =
       "void main() { /**** CLOSEST-HIT SHADER ****/ vec3 o = gl_WorldRayOriginEXT; vec3 d = "
@@ -104,14 +104,14 @@ TEST(Instrument, RecursionDeeperThanDeclared) {
   EXPECT_EQ(idsOf(notesOf(options + kCommon + rayGeneration(trace("eye", "d")) + hit + kMiss)), "Q003:5");
 }
 
-TEST(Instrument, AMissShaderThatIsNotThere) {
+TEST(Instrument, ReportsMissIndicesOutOfRange) {
   const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" +
                              rayGeneration(trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q004:3");
 }
 
-TEST(Instrument, AHitOnThePrimitiveJustLeft) {
-  // The second ray starts on the surface and goes back into it.
+TEST(Instrument, ReportsSelfIntersections) {
+  // The second ray starts just in front of the surface and hits it again.
   const std::string hit =
       "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = gl_WorldRayOriginEXT + gl_HitTEXT * "
       "gl_WorldRayDirectionEXT; payload.level = 1; }\n";
@@ -124,7 +124,7 @@ TEST(Instrument, AHitOnThePrimitiveJustLeft) {
   EXPECT_EQ(idsOf(notes), "Q005:0");
 }
 
-TEST(Instrument, AnyHitCallsAreCounted) {
+TEST(Instrument, CountsAnyHitCalls) {
   const std::string anyHit =
       "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitTEXT < 3.0) ignoreIntersectionEXT; }\n";
   const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "d")) + anyHit + kHit + kMiss);

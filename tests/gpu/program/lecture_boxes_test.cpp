@@ -1,5 +1,5 @@
-// Procedural primitives in the lecture form: boxes, `hit`, hit kinds, any-hit, and that attributes are those of the hit
-// even if shaders write them for candidates that are rejected.
+// Procedural primitives in the lecture form: boxes, `hit`, hit kinds and any-hit. Attributes are those of the hit even if
+// shaders write them for rejected candidates.
 #include <gtest/gtest.h>
 
 #include "lecture_run.h"
@@ -7,7 +7,7 @@
 namespace quintet::test {
 namespace {
 
-// A ray down onto (x + 0.3, row + 0.2) from z = 10, direction of length 2.
+// A ray down to (x + 0.3, row + 0.2) from z = 10 with a direction of length 2.
 const std::string kHead = R"(// gsnShaderOptions: precompiler="GL_EXT_ray_tracing, app: 1"
 struct RayPayloadType { vec4 value; };
 struct HitAttributeType { float id; vec3 point; };
@@ -20,20 +20,20 @@ void main() { /**** RAY GENERATION SHADER ****/
 void main() { /**** MISS SHADER ****/ payload.value = vec4(-1.0); }
 )";
 
-// The surface is the top of the box. Attributes are written before it is known whether the hit counts.
+// The surface is the top of the box. The shader writes attributes before it knows whether the hit counts.
 const std::string kTop = R"(void main() { /**** INTERSECTION SHADER ****/
   vec3 low, high;
   gsnGetIntersectionBox(gl_InstanceID, gl_PrimitiveID, low, high);
   float t = (high.z - gl_ObjectRayOriginEXT.z) / gl_ObjectRayDirectionEXT.z;
   hit.id = float(gl_PrimitiveID);
   hit.point = gl_ObjectRayOriginEXT + t * gl_ObjectRayDirectionEXT;
-  // Drivers may ask about boxes that the ray passes nearby.
+  // Drivers can run the shader for boxes that the ray misses by a small distance.
   if (any(lessThan(hit.point.xy, low.xy)) || any(greaterThan(hit.point.xy, high.xy))) return;
   reportIntersectionEXT(t, fract(high.z) > 0.25 ? 9u : 7u);
 }
 )";
 
-// Box i above square (5 i mod 8) of row 0, up to z = 1 + i / 16; so the device's order is not the scene's.
+// Box i is above square (5 i mod 8) of row 0, up to z = 1 + i / 64, so that the order on the device differs from the scene.
 std::vector<Bounds3> row() {
   std::vector<Bounds3> boxes;
   for (int i = 0; i < 8; ++i) {
@@ -43,7 +43,7 @@ std::vector<Bounds3> row() {
   return boxes;
 }
 
-TEST(LectureBoxes, HaveTheScenesIdsAndBoxes) {
+TEST(LectureBoxes, HaveTheIdsAndBoxesOfTheScene) {
   scene::Scene scene;
   addBoxes(scene, row());
   addBoxes(scene, row(), glm::translate(mat4(1.0f), vec3(0, 1, -2)) * glm::scale(mat4(1.0f), vec3(1, 1, 2)));
@@ -54,7 +54,7 @@ TEST(LectureBoxes, HaveTheScenesIdsAndBoxes) {
   const auto run = [&](int what) {
     return runLecture(kHead + kTop + hit, scene, {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}});
   };
-  const LecturePicture ids = run(0), points = run(1), rest = run(2);
+  const LectureImage ids = run(0), points = run(1), rest = run(2);
   for (int i = 0; i < 8; ++i) {
     const auto x = static_cast<std::uint32_t>(5 * i % 8);
     const auto top = 1.0f + static_cast<float>(i) / 64.0f;
@@ -72,18 +72,18 @@ TEST(LectureBoxes, HaveTheScenesIdsAndBoxes) {
   }
 }
 
-// Columns of two boxes of every order, some of whose hits an any-hit shader ignores (kind 9).
+// Columns of two boxes in every order. An any-hit shader ignores some of the hits (kind 9).
 TEST(LectureBoxes, AttributesAreThoseOfTheHit) {
   const float tops[5] = {1.0f, 2.0f, 3.0f, 2.5f, 3.5f};  // the last two are ignored
   std::vector<Bounds3> boxes;
-  std::vector<float> expected;  // by column: the id
+  std::vector<float> expected;  // id by column
   for (int a = 0; a < 5; ++a) {
     for (int b = 0; b < 5; ++b) {
       const auto x = static_cast<float>(expected.size());
       const int first = static_cast<int>(boxes.size());
       for (const int k : {a, b}) boxes.push_back({vec3(x, 0, 0), vec3(x + 1, 1, tops[k])});
       const bool firstCounts = a < 3 && (b >= 3 || tops[a] > tops[b]);
-      // Two equal ones: either may win, so leave no doubt.
+      // With two equal boxes either could win, so move one down.
       if (a == b && a < 3) boxes.back() = {vec3(x, 0, -2), vec3(x + 1, 1, -1)};
       const bool equal = a == b && a < 3;
       expected.push_back(firstCounts || equal ? static_cast<float>(first)
@@ -99,9 +99,9 @@ TEST(LectureBoxes, AttributesAreThoseOfTheHit) {
       "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitKindEXT == 9u && hit.id == float(gl_PrimitiveID)) "
       "ignoreIntersectionEXT; }\n";
   const auto width = static_cast<std::uint32_t>(expected.size());
-  const LecturePicture picture = runLecture(kHead + kTop + stages, scene, {.width = width});
+  const LectureImage image = runLecture(kHead + kTop + stages, scene, {.width = width});
   for (std::uint32_t x = 0; x < width; ++x) {
-    const vec4& value = picture.at(x);
+    const vec4& value = image.at(x);
     EXPECT_EQ(value.x, expected[x]) << "column " << x;
     if (expected[x] < 0) continue;
     EXPECT_EQ(value.z, expected[x]) << "column " << x;
@@ -109,7 +109,7 @@ TEST(LectureBoxes, AttributesAreThoseOfTheHit) {
   }
 }
 
-// Triangles with boxes above, on and below them: barycentrics stay the triangle's, `hit` is zero there.
+// Triangles with boxes below and above them keep their barycentrics, and `hit` is zero on triangles.
 TEST(LectureBoxes, TrianglesKeepTheirBarycentrics) {
   scene::Scene scene;
   scene.meshes.emplace_back().geometries = {quad({0, 0, 2}, {4, 0, 0}, {0, 1, 0})};
@@ -118,21 +118,21 @@ TEST(LectureBoxes, TrianglesKeepTheirBarycentrics) {
   const std::string stages =
       "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = vec4(baryCoord, hit.id, gl_HitTEXT); }\n"
       "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitKindEXT == 9u) ignoreIntersectionEXT; }\n";
-  const LecturePicture picture = runLecture(kHead + kTop + stages, scene, {.width = 4});
+  const LectureImage image = runLecture(kHead + kTop + stages, scene, {.width = 4});
   for (std::uint32_t x = 0; x < 3; ++x) {
     // The lower right triangle (0,0), (4,0), (4,1) at (x + 0.3, 0.2), or the upper left one (0,0), (4,1), (0,1).
     const float u = (static_cast<float>(x) + 0.3f) / 4.0f, v = 0.2f;
     const vec2 exact = u >= v ? vec2(u - v, v) : vec2(u, v - u);
-    EXPECT_NEAR(picture.at(x).x, exact.x, 1e-5f) << x;
-    EXPECT_NEAR(picture.at(x).y, exact.y, 1e-5f) << x;
-    EXPECT_EQ(picture.at(x).z, 0.0f) << x;
-    EXPECT_EQ(picture.at(x).w, 4.0f) << x;
+    EXPECT_NEAR(image.at(x).x, exact.x, 1e-5f) << x;
+    EXPECT_NEAR(image.at(x).y, exact.y, 1e-5f) << x;
+    EXPECT_EQ(image.at(x).z, 0.0f) << x;
+    EXPECT_EQ(image.at(x).w, 4.0f) << x;
   }
-  EXPECT_EQ(picture.at(3), vec4(0, 0, 2, 3.5f));
+  EXPECT_EQ(image.at(3), vec4(0, 0, 2, 3.5f));
 }
 
-// Without HitAttributeType there is no `hit`, and the rest is there.
-TEST(LectureBoxes, NeedNoAttribute) {
+// Without HitAttributeType, only `hit` is missing.
+TEST(LectureBoxes, WorkWithoutAttributes) {
   scene::Scene scene;
   addBoxes(scene, row());
   const std::string text =
@@ -144,9 +144,9 @@ TEST(LectureBoxes, NeedNoAttribute) {
       "void main() { /**** INTERSECTION SHADER ****/ reportIntersectionEXT(8.5, 3u); }\n"
       "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = vec4(gl_HitTEXT, gl_HitKindEXT, gl_PrimitiveID, "
       "0.0); }\n";
-  const LecturePicture picture = runLecture(text, scene, {.width = 9});
-  EXPECT_EQ(picture.at(5), vec4(8.5f, 3, 1, 0));
-  EXPECT_EQ(picture.at(8), vec4(-1));
+  const LectureImage image = runLecture(text, scene, {.width = 9});
+  EXPECT_EQ(image.at(5), vec4(8.5f, 3, 1, 0));
+  EXPECT_EQ(image.at(8), vec4(-1));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Every name that the lecture form promises, by its values: a ray per pixel straight down onto known triangles and boxes.
+// The values of every predeclared name of the lecture form: one ray per pixel straight down onto known triangles and boxes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace quintet::test {
 namespace {
 
-// A ray onto (x + 0.3, row + 0.2), from z = 10 with a direction of length 2.
+// A ray to (x + 0.3, row + 0.2) from z = 10 with a direction of length 2.
 const std::string kHead = R"(struct RayPayloadType { vec4 value; int depth; };
 uniform int what;
 void main() { /**** RAY GENERATION SHADER ****/
@@ -23,7 +23,7 @@ std::string closestHit(const std::string& body) {
   return kHead + "void main() { /**** CLOSEST-HIT SHADER ****/\n" + body + "\n}\n";
 }
 
-// A row of 8 unit squares from (0, y, 0), two triangles each, stored in a scrambled order: square s is at place 5 s mod 8.
+// Returns a row of 8 unit squares from (0, y, 0) with two triangles each in permuted order: square s has index 5 s mod 8.
 scene::Geometry squares(float y, bool attributes) {
   scene::Geometry g;
   g.triangles.resize(16);
@@ -42,7 +42,7 @@ scene::Geometry squares(float y, bool attributes) {
   return g;
 }
 
-// Rows 0 and 1: instance 0 with two geometries, the second without attributes. Row 2: instance 1, turned and scaled.
+// Rows 0 and 1 are instance 0 with two geometries, the second without attributes. Row 2 is instance 1, mirrored and scaled.
 scene::Scene grid() {
   scene::Scene scene;
   scene::Mesh& mesh = scene.meshes.emplace_back();
@@ -53,28 +53,31 @@ scene::Scene grid() {
   scene.instances[0].customIndex = 7;
   scene.instances[1].mesh = 1;
   scene.instances[1].customIndex = 5;
-  // Seen from above, squares of 2 x 3 scaled to 1 x 1, mirrored in x: square s lies at column 7 - s.
+  // Seen from above, squares of 2 x 3 scaled to 1 x 1, mirrored in x: square s is in column 7 - s.
   scene.instances[1].worldFromObject =
       glm::translate(mat4(1.0f), vec3(8, 2, -1)) * glm::scale(mat4(1.0f), vec3(-1, 1, 3));
   return scene;
 }
 
-int place(std::uint32_t square, bool second = false) { return static_cast<int>(5 * square % 8 * 2 + (second ? 1 : 0)); }
+// Returns the index of a triangle of a square.
+int triangleOf(std::uint32_t square, bool second = false) {
+  return static_cast<int>(5 * square % 8 * 2 + (second ? 1 : 0));
+}
 
-TEST(LectureNames, IdsAreTheScenesOwn) {
-  const LecturePicture picture = runLecture(
+TEST(LectureNames, IdsAreIndicesInTheScene) {
+  const LectureImage image = runLecture(
       closestHit(
           "payload.value = vec4(gl_PrimitiveID, gl_InstanceID, gl_GeometryIndexEXT, gl_InstanceCustomIndexEXT);"),
       grid(), {.width = 8, .height = 4});
   for (std::uint32_t x = 0; x < 8; ++x) {
-    EXPECT_EQ(picture.at(x, 0), vec4(place(x), 0, 0, 7)) << x;
-    EXPECT_EQ(picture.at(x, 1), vec4(place(x), 0, 1, 7)) << x;
-    EXPECT_EQ(picture.at(x, 2), vec4(place(7 - x), 1, 0, 5)) << x;  // (1 - 0.3, 0.2): the first triangle, too
-    EXPECT_EQ(picture.at(x, 3), vec4(-1)) << x;
+    EXPECT_EQ(image.at(x, 0), vec4(triangleOf(x), 0, 0, 7)) << x;
+    EXPECT_EQ(image.at(x, 1), vec4(triangleOf(x), 0, 1, 7)) << x;
+    EXPECT_EQ(image.at(x, 2), vec4(triangleOf(7 - x), 1, 0, 5)) << x;  // (1 - 0.3, 0.2) is in the first triangle too
+    EXPECT_EQ(image.at(x, 3), vec4(-1)) << x;
   }
 }
 
-// what: 0 … 2 positions, 3 … 5 normals, 6 … 8 texture coordinates, 9 … 11 columns of the normal matrix, 12 barycentrics.
+// what = 0 … 2: positions, 3 … 5 normals, 6 … 8 texture coordinates, 9 … 11 columns of the normal matrix, 12 barycentrics.
 constexpr const char* kMeshData = R"(
   int inst = gl_InstanceID, prim = gl_PrimitiveID;
   vec3 p[3], n[3]; vec2 t[3]; mat3 m;
@@ -90,21 +93,21 @@ void expectNear(const vec4& value, const vec3& exact, const std::string& where) 
   for (glm::length_t i = 0; i < 3; ++i) EXPECT_NEAR(value[i], exact[i], 1e-5f) << where << " component " << i;
 }
 
-TEST(LectureNames, MeshDataAreThoseOfTheTriangle) {
+TEST(LectureNames, MeshDataIsThatOfTheTriangle) {
   const scene::Scene scene = grid();
   const std::string text = closestHit(kMeshData);
   for (int what = 0; what < 9; ++what) {
-    const LecturePicture picture =
+    const LectureImage image =
         runLecture(text, scene, {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}});
     for (std::uint32_t row = 0; row < 3; ++row) {
       const scene::Geometry& g = row < 2 ? scene.meshes[0].geometries[row] : scene.meshes[1].geometries[0];
       for (std::uint32_t x = 0; x < 8; ++x) {
-        const uvec3 triangle = g.triangles[static_cast<std::size_t>(place(row < 2 ? x : 7 - x))];
+        const uvec3 triangle = g.triangles[static_cast<std::size_t>(triangleOf(row < 2 ? x : 7 - x))];
         const std::uint32_t v = triangle[what % 3];
         const vec3 exact = what < 3   ? g.positions[v]
                            : what < 6 ? (g.normals.empty() ? vec3(0, 0, 1) : g.normals[v])
                                       : (g.uvs[0].empty() ? vec3(0) : vec3(g.uvs[0][v].x, 1.0f - g.uvs[0][v].y, 0));
-        expectNear(picture.at(x, row), exact,
+        expectNear(image.at(x, row), exact,
                    "what " + std::to_string(what) + " at " + std::to_string(x) + "," + std::to_string(row));
       }
     }
@@ -114,19 +117,19 @@ TEST(LectureNames, MeshDataAreThoseOfTheTriangle) {
 TEST(LectureNames, NormalMatrixAndBarycentrics) {
   const scene::Scene scene = grid();
   for (int what = 9; what < 13; ++what) {
-    const LecturePicture picture =
+    const LectureImage image =
         runLecture(closestHit(kMeshData), scene, {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}});
     for (std::uint32_t row = 0; row < 3; ++row) {
       const mat3 m = glm::transpose(glm::inverse(mat3(scene.instances[row < 2 ? 0 : 1].worldFromObject)));
       // Corners (0,0), (1,0), (1,1): the point (u, v) has weights u - v of the second and v of the third.
       const vec3 exact = what < 12 ? m[what - 9] : row < 2 ? vec3(0.1f, 0.2f, 0) : vec3(0.5f, 0.2f, 0);
-      expectNear(picture.at(3, row), exact, "what " + std::to_string(what) + " row " + std::to_string(row));
+      expectNear(image.at(3, row), exact, "what " + std::to_string(what) + " row " + std::to_string(row));
     }
   }
 }
 
-// Outside hit shaders a mesh of several geometries is its first one; indices out of range give zeros.
-TEST(LectureNames, MeshDataInTheRayGenerationShader) {
+// Outside hit shaders, the first geometry of a mesh counts; indices out of range give zeros.
+TEST(LectureNames, RayGenerationReadsMeshData) {
   const std::string text = R"(void main() { /**** RAY GENERATION SHADER ****/
   int x = int(gl_LaunchIDEXT.x);
   int inst = x < 4 ? x - 1 : 0, prim = x < 4 ? 3 : x == 4 ? -1 : x == 5 ? 15 : 16;
@@ -140,22 +143,22 @@ TEST(LectureNames, MeshDataInTheRayGenerationShader) {
 }
 )";
   const scene::Scene scene = grid();
-  const LecturePicture picture = runLecture(text, scene, {.width = 7, .height = 1});
+  const LectureImage image = runLecture(text, scene, {.width = 7, .height = 1});
   const auto expected = [&](std::size_t mesh, std::size_t prim, float m) {
     const scene::Geometry& g = scene.meshes[mesh].geometries[0];
     const uvec3 t = g.triangles[prim];
     return vec4(g.positions[t.x].x, g.normals[t.x].z, g.uvs[0][t.z].x, m);
   };
-  EXPECT_EQ(picture.at(0), vec4(0, 0, 0, 1));
-  EXPECT_EQ(picture.at(1), expected(0, 3, 1));
-  EXPECT_EQ(picture.at(2), expected(1, 3, 1.0f / 3.0f));
-  EXPECT_EQ(picture.at(3), vec4(0, 0, 0, 1));
-  EXPECT_EQ(picture.at(4), vec4(0, 0, 0, 1));
-  EXPECT_EQ(picture.at(5), expected(0, 15, 1));
-  EXPECT_EQ(picture.at(6), vec4(0, 0, 0, 1));
+  EXPECT_EQ(image.at(0), vec4(0, 0, 0, 1));
+  EXPECT_EQ(image.at(1), expected(0, 3, 1));
+  EXPECT_EQ(image.at(2), expected(1, 3, 1.0f / 3.0f));
+  EXPECT_EQ(image.at(3), vec4(0, 0, 0, 1));
+  EXPECT_EQ(image.at(4), vec4(0, 0, 0, 1));
+  EXPECT_EQ(image.at(5), expected(0, 15, 1));
+  EXPECT_EQ(image.at(6), vec4(0, 0, 0, 1));
 }
 
-// All built-ins of a hit, after a trace that hit something else.
+// All built-ins of a hit, after a nested trace with another hit.
 TEST(LectureNames, BuiltInsSurviveANestedTrace) {
   const std::string text = "// gsnShaderOptions: precompiler=\"recursion: 2\"\n" + closestHit(R"(
   if (payload.depth > 0) { payload.value = vec4(gl_PrimitiveID); return; }
@@ -168,17 +171,18 @@ TEST(LectureNames, BuiltInsSurviveANestedTrace) {
   const auto pixel = [&](int what, std::uint32_t row) {
     return runLecture(text, scene, {.width = 2, .height = 3, .set = {"what=" + std::to_string(what)}}).at(1, row);
   };
-  EXPECT_EQ(pixel(0, 1), vec4(place(1), 0, 7, 1));
+  EXPECT_EQ(pixel(0, 1), vec4(triangleOf(1), 0, 7, 1));
   EXPECT_EQ(pixel(1, 0), vec4(0, 0, 0, 1));
-  EXPECT_EQ(pixel(1, 2), vec4(8, 2, -1, 1));  // mirrored, and still front facing: facing is decided in object space
+  EXPECT_EQ(pixel(1, 2),
+            vec4(8, 2, -1, 1));  // mirrored and still front-facing, because facing is determined in object space
   EXPECT_EQ(pixel(2, 0), vec4(0, 0, 0, 0));
   const vec4 last = pixel(3, 1);
   EXPECT_NEAR(last.x, 0.1f, 1e-5f);
   EXPECT_NEAR(last.z, 5.0f, 1e-5f);
-  EXPECT_EQ(last.w, place(1));  // the square met by the inner ray: column 6 of the mirrored row
+  EXPECT_EQ(last.w, triangleOf(1));  // the square that the inner ray hits: column 6 of the mirrored row
 }
 
-TEST(LectureNames, CallablesAreCounted) {
+TEST(LectureNames, CallablesHaveIndices) {
   const std::string text = R"(struct CallableDataType { float x; };
 void main() { /**** RAY GENERATION SHADER ****/
   vec4 sum = vec4(0.0);
@@ -192,8 +196,8 @@ void main() { /**** RAY GENERATION SHADER ****/
 void main() { /**** CALLABLE SHADER ****/ callableData.x *= 2.0; }
 void main() { /**** CALLABLE SHADER ****/ callableData.x += float(gl_LaunchIDEXT.x); }
 )";
-  const LecturePicture picture = runLecture(text, grid(), {.width = 3});
-  EXPECT_EQ(picture.at(2), vec4(6, 5, 0, 0));
+  const LectureImage image = runLecture(text, grid(), {.width = 3});
+  EXPECT_EQ(image.at(2), vec4(6, 5, 0, 0));
 }
 
 TEST(LectureNames, ConstantsHaveTheirValues) {
@@ -204,9 +208,9 @@ TEST(LectureNames, ConstantsHaveTheirValues) {
   gsnSetPixel(vec4(flags[gl_LaunchIDEXT.x], gl_HitKindFrontFacingTriangleEXT, gl_HitKindBackFacingTriangleEXT, PI));
 }
 )";
-  const LecturePicture picture = runLecture(text, grid(), {.width = 11});
+  const LectureImage image = runLecture(text, grid(), {.width = 11});
   for (std::uint32_t i = 0; i < 11; ++i)
-    EXPECT_EQ(picture.at(i), vec4(i == 0 ? 0.0f : static_cast<float>(1u << (i - 1)), 0xFE, 0xFF, 3.14159265f));
+    EXPECT_EQ(image.at(i), vec4(i == 0 ? 0.0f : static_cast<float>(1u << (i - 1)), 0xFE, 0xFF, 3.14159265f));
 }
 
 }  // namespace

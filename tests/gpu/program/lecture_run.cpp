@@ -8,17 +8,16 @@ namespace quintet::test {
 
 std::string lectureProblems(const program::Program& program) {
   std::string text;
-  for (const shader::Diagnostic& d : program::compile(program, testCompiler(), {}).diagnostics)
-    text += d.format() + "\n";
+  for (const Diagnostic& d : program::compile(program, testCompiler(), {}).diagnostics) text += d.format() + "\n";
   return text;
 }
 
-LecturePicture runLecture(const program::Program& program, const scene::Scene& scene, const LectureOptions& options) {
+LectureImage runLecture(const program::Program& program, const scene::Scene& scene, const LectureOptions& options) {
   const std::string problems = lectureProblems(program);
   EXPECT_EQ(problems, "");
-  LecturePicture picture;
+  LectureImage result;
   if (!problems.empty()) throw std::runtime_error(problems);
-  render::DeviceScene device(testContext(), scene, scene::Environment{});
+  render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{});
   render::RenderSettings settings;
   settings.width = options.width;
   settings.height = options.height;
@@ -28,19 +27,19 @@ LecturePicture runLecture(const program::Program& program, const scene::Scene& s
   settings.timeoutSeconds = 600;
   settings.parameters = program::ParameterValues(program.parameters);
   for (const std::string& assignment : options.set) settings.parameters.setAssignment(assignment);
-  render::Renderer renderer(device, program, testCompiler(), nullptr, settings);
+  render::Renderer renderer = makeRenderer(device, program, settings);
   for (std::uint32_t i = 0; i < options.frames; ++i) EXPECT_TRUE(renderer.renderFrame(i));
   const io::Image image = renderer.film().download(0);
-  picture.width = image.width;
-  picture.height = image.height;
+  result.width = image.width;
+  result.height = image.height;
   const std::span<const float> values = image.samples<float>();
   for (std::size_t i = 0; i < values.size(); i += 4)
-    picture.pixels.emplace_back(values[i], values[i + 1], values[i + 2], values[i + 3]);
-  return picture;
+    result.pixels.emplace_back(values[i], values[i + 1], values[i + 2], values[i + 3]);
+  return result;
 }
 
-LecturePicture runLecture(const std::string& text, const scene::Scene& scene, const LectureOptions& options,
-                          const std::map<std::string, std::string>& included) {
+LectureImage runLecture(const std::string& text, const scene::Scene& scene, const LectureOptions& options,
+                        const std::map<std::string, std::string>& included) {
   return runLecture(program::parseLecture(text, "test.rt.glsl", "test", included), scene, options);
 }
 

@@ -1,12 +1,12 @@
-// Runs a program of the lecture form over a small scene and keeps what gsnSetPixel wrote.
+// Runs a program of the lecture form on a small scene and returns what gsnSetPixel wrote.
 #ifndef QUINTET_TESTS_GPU_PROGRAM_LECTURE_RUN_H
 #define QUINTET_TESTS_GPU_PROGRAM_LECTURE_RUN_H
 
 #include <string>
 #include <vector>
 
-#include "../render/picture.h"
-#include "program/lecture.h"
+#include "../render/rendered_image.h"
+#include "program/gsn/lecture.h"
 
 namespace quintet::test {
 
@@ -19,8 +19,8 @@ struct LectureOptions {
   double launchSeconds = 0.25;
 };
 
-// Raw values, rows from the top.
-struct LecturePicture {
+// Raw values, rows from top to bottom.
+struct LectureImage {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<vec4> pixels;
@@ -30,16 +30,15 @@ struct LecturePicture {
   }
 };
 
-LecturePicture runLecture(const program::Program& program, const scene::Scene& scene,
-                          const LectureOptions& options = {});
-// `included`: files beside it.
-LecturePicture runLecture(const std::string& text, const scene::Scene& scene, const LectureOptions& options = {},
-                          const std::map<std::string, std::string>& included = {});
+LectureImage runLecture(const program::Program& program, const scene::Scene& scene, const LectureOptions& options = {});
+// `included` are files of its folder.
+LectureImage runLecture(const std::string& text, const scene::Scene& scene, const LectureOptions& options = {},
+                        const std::map<std::string, std::string>& included = {});
 
-// An instance of its own with these boxes as custom primitives.
+// Adds an instance with these boxes as custom primitives.
 void addBoxes(scene::Scene& scene, const std::vector<Bounds3>& boxes, const mat4& worldFromObject = mat4(1.0f));
 
-// Messages of the program's compilation; empty: none.
+// Returns the messages of the program's compilation.
 std::string lectureProblems(const program::Program& program);
 
 }  // namespace quintet::test

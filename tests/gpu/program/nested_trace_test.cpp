@@ -1,5 +1,5 @@
-// Built-ins that a closest-hit shader reads after a nested trace are those of its own hit, also on drivers where they
-// are not (Quirks::changesNestedBuiltIns): the link mends the shader.
+// Built-ins that a closest-hit shader reads after a nested trace are those of its own hit. On drivers that overwrite them
+// (Quirks::changesNestedBuiltIns), linking works around the defect.
 #include "run_program.h"
 
 namespace quintet::test {
@@ -64,22 +64,22 @@ void main() {
 )"},
 };
 
-// Unit squares in z = 0 at x = 0, 2 and 4, each moved there by its instance and (the last) scaled in z.
+// Returns unit squares in z = 0 at x = 0, 2 and 4, translated by their instances; the last one is also scaled in z.
 SceneBuilder placedSquares() {
   SceneBuilder builder;
   for (int i = 0; i < 3; ++i) {
-    mat4 place(1.0f);
-    place[3].x = 2.0f * static_cast<float>(i);
-    place[2].z = i == 2 ? 5.0f : 1.0f;
-    builder.add(quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), lambert(vec3(0.5f)), place);
+    mat4 worldFromObject(1.0f);
+    worldFromObject[3].x = 2.0f * static_cast<float>(i);
+    worldFromObject[2].z = i == 2 ? 5.0f : 1.0f;
+    builder.add(quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), lambert(vec3(0.5f)), worldFromObject);
   }
   builder.camera(perspective({0, 0, 5}, {0, 0, 0}, 40.0f));
   return builder;
 }
 
-TEST(NestedTrace, BuiltInsStayThoseOfTheOuterHit) {
+TEST(NestedTrace, KeepsTheBuiltInsOfTheOuterHit) {
   const Outputs outputs = runProgram(kToml, kFiles, placedSquares(), 3);
-  // The inner ray meets the last square, in the triangle that the outer ray does not meet.
+  // The inner ray hits the last square in the triangle that the outer ray does not hit.
   const vec4 inner = outputs[1][0];
   EXPECT_EQ(inner.x, 2.0f);
   for (std::size_t x = 0; x < 3; ++x) {

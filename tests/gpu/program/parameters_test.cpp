@@ -1,4 +1,4 @@
-// Parameters of every type on the device: numbers by the scalar layout, choices, and images as textures.
+// Parameters of every type on the device: numbers in scalar layout, choices, and images as textures.
 #include <unistd.h>
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 #include "base/file.h"
 #include "harness.h"
 #include "io/codec.h"
-#include "render/parameter_textures.h"
+#include "render/scene/texture_upload.h"
 #include "run_program.h"
 
 namespace quintet::test {
@@ -19,7 +19,7 @@ name = "r"
 miss = "m.rmiss"
 )";
 
-TEST(Parameters, OfEveryTypeArrive) {
+TEST(Parameters, OfEveryTypeReachTheShader) {
   const std::string toml = kHead + R"(
 [[parameter]]
 name = "tint"
@@ -72,7 +72,7 @@ void main() {
   EXPECT_EQ(outputs[2][0], vec4(1, 2, 3, 3e9f));
 }
 
-// 2 × 2 bytes: red, green; blue, mid grey with half alpha.
+// 2 × 2 texels: red, green; blue, mid gray with alpha 0.2.
 io::Image fourTexels() {
   io::Image image = io::makeImage(2, 2, 4, io::PixelType::u8, io::ColorEncoding::sRgb);
   const std::uint8_t texels[] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 128, 128, 128, 51};
@@ -135,14 +135,14 @@ TEST(Parameters, ImagesAreTextures) {
   expectNear(texels[0], {1, 0, 0, 1});
   expectNear(texels[1], {0, 1, 0, 1});
   expectNear(texels[2], {0, 0, 1, 1});
-  const float grey = std::pow((128.0f / 255.0f + 0.055f) / 1.055f, 2.4f);  // IEC 61966-2-1
-  expectNear(texels[3], {grey, grey, grey, 0.2f});
+  const float gray = std::pow((128.0f / 255.0f + 0.055f) / 1.055f, 2.4f);  // IEC 61966-2-1
+  expectNear(texels[3], {gray, gray, gray, 0.2f});
   expectNear(texels[7], {128 / 255.0f, 128 / 255.0f, 128 / 255.0f, 0.2f});
   EXPECT_EQ(texels[8], vec4(2, 2, 1, 1)) << "sizes";
   expectNear(texels[9], {0.5f, 0.5f, 0, 1}, 0.02f);  // between red and green
   expectNear(texels[10], {0, 1, 0, 1});
   expectNear(texels[11], {1, 0, 0, 1});  // repeated
-  EXPECT_EQ(outputs[1][0], vec4(1.0f)) << "no image: white";
+  EXPECT_EQ(outputs[1][0], vec4(1.0f)) << "no image means white";
 }
 
 TEST(Parameters, ImagesAreSetByPath) {
@@ -155,23 +155,23 @@ TEST(Parameters, ImagesAreSetByPath) {
   io::writeImage(file, image);
   const Outputs outputs = runProgram(kImages, kImageFiles, namedSquares({"a"}), 1, {"other=" + file, "srgb="});
   EXPECT_EQ(outputs[1][0], vec4(8.0f, 0.0f, 0.5f, 1.0f));
-  EXPECT_EQ(outputs[0][0], vec4(1.0f)) << "emptied: white";
-  writeFile(folder + "/broken.png", std::string_view("no picture"));
+  EXPECT_EQ(outputs[0][0], vec4(1.0f)) << "an empty name means white";
+  writeFile(folder + "/broken.png", std::string_view("not an image"));
   EXPECT_THROW(runProgram(kImages, kImageFiles, namedSquares({"a"}), 1, {"other=" + folder + "/broken.png"}),
                FileError);
   EXPECT_THROW(runProgram(kImages, kImageFiles, namedSquares({"a"}), 1, {"other=" + folder + "/none.png"}), FileError);
   std::filesystem::remove_all(folder);
 }
 
-TEST(Parameters, SlotsAreGivenBack) {
+TEST(Parameters, ReuseReleasedSlots) {
   gpu::BindlessSet set(testContext(), 8, 32);
   render::TextureSlots slots(set, 3, 5);
-  const std::vector<std::uint32_t> first = slots.take(2), second = slots.take(3);
+  const std::vector<std::uint32_t> first = slots.acquire(2), second = slots.acquire(3);
   EXPECT_EQ(first, (std::vector<std::uint32_t>{3, 4}));
   EXPECT_EQ(second, (std::vector<std::uint32_t>{5, 6, 7}));
-  EXPECT_THROW(slots.take(1), UsageError);
-  slots.giveBack(first);
-  EXPECT_EQ(slots.take(2), first);
+  EXPECT_THROW(slots.acquire(1), UsageError);
+  slots.release(first);
+  EXPECT_EQ(slots.acquire(2), first);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Payloads and callable data of any type at any location: three payloads, two ray types and a miss of its own, a trace
-// from a closest-hit shader, and callables with data at two locations.
+// Payloads and callable data of any type at any location: three payloads, two ray types and an additional miss shader, a
+// trace from a closest-hit shader, and callables with data at two locations.
 #include "run_program.h"
 
 namespace quintet::test {
@@ -49,7 +49,7 @@ name = "more"
 const Files kFiles = {
     {"types.glsl", R"(#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 struct Radiance { vec3 color; float t; uint depth; };
-struct Shadow { bool lit; int met[3]; };
+struct Shadow { bool lit; int hits[3]; };
 struct Inner { vec2 a; mat2 m; };
 struct Probe { uint64_t far; Inner inner; };
 )"},
@@ -68,7 +68,7 @@ void main() {
   const uint x = pixel.x;
   vec4 color = vec4(0.0), more = vec4(0.0);
   if (x < 3u) {
-    // Down to the floor left of the roof, from below the roof, and above nothing.
+    // Down to the floor left of the roof, to the floor below the roof, and beside the floor.
     radiance.color = vec3(0.0);
     radiance.t = -1.0;
     radiance.depth = 1u;
@@ -78,10 +78,10 @@ void main() {
     more.x = float(radiance.depth);
   } else if (x == 3u) {
     shadow.lit = false;
-    shadow.met = int[3](10, 20, 30);
+    shadow.hits = int[3](10, 20, 30);
     traceRayEXT(topLevelAS, gl_RayFlagsNoOpaqueEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, kRay_shadow, kRayTypeCount, kMiss_shadow,
                 vec3(2.5, 1.0, 0.5), 0.0, vec3(0, 1, 0), 50.0, 3);
-    color = vec4(shadow.lit, shadow.met[0], shadow.met[1], shadow.met[2]);
+    color = vec4(shadow.lit, shadow.hits[0], shadow.hits[1], shadow.hits[2]);
   } else if (x == 4u) {
     probe.far = 0x100000001ul;
     probe.inner.a = vec2(1.0, 2.0);
@@ -100,7 +100,7 @@ void main() {
   storeOutput(kOutput_more, pixel, more);
 }
 )"},
-    // Asks for a shadow with a payload of its own, and keeps what it was given.
+    // Traces a shadow ray with its own payload and keeps the values of its incoming payload.
     {"floor.rchit", R"(#include <quintet/frame.glsl>
 #include <quintet/generated/program.glsl>
 #include "types.glsl"
@@ -111,10 +111,10 @@ void main() {
   const float t = gl_HitTEXT;
   const vec3 point = gl_WorldRayOriginEXT + t * gl_WorldRayDirectionEXT;
   shadow.lit = false;
-  shadow.met = int[3](0, 0, 0);
+  shadow.hits = int[3](0, 0, 0);
   traceRayEXT(topLevelAS, gl_RayFlagsNoOpaqueEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, kRay_shadow, kRayTypeCount, kMiss_shadow,
               point, 0.01, vec3(0, 1, 0), 50.0, 3);
-  radiance.color = shadow.lit ? vec3(1.0, 0.5, 0.25) : vec3(0.125 * float(shadow.met[1]), 0.0, 0.0);
+  radiance.color = shadow.lit ? vec3(1.0, 0.5, 0.25) : vec3(0.125 * float(shadow.hits[1]), 0.0, 0.0);
   radiance.t = t;
   radiance.depth += 10u;
 }
@@ -125,11 +125,11 @@ void main() { radiance.color = vec3(9.0); }
 )"},
     {"count.rahit", R"(#include "types.glsl"
 layout(location = 3) rayPayloadInEXT Shadow shadow;
-void main() { shadow.met[1] = 2; }
+void main() { shadow.hits[1] = 2; }
 )"},
     {"lit.rmiss", R"(#include "types.glsl"
 layout(location = 3) rayPayloadInEXT Shadow shadow;
-void main() { shadow.lit = true; shadow.met[2]++; }
+void main() { shadow.lit = true; shadow.hits[2]++; }
 )"},
     {"sky.rmiss", R"(#include "types.glsl"
 layout(location = 0) rayPayloadInEXT Radiance radiance;
@@ -147,7 +147,7 @@ void main() {
     {"swap.rcall", "layout(location = 4) callableDataInEXT ivec2 pair;\nvoid main() { pair = pair.yx; }\n"},
 };
 
-// A floor from x = 0 to 4, and a roof above its right half.
+// Returns a floor from x = 0 to 4 and a roof above its right half.
 SceneBuilder floorAndRoof() {
   SceneBuilder builder;
   builder.add(quad({0, 0, 1}, {4, 0, 0}, {0, 0, -1}), lambert(vec3(0.5f)));
@@ -158,16 +158,16 @@ SceneBuilder floorAndRoof() {
   return builder;
 }
 
-TEST(Payloads, AnyTypesAtAnyLocations) {
+TEST(Payloads, HaveAnyTypeAtAnyLocation) {
   const Outputs outputs = runProgram(kToml, kFiles, floorAndRoof(), 6);
-  EXPECT_EQ(outputs[0][0], vec4(1.0f, 0.5f, 0.25f, 1.0f)) << "the floor in the light";
+  EXPECT_EQ(outputs[0][0], vec4(1.0f, 0.5f, 0.25f, 1.0f)) << "lit floor";
   EXPECT_EQ(outputs[1][0].x, 11.0f);
-  EXPECT_EQ(outputs[0][1], vec4(0.25f, 0.0f, 0.0f, 1.0f)) << "the floor below the roof, which the any-hit shader met";
+  EXPECT_EQ(outputs[0][1], vec4(0.25f, 0.0f, 0.0f, 1.0f)) << "floor below the roof; its any-hit shader ran";
   EXPECT_EQ(outputs[1][1].x, 11.0f);
-  EXPECT_EQ(outputs[0][2], vec4(0.0f, 0.0f, 4.0f, -1.0f)) << "the sky";
+  EXPECT_EQ(outputs[0][2], vec4(0.0f, 0.0f, 4.0f, -1.0f)) << "sky";
   EXPECT_EQ(outputs[1][2].x, 5.0f);
-  EXPECT_EQ(outputs[0][3], vec4(0.0f, 10.0f, 2.0f, 30.0f)) << "a shadow ray from ray generation";
-  EXPECT_EQ(outputs[0][4], vec4(2.0f, 6.0f, 4.0f, 8.0f)) << "the further miss shader";
+  EXPECT_EQ(outputs[0][3], vec4(0.0f, 10.0f, 2.0f, 30.0f)) << "shadow ray of the ray generation shader";
+  EXPECT_EQ(outputs[0][4], vec4(2.0f, 6.0f, 4.0f, 8.0f)) << "additional miss shader";
   EXPECT_EQ(outputs[1][4], vec4(2.0f, 1.0f, 3.0f, 4.0f));
   EXPECT_EQ(outputs[0][5], vec4(2.25f, -4.0f, 3.0f, 0.0f)) << "two callables";
 }

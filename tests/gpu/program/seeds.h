@@ -1,5 +1,5 @@
-// The lecture programs of the source documents (../shared/seeds, beside the repository): cut out of the page's text, with
-// what the slides leave out ("...") supplied. They are not part of the repository; tests skip where they are absent.
+// The lecture programs of the source documents (../shared/seeds, next to the repository): cut from the text of a page, with
+// the lines that the slides omit ("...") supplied. The documents are not part of the repository; tests skip without them.
 #ifndef QUINTET_TESTS_GPU_PROGRAM_SEEDS_H
 #define QUINTET_TESTS_GPU_PROGRAM_SEEDS_H
 
@@ -9,22 +9,22 @@
 
 namespace quintet::test {
 
-// The text of the document whose file name begins with `prefix` ("002"); empty: it is not there.
+// Returns the text of the document whose file name starts with `prefix` ("002"); empty if it is missing.
 std::string seedDocument(const std::string& prefix);
 
 #define QUINTET_NEED_SEED(variable, prefix)          \
   const std::string variable = seedDocument(prefix); \
-  if (variable.empty()) GTEST_SKIP() << "document " prefix " is not there"
+  if (variable.empty()) GTEST_SKIP() << "document " prefix " not found"
 
-// From the `which`-th (from 0) occurrence of `from` up to and with the end of the next `void main` whose body begins with
-// the marker, by its braces.
+// Returns the text from occurrence number `which` (0-based) of `from` to the closing brace of the next `void main` whose
+// body starts with the marker.
 std::string cutProgram(const std::string& document, const std::string& from, int which, const std::string& marker);
-// From `from` to the end of the block in braces behind it.
+// Returns the text from `from` to the end of the next block in braces.
 std::string cutBlock(const std::string& document, const std::string& from);
-// From `from` up to `to`, which is left out.
+// Returns the text from `from` up to `to`, exclusive.
 std::string cutBetween(const std::string& document, const std::string& from, const std::string& to);
 
-// The text with its only line "..." replaced: what the slides leave out.
+// Returns the text with its only line "..." replaced by the text that the slides omit.
 std::string supplied(std::string program, const std::string& elided);
 
 // Reference geometry in double precision.
@@ -34,11 +34,11 @@ struct RayD {
   dvec3 origin;
   dvec3 direction;
 };
-// Document 002's camera, at the origin, towards -z.
+// The camera of document 002, at the origin, looking along -z.
 dvec3 cameraDirection(double fovY, double aspect, const dvec2& point);
-// Parallelogram corner + u a + v b: the ray's t, or infinity.
+// Returns t of the ray at the parallelogram corner + u a + v b; infinity if it misses.
 double hitParallelogram(const RayD& ray, const dvec3& corner, const dvec3& a, const dvec3& b);
-// Base 2 and 3, as the tables of document 002 say; index from 1.
+// The radical inverse of the tables of document 002; the index starts at 1.
 double halton(int base, int index);
 
 }  // namespace quintet::test

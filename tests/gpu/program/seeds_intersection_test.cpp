@@ -1,5 +1,5 @@
-// The intersection shaders of document 003 as they stand on its slides: sphere in world and in object space, box, triangle,
-// and the three CSG operations, against references in double precision.
+// The intersection shaders of document 003, unchanged from its slides: sphere in world and in object space, box, triangle,
+// and the three CSG operations, compared with references in double precision.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using dmat4 = glm::dmat4;
 
-// What the slides leave out: the other types, the ray generation shader, and a closest-hit shader that shows `hit`.
+// Returns what the slides omit: the other types, the ray generation shader, and a closest-hit shader that shows `hit`.
 std::string around(const std::string& camera) {
   return R"(struct RayPayloadType { vec4 value; };
 uniform int show;
@@ -48,7 +48,7 @@ struct Case {
   mat4 worldFromObject{1.0f};
 };
 
-// The nearest of what `surface` says of each box, for a ray in object space; `t` is that of the world.
+// Computes the hit of a box by a ray in object space; `t` is the same as in world space.
 using Surface = std::function<Expected(const RayD&, const Bounds3&)>;
 
 Expected nearest(const Case& scene, const RayD& world, const Surface& surface) {
@@ -64,7 +64,7 @@ Expected nearest(const Case& scene, const RayD& world, const Surface& surface) {
   return best;
 }
 
-// Renders and compares; pixels where the reference jumps nearby are left out. Returns how many hits were compared.
+// Renders and compares, except pixels close to a discontinuity of the reference. Returns the number of compared hits.
 int expectSurface(const std::string& text, const Case& test, const Surface& surface,
                   const std::vector<std::string>& set = {}) {
   scene::Scene scene;
@@ -72,9 +72,9 @@ int expectSurface(const std::string& text, const Case& test, const Surface& surf
   LectureOptions options{.width = 40, .height = 30};
   options.set = set;
   options.set.push_back("show=0");
-  const LecturePicture first = runLecture(text, scene, options);
+  const LectureImage first = runLecture(text, scene, options);
   options.set.back() = "show=1";
-  const LecturePicture second = runLecture(text, scene, options);
+  const LectureImage second = runLecture(text, scene, options);
   int compared = 0;
   for (std::uint32_t row = 0; row < options.height; ++row) {
     for (std::uint32_t x = 0; x < options.width; ++x) {
@@ -106,7 +106,7 @@ int expectSurface(const std::string& text, const Case& test, const Surface& surf
   return compared;
 }
 
-// Entry and exit of a sphere.
+// Returns the interval of t inside a sphere.
 std::optional<dvec2> sphereInterval(const RayD& ray, const dvec3& center, double radius) {
   const dvec3 k = ray.origin - center;
   const double a = glm::dot(ray.direction, ray.direction), b = glm::dot(k, ray.direction),
@@ -129,7 +129,7 @@ Expected sphereIn(const RayD& ray, const Bounds3& box) {
   return e;
 }
 
-// A few cubes in front of the camera and one around it.
+// Returns a few cubes in front of the camera and one around it.
 Case cubes(const mat4& worldFromObject) {
   Case test;
   test.worldFromObject = worldFromObject;
@@ -145,7 +145,7 @@ TEST(Seed003, SphereInWorldSpace) {
   const std::string program = cutProgram(document, "struct HitAttributeType {", 0, "/**** INTERSECTION SHADER ****/");
   ASSERT_NE(program.find("ray-sphere intersection in world space"), std::string::npos);
   const std::string text = supplied(program, around(cutBlock(other, "// Returns a camera ray")));
-  // Its normal is that of the world; a uniform scale keeps directions.
+  // The shader computes the normal in world space; uniform scale keeps its direction.
   const Case test = cubes(glm::translate(mat4(1.0f), vec3(0.2f, 0.1f, 0)) * glm::scale(mat4(1.0f), vec3(1.1f)));
   EXPECT_GT(expectSurface(text, test, sphereIn), 1000);
 }
@@ -167,7 +167,7 @@ TEST(Seed003, Box) {
   const std::string program = cutProgram(document, "struct HitAttributeType {", 2, "/**** INTERSECTION SHADER ****/");
   ASSERT_NE(program.find("ray-box intersection"), std::string::npos);
   const std::string text = supplied(program, around(cutBlock(other, "// Returns a camera ray")));
-  // One cube about the object's origin: its shader finds the face by the largest coordinate from the centre.
+  // One cube centered at the object's origin, because the shader finds the face by the largest coordinate.
   Case test;
   test.boxes = {{vec3(-1), vec3(1)}};
   test.worldFromObject = glm::translate(mat4(1.0f), vec3(0.3f, -0.2f, -5)) *
@@ -222,7 +222,7 @@ TEST(Seed003, Triangle) {
   test.worldFromObject =
       glm::rotate(mat4(1.0f), glm::radians(170.0f), vec3(0, 1, 0)) * glm::translate(mat4(1.0f), vec3(0, 0, 10));
   EXPECT_GT(expectSurface(text, test, surface), 150);
-  // hit.baryCoord is the weight of b and c.
+  // hit.baryCoord holds the weights of b and c.
   const std::string shown = "vec4(hit.texCoord, gl_HitKindEXT, gl_PrimitiveID)";
   text.replace(text.find(shown), shown.size(), "vec4(hit.baryCoord, gl_HitKindEXT, gl_PrimitiveID)");
   const Surface weights = [&](const RayD& ray, const Bounds3& box) {
@@ -233,7 +233,7 @@ TEST(Seed003, Triangle) {
   EXPECT_GT(expectSurface(text, test, weights), 150);
 }
 
-// Two spheres in a box of 2 x 2 x 2 about its centre.
+// Two spheres in a box of 2 x 2 x 2; positions relative to its center.
 const std::array<dvec3, 2> kCenters{dvec3(-0.25, 0, 0.1), dvec3(0.35, 0.1, 0.3)};
 constexpr std::array<double, 2> kRadii{0.65, 0.5};
 
@@ -245,10 +245,10 @@ void main() { /**** INTERSECTION SHADER ****/
   vec3 centers[2] = vec3[](center + vec3(-0.25, 0.0, 0.1), center + vec3(0.35, 0.1, 0.3));
   vec2 interval0 = sphereInterval(centers[0], 0.65), interval1 = sphereInterval(centers[1], 0.5), combined;
   ivec2 hitIndex;
-  bool met = operation == 0 ? computeCsgUnion(interval0, interval1, gl_RayTminEXT, combined, hitIndex)
+  bool found = operation == 0 ? computeCsgUnion(interval0, interval1, gl_RayTminEXT, combined, hitIndex)
            : operation == 1 ? computeCsgIntersection(interval0, interval1, gl_RayTminEXT, combined, hitIndex)
                             : computeCsgDifference(interval0, interval1, gl_RayTminEXT, combined, hitIndex);
-  if (!met) return;
+  if (!found) return;
   bool enters = combined.x >= gl_RayTminEXT;
   float t = enters ? combined.x : combined.y;
   int index = enters ? hitIndex.x : hitIndex.y;
@@ -284,7 +284,7 @@ TEST(Seed003, CsgOfTwoSpheres) {
   test.boxes = {{vec3(-1), vec3(1)}};
   test.worldFromObject = glm::translate(mat4(1.0f), vec3(0.1f, 0, -2.2f)) * glm::scale(mat4(1.0f), vec3(1, 1.2f, 1));
   for (int operation = 0; operation < 3; ++operation) {
-    // The first place where the ray comes into the set, by asking points between the four crossings.
+    // The first t at which the ray enters the set, by testing points between the four crossings.
     const Surface surface = [&](const RayD& ray, const Bounds3&) {
       Expected e;
       std::vector<std::pair<double, int>> crossings;

@@ -1,5 +1,5 @@
-// The programs of document 002 as they stand on its slides: first ray, shadow, reflection as a loop, progressive average.
-// Every pixel is held against a reference in double precision; those within a hundredth of a pixel of an edge are left out.
+// The programs of document 002, unchanged from its slides: first ray, shadow, reflection as a loop, progressive average.
+// Every pixel is compared with a reference in double precision, except pixels close to an edge.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -38,15 +38,15 @@ std::optional<HitD> closest(const std::vector<Plate>& plates, const RayD& ray, d
   return best;
 }
 
-// Compares with reference(position of the pixel in [0,1]²), which is asked around the centre, too: where it jumps there,
-// an edge is too near to tell. Returns how many pixels were compared.
+// Compares with reference(position of the pixel in [0,1]²). Skips pixels where the reference changes abruptly around the
+// center, because an edge is too close. Returns the number of compared pixels.
 template <class Reference>
-int expectPicture(const LecturePicture& picture, double tolerance, const Reference& reference) {
+int expectImage(const LectureImage& image, double tolerance, const Reference& reference) {
   int compared = 0;
-  for (std::uint32_t row = 0; row < picture.height; ++row) {
-    for (std::uint32_t x = 0; x < picture.width; ++x) {
+  for (std::uint32_t row = 0; row < image.height; ++row) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
       const auto at = [&](double dx, double dy) {
-        return reference(dvec2((x + 0.5 + dx) / picture.width, (row + 0.5 + dy) / picture.height));
+        return reference(dvec2((x + 0.5 + dx) / image.width, (row + 0.5 + dy) / image.height));
       };
       const dvec3 exact = at(0, 0);
       bool steady = true;
@@ -54,7 +54,7 @@ int expectPicture(const LecturePicture& picture, double tolerance, const Referen
         steady = steady && glm::distance(at(d.x, d.y), exact) < 0.02;
       if (!steady) continue;
       ++compared;
-      const vec4& seen = picture.at(x, row);
+      const vec4& seen = image.at(x, row);
       EXPECT_LT(glm::distance(dvec3(seen), exact), tolerance)
           << "pixel " << x << "," << row << ": " << seen.x << " " << seen.y << " " << seen.z << " instead of "
           << exact.x << " " << exact.y << " " << exact.z;
@@ -72,7 +72,7 @@ void main() { /**** MISS SHADER ****/
 }
 )";
 
-// What slide "first ray" leaves out of the ray generation shader.
+// The part of the ray generation shader that slide "first ray" omits.
 constexpr const char* kTraceAndSet = R"(
   traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, rayOrigin, 0.001, rayDirection, 10000.0, 0);
   gsnSetPixel(vec4(payload.color, 1.0));
@@ -88,26 +88,26 @@ std::string firstRay(const std::string& document) {
          cutBetween(document, "// Returns a camera ray for a camera", "...");
 }
 
-TEST(Seed002, FirstRayIsARedSilhouette) {
+TEST(Seed002, FirstRayShowsARedSilhouette) {
   QUINTET_NEED_SEED(document, "002");
   const std::vector<Plate> plates{{{-1.5, -0.5, -5}, {2, 0, 0}, {0, 1.5, 0}},
                                   {{1, -1.5, -6}, {1.5, 0.5, 0}, {-0.5, 1, 1}}};
-  const LecturePicture picture =
+  const LectureImage image =
       runLecture(firstRay(document) + kTraceAndSet + kRedOnBlack, sceneOf(plates), {.width = 48, .height = 32});
-  const int compared = expectPicture(picture, 1e-6, [&](const dvec2& point) {
+  const int compared = expectImage(image, 1e-6, [&](const dvec2& point) {
     const bool hit = closest(plates, {dvec3(0), cameraDirection(45, 1.5, point)}, 0.001, 1e4).has_value();
     return dvec3(hit ? 1.0 : 0.0, 0.0, 0.0);
   });
   EXPECT_GT(compared, 1400);
 }
 
-// The stage of a light that turns, over a floor with a plate above it.
+// A scene for a moving light: a floor, a wall, and a plate above the floor.
 const std::vector<Plate> kStage{{{-3, -1, -9}, {0, 0, 6}, {6, 0, 0}},
                                 {{-1, 0.5, -7}, {0, 0, 1.5}, {1.5, 0, 0}},
                                 {{-3, -1, -9}, {6, 0, 0}, {0, 4, 0}}};
 const dvec3 kBaseColor(0.8, 0.6, 0.4), kAmbient(0.1, 0.1, 0.15);
 
-// Diffuse light with a shadow ray, as the slide's closest-hit shader computes it.
+// Returns the diffuse light with a shadow ray, as the closest-hit shader of the slide computes it.
 dvec3 diffuse(const std::vector<Plate>& plates, const RayD& ray, const HitD& hit, const dvec3& light) {
   const double front = glm::dot(-ray.direction, hit.normal);
   const dvec3 towards = glm::normalize(light - hit.position);
@@ -116,7 +116,7 @@ dvec3 diffuse(const std::vector<Plate>& plates, const RayD& ray, const HitD& hit
   return kAmbient + kBaseColor * std::max(0.0, glm::dot(towards, hit.normal));
 }
 
-TEST(Seed002, ShadowOfALightThatMoves) {
+TEST(Seed002, ShadowFollowsTheMovingLight) {
   QUINTET_NEED_SEED(document, "002");
   const std::string program = cutProgram(document, "struct RayPayloadType {", 0, "/**** MISS SHADER ****/");
   ASSERT_NE(program.find("bool shadowRayMiss"), std::string::npos);
@@ -128,11 +128,11 @@ TEST(Seed002, ShadowOfALightThatMoves) {
   const scene::Scene scene = sceneOf(kStage);
   int shadowed = 0;
   for (const std::uint32_t frames : {1u, 13u}) {
-    const LecturePicture picture =
+    const LectureImage image =
         runLecture(supplied(program, elided), scene, {.width = 48, .height = 36, .frames = frames});
     const double t = (frames - 1) / 45.0;
     const dvec3 light(5 * std::sin(2 * glm::pi<double>() * t), 5 * std::cos(2 * glm::pi<double>() * t), 5);
-    const int compared = expectPicture(picture, 2e-4, [&](const dvec2& point) {
+    const int compared = expectImage(image, 2e-4, [&](const dvec2& point) {
       const RayD ray{dvec3(0), cameraDirection(45, 4.0 / 3.0, point)};
       const auto hit = closest(kStage, ray, 0.001, 1e4);
       const dvec3 color = hit ? diffuse(kStage, ray, *hit, light) : dvec3(0);
@@ -144,7 +144,7 @@ TEST(Seed002, ShadowOfALightThatMoves) {
   EXPECT_GT(shadowed, 200);
 }
 
-TEST(Seed002, ReflectionsAsALoop) {
+TEST(Seed002, LoopFollowsReflections) {
   QUINTET_NEED_SEED(document, "002");
   const std::string program = cutProgram(document, "struct RayPayloadType {", 1, "/**** MISS SHADER ****/");
   ASSERT_NE(program.find("nextReflectionFactor"), std::string::npos);
@@ -156,11 +156,11 @@ vec3 getCameraRayLookAt(float fieldOfViewY, float aspectRatio, vec3 eye, vec3 lo
   return mat3(right, cross(back, right), back) * getCameraRay(fieldOfViewY, aspectRatio, point);
 }
 )";
-  const LecturePicture picture = runLecture(supplied(program, elided), sceneOf(kStage), {.width = 48, .height = 36});
+  const LectureImage image = runLecture(supplied(program, elided), sceneOf(kStage), {.width = 48, .height = 36});
   const dvec3 eye(1, 1.5, 8), back = glm::normalize(eye - dvec3(0, -0.5, -6)),
                               right = glm::normalize(glm::cross(dvec3(0, 1, 0), back));
   int reflected = 0;
-  const int compared = expectPicture(picture, 5e-4, [&](const dvec2& point) {
+  const int compared = expectImage(image, 5e-4, [&](const dvec2& point) {
     const dvec3 c = cameraDirection(20, 4.0 / 3.0, point);
     RayD ray{eye, c.x * right + c.y * glm::cross(back, right) + c.z * back};
     dvec3 color(0);
@@ -178,7 +178,7 @@ vec3 getCameraRayLookAt(float fieldOfViewY, float aspectRatio, vec3 eye, vec3 lo
   EXPECT_GT(reflected, 1000);
 }
 
-TEST(Seed002, ProgressiveAverageOfHaltonFrames) {
+TEST(Seed002, FramesAverageHaltonSamples) {
   QUINTET_NEED_SEED(document, "002");
   const std::string average =
       cutBetween(document, "vec4 previousAverage", "vec4(newAverage, 1.0));") + "vec4(newAverage, 1.0));";
@@ -199,23 +199,23 @@ TEST(Seed002, ProgressiveAverageOfHaltonFrames) {
                            average + "\n}\n" + kRedOnBlack;
   const std::vector<Plate> plates{{{-1.5, -0.7, -5}, {2.3, 0.4, 0}, {-0.3, 1.5, 0}}};
   constexpr int kFrames = 16;
-  const LecturePicture picture = runLecture(text, sceneOf(plates), {.width = 12, .height = 8, .frames = kFrames});
+  const LectureImage image = runLecture(text, sceneOf(plates), {.width = 12, .height = 8, .frames = kFrames});
   int between = 0, compared = 0;
   for (std::uint32_t row = 0; row < 8; ++row) {
     for (std::uint32_t x = 0; x < 12; ++x) {
-      // A sample near an edge may fall on either side: bounds.
+      // A sample close to an edge can be on either side, so compute bounds.
       int least = 0, most = 0;
       for (int i = 1; i <= kFrames; ++i) {
-        int hits = 0, asked = 0;
+        int hits = 0, tested = 0;
         for (const dvec2& d : {dvec2(0), dvec2(0.001, 0), dvec2(-0.001, 0), dvec2(0, 0.001), dvec2(0, -0.001)}) {
           const dvec2 point((x + halton(2, i) + d.x) / 12.0, (row + halton(3, i) + d.y) / 8.0);
           hits += closest(plates, {dvec3(0), cameraDirection(45, 1.5, point)}, 0.001, 1e4) ? 1 : 0;
-          ++asked;
+          ++tested;
         }
-        least += hits == asked ? 1 : 0;
+        least += hits == tested ? 1 : 0;
         most += hits > 0 ? 1 : 0;
       }
-      const float seen = picture.at(x, row).x;
+      const float seen = image.at(x, row).x;
       EXPECT_GE(seen, static_cast<float>(least) / kFrames - 1e-5f) << x << "," << row;
       EXPECT_LE(seen, static_cast<float>(most) / kFrames + 1e-5f) << x << "," << row;
       between += least > 0 && most < kFrames;
@@ -224,7 +224,7 @@ TEST(Seed002, ProgressiveAverageOfHaltonFrames) {
   }
   EXPECT_GT(between, 8);
   EXPECT_GT(compared, 85);
-  EXPECT_EQ(halton(2, 6), 0.375);  // the tables of the document
+  EXPECT_EQ(halton(2, 6), 0.375);  // from the tables of the document
   EXPECT_NEAR(halton(3, 5), 0.777, 1e-3);
 }
 

@@ -1,4 +1,5 @@
-// The path tracer's layers: the parts of the light add up to the picture, and what is known of the first surface is right.
+// The path tracer's AOVs: the components of the light add up to the image, and the properties of the first surface are
+// correct.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +8,8 @@
 
 #include "base/error.h"
 #include "harness.h"
-#include "picture.h"
+#include "program/load.h"
+#include "rendered_image.h"
 
 namespace quintet::test {
 namespace {
@@ -24,11 +26,11 @@ struct Layers {
   std::map<std::string, io::Image> images;
   render::FilmState film;
 
-  Layers(render::DeviceScene& device, const scene::Camera& camera, PictureOptions options,
+  Layers(render::DeviceScene& device, const scene::Camera& camera, ImageOptions options,
          const std::vector<std::string>& outputs) {
     render::RenderSettings settings = settingsFor(camera, options);
     settings.outputs = outputs;
-    render::Renderer renderer(device, program, testCompiler(), nullptr, settings);
+    render::Renderer renderer = makeRenderer(device, program, settings);
     for (std::uint32_t b = 0; b < options.batches; ++b) renderer.renderBatch();
     film = renderer.saveFilm();
     for (std::size_t i = 0; i < program.outputs.size(); ++i)
@@ -43,11 +45,11 @@ struct Layers {
   }
 };
 
-// Everything that scatters: diffuse, metal, coat, glass, thin glass, two lights, the sky.
+// A scene with all kinds of scattering: diffuse, metal, coat, glass, and thin glass, with two lights and the sky.
 SceneBuilder mixed() {
   SceneBuilder scene;
   scene::Material metal, coated = lambert({0.7f, 0.2f, 0.1f}), plastic, frosted = clearGlass(1.5f, 0.0f);
-  frosted.roughness = 0.4f;  // a clear pane would be looked through, its light emission or background
+  frosted.roughness = 0.4f;  // light through a clear pane would count as emission or background
   metal.roughness = 0.3f;
   coated.clearcoat = 1.0f;
   plastic.metallic = 0.0f;
@@ -63,10 +65,10 @@ SceneBuilder mixed() {
   return scene;
 }
 
-TEST(Aov, PartsOfTheLightAddUpToThePicture) {
+TEST(Aov, LightComponentsAddUpToTheImage) {
   const SceneBuilder scene = mixed();
-  render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  PictureOptions options;
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  ImageOptions options;
   options.width = 24;
   options.height = 16;
   options.batches = 4;
@@ -88,21 +90,22 @@ TEST(Aov, PartsOfTheLightAddUpToThePicture) {
         }
         ASSERT_NEAR(sum, layers.at("color", x, y)[c], 1e-4 * (1 + sum)) << x << ", " << y;
         ASSERT_NEAR(layers.at("color", x, y)[c], plain.at("color", x, y)[c], 1e-5 * (1 + sum))
-            << "layers change the picture";
+            << "the image depends on the requested layers";
       }
   for (const std::string& part : parts) EXPECT_GT(totals[part], 0.0) << part;
 }
 
-TEST(Aov, LightIsSortedByTheFirstScattering) {
-  // Lambert under a lamp in the dark: direct and diffuse only. The same in a mirror: once more, indirect and specular.
+TEST(Aov, SortsLightByTheFirstScattering) {
+  // A Lambert surface under a lamp in the dark has direct diffuse light only. Seen in a mirror, it is indirect
+  // specular.
   SceneBuilder scene;
   scene::Light lamp;
   lamp.position = {0, 1, 0};
   scene.add(quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}), lambert(vec3(0.5f)))
       .light(lamp)
       .camera(perspective({0, 1, 2}, {0, 0, 0}, 30.0f));
-  render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  PictureOptions options;
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  ImageOptions options;
   options.batches = 1;
   const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
   EXPECT_GT(layers.at("direct_diffuse", 4, 4)[0], 0.01f);
@@ -116,7 +119,7 @@ TEST(Aov, LightIsSortedByTheFirstScattering) {
   scene::Material mirror;
   mirror.roughness = 0.0f;
   mirrored.add(quad({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}), mirror).camera(perspective({0, 1, 2}, {0, 1, 3}, 30.0f));
-  render::DeviceScene second(testContext(), mirrored.scene, mirrored.environment);
+  render::DeviceScene second(testContext(), scene::Scene(mirrored.scene), mirrored.environment);
   const Layers seen(second, mirrored.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
   EXPECT_GT(seen.at("indirect_specular", 4, 6)[0], 0.001f);
   EXPECT_NEAR(seen.at("indirect_specular", 4, 6)[0], seen.at("color", 4, 6)[0], 1e-6);
@@ -126,10 +129,10 @@ const std::vector<std::string> kParts{"emission",          "background",        
                                       "direct_specular",   "direct_transmission",  "indirect_diffuse",
                                       "indirect_specular", "indirect_transmission"};
 
-// All light of the picture's middle is in this one layer.
+// Expects all light of the image's center in this one layer.
 void expectOnly(const SceneBuilder& scene, const std::string& layer, double least) {
-  render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  PictureOptions options;
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  ImageOptions options;
   options.batches = 2;
   const Layers layers(device, scene.scene.cameras.at(0), options, kParts);
   for (const std::string& other : kParts) {
@@ -143,23 +146,23 @@ void expectOnly(const SceneBuilder& scene, const std::string& layer, double leas
   }
 }
 
-TEST(Aov, EachLayerHasASceneOfItsOwn) {
+TEST(Aov, AssignsLightToASingleLayer) {
   scene::Material mirror, frosted = clearGlass(1.5f, 0.0f);
   mirror.roughness = 0.0f;
   frosted.roughness = 0.5f;
   const scene::Camera ahead = perspective({0, 0, 2}, {0, 0, 0}, 30.0f);
   const scene::Geometry before = quad({-2, -2, 0}, {4, 0, 0}, {0, 4, 0});
-  // Two mirrors under the sky, one smooth, one rough: its sky is found by light samples, too.
+  // Two mirrors under the sky, one smooth and one rough, which light samples reach, too.
   SceneBuilder mirrors;
   mirrors.add(quad({-2, -2, 0}, {2, 0, 0}, {0, 4, 0}), mirror);
   mirror.roughness = 0.5f;
   expectOnly(mirrors.add(quad({0, -2, 0}, {2, 0, 0}, {0, 4, 0}), mirror).sky(vec3(1.0f)).camera(ahead),
              "direct_specular", 0.9);
-  // Light behind a rough pane, darkness before it.
+  // An emitter behind a rough pane, and darkness in front of it.
   SceneBuilder pane;
   pane.add(before, frosted).add(quad({-2, -2, -1}, {4, 0, 0}, {0, 4, 0}), emitter(vec3(2.0f))).camera(ahead);
   expectOnly(pane, "direct_transmission", 0.5);
-  // A floor below a light that shines along it, on a wall: what the floor has comes from the wall.
+  // A light that shines along a floor onto a wall: the floor is lit by the wall only.
   scene::Light sun;
   sun.type = scene::LightType::directional;
   sun.direction = {1, 0, 0};
@@ -168,7 +171,7 @@ TEST(Aov, EachLayerHasASceneOfItsOwn) {
       .add(quad({2, 0, 2}, {0, 0, -4}, {0, 3, 0}), lambert(vec3(0.8f)));
   corner.light(sun).camera(perspective({0.5f, 2, 0.5f}, {1.2f, 0, 0}, 30.0f));
   expectOnly(corner, "indirect_diffuse", 0.01);
-  // A lit floor behind a rough pane; the light shines along the pane.
+  // A lit floor behind a rough pane, with a light that shines along the pane.
   sun.direction = {0, -1, 0};
   SceneBuilder behind;
   behind.add(before, frosted)
@@ -178,14 +181,14 @@ TEST(Aov, EachLayerHasASceneOfItsOwn) {
   expectOnly(behind, "indirect_transmission", 0.01);
 }
 
-TEST(Aov, NormalsOfAPixelAreAveraged) {
+TEST(Aov, AveragesNormalsOfAPixel) {
   // A crease within the pixels of column 8: normals z and (1, 0, 1) / √2.
   SceneBuilder scene;
   scene.add(quad({-2, -2, 0}, {2.12f, 0, 0}, {0, 4, 0}), lambert(vec3(0.5f)))
       .add(quad({0.12f, -2, 0}, {2, 0, -2}, {0, 4, 0}), lambert(vec3(0.5f)));
   scene.sky(vec3(1.0f)).camera(perspective({0, 0, 2}, {0, 0, 0}, 90.0f));
-  render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  PictureOptions options;
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  ImageOptions options;
   options.width = options.height = 16;
   options.batches = 4;
   const Layers layers(device, scene.scene.cameras[0], options, {"normal"});
@@ -194,13 +197,13 @@ TEST(Aov, NormalsOfAPixelAreAveraged) {
     EXPECT_GT(n[0], 0.15f);
     EXPECT_LT(n[0], 0.55f);
     EXPECT_NEAR(n[1], 0.0, 1e-5);
-    EXPECT_NEAR(n[2], 1.0 - n[0] * (std::sqrt(2.0) - 1.0), 1e-5) << "the mean of two, not made a unit vector again";
+    EXPECT_NEAR(n[2], 1.0 - n[0] * (std::sqrt(2.0) - 1.0), 1e-5) << "the mean of two normals, not normalized";
     EXPECT_NEAR(layers.at("normal", 10, y)[0], std::sqrt(0.5), 1e-5);
     EXPECT_NEAR(layers.at("normal", 4, y)[2], 1.0, 1e-5);
   }
 }
 
-TEST(Aov, FirstSurfaceIsWhatTheCameraSees) {
+TEST(Aov, DescribesTheFirstSurface) {
   // A wall that faces the camera, two units away, red on the left half and green on the right, sky above.
   SceneBuilder scene;
   for (const float x : {-2.0f, 0.0f}) {
@@ -209,8 +212,8 @@ TEST(Aov, FirstSurfaceIsWhatTheCameraSees) {
     scene.add(half, lambert(x < 0 ? vec3(0.8f, 0, 0) : vec3(0, 0.6f, 0)));
   }
   scene.sky(vec3(1.0f)).camera(perspective({0, 0, 2}, {0, 0, 0}, 90.0f));
-  render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  PictureOptions options;
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  ImageOptions options;
   options.width = options.height = 16;
   options.batches = 2;
   const Layers layers(device, scene.scene.cameras[0], options, optionalOutputs(program::loadProgram("pathtracer")));
@@ -232,7 +235,7 @@ TEST(Aov, FirstSurfaceIsWhatTheCameraSees) {
     EXPECT_NEAR(layers.at("uv", p.x, p.y)[0], uv.x, 1e-5);
     EXPECT_NEAR(layers.at("uv", p.x, p.y)[1], uv.y, 1e-5);
     EXPECT_EQ(layers.at("primitive_id", p.x, p.y)[0], uv.x > uv.y ? 1.0f : 2.0f)
-        << "of the two triangles on either side of the diagonal";
+        << "the two triangles on either side of the diagonal";
     EXPECT_EQ(layers.at("motion", p.x, p.y)[0], 0.0f);
     const shared::CoverageSlot* slots =
         &layers.plane("cryptomatte_object").coverage[shared::kCoverageSlots * (p.y * 16 + p.x)];
@@ -243,26 +246,26 @@ TEST(Aov, FirstSurfaceIsWhatTheCameraSees) {
   for (const char* id : {"instance_id", "material_id", "primitive_id", "uv"})
     EXPECT_EQ(layers.at(id, 3, 1)[0], 0.0f) << id;
   EXPECT_EQ(layers.plane("cryptomatte_material").coverage[shared::kCoverageSlots * (16 + 3)].samples, 0u);
-  // At the seam colours mix and ids do not.
+  // At the seam, colors are averaged and ids are not.
   const float red = layers.at("albedo", 8, 12)[0];
   EXPECT_GT(red, 0.0f);
   EXPECT_LT(red, 0.8f);
   EXPECT_EQ(layers.at("instance_id", 8, 12)[0], 2.0f);
 }
 
-TEST(Aov, MotionIsInPixelsOfThePictureBefore) {
+TEST(Aov, MeasuresMotionInPixels) {
   SceneBuilder scene;
   scene.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), lambert(vec3(0.5f)));
   scene.scene.instances[0].keyframes = {{0, vec3(0), quat(1, 0, 0, 0), vec3(1)},
                                         {10, vec3(1, 0.5f, 0), quat(1, 0, 0, 0), vec3(1)}};
   scene.camera(perspective({0, 0, 2}, {0, 0, 0}, 90.0f));
-  render::DeviceScene device(testContext(), scene.scene, scene.environment);
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
   device.setFrame(5);
-  PictureOptions options;
+  ImageOptions options;
   options.width = options.height = 16;
   options.batches = 1;
   const Layers layers(device, scene.scene.cameras[0], options, {"motion"});
-  EXPECT_NEAR(layers.at("motion", 9, 7)[0], 0.1 * 4, 1e-4);  // 4 pixels a metre
+  EXPECT_NEAR(layers.at("motion", 9, 7)[0], 0.1 * 4, 1e-4);  // 4 pixels per meter
   EXPECT_NEAR(layers.at("motion", 9, 7)[1], 0.05 * 4, 1e-4);
   EXPECT_EQ(layers.at("motion", 0, 0)[0], 0.0f);
 }

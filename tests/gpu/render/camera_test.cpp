@@ -1,24 +1,25 @@
-// Known points appear where the cameras' formulas put them; a lens keeps the plane in focus sharp.
+// Projection of known points by both kinds of cameras, and blur by a lens.
 #include <gtest/gtest.h>
 
-#include "picture.h"
+#include "rendered_image.h"
 
 namespace quintet::test {
 namespace {
 
-// Centre of brightness, in pixels.
-vec2 centroid(const Picture& picture) {
+// Returns the center of brightness in pixels.
+vec2 centroid(const RenderedImage& image) {
   double sum = 0, x = 0, y = 0;
-  for (std::uint32_t row = 0; row < picture.height(); ++row) {
-    for (std::uint32_t column = 0; column < picture.width(); ++column) {
-      const double v = picture.at(column, row, 0).mean();
+  for (std::uint32_t row = 0; row < image.height(); ++row) {
+    for (std::uint32_t column = 0; column < image.width(); ++column) {
+      const double v = image.at(column, row, 0).mean();
       sum += v, x += v * (column + 0.5), y += v * (row + 0.5);
     }
   }
   return {x / sum, y / sum};
 }
 
-// A glowing square of this half size around a point, parallel to the image plane: there a projection keeps centres.
+// An unlit square with this half size around a point, parallel to the image plane, so that its center is projected to
+// its image's center.
 SceneBuilder square(const scene::Camera& camera, const vec3& center, float half) {
   const vec3 x = half * vec3(camera.worldFromCamera[0]), y = half * vec3(camera.worldFromCamera[1]);
   SceneBuilder scene;
@@ -26,8 +27,8 @@ SceneBuilder square(const scene::Camera& camera, const vec3& center, float half)
   return scene;
 }
 
-PictureOptions wide() {
-  PictureOptions options;
+ImageOptions wide() {
+  ImageOptions options;
   options.width = 40;
   options.height = 30;
   options.batches = 64;  // the centroid's standard error is then about 0.01 pixels
@@ -36,30 +37,30 @@ PictureOptions wide() {
 
 const vec3 kEye(1.0f, 2.0f, 3.0f), kTarget(-2.0f, 1.5f, -4.0f);
 
-TEST(Camera, PerspectiveShowsAPointWhereItBelongs) {
+TEST(Camera, ProjectsPointsInPerspective) {
   const scene::Camera camera = perspective(kEye, kTarget, 50.0f);
   for (const vec2 tangent : {vec2(0.0f), vec2(0.42f, 0.31f), vec2(-0.35f, 0.2f), vec2(0.1f, -0.33f)}) {
     const vec3 point = camera.worldFromCamera * vec4(5.0f * tangent, -5.0f, 1.0f);
     const float half = std::tan(glm::radians(25.0f));
     const vec2 expected = {20.0f + 15.0f * tangent.x / half, 15.0f - 15.0f * tangent.y / half};
-    const vec2 seen = centroid(renderPicture(square(camera, point, 0.4f), wide()));
+    const vec2 seen = centroid(renderImage(square(camera, point, 0.4f), wide()));
     EXPECT_NEAR(seen.x, expected.x, 0.06f);
     EXPECT_NEAR(seen.y, expected.y, 0.06f);
   }
 }
 
-TEST(Camera, OrthographicShowsAPointWhereItBelongs) {
+TEST(Camera, ProjectsPointsOrthographically) {
   scene::Camera camera = orthographic(kEye, kTarget, 1.0f);
   camera.orthographicHalfSize = {0.9f, 1.2f};  // the image is wider: its height decides
   for (const vec2 offset : {vec2(0.0f), vec2(1.2f, 0.8f), vec2(-0.9f, 0.4f), vec2(0.3f, -0.9f)}) {
     const vec3 point = camera.worldFromCamera * vec4(offset, -5.0f, 1.0f);
-    const vec2 seen = centroid(renderPicture(square(camera, point, 0.2f), wide()));
+    const vec2 seen = centroid(renderImage(square(camera, point, 0.2f), wide()));
     EXPECT_NEAR(seen.x, 20.0f + 15.0f * offset.x / 1.2f, 0.06f);
     EXPECT_NEAR(seen.y, 15.0f - 15.0f * offset.y / 1.2f, 0.06f);
   }
 }
 
-TEST(Camera, ALensBlursWhatIsOutOfFocus) {
+TEST(Camera, BlursPointsOutOfFocus) {
   scene::Camera camera = perspective(kEye, kTarget, 40.0f);
   camera.apertureRadius = 0.15f;
   camera.focusDistance = 4.0f;
@@ -67,21 +68,21 @@ TEST(Camera, ALensBlursWhatIsOutOfFocus) {
   for (const float distance : {4.0f, 2.5f, 8.0f}) {
     const vec3 point = camera.worldFromCamera * vec4(0, 0, -distance, 1.0f);
     const float half = 0.06f * distance;
-    PictureOptions options = wide();
+    ImageOptions options = wide();
     options.batches = 64;
-    const Picture picture = renderPicture(square(camera, point, half), options);
+    const RenderedImage image = renderImage(square(camera, point, half), options);
     double sum = 0, squares = 0;
-    for (std::uint32_t y = 0; y < picture.height(); ++y) {
-      for (std::uint32_t x = 0; x < picture.width(); ++x) {
-        const double v = picture.at(x, y, 0).mean();
+    for (std::uint32_t y = 0; y < image.height(); ++y) {
+      for (std::uint32_t x = 0; x < image.width(); ++x) {
+        const double v = image.at(x, y, 0).mean();
         sum += v, squares += v * std::pow(x + 0.5 - 20.0, 2);
       }
     }
-    // Variances per axis add up: square a²/3, filter r²/6, uniform disk R²/4.
+    // The variances per axis add up: a²/3 for the square, r²/6 for the filter, and R²/4 for the uniform disk.
     const double a = half / distance * pixelsPerTangent;
     const double blur = 0.15 * std::abs(1.0 / distance - 1.0 / 4.0) * pixelsPerTangent;
     EXPECT_NEAR(squares / sum, a * a / 3.0 + 0.75 * 0.75 / 6.0 + blur * blur / 4.0, 0.03 * squares / sum) << distance;
-    EXPECT_NEAR(centroid(picture).x, 20.0f, 0.05f);
+    EXPECT_NEAR(centroid(image).x, 20.0f, 0.05f);
   }
 }
 

@@ -1,17 +1,17 @@
-// Light from area, point, spot and directional lights on a Lambert plane, against closed forms.
+// Area, point, spot and directional lights on a Lambert plane, against closed forms.
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "picture.h"
+#include "rendered_image.h"
 
 namespace quintet::test {
 namespace {
 
 const vec3 kAlbedo(0.6f, 0.5f, 0.3f);
-constexpr float kHalf = 0.5f;  // of the image of the plane y = 0, metres
+constexpr float kHalf = 0.5f;  // half the width of the image on the plane y = 0, in meters
 
-// A plane under a camera that looks straight down from a height that no light needs: x to the right, z down.
+// A plane under a camera that looks straight down from below all lights, with x to the right and z down.
 SceneBuilder plane() {
   SceneBuilder scene;
   scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kAlbedo));
@@ -24,8 +24,8 @@ vec3 pointOf(vec2 pixel, std::uint32_t size) {
   return {p.x, 0.0f, p.y};
 }
 
-// Irradiance at p with normal n from a polygon of radiance 1, all of it above the horizon (Lambert 1760; Baum et
-// al. 1989): the sum over its edges of half their angle times their plane's normal.
+// Returns the irradiance at p with normal n from a polygon of radiance 1 that is above the horizon (Lambert 1760; Baum
+// et al. 1989): the sum over its edges of half their angle times the normal of their plane.
 float irradiance(const vec3& p, const vec3& n, const std::vector<vec3>& polygon) {
   glm::dvec3 sum(0.0);
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -36,8 +36,8 @@ float irradiance(const vec3& p, const vec3& n, const std::vector<vec3>& polygon)
   return static_cast<float>(std::abs(glm::dot(sum, glm::dvec3(n))));
 }
 
-PictureOptions batches(std::uint32_t count) {
-  PictureOptions options;
+ImageOptions batches(std::uint32_t count) {
+  ImageOptions options;
   options.batches = count;
   return options;
 }
@@ -55,7 +55,7 @@ TEST_P(AreaLight, MatchesTheFormFactor) {
   SceneBuilder scene = plane();
   scene.add(quad(c.corner, c.a, c.b), emitter(radiance));
   const std::vector<vec3> polygon = {c.corner, c.corner + c.a, c.corner + c.a + c.b, c.corner + c.b};
-  expectPixels(renderPicture(scene, batches(24)),
+  expectPixels(renderImage(scene, batches(24)),
                [&](vec2 pixel) {
                  return kAlbedo / kPi * radiance * irradiance(pointOf(pixel, 8), {0, 1, 0}, polygon);
                },
@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(Quads, AreaLight,
                                          AreaCase{"FarAndHuge", {-300, 1000, -250}, {600, 0, 0}, {0, 80, 500}}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-// The lights that only next-event estimation finds are free of noise but for the place in the pixel.
+// Lights that only next-event estimation finds have no noise except that of the position within the pixel.
 constexpr Tolerance kPunctual{.error = 0.01, .rounding = 5e-4};
 
 scene::Light lampAt(scene::LightType type) {
@@ -105,10 +105,10 @@ TEST_P(PunctualLight, MatchesItsFormula) {
   const scene::Light light = lampAt(GetParam());
   SceneBuilder scene = plane();
   scene.light(light);
-  PictureOptions options = batches(16);
+  ImageOptions options = batches(16);
   options.width = options.height = 16;
   expectPixels(
-      renderPicture(scene, options), [&](vec2 pixel) { return reflected(light, pointOf(pixel, options.width)); },
+      renderImage(scene, options), [&](vec2 pixel) { return reflected(light, pointOf(pixel, options.width)); },
       kPunctual);
 }
 
@@ -119,23 +119,23 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(std::array{"Point", "Spot", "Directional"}[static_cast<std::size_t>(test.param)]);
     });
 
-// The sun below the horizon of the plane, and a lamp behind it.
-TEST(PunctualLights, DoNotShineThrough) {
+// A sun below the horizon of the plane, and a lamp behind it.
+TEST(PunctualLights, DoNotShineThroughSurfaces) {
   scene::Light lamp = lampAt(scene::LightType::point), sun = lampAt(scene::LightType::directional);
   lamp.position.y = -0.9f;
   sun.direction.y = 1.0f;
-  expectBlack(renderPicture(plane().light(lamp).light(sun), batches(4)));
+  expectBlack(renderImage(plane().light(lamp).light(sun), batches(4)));
 }
 
-TEST(PunctualLights, AndAreaLightsAddUp) {
+TEST(PunctualLights, AddUpWithAreaLights) {
   SceneBuilder scene = plane();
   std::array lights = {lampAt(scene::LightType::point), lampAt(scene::LightType::directional)};
-  lights[1].direction.x *= -1.0f;  // the panel casts no shadow on what is seen
+  lights[1].direction.x *= -1.0f;  // the panel casts no shadow within the image
   for (const scene::Light& light : lights) scene.light(light);
   const vec3 corner(0.7f, 0.05f, -0.6f), a(0, 0.8f, 0), b(0.3f, 0, 1.2f), radiance(4.0f, 5.0f, 6.0f),
       sky(0.5f, 0.4f, 0.3f);
   scene.add(quad(corner, a, b), emitter(radiance)).sky(sky);
-  expectPixels(renderPicture(scene, batches(512)),
+  expectPixels(renderImage(scene, batches(512)),
                [&](vec2 pixel) {
                  const vec3 p = pointOf(pixel, 8);
                  vec3 sum = reflected(lights[0], p) + reflected(lights[1], p);
@@ -145,19 +145,19 @@ TEST(PunctualLights, AndAreaLightsAddUp) {
                {.error = 0.01, .rounding = 5e-4});
 }
 
-// A blocker between lamp and plane: exactly none of the light; at grazing distance of the lamp, too.
+// A blocker between lamp and plane removes all light, also at a tiny distance from the lamp.
 TEST(PunctualLights, CastShadows) {
   scene::Light lamp = lampAt(scene::LightType::point);
   for (const float height : {0.5f, 0.8999f}) {
     SceneBuilder scene = plane();
     scene.light(lamp).add(quad({-9, height, 9}, {18, 0, 0}, {0, 0, -18}), lambert(vec3(0.0f)));
-    expectBlack(renderPicture(scene, batches(4)));
+    expectBlack(renderImage(scene, batches(4)));
   }
 }
 
-// A thin wall whose vertex normals lie almost in its plane, or point away from the camera, lit only from
-// behind: not a photon comes through, whatever the surface is made of.
-TEST(BentNormals, LeakNothing) {
+// A thin wall that is lit from behind only, with vertex normals that are almost in its plane or point away from the
+// camera. No material lets light through.
+TEST(BentNormals, LeakNoLight) {
   const std::array<scene::Material, 3> materials = [] {
     std::array<scene::Material, 3> m;
     m[0] = lambert(vec3(0.9f));
@@ -178,9 +178,9 @@ TEST(BentNormals, LeakNothing) {
       sun.direction = glm::normalize(vec3(-0.5f, 0.1f, 1.0f));
       scene.add(wall, material).add(quad({-20, -20, -3}, {40, 0, 0}, {0, 40, 0}), emitter(vec3(10.0f)));
       scene.scene.materials.insert(scene.scene.materials.end(), materials.begin(),
-                                   materials.end());  // one set of shaders for all
+                                   materials.end());  // the same shaders for all materials
       scene.light(lamp).light(sun).camera(perspective({0.2f, 0.1f, 1.5f}, {0, 0, 0}, 60.0f));
-      expectBlack(renderPicture(scene, batches(8)));
+      expectBlack(renderImage(scene, batches(8)));
     }
   }
 }

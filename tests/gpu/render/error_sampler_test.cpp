@@ -1,6 +1,7 @@
-// The stated error of pictures that the sampler's own numbers draw, as `render` plans them: the pixels of a tile share
-// their scrambles, so the error of a picture scatters more than that of independent pixels. Integrands that depend on up to
-// four demands, without the slack that even spreading gives to simpler ones, on one whole tile of 64 x 64.
+// The error estimate of images computed from the sampler's own numbers with the sample plans of `render`. The pixels of
+// a tile share their scrambles, so the error of an image varies more than with independent pixels. The integrands
+// depend on up to four sample dimensions, on one whole tile of 64 x 64: with simpler integrands low discrepancy would
+// widen the bound.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +12,8 @@
 #include "base/parallel.h"
 #include "harness.h"
 #include "quintet/shared/frame.h"
-#include "render/film_error.h"
-#include "render/fixed_sum.h"
+#include "render/film/film_error.h"
+#include "render/film/fixed_sum.h"
 
 namespace quintet::test {
 namespace {
@@ -27,28 +28,28 @@ struct Sums {
   float sum;      // of all samples of a pixel
   float squares;  // as FilmPlane::squares
 };
-struct Looks {
+struct PixelSums {
   Sums first;  // after FIRST batches
   Sums last;   // after LAST batches
 };
 
-// Invocation: pixel · RUNS + run.
-const std::string kPictures = R"(
+// The invocation index is pixel · RUNS + run.
+const std::string kIntegrate = R"(
   #include <quintet/frame.glsl>
   #include <quintet/sampling/sobol.glsl>
   struct In { uint seed, planned, kind; };
   struct Sums { float sum, squares; };
-  struct Looks { Sums first, last; };
-  #define Out Looks
-  float draw(inout Sampler s, vec2 place, uint kind) {
+  struct PixelSums { Sums first, last; };
+  #define Out PixelSums
+  float draw(inout Sampler s, vec2 position, uint kind) {
     vec2 a = next2D(s), b = next2D(s), c = next2D(s), d = next2D(s);
-    if (kind == 0u) return 16.0 * a.x * b.x * c.x * (d.y < 0.3 + 0.2 * place.x ? 1.0 : 0.1);                    // skewed
-    if (kind == 1u) return 1.0 + 0.5 * sign(a.x - 0.5) * sign(b.x - 0.5) * sign(c.x - 0.5) * sign(d.x - 0.5);  // spread no better
-    return a.x * b.y + c.x * d.y;                                                                              // shared in a tile
+    if (kind == 0u) return 16.0 * a.x * b.x * c.x * (d.y < 0.3 + 0.2 * position.x ? 1.0 : 0.1);                 // skewed
+    if (kind == 1u) return 1.0 + 0.5 * sign(a.x - 0.5) * sign(b.x - 0.5) * sign(c.x - 0.5) * sign(d.x - 0.5);  // no gain from low discrepancy
+    return a.x * b.y + c.x * d.y;                                                                              // correlated in a tile
   }
   Out run(uint i, In v) {
     uvec2 pixel = uvec2(i / RUNS % SIDE, i / RUNS / SIDE);
-    Looks o;
+    PixelSums o;
     float sum = 0.0, squares = 0.0;
     for (uint batch = 0u; batch < LAST; ++batch) {
       if (batch == FIRST) o.first = Sums(sum, squares);
@@ -65,28 +66,26 @@ const std::string kPictures = R"(
   }
 )";
 
-std::vector<Looks> draw(const std::vector<Job>& jobs, std::uint32_t first, std::uint32_t last) {
+std::vector<PixelSums> draw(const std::vector<Job>& jobs, std::uint32_t first, std::uint32_t last) {
   const auto number = [](std::size_t n) { return std::to_string(n) + "u"; };
   const Defines defines = {
       {"RUNS", number(jobs.size())}, {"SIDE", number(kSide)}, {"FIRST", number(first)}, {"LAST", number(last)}};
-  return runCompute<Looks>(kPictures, jobs, jobs.size() * kPixels, {.defines = defines});
+  return runCompute<PixelSums>(kIntegrate, jobs, jobs.size() * kPixels, {.defines = defines});
 }
 
-struct Picture {
-  double real = 0, stated = 0;
+struct ImageError {
+  double actual = 0, bound = 0;
 };
 
-Picture judge(const std::vector<double>& exact, std::uint32_t batches, const std::function<Sums(std::size_t)>& at) {
+ImageError errorOf(const std::vector<double>& exact, std::uint32_t batches,
+                   const std::function<Sums(std::size_t)>& at) {
   const double samples = double{render::kBatchSamples} * batches;
   const double mean = std::accumulate(exact.begin(), exact.end(), 0.0) / kPixels;
   render::FilmState film;
   film.region = {0, 0, kSide, kSide};
-  film.planes = {{"color",
-                  program::OutputPixel::mean,
-                  std::vector<shared::FixedSum>(4 * kPixels),
-                  std::vector<shared::FixedSum>(4 * kPixels),
-                  {},
-                  {}}};
+  film.planes = {{.name = "color",
+                  .sums = std::vector<shared::FixedSum>(4 * kPixels),
+                  .squares = std::vector<shared::FixedSum>(4 * kPixels)}};
   film.counts.add({0, render::kBatchSamples * batches});
   double squares = 0;
   for (std::size_t p = 0; p < kPixels; ++p) {
@@ -101,7 +100,7 @@ Picture judge(const std::vector<double>& exact, std::uint32_t batches, const std
   return {std::sqrt(squares / kPixels), render::estimateError(film).upper};
 }
 
-TEST(StatedError, CoversWhatTheSamplerDraws) {
+TEST(ErrorEstimate, CoversTheErrorOfSamplerNumbers) {
   constexpr std::uint32_t kFirst = 4, kLast = 8;
   for (const std::uint32_t kind : {0u, 1u, 2u}) {
     std::vector<double> exact(kPixels, 0.0);
@@ -110,24 +109,24 @@ TEST(StatedError, CoversWhatTheSamplerDraws) {
     for (const std::uint32_t planned : {shared::kIndependentPixels, 0u, 4 * kLast}) {
       std::vector<Job> jobs;
       for (std::uint32_t run = 0; run < kRuns; ++run) jobs.push_back({run, planned, kind});
-      const std::vector<Looks> looks = draw(jobs, kFirst, kLast);
+      const std::vector<PixelSums> sums = draw(jobs, kFirst, kLast);
       for (const std::uint32_t batches : {kFirst, kLast}) {
-        std::vector<Picture> pictures(kRuns);
+        std::vector<ImageError> errors(kRuns);
         parallelFor(kRuns, [&](std::size_t run) {
-          pictures[run] = judge(exact, batches, [&](std::size_t p) {
-            const Looks& look = looks[p * kRuns + run];
-            return batches == kFirst ? look.first : look.last;
+          errors[run] = errorOf(exact, batches, [&](std::size_t p) {
+            const PixelSums& pixel = sums[p * kRuns + run];
+            return batches == kFirst ? pixel.first : pixel.last;
           });
         });
         int covered = 0;
-        double real = 0, stated = 0;
-        for (const Picture& p : pictures)
-          covered += p.real <= p.stated, real += p.real / kRuns, stated += p.stated / kRuns;
-        std::printf("  integrand %u, planned %d, %u batches: covered %d of %u, stated %.4f, real %.4f\n", kind,
-                    static_cast<int>(planned), batches, covered, kRuns, stated, real);
+        double actual = 0, bound = 0;
+        for (const ImageError& e : errors)
+          covered += e.actual <= e.bound, actual += e.actual / kRuns, bound += e.bound / kRuns;
+        std::printf("  integrand %u, planned %d, %u batches: covered %d of %u, bound %.4f, actual %.4f\n", kind,
+                    static_cast<int>(planned), batches, covered, kRuns, bound, actual);
         EXPECT_GE(covered, static_cast<int>(9 * kRuns / 10)) << kind << " " << planned << " " << batches;
-        EXPECT_LT(stated, 1.35 * real) << "the statement would be of little use: " << kind << " " << planned << " "
-                                       << batches;
+        EXPECT_LT(bound, 1.35 * actual) << "the bound is too wide to be useful: " << kind << " " << planned << " "
+                                        << batches;
       }
     }
   }

@@ -1,5 +1,4 @@
-// The film on the device: sums as the host makes them, optional outputs, centres, ids, cells of their own number of samples,
-// and parts that are the whole.
+// The film on the device: sums, optional outputs, center values, coverage ids, adaptive cells, and merged parts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,14 +9,15 @@
 
 #include "../program/run_program.h"
 #include "harness.h"
-#include "render/film_error.h"
-#include "render/film_file.h"
-#include "render/fixed_sum.h"
+#include "program/description/parser.h"
+#include "render/film/film_error.h"
+#include "render/film/film_file.h"
+#include "render/film/fixed_sum.h"
 
 namespace quintet::test {
 namespace {
 
-TEST(FilmPasses, SumAsTheHostDoes) {
+TEST(FilmPasses, MatchesHostFixedPointSums) {
   struct In {
     float a, b;
   };
@@ -48,7 +48,7 @@ TEST(FilmPasses, SumAsTheHostDoes) {
   }
 }
 
-// What each sample stores is known: the mean's term, the centre, and the id of a sample.
+// A program whose samples store known values: a term of the mean, the center value, and an id.
 const Files kFiles = {{"m.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n"},
                       {"main.rgen", R"(#version 460
 #extension GL_EXT_ray_tracing : require
@@ -103,9 +103,9 @@ optional = true
 )";
 
 struct FilmTest : testing::Test {
-  PictureOptions options;
+  ImageOptions options;
   SceneBuilder scene = namedSquares({"a"});
-  render::DeviceScene device{testContext(), scene.scene, scene.environment};
+  render::DeviceScene device{testContext(), scene::Scene(scene.scene), scene.environment};
 
   FilmTest() {
     options.program = program::parseProgram(kToml, "test", "<test>", kFiles);
@@ -115,8 +115,7 @@ struct FilmTest : testing::Test {
   render::Renderer renderer(const std::vector<std::string>& outputs, const char* scale = "1.0") {
     render::RenderSettings settings = settingsFor(scene.scene.cameras[0], options);
     settings.outputs = outputs;
-    settings.defines = {{"SCALE", scale}};
-    return render::Renderer(device, options.program, testCompiler(), nullptr, settings);
+    return makeRenderer(device, options.program, settings, {{"SCALE", scale}});
   }
 };
 
@@ -126,18 +125,31 @@ double meanOf(std::uint32_t samples, const auto& value) {
   return sum / samples;
 }
 
-TEST_F(FilmTest, MakesWhatIsAskedFor) {
+TEST_F(FilmTest, StoresRequestedOutputsOnly) {
   render::Renderer plain = renderer({});
   EXPECT_TRUE(plain.film().stores(0));
   EXPECT_FALSE(plain.film().stores(1));
   plain.renderBatch();
   EXPECT_THROW(plain.image(1), UsageError);
-  EXPECT_THROW(renderer({"colour"}), UsageError);
+  EXPECT_THROW(renderer({"colr"}), UsageError);
   EXPECT_GT(renderer({"depth"}).film().bytes(), plain.film().bytes());
   EXPECT_EQ(plain.film().bytes(), render::Film::bytesPerPixel(options.program, {}) * 37 * 5);
 }
 
-TEST_F(FilmTest, KeepsMeansCentresAndIds) {
+TEST_F(FilmTest, DescribesItsPlanes) {
+  const render::FilmState film = renderer({"ids"}).saveFilm();
+  ASSERT_EQ(film.planes.size(), 3u);
+  EXPECT_EQ(film.planes[0].name, "color");
+  EXPECT_EQ(film.planes[0].kind, program::OutputKind::color);
+  EXPECT_TRUE(film.planes[0].color);
+  EXPECT_FALSE(film.planes[1].stored());
+  EXPECT_EQ(film.planes[1].pixel, program::OutputPixel::center);
+  EXPECT_EQ(film.planes[2].kind, program::OutputKind::id);
+  EXPECT_EQ(film.planes[2].pixel, program::OutputPixel::coverage);
+  EXPECT_FALSE(film.planes[2].color);
+}
+
+TEST_F(FilmTest, StoresMeansCentersAndIds) {
   render::Renderer r = renderer({"depth", "ids"});
   for (const std::uint32_t count : {4u, 4u, 3u}) r.renderBatch(count);
   const io::Image color = r.image(0), depth = r.image(1);
@@ -145,7 +157,7 @@ TEST_F(FilmTest, KeepsMeansCentresAndIds) {
   EXPECT_NEAR(color.pixel<float>(0, 0)[1], meanOf(11, [](double s) { return s * s; }), 1e-4);
   EXPECT_EQ(color.pixel<float>(3, 3)[2], -1.0f);
   EXPECT_EQ(color.pixel<float>(3, 3)[3], 1.0f);
-  EXPECT_EQ(depth.pixel<float>(3, 2)[0], 9.0f) << "of sample 0, not a mean";
+  EXPECT_EQ(depth.pixel<float>(3, 2)[0], 9.0f) << "the value of sample 0, not a mean";
   const std::vector<shared::CoverageSlot> slots = r.saveFilm().planes[2].coverage;
   std::vector<std::uint32_t> counts(3);
   for (std::uint32_t s = 2; s < 11; ++s) ++counts[s % 3];
@@ -156,7 +168,7 @@ TEST_F(FilmTest, KeepsMeansCentresAndIds) {
   EXPECT_EQ(slots[3].samples, 0u);
 }
 
-TEST_F(FilmTest, GivesTheVarianceOfItsBatches) {
+TEST_F(FilmTest, ComputesVarianceFromBatches) {
   render::Renderer r = renderer({});
   for (int b = 0; b < 6; ++b) r.renderBatch();
   const io::Image variance = render::varianceImage(r.saveFilm());
@@ -168,8 +180,8 @@ TEST_F(FilmTest, GivesTheVarianceOfItsBatches) {
   EXPECT_EQ(variance.pixel<float>(5, 1)[2], 0.0f);
 }
 
-// Squares of batches beyond the film's range: not known, which is not the same as none. The mean is not touched.
-TEST_F(FilmTest, DoesNotTakeTheBrightestForConstant) {
+// If the squares of batches exceed the film's range, the variance is unknown, not 0. The mean is unaffected.
+TEST_F(FilmTest, ReportsUnknownVarianceBeyondItsRange) {
   for (const bool beyond : {false, true}) {
     render::Renderer r = renderer({}, beyond ? "1e9" : "1e7");
     for (int b = 0; b < 3; ++b) r.renderBatch();
@@ -181,12 +193,12 @@ TEST_F(FilmTest, DoesNotTakeTheBrightestForConstant) {
   }
 }
 
-// A film file holds all of it, without loss.
+// Compares all contents, which a film file stores without loss.
 bool sameBytes(const render::FilmState& a, const render::FilmState& b) {
   return render::encodeFilm({{}, {}, a}) == render::encodeFilm({{}, {}, b});
 }
 
-TEST_F(FilmTest, PartsAndInterruptionsAreTheWhole) {
+TEST_F(FilmTest, MergesAndResumesToTheSameBytes) {
   const std::vector<std::string> outputs{"depth", "ids"};
   render::Renderer whole = renderer(outputs);
   for (const std::uint32_t count : {4u, 4u, 4u, 2u}) whole.renderBatch(count);
@@ -210,7 +222,7 @@ TEST_F(FilmTest, PartsAndInterruptionsAreTheWhole) {
   EXPECT_EQ(resumed.statistics().samples, 14u);
 }
 
-TEST_F(FilmTest, CellsTakeTheirOwnNumberOfBatches) {
+TEST_F(FilmTest, CountsBatchesPerCell) {
   render::Renderer r = renderer({});
   r.renderBatch();
   ASSERT_EQ(render::tileCount(r.film().region()), 2u);
@@ -229,15 +241,15 @@ TEST_F(FilmTest, CellsTakeTheirOwnNumberOfBatches) {
   EXPECT_EQ(r.rays().rays, rays);
 }
 
-// Whatever the launches are, and whichever cells are asked for first: the same plan, the same bytes.
-TEST(AdaptiveFilm, DependsNeitherOnLaunchesNorOnTheOrderOfCells) {
+// The same plan gives the same bytes for all launch sizes and orders of cells.
+TEST(AdaptiveFilm, IsIndependentOfLaunchesAndCellOrder) {
   using Limits = std::vector<std::uint32_t>;
   SceneBuilder scene;
   scene.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), lambert(vec3(0.5f)))
       .add(box({-0.5f, 0, -0.5f}, {0.5f, 0.8f, 0.5f}), lambert({0.7f, 0.2f, 0.2f}));
   scene.sky(vec3(0.7f)).camera(perspective({1.5f, 1.5f, 3.0f}, {0, 0.4f, 0}, 50.0f));
-  render::DeviceScene device(testContext(), scene.scene, scene.environment);
-  PictureOptions options;
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  ImageOptions options;
   options.width = 70;
   options.height = 40;  // 3 x 2 tiles
   const Limits plan{1, 3, 2, 1, 4, 2, 1, 1, 3, 3, 2, 5};
@@ -246,7 +258,7 @@ TEST(AdaptiveFilm, DependsNeitherOnLaunchesNorOnTheOrderOfCells) {
     settings.outputs = {"depth", "cryptomatte_object"};
     settings.launchSeconds = launchSeconds;
     settings.launchesInFlight = inFlight;
-    render::Renderer renderer(device, options.program, testCompiler(), nullptr, settings);
+    render::Renderer renderer = makeRenderer(device, options.program, settings);
     renderer.renderBatch();
     Limits reached(plan.size(), 1);
     for (const Limits& limits : steps) {
@@ -266,7 +278,7 @@ TEST(AdaptiveFilm, DependsNeitherOnLaunchesNorOnTheOrderOfCells) {
   std::vector<Limits> backwards;
   for (std::size_t c = plan.size(); c-- > 0;)
     if (plan[c] > 1) backwards.push_back(cells([&](std::size_t other) { return other == c; }));
-  EXPECT_TRUE(sameBytes(film(1e9, 2, backwards), whole)) << "cell by cell, from the last one";
+  EXPECT_TRUE(sameBytes(film(1e9, 2, backwards), whole)) << "cell by cell, starting at the last one";
 }
 
 }  // namespace

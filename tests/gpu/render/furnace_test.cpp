@@ -1,21 +1,22 @@
-// Lambert surfaces under uniform light: what comes back is known without any integral.
+// Lambert surfaces under uniform light, whose radiance is known in closed form.
 #include <gtest/gtest.h>
 
-#include "picture.h"
+#include "program/load.h"
+#include "rendered_image.h"
 
 namespace quintet::test {
 namespace {
 
 const vec3 kAlbedo(0.8f, 0.5f, 0.2f);
 
-PictureOptions with(const std::string& program, std::vector<std::string> set = {}) {
-  PictureOptions options;
+ImageOptions with(const std::string& program, std::vector<std::string> set = {}) {
+  ImageOptions options;
   options.program = program::loadProgram(program);
   options.set = std::move(set);
   return options;
 }
 
-// A sphere of this size whose middle fills the image.
+// A sphere of this size whose center fills the image.
 SceneBuilder furnace(float size, const vec3& center, const mat4& worldFromObject = mat4(1.0f)) {
   SceneBuilder scene;
   const vec3 middle = worldFromObject * vec4(center, 1.0f);
@@ -24,37 +25,37 @@ SceneBuilder furnace(float size, const vec3& center, const mat4& worldFromObject
   return scene;
 }
 
-TEST(Furnace, ASphereInAUniformSkyShowsItsAlbedo) {
-  expectUniform(renderPicture(furnace(1.0f, vec3(0.0f))), vec4(kAlbedo, 1.0f), {.error = 0.003});
+TEST(Furnace, ShowsTheAlbedoOfASphere) {
+  expectUniform(renderImage(furnace(1.0f, vec3(0.0f))), vec4(kAlbedo, 1.0f), {.error = 0.003});
 }
 
-TEST(Furnace, NaiveAgrees) {
-  expectUniform(renderPicture(furnace(1.0f, vec3(0.0f)), with("naive")), vec4(kAlbedo, 1.0f), {.error = 0.003});
+TEST(Furnace, AgreesWithNaive) {
+  expectUniform(renderImage(furnace(1.0f, vec3(0.0f)), with("naive")), vec4(kAlbedo, 1.0f), {.error = 0.003});
 }
 
-// A ray that meets the surface it starts from would find albedo² instead of albedo.
+// A ray that hits the surface it starts from would give albedo² instead of albedo.
 TEST(Furnace, HasNoAcneAtAnyScale) {
-  PictureOptions options;
+  ImageOptions options;
   options.batches = 8;
   for (const float size : {1e-3f, 1e-1f, 10.0f, 1e3f, 1e5f}) {
     SCOPED_TRACE(size);
-    expectUniform(renderPicture(furnace(size, vec3(0.0f)), options), vec4(kAlbedo, 1.0f), {.error = 0.005});
+    expectUniform(renderImage(furnace(size, vec3(0.0f)), options), vec4(kAlbedo, 1.0f), {.error = 0.005});
   }
 }
 
 TEST(Furnace, HasNoAcneFarFromTheOrigin) {
-  PictureOptions options;
+  ImageOptions options;
   options.batches = 8;
   for (const float size : {1e-3f, 1.0f, 1e3f}) {
     SCOPED_TRACE(size);
-    const vec3 far = vec3(700.0f, -500.0f, 510.0f) * size;  // 1000 times its size
-    expectUniform(renderPicture(furnace(size, far), options), vec4(kAlbedo, 1.0f), {.error = 0.005});
+    const vec3 far = vec3(700.0f, -500.0f, 510.0f) * size;  // 1000 times the size of the sphere
+    expectUniform(renderImage(furnace(size, far), options), vec4(kAlbedo, 1.0f), {.error = 0.005});
     const mat4 moved = glm::translate(mat4(1.0f), far);
-    expectUniform(renderPicture(furnace(size, vec3(0.0f), moved), options), vec4(kAlbedo, 1.0f), {.error = 0.005});
+    expectUniform(renderImage(furnace(size, vec3(0.0f), moved), options), vec4(kAlbedo, 1.0f), {.error = 0.005});
   }
 }
 
-TEST(Furnace, HasNoAcneUnderUnevenAndMirroredScale) {
+TEST(Furnace, HasNoAcneUnderNonuniformAndMirroredScale) {
   const mat4 turned = glm::rotate(mat4(1.0f), 0.7f, glm::normalize(vec3(1, 2, 3)));
   for (const vec3 scale : {vec3(1.0f, 0.02f, 1.0f), vec3(-1.0f, 1.0f, 1.0f)}) {
     SceneBuilder scene;
@@ -62,15 +63,15 @@ TEST(Furnace, HasNoAcneUnderUnevenAndMirroredScale) {
         .add(sphere(vec3(0.0f), 1.0f, 3), lambert(kAlbedo),
              turned * glm::scale(mat4(1.0f), scale) * glm::inverse(turned))
         .sky(vec3(1.0f));
-    const vec3 side = turned * vec4(0, 1, 0, 0);  // where even the flat one fills the image
+    const vec3 side = turned * vec4(0, 1, 0, 0);  // from here the flat ellipsoid fills the image, too
     scene.camera(orthographic(4.0f * side, vec3(0.0f), 0.4f));
-    PictureOptions options;
+    ImageOptions options;
     options.batches = 8;
-    expectUniform(renderPicture(scene, options), vec4(kAlbedo, 1.0f), {.error = 0.005});
+    expectUniform(renderImage(scene, options), vec4(kAlbedo, 1.0f), {.error = 0.005});
   }
 }
 
-// Inside a closed surface that emits L everywhere: L · (1 + a + a² + … + a^bounces).
+// The radiance inside a closed surface that emits L everywhere is L · (1 + a + a² + … + a^bounces).
 SceneBuilder inside(const scene::Geometry& geometry, float size) {
   scene::Material m = lambert(kAlbedo);
   m.emissive = {0.5f, 1.0f, 2.0f};
@@ -86,29 +87,29 @@ vec4 series(int bounces) {
   return vec4(sum, 1.0f);
 }
 
-TEST(AlbedoSeries, InsideASphere) {
+TEST(AlbedoSeries, MatchesInsideASphere) {
   for (const int bounces : {0, 1, 3, 12}) {
     SCOPED_TRACE(bounces);
-    PictureOptions options = with("pathtracer", {"bounces=" + std::to_string(bounces)});
+    ImageOptions options = with("pathtracer", {"bounces=" + std::to_string(bounces)});
     options.batches = bounces == 12 ? 64 : 16;  // Russian roulette begins at 5
-    expectUniform(renderPicture(inside(sphere(vec3(0.0f), 1.0f, 2), 1.0f), options), series(bounces), {.error = 0.01});
+    expectUniform(renderImage(inside(sphere(vec3(0.0f), 1.0f, 2), 1.0f), options), series(bounces), {.error = 0.01});
   }
 }
 
-TEST(AlbedoSeries, InsideABox) {
-  PictureOptions options = with("pathtracer", {"bounces=3"});
+TEST(AlbedoSeries, MatchesInsideABox) {
+  ImageOptions options = with("pathtracer", {"bounces=3"});
   options.batches = 32;
-  expectUniform(renderPicture(inside(box(vec3(-1.0f), vec3(1.0f)), 1.0f), options), series(3), {.error = 0.01});
+  expectUniform(renderImage(inside(box(vec3(-1.0f), vec3(1.0f)), 1.0f), options), series(3), {.error = 0.01});
 }
 
-TEST(AlbedoSeries, NaiveAgrees) {
-  expectUniform(renderPicture(inside(sphere(vec3(0.0f), 1.0f, 2), 1.0f), with("naive", {"bounces=12"})), series(12),
+TEST(AlbedoSeries, AgreesWithNaive) {
+  expectUniform(renderImage(inside(sphere(vec3(0.0f), 1.0f, 2), 1.0f), with("naive", {"bounces=12"})), series(12),
                 {.error = 0.01});
 }
 
-// Russian roulette from the first event on changes no mean. The surface has two lobes of very different weight, so that
-// a roulette that used the lobe's number would show.
-TEST(AlbedoSeries, RouletteChangesNoMean) {
+// Russian roulette from the first bounce on does not change the mean. The surface has two lobes with very different
+// weights, to expose a roulette that reuses the random number of the lobe.
+TEST(AlbedoSeries, KeepsItsMeanWithRoulette) {
   scene::Material m;
   m.baseColor = {0.3f, 0.3f, 0.3f, 1.0f};
   m.metallic = 0.0f;
@@ -118,12 +119,12 @@ TEST(AlbedoSeries, RouletteChangesNoMean) {
   SceneBuilder scene;
   scene.add(sphere(vec3(0.0f), 1.0f, 2), m).camera(perspective({0.1f, -0.2f, 0.05f}, {1, 1, 1}, 90.0f));
   const auto meanWith = [&](const char* start) {
-    PictureOptions options = with("pathtracer", {"bounces=6", std::string("roulette_start=") + start});
+    ImageOptions options = with("pathtracer", {"bounces=6", std::string("roulette_start=") + start});
     options.batches = 32;
-    const Picture picture = renderPicture(scene, options);
-    Moments mean;  // the pixels' scatter is more than the error
-    for (std::uint32_t y = 0; y < picture.height(); ++y)
-      for (std::uint32_t x = 0; x < picture.width(); ++x) mean.add(picture.at(x, y, 0).mean());
+    const RenderedImage image = renderImage(scene, options);
+    Moments mean;  // the variation between pixels is larger than the error
+    for (std::uint32_t y = 0; y < image.height(); ++y)
+      for (std::uint32_t x = 0; x < image.width(); ++x) mean.add(image.at(x, y, 0).mean());
     return mean;
   };
   const Moments without = meanWith("64"), always = meanWith("1");
@@ -131,18 +132,18 @@ TEST(AlbedoSeries, RouletteChangesNoMean) {
   EXPECT_LT(always.standardError(), 0.02 * always.mean());
 }
 
-// Light sampling has to choose between 1280 triangles and the environment.
-TEST(AlbedoSeries, EmissionAddsToTheSky) {
+// Light sampling chooses between 1280 triangles and the environment.
+TEST(AlbedoSeries, AddsEmissionAndSky) {
   scene::Material m = lambert(kAlbedo);
   m.emissive = vec3(0.25f);
   SceneBuilder scene;
   scene.add(sphere(vec3(0.0f), 1.0f, 3), m).sky({2.0f, 1.0f, 0.5f}).camera(perspective({0, 0, 6}, vec3(0.0f), 12.0f));
-  expectUniform(renderPicture(scene), vec4(vec3(0.25f) + kAlbedo * vec3(2.0f, 1.0f, 0.5f), 1.0f), {.error = 0.005});
+  expectUniform(renderImage(scene), vec4(vec3(0.25f) + kAlbedo * vec3(2.0f, 1.0f, 0.5f), 1.0f), {.error = 0.005});
 }
 
-// Kirchhoff's law: a lacquered black body as hot as its surroundings looks like them. The coat takes from the emission
-// what it adds by reflection.
-TEST(Furnace, ALacqueredBlackBodyIsNotSeen) {
+// Kirchhoff's law: a coated black body at the temperature of its surroundings is invisible. The coat removes as much of
+// the emission as it adds by reflection.
+TEST(Furnace, HidesACoatedBlackBody) {
   for (const float roughness : {0.0f, 0.5f, 1.0f}) {
     SCOPED_TRACE(roughness);
     scene::Material m = emitter(vec3(1.0f));
@@ -151,21 +152,21 @@ TEST(Furnace, ALacqueredBlackBodyIsNotSeen) {
     SceneBuilder scene;
     scene.add(sphere(vec3(0.0f), 1.0f, 3), m).sky(vec3(1.0f));
     scene.camera(orthographic({0.6f, 0.4f, 2.0f}, vec3(0.0f), 0.9f));
-    PictureOptions options = with("pathtracer", {"bounces=1"});
-    expectUniform(renderPicture(scene, options), vec4(1.0f), {.error = 0.005, .rounding = 3e-3});
+    ImageOptions options = with("pathtracer", {"bounces=1"});
+    expectUniform(renderImage(scene, options), vec4(1.0f), {.error = 0.005, .rounding = 3e-3});
   }
 }
 
-// From inside a closed box, with a bright world outside: nothing comes in through edges and corners.
+// No light enters a closed box through its edges and corners from a bright environment.
 TEST(ClosedBox, IsBlackInsideAtAnyScale) {
   for (const float size : {1e-3f, 1.0f, 1e3f, 1e5f}) {
     SCOPED_TRACE(size);
     SceneBuilder scene;
     scene.add(box(vec3(-size), vec3(size)), lambert(vec3(0.9f))).sky(vec3(1000.0f));
     scene.camera(perspective(vec3(0.2f, 0.1f, 0.3f) * size, vec3(-1.0f) * size, 110.0f));
-    PictureOptions options;
+    ImageOptions options;
     options.width = options.height = 16;
-    expectBlack(renderPicture(scene, options));
+    expectBlack(renderImage(scene, options));
   }
 }
 

@@ -1,8 +1,8 @@
-// Nothing of what loading and building needed is held when a scene is on the device.
+// The memory that remains allocated after a scene is on the device.
 #include <gtest/gtest.h>
 
 #include "harness.h"
-#include "render/device_scene.h"
+#include "render/scene/device_scene.h"
 #include "scene_builder.h"
 
 namespace quintet::test {
@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 
-TEST(DeviceSceneMemory, HoldsTheSceneOnly) {
+TEST(DeviceSceneMemory, FreesTemporaryMemory) {
   gpu::Context context({.device = testContext().info().name});
   SceneBuilder builder;
   for (int i = 0; i < 8; ++i) builder.add(sphere({3.0f * static_cast<float>(i), 0, 0}, 1.0f, 5), lambert(vec3(0.5f)));
@@ -35,7 +35,8 @@ TEST(DeviceSceneMemory, HoldsTheSceneOnly) {
   EXPECT_GE(ofScene, needed);
   EXPECT_LE(ofScene, needed + kMiB);  // alignment, the top level
   EXPECT_LE(held(gpu::Purpose::tables), 4 * kMiB);
-  // Room in blocks of 32 MiB, of which a device has one for each kind of memory that is used, and keeps one empty.
+  // Unused memory in blocks of 32 MiB: a device has one partial block for each memory type in use, and keeps one empty
+  // block.
   EXPECT_LE(memory.now, ofScene + held(gpu::Purpose::tables) + 96 * kMiB);
 }
 

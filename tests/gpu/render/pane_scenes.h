@@ -1,17 +1,17 @@
-// Panes, veils and bubbles for the tests of light through them.
+// Panes, alpha materials and bubbles for the tests of light through them.
 #ifndef QUINTET_TESTS_GPU_RENDER_PANE_SCENES_H
 #define QUINTET_TESTS_GPU_RENDER_PANE_SCENES_H
 
-#include "picture.h"
+#include "rendered_image.h"
 
 namespace quintet::test {
 
-// A smooth thin wall.
+// Returns the material of a smooth thin wall.
 scene::Material pane(const vec3& color);
-// The material with alpha.
+// Returns the material with this alpha.
 scene::Material veil(scene::Material material, float alpha, scene::AlphaMode mode);
 
-// A sphere of thin walls with an instance of its own, as a solid or as a tree of solids.
+// Adds an instance of a sphere with thin walls, as a solid or as a CSG tree.
 void addBubble(SceneBuilder& scene, const scene::Material& material, const vec3& center, float radius, bool tree);
 
 }  // namespace quintet::test

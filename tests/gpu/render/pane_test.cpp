@@ -1,17 +1,19 @@
-// Light through panes (smooth thin walls) and alpha: shadow rays bring exactly what goes straight through. A lamp's
-// light against closed forms; here the rest of the light, and the weights, are compared with brute force.
+// Light through panes (smooth thin walls) and alpha. Shadow rays carry exactly the light that goes straight through; a
+// lamp's light is compared with closed forms. All other light, and the weights, are compared with brute force in
+// pane_weights_test.cpp.
 #include <gtest/gtest.h>
 
 #include "pane_scenes.h"
+#include "program/load.h"
 
 namespace quintet::test {
 namespace {
 
 const vec3 kAlbedo(0.6f, 0.5f, 0.3f);
-constexpr float kHalf = 0.5f;  // of the image of the plane y = 0, metres
+constexpr float kHalf = 0.5f;  // half the width of the image on the plane y = 0, in meters
 
-// What goes straight through at the cosine of the angle to the (shading) normal, from KHR_materials_transmission,
-// _specular, _ior and _clearcoat with Schlick's reflectance.
+// Returns the transmittance of a pane at this cosine to the shading normal, by KHR_materials_transmission, _specular,
+// _ior and _clearcoat with Schlick's reflectance.
 vec3 straight(const scene::Material& m, float cosine) {
   const float x = 1.0f - cosine, grazing = x * x * x * x * x;
   const float index = (m.ior - 1.0f) / (m.ior + 1.0f);
@@ -23,12 +25,12 @@ vec3 straight(const scene::Material& m, float cosine) {
 
 struct Sheet {
   scene::Material material;
-  vec3 normal{0, 1, 0};  // of the plane, through (0, height, 0)
+  vec3 normal{0, 1, 0};  // of the plane through (0, height, 0)
   float height = 0.5f;
-  vec3 shadingNormal{0, 0, 0};  // 0: the plane's
-  vec4 color{1.0f};             // of the vertices
+  vec3 shadingNormal{0, 0, 0};  // 0 means that of the plane
+  vec4 color{1.0f};             // vertex color
   float coverage = 1.0f;        // alpha
-  bool passes = true;
+  bool passes = true;           // shadow rays pass
 };
 
 scene::Geometry geometryOf(const Sheet& sheet) {
@@ -51,8 +53,8 @@ std::vector<LampCase> lampCases();
 
 class LampBehindPanes : public testing::TestWithParam<LampCase> {};
 
-// Light samples alone find the lamp, so nothing is left to chance but the place in the pixel.
-TEST_P(LampBehindPanes, ShinesWithTheirTint) {
+// Only light samples find the lamp, so the position within the pixel is the only source of noise.
+TEST_P(LampBehindPanes, IsTintedByThem) {
   scene::Light lamp;
   lamp.intensity = {3.0f, 2.0f, 1.0f};
   lamp.position = {0.3f, 0.9f, -0.2f};
@@ -61,10 +63,10 @@ TEST_P(LampBehindPanes, ShinesWithTheirTint) {
   SceneBuilder scene;
   scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kAlbedo)).light(lamp);
   for (const Sheet& sheet : GetParam().sheets) scene.add(geometryOf(sheet), sheet.material);
-  for (const LampCase& c : lampCases())  // one set of shaders for all
+  for (const LampCase& c : lampCases())  // the same shaders for all cases
     for (const Sheet& sheet : c.sheets) scene.scene.materials.push_back(sheet.material);
   scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kHalf));
-  PictureOptions options;
+  ImageOptions options;
   options.set = {"bounces=1"};
   const auto exact = [&](vec2 pixel) {
     const vec2 at = kHalf * (2.0f * pixel / static_cast<float>(options.width) - 1.0f);
@@ -82,11 +84,11 @@ TEST_P(LampBehindPanes, ShinesWithTheirTint) {
     }
     return light;
   };
-  const Picture picture = renderPicture(scene, options);
+  const RenderedImage image = renderImage(scene, options);
   if (exact(vec2(4.0f)) == vec3(0.0f))
-    expectBlack(picture);
+    expectBlack(image);
   else
-    expectPixels(picture, exact, {.error = 0.01, .rounding = 1.5e-3});  // of the BSDF's tables
+    expectPixels(image, exact, {.error = 0.01, .rounding = 1.5e-3});  // error of the BSDF's tables
 }
 
 const vec3 kUp(0, 1, 0), kTilted = glm::normalize(vec3(0.3f, 1.0f, 0.2f));
@@ -102,9 +104,9 @@ std::vector<LampCase> lampCases() {
   halfMetal.metallic = 0.4f, halfMetal.transmission = 0.7f;
   coated.clearcoat = 0.8f;
   rough.roughness = 0.1f;
-  Sheet bent = sheetOf(green), coloured = sheetOf(green), fromBelow = sheetOf(green, -kTilted);
+  Sheet bent = sheetOf(green), colored = sheetOf(green), fromBelow = sheetOf(green, -kTilted);
   bent.shadingNormal = {-0.15f, 1.0f, 0.2f};
-  coloured.color = {0.5f, 1.0f, 0.25f, 1.0f};
+  colored.color = {0.5f, 1.0f, 0.25f, 1.0f};
   Sheet blend = sheetOf(veil(red, 0.3f, scene::AlphaMode::blend)),
         blendedPane = sheetOf(veil(green, 0.6f, scene::AlphaMode::blend));
   Sheet hole = sheetOf(veil(lambert(vec3(0.5f)), 0.3f, scene::AlphaMode::mask)), stays = hole;
@@ -118,26 +120,26 @@ std::vector<LampCase> lampCases() {
           {"Tilted", {sheetOf(green, kTilted)}},
           {"FromBelow", {fromBelow}},
           {"Two", {sheetOf(green, kTilted), sheetOf(red, kUp, 0.7f)}},
-          {"TwoBeforeTheSun", {sheetOf(green, kTilted), sheetOf(red, kUp, 0.7f)}, scene::LightType::directional},
+          {"TwoInFrontOfTheSun", {sheetOf(green, kTilted), sheetOf(red, kUp, 0.7f)}, scene::LightType::directional},
           {"DenseAndDim", {sheetOf(dense, kTilted)}},
           {"HalfMetal", {sheetOf(halfMetal)}},
           {"Coated", {sheetOf(coated, kTilted)}},
           {"BentNormals", {bent}},
-          {"VertexColours", {coloured}},
+          {"VertexColors", {colored}},
           {"Blend", {paint}},
           {"BlendAndBlendedPane", {blendedPane, paint}},
           {"BlendedRed", {blend}},
           {"MaskedAway", {hole, sheetOf(green, kTilted, 0.6f)}},
-          {"MaskedAndThere", {stays}},
+          {"MaskedButPresent", {stays}},
           {"Rough", {frosted}},
           {"Solid", {block}},
-          {"PaneBeforeRough", {frosted, sheetOf(green, kUp, 0.6f)}}};
+          {"PaneInFrontOfRough", {frosted, sheetOf(green, kUp, 0.6f)}}};
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, LampBehindPanes, testing::ValuesIn(lampCases()),
                          [](const auto& test) { return std::string(test.param.name); });
 
-// A lamp in a bubble: the light passes its wall once, whatever the shape is; a camera outside.
+// The light of a lamp in a bubble passes its wall once, for both kinds of primitive sets. The camera is outside.
 TEST(LampInABubble, ShinesThroughItsWall) {
   const scene::Material green = pane({0.3f, 0.9f, 0.5f});
   scene::Light lamp;
@@ -148,9 +150,9 @@ TEST(LampInABubble, ShinesThroughItsWall) {
     scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kAlbedo)).light(lamp);
     addBubble(scene, green, lamp.position, 0.4f, tree);
     scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kHalf));
-    PictureOptions options;
+    ImageOptions options;
     options.set = {"bounces=1"};
-    expectPixels(renderPicture(scene, options),
+    expectPixels(renderImage(scene, options),
                  [&](vec2 pixel) {
                    const vec2 at = kHalf * (2.0f * pixel / 8.0f - 1.0f);
                    const vec3 d = lamp.position - vec3(at.x, 0.0f, at.y);
@@ -160,7 +162,7 @@ TEST(LampInABubble, ShinesThroughItsWall) {
   }
 }
 
-// And one behind it: two walls, met by one ray in one box.
+// The light of a lamp behind a bubble passes two walls, which one ray hits in one box.
 TEST(LampBehindABubble, ShinesThroughBothWalls) {
   const scene::Material green = pane({0.3f, 0.9f, 0.5f});
   scene::Light sun;
@@ -172,9 +174,9 @@ TEST(LampBehindABubble, ShinesThroughBothWalls) {
     scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kAlbedo)).light(sun);
     addBubble(scene, green, {0, 4, 0}, radius, tree);
     scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kHalf));
-    PictureOptions options;
+    ImageOptions options;
     options.set = {"bounces=1"};
-    expectPixels(renderPicture(scene, options),
+    expectPixels(renderImage(scene, options),
                  [&](vec2 pixel) {
                    const vec2 at = kHalf * (2.0f * pixel / 8.0f - 1.0f);
                    const float cosine = std::sqrt(1.0f - glm::dot(at, at) / (radius * radius));
@@ -185,7 +187,7 @@ TEST(LampBehindABubble, ShinesThroughBothWalls) {
   }
 }
 
-// Going straight through is no bounce: with none left, what glows behind three panes shows.
+// Passing a pane is not a bounce: with 0 bounces, an emitter behind three panes is visible.
 TEST(Panes, CountNoBounces) {
   const scene::Material green = pane({0.3f, 0.9f, 0.5f});
   SceneBuilder scene;
@@ -194,27 +196,27 @@ TEST(Panes, CountNoBounces) {
   scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
   const vec3 wall = straight(green, 1.0f);
   for (const char* program : {"pathtracer", "naive"}) {
-    PictureOptions options;
+    ImageOptions options;
     options.program = program::loadProgram(program);
     options.set = {"bounces=0"};
     options.batches = 64;
-    expectUniform(renderPicture(scene, options), vec4(wall * wall * wall * vec3(1.0f, 0.5f, 2.0f), 1.0f),
+    expectUniform(renderImage(scene, options), vec4(wall * wall * wall * vec3(1.0f, 0.5f, 2.0f), 1.0f),
                   {.error = 0.02, .rounding = 4e-3});
   }
 }
 
-// The world behind a pane is seen in it, and covers the pixel.
+// The environment behind a pane is visible through it, and the pane covers the pixel.
 TEST(Panes, CoverATransparentBackground) {
   const scene::Material green = pane({0.3f, 0.9f, 0.5f});
   SceneBuilder scene;
   scene.add(quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), green).sky(vec3(1.0f));
   scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
   for (const char* program : {"pathtracer", "naive"}) {
-    PictureOptions options;
+    ImageOptions options;
     options.program = program::loadProgram(program);
     options.transparent = true;
     options.batches = 64;
-    expectUniform(renderPicture(scene, options), vec4(0.04f + straight(green, 1.0f), 1.0f),
+    expectUniform(renderImage(scene, options), vec4(0.04f + straight(green, 1.0f), 1.0f),
                   {.error = 0.02, .rounding = 2e-3});
   }
 }

@@ -1,6 +1,6 @@
-// Light samples and BSDF samples through panes, veils and bubbles, weighted, against BSDF samples alone (`naive`):
-// Welch's t-test per pixel and channel and on the whole image, at 0.01. And the test's own test: path tracers that
-// weight, tint or count wrongly must be found out.
+// Multiple importance sampling through panes, alpha and bubbles, against BSDF sampling alone (`naive`): Welch's t-test
+// per pixel and channel and on the whole image, at level 0.01. The test itself is tested, too: it must reject path
+// tracers with wrong weights, tints or bounce counts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 
 #include "io/image.h"
 #include "pane_scenes.h"
+#include "program/load.h"
 
 namespace quintet::test {
 namespace {
@@ -28,7 +29,7 @@ SceneBuilder room() {
   return scene;
 }
 
-// A sheet over the room, between panel and floor, turned about x; the camera sees part of the floor through it.
+// A sheet between panel and floor, rotated about x. The camera sees a part of the floor through it.
 scene::Geometry sheet(float height, float degrees) {
   scene::Geometry g = quad({-1.3f, 0, 1.1f}, {2.6f, 0, 0}, {0, 0, -2.2f});
   const mat4 m = glm::rotate(glm::translate(mat4(1.0f), vec3(0, height, 0)), glm::radians(degrees), vec3(1, 0, 0));
@@ -58,7 +59,7 @@ SceneBuilder twoPanes() {
   return scene.add(sheet(0.9f, 8.0f), pane({0.35f, 0.9f, 0.5f})).add(sheet(1.25f, -5.0f), pane({0.9f, 0.5f, 0.4f}));
 }
 
-// Stained glass: colour, normal, roughness and transmission differ from place to place.
+// Stained glass with textures for color, normal, roughness and transmission.
 SceneBuilder texturedPane() {
   SceneBuilder scene = room();
   scene::Material glass = pane(vec3(1.0f));
@@ -73,7 +74,7 @@ SceneBuilder texturedPane() {
   return scene.add(sheet(0.9f, 8.0f), glass);
 }
 
-// Glass that is half paint, with a rough coat: light samples at the pane and through it.
+// Partially transmissive glass with a rough coat: light samples at the pane and through it.
 SceneBuilder paintedPane() {
   SceneBuilder scene = room();
   scene::Material glass = pane({0.4f, 0.8f, 0.9f});
@@ -84,7 +85,7 @@ SceneBuilder paintedPane() {
   return scene.add(sheet(0.9f, 8.0f), glass);
 }
 
-// A veil, and a lattice with holes.
+// A blended sheet, and a lattice with holes.
 SceneBuilder alpha() {
   SceneBuilder scene = room();
   scene::Material lattice = veil(lambert(vec3(0.4f)), 1.0f, scene::AlphaMode::mask);
@@ -95,7 +96,7 @@ SceneBuilder alpha() {
       .add(sheet(1.25f, 0.0f), lattice);
 }
 
-// The panel in a bubble, another bubble on the floor, and a sheet of glass that comes and goes.
+// The panel in a bubble, a second bubble on the floor, and a blended sheet of glass.
 SceneBuilder bubbles() {
   SceneBuilder scene = room();
   addBubble(scene, pane({0.9f, 0.7f, 0.4f}), {0, 2.4f, 0}, 1.0f, true);
@@ -103,14 +104,14 @@ SceneBuilder bubbles() {
   return scene.add(sheet(0.7f, 8.0f), veil(pane({0.5f, 0.6f, 1.0f}), 0.5f, scene::AlphaMode::blend));
 }
 
-// Any-hit shaders do not run on this instance: shadow rays take it for a wall.
+// Any-hit shaders do not run for this instance, so it blocks shadow rays.
 SceneBuilder forcedOpaque() {
   SceneBuilder scene = onePane();
   scene.scene.instances.back().flags |= scene::kInstanceForceOpaque;
   return scene;
 }
 
-// A lamp in a block of rough glass that absorbs: light samples at its surface look into the glass.
+// A lamp in a block of rough absorbing glass: light samples at its surface go into the glass.
 SceneBuilder lampInRoughGlass() {
   SceneBuilder scene = room();
   scene::Material glass = clearGlass(1.3f, 1.0f);
@@ -130,22 +131,22 @@ struct Case {
 
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
-Picture render(const Case& c, program::Program program, std::uint32_t batches) {
-  PictureOptions options;
+RenderedImage render(const Case& c, program::Program program, std::uint32_t batches) {
+  ImageOptions options;
   options.program = std::move(program);
   options.set = {"bounces=" + std::to_string(c.bounces)};
   options.width = options.height = kSize;
   options.batches = batches;
-  return renderPicture(c.make(), options);
+  return renderImage(c.make(), options);
 }
 
-// What several tests compare with, rendered once.
-const Picture& naiveOf(const Case& c) {
-  static std::map<std::string, Picture> pictures;
-  const auto known = pictures.find(c.name);
-  return known != pictures.end()
+// Returns the reference image, which is rendered once for all tests.
+const RenderedImage& naiveOf(const Case& c) {
+  static std::map<std::string, RenderedImage> images;
+  const auto known = images.find(c.name);
+  return known != images.end()
              ? known->second
-             : pictures.emplace(c.name, render(c, program::loadProgram("naive"), c.naiveBatches)).first->second;
+             : images.emplace(c.name, render(c, program::loadProgram("naive"), c.naiveBatches)).first->second;
 }
 
 struct Verdict {
@@ -153,8 +154,8 @@ struct Verdict {
   std::string text;
 };
 
-// Half of the level for the pixels, half for their sum.
-Verdict compare(const Picture& a, const Picture& b) {
+// Half of the level is for the pixels, and half for their sum.
+Verdict compare(const RenderedImage& a, const RenderedImage& b) {
   std::ostringstream where;
   double smallest = 1.0, whole = 1.0, noise = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -204,7 +205,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, PaneWeights,
                                          Case{"LampInRoughGlass", lampInRoughGlass, 3, 96, 896}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-// pathtracer with `from` replaced by `to` in its ray generation shader.
+// Returns pathtracer with `from` replaced by `to` in its ray generation shader.
 program::Program changed(const std::string& from, const std::string& to) {
   program::Program program = program::loadProgram("pathtracer");
   std::string& text = program.files.at("pathtracer.rgen");
@@ -214,7 +215,7 @@ program::Program changed(const std::string& from, const std::string& to) {
   return program;
 }
 
-// pathtracer with another any-hit shader for shadow rays and panes.
+// Returns pathtracer with a different any-hit shader for shadow rays and panes.
 program::Program shadowed(const std::string& file, const std::string& text) {
   program::Program program = program::loadProgram("pathtracer");
   if (!text.empty()) program.files[file] = text;
@@ -224,7 +225,7 @@ program::Program shadowed(const std::string& file, const std::string& text) {
   return program;
 }
 
-TEST(PaneWeights, WrongOnesAreFound) {
+TEST(PaneWeights, RejectsWrongWeights) {
   const std::string keep =
       "if ((InstanceArray(frame.instances).at[hit.instance].flags & kInstanceOpaque) != 0u) path.bsdfPdf = 0.0;";
   const std::string twice =
@@ -233,15 +234,15 @@ TEST(PaneWeights, WrongOnesAreFound) {
       "layout(location = 1) rayPayloadInEXT ShadowPayload payload;\nhitAttributeEXT vec2 baryCoord;\n"
       "void main() {\n  HitPayload hit = hitOf(hitGeometry(), raySeed(payload));\n  hit.barycentric = baryCoord;\n"
       "  const vec3 passed = candidateTransmittance(hit, hitGeometry().material, 1.0, gl_WorldRayDirectionEXT);\n"
-      "  if (!takesAll(payload, passed * passed)) ignoreIntersectionEXT;\n}\n";
+      "  if (!blocksRay(payload, passed * passed)) ignoreIntersectionEXT;\n}\n";
   const std::pair<const char*, program::Program> wrong[] = {
       {"full weight behind panes", changed(keep, "path.bsdfPdf = 0.0;")},
-      {"panes are receivers", changed(keep, "path.receiver.position = surface.position;")},
+      {"panes are scattering vertices", changed(keep, "path.lightContext.position = surface.position;")},
       {"shadow rays stop at panes", shadowed("", "")},
       {"shadow rays are tinted twice", shadowed("twice.rahit", twice)},
       {"weights of 1.3", changed("return a / (a + b);", "return a / (a + 0.7 * b);")},
   };
-  const Picture& naive = naiveOf(kOnePane);
+  const RenderedImage& naive = naiveOf(kOnePane);
   for (const auto& [name, program] : wrong) {
     const Verdict v = compare(render(kOnePane, program, kOnePane.batches), naive);
     std::printf("%s: %s\n", name, v.text.c_str());

@@ -1,19 +1,24 @@
-// What a renderer promises besides the right picture: the same bytes however the work is cut, errors that say where.
+// Properties of a renderer besides correct images: bytes that do not depend on how the work is divided, regions,
+// cancellation, and the location of errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "harness.h"
-#include "picture.h"
+#include "job/device_limits.h"
+#include "job/runnable_program.h"
+#include "program/load.h"
+#include "rendered_image.h"
 
 namespace quintet::test {
 namespace {
 
 using testing::HasSubstr;
 
-// Some of everything: glass, metal, a veil, two kinds of lights and the sky.
-SceneBuilder something() {
+// A scene with glass, metal, alpha, two kinds of lights, and the sky.
+SceneBuilder variedScene() {
   SceneBuilder scene;
   scene::Material metal, veil = unlit({0.2f, 0.9f, 0.4f}, 0.5f);
   metal.roughness = 0.4f;
@@ -29,53 +34,55 @@ SceneBuilder something() {
 }
 
 struct Shared {
-  SceneBuilder scene = something();
-  render::DeviceScene device{testContext(), scene.scene, scene.environment};
+  SceneBuilder scene = variedScene();
+  render::DeviceScene device{testContext(), scene::Scene(scene.scene), scene.environment};
   program::Program program = program::loadProgram("pathtracer");
   render::RenderSettings settings;
 
   Shared() {
-    PictureOptions options;
+    ImageOptions options;
     options.width = 20;
     options.height = 14;
     settings = settingsFor(scene.scene.cameras[0], options);
   }
   io::Image render(const render::RenderSettings& with, const std::vector<std::uint32_t>& batches = {4, 4, 3}) {
-    render::Renderer renderer(device, program, testCompiler(), nullptr, with);
+    render::Renderer renderer = makeRenderer(device, program, with);
     for (const std::uint32_t count : batches) renderer.renderBatch(count);
     return renderer.image();
   }
 };
 
-// Shaders that were compiled before the scene was on the device are taken if they are for this scene, and only then.
-TEST(Renderer, TakesShadersThatWereCompiledForItsScene) {
+// The definitions are known before the scene is on the device, so that its program can be compiled in the meantime.
+TEST(Renderer, RunsAProgramThatWasCompiledBeforeTheUpload) {
   Shared shared;
-  const io::Image picture = shared.render(shared.settings);
   const auto defines = [](const SceneBuilder& scene) {
     return render::shaderDefines(render::sceneFeatures(scene.scene, scene.environment), testContext().info().quirks);
   };
   ASSERT_EQ(defines(shared.scene), shared.device.defines());
-  render::CompiledShaders early =
-      render::compileShaders(shared.program, testCompiler(), shared.settings, defines(shared.scene));
-  early.program.seconds = 1234.0;
-  render::RenderSettings settings = shared.settings;
-  settings.compiled = &early;
-  const auto secondsOf = [&] {
-    return render::Renderer(shared.device, shared.program, testCompiler(), nullptr, settings)
-        .statistics()
-        .compileSeconds;
-  };
-  EXPECT_EQ(secondsOf(), 1234.0);
-
-  SceneBuilder dark = something();
+  SceneBuilder dark = variedScene();
   dark.sky(vec3(0.0f));
-  early = render::compileShaders(shared.program, testCompiler(), shared.settings, defines(dark));
-  early.program.seconds = 1234.0;
-  EXPECT_LT(secondsOf(), 1000.0);
-  EXPECT_EQ(shared.render(settings).data, picture.data);
+  EXPECT_NE(defines(dark), shared.device.defines());
+
+  program::CompiledProgram compiled =
+      program::compile(shared.program, testCompiler(), render::renderDefines(defines(shared.scene), {}));
+  compiled.seconds = 1234.0;
+  job::CheckedProgram checked =
+      job::checkCompiled(shared.program, compiled, shared.device.facts(), job::deviceLimits(testContext().info()));
+  render::Renderer renderer(shared.device, std::move(checked.runnable), testCompiler(), nullptr, shared.settings);
+  EXPECT_EQ(renderer.statistics().compileSeconds, 1234.0);
+  for (const std::uint32_t count : {4u, 4u, 3u}) renderer.renderBatch(count);
+  EXPECT_EQ(renderer.image().data, shared.render(shared.settings).data);
 }
 
-TEST(Renderer, BytesDoNotDependOnLaunchSizes) {
+TEST(Renderer, DefinesRequestedOutputs) {
+  const render::Defines defines =
+      render::renderDefines({{"QUINTET_NO_PANES", "1"}}, {"depth", "ids"}, {{"SCALE", "2"}});
+  const render::Defines expected{
+      {"SCALE", "2"}, {"QUINTET_NO_PANES", "1"}, {"QUINTET_OUTPUT_depth", "1"}, {"QUINTET_OUTPUT_ids", "1"}};
+  EXPECT_EQ(defines, expected);
+}
+
+TEST(Renderer, RendersTheSameBytesWithAllLaunchSizes) {
   Shared shared;
   const io::Image whole = shared.render(shared.settings);
   EXPECT_TRUE(std::any_of(whole.data.begin(), whole.data.end(), [](std::byte b) { return b != std::byte{0}; }));
@@ -90,16 +97,16 @@ TEST(Renderer, BytesDoNotDependOnLaunchSizes) {
   }
 }
 
-TEST(Renderer, BytesDoNotDependOnLaunchesInFlight) {
+TEST(Renderer, RendersTheSameBytesWithLaunchesInFlight) {
   Shared shared;
   const io::Image whole = shared.render(shared.settings);
   render::RenderSettings settings = shared.settings;
   settings.launchesInFlight = 2;
   settings.launchSeconds = 1e-9;  // a launch for each row and sample
   settings.profile = true;
-  render::Renderer renderer(shared.device, shared.program, testCompiler(), nullptr, settings);
+  render::Renderer renderer = makeRenderer(shared.device, shared.program, settings);
   for (const std::uint32_t count : {4u, 4u, 3u}) renderer.renderBatch(count);
-  EXPECT_LT(renderer.launches().size(), 11u * 14u);  // the last one is under way
+  EXPECT_LT(renderer.launches().size(), 11u * 14u);  // the last one is in flight
   renderer.finish();
   std::uint64_t rowSamples = 0;
   for (const render::LaunchTiming& launch : renderer.launches())
@@ -109,13 +116,13 @@ TEST(Renderer, BytesDoNotDependOnLaunchesInFlight) {
   EXPECT_EQ(renderer.image().data, whole.data);
 }
 
-// The picture of what came before is whole when a batch is given up, and nothing of it is left after a new start.
-TEST(Renderer, LaunchesInFlightCanBeGivenUp) {
+// A canceled batch leaves the image of the earlier batches intact, and leaves nothing behind after a restart.
+TEST(Renderer, CancelsABatchWithLaunchesInFlight) {
   Shared shared;
   render::RenderSettings settings = shared.settings;
   settings.launchesInFlight = 2;
   settings.launchSeconds = 1e-9;
-  render::Renderer renderer(shared.device, shared.program, testCompiler(), nullptr, settings);
+  render::Renderer renderer = makeRenderer(shared.device, shared.program, settings);
   renderer.renderBatch();
   const io::Image before = renderer.image();
   EXPECT_FALSE(renderer.renderBatch(4, [](double) { return false; }));
@@ -125,7 +132,7 @@ TEST(Renderer, LaunchesInFlightCanBeGivenUp) {
   EXPECT_EQ(renderer.image().data, before.data);
 }
 
-TEST(Renderer, TheSeedDecidesTheBytes) {
+TEST(Renderer, RendersDifferentBytesWithADifferentSeed) {
   Shared shared;
   const io::Image first = shared.render(shared.settings);
   EXPECT_EQ(shared.render(shared.settings).data, first.data);
@@ -134,17 +141,18 @@ TEST(Renderer, TheSeedDecidesTheBytes) {
   EXPECT_NE(shared.render(settings).data, first.data);
 }
 
-// The same paths: random numbers do not depend on what code is there, only a compiler may round otherwise (lavapipe: 1.5e-8).
-void expectSame(const Picture& lean, const Picture& full) {
+// The paths are the same, because random numbers do not depend on which code is present. Only a compiler can round
+// differently (lavapipe: 1.5e-8).
+void expectSame(const RenderedImage& lean, const RenderedImage& full) {
   for (std::uint32_t y = 0; y < lean.height(); ++y)
     for (std::uint32_t x = 0; x < lean.width(); ++x)
       for (std::size_t c = 0; c < 4; ++c)
         EXPECT_NEAR(lean.at(x, y, c).mean(), full.at(x, y, c).mean(), 1e-5) << x << ' ' << y << " channel " << c;
 }
 
-// Materials that nothing uses bring their shader code back (render/scene_features.h).
-TEST(Renderer, CodeForAbsentFeaturesIsNotMissed) {
-  PictureOptions options;
+// Unused materials add the shader code of their features (render/scene/scene_features.h).
+TEST(Renderer, RendersTheSameWithCodeForUnusedFeatures) {
+  ImageOptions options;
   options.batches = 4;
   SceneBuilder scene;
   scene::Material metal;
@@ -152,40 +160,40 @@ TEST(Renderer, CodeForAbsentFeaturesIsNotMissed) {
   scene.add(sphere(vec3(0.0f), 1.0f, 2), metal)
       .add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.6f, 0.5f, 0.4f}));
   scene.sky({0.5f, 0.6f, 0.7f}).camera(perspective({0, 0.5f, 4}, vec3(0.0f), 40.0f));
-  const Picture lean = renderPicture(scene, options);
+  const RenderedImage lean = renderImage(scene, options);
   scene.scene.materials.insert(scene.scene.materials.end(),
                                {clearGlass(1.5f, 1.0f), clearGlass(1.5f, 0.0f), emitter(vec3(1.0f))});
   scene.scene.materials.back().clearcoat = 1.0f;
-  expectSame(lean, renderPicture(scene, options));
+  expectSame(lean, renderImage(scene, options));
 }
 
-// The same for textures, vertex colours and alpha.
-TEST(Renderer, CodeForAbsentTexturesIsNotMissed) {
-  PictureOptions options;
+// The same for textures, vertex colors and alpha.
+TEST(Renderer, RendersTheSameWithCodeForUnusedTextures) {
+  ImageOptions options;
   options.batches = 8;
   SceneBuilder scene;
   scene.add(sphere(vec3(0.0f), 1.0f, 2), lambert({0.7f, 0.4f, 0.2f}))
       .add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), lambert({0.6f, 0.5f, 0.4f}));
   scene.add(quad({-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}), emitter(vec3(4.0f)));
   scene.sky({0.2f, 0.3f, 0.4f}).camera(perspective({0, 0.5f, 4}, vec3(0.0f), 40.0f));
-  const Picture lean = renderPicture(scene, options);
-  scene.scene.images.push_back({"grey", io::makeImage(1, 1, 4, io::PixelType::u8, io::ColorEncoding::sRgb)});
-  scene.scene.textures.push_back({.name = "grey", .image = 0, .sampler = {}});
+  const RenderedImage lean = renderImage(scene, options);
+  scene.scene.images.push_back({"gray", io::makeImage(1, 1, 4, io::PixelType::u8, io::ColorEncoding::sRgb)});
+  scene.scene.textures.push_back({.name = "gray", .image = 0, .sampler = {}});
   scene::Material unused = clearGlass(1.5f, 1.0f);
   for (scene::TextureUse* use :
        {&unused.baseColorTexture, &unused.metallicRoughnessTexture, &unused.normalTexture, &unused.emissiveTexture,
         &unused.transmissionTexture, &unused.specularTexture, &unused.specularColorTexture})
     use->texture = 0;
   scene.scene.materials.push_back(unused);
-  // Out of sight and of the light: an any-hit shader and vertex colours.
+  // An any-hit shader and vertex colors, on geometry that neither the camera nor light reaches.
   scene.add(quad({-3, -9, 3}, {6, 0, 0}, {0, 0, -6}), unlit({0.2f, 0.9f, 0.4f}, 0.5f));
   scene.scene.materials.back().alphaMode = scene::AlphaMode::blend;
   scene.scene.meshes.back().geometries[0].colors.assign(scene.scene.meshes.back().geometries[0].positions.size(),
                                                         vec4(1.0f));
-  expectSame(lean, renderPicture(scene, options));
+  expectSame(lean, renderImage(scene, options));
 }
 
-TEST(Renderer, ARegionIsAPartOfTheImage) {
+TEST(Renderer, RendersARegionOfTheImage) {
   Shared shared;
   const io::Image whole = shared.render(shared.settings);
   for (const render::Region region : {render::Region{0, 0, 20, 14}, {3, 5, 7, 4}, {19, 13, 1, 1}}) {
@@ -203,7 +211,7 @@ TEST(Renderer, ARegionIsAPartOfTheImage) {
   }
 }
 
-TEST(Renderer, RefusesRegionsAndSizesThatMakeNoSense) {
+TEST(Renderer, RejectsInvalidRegionsAndSizes) {
   Shared shared;
   for (const render::Region region :
        {render::Region{20, 0, 1, 1}, {0, 0, 21, 1}, {10, 10, 5, 5}, {0, 0, 0, 3}, {1, 0, 0xFFFFFFFFu, 1}}) {
@@ -221,7 +229,7 @@ TEST(Renderer, RefusesRegionsAndSizesThatMakeNoSense) {
   EXPECT_THROW(shared.render(settings), UsageError);
 }
 
-TEST(Renderer, SaysWhereAProgramIsWrong) {
+TEST(Renderer, ReportsTheLocationOfAProgramError) {
   Shared shared;
   shared.program = program::loadProgram("normals");
   shared.settings.parameters = program::ParameterValues(shared.program.parameters);
@@ -233,7 +241,7 @@ TEST(Renderer, SaysWhereAProgramIsWrong) {
   try {
     shared.render(shared.settings);
     FAIL();
-  } catch (const render::ProgramError& error) {
+  } catch (const ProgramError& error) {
     ASSERT_FALSE(error.diagnostics().empty());
     EXPECT_EQ(error.diagnostics()[0].file, "<programs/normals>/normals.rgen");
     EXPECT_EQ(error.diagnostics()[0].line, line);
@@ -242,10 +250,10 @@ TEST(Renderer, SaysWhereAProgramIsWrong) {
   }
 }
 
-TEST(Renderer, CountsAndCanBeStopped) {
+TEST(Renderer, CountsSamplesAndStopsOnRequest) {
   Shared shared;
   shared.settings.launchSeconds = 1e-9;  // a row at a time
-  render::Renderer renderer(shared.device, shared.program, testCompiler(), nullptr, shared.settings);
+  render::Renderer renderer = makeRenderer(shared.device, shared.program, shared.settings);
   EXPECT_TRUE(renderer.renderBatch());
   EXPECT_TRUE(renderer.renderBatch(2));
   EXPECT_EQ(renderer.statistics().samples, 6u);
@@ -262,36 +270,35 @@ TEST(Renderer, CountsAndCanBeStopped) {
   EXPECT_GT(seen[0], 0.0);
   EXPECT_LT(seen[0], 1.0);
   EXPECT_EQ(renderer.statistics().samples, 6u);
-  // When the last row is under way nothing is left to give up.
+  // A batch whose last row is in flight can no longer be canceled.
   EXPECT_TRUE(renderer.renderBatch(4, [](double done) { return done < 1.0; }));
   EXPECT_EQ(renderer.statistics().samples, 10u);
 }
 
-// The other programs run over the same scene.
-TEST(BuiltInProgram, NormalsShowsTheNormalAsColour) {
+TEST(BuiltInProgram, NormalsShowsTheNormalAsColor) {
   SceneBuilder scene;
   scene.add(quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}), lambert(vec3(0.5f)), glm::rotate(mat4(1.0f), 0.5f, vec3(0, 1, 0)));
   scene.camera(orthographic({0, 0, 9}, vec3(0.0f), 0.05f));
-  PictureOptions options;
+  ImageOptions options;
   options.program = program::loadProgram("normals");
   options.batches = 2;
-  expectUniform(renderPicture(scene, options),
+  expectUniform(renderImage(scene, options),
                 vec4(0.5f + 0.5f * std::sin(0.5f), 0.5f, 0.5f + 0.5f * std::cos(0.5f), 1.0f), {.error = 1e-5});
 }
 
-// Seen from a plane, a parallel square of side 2 at height 1 hides its form factor.
+// Seen from a plane, a parallel square of side 2 at height 1 hides a part of the hemisphere that is its form factor.
 TEST(BuiltInProgram, AoShowsTheOpenPartOfTheHemisphere) {
   SceneBuilder scene;
   scene.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}), lambert(vec3(0.5f)));
   scene.add(quad({-1, 1, 1}, {2, 0, 0}, {0, 0, -2}), lambert(vec3(0.5f)));
   scene.camera(orthographic({0, 0.5f, 0}, vec3(0.0f), 0.001f));
-  PictureOptions options;
+  ImageOptions options;
   options.program = program::loadProgram("ao");
   options.batches = 32;
   const float hidden = 4.0f / (kPi * std::sqrt(2.0f)) * std::atan(1.0f / std::sqrt(2.0f));
-  expectUniform(renderPicture(scene, options), vec4(vec3(1.0f - hidden), 1.0f), {.error = 0.01, .rounding = 1e-4});
+  expectUniform(renderImage(scene, options), vec4(vec3(1.0f - hidden), 1.0f), {.error = 0.01, .rounding = 1e-4});
   options.set = {"distance=0.9"};
-  expectUniform(renderPicture(scene, options), vec4(1.0f), {.error = 1e-5});
+  expectUniform(renderImage(scene, options), vec4(1.0f), {.error = 1e-5});
 }
 
 }  // namespace

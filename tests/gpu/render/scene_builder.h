@@ -1,26 +1,25 @@
-// Scenes for the analytic tests, built from few words.
+// Concise construction of scenes for analytic tests.
 #ifndef QUINTET_TESTS_GPU_RENDER_SCENE_BUILDER_H
 #define QUINTET_TESTS_GPU_RENDER_SCENE_BUILDER_H
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 
 namespace quintet::test {
 
-// Materials. A Lambert reflector has no specular layer at all, so that its albedo is exact.
-scene::Material lambert(const vec3& albedo);
+scene::Material lambert(const vec3& albedo);    // without specular layer, so that its albedo is exact
 scene::Material emitter(const vec3& radiance);  // reflects nothing
 scene::Material unlit(const vec3& color, float alpha = 1.0f);
-scene::Material clearGlass(float ior, float thickness);  // smooth; thickness 0: a thin wall
+scene::Material clearGlass(float ior, float thickness);  // smooth; thickness 0 means a thin wall
 
-// Parallelogram corner + u·a + v·b, front a × b.
+// Returns the parallelogram corner + u·a + v·b with the normal a × b.
 scene::Geometry quad(const vec3& corner, const vec3& a, const vec3& b);
-scene::Geometry box(const vec3& low, const vec3& high);  // fronts outside
-// A convex polyhedron of 20 · 4^level flat triangles with its corners on the sphere.
+scene::Geometry box(const vec3& low, const vec3& high);  // front faces outside
+// Returns a convex polyhedron of 20 · 4^level flat triangles with its vertices on the sphere.
 scene::Geometry sphere(const vec3& center, float radius, int level);
 
 class SceneBuilder {
  public:
-  // One mesh and its instance, with a material of its own.
+  // Adds a mesh, its instance, and its material.
   SceneBuilder& add(scene::Geometry geometry, const scene::Material& material,
                     const mat4& worldFromObject = mat4(1.0f));
   SceneBuilder& light(const scene::Light& light);
@@ -31,7 +30,7 @@ class SceneBuilder {
   scene::Environment environment;  // black unless sky() was called
 };
 
-// Looks from `eye` to `target`; up is y, or -z where the view is along y.
+// Returns the transform of a camera that looks from `eye` to `target`. Up is y, or -z if the view is along y.
 mat4 lookAt(const vec3& eye, const vec3& target);
 scene::Camera perspective(const vec3& eye, const vec3& target, float verticalFovDegrees);
 scene::Camera orthographic(const vec3& eye, const vec3& target, float halfSize);

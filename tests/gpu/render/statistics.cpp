@@ -28,7 +28,7 @@ double pValue(const Moments& a, const Moments& b, double floor) {
   VarianceSum sum;
   for (const Moments* m : {&a, &b})
     sum.add(m->variance() / static_cast<double>(m->count()), static_cast<double>(m->count()) - 1.0);
-  return significance(a.mean() - b.mean(), std::sqrt(sum.variance()), floor, std::max(1.0, sum.freedom()));
+  return significance(a.mean() - b.mean(), std::sqrt(sum.variance()), floor, std::max(1.0, sum.degreesOfFreedom()));
 }
 
 }  // namespace quintet::test

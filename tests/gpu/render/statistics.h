@@ -1,4 +1,4 @@
-// Means of independent batches and the tests on them (distributions: base/statistics.h). No device in it.
+// Means of independent batches, and significance tests on them. The distributions are in base/statistics.h.
 #ifndef QUINTET_TESTS_GPU_RENDER_STATISTICS_H
 #define QUINTET_TESTS_GPU_RENDER_STATISTICS_H
 
@@ -8,7 +8,7 @@
 
 namespace quintet::test {
 
-// Mean and variance of a sequence without cancellation (Welford 1962).
+// Computes mean and variance of a sequence without cancellation (Welford 1962).
 class Moments {
  public:
   void add(double value);
@@ -16,7 +16,7 @@ class Moments {
   double mean() const { return mean_; }
   double variance() const { return count_ > 1 ? squares_ / static_cast<double>(count_ - 1) : 0.0; }
   double standardError() const;  // of the mean
-  // The same spread around another mean.
+  // Returns the same spread around a different mean.
   Moments movedTo(double mean) const;
 
  private:
@@ -25,10 +25,10 @@ class Moments {
   double squares_ = 0.0;
 };
 
-// P-value of "the true mean is `exact`"; `floor`: rounding error that the mean has in any case.
+// Returns the p-value of the hypothesis that the true mean is `exact`. `floor` is the rounding error of the mean.
 double pValue(const Moments& m, double exact, double floor = 0.0);
 
-// P-value of "both have the same mean": Welch's t-test (1947).
+// Returns the p-value of the hypothesis that both have the same mean, by Welch's t-test (1947).
 double pValue(const Moments& a, const Moments& b, double floor = 0.0);
 
 }  // namespace quintet::test

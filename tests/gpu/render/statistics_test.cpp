@@ -1,4 +1,4 @@
-// The tests' own statistics; their distributions are tested in tests/unit/base.
+// The statistics of the tests themselves. The distributions are tested in tests/unit/base.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace quintet::test {
 namespace {
 
-TEST(TestStatistics, Moments) {
+TEST(TestStatistics, ComputesMoments) {
   Moments m;
   for (const double v : {1e6 + 1, 1e6 + 2, 1e6 + 3, 1e6 + 4}) m.add(v);
   EXPECT_DOUBLE_EQ(m.mean(), 1e6 + 2.5);
@@ -16,7 +16,7 @@ TEST(TestStatistics, Moments) {
   EXPECT_NEAR(m.standardError(), std::sqrt(5.0 / 12.0), 1e-9);
 }
 
-TEST(TestStatistics, PValues) {
+TEST(TestStatistics, ComputesPValues) {
   Moments a, b, constant;
   for (const double v : {1.0, 2.0, 3.0, 4.0}) a.add(v), b.add(v + 5.0), constant.add(2.0);
   EXPECT_EQ(pValue(a, 2.5), 1.0);

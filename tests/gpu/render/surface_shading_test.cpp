@@ -1,5 +1,5 @@
-// fetchSurface and shadeSurface against the host: one triangle with everything in its attributes and textures, seen
-// at random points from random sides, under transforms that stretch and mirror.
+// fetchSurface and shadeSurface against the host: one triangle with all attributes and textures, at random points and
+// from random directions, under transforms that stretch and mirror.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -45,7 +45,8 @@ const std::string kShade = R"(
   }
 )";
 
-// 1 x 1 textures: no filter to reckon with. Left half black, right half white where the texture coordinate counts.
+// Adds a texture with nearest filtering, so that filtering does not affect the results. One texel, or one row of texels
+// to reveal the texture coordinate.
 int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba, io::ColorEncoding encoding) {
   io::Image image = io::makeImage(static_cast<std::uint32_t>(rgba.size() / 4), 1, 4, io::PixelType::u8, encoding);
   std::ranges::copy(rgba, image.samples<std::uint8_t>().begin());
@@ -109,7 +110,7 @@ std::vector<Answer> shade(const scene::Scene& scene, const std::vector<Query>& p
   return runCompute<Answer>(kShade, points, points.size(), device.options());
 }
 
-// What the host makes of the triangle, in double precision.
+// The surface as the host computes it in double precision.
 struct Expected {
   dvec3 position, face, normal, tangent, bitangent;
   double side;
@@ -126,25 +127,27 @@ Expected expectAt(const scene::Scene& scene, const Query& q) {
   }
   Expected e;
   e.position = dvec3(m * glm::dvec4(p, 1.0));
-  // The front is where the vertices turn counter-clockwise in object space: normals go with it under mirroring.
+  // The front face has counterclockwise vertices in object space. Normals follow it under mirroring.
   e.face = glm::normalize(forNormals *
                           glm::cross(dvec3(g.positions[1] - g.positions[0]), dvec3(g.positions[2] - g.positions[0])));
   e.side = glm::dot(e.face, dvec3(q.wo)) >= 0.0 ? 1.0 : -1.0;
   e.normal = glm::normalize(forNormals * n);
   const dvec3 along = linear * t;
   e.tangent = glm::normalize(along - e.normal * glm::dot(e.normal, along));
-  // glTF: bitangent = w cross(normal, tangent) in object space, w = -1 here; mirroring turns its sense in the world.
+  // glTF: bitangent = w cross(normal, tangent) in object space, with w = -1 here. Mirroring flips its sign in world
+  // space.
   e.bitangent = -(glm::determinant(linear) < 0.0 ? -1.0 : 1.0) * glm::cross(e.normal, e.tangent);
   return e;
 }
 
-// Are normal and mirror direction so far from the horizon that the normal is not bent (material.glsl, consistentNormal)?
-bool isFree(const Expected& e, const dvec3& normal, const dvec3& wo) {
+// Returns whether normal and mirror direction are far enough from the horizon that the normal is not bent
+// (consistentNormal in material.glsl).
+bool isUnbent(const Expected& e, const dvec3& normal, const dvec3& wo) {
   const double facing = glm::dot(normal, wo);
   return facing > 0.02 && glm::dot(2.0 * facing * normal - wo, e.side * e.face) > 0.02;
 }
 
-TEST(SurfaceShading, NormalsGoByTheInverseTranspose) {
+TEST(SurfaceShading, TransformsNormalsByTheInverseTranspose) {
   for (const Case& c : transforms()) {
     SCOPED_TRACE(c.name);
     const scene::Scene scene = triangle(c.worldFromObject);
@@ -159,7 +162,7 @@ TEST(SurfaceShading, NormalsGoByTheInverseTranspose) {
       ASSERT_EQ(answers[i].frontFace, e.side > 0.0 ? 1u : 0u);
       ASSERT_LT(glm::length(dvec3(answers[i].geometricNormal) - e.side * e.face), 1e-5);
       ASSERT_GT(glm::dot(dvec3(answers[i].normal), wo), 0.0);
-      if (!isFree(e, e.side * e.normal, wo)) continue;
+      if (!isUnbent(e, e.side * e.normal, wo)) continue;
       ASSERT_LT(glm::length(dvec3(answers[i].normal) - e.side * e.normal), 1e-5);
       ++compared;
     }
@@ -167,7 +170,7 @@ TEST(SurfaceShading, NormalsGoByTheInverseTranspose) {
   }
 }
 
-TEST(SurfaceShading, NormalMapsLieInTheTangentFrame) {
+TEST(SurfaceShading, AppliesNormalMapsInTheTangentFrame) {
   for (const Case& c : transforms()) {
     SCOPED_TRACE(c.name);
     scene::Scene scene = triangle(c.worldFromObject);
@@ -181,7 +184,7 @@ TEST(SurfaceShading, NormalMapsLieInTheTangentFrame) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Expected e = expectAt(scene, points[i]);
       const dvec3 normal = e.side * glm::normalize(map.x * e.tangent + map.y * e.bitangent + map.z * e.normal);
-      if (!isFree(e, normal, points[i].wo)) continue;
+      if (!isUnbent(e, normal, points[i].wo)) continue;
       ASSERT_LT(glm::length(dvec3(answers[i].normal) - normal), 2e-5);
       ++compared;
     }
@@ -194,7 +197,7 @@ double fromSrgb(int byte) {
   return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
 }
 
-TEST(SurfaceShading, FactorsMultiplyTextures) {
+TEST(SurfaceShading, MultipliesTexturesByFactors) {
   scene::Scene scene = triangle(mat4(1.0f));
   scene::Material& m = scene.materials[0];
   m.baseColor = {0.5f, 0.6f, 0.7f, 1.0f};
@@ -218,8 +221,9 @@ TEST(SurfaceShading, FactorsMultiplyTextures) {
   }
 }
 
-// A texture with a black and a white texel tells by which coordinate it was looked up: set 1, moved, turned, scaled.
-TEST(SurfaceShading, TexturesUseTheirSetAndTransform) {
+// A texture with a black and a white texel reveals the coordinate of its lookup: either UV set, translated, rotated and
+// scaled.
+TEST(SurfaceShading, AppliesUvSetAndTextureTransform) {
   for (const int uvSet : {0, 1}) {
     SCOPED_TRACE(uvSet);
     scene::Scene scene = triangle(mat4(1.0f));
@@ -235,7 +239,7 @@ TEST(SurfaceShading, TexturesUseTheirSetAndTransform) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const vec2 q = points[i].barycentric;
       const glm::dvec2 uv((1.0f - q.x - q.y) * uvs[0] + q.x * uvs[1] + q.y * uvs[2]);
-      // KHR_texture_transform: translation * rotation * scale, rotation counter-clockwise with v down.
+      // KHR_texture_transform: translation * rotation * scale, with counterclockwise rotation for v pointing down.
       const double x = 0.13 + std::cos(0.6) * 1.5 * uv.x + std::sin(0.6) * 0.7 * uv.y;
       const double turns = x - std::floor(x);
       if (std::min({std::abs(turns - 0.5), turns, 1.0 - turns}) < 0.01) continue;

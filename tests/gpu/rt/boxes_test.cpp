@@ -1,4 +1,4 @@
-// Boxes with an intersection shader: the sphere inscribed in each.
+// Boxes with an intersection shader that reports the inscribed sphere.
 #include "base/error.h"
 #include "rt_test_support.h"
 
@@ -15,7 +15,7 @@ std::vector<Bounds3> randomBoxes(std::size_t count, std::uint32_t seed) {
   return boxes;
 }
 
-// Nearest sphere of those that `accept` lets pass.
+// Returns the nearest sphere that `accept` accepts.
 template <class Accept>
 Hit bruteForceSpheres(const std::vector<Bounds3>& boxes, const Ray& ray, const Accept& accept) {
   Hit best;
@@ -58,10 +58,10 @@ class BoxScene {
     deviceBoxes = gpu::makeBufferOf(context, boxes, 0, "boxes");
     BlasInput input{.geometries = {geometry(opaque)}, .options = {.allowUpdate = allowUpdate, .name = "boxes"}};
     blas = std::move(BlasBuilder(context).build({&input, 1})[0]);
-    place();
+    buildTlas();
   }
   GeometryInput geometry(bool opaque) const { return {.kind = GeometryKind::boxes, .boxes = boxes_, .opaque = opaque}; }
-  void place() {
+  void buildTlas() {
     const InstanceInput instance{.blas = &blas};
     tlas.buildAndWait({&instance, 1});
   }
@@ -78,7 +78,7 @@ class BoxScene {
 constexpr auto kAll = [](std::size_t) { return true; };
 constexpr auto kOdd = [](std::size_t k) { return k % 2 == 1; };
 
-TEST(RtBoxes, SpheresAgainstBruteForce) {
+TEST(RtBoxes, MatchesBruteForce) {
   const std::vector<Bounds3> boxes = randomBoxes(800, 51);
   BoxScene scene(boxes, true);
   const std::vector<Ray> rays = randomRays(3000, 52);
@@ -87,8 +87,8 @@ TEST(RtBoxes, SpheresAgainstBruteForce) {
   for (const Hit& hit : hits) EXPECT_TRUE(hit.t < 0.0f || hit.kind == 1 || hit.kind == 2);
 }
 
-// Two hit groups with one intersection shader and different any-hit shaders, in both orders.
-TEST(RtBoxes, GroupsShareAnIntersectionShader) {
+// Two hit groups with the same intersection shader and different any-hit shaders (Quirks::sharesAnyHit).
+TEST(RtBoxes, RunsTheAnyHitShaderOfEachGroup) {
   const std::vector<Bounds3> boxes = randomBoxes(800, 53);
   BoxScene scene(boxes, false);
   const std::vector<Ray> rays = randomRays(3000, 54);
@@ -96,7 +96,7 @@ TEST(RtBoxes, GroupsShareAnIntersectionShader) {
   expectSpheres(scene.trace(kBoxHitOddOnly, rays), boxes, rays, kOdd);
 }
 
-TEST(RtBoxes, BrokenBoxesAreDropped) {
+TEST(RtBoxes, SkipsInactiveBoxes) {
   std::vector<Bounds3> boxes = randomBoxes(300, 55);
   boxes[0].max.y = std::numeric_limits<float>::infinity();
   boxes[17].min.x = std::numeric_limits<float>::quiet_NaN();
@@ -107,13 +107,13 @@ TEST(RtBoxes, BrokenBoxesAreDropped) {
   expectSpheres(scene.trace(kBoxHit, rays), boxes, rays, [](std::size_t k) { return k != 0 && k != 17 && k != 299; });
 }
 
-TEST(RtBoxes, RefitMovesBoxes) {
+TEST(RtBoxes, RefitsMovedBoxes) {
   std::vector<Bounds3> boxes = randomBoxes(300, 57);
   BoxScene scene(boxes, true, true);
   for (Bounds3& box : boxes) box = {box.min + vec3(0.2f, 0, 0), box.max + vec3(0.2f, 0, 0)};
   BlasBuilder(quintet::test::testContext()).refit(scene.blas, {.geometries = {scene.geometry(true)}, .options = {}});
   scene.deviceBoxes.uploadAs(std::span<const Bounds3>(boxes));
-  scene.place();
+  scene.buildTlas();
   const std::vector<Ray> rays = randomRays(2000, 58);
   expectSpheres(scene.trace(kBoxHit, rays), boxes, rays, kAll);
 }

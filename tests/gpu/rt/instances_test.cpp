@@ -1,4 +1,4 @@
-// The top level: transforms, masks, records per instance, rebuilds while the device is busy.
+// TLAS: transforms, masks, records per instance, and rebuilds while the device is busy.
 #include "base/error.h"
 #include "rt_test_support.h"
 
@@ -15,7 +15,7 @@ Blas buildQuad() {
 
 mat4 translation(float x, float z) { return glm::translate(mat4(1.0f), vec3(x, 0, z)); }
 
-TEST(RtInstances, EmptyTlasMisses) {
+TEST(RtInstances, MissesAnEmptyTlas) {
   for (const std::uint32_t capacity : {0u, 4u}) {
     Tlas tlas(context(), capacity);
     tlas.buildAndWait({});
@@ -25,16 +25,16 @@ TEST(RtInstances, EmptyTlasMisses) {
   }
 }
 
-TEST(RtInstances, TransformsIndicesMasksAndRecords) {
+TEST(RtInstances, AppliesTransformsIndicesMasksAndRecords) {
   const Blas blas = buildQuad();
   constexpr std::uint32_t kCount = 101;
   std::vector<InstanceInput> instances;
   std::vector<SbtRecord> records;
   std::vector<Ray> rays;
   for (std::uint32_t k = 0; k < kCount; ++k) {
-    const float x = 10.0f * static_cast<float>((k * 37) % kCount);  // not in the order of space
+    const float x = 10.0f * static_cast<float>((k * 37) % kCount);  // not in spatial order
     const mat4 rotated = translation(x, -5) * glm::rotate(mat4(1.0f), glm::half_pi<float>(), vec3(0, 1, 0)) *
-                         glm::scale(mat4(1.0f), vec3(1, 2, 3));  // seen from +x: z from -1 to 1, y from -2 to 2
+                         glm::scale(mat4(1.0f), vec3(1, 2, 3));  // seen from +x, z in [-1,1], y in [-2,2]
     instances.push_back({rotated, &blas, 1000 + k, k % 2 ? 0x01u : 0x02u, k, 0});
     records.push_back(hitRecord(kTriangleHit, {.map = blas.primitiveMap(0), .tag = k}));
     rays.push_back({.origin = {x + 1, 1.5f, -4.5f}, .direction = {-1, 0, 0}, .tMax = 5});
@@ -54,7 +54,7 @@ TEST(RtInstances, TransformsIndicesMasksAndRecords) {
   }
 }
 
-TEST(RtInstances, UnusableOnesAreLeftOut) {
+TEST(RtInstances, SkipsInactiveInstances) {
   const Blas blas = buildQuad();
   const BlasInput nothing;
   const Blas empty = std::move(BlasBuilder(context()).build({&nothing, 1})[0]);
@@ -78,8 +78,8 @@ TEST(RtInstances, UnusableOnesAreLeftOut) {
   }
 }
 
-// Ten frames are recorded without waiting: each rebuilds the TLAS and traces into its own buffer.
-TEST(RtInstances, RebuiltWhileFramesAreInFlight) {
+// Submits ten frames without waiting. Each rebuilds the TLAS and traces into its own buffer.
+TEST(RtInstances, RebuildsWhileFramesAreInFlight) {
   const Blas blas = buildQuad();
   constexpr std::uint32_t kInstances = 200, kFrames = 10;
   Tlas tlas(context(), kInstances);
@@ -122,7 +122,7 @@ TEST(RtInstances, RebuiltWhileFramesAreInFlight) {
   }
 }
 
-TEST(RtInstances, RefusesWhatDoesNotFit) {
+TEST(RtInstances, RejectsTooManyInstancesAndTooLargeFields) {
   const Blas blas = buildQuad();
   Tlas tlas(context(), 1);
   const std::vector<InstanceInput> two(2, InstanceInput{.blas = &blas});

@@ -1,4 +1,4 @@
-// Refit: moved vertices and boxes in the same structure.
+// Refits of moved vertices.
 #include "base/error.h"
 #include "rt_test_support.h"
 
@@ -16,13 +16,13 @@ TEST(RtRefit, MovesTriangles) {
     for (vec3& p : mesh.positions) p = vec3(p.y, 1.0f - p.x, p.z * 0.9f);
     input.geometries = {mesh.geometry()};
     builder.refit(scene.blas, input);
-    scene.placeInstance();
+    scene.buildTlas();
     expectSameHits(scene.trace(rays), mesh, rays);
   }
   EXPECT_LE(scene.blas.bounds().max.z, 0.9f);
 }
 
-TEST(RtRefit, KeepsDroppedPrimitivesOut) {
+TEST(RtRefit, SkipsInactivePrimitives) {
   Mesh mesh = randomMesh(60, 43, 0.8f);
   mesh.positions[9].x = std::numeric_limits<float>::quiet_NaN();  // triangle 3
   BlasInput input{.geometries = {mesh.geometry()}, .options = {.allowUpdate = true, .name = "holes"}};
@@ -31,14 +31,14 @@ TEST(RtRefit, KeepsDroppedPrimitivesOut) {
   for (vec3& p : mesh.positions) p.z += 0.1f;
   input.geometries = {mesh.geometry()};
   BlasBuilder(quintet::test::testContext()).refit(scene.blas, input);
-  scene.placeInstance();
+  scene.buildTlas();
   Mesh expected = mesh;
   expected.triangles[3] = uvec3(0);
   const std::vector<Ray> rays = randomRays(1500, 44);
   expectSameHits(scene.trace(rays), expected, rays);
 }
 
-TEST(RtRefit, RefusesWhatDoesNotMatch) {
+TEST(RtRefit, RejectsDifferentCountsAndNonFiniteVertices) {
   const Mesh mesh = randomMesh(10, 45), more = randomMesh(11, 45);
   BlasInput input{.geometries = {mesh.geometry()}, .options = {.allowUpdate = true, .name = "strict"}};
   SingleBlas scene(input);

@@ -1,11 +1,83 @@
 #include "rt_test_support.h"
 
-#include "rt_test_shaders.h"
-#include "shader/compiler.h"
+#include "program/linked/device_stages.h"
 
 namespace quintet::rt::test {
-
 namespace {
+
+constexpr char kCommon[] = R"(#version 460
+#extension GL_EXT_ray_tracing : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_buffer_reference2 : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+struct Ray { vec3 origin; float tMin; vec3 direction; float tMax; };
+struct Hit { float t; uint primitive; uint geometry; uint custom; uint tag; uint kind; float u; float v; };
+struct Box { vec3 low; vec3 high; };
+layout(buffer_reference, scalar) readonly buffer Rays { Ray at[]; };
+layout(buffer_reference, scalar) buffer Hits { Hit at[]; };
+layout(buffer_reference, scalar) readonly buffer Map { uint at[]; };
+layout(buffer_reference, scalar) readonly buffer Boxes { Box at[]; };
+layout(push_constant, scalar) uniform Launch {
+  Rays rays; Hits hits; uint count; uint flags; uint mask; uint recordOffset; uint recordStride; uint missIndex;
+} launch;
+)";
+
+constexpr char kRecord[] = R"(
+layout(shaderRecordEXT, scalar) buffer Record { uint64_t map; uint64_t boxes; uint tag; uint padding; } record;
+uint inputPrimitive() { return record.map == 0ul ? gl_PrimitiveID : Map(record.map).at[gl_PrimitiveID]; }
+)";
+
+constexpr char kRayGenerationText[] = R"(
+layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
+layout(location = 0) rayPayloadEXT Hit hit;
+void main() {
+  uint i = gl_LaunchIDEXT.y * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x;
+  if (i >= launch.count) return;
+  Ray ray = launch.rays.at[i];
+  hit = Hit(-2.0, 0, 0, 0, 0, 0, 0.0, 0.0);
+  traceRayEXT(tlas, launch.flags, launch.mask, launch.recordOffset, launch.recordStride, launch.missIndex, ray.origin,
+              ray.tMin, ray.direction, ray.tMax, 0);
+  launch.hits.at[i] = hit;
+}
+)";
+
+constexpr char kMissText[] = R"(
+layout(location = 0) rayPayloadInEXT Hit hit;
+layout(shaderRecordEXT, scalar) buffer Record { uint tag; } record;
+void main() { hit = Hit(-1.0, 0, 0, 0, record.tag, 0, 0.0, 0.0); }
+)";
+
+constexpr char kClosestHitText[] = R"(
+layout(location = 0) rayPayloadInEXT Hit hit;
+hitAttributeEXT vec2 attributes;
+void main() {
+  hit = Hit(gl_HitTEXT, inputPrimitive(), gl_GeometryIndexEXT, gl_InstanceCustomIndexEXT, record.tag, gl_HitKindEXT,
+            attributes.x, attributes.y);
+}
+)";
+
+// Reports the sphere inscribed in the box: the nearer of the two intersections within the interval of the ray.
+constexpr char kIntersectionText[] = R"(
+hitAttributeEXT vec2 attributes;
+void main() {
+  Box box = Boxes(record.boxes).at[inputPrimitive()];
+  vec3 toCenter = 0.5 * (box.low + box.high) - gl_ObjectRayOriginEXT;
+  float radius = 0.5 * (box.high.x - box.low.x), a = dot(gl_ObjectRayDirectionEXT, gl_ObjectRayDirectionEXT);
+  float b = dot(toCenter, gl_ObjectRayDirectionEXT), d = b * b - a * (dot(toCenter, toCenter) - radius * radius);
+  if (d < 0.0) return;
+  float nearer = (b - sqrt(d)) / a, farther = (b + sqrt(d)) / a;
+  float t = nearer >= gl_RayTminEXT ? nearer : farther;
+  if (t >= gl_RayTminEXT && t < gl_RayTmaxEXT) {
+    attributes = vec2(0.0);
+    reportIntersectionEXT(t, nearer >= gl_RayTminEXT ? 1u : 2u);
+  }
+}
+)";
+
+constexpr char kOddOnlyText[] = R"(
+void main() { if (inputPrimitive() % 2u == 0u) ignoreIntersectionEXT; }
+)";
+constexpr char kAcceptAllText[] = "void main() {}\n";
 
 struct Launch {
   VkDeviceAddress rays, hits;
@@ -22,7 +94,8 @@ std::unique_ptr<Pipeline> makePipeline(const gpu::BindlessSet& set) {
   std::vector<std::vector<std::uint32_t>> spirv;
   PipelineOptions options;
   for (const auto& [stage, text] : texts) spirv.push_back(compileStage(stage, text));
-  for (std::size_t k = 0; k < spirv.size(); ++k) options.stages.push_back({texts[k].first, spirv[k], "test"});
+  for (std::size_t k = 0; k < spirv.size(); ++k)
+    options.stages.push_back({program::vulkanStage(texts[k].first), spirv[k], "test"});
   options.groups = {{.general = 0},
                     {.general = 1},
                     {.closestHit = 2},
@@ -38,7 +111,7 @@ struct Objects {
 };
 std::unique_ptr<Objects> objects;
 
-// Registered last, torn down first: before the harness's device.
+// Registered after the environment of the harness, so it is torn down before the device.
 struct Cleaner : testing::Environment {
   void TearDown() override { objects.reset(); }
 };
@@ -61,7 +134,7 @@ std::vector<std::uint32_t> compileStage(shader::Stage stage, const std::string& 
   source.name = "test" + std::string(shader::stageExtension(stage));
   shader::Result result = compiler.compile(source);
   std::string messages;
-  for (const shader::Diagnostic& d : result.diagnostics) messages += "\n" + d.format();
+  for (const Diagnostic& d : result.diagnostics) messages += "\n" + d.format();
   if (!result.ok()) throw std::runtime_error("the shader does not compile:" + messages);
   return std::move(result.spirv);
 }
@@ -102,10 +175,10 @@ SingleBlas::SingleBlas(const BlasInput& input)
   for (std::size_t g = 0; g < input.geometries.size(); ++g)
     hit.push_back(hitRecord(kTriangleHit, {.map = blas.primitiveMap(g), .tag = static_cast<std::uint32_t>(g)}));
   contents = contentsOf(std::move(hit));
-  placeInstance();
+  buildTlas();
 }
 
-void SingleBlas::placeInstance() {
+void SingleBlas::buildTlas() {
   const InstanceInput instance{.blas = &blas};
   tlas.buildAndWait({&instance, 1});
 }
@@ -175,7 +248,7 @@ void expectSameHits(const std::vector<Hit>& hits, const Mesh& mesh, const std::v
                                std::abs(hits[k].v - expected.v) < 2e-2f;
     if (!sameT || (expected.t >= 0.0f && !samePrimitive)) ++different;
   }
-  // A ray may pass an edge or a crossing of two triangles closer than float can tell.
+  // Rays close to an edge or to the intersection of two triangles are ambiguous in float precision.
   EXPECT_LE(different, rays.size() / 500);
   EXPECT_GT(hitCount, rays.size() / 20) << "the test traces too little";
 }

@@ -1,4 +1,4 @@
-// Triangles: known rays, the brute-force oracle, dropped primitives, many geometries and builds.
+// Triangles: known rays, comparison with brute force, inactive primitives, several geometries and builds.
 #include "base/error.h"
 #include "rt_test_support.h"
 
@@ -8,21 +8,21 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-TEST(RtTriangles, KnownRays) {
+TEST(RtTriangles, HitsAQuad) {
   const Mesh mesh = quad(-3);
   SingleBlas scene({.geometries = {mesh.geometry()}, .options = {.name = "quad"}});
   const std::vector<Ray> rays{
-      {.origin = {0.5f, -0.5f, 0}},                           // below the diagonal: triangle 0
-      {.origin = {-0.5f, 0.5f, 0}},                           // above: triangle 1
-      {.origin = {1.5f, 0, 0}},                               // beside
+      {.origin = {0.5f, -0.5f, 0}},                           // below the diagonal, triangle 0
+      {.origin = {-0.5f, 0.5f, 0}},                           // above the diagonal, triangle 1
+      {.origin = {1.5f, 0, 0}},                               // beside the quad
       {.origin = {0.5f, -0.5f, 0}, .tMax = 2.9f},             // too short
-      {.origin = {0.5f, -0.5f, 0}, .tMin = 3.1f},             // begins behind
+      {.origin = {0.5f, -0.5f, 0}, .tMin = 3.1f},             // starts behind
       {.origin = {0.5f, -0.5f, -6}, .direction = {0, 0, 2}},  // from the back, direction of length 2
   };
   const std::vector<Hit> hits = scene.trace(rays);
   EXPECT_FLOAT_EQ(hits[0].t, 3.0f);
   EXPECT_EQ(hits[0].primitive, 0u);
-  EXPECT_EQ(hits[0].kind, 0xFEu);  // front: counter-clockwise as the ray sees it
+  EXPECT_EQ(hits[0].kind, 0xFEu);  // front face: counterclockwise as seen by the ray
   EXPECT_NEAR(hits[0].u, 0.5f, 1e-6f);
   EXPECT_NEAR(hits[0].v, 0.25f, 1e-6f);
   EXPECT_FLOAT_EQ(hits[1].t, 3.0f);
@@ -32,7 +32,7 @@ TEST(RtTriangles, KnownRays) {
   EXPECT_EQ(hits[5].kind, 0xFFu);
 }
 
-TEST(RtTriangles, RandomMeshAgainstBruteForce) {
+TEST(RtTriangles, MatchesBruteForceForRandomMeshes) {
   for (const std::size_t count : {1u, 2u, 3u, 7u, 501u, 2000u}) {
     const Mesh mesh = randomMesh(count, static_cast<std::uint32_t>(count), count < 10 ? 1.5f : 0.2f);
     SingleBlas scene({.geometries = {mesh.geometry()}, .options = {.name = "random"}});
@@ -41,7 +41,7 @@ TEST(RtTriangles, RandomMeshAgainstBruteForce) {
   }
 }
 
-TEST(RtTriangles, InputOrderGivesTheSameHits) {
+TEST(RtTriangles, GivesTheSameHitsInInputOrder) {
   const Mesh mesh = randomMesh(600, 3, 0.3f);
   BlasInput input{.geometries = {mesh.geometry()}, .options = {.keepInputOrder = true, .name = "unordered"}};
   SingleBlas scene(input);
@@ -50,10 +50,10 @@ TEST(RtTriangles, InputOrderGivesTheSameHits) {
   expectSameHits(scene.trace(rays), mesh, rays);
 }
 
-TEST(RtTriangles, NonFinitePrimitivesAreDroppedAndIdsStay) {
+TEST(RtTriangles, SkipsNonFinitePrimitivesAndKeepsIds) {
   Mesh mesh = randomMesh(400, 11, 0.4f);
   for (const std::size_t k : {0u, 5u, 399u}) mesh.positions[mesh.triangles[k][k % 3]].y = k == 5 ? kInfinity : kNan;
-  mesh.triangles[7] = uvec3(21, 21, 21);  // degenerate: stays
+  mesh.triangles[7] = uvec3(21, 21, 21);  // degenerate, but active
   SingleBlas scene({.geometries = {mesh.geometry()}, .options = {.name = "holes"}});
   EXPECT_EQ(scene.blas.inactiveCount(), 3u);
   EXPECT_TRUE(isFinite(scene.blas.bounds().min) && isFinite(scene.blas.bounds().max));
@@ -65,7 +65,7 @@ TEST(RtTriangles, NonFinitePrimitivesAreDroppedAndIdsStay) {
   expectSameHits(scene.trace(rays), finite, rays);
 }
 
-TEST(RtTriangles, EveryPrimitiveInactiveOrNone) {
+TEST(RtTriangles, SupportsGeometriesWithoutActivePrimitives) {
   Mesh none, inactive = quad(-1);
   for (vec3& p : inactive.positions) p.x = kNan;
   for (const BlasInput& input : {BlasInput{}, BlasInput{.geometries = {none.geometry()}, .options = {}},
@@ -76,8 +76,8 @@ TEST(RtTriangles, EveryPrimitiveInactiveOrNone) {
   }
 }
 
-// Quads one behind the other, a geometry each, two ray types, an empty geometry in between.
-TEST(RtTriangles, HitRecordsByGeometryAndRayType) {
+// Quads behind each other, one per geometry, two ray types, and an empty geometry in between.
+TEST(RtTriangles, SelectsRecordsByGeometryAndRayType) {
   constexpr std::uint32_t kGeometries = 9, kRayTypes = 2;
   std::vector<Mesh> meshes;
   for (std::uint32_t g = 0; g < kGeometries; ++g) {
@@ -89,7 +89,8 @@ TEST(RtTriangles, HitRecordsByGeometryAndRayType) {
   BlasInput input;
   for (const Mesh& mesh : meshes) input.geometries.push_back(mesh.geometry());
   SingleBlas scene(input);
-  std::vector<SbtRecord> records(2, SbtRecord{SbtRecord::kUnusedGroup, {}});  // before the instance's offset
+  std::vector<SbtRecord> records(2,
+                                 SbtRecord{SbtRecord::kUnusedGroup, {}});  // before the record offset of the instance
   for (std::uint32_t g = 0; g < kGeometries; ++g)
     for (std::uint32_t type = 0; type < kRayTypes; ++type)
       records.push_back(hitRecord(kTriangleHit, {.map = scene.blas.primitiveMap(g), .tag = 100 * type + g}));
@@ -118,10 +119,10 @@ TEST(RtTriangles, HitRecordsByGeometryAndRayType) {
   }
 }
 
-TEST(RtTriangles, GeometriesOfOneTreeKeepTheirPrimitives) {
+TEST(RtTriangles, KeepsPrimitivesOfSeveralGeometries) {
   const Mesh mesh = randomMesh(1501, 21, 0.2f);
   const std::span all(mesh.triangles);
-  BlasInput input;  // three geometries that share their positions
+  BlasInput input;  // three geometries with shared positions
   for (const std::span part : {all.subspan(0, 400), all.subspan(400, 1000), all.subspan(1400, 101)})
     input.geometries.push_back({.positions = mesh.positions, .triangles = part});
   SingleBlas scene(input);
@@ -132,7 +133,7 @@ TEST(RtTriangles, GeometriesOfOneTreeKeepTheirPrimitives) {
   expectSameHits(hits, mesh, rays);
 }
 
-TEST(RtTriangles, ManyBuildsWithinASmallBudget) {
+TEST(RtTriangles, BuildsManyStructuresWithASmallBudget) {
   std::vector<Mesh> meshes;
   std::vector<BlasInput> inputs;
   for (std::uint32_t k = 0; k < 40; ++k) meshes.push_back(randomMesh(50 + 10 * k, k, 0.5f));
@@ -154,7 +155,7 @@ TEST(RtTriangles, ManyBuildsWithinASmallBudget) {
   }
 }
 
-TEST(RtTriangles, CompactionKeepsHits) {
+TEST(RtTriangles, CompactsWithoutChangingHits) {
   const Mesh mesh = randomMesh(3000, 31, 0.1f);
   const bool gains = !quintet::test::testContext().info().quirks.noCompaction;
   const std::vector<Ray> rays = randomRays(2000, 32);
@@ -165,7 +166,7 @@ TEST(RtTriangles, CompactionKeepsHits) {
   }
 }
 
-TEST(RtTriangles, MixedKindsAreRefused) {
+TEST(RtTriangles, RejectsMixedKinds) {
   const Mesh mesh = quad(0);
   const Bounds3 box{vec3(0), vec3(1)};
   const BlasInput input{.geometries = {mesh.geometry(), {.kind = GeometryKind::boxes, .boxes = {&box, 1}}},

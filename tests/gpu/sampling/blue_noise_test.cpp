@@ -1,5 +1,5 @@
-// Pixels that share their nets: blocks of pixels are nets, errors cancel over small neighbourhoods, and yet each pixel's
-// own numbers are uniform, independent from demand to demand, and as well spread as those of independent pixels.
+// Pixels that share nets: blocks of pixels are nets, and errors cancel over small neighborhoods. Within each pixel, the
+// numbers are uniform, independent between draws, and as well distributed as those of independent pixels.
 #include <cmath>
 #include <vector>
 
@@ -16,15 +16,15 @@ namespace {
 
 constexpr std::uint32_t kIndependent = shared::kIndependentPixels;
 
-struct Demand {
+struct Draw {
   uvec2 pixel;
   std::uint32_t index;      // of the sample
-  std::uint32_t dimension;  // demands made before
+  std::uint32_t dimension;  // number of earlier draws
   std::uint32_t seed;
   std::uint32_t planned;
 };
 
-std::vector<vec2> ask(const std::vector<Demand>& demands) {
+std::vector<vec2> evaluate(const std::vector<Draw>& draws) {
   return runCompute<vec2>(R"(
     #include <quintet/frame.glsl>
     #include <quintet/sampling/sobol.glsl>
@@ -36,13 +36,13 @@ std::vector<vec2> ask(const std::vector<Demand>& demands) {
       return next2D(s);
     }
   )",
-                          demands, demands.size());
+                          draws, draws.size());
 }
 
 // Samples [first, first + count) of the pixels of a square.
-std::vector<Demand> square(uvec2 corner, std::uint32_t side, std::uint32_t first, std::uint32_t count,
-                           std::uint32_t planned, std::uint32_t dimension = 0, std::uint32_t seed = 1) {
-  std::vector<Demand> result;
+std::vector<Draw> square(uvec2 corner, std::uint32_t side, std::uint32_t first, std::uint32_t count,
+                         std::uint32_t planned, std::uint32_t dimension = 0, std::uint32_t seed = 1) {
+  std::vector<Draw> result;
   for (std::uint32_t y = 0; y < side; ++y)
     for (std::uint32_t x = 0; x < side; ++x)
       for (std::uint32_t i = 0; i < count; ++i)
@@ -63,58 +63,58 @@ struct Range {
   std::uint32_t first, count, planned;
 };
 
-// Counts that are powers of two, planned or not; and the ranges 16 + 8 of which 24 planned samples consist, 2 + 1 of 3.
+// Counts that are powers of two, planned or not, and the ranges that a planned number consists of: 24 = 16 + 8 and
+// 3 = 2 + 1.
 constexpr Range kRanges[] = {{0, 1, 1},   {0, 1, 0},   {0, 2, 0}, {0, 4, 4}, {0, 16, 16},   {0, 8, 0},
                              {0, 16, 24}, {16, 8, 24}, {0, 2, 3}, {2, 1, 3}, {64, 32, 100}, {96, 4, 100}};
 
 TEST(BlueNoise, BlocksOfPixelsAreNets) {
   for (const Range& r : kRanges)
     for (const std::uint32_t dimension : {0u, 7u}) {
-      EXPECT_TRUE(isNet(ask(square({66, 130}, 1, r.first, r.count, r.planned, dimension))));
-      EXPECT_TRUE(isNet(ask(square({66, 130}, 2, r.first, r.count, r.planned, dimension))))
+      EXPECT_TRUE(isNet(evaluate(square({66, 130}, 1, r.first, r.count, r.planned, dimension))));
+      EXPECT_TRUE(isNet(evaluate(square({66, 130}, 2, r.first, r.count, r.planned, dimension))))
           << r.first << " " << r.count;
-      EXPECT_TRUE(isNet(ask(square({64, 136}, 8, r.first, r.count, r.planned, dimension))))
+      EXPECT_TRUE(isNet(evaluate(square({64, 136}, 8, r.first, r.count, r.planned, dimension))))
           << r.first << " " << r.count;
     }
-  EXPECT_TRUE(isNet(ask(square({64, 128}, 64, 0, 4, 4))));
-  // What the test would notice.
-  EXPECT_FALSE(isNet(ask(square({64, 136}, 8, 0, 4, kIndependent))));
-  EXPECT_FALSE(isNet(ask(square({65, 136}, 8, 0, 4, 4))));  // not aligned
-  EXPECT_FALSE(
-      isNet(ask(square({64, 136}, 8, 16, 8, 64))));  // a range that is not taken alone: shuffled for each pixel
+  EXPECT_TRUE(isNet(evaluate(square({64, 128}, 64, 0, 4, 4))));
+  // Cases that are not nets, which the test must detect.
+  EXPECT_FALSE(isNet(evaluate(square({64, 136}, 8, 0, 4, kIndependent))));
+  EXPECT_FALSE(isNet(evaluate(square({65, 136}, 8, 0, 4, 4))));    // not aligned
+  EXPECT_FALSE(isNet(evaluate(square({64, 136}, 8, 16, 8, 64))));  // not a range of the plan, so shuffled per pixel
 }
 
-// Whatever is planned, a pixel has a (0,k,2)-net in each prefix of 2^k samples.
-TEST(BlueNoise, EachPixelKeepsItsNets) {
+// For any plan, each prefix of 2^k samples of a pixel is a (0,k,2)-net.
+TEST(BlueNoise, EachPixelHasNets) {
   for (const std::uint32_t planned : {0u, 1u, 24u, 100u, 1024u, kIndependent})
     for (const uvec2 pixel : {uvec2(0, 0), uvec2(63, 64), uvec2(1919, 1079)})
       for (const std::uint32_t dimension : {0u, 1u, 40u}) {
-        const std::vector<vec2> points = ask(square(pixel, 1, 0, 1024, planned, dimension));
+        const std::vector<vec2> points = evaluate(square(pixel, 1, 0, 1024, planned, dimension));
         for (std::ptrdiff_t count = 1; count <= 1024; count *= 2)
           EXPECT_TRUE(isNet({points.begin(), points.begin() + count})) << planned << " " << count;
       }
 }
 
-// Over the seeds, which are what an expectation runs over: each number of a pixel is uniform, two demands of one sample
-// are independent, so are demands of different samples, and the same demand of two far pixels.
+// Over random seeds, each number of a pixel is uniform. Independent are two draws of one sample, draws of different
+// samples, and the same draw of two pixels in different tiles.
 TEST(BlueNoise, NumbersOfAPixelAreUniformAndIndependentOverSeeds) {
   struct Pair {
-    Demand a, b;
+    Draw a, b;
   };
   std::vector<Pair> pairs;
   for (const std::uint32_t planned : {0u, 16u, 24u}) {
     pairs.push_back({{{5, 9}, 0, 0, 0, planned}, {{5, 9}, 0, 1, 0, planned}});
     pairs.push_back({{{5, 9}, 3, 4, 0, planned}, {{5, 9}, 3, 9, 0, planned}});
     pairs.push_back({{{5, 9}, 1, 2, 0, planned}, {{5, 9}, 2, 3, 0, planned}});
-    pairs.push_back({{{63, 9}, 3, 2, 0, planned}, {{64, 9}, 3, 2, 0, planned}});  // of two tiles
-    pairs.push_back({{{5, 9}, 3, 2, 0, planned}, {{6, 9}, 3, 3, 0, planned}});    // neighbours, but two demands
+    pairs.push_back({{{63, 9}, 3, 2, 0, planned}, {{64, 9}, 3, 2, 0, planned}});  // in two tiles
+    pairs.push_back({{{5, 9}, 3, 2, 0, planned}, {{6, 9}, 3, 3, 0, planned}});    // neighbors, but two draws
   }
   constexpr std::uint32_t kSeeds = 1u << 16;
   const double least = sidak(0.01, pairs.size() * 5);
-  const auto overSeeds = [](Demand demand) {
-    std::vector<Demand> demands(kSeeds, demand);
-    for (std::uint32_t i = 0; i < kSeeds; ++i) demands[i].seed = i;
-    return ask(demands);
+  const auto overSeeds = [](Draw draw) {
+    std::vector<Draw> draws(kSeeds, draw);
+    for (std::uint32_t i = 0; i < kSeeds; ++i) draws[i].seed = i;
+    return evaluate(draws);
   };
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const std::vector<vec2> a = overSeeds(pairs[k].a), b = overSeeds(pairs[k].b);
@@ -125,15 +125,15 @@ TEST(BlueNoise, NumbersOfAPixelAreUniformAndIndependentOverSeeds) {
       EXPECT_GT(uniformity(both), least) << "pair " << k << " " << c;
     }
   }
-  // What it would find: neighbours in one demand are dependent, by intention.
+  // The test detects dependence: neighbors in one draw are dependent by design.
   const std::vector<vec2> a = overSeeds({{4, 8}, 0, 2, 0, 1}), b = overSeeds({{5, 8}, 0, 2, 0, 1});
   std::vector<vec2> both(kSeeds);
   for (std::size_t i = 0; i < kSeeds; ++i) both[i] = {a[i].x, b[i].x};
   EXPECT_LT(uniformity(both), 1e-9);
 }
 
-// The variance of the error of a pixel, and that of the mean over 8 x 8 pixels times 64: their ratio is 1 for white noise.
-// The squares lie across the hierarchy, not along it; what is left in them is mostly the high frequencies at their edges.
+// The variance of the error of a pixel, and 64 times that of the mean over 8 x 8 pixels. The ratio is 1 for white
+// noise. The squares are not aligned to the hierarchy, so high frequencies at their edges remain.
 struct Noise {
   double pixel = 0;
   double square = 0;
@@ -142,7 +142,7 @@ template <class F>
 Noise noise(std::uint32_t count, std::uint32_t planned, double exact, const F& f) {
   constexpr std::uint32_t kSide = 128, kSquare = 8;
   Noise result;
-  const std::vector<vec2> points = ask(square({3, 5}, kSide, 0, count, planned, 2));
+  const std::vector<vec2> points = evaluate(square({3, 5}, kSide, 0, count, planned, 2));
   std::vector<double> squares(kSide * kSide / (kSquare * kSquare), 0.0);
   for (std::uint32_t pixel = 0; pixel < kSide * kSide; ++pixel) {
     double error = -exact;
@@ -169,7 +169,7 @@ TEST(BlueNoise, LowFrequenciesOfTheErrorAreSuppressed) {
     EXPECT_GT(white.square / white.pixel, 0.7) << count;
     EXPECT_LT(white.square / white.pixel, 1.5) << count;
   }
-  for (const std::uint32_t count : {1u, 4u, 16u}) {  // nothing planned, counts that happen to be powers of two
+  for (const std::uint32_t count : {1u, 4u, 16u}) {  // nothing planned; counts are powers of two
     const Noise a = noise(count, 0, smoothMean, smooth);
     EXPECT_LT(a.square / a.pixel, 0.45) << count;
   }

@@ -1,4 +1,4 @@
-// What both samplers' tests ask of points in the unit square.
+// Properties of points in the unit square, for the tests of both samplers.
 #ifndef QUINTET_TESTS_GPU_SAMPLING_NETS_H
 #define QUINTET_TESTS_GPU_SAMPLING_NETS_H
 
@@ -11,7 +11,7 @@
 
 namespace quintet::test {
 
-// Each of the 2^k boxes of 2^-i x 2^-j, i + j = k, holds exactly one of 2^k points, for every i.
+// Returns whether, for every i, each of the 2^k boxes of 2^-i x 2^-j, i + j = k, contains exactly one of 2^k points.
 inline bool isNet(const std::vector<vec2>& points) {
   const int k = std::countr_zero(points.size());
   for (int i = 0; i <= k; ++i) {

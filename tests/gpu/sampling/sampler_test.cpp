@@ -1,5 +1,5 @@
-// The two samplers: range, uniformity, independence of pixels and of demands, stratification, and what that buys.
-// Every statistical test says which mistake it would find, and finds it.
+// The two samplers: range, uniformity, independence of pixels and of draws, stratification, and convergence. Every
+// statistical test also runs on a deliberately wrong input, which it must reject.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -15,17 +15,17 @@
 namespace quintet::test {
 namespace {
 
-constexpr double kLevel = 0.01;  // of each TEST, shared among its chi-square tests after Šidák
+constexpr double kLevel = 0.01;  // of each TEST, divided among its chi-square tests by Šidák's correction
 
-// One question: the 2D (or 1D, then y = 0) number of a demand.
-struct Demand {
+// One 2D number (or 1D, then y = 0).
+struct Draw {
   uvec2 pixel;
   std::uint32_t index;      // of the sample
-  std::uint32_t dimension;  // demands made before
+  std::uint32_t dimension;  // number of earlier draws
   std::uint32_t seed = 0;
 };
 
-// SAMPLER is the library's file; WRONG makes one mistake of many.
+// WRONG sets one member of the input to 0, as a deliberate mistake.
 const std::string kBody = R"(
 #include <quintet/frame.glsl>
 #ifdef PCG
@@ -52,29 +52,28 @@ vec2 run(uint i, In value) {
 }
 )";
 
-std::vector<vec2> ask(const std::vector<Demand>& demands, const Defines& defines = {}) {
+std::vector<vec2> evaluate(const std::vector<Draw>& draws, const Defines& defines = {}) {
   ComputeOptions options;
   options.defines = defines;
-  return runCompute<vec2>(kBody, demands, demands.size(), options);
+  return runCompute<vec2>(kBody, draws, draws.size(), options);
 }
 
 // Demands over a 512 x 256 image, each pixel once.
-std::vector<Demand> image(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed = 0,
-                          std::uint32_t shift = 0) {
-  std::vector<Demand> result;
+std::vector<Draw> image(std::uint32_t index, std::uint32_t dimension, std::uint32_t seed = 0, std::uint32_t shift = 0) {
+  std::vector<Draw> result;
   for (std::uint32_t y = 0; y < 256; ++y)
     for (std::uint32_t x = 0; x < 512; ++x) result.push_back({{x + shift, y}, index, dimension, seed});
   return result;
 }
 
-// Successive samples of one pixel.
-std::vector<Demand> series(uvec2 pixel, std::uint32_t dimension, std::uint32_t count, std::uint32_t first = 0) {
-  std::vector<Demand> result;
+// Consecutive samples of one pixel.
+std::vector<Draw> series(uvec2 pixel, std::uint32_t dimension, std::uint32_t count, std::uint32_t first = 0) {
+  std::vector<Draw> result;
   for (std::uint32_t i = 0; i < count; ++i) result.push_back({pixel, first + i, dimension, 0});
   return result;
 }
 
-// That the points (x, y) fill the unit square evenly: 32 x 32 cells.
+// p-value of the hypothesis that the points (x, y) are uniform in the unit square: chi-square on 32 x 32 cells.
 double uniformity(const std::vector<float>& x, const std::vector<float>& y) {
   constexpr int kCells = 32;
   std::vector<double> observed(kCells * kCells, 0.0);
@@ -96,7 +95,7 @@ TEST(Sampler, StaysBelowOne) {
   for (Defines defines : kSamplers)
     for (const char* kind : {"TWO", "ONE", "BITS"}) {
       defines.emplace_back(kind, "1");
-      for (const vec2& p : ask(series({7, 9}, 3, 1 << 18), defines)) {
+      for (const vec2& p : evaluate(series({7, 9}, 3, 1 << 18), defines)) {
         ASSERT_GE(glm::min(p.x, p.y), 0.0f);
         ASSERT_LT(glm::max(p.x, p.y), 1.0f);
       }
@@ -112,23 +111,23 @@ TEST(Sampler, StaysBelowOne) {
   EXPECT_EQ(largest[0].y, 0.0f);
 }
 
-// Prefixes and aligned blocks of 2^k samples are (0,k,2)-nets for every demand and pixel; scrambling keeps that.
+// Prefixes and aligned blocks of 2^k samples are (0,k,2)-nets for every draw and pixel; scrambling keeps that.
 TEST(Sobol, BlocksAreNets) {
   for (const uvec2 pixel : {uvec2(0, 0), uvec2(3, 7), uvec2(1919, 1079)})
     for (const std::uint32_t dimension : {0u, 1u, 5u, 40u})
       for (const std::uint32_t first : {0u, 1024u, 3u << 20}) {
-        const std::vector<vec2> points = ask(series(pixel, dimension, 1024, first));
+        const std::vector<vec2> points = evaluate(series(pixel, dimension, 1024, first));
         for (std::size_t count = 1; count <= points.size(); count *= 2)
           EXPECT_TRUE(isNet({points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count)})) << count;
         EXPECT_TRUE(isNet({points.begin() + 512, points.end()}));
       }
-  EXPECT_FALSE(isNet(ask(series({3, 7}, 0, 1024), {{"PCG", "1"}})));
-  EXPECT_FALSE(isNet(ask(series({3, 7}, 0, 1024, 512))));  // not aligned
+  EXPECT_FALSE(isNet(evaluate(series({3, 7}, 0, 1024), {{"PCG", "1"}})));
+  EXPECT_FALSE(isNet(evaluate(series({3, 7}, 0, 1024, 512))));  // not aligned
 }
 
-TEST(Sobol, OneDimensionalDemandsAreStratified) {
+TEST(Sobol, OneDimensionalDrawsAreStratified) {
   for (const std::uint32_t dimension : {0u, 3u, 17u}) {
-    const std::vector<vec2> points = ask(series({11, 5}, dimension, 4096), {{"ONE", "1"}});
+    const std::vector<vec2> points = evaluate(series({11, 5}, dimension, 4096), {{"ONE", "1"}});
     for (std::size_t count = 1; count <= points.size(); count *= 2) {
       std::vector<bool> seen(count, false);
       for (std::size_t i = 0; i < count; ++i)
@@ -138,27 +137,27 @@ TEST(Sobol, OneDimensionalDemandsAreStratified) {
   }
 }
 
-// One sample of each pixel: uniform, whatever the sample's index, the demand and the seed.
+// One sample of each pixel is uniform over the pixels, for any sample index, draw and seed.
 TEST(Sampler, EachNumberIsUniformOverPixels) {
   constexpr std::size_t kTests = 2 * 2 * 4 + 2;
   const double least = sidak(kLevel, kTests);
   for (const Defines& defines : kSamplers) {
     for (const std::uint32_t index : {0u, 1u, 100u, 65535u})
       for (const std::uint32_t dimension : {0u, 9u}) {
-        const std::vector<vec2> points = ask(image(index, dimension, index), defines);
+        const std::vector<vec2> points = evaluate(image(index, dimension, index), defines);
         EXPECT_GT(uniformity(component(points, 0), component(points, 1)), least) << index << " " << dimension;
       }
     Defines bits = defines;
     bits.emplace_back("BITS", "1");
-    const std::vector<vec2> points = ask(image(3, 4), bits);
+    const std::vector<vec2> points = evaluate(image(3, 4), bits);
     EXPECT_GT(uniformity(component(points, 0), component(points, 1)), least);
   }
 }
 
-// Numbers that a path multiplies: of two demands, two samples, two pixels, two seeds. WRONG: the difference is ignored.
+// Numbers that a path multiplies: of two draws, two samples, two pixels, two seeds. With WRONG, the two are equal.
 TEST(Sampler, PairsAreIndependent) {
   struct Pair {
-    std::vector<Demand> a, b;
+    std::vector<Draw> a, b;
     const char* wrong;
   };
   std::vector<Pair> pairs;
@@ -171,40 +170,40 @@ TEST(Sampler, PairsAreIndependent) {
   const double least = sidak(kLevel, pairs.size() * 2 * 4);
   for (const Defines& defines : kSamplers)
     for (std::size_t k = 0; k < pairs.size(); ++k) {
-      const std::vector<vec2> a = ask(pairs[k].a, defines), b = ask(pairs[k].b, defines);
+      const std::vector<vec2> a = evaluate(pairs[k].a, defines), b = evaluate(pairs[k].b, defines);
       for (int i = 0; i < 4; ++i)
         EXPECT_GT(uniformity(component(a, i & 1), component(b, i >> 1)), least) << "pair " << k << " " << i;
       Defines wrong = defines;
       wrong.emplace_back("WRONG", pairs[k].wrong);
-      const std::vector<vec2> c = ask(pairs[k].a, wrong), d = ask(pairs[k].b, wrong);
+      const std::vector<vec2> c = evaluate(pairs[k].a, wrong), d = evaluate(pairs[k].b, wrong);
       EXPECT_LT(uniformity(component(c, 0), component(d, 0)), 1e-9) << "pair " << k;
     }
 }
 
-// Plain random numbers are independent from sample to sample of one pixel, too; Sobol's are not meant to be.
+// PCG numbers are also independent between the samples of one pixel. Sobol points are not, by design.
 TEST(Pcg, SuccessiveSamplesAreIndependent) {
   constexpr std::uint32_t kCount = 1 << 17;
-  const std::vector<float> x = component(ask(series({12, 34}, 6, kCount + 8), {{"PCG", "1"}}), 0);
+  const std::vector<float> x = component(evaluate(series({12, 34}, 6, kCount + 8), {{"PCG", "1"}}), 0);
   const auto lagged = [](const std::vector<float>& v, std::ptrdiff_t lag) {
     return uniformity({v.begin(), v.begin() + kCount}, {v.begin() + lag, v.begin() + lag + kCount});
   };
   for (const std::ptrdiff_t lag : {1, 2, 8}) EXPECT_GT(lagged(x, lag), sidak(kLevel, 3));
-  EXPECT_LT(lagged(component(ask(series({12, 34}, 6, kCount + 8)), 0), 1), 1e-9);
+  EXPECT_LT(lagged(component(evaluate(series({12, 34}, 6, kCount + 8)), 0), 1), 1e-9);
 }
 
-// Root mean square error of the mean of `count` values of f over 256 pixels; f(p, q) of two demands.
+// Root mean square error of the mean of `count` values of f over 256 pixels; f(p, q) of two draws.
 template <class F>
 double integrationError(std::uint32_t count, const Defines& defines, double exact, const F& f) {
-  std::vector<Demand> first, second;
+  std::vector<Draw> first, second;
   for (std::uint32_t pixel = 0; pixel < 256; ++pixel) {
-    const auto append = [&](std::vector<Demand>& to, std::uint32_t dimension) {
-      const std::vector<Demand> more = series({pixel % 16, pixel / 16}, dimension, count);
+    const auto append = [&](std::vector<Draw>& to, std::uint32_t dimension) {
+      const std::vector<Draw> more = series({pixel % 16, pixel / 16}, dimension, count);
       to.insert(to.end(), more.begin(), more.end());
     };
     append(first, 2);
     append(second, 3);
   }
-  const std::vector<vec2> p = ask(first, defines), q = ask(second, defines);
+  const std::vector<vec2> p = evaluate(first, defines), q = evaluate(second, defines);
   double sum = 0.0;
   for (std::size_t pixel = 0; pixel < 256; ++pixel) {
     double mean = 0.0;
@@ -215,7 +214,7 @@ double integrationError(std::uint32_t count, const Defines& defines, double exac
   return std::sqrt(sum / 256.0);
 }
 
-// A smooth function of one demand: error about N^-1.5 instead of N^-0.5.
+// For a smooth function of one draw, the error is about N^-1.5 instead of N^-0.5.
 TEST(Sobol, ConvergesFasterThanRandom) {
   const auto smooth = [](const vec2& p, const vec2&) { return std::sin(kPi * p.x) * p.y * p.y; };
   const double exact = 2.0 / (3.0 * kPi);
@@ -228,9 +227,9 @@ TEST(Sobol, ConvergesFasterThanRandom) {
   EXPECT_LT(sobol1024, 0.01 * random1024);
 }
 
-// The price of padding: samples 2i and 2i + 1 lie in opposite halves in *every* demand, so a product of two demands
-// may have up to twice the variance of random points (gain of the coarsest Walsh terms), and never more.
-TEST(Sobol, ProductsOfTwoDemandsCostAtMostTwiceTheVariance) {
+// The cost of padding: samples 2i and 2i + 1 are in opposite halves in *every* draw. A product of two draws can
+// therefore have up to twice the variance of random points (the gain of the coarsest Walsh terms), but not more.
+TEST(Sobol, ProductsOfTwoDrawsHaveAtMostTwiceTheVariance) {
   const auto product = [](const vec2& p, const vec2& q) { return (p.x - 0.5) * (q.x - 0.5); };
   for (const std::uint32_t count : {16u, 256u, 1024u}) {
     const double random = 1.0 / 12.0 / std::sqrt(static_cast<double>(count));

@@ -1,4 +1,4 @@
-// Maps from the square: the density of the result, by chi-square on cells of equal measure.
+// Maps from the unit square: a chi-square test of the density, on cells of equal measure.
 #include <string>
 #include <vector>
 
@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t kSamples = 200'000;
 constexpr int kCells = 24;
 
-// `inverse` takes the mapped point back to the unit square by a formula that is not the map's own: equal
-// areas to equal areas. WRONG feeds a density that the map must not hide.
+// `inverse` maps the point back to the unit square, area-preserving, by a formula independent of the map. WRONG uses a
+// non-uniform input, which the test must detect.
 struct Warp {
   const char* name;
   const char* map;      // GLSL, of vec2 u
@@ -65,7 +65,7 @@ double uniformity(const std::vector<vec3>& points) {
   return chiSquareTest(observed, expected).pValue;
 }
 
-TEST(Warp, DensityIsAsStated) {
+TEST(Warp, MatchesTheStatedDensity) {
   for (const Warp& warp : kWarps) {
     EXPECT_GT(uniformity(run(warp, false, false)), sidak(0.01, kWarps.size())) << warp.name;
     EXPECT_LT(uniformity(run(warp, true, false)), 1e-9) << warp.name;
@@ -86,7 +86,7 @@ TEST(Warp, ResultsLieInTheirDomain) {
     }
 }
 
-// The corners of the square: no NaN, nothing outside.
+// The corners of the square give no NaN and no point outside the domain.
 TEST(Warp, CornersAreFinite) {
   const auto values = runCompute<vec3>(R"(
     #include <quintet/sampling/warp.glsl>

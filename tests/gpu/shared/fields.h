@@ -1,6 +1,6 @@
-// The words of a shared struct's members, as C++ and as GLSL see them. `GPU_FIELDS(Type, members…)` is the one
-// list: C++ binds it to all members in order (a member too few or too many does not compile), GLSL reads
-// each by its name (a wrong name does not compile, a wrong order fails).
+// The 32-bit words of the members of a shared struct, in C++ and GLSL. `GPU_FIELDS(Type, members…)` is the list for
+// both. C++ binds it to all members in order, so that a missing or extra member does not compile. GLSL reads each
+// member by name: a wrong name does not compile, and a wrong order makes the test fail.
 #ifndef QUINTET_TESTS_GPU_SHARED_FIELDS_H
 #define QUINTET_TESTS_GPU_SHARED_FIELDS_H
 
@@ -16,7 +16,7 @@ namespace quintet::test {
 
 using Words = std::vector<std::uint32_t>;
 
-// What a member is made of, in the order of memory.
+// The words of a member, in memory order.
 inline void appendWords(Words& words, std::uint32_t value) { words.push_back(value); }
 inline void appendWords(Words& words, float value) { words.push_back(std::bit_cast<std::uint32_t>(value)); }
 inline void appendWords(Words& words, std::uint64_t value) {
@@ -32,7 +32,7 @@ void appendWords(Words& words, const T (&values)[n]) {
   for (const T& value : values) appendWords(words, value);
 }
 
-// GLSL of the same, in both directions; functions for a struct S are made from its list by glslOf.
+// The same in GLSL, in both directions. glslOf generates the functions for a struct from its list.
 inline constexpr const char* kGlslWords = R"(
 uint words[256];
 uint wordCount = 0u;
@@ -65,7 +65,7 @@ void take(out uint64_t v[2]) { for (int i = 0; i < 2; ++i) take(v[i]); }
 void take(out uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) take(v[i]); }
 )";
 
-// put and take for a struct with these members ("a, b, c").
+// Functions put and take for a struct with these members ("a, b, c").
 inline std::string glslOf(const std::string& type, const std::string& members) {
   std::string put, take;
   for (std::size_t at = 0; at < members.size();) {

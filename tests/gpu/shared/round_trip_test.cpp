@@ -1,4 +1,4 @@
-// Every struct of quintet/shared/*.h means the same bytes in C++ and in GLSL, member by member, both ways.
+// Every struct of quintet/shared/*.h has the same layout in C++ and GLSL, for each member and in both directions.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -10,12 +10,12 @@
 #include "harness.h"
 #include "quintet/shared/albedo.h"
 #include "quintet/shared/film.h"
-#include "shader/embedded_library.h"
+#include "shader/library.h"
 
 namespace quintet::test {
 namespace {
 
-// No two words alike, each a finite float (some devices quieten NaNs).
+// All words are different and finite floats, because some devices change signaling NaNs to quiet NaNs.
 std::uint32_t pattern(std::size_t i) { return 0x40010203u + static_cast<std::uint32_t>(i) * 0x00030507u; }
 
 template <class T>
@@ -31,7 +31,7 @@ struct AllWords {
   std::uint32_t at[256];
 };
 
-// The body's start: all structs, and put and take for T and the structs in it.
+// The start of the shader: all structs, and put and take for T and the structs in it.
 template <class T>
 std::string glslFor() {
   return std::string("#include <quintet/shared/film.h>\n#include <quintet/shared/instrument.h>\n") + kGlslWords +
@@ -75,7 +75,7 @@ TYPED_TEST(SharedStruct, ReachesTheDevice) {
   EXPECT_EQ(Words(seen.at, seen.at + expected.size()), expected);
 }
 
-TYPED_TEST(SharedStruct, ComesBack) {
+TYPED_TEST(SharedStruct, RoundTrips) {
   AllWords source{};
   for (std::size_t i = 0; i < 128; ++i) source.at[i] = pattern(i + 7);
   const std::string body = glslFor<TypeParam>() + "#define Out " + Fields<TypeParam>::kName + R"(
@@ -88,7 +88,7 @@ TYPED_TEST(SharedStruct, ComesBack) {
   EXPECT_EQ(words, Words(source.at, source.at + words.size()));
 }
 
-// A struct that somebody adds to a shared header must be added to this test.
+// A struct that is added to a shared header must be added to this test.
 TEST(SharedHeaders, HaveNoUntestedStruct) {
   std::set<std::string> declared;
   std::size_t headers = 0;
@@ -106,7 +106,7 @@ TEST(SharedHeaders, HaveNoUntestedStruct) {
   EXPECT_EQ(declared, tested);
 }
 
-// The constants that GLSL computes from others are C++'s.
+// Constants that are computed from others have the same value in GLSL and C++.
 TEST(SharedHeaders, AgreeOnConstants) {
   const auto seen = runCompute<std::array<std::uint32_t, 8>>(R"(
     #include <quintet/shared/albedo.h>

@@ -1,5 +1,5 @@
-// What the public library promises, seen from outside: animation, parameters, errors. Writes animation.png: lesson 19
-// after 14 frames, which run.cmake compares with the command's.
+// Tests the installed library: animation, parameters, errors. Writes animation.png, lesson 19 after 14 frames, which
+// run.cmake compares with the output of the command-line program.
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -32,31 +32,33 @@ void animation(quintet::Device& device) {
   const auto program = quintet::Program::load("lessons/19_dynamic");
   quintet::Renderer renderer(device, quintet::Scene::of(program), program, {.width = 96, .height = 64});
   renderer.render(1);
-  const std::vector<float> first = renderer.picture().pixels;
+  const std::vector<float> first = renderer.image().pixels;
   renderer.render(13);
-  expect(renderer.sampleCount() == 14, "14 frames");
-  expect(renderer.picture().pixels != first, "the instances move");
-  renderer.picture().write("animation.png");
+  expect(renderer.sampleCount() == 14, "the image must have 14 frames");
+  expect(renderer.image().pixels != first, "the instances must move");
+  renderer.image().write("animation.png");
 }
 
 void errors(quintet::Device& device) {
   const auto program = quintet::Program::load("lessons/01_first_ray");
   const auto scene = quintet::Scene::of(program);
   expect(program.parameters().front().defaultValue == "45",
-         "a default as --set takes it: " + program.parameters().front().defaultValue);
+         "a default value must have the syntax of --set: " + program.parameters().front().defaultValue);
   expect(throws<quintet::UsageError>([&] {
            quintet::Renderer(device, scene, program, {.parameters = {{"fieldOfVeiw", "3"}}});
          }),
-         "a wrong parameter");
-  expect(throws<quintet::FileError>([] { quintet::Scene::load("absent.glb"); }), "an absent scene");
-  expect(quintet::check(program, &scene).empty(), "lesson 01 is clean");
+         "an unknown parameter must throw UsageError");
+  expect(throws<quintet::FileError>([] { quintet::Scene::load("missing.glb"); }),
+         "a missing scene must throw FileError");
+  expect(quintet::checkProgram(program, &scene).empty(), "lesson 01 must have no diagnostics");
 
   std::ofstream("bad.rt.glsl") << "struct RayPayloadType { vec3 color; };\n"
                                   "void main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(vec4(nothing)); }\n";
   const auto bad = quintet::Program::load("bad.rt.glsl");
-  expect(quintet::check(bad).size() == 1 && quintet::check(bad).front().line == 2, "the error's line");
+  expect(quintet::checkProgram(bad).size() == 1 && quintet::checkProgram(bad).front().line == 2,
+         "the diagnostic must have line 2");
   expect(throws<quintet::ProgramError>([&] { quintet::Renderer(device, scene, bad); }),
-         "a program that does not compile");
+         "a program with errors must throw ProgramError");
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ std::string messageOf(const std::function<void()>& action) {
   return "no FileError";
 }
 
-// Sets a variable of the environment until the end of the scope.
+// Sets an environment variable until the end of the scope.
 class Variable {
  public:
   Variable(const char* name, const char* value) : name_(name) {
@@ -48,16 +48,16 @@ class Variable {
   std::optional<std::string> old_;
 };
 
-TEST(FileErrorTest, NamesFilePlaceAndProblem) {
+TEST(FileErrorTest, ContainsFileLocationAndProblem) {
   const FileError error("scene.gltf", "/nodes/3", "no such mesh");
   EXPECT_STREQ(error.what(), "scene.gltf: /nodes/3: no such mesh");
   EXPECT_EQ(error.file(), "scene.gltf");
-  EXPECT_EQ(error.place(), "/nodes/3");
+  EXPECT_EQ(error.location(), "/nodes/3");
   EXPECT_EQ(error.problem(), "no such mesh");
   EXPECT_STREQ(FileError("a.png", "is empty").what(), "a.png: is empty");
 }
 
-TEST(ReadFileTest, ReturnsWhatWasWritten) {
+TEST(ReadFileTest, ReturnsWrittenBytes) {
   const TempFolder folder;
   const std::string text("a\0b\n\xff", 5);
   writeFile(folder / "a", text);
@@ -74,13 +74,13 @@ TEST(ReadFileTest, ReadsEmptyFilesAndFilesWithoutSize) {
   EXPECT_THAT(readTextFile("/proc/self/status"), HasSubstr("Pid:"));
 }
 
-TEST(ReadFileTest, SaysWhatIsWrong) {
+TEST(ReadFileTest, ReportsMissingFilesAndFolders) {
   const TempFolder folder;
   EXPECT_THAT(messageOf([&] { readFile(folder / "none"); }), HasSubstr("none: cannot be read: No such file"));
   EXPECT_THAT(messageOf([&] { readFile(folder.path()); }), HasSubstr("Is a directory"));
 }
 
-TEST(WriteFileTest, ReplacesAndLeavesNoTemporary) {
+TEST(WriteFileTest, ReplacesAFileWithoutTemporaryFiles) {
   const TempFolder folder;
   writeFile(folder / "a", "old");
   writeFile(folder / "a", "new");
@@ -88,7 +88,7 @@ TEST(WriteFileTest, ReplacesAndLeavesNoTemporary) {
   EXPECT_EQ(folder.entryCount(), 1u);
 }
 
-TEST(WriteFileTest, FollowsUmaskForNewFilesAndKeepsPermissionsOfOldOnes) {
+TEST(WriteFileTest, AppliesUmaskToNewFilesAndKeepsPermissionsOfExistingOnes) {
   const TempFolder folder;
   const mode_t before = umask(027);
   writeFile(folder / "a", "1");
@@ -119,7 +119,7 @@ TEST(WriteFileTest, WritesThroughSymbolicLinks) {
   EXPECT_THAT(messageOf([&] { writeFile(folder / "loop", "x"); }), HasSubstr("symbolic links"));
 }
 
-TEST(WriteFileTest, MissingFolderIsAnErrorThatNamesIt) {
+TEST(WriteFileTest, ReportsMissingFolders) {
   const TempFolder folder;
   const std::string message = messageOf([&] { writeFile(folder / "none/a.png", "x"); });
   EXPECT_THAT(message, HasSubstr("a.png: cannot be written: the folder "));
@@ -127,7 +127,7 @@ TEST(WriteFileTest, MissingFolderIsAnErrorThatNamesIt) {
   EXPECT_EQ(message, messageOf([&] { checkWritable(folder / "none/a.png"); }));
 }
 
-TEST(WriteFileTest, FoldersAndEmptyNamesAreErrors) {
+TEST(WriteFileTest, RejectsFoldersAndEmptyNames) {
   const TempFolder folder;
   EXPECT_THAT(messageOf([&] { writeFile(folder.path(), "x"); }), HasSubstr("Is a directory"));
   EXPECT_THAT(messageOf([&] { writeFile(folder / "new/", "x"); }), HasSubstr("Is a directory"));
@@ -136,14 +136,14 @@ TEST(WriteFileTest, FoldersAndEmptyNamesAreErrors) {
   EXPECT_THAT(messageOf([&] { writeFile(folder / "file/a", "x"); }), HasSubstr("Not a directory"));
 }
 
-TEST(WriteFileTest, FullDeviceIsAnError) {
+TEST(WriteFileTest, ReportsFullDevices) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
   EXPECT_THAT(messageOf([] { writeFile("/dev/full", "x"); }), HasSubstr("/dev/full: cannot be written: No space left"));
   writeFile("/dev/null", "x");
 }
 
-// A limit on the file size makes the write fail half way, like a full disk.
-TEST(WriteFileTest, FailureLeavesTheOldFileAndNoTemporary) {
+// A limit on the file size makes the write fail halfway, like a full disk.
+TEST(WriteFileTest, KeepsTheOldFileOnFailure) {
   const TempFolder folder;
   writeFile(folder / "a", "old");
   EXPECT_EXIT(
@@ -160,7 +160,7 @@ TEST(WriteFileTest, FailureLeavesTheOldFileAndNoTemporary) {
   EXPECT_EQ(folder.entryCount(), 1u);
 }
 
-// Killed half way: SIGXFSZ ends a process, if it is not ignored.
+// SIGXFSZ kills the process halfway through the write.
 void writeAndDie(const fs::path& file) {
   signal(SIGXFSZ, SIG_DFL);
   struct rlimit limit {};
@@ -179,7 +179,7 @@ std::vector<std::string> hiddenFiles(const TempFolder& folder) {
   return names;
 }
 
-TEST(WriteFileTest, TheNextWriterRemovesWhatAKilledOneHasLeft) {
+TEST(WriteFileTest, RemovesTemporaryFilesOfKilledWriters) {
   const TempFolder folder;
   writeFile(folder / "a", "old");
   leaveLeftover(folder / "a");
@@ -187,7 +187,7 @@ TEST(WriteFileTest, TheNextWriterRemovesWhatAKilledOneHasLeft) {
   ASSERT_EQ(hiddenFiles(folder).size(), 1u);
   const std::string left = hiddenFiles(folder)[0];
   EXPECT_EQ(fs::file_size(folder / left), 1000u);
-  // Of another path, or not of this naming.
+  // Temporary files of a different target, or with a different kind of name, stay.
   leaveLeftover(folder / "b");
   writeFile(folder / ".quintet-mine.tmp", "mine");
   ASSERT_EQ(hiddenFiles(folder).size(), 3u);
@@ -199,7 +199,7 @@ TEST(WriteFileTest, TheNextWriterRemovesWhatAKilledOneHasLeft) {
   EXPECT_EQ(hiddenFiles(folder), std::vector<std::string>{".quintet-mine.tmp"});
 }
 
-TEST(WriteFileTest, LeftoversOfSeveralGoAtOnceAndAreFoundThroughLinks) {
+TEST(WriteFileTest, RemovesSeveralLeftoversAndFollowsLinks) {
   const TempFolder folder;
   const auto leaveTwo = [&] {
     leaveLeftover(folder / "a");
@@ -216,8 +216,8 @@ TEST(WriteFileTest, LeftoversOfSeveralGoAtOnceAndAreFoundThroughLinks) {
   EXPECT_EQ(folder.entryCount(), 2u);
 }
 
-// One process writes slowly, as its file is large: it is not disturbed by another one.
-TEST(WriteFileTest, WhatIsBeingWrittenStays) {
+// A slow writer and a fast writer of the same file do not disturb each other.
+TEST(WriteFileTest, KeepsTemporaryFilesThatAreBeingWritten) {
   const TempFolder folder;
   std::optional<TemporaryFile> slow(std::in_place, folder / "a");
   ASSERT_EQ(hiddenFiles(folder).size(), 1u);
@@ -227,15 +227,15 @@ TEST(WriteFileTest, WhatIsBeingWrittenStays) {
   EXPECT_EQ(hiddenFiles(folder), std::vector<std::string>{name});
   ASSERT_EQ(write(slow->descriptor(), "slow", 4), 4);
   EXPECT_EQ(slow->flush(), 0);
-  removeLeftovers(folder / "a");  // still its own until it has its name
+  removeLeftovers(folder / "a");  // the lock holds until the file is renamed
   EXPECT_EQ(slow->renameToTarget(), 0);
   slow.reset();
   EXPECT_EQ(readTextFile(folder / "a"), "slow");
   EXPECT_EQ(folder.entryCount(), 1u);
 }
 
-// Nobody's file is overwritten through a name that somebody else has prepared.
-TEST(WriteFileTest, LinksInTheWayAreLeftAlone) {
+// A symbolic link with the temporary file's name must not redirect the write to another file.
+TEST(WriteFileTest, IgnoresLinksWithTheTemporaryFilesName) {
   const TempFolder folder;
   leaveLeftover(folder / "a");
   const std::string name = hiddenFiles(folder).at(0);
@@ -249,7 +249,7 @@ TEST(WriteFileTest, LinksInTheWayAreLeftAlone) {
   EXPECT_EQ(folder.entryCount(), 3u);
 }
 
-TEST(WriteFileTest, WritersOfOneFileAtOnceLeaveOneOfThem) {
+TEST(WriteFileTest, ConcurrentWritersLeaveOneCompleteFile) {
   const TempFolder folder;
   std::vector<std::jthread> writers;
   for (int i = 0; i < 4; ++i)
@@ -262,8 +262,8 @@ TEST(WriteFileTest, WritersOfOneFileAtOnceLeaveOneOfThem) {
   EXPECT_EQ(folder.entryCount(), 1u);
 }
 
-TEST(WriteFileTest, ReadOnlyFilesAndFoldersAreErrors) {
-  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+TEST(WriteFileTest, RejectsReadOnlyFilesAndFolders) {
+  if (geteuid() == 0) GTEST_SKIP() << "root can write everywhere";
   const TempFolder folder;
   writeFile(folder / "a", "old");
   chmod((folder / "a").c_str(), 0444);
@@ -289,7 +289,7 @@ TEST(WriteFileTest, WritesToPipes) {
   EXPECT_EQ(received, large);
 }
 
-TEST(WriteFileTest, DashIsStandardOutput) {
+TEST(WriteFileTest, WritesToStandardOutputForADash) {
   testing::internal::CaptureStdout();
   writeFile("-", "to stdout");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "to stdout");
@@ -305,7 +305,7 @@ TEST(CheckWritableTest, TouchesNothing) {
   EXPECT_EQ(folder.entryCount(), 1u);
 }
 
-TEST(FoldersTest, CacheFollowsTheEnvironment) {
+TEST(FoldersTest, ReadsTheCacheFolderFromTheEnvironment) {
   const Variable own("QUINTET_CACHE_DIR", nullptr);
   const Variable home("HOME", "/home/x");
   {
@@ -323,7 +323,7 @@ TEST(FoldersTest, CacheFollowsTheEnvironment) {
   EXPECT_EQ(cacheFolder(), "");
 }
 
-TEST(FoldersTest, ExecutableFolderExists) { EXPECT_TRUE(fs::is_directory(executableFolder())); }
+TEST(FoldersTest, FindsTheExecutableFolder) { EXPECT_TRUE(fs::is_directory(executableFolder())); }
 
 }  // namespace
 }  // namespace quintet

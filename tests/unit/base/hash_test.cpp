@@ -2,23 +2,26 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 namespace quintet {
 namespace {
 
-// The values are part of file names and image metadata: they must not change between versions.
+// The values are part of file names and image metadata, so they must not change between versions.
 TEST(HashTest, IsStable) {
-  EXPECT_EQ(Hasher().finish().hex(), "99aa06d3014798d86001c324468d497f");  // XXH3-128 of nothing, from its test vectors
+  EXPECT_EQ(Hasher().finish().hex(), "99aa06d3014798d86001c324468d497f");  // XXH3-128 of no data, from its test vectors
   EXPECT_EQ(Hasher().add("quintet").add(std::uint64_t{5}).finish(),
             Hasher().add("quintet").add(std::uint64_t{5}).finish());
 }
 
-TEST(HashTest, FramesItsParts) {
+TEST(HashTest, SeparatesStringsByTheirLength) {
   EXPECT_NE(Hasher().add("ab").add("c").finish(), Hasher().add("a").add("bc").finish());
   EXPECT_NE(Hasher().add("").finish(), Hasher().finish());
   EXPECT_NE(Hasher().add("").add("a").finish(), Hasher().add("a").add("").finish());
 }
 
-TEST(HashTest, EveryBitCounts) {
+TEST(HashTest, DependsOnEveryBit) {
   const std::vector<std::byte> zeros(100);
   const Hash expected = Hasher().add(zeros).finish();
   for (std::size_t bit = 0; bit < 800; ++bit) {
@@ -28,7 +31,7 @@ TEST(HashTest, EveryBitCounts) {
   }
 }
 
-TEST(HashTest, GoesOnAfterFinishAndMoves) {
+TEST(HashTest, ContinuesAfterFinishAndMove) {
   Hasher hasher;
   const Hash a = hasher.add("a").finish();
   EXPECT_EQ(hasher.finish(), a);
@@ -36,7 +39,7 @@ TEST(HashTest, GoesOnAfterFinishAndMoves) {
   EXPECT_EQ(moved.add("b").finish(), Hasher().add("a").add("b").finish());
 }
 
-TEST(HashTest, HexHasLeadingZeros) { EXPECT_EQ((Hash{0x1, 0xab}).hex(), "000000000000000100000000000000ab"); }
+TEST(HashTest, PrintsLeadingZeros) { EXPECT_EQ((Hash{0x1, 0xab}).hex(), "000000000000000100000000000000ab"); }
 
 }  // namespace
 }  // namespace quintet

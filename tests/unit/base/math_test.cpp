@@ -5,7 +5,7 @@
 namespace quintet {
 namespace {
 
-TEST(BoundsTest, EmptyIsNeutral) {
+TEST(BoundsTest, ExtendsAnEmptyBox) {
   Bounds3 bounds;
   EXPECT_TRUE(bounds.empty());
   EXPECT_EQ(bounds.area(), 0.0f);
@@ -18,7 +18,7 @@ TEST(BoundsTest, EmptyIsNeutral) {
   EXPECT_EQ(bounds.max, vec3(1, 2, 3));
 }
 
-TEST(BoundsTest, ExtendMeasures) {
+TEST(BoundsTest, MeasuresCenterExtentAndArea) {
   Bounds3 bounds;
   bounds.extend(vec3(-1, 0, 0));
   bounds.extend(vec3(1, 3, 4));
@@ -27,7 +27,7 @@ TEST(BoundsTest, ExtendMeasures) {
   EXPECT_FLOAT_EQ(bounds.area(), 2 * (6 + 12 + 8));
 }
 
-TEST(BoundsTest, TransformBoundsTheCorners) {
+TEST(BoundsTest, BoundsTransformedCorners) {
   const Bounds3 cube{vec3(-1), vec3(1)};
   const mat4 turned = glm::translate(mat4(1), vec3(10, 0, 0)) * glm::rotate(mat4(1), kPi / 4, vec3(0, 0, 1));
   const Bounds3 moved = cube.transformed(turned);
@@ -36,7 +36,7 @@ TEST(BoundsTest, TransformBoundsTheCorners) {
   EXPECT_NEAR(moved.max.z, 1, 1e-5f);
 }
 
-TEST(MathTest, IsFinite) {
+TEST(MathTest, DetectsNonFiniteVectors) {
   EXPECT_TRUE(isFinite(vec3(1)));
   EXPECT_FALSE(isFinite(vec3(1, NAN, 0)));
   EXPECT_FALSE(isFinite(vec3(1, 0, -INFINITY)));

@@ -1,4 +1,3 @@
-// What the process holds grows with what it touches, and the peak stays.
 #include "base/memory.h"
 
 #include <gtest/gtest.h>
@@ -11,13 +10,13 @@
 namespace quintet {
 namespace {
 
-TEST(ProcessMemory, FollowsWhatIsTouched) {
+TEST(ProcessMemory, CountsTouchedPages) {
   constexpr std::size_t kBytes = std::size_t{64} << 20, kSlack = std::size_t{8} << 20;
   const std::uint64_t before = residentBytes();
   ASSERT_GT(before, 0u);
   void* memory = ::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(memory, MAP_FAILED);
-  EXPECT_LT(residentBytes(), before + kSlack);  // promised, not touched
+  EXPECT_LT(residentBytes(), before + kSlack);  // reserved, but not touched
   std::memset(memory, 1, kBytes);
   EXPECT_GE(residentBytes() + kSlack, before + kBytes);
   ::munmap(memory, kBytes);
@@ -25,19 +24,19 @@ TEST(ProcessMemory, FollowsWhatIsTouched) {
   EXPECT_GE(peakResidentBytes() + kSlack, before + kBytes);
 }
 
-TEST(ProcessMemory, GivesBackWholePagesOnly) {
+TEST(ProcessMemory, ReleasesWholePagesOnly) {
   constexpr std::size_t kBytes = std::size_t{64} << 20, kSlack = std::size_t{8} << 20;
   std::vector<std::byte> block(kBytes, std::byte{7});
   const std::uint64_t before = residentBytes();
-  givePagesBack(std::span(block).subspan(1, kBytes - 2));
+  releasePages(std::span(block).subspan(1, kBytes - 2));
   EXPECT_LT(residentBytes(), before - kBytes + kSlack);
   EXPECT_EQ(block.front(), std::byte{7});
   EXPECT_EQ(block.back(), std::byte{7});
   EXPECT_EQ(block[kBytes / 2], std::byte{0});
   std::array<std::byte, 16> small;
   small.fill(std::byte{3});
-  givePagesBack(small);
-  givePagesBack({});
+  releasePages(small);
+  releasePages({});
   EXPECT_EQ(small[8], std::byte{3});
 }
 

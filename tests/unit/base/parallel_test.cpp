@@ -20,7 +20,7 @@ TEST(ParallelTest, CallsEachIndexOnce) {
   }
 }
 
-TEST(ParallelTest, RethrowsAndSkipsTheRest) {
+TEST(ParallelTest, RethrowsExceptionsAndSkipsTheRest) {
   std::atomic<std::size_t> calls{0};
   EXPECT_THROW(parallelFor(1000000,
                            [&](std::size_t i) {
@@ -32,7 +32,7 @@ TEST(ParallelTest, RethrowsAndSkipsTheRest) {
   EXPECT_LT(calls, 1000000u);
 }
 
-TEST(ParallelTest, LoopsNest) {
+TEST(ParallelTest, RunsNestedLoops) {
   std::atomic<int> calls{0};
   parallelFor(8, [&](std::size_t) { parallelFor(8, [&](std::size_t) { ++calls; }); });
   EXPECT_EQ(calls, 64);
@@ -41,14 +41,14 @@ TEST(ParallelTest, LoopsNest) {
       std::logic_error);
 }
 
-TEST(ParallelTest, ALoopInsideALoopOfOneHasTheOtherCores) {
+TEST(ParallelTest, UsesAllCoresForALoopInsideASingleIteration) {
   if (hardwareThreads() < 2) GTEST_SKIP() << "one core";
   std::atomic<int> inside{0};
   std::atomic<bool> together{false};
   parallelFor(1, [&](std::size_t) {
     parallelFor(2, [&](std::size_t) {
       ++inside;
-      for (int wait = 0; wait < 5000 && !together; ++wait) {  // until the other one is here
+      for (int wait = 0; wait < 5000 && !together; ++wait) {  // until the other iteration arrives
         if (inside == 2) together = true;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
@@ -57,7 +57,7 @@ TEST(ParallelTest, ALoopInsideALoopOfOneHasTheOtherCores) {
   EXPECT_TRUE(together);
 }
 
-TEST(ParallelTest, RangesCoverAllAndCopyIsACopy) {
+TEST(ParallelTest, CoversAllRangesAndCopiesBytes) {
   for (const std::size_t count : {0u, 1u, 9u, 10u, 11u, 1005u}) {
     std::vector<std::atomic<int>> calls(count);
     parallelRanges(
@@ -75,9 +75,9 @@ TEST(ParallelTest, RangesCoverAllAndCopyIsACopy) {
   EXPECT_EQ(from, to);
 }
 
-TEST(ParallelTest, UsesTheCoresOfTheProcess) {
+TEST(ParallelTest, RespectsTheCpuAffinity) {
   EXPECT_GE(hardwareThreads(), 1u);
-  // In a thread of its own: the affinity is the thread's.
+  // The affinity belongs to the thread, so the test sets it in a new one.
   std::jthread([] {
     cpu_set_t all;
     ASSERT_EQ(sched_getaffinity(0, sizeof all, &all), 0);

@@ -1,4 +1,4 @@
-// The files: read back byte by byte, every reference and every accessor must be what glTF 2.0 demands.
+// Reads the generated files back. Every reference and every accessor must satisfy glTF 2.0.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -72,7 +72,7 @@ void checkPrimitive(const Glb& glb, const Json& primitive) {
     EXPECT_EQ(accessors.at(attribute.value().get<std::size_t>()).at("count").get<std::size_t>(), count)
         << attribute.key();
   }
-  // min and max must be those of the data, to the bit.
+  // min and max must be exactly those of the data.
   const std::span<const std::byte> bytes = accessorBytes(glb, positions);
   std::vector<vec3> points(count);
   std::memcpy(points.data(), bytes.data(), bytes.size());
@@ -138,7 +138,7 @@ TEST(Glb, TestScenesAreValid) {
   }
 }
 
-TEST(Glb, StillLifeIsValidAndOfModerateSize) {
+TEST(Glb, StillLifeIsValid) {
   const std::vector<std::byte> file = stillLife({.oakTextureSize = 64, .textureSize = 64});
   const std::size_t triangles = checkFile(file);
   EXPECT_GT(triangles, 50'000u);
@@ -148,7 +148,7 @@ TEST(Glb, StillLifeIsValidAndOfModerateSize) {
   EXPECT_EQ(root.at("cameras").at(0).at("name"), "hero");
 }
 
-TEST(Glb, WritesTheMaterialExtensionsThatAMaterialNeeds) {
+TEST(Glb, WritesOnlyRequiredMaterialExtensions) {
   GlbWriter glb;
   const int glass = glb.addMaterial({.name = "glass",
                                      .roughness = 0.0f,
@@ -171,7 +171,7 @@ TEST(Glb, WritesTheMaterialExtensionsThatAMaterialNeeds) {
   EXPECT_EQ(second.at("emissiveFactor"), Json::parse("[0.25, 0.5, 1.0]"));
   EXPECT_EQ(second.at("extensions").at("KHR_materials_emissive_strength").at("emissiveStrength"), 8.0);
   EXPECT_EQ(second.at("extensions").at("KHR_materials_specular").at("specularFactor"), 0.0);
-  EXPECT_EQ(root.at("nodes").at(2).at("matrix").at(14), 5.0);  // the camera stands at z = 5
+  EXPECT_EQ(root.at("nodes").at(2).at("matrix").at(14), 5.0);  // the camera is at z = 5
 }
 
 }  // namespace

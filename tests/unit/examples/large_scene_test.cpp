@@ -1,4 +1,4 @@
-// The scene that loading is measured with: what was asked for, read back by the importer.
+// The scene for measurements of loading, read back by the importer.
 #include "demo/large_scene.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace quintet::demo {
 namespace {
 
-TEST(LargeScene, IsWhatWasAskedFor) {
+TEST(LargeScene, HasTheRequestedContents) {
   const test::TempFolder folder;
   const std::uint64_t count = writeLargeScene(
       folder / "a.glb", {.triangles = 6000, .meshes = 3, .textures = 2, .textureSize = 16, .normalMaps = true});
@@ -21,18 +21,18 @@ TEST(LargeScene, IsWhatWasAskedFor) {
   EXPECT_EQ(scene.images.size(), 4u);
   EXPECT_TRUE(scene.report.repaired.empty());
   EXPECT_TRUE(scene.report.ignored.empty());
-  // Normals as the surface is: they agree with the faces, the ones at the poles aside.
+  // The normals agree with the faces, except at the poles.
   const scene::Geometry& g = scene.meshes[1].geometries[0];
   ASSERT_EQ(g.tangents.size(), g.positions.size());
-  std::size_t turned = 0;
+  std::size_t reversed = 0;
   for (const uvec3& t : g.triangles) {
     const vec3 face = glm::cross(g.positions[t.y] - g.positions[t.x], g.positions[t.z] - g.positions[t.x]);
-    if (glm::length(face) > 1e-6f && glm::dot(glm::normalize(face), g.normals[t.x]) < 0.5f) ++turned;
+    if (glm::length(face) > 1e-6f && glm::dot(glm::normalize(face), g.normals[t.x]) < 0.5f) ++reversed;
   }
-  EXPECT_EQ(turned, 0u);
+  EXPECT_EQ(reversed, 0u);
 }
 
-TEST(LargeScene, SameOptionsSameBytes) {
+TEST(LargeScene, IsDeterministic) {
   const test::TempFolder folder;
   writeLargeScene(folder / "a.glb", {.triangles = 5000});
   writeLargeScene(folder / "b.glb", {.triangles = 5000});

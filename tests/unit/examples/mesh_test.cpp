@@ -1,4 +1,4 @@
-// Shapes: solids are closed with their fronts outside, normals and tangents are what shading expects.
+// Shapes: solids are closed with the front outside; normals and tangents are correct.
 #include "demo/mesh_builder.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ struct Solid {
   std::string name;
   TriangleMesh mesh;
   double volume;     // expected, m³
-  double tolerance;  // relative: what tessellation may cost
+  double tolerance;  // relative, for the tessellation
 };
 
 std::vector<Solid> solids() {
@@ -39,7 +39,7 @@ std::vector<Solid> solids() {
   };
 }
 
-TEST(Mesh, SolidsAreClosedWithTheirFrontsOutside) {
+TEST(Mesh, SolidsAreClosedAndFaceOutwards) {
   for (const Solid& solid : solids()) {
     SCOPED_TRACE(solid.name);
     EXPECT_TRUE(isClosed(solid.mesh));
@@ -50,8 +50,8 @@ TEST(Mesh, SolidsAreClosedWithTheirFrontsOutside) {
   }
 }
 
-TEST(Mesh, VolumeOfAKnotIsThatOfItsRope) {
-  // Pappus' theorem holds for any smooth closed curve: cross section times length of the centre line.
+TEST(Mesh, VolumeOfAKnotMatchesPappus) {
+  // Pappus' theorem for a smooth closed curve: cross section times length of the center line.
   const TriangleMesh knot = torusKnot(2, 3, 1.0f, 0.4f, 0.1f, 960, 64);
   double length = 0.0;
   constexpr int kSteps = 10000;
@@ -97,7 +97,7 @@ TEST(Mesh, OpenAndFlippedMeshesAreNotClosed) {
   EXPECT_FALSE(isClosed(mesh));
 }
 
-TEST(Mesh, MirroringTurnsTheTrianglesRound) {
+TEST(Mesh, MirroringReversesTheWinding) {
   TriangleMesh mesh = icosphere(1.0f, 2);
   mesh.transform(glm::scale(mat4(1.0f), vec3(-2, 1, 1)));
   EXPECT_TRUE(isClosed(mesh));
@@ -105,8 +105,8 @@ TEST(Mesh, MirroringTurnsTheTrianglesRound) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) EXPECT_GT(glm::dot(mesh.positions[i], mesh.normals[i]), 0.0f);
 }
 
-TEST(Mesh, TangentsRunAlongUAndKeepGltfHandedness) {
-  // A picture on a floor, seen from above with -z up on the page: u to the right, v down, not mirrored.
+TEST(Mesh, TangentsFollowUWithTheHandednessOfGltf) {
+  // An image on the floor, seen from above with -z up: u to the right, v down, not mirrored.
   TriangleMesh floor = flatDisc(0.0f, 1.0f, 16, 0.5f);
   computeTangents(floor);
   for (const vec4& t : floor.tangents) {

@@ -1,4 +1,4 @@
-// The sky: finite, the wanted irradiance, a soft sun in the right place, a dim ground half.
+// The sky: finite values, the requested irradiance, the direction of the sun, a dim lower half.
 #include "demo/sky.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ vec3 directionOf(std::uint32_t x, std::uint32_t y, const io::Image& image) {
   return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
 }
 
-// Irradiance (luminance) of the picture on a surface with this normal.
+// Luminance of the irradiance from the image on a surface with this normal.
 float irradiance(const io::Image& image, const vec3& normal) {
   const double pi = glm::pi<double>();
   double sum = 0.0;
@@ -32,7 +32,7 @@ float irradiance(const io::Image& image, const vec3& normal) {
   return static_cast<float>(sum);
 }
 
-TEST(Sky, IsFiniteAndPositive) {
+TEST(Sky, IsFiniteAndNotNegative) {
   for (float elevation : {3.0f, 20.0f, 45.0f, 88.0f}) {
     SkySettings settings;
     settings.sunDirection = {std::cos(glm::radians(elevation)), std::sin(glm::radians(elevation)), 0.0f};
@@ -41,7 +41,7 @@ TEST(Sky, IsFiniteAndPositive) {
   }
 }
 
-TEST(Sky, HasTheWantedIrradiance) {
+TEST(Sky, HasTheRequestedIrradiance) {
   SkySettings settings = stillLifeSky();
   settings.clouds = settings.haze = 0.0f;
   settings.hills = false;
@@ -53,13 +53,13 @@ TEST(Sky, HasTheWantedIrradiance) {
   EXPECT_LT(below, 0.40f * expected);
 }
 
-TEST(Sky, OfTheDemoIsClose) {  // clouds, haze and hills change the light a little
+TEST(Sky, KeepsTheIrradianceOfTheDemoSkyWithClouds) {  // clouds, haze and hills change it slightly
   const SkySettings settings = stillLifeSky();
   const float clear = settings.skyIrradiance + settings.sunIrradiance * settings.sunDirection.y;
   EXPECT_NEAR(irradiance(skyImage(settings, 512, 256), {0, 1, 0}), clear, 0.25f * clear);
 }
 
-TEST(Sky, SunStandsWhereItWasPut) {
+TEST(Sky, IsBrightestInTheDirectionOfTheSun) {
   const SkySettings settings = stillLifeSky();
   const io::Image image = skyImage(settings, 512, 256);
   float brightest = 0.0f;
@@ -74,9 +74,9 @@ TEST(Sky, SunStandsWhereItWasPut) {
   EXPECT_LT(std::acos(glm::dot(where, settings.sunDirection)), settings.sunRadius);
 }
 
-TEST(Sky, ZenithFollowsThePaper) {
-  // Preetham et al. 1999, appendix A.2, worked by hand: (x, y) of the zenith for turbidity 3 and a sun at 60° from it.
-  // (Luminance is scaled to the wanted irradiance.)
+TEST(Sky, MatchesThePaperAtTheZenith) {
+  // Preetham et al. 1999, appendix A.2, computed by hand: (x, y) of the zenith for turbidity 3 and a sun at 60° from
+  // it. The luminance is scaled to the requested irradiance.
   SkySettings settings;
   settings.sunDirection = {std::sin(glm::radians(60.0f)), 0.5f, 0.0f};
   const vec3 rgb = Sky(settings).radiance({0, 1, 0});

@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "gpu/context_validation.h"
-#include "gpu/driver_environment.h"
+#include "gpu/instance.h"
 
 namespace quintet::gpu {
 namespace {
@@ -13,30 +12,30 @@ using testing::StrEq;
 using testing::Throws;
 using testing::ThrowsMessage;
 
-TEST(VulkanErrors, NameOperationObjectAndResult) {
+TEST(VulkanError, ContainsOperationObjectAndResult) {
   EXPECT_THAT([] { check(VK_ERROR_FORMAT_NOT_SUPPORTED, "create image", "albedo"); },
               ThrowsMessage<VulkanError>(StrEq("cannot create image 'albedo': VK_ERROR_FORMAT_NOT_SUPPORTED")));
   EXPECT_THAT([] { check(VK_ERROR_INITIALIZATION_FAILED, "create the device"); },
               ThrowsMessage<VulkanError>(StrEq("cannot create the device: VK_ERROR_INITIALIZATION_FAILED")));
 }
 
-TEST(VulkanErrors, HaveATypePerCause) {
+TEST(VulkanError, HasATypeForEachCause) {
   EXPECT_THAT([] { check(VK_ERROR_OUT_OF_DEVICE_MEMORY, "create buffer", "film"); }, Throws<MemoryError>());
   EXPECT_THAT([] { check(VK_ERROR_OUT_OF_HOST_MEMORY, "create buffer", "film"); }, Throws<MemoryError>());
   EXPECT_THAT([] { check(VK_ERROR_DEVICE_LOST, "wait"); }, Throws<DeviceLostError>());
 }
 
-TEST(VulkanErrors, LetSuccessCodesPass) {
+TEST(VulkanError, IgnoresSuccessCodes) {
   for (const VkResult result : {VK_SUCCESS, VK_TIMEOUT, VK_INCOMPLETE, VK_NOT_READY})
     EXPECT_NO_THROW(check(result, "x"));
 }
 
-TEST(VulkanErrors, NameUnknownResults) {
+TEST(VulkanError, NamesUnknownResults) {
   EXPECT_EQ(resultName(VK_SUCCESS), "VK_SUCCESS");
   EXPECT_EQ(resultName(static_cast<VkResult>(-123456789)), "an unknown VkResult");
 }
 
-TEST(DriverEnvironment, GivesLavapipeMorePartsThanCores) {
+TEST(DriverEnvironment, StartsMoreLavapipeThreadsThanCores) {
   EXPECT_EQ(lavapipeThreads(0), 8u);
   EXPECT_EQ(lavapipeThreads(1), 8u);
   EXPECT_EQ(lavapipeThreads(2), 16u);
@@ -44,7 +43,7 @@ TEST(DriverEnvironment, GivesLavapipeMorePartsThanCores) {
   EXPECT_EQ(lavapipeThreads(64), 32u);
 }
 
-TEST(ValidationSink, CountsMessagesOfTheLayersOnly) {
+TEST(ValidationSink, CountsOnlyMessagesOfValidationLayers) {
   std::vector<std::string> log;
   ValidationSink sink([&](LogLevel, const std::string& line) { log.push_back(line); });
   const VkDebugUtilsMessengerCreateInfoEXT info = sink.messengerInfo();
@@ -58,7 +57,7 @@ TEST(ValidationSink, CountsMessagesOfTheLayersOnly) {
   data.pMessageIdName = nullptr;
   info.pfnUserCallback(VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT, VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT,
                        &data, info.pUserData);
-  EXPECT_EQ(sink.count(), 1u) << "the loader's news are no mistake of ours";
+  EXPECT_EQ(sink.count(), 1u) << "messages of the loader are not errors of this program";
   EXPECT_EQ(log.size(), 2u);
 }
 

@@ -1,4 +1,4 @@
-#include "io/cryptomatte.h"
+#include "io/exr/cryptomatte.h"
 
 #include <gmock/gmock.h>
 
@@ -11,8 +11,8 @@ namespace {
 
 using testing::ElementsAre;
 
-// Vectors that are passed around with the algorithm, and some of every length modulo 4 from a Python version of it.
-TEST(CryptomatteTest, HashIsMurmurHash3) {
+// Well-known test vectors, and texts of every length modulo 4 from a Python implementation.
+TEST(CryptomatteTest, ComputesMurmurHash3) {
   using namespace std::string_view_literals;
   EXPECT_EQ(murmurHash3(""), 0u);
   EXPECT_EQ(murmurHash3("", 1), 0x514e28b7u);
@@ -29,19 +29,19 @@ TEST(CryptomatteTest, HashIsMurmurHash3) {
   EXPECT_EQ(murmurHash3("\u00e4"), 0x7e32d1d4u);
 }
 
-TEST(CryptomatteTest, NamesOfTheSpecificationHaveItsIds) {
+TEST(CryptomatteTest, MatchesIdsOfTheSpecification) {
   EXPECT_EQ(cryptomatteHex(cryptomatteId("bunny")), "13851a76");
   EXPECT_EQ(cryptomatteHex(cryptomatteId("default")), "42c9679f");
 }
 
-TEST(CryptomatteTest, IdsAreNormalFloats) {
+TEST(CryptomatteTest, CreatesNormalFloatsAsIds) {
   EXPECT_EQ(cryptomatteBits(0x00000000u), 0x00800000u);
   EXPECT_EQ(cryptomatteBits(0x80000001u), 0x80800001u);
   EXPECT_EQ(cryptomatteBits(0x7f800000u), 0x7f000000u);
   EXPECT_EQ(cryptomatteBits(0xffffffffu), 0xff7fffffu);
   EXPECT_EQ(cryptomatteBits(0x00800000u), 0x00800000u);
   EXPECT_EQ(cryptomatteBits(0x7f7fffffu), 0x7f7fffffu);
-  // Names found by search whose hashes, 802d54be and 7fbea3d3, are a denormal and a NaN.
+  // The hashes of these names, found by search, are a denormal (802d54be) and a NaN (7fbea3d3).
   EXPECT_EQ(cryptomatteHex(cryptomatteId("object85")), "80ad54be");
   EXPECT_EQ(cryptomatteHex(cryptomatteId("object878")), "7f3ea3d3");
   for (int i = 0; i < 5000; ++i) EXPECT_TRUE(std::isnormal(cryptomatteId("object" + std::to_string(i)))) << i;
@@ -49,18 +49,18 @@ TEST(CryptomatteTest, IdsAreNormalFloats) {
 
 MATCHER_P2(Rank, id, coverage, "") { return arg.id == id && std::abs(arg.coverage - coverage) < 1e-6f; }
 
-TEST(CryptomatteTest, RanksByCoverage) {
+TEST(CryptomatteTest, SortsRanksByCoverage) {
   const CryptomatteCoverage samples[]{{2, 0.25f}, {7, 0.25f}, {0, 0.125f}, {2, 0.125f}, {3, 0.25f}, {9, 0.0f}};
   EXPECT_THAT(rankCryptomatte(samples, 4),
               ElementsAre(Rank(2.0f, 0.375f), Rank(3.0f, 0.25f), Rank(7.0f, 0.25f), Rank(0.0f, 0.0f)));
   EXPECT_THAT(rankCryptomatte(samples, 2), ElementsAre(Rank(2.0f, 0.375f), Rank(3.0f, 0.25f)));
   EXPECT_THAT(rankCryptomatte({}, 2), ElementsAre(Rank(0.0f, 0.0f), Rank(0.0f, 0.0f)));
-  // The order in which samples come does not show.
+  // The result does not depend on the order of the samples.
   const CryptomatteCoverage turned[]{{7, 0.25f}, {3, 0.25f}, {2, 0.375f}};
   EXPECT_THAT(rankCryptomatte(turned, 3), ElementsAre(Rank(2.0f, 0.375f), Rank(3.0f, 0.25f), Rank(7.0f, 0.25f)));
 }
 
-TEST(CryptomatteTest, ChannelsPairIdsAndCoverages) {
+TEST(CryptomatteTest, NamesChannelsOfIdsAndCoverage) {
   EXPECT_EQ(cryptomatteChannel("CryptoObject", 0, false), "CryptoObject00.R");
   EXPECT_EQ(cryptomatteChannel("CryptoObject", 0, true), "CryptoObject00.G");
   EXPECT_EQ(cryptomatteChannel("CryptoObject", 1, false), "CryptoObject00.B");
@@ -68,7 +68,7 @@ TEST(CryptomatteTest, ChannelsPairIdsAndCoverages) {
   EXPECT_EQ(cryptomatteChannel("CryptoMaterial", 5, true), "CryptoMaterial02.A");
 }
 
-TEST(CryptomatteTest, ManifestIsJson) {
+TEST(CryptomatteTest, WritesTheManifestAsJson) {
   const std::vector<std::string> names{"bunny", "a \"b\"\\\n\x7f", "\u00e4", "bunny"};
   const auto json = nlohmann::json::parse(cryptomatteManifest(names));
   ASSERT_EQ(json.size(), 3u);
@@ -77,7 +77,7 @@ TEST(CryptomatteTest, ManifestIsJson) {
   EXPECT_EQ(cryptomatteManifest({}), "{}");
 }
 
-TEST(CryptomatteTest, MetadataFitsIntoOldHeaders) {
+TEST(CryptomatteTest, LimitsAttributeNamesTo31Bytes) {
   const std::vector<std::string> names{"default"};
   const Metadata data = cryptomatteMetadata("CryptoObject", names);
   EXPECT_THAT(data, ElementsAre(testing::Pair("cryptomatte/3ae39a5/name", "CryptoObject"),

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "io/cryptomatte.h"
+#include "io/exr/cryptomatte.h"
 
 namespace quintet::io::test {
 namespace {
@@ -15,8 +15,8 @@ float smooth(std::uint32_t x, std::uint32_t y, std::uint32_t seed) {
 
 }  // namespace
 
-ExrPicture layeredPicture(std::uint32_t width, std::uint32_t height) {
-  ExrPicture picture{width, height, {}};
+ExrImage layeredImage(std::uint32_t width, std::uint32_t height) {
+  ExrImage image{width, height, {}};
   std::uint32_t seed = 0;
   const auto add = [&](const char* name, ExrType type, bool exact) {
     ExrChannel channel{name, type, {}, exact};
@@ -26,13 +26,13 @@ ExrPicture layeredPicture(std::uint32_t width, std::uint32_t height) {
         channel.samples.push_back(type == ExrType::half ? std::round(value * 256.0f) / 256.0f : value);
       }
     ++seed;
-    picture.channels.push_back(std::move(channel));
+    image.channels.push_back(std::move(channel));
   };
   for (const char* name : {"R", "G", "B", "A", "albedo.R", "albedo.G", "albedo.B"}) add(name, ExrType::half, false);
   for (const char* name : {"normal.X", "normal.Y", "normal.Z", "depth.Z", "uv.U", "uv.V", "CryptoObject00.R",
                            "CryptoObject00.G", "CryptoObject00.B", "CryptoObject00.A"})
     add(name, ExrType::f32, true);
-  for (ExrChannel& channel : picture.channels) {
+  for (ExrChannel& channel : image.channels) {
     if (channel.name == "depth.Z") channel.samples[0] = std::numeric_limits<float>::infinity();
     if (channel.name == "CryptoObject00.R")
       for (std::size_t i = 0; i < channel.samples.size(); ++i)
@@ -40,8 +40,8 @@ ExrPicture layeredPicture(std::uint32_t width, std::uint32_t height) {
   }
   ExrChannel id{"exact.id", ExrType::u32, {}, true};
   for (std::uint32_t i = 0; i < width * height; ++i) id.integers.push_back(0xffffffffu - 12345u * i);
-  picture.channels.push_back(std::move(id));
-  return picture;
+  image.channels.push_back(std::move(id));
+  return image;
 }
 
 }  // namespace quintet::io::test

@@ -1,7 +1,10 @@
-#include "io/exr.h"
+#include "io/exr/exr.h"
+#include "io/codec.h"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,7 +16,7 @@ namespace {
 
 using test::ExrKind;
 using test::makeExr;
-using test::makePicture;
+using test::makeGradient;
 using testing::ElementsAre;
 using testing::FloatNear;
 using testing::HasSubstr;
@@ -30,14 +33,14 @@ std::string errorOf(const test::Bytes& bytes) {
 
 TEST(ExrTest, RoundTripsImages) {
   for (std::uint32_t channels = 1; channels <= 4; ++channels) {
-    const Image image = toPremultiplied(makePicture(37, 21, channels, PixelType::f32));
+    const Image image = toPremultiplied(makeGradient(37, 21, channels, PixelType::f32));
     const Image back = decodeImage(encodeExr(image), "a.exr");
     ASSERT_EQ(back.width, 37u);
     ASSERT_EQ(back.height, 21u);
     ASSERT_EQ(back.channels, channels);
     EXPECT_EQ(back.encoding, ColorEncoding::linear);
     EXPECT_EQ(back.premultiplied, back.hasAlpha());
-    // Half has 11 bits of mantissa.
+    // Half has a mantissa of 11 bits.
     EXPECT_THAT(back.samples<float>(), Pointwise(FloatNear(4.0f / 2048.0f), image.samples<float>()));
   }
 }
@@ -50,45 +53,45 @@ TEST(ExrTest, MultipliesStraightAlpha) {
 
 TEST(ExrTest, KeepsChannelsTypesAndMetadata) {
   const float inf = std::numeric_limits<float>::infinity();
-  const ExrPicture picture{3,
-                           1,
-                           {{"B", ExrType::half, {1.0f, 70000.0f, -inf}},
-                            {"albedo.R", ExrType::f32, {0.1f, 1e30f, -0.0f}},
-                            {"sampleCount", ExrType::u32, {7.0f, 16777215.0f, -3.0f}}},
-                           {{"quintet.scene", "\u00e4"}, {"software", ""}}};
-  const ExrPicture back = decodeExr(encodeExr(picture), "a.exr");
+  const ExrImage image{3,
+                       1,
+                       {{"B", ExrType::half, {1.0f, 70000.0f, -inf}},
+                        {"albedo.R", ExrType::f32, {0.1f, 1e30f, -0.0f}},
+                        {"sampleCount", ExrType::u32, {7.0f, 16777215.0f, -3.0f}}},
+                       {{"quintet.scene", "\u00e4"}, {"software", ""}}};
+  const ExrImage back = decodeExr(encodeExr(image), "a.exr");
   ASSERT_EQ(back.channels.size(), 3u);
   EXPECT_EQ(back.channels[0].name, "B");
   EXPECT_EQ(back.channels[0].type, ExrType::half);
   EXPECT_THAT(back.channels[0].samples, ElementsAre(1.0f, 65504.0f, -inf));
   EXPECT_EQ(back.channels[1].name, "albedo.R");
   EXPECT_EQ(back.channels[1].type, ExrType::f32);
-  EXPECT_EQ(back.channels[1].samples, picture.channels[1].samples);
+  EXPECT_EQ(back.channels[1].samples, image.channels[1].samples);
   EXPECT_EQ(back.channels[2].type, ExrType::u32);
   EXPECT_THAT(back.channels[2].samples, ElementsAre(7.0f, 16777215.0f, 0.0f));
-  EXPECT_EQ(back.metadata, picture.metadata);
-  EXPECT_EQ(readMetadata(encodeExr(picture), "a.exr"), picture.metadata);
+  EXPECT_EQ(back.metadata, image.metadata);
+  EXPECT_EQ(readMetadata(encodeExr(image), "a.exr"), image.metadata);
 }
 
-TEST(ExrTest, RefusesPicturesThatCannotBe) {
-  const ExrPicture good{1, 1, {{"A", ExrType::half, {1.0f}}}, {}};
+TEST(ExrTest, RejectsInvalidImages) {
+  const ExrImage good{1, 1, {{"A", ExrType::half, {1.0f}}}, {}};
   EXPECT_NO_THROW(encodeExr(good));
   const auto with = [&](auto&& change) {
-    ExrPicture picture = good;
-    change(picture);
-    return picture;
+    ExrImage image = good;
+    change(image);
+    return image;
   };
-  EXPECT_THROW(encodeExr(with([](ExrPicture& p) { p.channels[0].samples.push_back(0.0f); })), UsageError);
-  EXPECT_THROW(encodeExr(with([](ExrPicture& p) { p.channels.push_back(p.channels[0]); })), UsageError);
-  EXPECT_THROW(encodeExr(with([](ExrPicture& p) { p.channels.clear(); })), UsageError);
-  EXPECT_THROW(encodeExr(with([](ExrPicture& p) { p.channels[0].name.clear(); })), UsageError);
-  EXPECT_THROW(encodeExr(with([](ExrPicture& p) { p.width = 0; })), UsageError);
+  EXPECT_THROW(encodeExr(with([](ExrImage& p) { p.channels[0].samples.push_back(0.0f); })), UsageError);
+  EXPECT_THROW(encodeExr(with([](ExrImage& p) { p.channels.push_back(p.channels[0]); })), UsageError);
+  EXPECT_THROW(encodeExr(with([](ExrImage& p) { p.channels.clear(); })), UsageError);
+  EXPECT_THROW(encodeExr(with([](ExrImage& p) { p.channels[0].name.clear(); })), UsageError);
+  EXPECT_THROW(encodeExr(with([](ExrImage& p) { p.width = 0; })), UsageError);
   for (const char* key : {"compression", "dataWindow", "type", "chunkCount"})
-    EXPECT_THROW(encodeExr(with([&](ExrPicture& p) { p.metadata = {{key, "x"}}; })), UsageError) << key;
-  EXPECT_THROW(encodeExr(with([](ExrPicture& p) { p.metadata = {{"a", "x"}, {"a", "y"}}; })), UsageError);
+    EXPECT_THROW(encodeExr(with([&](ExrImage& p) { p.metadata = {{key, "x"}}; })), UsageError) << key;
+  EXPECT_THROW(encodeExr(with([](ExrImage& p) { p.metadata = {{"a", "x"}, {"a", "y"}}; })), UsageError);
 }
 
-TEST(ExrTest, ReadsTilesAndOtherCompression) {
+TEST(ExrTest, ReadsTilesAndPiz) {
   for (const ExrKind kind : {ExrKind::tiled, ExrKind::mipmapped, ExrKind::piz}) {
     const Image image = decodeImage(makeExr(kind), "a.exr");
     ASSERT_EQ(image.width, 10u);
@@ -99,15 +102,15 @@ TEST(ExrTest, ReadsTilesAndOtherCompression) {
   }
 }
 
-TEST(ExrTest, ShowsTheDisplayWindow) {
+TEST(ExrTest, CropsToTheDisplayWindow) {
   // Display (10,20) … (14,23), data (8,21) … (12,30).
   const Image image = decodeImage(makeExr(ExrKind::offsetWindows), "a.exr");
   ASSERT_EQ(image.width, 5u);
   ASSERT_EQ(image.height, 4u);
   ASSERT_EQ(image.channels, 4u);
   EXPECT_THAT(image.pixel<float>(0, 0), ElementsAre(0, 0, 0, 0));              // above the data
-  EXPECT_THAT(image.pixel<float>(3, 1), ElementsAre(0, 0, 0, 0));              // right of it
-  EXPECT_THAT(image.pixel<float>(0, 1), ElementsAre(5110, 4110, 3110, 2110));  // A, B, G, R stand 1000 apart
+  EXPECT_THAT(image.pixel<float>(3, 1), ElementsAre(0, 0, 0, 0));              // right of the data
+  EXPECT_THAT(image.pixel<float>(0, 1), ElementsAre(5110, 4110, 3110, 2110));  // A, B, G, R differ by 1000
   EXPECT_THAT(image.pixel<float>(2, 3), ElementsAre(5312, 4312, 3312, 2312));
 }
 
@@ -120,15 +123,14 @@ TEST(ExrTest, FindsTheImageInLayersAndParts) {
   EXPECT_EQ(part.channels, 3u);
   EXPECT_THAT(part.pixel<float>(1, 2), ElementsAre(2201, 1201, 201));
 
-  const ExrPicture noImage{1, 1, {{"U", ExrType::half, {1.0f}}, {"V", ExrType::half, {1.0f}}}, {}};
-  EXPECT_THAT(errorOf(encodeExr(noImage)),
-              HasSubstr("without channels that make an image (Y; R, G, B; or one alone): U, V"));
-  const ExrPicture depth{1, 1, {{"Z", ExrType::f32, {3.0f}}}, {}};
+  const ExrImage noImage{1, 1, {{"U", ExrType::half, {1.0f}}, {"V", ExrType::half, {1.0f}}}, {}};
+  EXPECT_THAT(errorOf(encodeExr(noImage)), HasSubstr("U, V"));
+  const ExrImage depth{1, 1, {{"Z", ExrType::f32, {3.0f}}}, {}};
   EXPECT_THAT(decodeImage(encodeExr(depth), "a").samples<float>(), ElementsAre(3.0f));
 }
 
-TEST(ExrTest, HostileHeadersAreRefused) {
-  const test::Bytes good = encodeExr(makePicture(8, 8, 3, PixelType::f32));
+TEST(ExrTest, RejectsHostileHeaders) {
+  const test::Bytes good = encodeExr(makeGradient(8, 8, 3, PixelType::f32));
   const std::string text(reinterpret_cast<const char*>(good.data()), good.size());
   const auto withInt = [&](std::size_t at, std::uint32_t value) {
     test::Bytes bytes = good;

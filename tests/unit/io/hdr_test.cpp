@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -11,7 +13,7 @@ namespace quintet::io {
 namespace {
 
 using test::bytesOf;
-using test::makePicture;
+using test::makeGradient;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -24,7 +26,8 @@ std::string errorOf(const std::string& text) {
   return "no error";
 }
 
-// Red channels of a picture given by its red mantissas at exponent 128+8: the value is the mantissa.
+// Returns the red samples of an image whose red mantissas are `reds`. With the exponent 128 + 8 the value is the
+// mantissa.
 std::vector<float> redsOf(const std::string& header, const std::string& reds) {
   std::string text = header;
   for (const char red : reds) text += {red, 0, 0, static_cast<char>(136)};
@@ -36,7 +39,7 @@ std::vector<float> redsOf(const std::string& header, const std::string& reds) {
 
 TEST(HdrTest, RoundTripsWithinItsPrecision) {
   for (const std::uint32_t width : {3u, 8u, 200u}) {
-    const Image image = makePicture(width, 11, 3, PixelType::f32);
+    const Image image = makeGradient(width, 11, 3, PixelType::f32);
     const Image back = decodeImage(encodeHdr(image), "a.hdr");
     ASSERT_EQ(back.width, width);
     ASSERT_EQ(back.channels, 3u);
@@ -45,7 +48,7 @@ TEST(HdrTest, RoundTripsWithinItsPrecision) {
       for (std::uint32_t x = 0; x < width; ++x) {
         const auto a = image.pixel<float>(x, y);
         const auto b = back.pixel<float>(x, y);
-        // Half a step of an 8 bit mantissa whose largest is at least 128.
+        // Half a step of an 8 bit mantissa of at least 128.
         const float tolerance = std::max({a[0], a[1], a[2]}) / 256.0f;
         for (std::size_t c = 0; c < 3; ++c) ASSERT_NEAR(a[c], b[c], tolerance);
       }
@@ -53,7 +56,7 @@ TEST(HdrTest, RoundTripsWithinItsPrecision) {
   }
 }
 
-TEST(HdrTest, CodesRunsAndExtremes) {
+TEST(HdrTest, EncodesRunsAndExtremeValues) {
   Image image = makeImage(300, 1, 3, PixelType::f32, ColorEncoding::linear);
   for (std::size_t i = 0; i < 600; ++i) image.samples<float>()[i] = 2.0f;  // 200 equal pixels, then black
   const float inf = std::numeric_limits<float>::infinity();
@@ -73,9 +76,9 @@ TEST(HdrTest, CodesRunsAndExtremes) {
   EXPECT_FLOAT_EQ(back.pixel<float>(299, 0)[1], 0.5f);
 }
 
-TEST(HdrTest, TurnsEveryOrientation) {
+TEST(HdrTest, ReadsEveryOrientation) {
   const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
-  // As shown: 1 2 3 / 4 5 6.
+  // The decoded image is 1 2 3 / 4 5 6.
   const auto shown = ElementsAre(1, 2, 3, 4, 5, 6);
   EXPECT_THAT(redsOf(header + "-Y 2 +X 3\n", "\1\2\3\4\5\6"), shown);
   EXPECT_THAT(redsOf(header + "-Y 2 -X 3\n", "\3\2\1\6\5\4"), shown);
@@ -97,7 +100,7 @@ TEST(HdrTest, DividesByExposure) {
   EXPECT_THAT(errorOf("#?RADIANCE\nEXPOSURE=0\n\n-Y 1 +X 2\n"), HasSubstr("EXPOSURE"));
 }
 
-TEST(HdrTest, SaysWhatIsWrongAndWhere) {
+TEST(HdrTest, ReportsProblemsWithTheirOffset) {
   const std::string header = "#?RADIANCE\n\n-Y 1 +X 9\n";
   EXPECT_THAT(errorOf("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 9\n"),
               HasSubstr("a.hdr: byte 11: Radiance HDR with FORMAT"));
@@ -106,11 +109,11 @@ TEST(HdrTest, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(errorOf("#?RADIANCE\n"), HasSubstr("header ends early"));
   EXPECT_THAT(errorOf("#?RADIANCE\n\n-Y 0 +X 9\n"), HasSubstr("no pixels"));
   EXPECT_THAT(errorOf(header), HasSubstr("byte 22: Radiance HDR data ends early"));
-  EXPECT_THAT(errorOf(header + std::string("\2\2\0\x8", 4)), HasSubstr("another width"));
-  EXPECT_THAT(errorOf(header + std::string("\2\2\0\x9\x8a\1", 6)), HasSubstr("a run leaves its scan line"));
-  EXPECT_THAT(errorOf(header + std::string("\2\2\0\x9\0\1", 6)), HasSubstr("a run leaves its scan line"));
-  EXPECT_THAT(errorOf(header + "\1\1\1\1"), HasSubstr("a run leaves its scan line"));
-  EXPECT_THAT(errorOf(header + "\5\5\5\5\1\1\1\x9"), HasSubstr("a run leaves its scan line"));
+  EXPECT_THAT(errorOf(header + std::string("\2\2\0\x8", 4)), HasSubstr("wrong width"));
+  EXPECT_THAT(errorOf(header + std::string("\2\2\0\x9\x8a\1", 6)), HasSubstr("a run exceeds its scan line"));
+  EXPECT_THAT(errorOf(header + std::string("\2\2\0\x9\0\1", 6)), HasSubstr("a run exceeds its scan line"));
+  EXPECT_THAT(errorOf(header + "\1\1\1\1"), HasSubstr("a run exceeds its scan line"));
+  EXPECT_THAT(errorOf(header + "\5\5\5\5\1\1\1\x9"), HasSubstr("a run exceeds its scan line"));
 }
 
 }  // namespace

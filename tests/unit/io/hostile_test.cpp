@@ -1,5 +1,5 @@
-// Every decoder against files that were cut or changed: a FileError or a picture, nothing else, and never a
-// picture from a file that was cut.
+// Runs every decoder on truncated and changed files. A changed file gives an image or a FileError; a truncated file
+// always gives a FileError.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -16,12 +16,12 @@ using test::Sample;
 
 constexpr int kMutations = 2000;  // per sample
 
-enum class Outcome { picture, refused };
+enum class Outcome { decoded, rejected };
 std::ostream& operator<<(std::ostream& out, Outcome outcome) {
-  return out << (outcome == Outcome::picture ? "picture" : "refused");
+  return out << (outcome == Outcome::decoded ? "decoded" : "rejected");
 }
 
-// Anything but a picture or a FileError of one line fails the test (by the exception).
+// Any exception other than a FileError of one line fails the test.
 Outcome tryDecode(std::span<const std::byte> bytes, const std::string& name) {
   try {
     probeImage(bytes, name);
@@ -31,11 +31,11 @@ Outcome tryDecode(std::span<const std::byte> bytes, const std::string& name) {
   try {
     const Image image = decodeImage(bytes, name);
     EXPECT_EQ(image.data.size(), image.rowBytes() * image.height);
-    return Outcome::picture;
+    return Outcome::decoded;
   } catch (const FileError& error) {
     const std::string text = error.what();
     EXPECT_TRUE(text.starts_with(name + ": ") && text.find('\n') == std::string::npos) << text;
-    return Outcome::refused;
+    return Outcome::rejected;
   }
 }
 
@@ -56,26 +56,26 @@ Bytes mutate(const Bytes& original, std::minstd_rand& random) {
 
 class HostileTest : public testing::TestWithParam<Sample> {};
 
-TEST_P(HostileTest, CutFilesAreErrors) {
+TEST_P(HostileTest, RejectsTruncatedFiles) {
   const auto& [name, bytes] = GetParam();
-  EXPECT_EQ(tryDecode(bytes, name), Outcome::picture);
-  // Smaller levels at the end of the file are not part of the picture: two thirds are the largest one.
+  EXPECT_EQ(tryDecode(bytes, name), Outcome::decoded);
+  // The smaller levels at the end of the file are not read; the largest level takes two thirds of the file.
   const std::size_t needed = name == "mipmapped.exr" ? bytes.size() * 2 / 3 : bytes.size();
   for (std::size_t size = 0; size < needed; ++size)
-    EXPECT_EQ(tryDecode(std::span(bytes).first(size), name), Outcome::refused) << size << " of " << bytes.size();
+    EXPECT_EQ(tryDecode(std::span(bytes).first(size), name), Outcome::rejected) << size << " of " << bytes.size();
 }
 
-TEST_P(HostileTest, ChangedFilesDoNoHarm) {
+TEST_P(HostileTest, SurvivesChangedFiles) {
   const auto& [name, bytes] = GetParam();
   std::minstd_rand random(7);
-  int refused = 0;
+  int rejected = 0;
   for (int i = 0; i < kMutations; ++i) {
     Bytes changed = mutate(bytes, random);
-    // With its checksums wrong, a PNG would never be looked at closely.
+    // A PNG with wrong checksums is rejected before its content is read.
     if (name.ends_with(".png") && i % 2 == 0) test::repairPngChecksums(changed);
-    refused += tryDecode(changed, name) == Outcome::refused;
+    rejected += tryDecode(changed, name) == Outcome::rejected;
   }
-  EXPECT_GT(refused, 0);
+  EXPECT_GT(rejected, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, HostileTest, testing::ValuesIn(test::allSamples()), [](const auto& sample) {

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -27,7 +29,7 @@ double meanOf(const Image& image) {
   return std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
 }
 
-TEST(ColorTest, CurveHasItsPublishedValues) {
+TEST(ColorTest, MatchesPublishedValues) {
   EXPECT_FLOAT_EQ(linearFromSrgb(0.0f), 0.0f);
   EXPECT_FLOAT_EQ(linearFromSrgb(1.0f), 1.0f);
   EXPECT_NEAR(linearFromSrgb(0.5f), 0.21404114f, 1e-7f);
@@ -36,7 +38,7 @@ TEST(ColorTest, CurveHasItsPublishedValues) {
   EXPECT_NEAR(linearFromSrgb(188.0f / 255.0f), 0.5028865f, 1e-6f);
 }
 
-TEST(ColorTest, CurvesAreInverseAndMonotonic) {
+TEST(ColorTest, HasInverseMonotonicFunctions) {
   float before = -1.0f;
   for (int i = 0; i <= 1000; ++i) {
     const float value = static_cast<float>(i) / 1000.0f;
@@ -48,7 +50,7 @@ TEST(ColorTest, CurvesAreInverseAndMonotonic) {
     EXPECT_EQ(byteFromUnit(srgbFromLinear(linearFromSrgb(static_cast<float>(i) / 255.0f))), i);
 }
 
-TEST(ColorTest, BytesRoundAndClamp) {
+TEST(ColorTest, RoundsAndClampsBytes) {
   EXPECT_EQ(byteFromUnit(-1.0f), 0);
   EXPECT_EQ(byteFromUnit(2.0f), 255);
   EXPECT_EQ(byteFromUnit(NAN), 0);
@@ -56,7 +58,7 @@ TEST(ColorTest, BytesRoundAndClamp) {
   EXPECT_EQ(byteFromUnit(1.4f / 255.0f), 1);
 }
 
-TEST(ImageTest, MeasuresItself) {
+TEST(ImageTest, ComputesSizes) {
   Image image = makeImage(5, 3, 4, PixelType::u16, ColorEncoding::linear);
   EXPECT_EQ(image.rowBytes(), 40u);
   EXPECT_EQ(image.data.size(), 120u);
@@ -67,7 +69,7 @@ TEST(ImageTest, MeasuresItself) {
   EXPECT_TRUE(Image{}.empty());
 }
 
-TEST(ImageTest, ToFloatUndoesTheCurveButNotOnAlpha) {
+TEST(ImageTest, DecodesSrgbExceptAlpha) {
   Image image = makeImage(1, 1, 4, PixelType::u8, ColorEncoding::sRgb);
   std::ranges::copy(std::array<std::uint8_t, 4>{0, 188, 255, 188}, image.samples<std::uint8_t>().begin());
   const std::vector<float> decoded{0.0f, linearFromSrgb(188.0f / 255.0f), 1.0f, 188.0f / 255.0f};
@@ -80,22 +82,22 @@ TEST(ImageTest, ToFloatUndoesTheCurveButNotOnAlpha) {
   EXPECT_NEAR(toFloat(wide).samples<float>()[0], linearFromSrgb(32768.0f / 65535.0f), 1e-6f);
 }
 
-TEST(ImageTest, ToSrgb8ClampsAndDividesAlphaOut) {
+TEST(ImageTest, EncodesSrgbWithStraightAlpha) {
   EXPECT_THAT(toSrgb8(floats(1, 1, 3, {-1.0f, 0.21404114f, 7.0f})).samples<std::uint8_t>(), ElementsAre(0, 128, 255));
   Image premultiplied = floats(2, 1, 2, {0.25f, 0.25f, 0.5f, 0.0f});
   premultiplied.premultiplied = true;
   const Image straight = toSrgb8(premultiplied);
   EXPECT_THAT(straight.samples<std::uint8_t>(), ElementsAre(255, 64, 188, 0));
   EXPECT_FALSE(straight.premultiplied);
-  const Image bytes = test::makePicture(9, 9, 4, PixelType::u8);
+  const Image bytes = test::makeGradient(9, 9, 4, PixelType::u8);
   EXPECT_EQ(toSrgb8(toFloat(bytes)).data, bytes.data);
 }
 
-TEST(ImageTest, ChangesChannels) {
+TEST(ImageTest, ConvertsChannelCounts) {
   const Image rgba = floats(1, 1, 4, {1.0f, 0.5f, 0.25f, 0.75f});
   EXPECT_THAT(toChannels(rgba, 3).samples<float>(), ElementsAre(1.0f, 0.5f, 0.25f));
-  const float grey = 0.2126f + 0.5f * 0.7152f + 0.25f * 0.0722f;
-  EXPECT_FLOAT_EQ(toChannels(rgba, 1).samples<float>()[0], grey);
+  const float gray = 0.2126f + 0.5f * 0.7152f + 0.25f * 0.0722f;
+  EXPECT_FLOAT_EQ(toChannels(rgba, 1).samples<float>()[0], gray);
   EXPECT_FLOAT_EQ(toChannels(rgba, 2).samples<float>()[1], 0.75f);
   EXPECT_THAT(toChannels(floats(1, 1, 2, {0.5f, 0.25f}), 4).samples<float>(), ElementsAre(0.5f, 0.5f, 0.5f, 0.25f));
   EXPECT_THAT(toChannels(floats(1, 1, 1, {0.5f}), 4).samples<float>(), ElementsAre(0.5f, 0.5f, 0.5f, 1.0f));
@@ -111,14 +113,14 @@ TEST(ResizeTest, AveragesAreas) {
   EXPECT_THAT(resizeBox(image, 2, 1).samples<float>(), ElementsAre(3.5f, 5.5f));
   EXPECT_THAT(resizeBox(image, 1, 1).samples<float>(), ElementsAre(4.5f));
   EXPECT_THAT(resizeBox(image, 4, 2).samples<float>(), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
-  // Three pixels to two: each takes one and a half.
+  // Three pixels become two; each covers one and a half.
   EXPECT_THAT(resizeBox(floats(3, 1, 1, {3, 6, 9}), 2, 1).samples<float>(),
               ElementsAre(FloatNear(4, 1e-5f), FloatNear(8, 1e-5f)));
   EXPECT_THAT(resizeBox(floats(2, 1, 1, {3, 6}), 4, 1).samples<float>(), ElementsAre(3, 3, 6, 6));
 }
 
-TEST(ResizeTest, KeepsTheMean) {
-  const Image image = test::makePicture(97, 61, 3, PixelType::f32);
+TEST(ResizeTest, PreservesTheMean) {
+  const Image image = test::makeGradient(97, 61, 3, PixelType::f32);
   for (const auto& [width, height] : {std::pair{13u, 61u}, {50u, 7u}, {200u, 150u}, {96u, 60u}})
     EXPECT_NEAR(meanOf(resizeBox(image, width, height)), meanOf(image), 1e-4) << width;
 }
@@ -129,8 +131,8 @@ TEST(ResizeTest, WorksInLinearLight) {
   EXPECT_FLOAT_EQ(resizeBox(image, 1, 1).samples<float>()[0], 0.5f);
 }
 
-// Pixel (x, y) of rows that are written piece by piece, against a loop of its own.
-TEST(WriteChannelsTest, WritesTheRowsThatAreAskedFor) {
+// Compares rows that are written in pieces with an independent loop.
+TEST(WriteChannelsTest, WritesRanges) {
   constexpr std::uint32_t kWidth = 5, kHeight = 7;
   for (const std::uint32_t channels : {1u, 2u, 3u, 4u}) {
     Image image = makeImage(kWidth, kHeight, channels, PixelType::u8, ColorEncoding::sRgb);
@@ -142,17 +144,17 @@ TEST(WriteChannelsTest, WritesTheRowsThatAreAskedFor) {
       writeChannels(image, 4, first,
                     std::span(whole).subspan(std::size_t{4} * kWidth * first, std::size_t{4} * kWidth * rows));
     }
-    const bool grey = channels <= 2, alpha = channels % 2 == 0;
+    const bool gray = channels <= 2, alpha = channels % 2 == 0;
     for (std::uint32_t p = 0; p < kWidth * kHeight; ++p) {
       const auto in = [&](std::uint32_t c) { return image.data[std::size_t{p} * channels + c]; };
-      for (std::uint32_t c = 0; c < 3; ++c) EXPECT_EQ(whole[4 * p + c], in(grey ? 0 : c)) << channels << ' ' << p;
+      for (std::uint32_t c = 0; c < 3; ++c) EXPECT_EQ(whole[4 * p + c], in(gray ? 0 : c)) << channels << ' ' << p;
       EXPECT_EQ(whole[4 * p + 3], alpha ? in(channels - 1) : std::byte{255}) << channels << ' ' << p;
     }
     EXPECT_EQ(toChannels(image, 4).data, whole);
   }
 }
 
-TEST(ResizeTest, InvisiblePixelsLendNoColour) {
+TEST(ResizeTest, IgnoresColorsOfTransparentPixels) {
   const Image image = floats(2, 1, 2, {1.0f, 1.0f, 9.0f, 0.0f});
   EXPECT_THAT(resizeBox(image, 1, 1).samples<float>(), ElementsAre(1.0f, 0.5f));
   Image premultiplied = floats(2, 1, 2, {1.0f, 1.0f, 9.0f, 0.0f});
@@ -160,7 +162,7 @@ TEST(ResizeTest, InvisiblePixelsLendNoColour) {
   EXPECT_THAT(resizeBox(premultiplied, 1, 1).samples<float>(), ElementsAre(5.0f, 0.5f));
 }
 
-TEST(ResizeTest, NothingIsAnError) {
+TEST(ResizeTest, RejectsEmptyImages) {
   EXPECT_THROW(resizeBox(floats(1, 1, 1, {1}), 0, 1), UsageError);
   EXPECT_THROW(resizeBox(Image{}, 1, 1), UsageError);
 }

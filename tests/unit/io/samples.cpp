@@ -59,7 +59,7 @@ Bytes bytesOf(std::string_view text) {
   return {bytes.begin(), bytes.end()};
 }
 
-Image makePicture(std::uint32_t width, std::uint32_t height, std::uint32_t channels, PixelType type) {
+Image makeGradient(std::uint32_t width, std::uint32_t height, std::uint32_t channels, PixelType type) {
   Image image =
       makeImage(width, height, channels, type, type == PixelType::f32 ? ColorEncoding::linear : ColorEncoding::sRgb);
   std::minstd_rand random(width * 31 + height * 7 + channels);
@@ -134,8 +134,8 @@ void repairPngChecksums(Bytes& png) {
 }
 
 std::vector<Sample> allSamples() {
-  const auto picture = [](std::uint32_t channels, PixelType type = PixelType::u8) {
-    return makePicture(12, 9, channels, type);
+  const auto image = [](std::uint32_t channels, PixelType type = PixelType::u8) {
+    return makeGradient(12, 9, channels, type);
   };
   PngParts palette{5, 2, 2, 3, 0, {{"PLTE", std::string("\1\2\3\4\5\6\7\x8\x9", 9)}, {"tRNS", "\x80"}}, {}};
   palette.rows = std::string("\0\x18\x40\0\x24\x80", 6);
@@ -151,20 +151,20 @@ std::vector<Sample> allSamples() {
   const std::string flat = "#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n" + std::string(16, '\x80');
   const std::string oldRuns = "#?RADIANCE\n\n-Y 1 +X 9\n\x80\x40\x20\x81\1\1\1\4\x80\x80\x80\x80\1\1\1\3";
   return {
-      {"png8.png", encodePng(picture(3), {{"Title", "a"}, {"Comment", "\u00e4\u00f6"}})},
-      {"png16.png", encodePng(picture(4, PixelType::u16))},
+      {"png8.png", encodePng(image(3), {{"Title", "a"}, {"Comment", "\u00e4\u00f6"}})},
+      {"png16.png", encodePng(image(4, PixelType::u16))},
       {"palette.png", makePng(palette)},
       {"interlaced.png", makePng(interlaced)},
-      {"baseline.jpg", encodeJpeg(picture(3), 90, TJSAMP_420, 0)},
-      {"progressive.jpg", encodeJpeg(picture(3), 90, TJSAMP_444, TJFLAG_PROGRESSIVE)},
-      {"grey.jpg", encodeJpeg(picture(1), 90, TJSAMP_GRAY, 0)},
-      {"lossy.webp", encodeWebp(picture(3), 80.0f)},
-      {"lossy_alpha.webp", encodeWebp(picture(4), 80.0f)},
-      {"lossless.webp", encodeWebp(picture(4), -1.0f)},
-      {"new_runs.hdr", encodeHdr(picture(3, PixelType::f32))},
+      {"baseline.jpg", encodeJpeg(image(3), 90, TJSAMP_420, 0)},
+      {"progressive.jpg", encodeJpeg(image(3), 90, TJSAMP_444, TJFLAG_PROGRESSIVE)},
+      {"gray.jpg", encodeJpeg(image(1), 90, TJSAMP_GRAY, 0)},
+      {"lossy.webp", encodeWebp(image(3), 80.0f)},
+      {"lossy_alpha.webp", encodeWebp(image(4), 80.0f)},
+      {"lossless.webp", encodeWebp(image(4), -1.0f)},
+      {"new_runs.hdr", encodeHdr(image(3, PixelType::f32))},
       {"old_runs.hdr", bytesOf(oldRuns)},
       {"flat.hdr", bytesOf(flat)},
-      {"zip.exr", encodeExr(picture(4, PixelType::f32), {{"Title", "a"}})},
+      {"zip.exr", encodeExr(image(4, PixelType::f32), {{"Title", "a"}})},
       {"tiled.exr", makeExr(ExrKind::tiled)},
       {"mipmapped.exr", makeExr(ExrKind::mipmapped)},
       {"windows.exr", makeExr(ExrKind::offsetWindows)},

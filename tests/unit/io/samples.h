@@ -1,10 +1,13 @@
-// Pictures and small files for the tests of the codecs, made here: no binary file in the repository.
+// Images and small files for the codec tests. They are generated, so the repository contains no binary files.
 #ifndef QUINTET_TESTS_IO_SAMPLES_H
 #define QUINTET_TESTS_IO_SAMPLES_H
 
+#include <cstddef>
 #include <cstdint>
 #include <ostream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/codec.h"
@@ -15,15 +18,16 @@ using Bytes = std::vector<std::byte>;
 
 Bytes bytesOf(std::string_view text);
 
-// Smooth gradients with a little noise; alpha between 1/3 and 1. f32: values from 0 to about 4, linear.
-Image makePicture(std::uint32_t width, std::uint32_t height, std::uint32_t channels, PixelType type);
+// Returns smooth gradients with a little noise. Alpha is between 1/3 and 1; f32 samples are linear values from 0 to
+// about 4.
+Image makeGradient(std::uint32_t width, std::uint32_t height, std::uint32_t channels, PixelType type);
 
-// Quality 0 … 100; sampling: TJSAMP_…; flags: TJFLAG_….
+// `quality` is in [0,100], `sampling` is TJSAMP_…, `flags` are TJFLAG_….
 Bytes encodeJpeg(const Image& image, int quality, int sampling, int flags);
-// Quality 0 … 100, or -1: lossless.
+// `quality` is in [0,100]; -1 means lossless.
 Bytes encodeWebp(const Image& image, float quality);
 
-// A PNG by hand: `rows` is what the filtered scan lines look like before DEFLATE (stored, not compressed).
+// The parts of a PNG. `rows` are the filtered scan lines before DEFLATE (stored, not compressed).
 struct PngParts {
   std::uint32_t width = 1;
   std::uint32_t height = 1;
@@ -34,10 +38,10 @@ struct PngParts {
   std::string rows;
 };
 Bytes makePng(const PngParts& parts);
-// Makes all chunk checksums right again, as far as the chunks can be followed.
+// Updates the checksums of all chunks up to the first invalid chunk size.
 void repairPngChecksums(Bytes& png);
 
-// One small file of each kind that decodeImage takes.
+// One small file of each kind that decodeImage supports.
 struct Sample {
   std::string name;
   Bytes bytes;
@@ -45,7 +49,7 @@ struct Sample {
 inline void PrintTo(const Sample& sample, std::ostream* out) { *out << sample.name; }  // for GoogleTest
 std::vector<Sample> allSamples();
 
-// The file written with OpenEXR directly: what encodeExr does not make.
+// Kinds of files that encodeExr cannot write; makeExr uses OpenEXR directly.
 enum class ExrKind { tiled, mipmapped, offsetWindows, layers, multiPart, piz };
 Bytes makeExr(ExrKind kind);
 

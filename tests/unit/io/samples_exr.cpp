@@ -31,7 +31,7 @@ class Stream : public Imf::OStream {
   std::size_t at = 0;
 };
 
-// A channel named by `name` whose sample at (x, y) of the data window is 100 y + x + offset.
+// A channel whose sample at (x, y) of the data window is 100 y + x + offset.
 struct Plane {
   Plane(const std::string& channelName, const Imath::Box2i& box, float offset) : name(channelName), window(box) {
     for (int y = box.min.y; y <= box.max.y; ++y)
@@ -89,12 +89,12 @@ Bytes writeLines(const Imf::Header& header) {
   return stream.bytes;
 }
 
-// A depth part without an image, then one with colours.
+// Writes a part with depth channels, which are no image, and a part with colors.
 Bytes writeParts(const Imath::Box2i& box) {
   std::vector<Imf::Header> headers{makeHeader(box, box, {"Z"}), makeHeader(box, box, {"R", "G", "B"})};
   headers[0].channels().insert("Z2", Imf::Channel(Imf::FLOAT));
   for (std::size_t i = 0; i < 2; ++i) {
-    headers[i].setName(i == 0 ? "depth" : "colour");
+    headers[i].setName(i == 0 ? "depth" : "color");
     headers[i].setType(Imf::SCANLINEIMAGE);
   }
   Stream stream;

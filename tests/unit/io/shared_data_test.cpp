@@ -1,4 +1,4 @@
-// Every image among the data that others made: files of their own, and those inside of .glb files.
+// Decodes every image of the shared data: image files and images inside .glb files.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The images in a .glb's binary chunk (glTF 2.0, 4.4); none where the file is not as expected.
+// Returns the images in the binary chunk of a .glb file (glTF 2.0, 4.4); empty for an unexpected layout.
 std::vector<std::span<const std::byte>> imagesInside(std::span<const std::byte> glb) {
   const auto read32 = [&](std::size_t at) {
     std::uint32_t value = 0;
@@ -39,7 +39,7 @@ std::vector<std::span<const std::byte>> imagesInside(std::span<const std::byte> 
   return images;
 }
 
-TEST(SharedDataTest, EveryImageDecodes) {
+TEST(SharedDataTest, DecodesEveryImage) {
   const fs::path data = QUINTET_SHARED_DATA;
   if (!fs::exists(data / "models")) GTEST_SKIP() << "no " << data;
   const std::set<std::string> extensions{".png", ".jpg", ".jpeg", ".webp", ".hdr", ".exr"};

@@ -1,9 +1,10 @@
-// The shader binding table's arithmetic: examples by hand, and the rules of the specification as
-// properties of many random tables.
+// The layout of the shader binding table: examples, and the rules of the specification for random tables.
 #include "rt/sbt_layout.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <random>
 
 #include "base/error.h"
@@ -25,7 +26,7 @@ SbtRecord record(std::uint32_t group, std::size_t dataBytes = 0, std::uint8_t fi
   return {group, std::vector<std::byte>(dataBytes, std::byte{fill})};
 }
 
-// Handle g is `size` bytes of value g + 1.
+// Returns handles of `size` bytes; all bytes of handle g are g + 1.
 std::vector<std::byte> handles(std::size_t groups, std::size_t size) {
   std::vector<std::byte> result;
   for (std::size_t g = 0; g < groups; ++g) result.insert(result.end(), size, static_cast<std::byte>(g + 1));
@@ -38,7 +39,7 @@ void expectRegion(const SbtRegion& region, std::uint64_t offset, std::uint64_t s
   EXPECT_EQ(region.size, size);
 }
 
-TEST(SbtLayout, WithoutData) {
+TEST(SbtLayout, PacksRecordsWithoutData) {
   const SbtContents contents{record(0), {record(1), record(2)}, {record(3), record(4), record(5)}, {}};
   const SbtLayout layout = layoutSbt(contents, limits(32, 32, 64));
   expectRegion(layout.rayGeneration, 0, 64, 64);
@@ -48,7 +49,7 @@ TEST(SbtLayout, WithoutData) {
   EXPECT_EQ(layout.size, 224u);
 }
 
-TEST(SbtLayout, HandleAlignmentLargerThanTheHandle) {
+TEST(SbtLayout, SupportsHandleAlignmentsAboveTheHandleSize) {
   const SbtContents contents{record(0), {record(1)}, {record(2), record(3)}, {record(4)}};
   const SbtLayout layout = layoutSbt(contents, limits(16, 64, 64));
   expectRegion(layout.rayGeneration, 0, 64, 64);
@@ -57,21 +58,21 @@ TEST(SbtLayout, HandleAlignmentLargerThanTheHandle) {
   expectRegion(layout.callable, 256, 64, 64);
 }
 
-TEST(SbtLayout, TheLargestRecordSetsItsTablesStride) {
+TEST(SbtLayout, DerivesTheStrideFromTheLargestRecord) {
   const SbtContents contents{record(0, 40), {record(1, 4)}, {record(2), record(3, 33), record(4, 8)}, {}};
   const SbtLayout layout = layoutSbt(contents, limits(32, 32, 64));
-  expectRegion(layout.rayGeneration, 0, 128, 128);  // 32 + 40 = 72 → 96 → 128: size equals stride
+  expectRegion(layout.rayGeneration, 0, 128, 128);  // 32 + 40 = 72 → 96 → 128; the size equals the stride
   expectRegion(layout.miss, 128, 64, 64);           // 32 + 4 = 36 → 64
   expectRegion(layout.hit, 192, 96, 288);           // 32 + 33 = 65 → 96
 }
 
-TEST(SbtLayout, RayGenerationAlone) {
+TEST(SbtLayout, SupportsTablesWithOnlyRayGeneration) {
   const SbtLayout layout = layoutSbt({record(0), {}, {}, {}}, limits(32, 32, 64));
   EXPECT_EQ(layout.size, 64u);
   EXPECT_EQ(layout.miss.size + layout.hit.size + layout.callable.size, 0u);
 }
 
-TEST(SbtLayout, DataThatDoesNotFitIsRefused) {
+TEST(SbtLayout, RejectsTooLargeRecords) {
   const gpu::RayTracingLimits small = limits(32, 32, 64, 96);
   EXPECT_NO_THROW(layoutSbt({record(0), {}, {record(1, 64)}, {}}, small));
   EXPECT_THROW(layoutSbt({record(0), {}, {record(1, 65)}, {}}, small), UsageError);
@@ -81,11 +82,11 @@ TEST(SbtLayout, DataThatDoesNotFitIsRefused) {
   try {
     layoutSbt({record(0), {}, {record(1, 65)}, {}}, small);
   } catch (const UsageError& error) {
-    EXPECT_NE(std::string(error.what()).find("hit record has 65 bytes"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("hit record with 65 bytes"), std::string::npos) << error.what();
   }
 }
 
-TEST(SbtFill, HandlesDataAndUnusedRecords) {
+TEST(SbtFill, WritesHandlesDataAndUnusedRecords) {
   const gpu::RayTracingLimits device = limits(16, 32, 64);
   const SbtContents contents{
       record(2), {record(0)}, {record(1, 20), record(SbtRecord::kUnusedGroup), record(2, 4)}, {}};
@@ -109,8 +110,8 @@ TEST(SbtFill, HandlesDataAndUnusedRecords) {
   EXPECT_EQ(at(hit + 128 + 20), 0);
 }
 
-// What a shader computes: record = base + stride · (instance offset + geometry · ray types + ray type).
-TEST(SbtFill, RecordOfGeometryAndRayType) {
+// The address in traces: record = base + stride · (instance offset + geometry · ray types + ray type).
+TEST(SbtFill, StoresRecordsByGeometryAndRayType) {
   constexpr std::uint32_t kRayTypes = 2;
   const std::uint32_t geometries[] = {3, 1, 4};  // of each instance
   const gpu::RayTracingLimits device = limits(32, 32, 64);
@@ -138,7 +139,7 @@ TEST(SbtFill, RecordOfGeometryAndRayType) {
   }
 }
 
-TEST(SbtLayout, RulesOfTheSpecificationHoldForRandomTables) {
+TEST(SbtLayout, FollowsTheSpecificationForRandomTables) {
   std::mt19937 random(1);
   const auto table = [&](std::size_t maxCount) {
     std::vector<SbtRecord> records(random() % (maxCount + 1));

@@ -1,4 +1,4 @@
-// Orders for builders that halve the index range.
+// Spatial orders for drivers that halve the index range.
 #include "rt/spatial_order.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST(SpatialOrder, IsAPermutation) {
   }
 }
 
-TEST(SpatialOrder, BeatsTheInputByFar) {
+TEST(SpatialOrder, ReducesTheTreeCost) {
   const auto boxes = cloud(20000, 2);
   const double random = halvingTreeCost(boxes, identity(boxes.size()));
   const double ordered = halvingTreeCost(boxes, spatialOrder(boxes));
@@ -50,8 +50,8 @@ TEST(SpatialOrder, BeatsTheInputByFar) {
   EXPECT_LT(ordered, 110.0);  // measured: 98
 }
 
-TEST(SpatialOrder, TheLeftHalfGetsOneMore) {
-  // Two clusters: 3 boxes at the left, 2 at the right; no other division is compact.
+TEST(SpatialOrder, GivesTheLeftHalfTheExtraBox) {
+  // Two clusters: 3 boxes on the left, 2 on the right. No other division is compact.
   std::vector<Bounds3> boxes;
   for (const float x : {10.0f, 0.0f, 10.1f, 0.1f, 0.2f}) boxes.push_back({vec3(x, 0, 0), vec3(x + 0.05f, 1, 1)});
   auto order = spatialOrder(boxes);
@@ -59,8 +59,8 @@ TEST(SpatialOrder, TheLeftHalfGetsOneMore) {
   EXPECT_EQ((std::vector<std::uint32_t>(order.begin(), order.begin() + 3)), (std::vector<std::uint32_t>{1, 3, 4}));
 }
 
-TEST(SpatialOrder, CostOfASmallTreeByHand) {
-  // Unit cubes at x = 0, 1, 2: leaves 3 · 6, ((0 1) 2): the pair 10, the root 14.
+TEST(SpatialOrder, ComputesTheCostOfASmallTree) {
+  // Areas for unit cubes at x = 0, 1, 2 and the tree ((0 1) 2): three leaves of 6, the pair 10, the root 14.
   std::vector<Bounds3> boxes;
   for (int x = 0; x < 3; ++x) boxes.push_back({vec3(x, 0, 0), vec3(x + 1, 1, 1)});
   EXPECT_NEAR(halvingTreeCost(boxes, identity(3)), (18.0 + 10.0 + 14.0) / 14.0, 1e-6);
@@ -68,17 +68,17 @@ TEST(SpatialOrder, CostOfASmallTreeByHand) {
   EXPECT_EQ(halvingTreeCost({}, {}), 0.0);
 }
 
-// A mesh that lies flat: the axis without extent must never be chosen.
-TEST(SpatialOrder, FlatGrid) {
+// The axis without extent must never be selected.
+TEST(SpatialOrder, SortsFlatGrids) {
   std::vector<Bounds3> boxes;
   for (int y = 0; y < 64; ++y)
     for (int x = 0; x < 64; ++x) boxes.push_back({vec3(x, 0, y), vec3(x + 1, 0, y + 1)});
   std::shuffle(boxes.begin(), boxes.end(), std::mt19937(3));
   const double cost = halvingTreeCost(boxes, spatialOrder(boxes));
-  EXPECT_NEAR(cost, 13.0, 0.1);  // a power of two: every one of the 13 levels covers the grid once
+  EXPECT_NEAR(cost, 13.0, 0.1);  // for a power of two, each of the 13 levels covers the grid once
 }
 
-TEST(SpatialOrder, EqualBoxesAndExtremeValues) {
+TEST(SpatialOrder, AcceptsEqualAndExtremeBoxes) {
   std::vector<Bounds3> boxes(5000, Bounds3{vec3(1), vec3(2)});
   EXPECT_TRUE(isPermutation(spatialOrder(boxes)));
   const float large = std::numeric_limits<float>::max();
@@ -90,7 +90,7 @@ TEST(SpatialOrder, EqualBoxesAndExtremeValues) {
   EXPECT_TRUE(isPermutation(spatialOrder(boxes)));
 }
 
-TEST(SpatialOrder, DoesNotDependOnTheNumberOfThreads) {
+TEST(SpatialOrder, IsIndependentOfTheNumberOfThreads) {
   const auto boxes = cloud(200'000, 5);
   const auto parallel = spatialOrder(boxes);
   cpu_set_t all, one;
@@ -107,7 +107,7 @@ TEST(SpatialOrder, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(parallel, serial);
 }
 
-TEST(SpatialOrder, GroupsKeepTheirIndexRanges) {
+TEST(SpatialOrder, KeepsTheIndexRangesOfGroups) {
   const auto boxes = cloud(10'007, 6);
   const std::vector<std::size_t> sizes{1, 0, 4000, 5, 3000, 3000, 1, 0};
   const auto order = spatialOrder(boxes, sizes);

@@ -1,7 +1,7 @@
-// Where a ray meets analytic solids and trees of them, in double precision on the host: the oracle for tests of the
-// shaders. It shares no algorithm with them: a solid is the list of all its crossings with the whole line (t from -∞
-// to ∞), and an operation merges two lists. All in the object space of the primitive set; ray parameters are those of
-// the (not normalised) direction. Tangent rays and coincident surfaces are left to chance: keep tests off them.
+// Intersections of rays with analytic solids and CSG trees in double precision: the reference for tests of the shaders.
+// It shares no algorithm with them: a solid is the list of all its crossings with the infinite line, and an operation
+// merges two lists. Everything is in the object space of the primitive set; t refers to the direction, which is not
+// normalized. Results for tangent rays and coincident surfaces are arbitrary, so tests must avoid them.
 #ifndef QUINTET_TESTS_CSG_ORACLE_H
 #define QUINTET_TESTS_CSG_ORACLE_H
 
@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "scene/procedural.h"
+#include "scene/model/procedural.h"
 
 namespace quintet::test::oracle {
 
@@ -22,19 +22,19 @@ using glm::dvec3;
 
 struct Ray {
   dvec3 origin;
-  dvec3 direction;  // of any length: t counts in it
+  dvec3 direction;  // any length; the unit of t
   dvec3 at(double t) const { return origin + t * direction; }
 };
 
-// One point where a line enters or leaves a solid.
+// A point at which a line enters or leaves a solid.
 struct Crossing {
   double t = 0.0;
-  dvec3 normal{0.0};            // object space, unit, out of the solid (of a tree: out of the result)
-  std::uint32_t primitive = 0;  // index in PrimitiveSet::primitives: whose surface it is
+  dvec3 normal{0.0};            // object space, unit, out of the solid or of the result of a tree
+  std::uint32_t primitive = 0;  // index in PrimitiveSet::primitives
   bool entering = true;
   bool flipped = false;  // surface of a subtrahend: the normal points into that primitive
 };
-using Crossings = std::vector<Crossing>;  // ascending t, entering and leaving in turn
+using Crossings = std::vector<Crossing>;  // ascending t, entering and leaving alternately
 
 // ---- canonical solids ----
 
@@ -55,7 +55,7 @@ inline bool insideCanonical(scene::PrimitiveType type, double minor, const dvec3
 
 namespace detail {
 
-// Polynomials by rising powers; real roots where the sign changes, found between the roots of the derivative.
+// Coefficients by ascending powers. Real roots with a change of sign are searched between the roots of the derivative.
 using Polynomial = std::vector<double>;
 
 inline double evaluate(const Polynomial& p, double x) {
@@ -101,7 +101,7 @@ struct Boundary {
   dvec3 normal;
 };
 
-// Cuts what is left of a line by { t : f(t) <= 0 } with f linear: dot(normal, p(t)) <= offset.
+// Clips the interval by the half-space dot(normal, p) <= offset.
 inline void clipByPlane(const Ray& ray, const dvec3& normal, double offset, std::vector<Boundary>& interval) {
   if (interval.empty()) return;
   const double slope = glm::dot(normal, ray.direction), value = glm::dot(normal, ray.origin) - offset;
@@ -162,8 +162,8 @@ inline std::vector<Boundary> cylinder(const Ray& r) {
   return interval;
 }
 
-// Between the roots of x² + z² = ((1 - y)/2)² and the planes y = ±1: the pieces whose middle is inside. The double
-// cone's other half touches the slab in the apex alone, so that there is one piece.
+// The intervals between the roots of x² + z² = ((1 - y)/2)² and the planes y = ±1 whose midpoint is inside. The other
+// half of the double cone touches the slab only in the apex, so the result is one interval.
 inline std::vector<Boundary> cone(const Ray& r) {
   const dvec3 &o = r.origin, &d = r.direction;
   const double h = 0.5 * (1.0 - o.y), k = -0.5 * d.y;
@@ -189,7 +189,7 @@ inline std::vector<Boundary> cone(const Ray& r) {
 
 // (|p|² + 1 - m²)² = 4 (x² + z²), a quartic in t.
 inline std::vector<Boundary> torus(const Ray& ray, double minor) {
-  // Near the torus first, so that the coefficients are small: the shift is exact enough in double precision.
+  // Moves the origin close to the torus, so that the coefficients are small. Double precision suffices for the shift.
   const double length = glm::length(ray.direction), shift = -glm::dot(ray.origin, ray.direction) / (length * length);
   const Ray r{ray.at(shift), ray.direction / length};
   const dvec3 &o = r.origin, &d = r.direction;
@@ -296,7 +296,7 @@ inline bool inside(const scene::PrimitiveSet& set, const scene::CsgTree& tree, c
   return stack.back();
 }
 
-// The first crossing with tmin < t < tmax, entering or leaving: what a closest-hit shader must see.
+// The first crossing with tmin < t < tmax, entering or leaving: the expected closest hit.
 inline std::optional<Crossing> firstHit(const Crossings& crossings, double tmin, double tmax) {
   for (const Crossing& crossing : crossings)
     if (crossing.t > tmin && crossing.t < tmax) return crossing;

@@ -1,5 +1,5 @@
-// The oracle against itself by other means: points between crossings are inside or outside as a point test says, the
-// crossings of simple rays have closed forms, normals point out of the solid.
+// Tests of the oracle: points between crossings agree with a point test, crossings of simple rays agree with closed
+// forms, normals point out of the solid.
 #include "scene/csg_oracle.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ Ray randomRay(std::mt19937& random) {
   return {origin, (target - origin) * (0.5 + std::abs(unit(random)))};
 }
 
-// Alternation, order, the state of points between crossings, and the side that the normals point to.
+// Checks the alternation and order of crossings, the points between them, and the direction of the normals.
 template <class Inside>
 void expectConsistent(const Crossings& list, const Ray& ray, const Inside& inside) {
   ASSERT_EQ(list.size() % 2, 0u);
@@ -55,7 +55,7 @@ void expectConsistent(const Crossings& list, const Ray& ray, const Inside& insid
   if (!list.empty()) {
     EXPECT_FALSE(inside(ray.at(list.back().t + 1e-6)));
   }
-  // Whole stretches without crossings.
+  // Intervals without crossings.
   for (int k = 0; k < 50; ++k) {
     const double t = -1.0 + 0.1 * k;
     bool expected = false;
@@ -70,7 +70,7 @@ void expectConsistent(const Crossings& list, const Ray& ray, const Inside& insid
   }
 }
 
-TEST(CsgOracle, SolidsAgreeWithPointTests) {
+TEST(CsgOracle, SolidsMatchPointTests) {
   std::mt19937 random(7);
   std::size_t hits = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -86,7 +86,7 @@ TEST(CsgOracle, SolidsAgreeWithPointTests) {
   EXPECT_GT(hits, 1000u);
 }
 
-TEST(CsgOracle, TreesAgreeWithPointTests) {
+TEST(CsgOracle, TreesMatchPointTests) {
   std::mt19937 random(8);
   std::size_t crossings = 0;
   for (int i = 0; i < 6000; ++i) {
@@ -112,7 +112,7 @@ void expectNear(const std::vector<double>& actual, const std::vector<double>& ex
   for (std::size_t i = 0; i < actual.size(); ++i) EXPECT_NEAR(actual[i], expected[i], 1e-12);
 }
 
-TEST(CsgOracle, ClosedForms) {
+TEST(CsgOracle, MatchesClosedForms) {
   const Ray along{{-5, 0, 0}, {2, 0, 0}};  // t = (x + 5) / 2
   const auto of = [&](PrimitiveType type, const Ray& ray) {
     Primitive p;
@@ -132,7 +132,7 @@ TEST(CsgOracle, ClosedForms) {
   expectNear(of(PrimitiveType::torus, {{1.15, 7, 0}, {0, -1, 0}}), {7 - 0.2, 7 + 0.2});
 }
 
-TEST(CsgOracle, ADifferenceKeepsBothPiecesAndFlipsTheNormalInside) {
+TEST(CsgOracle, DifferencesFlipTheNormalInside) {
   scene::PrimitiveSet set;
   set.kind = scene::PrimitiveSetKind::csg;
   set.primitives.resize(2);

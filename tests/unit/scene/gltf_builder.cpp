@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "io/codec.h"
-#include "scene/gltf.h"
-#include "scene/validate.h"
+#include "scene/gltf/gltf.h"
+#include "scene/model/validate.h"
 
 namespace quintet::test {
 namespace {
@@ -35,7 +35,7 @@ std::string errorFrom(Load load) {
   } catch (const FileError& error) {
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
     EXPECT_EQ(error.file().stem(), "scene") << error.what();
-    return error.place().empty() ? error.problem() : error.place() + ": " + error.problem();
+    return error.location().empty() ? error.problem() : error.location() + ": " + error.problem();
   }
   return "";
 }
@@ -86,7 +86,7 @@ scene::Scene GltfBuilder::load() const { return loadBytes(glb()); }
 scene::Scene loadBytes(const std::vector<std::byte>& bytes, const std::string& extension) {
   const TempFolder folder;
   const std::filesystem::path file = folder / ("scene." + extension);
-  // Not writeFile: it waits for the disk, and the tests write thousands of files.
+  // writeFile would wait for the disk, and the tests write thousands of files.
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   scene::Scene scene = scene::loadGltf(file);

@@ -1,4 +1,4 @@
-// Small glTF files made inside the tests: JSON plus one buffer, written as .glb, or as .gltf with a data URI.
+// Builds small glTF files in tests: JSON and one buffer, as .glb, or as .gltf with a data URI.
 #ifndef QUINTET_TESTS_GLTF_BUILDER_H
 #define QUINTET_TESTS_GLTF_BUILDER_H
 
@@ -12,14 +12,14 @@
 #include <type_traits>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/model/scene.h"
 #include "temp_folder.h"
 
 namespace quintet::test {
 
 using Json = nlohmann::json;
 
-// Component types by their numbers in glTF.
+// glTF's component types.
 inline constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
                      kFloat = 5126;
 
@@ -50,7 +50,7 @@ class GltfBuilder {
   Json root = {{"asset", {{"version", "2.0"}}}};
   std::vector<std::byte> binary;
 
-  // Appends at the next multiple of four; returns the view's index.
+  // Appends at the next multiple of four and returns the index of the view.
   template <class T>
   int addView(const std::vector<T>& values, int byteStride = 0) {
     binary.resize((binary.size() + 3) / 4 * 4);
@@ -61,7 +61,7 @@ class GltfBuilder {
     if (byteStride > 0) view["byteStride"] = byteStride;
     return add("bufferViews", view);
   }
-  // `values` holds the components one after another, tightly packed.
+  // `values` are the components, tightly packed.
   template <class T>
   int addAccessor(const std::vector<T>& values, const std::string& type, bool normalized = false) {
     Json accessor = {{"bufferView", addView(values)},
@@ -75,12 +75,12 @@ class GltfBuilder {
     root[array].push_back(object);
     return static_cast<int>(root[array].size()) - 1;
   }
-  // A mesh of one primitive, and a node that shows it.
+  // Adds a mesh of one primitive and its node; returns the index of the node.
   int addMesh(const Json& primitive) {
     const int mesh = add("meshes", {{"primitives", Json::array({primitive})}});
     return add("nodes", {{"mesh", mesh}});
   }
-  // The triangle (0,0,0) (1,0,0) (0,1,0), not indexed, and its node; returns the position accessor.
+  // Adds the triangle (0,0,0) (1,0,0) (0,1,0), not indexed, and its node; returns the position accessor.
   int addTriangle() {
     const int positions = addAccessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
     addMesh({{"attributes", {{"POSITION", positions}}}});
@@ -88,22 +88,23 @@ class GltfBuilder {
   }
   Json& primitive(std::size_t mesh = 0) { return root["meshes"][mesh]["primitives"][0]; }
 
-  std::string json() const;  // with `binary` as buffer 0 without uri
+  std::string json() const;  // `binary` is buffer 0, without uri
   std::vector<std::byte> glb() const;
-  std::string gltf() const;  // with `binary` as a data URI
+  std::string gltf() const;  // `binary` is a data URI
 
-  // Written to a temporary .glb and loaded.
+  // Writes a temporary .glb and loads it.
   scene::Scene load() const;
 };
 
 std::string base64(const std::vector<std::byte>& bytes);
 std::vector<std::byte> makeGlb(std::string json, const std::vector<std::byte>* binary);
 
-// Loads what is written to "scene.<extension>" in a folder of its own.
+// Writes "scene.<extension>" to a temporary folder and loads it.
 scene::Scene loadBytes(const std::vector<std::byte>& bytes, const std::string& extension = "glb");
 scene::Scene loadText(std::string_view text, const std::string& extension = "gltf");
 
-// "place: problem" of the FileError that loading throws, whose file is the scene's; "" if it loads.
+// Loads the file and returns "location: problem" of the FileError, or "" if it loads. The file of the error must be the
+// scene.
 std::string errorOf(const GltfBuilder&);
 std::string errorOfBytes(const std::vector<std::byte>& bytes, const std::string& extension = "glb");
 std::string errorOfText(std::string_view text);

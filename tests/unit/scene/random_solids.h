@@ -1,14 +1,14 @@
-// Random transforms, solids and trees for tests, deterministic for a generator's state.
+// Random transforms, solids and trees for tests, determined by the state of the generator.
 #ifndef QUINTET_TESTS_RANDOM_SOLIDS_H
 #define QUINTET_TESTS_RANDOM_SOLIDS_H
 
 #include <random>
 
-#include "scene/procedural.h"
+#include "scene/model/procedural.h"
 
 namespace quintet::test {
 
-// Turned, scaled differently along the axes (0.3 … 1.3, some mirrored), moved by up to 1 along each axis.
+// Random rotation, scale per axis (0.3 … 1.3, sometimes mirrored) and translation (up to 1 per axis).
 inline mat4 randomTransform(std::mt19937& random) {
   std::uniform_real_distribution<float> unit(0.0f, 1.0f);
   const auto signedUnit = [&] { return 2.0f * unit(random) - 1.0f; };
@@ -28,7 +28,7 @@ inline scene::Primitive randomPrimitive(std::mt19937& random, scene::PrimitiveTy
   return primitive;
 }
 
-// One tree with `leafCount` random solids, of a random shape.
+// One tree of random shape with `leafCount` random solids.
 inline scene::PrimitiveSet randomTree(std::mt19937& random, int leafCount) {
   scene::PrimitiveSet set;
   set.kind = scene::PrimitiveSetKind::csg;

@@ -1,4 +1,4 @@
-// What a source becomes: SPIR-V, or diagnostics that point into the right file.
+// Compiles sources to SPIR-V, or to diagnostics that point into the right file.
 #include <thread>
 
 #include "shader_test_support.h"
@@ -31,7 +31,7 @@ TEST(Compiler, CompilesEveryStage) {
   }
 }
 
-TEST(Compiler, ErrorNamesFileLineAndColumn) {
+TEST(Compiler, ReportsFileLineAndColumn) {
   const Result result = Compiler({}).compile(computeSource("int f() {\n  return nowhere;\n}"));
   ASSERT_FALSE(result.ok());
   const Diagnostic& error = result.diagnostics.at(0);
@@ -42,7 +42,7 @@ TEST(Compiler, ErrorNamesFileLineAndColumn) {
   EXPECT_EQ(error.text, "'nowhere' : undeclared identifier");
 }
 
-TEST(Compiler, ConsequencesOfAnErrorAreLeftOut) {
+TEST(Compiler, DropsFollowUpErrors) {
   const Result result =
       Compiler({}).compile(computeSource("int f() { return nowhere.x + nowhere.y * 2.0; }\nint g() { return gone; }"));
   ASSERT_EQ(result.diagnostics.size(), 2u) << all(result);
@@ -50,7 +50,7 @@ TEST(Compiler, ConsequencesOfAnErrorAreLeftOut) {
   EXPECT_EQ(result.diagnostics[1].text, "'gone' : undeclared identifier");
 }
 
-TEST(Compiler, MessageOverSeveralLines) {
+TEST(Compiler, JoinsMessagesOfSeveralLines) {
   Source source;
   source.stage = Stage::closestHit;
   source.name = "hit.rchit";
@@ -62,21 +62,21 @@ TEST(Compiler, MessageOverSeveralLines) {
   EXPECT_EQ(result.diagnostics[0].text.find("hit.rchit"), std::string::npos) << result.diagnostics[0].text;
 }
 
-TEST(Compiler, NameWithColonsAndSpaces) {
+TEST(Compiler, AcceptsNamesWithColonsAndSpaces) {
   const Result result = Compiler({}).compile(computeSource("int f() { return nowhere; }", "", "c:/a b:c.comp"));
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.diagnostics.at(0).file, "c:/a b:c.comp");
   EXPECT_EQ(result.diagnostics.at(0).line, 4);
 }
 
-TEST(Compiler, HashLineMapsBack) {
+TEST(Compiler, FollowsLineDirectives) {
   const Result result = Compiler({}).compile(computeSource("#line 70 \"model.frag\"\nint f() { return nowhere; }"));
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.diagnostics.at(0).file, "model.frag");
   EXPECT_EQ(result.diagnostics.at(0).line, 70);
 }
 
-TEST(Compiler, WarningsAreKept) {
+TEST(Compiler, KeepsWarnings) {
   const Result result = Compiler({}).compile(computeSource("#extension GL_EXT_does_not_exist : enable"));
   ASSERT_TRUE(result.ok()) << all(result);
   ASSERT_EQ(result.diagnostics.size(), 1u) << all(result);
@@ -84,7 +84,7 @@ TEST(Compiler, WarningsAreKept) {
   EXPECT_EQ(result.diagnostics[0].line, 4);
 }
 
-TEST(Compiler, AnotherVersionIsCompiledAs460WithAWarning) {
+TEST(Compiler, CompilesOtherVersionsAs460WithAWarning) {
   Source source;
   source.text = "#version 450\nvoid main() {}\n";
   const Result result = Compiler({}).compile(source);
@@ -95,7 +95,7 @@ TEST(Compiler, AnotherVersionIsCompiledAs460WithAWarning) {
   EXPECT_TRUE(Compiler({}).compile(source).ok());
 }
 
-TEST(Compiler, DefinesReachTheSource) {
+TEST(Compiler, AppliesDefines) {
   Source source = computeSource("#ifndef ON\n#error off\n#endif", "b.x = VALUE;");
   source.defines = {{"ON", ""}, {"VALUE", "7"}};
   EXPECT_TRUE(Compiler({}).compile(source).ok());
@@ -105,7 +105,7 @@ TEST(Compiler, DefinesReachTheSource) {
   EXPECT_EQ(result.diagnostics.at(0).line, 5);
 }
 
-TEST(Compiler, ImpossibleDefinesAreRefused) {
+TEST(Compiler, RejectsInvalidDefines) {
   for (const auto& [name, value] :
        {std::pair<std::string, std::string>{"", "1"}, {"A B", "1"}, {"1A", ""}, {"A", "1\nint x;"}}) {
     Source source = computeSource("");
@@ -116,7 +116,7 @@ TEST(Compiler, ImpossibleDefinesAreRefused) {
   }
 }
 
-TEST(Compiler, OptionsChangeTheCode) {
+TEST(Compiler, AppliesOptions) {
   Source source = computeSource("int f(int x) { return x * 2 + 0; }", "b.x = f(b.x) + f(3);");
   CompilerOptions options;
   options.debugInfo = false;
@@ -130,7 +130,7 @@ TEST(Compiler, OptionsChangeTheCode) {
   EXPECT_LT(plain.spirv.size(), debug.spirv.size());
 }
 
-TEST(Compiler, ThreadsMayShareIt) {
+TEST(Compiler, CompilesOnSeveralThreads) {
   const Compiler compiler({});
   const Result expected = compiler.compile(computeSource("int f() { return 1; }", "b.x = f();"));
   std::vector<Result> results(8);

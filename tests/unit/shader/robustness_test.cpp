@@ -1,4 +1,4 @@
-// Any text gives a result and diagnostics, never a crash.
+// Any text gives a result and diagnostics without a crash.
 #include <random>
 
 #include "shader_test_support.h"
@@ -14,9 +14,9 @@ void expectDiagnosed(const Compiler& compiler, const std::string& text) {
   EXPECT_EQ(result.ok(), firstOf(result, Severity::error) == nullptr) << text.substr(0, 200);
 }
 
-TEST(Robustness, OddTexts) {
+TEST(Robustness, AcceptsUnusualTexts) {
   const Compiler compiler({});
-  const std::string odd[] = {
+  const std::string texts[] = {
       "",
       " ",
       "\n",
@@ -54,10 +54,10 @@ TEST(Robustness, OddTexts) {
       "#define A(x) x x\nA(A(A(A(A(A(A(A(A(1)))))))))",
       std::string(5 << 20, 'x'),
   };
-  for (const std::string& text : odd) expectDiagnosed(compiler, text);
+  for (const std::string& text : texts) expectDiagnosed(compiler, text);
 }
 
-TEST(Robustness, NulByteIsNamedWithItsLine) {
+TEST(Robustness, ReportsTheLineOfANulByte) {
   const Result result = Compiler({}).compile(computeSource(std::string("int a;\nint \0 b;", 14)));
   ASSERT_EQ(result.diagnostics.size(), 1u);
   EXPECT_EQ(result.diagnostics[0].line, 5);
@@ -66,7 +66,7 @@ TEST(Robustness, NulByteIsNamedWithItsLine) {
   EXPECT_FALSE(Compiler({}).compile(source).ok());
 }
 
-TEST(Robustness, DeepExpressions) {
+TEST(Robustness, CompilesDeepExpressions) {
   std::string sum = "b.x = b.x", nested = "b.x = ";
   for (int k = 0; k < 20'000; ++k) sum += "+b.x";
   for (int k = 0; k < 2'000; ++k) nested += "(-";
@@ -78,7 +78,7 @@ TEST(Robustness, DeepExpressions) {
   expectDiagnosed(compiler, computeText("", nested));
 }
 
-TEST(Robustness, RandomBytesAndMutations) {
+TEST(Robustness, AcceptsRandomBytesAndMutations) {
   const Compiler compiler({});
   std::mt19937 random(1);
   const std::string good =

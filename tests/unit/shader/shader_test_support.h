@@ -1,4 +1,4 @@
-// A folder of its own for each test, and short ways to a compilation.
+// Temporary folders and helpers to compile small sources.
 #ifndef QUINTET_TESTS_UNIT_SHADER_SUPPORT_H
 #define QUINTET_TESTS_UNIT_SHADER_SUPPORT_H
 
@@ -38,7 +38,7 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-// A compute shader with `head` before main and `body` in it; `head` starts at line 4.
+// Returns a compute shader with `head` before main and `body` in main. `head` starts at line 4.
 inline std::string computeText(const std::string& head, const std::string& body = "b.x = 1;") {
   return "#version 460\nlayout(local_size_x = 1) in;\nlayout(binding = 0) buffer B { int x; } b;\n" + head +
          "\nvoid main() { " + body + " }\n";

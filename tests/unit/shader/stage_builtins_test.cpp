@@ -1,4 +1,4 @@
-// The table of built-ins by stage, held against the compiler itself, and the messages made from it.
+// Compares the table of built-ins by stage with the compiler, and checks the messages made from it.
 #include "shader/stage_builtins.h"
 
 #include <gmock/gmock.h>
@@ -8,6 +8,7 @@
 namespace quintet::shader {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 Result compileMain(Stage stage, const std::string& statement, const std::string& globals = "") {
@@ -20,7 +21,7 @@ Result compileMain(Stage stage, const std::string& statement, const std::string&
   return compiler.compile(source);
 }
 
-// Globals and a statement that use the built-in. Payloads are declared where they are allowed only.
+// Returns globals and a statement that use the built-in. Payloads are declared only where they are allowed.
 std::pair<std::string, std::string> useOf(const StageBuiltIn& builtIn, bool available) {
   const std::string name(builtIn.name);
   if (name == "traceRayEXT")
@@ -33,13 +34,13 @@ std::pair<std::string, std::string> useOf(const StageBuiltIn& builtIn, bool avai
   return {"", name + ";"};
 }
 
-TEST(StageBuiltIns, TableIsSorted) {
+TEST(StageBuiltIns, AreSorted) {
   EXPECT_TRUE(std::ranges::is_sorted(stageBuiltIns(), {}, &StageBuiltIn::name));
   for (const StageBuiltIn& builtIn : stageBuiltIns()) EXPECT_EQ(findStageBuiltIn(builtIn.name), &builtIn);
   EXPECT_EQ(findStageBuiltIn("gl_Position"), nullptr);
 }
 
-TEST(StageBuiltIns, TableAgreesWithTheCompiler) {
+TEST(StageBuiltIns, AgreeWithTheCompiler) {
   for (const Stage stage :
        {Stage::rayGeneration, Stage::intersection, Stage::anyHit, Stage::closestHit, Stage::miss, Stage::callable}) {
     for (const StageBuiltIn& builtIn : stageBuiltIns()) {
@@ -53,24 +54,25 @@ TEST(StageBuiltIns, TableAgreesWithTheCompiler) {
   }
 }
 
-TEST(StageBuiltIns, MessageNamesTheStagesThatHaveIt) {
+TEST(StageBuiltIns, ListTheStagesThatHaveABuiltIn) {
   const Result result = compileMain(Stage::rayGeneration, "float x = gl_HitTEXT;");
   ASSERT_EQ(result.diagnostics.size(), 1u) << all(result);
   EXPECT_EQ(result.diagnostics[0].id, "Q706");
-  EXPECT_EQ(result.diagnostics[0].text,
-            "gl_HitTEXT is not readable in a ray generation shader; it is in any-hit and closest-hit shaders");
+  EXPECT_THAT(result.diagnostics[0].text, AllOf(HasSubstr("gl_HitTEXT"), HasSubstr("a ray generation shader"),
+                                                HasSubstr("any-hit and closest-hit shaders")));
   EXPECT_EQ(result.diagnostics[0].line, 5);
   EXPECT_EQ(result.diagnostics[0].column, 11);
 }
 
-TEST(StageBuiltIns, StatementOfAnotherStage) {
+TEST(StageBuiltIns, IncludeStatements) {
   const Result result = compileMain(Stage::closestHit, "ignoreIntersectionEXT;");
   ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.diagnostics.at(0).text,
-            "ignoreIntersectionEXT cannot be used in a closest-hit shader; it is in any-hit shaders");
+  EXPECT_EQ(result.diagnostics.at(0).id, "Q706");
+  EXPECT_THAT(result.diagnostics.at(0).text, AllOf(HasSubstr("ignoreIntersectionEXT"),
+                                                   HasSubstr("a closest-hit shader"), HasSubstr("any-hit shaders")));
 }
 
-TEST(StageBuiltIns, HitAttributeInAMiss) {
+TEST(StageBuiltIns, ExplainAHitAttributeInAMissShader) {
   const Result result = compileMain(Stage::miss, "", "hitAttributeEXT vec2 baryCoord;");
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.diagnostics.at(0).id, "Q204");
@@ -78,14 +80,14 @@ TEST(StageBuiltIns, HitAttributeInAMiss) {
   EXPECT_THAT(result.diagnostics.at(0).text, HasSubstr("miss shader"));
 }
 
-TEST(StageBuiltIns, OtherMessagesStay) {
+TEST(StageBuiltIns, KeepOtherMessages) {
   std::vector<Diagnostic> diagnostics{{Severity::error, "a", 1, 1, "GLSL", "'color' : undeclared identifier"},
                                       {Severity::error, "a", 1, 1, "GLSL", "'gl_HitTEXT' : cannot convert"},
                                       {Severity::error, "a", 1, 1, "GLSL", "syntax error"}};
   const auto before = diagnostics;
   explainMissingBuiltIns(diagnostics, Stage::miss);
   for (std::size_t i = 0; i < before.size(); ++i) EXPECT_EQ(diagnostics[i].format(), before[i].format());
-  // A call with wrong arguments in a stage that may trace is the compiler's to explain.
+  // The compiler explains a call with wrong arguments in a stage that can trace.
   const Result result = compileMain(Stage::rayGeneration, "traceRayEXT(1);");
   EXPECT_EQ(result.diagnostics.at(0).id, "GLSL") << all(result);
 }

@@ -1,10 +1,10 @@
 #include <gtest/gtest.h>
 
-#include "shader/compiler.h"
+#include "shader/stage.h"
 
 namespace quintet::shader {
 
-TEST(Stage, ExtensionsAndNamesBelongTogether) {
+TEST(Stage, HasANameAndAnExtension) {
   for (const Stage stage : {Stage::rayGeneration, Stage::intersection, Stage::anyHit, Stage::closestHit, Stage::miss,
                             Stage::callable, Stage::compute}) {
     EXPECT_EQ(stageOfFile("folder.rgen/main" + std::string(stageExtension(stage))), stage);
@@ -14,18 +14,11 @@ TEST(Stage, ExtensionsAndNamesBelongTogether) {
   EXPECT_EQ(stageOfFile("a.rchit"), Stage::closestHit);
 }
 
-TEST(Stage, OtherFilesHaveNone) {
+TEST(Stage, IsUnknownForOtherFiles) {
   EXPECT_FALSE(stageOfFile("a.glsl"));
   EXPECT_FALSE(stageOfFile("rgen"));
   EXPECT_FALSE(stageOfFile(""));
   EXPECT_FALSE(stageOfFile("a.RGEN"));
-}
-
-TEST(Diagnostic, FormatsWhatIsKnown) {
-  EXPECT_EQ((Diagnostic{Severity::error, "a.rgen", 3, 7, "GLSL", "bad"}.format()), "a.rgen:3:7: error: bad [GLSL]");
-  EXPECT_EQ((Diagnostic{Severity::warning, "a.rgen", 3, 0, "Q101", "odd"}.format()), "a.rgen:3: warning: odd [Q101]");
-  EXPECT_EQ((Diagnostic{Severity::note, "a.rgen", 0, 0, "", "so"}.format()), "a.rgen: note: so");
-  EXPECT_EQ((Diagnostic{Severity::error, "", 0, 0, "", "no"}.format()), "error: no");
 }
 
 }  // namespace quintet::shader

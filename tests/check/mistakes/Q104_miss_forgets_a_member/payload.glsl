@@ -1,4 +1,4 @@
 struct Payload {
   vec3 color;
-  float t;  // negative: nothing was hit
+  float t;  // negative if the ray hit nothing
 };

@@ -1,7 +1,7 @@
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;
-  float t;  // negative: nothing was hit
+  float t;  // negative if the ray hit nothing
 };
 struct HitAttributeType {
   vec3 normal;

@@ -1,6 +1,6 @@
 struct Payload {
   vec3 color;
-  float t;  // negative: nothing was hit
+  float t;  // negative if the ray hit nothing
 };
 
 struct Shadow {

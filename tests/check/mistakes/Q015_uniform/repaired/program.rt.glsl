@@ -1,7 +1,7 @@
 /**** COMMON START ****/
 struct RayPayloadType {
   vec3 color;
-  float t;  // negative: nothing was hit
+  float t;  // negative if the ray hit nothing
 };
 uniform vec3 tint;  // defaultval="1.0, 0.5, 0.25"
 /**** COMMON END ****/

@@ -1,0 +1,33 @@
+// The commands of `quintet`. To add one, write commands/NAME.cpp and add a row to command.cpp.
+#ifndef QUINTET_CLI_COMMAND_H
+#define QUINTET_CLI_COMMAND_H
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace quintet::cli {
+
+// The arguments after the command's name.
+using Arguments = std::span<const std::string>;
+
+struct Command {
+  std::string_view name;
+  std::string_view summary;         // one line for `quintet --help`
+  int (*run)(Arguments) = nullptr;  // returns the exit status; exceptions become 1 or 2 in main
+};
+
+std::span<const Command> commands();
+
+int renderCommand(Arguments);
+int mergeCommand(Arguments);
+int runCommand(Arguments);
+int newCommand(Arguments);
+int checkCommand(Arguments);
+int explainCommand(Arguments);
+int infoCommand(Arguments);
+int compareCommand(Arguments);
+int benchCommand(Arguments);
+
+}  // namespace quintet::cli
+#endif

@@ -1,0 +1,196 @@
+#include "cli/console.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "check/diagnostic_text.h"
+
+namespace quintet::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kBarSeconds = 0.1;
+constexpr double kLineSeconds = 10.0;
+constexpr const char* kClearLine = "\r\x1b[K";
+
+bool isTerminal() { return ::isatty(STDERR_FILENO) == 1; }
+
+bool wantsColor() {
+  const char* noColor = std::getenv("NO_COLOR");
+  const char* term = std::getenv("TERM");
+  return !(noColor && *noColor) && !(term && std::string_view(term) == "dumb");
+}
+
+int terminalWidth() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+std::string jsonLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+std::string figures(const job::Progress& p, std::string_view separator) {
+  std::string text = fmt::format("{}", static_cast<std::uint64_t>(p.samples));
+  if (p.sampleLimit) text += fmt::format("/{}", *p.sampleLimit);
+  text += p.countsFrames ? " frames" : " samples";
+  if (p.raysPerSecond > 0) text += fmt::format("{}{:.3g} Mrays/s", separator, p.raysPerSecond * 1e-6);
+  if (p.error && std::isfinite(*p.error)) text += fmt::format("{}error {:.2g} %", separator, 100.0 * *p.error);
+  text += fmt::format("{}{}", separator, durationText(p.seconds));
+  if (const double left = p.secondsLeft(); std::isfinite(left))
+    text += fmt::format("{}{} left", separator, durationText(left));
+  return text;
+}
+
+}  // namespace
+
+void printError(const std::string& text) {
+  [[maybe_unused]] const std::size_t written = std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+bool colorOnStandardError() { return isTerminal() && wantsColor(); }
+
+std::string progressBar(const job::Progress& progress, int width, bool color) {
+  const std::string text = figures(progress, "  ");
+  const int room = width - static_cast<int>(text.size()) - 4;
+  if (room < 8) return text.substr(0, static_cast<std::size_t>(std::max(width - 1, 0)));
+  const int length = std::min(room, 40);
+  const int done = static_cast<int>(std::floor(progress.fraction() * length));
+  std::string filled(static_cast<std::size_t>(done), '=');
+  if (done < length) filled += '>';
+  const std::string rest(static_cast<std::size_t>(std::max(length - done - 1, 0)), ' ');
+  return color ? fmt::format("[\x1b[32m{}\x1b[0m{}] {}", filled, rest, text)
+               : fmt::format("[{}{}] {}", filled, rest, text);
+}
+
+std::string progressLine(const job::Progress& progress) { return figures(progress, ", "); }
+
+void printDiagnostics(const std::vector<Diagnostic>& diagnostics, const program::Program* program, bool json) {
+  if (json) return writeFile("-", check::diagnosticsJson(diagnostics));
+  printError(check::diagnosticsText(diagnostics, program ? check::sourcesOf(*program) : check::sourcesOnDisk(),
+                                    colorOnStandardError()));
+}
+
+Console::Console(const ConsoleOptions& options)
+    : options_(options), terminal_(isTerminal()), color_(colorOnStandardError()) {}
+
+void Console::show(const std::string& line) {
+  printError(kClearLine + line);
+  barVisible_ = true;
+}
+
+void Console::clear() {
+  const std::lock_guard lock(mutex_);
+  clearLocked();
+}
+
+void Console::clearLocked() {
+  if (barVisible_) printError(kClearLine);
+  barVisible_ = false;
+}
+
+void Console::stage(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  if (!options_.quiet && !options_.jsonProgress && terminal_) show(text + " ...");
+}
+
+void Console::note(const std::string& text) {
+  if (options_.quiet || options_.jsonProgress) return;
+  const std::lock_guard lock(mutex_);
+  clearLocked();
+  printError(text + "\n");
+}
+
+void Console::warning(const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  warnings_.push_back(text);
+  clearLocked();
+  printError(options_.jsonProgress ? jsonLine({{"warning", text}}) : "quintet: warning: " + printable(text) + "\n");
+}
+
+void Console::clearWarnings() {
+  const std::lock_guard lock(mutex_);
+  warnings_.clear();
+}
+
+std::vector<std::string> Console::warnings() const {
+  const std::lock_guard lock(mutex_);
+  return warnings_;
+}
+
+void Console::diagnostics(const std::vector<Diagnostic>& found) {
+  clear();
+  const bool failed = hasErrors(found);
+  printDiagnostics(found, program_, failed && options_.json);
+  if (failed)
+    printError(fmt::format("quintet: {}{}\n", program_ ? printable(program_->name) + ": " : "", countText(found)));
+}
+
+void Console::progress(const job::Progress& state) {
+  const double now = clock_.seconds();
+  if (options_.quiet || options_.jsonProgress || now - lastProgress_ < (terminal_ ? kBarSeconds : kLineSeconds)) return;
+  lastProgress_ = now;
+  const std::lock_guard lock(mutex_);
+  if (terminal_) {
+    show(progressBar(state, terminalWidth(), color_));
+  } else {
+    printError(progressLine(state) + "\n");
+  }
+}
+
+void Console::batch(const job::BatchReport& report) {
+  if (!options_.jsonProgress) return;
+  Json line{{"samples", report.samples}, {"seconds", report.seconds}};
+  if (report.checkpointSamples) line["checkpoint"] = *report.checkpointSamples;
+  printError(jsonLine(line));
+}
+
+job::StopRequest Console::stopRequested() {
+  if (isObsolete && isObsolete()) return job::StopRequest::abandon;
+  if (!stop_ || !stop_->requested()) return job::StopRequest::none;
+  if (!std::exchange(stopNoted_, true))
+    note("interrupted: finishing the current batch; press Ctrl-C again to quit without an image");
+  return job::StopRequest::finish;
+}
+
+void Console::write(const std::filesystem::path& file, std::span<const std::byte> bytes) {
+  if (file == "-") return writeFile(file, bytes);  // no temporary file to protect
+  const ProtectedWrite protect;
+  writeFile(file, bytes);
+}
+
+void Console::deviceHung(const Diagnostic& diagnostic) {
+  if (options_.json) {
+    try {
+      writeFile("-", check::diagnosticsJson({diagnostic}));
+    } catch (const Error&) {  // the reader has gone
+    }
+  }
+  // No destructors: they would wait for the device.
+  printError(fmt::format("{}quintet: {}{}\n", terminal_ ? kClearLine : "",
+                         program_ ? printable(program_->name) + ": " : "", diagnostic.text));
+  std::fflush(nullptr);
+  ::_exit(1);
+}
+
+void Console::frame(const job::RenderResult& result) {
+  if (onFrame) onFrame(result);
+}
+
+void Console::preview(const job::RenderResult& result) {
+  if (onPreview) onPreview(result);
+}
+
+}  // namespace quintet::cli

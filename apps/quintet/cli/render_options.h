@@ -1,0 +1,54 @@
+// The options that `render`, `run` and `merge` share: declared in groups, parsed as text, then converted to requests.
+#ifndef QUINTET_CLI_RENDER_OPTIONS_H
+#define QUINTET_CLI_RENDER_OPTIONS_H
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/console.h"
+#include "cli/parser.h"
+#include "job/request.h"
+#include "output/plan.h"
+
+namespace quintet::cli {
+
+struct RenderOptions {
+  std::string program = "pathtracer";
+  std::string device;
+  job::RenderRequest request;
+  output::OutputRequest output;
+  ConsoleOptions console;
+  bool programHelp = false;  // print the program's parameters
+  bool layerList = false;    // print the program's layers
+};
+
+// Option values as text.
+struct RenderTexts {
+  std::string scene, output, size, region, exposure, toneMap;
+  std::string spp, time, untilError, seed, bounces, clamp;
+  std::string lookFrom, lookAt, up, fov, aperture, focus, envIntensity, envRotation;
+  std::string exrType, exrCompression, exrTiles;
+  std::string checkpoint, batches, timeout;
+  std::vector<std::string> layers;
+};
+
+void declareImage(CLI::App& app, RenderTexts& texts, RenderOptions& options);  // except the output file
+void declareDisplay(CLI::App& app, RenderTexts& texts, const char* group, const char* otherwise);
+void declareQuality(CLI::App& app, RenderTexts& texts, RenderOptions& options);
+void declareView(CLI::App& app, RenderTexts& texts, RenderOptions& options);
+void declareProgram(CLI::App& app, RenderOptions& options);
+void declareProcess(CLI::App& app, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
+void declareCheckpoints(CLI::App& app, RenderTexts& texts, RenderOptions& options);
+void declareExr(CLI::App& app, RenderTexts& texts, bool ofFilms = false);
+
+// Fills in requests from the texts, except `output.file` and `request.scene`. Throws UsageError.
+void convert(const RenderTexts& texts, RenderOptions& options);
+// The part of it that `merge` needs.
+void convertOutput(const RenderTexts& texts, output::OutputRequest& output);
+
+// Throws UsageError if --json and `-o -` both claim standard output, or if that is a terminal.
+void checkStandardOutput(const RenderOptions& options);
+
+}  // namespace quintet::cli
+#endif

@@ -1,0 +1,32 @@
+// Ctrl-C (SIGINT) and SIGTERM. Normally they end the process at once with status 128 + signal. While a GracefulStop exists,
+// the first one is only recorded, and the second one ends the process. While a ProtectedWrite exists, the process ends
+// after the file is complete.
+#ifndef QUINTET_CLI_SIGNALS_H
+#define QUINTET_CLI_SIGNALS_H
+
+namespace quintet::cli {
+
+// Once, at the start of main.
+void installSignalHandlers();
+
+class GracefulStop {
+ public:
+  GracefulStop();
+  ~GracefulStop();
+  GracefulStop(const GracefulStop&) = delete;
+  GracefulStop& operator=(const GracefulStop&) = delete;
+
+  bool requested() const;
+  int exitStatus() const;  // 128 + signal, or 0 if there was none
+};
+
+class ProtectedWrite {
+ public:
+  ProtectedWrite();
+  ~ProtectedWrite();  // ends the process if a signal arrived meanwhile
+  ProtectedWrite(const ProtectedWrite&) = delete;
+  ProtectedWrite& operator=(const ProtectedWrite&) = delete;
+};
+
+}  // namespace quintet::cli
+#endif

@@ -1,0 +1,147 @@
+// `quintet check`: compiles programs and checks how their shaders fit together, on a scene. Requires a device only with
+// --instrument.
+#include <algorithm>
+#include <iterator>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "check/check.h"
+#include "check/diagnostic_text.h"
+#include "check/scene_facts.h"
+#include "cli/console.h"
+#include "cli/parser.h"
+#include "job/device_limits.h"
+#include "job/engine.h"
+#include "job/instrumented_run.h"
+#include "job/scene_source.h"
+#include "program/gsn/lecture.h"
+#include "program/load.h"
+
+namespace quintet::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "  quintet check my_program/                  its shaders, and how they fit together\n"
+    "  quintet check my_program/ scene.glb        and how they fit this scene\n"
+    "  quintet check my_program/ --json           for editors: an array of diagnostics\n"
+    "  quintet check programs/ --strict           all programs in a folder; warnings are failures, too\n"
+    "  quintet check my_program/ --instrument     also find NaN, wrong records and self-intersections in a short run\n";
+
+struct Options {
+  std::vector<std::string> programs;
+  std::filesystem::path scene;
+  std::string device;
+  bool json = false;
+  bool strict = false;
+  bool instrument = false;
+};
+
+bool looksLikeScene(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  return extension == ".gltf" || extension == ".glb" || (extension == ".toml" && file.filename() != "program.toml");
+}
+
+// The programs in a folder and its subfolders.
+void collectPrograms(const std::filesystem::path& folder, std::vector<std::string>& found) {
+  std::error_code failed;
+  if (std::filesystem::exists(folder / "program.toml", failed)) {
+    found.push_back(folder.string());
+    return;
+  }
+  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder, failed)) {
+    const std::filesystem::path& path = entry.path();
+    if (path.filename().string().starts_with('.')) continue;
+    if (path.string().ends_with(program::kLectureExtension)) found.push_back(path.string());
+    if (entry.is_directory(failed) && !entry.is_symlink(failed)) collectPrograms(path, found);
+  }
+}
+
+// Expands a folder to the programs in it.
+std::vector<std::string> programsOf(const std::string& name) {
+  std::vector<std::string> found;
+  std::error_code failed;
+  if (std::filesystem::is_directory(name, failed)) collectPrograms(name, found);
+  std::ranges::sort(found);
+  return found.empty() ? std::vector{name} : found;
+}
+
+std::optional<Options> parseOptions(Arguments arguments) {
+  CLI::App app("Compiles programs and checks how their shaders fit together and to a scene, without rendering.",
+               "quintet check");
+  Options options;
+  std::vector<std::string> positional;
+  app.add_option("PROGRAM", positional,
+                 "One or more programs, folders of programs, or built-in names; the last argument can be a\n"
+                 "scene: .gltf, .glb or .scene.toml (default: each program's own)")
+      ->type_name("");
+  app.add_flag("--json", options.json, "Print an array of diagnostics on standard output");
+  app.add_flag("--strict", options.strict, "Exit with status 1 also for warnings");
+  app.add_flag("--instrument", options.instrument,
+               "Also render a small image with checks in the shaders (Q001 to Q006)");
+  app.add_option("--device", options.device,
+                 "Device whose limits and driver defects count, and on which --instrument runs:\n"
+                 "index or part of the name; 'none' for limits that hold everywhere")
+      ->type_name("NAME");
+  setUp(app, kExamples);
+  if (!parse(app, arguments)) return std::nullopt;
+  if (!positional.empty() && looksLikeScene(positional.back())) {
+    options.scene = positional.back();
+    positional.pop_back();
+  }
+  if (positional.empty()) throw UsageError("no program given; see 'quintet check --help'");
+  for (const std::string& name : positional) std::ranges::move(programsOf(name), std::back_inserter(options.programs));
+  return options;
+}
+
+// On the requested scene or the program's own; without either, what holds for every scene.
+std::vector<Diagnostic> checkProgram(const program::Program& program, const shader::Compiler& compiler,
+                                     const Options& options, const check::DeviceLimits& limits) {
+  const job::SceneSource source = job::chooseSceneSource(options.scene, program);
+  const bool hasScene = !options.scene.empty() || !program.scene.empty();
+  std::optional<scene::Scene> scene;
+  std::optional<program::SceneFacts> facts;
+  if (hasScene || options.instrument) scene = job::loadScene(source);
+  if (hasScene) facts = check::sceneFacts(*scene);
+  std::vector<Diagnostic> found = check::check(program, compiler, facts ? &*facts : nullptr, limits).diagnostics;
+  if (!options.instrument || hasErrors(found)) return found;
+  Console console({.json = options.json});
+  console.setProgram(&program);
+  job::Engine engine({.device = options.device});
+  std::ranges::move(job::runInstrumented(engine, program, std::move(*scene), console), std::back_inserter(found));
+  return found;
+}
+
+}  // namespace
+
+int checkCommand(Arguments arguments) {
+  const std::optional<Options> options = parseOptions(arguments);
+  if (!options) return 0;
+  const shader::Compiler compiler = job::makeCompiler(cacheFolder());
+  const check::DeviceLimits limits = job::limitsOfDevice(options->device);
+  std::vector<Diagnostic> all;
+  for (const std::string& name : options->programs) {
+    std::optional<program::Program> program;
+    std::vector<Diagnostic> found;
+    try {
+      program = program::loadProgram(name);
+      found = checkProgram(*program, compiler, *options, limits);
+    } catch (const FileError& error) {
+      found = {asDiagnostic(error)};
+    }
+    const std::string count = countText(found);
+    if (!options->json) {
+      printDiagnostics(found, program ? &*program : nullptr, false);
+      printError(fmt::format("{}: {}\n", printable(name), count.empty() ? "clean" : count));
+    }
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  if (options->json) writeFile("-", check::diagnosticsJson(all));
+  const bool warned = std::ranges::find(all, Severity::warning, &Diagnostic::severity) != all.end();
+  return hasErrors(all) || (options->strict && warned) ? 1 : 0;
+}
+
+}  // namespace quintet::cli

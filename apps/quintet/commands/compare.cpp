@@ -1,0 +1,214 @@
+// `quintet compare`: the difference between two images, or the statistical test of two films.
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "cli/parser.h"
+#include "cli/signals.h"
+#include "cli/values.h"
+#include "io/codec.h"
+#include "io/compare.h"
+#include "io/exr/exr.h"
+#include "io/side_by_side.h"
+#include "job/film_comparison.h"
+#include "output/comparison_report.h"
+#include "output/plan.h"
+
+namespace quintet::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "  quintet compare out.png reference.png\n"
+    "  quintet compare out.png reference.png --max 2            status 1 if mae8 exceeds 2\n"
+    "  quintet compare out.exr big.exr --resize --metric flip --max 0.05 -o difference.png\n"
+    "  quintet compare a.exr b.exr --layer normal --metric rmse --max 1e-3\n"
+    "  quintet compare out.png reference.png --json | jq .psnr\n"
+    "  quintet compare a.qfilm b.qfilm --z-test                 status 1 if they differ by more than noise\n"
+    "  quintet compare a.qfilm b.qfilm --z-test --may-differ program --may-differ parameter\n";
+
+constexpr const char* kFilmGroup = "Films";
+
+struct Options {
+  std::string a, b, output, sideBySide, metric = "mae8", max, gammaB;
+  std::string level, block, tolerance;
+  std::vector<std::string> mayDiffer;
+  bool zTest = false;
+  std::optional<std::string> layer;
+  bool resize = false;
+  bool json = false;
+};
+
+void declareFilmOptions(CLI::App& app, Options& options) {
+  app.add_flag("--z-test", options.zTest,
+               "Test whether two films (.qfilm) with different seeds show the same image except\n"
+               "for noise; status 1 if not; -o writes |t| of each block")
+      ->group(kFilmGroup);
+  const auto add = [&app](const char* name, std::string& value, const char* form, const char* help) {
+    app.add_option(name, value, help)->type_name(form)->group(kFilmGroup);
+  };
+  add("--level", options.level, "P", "Probability with which equal images are rejected, at most (default: 0.01)");
+  add("--block", options.block, "N", "Test the means of blocks of N x N pixels (default: 8)");
+  add("--tolerance", options.tolerance, "X", "Relative difference that counts as rounding (default: 1e-5)");
+  app.add_option("--may-differ", options.mayDiffer,
+                 "Fact that may differ besides seed and number of samples: program, parameter,\n"
+                 "shader library, ... (a name listed by 'quintet info FILM', or its first word);\n"
+                 "may be repeated")
+      ->expected(1)
+      ->take_all()
+      ->allow_extra_args(false)
+      ->type_name("NAME")
+      ->group(kFilmGroup);
+}
+
+// Rejects options that have no effect.
+void checkApplicable(const Options& options) {
+  const auto reject = [](const char* name, bool given, const char* problem) {
+    if (given) throw UsageError(fmt::format("{}: {}", name, problem));
+  };
+  constexpr const char* kFilms = "requires --z-test";
+  constexpr const char* kImages = "applies to images, not to --z-test";
+  reject("--level", !options.zTest && !options.level.empty(), kFilms);
+  reject("--block", !options.zTest && !options.block.empty(), kFilms);
+  reject("--tolerance", !options.zTest && !options.tolerance.empty(), kFilms);
+  reject("--may-differ", !options.zTest && !options.mayDiffer.empty(), kFilms);
+  reject("--max", options.zTest && !options.max.empty(), kImages);
+  reject("--metric", options.zTest && options.metric != Options().metric, kImages);
+  reject("--side-by-side", options.zTest && !options.sideBySide.empty(), kImages);
+  reject("--gamma-b", options.zTest && !options.gammaB.empty(), kImages);
+  reject("--layer", options.zTest && options.layer.has_value(), kImages);
+  reject("--resize", options.zTest && options.resize, kImages);
+}
+
+std::optional<Options> parseOptions(Arguments arguments) {
+  CLI::App app("Measures the difference between image A and image B, the reference.", "quintet compare");
+  Options options;
+  const auto add = [&app](const char* name, std::string& value, const char* form, const char* help) {
+    app.add_option(name, value, help)->type_name(form);
+  };
+  add("A", options.a, "", "The image: PNG, JPEG, WebP, Radiance HDR or OpenEXR");
+  add("B", options.b, "", "The reference");
+  add("-o,--output", options.output, "FILE", "Write the FLIP error of each pixel as PNG, from black (none) to yellow");
+  add("--side-by-side", options.sideBySide, "FILE", "Write A, B and the error side by side");
+  add("--max", options.max, "VALUE", "Exit with status 1 if the metric exceeds this value (psnr: is below it)");
+  add("--metric", options.metric, "NAME",
+      "Metric of --max: mae8, max8, rmse, relmse, psnr, flip, alpha8 (default: mae8)");
+  app.add_flag("--resize", options.resize, "Reduce the larger image to the size of the smaller one (box filter)");
+  app.add_option("--layer", options.layer, "Layer of both OpenEXR files (beauty, normal), or one channel (depth.Z)")
+      ->type_name("NAME");
+  add("--gamma-b", options.gammaB, "X", "B is encoded by this power instead of the sRGB curve");
+  app.add_flag("--json", options.json, "Print one JSON object instead of text");
+  declareFilmOptions(app, options);
+  setUp(app, kExamples);
+  if (!parse(app, arguments)) return std::nullopt;
+  if (options.b.empty()) throw UsageError("two images are required; see 'quintet compare --help'");
+  checkApplicable(options);
+  return options;
+}
+
+const output::Measure& findMeasure(const std::vector<output::Measure>& all, const std::string& name) {
+  std::vector<std::string> names;
+  for (const output::Measure& measure : all) names.push_back(measure.name);
+  return all[parseChoice("--metric", name, names)];
+}
+
+io::Image readInput(const std::string& file, const std::optional<std::string>& layer) {
+  const std::vector<std::byte> bytes = readFile(file);
+  if (render::isFilmFile(bytes))
+    throw FileError(file, "is a film; use --z-test to compare two films, or 'quintet merge' to write its image");
+  return layer ? io::decodeExrLayer(bytes, file, *layer) : io::decodeImage(bytes, file);
+}
+
+// Display values encoded by a pure power, as linear light.
+io::Image decodeGamma(io::Image image, float gamma) {
+  if (image.encoding == io::ColorEncoding::linear) return image;
+  image.encoding = io::ColorEncoding::linear;  // so that toFloat() keeps the values
+  io::Image result = io::toFloat(image);
+  const auto samples = result.samples<float>();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const bool isAlpha = result.hasAlpha() && i % result.channels == result.channels - 1;
+    if (!isAlpha) samples[i] = std::pow(samples[i], gamma);
+  }
+  return result;
+}
+
+void reduceToSmaller(io::Image& a, io::Image& b) {
+  if (a.width == b.width && a.height == b.height) return;
+  const io::Image& smaller = a.pixelCount() <= b.pixelCount() ? a : b;
+  const std::uint32_t width = smaller.width;
+  const std::uint32_t height = smaller.height;
+  for (io::Image* image : {&a, &b})
+    if (image->width != width || image->height != height) *image = io::resizeBox(*image, width, height);
+}
+
+void writePng(const std::string& file, const io::Image& image) {
+  if (file.empty()) return;
+  const std::vector<std::byte> bytes = io::encodePng(image);
+  const ProtectedWrite protect;
+  writeFile(file, bytes);
+}
+
+void checkPng(const std::string& option, const std::string& file) {
+  if (file.empty()) return;
+  if (file == "-") throw UsageError(fmt::format("{}: standard output is used for the numbers", option));
+  if (output::fileKind(file) != output::FileKind::png)
+    throw UsageError(fmt::format("{}: {}: the extension must be .png", option, file));
+  checkWritable(file);
+}
+
+void compareFilms(const Options& options) {
+  render::ZTestOptions test;
+  test.level = parseReal("--level", options.level, 1e-12, 0.5).value_or(test.level);
+  test.block = static_cast<std::uint32_t>(parseInteger("--block", options.block, 4, 4096).value_or(test.block));
+  test.tolerance = parseReal("--tolerance", options.tolerance, 0, 1).value_or(test.tolerance);
+  const job::FilmComparison comparison = job::compareFilms(options.a, options.b, options.mayDiffer, test);
+  if (!options.output.empty())
+    writePng(options.output, io::colorMap(render::zTestMap(comparison.test, comparison.films[0].film.region)));
+  writeFile("-", options.json ? output::comparisonJson(comparison) : output::comparisonText(comparison));
+  if (comparison.test.rejected)
+    throw Error(fmt::format("{} and {}: different images at level {}: {}", options.a, options.b, test.level,
+                            output::rejectionText(comparison)));
+}
+
+void compareImages(const Options& options) {
+  const std::optional<double> limit = parseReal("--max", options.max, 0.0, 1e30);
+  io::Image a = readInput(options.a, options.layer);
+  io::Image b = readInput(options.b, options.layer);
+  if (const auto gamma = parseReal("--gamma-b", options.gammaB, 0.1, 10.0))
+    b = decodeGamma(std::move(b), static_cast<float>(*gamma));
+  if (options.resize) reduceToSmaller(a, b);
+  const io::Comparison comparison = io::compareImages(a, b);
+  const io::Image map = io::colorMap(comparison.flipMap);
+  writePng(options.output, map);
+  if (!options.sideBySide.empty()) writePng(options.sideBySide, io::sideBySide(a, b, map));
+  writeFile("-", options.json ? output::comparisonJson(comparison, options.a, options.b, {a.width, a.height})
+                              : output::comparisonText(comparison));
+
+  const std::vector<output::Measure> all = output::measures(comparison);
+  const output::Measure& measure = findMeasure(all, options.metric);
+  if (limit && !(measure.largerIsBetter ? measure.value >= *limit : measure.value <= *limit))
+    throw Error(fmt::format("{} and {}: {} {:.6g} is {} than {:.6g}", options.a, options.b, measure.name, measure.value,
+                            measure.largerIsBetter ? "less" : "more", *limit));
+}
+
+}  // namespace
+
+int compareCommand(Arguments arguments) {
+  const std::optional<Options> options = parseOptions(arguments);
+  if (!options) return 0;
+  findMeasure(output::measures({}), options->metric);
+  checkPng("-o", options->output);
+  checkPng("--side-by-side", options->sideBySide);
+  if (options->zTest)
+    compareFilms(*options);
+  else
+    compareImages(*options);
+  return 0;
+}
+
+}  // namespace quintet::cli

@@ -1,0 +1,147 @@
+// `quintet render`: a request becomes a job, the job a result, and the result files.
+#include "commands/render.h"
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "cli/values.h"
+#include "job/render_job.h"
+#include "output/layers.h"
+#include "output/report.h"
+#include "output/write.h"
+#include "program/help.h"
+#include "program/load.h"
+
+namespace quintet::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "  quintet render scene.glb                                scene.png\n"
+    "  quintet render scene.glb -o out.exr --size 1920x1080 --spp 256\n"
+    "  quintet render scene.glb -o out.exr --aov albedo,normal  with layers; --aov list prints their names\n"
+    "  quintet render scene.glb --time 60 --env sky.hdr        as many samples as possible in a minute\n"
+    "  quintet render scene.glb --look-from 2,1,3 --look-at 0,0.5,0 --fov 35\n"
+    "  quintet render scene.glb --program ao --set distance=0.5  another program with a parameter\n"
+    "  quintet render --program pathtracer --help-program      the program's parameters\n"
+    "  quintet render scene.glb -o - --quiet | display         PNG on standard output\n"
+    "  quintet render scene.glb --spp 4096 --checkpoint 60 --resume  continue after an interruption\n"
+    "  quintet render scene.glb --spp 64 --batches 0-7 -o a.qfilm    first half; after the second half (8-15),\n"
+    "  quintet merge a.qfilm b.qfilm -o scene.png                    the same bytes as in one render\n";
+
+std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
+  CLI::App app("Renders a scene with the path tracer, or with another program.", "quintet render");
+  RenderOptions options;
+  RenderTexts texts;
+  app.add_option("SCENE", texts.scene, "Scene file: .gltf, .glb or .scene.toml")->type_name("");
+  app.add_option("-o,--output", texts.output,
+                 "Output file: .png, .exr, .hdr or .qfilm (the whole film, for 'quintet merge'); - is\n"
+                 "PNG on standard output (default: SCENE.png in the current folder)")
+      ->type_name("FILE")
+      ->group("Image");
+  declareImage(app, texts, options);
+  declareExr(app, texts);
+  declareQuality(app, texts, options);
+  declareView(app, texts, options);
+  app.add_option("--program", options.program,
+                 "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)")
+      ->type_name("NAME")
+      ->group("Program");
+  declareProgram(app, options);
+  app.add_flag("--help-program", options.programHelp, "Print the program's parameters and exit")->group("Program");
+  declareProcess(app, texts, options, "Time limit of one launch (default: 60; on a CPU 600)");
+  app.add_flag("--json", options.console.json, "Print one JSON object on standard output at the end")->group("Run");
+  declareCheckpoints(app, texts, options);
+  setUp(app, kExamples);
+  if (!parse(app, arguments)) return std::nullopt;
+  options.layerList = std::ranges::find(texts.layers, "list") != texts.layers.end();
+  if (options.programHelp || options.layerList) return options;
+  if (texts.scene.empty()) throw UsageError("no scene given; see 'quintet render --help'");
+  options.request.scene = texts.scene;
+  options.output.file = texts.output.empty() ? options.request.scene.filename().replace_extension(".png")
+                                             : std::filesystem::path(texts.output);
+  options.request.commandLine = commandLine("render", arguments);
+  convert(texts, options);
+  checkStandardOutput(options);
+  if (options.request.limits.samples)
+    options.request.frames.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
+  return options;
+}
+
+// Of the rendered part; 0 if it depends on the scene.
+uvec2 requestedSize(const job::RenderRequest& request) {
+  return request.region.width > 0 ? uvec2{request.region.width, request.region.height} : request.size;
+}
+
+}  // namespace
+
+void addWarnings(job::RenderResult& result, Console& console) {
+  if (result.targetMissed && !result.interrupted) console.warning(job::targetMissedText(result));
+  if (result.provenance.droppedSamples > 0)
+    console.warning(fmt::format("{} samples were not finite and are omitted", result.provenance.droppedSamples));
+  result.warnings = console.warnings();
+}
+
+job::RenderRequest requestFor(const RenderOptions& options, const output::OutputPlan& plan) {
+  job::RenderRequest request = options.request;
+  request.outputs = plan.optionalOutputs;
+  request.outputNotes = plan.notes();
+  return request;
+}
+
+int renderImages(const RenderOptions& options, const program::Program& program, const Stopwatch& clock) {
+  const output::OutputPlan plan = output::planOutputs(options.output, program);
+  Console console(options.console);
+  console.setProgram(&program);
+  try {
+    job::ResolvedJob resolved = job::resolve(requestFor(options, plan), program);
+    if (const std::string text = output::ignoredDisplayText(options.output); !text.empty()) console.note(text);
+    output::checkSize(plan, requestedSize(options.request));
+    job::Engine engine({.device = options.device, .log = [&](LogLevel level, const std::string& text) {
+                          if (level == LogLevel::warning) console.warning(text);
+                        }});
+    job::RenderJob job(engine, std::move(resolved), console);
+    output::checkSize(plan, {job.region().width, job.region().height});
+    const GracefulStop stop;  // from here on, Ctrl-C completes the batch
+    console.setGracefulStop(&stop);
+
+    std::vector<output::WrittenFile> files;
+    const auto write = [&](const job::RenderResult& result) { files = output::writeOutputs(plan, result, console); };
+    console.onFrame = write;
+    job::RenderResult result = job.run(options.request.limits, console);
+    try {
+      if (!options.request.overwriteFilm) output::checkFilmLoss(plan, result);  // the render can have stopped early
+      if (!options.output.everyFrame) write(result);
+    } catch (...) {
+      job.outputsFailed(result, console);
+      throw;
+    }
+    job.outputsWritten(result, console);
+
+    addWarnings(result, console);
+    console.clear();
+    if (options.console.json) writeFile("-", output::resultJson(result, files, clock.seconds()));
+    console.note(output::resultSummary(result, files));
+    return result.interrupted ? stop.exitStatus() : 0;
+  } catch (const ProgramError& error) {
+    console.diagnostics(error.diagnostics());
+    return 1;
+  }
+}
+
+int renderCommand(Arguments arguments) {
+  const Stopwatch clock;
+  const std::optional<RenderOptions> options = parseRenderOptions(arguments);
+  if (!options) return 0;
+  const program::Program program = program::loadProgram(options->program);
+  if (options->programHelp) {
+    writeFile("-", program::describeAsText(program));
+  } else if (options->layerList) {
+    writeFile("-", output::layerList(program));
+  } else {
+    return renderImages(*options, program, clock);
+  }
+  return 0;
+}
+
+}  // namespace quintet::cli

@@ -1,0 +1,23 @@
+// One render from options to files on disk: what `render` does, and `run` without --watch.
+#ifndef QUINTET_COMMANDS_RENDER_H
+#define QUINTET_COMMANDS_RENDER_H
+
+#include "base/stopwatch.h"
+#include "cli/render_options.h"
+#include "job/resolve.h"
+#include "job/result.h"
+#include "output/plan.h"
+
+namespace quintet::cli {
+
+// `clock`: started with the command. Returns the exit status.
+int renderImages(const RenderOptions& options, const program::Program& program, const Stopwatch& clock);
+
+// Prints warnings about the result, and adds all warnings of the render to it.
+void addWarnings(job::RenderResult& result, Console& console);
+
+// The request of the options for this program, with what the plan requires of the render.
+job::RenderRequest requestFor(const RenderOptions& options, const output::OutputPlan& plan);
+
+}  // namespace quintet::cli
+#endif

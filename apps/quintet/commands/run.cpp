@@ -1,0 +1,235 @@
+// `quintet run`: a user's program or a built-in one, on a scene or on the built-in one; with --watch again after each save.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "check/diagnostic_text.h"
+#include "cli/values.h"
+#include "commands/render.h"
+#include "job/watch.h"
+#include "output/file_names.h"
+#include "output/layers.h"
+#include "output/report.h"
+#include "output/write.h"
+#include "program/help.h"
+#include "program/load.h"
+
+namespace quintet::cli {
+namespace {
+
+constexpr const char* kExamples =
+    "  quintet run --list                                 the built-in programs\n"
+    "  quintet run ao                                     a built-in program on the built-in scene: ao.png\n"
+    "  quintet run ao --help                              its parameters and outputs\n"
+    "  quintet run my_program/ scene.glb --set tint=1,0.5,0 --size 640x360 --spp 16\n"
+    "  quintet run my_program/ --watch                    render again whenever a file is saved\n"
+    "  quintet run lesson.rt.glsl --frames 45 -o light.%04d.png\n"
+    "  quintet run my_program/ --set-file values.json --all-outputs -o out.exr\n";
+
+constexpr double kTimeout = 30.0;  // seconds: a shader that takes longer probably does not end
+constexpr double kMaxFrames = 1e6;
+constexpr double kSignalSeconds = 0.25;  // a signal that arrives just before the wait is noticed after this time
+
+struct RunOptions : RenderOptions {
+  bool list = false;  // print the built-in programs
+  bool watch = false;
+  bool namedByProgram = false;  // no output file was given
+};
+
+bool isHelp(const std::string& argument) { return argument == "-h" || argument == "--help"; }
+
+// In the current folder, named like the program: "ao.png", "sphere.png" for lessons/sphere.rt.glsl.
+std::filesystem::path defaultOutput(const program::Program& program) {
+  std::string stem = std::filesystem::path(program.name).filename().string();
+  stem = stem.substr(0, stem.find('.'));
+  return (stem.empty() ? "out" : stem) + ".png";
+}
+
+void convertFrames(const std::string& frames, const RenderTexts& texts, RunOptions& options) {
+  job::FrameRequest& request = options.request.frames;
+  if (const auto count = parseInteger("--frames", frames, 1, kMaxFrames))
+    request.count = static_cast<std::uint32_t>(*count);
+  if (!texts.spp.empty()) request.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
+  if (!request.accumulated && !options.request.limits.seconds) request.accumulated = 1;
+  request.every = options.output.everyFrame = options.output.everyFrame || output::hasFramePattern(options.output.file);
+}
+
+std::optional<RunOptions> parseRunOptions(Arguments arguments) {
+  CLI::App app("Runs a program: a folder with program.toml, a file NAME.rt.glsl, or a built-in one by name.",
+               "quintet run");
+  RunOptions options;
+  RenderTexts texts;
+  std::string frames;
+  options.program.clear();
+  app.add_option("PROGRAM", options.program, "Folder or file of a program, or name of a built-in one (--list)")
+      ->type_name("");
+  app.add_option("SCENE", texts.scene,
+                 "Scene file: .gltf, .glb or .scene.toml (default: the program's own, or built in)")
+      ->type_name("");
+  app.add_option("-o", texts.output,
+                 "Output file: .png, .exr or .hdr; - is PNG on standard output (default: PROGRAM.png in the\n"
+                 "current folder)")
+      ->type_name("FILE")
+      ->group("Image");
+  declareImage(app, texts, options);
+  app.add_option("--frames", frames,
+                 "Number of frames, for an animated scene or a program that draws frame after frame\n(default: 1)")
+      ->type_name("N")
+      ->group("Image");
+  app.add_flag("--all-frames", options.output.everyFrame, "Write each frame: out.0000.png (also with %04d in the name)")
+      ->group("Image");
+  declareExr(app, texts);
+  declareQuality(app, texts, options);
+  declareView(app, texts, options);
+  declareProgram(app, options);
+  app.add_option("--output", options.output.output, "Output of the program to write (default: the first)")
+      ->type_name("NAME")
+      ->group("Program");
+  app.add_flag("--list", options.list, "List the built-in programs and exit")->group("Program");
+  app.add_flag("--watch", options.watch, "Keep running: render again whenever a file is saved")->group("Run");
+  declareProcess(app, texts, options, "Time limit of one launch (default: 30)");
+  app.add_flag("--json", options.console.json, "Print JSON on standard output at the end (or with --help, --list)")
+      ->group("Run");
+  setUp(app, kExamples);
+
+  // --help with a program prints the program's help.
+  std::vector<std::string> given(arguments.begin(), arguments.end());
+  const bool help = std::erase_if(given, isHelp) > 0;
+  if (!parse(app, given)) return std::nullopt;
+  if (help && options.program.empty()) {
+    parse(app, std::vector<std::string>{"--help"});
+    return std::nullopt;
+  }
+  options.programHelp = help;
+  if (help || options.list) return options;
+  if (options.program.empty()) throw UsageError("no program given; 'quintet run --list' lists the built-in ones");
+  options.layerList = std::ranges::find(texts.layers, "list") != texts.layers.end();
+  if (options.layerList) return options;
+  options.request.commandLine = commandLine("run", arguments);
+  options.request.scene = texts.scene;
+  options.namedByProgram = texts.output.empty();
+  options.output.file = options.namedByProgram ? "out.png" : texts.output;
+  if (output::fileKind(options.output.file) == output::FileKind::film)
+    throw UsageError(
+        fmt::format("{}: run writes images; use 'quintet render' for films", options.output.file.string()));
+  convert(texts, options);
+  convertFrames(frames, texts, options);
+  if (texts.timeout.empty()) options.request.launchTimeout = kTimeout;
+  checkStandardOutput(options);
+  if (options.watch && options.output.file == "-")
+    throw UsageError("--watch writes the same file repeatedly: it cannot be standard output");
+  return options;
+}
+
+// Renders, waits for a saved file, renders again, until Ctrl-C.
+class Watch {
+ public:
+  explicit Watch(const RunOptions& options)
+      : options_(options),
+        console_(options.console),
+        engine_({.device = options.device,
+                 .log =
+                     [this](LogLevel level, const std::string& text) {
+                       if (level == LogLevel::warning) console_.warning(text);
+                     }}),
+        live_(engine_, options.program, [this] { return resolve(); }) {
+    console_.isObsolete = [this] { return live_.changePending(); };
+    console_.onPreview = console_.onFrame = [this](const job::RenderResult& result) { write(result); };
+  }
+
+  int run() {
+    bool good = live_.reload(console_);
+    stop_.emplace();
+    console_.setGracefulStop(&*stop_);
+    console_.note(fmt::format("watching {} files; press Ctrl-C to stop", live_.watchFiles()));
+    while (true) {
+      if (good) render();
+      while (!stop_->requested() && live_.waitForChange(kSignalSeconds).empty()) {
+      }
+      if (stop_->requested()) break;
+      changed_ = true;
+      clock_ = Stopwatch();
+      console_.clearWarnings();
+      good = live_.reload(console_);
+      live_.watchFiles();
+      if (stop_->requested()) break;
+    }
+    console_.clear();
+    return hasImage_ ? (interrupted_ ? stop_->exitStatus() : 0) : 1;
+  }
+
+ private:
+  job::ResolvedJob resolve() {
+    program_ = program::loadProgram(options_.program);
+    console_.setProgram(&program_);
+    plan_ = output::planOutputs(options_.output, program_);
+    return job::resolve(requestFor(options_, plan_), program_);
+  }
+
+  void render() {
+    job::RenderResult result = live_.job()->run(options_.request.limits, console_);
+    if (result.abandoned) return;
+    interrupted_ = result.interrupted;
+    if (!options_.output.everyFrame) write(result);
+    addWarnings(result, console_);
+    console_.clear();
+    if (options_.console.json) writeFile("-", output::resultJson(result, files_, clock_.seconds()));
+    console_.note(output::resultSummary(result, files_));
+  }
+
+  void write(const job::RenderResult& result) {
+    files_ = output::writeOutputs(plan_, result, console_);
+    hasImage_ = true;
+    if (!std::exchange(changed_, false)) return;
+    console_.note(fmt::format("{} saved: {} after {:.2f} s", live_.changedNames(),
+                              printable(files_.back().path.string()), live_.secondsSinceChange()));
+  }
+
+  const RunOptions& options_;
+  std::optional<GracefulStop> stop_;  // from the first render on, Ctrl-C ends the command in order
+  Console console_;
+  program::Program program_;
+  output::OutputPlan plan_;
+  std::vector<output::WrittenFile> files_;
+  Stopwatch clock_;       // since the start or the last change
+  bool changed_ = false;  // since the last image
+  bool hasImage_ = false;
+  bool interrupted_ = false;
+  job::Engine engine_;
+  job::LiveJob live_;
+};
+
+}  // namespace
+
+int runCommand(Arguments arguments) {
+  const Stopwatch clock;
+  std::optional<RunOptions> options = parseRunOptions(arguments);
+  if (!options) return 0;
+  const bool json = options->console.json;
+  if (options->list) {
+    writeFile("-", json ? program::listAsJson() + "\n" : program::listAsText());
+    return 0;
+  }
+  try {
+    const program::Program program = program::loadProgram(options->program);
+    if (options->programHelp) {
+      writeFile("-", json ? program::describeAsJson(program) + "\n" : program::describeAsText(program));
+      return 0;
+    }
+    if (options->layerList) {
+      writeFile("-", output::layerList(program));
+      return 0;
+    }
+    if (options->namedByProgram) options->output.file = defaultOutput(program);
+    return options->watch ? Watch(*options).run() : renderImages(*options, program, clock);
+  } catch (const FileError& error) {
+    // An editor reads the location; main prints the error for people.
+    if (json && !options->programHelp) writeFile("-", check::diagnosticsJson({asDiagnostic(error)}));
+    throw;
+  }
+}
+
+}  // namespace quintet::cli

@@ -1,0 +1,40 @@
+// Terms that the lobes of the base share: the specular, diffuse and transmission lobes below the clearcoat.
+// makeBsdf (lobes.glsl) computes them once for each wo.
+#ifndef QUINTET_BSDF_BASE_GLSL
+#define QUINTET_BSDF_BASE_GLSL
+
+#include "albedo.glsl"
+
+// Factors are linear and in [0,1]. "Layer" is the dielectric's specular layer.
+struct BaseLayer {
+  vec3 color;          // base color
+  float metallic;
+  float opaque;        // weight of the opaque dielectric
+  float clear;         // weight of the transmissive dielectric
+  float alpha;         // GGX width, at least kDeltaAlpha
+  bool delta;          // the surface is smooth
+  bool entering;       // wo is on the outside
+  float ior;           // at least 1
+  bool refractive;     // transmission is that of a solid (DielectricLobe), not of a thin wall (ThinLobe)
+  bool bends;          // refractive, and the ior is not 0
+  float reflecting;    // weight of the dielectric whose reflection is in the specular lobe
+  float specular;      // KHR_materials_specular; also f90 of the layer
+  vec3 clearF0;        // reflectance at normal incidence without `specular`
+  vec3 colorF0;        // reflectance at normal incidence
+  float f0;            // largest component of colorF0
+  AlbedoCell row;      // row of the albedo table for the roughness
+  vec2 lb;             // albedoSchlick at wo
+  vec2 average;        // albedoAverage
+  vec3 colorMultiple;  // multipleFactor of the layer
+  float layerMultiple; // its largest component
+  vec3 passing;        // layerPassing
+  float passed;        // 1 - E(wo) of the layer
+  float underCoat;     // fraction of light that passes the clearcoat
+};
+
+// Returns (a, b, c) such that 1 - E = a + b L + c B for the albedo E of a layer with Schlick's Fresnel. `multiple` is the
+// factor of its multiple scattering: E = f0 (1 - L - B) + f90 B + multiple L. L and B are those of albedoSchlick.
+vec3 layerPassing(float f0, float f90, float multiple) { return vec3(1.0 - f0, f0 - multiple, f0 - f90); }
+float layerPassed(vec3 passing, vec2 lb) { return max(passing.x + dot(passing.yz, lb), 0.0); }
+
+#endif

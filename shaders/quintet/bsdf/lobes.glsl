@@ -1,0 +1,176 @@
+// The list of lobes: their indices, the material's parameters, the lobes for one wo, and the functions that dispatch to
+// a lobe. Each function has one line per lobe. bsdf.glsl works on this list and names no lobe.
+// To add a lobe: docs/design/path-tracer.md, "How to add a lobe".
+#ifndef QUINTET_BSDF_LOBES_GLSL
+#define QUINTET_BSDF_LOBES_GLSL
+
+#include "../features.glsl"
+#include "clearcoat.glsl"
+#include "diffuse.glsl"
+#include "specular.glsl"
+#include "transmission.glsl"
+
+const int kLobeClearcoat = 0;
+const int kLobeSpecular = 1;
+const int kLobeDiffuse = 2;
+const int kLobeTransmission = 3;
+const int kLobeCount = 4;
+
+// False for lobes that no material of the scene has. The compiler then removes their code.
+const bool kLobeInScene[kLobeCount] = bool[kLobeCount](kHasClearcoat, true, true, kHasTransmission);
+// True if all lobes have the normal z.
+const bool kLobesShareNormal = !kHasClearcoat;
+
+// Colors and factors are linear and in [0,1] unless the comment says otherwise.
+struct BsdfParameters {
+  vec3 baseColor;
+  float metallic;
+  float alpha;           // roughness squared
+  float transmission;
+  float ior;             // the material's, at least 1; 0 means that the reflectance is specular * specularColor
+  bool entering;         // wo is on the outside
+  bool thin;             // a thin wall, not a solid: transmission does not refract
+  float specular;
+  vec3 specularColor;    // at least 0
+  float clearcoat;
+  float clearcoatAlpha;  // clearcoatRoughness squared
+  vec3 clearcoatNormal;  // unit, in the local frame
+};
+
+// The lobes of a material for one wo.
+struct Bsdf {
+  ClearcoatLobe clearcoat;
+  SpecularLobe specular;
+  DiffuseLobe diffuse;
+  TransmissionLobe transmission;
+  float lobeProbability[kLobeCount];  // of sampling each lobe; the sum is 1, or 0 for a black surface
+  AlbedoCell row;                     // of the base's roughness
+  float underCoat;                    // fraction of light that passes the clearcoat
+};
+
+// Returns the shared terms of the base, except underCoat.
+BaseLayer makeBaseLayer(BsdfParameters p, vec3 wo) {
+  BaseLayer base;
+  float dielectric = 1.0 - p.metallic;
+  float transmission = kHasTransmission ? p.transmission : 0.0;
+  base.color = clamp(p.baseColor, 0.0, 1.0);
+  base.metallic = p.metallic;
+  base.opaque = dielectric * (1.0 - transmission);
+  base.clear = dielectric * transmission;
+  base.alpha = max(p.alpha, kDeltaAlpha);
+  base.delta = p.alpha < kDeltaAlpha;
+  base.entering = p.entering;
+  base.ior = max(p.ior, 1.0);
+  base.refractive = kHasSolidTransmission && base.clear > 0.0 && !(kHasThinTransmission && p.thin);
+  // The specular lobe reflects for the metal and for the part of the dielectric that DielectricLobe does not cover. With
+  // ior 0, DielectricLobe reflects and bends nothing: what the layer does not reflect passes straight on.
+  base.bends = base.refractive && p.ior >= 1.0;
+  base.reflecting = base.bends ? base.opaque : dielectric;
+
+  // KHR_materials_specular: reflectance of the dielectric part.
+  base.specular = p.specular;
+  base.clearF0 = min(reflectanceFromIor(p.ior) * p.specularColor, 1.0);
+  base.colorF0 = p.specular * base.clearF0;
+  base.f0 = maxComponent(base.colorF0);
+
+  base.row = albedoRow(p.alpha);
+  float schlick = schlickWeight(wo.z);
+  base.lb = base.delta ? vec2(0.0, schlick) : albedoSchlick(base.row, wo.z);
+  base.average = albedoAverage(base.row);
+  base.colorMultiple = multipleFactor(base.colorF0, p.specular, base.average.x);
+  base.layerMultiple = maxComponent(base.colorMultiple);
+  base.passing = layerPassing(base.f0, p.specular, base.layerMultiple);
+  base.passed = layerPassed(base.passing, base.lb);
+  return base;
+}
+
+// The probability of a lobe is proportional to an estimate of its albedo.
+Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
+  BaseLayer base = makeBaseLayer(p, wo);
+  Bsdf b;
+  // The clearcoat of a solid is on its outside only.
+  bool coated = dot(wo, p.clearcoatNormal) > 0.0 && (p.entering || !base.refractive);
+  b.clearcoat = makeClearcoat(p.clearcoatNormal, p.clearcoat, p.clearcoatAlpha, coated);
+  float coat = kHasClearcoat ? clearcoatAlbedo(b.clearcoat, wo) : 0.0;
+  b.underCoat = 1.0 - coat;
+  base.underCoat = b.underCoat;
+  b.row = base.row;
+
+  b.lobeProbability[kLobeClearcoat] = coat;
+  b.specular = makeSpecular(base, b.lobeProbability[kLobeSpecular]);
+  b.diffuse = makeDiffuse(base, b.lobeProbability[kLobeDiffuse]);
+  b.transmission = makeTransmission(base, wo.z, p.alpha, b.lobeProbability[kLobeTransmission]);
+
+  float sum = 0.0;
+  for (int i = 0; i < kLobeCount; ++i) sum += b.lobeProbability[i];
+  float scale = sum > 0.0 ? 1.0 / sum : 0.0;
+  for (int i = 0; i < kLobeCount; ++i) b.lobeProbability[i] *= scale;
+  return b;
+}
+
+// Returns true if `lobe` is `which`; false at once for lobes that no material of the scene has.
+bool isLobe(int lobe, int which) { return kLobeInScene[which] && lobe == which; }
+
+bool lobeIsDelta(Bsdf b, int lobe) {
+  if (isLobe(lobe, kLobeClearcoat)) return b.clearcoat.delta;
+  if (lobe == kLobeSpecular) return b.specular.delta;
+  return isLobe(lobe, kLobeTransmission) && b.transmission.delta;
+}
+
+// Returns f |cos wi| of all lobes that are not deltas.
+vec3 lobesEval(Bsdf b, vec3 wo, vec3 wi) {
+  vec2 lb = albedoSchlick(b.row, abs(wi.z));
+  vec3 transmission = transmissionEval(b.transmission, wo, wi, lb);
+  vec3 base = diffuseEval(b.diffuse, wi, lb);
+  base += b.specular.delta ? vec3(0.0) : specularEval(b.specular, wo, wi, lb);
+  if (kHasTransmission) base += b.transmission.delta ? vec3(0.0) : transmission;
+  if (!kHasClearcoat) return base;
+  float coat = b.clearcoat.delta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatEval(b.clearcoat, wo, wi);
+  return vec3(coat) + b.underCoat * base;
+}
+
+// Computes the density of wi for each lobe; 0 for deltas.
+void lobePdfs(Bsdf b, vec3 wo, vec3 wi, out float pdf[kLobeCount]) {
+  pdf[kLobeClearcoat] = !kHasClearcoat || b.clearcoat.delta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatPdf(b.clearcoat, wo, wi);
+  pdf[kLobeSpecular] = b.specular.delta ? 0.0 : specularPdf(b.specular, wo, wi);
+  pdf[kLobeDiffuse] = diffusePdf(wi);
+  float transmission = transmissionPdf(b.transmission, wo, wi);
+  pdf[kLobeTransmission] = b.transmission.delta ? 0.0 : transmission;
+}
+
+// The microfacets of a lobe. bsdf.glsl samples their normal once for all lobes, because ggxSample is expensive.
+struct Microfacets {
+  vec3 normal;   // unit, in the local frame
+  float alpha;
+  bool bounded;  // sample with ggxBound instead of bound 1
+};
+
+Microfacets lobeMicrofacets(Bsdf b, int lobe) {
+  bool coat = isLobe(lobe, kLobeClearcoat);
+  return Microfacets(coat ? b.clearcoat.normal : vec3(0.0, 0.0, 1.0), coat ? b.clearcoat.alpha : b.specular.alpha,
+                     !(isLobe(lobe, kLobeTransmission) && b.transmission.refractive));
+}
+
+// Returns a direction of the lobe. m is its micronormal; uPart is uniform in [0,1) and independent of u and m.
+vec3 lobeSample(Bsdf b, int lobe, vec3 wo, vec3 m, float uPart, vec2 u) {
+  if (isLobe(lobe, kLobeTransmission)) return transmissionSample(b.transmission, wo, m, uPart, u);
+  if (isLobe(lobe, kLobeClearcoat)) return clearcoatSample(b.clearcoat, wo, m);
+  return lobe == kLobeDiffuse ? diffuseSample(u) : specularSample(b.specular, wo, m, uPart, u);
+}
+
+// Returns true if the sampled wi is on the other side of the surface.
+bool lobeTransmits(Bsdf b, int lobe, vec3 wi, vec3 m) {
+  return isLobe(lobe, kLobeTransmission) && transmissionTransmits(b.transmission, wi, m);
+}
+
+// Returns true if the lobe lets light pass straight on through a pane.
+bool lobePassesStraight(Bsdf b, int lobe) { return isLobe(lobe, kLobeTransmission) && transmissionIsPane(b.transmission); }
+
+// Returns f |cos wi| / pdf of a delta, without the lobe's probability. cosine = dot(wo, normal of the lobe).
+vec3 lobeDeltaWeight(Bsdf b, int lobe, float cosine, bool transmitted) {
+  if (isLobe(lobe, kLobeClearcoat)) return vec3(clearcoatFresnel(b.clearcoat, cosine));
+  if (!kHasTransmission || lobe == kLobeSpecular) return b.underCoat * specularFresnel(b.specular, cosine);
+  return b.underCoat * transmissionDeltaWeight(b.transmission, cosine, transmitted);
+}
+
+#endif

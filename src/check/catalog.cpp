@@ -1,0 +1,234 @@
+#include "check/catalog.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "base/embedded.h"
+
+namespace quintet {
+std::span<const EmbeddedFile> embeddedExplanations();
+}
+
+namespace quintet::check {
+namespace {
+
+constexpr auto kError = Severity::error;
+constexpr auto kWarning = Severity::warning;
+constexpr auto kNote = Severity::note;
+
+constexpr DiagnosticInfo kCatalog[] = {
+    // Found by an instrumented run (--instrument).
+    {"Q001", kError, "render/renderer/instrument", "ray origin or direction is not finite",
+     "Traversal of a ray with NaN or infinity misses everything or does not terminate, depending on the driver.",
+     "Find its cause: a division by zero, normalize of a zero vector or sqrt of a negative number."},
+    {"Q002", kError, "render/renderer/instrument", "output is not finite",
+     "One NaN or infinity makes the average of its pixel invalid, and every filter spreads it to other pixels.",
+     "Find the operation that produces it, or discard the sample and count it."},
+    {"Q003", kError, "render/renderer/instrument", "recursion is deeper than the pipeline allows",
+     "A trace beyond the declared depth is undefined: it overwrites the stack, or the device is lost.",
+     "Limit the depth with a counter in the payload, or increase max_recursion in program.toml."},
+    {"Q004", kError, "render/renderer/instrument", "shader record index is out of range at run time",
+     "The device reads a shader handle outside of the table and jumps to it.",
+     "Keep offset, stride and miss index of the trace within the generated constants."},
+    {"Q005", kWarning, "render/renderer/instrument", "ray hits the primitive that it starts on",
+     "The hit is closer than the rounding error of the origin: the surface shadows or reflects itself, which shows as "
+     "dots.",
+     "Offset the origin from the surface by the error bound (offsetOrigin), or increase tmin."},
+    {"Q006", kNote, "render/renderer/instrument", "number of any-hit shader invocations per ray",
+     "Each invocation interrupts traversal; many of them per ray limit the speed of the program.",
+     "Build geometry without alpha as opaque, or trace with gl_RayFlagsOpaqueEXT."},
+
+    // Files of the lecture form.
+    {"Q010", kError, "program/gsn/split", "ray generation shader is missing",
+     "Every launch starts with the ray generation shader.",
+     "Mark one main() of the file with /**** RAY GENERATION SHADER ****/."},
+    {"Q011", kError, "program/gsn/split", "main() without a stage marker",
+     "A file contains several main() functions, and only the marker assigns a stage to each of them.",
+     "Start its body with a comment such as /**** CLOSEST-HIT SHADER ****/."},
+    {"Q012", kError, "program/gsn/split", "stage marker names an unknown stage",
+     "Without this error, the shader would be skipped silently.",
+     "Write RAY GENERATION, CLOSEST-HIT, MISS, INTERSECTION, ANY-HIT or CALLABLE, followed by SHADER."},
+    {"Q013", kError, "program/gsn/split", "stage is defined twice",
+     "A file of the lecture form has one shader per stage, except for callable shaders; a second one would never run.",
+     "Merge the two, or write the program as a folder with several hit groups or miss shaders."},
+    {"Q014", kError, "program/gsn/split", "braces do not match",
+     "The end of a main() is unknown, so the file cannot be split into its stages.",
+     "Close or remove the brace at the reported location; braces in comments are ignored."},
+    {"Q015", kError, "program/gsn/uniforms", "uniform cannot become a parameter",
+     "Uniforms of the lecture form are parameters of the program; the type, name or default of this one is not "
+     "supported.",
+     "Declare it as uniform TYPE NAME; with float, vec2, vec3, vec4, int, uint, bool or sampler2D and numbers as "
+     "default."},
+    {"Q016", kError, "program/gsn/lecture", "file is larger than 1 MiB",
+     "Handwritten shaders are much smaller, so the path is probably wrong.",
+     "Check the path, or move large parts to included files."},
+
+    // Payloads.
+    {"Q101", kError, "across_stages/payload_types", "payload type differs between a trace and a shader that it reaches",
+     "Both stages share raw memory: members are read from wrong offsets, and the larger type overwrites other memory.",
+     "Declare the payload struct once, in a file that all stages include."},
+    {"Q102", kNote, "across_stages/payload_types",
+     "payload location differs between a trace and a shader that it reaches",
+     "Only the location of the trace counts; a different location of rayPayloadInEXT is ignored but misleads readers.",
+     "Use the same location for both."},
+    {"Q103", kWarning, "across_stages/payload_types", "rayPayloadEXT instead of rayPayloadInEXT",
+     "The stage writes its own outgoing payload, which no other stage reads, instead of that of the incoming ray.",
+     "Declare it as rayPayloadInEXT; use rayPayloadEXT only for rays that the stage traces."},
+    {"Q104", kWarning, "across_stages/payload_members",
+     "payload member is read after a trace but not written on every path",
+     "On that path the value is undefined: often that of a different pixel or an earlier ray, or zero by accident.",
+     "Write the member in that shader, or set it before the trace."},
+    {"Q105", kWarning, "across_stages/payload_members",
+     "nested trace overwrites the incoming payload, which is read afterwards",
+     "The shaders of the inner ray write the same memory, so the value read afterwards belongs to the inner ray.",
+     "Trace with a separate rayPayloadEXT, or copy the values to local variables before the trace."},
+
+    // Hit attributes.
+    {"Q201", kError, "across_stages/hit_attributes", "hit attribute type differs between the shaders of a hit group",
+     "The attributes are raw memory that the intersection shader writes; a different type reads different bytes.",
+     "Declare the attribute with the same type in the intersection, any-hit and closest-hit shaders."},
+    {"Q202", kError, "across_stages/hit_attributes", "hit attribute of a triangle hit group is not vec2",
+     "The built-in triangle intersection writes two barycentric coordinates and nothing else.",
+     "Declare hitAttributeEXT vec2, and compute everything else from it."},
+    {"Q203", kError, "across_stages/hit_attributes", "hit attribute is larger than the device allows",
+     "Devices limit the size (maxRayHitAttributeSize, 32 bytes on most); a larger attribute makes the pipeline "
+     "invalid.",
+     "Pass only values that cannot be recomputed from the ray and t, such as a face index instead of a normal."},
+    {"Q204", kError, "shader/stage_builtins", "hit attribute in a stage without a hit",
+     "Only intersection, any-hit and closest-hit shaders have a hit; a miss shader has none.",
+     "Pass the values through the payload."},
+
+    // Callable shaders.
+    {"Q301", kError, "across_stages/payload_types",
+     "callable data type differs between the call and the callable shader",
+     "Both stages share raw memory: members are read from wrong offsets, and the larger type overwrites other memory.",
+     "Declare the struct once, in a file that both stages include."},
+    {"Q302", kError, "across_stages/arguments", "callable index is out of range",
+     "The device reads a shader handle outside of the table and jumps to it.",
+     "Use an index below the number of callables in program.toml."},
+    {"Q303", kNote, "across_stages/payload_types",
+     "callable data location differs between the call and the callable shader",
+     "Only the location of the call counts; a different location of callableDataInEXT is ignored but misleads readers.",
+     "Use the same location for both."},
+
+    // Recursion.
+    {"Q401", kError, "across_stages/recursion", "cycle of traces without a declared bound",
+     "The stack size is fixed before the launch; a ray that recurses further overwrites memory, or the device is lost.",
+     "Declare max_recursion in program.toml and stop there with a counter in the payload, or loop in ray generation."},
+    {"Q402", kError, "across_stages/recursion", "recursion is deeper than declared or than the device allows",
+     "A trace beyond maxPipelineRayRecursionDepth is undefined.",
+     "Reduce the depth, increase max_recursion, or replace the recursion by a loop in the ray generation shader."},
+
+    // The shader binding table.
+    {"Q501", kError, "across_stages/arguments", "hit record is out of range for an instance of the scene",
+     "The device reads a shader handle outside of the table and jumps to it.",
+     "Use kRay_NAME as offset and kRayTypeCount as stride, which are generated from program.toml."},
+    {"Q502", kError, "across_stages/arguments", "miss index is out of range",
+     "The device reads a shader handle outside of the table and jumps to it.",
+     "Use kMiss_NAME, which is generated from program.toml."},
+    {"Q503", kError, "across_stages/arguments", "offset or stride of the hit records exceeds 4 bits",
+     "The device uses only the low 4 bits, so a different record is selected silently.", "Keep both between 0 and 15."},
+    {"Q504", kError, "across_stages/arguments", "miss index exceeds 16 bits",
+     "The device uses only the low 16 bits, so a different miss shader runs silently.", "Keep it between 0 and 65535."},
+    {"Q505", kWarning, "across_stages/arguments", "cull mask exceeds 8 bits",
+     "The device uses only the low 8 bits: with a mask of 0x100 the ray hits nothing.",
+     "Use the bits 0x01 to 0x80; 0xFF includes all instances."},
+    {"Q506", kWarning, "across_stages/arguments", "shadow ray uses the miss shader of radiance rays",
+     "With closest-hit shaders skipped, only the miss shader returns a result, and this one writes a color, not "
+     "visibility.",
+     "Add a ray type with its own miss shader, and pass its kMiss_NAME."},
+
+    // Hit groups and geometry.
+    {"Q601", kError, "across_stages/geometry", "procedural geometry uses a hit group without an intersection shader",
+     "Without an intersection shader no ray can hit a bounding box, and the hit record is invalid.",
+     "Add an intersection shader to the group, or bind the procedural geometry to a different group."},
+    {"Q602", kError, "across_stages/geometry", "triangles use a hit group with an intersection shader",
+     "The device intersects triangles itself; the use of a procedural hit group for them is undefined.",
+     "Bind the group to procedural geometry (geometry = \"procedural\"), and add a group without the shader for "
+     "triangles."},
+    {"Q603", kWarning, "across_stages/geometry", "any-hit shader can never run",
+     "All its geometry is opaque, because of the geometry, the instance or the ray flags, so the device never calls "
+     "it.",
+     "Remove the shader, or the opaque flag that prevents it."},
+    {"Q604", kWarning, "across_stages/geometry", "alpha test of a material never runs",
+     "The surface looks solid, because the ray is opaque or no any-hit shader tests the material.",
+     "Give the hit group for class alpha an any_hit for this ray type, and trace without the opaque flag."},
+    {"Q605", kError, "across_stages/arguments", "ray flags exclude each other",
+     "Vulkan forbids the combination, and its effect depends on the driver.",
+     "Keep only one of the two flags that the message names."},
+
+    // Shading mistakes.
+    {"Q701", kError, "within_stage/distance", "normalized object-space direction is used for t",
+     "The unit of t is the length of the ray direction, so scaled instances get wrong distances and a wrong order of "
+     "hits.",
+     "Intersect with gl_ObjectRayDirectionEXT as it is, or divide the t of the unit direction by its length."},
+    {"Q702", kWarning, "within_stage/normals", "normal is transformed by gl_ObjectToWorldEXT",
+     "With non-uniform scale the result is not perpendicular to the surface, and shading is wrong.",
+     "Multiply from the left with world-to-object: normalize(vec3(normal * gl_WorldToObjectEXT))."},
+    {"Q703", kWarning, "within_stage/indices", "gl_InstanceID is used instead of the custom index",
+     "gl_InstanceID is the position in the built list, which Quintet can sort, so its order depends on the device.",
+     "Use gl_InstanceCustomIndexEXT, the position in the scene, or instanceCustomIndex(), the number set in the scene "
+     "file."},
+    {"Q704", kError, "within_stage/indices", "descriptor index depends on the hit but is not marked nonuniformEXT",
+     "The driver can use the index of one invocation for its whole group, which shows as blocks of wrong textures.",
+     "Mark the index: textures[nonuniformEXT(index)]."},
+    {"Q705", kWarning, "across_stages/ray_origins", "ray starts on a surface with tmin 0",
+     "Rounding puts the origin below the surface for about half of the rays, which shows as shadow acne.",
+     "Offset the origin (offsetOrigin of <quintet/surface.glsl>), or use a tmin larger than the error."},
+    {"Q706", kError, "shader/stage_builtins", "built-in does not exist in this stage",
+     "The value is unknown in this stage: for example, a miss shader has no hit.",
+     "Pass the value through the payload from a stage that has it."},
+
+    // Unused parts.
+    {"Q801", kWarning, "across_stages/unused", "stage is unreachable", "It costs compile time without any effect.",
+     "Trace or call it, or remove it from program.toml."},
+    {"Q802", kWarning, "across_stages/unused", "hit group matches no geometry of the scene",
+     "The group has no effect: a name is misspelled, or the program was written for a different scene.",
+     "Compare geometry, material and primitives of the group with `quintet info SCENE`."},
+
+    // Driver defects (docs/design/quirks.md).
+    {"Q901", kWarning, "within_stage/driver_defects", "built-in is read after a nested trace",
+     "Some drivers return the value of the inner hit (lavapipe).",
+     "Copy the built-in to a local variable before the trace."},
+    {"Q902", kWarning, "within_stage/driver_defects", "hit attribute is written although the report can be rejected",
+     "Some drivers keep the attributes of a rejected candidate instead of those of the accepted hit (lavapipe).",
+     "Write them only if gl_RayTminEXT <= t and t < gl_RayTmaxEXT, or compute them in the closest-hit shader."},
+    {"Q903", kNote, "across_stages/shared_intersections",
+     "intersection shader is shared by hit groups with different any-hit shaders",
+     "Some drivers run the any-hit shader of the first group for both (lavapipe).",
+     "No change is required: Quintet gives each group a copy of the stage."},
+    {"Q904", kWarning, "within_stage/driver_defects", "gl_RayTmaxEXT is read after a report of the same invocation",
+     "It can have its old value (because of the optimizer, and on lavapipe), so a farther hit replaces a closer one.",
+     "Keep the closest accepted t in a local variable."},
+    {"Q905", kWarning, "within_stage/driver_defects",
+     "dynamically indexed local array in an intersection shader with an any-hit shader",
+     "Some drivers use the same memory for both stages (lavapipe): the any-hit shader overwrites the array.",
+     "Keep the values in scalars, or do the any-hit test in the intersection shader."},
+};
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return result;
+}
+
+}  // namespace
+
+std::span<const DiagnosticInfo> allDiagnostics() { return kCatalog; }
+
+const DiagnosticInfo* findDiagnostic(std::string_view id) {
+  const std::string wanted = upper(id);
+  const auto* found = std::ranges::lower_bound(kCatalog, std::string_view(wanted), {}, &DiagnosticInfo::id);
+  return found != std::end(kCatalog) && found->id == wanted ? found : nullptr;
+}
+
+std::string_view explanation(std::string_view id) {
+  if (findDiagnostic(id) == nullptr) return {};
+  const std::string wanted = upper(id) + ".md";
+  for (const EmbeddedFile& page : embeddedExplanations())
+    if (page.path == wanted) return page.data;
+  return {};
+}
+
+}  // namespace quintet::check

@@ -1,0 +1,45 @@
+// The check of the linked pipeline: program, scene and device together. Vulkan validates each shader alone; the check
+// connects them and reports mismatches with file and line. Ids and texts: catalog.h, docs/diagnostics.
+#ifndef QUINTET_CHECK_CHECK_H
+#define QUINTET_CHECK_CHECK_H
+
+#include "check/device_limits.h"
+#include "program/compile.h"
+#include "program/scene_facts.h"
+
+namespace quintet::spirv {
+class Module;
+}
+
+namespace quintet::check {
+
+struct StageContext;
+
+struct CheckResult {
+  std::vector<Diagnostic> diagnostics;  // of the compiler, then of the rules by id
+  // Depth of nested traces that the pipeline needs: the longest chain of traces, or the declared bound if traces form a
+  // cycle.
+  std::uint32_t recursionDepth = 1;
+  // Bytes of payloads, callable data and hit attributes along the worst chain: a lower bound of the stack size. Only
+  // the driver knows what it adds for registers (rt::Pipeline).
+  std::uint64_t stackBytes = 0;
+  std::vector<std::string> reached;  // files of the reachable stages
+  double seconds = 0;                // wall time, including compilation
+  bool ok() const { return !hasErrors(diagnostics); }
+};
+
+// Checks compiled stages. They must be compiled with `debugInfo`, or diagnostics have no lines, and with `optimize`, or
+// arguments are not constant. A null `scene` stands for any scene. `featureDefines` says that the shaders were compiled
+// for one scene (QUINTET_NO_…), so code can be missing: unreachable stages are then not reported.
+CheckResult check(const program::Program& program, const program::CompiledProgram& compiled,
+                  const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines = false);
+
+// Compiles and checks. If compilation fails, the result has the diagnostics of the compiler.
+CheckResult check(const program::Program& program, const shader::Compiler& compiler, const program::SceneFacts* scene,
+                  const DeviceLimits& limits, const std::vector<std::pair<std::string, std::string>>& defines = {});
+
+// Runs the rules within one stage.
+std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageContext& context);
+
+}  // namespace quintet::check
+#endif

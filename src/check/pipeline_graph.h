@@ -1,0 +1,100 @@
+// The pipeline as a graph: the facts of each stage, its traces and callable calls, and the stages that these can
+// reach over the program's shader binding table. Constant arguments select exactly; for other arguments all values
+// within the table are assumed. The graph is independent of a scene: a hit group is reachable if some geometry can be
+// bound to it.
+#ifndef QUINTET_CHECK_PIPELINE_GRAPH_H
+#define QUINTET_CHECK_PIPELINE_GRAPH_H
+
+#include <memory>
+#include <set>
+
+#include "program/compile.h"
+#include "program/hit_group_binding.h"
+#include "spirv/stage_facts.h"
+
+namespace quintet::check {
+
+// gl_RayFlags…EXT
+constexpr std::uint32_t kFlagOpaque = 1, kFlagNoOpaque = 2, kFlagTerminateOnFirstHit = 4, kFlagSkipClosestHit = 8,
+                        kFlagCullBack = 16, kFlagCullFront = 32, kFlagCullOpaque = 64, kFlagCullNoOpaque = 128,
+                        kFlagSkipTriangles = 256, kFlagSkipAabbs = 512;
+
+struct PipelineStage {
+  std::string file;  // as in the program description
+  shader::Stage kind = shader::Stage::rayGeneration;
+  std::unique_ptr<spirv::StageFacts> facts;  // null if the module cannot be analyzed
+};
+
+// A hit group for one ray type: indices in Program::hitGroups and Program::rays.
+struct HitGroupRay {
+  std::size_t group = 0;
+  std::size_t ray = 0;
+};
+
+enum class Role { miss, closestHit, anyHit, intersection, callable };
+
+// A stage that a trace or a call can reach.
+struct Edge {
+  std::size_t stage = 0;  // in PipelineGraph::stages
+  Role role = Role::miss;
+  bool exact = true;      // selected by constant arguments; false if assumed
+  HitGroupRay hit;        // for the roles of a hit group
+  std::size_t index = 0;  // for misses and callables
+};
+
+struct TraceSite {
+  std::size_t stage = 0;
+  const spirv::TraceFacts* trace = nullptr;
+  std::vector<Edge> edges;
+  std::vector<HitGroupRay> hits;  // that a hit can use
+  bool skipsClosestHit() const { return trace->flags.mustHave(kFlagSkipClosestHit); }
+};
+
+struct CallSite {
+  std::size_t stage = 0;
+  const spirv::CallFacts* call = nullptr;
+  std::vector<Edge> edges;
+};
+
+struct PipelineGraph {
+  // Reads the modules in parallel. Both arguments must outlive the graph.
+  PipelineGraph(const program::Program& program, const program::CompiledProgram& compiled);
+
+  const program::Program& program;
+  std::vector<PipelineStage> stages;
+  std::vector<program::MissShader> misses;
+  std::vector<TraceSite> traces;
+  std::vector<CallSite> calls;
+  std::string error;  // first module that cannot be analyzed, and the reason; empty if all can
+
+  std::size_t rayCount() const { return program.rays.size(); }
+  const PipelineStage* stage(const std::string& file) const;  // null if unknown
+  const spirv::StageFacts& facts(const TraceSite& site) const { return *stages[site.stage].facts; }
+  const spirv::StageFacts& facts(const CallSite& site) const { return *stages[site.stage].facts; }
+  const spirv::StageFacts& facts(const Edge& edge) const { return *stages[edge.stage].facts; }
+  const program::HitShaders& shaders(HitGroupRay hit) const;  // empty if the group has none for that ray type
+  bool hasIntersection(std::size_t group) const;
+  // Ray types whose hit shaders the trace can use.
+  std::vector<std::size_t> rayTypes(const spirv::TraceFacts& trace) const;
+  // Stages reachable from ray generation. An any-hit shader counts as reachable even if opacity prevents it.
+  std::set<std::size_t> reachableStages() const;
+
+  // "closest-hit shader 'a.rchit' (hit group 'surface', ray type 'primary')"
+  std::string describe(const Edge& edge) const;
+  std::string describe(HitGroupRay hit) const;  // "hit group 'surface', ray type 'primary'"
+  // A line of the program description.
+  SourceLocation descriptionLocation(int line) const;
+  // The given location if its line is known, else the file of the stage.
+  SourceLocation location(const PipelineStage& stage, const SourceLocation& location) const;
+  SourceLocation location(const TraceSite& site) const;
+  SourceLocation location(const CallSite& site) const;
+
+ private:
+  void addTraces(std::size_t stage);
+  void addCalls(std::size_t stage);
+  void addHits(TraceSite& site);
+  void addEdge(std::vector<Edge>& edges, const std::string& file, Edge edge) const;
+};
+
+}  // namespace quintet::check
+#endif

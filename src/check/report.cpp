@@ -1,0 +1,33 @@
+#include "check/report.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "check/catalog.h"
+
+namespace quintet::check {
+
+void Report::add(std::string_view id, const SourceLocation& location, std::string text) {
+  const DiagnosticInfo* info = findDiagnostic(id);
+  const Severity severity = info ? info->severity : Severity::error;
+  addUnique(diagnostics_, {severity, location.file, location.line, location.column, std::string(id), std::move(text)});
+}
+
+void Report::addOncePerLine(std::string_view id, const SourceLocation& location, std::string text) {
+  const auto sameLine = [&](const Diagnostic& d) {
+    return d.id == id && d.file == location.file && d.line == location.line;
+  };
+  if (std::ranges::none_of(diagnostics_, sameLine)) add(id, location, std::move(text));
+}
+
+bool Report::hasAny(std::span<const std::string_view> ids) const {
+  return std::ranges::any_of(
+      diagnostics_, [&](const Diagnostic& d) { return std::ranges::find(ids, std::string_view(d.id)) != ids.end(); });
+}
+
+std::vector<Diagnostic> Report::take() {
+  std::ranges::stable_sort(diagnostics_, {}, [](const Diagnostic& d) { return std::tie(d.id, d.file, d.line); });
+  return std::move(diagnostics_);
+}
+
+}  // namespace quintet::check

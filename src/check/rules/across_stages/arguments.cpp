@@ -1,0 +1,202 @@
+// Q302, Q501 to Q506: arguments of traces and calls that select records of the shader binding table. Q605: ray flags.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/rules/rules.h"
+
+namespace quintet::check {
+namespace {
+
+constexpr std::uint32_t kRecordBits = 0xF, kMissBits = 0xFFFF, kMaskBits = 0xFF;
+
+class ArgumentRule {
+ public:
+  ArgumentRule(const CheckInput& input, Report& report) : input_(input), graph_(input.graph), report_(report) {}
+
+  void check(const TraceSite& site) {
+    const spirv::TraceFacts& trace = *site.trace;
+    location_ = graph_.location(site);
+    if (inRange(trace.offset, "offset", "Q503", kRecordBits) && inRange(trace.stride, "stride", "Q503", kRecordBits))
+      checkRecords(trace);
+    if (inRange(trace.miss, "miss index", "Q504", kMissBits)) checkMiss(trace);
+    for (const std::uint32_t mask : trace.mask.values)
+      if (mask > kMaskBits)
+        report_.add("Q505", location_,
+                    fmt::format("the cull mask of this trace is {:#x}, but only its low 8 bits, {:#04x}, are used",
+                                mask, mask & kMaskBits));
+    checkShadowMiss(site);
+    for (const std::uint32_t flags : trace.flags.values) checkFlags(flags);
+  }
+
+  void check(const CallSite& site) {
+    location_ = graph_.location(site);
+    const std::size_t count = graph_.program.callables.size();
+    for (const std::uint32_t index : site.call->index.values)
+      if (index >= count)
+        report_.add("Q302", location_,
+                    fmt::format("the callable index of this call is {}, but the program has {}", index,
+                                countText(count, "callable shader")));
+    if (!site.call->index.known && count == 0)
+      report_.add("Q302", location_, "this calls a callable shader, but the program has none");
+  }
+
+ private:
+  // "no miss shaders", "1 miss shader (index 0)", "3 miss shaders (index 0 to 2)"
+  static std::string countText(std::size_t count, std::string_view noun) {
+    if (count == 0) return fmt::format("no {}s", noun);
+    return count == 1 ? fmt::format("1 {} (index 0)", noun)
+                      : fmt::format("{} {}s (index 0 to {})", count, noun, count - 1);
+  }
+
+  bool inRange(const spirv::ArgumentValues& argument, std::string_view name, std::string_view id, std::uint32_t limit) {
+    for (const std::uint32_t value : argument.values) {
+      if (value <= limit) continue;
+      report_.add(id, location_,
+                  fmt::format("the {} of this trace is {}, but the maximum is {}; the device would use {}", name, value,
+                              limit, value & limit));
+      return false;
+    }
+    return true;
+  }
+
+  void checkMiss(const spirv::TraceFacts& trace) {
+    for (const std::uint32_t index : trace.miss.values)
+      if (index >= graph_.misses.size())
+        report_.add("Q502", location_,
+                    fmt::format("the miss index of this trace is {}, but the program has {}", index,
+                                countText(graph_.misses.size(), "miss shader")));
+  }
+
+  void checkRecords(const spirv::TraceFacts& trace) {
+    const std::size_t rays = graph_.rayCount();
+    if (graph_.program.hitGroups.empty()) return;
+    for (const std::uint32_t offset : trace.offset.values) {
+      if (offset < rays) continue;
+      report_.add("Q501", location_,
+                  fmt::format("the offset of this trace is {}, but each geometry has {} (one per ray type){}", offset,
+                              recordText(rays), sceneText(trace, offset)));
+      return;
+    }
+    for (const std::uint32_t stride : trace.stride.values)
+      if (stride != 0 && stride != rays) checkStride(trace, stride);
+  }
+
+  // With a stride other than the number of ray types, all but the first geometry of an instance use wrong records.
+  void checkStride(const spirv::TraceFacts& trace, std::uint32_t stride) {
+    const std::size_t rays = graph_.rayCount();
+    const std::string text = fmt::format(
+        "the stride of this trace is {}, but each geometry has {} (one per ray type): ", stride, recordText(rays));
+    if (!input_.scene) {
+      report_.add("Q501", location_, text + "the second geometry of a mesh uses the records of a different geometry");
+      return;
+    }
+    for (const program::InstanceFacts& instance : input_.scene->instances) {
+      if (!seen(trace, instance) || instance.geometryCount < 2) continue;
+      const std::size_t last = std::size_t{instance.geometryCount} - 1;
+      const std::size_t record = instance.firstGeometry * rays + last * stride + firstOffset(trace);
+      report_.add(
+          "Q501", location_,
+          text + fmt::format("geometry {} of instance '{}' uses record {} instead of {}{}", last, instance.name, record,
+                             (instance.firstGeometry + last) * rays + firstOffset(trace), beyond(record)));
+      return;
+    }
+  }
+
+  static std::string recordText(std::size_t count) { return fmt::format("{} record{}", count, count == 1 ? "" : "s"); }
+  static bool seen(const spirv::TraceFacts& trace, const program::InstanceFacts& instance) {
+    return trace.mask.mayHave(instance.mask & kMaskBits);
+  }
+  static std::uint32_t firstOffset(const spirv::TraceFacts& trace) {
+    return trace.offset.known ? trace.offset.values.front() : 0;
+  }
+
+  std::string beyond(std::size_t record) const {
+    const std::size_t count = input_.scene->geometries.size() * graph_.rayCount();
+    return record < count ? std::string() : fmt::format("; the table has {} records", count);
+  }
+
+  // ": instance 'ball' of scene.glb uses record 7; the table has 6 records"
+  std::string sceneText(const spirv::TraceFacts& trace, std::uint32_t offset) const {
+    if (!input_.scene) return {};
+    const std::uint32_t stride =
+        trace.stride.exact() ? trace.stride.values[0] : static_cast<std::uint32_t>(graph_.rayCount());
+    for (const program::InstanceFacts& instance : input_.scene->instances) {
+      const std::size_t record = instance.firstGeometry * graph_.rayCount() +
+                                 (std::max(1u, instance.geometryCount) - 1) * std::size_t{stride} + offset;
+      if (seen(trace, instance) && !beyond(record).empty())
+        return fmt::format(": instance '{}' of {} uses record {}{}", instance.name, input_.scene->name, record,
+                           beyond(record));
+    }
+    return {};
+  }
+
+  static bool isShadow(const spirv::TraceFacts& trace) {
+    return trace.flags.mustHave(kFlagTerminateOnFirstHit | kFlagSkipClosestHit);
+  }
+
+  // Reports a shadow ray with the miss shader of radiance rays, if the program has a miss shader that these do not use.
+  void checkShadowMiss(const TraceSite& site) {
+    const spirv::TraceFacts& trace = *site.trace;
+    if (!isShadow(trace) || !trace.miss.exact() || trace.miss.values[0] >= graph_.misses.size()) return;
+    const auto forRadiance = [&](const std::string& file) {
+      return std::ranges::any_of(graph_.traces, [&](const TraceSite& other) {
+        return !isShadow(*other.trace) && std::ranges::any_of(other.edges, [&](const Edge& e) {
+          return e.role == Role::miss && graph_.stages[e.stage].file == file;
+        });
+      });
+    };
+    const program::MissShader& used = graph_.misses[trace.miss.values[0]];
+    if (!forRadiance(used.file)) return;
+    for (std::size_t i = 0; i < graph_.misses.size(); ++i) {
+      if (forRadiance(graph_.misses[i].file)) continue;
+      report_.add(
+          "Q506", location_,
+          fmt::format("this shadow ray uses miss shader '{}' (index {}) of radiance rays, but '{}' (index {}) is "
+                      "not used by radiance rays",
+                      used.file, trace.miss.values[0], graph_.misses[i].file, i));
+      return;
+    }
+  }
+
+  // Each of these sets allows at most one flag: VUID-RuntimeSpirv-OpTraceRayKHR-06892 to 06894.
+  void checkFlags(std::uint32_t flags) {
+    struct Flag {
+      std::uint32_t bit;
+      std::string_view name;
+    };
+    static const std::vector<std::vector<Flag>> kSets{
+        {{kFlagOpaque, "Opaque"},
+         {kFlagNoOpaque, "NoOpaque"},
+         {kFlagCullOpaque, "CullOpaque"},
+         {kFlagCullNoOpaque, "CullNoOpaque"}},
+        {{kFlagSkipTriangles, "SkipTriangles"},
+         {kFlagCullBack, "CullBackFacingTriangles"},
+         {kFlagCullFront, "CullFrontFacingTriangles"}},
+        {{kFlagSkipTriangles, "SkipTriangles"}, {kFlagSkipAabbs, "SkipAABB"}}};
+    for (const std::vector<Flag>& set : kSets) {
+      std::vector<std::string_view> names;
+      for (const Flag& flag : set)
+        if ((flags & flag.bit) != 0) names.push_back(flag.name);
+      if (names.size() > 1)
+        report_.add("Q605", location_,
+                    fmt::format("this trace has gl_RayFlags{}EXT and gl_RayFlags{}EXT, which exclude each other",
+                                names[0], names[1]));
+    }
+  }
+
+  const CheckInput& input_;
+  const PipelineGraph& graph_;
+  Report& report_;
+  SourceLocation location_;  // of the trace or call
+};
+
+}  // namespace
+
+void checkArguments(const CheckInput& input, Report& report) {
+  ArgumentRule rule(input, report);
+  for (const TraceSite& site : input.graph.traces) rule.check(site);
+  for (const CallSite& site : input.graph.calls) rule.check(site);
+}
+
+}  // namespace quintet::check

@@ -1,0 +1,190 @@
+// Q401, Q402: depth of nested traces and calls; the depth and the minimum stack size that the pipeline needs.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "check/rules/rules.h"
+
+namespace quintet::check {
+namespace {
+
+// The longest chains of traces. A stage without traces has depth 0, ray generation usually 1.
+class TraceChains {
+ public:
+  explicit TraceChains(const PipelineGraph& graph)
+      : graph_(graph),
+        state_(graph.stages.size(), 0),
+        depth_(graph.stages.size(), 0),
+        next_(graph.stages.size(), nullptr),
+        bytes_(graph.stages.size(), 0) {
+    for (std::size_t i = 0; i < graph.stages.size(); ++i)
+      if (graph.stages[i].kind == shader::Stage::rayGeneration) visit(i);
+  }
+
+  struct Cycle {
+    const TraceSite* site = nullptr;  // the trace that closes the cycle
+    std::vector<std::size_t> stages;
+    const Edge* edge = nullptr;  // of that trace
+  };
+  const std::vector<Cycle>& cycles() const { return cycles_; }
+
+  std::uint32_t depth(std::size_t stage) const { return depth_[stage]; }
+  std::uint64_t bytes(std::size_t stage) const { return bytes_[stage]; }
+
+  // "a.rgen:12 -> b.rchit:20 -> sky.rmiss"
+  std::string chain(std::size_t stage) const {
+    std::string text;
+    for (std::size_t steps = 0; next_[stage] && steps < graph_.stages.size(); ++steps) {
+      const TraceSite& site = *next_[stage];
+      text += fmt::format("{}:{} -> ", graph_.stages[stage].file, site.trace->location.line);
+      stage = deepest(site);
+    }
+    return text + graph_.stages[stage].file;
+  }
+
+  // Location of the innermost trace of the longest chain.
+  SourceLocation lastTrace(std::size_t stage) const {
+    SourceLocation location = graph_.location(graph_.stages[stage], {});
+    for (; next_[stage]; stage = deepest(*next_[stage])) {
+      location = graph_.location(graph_.stages[stage], next_[stage]->trace->location);
+      if (deepest(*next_[stage]) == stage) break;
+    }
+    return location;
+  }
+
+ private:
+  static bool traces(Role role) { return role == Role::miss || role == Role::closestHit; }
+
+  std::size_t deepest(const TraceSite& site) const {
+    const Edge* best = nullptr;
+    for (const Edge& edge : site.edges)
+      if (traces(edge.role) && (!best || depth_[edge.stage] > depth_[best->stage])) best = &edge;
+    return best ? best->stage : site.stage;
+  }
+
+  // Depth-first search; its recursion is limited by the number of stages.
+  void visit(std::size_t stage) {
+    state_[stage] = 1;
+    path_.push_back(stage);
+    std::uint64_t below = 0;
+    for (const TraceSite& site : graph_.traces) {
+      if (site.stage != stage) continue;
+      std::uint32_t depth = 1;
+      for (const Edge& edge : site.edges) {
+        below = std::max(below, bytesOf(edge));
+        if (!traces(edge.role)) continue;
+        if (state_[edge.stage] == 1) {
+          const auto start = std::ranges::find(path_, edge.stage);
+          cycles_.push_back({&site, {start, path_.end()}, &edge});
+          continue;
+        }
+        if (state_[edge.stage] == 0) visit(edge.stage);
+        below = std::max(below, bytes_[edge.stage]);
+        depth = std::max(depth, 1 + depth_[edge.stage]);
+      }
+      if (depth > depth_[stage]) depth_[stage] = depth, next_[stage] = site.edges.empty() ? nullptr : &site;
+    }
+    for (const CallSite& site : graph_.calls)
+      for (const Edge& edge : site.edges)
+        if (site.stage == stage) below = std::max(below, bytesOf(edge));
+    bytes_[stage] = graph_.stages[stage].facts->frameBytes() + below;
+    path_.pop_back();
+    state_[stage] = 2;
+  }
+
+  std::uint64_t bytesOf(const Edge& edge) const { return graph_.facts(edge).frameBytes(); }
+
+  const PipelineGraph& graph_;
+  std::vector<int> state_;  // 0 new, 1 on the current path, 2 done
+  std::vector<std::uint32_t> depth_;
+  std::vector<const TraceSite*> next_;  // first trace of the longest chain
+  std::vector<std::uint64_t> bytes_;
+  std::vector<std::size_t> path_;
+  std::vector<Cycle> cycles_;
+};
+
+std::string cycleText(const PipelineGraph& graph, const TraceChains::Cycle& cycle) {
+  if (cycle.stages.size() == 1)
+    return fmt::format("this trace can run its own stage again: the {}", graph.describe(*cycle.edge));
+  std::vector<std::string> names;
+  for (const std::size_t stage : cycle.stages) names.push_back(graph.stages[stage].file);
+  return fmt::format("this trace closes a cycle: {} -> {}", fmt::join(names, " -> "), names.front());
+}
+
+// Checks nested calls of callable shaders. The default stack size of a Vulkan pipeline allows for two levels
+// (specification, "Ray Tracing Pipeline Stack").
+class CallChains {
+ public:
+  CallChains(const PipelineGraph& graph, Report& report)
+      : graph_(graph), report_(report), depth_(graph.stages.size(), -1) {
+    for (std::size_t i = 0; i < graph.stages.size(); ++i) visit(i);
+  }
+
+ private:
+  static constexpr int kOpen = -2, kMaxDepth = 2;
+
+  // Returns the depth of nested calls below a stage. The recursion is limited by the number of stages.
+  int visit(std::size_t stage) {
+    if (depth_[stage] != -1) return depth_[stage];
+    depth_[stage] = kOpen;
+    int depth = 0;
+    for (const CallSite& site : graph_.calls) {
+      if (site.stage != stage) continue;
+      const SourceLocation location = graph_.location(site);
+      for (const Edge& edge : site.edges) {
+        const int below = visit(edge.stage);
+        if (below == kOpen)
+          report_.add("Q401", location,
+                      fmt::format("this call closes a cycle: the {} can call itself", graph_.describe(edge)));
+        if (below == kMaxDepth)
+          report_.add("Q402", location,
+                      fmt::format("calls are nested {} deep from here, through the {}; the stack allows {}", below + 1,
+                                  graph_.describe(edge), kMaxDepth));
+        depth = std::max(depth, below + 1);
+      }
+    }
+    return depth_[stage] = depth;
+  }
+
+  const PipelineGraph& graph_;
+  Report& report_;
+  std::vector<int> depth_;  // by stage; -1 new, kOpen on the current path
+};
+
+}  // namespace
+
+RecursionNeeds checkRecursion(const CheckInput& input, Report& report) {
+  const PipelineGraph& graph = input.graph;
+  const auto& declared = graph.program.declaredRecursion;
+  RecursionNeeds needs{declared.value_or(1), 0};
+  const PipelineStage* start = graph.stage(graph.program.rayGeneration);
+  if (!start || !start->facts) return needs;
+  const TraceChains chains(graph);
+  const CallChains calls(graph, report);
+  const auto stage = static_cast<std::size_t>(start - graph.stages.data());
+  const std::uint32_t derived = std::max(1u, chains.depth(stage));
+  const bool cyclic = !chains.cycles().empty();
+  needs.depth = derived;
+  needs.stackBytes = chains.bytes(stage);
+  if (cyclic) {
+    needs.depth = std::max(derived, declared.value_or(input.limits.maxRecursion));
+    needs.stackBytes += (needs.depth - derived) * chains.bytes(chains.cycles().front().stages.front());
+  }
+  if (!declared)
+    for (const TraceChains::Cycle& cycle : chains.cycles())
+      report.add("Q401", graph.location(*cycle.site), cycleText(graph, cycle) + "; the program declares no bound");
+  if (declared && *declared < derived)
+    report.add("Q402", chains.lastTrace(stage),
+               fmt::format("traces are nested {} deep ({}), but the program declares {}", derived, chains.chain(stage),
+                           *declared));
+  if ((!cyclic || declared) && needs.depth > input.limits.maxRecursion)
+    report.add(
+        "Q402", chains.lastTrace(stage),
+        fmt::format("traces are nested {} deep ({}); {} {}", needs.depth, cyclic ? "declared" : chains.chain(stage),
+                    input.limits.name.empty() ? "Vulkan devices allow" : input.limits.name + " allows",
+                    input.limits.maxRecursion));
+  return needs;
+}
+
+}  // namespace quintet::check

@@ -1,0 +1,91 @@
+// Q801: stages that no trace or call can reach. Q802: hit groups that match no geometry.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/rules/rules.h"
+#include "program/gsn/lecture.h"
+
+namespace quintet::check {
+namespace {
+
+// Returns the line of the first mention of a file in the program description.
+int lineOfFile(const program::Program& program, const std::string& file) {
+  for (const program::MissShader& miss : program::missShaders(program))
+    if (miss.file == file) return miss.line;
+  for (const program::Callable& callable : program.callables)
+    if (callable.file == file) return callable.line;
+  for (const program::HitGroup& group : program.hitGroups)
+    for (const auto& [ray, shaders] : group.shaders)
+      if (shaders.closestHit == file || shaders.anyHit == file || shaders.intersection == file)
+        return shaders.line > 0 ? shaders.line : group.line;
+  return program.rayGenerationLine;
+}
+
+bool isBound(const program::HitGroup& group) {
+  return !group.geometry.empty() || !group.material.empty() || !group.primitives.empty();
+}
+
+// Describes the first name in the group's binding that the scene does not have; empty if it has all. Geometry classes
+// are ignored.
+std::string missingName(const program::HitGroup& group, const program::SceneFacts& scene) {
+  const auto has = [&](const std::string& name, auto member) {
+    return std::ranges::any_of(scene.geometries, [&](const program::GeometryFacts& g) { return g.*member == name; });
+  };
+  for (const std::string& name : group.primitives)
+    if (!has(name, &program::GeometryFacts::name))
+      return fmt::format("{} has no mesh or primitive set '{}'", scene.name, name);
+  for (const std::string& name : group.material)
+    if (!has(name, &program::GeometryFacts::material)) return fmt::format("{} has no material '{}'", scene.name, name);
+  return {};
+}
+
+// True if geometry that matches `group` uses `earlier`, which comes before it.
+bool isHiddenBy(const PipelineGraph& graph, std::size_t group, std::size_t earlier) {
+  const program::HitGroup& a = graph.program.hitGroups[earlier];
+  const program::HitGroup& b = graph.program.hitGroups[group];
+  if (a.geometry != b.geometry || a.material != b.material || a.primitives != b.primitives) return false;
+  // Groups that are bound by material only are not compared.
+  if (isBound(b) && b.geometry.empty() && b.primitives.empty()) return false;
+  return graph.hasIntersection(earlier) == graph.hasIntersection(group);
+}
+
+// Returns why no geometry uses the hit group; empty if some can.
+std::string reasonUnused(const CheckInput& input, std::size_t index) {
+  const program::Program& program = input.graph.program;
+  const program::HitGroup& group = program.hitGroups[index];
+  for (std::size_t earlier = 0; earlier < index; ++earlier)
+    if (isHiddenBy(input.graph, index, earlier))
+      return fmt::format("hit group '{}' has the same binding and comes first", program.hitGroups[earlier].name);
+  if (!input.scene || input.scene->geometries.empty()) return {};
+  if (!group.geometry.empty() || (group.primitives.empty() && group.material.empty())) return {};
+  const auto uses = [&](const program::GeometryFacts& geometry) {
+    return program::hitGroupFor(program, geometry) == index;
+  };
+  if (std::ranges::any_of(input.scene->geometries, uses)) return {};
+  const std::string missing = missingName(group, *input.scene);
+  return missing.empty() ? "other groups come first for all geometry with these names" : missing;
+}
+
+}  // namespace
+
+void checkUnreachableStages(const CheckInput& input, Report& report) {
+  const PipelineGraph& graph = input.graph;
+  const std::set<std::size_t> reachable = graph.reachableStages();
+  for (std::size_t i = 0; i < graph.stages.size(); ++i) {
+    const PipelineStage& stage = graph.stages[i];
+    if (reachable.contains(i) || stage.file.ends_with(program::kStubMissExtension)) continue;
+    report.add("Q801", graph.descriptionLocation(lineOfFile(graph.program, stage.file)),
+               fmt::format("no trace or call can reach {} shader '{}'", shader::stageName(stage.kind), stage.file));
+  }
+}
+
+void checkUnusedHitGroups(const CheckInput& input, Report& report) {
+  const std::vector<program::HitGroup>& groups = input.graph.program.hitGroups;
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    if (const std::string reason = reasonUnused(input, i); !reason.empty())
+      report.add("Q802", input.graph.descriptionLocation(groups[i].line),
+                 fmt::format("hit group '{}' matches no geometry: {}", groups[i].name, reason));
+}
+
+}  // namespace quintet::check

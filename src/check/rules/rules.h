@@ -1,0 +1,57 @@
+// The rules of the check. check.cpp calls them, in order. Each id belongs to one rule, as the catalog says.
+#ifndef QUINTET_CHECK_RULES_RULES_H
+#define QUINTET_CHECK_RULES_RULES_H
+
+#include "check/device_limits.h"
+#include "check/pipeline_graph.h"
+#include "check/report.h"
+
+namespace quintet::check {
+
+// Rules across stages (rules/across_stages).
+
+struct CheckInput {
+  const PipelineGraph& graph;
+  const program::SceneFacts* scene;  // null for any scene
+  const DeviceLimits& limits;
+  bool featureDefines;  // the shaders are compiled for one scene, so code can be missing
+};
+
+struct RecursionNeeds {
+  std::uint32_t depth = 1;       // of nested traces
+  std::uint64_t stackBytes = 0;  // of payloads, callable data and hit attributes
+};
+
+void checkPayloadTypes(const CheckInput& input, Report& report);         // Q101 to Q103
+void checkPayloadMembers(const CheckInput& input, Report& report);       // Q104, Q105
+void checkHitAttributes(const CheckInput& input, Report& report);        // Q201 to Q203
+void checkCallableTypes(const CheckInput& input, Report& report);        // Q301, Q303
+RecursionNeeds checkRecursion(const CheckInput& input, Report& report);  // Q401, Q402
+void checkArguments(const CheckInput& input, Report& report);            // Q302, Q501 to Q506, Q605
+void checkGeometry(const CheckInput& input, Report& report);             // Q601 to Q604
+void checkRayOrigins(const CheckInput& input, Report& report);           // Q705
+void checkRayOrigins(const spirv::Module& module, Report& report);       // Q705 within one stage
+void checkUnreachableStages(const CheckInput& input, Report& report);    // Q801
+void checkUnusedHitGroups(const CheckInput& input, Report& report);      // Q802
+void checkSharedIntersections(const CheckInput& input, Report& report);  // Q903
+
+// Rules within one stage (rules/within_stage): they follow values through a module that was compiled with `optimize`
+// and `debugInfo`. A value that cannot be followed is not reported.
+
+struct StageContext {
+  bool keepsInstanceOrder = false;  // Program::keepsInstanceOrder: gl_InstanceID is the index in the scene
+  bool hasAnyHit = false;           // a hit group of the intersection shader has an any-hit shader
+  DriverDefects defects;            // of the device
+};
+
+void checkDistance(const spirv::Module& module, Report& report);           // Q701
+void checkNormals(const spirv::Module& module, Report& report);            // Q702
+void checkInstanceIndices(const spirv::Module& module, Report& report);    // Q703
+void checkDescriptorIndices(const spirv::Module& module, Report& report);  // Q704
+void checkNestedBuiltIns(const spirv::Module& module, Report& report);     // Q901
+void checkAttributeWrites(const spirv::Module& module, Report& report);    // Q902
+void checkRayTmaxReads(const spirv::Module& module, Report& report);       // Q904
+void checkLocalArrays(const spirv::Module& module, Report& report);        // Q905
+
+}  // namespace quintet::check
+#endif

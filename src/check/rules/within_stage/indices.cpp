@@ -1,0 +1,99 @@
+// Q703: gl_InstanceID as an index or as the identity of an instance. Q704: descriptor arrays indexed by a value that
+// differs between invocations, without nonuniformEXT.
+#include "check/rules/rules.h"
+#include "spirv/value_flow.h"
+
+namespace quintet::check {
+namespace {
+
+using spv::Op;
+
+bool isChain(Op op) { return op == Op::OpAccessChain || op == Op::OpInBoundsAccessChain || op == Op::OpPtrAccessChain; }
+
+// True if a value selects something there: an element, an address, a case.
+bool selects(const spirv::Module& module, const spirv::Instruction& i) {
+  switch (i.op) {
+    case Op::OpAccessChain:
+    case Op::OpInBoundsAccessChain:
+    case Op::OpPtrAccessChain:
+    case Op::OpVectorExtractDynamic:
+    case Op::OpConvertUToPtr:
+    case Op::OpSwitch: return true;
+    case Op::OpIEqual:
+    case Op::OpINotEqual: return module.isConstant(i.at(0)) || module.isConstant(i.at(1));
+    default: return false;
+  }
+}
+
+// True if the value can differ between the invocations of a launch. Constants, push constants and uniforms do not
+// differ, nor do values loaded from an address that does not. `cause` becomes a description of the source of the
+// value.
+bool varies(const spirv::Module& module, spirv::Id value, std::string* cause) {
+  const spirv::Instruction* found = spirv::findInSlice(module, value, [&](const spirv::Instruction& i) {
+    if (i.op != Op::OpLoad) return i.op == Op::OpImageRead || i.op == Op::OpAtomicIAdd;
+    const spirv::Variable* variable = module.variable(module.access(i.at(0)).variable);
+    if (!variable) return false;
+    using Storage = spv::StorageClass;
+    return variable->storage == Storage::Input || variable->storage == Storage::RayPayloadKHR ||
+           variable->storage == Storage::IncomingRayPayloadKHR || variable->storage == Storage::HitAttributeKHR ||
+           variable->storage == Storage::CallableDataKHR || variable->storage == Storage::IncomingCallableDataKHR;
+  });
+  if (!found) return false;
+  const auto builtIn = spirv::loadedBuiltIn(module, *found);
+  if (found->op != Op::OpLoad)
+    *cause = "a value read from memory";
+  else if (builtIn)
+    *cause = spirv::glslName(*builtIn);
+  else
+    *cause = "'" + module.name(module.access(found->at(0)).variable) + "'";
+  return true;
+}
+
+bool isDescriptorArray(const spirv::Module& module, spirv::Id pointer) {
+  const spirv::Variable* variable = module.variable(pointer);
+  if (!variable) return false;
+  using Kind = spirv::Type::Kind;
+  using Storage = spv::StorageClass;
+  const Kind kind = module.types().get(variable->type).kind;
+  const bool descriptor = variable->storage == Storage::UniformConstant || variable->storage == Storage::Uniform ||
+                          variable->storage == Storage::StorageBuffer;
+  return descriptor && (kind == Kind::array || kind == Kind::runtimeArray);
+}
+
+// True if nonuniformEXT decorates the index, the pointer or the value that is loaded through it.
+bool isNonUniform(const spirv::Module& module, const spirv::Instruction& chain) {
+  const auto has = [&](spirv::Id id) { return module.decoration(id, spv::Decoration::NonUniform).has_value(); };
+  if (has(chain.result) || has(chain.at(1))) return true;
+  for (const std::size_t user : module.users(chain.result))
+    if (has(module.instructions()[user].result)) return true;
+  return false;
+}
+
+}  // namespace
+
+void checkInstanceIndices(const spirv::Module& module, Report& report) {
+  for (const spirv::Instruction& load : module.instructions()) {
+    if (!spirv::loadsBuiltIn(module, load, spv::BuiltIn::InstanceId)) continue;
+    const spirv::Instruction* use =
+        spirv::findInUses(module, load.result, [&](const spirv::Instruction& i) { return selects(module, i); });
+    if (!use) continue;
+    report.addOncePerLine(
+        "Q703", module.location(load, "gl_InstanceID"),
+        "gl_InstanceID selects the data of an instance, but it is the position in the built list, which "
+        "Quintet can sort; gl_InstanceCustomIndexEXT is the same on all devices");
+  }
+}
+
+void checkDescriptorIndices(const spirv::Module& module, Report& report) {
+  for (const spirv::Instruction& chain : module.instructions()) {
+    if (!isChain(chain.op) || !isDescriptorArray(module, chain.at(0)) || module.isConstant(chain.at(1))) continue;
+    std::string cause;
+    if (isNonUniform(module, chain) || !varies(module, chain.at(1), &cause)) continue;
+    const std::string name = module.name(chain.at(0));
+    report.addOncePerLine("Q704", module.location(chain, name),
+                          "the index of '" + name + "' depends on " + cause +
+                              ", which differs between invocations, but is not marked nonuniformEXT");
+  }
+}
+
+}  // namespace quintet::check

@@ -1,0 +1,82 @@
+#include "gpu/device_info.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "gpu/error.h"
+
+namespace quintet::gpu {
+namespace {
+
+constexpr std::array<std::string_view, 5> kKindsByPreference = {"discrete GPU", "integrated GPU", "virtual GPU",
+                                                                "other", "CPU"};
+
+std::string lowerCase(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
+bool matches(const DeviceInfo& device, const std::string& request) {
+  for (const std::string& text : {device.name, device.driver, device.kind})
+    if (lowerCase(text).find(request) != std::string::npos) return true;
+  return false;
+}
+
+// A number that is not the index of a device is part of a name, such as "4090".
+std::optional<std::size_t> asIndex(std::string_view text, std::size_t count) {
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error != std::errc{} || end != text.data() + text.size() || index >= count) return std::nullopt;
+  return index;
+}
+
+std::string listing(std::span<const DeviceInfo> devices) {
+  std::string text;
+  for (const DeviceInfo& device : devices)
+    text += fmt::format("{}{}: {} ({}, {}){}{}", text.empty() ? "" : "; ", device.index, device.name, device.kind,
+                        device.driver, device.usable() ? "" : " cannot be used: ", device.unusableReason);
+  return text;
+}
+
+}  // namespace
+
+std::string deviceKindName(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return "CPU";
+    default: return "other";
+  }
+}
+
+int devicePreference(std::string_view kind) {
+  const auto found = std::find(kKindsByPreference.begin(), kKindsByPreference.end(), kind);
+  return static_cast<int>(found - kKindsByPreference.begin());
+}
+
+std::size_t chooseDevice(std::span<const DeviceInfo> devices, std::string_view request) {
+  if (devices.empty())
+    throw NoDeviceError(
+        "no Vulkan device found; install mesa-vulkan-drivers (CPU) or the driver of your GPU, then check the output of "
+        "`quintet info`");
+  const std::optional<std::size_t> index = asIndex(request, devices.size());
+  const std::string wanted = lowerCase(request);
+  bool matched = false;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    if (index ? *index != i : !matches(devices[i], wanted)) continue;
+    matched = true;
+    if (devices[i].usable()) return i;
+  }
+  if (request.empty()) throw NoDeviceError(fmt::format("no usable device; found {}", listing(devices)));
+  throw NoDeviceError(
+      fmt::format("{} device '{}'; found {}", matched ? "cannot use" : "no", request, listing(devices)));
+}
+
+}  // namespace quintet::gpu

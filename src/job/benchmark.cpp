@@ -1,0 +1,347 @@
+#include "job/benchmark.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <random>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "job/device_limits.h"
+#include "job/engine.h"
+#include "job/runnable_program.h"
+#include "job/view.h"
+#include "program/load.h"
+#include "render/renderer/renderer.h"
+#include "render/tone_map/tone_map.h"
+#include "rt/pipeline.h"
+#include "scene/load.h"
+
+namespace quintet::job {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+// Scene, view and settings that all measurements share.
+struct Setup {
+  const BenchmarkRequest& request;
+  scene::Scene scene;
+  scene::Environment environment;
+  scene::Camera camera;
+  uvec2 size;
+  shader::Compiler compiler;
+
+  Setup(const BenchmarkRequest& r, bool softwareDevice)
+      : request(r), scene(scene::loadScene(r.scene)), compiler(makeCompiler(cacheFolder())) {
+    size = r.size.x > 0 ? r.size : softwareDevice ? uvec2(512, 512) : uvec2(1920, 1080);
+    if (size.y == 0) size.y = size.x;
+    camera = chooseCamera(scene, {}, static_cast<float>(size.x) / static_cast<float>(size.y)).camera;
+    environment = chooseEnvironment(scene, {r.environment, {}, {}}).environment;
+  }
+
+  render::RenderSettings settings(const program::Program& program, uvec2 pixels) const {
+    render::RenderSettings settings;
+    settings.width = pixels.x;
+    settings.height = pixels.y;
+    settings.camera = camera;
+    settings.parameters = program::ParameterValues(program.parameters);
+    settings.launchSeconds = 1.0;
+    settings.timeoutSeconds = 300;
+    return settings;
+  }
+
+  render::DeviceScene onDevice(gpu::Context& context, const render::DeviceSceneOptions& options = {}) const {
+    return render::DeviceScene(context, scene::Scene(scene), environment, options);
+  }
+
+  render::Renderer renderer(render::DeviceScene& device, const program::Program& program,
+                            const render::RenderSettings& settings, const render::Defines& extra = {}) const {
+    CheckedProgram checked = compileAndCheck(program, compiler, render::renderDefines(device.defines(), {}, extra),
+                                             device.facts(), deviceLimits(device.context().info()));
+    return render::Renderer(device, std::move(checked.runnable), compiler, nullptr, settings);
+  }
+};
+
+// Seconds of the device for one more sample per pixel.
+double sampleSeconds(render::Renderer& renderer) {
+  const double before = renderer.statistics().deviceSeconds;
+  renderer.renderBatch(1);
+  renderer.finish();
+  return renderer.statistics().deviceSeconds - before;
+}
+
+double medianSampleSeconds(render::Renderer& renderer, int repeat) {
+  sampleSeconds(renderer);  // the driver compiles during the first launch
+  std::vector<double> seconds;
+  for (int i = 0; i < repeat; ++i) seconds.push_back(sampleSeconds(renderer));
+  return median(seconds);
+}
+
+Json rayKind(std::uint32_t rays, std::uint32_t hits) {
+  return {{"rays", rays}, {"hits", hits}, {"misses", rays - hits}};
+}
+
+// The program's rate against that of its own rays. Batches differ in their samples; the recorded one is the first, and the
+// program is timed with the same sample: each measurement is the first batch of a fresh renderer.
+Json rateRatio(const Setup& setup, render::DeviceScene& scene) {
+  constexpr std::uint32_t kCapacity = 32;  // recorded rays per pixel
+  gpu::Context& context = scene.context();
+  const program::Program program = program::loadProgram(setup.request.program);
+  const program::Program replay = program::loadProgram("replay");
+  gpu::BufferOptions recordOptions;
+  recordOptions.size =
+      sizeof(shared::RayKinds) + VkDeviceSize{setup.size.x} * setup.size.y * kCapacity * sizeof(shared::RayRecord);
+  recordOptions.name = "ray records";
+  const gpu::Buffer records(context, recordOptions);
+  context.submitAndWait([&](gpu::Commands& commands) { commands.fill(records, 0); });
+
+  render::RenderSettings recording = setup.settings(program, setup.size);
+  recording.rayRecords = &records;
+  recording.rayRecordCapacity = kCapacity;
+  render::Renderer recorder = setup.renderer(scene, program, recording, {{"QUINTET_RECORD_RAYS", "1"}});
+  recorder.renderBatch(1);
+  const std::uint64_t rays = recorder.rays().rays;
+  const shared::RayKinds kinds = records.downloadAs<shared::RayKinds>(1)[0];
+
+  render::Renderer tracer = setup.renderer(scene, program, setup.settings(program, setup.size));
+  render::RenderSettings replaying = setup.settings(replay, setup.size);
+  replaying.rayRecords = &records;
+  replaying.rayRecordCapacity = kCapacity;
+  render::Renderer replayer = setup.renderer(scene, replay, replaying);
+
+  sampleSeconds(tracer);
+  sampleSeconds(replayer);
+  const std::uint64_t replayedRays = replayer.rays().rays;
+  // In alternation, so that both see the same machine.
+  std::vector<double> tracerRates, replayRates;
+  for (int i = 0; i < setup.request.repeat; ++i) {
+    const std::uint64_t before = tracer.rays().rays;
+    const double seconds = sampleSeconds(tracer);
+    tracerRates.push_back(static_cast<double>(tracer.rays().rays - before) / seconds);
+    replayRates.push_back(static_cast<double>(replayedRays) / sampleSeconds(replayer));
+  }
+  const double tracerRate = median(tracerRates);
+  const double replayRate = median(replayRates);
+  return {{"raysPerSample", rays},
+          {"rays",
+           {{"camera", rayKind(kinds.camera, kinds.cameraHits)},
+            {"continuation", rayKind(kinds.continuation, kinds.continuationHits)},
+            {"shadow", rayKind(kinds.shadow, kinds.shadowHits)}}},
+          {"replayedRays", replayedRays},
+          {"pathTracerMraysPerSecond", tracerRate * 1e-6},
+          {"minimalMraysPerSecond", replayRate * 1e-6},
+          {"ratio", tracerRate / replayRate},
+          {"compileSeconds", tracer.statistics().compileSeconds},
+          {"pipelineSeconds", tracer.statistics().pipelineSeconds},
+          {"firstLaunchSeconds", tracer.statistics().firstLaunchSeconds}};
+}
+
+// What the driver reports about the pipeline.
+Json pipelineFacts(const rt::Pipeline& pipeline) {
+  Json executables = Json::object();
+  for (const rt::PipelineExecutable& e : rt::pipelineStatistics(pipeline)) {
+    Json object = {{"subgroupSize", e.subgroupSize}};
+    for (const auto& [name, value] : e.statistics) object[name] = value;
+    std::string key = e.name;
+    for (int i = 2; executables.contains(key); ++i) key = fmt::format("{} {}", e.name, i);
+    executables[key] = std::move(object);
+  }
+  Json stack = Json::object();
+  for (const auto& [name, bytes] : rt::groupStackSizes(pipeline)) stack[name] = bytes;
+  return {{"executables", executables.empty() ? Json("not reported by the driver") : std::move(executables)},
+          {"stackBytes", std::move(stack)}};
+}
+
+// Bytes that travel with a ray, by payload type: the largest of all stages.
+Json payloadFacts(const program::CompiledProgram& compiled) {
+  std::map<std::string, std::uint64_t> bytes;
+  for (const program::PayloadSize& payload : program::payloadSizes(compiled))
+    bytes[payload.type] = std::max(bytes[payload.type], payload.bytes);
+  return bytes;
+}
+
+Json launchFacts(std::span<const render::LaunchTiming> launches, std::uint32_t width) {
+  std::vector<double> invocations, seconds, idle;
+  for (const render::LaunchTiming& launch : launches) {
+    invocations.push_back(static_cast<double>(launch.rows) * width);
+    seconds.push_back(launch.traceSeconds);
+    idle.push_back(launch.idleSeconds);
+  }
+  return {{"count", launches.size()},
+          {"medianInvocations", median(invocations)},
+          {"medianSamplesPerPixel", launches[launches.size() / 2].samples},
+          {"medianSeconds", median(seconds)},
+          {"largestSeconds", *std::ranges::max_element(seconds)},
+          {"medianIdleSeconds", median(idle)}};
+}
+
+// Where the time of a render goes: passes, launches, samples per second, pipeline.
+Json profile(const Setup& setup, render::DeviceScene& scene) {
+  const program::Program program = program::loadProgram(setup.request.program);
+  render::RenderSettings settings = setup.settings(program, setup.size);
+  settings.launchSeconds = render::RenderSettings().launchSeconds;
+  settings.profile = true;
+  render::Renderer renderer = setup.renderer(scene, program, settings);
+  renderer.renderBatch();  // the driver compiles, and the launches find their size
+  renderer.finish();
+  const std::size_t warm = renderer.launches().size();
+  const std::uint64_t raysBefore = renderer.rays().rays;
+  const double wallBefore = renderer.statistics().renderSeconds;
+  for (int i = 0; i < setup.request.repeat; ++i) renderer.renderBatch();
+  renderer.finish();
+  const double samples =
+      static_cast<double>(setup.size.x) * setup.size.y * render::kBatchSamples * setup.request.repeat;
+  const double wall = renderer.statistics().renderSeconds - wallBefore;
+  const std::span<const render::LaunchTiming> launches = std::span(renderer.launches()).subspan(warm);
+  double begin = 0, trace = 0, end = 0, idle = 0;
+  for (const render::LaunchTiming& l : launches) begin += l.beginSeconds, trace += l.traceSeconds, end += l.endSeconds;
+  for (const render::LaunchTiming& l : launches.subspan(1)) idle += l.idleSeconds;
+  const double busy = begin + trace + end;
+
+  Stopwatch watch;
+  const io::Image image = renderer.image();
+  const double download = watch.lap();
+  render::toDisplay(image, render::ToneMap::aces, 0.0f, true);
+  const double toneMap = watch.lap();
+
+  Json pipeline = pipelineFacts(renderer.linked().pipeline());
+  pipeline["payloadBytes"] = payloadFacts(program::compile(program, setup.compiler, scene.defines()));
+  const render::DeviceSceneStatistics& s = scene.statistics();
+  return {{"samplesPerBatch", render::kBatchSamples},
+          {"batches", setup.request.repeat},
+          {"passes",
+           {{"uploadSeconds", s.uploadSeconds},
+            {"orderSeconds", s.build.orderSeconds},
+            {"bottomLevelBuildSeconds", s.build.buildSeconds},
+            {"topLevelBuildSeconds", s.topLevelSeconds},
+            {"beginBatchSeconds", begin},
+            {"traceSeconds", trace},
+            {"filmAddSeconds", end},
+            {"downloadSeconds", download},
+            {"toneMapSeconds", toneMap}}},
+          {"deviceBusySeconds", busy},
+          {"deviceIdleSeconds", idle},
+          {"wallSeconds", wall},
+          {"busyShare", busy / wall},
+          {"samplesPerSecond", samples / wall},
+          {"MraysPerSecond", static_cast<double>(renderer.rays().rays - raysBefore) / trace * 1e-6},
+          {"launches", launchFacts(launches, setup.size.x)},
+          {"pipeline", std::move(pipeline)}};
+}
+
+// Mrays/s of one ambient occlusion sample (a primary and a secondary ray per pixel) in this scene.
+double occlusionRate(const Setup& setup, gpu::Context& context, const scene::Scene& scene, bool keepInputOrder,
+                     uvec2 pixels) {
+  render::DeviceSceneOptions options;
+  options.keepInputOrder = keepInputOrder;
+  render::DeviceScene device(context, scene::Scene(scene), setup.environment, options);
+  const program::Program program = program::loadProgram("ao");
+  render::Renderer renderer = setup.renderer(device, program, setup.settings(program, pixels));
+  const double seconds = medianSampleSeconds(renderer, keepInputOrder ? 1 : setup.request.repeat);
+  const std::uint64_t rays = renderer.rays().rays / std::max<std::uint64_t>(1, renderer.statistics().samples);
+  return static_cast<double>(rays) / seconds * 1e-6;
+}
+
+// Triangles and instances in random order, as a careless exporter might write them.
+scene::Scene shuffled(scene::Scene scene) {
+  std::mt19937 random(1);
+  for (scene::Mesh& mesh : scene.meshes)
+    for (scene::Geometry& geometry : mesh.geometries)
+      std::shuffle(geometry.triangles.begin(), geometry.triangles.end(), random);
+  std::shuffle(scene.instances.begin(), scene.instances.end(), random);
+  return scene;
+}
+
+Json orderGain(const Setup& setup, gpu::Context& context) {
+  const scene::Scene random = shuffled(setup.scene);
+  // Few pixels: where the driver keeps the order, random order is slower by a factor of hundreds.
+  const uvec2 pixels = context.info().quirks.keepsPrimitiveOrder ? uvec2(96, 96) : setup.size;
+  const double fileOrder = occlusionRate(setup, context, setup.scene, true, pixels);
+  const double randomOrder = occlusionRate(setup, context, random, true, pixels);
+  const double spatialOrder = occlusionRate(setup, context, random, false, pixels);
+  return {{"pixels", {pixels.x, pixels.y}},
+          {"fileOrderMraysPerSecond", fileOrder},
+          {"randomOrderMraysPerSecond", randomOrder},
+          {"spatialOrderMraysPerSecond", spatialOrder},
+          {"gainOverRandom", spatialOrder / randomOrder},
+          {"gainOverFile", spatialOrder / fileOrder}};
+}
+
+// lavapipe gives each thread one contiguous part of a launch. gpu::prepareDriverEnvironment asks for more threads than
+// cores, so that parts of uneven cost even out; this measures the gain.
+Json balanceGain(const Setup& setup, gpu::Context& context) {
+  const double balanced = occlusionRate(setup, context, setup.scene, false, setup.size);
+  const char* preset = std::getenv("LP_NUM_THREADS");
+  const std::string threads = preset ? preset : "";
+  setenv("LP_NUM_THREADS", std::to_string(hardwareThreads()).c_str(), 1);
+  double unbalanced = 0;
+  {
+    gpu::ContextOptions options;
+    options.device = setup.request.device;
+    gpu::Context other(options);
+    unbalanced = occlusionRate(setup, other, setup.scene, false, setup.size);
+  }
+  setenv("LP_NUM_THREADS", threads.c_str(), 1);
+  return {{"threads", threads},
+          {"oneThreadPerCoreMraysPerSecond", unbalanced},
+          {"balancedMraysPerSecond", balanced},
+          {"gain", balanced / unbalanced}};
+}
+
+}  // namespace
+
+Json runBenchmark(const BenchmarkRequest& request) {
+  gpu::ContextOptions contextOptions;
+  contextOptions.device = request.device;
+  gpu::Context context(contextOptions);
+  Stopwatch watch;
+  const Setup setup(request, context.info().software);
+  const double loadSeconds = watch.lap();
+  const scene::TriangleCount triangles = scene::countTriangles(setup.scene);
+
+  Json result = {{"device", context.info().name},   {"driver", context.info().driver},
+                 {"scene", request.scene.string()}, {"size", {setup.size.x, setup.size.y}},
+                 {"triangles", triangles.stored},   {"instancedTriangles", triangles.instanced},
+                 {"loadSeconds", loadSeconds}};
+  {
+    render::DeviceScene scene = setup.onDevice(context);
+    result["pathTracer"] = rateRatio(setup, scene);
+    if (request.profile) result["profile"] = profile(setup, scene);
+    const render::DeviceSceneStatistics& s = scene.statistics();
+    result["accelerationStructures"] = {
+        {"orderSeconds", s.build.orderSeconds},
+        {"buildSeconds", s.build.buildSeconds},
+        {"topLevelSeconds", s.topLevelSeconds},
+        {"bytes", s.accelerationBytes},
+        {"bytesPerTriangle",
+         static_cast<double>(s.accelerationBytes) / static_cast<double>(std::max<std::uint64_t>(1, triangles.stored))}};
+    result["uploadSeconds"] = s.uploadSeconds;
+  }
+  if (request.profile) return result;
+  watch.lap();
+  {
+    render::DeviceScene scene = setup.onDevice(context);
+    const program::Program program = program::loadProgram(request.program);
+    render::Renderer renderer = setup.renderer(scene, program, setup.settings(program, setup.size));
+    renderer.renderBatch(1);
+    renderer.finish();
+  }
+  result["warmFirstSampleSeconds"] = watch.lap();
+  result["primitiveOrder"] = orderGain(setup, context);
+  if (context.info().software) result["launchBalance"] = balanceGain(setup, context);
+  return result;
+}
+
+}  // namespace quintet::job

@@ -1,0 +1,53 @@
+// The checkpoint of a long render: a film file that is replaced as rendering proceeds, and from which it resumes.
+#ifndef QUINTET_JOB_CHECKPOINT_H
+#define QUINTET_JOB_CHECKPOINT_H
+
+#include <cstdint>
+#include <optional>
+
+#include "base/stopwatch.h"
+#include "job/film_store.h"
+#include "job/observer.h"
+#include "job/request.h"
+#include "job/result.h"
+#include "job/sampling_schedule.h"
+
+namespace quintet::job {
+
+class Checkpoint {
+ public:
+  explicit Checkpoint(CheckpointRequest request) : request_(std::move(request)) {}
+
+  // The film to resume from; nothing if there is none or the request starts over. `expected`: provenance and arrays of
+  // this render. Throws FileError if the file belongs to a different render, is damaged, or would be lost.
+  std::optional<StoredFilm> load(const Provenance& expected, const render::FilmState& empty, const StartPoint& start,
+                                 const RenderLimits& limits, Observer& observer);
+
+  bool isDue() const { return clock_.seconds() - lastSave_ >= request_.seconds; }
+  // Replaces the file. A failure to write is a warning, once: the previous checkpoint is still there.
+  void save(const RenderResult& result, Observer& observer);
+  // Like save(), unless the file already holds all samples.
+  void saveIfChanged(const RenderResult& result, Observer& observer);
+  void remove(Observer& observer);
+
+  // The file stays when the outputs are written: it was requested, or the render is incomplete.
+  bool mustStay(const RenderResult& result) const { return request_.keep || result.interrupted || result.targetMissed; }
+  std::uint64_t savedSamples() const { return savedSamples_; }  // per pixel, in the file
+  const CheckpointRequest& request() const { return request_; }
+
+ private:
+  const CheckpointRequest request_;
+  const Stopwatch clock_;
+  double lastSave_ = 0;  // on clock_
+  std::uint64_t savedSamples_ = 0;
+  render::SampleCounts savedCounts_;
+  bool warned_ = false;
+};
+
+// Where a render continues after restoring this film, whose `file` is named in notes: that it resumes, and if device or
+// target error have changed.
+StartPoint resumePoint(const StoredFilm& film, const Provenance& current, const std::filesystem::path& file,
+                       const StartPoint& start, Observer& observer);
+
+}  // namespace quintet::job
+#endif

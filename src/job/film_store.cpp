@@ -1,0 +1,109 @@
+#include "job/film_store.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/error.h"
+#include "base/file.h"
+
+namespace quintet::job {
+namespace {
+
+using render::FilmFacts;
+using render::SampleRange;
+
+constexpr std::size_t kShownDigits = 12;  // of a hash
+
+bool isHash(const std::string& text) {
+  return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == text.npos;
+}
+
+std::string shown(const std::string* value) {
+  if (!value) return "unknown";
+  if (value->empty()) return "none";
+  return isHash(*value) ? value->substr(0, kShownDigits) : *value;
+}
+
+// "seed 3, expected 7; size 64x64, expected 32x32"
+std::string differencesText(const FilmFacts& found, const FilmFacts& expected) {
+  constexpr std::size_t kShownDifferences = 4;
+  const std::vector<render::FactDifference> differences = render::differences(found, expected);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(differences.size(), kShownDifferences); ++i)
+    text += fmt::format("{}{} {}, expected {}", i > 0 ? "; " : "", differences[i].name, shown(differences[i].left),
+                        shown(differences[i].right));
+  if (differences.size() > kShownDifferences)
+    text += fmt::format("; and {} more", differences.size() - kShownDifferences);
+  return text;
+}
+
+}  // namespace
+
+StoredFilm readStoredFilm(const std::filesystem::path& path) { return decodeStoredFilm(readFile(path), path); }
+
+StoredFilm decodeStoredFilm(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  StoredFilm stored;
+  stored.file = render::decodeFilm(bytes, path);
+  try {
+    stored.provenance = fromFacts(stored.file.identity, stored.file.notes);
+  } catch (const UsageError& error) {
+    throw FileError(path, "header", error.what());
+  }
+  if (stored.provenance.region != stored.file.film.region)
+    throw FileError(path, "header", "region differs from that of the samples");
+  return stored;
+}
+
+void requireSameIdentity(const FilmFacts& found, const FilmFacts& expected, const std::filesystem::path& file,
+                         const std::string& owner, const std::string& advice) {
+  const std::string differences = differencesText(found, expected);
+  if (differences.empty()) return;
+  throw FileError(file, fmt::format("belongs to {} ({}){}{}", owner, differences, advice.empty() ? "" : "; ", advice));
+}
+
+void rejectLoss(const std::filesystem::path& file, const FilmFacts& identity, const render::SampleCounts& samples) {
+  constexpr const char* kAdvice = "which would be lost; use --force to overwrite it";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return;
+  render::FilmFile found;
+  try {
+    found = render::readFilm(file);
+  } catch (const FileError& error) {
+    throw FileError(file, error.location(), error.problem() + "; use --force to overwrite it");
+  }
+  requireSameIdentity(found.identity, identity, file, "a different render",
+                      "its samples would be lost; use --force to overwrite it");
+  for (const SampleRange& held : found.film.counts.ranges)
+    if (std::ranges::none_of(samples.ranges,
+                             [&](const SampleRange& s) { return s.begin <= held.begin && held.end <= s.end; }))
+      throw FileError(file, fmt::format("holds samples {} of this render, {}", rangesText({held}), kAdvice));
+  const std::vector<std::uint32_t>& batches = found.film.counts.cellBatches;
+  for (std::size_t c = 0; c < batches.size(); ++c)
+    if (c >= samples.cellBatches.size() || samples.cellBatches[c] < batches[c])
+      throw FileError(file, fmt::format("holds {} of this render, {}", samplesText(found.film), kAdvice));
+}
+
+std::string rangesText(const std::vector<SampleRange>& ranges) {
+  std::vector<std::string> texts;
+  for (const SampleRange& range : ranges) texts.push_back(fmt::format("{}–{}", range.begin, range.end - 1));
+  return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, " and "));
+}
+
+std::string samplesText(const render::FilmState& film) {
+  const std::vector<std::uint32_t>& batches = film.counts.cellBatches;
+  if (batches.empty()) return "samples " + rangesText(film.counts.ranges);
+  std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max(), most = 0;
+  const std::vector<std::uint32_t> pixels = render::cellPixels(film.region);
+  for (std::size_t c = 0; c < batches.size(); ++c) {
+    if (pixels[c] == 0) continue;
+    fewest = std::min(fewest, batches[c]);
+    most = std::max(most, batches[c]);
+  }
+  return fmt::format("{:.1f} samples per pixel on average ({}–{})", render::averageSamples(film.region, film.counts),
+                     fewest * render::kBatchSamples, most * render::kBatchSamples);
+}
+
+}  // namespace quintet::job

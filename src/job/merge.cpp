@@ -1,0 +1,216 @@
+#include "job/merge.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "job/film_store.h"
+#include "job/sampling_schedule.h"
+
+namespace quintet::job {
+namespace {
+
+using render::FilmFile;
+using render::SampleRange;
+
+constexpr std::string_view kSeparator = "; ";  // between devices
+
+std::vector<std::string> splitList(const std::string& text) {
+  std::vector<std::string> entries;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(kSeparator, at), text.size());
+    entries.push_back(text.substr(at, end - at));
+    at = end + kSeparator.size();
+  }
+  return entries;
+}
+
+// Both lists of layers (JSON, output/layers.h) as one: each name once, in the program's order.
+std::string joinLayers(const std::string& a, const std::string& b) {
+  using Json = nlohmann::json;
+  if (a == b || b.empty()) return a;
+  Json layers = Json::array();
+  try {
+    for (const std::string& text : {a, b}) {
+      const Json list = text.empty() ? Json::array() : Json::parse(text);
+      for (const Json& layer : list) {
+        const auto isSame = [&](const Json& known) { return known.at("name") == layer.at("name"); };
+        if (std::ranges::none_of(layers, isSame)) layers.push_back(layer);
+      }
+    }
+    std::stable_sort(layers.begin(), layers.end(),
+                     [](const Json& x, const Json& y) { return x.at("order") < y.at("order"); });
+  } catch (const Json::exception&) {
+    throw UsageError("the layers of the film cannot be read");
+  }
+  return layers.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+class Merger {
+ public:
+  explicit Merger(Observer& observer) : observer_(observer) {}
+
+  void add(const std::filesystem::path& path) {
+    observer_.stage("reading " + path.string());
+    StoredFilm stored = readStoredFilm(path);
+    FilmFile& part = stored.file;
+    const Provenance& provenance = stored.provenance;
+    parts_.push_back({path, part.film.counts.ranges});
+    if (parts_.size() == 1) {
+      whole_ = std::move(part);
+      provenance_ = provenance;
+      return;
+    }
+    requireSameIdentity(part.identity, whole_.identity, path, fmt::format("a different render than {}", first()), "");
+    if (provenance.adaptive)
+      throw FileError(path,
+                      fmt::format("is a film of an adaptive render, like {}: such a render has no parts, because all "
+                                  "samples so far decide where the next ones are taken",
+                                  first()));
+    rejectOverlap();
+    if (!render::sameArrays(whole_.film, part.film))
+      throw FileError(path, fmt::format("its outputs differ from those of {}", first()));
+    try {
+      render::mergeFilm(whole_.film, part.film);
+      join(provenance);
+    } catch (const UsageError& error) {
+      throw FileError(path, error.what());
+    }
+  }
+
+  FilmFile& film() { return whole_; }
+  Provenance& provenance() { return provenance_; }
+
+ private:
+  struct Part {
+    std::filesystem::path path;
+    std::vector<SampleRange> ranges;
+  };
+  std::string first() const { return parts_.front().path.string(); }
+  std::string last() const { return parts_.back().path.string(); }
+
+  void rejectOverlap() const {
+    for (std::size_t i = 0; i + 1 < parts_.size(); ++i)
+      for (const SampleRange& a : parts_[i].ranges)
+        for (const SampleRange& b : parts_.back().ranges)
+          if (a.begin < b.end && b.begin < a.end)
+            throw FileError(parts_.back().path,
+                            fmt::format("samples {} are also in {}",
+                                        rangesText({{std::max(a.begin, b.begin), std::min(a.end, b.end)}}),
+                                        parts_[i].path.string()));
+  }
+
+  void join(const Provenance& part) {
+    joinList("device", provenance_.device, part.device);
+    joinList("driver", provenance_.driver, part.driver);
+    // Display settings follow the part with the first samples, so that the order of the parts does not matter.
+    const bool isFirst = std::ranges::min(parts_, {}, firstSample).path == parts_.back().path;
+    for (const char* name : {"exposure", "tone map", "all outputs", "target error"}) takeFirst(name, isFirst, part);
+    for (const auto member : {&Provenance::instanceNames, &Provenance::materialNames})
+      if ((provenance_.*member).empty()) provenance_.*member = part.*member;
+    for (const auto member : {&Provenance::worldToCamera, &Provenance::worldToNdc})
+      if (!(provenance_.*member)) provenance_.*member = part.*member;
+    provenance_.layers = joinLayers(provenance_.layers, part.layers);
+    provenance_.seconds += part.seconds;
+  }
+
+  void joinList(const char* name, std::string& whole, const std::string& part) {
+    const std::vector<std::string> known = splitList(whole);
+    std::vector<std::string> joined = known;
+    for (const std::string& entry : splitList(part))
+      if (std::ranges::find(joined, entry) == joined.end()) joined.push_back(entry);
+    if (joined == known) return;
+    observer_.note(fmt::format("{}: {} {}, other parts: {}", last(), name, part, whole));
+    whole = fmt::format("{}", fmt::join(joined, kSeparator));
+  }
+
+  void takeFirst(std::string_view name, bool isFirst, const Provenance& part) {
+    const auto field = std::ranges::find_if(provenanceFields(), [&](const ProvenanceField& f) {
+      return f.role == ProvenanceField::Role::note && f.name == name;
+    });
+    const std::string ours = toText(field->get(provenance_)), theirs = toText(field->get(part));
+    if (ours == theirs) return;
+    const auto shown = [](const std::string& text) { return text.empty() ? "none" : text; };
+    observer_.note(fmt::format("{}: {} {}, other parts: {}; using {}, the setting of the first samples", last(), name,
+                               shown(theirs), shown(ours), shown(isFirst ? theirs : ours)));
+    if (isFirst) field->set(provenance_, theirs);
+  }
+
+  static std::uint64_t firstSample(const Part& part) {
+    return part.ranges.empty() ? std::numeric_limits<std::uint64_t>::max() : part.ranges.front().begin;
+  }
+
+  Observer& observer_;
+  FilmFile whole_;
+  Provenance provenance_;
+  std::vector<Part> parts_;
+};
+
+// Samples that the render was to have and that the film lacks.
+std::vector<SampleRange> missingSamples(const render::SampleCounts& counts, std::optional<std::uint64_t> planned) {
+  std::vector<SampleRange> missing;
+  std::uint32_t next = 0;
+  for (const SampleRange& range : counts.ranges) {
+    if (range.begin > next) missing.push_back({next, range.begin});
+    next = range.end;
+  }
+  const auto end = static_cast<std::uint32_t>(planned.value_or(next));
+  if (end > next) missing.push_back({next, end});
+  return missing;
+}
+
+}  // namespace
+
+RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer) {
+  Merger merger(observer);
+  for (const std::filesystem::path& part : parts) merger.add(part);
+  FilmFile& film = merger.film();
+  if (film.film.counts.ranges.empty()) throw Error("the films contain no samples");
+  RenderResult result;
+  result.error = render::estimateError(film.film);
+  result.plan = std::move(film.plan);
+  Provenance& p = result.provenance = std::move(merger.provenance());
+  p.samples = static_cast<std::uint64_t>(render::averageSamples(film.film.region, film.film.counts));
+  for (const uvec2& pixel : film.film.statistics) {
+    p.rays += pixel.x;
+    p.droppedSamples += pixel.y;
+  }
+  if (result.error.known()) {
+    p.error = result.error.upper;
+    p.tileError = result.error.tiles;
+  }
+  result.targetMissed = p.targetError && !result.error.reaches(*p.targetError);
+  result.seconds.render = p.seconds;
+  result.film = viewOf(std::move(film.film), p.transparent);
+  return result;
+}
+
+std::string missingText(const RenderResult& merged) {
+  const Provenance& p = merged.provenance;
+  const render::SampleCounts counts = merged.film->counts();
+  const bool fromStart = counts.ranges.size() == 1 && counts.ranges[0].begin == 0;
+  if (p.targetError && !merged.targetMissed && fromStart) return "";
+  if (p.adaptive) {
+    render::FilmState film;
+    film.region = p.region;
+    film.counts = counts;
+    if (isComplete(film, merged.plan, merged.error, {p.plannedSamples, std::nullopt, p.targetError, true})) return "";
+    if (p.plannedSamples)
+      return fmt::format("{:.1f} of {} samples per pixel are rendered", render::averageSamples(p.region, counts),
+                         *p.plannedSamples);
+  } else if (const std::vector<SampleRange> missing = missingSamples(counts, p.plannedSamples); !missing.empty()) {
+    return fmt::format("samples {} are missing", rangesText(missing));
+  }
+  if (!p.targetError || p.plannedSamples) return "";
+  return fmt::format("the target error of {:.2g} % is not reached", 100.0 * *p.targetError);
+}
+
+}  // namespace quintet::job

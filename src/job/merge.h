@@ -1,0 +1,24 @@
+// Joins parts of a render, made by any number of processes, to the film that one process would have made.
+#ifndef QUINTET_JOB_MERGE_H
+#define QUINTET_JOB_MERGE_H
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "job/observer.h"
+#include "job/result.h"
+
+namespace quintet::job {
+
+// Reads the films one after the other, so that two of them are in memory at a time. Facts in which the parts may differ
+// (device, exposure, …) are joined or taken from the part with the first samples, and reported as notes. Throws FileError
+// for a part that cannot be read, belongs to a different render, or shares samples with another part; Error if there are
+// no samples at all.
+RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer);
+
+// What the merged film lacks: "samples 16–31 are missing"; empty if it is complete.
+std::string missingText(const RenderResult& merged);
+
+}  // namespace quintet::job
+#endif

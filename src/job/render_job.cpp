@@ -1,0 +1,501 @@
+#include "job/render_job.h"
+
+#include <algorithm>
+#include <future>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "gpu/error.h"
+#include "job/device_limits.h"
+#include "job/film_store.h"
+#include "job/identity.h"
+#include "job/runnable_program.h"
+#include "job/scene_loading.h"
+#include "render/scene/camera.h"
+#include "scene/model/names.h"
+
+namespace quintet::job {
+namespace {
+
+// Host memory of a finished image per pixel: floats and display bytes.
+constexpr std::uint64_t kImageBytes = 20;
+constexpr double kRateSeconds = 1.0;     // reading the ray counter waits for the device: at most this often
+constexpr double kPreviewSeconds = 1.0;  // between previews of frames
+// The error estimate for the progress takes at most a fiftieth of the time.
+constexpr double kEstimateSeconds = 2.0;
+constexpr double kEstimateShare = 50.0;
+
+void checkMemory(const gpu::DeviceInfo& device, uvec2 size, std::uint64_t filmBytesPerPixel) {
+  // Largest buffer of a film: sums of four channels.
+  constexpr std::uint64_t kSumBytes = 4 * sizeof(shared::FixedSum);
+  const std::uint64_t pixels = std::uint64_t{size.x} * size.y;
+  const std::uint64_t needed = pixels * filmBytesPerPixel + (device.software ? pixels * kImageBytes : 0);
+  const std::uint64_t available = device.memoryBytes - device.memoryBytes / 16;
+  const bool tooLargeBuffer = device.maxBufferBytes > 0 && pixels * kSumBytes > device.maxBufferBytes;
+  if (needed <= available && !tooLargeBuffer) return;
+  throw MemoryError(fmt::format(
+      "an image of {}x{} requires {}, but {} has {} and buffers of at most {}; render a part of it with --region",
+      size.x, size.y, bytesText(needed), device.name, bytesText(device.memoryBytes), bytesText(device.maxBufferBytes)));
+}
+
+// Size of what is rendered, as far as it is known.
+uvec2 renderedSize(const RenderRequest& request, uvec2 imageSize) {
+  return request.region.width > 0 ? uvec2{request.region.width, request.region.height} : imageSize;
+}
+
+// The film on the device.
+class DeviceFilm : public FilmView {
+ public:
+  explicit DeviceFilm(const render::Renderer& renderer) : renderer_(renderer) {
+    for (const program::Output& output : renderer.program().outputs) {
+      render::FilmPlane& plane = planes_.emplace_back();
+      plane.name = output.name;
+      plane.pixel = output.pixel;
+      plane.kind = output.kind;
+      plane.color = program::holdsColor(output);
+    }
+  }
+
+  const std::vector<render::FilmPlane>& planes() const override { return planes_; }
+  bool stores(std::size_t output) const override { return renderer_.film().stores(output); }
+  render::SampleCounts counts() const override { return renderer_.film().counts(); }
+  io::Image image(std::size_t output) const override { return renderer_.image(output); }
+  render::FilmPlane plane(std::size_t output) const override { return renderer_.film().plane(output); }
+  io::Image variance() const override { return render::varianceImage(renderer_.film().saveFirst()); }
+  render::FilmState state() const override { return renderer_.saveFilm(); }
+
+ private:
+  const render::Renderer& renderer_;
+  std::vector<render::FilmPlane> planes_;
+};
+
+void describeScene(const LoadedScene& loaded, const ResolvedJob& job, Observer& observer) {
+  const std::string& name = job.scene.name;
+  // Lecture programs bring their own lights.
+  if (loaded.environment.isFallback && !job.accumulatesFrames())
+    observer.note(
+        fmt::format("{}: no lights in the scene, using the default environment (--env none disables it)", name));
+  if (loaded.scene.instances.empty()) observer.warning(fmt::format("{}: the scene has no surfaces", name));
+  const scene::Report& report = loaded.scene.report;
+  const std::size_t ignored = report.ignored.size() + report.extensionsIgnored.size();
+  if (ignored + report.repaired.size() > 0)
+    observer.note(fmt::format("{}: {} ignored, {} repaired; 'quintet info {}' lists them", name, ignored,
+                              report.repaired.size(), shellQuoted(job.scene.path())));
+}
+
+}  // namespace
+
+RenderJob::RenderJob(Engine& engine, ResolvedJob job, Observer& observer) : engine_(engine), job_(std::move(job)) {
+  prepare(observer);
+}
+
+RenderJob::RenderJob(Engine& engine, ResolvedJob job, Observer& observer, std::shared_ptr<PreparedScene>& scene)
+    : engine_(engine), job_(std::move(job)), scene_(scene) {
+  try {
+    prepare(observer);
+  } catch (...) {
+    scene = scene_;
+    throw;
+  }
+  scene = scene_;
+}
+
+void RenderJob::prepare(Observer& observer) {
+  const RenderRequest& request = job_.request;
+  std::optional<SceneLoading> loading;
+  if (!scene_) loading.emplace(job_.scene, request);  // continues while the driver starts
+  gpu::Context& context = engine_.context();
+  const std::uint64_t filmBytes = render::Film::bytesPerPixel(job_.program, request.outputs);
+  checkMemory(context.info(), renderedSize(request, request.size), filmBytes);
+
+  // Compiled while the scene is read and uploaded; errors of the scene are reported first.
+  std::future<program::CompiledProgram> compiling = std::async(std::launch::async, [&] {
+    const render::Defines scene =
+        scene_ ? scene_->onDevice->defines() : render::shaderDefines(loading->features().get(), context.info().quirks);
+    return program::compile(job_.program, engine_.compiler(), render::renderDefines(scene, request.outputs));
+  });
+  if (loading) {
+    observer.stage("loading " + job_.scene.name);
+    LoadedScene loaded = loading->finish();
+    checkMemory(context.info(), renderedSize(request, loaded.size), filmBytes);
+    describeScene(loaded, job_, observer);
+    prepareScene(std::move(loaded), observer);
+  }
+  observer.stage("compiling shaders");
+  link(compiling.get(), observer);
+  provenance_ = makeProvenance();
+  if (!request.checkpoint.file.empty()) checkpoint_.emplace(request.checkpoint);
+  linkedSeconds_ = clock_.seconds();
+}
+
+void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
+  observer.stage("building acceleration structures");
+  const Stopwatch building;
+  auto prepared = std::make_shared<PreparedScene>();
+  prepared->source = job_.scene;
+  prepared->camera = loaded.camera.camera;
+  prepared->cameraDescription = loaded.camera.description;
+  prepared->environment = loaded.environment.description;
+  prepared->hash = loaded.hash;
+  prepared->environmentHash = loaded.environmentHash;
+  prepared->size = loaded.size;
+  prepared->files = loaded.scene.report.files;
+  prepared->instanceNames = scene::instanceNames(loaded.scene);
+  prepared->materialNames = scene::materialNames(loaded.scene);
+  prepared->seconds.load = loaded.seconds;
+  const scene::ImportSeconds import = loaded.scene.seconds;
+  prepared->onDevice =
+      std::make_unique<render::DeviceScene>(engine_.context(), std::move(loaded.scene), loaded.environment.environment);
+  prepared->seconds.build = building.seconds();
+  const render::DeviceSceneStatistics& built = prepared->onDevice->statistics();
+  prepared->seconds.stages = {{"document", import.document},
+                              {"meshes", import.meshes},
+                              {"images", import.images},
+                              {"hash", loaded.hashSeconds},
+                              {"view", loaded.viewSeconds},
+                              {"lights", built.lightSeconds},
+                              {"upload", built.uploadSeconds - built.lightSeconds},
+                              {"order", built.build.orderSeconds},
+                              {"bottomLevel", built.build.buildSeconds}};
+  scene_ = std::move(prepared);
+  loaded = {};
+  releaseFreedMemory();
+}
+
+void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
+  const RenderRequest& request = job_.request;
+  render::DeviceScene& scene = *scene_->onDevice;
+  includedFiles_ = compiled.files;
+  const std::vector<Hash> includedHashes = compiled.fileHashes;
+  CheckedProgram checked =
+      checkCompiled(job_.program, std::move(compiled), scene.facts(), deviceLimits(engine_.context().info()));
+  diagnostics_ = std::move(checked.diagnostics);
+  std::erase_if(diagnostics_, [](const Diagnostic& d) { return d.severity == Severity::note; });
+  if (!diagnostics_.empty()) observer.diagnostics(diagnostics_);
+
+  render::RenderSettings settings;
+  settings.width = scene_->size.x;
+  settings.height = scene_->size.y;
+  settings.region = request.region;
+  settings.camera = scene_->camera;
+  settings.seed = request.seed;
+  settings.plannedSamples = request.limits.adaptive ? shared::kIndependentPixels
+                                                    : static_cast<std::uint32_t>(request.limits.samples.value_or(0));
+  settings.transparent = request.transparent;
+  settings.parameters = job_.parameters;
+  settings.outputs = request.outputs;
+  settings.frameCount = request.frames.accumulatedCount().value_or(0);
+  settings.timeoutSeconds = request.launchTimeout;
+  renderer_ = std::make_unique<render::Renderer>(scene, std::move(checked.runnable), engine_.compiler(),
+                                                 &engine_.pipelineCache(), settings);
+  provenance_.programHash = programHash(job_.program, includedHashes);
+}
+
+Provenance RenderJob::makeProvenance() const {
+  const RenderRequest& request = job_.request;
+  Provenance p = identityOf(job_, *renderer_, scene_->camera, scene_->size);
+  p.programHash = provenance_.programHash;
+  p.sceneHash = scene_->hash;
+  p.environmentHash = scene_->environmentHash;
+  p.commandLine = request.commandLine;
+  p.scene = job_.scene.path();
+  p.environment = scene_->environment;
+  p.camera = scene_->cameraDescription;
+  p.parameters = job_.parameters.describe();
+  p.device = engine_.context().info().name;
+  p.driver = engine_.context().info().driver;
+  p.targetError = request.limits.error;
+  const OutputNotes& notes = request.outputNotes;
+  p.exposure = notes.exposure;
+  p.toneMap = notes.toneMap;
+  p.allOutputs = notes.allOutputs;
+  p.layers = notes.layers;
+  if (notes.names) {
+    p.instanceNames = scene_->instanceNames;
+    p.materialNames = scene_->materialNames;
+  }
+  if (!job_.accumulatesFrames()) {
+    const render::CameraMatrices matrices = render::cameraMatrices(scene_->camera, scene_->size.x, scene_->size.y);
+    p.worldToCamera = matrices.cameraFromWorld;
+    p.worldToNdc = matrices.ndcFromWorld;
+  }
+  return p;
+}
+
+RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool withError) const {
+  RenderResult result;
+  result.provenance = provenance_;
+  result.film = std::make_shared<DeviceFilm>(*renderer_);
+  result.plan = start.plan;
+  result.accumulatesFrames = job_.accumulatesFrames();
+  result.diagnostics = diagnostics_;
+  if (withError && !result.accumulatesFrames) result.error = renderer_->film().estimateError();
+
+  const render::RenderStatistics& statistics = renderer_->statistics();
+  const render::RayCount rays = renderer_->rays();
+  Provenance& p = result.provenance;
+  p.seconds = seconds;
+  p.batchSeconds = start.batchSeconds;
+  p.samples =
+      job_.request.limits.adaptive
+          ? static_cast<std::uint64_t>(render::averageSamples(renderer_->film().region(), renderer_->film().counts()))
+          : statistics.samples;
+  p.rays = rays.rays;
+  p.droppedSamples = rays.droppedSamples;
+  if (result.error.known()) {
+    p.error = result.error.upper;
+    p.tileError = result.error.tiles;
+  }
+
+  const render::DeviceSceneStatistics& built = scene_->onDevice->statistics();
+  Timings& t = result.seconds;
+  t = scene_->seconds;
+  t.start = engine_.startSeconds();
+  t.compile = statistics.compileSeconds;
+  t.pipeline = statistics.pipelineSeconds;
+  t.firstPixel = firstPixelSeconds_;
+  t.render = seconds;
+  t.device = statistics.deviceSeconds;
+  t.stages.insert(t.stages.begin(), {"start", t.start});
+  t.stages.insert(t.stages.end(), {{"topLevel", built.topLevelSeconds},
+                                   {"compile", t.compile},
+                                   {"pipeline", t.pipeline},
+                                   {"firstLaunch", statistics.firstLaunchSeconds}});
+
+  MemoryUse& m = result.memory;
+  m.peakHost = peakResidentBytes();
+  const gpu::DeviceMemory device = engine_.context().memory();
+  m.peakDevice = device.peak;
+  for (std::size_t i = 0; i < gpu::kPurposeCount; ++i)
+    m.devicePeak.emplace_back(gpu::purposeName(static_cast<gpu::Purpose>(i)), device.atPeak[i]);
+  m.devicePeak.emplace_back("unused", device.unusedAtPeak());
+  m.deviceIsHost = engine_.context().info().software;
+  m.geometry = built.geometryBytes;
+  m.textures = built.textureBytes;
+  m.acceleration = built.accelerationBytes;
+  m.primitiveMaps = built.primitiveMapBytes;
+  result.filmBytes = renderer_->film().bytes();
+  return result;
+}
+
+// Where run() begins. The first call resumes from the checkpoint and checks that a film to write loses no samples.
+StartPoint RenderJob::startPoint(RenderLimits& limits, Observer& observer) {
+  const RenderRequest& request = job_.request;
+  if (request.batches) {
+    limits.samples = std::min(limits.samples.value_or(0), (request.batches->last + 1) * render::kBatchSamples);
+    if (!started_) {
+      start_.begin = start_.done = request.batches->first * render::kBatchSamples;
+      renderer_->startAt(request.batches->first);
+    }
+  }
+  if (std::exchange(started_, true)) return start_;
+  if (checkpoint_) {
+    const render::FilmState empty = renderer_->saveFilm();
+    if (const std::optional<StoredFilm> film = checkpoint_->load(provenance_, empty, start_, limits, observer)) {
+      renderer_->restoreFilm(film->file.film);
+      start_ = resumePoint(*film, provenance_, request.checkpoint.file, start_, observer);
+    }
+  }
+  if (!request.film.empty() && !request.overwriteFilm) {
+    // As far as the number is known now: the samples that are planned, or that exist already.
+    const auto begin = static_cast<std::uint32_t>(start_.begin),
+               end = static_cast<std::uint32_t>(std::max(limits.samples.value_or(0), start_.done));
+    rejectLoss(request.film, toFacts(provenance_, ProvenanceField::Role::identity),
+               {{{begin, end}}, renderer_->film().counts().cellBatches});
+  }
+  return start_;
+}
+
+RenderResult RenderJob::run(const RenderLimits& limits, Observer& observer) {
+  try {
+    if (job_.accumulatesFrames()) return runFrames(limits, observer);
+    const FrameRequest& frames = job_.request.frames;
+    const bool several = frames.count.value_or(1) > 1;
+    if (several && !scene_->onDevice->animated())
+      throw UsageError("frames: nothing in the scene moves, so all frames would be the same");
+    if (several || frames.every) return runAnimation(limits, observer);
+    return runFilm(limits, observer);
+  } catch (const gpu::TimeoutError& error) {
+    observer.deviceHung(hangDiagnostic(job_.program, error.seconds()));
+    throw;
+  }
+}
+
+RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observer) {
+  RenderLimits limits = requested;
+  StartPoint start = startPoint(limits, observer);
+  const bool wasEmpty = start.done == start.begin;
+  const Stopwatch clock;
+  const auto elapsed = [&, before = start.seconds] { return before + clock.seconds(); };
+  SamplingSchedule schedule(*renderer_, limits, start);
+  const auto resultNow = [&](double seconds, bool withError) {
+    start.plan = schedule.plan();
+    return makeResult(seconds, start, withError);
+  };
+  const auto finish = [&](double seconds) {
+    RenderResult done = resultNow(seconds, true);
+    done.targetMissed = limits.error && !done.error.reaches(*limits.error);
+    start_ = start;
+    start_.seconds = seconds;
+    return done;
+  };
+  const auto timeIsUp = [&](double seconds) {
+    return limits.seconds && seconds + 0.5 * start.batchSeconds >= *limits.seconds;
+  };
+  if (!wasEmpty && timeIsUp(start.seconds)) return finish(start.seconds);
+
+  Progress progress;
+  progress.sampleLimit = schedule.sampleLimit();
+  progress.secondLimit = limits.seconds;
+  double rateTaken = 0, estimated = 0, estimateSeconds = 0;
+  bool abandoned = false, interrupted = false, previewed = !wasEmpty;
+  while (schedule.next()) {
+    const double begin = elapsed();
+    const double before = schedule.samples();
+    const bool complete = schedule.render([&](double fraction) {
+      if (firstPixelSeconds_ == 0) firstPixelSeconds_ = clock_.seconds();
+      progress.samples = before + fraction * schedule.batchSamples();
+      progress.seconds = elapsed();
+      if (schedule.estimate()) progress.error = schedule.estimate()->upper;
+      observer.progress(progress);
+      abandoned = observer.stopRequested() == StopRequest::abandon;
+      return !abandoned;
+    });
+    if (!complete || abandoned) {  // the last progress of a batch cannot cancel it
+      RenderResult useless;
+      useless.abandoned = true;
+      return useless;
+    }
+    const double now = elapsed();
+    if (firstPixelSeconds_ == 0) firstPixelSeconds_ = clock_.seconds();
+    start.done = schedule.nextSample();
+    start.batchSeconds = now - begin;
+    if (!std::exchange(previewed, true) && observer.wantsPreviews()) observer.preview(resultNow(now, true));
+    if (checkpoint_ && checkpoint_->isDue()) checkpoint_->save(resultNow(now, false), observer);
+    observer.batch({static_cast<std::uint64_t>(schedule.samples()), now,
+                    checkpoint_ ? std::optional(checkpoint_->savedSamples()) : std::nullopt});
+    if (timeIsUp(now)) break;
+    if (observer.stopRequested() == StopRequest::finish) {
+      interrupted = schedule.next();  // otherwise everything is rendered
+      break;
+    }
+    if (now - rateTaken > kRateSeconds) {
+      progress.raysPerSecond = static_cast<double>(renderer_->rays().rays) / now;
+      rateTaken = now;
+    }
+    if (observer.showsError() && !limits.error &&
+        now - estimated > kEstimateSeconds + kEstimateShare * estimateSeconds) {
+      schedule.estimateError();
+      estimated = elapsed();
+      estimateSeconds = estimated - now;
+    }
+  }
+  renderer_->finish();
+  RenderResult done = finish(elapsed());
+  done.interrupted = done.provenance.interrupted = interrupted;
+  if (checkpoint_ && checkpoint_->mustStay(done)) checkpoint_->saveIfChanged(done, observer);
+  return done;
+}
+
+// Each frame is an image of its own; if only the last one is written, only that one is rendered.
+RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& observer) {
+  const FrameRequest& frames = job_.request.frames;
+  const std::uint32_t count = frames.count.value_or(1);
+  double seconds = 0;
+  RenderResult last;
+  for (std::uint32_t frame = frames.every ? 0 : count - 1; frame < count; ++frame) {
+    scene_->onDevice->setFrame(static_cast<float>(frame));
+    renderer_->restart();
+    start_ = {};
+    last = runFilm(limits, observer);
+    if (last.abandoned) return last;
+    seconds += last.provenance.seconds;
+    last.provenance.seconds = last.seconds.render = seconds;
+    last.provenance.frame = frame;
+    const bool stop = observer.stopRequested() == StopRequest::finish && frame + 1 < count;
+    last.interrupted = last.provenance.interrupted = last.interrupted || stop;
+    if (frames.every) observer.frame(last);
+    if (last.interrupted) break;
+  }
+  return last;
+}
+
+// A program that accumulates: one launch of the image per frame.
+RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer) {
+  const FrameRequest& frames = job_.request.frames;
+  std::optional<std::uint64_t> count = frames.accumulatedCount();
+  if (!count) count = limits.samples;
+  const Stopwatch clock;
+  Progress progress;
+  progress.countsFrames = true;
+  progress.sampleLimit = count;
+  progress.secondLimit = limits.seconds;
+  bool previewed = false;
+  double lastPreview = 0;
+  for (std::uint32_t frame = nextFrame_;; ++frame) {
+    if (scene_->onDevice->animated()) scene_->onDevice->setFrame(static_cast<float>(frame));
+    bool abandoned = false;
+    renderer_->renderFrame(frame, [&](double fraction) {
+      if (firstPixelSeconds_ == 0) firstPixelSeconds_ = clock_.seconds();
+      progress.samples = frame + fraction;
+      progress.seconds = clock.seconds();
+      observer.progress(progress);
+      abandoned = observer.stopRequested() == StopRequest::abandon;
+      return !abandoned;
+    });
+    if (abandoned) {
+      RenderResult useless;
+      useless.abandoned = true;
+      return useless;
+    }
+    nextFrame_ = frame + 1;
+    observer.batch({nextFrame_, clock.seconds(), std::nullopt});
+    const bool isLast = (count && nextFrame_ >= *count) || (limits.seconds && clock.seconds() >= *limits.seconds);
+    const bool interrupted = !isLast && observer.stopRequested() == StopRequest::finish;
+    const bool preview = !isLast && !interrupted && !frames.every && observer.wantsPreviews() &&
+                         (!previewed || clock.seconds() - lastPreview >= kPreviewSeconds);
+    if (!isLast && !interrupted && !frames.every && !preview) continue;
+    RenderResult done = makeResult(clock.seconds(), {}, false);
+    done.provenance.frame = frame;
+    done.interrupted = done.provenance.interrupted = interrupted;
+    if (frames.every) observer.frame(done);
+    if (isLast || interrupted) return done;
+    if (preview) {
+      observer.preview(done);
+      previewed = true;
+      lastPreview = clock.seconds();
+    }
+  }
+}
+
+void RenderJob::outputsWritten(const RenderResult& result, Observer& observer) {
+  if (checkpoint_ && !checkpoint_->mustStay(result)) checkpoint_->remove(observer);
+}
+
+void RenderJob::outputsFailed(const RenderResult& result, Observer& observer) {
+  if (checkpoint_) checkpoint_->saveIfChanged(result, observer);
+}
+
+std::vector<std::filesystem::path> RenderJob::sceneFiles() const {
+  std::vector<std::filesystem::path> files = sourceFiles(scene_->source);
+  for (const std::filesystem::path& file : scene_->files)
+    if (std::ranges::find(files, file) == files.end()) files.push_back(file);
+  std::error_code ignored;
+  const std::filesystem::path environment = job_.request.environment.source;
+  if (std::filesystem::is_regular_file(environment, ignored)) files.push_back(environment);
+  return files;
+}
+
+std::vector<std::filesystem::path> RenderJob::files() const {
+  std::vector<std::filesystem::path> files = sceneFiles();
+  for (const std::filesystem::path& file : programFiles(job_)) files.push_back(file);
+  files.insert(files.end(), includedFiles_.begin(), includedFiles_.end());
+  return files;
+}
+
+}  // namespace quintet::job

@@ -1,0 +1,100 @@
+// A render from the loaded scene to its result. The construction does everything that precedes the first sample; run()
+// renders.
+#ifndef QUINTET_JOB_RENDER_JOB_H
+#define QUINTET_JOB_RENDER_JOB_H
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "base/stopwatch.h"
+#include "job/checkpoint.h"
+#include "job/engine.h"
+#include "job/observer.h"
+#include "job/resolve.h"
+#include "job/result.h"
+#include "job/sampling_schedule.h"
+#include "job/scene_loading.h"
+#include "render/renderer/renderer.h"
+#include "render/scene/device_scene.h"
+
+namespace quintet::job {
+
+// A scene on the device and what was decided with it. Jobs with the same request can share it.
+struct PreparedScene {
+  SceneSource source;
+  scene::Camera camera;
+  std::string cameraDescription;
+  std::string environment;  // description
+  std::string hash, environmentHash;
+  uvec2 size{0};                                          // of the whole image, pixels
+  std::vector<std::filesystem::path> files;               // that the scene file names
+  std::vector<std::string> instanceNames, materialNames;  // scene/model/names.h
+  Timings seconds;
+  std::unique_ptr<render::DeviceScene> onDevice;
+};
+
+class RenderJob {
+ public:
+  // Loads the scene, opens the device and compiles the program side by side; then builds acceleration structures, checks
+  // and links. `engine` outlives the job. Throws ProgramError, FileError, UsageError, MemoryError, gpu::NoDeviceError,
+  // gpu::VulkanError.
+  RenderJob(Engine& engine, ResolvedJob job, Observer& observer);
+  // The same with a scene that outlasts the job: used if it is not null (of an earlier job with the same request and
+  // unchanged scene files), else set as soon as the scene is on the device, even if the program then does not compile.
+  RenderJob(Engine& engine, ResolvedJob job, Observer& observer, std::shared_ptr<PreparedScene>& scene);
+  RenderJob(const RenderJob&) = delete;
+  RenderJob& operator=(const RenderJob&) = delete;
+
+  // Renders until a limit is reached or the observer stops. A second call continues with the film of the first.
+  // With FrameRequest::every, Observer::frame() gets the result of each frame; the last one is returned, too. With a
+  // checkpoint request, the first call resumes, and the checkpoint is saved between batches. The result's film is valid as
+  // long as the job. Throws FileError (checkpoint, film to overwrite), UsageError, gpu errors.
+  RenderResult run(const RenderLimits& limits, Observer& observer);
+
+  // Call one of them after the outputs of run() were written, or could not be written: the checkpoint is removed unless
+  // it must stay (CheckpointRequest::keep, incomplete render), or saved so that no sample is lost.
+  void outputsWritten(const RenderResult& result, Observer& observer);
+  void outputsFailed(const RenderResult& result, Observer& observer);
+
+  const ResolvedJob& resolved() const { return job_; }
+  const std::shared_ptr<PreparedScene>& scene() const { return scene_; }
+  render::Renderer& renderer() { return *renderer_; }
+  const render::Region& region() const { return renderer_->film().region(); }  // the rendered part of the image
+
+  // Files on disk that the scene was made from, and all files that the job has read, for file watching.
+  std::vector<std::filesystem::path> sceneFiles() const;
+  std::vector<std::filesystem::path> files() const;
+
+ private:
+  void prepare(Observer& observer);
+  void prepareScene(LoadedScene loaded, Observer& observer);
+  void link(program::CompiledProgram compiled, Observer& observer);
+  Provenance makeProvenance() const;
+
+  RenderResult runFilm(const RenderLimits& limits, Observer& observer);
+  RenderResult runAnimation(const RenderLimits& limits, Observer& observer);
+  RenderResult runFrames(const RenderLimits& limits, Observer& observer);
+  StartPoint startPoint(RenderLimits& limits, Observer& observer);
+  // The result after `seconds` of rendering; with the error estimate only where it is needed, because it takes time.
+  RenderResult makeResult(double seconds, const StartPoint& start, bool withError) const;
+
+  const Stopwatch clock_;
+  Engine& engine_;
+  ResolvedJob job_;
+  std::shared_ptr<PreparedScene> scene_;
+  std::vector<std::filesystem::path> includedFiles_;
+  std::vector<Diagnostic> diagnostics_;
+  std::unique_ptr<render::Renderer> renderer_;
+  Provenance provenance_;  // without the facts that a result adds
+  std::optional<Checkpoint> checkpoint_;
+  StartPoint start_;              // of the next run()
+  bool started_ = false;          // run() was called
+  std::uint32_t nextFrame_ = 0;   // of a program that accumulates
+  double linkedSeconds_ = 0;      // on clock_
+  double firstPixelSeconds_ = 0;  // on clock_; 0: no launch has ended
+};
+
+}  // namespace quintet::job
+#endif

@@ -1,0 +1,100 @@
+// What a front end asks for: plain data, without decisions that depend on the scene or the device. resolve() checks it.
+#ifndef QUINTET_JOB_REQUEST_H
+#define QUINTET_JOB_REQUEST_H
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "render/film/film_state.h"
+#include "scene/model/scene.h"
+
+namespace quintet::job {
+
+struct CameraRequest {
+  std::string name;                     // index or name in the scene file; empty means the first camera
+  std::optional<vec3> lookFrom;         // world space, meters; excludes `name`
+  std::optional<vec3> lookAt;           // world space; default: the center of the scene. Requires lookFrom
+  vec3 up{0, 1, 0};                     // world space, any length but 0
+  std::optional<float> verticalFov;     // degrees, (0, 180); default: the camera's, or 45
+  std::optional<float> apertureRadius;  // meters; default: the camera's, or 0 (pinhole)
+  std::optional<float> focusDistance;   // meters along the optical axis
+};
+
+struct EnvironmentRequest {
+  // A file (equirectangular image), "none", "default", or "r,g,b" (constant radiance, linear Rec. 709). Empty means the
+  // scene's environment, or the default one if the scene has no lights.
+  std::string source;
+  std::optional<float> intensity;  // factor
+  std::optional<float> rotation;   // degrees about +y, counter-clockwise seen from above
+};
+
+// Rendering stops at the first limit that is reached. At least one is set.
+struct RenderLimits {
+  std::optional<std::uint64_t> samples;  // per pixel, on average if adaptive
+  std::optional<double> seconds;         // wall clock of rendering
+  std::optional<double> error;           // relative: render::ErrorEstimate::reaches
+  bool adaptive = false;                 // distribute samples by the error of each tile
+};
+
+struct FrameRequest {
+  std::optional<std::uint32_t> count;  // of an animated scene or of a program that accumulates its own frames
+  // Number of frames for a program that accumulates, if `count` is unset; if both are, it runs until the time limit.
+  std::optional<std::uint32_t> accumulated;
+  bool every = false;  // an image of each frame, not only of the last one
+
+  std::optional<std::uint32_t> accumulatedCount() const { return count ? count : accumulated; }
+};
+
+// Batches of render::kBatchSamples samples per pixel, both ends included, starting at 0.
+struct BatchRange {
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+};
+
+struct CheckpointRequest {
+  std::filesystem::path file;  // .qfilm; empty disables checkpoints
+  double seconds = 60.0;       // interval; 0 saves after every batch
+  bool keep = false;           // leave a complete checkpoint behind when the images are written
+  bool resume = false;         // continue from the checkpoint if it exists
+  bool force = false;          // start over, and overwrite a checkpoint of a different render
+};
+
+// How the images of this render are to be written. Stored in films, so that merging them writes the same images.
+struct OutputNotes {
+  double exposure = 0;      // stops
+  std::string toneMap;      // empty means by the kind of output
+  bool allOutputs = false;  // an image of each output
+  std::string layers;       // of an OpenEXR file (output::layersText); empty if none
+  bool names = false;       // keep the names of instances and materials, for Cryptomatte
+};
+
+struct RenderRequest {
+  std::filesystem::path scene;                      // empty means the program's own scene, else the built-in one
+  std::shared_ptr<const scene::Scene> loadedScene;  // instead of `scene`: one in host memory; may be null
+  CameraRequest camera;
+  EnvironmentRequest environment;
+  uvec2 size{0};                         // pixels; a 0 is chosen by the camera's aspect ratio
+  render::Region region;                 // pixels from the top left; width 0 means the whole image
+  bool transparent = false;              // alpha 0 where a camera ray leaves the scene, instead of the environment
+  std::uint32_t seed = 0;                // of the random number generator
+  std::vector<std::string> assignments;  // "name=value": parameters of the program, in this order
+  std::filesystem::path parameterFile;   // JSON object of parameters, applied before `assignments`; may be empty
+  std::vector<std::string> outputs;      // names of the program's optional outputs to render
+  RenderLimits limits;
+  FrameRequest frames;
+  std::optional<BatchRange> batches;  // render only this part of limits.samples
+  CheckpointRequest checkpoint;
+  std::filesystem::path film;  // the film file (.qfilm) that will be written; empty if none
+  bool overwriteFilm = false;  // allow to lose the samples that `film` holds
+  double launchTimeout = 0;    // seconds after which a launch counts as hung; 0 means the default of the device
+  OutputNotes outputNotes;
+  std::string commandLine;  // for metadata; may be empty
+};
+
+}  // namespace quintet::job
+#endif

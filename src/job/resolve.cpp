@@ -1,0 +1,94 @@
+#include "job/resolve.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "render/film/film_file.h"
+
+namespace quintet::job {
+namespace {
+
+void checkLimits(const RenderRequest& request, const program::Program& program) {
+  const RenderLimits& limits = request.limits;
+  const bool accumulates = program.accumulation == program::Accumulation::program;
+  if (limits.adaptive && !program.adaptive)
+    throw UsageError(
+        fmt::format("adaptive sampling: the program '{}' takes the same number of samples in all pixels "
+                    "(docs/programs.md: adaptive)",
+                    program.name));
+  if (limits.error && accumulates)
+    throw UsageError(fmt::format(
+        "target error: the program '{}' averages its samples itself, so their variance is unknown", program.name));
+  if (accumulates && (!request.checkpoint.file.empty() || !request.film.empty()))
+    throw UsageError(fmt::format(
+        "the program '{}' averages its samples itself, so checkpoints and films are not available", program.name));
+  if (!request.batches) return;
+  if (limits.seconds || limits.error || limits.adaptive || !limits.samples)
+    throw UsageError(
+        "batches: a part of a render is a fixed number of samples, without time limit, target error or "
+        "adaptive sampling");
+  const std::uint64_t count = (*limits.samples + render::kBatchSamples - 1) / render::kBatchSamples;
+  if (request.batches->last >= count)
+    throw UsageError(fmt::format("batches: batch {} does not exist; {} samples are batches 0–{}", request.batches->last,
+                                 *limits.samples, count - 1));
+}
+
+// True if both name the same file, also through links or "..".
+bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code failed;
+  if (std::filesystem::equivalent(a, b, failed)) return true;
+  const auto resolved = [&](const std::filesystem::path& file) {
+    const std::filesystem::path path = std::filesystem::weakly_canonical(std::filesystem::absolute(file), failed);
+    return failed ? file.lexically_normal() : path;
+  };
+  return resolved(a) == resolved(b);
+}
+
+void checkFiles(const RenderRequest& request) {
+  const std::filesystem::path& checkpoint = request.checkpoint.file;
+  if (!request.film.empty()) checkWritable(request.film);
+  if (checkpoint.empty()) return;
+  if (checkpoint.extension() != render::kFilmExtension)
+    throw UsageError(
+        fmt::format("checkpoint {}: the extension must be {}", checkpoint.string(), render::kFilmExtension));
+  if (!request.film.empty() && isSameFile(checkpoint, request.film))
+    throw UsageError(fmt::format("checkpoint {}: it is also the output", checkpoint.string()));
+  checkWritable(checkpoint);
+}
+
+}  // namespace
+
+ResolvedJob resolve(RenderRequest request, program::Program program) {
+  ResolvedJob job;
+  job.parameters = parameterValues(program, request);
+  checkLimits(request, program);
+  checkFiles(request);
+  job.scene = request.loadedScene ? SceneSource{.name = request.loadedScene->name, .loaded = request.loadedScene}
+                                  : chooseSceneSource(request.scene, program);
+  job.request = std::move(request);
+  job.program = std::move(program);
+  return job;
+}
+
+program::ParameterValues parameterValues(const program::Program& program, const RenderRequest& request) {
+  program::ParameterValues values(program.parameters);
+  if (!request.parameterFile.empty())
+    values.setFromJson(readTextFile(request.parameterFile), request.parameterFile.string());
+  for (const std::string& assignment : request.assignments) values.setAssignment(assignment);
+  return values;
+}
+
+bool isProgramSource(const std::filesystem::path& name) {
+  constexpr std::string_view kExtensions[] = {".toml",  ".glsl",  ".h",     ".rgen", ".rint",
+                                              ".rahit", ".rchit", ".rmiss", ".rcall"};
+  return !name.string().starts_with('.') &&
+         std::ranges::find(kExtensions, name.extension().string()) != std::end(kExtensions);
+}
+
+}  // namespace quintet::job

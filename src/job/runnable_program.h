@@ -1,0 +1,34 @@
+// Compiles and checks a program for one scene and one device, so that a renderer can run it.
+#ifndef QUINTET_JOB_RUNNABLE_PROGRAM_H
+#define QUINTET_JOB_RUNNABLE_PROGRAM_H
+
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "check/device_limits.h"
+#include "program/runnable_program.h"
+#include "program/scene_facts.h"
+#include "render/scene/scene_features.h"
+
+namespace quintet::job {
+
+struct CheckedProgram {
+  program::RunnableProgram runnable;
+  std::vector<Diagnostic> diagnostics;  // warnings and notes of the compiler and of the check
+};
+
+// Checks `compiled`, which is `description` compiled for this scene. Throws ProgramError.
+CheckedProgram checkCompiled(program::Program description, program::CompiledProgram compiled,
+                             const program::SceneFacts& scene, const check::DeviceLimits& limits);
+
+// `defines` are those of render::renderDefines. `instrument` adds the runtime checks of program/instrument.h. Throws
+// ProgramError.
+CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,
+                               const render::Defines& defines, const program::SceneFacts& scene,
+                               const check::DeviceLimits& limits, bool instrument = false);
+
+// Returns what Observer::deviceHung() reports when a launch of the program did not end within `seconds`.
+Diagnostic hangDiagnostic(const program::Program& program, double seconds);
+
+}  // namespace quintet::job
+#endif

@@ -1,0 +1,133 @@
+#include "job/sampling_schedule.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+namespace quintet::job {
+namespace {
+
+// Uniform batches before the first decision of adaptive sampling: an eighth of the samples, within bounds.
+constexpr std::uint64_t kMinPilotBatches = 4;
+constexpr std::uint64_t kMaxPilotBatches = 16;
+
+std::uint64_t pilotSamples(const RenderLimits& limits) {
+  const std::uint64_t batches = limits.samples ? *limits.samples / (8 * render::kBatchSamples) : kMaxPilotBatches / 2;
+  return render::kBatchSamples * std::clamp(batches, kMinPilotBatches, kMaxPilotBatches);
+}
+
+}  // namespace
+
+bool hasRemainingBatches(const std::vector<std::uint32_t>& plan, const render::SampleCounts& counts) {
+  for (std::uint32_t c = 0; c < plan.size(); ++c)
+    if (plan[c] > counts.batchesOf(c)) return true;
+  return false;
+}
+
+std::vector<std::uint32_t> planNextBatches(const render::Region& region, const render::SampleCounts& counts,
+                                           const render::ErrorEstimate& estimate, const RenderLimits& limits) {
+  const double samples = render::averageSamples(region, counts);
+  const double limit = static_cast<double>(limits.samples.value_or(0)) / render::kBatchSamples;
+  if (limits.error && estimate.reaches(*limits.error)) return {};
+  // Whole batches do not come closer to the limit.
+  if (limits.samples && samples > static_cast<double>(*limits.samples) - 0.5 * render::kBatchSamples) return {};
+  render::CellGoal goal{limits.error.value_or(0), limit};
+  // At most twice the samples at a time for a time limit or a target error: estimates from few samples say too little
+  // about how many are needed.
+  const double twice = 2.0 * samples / render::kBatchSamples;
+  if (!limits.samples || (limits.error && twice < limit)) goal.batches = twice;
+  std::vector<std::uint32_t> plan = render::planCells(estimate, goal);
+  // By the estimate this is enough, but the target was not reached: add a tenth everywhere.
+  if (limits.error && !hasRemainingBatches(plan, counts)) {
+    for (std::uint32_t& batches : plan) batches += batches / 10 + (batches > 0 ? 1 : 0);
+    const bool tooMany =
+        limits.samples && render::averageSamples(region, {counts.ranges, plan}) > static_cast<double>(*limits.samples);
+    if (tooMany) plan = render::planCells(estimate, {0, limit});
+  }
+  if (!hasRemainingBatches(plan, counts)) plan.clear();
+  return plan;
+}
+
+bool isComplete(const render::FilmState& film, const std::vector<std::uint32_t>& plan,
+                const render::ErrorEstimate& estimate, const RenderLimits& limits) {
+  const render::SampleCounts& counts = film.counts;
+  if (limits.error && estimate.reaches(*limits.error)) return true;
+  if (limits.samples && counts.samples() >= *limits.samples) return true;
+  if (!limits.samples && !limits.error) return true;  // limited by time only
+  if (counts.samples() < pilotSamples(limits) || hasRemainingBatches(plan, counts)) return false;
+  return planNextBatches(film.region, counts, estimate, limits).empty();
+}
+
+bool targetUnreachable(const render::ErrorEstimate& estimate, const RenderLimits& limits) {
+  return limits.error && !limits.samples && !limits.seconds && !estimate.known();
+}
+
+bool isErrorCheckpoint(std::uint64_t batches) {
+  if (batches < 16) return batches >= 4;
+  const int shift = static_cast<int>(std::bit_width(batches)) - 4;
+  return (batches & ((std::uint64_t{1} << shift) - 1)) == 0;
+}
+
+SamplingSchedule::SamplingSchedule(render::Renderer& renderer, const RenderLimits& limits, const StartPoint& start)
+    : renderer_(renderer),
+      limits_(limits),
+      start_(start),
+      done_(start.done),
+      plan_(start.plan),
+      samples_(render::averageSamples(renderer.film().region(), renderer.film().counts())) {}
+
+std::optional<std::uint64_t> SamplingSchedule::sampleLimit() const {
+  return limits_.samples ? std::optional(*limits_.samples - start_.begin) : std::nullopt;
+}
+
+void SamplingSchedule::estimateError() {
+  renderer_.finish();
+  estimate_ = renderer_.film().estimateError();
+}
+
+bool SamplingSchedule::next() {
+  if (limits_.adaptive && done_ >= pilotSamples(limits_)) return nextAdaptiveBatch();
+  return nextUniformBatch();
+}
+
+bool SamplingSchedule::nextUniformBatch() {
+  const bool complete = limits_.samples && done_ >= *limits_.samples;
+  if (limits_.error && (complete || isErrorCheckpoint(done_ / render::kBatchSamples))) {
+    estimateError();
+    targetReached_ = estimate_->reaches(*limits_.error);
+    if (targetUnreachable(*estimate_, limits_)) return false;
+  }
+  if (complete || targetReached_) return false;
+  count_ = render::kBatchSamples;
+  if (limits_.samples) count_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(count_, *limits_.samples - done_));
+  batchSamples_ = count_;
+  return true;
+}
+
+bool SamplingSchedule::nextAdaptiveBatch() {
+  count_ = 0;
+  batchSamples_ = 0;
+  if (hasRemainingBatches(plan_, renderer_.film().counts())) return true;
+  estimateError();
+  targetReached_ = limits_.error && estimate_->reaches(*limits_.error);
+  if (targetUnreachable(*estimate_, limits_)) return false;
+  std::vector<std::uint32_t> plan =
+      planNextBatches(renderer_.film().region(), renderer_.film().counts(), *estimate_, limits_);
+  if (plan.empty()) return false;
+  plan_ = std::move(plan);
+  return true;
+}
+
+bool SamplingSchedule::render(const render::BatchProgress& progress) {
+  if (count_ == 0) {
+    if (!renderer_.renderCells(plan_, progress)) return false;
+    samples_ = render::averageSamples(renderer_.film().region(), renderer_.film().counts());
+    return true;
+  }
+  if (!renderer_.renderBatch(count_, progress)) return false;
+  done_ += count_;
+  samples_ = static_cast<double>(done_ - start_.begin);
+  return true;
+}
+
+}  // namespace quintet::job

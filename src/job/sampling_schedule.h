@@ -1,0 +1,80 @@
+// Decides which batch is rendered next and when rendering stops: number of samples, target error, adaptive sampling.
+#ifndef QUINTET_JOB_SAMPLING_SCHEDULE_H
+#define QUINTET_JOB_SAMPLING_SCHEDULE_H
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "job/request.h"
+#include "render/film/adaptive_plan.h"
+#include "render/film/film_error.h"
+#include "render/film/film_file.h"
+#include "render/renderer/renderer.h"
+
+namespace quintet::job {
+
+// Where a render begins: at its first sample, at the first batch of a part, or where an earlier session stopped.
+struct StartPoint {
+  std::uint64_t begin = 0;          // first sample of the render or part
+  std::uint64_t done = 0;           // next sample
+  double seconds = 0;               // wall clock spent so far
+  double batchSeconds = 0;          // of it, in the last batch
+  std::vector<std::uint32_t> plan;  // of adaptive sampling: SamplingSchedule::plan() at that time; may be empty
+};
+
+class SamplingSchedule {
+ public:
+  SamplingSchedule(render::Renderer& renderer, const RenderLimits& limits, const StartPoint& start);
+
+  // Chooses the next batch. False: a limit is reached, except the time limit, which is not checked here.
+  bool next();
+  // Renders the chosen batch. False: `progress` abandoned it.
+  bool render(const render::BatchProgress& progress);
+
+  double samples() const { return samples_; }            // per pixel, on average, of this render or part
+  std::uint64_t nextSample() const { return done_; }     // of all pixels
+  double batchSamples() const { return batchSamples_; }  // that the chosen batch adds; 0 if adaptive
+  std::optional<std::uint64_t> sampleLimit() const;
+  const std::optional<render::ErrorEstimate>& estimate() const { return estimate_; }  // the latest one
+  bool targetReached() const { return targetReached_; }
+  // Batches per cell that adaptive sampling has decided on. Film and plan determine how the render continues.
+  const std::vector<std::uint32_t>& plan() const { return plan_; }
+  void estimateError();  // waits for the device
+
+ private:
+  bool nextUniformBatch();
+  bool nextAdaptiveBatch();
+
+  render::Renderer& renderer_;
+  const RenderLimits limits_;
+  const StartPoint start_;
+  std::uint64_t done_;       // next sample of all pixels
+  std::uint32_t count_ = 0;  // samples of the chosen batch; 0: an adaptive batch
+  std::vector<std::uint32_t> plan_;
+  double samples_ = 0;
+  double batchSamples_ = 0;
+  bool targetReached_ = false;
+  std::optional<render::ErrorEstimate> estimate_;
+};
+
+// Some cell has fewer batches than planned.
+bool hasRemainingBatches(const std::vector<std::uint32_t>& plan, const render::SampleCounts& counts);
+
+// The next plan of adaptive sampling after the previous one was carried out: batches per cell. Empty: rendering stops.
+std::vector<std::uint32_t> planNextBatches(const render::Region& region, const render::SampleCounts& counts,
+                                           const render::ErrorEstimate& estimate, const RenderLimits& limits);
+
+// An adaptive render with these limits would not add samples to this film. `plan`: render::FilmFile::plan.
+bool isComplete(const render::FilmState& film, const std::vector<std::uint32_t>& plan,
+                const render::ErrorEstimate& estimate, const RenderLimits& limits);
+
+// The target error is the only limit, and the error can never be known, because sums exceed the film's range.
+bool targetUnreachable(const render::ErrorEstimate& estimate, const RenderLimits& limits);
+
+// The target error is checked after this number of batches. The numbers are fixed, so that the same request stops after
+// the same samples whether or not it was interrupted: 4 to 15, then eight per doubling.
+bool isErrorCheckpoint(std::uint64_t batches);
+
+}  // namespace quintet::job
+#endif

@@ -1,0 +1,54 @@
+#include "job/scene_loading.h"
+
+#include <utility>
+
+#include "base/stopwatch.h"
+#include "render/scene/albedo_tables.h"
+#include "scene/model/content_hash.h"
+
+namespace quintet::job {
+namespace {
+
+LoadedScene load(const SceneSource& source, const RenderRequest& request,
+                 std::promise<render::SceneFeatures>& features) {
+  const Stopwatch total;
+  LoadedScene loaded;
+  scene::PendingScene pending = beginLoading(source);
+  const auto chooseLight = [&](const scene::Scene& scene) {
+    const Stopwatch watch;
+    loaded.environment = chooseEnvironment(scene, request.environment);
+    features.set_value(render::sceneFeatures(scene, loaded.environment.environment));
+    loaded.viewSeconds = watch.seconds();
+  };
+  // Compiling starts with the features, so they are needed before the images are decoded if possible.
+  const bool described = pending.described();
+  if (described) chooseLight(pending.scene());
+  loaded.scene = std::move(pending).finish();
+  if (!described) chooseLight(loaded.scene);
+
+  Stopwatch watch;
+  loaded.hash = scene::contentHash(loaded.scene).hex();
+  loaded.hashSeconds = watch.lap();
+
+  const uvec2 requested = request.size;
+  const float aspect = requested.y > 0 ? static_cast<float>(requested.x) / static_cast<float>(requested.y) : 0.0f;
+  loaded.camera = chooseCamera(loaded.scene, request.camera, aspect);
+  loaded.environmentHash = scene::contentHash(loaded.environment.environment).hex();
+  loaded.size = chooseImageSize(requested, loaded.camera.camera);
+  loaded.viewSeconds += watch.lap();
+  loaded.seconds = total.seconds();
+  return loaded;
+}
+
+}  // namespace
+
+SceneLoading::SceneLoading(const SceneSource& source, const RenderRequest& request) {
+  // The default launch policy: if no thread can be started, the work is done when its result is requested.
+  std::promise<render::SceneFeatures> features;
+  features_ = features.get_future().share();
+  scene_ = std::async(
+      [source, request, features = std::move(features)]() mutable { return load(source, request, features); });
+  tables_ = std::async([] { static_cast<void>(render::albedoTables()); });
+}
+
+}  // namespace quintet::job

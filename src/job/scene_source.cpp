@@ -1,0 +1,64 @@
+#include "job/scene_source.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+
+#include "base/error.h"
+#include "program/hit_group_binding.h"
+#include "scene/toml/scene_toml.h"
+
+namespace quintet::job {
+namespace {
+
+void checkReadable(const std::filesystem::path& file) {
+  if (::access(file.c_str(), R_OK) != 0)
+    throw FileError(file, "cannot be read: " + std::generic_category().message(errno));
+}
+
+// True if a hit group serves such geometry, with an intersection shader for boxes and without one for triangles.
+bool serves(const program::Program& program, program::GeometryKind kind) {
+  if (program.hitGroups.empty()) return kind == program::GeometryKind::triangles;
+  const program::HitGroup& group = program.hitGroups[program::hitGroupFor(program, {kind, false, {}, {}})];
+  const bool intersects =
+      std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
+  return intersects == (kind != program::GeometryKind::triangles);
+}
+
+scene::DefaultSceneOptions defaultSceneOptions(const program::Program& program) {
+  scene::DefaultSceneOptions options;
+  options.boxes = serves(program, program::GeometryKind::custom);
+  options.triangles = serves(program, program::GeometryKind::triangles) || !options.boxes;
+  return options;
+}
+
+}  // namespace
+
+SceneSource chooseSceneSource(const std::filesystem::path& requested, const program::Program& program) {
+  if (!requested.empty()) {
+    checkReadable(requested);
+    return {.file = requested, .name = requested.filename().string()};
+  }
+  if (!program.scene.empty()) return {.name = program.path(program.scene), .text = program.files.at(program.scene)};
+  return {.name = "default scene", .builtIn = defaultSceneOptions(program)};
+}
+
+scene::PendingScene beginLoading(const SceneSource& source) {
+  if (source.loaded) return scene::PendingScene(scene::Scene(*source.loaded));
+  if (!source.file.empty()) return scene::beginLoading(source.file);
+  if (!source.text.empty()) return scene::PendingScene(scene::parseSceneToml(source.text, source.name));
+  return scene::PendingScene(scene::defaultScene(source.builtIn));
+}
+
+scene::Scene loadScene(const SceneSource& source) { return beginLoading(source).finish(); }
+
+std::vector<std::filesystem::path> sourceFiles(const SceneSource& source) {
+  const std::filesystem::path file = source.text.empty() ? source.file : std::filesystem::path(source.name);
+  std::error_code ignored;
+  if (file.empty() || !std::filesystem::exists(file, ignored)) return {};
+  return {file};
+}
+
+}  // namespace quintet::job

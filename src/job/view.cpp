@@ -1,0 +1,143 @@
+#include "job/view.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/parse.h"
+#include "base/suggestion.h"
+#include "base/text.h"
+#include "io/codec.h"
+#include "scene/defaults/auto_camera.h"
+#include "scene/defaults/default_environment.h"
+
+namespace quintet::job {
+namespace {
+
+constexpr std::uint32_t kDefaultWidth = 1280;
+constexpr std::uint32_t kDefaultHeight = 720;
+constexpr float kDefaultAspect = static_cast<float>(kDefaultWidth) / static_cast<float>(kDefaultHeight);
+
+std::string describe(const scene::Scene& scene, std::size_t index) {
+  const std::string& name = scene.cameras[index].name;
+  return name.empty() ? fmt::format("camera {}", index) : fmt::format("camera {} '{}'", index, name);
+}
+
+// By name, else by index.
+std::size_t findCamera(const scene::Scene& scene, const std::string& wanted) {
+  std::vector<std::string> names;
+  for (const scene::Camera& camera : scene.cameras) names.push_back(camera.name);
+  if (const auto found = std::ranges::find(names, wanted); found != names.end())
+    return static_cast<std::size_t>(found - names.begin());
+  std::size_t index = 0;
+  const char* end = wanted.data() + wanted.size();
+  const auto [stop, error] = std::from_chars(wanted.data(), end, index);
+  const bool isIndex = error == std::errc{} && stop == end;
+  if (isIndex && index < names.size()) return index;
+  if (names.empty()) throw UsageError(fmt::format("camera '{}' not found: {} has no cameras", wanted, scene.name));
+  throw UsageError(fmt::format("camera '{}' not found in {}{}; available: {}", wanted, scene.name,
+                               isIndex ? "" : suggestion(wanted, names),
+                               names.size() == 1 ? "0" : fmt::format("0–{}", names.size() - 1)));
+}
+
+scene::Camera lookAtCamera(const scene::Scene& scene, const CameraRequest& request) {
+  const Bounds3 bounds = scene::worldBounds(scene);
+  const vec3 eye = *request.lookFrom;
+  const vec3 target = request.lookAt ? *request.lookAt : bounds.empty() ? vec3(0.0f) : bounds.center();
+  if (!(glm::length(target - eye) > 0.0f)) throw UsageError("look-from and look-at are the same point");
+  if (!(glm::length(request.up) > 0.0f)) throw UsageError("the up vector has length 0");
+  return scene::lookAtCamera(eye, target, request.up, scene::Camera().verticalFov, 0.0f);
+}
+
+// Distance of the scene's center along the optical axis.
+float distanceToScene(const scene::Scene& scene, const scene::Camera& camera) {
+  const Bounds3 bounds = scene::worldBounds(scene);
+  if (bounds.empty()) return camera.focusDistance;
+  const vec3 eye(camera.worldFromCamera[3]);
+  const float distance = glm::dot(bounds.center() - eye, -vec3(camera.worldFromCamera[2]));
+  return distance > 0.0f ? distance : camera.focusDistance;
+}
+
+scene::Environment readEnvironment(const std::string& source) {
+  scene::Environment environment;
+  environment.name = source;
+  environment.present = true;
+  const bool isColor = source.find(',') != std::string::npos && !std::filesystem::exists(source);
+  if (!isColor) {
+    environment.image = io::toFloat(io::readImage(source));
+    return environment;
+  }
+  const std::optional<vec3> color = parseVec3(source);
+  if (!color) throw UsageError(fmt::format("environment: '{}' is not three numbers like 1,2.5,3", printable(source)));
+  if (glm::any(glm::lessThan(*color, vec3(0.0f))))
+    throw UsageError(fmt::format("environment: '{}' has a negative radiance", source));
+  environment.constant = *color;
+  return environment;
+}
+
+}  // namespace
+
+CameraChoice chooseCamera(const scene::Scene& scene, const CameraRequest& request, float aspect) {
+  if (request.lookAt && !request.lookFrom) throw UsageError("look-at requires look-from");
+  if (request.lookFrom && !request.name.empty()) throw UsageError("camera and look-from exclude each other");
+  CameraChoice chosen;
+  if (request.lookFrom) {
+    chosen = {lookAtCamera(scene, request), "look-from"};
+  } else if (!request.name.empty() || !scene.cameras.empty()) {
+    const std::size_t index = request.name.empty() ? 0 : findCamera(scene, request.name);
+    chosen = {scene.cameras[index], describe(scene, index)};
+  } else {
+    chosen = {scene::frameScene(scene::worldBounds(scene), aspect > 0.0f ? aspect : kDefaultAspect), "automatic"};
+  }
+  scene::Camera& camera = chosen.camera;
+  if (request.verticalFov) {
+    if (camera.orthographic)
+      throw UsageError(fmt::format("the field of view does not apply: {} is orthographic", chosen.description));
+    camera.verticalFov = glm::radians(*request.verticalFov);
+  }
+  if (request.apertureRadius) camera.apertureRadius = *request.apertureRadius;
+  if (request.focusDistance) {
+    camera.focusDistance = *request.focusDistance;
+  } else if (request.apertureRadius && !request.lookFrom) {
+    camera.focusDistance = distanceToScene(scene, camera);
+  }
+  return chosen;
+}
+
+uvec2 chooseImageSize(uvec2 requested, const scene::Camera& camera) {
+  if (requested.x > 0 && requested.y > 0) return requested;
+  const float aspect = camera.aspect > 0.0f ? std::clamp(camera.aspect, 1e-3f, 1e3f) : kDefaultAspect;
+  const auto rounded = [](float pixels) {
+    return static_cast<std::uint32_t>(std::clamp(std::round(pixels), 1.0f, static_cast<float>(io::kMaxImageSide)));
+  };
+  if (requested.x > 0) return {requested.x, rounded(static_cast<float>(requested.x) / aspect)};
+  return aspect >= 1.0f ? uvec2{kDefaultWidth, rounded(kDefaultWidth / aspect)}
+                        : uvec2{rounded(kDefaultWidth * aspect), kDefaultWidth};
+}
+
+EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const EnvironmentRequest& request) {
+  EnvironmentChoice chosen;
+  if (request.source == "none") {
+    chosen.environment.present = true;
+    chosen.description = "none";
+  } else if (request.source == "default") {
+    chosen = {scene::defaultEnvironment(), "default"};
+  } else if (!request.source.empty()) {
+    chosen = {readEnvironment(request.source), request.source};
+  } else if (scene.environment.present) {
+    chosen = {scene.environment, "of the scene"};
+  } else if (!scene::hasEmitters(scene)) {
+    chosen = {scene::defaultEnvironment(), "default", true};
+  } else {
+    chosen.description = "none";
+  }
+  if (request.intensity) chosen.environment.intensity *= *request.intensity;
+  if (request.rotation) chosen.environment.rotation += glm::radians(*request.rotation);
+  return chosen;
+}
+
+}  // namespace quintet::job

@@ -1,0 +1,36 @@
+// How the scene is seen: camera, image size and environment, chosen from the request and the scene.
+#ifndef QUINTET_JOB_VIEW_H
+#define QUINTET_JOB_VIEW_H
+
+#include <string>
+
+#include "job/request.h"
+#include "scene/model/scene.h"
+
+namespace quintet::job {
+
+struct CameraChoice {
+  scene::Camera camera;
+  std::string description;  // for metadata: "camera 0 'Main'", "automatic", "look-from"
+};
+
+// lookFrom, else the named camera, else the scene's first, else an automatic one that shows the whole scene. `aspect`:
+// width / height of the image; 0 if it is not known yet. Throws UsageError.
+CameraChoice chooseCamera(const scene::Scene& scene, const CameraRequest& request, float aspect);
+
+// 1280 pixels for the longer side if the camera states an aspect ratio, else 1280x720. A width without a height keeps
+// the same aspect ratio.
+uvec2 chooseImageSize(uvec2 requested, const scene::Camera& camera);
+
+struct EnvironmentChoice {
+  scene::Environment environment;
+  std::string description;  // for metadata: "sky.hdr", "default", "none", "of the scene"
+  bool isFallback = false;  // the default environment, used because the scene has no lights
+};
+
+// The requested one, else the scene's, else the default one if the scene has no lights, else none. Throws FileError,
+// UsageError.
+EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const EnvironmentRequest& request);
+
+}  // namespace quintet::job
+#endif

@@ -1,0 +1,20 @@
+// What `quintet info` prints about devices and files, as text for people or as one JSON object on one line.
+#ifndef QUINTET_OUTPUT_INFO_H
+#define QUINTET_OUTPUT_INFO_H
+
+#include <filesystem>
+#include <string>
+
+namespace quintet::output {
+
+// Every Vulkan device, usable or not, with the reason.
+std::string devicesInfo(bool json);
+
+// A scene, an image or a film, distinguished by name and content. Throws FileError.
+std::string fileInfo(const std::filesystem::path& file, bool json);
+
+// Counts, bounds, images, lights, cameras, extensions; what was ignored and repaired.
+std::string sceneInfo(const std::filesystem::path& file, bool json);
+
+}  // namespace quintet::output
+#endif

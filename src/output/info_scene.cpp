@@ -1,0 +1,239 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "output/info.h"
+#include "scene/load.h"
+#include "scene/model/content_hash.h"
+
+namespace quintet::output {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* typeName(scene::LightType type) {
+  switch (type) {
+    case scene::LightType::point: return "point";
+    case scene::LightType::spot: return "spot";
+    case scene::LightType::directional: return "directional";
+  }
+  return "";
+}
+
+std::size_t geometryCount(const scene::Scene& scene) {
+  std::size_t count = 0;
+  for (const scene::Mesh& mesh : scene.meshes) count += mesh.geometryCount();
+  return count;
+}
+
+std::uint64_t imageBytes(const scene::Scene& scene) {
+  std::uint64_t bytes = 0;
+  for (const scene::NamedImage& image : scene.images) bytes += image.image.data.size();
+  return bytes;
+}
+
+std::string describe(const scene::NamedImage& image) {
+  constexpr const char* kChannels[] = {"", "gray", "gray + alpha", "RGB", "RGBA"};
+  const io::Image& pixels = image.image;
+  return fmt::format("{}: {}x{} {}, {} bits", printable(image.name), pixels.width, pixels.height,
+                     kChannels[std::min(pixels.channels, 4u)], 8 * io::bytesPerSample(pixels.type));
+}
+
+std::string describe(const scene::Camera& camera) {
+  const vec3 eye(camera.worldFromCamera[3]);
+  const std::string lens = camera.orthographic
+                               ? fmt::format("orthographic, {:.4g} x {:.4g} m", 2 * camera.orthographicHalfSize.x,
+                                             2 * camera.orthographicHalfSize.y)
+                               : fmt::format("perspective, {:.4g} degrees", glm::degrees(camera.verticalFov));
+  const std::string aspect = camera.aspect > 0 ? fmt::format(", aspect {:.4g}", camera.aspect) : "";
+  return fmt::format("'{}': {}{}, at {:.4g} {:.4g} {:.4g}", printable(camera.name), lens, aspect, eye.x, eye.y, eye.z);
+}
+
+std::string describe(const scene::Light& light) {
+  return fmt::format("'{}': {}, {:.4g} {:.4g} {:.4g} {}", printable(light.name), typeName(light.type),
+                     light.intensity.x, light.intensity.y, light.intensity.z,
+                     light.type == scene::LightType::directional ? "W/m2" : "W/sr");
+}
+
+struct MaterialCounts {
+  std::size_t alpha = 0, emissive = 0, transmissive = 0, unlit = 0;
+};
+MaterialCounts countMaterials(const scene::Scene& scene) {
+  MaterialCounts counts;
+  for (const scene::Material& material : scene.materials) {
+    counts.alpha += material.alphaMode != scene::AlphaMode::opaque;
+    counts.emissive += glm::any(glm::greaterThan(material.emissive, vec3(0.0f)));
+    counts.transmissive += material.transmission > 0;
+    counts.unlit += material.unlit;
+  }
+  return counts;
+}
+
+// Numbers of instances that differ from the defaults, by property.
+struct InstanceCounts {
+  std::size_t procedural = 0, masked = 0, flagged = 0, indexed = 0, moving = 0;
+};
+InstanceCounts countInstances(const scene::Scene& scene) {
+  InstanceCounts counts;
+  for (const scene::Instance& instance : scene.instances) {
+    counts.procedural += scene.meshes[static_cast<std::size_t>(instance.mesh)].procedural();
+    counts.masked += instance.mask != 0xFF;
+    counts.flagged += instance.flags != 0;
+    counts.indexed += instance.customIndex != 0;
+    counts.moving += !instance.keyframes.empty();
+  }
+  return counts;
+}
+
+std::string describe(const InstanceCounts& counts, std::size_t total) {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? " (" : ", ", count, what);
+  };
+  add(counts.procedural, "procedural");
+  add(counts.masked, "with a mask");
+  add(counts.flagged, "with flags");
+  add(counts.indexed, "with a custom index");
+  add(counts.moving, "moving");
+  return fmt::format("{}{}{}", total, text, text.empty() ? "" : ")");
+}
+
+Json vectorJson(const vec3& v) { return {v.x, v.y, v.z}; }
+
+Json namedObjects(const scene::Scene& scene, const char* kind) {
+  Json list = Json::array();
+  if (kind == std::string_view("images"))
+    for (const auto& [name, image] : scene.images)
+      list.push_back({{"name", name},
+                      {"width", image.width},
+                      {"height", image.height},
+                      {"channels", image.channels},
+                      {"bits", 8 * io::bytesPerSample(image.type)}});
+  if (kind == std::string_view("cameras"))
+    for (const scene::Camera& camera : scene.cameras)
+      list.push_back({{"name", camera.name},
+                      {"type", camera.orthographic ? "orthographic" : "perspective"},
+                      {"verticalFov", camera.orthographic ? Json() : Json(glm::degrees(camera.verticalFov))},
+                      {"aspect", camera.aspect},
+                      {"position", vectorJson(vec3(camera.worldFromCamera[3]))}});
+  if (kind == std::string_view("lights"))
+    for (const scene::Light& light : scene.lights)
+      list.push_back(
+          {{"name", light.name}, {"type", typeName(light.type)}, {"intensity", vectorJson(light.intensity)}});
+  return list;
+}
+
+Json toJson(const scene::Scene& scene, const std::string& file) {
+  const Bounds3 bounds = scene::worldBounds(scene);
+  const scene::TriangleCount triangles = scene::countTriangles(scene);
+  const scene::ProceduralCount procedural = scene::countProcedural(scene);
+  const InstanceCounts instances = countInstances(scene);
+  const MaterialCounts materials = countMaterials(scene);
+  return {{"file", file},
+          {"kind", "scene"},
+          {"hash", scene::contentHash(scene).hex()},
+          {"generator", scene.report.generator},
+          {"copyright", scene.report.copyright},
+          {"bounds", bounds.empty() ? Json() : Json{{"min", vectorJson(bounds.min)}, {"max", vectorJson(bounds.max)}}},
+          {"meshes", scene.meshes.size()},
+          {"geometries", geometryCount(scene)},
+          {"triangles", {{"stored", triangles.stored}, {"instanced", triangles.instanced}}},
+          {"procedural",
+           {{"sets", procedural.sets},
+            {"solids", procedural.solids},
+            {"trees", procedural.csgTrees},
+            {"leaves", procedural.csgLeaves},
+            {"customBoxes", procedural.customBoxes}}},
+          {"instances", scene.instances.size()},
+          {"instancesWith",
+           {{"mask", instances.masked},
+            {"flags", instances.flagged},
+            {"customIndex", instances.indexed},
+            {"keyframes", instances.moving},
+            {"procedural", instances.procedural}}},
+          {"materials",
+           {{"count", scene.materials.size()},
+            {"alpha", materials.alpha},
+            {"emissive", materials.emissive},
+            {"transmissive", materials.transmissive},
+            {"unlit", materials.unlit}}},
+          {"textures", scene.textures.size()},
+          {"imageBytes", imageBytes(scene)},
+          {"images", namedObjects(scene, "images")},
+          {"lights", namedObjects(scene, "lights")},
+          {"cameras", namedObjects(scene, "cameras")},
+          {"environment", scene.environment.present},
+          {"extensions", {{"used", scene.report.extensionsUsed}, {"ignored", scene.report.extensionsIgnored}}},
+          {"ignored", scene.report.ignored},
+          {"repaired", scene.report.repaired}};
+}
+
+// "label  head" and one indented line for each element.
+template <class List, class Describe>
+void addList(std::string& text, const char* label, const std::string& head, const List& list, Describe&& describeOne) {
+  text += fmt::format("   {:<12}{}\n", label, head);
+  std::size_t index = 0;
+  for (const auto& element : list) text += fmt::format("   {:<12}  {} {}\n", "", index++, describeOne(element));
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  return names.empty() ? "none" : printable(fmt::format("{}", fmt::join(names, ", ")));
+}
+
+std::string toText(const scene::Scene& scene, const std::string& file) {
+  const Bounds3 bounds = scene::worldBounds(scene);
+  const scene::TriangleCount triangles = scene::countTriangles(scene);
+  const MaterialCounts materials = countMaterials(scene);
+  const auto describeAny = [](const auto& element) { return describe(element); };
+  const auto itself = [](const std::string& line) { return printable(line); };
+  std::string text = fmt::format("{}: {}\n", printable(file),
+                                 scene::sceneFormat(file, {}) == scene::SceneFormat::toml ? "scene" : "glTF scene");
+  const auto line = [&text](const char* label, const std::string& value) {
+    if (!value.empty()) text += fmt::format("   {:<12}{}\n", label, value);
+  };
+  line("generator", printable(scene.report.generator));
+  line("copyright", printable(scene.report.copyright));
+  line("hash", scene::contentHash(scene).hex());
+  if (bounds.empty()) {
+    line("bounds", "empty");
+  } else {
+    const vec3 size = bounds.extent();
+    line("bounds",
+         fmt::format("{:.4g} {:.4g} {:.4g} to {:.4g} {:.4g} {:.4g} ({:.4g} x {:.4g} x {:.4g} m)", bounds.min.x,
+                     bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z, size.x, size.y, size.z));
+  }
+  line("meshes", fmt::format("{} with {} geometries", scene.meshes.size(), geometryCount(scene)));
+  line("triangles", fmt::format("{} stored, {} in instances", triangles.stored, triangles.instanced));
+  const scene::ProceduralCount procedural = scene::countProcedural(scene);
+  if (procedural.sets > 0)
+    line("procedural",
+         fmt::format("{} sets: {} solids, {} trees of {} leaves, {} custom boxes", procedural.sets, procedural.solids,
+                     procedural.csgTrees, procedural.csgLeaves, procedural.customBoxes));
+  line("instances", describe(countInstances(scene), scene.instances.size()));
+  line("materials", fmt::format("{} ({} with alpha, {} emissive, {} transmissive, {} unlit)", scene.materials.size(),
+                                materials.alpha, materials.emissive, materials.transmissive, materials.unlit));
+  line("textures", fmt::format("{}", scene.textures.size()));
+  addList(text, "images", fmt::format("{}, {} decoded", scene.images.size(), bytesText(imageBytes(scene))),
+          scene.images, describeAny);
+  addList(text, "lights", fmt::format("{}", scene.lights.size()), scene.lights, describeAny);
+  addList(text, "cameras", fmt::format("{}", scene.cameras.size()), scene.cameras, describeAny);
+  line("extensions", fmt::format("used: {}", joined(scene.report.extensionsUsed)));
+  line("", fmt::format("ignored: {}", joined(scene.report.extensionsIgnored)));
+  addList(text, "ignored", fmt::format("{}", scene.report.ignored.size()), scene.report.ignored, itself);
+  addList(text, "repaired", fmt::format("{}", scene.report.repaired.size()), scene.report.repaired, itself);
+  return text;
+}
+
+}  // namespace
+
+std::string sceneInfo(const std::filesystem::path& file, bool json) {
+  const scene::Scene scene = scene::loadScene(file);
+  if (!json) return toText(scene, file.string());
+  return toJson(scene, file.string()).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace quintet::output

@@ -1,0 +1,76 @@
+// Which files a render writes, and what they show. The plan is made before the render, so that a wrong name or option fails
+// at once.
+#ifndef QUINTET_OUTPUT_PLAN_H
+#define QUINTET_OUTPUT_PLAN_H
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/exr/exr.h"
+#include "job/request.h"
+#include "job/result.h"
+#include "output/layers.h"
+#include "program/description/program.h"
+#include "render/tone_map/tone_map.h"
+
+namespace quintet::output {
+
+enum class FileKind { png, exr, hdr, film };
+
+// By the extension, in any case; "-" and devices without extension are PNG. Throws UsageError.
+FileKind fileKind(const std::filesystem::path& file);
+
+struct ExrFormat {
+  io::ExrType colors = io::ExrType::half;  // data are always floats
+  io::ExrOptions options;
+};
+
+struct OutputRequest {
+  std::filesystem::path file;              // "-": PNG on standard output
+  std::string output;                      // of the program; empty means the first
+  bool allOutputs = false;                 // one file for each output
+  bool everyFrame = false;                 // one file for each frame
+  std::vector<std::string> layers;         // names of layers besides the image, or "all"
+  std::optional<double> exposure;          // stops; PNG only. Default: 0, or as stored in a film
+  std::optional<render::ToneMap> toneMap;  // PNG only. Default: by the kind of output, or as stored in a film
+  std::optional<ExrFormat> exr;            // only for OpenEXR files
+};
+
+struct OutputPlan {
+  OutputRequest request;
+  FileKind kind = FileKind::png;
+  std::vector<std::size_t> outputs;  // of the program, those that get a file
+  std::vector<Layer> layers;
+
+  // Names of the program's optional outputs that the files require: job::RenderRequest::outputs.
+  std::vector<std::string> optionalOutputs;
+  // What a film of the render must remember: job::RenderRequest::outputNotes.
+  job::OutputNotes notes() const;
+};
+
+// For a program. Throws UsageError for unknown names and for options that exclude each other, FileError if the file cannot
+// be written.
+OutputPlan planOutputs(const OutputRequest& request, const program::Program& program);
+
+// For a merged film. What the request leaves open is as the render would have written it. `film`: name of the first part, for
+// messages. Throws also FileError if the layers that the film stores are invalid.
+OutputPlan planOutputs(const OutputRequest& request, const job::RenderResult& merged,
+                       const std::filesystem::path& film);
+
+// The part of planOutputs() for a merged film that needs no film. Throws UsageError, FileError.
+void checkMergeRequest(const OutputRequest& request);
+
+// Puts the plan's display settings into the result's provenance, for the film that is written of it.
+void storeNotes(const OutputPlan& plan, job::RenderResult& result);
+
+// Throws UsageError if an image of this size does not fit the file format. A size that contains 0 is not known yet.
+void checkSize(const OutputPlan& plan, uvec2 size);
+
+// That exposure and tone map, if requested, do not apply to the file: a note for the user; empty if they do.
+std::string ignoredDisplayText(const OutputRequest& request);
+
+}  // namespace quintet::output
+#endif

@@ -1,0 +1,88 @@
+#include "output/report.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "check/diagnostic_text.h"
+
+namespace quintet::output {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json valueJson(const job::FieldValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+  if (const auto* integer = std::get_if<std::uint64_t>(&value)) return *integer;
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* size = std::get_if<uvec2>(&value)) return {size->x, size->y};
+  if (const auto* r = std::get_if<render::Region>(&value)) return {r->x, r->y, r->width, r->height};
+  const std::string text = job::toText(value);
+  return text.empty() ? Json() : Json(text);
+}
+
+// Null if the error is neither known nor limited.
+Json errorJson(const job::RenderResult& result) {
+  Json json;
+  if (result.error.known()) json = {{"image", result.error.upper}, {"tiles", result.error.tiles}};
+  if (const std::optional<double> target = result.provenance.targetError) {
+    json["target"] = *target;
+    json["reached"] = result.error.reaches(*target);
+  }
+  return json;
+}
+
+Json secondsJson(const job::Timings& t, double total) {
+  return {{"start", t.start},     {"load", t.load},         {"build", t.build},
+          {"compile", t.compile}, {"pipeline", t.pipeline}, {"firstPixel", t.firstPixel},
+          {"render", t.render},   {"device", t.device},     {"total", total}};
+}
+
+}  // namespace
+
+std::string resultJson(const job::RenderResult& result, const std::vector<WrittenFile>& files, double totalSeconds) {
+  const job::MemoryUse& m = result.memory;
+  Json json;
+  for (const job::ProvenanceField& field : job::provenanceFields())
+    if (!field.jsonKey.empty()) json[std::string(field.jsonKey)] = valueJson(field.get(result.provenance));
+  json["output"] = files.empty() ? "" : files.back().path.string();
+  json["toneMap"] = files.empty() || files.back().toneMap.empty() ? Json() : Json(files.back().toneMap);
+  json["files"] = Json::array();
+  for (const WrittenFile& file : files) json["files"].push_back(file.path.string());
+  json["raysPerSecond"] = result.raysPerSecond();
+  json["error"] = errorJson(result);
+  json["seconds"] = secondsJson(result.seconds, totalSeconds);
+  json["stages"] = Json::object();
+  for (const auto& [name, seconds] : result.seconds.stages) json["stages"][name] = seconds;
+  json["bytes"] = {{"geometry", m.geometry},
+                   {"textures", m.textures},
+                   {"accelerationStructures", m.acceleration},
+                   {"film", result.filmBytes}};
+  json["memory"] = {{"peakHostBytes", m.peakHost},
+                    {"peakDeviceBytes", m.peakDevice},
+                    {"deviceIsHost", m.deviceIsHost},
+                    {"geometryBytes", m.geometry},
+                    {"textureBytes", m.textures},
+                    {"accelerationBytes", m.acceleration + m.primitiveMaps},
+                    {"ratio", m.ratio()}};
+  json["devicePeak"] = Json::object();
+  for (const auto& [purpose, bytes] : m.devicePeak) json["devicePeak"][purpose + "Bytes"] = bytes;
+  json["warnings"] = result.warnings;
+  json["diagnostics"] = Json::parse(check::diagnosticsJson(result.diagnostics));
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string resultSummary(const job::RenderResult& result, const std::vector<WrittenFile>& files) {
+  const job::Provenance& p = result.provenance;
+  const std::string file = files.empty() ? "" : files.back().path.string();
+  const std::string rate = p.rays > 0 ? fmt::format(", {:.3g} Mrays/s", result.raysPerSecond() * 1e-6) : "";
+  const std::string error = result.error.known() ? fmt::format(", error {:.2g} %", 100.0 * result.error.upper) : "";
+  const std::string unit = fmt::format("{}{}{}", result.accumulatesFrames ? "frame" : "sample",
+                                       p.samples == 1 ? "" : "s", result.accumulatesFrames ? "" : " per pixel");
+  return fmt::format("{}: {}x{}, {} {}{}, {}{}{}", file == "-" ? "standard output" : file, p.region.width,
+                     p.region.height, p.samples, unit, error, durationText(p.seconds), rate,
+                     result.interrupted ? ", interrupted" : "");
+}
+
+}  // namespace quintet::output

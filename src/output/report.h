@@ -1,0 +1,20 @@
+// A finished render for machines and for people: --json and the line at the end.
+#ifndef QUINTET_OUTPUT_REPORT_H
+#define QUINTET_OUTPUT_REPORT_H
+
+#include <string>
+#include <vector>
+
+#include "job/result.h"
+#include "output/write.h"
+
+namespace quintet::output {
+
+// One object on one line. `files`: written by the command, in their order; `totalSeconds`: of the command so far.
+std::string resultJson(const job::RenderResult& result, const std::vector<WrittenFile>& files, double totalSeconds);
+
+// "out.png: 1280x720, 64 samples per pixel, error 1.2 %, 12.3 s, 4.56 Mrays/s"
+std::string resultSummary(const job::RenderResult& result, const std::vector<WrittenFile>& files);
+
+}  // namespace quintet::output
+#endif

@@ -1,0 +1,94 @@
+#include "output/write.h"
+
+#include <optional>
+
+#include "io/codec.h"
+#include "job/film_store.h"
+#include "output/file_names.h"
+
+namespace quintet::output {
+namespace {
+
+// The provenance of one image.
+job::Provenance provenanceOf(const job::RenderResult& result, const std::string& output) {
+  job::Provenance provenance = result.provenance;
+  provenance.output = output;
+  provenance.exposure.reset();
+  provenance.toneMap.clear();
+  return provenance;
+}
+
+render::ToneMap toneMapOf(const OutputPlan& plan, const render::FilmPlane& plane) {
+  const bool isColor = plane.kind == program::OutputKind::color;
+  return plan.request.toneMap.value_or(isColor ? render::ToneMap::neutral : render::ToneMap::linear);
+}
+
+std::vector<std::byte> encodePng(const OutputPlan& plan, const job::RenderResult& result, std::size_t output) {
+  const render::FilmPlane& plane = result.film->planes()[output];
+  const render::ToneMap toneMap = toneMapOf(plan, plane);
+  const double exposure = plan.request.exposure.value_or(0.0);
+  job::Provenance provenance = provenanceOf(result, plane.name);
+  provenance.toneMap = render::toneMapNames()[static_cast<std::size_t>(toneMap)];
+  provenance.exposure = exposure;
+  return io::encodePng(render::toDisplay(result.film->image(output), toneMap, static_cast<float>(exposure),
+                                         !result.provenance.transparent),
+                       job::metadataOf(provenance));
+}
+
+std::vector<std::byte> encodeExr(const OutputPlan& plan, const job::RenderResult& result, std::size_t output) {
+  const job::Provenance& p = result.provenance;
+  const render::FilmPlane& plane = result.film->planes()[output];
+  const ExrFormat format = plan.request.exr.value_or(ExrFormat());
+  io::ExrImage image;
+  image.width = p.region.width;
+  image.height = p.region.height;
+  image.window = {p.region.x, p.region.y, p.size.x, p.size.y};
+  image.metadata = job::metadataOf(provenanceOf(result, plane.name));
+  if (p.worldToCamera && p.worldToNdc) {
+    image.attributes.push_back({"worldToCamera", *p.worldToCamera});
+    image.attributes.push_back({"worldToNDC", *p.worldToNdc});
+  }
+  std::vector<std::string> channels{"R", "G", "B"};
+  if (p.transparent) channels.push_back("A");
+  addChannels(image, "", channels, result.film->image(output), format.colors, !plane.color);
+  if (!plan.request.allOutputs)
+    for (const Layer& layer : plan.layers) addLayer(image, layer, result, format.colors);
+  return io::encodeExr(image, format.options);
+}
+
+}  // namespace
+
+std::vector<WrittenFile> writeOutputs(const OutputPlan& plan, const job::RenderResult& result,
+                                      job::Observer& observer) {
+  const std::filesystem::path& file = plan.request.file;
+  observer.stage("writing " + file.string());
+  if (plan.kind == FileKind::film) {
+    observer.write(file, render::encodeFilm(job::filmFileOf(result)));
+    return {{file, ""}};
+  }
+  const std::optional<std::uint64_t> frame =
+      plan.request.everyFrame ? result.provenance.frame : std::optional<std::uint64_t>();
+  std::vector<WrittenFile> written;
+  for (const std::size_t output : plan.outputs) {
+    const render::FilmPlane& plane = result.film->planes()[output];
+    WrittenFile& entry = written.emplace_back();
+    entry.path = fileName(file, plan.request.allOutputs ? plane.name : "", frame);
+    if (plan.kind == FileKind::png) {
+      entry.toneMap = render::toneMapNames()[static_cast<std::size_t>(toneMapOf(plan, plane))];
+      observer.write(entry.path, encodePng(plan, result, output));
+    } else if (plan.kind == FileKind::exr) {
+      observer.write(entry.path, encodeExr(plan, result, output));
+    } else {
+      observer.write(entry.path, io::encodeHdr(result.film->image(output)));
+    }
+  }
+  return written;
+}
+
+void checkFilmLoss(const OutputPlan& plan, const job::RenderResult& result) {
+  if (plan.kind != FileKind::film) return;
+  job::rejectLoss(plan.request.file, job::toFacts(result.provenance, job::ProvenanceField::Role::identity),
+                  result.film->counts());
+}
+
+}  // namespace quintet::output

@@ -1,0 +1,28 @@
+// Writes the files of a plan from a result: PNG, OpenEXR with layers, Radiance HDR, or the film itself.
+#ifndef QUINTET_OUTPUT_WRITE_H
+#define QUINTET_OUTPUT_WRITE_H
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "job/observer.h"
+#include "job/result.h"
+#include "output/plan.h"
+
+namespace quintet::output {
+
+struct WrittenFile {
+  std::filesystem::path path;
+  std::string toneMap;  // empty for linear values and films
+};
+
+// Each file replaces an existing one in one step. A frame number goes into the names if the plan has a file for each frame
+// and the result is a frame. Throws FileError.
+std::vector<WrittenFile> writeOutputs(const OutputPlan& plan, const job::RenderResult& result, job::Observer& observer);
+
+// Throws FileError if the plan's film would lose samples that its file holds (job::rejectLoss).
+void checkFilmLoss(const OutputPlan& plan, const job::RenderResult& result);
+
+}  // namespace quintet::output
+#endif

@@ -1,0 +1,115 @@
+#include "program/compile.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "program/description/generated_glsl.h"
+#include "program/gsn/lecture.h"
+#include "program/instrument.h"
+#include "spirv/module.h"
+
+namespace quintet::program {
+namespace {
+
+std::vector<std::string> usedFiles(const Program& program) {
+  std::vector<std::string> files;
+  const auto add = [&](const std::string& file) {
+    if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  };
+  add(program.rayGeneration);
+  for (const MissShader& miss : missShaders(program)) add(miss.file);
+  for (const HitGroup& group : program.hitGroups) {
+    for (const auto& [ray, shaders] : group.shaders) {
+      add(shaders.closestHit);
+      add(shaders.anyHit);
+      add(shaders.intersection);
+    }
+  }
+  for (const Callable& callable : program.callables) add(callable.file);
+  return files;
+}
+
+// Returns the source of one stage. A stage of the library becomes a file that includes it. `index` is the position in
+// CompiledProgram::stages.
+shader::Source stageSource(const Program& program, const std::string& file, std::size_t index, bool instrument) {
+  shader::Source source;
+  const bool library = isLibraryStage(file);
+  source.stage = *shader::stageOfFile(library ? file.substr(1, file.size() - 2) : file);
+  source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + file + "\n"
+                        : program.files.at(file);
+  if (instrument) source.text = instrumentStage(source.text, source.stage, index);
+  source.name = program.path(file);
+  return source;
+}
+
+// Adds the messages and files of one stage. Code that stages share (common text, an included file) gives the same message
+// in each of them, which is kept once.
+void addResult(CompiledProgram& compiled, shader::Result& result) {
+  for (Diagnostic& d : result.diagnostics) addUnique(compiled.diagnostics, std::move(d));
+  for (const std::filesystem::path& file : result.files)
+    if (std::ranges::find(compiled.files, file) == compiled.files.end()) compiled.files.push_back(file);
+  compiled.fileHashes.insert(compiled.fileHashes.end(), result.fileHashes.begin(), result.fileHashes.end());
+}
+
+}  // namespace
+
+std::string userFile(const Program& program, const std::string& file) {
+  if (!isLibraryStage(file)) return file;
+  const std::string inside = file.substr(1, file.size() - 2);
+  const bool own =
+      std::ranges::any_of(program.files, [&](const auto& entry) { return program.path(entry.first) == inside; });
+  return own ? inside : file;
+}
+
+const CompiledProgram::Stage& CompiledProgram::stage(const std::string& file) const {
+  const auto found = std::find_if(stages.begin(), stages.end(), [&](const Stage& stage) { return stage.file == file; });
+  assert(found != stages.end());
+  return *found;
+}
+
+CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
+                        const std::vector<std::pair<std::string, std::string>>& defines, bool instrument) {
+  const Stopwatch clock;
+  if (hasErrors(program.diagnostics)) return {.stages = {}, .diagnostics = program.diagnostics};
+  const std::vector<std::string> files = usedFiles(program);
+  std::map<std::string, std::string> virtualFiles = generatedFiles(program);
+  for (const auto& [name, text] : program.files) virtualFiles[program.path(name)] = text;
+
+  std::vector<shader::Result> results(files.size());
+  CompiledProgram compiled;
+  compiled.stages.resize(files.size());
+  parallelFor(files.size(), [&](std::size_t i) {
+    shader::Source source = stageSource(program, files[i], i, instrument);
+    source.defines = defines;
+    source.virtualFiles = virtualFiles;
+    results[i] = compiler.compile(source);
+    if (program.descriptionFile.ends_with(kLectureExtension)) explainLectureNames(results[i].diagnostics, source.stage);
+    compiled.stages[i] = {files[i], source.stage, std::move(results[i].spirv)};
+  });
+  compiled.ok = std::ranges::none_of(compiled.stages, [](const auto& stage) { return stage.spirv.empty(); });
+  compiled.diagnostics = program.diagnostics;
+  for (shader::Result& result : results) addResult(compiled, result);
+  std::ranges::sort(compiled.fileHashes);
+  compiled.fileHashes.erase(std::unique(compiled.fileHashes.begin(), compiled.fileHashes.end()),
+                            compiled.fileHashes.end());
+  for (Diagnostic& d : compiled.diagnostics) d.file = userFile(program, d.file);
+  compiled.seconds = clock.seconds();
+  return compiled;
+}
+
+std::vector<PayloadSize> payloadSizes(const CompiledProgram& compiled) {
+  std::vector<PayloadSize> sizes;
+  for (const CompiledProgram::Stage& stage : compiled.stages) {
+    const std::optional<spirv::Module> module = spirv::Module::read(stage.spirv);
+    if (!module) continue;
+    for (const spirv::Variable& variable : module->variables())
+      if (variable.storage == spv::StorageClass::RayPayloadKHR ||
+          variable.storage == spv::StorageClass::IncomingRayPayloadKHR)
+        sizes.push_back({stage.file, module->types().nameOf(variable.type), module->types().get(variable.type).bytes});
+  }
+  return sizes;
+}
+
+}  // namespace quintet::program

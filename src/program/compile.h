@@ -1,0 +1,54 @@
+// Compiles every stage of a program to SPIR-V.
+#ifndef QUINTET_PROGRAM_COMPILE_H
+#define QUINTET_PROGRAM_COMPILE_H
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/hash.h"
+#include "program/description/program.h"
+#include "shader/compiler.h"
+
+namespace quintet::program {
+
+// SPIR-V of every stage, or the diagnostics that explain why it is missing.
+struct CompiledProgram {
+  struct Stage {
+    std::string file;
+    shader::Stage kind = shader::Stage::rayGeneration;
+    std::vector<std::uint32_t> spirv;  // empty if the stage did not compile
+  };
+  std::vector<Stage> stages;  // one per file that the program uses
+  std::vector<Diagnostic> diagnostics;
+  std::vector<std::filesystem::path> files;  // read from disk in addition to Program::files, for --watch
+  std::vector<Hash> fileHashes;              // of the texts of `files`, sorted, without duplicates
+  double seconds = 0;                        // wall-clock time of the compilation
+  bool ok = false;                           // every stage has SPIR-V
+
+  const Stage& stage(const std::string& file) const;
+};
+
+// Returns the path of a file as the user knows it. The compiler has the program's files only in memory and calls them
+// "<folder/file>".
+std::string userFile(const Program& program, const std::string& file);
+
+// Compiles all stages in parallel. `defines` apply to every stage (features of the scene and the device). `instrument`
+// adds the checks of instrument.h.
+CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
+                        const std::vector<std::pair<std::string, std::string>>& defines, bool instrument = false);
+
+struct PayloadSize {
+  std::string stage;    // file
+  std::string type;     // GLSL name, such as "HitPayload"
+  std::uint64_t bytes;  // in scalar layout; 0 if unknown
+};
+
+// Returns the ray payloads that each stage sends (rayPayloadEXT) or receives (rayPayloadInEXT), except those that the
+// compiler removed as unused. Type names require SPIR-V with debug information.
+std::vector<PayloadSize> payloadSizes(const CompiledProgram& compiled);
+
+}  // namespace quintet::program
+#endif

@@ -1,0 +1,120 @@
+#include "program/help.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "program/load.h"
+
+namespace quintet::program {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json numberJson(ParameterType type, double value) {
+  if (type == ParameterType::boolean) return value != 0;
+  if (isWhole(type)) return static_cast<std::int64_t>(value);
+  return value;
+}
+
+Json defaultJson(const Parameter& parameter) {
+  if (parameter.type == ParameterType::image || parameter.type == ParameterType::choice)
+    return formatDefault(parameter);
+  Json values = Json::array();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(componentCount(parameter.type)); ++i)
+    values.push_back(numberJson(parameter.type, parameter.defaultValue[i]));
+  return values.size() == 1 ? values[0] : values;
+}
+
+Json parameterJson(const Parameter& parameter) {
+  Json json{{"name", parameter.name}, {"type", typeName(parameter.type)}, {"default", defaultJson(parameter)}};
+  if (parameter.type == ParameterType::choice) {
+    json["choices"] = parameter.choices;
+  } else if (parameter.type == ParameterType::image) {
+    json["encoding"] = parameter.sRgb ? "srgb" : "linear";
+  } else {
+    json["min"] = hasMin(parameter) ? numberJson(parameter.type, parameter.min) : Json();
+    json["max"] = hasMax(parameter) ? numberJson(parameter.type, parameter.max) : Json();
+  }
+  json["unit"] = parameter.unit;
+  json["help"] = parameter.help;
+  return json;
+}
+
+std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string parameterHelp(const Parameter& parameter) {
+  const bool white = parameter.type == ParameterType::image && parameter.defaultImage.empty();
+  const std::string value = white ? "white" : formatDefault(parameter);
+  std::string range;
+  if (hasMin(parameter)) range += fmt::format(", at least {}", parameter.min);
+  if (hasMax(parameter)) range += fmt::format(", at most {}", parameter.max);
+  if (!parameter.choices.empty()) range = fmt::format(", one of {}", fmt::join(parameter.choices, ", "));
+  const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+  return fmt::format("  {:<18}{}\n{:20}{}, default {}{}{}\n", parameter.name, parameter.help, "",
+                     typeName(parameter.type), value, unit, range);
+}
+
+// Returns the first sentence of a text, shortened to one line.
+std::string firstSentence(const std::string& text) {
+  constexpr std::size_t kMost = 90;
+  const std::string sentence = text.substr(0, text.find(". "));
+  if (sentence.size() <= kMost) return sentence;
+  const std::size_t space = sentence.rfind(' ', kMost);
+  return sentence.substr(0, space == sentence.npos ? kMost : space) + " ...";
+}
+
+}  // namespace
+
+std::string describeAsText(const Program& program) {
+  std::string text = fmt::format("{}: {}\n\n", program.name, program.description);
+  if (program.accumulation == Accumulation::program) text += "Renders frame by frame: --frames N.\n\n";
+  text += "Parameters (--set NAME=VALUE):\n";
+  if (program.parameters.empty()) text += "  none\n";
+  for (const Parameter& parameter : program.parameters) text += parameterHelp(parameter);
+  text += "\nOutputs (--output NAME, --all-outputs, --aov NAMES):\n";
+  for (const Output& output : program.outputs)
+    text += fmt::format("  {:<18}{}\n", output.name,
+                        output.help.empty() ? std::string(outputKindName(output.kind)) : output.help);
+  return text + "\nSee 'quintet run --help' for the options of all programs.\n";
+}
+
+std::string describeAsJson(const Program& program) {
+  Json rays = Json::array(), outputs = Json::array(), parameters = Json::array();
+  for (const RayType& ray : program.rays) rays.push_back(ray.name);
+  for (const Output& output : program.outputs)
+    outputs.push_back({{"name", output.name},
+                       {"kind", outputKindName(output.kind)},
+                       {"pixel", outputPixelName(output.pixel)},
+                       {"optional", output.optional},
+                       {"channels", outputChannels(output)},
+                       {"help", output.help}});
+  for (const Parameter& parameter : program.parameters) parameters.push_back(parameterJson(parameter));
+  const Json json{{"name", program.name},
+                  {"description", program.description},
+                  {"accumulation", program.accumulation == Accumulation::program ? "program" : "film"},
+                  {"rays", rays},
+                  {"parameters", parameters},
+                  {"outputs", outputs}};
+  return oneLine(json);
+}
+
+std::string listAsText() {
+  const std::vector<std::string> names = builtInPrograms();
+  std::size_t width = 0;
+  for (const std::string& name : names) width = std::max(width, name.size());
+  std::string text;
+  for (const std::string& name : names)
+    text += fmt::format("{:<{}}  {}\n", name, width, firstSentence(loadProgram(name).description));
+  return text;
+}
+
+std::string listAsJson() {
+  Json list = Json::array();
+  for (const std::string& name : builtInPrograms())
+    list.push_back({{"name", name}, {"description", loadProgram(name).description}});
+  return oneLine(list);
+}
+
+}  // namespace quintet::program

@@ -1,0 +1,275 @@
+#include "render/film/film.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "base/error.h"
+
+namespace quintet::render {
+namespace {
+
+static_assert(shared::kMaxOutputs == 32, "program/description/parser.cpp rejects programs with more outputs");
+
+using program::Accumulation;
+using program::OutputPixel;
+
+std::unique_ptr<gpu::ComputePipeline> makePass(gpu::Context& context, const gpu::BindlessSet& set,
+                                               const shader::Compiler& compiler, const std::string& name) {
+  shader::Source source;
+  source.stage = shader::Stage::compute;
+  source.name = name + ".comp";
+  source.text = fmt::format("#version 460\n#include <quintet/passes/{}.glsl>\n", name);
+  const shader::Result result = compiler.compile(source);
+  if (!result.ok())
+    throw Error(result.diagnostics.empty() ? source.name + " does not compile" : result.diagnostics[0].format());
+  return std::make_unique<gpu::ComputePipeline>(context, set, result.spirv, VK_NULL_HANDLE, name);
+}
+
+void dispatch(const gpu::ComputePipeline& pass, gpu::Commands& commands, std::span<const std::byte> constants,
+              std::uint32_t pixels) {
+  const std::uint32_t groups = (pixels + shared::kFilmGroupSize - 1) / shared::kFilmGroupSize;
+  const std::uint32_t columns = std::min(groups, shared::kFilmColumns);
+  pass.dispatch(commands, constants, columns, (groups + columns - 1) / columns);
+}
+
+bool isStored(const program::Output& output, const std::vector<std::string>& wanted) {
+  return !output.optional || std::ranges::find(wanted, output.name) != wanted.end();
+}
+
+std::uint64_t totalBytes(OutputPixel pixel, Accumulation accumulation) {
+  if (accumulation == Accumulation::program || pixel == OutputPixel::center) return sizeof(vec4);
+  return pixel == OutputPixel::mean ? 4 * sizeof(shared::FixedSum)
+                                    : shared::kCoverageSlots * sizeof(shared::CoverageSlot);
+}
+
+bool storesSquares(std::size_t output, Accumulation accumulation) {
+  return output == 0 && accumulation == Accumulation::film;
+}
+
+}  // namespace
+
+Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler, Region region,
+           const program::Program& program, const std::vector<std::string>& wanted)
+    : context_(context),
+      region_(region),
+      accumulation_(program.accumulation),
+      add_(makePass(context, set, compiler, "film_add")) {
+  const std::vector<std::string> names = program::outputNames(program);
+  for (const std::string& name : wanted)
+    if (std::ranges::find(names, name) == names.end())
+      throw UsageError(fmt::format("the program '{}' has no output '{}'; available: {}", program.name, name,
+                                   fmt::join(names, ", ")));
+  const VkDeviceSize pixels = VkDeviceSize{region.width} * region.height;
+  const auto buffer = [&](std::uint64_t bytesPerPixel, const std::string& name) {
+    gpu::BufferOptions options;
+    options.size = pixels * bytesPerPixel;
+    options.name = name;
+    options.purpose = gpu::Purpose::film;
+    return gpu::Buffer(context, options);
+  };
+  for (std::size_t i = 0; i < program.outputs.size(); ++i) {
+    const program::Output& output = program.outputs[i];
+    Output& entry = outputs_.emplace_back();
+    entry.facts.name = output.name;
+    entry.facts.pixel = output.pixel;
+    entry.facts.kind = output.kind;
+    entry.facts.color = program::holdsColor(output);
+    if (!isStored(output, wanted)) continue;
+    entry.batch = buffer(sizeof(vec4), "film batch " + output.name);
+    entry.total = buffer(totalBytes(output.pixel, accumulation_), "film total " + output.name);
+    if (storesSquares(i, accumulation_))
+      entry.squares = buffer(4 * sizeof(shared::FixedSum), "film squares " + output.name);
+    if (output.pixel == OutputPixel::coverage && !coverage_)
+      coverage_ = makePass(context, set, compiler, "film_coverage");
+  }
+  statistics_ = buffer(sizeof(uvec2), "film statistics");
+  clear();
+}
+
+void Film::clear() {
+  counts_ = {};
+  context_.submit([&](gpu::Commands& commands) {
+    for (const Output& output : outputs_) {
+      if (output.total) commands.fill(output.total, 0);
+      if (output.squares) commands.fill(output.squares, 0);
+    }
+    commands.fill(statistics_, 0);
+  });
+}
+
+std::uint64_t Film::bytes() const {
+  std::uint64_t sum = statistics_.size();
+  for (const Output& output : outputs_)
+    if (output.total) sum += output.batch.size() + output.total.size() + (output.squares ? output.squares.size() : 0);
+  return sum;
+}
+
+std::uint64_t Film::bytesPerPixel(const program::Program& program, const std::vector<std::string>& wanted) {
+  std::uint64_t sum = sizeof(uvec2);
+  for (std::size_t i = 0; i < program.outputs.size(); ++i) {
+    if (!isStored(program.outputs[i], wanted)) continue;
+    sum += sizeof(vec4) + totalBytes(program.outputs[i].pixel, program.accumulation);
+    if (storesSquares(i, program.accumulation)) sum += 4 * sizeof(shared::FixedSum);
+  }
+  return sum;
+}
+
+void Film::describe(shared::Frame& frame) const {
+  frame.filmOffset = {region_.x, region_.y};
+  frame.filmWidth = region_.width;
+  frame.filmHeight = region_.height;
+  frame.statistics = statistics_.address();
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    if (!outputs_[i].total) continue;
+    frame.outputs[i] = outputs_[i].batch.address();
+    if (accumulation_ == Accumulation::program) frame.previousOutputs[i] = outputs_[i].total.address();
+  }
+}
+
+void Film::beginBatch(gpu::Commands& commands) {
+  commands.barrier(gpu::Stage::all, gpu::Stage::transfer);
+  for (const Output& output : outputs_)
+    if (output.total) commands.fill(output.batch, 0);
+  commands.barrier(gpu::Stage::transfer, gpu::Stage::rayTracing);
+}
+
+void Film::endBatch(gpu::Commands& commands, SampleRange samples) {
+  addBatch(commands, samples);
+  if (accumulation_ == Accumulation::film) counts_.add(samples);
+}
+
+void Film::endAdaptiveBatch(gpu::Commands& commands, SampleRange samples,
+                            const std::vector<std::uint32_t>& cellBatches) {
+  assert(accumulation_ == Accumulation::film && cellBatches.size() == 2 * std::size_t{tileCount(region_)});
+  addBatch(commands, samples);
+  counts_.cellBatches = cellBatches;
+}
+
+void Film::addBatch(gpu::Commands& commands, SampleRange samples) {
+  commands.barrier(gpu::Stage::rayTracing, gpu::Stage::all);
+  for (const Output& output : outputs_) {
+    if (!output.total) continue;
+    const std::uint32_t pixels = region_.width * region_.height;
+    if (accumulation_ == Accumulation::program) {
+      commands.copy(output.batch, output.total, output.total.size());
+    } else if (output.facts.pixel == OutputPixel::center) {
+      if (samples.begin == 0) commands.copy(output.batch, output.total, output.total.size());
+    } else if (output.facts.pixel == OutputPixel::coverage) {
+      const shared::FilmCoverage pass{output.total.address(), output.batch.address(), pixels, 0};
+      dispatch(*coverage_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+    } else {
+      const shared::FilmAdd pass{output.total.address(), output.squares ? output.squares.address() : 0,
+                                 output.batch.address(), pixels,
+                                 1.0f / static_cast<float>(samples.end - samples.begin)};
+      dispatch(*add_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+    }
+  }
+  commands.barrier(gpu::Stage::all, gpu::Stage::all);
+}
+
+FilmPlane Film::plane(const Output& output) const {
+  FilmPlane plane = output.facts;
+  readRows(output, {0, region_.height, true}, nullptr, plane);
+  return plane;
+}
+
+void Film::readRows(const Output& output, const Rows& rows, const gpu::Buffer* staging, FilmPlane& plane) const {
+  if (!output.total) return;
+  const auto read = [&](const gpu::Buffer& buffer, auto& values, std::size_t perPixel) {
+    const std::size_t row = perPixel * region_.width;
+    values.resize(row * rows.count);
+    const std::span<std::byte> bytes = std::as_writable_bytes(std::span(values));
+    const VkDeviceSize offset = rows.first * row * sizeof(values[0]);
+    if (staging)
+      buffer.download(bytes, offset, *staging);
+    else
+      buffer.download(bytes, offset);
+  };
+  if (accumulation_ == Accumulation::program || output.facts.pixel == OutputPixel::center)
+    read(output.total, plane.values, 1);
+  else if (output.facts.pixel == OutputPixel::mean)
+    read(output.total, plane.sums, 4);
+  else
+    read(output.total, plane.coverage, shared::kCoverageSlots);
+  if (output.squares && rows.squares) read(output.squares, plane.squares, 4);
+}
+
+template <class Use>
+void Film::forStrips(const Output& output, bool squares, const Use& use) const {
+  // All strips share one staging buffer and one state: allocation and the first access to new pages dominate the cost.
+  const std::uint64_t bytes = output.total ? output.total.size() / region_.height * shared::kTileSize : 1;
+  const gpu::Buffer staging = gpu::Buffer::makeReadback(context_, bytes);
+  FilmState strip;
+  strip.planes = {output.facts};
+  for (std::uint32_t first = 0; first < region_.height; first += shared::kTileSize) {
+    const std::uint32_t rows = std::min(shared::kTileSize, region_.height - first);
+    strip.region = {region_.x, region_.y + first, region_.width, rows};
+    strip.counts = countsOfRows(counts_, region_.width, first, rows);
+    readRows(output, {first, rows, squares}, &staging, strip.planes[0]);
+    use(strip, first);
+  }
+}
+
+FilmState Film::save() const {
+  FilmState state{region_, counts_, {}, statistics_.downloadAs<uvec2>(std::size_t{region_.width} * region_.height)};
+  for (const Output& output : outputs_) state.planes.push_back(plane(output));
+  return state;
+}
+
+ErrorEstimate Film::estimateError() const {
+  ErrorEstimator estimator(region_, counts_);
+  forStrips(outputs_[0], true, [&](const FilmState& strip, std::uint32_t first) { estimator.add(strip, first); });
+  return estimator.estimate();
+}
+
+FilmState Film::saveFirst() const {
+  FilmState state{region_, counts_, {}, {}};
+  state.planes.push_back(plane(outputs_[0]));
+  return state;
+}
+
+void Film::restore(const FilmState& state) {
+  assert(state.region == region_ && state.planes.size() == outputs_.size());
+  counts_ = state.counts;
+  statistics_.uploadAs(std::span<const uvec2>(state.statistics));
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    Output& output = outputs_[i];
+    const FilmPlane& plane = state.planes[i];
+    if (!plane.sums.empty()) output.total.uploadAs(std::span<const shared::FixedSum>(plane.sums));
+    if (!plane.values.empty()) output.total.uploadAs(std::span<const vec4>(plane.values));
+    if (!plane.coverage.empty()) output.total.uploadAs(std::span<const shared::CoverageSlot>(plane.coverage));
+    if (!plane.squares.empty()) output.squares.uploadAs(std::span<const shared::FixedSum>(plane.squares));
+  }
+}
+
+io::Image Film::download(std::size_t output) const {
+  io::Image image;
+  forStrips(outputs_.at(output), false, [&](const FilmState& strip, std::uint32_t first) {
+    const io::Image part = planeImage(strip, 0);
+    if (first == 0) {
+      image = io::makeImage(region_.width, region_.height, 4, io::PixelType::f32, io::ColorEncoding::linear);
+      image.premultiplied = part.premultiplied;
+    }
+    std::ranges::copy(part.samples<float>(),
+                      image.samples<float>().begin() + std::ptrdiff_t{4} * first * region_.width);
+  });
+  return image;
+}
+
+std::vector<vec4> Film::downloadBatch(std::size_t output) const {
+  return outputs_.at(output).batch.downloadAs<vec4>(std::size_t{region_.width} * region_.height);
+}
+
+RayCount Film::countRays() const {
+  RayCount count;
+  for (const uvec2& pixel : statistics_.downloadAs<uvec2>(std::size_t{region_.width} * region_.height)) {
+    count.rays += pixel.x;
+    count.droppedSamples += pixel.y;
+  }
+  return count;
+}
+
+}  // namespace quintet::render

@@ -1,0 +1,95 @@
+// The film of a render on the device. A batch holds samples [k · kBatchSamples, (k+1) · kBatchSamples) of every pixel,
+// which the program sums in float32 in sample order. Batch sums are added to the totals in fixed point
+// (shared::FixedSum), which is exact and independent of order. The bytes therefore depend neither on launch sizes, nor
+// on the order of batches, nor on how many processes rendered them. The first output also stores the squares of its
+// batch sums, for its variance. For a program that accumulates (program::Accumulation), a batch is one frame, which
+// replaces the total: the previous frame.
+#ifndef QUINTET_RENDER_FILM_FILM_H
+#define QUINTET_RENDER_FILM_FILM_H
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gpu/compute.h"
+#include "render/film/film_error.h"
+#include "render/film/film_state.h"
+#include "shader/compiler.h"
+
+namespace quintet::render {
+
+struct RayCount {
+  std::uint64_t rays = 0;
+  std::uint64_t droppedSamples = 0;  // samples that were not finite
+};
+
+class Film {
+ public:
+  // Stores the program's outputs, of the optional ones only those in `wanted`. Throws UsageError for an unknown name in
+  // `wanted`.
+  Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler, Region region,
+       const program::Program& program, const std::vector<std::string>& wanted = {});
+
+  const Region& region() const { return region_; }
+  const SampleCounts& counts() const { return counts_; }
+  bool stores(std::size_t output) const { return static_cast<bool>(outputs_[output].total); }
+  std::uint64_t bytes() const;  // device memory
+  // Returns the device memory per pixel of a film for this program and these optional outputs.
+  static std::uint64_t bytesPerPixel(const program::Program& program, const std::vector<std::string>& wanted);
+  // Sets the film's fields of the frame.
+  void describe(shared::Frame& frame) const;
+
+  // Discards all samples and ray counts.
+  void clear();
+
+  // Record commands around the launches of a batch or frame: beginBatch clears the batch sums; endBatch adds them to
+  // the totals, or replaces the totals by them. `cellBatches` is SampleCounts::cellBatches after an adaptive batch.
+  void beginBatch(gpu::Commands& commands);
+  void endBatch(gpu::Commands& commands, SampleRange samples);
+  void endAdaptiveBatch(gpu::Commands& commands, SampleRange samples, const std::vector<std::uint32_t>& cellBatches);
+
+  // Reads the current contents of one output. Blocks.
+  FilmPlane plane(std::size_t output) const { return plane(outputs_.at(output)); }
+  // Returns planeImage of the current contents. Blocks.
+  io::Image download(std::size_t output) const;
+  // Returns the sums of the latest batch, RGBA per pixel in row-major order from the top. Blocks.
+  std::vector<vec4> downloadBatch(std::size_t output) const;
+  RayCount countRays() const;  // blocks
+
+  // Read the whole film, or its first output only. Block.
+  FilmState save() const;
+  FilmState saveFirst() const;
+  // Returns estimateError of the current contents. Blocks.
+  ErrorEstimate estimateError() const;
+  // Replaces the contents by a state of the same program, outputs and region.
+  void restore(const FilmState& state);
+
+ private:
+  struct Output {
+    FilmPlane facts;                    // name, pixel, kind and color; the arrays are empty
+    gpu::Buffer batch, total, squares;  // `total` is empty for an output that is not stored
+  };
+  void addBatch(gpu::Commands& commands, SampleRange samples);
+  FilmPlane plane(const Output& output) const;
+  struct Rows {
+    std::uint32_t first, count;
+    bool squares;  // whether to read the squares as well
+  };
+  // Reads rows into the arrays of `plane`, whose memory is reused. `staging` (Buffer::makeReadback) can be null.
+  void readRows(const Output& output, const Rows& rows, const gpu::Buffer* staging, FilmPlane& plane) const;
+  // Reads an output, with or without its squares, tile row by tile row, and calls use(strip, first row of the strip).
+  template <class Use>
+  void forStrips(const Output& output, bool squares, const Use& use) const;
+
+  gpu::Context& context_;
+  Region region_;
+  program::Accumulation accumulation_;
+  std::vector<Output> outputs_;
+  gpu::Buffer statistics_;
+  SampleCounts counts_;
+  std::unique_ptr<gpu::ComputePipeline> add_;
+  std::unique_ptr<gpu::ComputePipeline> coverage_;
+};
+
+}  // namespace quintet::render
+#endif

@@ -1,0 +1,69 @@
+// A film in a file (.qfilm): the checkpoint of a render, or a part of one. All sums are stored exactly, so that
+// resuming from a file, and merging files, gives the same bytes as one uninterrupted render.
+//
+//   8 bytes   magic
+//   u32       format version
+//   u32       size of the header in bytes
+//   u64       size of the payload in bytes
+//   header    JSON: identity, notes, region, samples, cells, plan, planes
+//   payload   arrays in compressed blocks: cell batches, plan, statistics, then for each plane those of sums, squares,
+//             values and coverage that the header lists
+//   16 bytes  XXH3 (base/hash.h) of all preceding bytes
+//
+// Integers are little-endian. A block is a u32 compressed size and zlib data. The elements of a block are split by
+// byte: byte 0 of all elements, then byte 1, and so on. The high and low words of fixed-point sums are mostly zero, and
+// compress well that way.
+#ifndef QUINTET_RENDER_FILM_FILM_FILE_H
+#define QUINTET_RENDER_FILM_FILM_FILE_H
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "render/film/film_state.h"
+
+namespace quintet::render {
+
+inline constexpr std::uint32_t kFilmFileVersion = 3;
+inline constexpr const char* kFilmExtension = ".qfilm";
+
+// Names and values in display order: {"seed", "3"}. Names are unique.
+using FilmFacts = std::vector<std::pair<std::string, std::string>>;
+
+const std::string* findFact(const FilmFacts& facts, const std::string& name);  // null if the name is missing
+
+struct FilmFile {
+  FilmFacts identity;  // facts that decide the values of samples: films belong together only if all of them are equal
+  FilmFacts notes;     // all other facts: file names, device, how to display the image
+  FilmState film;
+  // Unfinished adaptive sampling: the batches that each cell shall have (planCells), as decided at an earlier state of
+  // this film. The next decision follows once this plan is complete. Empty if nothing is decided yet.
+  std::vector<std::uint32_t> plan;
+};
+
+// A name whose values differ in two identities; the value is null on a side that lacks the name.
+struct FactDifference {
+  std::string name;
+  const std::string* left = nullptr;
+  const std::string* right = nullptr;
+};
+std::vector<FactDifference> differences(const FilmFacts& left, const FilmFacts& right);
+
+std::vector<std::byte> encodeFilm(const FilmFile& file);
+
+// Returns whether the bytes start with the magic of a film file.
+bool isFilmFile(std::span<const std::byte> bytes);
+
+// Throws FileError for a file that is not a film file, has a different version, or is truncated or damaged. `file` is
+// used in messages only.
+FilmFile decodeFilm(std::span<const std::byte> bytes, const std::filesystem::path& file);
+
+// Replaces the file atomically (base/file.h): readers see either the old or the new file.
+void writeFilm(const std::filesystem::path& path, const FilmFile& file);
+FilmFile readFilm(const std::filesystem::path& path);
+
+}  // namespace quintet::render
+#endif

@@ -1,0 +1,55 @@
+// The emissive geometries of a scene's meshes in object space: mean luminance with textures, area, and bounds. The
+// light tables are built from them for any transforms of the instances.
+#ifndef QUINTET_RENDER_LIGHTS_LIGHT_EMITTERS_H
+#define QUINTET_RENDER_LIGHTS_LIGHT_EMITTERS_H
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "base/parallel.h"
+#include "render/lights/light_bounds.h"
+#include "scene/model/scene.h"
+
+namespace quintet::render {
+
+// A geometry or primitive set of a mesh, shared by all instances of the mesh.
+struct Emitter {
+  std::vector<float> luminance;  // mean emitted luminance per triangle or solid
+  bool black = true;             // every luminance is 0
+  // One of these points to the scene, or to the emitter's copy after copyGeometry(). The other one is null.
+  const scene::Geometry* triangles = nullptr;
+  const scene::PrimitiveSet* solids = nullptr;
+  std::shared_ptr<const scene::Geometry> ownTriangles;
+  std::shared_ptr<const scene::PrimitiveSet> ownSolids;
+
+  // Makes the emitter independent of the scene: copies the positions and triangles, or the primitive set.
+  void copyGeometry();
+  std::size_t count() const { return luminance.size(); }
+};
+
+// Returns the emitters by mesh and geometry; the list of a mesh without emission is empty. Unlit materials and CSG
+// trees are not emitters.
+std::vector<std::vector<Emitter>> makeEmitters(const scene::Scene& scene);
+
+// Returns the area of triangle or solid i of the emitter in an instance, in square meters.
+double emitterArea(const Emitter& emitter, std::size_t i, const mat4& worldFromObject);
+// Returns bounds whose intensity is that of a luminance of 1 on this area.
+LightBounds emitterBounds(const Emitter& emitter, std::size_t i, const mat4& worldFromObject, double area);
+
+// Returns the surface area of a solid under an affine transform. It is exact for boxes and for similarity transforms;
+// otherwise it is found by quadrature, with an error of about 1e-3 at moderate stretch.
+double solidArea(const scene::Primitive& primitive, const glm::dmat3& worldFromObject);
+
+// Calls body(i) for each i below count, in tasks of a few thousand on all cores.
+template <class Body>
+void forManyInParallel(std::size_t count, const Body& body) {
+  constexpr std::size_t kPerTask = 4096;
+  parallelFor((count + kPerTask - 1) / kPerTask, [&](std::size_t task) {
+    const std::size_t end = std::min(count, (task + 1) * kPerTask);
+    for (std::size_t i = task * kPerTask; i < end; ++i) body(i);
+  });
+}
+
+}  // namespace quintet::render
+#endif

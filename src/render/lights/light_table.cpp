@@ -1,0 +1,216 @@
+#include "render/lights/light_table.h"
+
+#include <array>
+#include <numeric>
+
+#include "render/lights/alias_table.h"
+#include "render/lights/light_tree.h"
+#include "render/lights/luminance.h"
+#include "scene/animation/keyframes.h"
+
+namespace quintet::render {
+namespace {
+
+constexpr double kPiDouble = glm::pi<double>();
+
+// The classes that share the samples (kMinimumClassShare).
+enum class LightClass { local, directional, surfaces, environment };
+
+LightClass classOf(const shared::LightData& light) {
+  switch (light.type) {
+    case shared::kLightDirectional: return LightClass::directional;
+    case shared::kLightTriangle:
+    case shared::kLightSolid: return LightClass::surfaces;
+    case shared::kLightEnvironment: return LightClass::environment;
+    default: return LightClass::local;
+  }
+}
+
+// Returns the powers, scaled so that each class gets its share.
+std::vector<float> weightsOf(const std::vector<shared::LightData>& lights, const std::vector<double>& powers) {
+  std::array<double, 4> sums{};
+  for (std::size_t i = 0; i < powers.size(); ++i)
+    sums[static_cast<std::size_t>(classOf(lights[i]))] += std::isfinite(powers[i]) ? powers[i] : 0.0;
+  const double total = std::accumulate(sums.begin(), sums.end(), 0.0);
+  const auto present = static_cast<double>(std::ranges::count_if(sums, [](double s) { return s > 0.0; }));
+  std::array<double, 4> factors{};
+  for (std::size_t c = 0; c < sums.size(); ++c)
+    if (sums[c] > 0.0)
+      factors[c] = (kMinimumClassShare + (1.0 - kMinimumClassShare * present) * (sums[c] / total)) / sums[c];
+  std::vector<float> result(powers.size());
+  for (std::size_t i = 0; i < powers.size(); ++i)
+    result[i] = static_cast<float>(powers[i] * factors[static_cast<std::size_t>(classOf(lights[i]))]);
+  return result;
+}
+
+LightReach reachOf(const shared::LightData& light) {
+  if (light.type == shared::kLightEnvironment) return LightReach::environment;
+  return light.type == shared::kLightDirectional ? LightReach::directional : LightReach::finite;
+}
+
+}  // namespace
+
+// Collects the lights with their powers and bounds, one of each per light.
+struct LightTableBuilder::Collector {
+  double crossSection = 0.0;
+  LightTable table;
+  std::vector<double> powers;
+  std::vector<LightTreeInput> bounds;
+
+  void add(const shared::LightData& light, double power, const LightBounds& lightBounds) {
+    bounds.push_back({lightBounds, static_cast<std::uint32_t>(table.lights.size()), reachOf(light)});
+    table.lights.push_back(light);
+    powers.push_back(power);
+  }
+
+  void addPunctual(const scene::Light& light) {
+    shared::LightData data{};
+    data.intensity = light.intensity;
+    data.position = light.position;
+    data.direction = light.direction;
+    data.cosInner = std::cos(light.innerConeAngle);
+    data.cosOuter = std::cos(light.outerConeAngle);
+    const double luminance = lightLuminance(light.intensity);
+    switch (light.type) {
+      case scene::LightType::point:
+        data.type = shared::kLightPoint;
+        return add(data, 4.0 * kPiDouble * luminance, pointBounds(light.position, luminance));
+      case scene::LightType::spot:
+        data.type = shared::kLightSpot;
+        return add(data, luminance * spotSolidAngle(data.cosInner, data.cosOuter),
+                   spotBounds(light.position, light.direction, light.innerConeAngle, light.outerConeAngle, luminance));
+      case scene::LightType::directional:
+        data.type = shared::kLightDirectional;
+        return add(data, luminance * crossSection, directionalBounds(light.direction, luminance));
+    }
+  }
+
+  void addPart(const Part& part, const Emitter& emitter, const mat4& worldFromObject) {
+    const std::size_t first = table.lights.size(), count = emitter.count();
+    table.slots[part.slot] = static_cast<std::uint32_t>(first);
+    shared::LightData light{};
+    light.type = emitter.solids ? shared::kLightSolid : shared::kLightTriangle;
+    light.instance = static_cast<shared::uint>(part.instance);
+    light.geometry = static_cast<shared::uint>(part.geometry);
+    table.lights.resize(first + count, light);
+    powers.resize(table.lights.size());
+    bounds.resize(table.lights.size());
+    forManyInParallel(count, [&](std::size_t i) {
+      table.lights[first + i].primitive = static_cast<shared::uint>(i);
+      bounds[first + i].light = static_cast<std::uint32_t>(first + i);
+      const double luminance = emitter.luminance[i];
+      const double area = luminance > 0.0 ? emitterArea(emitter, i, worldFromObject) : 0.0;
+      if (!(area > 0.0)) return;
+      powers[first + i] = kPiDouble * area * luminance;
+      bounds[first + i].bounds = emitterBounds(emitter, i, worldFromObject, area * luminance);
+    });
+  }
+
+  // Builds the alias table and the tree. Both sample the same lights, which are those with a weight above 0.
+  LightTable finish() {
+    const std::vector<float> weights = weightsOf(table.lights, powers);
+    table.entries = buildAliasTable(weights);
+    double total = 0.0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (!(weights[i] > 0.0f)) bounds[i].bounds.intensity = 0.0f;
+      total += bounds[i].bounds.intensity;
+    }
+    for (LightTreeInput& input : bounds)
+      if (input.bounds.intensity > 0.0f)
+        input.bounds.intensity = std::max(static_cast<float>(input.bounds.intensity / total), 1e-30f);
+    LightTree tree = buildLightTree(std::move(bounds), table.lights.size());
+    for (std::size_t i = 0; i < table.lights.size(); ++i) table.lights[i].leaf = tree.leaves[i];
+    table.nodes = std::move(tree.nodes);
+    return std::move(table);
+  }
+};
+
+LightTableBuilder::LightTableBuilder(const scene::Scene& scene, const scene::Environment& environment,
+                                     std::size_t maxTriangleLights)
+    : punctual_(scene.lights),
+      emitters_(makeEmitters(scene)),
+      environment_(buildEnvironmentTable(environment)),
+      environmentIntegral_(environment_.width > 0 ? environment_.integral : 0.0) {
+  const Bounds3 bounds = scene::worldBounds(scene);
+  const double radius = bounds.empty() ? 0.0 : 0.5 * glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
+  crossSection_ = kPiDouble * (radius > 0.0 && std::isfinite(radius) ? radius * radius : 1.0);
+  addParts(scene, maxTriangleLights);
+}
+
+void LightTableBuilder::addParts(const scene::Scene& scene, std::size_t maxCount) {
+  std::size_t total = 0;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const int mesh = scene.instances[i].mesh;
+    const bool visible = (scene.instances[i].mask & 0xFFu) != 0;  // with mask 0 no ray hits the instance
+    firstSlots_.push_back(static_cast<std::uint32_t>(slots_.size()));
+    if (mesh == scene::kNone) continue;
+    const auto m = static_cast<std::size_t>(mesh);
+    for (std::size_t g = 0; g < scene.meshes[m].geometryCount(); ++g) {
+      if (visible && g < emitters_[m].size() && !emitters_[m][g].black)
+        parts_.push_back({i, g, slots_.size(), m, emitters_[m][g].count()});
+      slots_.push_back(shared::kNoLight);
+    }
+  }
+  for (const Part& part : parts_) total += part.count;
+  if (total > maxCount) {
+    std::ranges::stable_sort(parts_, {}, &Part::count);
+    std::size_t kept = 0;
+    total = 0;
+    while (total + parts_[kept].count <= maxCount) total += parts_[kept++].count;
+    parts_.resize(kept);
+  }
+  hasMovingLights_ =
+      std::ranges::any_of(parts_, [&](const Part& part) { return !scene.instances[part.instance].keyframes.empty(); });
+}
+
+void LightTableBuilder::copyGeometry() {
+  for (std::vector<Emitter>& mesh : emitters_)
+    for (Emitter& emitter : mesh)
+      if (!emitter.black) emitter.copyGeometry();
+}
+
+LightTable LightTableBuilder::build(std::span<const mat4> worldFromObject) const {
+  Collector collector;
+  collector.crossSection = crossSection_;
+  LightTable& table = collector.table;
+  table.slots = slots_;
+  table.firstSlots = firstSlots_;
+  for (const scene::Light& light : punctual_) collector.addPunctual(light);
+  for (const Part& part : parts_)
+    collector.addPart(part, emitters_[part.mesh][part.geometry], worldFromObject[part.instance]);
+  if (environmentIntegral_ > 0.0) {
+    table.environmentLight = static_cast<std::uint32_t>(table.lights.size());
+    shared::LightData light{};
+    light.type = shared::kLightEnvironment;
+    collector.add(light, environmentIntegral_ * crossSection_, environmentBounds(0.25 * environmentIntegral_));
+  }
+  return collector.finish();
+}
+
+double spotSolidAngle(double cosInner, double cosOuter) {
+  // The integral ∫ 2π a dc of the attenuation a, which is ((c - cosOuter) / width)² until it or c reaches 1, and then
+  // 1.
+  const double width = std::max(0.001, cosInner - cosOuter);
+  const double ramp = std::min(width, 1.0 - cosOuter);
+  return 2.0 * kPiDouble * (ramp * ramp * ramp / (3.0 * width * width) + (1.0 - cosOuter - ramp));
+}
+
+void LightTable::clear() {
+  lights.clear();
+  std::ranges::fill(slots, shared::kNoLight);
+  environmentLight = shared::kNoLight;
+}
+
+LightTable buildLightTable(const scene::Scene& scene, const scene::Environment& environmentInUse,
+                           std::size_t maxTriangleLights) {
+  LightTableBuilder builder(scene, environmentInUse, maxTriangleLights);
+  std::vector<mat4> worldFromObject;
+  for (const scene::Instance& instance : scene.instances)
+    worldFromObject.push_back(scene::worldFromObjectAt(instance, 0.0f));
+  LightTable table = builder.build(worldFromObject);
+  table.environment = std::move(builder.environment());
+  if (table.hasNoPower()) table.clear();
+  return table;
+}
+
+}  // namespace quintet::render

@@ -1,0 +1,91 @@
+// All lights of a scene and the data that samples them (shared::Frame::lights, lightNodes, lightTable, lightSlots).
+#ifndef QUINTET_RENDER_LIGHTS_LIGHT_TABLE_H
+#define QUINTET_RENDER_LIGHTS_LIGHT_TABLE_H
+
+#include <span>
+
+#include "quintet/shared/frame.h"
+#include "render/lights/environment_table.h"
+#include "render/lights/light_emitters.h"
+
+namespace quintet::render {
+
+struct LightTable {
+  // The punctual lights in the scene's order, then all triangles or solids of each emissive geometry of each instance,
+  // then the environment. Lights without power are listed but never sampled. Empty if nothing emits.
+  std::vector<shared::LightData> lights;
+  std::vector<shared::LightNode> nodes;     // light_tree.h
+  std::vector<shared::AliasEntry> entries;  // one per light: sampling by power alone
+  // One per geometry of each instance: index in `lights` of its triangle or solid 0 (triangle p is p entries later), or
+  // kNoLight.
+  std::vector<std::uint32_t> slots;
+  std::vector<std::uint32_t> firstSlots;  // one per instance: index in `slots` of its first geometry
+  std::uint32_t environmentLight = shared::kNoLight;
+  EnvironmentTable environment;  // of the environment in use
+
+  bool hasNoPower() const { return entries.empty(); }
+  void clear();  // discards lights and slots
+};
+
+// Each class of lights (point and spot; directional; triangles and solids; environment) with any power gets at least
+// this share of the samples. The rest is distributed by power. A huge sky or a distant sun must not starve the lamp on
+// the desk, nor the other way round. This applies to sampling by power; the share of the tree is kLightShare
+// (lights/tree.glsl).
+inline constexpr double kMinimumClassShare = 0.1;
+
+// Bounds the memory that a forest of emissive instances takes: 140 bytes per light.
+inline constexpr std::size_t kMaxTriangleLights = std::size_t{1} << 23;
+
+// Builds the tables of lights. LightData::instance is the index in scene.instances, LightData::geometry the index in
+// its mesh.
+//
+// Power as luminance: 4π·I for a point light; I times the effective solid angle for a spot light; E·π·R² for a
+// directional light and ∫L·π·R² for the environment, with the radius R of the scene's bounds; π·area·L for a triangle
+// or solid, with the mean L of its texture. Intensity in the tree: I for point and spot lights; area·L for a triangle
+// and a quarter of it for a solid; the irradiance of a directional light; a quarter of ∫L for the environment.
+//
+// Unlit materials and CSG trees are not lights; only BSDF sampling finds their emission. If the emissive instance
+// geometries have more than `maxTriangleLights` triangles in total, the largest of them are left to BSDF sampling, too.
+// Any table that contains all lights gives an unbiased image; the table affects noise only.
+class LightTableBuilder {
+ public:
+  LightTableBuilder(const scene::Scene& scene, const scene::Environment& environmentInUse,
+                    std::size_t maxTriangleLights = kMaxTriangleLights);
+  // Builds the table for these transforms, one per instance. Lights, slots and the environment's index are the same for
+  // all transforms. LightTable::environment is left empty.
+  LightTable build(std::span<const mat4> worldFromObject) const;
+  EnvironmentTable& environment() { return environment_; }
+
+  bool hasMovingLights() const { return hasMovingLights_; }  // an instance with keyframes has lights
+  void copyGeometry();  // makes the builder independent of the scene, which can then be destroyed
+
+ private:
+  struct Part {
+    std::size_t instance;
+    std::size_t geometry;
+    std::size_t slot;
+    std::size_t mesh;
+    std::size_t count;
+  };
+  struct Collector;
+  void addParts(const scene::Scene& scene, std::size_t maxCount);
+
+  std::vector<scene::Light> punctual_;
+  std::vector<std::vector<Emitter>> emitters_;  // by mesh and geometry
+  std::vector<Part> parts_;
+  std::vector<std::uint32_t> slots_, firstSlots_;
+  EnvironmentTable environment_;
+  double environmentIntegral_ = 0.0;
+  double crossSection_ = 0.0;  // π·R², m²
+  bool hasMovingLights_ = false;
+};
+
+// Builds the table at frame 0, including the environment.
+LightTable buildLightTable(const scene::Scene& scene, const scene::Environment& environmentInUse,
+                           std::size_t maxTriangleLights = kMaxTriangleLights);
+
+// Returns the integral of KHR_lights_punctual's angular attenuation over the sphere, in sr.
+double spotSolidAngle(double cosInner, double cosOuter);
+
+}  // namespace quintet::render
+#endif

@@ -1,0 +1,20 @@
+// The luminance by which samples are distributed over lights. It affects sampling probabilities only, never the
+// expected image.
+#ifndef QUINTET_RENDER_LIGHTS_LUMINANCE_H
+#define QUINTET_RENDER_LIGHTS_LUMINANCE_H
+
+#include <algorithm>
+
+#include "base/math.h"
+
+namespace quintet::render {
+
+// Returns the Rec. 709 luminance, which is positive if any component is. Negative components and NaN count as 0,
+// infinite components as 1e30.
+inline float lightLuminance(const vec3& color) {
+  const auto clean = [](float c) { return c > 0.0f ? std::min(c, 1e30f) : 0.0f; };
+  return 0.2126f * clean(color.x) + 0.7152f * clean(color.y) + 0.0722f * clean(color.z);
+}
+
+}  // namespace quintet::render
+#endif

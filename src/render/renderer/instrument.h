@@ -1,0 +1,43 @@
+// Runtime checks: the device buffer of an instrumented program (program/instrument.h), and the diagnostics that its
+// contents and the film give.
+#ifndef QUINTET_RENDER_RENDERER_INSTRUMENT_H
+#define QUINTET_RENDER_RENDERER_INSTRUMENT_H
+
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "program/runnable_program.h"
+#include "program/scene_facts.h"
+#include "quintet/shared/instrument.h"
+#include "render/film/film.h"
+
+namespace quintet::render {
+
+struct InstrumentData {
+  shared::Instrument counts;
+  shared::InstrumentReport reports[shared::kInstrumentReports];
+};
+
+class InstrumentBuffer {
+ public:
+  // `pixels` is the number of pixels of the film, `depthLimit` the recursion depth of the pipeline, and `missCount` the
+  // number of miss shaders in the shader binding table.
+  InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit, std::size_t missCount);
+  shared::Address address() const { return buffer_.address(); }
+  InstrumentData download() const;  // blocks
+
+ private:
+  gpu::Buffer buffer_;
+};
+
+// Returns diagnostics Q001 and Q003 to Q006. Q004 (hit records or miss shaders beyond the table) uses the table of the
+// scene. Reports from the same source location are merged into one diagnostic with their number and the first pixel.
+std::vector<Diagnostic> instrumentDiagnostics(const InstrumentData& data, const program::RunnableProgram& runnable,
+                                              const program::SceneFacts& facts);
+
+// Returns diagnostics Q002: values of the film that are not finite, and samples that the program dropped for that
+// reason. Blocks.
+std::vector<Diagnostic> outputDiagnostics(const program::Program& program, const Film& film);
+
+}  // namespace quintet::render
+#endif

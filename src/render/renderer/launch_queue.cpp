@@ -1,0 +1,76 @@
+#include "render/renderer/launch_queue.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace quintet::render {
+
+LaunchQueue::LaunchQueue(gpu::Context& context, const RenderSettings& settings, RenderStatistics& statistics)
+    : context_(context),
+      statistics_(statistics),
+      launchSeconds_(settings.launchSeconds),
+      timeoutSeconds_(settings.timeoutSeconds),
+      maxInFlight_(settings.launchesInFlight),
+      profile_(settings.profile),
+      timers_{gpu::Timer(context, 4), gpu::Timer(context, 4)} {
+  assert(maxInFlight_ >= 1 && maxInFlight_ <= kMaxLaunchesInFlight);
+}
+
+std::uint32_t LaunchQueue::rows(double width, std::uint32_t rowsLeft, std::uint32_t samples) const {
+  const auto limit = static_cast<double>(context_.info().limits.maxLaunchInvocations);
+  double rows =
+      pixelSamplesPerSecond_ > 0 ? launchSeconds_ * pixelSamplesPerSecond_ / (width * samples) : 16384.0 / width;
+  rows = std::clamp(rows, 1.0, std::max(1.0, limit / width));
+  return std::min(rowsLeft, static_cast<std::uint32_t>(rows));
+}
+
+bool LaunchQueue::isShort(double pixelSamples) const {
+  return pixelSamples <= 2.0 * launchSeconds_ * pixelSamplesPerSecond_;
+}
+
+void LaunchQueue::submit(const Launch& launch) {
+  while (inFlight_.size() >= maxInFlight_) finishOldest();
+  gpu::Timer& timer = timers_[count_++ % kMaxLaunchesInFlight];
+  const Stopwatch sinceRecording;
+  const std::uint64_t value = context_.submit([&](gpu::Commands& commands) {
+    timer.reset(commands);
+    timer.mark(commands, 0);
+    if (launch.before) launch.before(commands);
+    timer.mark(commands, 1);
+    launch.trace(commands);
+    timer.mark(commands, 2);
+    if (launch.after) launch.after(commands);
+    timer.mark(commands, 3);
+  });
+  inFlight_.push_back({value, sinceRecording, &timer, launch.rows, launch.samples, launch.pixelSamples});
+  // The first launch measures the rate for the others; on a CPU it also compiles.
+  if (maxInFlight_ == 1 || statistics_.firstLaunchSeconds == 0) finish();
+}
+
+void LaunchQueue::finish() {
+  while (!inFlight_.empty()) finishOldest();
+}
+
+void LaunchQueue::finishOldest() {
+  const InFlight launch = inFlight_.front();
+  inFlight_.pop_front();
+  context_.wait(launch.value, timeoutSeconds_);
+  const double wall = launch.sinceRecording.seconds();
+  if (statistics_.firstLaunchSeconds == 0) statistics_.firstLaunchSeconds = wall;
+  const double device = launch.timer->seconds(1, 2);
+  if (profile_) recordTiming(launch, wall);
+  statistics_.deviceSeconds += device;
+  const double rate = launch.pixelSamples / std::max(1e-6, device > 0 ? device : wall);
+  // Strips differ in cost: the rate rises slowly and falls immediately.
+  pixelSamplesPerSecond_ = pixelSamplesPerSecond_ > 0 ? std::min(rate, 2.0 * pixelSamplesPerSecond_) : 0.25 * rate;
+}
+
+void LaunchQueue::recordTiming(const InFlight& launch, double wallSeconds) {
+  const gpu::Timer& timer = *launch.timer;
+  const double idle = timings_.empty() ? 0.0 : std::max(0.0, timer.stamp(0) - lastStamp_);
+  timings_.push_back(
+      {launch.rows, launch.samples, timer.seconds(0, 1), timer.seconds(1, 2), timer.seconds(2, 3), idle, wallSeconds});
+  lastStamp_ = timer.stamp(3);
+}
+
+}  // namespace quintet::render

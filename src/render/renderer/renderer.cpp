@@ -1,0 +1,219 @@
+#include "render/renderer/renderer.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <utility>
+
+#include "base/stopwatch.h"
+#include "render/film/adaptive_plan.h"
+#include "render/scene/camera.h"
+#include "render/tone_map/tone_map.h"
+
+namespace quintet::render {
+namespace {
+
+SampleRange batchSamples(std::uint64_t batch, std::uint32_t count) {
+  const auto first = static_cast<std::uint32_t>(batch * kBatchSamples);
+  return {first, first + count};
+}
+
+}  // namespace
+
+Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const shader::Compiler& compiler,
+                   const gpu::PipelineCache* cache, const RenderSettings& settings)
+    : scene_(scene),
+      context_(scene.context()),
+      runnable_(std::move(program)),
+      settings_(decideSettings(settings, runnable_.description, context_.info().software)),
+      linked_(context_, scene.set(), runnable_.description, runnable_.compiled, runnable_.recursionDepth, cache,
+              settings_.profile),
+      table_(linked_.makeTable(scene.facts().geometries)),
+      film_(context_, scene.set(), compiler, settings_.region, runnable_.description, settings_.outputs),
+      parameterTextures_(context_, scene.parameterSlots(), runnable_.description, settings_.parameters),
+      queue_(context_, settings_, statistics_) {
+  statistics_.compileSeconds = runnable_.compiled.seconds;
+  statistics_.pipelineSeconds = linked_.pipelineSeconds();
+  const program::Program& description = runnable_.description;
+  scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder,
+                   description.anyHitForAll);
+  if (settings_.instrument)
+    instrument_.emplace(context_, std::uint64_t{settings_.region.width} * settings_.region.height,
+                        linked_.recursionDepth(), program::missShaders(description).size());
+  uploadFrame();
+  parameterBuffer_ =
+      gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_.indices()), 0, "parameters");
+}
+
+void Renderer::uploadFrame() {
+  shared::Frame frame = scene_.frameTemplate();
+  frame.camera = makeCamera(settings_.camera, settings_.width, settings_.height);
+  frame.width = settings_.width;
+  frame.height = settings_.height;
+  frame.seed = settings_.seed;
+  frame.plannedSamples = settings_.plannedSamples;
+  frame.frameCount = settings_.frameCount;
+  frame.flags = settings_.transparent ? shared::kFrameTransparent : 0;
+  frame.rayRecords = settings_.rayRecords ? settings_.rayRecords->address() : 0;
+  frame.rayRecordCapacity = settings_.rayRecords ? settings_.rayRecordCapacity : 0;
+  if (instrument_) frame.instrument = instrument_->address();
+  film_.describe(frame);
+  frameBuffer_ = gpu::makeBuffer(context_, std::as_bytes(std::span(&frame, 1)), 0, "frame");
+}
+
+Renderer::Target Renderer::wholeRegion() const {
+  const Region& region = film_.region();
+  return {region.width, region.height, {region.x, region.y}, 0};
+}
+
+Renderer::Record Renderer::recordBegin() {
+  return [this](gpu::Commands& commands) { film_.beginBatch(commands); };
+}
+
+void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t rows, SampleRange samples,
+                      const Record& before, const Record& after) {
+  const std::uint32_t count = samples.end - samples.begin;
+  const Record trace = [&](gpu::Commands& commands) {
+    for (std::uint32_t done = 0; done < count;) {
+      shared::Launch constants{};
+      constants.frame = frameBuffer_.address();
+      constants.parameters = parameterBuffer_.address();
+      constants.offset = target.offset + uvec2(0, row);
+      constants.firstSample = samples.begin + done;
+      constants.sampleCount = std::min(count - done, program().samplesPerLaunch);
+      constants.tiles = target.tiles;
+      if (done > 0) commands.barrier(gpu::Stage::rayTracing, gpu::Stage::rayTracing);
+      rt::trace(commands, linked_.pipeline(), table_, std::as_bytes(std::span(&constants, 1)), target.width, rows);
+      done += constants.sampleCount;
+    }
+  };
+  queue_.submit({rows, count, static_cast<double>(target.width) * rows * count, before, trace, after});
+}
+
+bool Renderer::renderBatch(std::uint32_t sampleCount, const BatchProgress& progress) {
+  if (accumulates()) return renderFrames(sampleCount, progress);
+  assert(sampleCount >= 1 && sampleCount <= kBatchSamples);
+  const SampleRange samples = batchSamples(nextBatch_, sampleCount);
+  const Record end = [&](gpu::Commands& commands) { film_.endBatch(commands, samples); };
+  if (!renderSamples(wholeRegion(), samples, end, progress)) return false;
+  ++nextBatch_;
+  return true;
+}
+
+bool Renderer::renderFrames(std::uint32_t count, const BatchProgress& progress) {
+  bool proceed = true;
+  for (std::uint32_t i = 0; i < count && proceed; ++i) {
+    const BatchProgress frameProgress = [&](double fraction) {
+      return proceed = !progress || progress((i + fraction) / count);
+    };
+    if (!renderFrame(static_cast<std::uint32_t>(statistics_.samples), frameProgress)) return false;
+  }
+  return proceed;
+}
+
+bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) {
+  assert(accumulates());
+  const Stopwatch clock;
+  const Target target = wholeRegion();
+  for (std::uint32_t row = 0; row < target.height;) {
+    const std::uint32_t rows = queue_.rows(target.width, target.height - row, 1);
+    const Record end = [&](gpu::Commands& commands) { film_.endBatch(commands, {index, index + 1}); };
+    launch(target, row, rows, {index, index + 1}, row == 0 ? recordBegin() : Record(),
+           row + rows == target.height ? end : Record());
+    row += rows;
+    if (progress && !progress(static_cast<double>(row) / target.height) && row < target.height) return false;
+  }
+  statistics_.batches++;
+  statistics_.samples++;
+  statistics_.renderSeconds += clock.seconds();
+  return true;
+}
+
+bool Renderer::renderSamples(const Target& target, SampleRange samples, const Record& end,
+                             const BatchProgress& progress) {
+  const Stopwatch clock;
+  const std::uint32_t count = samples.end - samples.begin;
+  for (std::uint32_t row = 0; row < target.height;) {
+    const std::uint32_t rows = queue_.rows(target.width, target.height - row, count);
+    // If even one row takes too long, or while the rate is unknown, samples are launched one by one: the sums and their
+    // order are the same, and a shader that is slow or never ends is detected soon.
+    const std::uint32_t step = queue_.isShort(static_cast<double>(rows) * target.width * count) ? count : 1;
+    for (std::uint32_t s = 0; s < count; s += step) {
+      const bool first = row == 0 && s == 0, last = row + rows == target.height && s + step >= count;
+      const std::uint32_t begin = samples.begin + s;
+      launch(target, row, rows, {begin, begin + std::min(step, count - s)}, first ? recordBegin() : Record(),
+             last ? end : Record());
+    }
+    row += rows;
+    if (progress && !progress(static_cast<double>(row) / target.height) && row < target.height) return false;
+  }
+  statistics_.batches++;
+  statistics_.samples = film_.counts().samples();
+  statistics_.renderSeconds += clock.seconds();
+  return true;
+}
+
+bool Renderer::renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress) {
+  assert(program().adaptive && limits.size() == 2 * std::size_t{tileCount(film_.region())});
+  const AdaptiveBatch next = nextAdaptiveBatch(film_.region(), film_.counts(), limits);
+  assert(!next.tiles.empty());
+  // The buffer is written directly, without a copy to wait for, so that earlier launches can stay in flight.
+  const auto bytes = std::as_bytes(std::span(next.tiles));
+  tileBuffer_ = gpu::Buffer(context_, {.size = bytes.size(), .memory = gpu::Memory::upload, .name = "film tiles"});
+  std::memcpy(tileBuffer_.mapped(), bytes.data(), bytes.size());
+  const Target target{shared::kTileSize * shared::kTileSize,
+                      static_cast<std::uint32_t>(next.tiles.size()),
+                      {0, 0},
+                      tileBuffer_.address()};
+  const SampleRange samples = batchSamples(next.batch, kBatchSamples);
+  const Record end = [&](gpu::Commands& commands) { film_.endAdaptiveBatch(commands, samples, next.counts); };
+  return renderSamples(target, samples, end, progress);
+}
+
+void Renderer::finishLaunches() const {
+  const Stopwatch clock;
+  queue_.finish();
+  statistics_.renderSeconds += clock.seconds();
+}
+
+FilmState Renderer::saveFilm() const {
+  finishLaunches();
+  return film_.save();
+}
+
+void Renderer::restoreFilm(const FilmState& state) {
+  film_.restore(state);
+  statistics_.samples = state.counts.samples();
+  statistics_.batches = state.counts.batches();
+  nextBatch_ = state.counts.ranges.empty() ? 0 : (state.counts.ranges.back().end + kBatchSamples - 1) / kBatchSamples;
+}
+
+void Renderer::restart() {
+  queue_.finish();
+  film_.clear();
+  statistics_.samples = 0;
+  statistics_.batches = 0;
+  nextBatch_ = 0;
+}
+
+io::Image Renderer::image(std::size_t output) const {
+  finishLaunches();
+  io::Image result = film_.download(output);
+  if (program().outputs[output].kind == program::OutputKind::display) decodeDisplay(result, settings_.transparent);
+  return result;
+}
+
+RayCount Renderer::rays() const {
+  finishLaunches();
+  return film_.countRays();
+}
+
+std::vector<Diagnostic> Renderer::runtimeDiagnostics() const {
+  finishLaunches();
+  if (!instrument_) return {};
+  std::vector<Diagnostic> result = instrumentDiagnostics(instrument_->download(), runnable_, scene_.facts());
+  for (Diagnostic& diagnostic : outputDiagnostics(program(), film_)) result.push_back(std::move(diagnostic));
+  return result;
+}
+
+}  // namespace quintet::render

@@ -1,0 +1,115 @@
+// Runs a program over a scene, batch by batch, into a film. Built-in programs and user programs are treated alike.
+#ifndef QUINTET_RENDER_RENDERER_RENDERER_H
+#define QUINTET_RENDER_RENDERER_RENDERER_H
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "program/linked/linked_program.h"
+#include "program/runnable_program.h"
+#include "render/film/film.h"
+#include "render/renderer/instrument.h"
+#include "render/renderer/launch_queue.h"
+#include "render/renderer/parameter_textures.h"
+#include "render/renderer/render_settings.h"
+#include "render/scene/device_scene.h"
+
+namespace quintet::render {
+
+// Called between launches with the fraction of the current batch that is finished or in flight. Returning false cancels
+// the batch: its samples are lost, but its rays stay counted. A batch at fraction 1 can no longer be canceled.
+using BatchProgress = std::function<bool(double)>;
+
+class Renderer {
+ public:
+  // `scene` must outlive the renderer. `compiler` compiles the film's compute passes and is used during construction
+  // only, as is `cache`, which can be null. Throws UsageError (size, region, outputs), FileError (parameter images),
+  // and gpu errors.
+  Renderer(DeviceScene& scene, program::RunnableProgram program, const shader::Compiler& compiler,
+           const gpu::PipelineCache* cache, const RenderSettings& settings);
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  // Renders the next batch of at most kBatchSamples samples per pixel. For a program that accumulates
+  // (program::Accumulation) it renders the next `sampleCount` frames. Returns false if the batch was canceled.
+  bool renderBatch(std::uint32_t sampleCount = kBatchSamples, const BatchProgress& progress = {});
+  // Renders the frame with this index, which is the program's frameID; for programs that accumulate. Returns false if
+  // the frame was canceled; the image is then still that of the previous frame.
+  bool renderFrame(std::uint32_t index, const BatchProgress& progress = {});
+  // Adaptive sampling, for programs that support it (Program::adaptive): renders the next batch of the cells
+  // (SampleCounts::cellBatches) that have the fewest batches among those below `limits`. Asserts that one is below its
+  // limit. Returns false if the batch was canceled.
+  bool renderCells(const std::vector<std::uint32_t>& limits, const BatchProgress& progress = {});
+
+  // Sets the batch that renderBatch() renders next, for parts of a render.
+  void startAt(std::uint64_t batch) { nextBatch_ = batch; }
+  // Reads the film. Blocks.
+  FilmState saveFilm() const;
+  // Replaces the film by that of a render with the same program, outputs and region, and resumes after it. Blocks.
+  void restoreFilm(const FilmState& state);
+  // Discards all samples or frames, for the next frame of an animation.
+  void restart();
+
+  // Waits for the launches in flight; statistics() and launches() then cover all of them. The functions that read the
+  // film or its counters wait by themselves.
+  void finish() { finishLaunches(); }
+
+  const Film& film() const { return film_; }
+  // Returns the mean of all samples, or the last frame, as linear premultiplied RGBA. An output with display values
+  // (program::OutputKind::display) is decoded, so that an 8-bit image file holds the values that the program wrote.
+  // Blocks.
+  io::Image image(std::size_t output = 0) const;
+  RayCount rays() const;  // blocks
+  const RenderStatistics& statistics() const { return statistics_; }
+  // Returns the finished launches if RenderSettings::profile is set.
+  const std::vector<LaunchTiming>& launches() const { return queue_.timings(); }
+  const program::LinkedProgram& linked() const { return linked_; }
+  // Returns the findings of the runtime checks so far (Q001 to Q006) if RenderSettings::instrument is set. Blocks.
+  std::vector<Diagnostic> runtimeDiagnostics() const;
+  const program::Program& program() const { return runnable_.description; }
+
+ private:
+  // The area of a launch: rows of the region, or film tiles with one row of invocations each.
+  struct Target {
+    std::uint32_t width = 0;   // invocations per row
+    std::uint32_t height = 0;  // rows
+    uvec2 offset{0};           // pixel offset of row 0 in the whole image
+    shared::Address tiles = 0;
+  };
+  using Record = LaunchQueue::Record;
+
+  void uploadFrame();
+  bool accumulates() const { return program().accumulation == program::Accumulation::program; }
+  Target wholeRegion() const;
+  Record recordBegin();
+  // Launches a strip of the target with `count` samples from `first` on.
+  void launch(const Target& target, std::uint32_t row, std::uint32_t rows, SampleRange samples, const Record& before,
+              const Record& after);
+  bool renderFrames(std::uint32_t count, const BatchProgress& progress);
+  // Renders a batch in strips.
+  bool renderSamples(const Target& target, SampleRange samples, const Record& end, const BatchProgress& progress);
+  // Waits for the launches in flight, with their time limit, so that a hanging launch is detected. The wait counts as
+  // render time.
+  void finishLaunches() const;
+
+  DeviceScene& scene_;
+  gpu::Context& context_;
+  program::RunnableProgram runnable_;
+  RenderSettings settings_;
+  program::LinkedProgram linked_;
+  rt::ShaderBindingTable table_;
+  Film film_;
+  gpu::Buffer frameBuffer_;
+  gpu::Buffer tileBuffer_;  // tiles of the latest adaptive batch
+  ParameterTextures parameterTextures_;
+  gpu::Buffer parameterBuffer_;
+  std::optional<InstrumentBuffer> instrument_;
+  // Mutable so that const functions can wait for launches, which changes no result.
+  mutable RenderStatistics statistics_;
+  mutable LaunchQueue queue_;
+  std::uint64_t nextBatch_ = 0;
+};
+
+}  // namespace quintet::render
+#endif

@@ -1,0 +1,197 @@
+#include "render/scene/device_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/memory.h"
+#include "base/stopwatch.h"
+#include "check/scene_facts.h"
+#include "render/scene/albedo_tables.h"
+#include "render/scene/material_data.h"
+#include "render/scene/procedural_data.h"
+#include "scene/animation/keyframes.h"
+
+namespace quintet::render {
+namespace {
+
+// Returns the environment's texels as the device samples them: finite and not negative.
+io::Image cleanEnvironment(const io::Image& image) {
+  io::Image clean = io::toChannels(io::toFloat(image), 4);
+  for (float& value : clean.samples<float>()) value = value > 0.0f ? std::min(value, 1e30f) : 0.0f;
+  return clean;
+}
+
+// Pads the tables of moving lights to their largest sizes. The lights that have power can change with the frame, and
+// the buffers must hold all of them.
+void padTables(LightTable& table) {
+  table.entries.resize(table.lights.size(), shared::AliasEntry{1.0f, 0, 0.0f});
+  table.nodes.resize(std::max(table.nodes.size(), 2 * table.lights.size()));
+}
+
+}  // namespace
+
+DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scene::Environment& environment,
+                         const DeviceSceneOptions& options)
+    : context_(context), options_(options), facts_(check::sceneFacts(scene)) {
+  const Stopwatch watch;
+  defines_ = shaderDefines(sceneFeatures(scene, environment), context.info().quirks);
+  uploadLights(scene, environment);  // first, because it reads images and attributes that the other uploads free
+  statistics_.lightSeconds = watch.seconds();
+  {
+    // A CPU copies immediately, so a large staging ring would only waste memory.
+    const VkDeviceSize limit = VkDeviceSize{context.info().software ? 8u : 64u} << 20;
+    const VkDeviceSize bytes = textureUploadBytes(scene) + geometryUploadBytes(context, scene);
+    gpu::Uploader uploader(context, std::min(2 * bytes, limit));
+    uploadMaterials(scene, environment, uploader);
+    geometry_ = uploadGeometries(context, uploader, scene);
+    uploader.flush();
+  }
+  releaseFreedMemory();
+  statistics_.uploadSeconds = watch.seconds();
+  buildBottomLevel(scene);
+  uploadTables(scene);
+  statistics_.geometryBytes = geometry_.bytes;
+  statistics_.textureBytes = textures_->bytes();
+}
+
+void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environment& environment) {
+  LightTableBuilder builder(scene, environment);
+  std::vector<mat4> worldFromObject;
+  for (const scene::Instance& instance : scene.instances)
+    worldFromObject.push_back(scene::worldFromObjectAt(instance, 0.0f));
+  LightTable table = builder.build(worldFromObject);
+  table.environment = std::move(builder.environment());
+  if (builder.hasMovingLights()) {
+    padTables(table);
+    builder.copyGeometry();
+    movingLights_ = std::move(builder);
+  } else if (table.hasNoPower()) {
+    table.clear();
+  }
+  lights_ = gpu::makeBufferOf(context_, table.lights, 0, "lights");
+  lightTable_ = gpu::makeBufferOf(context_, table.entries, 0, "light table");
+  lightNodes_ = gpu::makeBufferOf(context_, table.nodes, 0, "light nodes");
+  lightSlots_ = gpu::makeBufferOf(context_, table.slots, 0, "light slots");
+  frame_.lights = lights_.address();
+  frame_.lightTable = lightTable_.address();
+  frame_.lightNodes = lightNodes_.address();
+  frame_.lightSlots = lightSlots_.address();
+  frame_.lightCount = static_cast<std::uint32_t>(table.entries.size());
+  frame_.environmentLight = table.environmentLight;
+  if (table.environment.width > 0) {
+    environmentTable_ = gpu::makeBufferOf(context_, table.environment.entries, 0, "environment table");
+    frame_.environment.table = environmentTable_.address();
+    frame_.environment.width = table.environment.width;
+    frame_.environment.height = table.environment.height;
+  }
+  statistics_.lightCount = frame_.lightCount;
+  firstLightSlots_ = table.firstSlots;
+
+  albedoTable_ = gpu::makeBufferOf(context_, albedoTables(), 0, "albedo tables");
+  frame_.albedoTables = albedoTable_.address();
+}
+
+void DeviceScene::uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader) {
+  textures_.emplace(context_, uploader, scene);
+  const TextureIndex expect = [&](int texture, bool sRgb) { return textures_->expect(texture, sRgb), 0u; };
+  for (const scene::Material& material : scene.materials) makeMaterial(material, expect);
+  std::vector<shared::MaterialData> materials;
+  const TextureIndex textureIndex = [&](int texture, bool sRgb) { return textures_->index(texture, sRgb); };
+  for (const scene::Material& material : scene.materials) materials.push_back(makeMaterial(material, textureIndex));
+  materials.push_back(makeMaterial(scene::Material{}, textureIndex));
+  materialTable_ = gpu::makeBufferOf(context_, materials, 0, "materials");
+  frame_.materials = materialTable_.address();
+
+  shared::EnvironmentData& data = frame_.environment;
+  data.scale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
+  data.texture =
+      environment.image.empty() ? shared::kNoTexture : textures_->addEnvironment(cleanEnvironment(environment.image));
+  data.cosRotation = std::cos(environment.rotation);
+  data.sinRotation = std::sin(environment.rotation);
+
+  set_ = std::make_unique<gpu::BindlessSet>(context_, textures_->count() + TextureSlots::kCount,
+                                            static_cast<std::uint32_t>(sizeof(shared::Launch)));
+  parameterSlots_.emplace(*set_, textures_->count(), TextureSlots::kCount);
+  uploader.flush();
+  textures_->bind(*set_);
+}
+
+rt::BlasInput DeviceScene::blasInput(const scene::Scene& scene, std::size_t mesh,
+                                     std::deque<std::vector<Bounds3>>& boxes) const {
+  rt::BlasInput input;
+  input.options.name = scene.meshes[mesh].name;
+  input.options.keepInputOrder = options_.keepInputOrder;
+  std::size_t k = geometry_.firstGeometry[mesh];
+  for (std::size_t g = 0; g < scene.meshes[mesh].geometries.size(); ++g, ++k) {
+    rt::GeometryInput& part = input.geometries.emplace_back();
+    part.positions = geometry_.arrays[k].positions;
+    part.triangles = geometry_.arrays[k].triangles;
+    part.positionsAddress = geometry_.geometries[k].positions;
+    part.trianglesAddress = geometry_.geometries[k].triangles;
+    part.opaque = facts_.geometries[k].opaque();
+    part.singleAnyHit = facts_.geometries[k].tints;
+  }
+  for (const scene::PrimitiveSet& primitives : scene.meshes[mesh].primitiveSets) {
+    rt::GeometryInput& part = input.geometries.emplace_back();
+    part.kind = rt::GeometryKind::boxes;
+    part.boxes = boxes.emplace_back(boxesForBuild(primitives));
+    part.opaque = facts_.geometries[k].opaque();
+    part.singleAnyHit = facts_.geometries[k++].tints;
+  }
+  return input;
+}
+
+void DeviceScene::buildBottomLevel(const scene::Scene& scene) {
+  blasOfMesh_.assign(scene.meshes.size(), -1);
+  for (const scene::Instance& instance : scene.instances) blasOfMesh_[static_cast<std::size_t>(instance.mesh)] = 0;
+  std::vector<rt::BlasInput> inputs;
+  std::vector<std::size_t> meshOfInput;
+  std::deque<std::vector<Bounds3>> boxes;
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    if (blasOfMesh_[m] < 0) continue;
+    blasOfMesh_[m] = static_cast<int>(inputs.size());
+    meshOfInput.push_back(m);
+    inputs.push_back(blasInput(scene, m, boxes));
+  }
+  blas_ = rt::BlasBuilder(context_).build(inputs, &statistics_.build);
+  for (std::size_t i = 0; i < blas_.size(); ++i) {
+    bottomLevelBytes_ += blas_[i].size();
+    statistics_.primitiveMapBytes += blas_[i].mapBytes();
+    for (std::size_t g = 0; g < inputs[i].geometries.size(); ++g)
+      geometry_.geometries[geometry_.firstGeometry[meshOfInput[i]] + g].primitiveMap = blas_[i].primitiveMap(g);
+  }
+}
+
+void DeviceScene::uploadTables(const scene::Scene& scene) {
+  geometryTable_ = gpu::makeBufferOf(context_, geometry_.geometries, 0, "geometries");
+  frame_.geometries = geometryTable_.address();
+  std::vector<InstanceReferences> references;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
+    references.push_back(
+        {&blas_[static_cast<std::size_t>(blasOfMesh_[mesh])], geometry_.firstGeometry[mesh], firstLightSlots_[i]});
+  }
+  topLevel_.emplace(context_, scene, references);
+  frame_.instances = topLevel_->table();
+  frame_.previousInstances = topLevel_->previousTable();
+  frame_.instanceCount = static_cast<std::uint32_t>(scene.instances.size());
+}
+
+void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder, bool anyHitForAll) {
+  const Stopwatch watch;
+  if (!topLevel_->prepareFor(rayTypeCount, keepInstanceOrder || options_.keepInputOrder, anyHitForAll)) return;
+  set_->setAccelerationStructure(topLevel_->structure().handle());
+  statistics_.accelerationBytes = bottomLevelBytes_ + topLevel_->structure().size();
+  statistics_.topLevelSeconds = watch.seconds();
+}
+
+void DeviceScene::setFrame(float frame) {
+  if (!topLevel_->setFrame(frame) || !movingLights_) return;
+  LightTable table = movingLights_->build(topLevel_->worldFromObject());
+  padTables(table);
+  lights_.uploadAs(std::span<const shared::LightData>(table.lights));
+  lightTable_.uploadAs(std::span<const shared::AliasEntry>(table.entries));
+  lightNodes_.uploadAs(std::span<const shared::LightNode>(table.nodes));
+}
+
+}  // namespace quintet::render

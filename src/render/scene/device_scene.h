@@ -1,0 +1,103 @@
+// A scene on the device: attributes, textures, materials, lights and acceleration structures. It is uploaded once and
+// used by any number of renderers (programs, sizes, cameras).
+#ifndef QUINTET_RENDER_SCENE_DEVICE_SCENE_H
+#define QUINTET_RENDER_SCENE_DEVICE_SCENE_H
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gpu/descriptors.h"
+#include "gpu/uploader.h"
+#include "program/scene_facts.h"
+#include "quintet/shared/frame.h"
+#include "render/lights/light_table.h"
+#include "render/scene/geometry_upload.h"
+#include "render/scene/scene_features.h"
+#include "render/scene/texture_upload.h"
+#include "render/scene/top_level.h"
+#include "rt/blas_builder.h"
+#include "scene/model/scene.h"
+
+namespace quintet::render {
+
+struct DeviceSceneOptions {
+  bool keepInputOrder = false;  // for benchmarks: do not sort primitives and instances spatially
+};
+
+struct DeviceSceneStatistics {
+  double uploadSeconds = 0;   // attributes, textures and light tables
+  rt::BuildStatistics build;  // bottom level
+  double topLevelSeconds = 0;
+  double lightSeconds = 0;  // part of uploadSeconds: light, environment and albedo tables
+  std::uint64_t geometryBytes = 0;
+  std::uint64_t textureBytes = 0;
+  std::uint64_t accelerationBytes = 0;  // bottom and top level
+  std::uint64_t primitiveMapBytes = 0;  // only if the driver keeps the input order (quirks.md)
+  std::uint32_t lightCount = 0;
+};
+
+class DeviceScene {
+ public:
+  // Consumes `scene`: frees its attributes and images as soon as they are on the device, so that a large scene is in
+  // memory once. `environment` is the one in use: the scene's, the user's, or the default.
+  DeviceScene(gpu::Context& context, scene::Scene&& scene, const scene::Environment& environment,
+              const DeviceSceneOptions& options = {});
+  DeviceScene(const DeviceScene&) = delete;
+  DeviceScene& operator=(const DeviceScene&) = delete;
+
+  gpu::Context& context() const { return context_; }
+  const gpu::BindlessSet& set() const { return *set_; }
+  // Slots for the images of program parameters.
+  TextureSlots& parameterSlots() { return *parameterSlots_; }
+  // Facts for linking and checking a program; geometries are in the order of hit records.
+  const program::SceneFacts& facts() const { return facts_; }
+  // Preprocessor definitions for shaders: QUINTET_NO_… (quintet/features.glsl) and driver workarounds.
+  const Defines& defines() const { return defines_; }
+  // Frame with the scene's addresses and environment. The renderer adds camera, film and outputs.
+  const shared::Frame& frameTemplate() const { return frame_; }
+  const DeviceSceneStatistics& statistics() const { return statistics_; }
+
+  // Builds the TLAS for programs with this number of ray types, which the hit record offsets depend on.
+  // keepInstanceOrder makes gl_InstanceID the instance's index in the scene, at some cost in speed
+  // (docs/design/quirks.md).
+  void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder = false, bool anyHitForAll = false);
+
+  // Moves the instances with keyframes (scene.h) to their transforms at `frame`: updates the instance table, the TLAS,
+  // and the light tables if a moving instance emits. Addresses do not change, so frameTemplate() stays valid. Blocks;
+  // no launch can be under way. The scene starts at frame 0.
+  void setFrame(float frame);
+  bool animated() const { return topLevel_->animated(); }  // an instance has keyframes
+
+ private:
+  void uploadLights(const scene::Scene& scene, const scene::Environment& environment);
+  void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
+  // Returns the geometries of a mesh. The boxes of primitive sets are stored in `boxes`, which must live until the
+  // build ends.
+  rt::BlasInput blasInput(const scene::Scene& scene, std::size_t mesh, std::deque<std::vector<Bounds3>>& boxes) const;
+  void buildBottomLevel(const scene::Scene& scene);
+  void uploadTables(const scene::Scene& scene);
+
+  gpu::Context& context_;
+  DeviceSceneOptions options_;
+  DeviceSceneStatistics statistics_;
+  GeometryUpload geometry_;
+  std::optional<TextureUpload> textures_;
+  std::unique_ptr<gpu::BindlessSet> set_;
+  std::optional<TextureSlots> parameterSlots_;
+  gpu::Buffer geometryTable_, materialTable_, environmentTable_, albedoTable_;
+  gpu::Buffer lights_, lightTable_, lightNodes_, lightSlots_;
+  std::vector<std::uint32_t> firstLightSlots_;     // per instance
+  std::optional<LightTableBuilder> movingLights_;  // only if an instance with keyframes has lights
+  std::vector<rt::Blas> blas_;                     // one per mesh that an instance uses
+  std::vector<int> blasOfMesh_;                    // index in blas_; -1 if no instance uses the mesh
+  std::uint64_t bottomLevelBytes_ = 0;
+  std::optional<TopLevel> topLevel_;
+  program::SceneFacts facts_;
+  shared::Frame frame_{};
+  Defines defines_;
+};
+
+}  // namespace quintet::render
+#endif

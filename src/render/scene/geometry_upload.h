@@ -1,0 +1,39 @@
+// Uploads the vertex attributes, triangles and primitive sets of a scene into a few large buffers.
+#ifndef QUINTET_RENDER_SCENE_GEOMETRY_UPLOAD_H
+#define QUINTET_RENDER_SCENE_GEOMETRY_UPLOAD_H
+
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/uploader.h"
+#include "quintet/shared/frame.h"
+#include "scene/model/scene.h"
+
+namespace quintet::render {
+
+// Host view of the arrays that an acceleration structure is built from, in mapped device memory or in the scene.
+struct GeometryArrays {
+  std::span<const vec3> positions;
+  std::span<const uvec3> triangles;
+};
+
+// Geometries and primitive sets in the order of hit records. The caller sets the addresses of primitive maps.
+struct GeometryUpload {
+  std::deque<gpu::Buffer> buffers;
+  std::vector<shared::GeometryData> geometries;
+  std::vector<GeometryArrays> arrays;        // parallel to `geometries`; empty for primitive sets
+  std::vector<std::uint32_t> firstGeometry;  // per mesh
+  std::uint64_t bytes = 0;
+};
+
+// Returns the bytes that uploadGeometries() transfers through the uploader. 0 on a CPU, where arrays are written
+// directly.
+VkDeviceSize geometryUploadBytes(const gpu::Context& context, const scene::Scene& scene);
+
+// Uploads all geometries, and frees each array of the scene that GeometryUpload::arrays does not refer to.
+GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, scene::Scene& scene);
+
+}  // namespace quintet::render
+#endif

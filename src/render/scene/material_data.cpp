@@ -1,0 +1,75 @@
+#include "render/scene/material_data.h"
+
+#include <cmath>
+
+#include "scene/model/surface_class.h"
+
+namespace quintet::render {
+namespace {
+
+shared::TextureData makeTexture(const scene::TextureUse& use, bool sRgb, const TextureIndex& textureIndex) {
+  shared::TextureData data{};
+  data.index = use.used() ? textureIndex(use.texture, sRgb) : shared::kNoTexture;
+  data.uvSet = static_cast<std::uint32_t>(use.uvSet);
+  // KHR_texture_transform: translation · rotation · scale, with rotation [c s; -s c].
+  const float c = std::cos(use.rotation);
+  const float s = std::sin(use.rotation);
+  data.rowU = {c * use.scale.x, s * use.scale.y, use.offset.x};
+  data.rowV = {-s * use.scale.x, c * use.scale.y, use.offset.y};
+  return data;
+}
+
+// Beer-Lambert coefficient that turns white into `color` after `distance`.
+vec3 absorption(const vec3& color, float distance) {
+  if (!std::isfinite(distance) || distance <= 0.0f) return vec3(0.0f);
+  return -glm::log(glm::clamp(color, vec3(1e-6f), vec3(1.0f))) / distance;
+}
+
+std::uint32_t materialFlags(const scene::Material& m) {
+  std::uint32_t flags = 0;
+  if (m.alphaMode == scene::AlphaMode::mask) flags |= shared::kMaterialMask;
+  if (m.alphaMode == scene::AlphaMode::blend) flags |= shared::kMaterialBlend;
+  if (m.unlit) flags |= shared::kMaterialUnlit;
+  if (m.thickness <= 0.0f) flags |= shared::kMaterialThin;
+  if (glm::any(glm::greaterThan(m.emissive, vec3(0.0f)))) flags |= shared::kMaterialEmissive;
+  if (m.doubleSided) flags |= shared::kMaterialDoubleSided;
+  if (scene::isPane(m)) flags |= shared::kMaterialPane;
+  return flags;
+}
+
+}  // namespace
+
+shared::MaterialData makeMaterial(const scene::Material& m, const TextureIndex& textureIndex) {
+  shared::MaterialData data{};
+  data.baseColor = m.baseColor;
+  data.emissive = m.emissive;
+  data.metallic = m.metallic;
+  data.roughness = m.roughness;
+  data.normalScale = m.normalScale;
+  data.alphaCutoff = m.alphaCutoff;
+  data.ior = m.ior;
+  data.transmission = m.transmission;
+  data.specular = m.specular;
+  data.specularColor = m.specularColor;
+  data.clearcoat = m.clearcoat;
+  data.clearcoatRoughness = m.clearcoatRoughness;
+  data.clearcoatNormalScale = m.clearcoatNormalScale;
+  data.absorption = m.thickness > 0.0f ? absorption(m.attenuationColor, m.attenuationDistance) : vec3(0.0f);
+  data.flags = materialFlags(m);
+  data.baseColorTexture = makeTexture(m.baseColorTexture, true, textureIndex);
+  data.metallicRoughnessTexture = makeTexture(m.metallicRoughnessTexture, false, textureIndex);
+  data.normalTexture = makeTexture(m.normalTexture, false, textureIndex);
+  data.emissiveTexture = makeTexture(m.emissiveTexture, true, textureIndex);
+  data.transmissionTexture = makeTexture(m.transmissionTexture, false, textureIndex);
+  data.specularTexture = makeTexture(m.specularTexture, false, textureIndex);
+  data.specularColorTexture = makeTexture(m.specularColorTexture, true, textureIndex);
+  data.clearcoatTexture = makeTexture(m.clearcoatTexture, false, textureIndex);
+  data.clearcoatRoughnessTexture = makeTexture(m.clearcoatRoughnessTexture, false, textureIndex);
+  data.clearcoatNormalTexture = makeTexture(m.clearcoatNormalTexture, false, textureIndex);
+  const shared::TextureData* textures = &data.baseColorTexture;
+  for (std::uint32_t k = 0; k < shared::kTextureCount; ++k)
+    if (textures[k].index != shared::kNoTexture) data.flags |= 1u << (shared::kMaterialTextureShift + k);
+  return data;
+}
+
+}  // namespace quintet::render

@@ -1,0 +1,125 @@
+#include "render/scene/scene_features.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "quintet/shared/material.h"
+#include "scene/model/surface_class.h"
+
+namespace quintet::render {
+namespace {
+
+// What any primitive set of the scene is or holds.
+struct ProceduralFeatures {
+  bool solids = false;  // or trees
+  bool csg = false;
+  bool torus = false;
+  bool alpha = false;
+  bool panes = false;
+  bool lights = false;  // solids, not trees
+};
+
+bool emits(const scene::Material& m) { return glm::any(glm::greaterThan(m.emissive, vec3(0.0f))); }
+
+ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
+  ProceduralFeatures features;
+  for (const scene::Mesh& mesh : scene.meshes) {
+    for (const scene::PrimitiveSet& set : mesh.primitiveSets) {
+      features.solids |= set.kind != scene::PrimitiveSetKind::custom;
+      features.csg |= set.kind == scene::PrimitiveSetKind::csg;
+      features.torus |= std::ranges::count(set.primitives, scene::PrimitiveType::torus, &scene::Primitive::type) > 0;
+      features.lights |=
+          set.kind == scene::PrimitiveSetKind::solids &&
+          std::ranges::any_of(set.primitives, [&](const scene::Primitive& p) {
+            return p.material != scene::kNone && emits(scene.materials[static_cast<std::size_t>(p.material)]);
+          });
+      features.panes |= scene::isPane(scene, set);
+      features.alpha |= set.kind != scene::PrimitiveSetKind::custom && scene::needsAlphaTest(scene, set);
+    }
+  }
+  return features;
+}
+
+// Bit k: a material has texture shared::kTexture… k.
+std::uint32_t textureSlots(const scene::Scene& scene) {
+  std::uint32_t slots = 0;
+  for (const scene::Material& m : scene.materials) {
+    const scene::TextureUse* const uses[shared::kTextureCount] = {
+        &m.baseColorTexture,          &m.metallicRoughnessTexture, &m.normalTexture,        &m.emissiveTexture,
+        &m.transmissionTexture,       &m.specularTexture,          &m.specularColorTexture, &m.clearcoatTexture,
+        &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture};
+    for (std::uint32_t k = 0; k < shared::kTextureCount; ++k)
+      if (uses[k]->used()) slots |= 1u << k;
+  }
+  return slots;
+}
+
+// True if a triangle geometry of the scene fulfils the condition.
+template <class Predicate>
+bool anyGeometry(const scene::Scene& scene, Predicate predicate) {
+  return std::ranges::any_of(scene.meshes,
+                             [&](const scene::Mesh& mesh) { return std::ranges::any_of(mesh.geometries, predicate); });
+}
+
+template <class Predicate>
+bool anyPrimitives(const scene::Scene& scene, Predicate predicate) {
+  return std::ranges::any_of(
+      scene.meshes, [&](const scene::Mesh& mesh) { return std::ranges::any_of(mesh.primitiveSets, predicate); });
+}
+
+bool anyTintsShadows(const scene::Scene& scene) {
+  const auto tints = [&](const auto& geometry) { return scene::tintsShadows(scene, geometry); };
+  return anyGeometry(scene, tints) || anyPrimitives(scene, tints);
+}
+
+}  // namespace
+
+SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment& environment) {
+  const auto any = [&](auto predicate) {
+    return std::any_of(scene.materials.begin(), scene.materials.end(), predicate);
+  };
+  const vec3 environmentScale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
+
+  SceneFeatures features;
+  Defines& defines = features.defines;
+  const auto without = [&](const char* name, bool present) {
+    if (!present) defines.emplace_back(name, "1");
+  };
+  without("QUINTET_NO_SOLID_TRANSMISSION",
+          any([](const scene::Material& m) { return m.transmission > 0.0f && m.thickness > 0.0f; }));
+  without("QUINTET_NO_THIN_TRANSMISSION",
+          any([](const scene::Material& m) { return m.transmission > 0.0f && !(m.thickness > 0.0f); }));
+  without("QUINTET_NO_PANES", any([](const scene::Material& m) { return scene::isPane(m); }));
+  without("QUINTET_NO_TRANSMITTANCE", anyTintsShadows(scene));
+  without("QUINTET_NO_CLEARCOAT", any([](const scene::Material& m) { return m.clearcoat > 0.0f; }));
+  without("QUINTET_NO_TRIANGLE_LIGHTS", any(emits));
+  without("QUINTET_NO_PUNCTUAL_LIGHTS", !scene.lights.empty());
+  without("QUINTET_NO_ENVIRONMENT", glm::any(glm::greaterThan(environmentScale, vec3(0.0f))));
+  const ProceduralFeatures procedural = proceduralFeatures(scene);
+  without("QUINTET_NO_PROCEDURALS", procedural.solids);
+  without("QUINTET_NO_CSG", procedural.csg);
+  without("QUINTET_NO_TORUS", procedural.torus);
+  without("QUINTET_NO_PROCEDURAL_ALPHA", procedural.alpha);
+  without("QUINTET_NO_PROCEDURAL_PANES", procedural.panes);
+  without("QUINTET_NO_SOLID_LIGHTS", procedural.lights);
+  const bool alphaTriangles =
+      anyGeometry(scene, [&](const scene::Geometry& g) { return scene::needsAlphaTest(scene, g); });
+  without("QUINTET_NO_SEEDS", procedural.alpha || alphaTriangles);
+  without("QUINTET_NO_VERTEX_COLORS", anyGeometry(scene, [](const scene::Geometry& g) { return !g.colors.empty(); }));
+  defines.emplace_back("QUINTET_TEXTURE_SLOTS", fmt::format("{:#x}u", textureSlots(scene)));
+  features.alpha = alphaTriangles || anyPrimitives(scene, [&](const scene::PrimitiveSet& set) {
+                     return scene::needsAlphaTest(scene, set);
+                   });
+  return features;
+}
+
+Defines shaderDefines(const SceneFeatures& features, const gpu::Quirks& quirks) {
+  Defines defines = features.defines;
+  if (!quirks.corruptsHitAttributes) return defines;
+  defines.emplace_back("QUINTET_CORRUPTS_HIT_ATTRIBUTES", "1");
+  if (features.alpha) defines.emplace_back("QUINTET_RECOMPUTE_BARYCENTRICS", "1");
+  return defines;
+}
+
+}  // namespace quintet::render

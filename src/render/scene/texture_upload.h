@@ -1,0 +1,86 @@
+// Uploads images as textures: those of a scene's materials, its environment, and the images of program parameters.
+#ifndef QUINTET_RENDER_SCENE_TEXTURE_UPLOAD_H
+#define QUINTET_RENDER_SCENE_TEXTURE_UPLOAD_H
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gpu/descriptors.h"
+#include "gpu/image.h"
+#include "gpu/uploader.h"
+#include "scene/model/scene.h"
+
+namespace quintet::render {
+
+// Appends an image of any type as a texture of 4 channels. `sRgb` means that integer colors are decoded when they are
+// sampled. A deque, because the uploader holds the texture's address until it is flushed.
+gpu::Image& addTexture(std::deque<gpu::Image>& textures, gpu::Context& context, gpu::Uploader& uploader,
+                       const io::Image& image, bool sRgb, const std::string& name);
+
+// Returns the bytes that TextureUpload transfers for the scene's images, each in one encoding.
+VkDeviceSize textureUploadBytes(const scene::Scene& scene);
+
+// The textures of a scene on the device: one for each requested combination of image, encoding and sampler.
+class TextureUpload {
+ public:
+  // Frees the pixels of each image of `scene` once they are uploaded in all encodings that expect() announced.
+  TextureUpload(gpu::Context& context, gpu::Uploader& uploader, scene::Scene& scene);
+  // Announces a later index(). All announcements come before the first index().
+  void expect(int texture, bool sRgb);
+  // Returns the bindless index of a texture of the scene; uploads its image on the first call.
+  std::uint32_t index(int texture, bool sRgb);
+  // Uploads the environment, which is repeated in u and clamped in v. Returns its bindless index.
+  std::uint32_t addEnvironment(const io::Image& image);
+
+  std::uint32_t count() const { return static_cast<std::uint32_t>(entries_.size()); }
+  void bind(gpu::BindlessSet& set) const;
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  struct Entry {
+    const gpu::Image* image;
+    const gpu::Sampler* sampler;
+  };
+  const gpu::Image& upload(const io::Image& image, bool sRgb, const std::string& name);
+  // Frees the pixels of an image unless they are expected in the other encoding, too.
+  void freeImage(int image, bool sRgb);
+  const gpu::Sampler& sampler(const gpu::SamplerOptions& options);
+
+  gpu::Context& context_;
+  gpu::Uploader& uploader_;
+  scene::Scene& scene_;
+  std::set<std::pair<int, bool>> expected_;
+  std::deque<gpu::Image> images_;
+  std::deque<std::pair<gpu::SamplerOptions, gpu::Sampler>> samplers_;
+  std::map<std::pair<int, bool>, const gpu::Image*> imageByKey_;
+  std::map<std::pair<int, bool>, std::uint32_t> indexByTexture_;
+  std::vector<Entry> entries_;
+  std::uint64_t bytes_ = 0;
+};
+
+// Bindless slots after the scene's textures, shared by the parameter images of all renderers that use the scene.
+class TextureSlots {
+ public:
+  static constexpr std::uint32_t kCount = 64;
+
+  // Manages slots [first, first + count) of `set`, which must outlive this object.
+  TextureSlots(gpu::BindlessSet& set, std::uint32_t first, std::uint32_t count);
+
+  gpu::BindlessSet& set() { return set_; }
+  // Throws UsageError if fewer slots are free.
+  std::vector<std::uint32_t> acquire(std::size_t count);
+  void release(std::span<const std::uint32_t> slots);
+
+ private:
+  gpu::BindlessSet& set_;
+  std::vector<std::uint32_t> free_;  // a stack: the last slot is used next
+};
+
+}  // namespace quintet::render
+#endif

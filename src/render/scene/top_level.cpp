@@ -1,0 +1,90 @@
+#include "render/scene/top_level.h"
+
+#include <algorithm>
+
+#include "scene/animation/keyframes.h"
+
+namespace quintet::render {
+namespace {
+
+void setTransform(shared::InstanceData& data, const mat4& worldFromObject) {
+  const mat4 forward = glm::transpose(worldFromObject);
+  const mat4 backward = glm::transpose(glm::inverse(worldFromObject));
+  for (int i = 0; i < 3; ++i) {
+    data.worldFromObject[i] = forward[i];
+    data.objectFromWorld[i] = backward[i];
+  }
+  data.flags &= ~shared::kInstanceMirrored;
+  if (glm::determinant(mat3(worldFromObject)) < 0.0f) data.flags |= shared::kInstanceMirrored;
+}
+
+}  // namespace
+
+TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstanceReferences> references)
+    : context_(context) {
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Instance& instance = scene.instances[i];
+    const mat4 worldFromObject = scene::worldFromObjectAt(instance, 0.0f);
+    if (!instance.keyframes.empty()) {
+      moving_.push_back(instance);
+      movingIndex_.push_back(static_cast<std::uint32_t>(i));
+    }
+    shared::InstanceData& data = data_.emplace_back();
+    data.firstGeometry = references[i].firstGeometry;
+    data.firstLightSlot = references[i].firstLightSlot;
+    data.customIndex = instance.customIndex;
+    data.flags = (instance.flags & scene::kInstanceForceOpaque) != 0 ? shared::kInstanceOpaque : 0;
+    setTransform(data, worldFromObject);
+    rt::InstanceInput& input = inputs_.emplace_back();
+    input.worldFromObject = worldFromObject;
+    input.blas = references[i].blas;
+    input.customIndex = static_cast<std::uint32_t>(i);
+    input.mask = instance.mask;
+    input.flags = instance.flags;
+  }
+  table_ = gpu::makeBufferOf(context, data_, 0, "instances");
+  if (animated()) previousTable_ = gpu::makeBufferOf(context, data_, 0, "instances before");
+}
+
+bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHitForAll) {
+  if (tlas_ && rayTypeCount == rayTypeCount_ && keepOrder == keepOrder_ && anyHitForAll == anyHitForAll_) return false;
+  rayTypeCount_ = rayTypeCount;
+  anyHitForAll_ = anyHitForAll;
+  keepOrder_ = keepOrder;
+  build();
+  return true;
+}
+
+bool TopLevel::setFrame(float frame) {
+  if (moving_.empty() || frame == frame_) return false;
+  frame_ = frame;
+  std::vector<shared::InstanceData> before = data_;
+  for (std::size_t k = 0; k < moving_.size(); ++k) {
+    setTransform(before[movingIndex_[k]], scene::worldFromObjectAt(moving_[k], std::max(0.0f, frame - 1.0f)));
+    const mat4 worldFromObject = scene::worldFromObjectAt(moving_[k], frame);
+    setTransform(data_[movingIndex_[k]], worldFromObject);
+    inputs_[movingIndex_[k]].worldFromObject = worldFromObject;
+  }
+  table_.upload(std::as_bytes(std::span(data_)));
+  previousTable_.upload(std::as_bytes(std::span(before)));
+  if (tlas_) build();
+  return true;
+}
+
+std::vector<mat4> TopLevel::worldFromObject() const {
+  std::vector<mat4> result;
+  for (const rt::InstanceInput& input : inputs_) result.push_back(input.worldFromObject);
+  return result;
+}
+
+void TopLevel::build() {
+  for (std::size_t i = 0; i < inputs_.size(); ++i) inputs_[i].recordOffset = data_[i].firstGeometry * rayTypeCount_;
+  if (!tlas_) tlas_ = std::make_unique<rt::Tlas>(context_, static_cast<std::uint32_t>(inputs_.size()));
+  tlas_->keepInputOrder(keepOrder_);
+  std::vector<rt::InstanceInput> inputs = inputs_;
+  for (rt::InstanceInput& input : inputs)
+    if (anyHitForAll_ && (input.flags & scene::kInstanceForceOpaque) == 0) input.flags |= scene::kInstanceForceNoOpaque;
+  tlas_->buildAndWait(inputs);
+}
+
+}  // namespace quintet::render

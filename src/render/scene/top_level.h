@@ -1,0 +1,61 @@
+// The instances of a scene on the device: the instance table, which shaders index by gl_InstanceCustomIndexEXT, and the
+// top-level acceleration structure. It is rebuilt for a different number of ray types, order, or frame of the
+// animation.
+#ifndef QUINTET_RENDER_SCENE_TOP_LEVEL_H
+#define QUINTET_RENDER_SCENE_TOP_LEVEL_H
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "quintet/shared/frame.h"
+#include "rt/tlas.h"
+#include "scene/model/scene.h"
+
+namespace quintet::render {
+
+// The parts of a scene's arrays that an instance refers to.
+struct InstanceReferences {
+  const rt::Blas* blas = nullptr;
+  std::uint32_t firstGeometry = 0;
+  std::uint32_t firstLightSlot = 0;
+};
+
+class TopLevel {
+ public:
+  // `references` has one entry per instance. `scene` is used during construction only. Starts at frame 0.
+  TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstanceReferences> references);
+
+  shared::Address table() const { return table_.address(); }  // shared::InstanceData[]; the same for all frames
+  // Returns the table of the frame before the current one; at frame 0, of frame 0. 0 if no instance has keyframes.
+  shared::Address previousTable() const { return animated() ? previousTable_.address() : 0; }
+  std::vector<mat4> worldFromObject() const;  // transforms of the instances at the current frame
+  bool animated() const { return !moving_.empty(); }
+
+  // Builds the structure so that the hit record of geometry k and ray type r is k · rayTypeCount + r. keepOrder makes
+  // gl_InstanceID the instance's index in the scene. With anyHitForAll only instances that are forced to be opaque are
+  // opaque. Blocks. Returns false if the structure already fits.
+  bool prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHitForAll);
+  // Moves the instances with keyframes. Blocks; the device must not be tracing. Returns false if no transform changed.
+  bool setFrame(float frame);
+
+  const rt::Tlas& structure() const { return *tlas_; }  // after prepareFor
+
+ private:
+  void build();
+
+  gpu::Context& context_;
+  std::vector<scene::Instance> moving_;     // instances with keyframes
+  std::vector<std::uint32_t> movingIndex_;  // their indices in the scene
+  std::vector<shared::InstanceData> data_;
+  std::vector<rt::InstanceInput> inputs_;
+  gpu::Buffer table_, previousTable_;
+  std::unique_ptr<rt::Tlas> tlas_;
+  std::uint32_t rayTypeCount_ = 0;
+  bool keepOrder_ = false;
+  bool anyHitForAll_ = false;
+  float frame_ = 0.0f;
+};
+
+}  // namespace quintet::render
+#endif

@@ -1,0 +1,168 @@
+#include "scene/gltf/compression.h"
+
+#include <draco/compression/decode.h>
+#include <fmt/format.h>
+#include <meshoptimizer.h>
+
+#include <span>
+
+#include "scene/gltf/extensions.h"
+
+namespace quintet::scene {
+namespace {
+
+// ---- meshopt ----
+
+// Above what the codecs can reach (64 : 1 for vertices, one byte per triangle or index). Data that states a higher
+// ratio is invalid, and the stated size must not be allocated.
+constexpr std::size_t kMaxRatio = 128;
+
+bool strideFits(const std::string& mode, const std::string& filter, std::size_t stride) {
+  if (mode != "ATTRIBUTES") return stride == 2 || stride == 4;
+  if (filter == "OCTAHEDRAL") return stride == 4 || stride == 8;
+  if (filter == "QUATERNION") return stride == 8;
+  return stride % 4 == 0 && stride <= 256;
+}
+
+int decode(const std::string& mode, std::byte* out, std::size_t count, std::size_t stride,
+           std::span<const std::byte> in) {
+  const auto* data = reinterpret_cast<const unsigned char*>(in.data());
+  if (mode == "TRIANGLES") return meshopt_decodeIndexBuffer(out, count, stride, data, in.size());
+  if (mode == "INDICES") return meshopt_decodeIndexSequence(out, count, stride, data, in.size());
+  return meshopt_decodeVertexBuffer(out, count, stride, data, in.size());
+}
+
+void applyFilter(const std::string& filter, std::byte* data, std::size_t count, std::size_t stride) {
+  if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(data, count, stride);
+  if (filter == "QUATERNION") meshopt_decodeFilterQuat(data, count, stride);
+  if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(data, count, stride);
+}
+
+}  // namespace
+
+FileBytes decodeMeshopt(const Document& document, const tinygltf::BufferView& view, const std::string& location) {
+  const tinygltf::Value& extension = *findExtension(view.extensions, kMeshopt);
+  const auto size = [&](const char* key) { return static_cast<std::size_t>(indexOf(extension, key, 0)); };
+  const std::size_t buffer = size("buffer"), offset = size("byteOffset"), length = size("byteLength");
+  const std::span<const std::byte> bytes = document.buffers[buffer].data;
+  const std::size_t stride = size("byteStride"), count = size("count");
+  const std::string mode = stringOf(extension, "mode", ""), filter = stringOf(extension, "filter", "NONE");
+
+  if (offset + length > bytes.size())
+    document.fail(location,
+                  fmt::format("extends {} bytes past the end of buffer {}", offset + length - bytes.size(), buffer));
+  if (!strideFits(mode, filter, stride))
+    document.fail(location + "/byteStride",
+                  fmt::format("{} is not valid for mode {} with filter {}", stride, mode, filter));
+  if (view.byteStride != 0 && view.byteStride != stride)
+    document.fail(location + "/byteStride", fmt::format("{}, but the buffer view states {}", stride, view.byteStride));
+  if (mode == "TRIANGLES" && count % 3 != 0)
+    document.fail(location + "/count", fmt::format("{} is not a multiple of 3", count));
+  if (mode != "ATTRIBUTES" && filter != "NONE")
+    document.fail(location + "/filter", "only attributes can have a filter");
+  if (count * stride > kMaxRatio * length)
+    document.fail(location + "/count", fmt::format("{} bytes cannot hold {} elements", length, count));
+
+  FileBytes result(count * stride);
+  if (count == 0) return result;
+  if (decode(mode, result.data(), count, stride, bytes.subspan(offset, length)) != 0)
+    document.fail(location, "invalid compressed data");
+  applyFilter(filter, result.data(), count, stride);
+  return result;
+}
+
+// ---- Draco ----
+
+namespace {
+
+// Number of triangles that the header of the stream states (Draco bitstream specification 2.2, sections 2.1 and 2.3);
+// 0 if metadata precedes it or the stream is truncated.
+std::uint64_t claimedTriangles(std::span<const std::byte> stream) {
+  const auto byte = [&](std::size_t i) { return i < stream.size() ? std::to_integer<std::uint64_t>(stream[i]) : 0; };
+  std::size_t at = 11;  // after "DRACO", version (2 bytes), type, method, flags (2 bytes)
+  const auto varint = [&] {
+    std::uint64_t value = 0;
+    for (int shift = 0; shift < 35; shift += 7) {
+      value |= (byte(at) & 0x7F) << shift;
+      if (byte(at++) < 0x80) break;
+    }
+    return value;
+  };
+  constexpr std::uint64_t kEdgebreaker = 1, kHasMetadata = 0x80;
+  if (byte(10) & kHasMetadata) return 0;
+  if (byte(8) == kEdgebreaker) {
+    ++at;      // traversal type
+    varint();  // vertices
+  }
+  return varint();
+}
+
+// Far above what Draco reaches (about 8). Decoding a stream that claims more could take minutes and gigabytes.
+constexpr std::uint64_t kMaxTrianglesPerByte = 256;
+
+}  // namespace
+
+struct DracoMesh::State {
+  const Document& document;
+  const tinygltf::Value& attributeIds;
+  std::string location;
+  std::unique_ptr<draco::Mesh> mesh;
+};
+
+DracoMesh::DracoMesh(const Document& document, const tinygltf::Primitive& primitive, const tinygltf::Value& extension,
+                     std::string location)
+    : state_(new State{document, extension.Get("attributes"), std::move(location), nullptr}) {
+  if (primitive.mode != TINYGLTF_MODE_TRIANGLES && primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP)
+    document.fail(state_->location, "only TRIANGLES and TRIANGLE_STRIP can be compressed");
+  const auto bytes = document.view(indexOf(extension, "bufferView"));
+  if (const std::uint64_t claimed = claimedTriangles(bytes); claimed > kMaxTrianglesPerByte * bytes.size())
+    document.fail(state_->location, fmt::format("{} bytes cannot hold {} triangles", bytes.size(), claimed));
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  draco::Decoder decoder;
+  auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+  if (!decoded.ok())
+    document.fail(state_->location, fmt::format("invalid Draco stream ({})", decoded.status().error_msg_string()));
+  state_->mesh = std::move(decoded).value();
+}
+
+DracoMesh::~DracoMesh() = default;
+
+bool DracoMesh::has(const std::string& attribute) const { return state_->attributeIds.Has(attribute); }
+
+std::vector<std::uint32_t> DracoMesh::indices() const {
+  const draco::Mesh& mesh = *state_->mesh;
+  std::vector<std::uint32_t> result;
+  result.reserve(std::size_t{3} * mesh.num_faces());
+  for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f)
+    for (std::size_t c = 0; c < 3; ++c) result.push_back(mesh.face(f)[c].value());
+  return result;
+}
+
+template <class Vec>
+std::vector<Vec> DracoMesh::read(const std::string& name, const std::string& location) const {
+  const draco::Mesh& mesh = *state_->mesh;
+  const int id = indexOf(state_->attributeIds, name);
+  const draco::PointAttribute* attribute = mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
+  const std::string idLocation = fmt::format("{}/attributes/{}", state_->location, name);
+  if (!attribute) state_->document.fail(idLocation, fmt::format("the Draco stream has no attribute {}", id));
+  const int needed = static_cast<int>(Vec::length()), have = attribute->num_components();
+  if (have != needed && !(name.starts_with("COLOR") && have == 3))
+    state_->document.fail(location, fmt::format("{} components in the Draco stream, expected {}", have, needed));
+
+  std::vector<Vec> values(mesh.num_points(), Vec(1));
+  for (draco::PointIndex p(0); p < mesh.num_points(); ++p) {
+    const draco::AttributeValueIndex value = attribute->mapped_index(p);
+    if (value.value() >= attribute->size() ||
+        !attribute->ConvertValue(value, static_cast<std::int8_t>(have), &values[p.value()][0]))
+      state_->document.fail(idLocation, fmt::format("vertex {} has no value in the Draco stream", p.value()));
+  }
+  return values;
+}
+
+template std::vector<vec2> DracoMesh::read(const std::string&, const std::string&) const;
+template std::vector<vec3> DracoMesh::read(const std::string&, const std::string&) const;
+template std::vector<vec4> DracoMesh::read(const std::string&, const std::string&) const;
+template std::vector<glm::u16vec4> DracoMesh::read(const std::string&, const std::string&) const;
+
+}  // namespace quintet::scene

@@ -1,0 +1,38 @@
+// The glTF extensions that Quintet supports, and typed access to their JSON values.
+#ifndef QUINTET_SCENE_GLTF_EXTENSIONS_H
+#define QUINTET_SCENE_GLTF_EXTENSIONS_H
+
+#include <tiny_gltf.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/model/scene.h"
+
+namespace quintet::scene {
+
+inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
+inline constexpr const char* kMeshopt = "EXT_meshopt_compression";
+inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+inline constexpr const char* kPunctualLights = "KHR_lights_punctual";
+inline constexpr const char* kTextureTransform = "KHR_texture_transform";
+inline constexpr const char* kTextureWebp = "EXT_texture_webp";
+
+// Throws FileError for the first entry of extensionsRequired that is not supported.
+void checkRequiredExtensions(const std::filesystem::path& file, const std::vector<std::string>& required);
+// Fills the report's lists from extensionsUsed.
+void reportExtensions(const std::vector<std::string>& used, Report&);
+
+// The value of an extension in a glTF object's extension map, or null.
+const tinygltf::Value* findExtension(const tinygltf::ExtensionMap&, const std::string& name);
+
+// Members of an extension's object. schema.cpp has checked their types.
+double numberOf(const tinygltf::Value& object, const std::string& key, double fallback);
+int indexOf(const tinygltf::Value& object, const std::string& key, int fallback = kNone);
+std::string stringOf(const tinygltf::Value& object, const std::string& key, const std::string& fallback);
+vec2 vec2Of(const tinygltf::Value& object, const std::string& key, vec2 fallback);
+vec3 vec3Of(const tinygltf::Value& object, const std::string& key, vec3 fallback);
+
+}  // namespace quintet::scene
+#endif

@@ -1,0 +1,30 @@
+// The node hierarchy: world transforms, the nodes of the chosen scene, and the cameras and lights of nodes.
+#ifndef QUINTET_SCENE_GLTF_NODES_H
+#define QUINTET_SCENE_GLTF_NODES_H
+
+#include <vector>
+
+#include "scene/gltf/document.h"
+
+namespace quintet::scene {
+
+struct NodeTree {
+  std::vector<mat4> worldFromNode;  // of every node of the file, because joints can be outside the chosen scene
+  std::vector<int> sceneNodes;      // nodes of the chosen scene, parents before children, in the file's order
+};
+
+// `sceneIndex` kNone means the file's default scene, else its first scene, else all root nodes. Throws FileError for
+// cycles, second parents and transforms that are not finite or not affine; UsageError for a scene that does not exist.
+NodeTree readNodes(const Document&, int sceneIndex, Report&);
+
+// Translation · rotation · scale. The quaternion (x, y, z, w) is normalized; zero means no rotation.
+glm::dmat4 composeTransform(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale);
+
+// The camera of a node. Its frame is rigid: scale and mirroring of the node are removed.
+Camera readCamera(const Document&, int camera, const tinygltf::Node&, const mat4& worldFromNode);
+
+// Adds the light of a node to the scene. A light of unknown type is reported and not added.
+void readLight(const Document&, int light, const tinygltf::Node&, const mat4& worldFromNode, Scene&);
+
+}  // namespace quintet::scene
+#endif

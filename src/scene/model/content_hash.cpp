@@ -1,0 +1,95 @@
+#include "scene/model/content_hash.h"
+
+#include <type_traits>
+
+namespace quintet::scene {
+namespace {
+
+// These are hashed as bytes, so they must not have padding.
+static_assert(sizeof(Primitive) == 3 * 4 + sizeof(mat4) && sizeof(CsgNode) == 8 && sizeof(CsgTree) == 8);
+static_assert(sizeof(Bounds3) == 24 && sizeof(Keyframe) == 44);
+
+// Hashes values field by field, because most structs have padding. The length of a vector precedes its elements.
+class Feeder {
+ public:
+  template <class... Ts>
+  Feeder& operator()(const Ts&... values) {
+    (add(values), ...);
+    return *this;
+  }
+  Hash finish() const { return hasher_.finish(); }
+
+ private:
+  void add(const std::string& text) { hasher_.add(std::string_view(text)); }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    hasher_.add(static_cast<std::uint64_t>(values.size()));
+    if constexpr (std::is_class_v<T> && !std::is_trivially_copyable_v<T>) {
+      for (const T& value : values) add(value);
+    } else {
+      hasher_.add(std::as_bytes(std::span(values)));
+    }
+  }
+  template <class T, std::size_t N>
+  void add(const std::array<T, N>& values) {
+    for (const T& value : values) add(value);
+  }
+  template <class T>
+  requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+  void add(const T& value) { hasher_.add(std::as_bytes(std::span(&value, 1))); }
+  template <glm::length_t N, class T, glm::qualifier Q>
+  void add(const glm::vec<N, T, Q>& value) {
+    for (glm::length_t i = 0; i < N; ++i) add(value[i]);
+  }
+  void add(const mat4& value) {
+    for (glm::length_t i = 0; i < 4; ++i) add(value[i]);
+  }
+
+  void add(const TextureUse& u) { (*this)(u.texture, u.uvSet, u.offset, u.scale, u.rotation); }
+  void add(const Texture& t) { (*this)(t.name, t.image, t.sampler.wrapU, t.sampler.wrapV, t.sampler.filter); }
+  void add(const io::Image& i) { (*this)(i.width, i.height, i.channels, i.type, i.encoding, i.premultiplied, i.data); }
+  void add(const NamedImage& i) { add(i.image); }  // the name is a path
+  void add(const Material& m) {
+    (*this)(m.name, m.baseColor, m.baseColorTexture, m.metallic, m.roughness, m.metallicRoughnessTexture,
+            m.normalTexture, m.normalScale, m.occlusionTexture, m.occlusionStrength, m.emissive, m.emissiveTexture,
+            m.alphaMode, m.alphaCutoff, m.doubleSided, m.unlit, m.ior, m.transmission, m.transmissionTexture,
+            m.thickness, m.attenuationDistance, m.attenuationColor, m.specular, m.specularTexture, m.specularColor,
+            m.specularColorTexture, m.clearcoat, m.clearcoatTexture, m.clearcoatRoughness, m.clearcoatRoughnessTexture,
+            m.clearcoatNormalTexture, m.clearcoatNormalScale);
+  }
+  void add(const Geometry& g) {
+    (*this)(g.positions, g.triangles, g.normals, g.tangents, g.uvs, g.colors, g.material, g.fileTriangles);
+  }
+  void add(const PrimitiveSet& s) { (*this)(s.name, s.kind, s.primitives, s.nodes, s.trees, s.boxes, s.material); }
+  void add(const Mesh& m) { (*this)(m.name, m.geometries, m.primitiveSets); }
+  void add(const Instance& i) {
+    (*this)(i.name, i.mesh, i.worldFromObject, i.mask, i.flags, i.customIndex, i.keyframes, i.keyframeFromObject);
+  }
+  void add(const Camera& c) {
+    (*this)(c.name, c.orthographic, c.verticalFov, c.aspect, c.orthographicHalfSize, c.worldFromCamera,
+            c.apertureRadius, c.focusDistance);
+  }
+  void add(const Light& l) {
+    (*this)(l.name, l.type, l.intensity, l.position, l.direction, l.innerConeAngle, l.outerConeAngle, l.range);
+  }
+  void add(const Environment& e) { (*this)(e.image, e.constant, e.intensity, e.rotation, e.present); }
+
+  Hasher hasher_;
+};
+
+}  // namespace
+
+Hash contentHash(const Scene& scene) {
+  Feeder feed;
+  feed(scene.meshes, scene.instances, scene.materials, scene.textures, scene.images, scene.cameras, scene.lights,
+       scene.environment);
+  return feed.finish();
+}
+
+Hash contentHash(const Environment& environment) {
+  Feeder feed;
+  feed(environment);
+  return feed.finish();
+}
+
+}  // namespace quintet::scene

@@ -1,0 +1,21 @@
+// Unique names of instances and materials, for Cryptomatte and tables. They depend only on the scene: an instance
+// without a name takes that of its mesh, else "instance"; a material without a name is called "material". A name that
+// an earlier object has becomes the first of "name#2", "name#3", ... that no object has.
+#ifndef QUINTET_SCENE_MODEL_NAMES_H
+#define QUINTET_SCENE_MODEL_NAMES_H
+
+#include <string>
+#include <vector>
+
+#include "scene/model/scene.h"
+
+namespace quintet::scene {
+
+// By index in Scene::instances.
+std::vector<std::string> instanceNames(const Scene&);
+
+// By index in Scene::materials, followed by the default material, "default", as on the device.
+std::vector<std::string> materialNames(const Scene&);
+
+}  // namespace quintet::scene
+#endif

@@ -1,0 +1,75 @@
+#include "scene/model/surface_class.h"
+
+#include <algorithm>
+
+namespace quintet::scene {
+namespace {
+
+bool canHaveAlpha(const Scene& scene, const Material& m) {
+  if (m.alphaMode == AlphaMode::opaque) return false;
+  if (m.baseColor.a < 1.0f) return true;
+  if (!m.baseColorTexture.used()) return false;
+  const int image = scene.textures[static_cast<std::size_t>(m.baseColorTexture.texture)].image;
+  return image != kNone && scene.images[static_cast<std::size_t>(image)].image.hasAlpha();
+}
+
+const Material* find(const Scene& scene, int material) {
+  return material == kNone ? nullptr : &scene.materials[static_cast<std::size_t>(material)];
+}
+
+bool anyColorAlpha(const Geometry& geometry) {
+  return std::ranges::any_of(geometry.colors, [](const vec4& c) { return c.a < 1.0f; });
+}
+
+// Whether any material of the set satisfies the condition. A custom set has one material; solids have their own.
+template <typename Condition>
+bool anyMaterial(const Scene& scene, const PrimitiveSet& set, Condition condition) {
+  const auto fits = [&](int material) {
+    const Material* m = find(scene, material);
+    return m && condition(*m);
+  };
+  return fits(set.material) || std::ranges::any_of(set.primitives, fits, &Primitive::material);
+}
+
+}  // namespace
+
+bool needsAlphaTest(const Scene& scene, const Geometry& geometry) {
+  const Material* m = find(scene, geometry.material);
+  if (!m || m->alphaMode == AlphaMode::opaque) return false;
+  return anyColorAlpha(geometry) || canHaveAlpha(scene, *m);
+}
+
+bool needsAlphaTest(const Scene& scene, const PrimitiveSet& set) {
+  return anyMaterial(scene, set, [&](const Material& m) { return canHaveAlpha(scene, m); });
+}
+
+bool isPane(const Material& m) {
+  // A lobe with alpha = roughness² below 5e-4 (kDeltaAlpha) is a delta lobe. A texture can make parts of the surface
+  // smooth.
+  const bool smooth = m.roughness * m.roughness < 5.001e-4f || m.metallicRoughnessTexture.used();
+  const bool metal = m.metallic >= 1.0f && !m.metallicRoughnessTexture.used();
+  return m.transmission > 0.0f && m.thickness <= 0.0f && smooth && !metal && !m.unlit;
+}
+
+bool isPane(const Scene& scene, const Geometry& geometry) {
+  const Material* m = find(scene, geometry.material);
+  return m && isPane(*m);
+}
+
+bool isPane(const Scene& scene, const PrimitiveSet& set) {
+  return set.kind != PrimitiveSetKind::custom && anyMaterial(scene, set, [](const Material& m) { return isPane(m); });
+}
+
+bool tintsShadows(const Scene& scene, const Geometry& geometry) {
+  const Material* m = find(scene, geometry.material);
+  return m && (isPane(*m) || (m->alphaMode == AlphaMode::blend && needsAlphaTest(scene, geometry)));
+}
+
+bool tintsShadows(const Scene& scene, const PrimitiveSet& set) {
+  if (set.kind == PrimitiveSetKind::custom) return false;
+  return anyMaterial(scene, set, [&](const Material& m) {
+    return isPane(m) || (m.alphaMode == AlphaMode::blend && canHaveAlpha(scene, m));
+  });
+}
+
+}  // namespace quintet::scene

@@ -1,0 +1,28 @@
+// Classes of surfaces by the effect of their material on a ray, which decide the any-hit shaders that a geometry needs:
+//   alpha-tested     coverage below 1 is possible (alpha mode mask or blend)
+//   pane             thin-walled (KHR_materials_transmission with thickness 0) and smooth, so that light can pass
+//                    straight through, such as window glass
+//   shadow-tinting   a shadow ray can pass and keep a part of its light: panes and alpha mode blend
+// A surface in none of these classes needs no any-hit shader.
+#ifndef QUINTET_SCENE_MODEL_SURFACE_CLASS_H
+#define QUINTET_SCENE_MODEL_SURFACE_CLASS_H
+
+#include "scene/model/scene.h"
+
+namespace quintet::scene {
+
+// True if the alpha mode is mask or blend and the alpha can be below 1.
+bool needsAlphaTest(const Scene& scene, const Geometry& geometry);
+bool needsAlphaTest(const Scene& scene, const PrimitiveSet& set);
+
+// True if the material is a pane, at least in parts: a texture can vary the roughness.
+bool isPane(const Material& material);
+bool isPane(const Scene& scene, const Geometry& geometry);
+bool isPane(const Scene& scene, const PrimitiveSet& set);
+
+// True if the surface is a pane, or has alpha mode blend and an alpha that can be below 1.
+bool tintsShadows(const Scene& scene, const Geometry& geometry);
+bool tintsShadows(const Scene& scene, const PrimitiveSet& set);
+
+}  // namespace quintet::scene
+#endif

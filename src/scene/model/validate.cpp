@@ -1,0 +1,167 @@
+#include "scene/model/validate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace quintet::scene {
+namespace {
+
+template <class... Args>
+[[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
+  throw Error("scene: " + fmt::format(format, std::forward<Args>(args)...));
+}
+
+bool inRange(int index, std::size_t size) { return index >= 0 && static_cast<std::size_t>(index) < size; }
+
+bool isFinite(const mat4& m) {
+  for (std::size_t column = 0; column < 4; ++column)
+    if (!quintet::isFinite(vec3(m[column])) || !std::isfinite(m[column].w)) return false;
+  return true;
+}
+
+void checkGeometry(const Scene& scene, const Geometry& geometry, const std::string& name) {
+  const std::size_t count = geometry.positions.size();
+  const auto checkLength = [&](std::size_t length, const char* attribute) {
+    if (length != 0 && length != count) fail("{}.{}: {} elements for {} vertices", name, attribute, length, count);
+  };
+  checkLength(geometry.normals.size(), "normals");
+  checkLength(geometry.tangents.size(), "tangents");
+  checkLength(geometry.colors.size(), "colors");
+  for (const auto& set : geometry.uvs) checkLength(set.size(), "uvs");
+  if (!geometry.tangents.empty() && geometry.normals.empty()) fail("{}.tangents: present without normals", name);
+  if (!geometry.fileTriangles.empty() && geometry.fileTriangles.size() != geometry.triangles.size())
+    fail("{}.fileTriangles: {} for {} triangles", name, geometry.fileTriangles.size(), geometry.triangles.size());
+  if (geometry.material != kNone && !inRange(geometry.material, scene.materials.size()))
+    fail("{}.material: {} of {}", name, geometry.material, scene.materials.size());
+  for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
+    const uvec3& t = geometry.triangles[i];
+    if (std::max({t.x, t.y, t.z}) >= count)
+      fail("{}.triangles[{}]: vertex {} of {}", name, i, std::max({t.x, t.y, t.z}), count);
+  }
+  const auto wrong = std::ranges::find_if_not(geometry.positions, [](const vec3& p) { return quintet::isFinite(p); });
+  if (wrong != geometry.positions.end()) fail("{}.positions[{}]: not finite", name, wrong - geometry.positions.begin());
+}
+
+// The matrix must be affine and finite, with a finite inverse.
+void checkTransform(const mat4& m, const std::string& name) {
+  if (!isFinite(m)) fail("{}: not finite", name);
+  if (glm::vec4(m[0].w, m[1].w, m[2].w, m[3].w) != vec4(0, 0, 0, 1)) fail("{}: not affine", name);
+  const glm::dmat4 d(m);
+  if (glm::determinant(glm::dmat3(d)) == 0.0 || !isFinite(mat4(glm::inverse(d)))) fail("{}: singular", name);
+}
+
+void checkPrimitive(const Scene& scene, const Primitive& primitive, const std::string& name) {
+  if (primitive.type > PrimitiveType::torus) fail("{}.type: {}", name, static_cast<unsigned>(primitive.type));
+  checkTransform(primitive.objectFromPrimitive, name + ".objectFromPrimitive");
+  if (primitive.type == PrimitiveType::torus && !(primitive.parameter > 0.0f && primitive.parameter < 1.0f))
+    fail("{}.parameter: the minor radius of a torus is {}, must be between 0 and 1", name, primitive.parameter);
+  if (primitive.material != kNone && !inRange(primitive.material, scene.materials.size()))
+    fail("{}.material: {} of {}", name, primitive.material, scene.materials.size());
+}
+
+void checkTree(const PrimitiveSet& set, const CsgTree& tree, const std::string& name) {
+  if (tree.firstNode > set.nodes.size() || tree.nodeCount > set.nodes.size() - tree.firstNode)
+    fail("{}: nodes {} to {} of {}", name, tree.firstNode, std::uint64_t{tree.firstNode} + tree.nodeCount,
+         set.nodes.size());
+  const auto nodes = std::span(set.nodes).subspan(tree.firstNode, tree.nodeCount);
+  if (const std::string problem = csgProblem(nodes, set.primitives.size()); !problem.empty())
+    fail("{}: {}", name, problem);
+}
+
+void checkPrimitiveSet(const Scene& scene, const PrimitiveSet& set, const std::string& name) {
+  const bool solids = set.kind == PrimitiveSetKind::solids, csg = set.kind == PrimitiveSetKind::csg;
+  if (set.kind > PrimitiveSetKind::custom) fail("{}.kind: {}", name, static_cast<unsigned>(set.kind));
+  if (!csg && (!set.trees.empty() || !set.nodes.empty())) fail("{}: trees in a set that is not csg", name);
+  if ((solids || csg) ? !set.boxes.empty() : !set.primitives.empty())
+    fail("{}: boxes in a set of solids, or solids in a custom set", name);
+  if (set.material != kNone && !inRange(set.material, scene.materials.size()))
+    fail("{}.material: {} of {}", name, set.material, scene.materials.size());
+  for (std::size_t i = 0; i < set.primitives.size(); ++i)
+    checkPrimitive(scene, set.primitives[i], fmt::format("{}.primitives[{}]", name, i));
+  for (std::size_t i = 0; i < set.trees.size(); ++i) checkTree(set, set.trees[i], fmt::format("{}.trees[{}]", name, i));
+  for (std::size_t i = 0; i < set.boxes.size(); ++i) {
+    const Bounds3& box = set.boxes[i];
+    if (!quintet::isFinite(box.min) || !quintet::isFinite(box.max)) fail("{}.boxes[{}]: not finite", name, i);
+    if (box.empty()) fail("{}.boxes[{}]: the minimum is above the maximum", name, i);
+  }
+}
+
+void checkMesh(const Scene& scene, const Mesh& mesh, const std::string& name) {
+  if (!mesh.geometries.empty() && mesh.procedural()) fail("{}: triangles and primitive sets in one mesh", name);
+  for (std::size_t k = 0; k < mesh.geometries.size(); ++k)
+    checkGeometry(scene, mesh.geometries[k], fmt::format("{}.geometries[{}]", name, k));
+  for (std::size_t k = 0; k < mesh.primitiveSets.size(); ++k)
+    checkPrimitiveSet(scene, mesh.primitiveSets[k], fmt::format("{}.primitiveSets[{}]", name, k));
+}
+
+void checkKeyframes(const std::vector<Keyframe>& keys, const std::string& name) {
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Keyframe& key = keys[i];
+    const glm::quat& q = key.rotation;
+    if (!std::isfinite(key.frame) || !quintet::isFinite(key.translation) || !quintet::isFinite(key.scale) ||
+        !(std::abs(glm::length(q) - 1.0f) < 1e-3f))
+      fail("{}[{}]: not finite, or the rotation is not normalized", name, i);
+    if (i > 0 && !(key.frame > keys[i - 1].frame)) fail("{}[{}]: frames must ascend", name, i);
+    // A scale that changes its sign passes through 0, where the transform is singular.
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(key.scale[axis] * keys[0].scale[axis] > 0.0f)) fail("{}[{}]: a scale is 0 or changes its sign", name, i);
+  }
+}
+
+void checkInstance(const Scene& scene, const Instance& instance, const std::string& name) {
+  if (!inRange(instance.mesh, scene.meshes.size())) fail("{}.mesh: {} of {}", name, instance.mesh, scene.meshes.size());
+  if (!isFinite(instance.worldFromObject)) fail("{}.worldFromObject: not finite", name);
+  if (glm::determinant(glm::dmat3(glm::mat3(instance.worldFromObject))) == 0.0)
+    fail("{}.worldFromObject: singular", name);
+  if (instance.mask > 0xFF) fail("{}.mask: {} has more than 8 bits", name, instance.mask);
+  if (instance.flags > 0xF) fail("{}.flags: {} is unknown", name, instance.flags);
+  if (instance.customIndex > 0xFFFFFF) fail("{}.customIndex: {} has more than 24 bits", name, instance.customIndex);
+  checkKeyframes(instance.keyframes, name + ".keyframes");
+}
+
+void checkMaterial(const Scene& scene, const Material& material, const std::string& name) {
+  for (const TextureUse* use : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
+                                &material.occlusionTexture, &material.emissiveTexture, &material.transmissionTexture,
+                                &material.specularTexture, &material.specularColorTexture, &material.clearcoatTexture,
+                                &material.clearcoatRoughnessTexture, &material.clearcoatNormalTexture}) {
+    if (!use->used()) continue;
+    if (!inRange(use->texture, scene.textures.size()))
+      fail("{}: texture {} of {}", name, use->texture, scene.textures.size());
+    if (!inRange(use->uvSet, kMaxUvSets)) fail("{}: texture coordinate set {} of {}", name, use->uvSet, kMaxUvSets);
+  }
+  if (!(material.attenuationDistance > 0.0f)) fail("{}.attenuationDistance: {}", name, material.attenuationDistance);
+}
+
+void checkImage(const io::Image& image, const std::string& name) {
+  if (image.empty() || image.channels < 1 || image.channels > 4 || image.data.size() != image.height * image.rowBytes())
+    fail("{}: {} bytes for {} x {} pixels of {} channels", name, image.data.size(), image.width, image.height,
+         image.channels);
+}
+
+}  // namespace
+
+void validate(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) checkMesh(scene, scene.meshes[i], fmt::format("meshes[{}]", i));
+  for (std::size_t i = 0; i < scene.instances.size(); ++i)
+    checkInstance(scene, scene.instances[i], fmt::format("instances[{}]", i));
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    checkMaterial(scene, scene.materials[i], fmt::format("materials[{}]", i));
+  for (std::size_t i = 0; i < scene.textures.size(); ++i)
+    if (!inRange(scene.textures[i].image, scene.images.size()))
+      fail("textures[{}].image: {} of {}", i, scene.textures[i].image, scene.images.size());
+  for (std::size_t i = 0; i < scene.images.size(); ++i) checkImage(scene.images[i].image, fmt::format("images[{}]", i));
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i)
+    if (!isFinite(scene.cameras[i].worldFromCamera)) fail("cameras[{}].worldFromCamera: not finite", i);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    if (!quintet::isFinite(light.intensity) || !quintet::isFinite(light.position) ||
+        !quintet::isFinite(light.direction))
+      fail("lights[{}]: not finite", i);
+  }
+  if (!scene.environment.image.empty()) checkImage(scene.environment.image, "environment.image");
+}
+
+}  // namespace quintet::scene

@@ -1,0 +1,16 @@
+// Consistency check of a scene: the properties that the renderer relies on.
+#ifndef QUINTET_SCENE_MODEL_VALIDATE_H
+#define QUINTET_SCENE_MODEL_VALIDATE_H
+
+#include "scene/model/scene.h"
+
+namespace quintet::scene {
+
+// Throws Error with the name of the object ("meshes[2].geometries[0].normals: 3 elements for 4 vertices") for the first
+// index out of range, attribute of the wrong length, position or transform that is not finite, singular transform,
+// invalid CSG tree (procedural.h), value that does not fit its bits, keyframes that do not ascend or whose scale
+// changes its sign, texture without an image.
+void validate(const Scene&);
+
+}  // namespace quintet::scene
+#endif

@@ -1,0 +1,112 @@
+// [[file]]: makes the meshes, materials, lights and cameras of a glTF file available under its name.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "scene/gltf/gltf.h"
+#include "scene/load.h"
+#include "scene/toml/context.h"
+
+namespace quintet::scene {
+namespace {
+
+std::string nameOrIndex(const std::string& name, const char* kind, std::size_t index) {
+  return name.empty() ? fmt::format("{}{}", kind, index) : name;
+}
+
+void shift(int& index, std::size_t by) {
+  if (index != kNone) index += static_cast<int>(by);
+}
+
+void shiftTextures(Material& material, std::size_t by) {
+  for (TextureUse* use : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
+                          &material.occlusionTexture, &material.emissiveTexture, &material.transmissionTexture,
+                          &material.specularTexture, &material.specularColorTexture, &material.clearcoatTexture,
+                          &material.clearcoatRoughnessTexture, &material.clearcoatNormalTexture})
+    shift(use->texture, by);
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>&& from) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+// Moves images, textures, materials and meshes into the scene and adjusts their indices.
+void appendResources(Scene& scene, Scene& part) {
+  for (Texture& texture : part.textures) shift(texture.image, scene.images.size());
+  for (Material& material : part.materials) shiftTextures(material, scene.textures.size());
+  for (Mesh& mesh : part.meshes)
+    for (Geometry& geometry : mesh.geometries) shift(geometry.material, scene.materials.size());
+  append(scene.images, std::move(part.images));
+  append(scene.textures, std::move(part.textures));
+  append(scene.materials, std::move(part.materials));
+  append(scene.meshes, std::move(part.meshes));
+}
+
+void appendReport(Report& report, const Report& part, const std::string& name) {
+  const auto addNew = [](std::vector<std::string>& to, const std::string& value) {
+    if (std::ranges::find(to, value) == to.end()) to.push_back(value);
+  };
+  for (const std::string& extension : part.extensionsUsed) addNew(report.extensionsUsed, extension);
+  for (const std::string& extension : part.extensionsIgnored) addNew(report.extensionsIgnored, extension);
+  for (const std::string& line : part.ignored) report.ignored.push_back(name + ": " + line);
+  for (const std::string& line : part.repaired) report.repaired.push_back(name + ": " + line);
+  if (!part.copyright.empty()) report.copyright += (report.copyright.empty() ? "" : "; ") + part.copyright;
+}
+
+// Adds the names "file/material" and "file/mesh". A part without a name in the file is called by its kind and index.
+void addNames(SceneTomlContext& context, const TomlValue& at, const std::string& name, const Scene& part,
+              std::size_t firstMaterial, std::size_t firstMesh) {
+  for (std::size_t i = 0; i < part.materials.size(); ++i) {
+    const std::string key = name + "/" + nameOrIndex(part.materials[i].name, "material", i);
+    context.materials.emplace(key, static_cast<int>(firstMaterial + i));
+  }
+  for (std::size_t i = 0; i < part.meshes.size(); ++i) {
+    const std::string key = name + "/" + nameOrIndex(part.meshes[i].name, "mesh", i);
+    if (context.targets.contains(key)) continue;  // the first of several has the name
+    InstanceTarget target;
+    target.placedByDefault = false;
+    Instance& instance = target.instances.emplace_back();
+    instance.name = part.meshes[i].name;
+    instance.mesh = static_cast<int>(firstMesh + i);
+    context.addTarget(at, key, std::move(target));
+  }
+}
+
+void readFile(SceneTomlContext& context, const TomlValue& table) {
+  TomlReader reader(table, describeTable("file", table), context.file);
+  const TomlValue& nameValue = reader.require("name");
+  const std::string name = reader.toText(nameValue, "name");
+  context.checkName(nameValue, name);
+  const TomlValue& pathValue = reader.require("path");
+  const std::filesystem::path path = context.resolvePath(pathValue, reader.toText(pathValue, "path"));
+  if (sceneFormat(path, {}) == SceneFormat::toml)
+    reader.fail(pathValue, "a [[file]] must be a glTF file; scene files cannot include each other");
+  const bool lights = reader.boolean("lights", true), cameras = reader.boolean("cameras", true);
+  InstanceTarget target;
+  target.placedByDefault = reader.boolean("place", true);
+  reader.rejectUnknownKeys();
+
+  Scene part = loadGltf(path);
+  std::ranges::copy(part.report.files, std::back_inserter(context.scene.report.files));
+  Scene& scene = context.scene;
+  const std::size_t firstMaterial = scene.materials.size(), firstMesh = scene.meshes.size();
+  for (Instance& instance : part.instances) shift(instance.mesh, firstMesh);
+  target.instances = std::move(part.instances);
+  if (lights) target.lights = std::move(part.lights);
+  if (cameras) target.cameras = std::move(part.cameras);
+  context.addTarget(nameValue, name, std::move(target));
+  addNames(context, nameValue, name, part, firstMaterial, firstMesh);
+  appendReport(scene.report, part.report, name);
+  appendResources(scene, part);
+}
+
+}  // namespace
+
+void readFiles(SceneTomlContext& context, TomlReader& root) {
+  for (const TomlValue& table : root.tables("file")) readFile(context, table);
+}
+
+}  // namespace quintet::scene

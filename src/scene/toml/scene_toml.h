@@ -1,0 +1,24 @@
+// Scene files (*.scene.toml, docs/scenes.md): glTF files, materials, triangle shapes, analytic solids, CSG trees,
+// custom boxes, instances, lights, cameras and an environment.
+#ifndef QUINTET_SCENE_TOML_SCENE_TOML_H
+#define QUINTET_SCENE_TOML_SCENE_TOML_H
+
+#include <filesystem>
+#include <string_view>
+
+#include "scene/model/scene.h"
+
+namespace quintet::scene {
+
+struct SceneTomlOptions {
+  std::size_t memoryLimit = 0;  // bytes that the scene can request; 0 means the machine's memory
+};
+
+// Throws FileError "scene.toml: line 12: problem", FileError of a file that the scene names, MemoryError.
+Scene loadSceneToml(const std::filesystem::path& file);
+
+// Reads a scene from text. `file` is its name in messages; paths are relative to the folder of `file`.
+Scene parseSceneToml(std::string_view text, const std::filesystem::path& file, const SceneTomlOptions& options = {});
+
+}  // namespace quintet::scene
+#endif

@@ -1,0 +1,11 @@
+#include "shader/library.h"
+
+namespace quintet::shader {
+
+Hash libraryHash() {
+  Hasher hasher;
+  for (const EmbeddedFile& file : embeddedShaderLibrary()) hasher.add(file.path).add(file.data);
+  return hasher.finish();
+}
+
+}  // namespace quintet::shader

@@ -1,0 +1,50 @@
+// Data flow of a module: what a value depends on, and what depends on it, through SSA values and local variables. The
+// order of stores is ignored: a load of a local variable depends on every store to it.
+#ifndef QUINTET_SPIRV_VALUE_FLOW_H
+#define QUINTET_SPIRV_VALUE_FLOW_H
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "spirv/module.h"
+
+namespace quintet::spirv {
+
+using InstructionTest = std::function<bool(const Instruction&)>;
+
+// Returns the first instruction for which `test` holds among those that compute `value`, including its own: operands,
+// stores to the local variables that are loaded, results of called functions, and arguments of the function whose
+// parameter it is. The search does not follow the operands of an instruction for which `stop` holds. Null if not found.
+const Instruction* findInSlice(const Module& module, Id value, const InstructionTest& test,
+                               const InstructionTest& stop = {});
+
+inline bool dependsOn(const Module& module, Id value, const InstructionTest& test, const InstructionTest& stop = {}) {
+  return findInSlice(module, value, test, stop) != nullptr;
+}
+
+// Returns the first instruction for which `test` holds among those that use `value`, directly or through other values
+// and local variables. The search does not follow the users of an instruction for which `stop` holds. Null if not
+// found.
+const Instruction* findInUses(const Module& module, Id value, const InstructionTest& test,
+                              const InstructionTest& stop = {});
+
+// Returns the built-in of which the instruction loads a part or all; nullopt if it loads none.
+std::optional<spv::BuiltIn> loadedBuiltIn(const Module& module, const Instruction& instruction);
+bool loadsBuiltIn(const Module& module, const Instruction& instruction, spv::BuiltIn builtIn);
+
+// True for the GLSL.std.450 instruction with this number, e.g. GLSLstd450Normalize.
+bool isExtended(const Module& module, const Instruction& instruction, std::uint32_t number);
+
+// True if `later` can run after `earlier` in one invocation. In a loop, each can run after the other.
+bool canRunAfter(const Module& module, std::size_t later, std::size_t earlier);
+
+// True for variables with storage class Function or Private.
+bool isLocal(const Module& module, Id variable);
+
+// Returns the values that a load of a local variable can see: those of all stores that overlap with the loaded part.
+// Returns nullopt if the variable is passed to a function or copied.
+std::optional<std::vector<Id>> storedValues(const Module& module, const Instruction& load);
+
+}  // namespace quintet::spirv
+#endif

@@ -1,0 +1,227 @@
+// Render jobs as a front end uses them: runs that continue, stop, and resume give the film of one uninterrupted run.
+#include "job/render_job.h"
+
+#include <gmock/gmock.h>
+
+#include "base/file.h"
+#include "job/film_store.h"
+#include "job/films.h"
+#include "job/watch.h"
+#include "program/load.h"
+#include "temp_folder.h"
+
+namespace quintet::job {
+namespace {
+
+struct TestObserver : Observer {
+  void progress(const Progress& state) override { states.push_back(state); }
+  void batch(const BatchReport& report) override {
+    batches.push_back(report);
+    if (batches.size() >= finishAfter) request = StopRequest::finish;
+  }
+  void frame(const RenderResult& result) override { frames.push_back(result.provenance.frame.value_or(1000)); }
+  bool wantsPreviews() const override { return true; }
+  void preview(const RenderResult& result) override { previews.push_back(result.provenance.samples); }
+  void diagnostics(const std::vector<Diagnostic>& found) override {
+    reported.insert(reported.end(), found.begin(), found.end());
+  }
+  StopRequest stopRequested() override { return request; }
+
+  std::size_t finishAfter = 1000;
+  StopRequest request = StopRequest::none;
+  std::vector<Progress> states;
+  std::vector<BatchReport> batches;
+  std::vector<std::uint64_t> frames, previews;
+  std::vector<Diagnostic> reported;
+};
+
+RenderRequest makeRequest(std::uint64_t samples) {
+  RenderRequest request;
+  request.size = {24, 16};
+  request.limits.samples = samples;
+  request.seed = 7;
+  return request;
+}
+
+class RenderJobTest : public testing::Test {
+ protected:
+  static Engine& engine() {
+    static Engine instance({.caches = {}});
+    return instance;
+  }
+  std::unique_ptr<RenderJob> makeJob(const RenderRequest& request, const char* program = "normals") {
+    return std::make_unique<RenderJob>(engine(), resolve(request, program::loadProgram(program)), observer_);
+  }
+  // The sums of a render without interruption.
+  std::vector<shared::FixedSum> reference(std::uint64_t samples) {
+    TestObserver observer;
+    const RenderRequest request = makeRequest(samples);
+    RenderJob job(engine(), resolve(request, program::loadProgram("normals")), observer);
+    return job.run(request.limits, observer).film->plane(0).sums;
+  }
+
+  TestObserver observer_;
+};
+
+TEST_F(RenderJobTest, ReportsTheRender) {
+  const RenderRequest request = makeRequest(8);
+  const auto job = makeJob(request);
+  const RenderResult result = job->run(request.limits, observer_);
+  EXPECT_EQ(result.provenance.samples, 8u);
+  EXPECT_EQ(result.provenance.size, uvec2(24, 16));
+  EXPECT_EQ(result.provenance.region, (render::Region{0, 0, 24, 16}));
+  EXPECT_EQ(result.provenance.program, "normals");
+  EXPECT_GE(result.provenance.rays, 8u * 24 * 16);
+  EXPECT_FALSE(result.interrupted);
+  EXPECT_EQ(result.film->counts().ranges, (std::vector<render::SampleRange>{{0, 8}}));
+  ASSERT_EQ(observer_.batches.size(), 2u);
+  EXPECT_EQ(observer_.batches[0].samples, 4u);
+  EXPECT_EQ(observer_.batches[1].samples, 8u);
+  EXPECT_THAT(observer_.previews, testing::ElementsAre(4u)) << "of the first batch";
+  ASSERT_FALSE(observer_.states.empty());
+  for (const Progress& state : observer_.states) EXPECT_LE(state.fraction(), 1.0);
+}
+
+TEST_F(RenderJobTest, ASecondRunContinues) {
+  const auto job = makeJob(makeRequest(12));
+  RenderLimits limits;
+  limits.samples = 4;
+  EXPECT_EQ(job->run(limits, observer_).provenance.samples, 4u);
+  limits.samples = 12;
+  const RenderResult result = job->run(limits, observer_);
+  EXPECT_EQ(result.provenance.samples, 12u);
+  EXPECT_TRUE(test::equalSums(result.film->plane(0).sums, reference(12)));
+}
+
+TEST_F(RenderJobTest, FinishCompletesTheBatch) {
+  const RenderRequest request = makeRequest(16);
+  const auto job = makeJob(request);
+  observer_.finishAfter = 1;
+  const RenderResult stopped = job->run(request.limits, observer_);
+  EXPECT_TRUE(stopped.interrupted);
+  EXPECT_TRUE(stopped.provenance.interrupted);
+  EXPECT_EQ(stopped.provenance.samples, 4u);
+  observer_.finishAfter = 1000;
+  observer_.request = StopRequest::none;
+  const RenderResult complete = job->run(request.limits, observer_);
+  EXPECT_FALSE(complete.interrupted);
+  EXPECT_TRUE(test::equalSums(complete.film->plane(0).sums, reference(16)));
+}
+
+TEST_F(RenderJobTest, FinishAfterTheLastBatchIsNoInterruption) {
+  const RenderRequest request = makeRequest(4);
+  observer_.finishAfter = 1;
+  EXPECT_FALSE(makeJob(request)->run(request.limits, observer_).interrupted);
+}
+
+TEST_F(RenderJobTest, AbandonReturnsAtOnce) {
+  const RenderRequest request = makeRequest(16);
+  const auto job = makeJob(request);
+  observer_.request = StopRequest::abandon;
+  EXPECT_TRUE(job->run(request.limits, observer_).abandoned);
+  EXPECT_TRUE(observer_.batches.empty());
+}
+
+TEST_F(RenderJobTest, ResumesFromACheckpoint) {
+  const quintet::test::TempFolder folder;
+  RenderRequest request = makeRequest(12);
+  request.checkpoint = {.file = folder / "a.qfilm", .seconds = 0, .resume = true};
+  {
+    observer_.finishAfter = 1;
+    const auto job = makeJob(request);
+    const RenderResult stopped = job->run(request.limits, observer_);
+    EXPECT_TRUE(stopped.interrupted);
+    EXPECT_EQ(observer_.batches[0].checkpointSamples, 4u);
+    job->outputsWritten(stopped, observer_);
+    EXPECT_TRUE(std::filesystem::exists(request.checkpoint.file)) << "the render is incomplete";
+  }
+  observer_.finishAfter = 1000;
+  observer_.request = StopRequest::none;
+  const auto job = makeJob(request);
+  const RenderResult complete = job->run(request.limits, observer_);
+  EXPECT_TRUE(test::equalSums(complete.film->plane(0).sums, reference(12)));
+  job->outputsWritten(complete, observer_);
+  EXPECT_EQ(folder.entryCount(), 0u);
+}
+
+TEST_F(RenderJobTest, APartHasItsBatches) {
+  RenderRequest request = makeRequest(16);
+  request.batches = BatchRange{1, 2};
+  const RenderResult part = makeJob(request)->run(request.limits, observer_);
+  EXPECT_EQ(part.film->counts().ranges, (std::vector<render::SampleRange>{{4, 12}}));
+  EXPECT_EQ(part.provenance.plannedSamples, 16u);
+}
+
+TEST_F(RenderJobTest, AFilmIsNotOverwrittenByFewerSamples) {
+  const quintet::test::TempFolder folder;
+  RenderRequest request = makeRequest(8);
+  request.film = folder / "a.qfilm";
+  render::writeFilm(request.film, filmFileOf(makeJob(request)->run(request.limits, observer_)));
+  request.limits.samples = 8;
+  request.batches = BatchRange{0, 0};
+  EXPECT_THROW(makeJob(request)->run(request.limits, observer_), FileError);
+  request.overwriteFilm = true;
+  EXPECT_NO_THROW(makeJob(request)->run(request.limits, observer_));
+}
+
+TEST_F(RenderJobTest, FramesContinueAcrossRuns) {
+  RenderRequest request = makeRequest(0);
+  request.limits.samples.reset();
+  const auto job = makeJob(request, "lessons/01_first_ray");
+  RenderLimits limits;
+  limits.samples = 2;
+  EXPECT_EQ(job->run(limits, observer_).provenance.frame, 1u);
+  limits.samples = 3;
+  const RenderResult result = job->run(limits, observer_);
+  EXPECT_EQ(result.provenance.frame, 2u);
+  EXPECT_EQ(job->renderer().statistics().samples, 3u);
+}
+
+TEST_F(RenderJobTest, EveryFrameIsReported) {
+  RenderRequest request = makeRequest(1);
+  request.frames = {.count = 3, .every = true};
+  makeJob(request, "lessons/01_first_ray")->run(request.limits, observer_);
+  EXPECT_THAT(observer_.frames, testing::ElementsAre(0u, 1u, 2u));
+}
+
+// A front end that watches files loads the scene once, even if the program is broken at first.
+TEST_F(RenderJobTest, ScenesOutliveJobs) {
+  const quintet::test::TempFolder folder;
+  writeFile(folder / "broken.rt.glsl",
+            "struct RayPayloadType { vec3 color; };\n"
+            "void main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(vec4(missing)); }\n");
+  const RenderRequest request = makeRequest(4);
+  std::shared_ptr<PreparedScene> scene;
+  const ResolvedJob broken = resolve(request, program::loadProgram((folder / "broken.rt.glsl").string()));
+  EXPECT_THROW(RenderJob(engine(), broken, observer_, scene), ProgramError);
+  ASSERT_TRUE(scene);
+  const PreparedScene* loaded = scene.get();
+  RenderJob job(engine(), resolve(request, program::loadProgram("normals")), observer_, scene);
+  EXPECT_EQ(scene.get(), loaded);
+  EXPECT_EQ(job.run(request.limits, observer_).provenance.samples, 4u);
+}
+
+TEST_F(RenderJobTest, WatchingReportsABrokenProgramAndRecovers) {
+  const quintet::test::TempFolder folder;
+  const std::string program = (folder / "a.rt.glsl").string();
+  const auto write = [&](const char* value) {
+    writeFile(program, std::string("struct RayPayloadType { vec3 color; };\n"
+                                   "void main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(vec4(") +
+                           value + ")); }\n");
+  };
+  const RenderRequest request = makeRequest(1);
+  write("missing");
+  LiveJob live(engine(), program, [&] { return resolve(request, program::loadProgram(program)); });
+  EXPECT_FALSE(live.reload(observer_));
+  EXPECT_FALSE(observer_.reported.empty());
+  EXPECT_EQ(live.job(), nullptr);
+  EXPECT_GE(live.watchFiles(), 1u);
+  write("0.5");
+  EXPECT_THAT(live.waitForChange(10.0), testing::Not(testing::IsEmpty()));
+  EXPECT_EQ(live.changedNames(), "a.rt.glsl");
+  ASSERT_TRUE(live.reload(observer_));
+  EXPECT_EQ(live.job()->run(request.limits, observer_).provenance.samples, 1u);
+}
+
+}  // namespace
+}  // namespace quintet::job

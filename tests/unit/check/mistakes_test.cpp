@@ -1,0 +1,139 @@
+// The corpus of mistakes (tests/check/mistakes): each program has exactly one mistake, which is reported in the marked
+// line, and its repaired version has none. The device of these tests has all defects of docs/design/quirks.md.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "base/toml_reader.h"
+#include "check/catalog.h"
+#include "check_test_support.h"
+#include "program/gsn/lecture.h"
+
+namespace quintet::check {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kCorpus = fs::path(QUINTET_SOURCE_ROOT) / "tests/check/mistakes";
+
+std::string textOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::vector<std::string> mistakes() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(kCorpus))
+    if (entry.is_directory()) names.push_back(entry.path().filename());
+  std::ranges::sort(names);
+  return names;
+}
+
+void readFolder(const fs::path& folder, Files& files) {
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file()) files[entry.path().filename()] = textOf(entry.path());
+}
+
+// facts.toml: [[geometry]] kind, alpha, name, material; [[instance]] name, first, count, mask, force_opaque.
+std::optional<program::SceneFacts> factsOf(const Files& files) {
+  const auto found = files.find("facts.toml");
+  if (found == files.end()) return {};
+  const TomlValue table = parseToml(found->second, "facts.toml");
+  TomlReader root(table, "facts.toml", "facts.toml");
+  program::SceneFacts facts{"scene.toml", {}, {}};
+  constexpr std::string_view kKinds[] = {"triangles", "solids", "csg", "custom"};
+  for (const TomlValue& node : root.tables("geometry")) {
+    TomlReader g(node, "[[geometry]]", root.file());
+    const std::string kind = g.text("kind");
+    const auto at = std::ranges::find(kKinds, kind);
+    EXPECT_NE(at, std::end(kKinds)) << kind;
+    facts.geometries.push_back({static_cast<program::GeometryKind>(at - std::begin(kKinds)), g.boolean("alpha"),
+                                g.text("name"), g.text("material")});
+    g.rejectUnknownKeys();
+  }
+  for (const TomlValue& node : root.tables("instance")) {
+    TomlReader i(node, "[[instance]]", root.file());
+    facts.instances.push_back({i.text("name"), i.integer("first", 0, 0, 1000), i.integer("count", 1, 0, 1000),
+                               i.integer("mask", 0xFF, 0, 0xFF), i.boolean("force_opaque"), false});
+    i.rejectUnknownKeys();
+  }
+  root.rejectUnknownKeys();
+  return facts;
+}
+
+// Returns "Q101 main.rgen:12" for each mark: "EXPECT Q101" marks its own line, "EXPECT+1 Q101" the next line.
+std::set<std::string> expectedOf(const Files& files) {
+  static const std::regex kMark("EXPECT(\\+1)? (Q[0-9]{3})");
+  std::set<std::string> result;
+  for (const auto& [name, text] : files) {
+    std::istringstream lines(text);
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+      std::smatch match;
+      if (std::regex_search(line, match, kMark))
+        result.insert(fmt::format("{} {}:{}", match[2].str(), name, number + (match[1].matched ? 1 : 0)));
+    }
+  }
+  return result;
+}
+
+CheckResult checkMistake(const Files& files) {
+  DeviceLimits limits;
+  limits.defects.changesNestedBuiltIns = limits.defects.corruptsHitAttributes = true;
+  limits.defects.sharesAnyHit = limits.defects.sharesLocalArrays = true;
+  const std::optional<program::SceneFacts> facts = factsOf(files);
+  const auto lecture = files.find("program.rt.glsl");
+  if (lecture == files.end()) return checkFiles(files, facts ? &*facts : nullptr, limits);
+  return check(program::parseLecture(lecture->second, lecture->first, "folder/demo"), checkCompiler(),
+               facts ? &*facts : nullptr, limits);
+}
+
+class Mistakes : public testing::TestWithParam<std::string> {};
+
+TEST_P(Mistakes, AreReportedInTheMarkedLines) {
+  Files files;
+  readFolder(kCorpus / GetParam(), files);
+  const std::set<std::string> expected = expectedOf(files);
+  ASSERT_FALSE(expected.empty()) << "no line has an EXPECT mark";
+  for (const std::string& line : expected) EXPECT_EQ(line.substr(0, 4), GetParam().substr(0, 4));
+  const CheckResult result = checkMistake(files);
+  std::set<std::string> reported;
+  for (const Diagnostic& d : result.diagnostics) {
+    reported.insert(fmt::format("{} {}:{}", d.id, fs::path(d.file).filename().string(), d.line));
+    const DiagnosticInfo* info = findDiagnostic(d.id);
+    ASSERT_NE(info, nullptr) << d.id;
+    EXPECT_EQ(d.severity, info->severity);
+  }
+  EXPECT_EQ(reported, expected) << textOf(result);
+}
+
+TEST_P(Mistakes, AreNotReportedAfterRepair) {
+  Files files;
+  readFolder(kCorpus / GetParam(), files);
+  readFolder(kCorpus / GetParam() / "repaired", files);
+  EXPECT_TRUE(expectedOf(files).empty()) << "the repaired version has an EXPECT mark";
+  EXPECT_EQ(textOf(checkMistake(files)), "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Corpus, Mistakes, testing::ValuesIn(mistakes()), [](const auto& test) { return test.param; });
+
+// Only a run can report Q001 to Q006 (tests/gpu/program/instrument_test.cpp), and Q016 needs a file of a megabyte.
+TEST(MistakesCorpus, HasAnEntryForEachId) {
+  const std::vector<std::string> names = mistakes();
+  for (const DiagnosticInfo& info : allDiagnostics()) {
+    if (info.id < "Q010" || info.id == "Q016") continue;
+    EXPECT_TRUE(std::ranges::any_of(names, [&](const std::string& name) {
+      return name.starts_with(std::string(info.id) + "_");
+    })) << info.id;
+  }
+}
+
+}  // namespace
+}  // namespace quintet::check

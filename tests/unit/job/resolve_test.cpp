@@ -1,0 +1,136 @@
+// A request that cannot succeed fails before a device is opened; a good one is complete.
+#include "job/resolve.h"
+
+#include <gmock/gmock.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "program/load.h"
+#include "temp_folder.h"
+
+namespace quintet::job {
+namespace {
+
+using testing::HasSubstr;
+
+program::Program pathTracer() { return program::loadProgram("pathtracer"); }
+program::Program lecture() { return program::loadProgram("lessons/01_first_ray"); }
+
+RenderRequest makeRequest() {
+  RenderRequest request;
+  request.limits.samples = 16;
+  return request;
+}
+
+TEST(Resolve, CompletesTheRequest) {
+  RenderRequest request = makeRequest();
+  request.assignments = {"bounces=3"};
+  const ResolvedJob job = resolve(request, pathTracer());
+  EXPECT_EQ(job.program.name, "pathtracer");
+  EXPECT_THAT(job.parameters.describe(), HasSubstr("bounces=3"));
+  EXPECT_EQ(job.scene.name, "default scene");
+  EXPECT_FALSE(job.accumulatesFrames());
+  EXPECT_TRUE(resolve(makeRequest(), lecture()).accumulatesFrames());
+}
+
+TEST(Resolve, AssignmentsFollowTheParameterFile) {
+  const quintet::test::TempFolder folder;
+  writeFile(folder / "values.json", R"({"bounces": 5, "clamp": 2})");
+  RenderRequest request = makeRequest();
+  request.parameterFile = folder / "values.json";
+  request.assignments = {"bounces=3"};
+  const std::string parameters = resolve(request, pathTracer()).parameters.describe();
+  EXPECT_THAT(parameters, HasSubstr("bounces=3"));
+  EXPECT_THAT(parameters, HasSubstr("clamp=2"));
+}
+
+TEST(Resolve, RejectsUnsupportedLimits) {
+  const auto rejects = [](const program::Program& program, const auto& change) {
+    RenderRequest request = makeRequest();
+    change(request);
+    try {
+      resolve(request, program);
+    } catch (const UsageError&) {
+      return true;
+    }
+    return false;
+  };
+  const program::Program normals = program::loadProgram("normals");
+  EXPECT_FALSE(rejects(pathTracer(), [](RenderRequest& r) { r.limits.adaptive = true; }));
+  EXPECT_TRUE(rejects(normals, [](RenderRequest& r) { r.limits.adaptive = true; }));
+  EXPECT_FALSE(rejects(pathTracer(), [](RenderRequest& r) { r.limits.error = 0.1; }));
+  EXPECT_TRUE(rejects(lecture(), [](RenderRequest& r) { r.limits.error = 0.1; }));
+  EXPECT_TRUE(rejects(lecture(), [](RenderRequest& r) { r.film = "a.qfilm"; }));
+  EXPECT_TRUE(rejects(lecture(), [](RenderRequest& r) { r.checkpoint.file = "a.qfilm"; }));
+  EXPECT_TRUE(rejects(pathTracer(), [](RenderRequest& r) { r.assignments = {"bouncs=3"}; }));
+}
+
+TEST(Resolve, Batches) {
+  const auto errorFor = [](BatchRange batches, const auto& change) -> std::string {
+    RenderRequest request = makeRequest();  // batches 0–3
+    request.batches = batches;
+    change(request);
+    try {
+      resolve(request, pathTracer());
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(errorFor({0, 3}, [](RenderRequest&) {}), "");
+  EXPECT_THAT(errorFor({2, 4}, [](RenderRequest&) {}), HasSubstr("0–3"));
+  EXPECT_NE(errorFor({0, 1}, [](RenderRequest& r) { r.limits.seconds = 1; }), "");
+  EXPECT_NE(errorFor({0, 1}, [](RenderRequest& r) { r.limits.adaptive = true; }), "");
+  EXPECT_NE(errorFor({0, 1}, [](RenderRequest& r) { r.limits.samples.reset(); }), "");
+}
+
+TEST(Resolve, ChecksFiles) {
+  const quintet::test::TempFolder folder;
+  RenderRequest request = makeRequest();
+  request.film = folder / "no/such/folder/a.qfilm";
+  EXPECT_THROW(resolve(request, pathTracer()), FileError);
+  request.film = folder / "a.qfilm";
+  request.checkpoint.file = folder / "x/../a.qfilm";
+  EXPECT_THROW(resolve(request, pathTracer()), UsageError) << "the checkpoint is the output";
+  request.checkpoint.file = folder / "a.png";
+  EXPECT_THROW(resolve(request, pathTracer()), UsageError) << "the extension";
+  request.checkpoint.file = folder / "b.qfilm";
+  EXPECT_NO_THROW(resolve(request, pathTracer()));
+  request.scene = folder / "absent.glb";
+  EXPECT_THROW(resolve(request, pathTracer()), FileError);
+  EXPECT_EQ(folder.entryCount(), 0u);
+}
+
+TEST(SceneSource, TheFirstThatExists) {
+  const quintet::test::TempFolder folder;
+  writeFile(folder / "a.scene.toml", "");
+  EXPECT_EQ(chooseSceneSource(folder / "a.scene.toml", lecture()).file, folder / "a.scene.toml");
+  const SceneSource own = chooseSceneSource({}, lecture());
+  EXPECT_TRUE(own.file.empty());
+  EXPECT_FALSE(own.text.empty());
+  EXPECT_GT(loadScene(own).instances.size(), 0u);
+  const SceneSource builtIn = chooseSceneSource({}, pathTracer());
+  EXPECT_TRUE(builtIn.text.empty());
+  EXPECT_GT(loadScene(builtIn).instances.size(), 0u);
+}
+
+TEST(SceneSource, ASceneInMemoryIsCopied) {
+  auto scene = std::make_shared<scene::Scene>();
+  scene->name = "mine";
+  scene->cameras.resize(1);
+  RenderRequest request = makeRequest();
+  request.loadedScene = scene;
+  const ResolvedJob job = resolve(request, pathTracer());
+  EXPECT_EQ(job.scene.name, "mine");
+  EXPECT_EQ(loadScene(job.scene).cameras.size(), 1u);
+}
+
+TEST(IsProgramSource, ShadersAndDescriptions) {
+  for (const char* name : {"program.toml", "a.rgen", "b.rchit", "c.glsl", "d.h"})
+    EXPECT_TRUE(isProgramSource(name)) << name;
+  for (const char* name : {"out.png", ".swap.glsl", "a.qfilm", "a.exr", "a"})
+    EXPECT_FALSE(isProgramSource(name)) << name;
+}
+
+}  // namespace
+}  // namespace quintet::job

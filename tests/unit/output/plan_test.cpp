@@ -1,0 +1,106 @@
+// Which files a render writes: decided, and rejected, before it starts.
+#include "output/plan.h"
+
+#include <gmock/gmock.h>
+
+#include "base/error.h"
+#include "program/load.h"
+#include "temp_folder.h"
+
+namespace quintet::output {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class PlanOutputs : public testing::Test {
+ protected:
+  OutputRequest request(const char* name) const { return {.file = folder_ / name}; }
+  std::string errorFor(const OutputRequest& request) const {
+    try {
+      planOutputs(request, program_);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  const quintet::test::TempFolder folder_;
+  const program::Program program_ = program::loadProgram("pathtracer");
+};
+
+TEST_F(PlanOutputs, TheFirstOutputByDefault) {
+  const OutputPlan plan = planOutputs(request("out.png"), program_);
+  EXPECT_EQ(plan.kind, FileKind::png);
+  EXPECT_THAT(plan.outputs, ElementsAre(0u));
+  EXPECT_TRUE(plan.layers.empty());
+  EXPECT_TRUE(plan.optionalOutputs.empty());
+  EXPECT_EQ(planOutputs(request("OUT.EXR"), program_).kind, FileKind::exr);
+  EXPECT_EQ(planOutputs(request("out.hdr"), program_).kind, FileKind::hdr);
+  EXPECT_EQ(planOutputs(request("out.qfilm"), program_).kind, FileKind::film);
+}
+
+TEST_F(PlanOutputs, LayersRequireTheirOutputs) {
+  OutputRequest layers = request("out.exr");
+  layers.layers = {"variance", "albedo", "cryptomatte_object"};
+  const OutputPlan plan = planOutputs(layers, program_);
+  EXPECT_THAT(plan.optionalOutputs, testing::UnorderedElementsAre("albedo", "cryptomatte_object"));
+  EXPECT_EQ(plan.layers.size(), 3u);
+  const job::OutputNotes notes = plan.notes();
+  EXPECT_TRUE(notes.names) << "Cryptomatte needs the names of objects";
+  EXPECT_THAT(notes.layers, HasSubstr("albedo"));
+  layers.layers = {"all"};
+  EXPECT_EQ(planOutputs(layers, program_).layers.size(), availableLayers(program_).size());
+}
+
+TEST_F(PlanOutputs, AllOutputsSkipsCoverage) {
+  OutputRequest all = request("out.exr");
+  all.allOutputs = true;
+  for (const std::size_t output : planOutputs(all, program_).outputs)
+    EXPECT_NE(program_.outputs[output].pixel, program::OutputPixel::coverage);
+}
+
+TEST_F(PlanOutputs, RejectsWhatCannotBeWritten) {
+  EXPECT_THAT(errorFor(request("out.jpg")), HasSubstr(".png, .exr, .hdr or .qfilm"));
+  EXPECT_THAT(errorFor(request("no/such/folder/out.png")), HasSubstr("no/such/folder"));
+  OutputRequest wrong = request("out.png");
+  wrong.layers = {"albedo"};
+  EXPECT_THAT(errorFor(wrong), HasSubstr(".exr"));
+  wrong = request("out.exr");
+  wrong.layers = {"albdo"};
+  EXPECT_THAT(errorFor(wrong), HasSubstr("did you mean 'albedo'?"));
+  wrong.layers = {"albedo"};
+  wrong.allOutputs = true;
+  EXPECT_THAT(errorFor(wrong), HasSubstr("exclude"));
+  wrong = request("out.png");
+  wrong.exr.emplace();
+  EXPECT_THAT(errorFor(wrong), HasSubstr(".exr"));
+  wrong = request("out.png");
+  wrong.output = "nothing";
+  EXPECT_THAT(errorFor(wrong), HasSubstr("'nothing'"));
+  wrong.output = "cryptomatte_object";
+  EXPECT_THAT(errorFor(wrong), HasSubstr("--aov"));
+  OutputRequest standardOutput{.file = "-"};
+  EXPECT_EQ(errorFor(standardOutput), "");
+  standardOutput.allOutputs = true;
+  EXPECT_THAT(errorFor(standardOutput), HasSubstr("standard output"));
+}
+
+TEST_F(PlanOutputs, DisplaySettingsApplyToPngOnly) {
+  OutputRequest bright = request("out.exr");
+  bright.exposure = 1.0f;
+  EXPECT_THAT(ignoredDisplayText(bright), HasSubstr("out.exr"));
+  bright.file = folder_ / "out.png";
+  EXPECT_EQ(ignoredDisplayText(bright), "");
+}
+
+TEST(Layers, NamesThatCryptomatteReadersConfuse) {
+  Layer object{.name = "cryptomatte_object", .source = Layer::Source::coverage},
+      object2{.name = "cryptomatte_object2", .source = Layer::Source::coverage};
+  EXPECT_NO_THROW(checkChannels({object}));
+  EXPECT_THROW(checkChannels({object, object2}), UsageError);
+  object2.name = "object";  // both would be CryptoObject
+  EXPECT_THROW(checkChannels({object, object2}), UsageError);
+}
+
+}  // namespace
+}  // namespace quintet::output

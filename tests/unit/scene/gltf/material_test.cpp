@@ -1,0 +1,354 @@
+// Materials, textures, samplers and images.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "io/codec.h"
+#include "scene/error_matcher.h"
+#include "scene/gltf/gltf.h"
+#include "scene/gltf_builder.h"
+#include "scene/model/content_hash.h"
+#include "scene/model/validate.h"
+
+namespace quintet::test {
+namespace {
+
+using scene::Material;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+Material loadMaterial(const Json& material) {
+  GltfBuilder builder;
+  builder.add("materials", material);
+  return builder.load().materials.at(0);
+}
+
+std::string errorOfMaterial(const Json& material) {
+  GltfBuilder builder;
+  builder.add("materials", material);
+  return errorOf(builder);
+}
+
+Json extension(const char* name, const Json& object) { return {{"extensions", {{name, object}}}}; }
+
+TEST(GltfMaterial, HasTheDefaultsOfTheSpecification) {
+  const Material loaded = loadMaterial(Json::object()), expected;
+  EXPECT_EQ(loaded.baseColor, expected.baseColor);
+  EXPECT_EQ(loaded.metallic, 1.0f);
+  EXPECT_EQ(loaded.roughness, 1.0f);
+  EXPECT_EQ(loaded.emissive, vec3(0));
+  EXPECT_EQ(loaded.alphaMode, scene::AlphaMode::opaque);
+  EXPECT_EQ(loaded.alphaCutoff, 0.5f);
+  EXPECT_FALSE(loaded.doubleSided);
+  EXPECT_FALSE(loaded.unlit);
+  EXPECT_EQ(loaded.ior, 1.5f);
+  EXPECT_EQ(loaded.transmission, 0.0f);
+  EXPECT_EQ(loaded.thickness, 0.0f);
+  EXPECT_TRUE(std::isinf(loaded.attenuationDistance));
+  EXPECT_EQ(loaded.attenuationColor, vec3(1));
+  EXPECT_EQ(loaded.specular, 1.0f);
+  EXPECT_EQ(loaded.clearcoat, 0.0f);
+  EXPECT_FALSE(loaded.baseColorTexture.used());
+}
+
+TEST(GltfMaterial, ReadsCoreFactors) {
+  const Material m =
+      loadMaterial({{"name", "paint"},
+                    {"pbrMetallicRoughness",
+                     {{"baseColorFactor", {0.1, 0.2, 0.3, 0.4}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.25}}},
+                    {"emissiveFactor", {1, 0.5, 2}},
+                    {"alphaMode", "MASK"},
+                    {"alphaCutoff", 0.75},
+                    {"doubleSided", true}});
+  EXPECT_EQ(m.name, "paint");
+  EXPECT_EQ(m.baseColor, vec4(0.1f, 0.2f, 0.3f, 0.4f));
+  EXPECT_EQ(m.metallic, 0.5f);
+  EXPECT_EQ(m.roughness, 0.25f);
+  EXPECT_EQ(m.emissive, vec3(1, 0.5f, 2));
+  EXPECT_EQ(m.alphaMode, scene::AlphaMode::mask);
+  EXPECT_EQ(m.alphaCutoff, 0.75f);
+  EXPECT_TRUE(m.doubleSided);
+  EXPECT_EQ(loadMaterial({{"alphaMode", "BLEND"}}).alphaMode, scene::AlphaMode::blend);
+}
+
+TEST(GltfMaterial, ReadsExtensions) {
+  Material m = loadMaterial({{"emissiveFactor", {1, 0.5, 0}},
+                             {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 10}}}}}});
+  EXPECT_EQ(m.emissive, vec3(10, 5, 0));
+  EXPECT_EQ(loadMaterial(extension("KHR_materials_ior", {{"ior", 1.33}})).ior, 1.33f);
+  EXPECT_EQ(loadMaterial(extension("KHR_materials_ior", {{"ior", 0}})).ior, 0.0f);
+  EXPECT_EQ(loadMaterial(extension("KHR_materials_ior", Json::object())).ior, 1.5f);
+  EXPECT_EQ(loadMaterial(extension("KHR_materials_transmission", {{"transmissionFactor", 0.75}})).transmission, 0.75f);
+  m = loadMaterial(
+      extension("KHR_materials_volume",
+                {{"thicknessFactor", 2}, {"attenuationDistance", 0.5}, {"attenuationColor", {0.5, 0, 1}}}));
+  EXPECT_EQ(m.thickness, 2.0f);
+  EXPECT_EQ(m.attenuationDistance, 0.5f);
+  EXPECT_EQ(m.attenuationColor, vec3(0.5f, 1e-6f, 1));
+  EXPECT_TRUE(loadMaterial(extension("KHR_materials_unlit", Json::object())).unlit);
+  m = loadMaterial(extension("KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {2, 1, 0}}}));
+  EXPECT_EQ(m.specular, 0.5f);
+  EXPECT_EQ(m.specularColor, vec3(2, 1, 0));
+  m = loadMaterial(extension("KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatRoughnessFactor", 0.1}}));
+  EXPECT_EQ(m.clearcoat, 1.0f);
+  EXPECT_EQ(m.clearcoatRoughness, 0.1f);
+}
+
+TEST(GltfMaterial, ClampsFactors) {
+  GltfBuilder builder;
+  builder.add("materials",
+              {{"pbrMetallicRoughness", {{"metallicFactor", 1.5}, {"roughnessFactor", -1}}},
+               {"extensions",
+                {{"KHR_materials_ior", {{"ior", 0.5}}}, {"KHR_materials_volume", {{"attenuationDistance", 0}}}}}});
+  const scene::Scene scene = builder.load();
+  EXPECT_EQ(scene.materials[0].metallic, 1.0f);
+  EXPECT_EQ(scene.materials[0].roughness, 0.0f);
+  EXPECT_EQ(scene.materials[0].ior, 1.0f);
+  EXPECT_TRUE(std::isinf(scene.materials[0].attenuationDistance));
+  EXPECT_THAT(
+      scene.report.repaired,
+      ElementsAre(IsErrorAt("/materials/0", "metallicFactor 1.5"), IsErrorAt("/materials/0", "roughnessFactor -1"),
+                  IsErrorAt("/materials/0", "ior 0.5"), IsErrorAt("/materials/0", "attenuationDistance 0")));
+}
+
+TEST(GltfMaterial, RejectsWrongTypes) {
+  EXPECT_THAT(errorOfMaterial({{"alphaMode", "GLOW"}}), IsErrorAt("/materials/0/alphaMode", "GLOW"));
+  EXPECT_THAT(errorOfMaterial({{"emissiveFactor", {1, 2}}}), IsErrorAt("/materials/0/emissiveFactor", "3 numbers"));
+  EXPECT_THAT(errorOfMaterial({{"doubleSided", 1}}), IsErrorAt("/materials/0/doubleSided", "true or false"));
+  EXPECT_THAT(errorOfMaterial({{"normalTexture", {{"index", 0}}}}),
+              IsErrorAt("/materials/0/normalTexture/index", "texture 0"));
+  EXPECT_THAT(errorOfMaterial({{"normalTexture", Json::object()}}), IsErrorAt("/materials/0/normalTexture", "index"));
+  EXPECT_THAT(errorOfMaterial(extension("KHR_materials_transmission", {{"transmissionTexture", {{"index", 3}}}})),
+              IsErrorAt("/materials/0/extensions/KHR_materials_transmission/transmissionTexture/index", "texture 3"));
+  EXPECT_THAT(errorOfMaterial(extension("KHR_materials_ior", {{"ior", "glass"}})),
+              IsErrorAt("/materials/0/extensions/KHR_materials_ior/ior", "number"));
+}
+
+// One image and one texture.
+struct TextureBuilder : GltfBuilder {
+  TextureBuilder() {
+    add("images", {{"bufferView", addView(tinyPng())}, {"mimeType", "image/png"}});
+    add("textures", {{"source", 0}, {"name", "tiles"}});
+  }
+  Json& use() {
+    if (!root.contains("materials"))
+      add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    return root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+  }
+};
+
+TEST(GltfTexture, ReadsImagesInBufferViews) {
+  TextureBuilder builder;
+  builder.use();
+  const scene::Scene scene = builder.load();
+  EXPECT_EQ(scene.materials[0].baseColorTexture.texture, 0);
+  EXPECT_EQ(scene.textures.at(0).name, "tiles");
+  EXPECT_EQ(scene.textures[0].image, 0);
+  EXPECT_EQ(scene.textures[0].sampler, scene::Sampler{});
+  EXPECT_EQ(scene.images.at(0).name, "scene.glb: /images/0");
+  EXPECT_EQ(scene.images[0].image.width, 2u);
+  EXPECT_EQ(std::to_integer<int>(scene.images[0].image.data[0]), 255);
+}
+
+TEST(GltfTexture, DecodesOnlyUsedImages) {
+  TextureBuilder builder;
+  builder.add("images", {{"bufferView", builder.addView<int>({1, 2, 3})}});
+  builder.add("textures", {{"source", 1}});
+  EXPECT_TRUE(builder.load().images.empty());
+  builder.use()["index"] = 1;
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/images/1", ""));
+}
+
+TEST(GltfTexture, ReadsTextureTransforms) {
+  TextureBuilder builder;
+  builder.use()["texCoord"] = 1;
+  builder.use()["extensions"]["KHR_texture_transform"] = {
+      {"offset", {0.5, 0.25}}, {"scale", {2, 3}}, {"rotation", 1.5}};
+  scene::TextureUse use = builder.load().materials[0].baseColorTexture;
+  EXPECT_EQ(use.uvSet, 1);
+  EXPECT_EQ(use.offset, vec2(0.5f, 0.25f));
+  EXPECT_EQ(use.scale, vec2(2, 3));
+  EXPECT_EQ(use.rotation, 1.5f);
+  builder.use()["extensions"]["KHR_texture_transform"]["texCoord"] = 0;
+  EXPECT_EQ(builder.load().materials[0].baseColorTexture.uvSet, 0);
+}
+
+TEST(GltfTexture, ReadsTexturesOfExtensions) {
+  TextureBuilder builder;
+  builder.add("materials", extension("KHR_materials_clearcoat",
+                                     {{"clearcoatNormalTexture",
+                                       {{"index", 0},
+                                        {"scale", 0.5},
+                                        {"texCoord", 1},
+                                        {"extensions", {{"KHR_texture_transform", {{"scale", {4, 4}}}}}}}}}));
+  const Material m = builder.load().materials[0];
+  EXPECT_EQ(m.clearcoatNormalTexture.texture, 0);
+  EXPECT_EQ(m.clearcoatNormalTexture.uvSet, 1);
+  EXPECT_EQ(m.clearcoatNormalTexture.scale, vec2(4));
+  EXPECT_EQ(m.clearcoatNormalScale, 0.5f);
+}
+
+TEST(GltfTexture, ReplacesUnsupportedTextureCoordinateSets) {
+  TextureBuilder builder;
+  builder.use()["texCoord"] = 2;
+  const scene::Scene scene = builder.load();
+  EXPECT_EQ(scene.materials[0].baseColorTexture.uvSet, 0);
+  EXPECT_THAT(scene.report.ignored, ElementsAre(IsErrorAt("/materials/0", "TEXCOORD_2")));
+}
+
+TEST(GltfTexture, ReadsSamplers) {
+  TextureBuilder builder;
+  builder.use();
+  builder.add("samplers", {{"magFilter", 9728}, {"minFilter", 9987}, {"wrapS", 33071}, {"wrapT", 33648}});
+  builder.root["textures"][0]["sampler"] = 0;
+  const scene::Sampler expected{scene::Wrap::clampToEdge, scene::Wrap::mirroredRepeat, scene::Filter::nearest};
+  EXPECT_EQ(builder.load().textures[0].sampler, expected);
+  builder.root["samplers"][0]["wrapS"] = 1;
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/samplers/0/wrapS", "1"));
+  builder.root["textures"][0]["sampler"] = 1;
+  builder.root["samplers"][0]["wrapS"] = 10497;
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/textures/0/sampler", "sampler 1"));
+}
+
+TEST(GltfTexture, PrefersWebp) {
+  TextureBuilder builder;
+  builder.use();
+  builder.add("images", {{"bufferView", builder.root["images"][0]["bufferView"]}, {"name", "second"}});
+  builder.root["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 1;
+  EXPECT_EQ(builder.load().images.at(0).name, "scene.glb: /images/1");
+  builder.root["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 2;
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/textures/0/extensions/EXT_texture_webp/source", "image 2"));
+}
+
+TEST(GltfTexture, IgnoresTexturesWithoutASupportedImage) {
+  TextureBuilder builder;
+  builder.use();
+  builder.root["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+  const scene::Scene scene = builder.load();
+  EXPECT_FALSE(scene.materials[0].baseColorTexture.used());
+  EXPECT_THAT(scene.report.ignored, ElementsAre(IsErrorAt("/materials/0/baseColorTexture", "texture 0")));
+}
+
+TEST(GltfImage, ReportsInvalidImagesAsErrorsOfTheScene) {
+  TextureBuilder builder;
+  builder.use();
+  builder.root["bufferViews"][0]["byteLength"] = 40;
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/images/0", ""));
+  builder.root["images"][0] = {{"uri", "data:image/png;base64,AAAA"}};
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/images/0", ""));
+  builder.root["images"][0] = {{"uri", "none.png"}};
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/images/0/uri", "none.png"));
+  builder.root["images"][0] = Json::object();
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/images/0", "uri"));
+  builder.root["images"][0] = {{"uri", "a.png"}, {"bufferView", 0}};
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/images/0", "uri"));
+  builder.root["images"][0] = {{"bufferView", 4}};
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/images/0/bufferView", "buffer view 4"));
+}
+
+// The memory of an encoded image is returned once it is decoded, unless another image uses the same bytes.
+TEST(GltfImage, ReadsImagesThatShareBytes) {
+  io::Image noise = io::makeImage(256, 256, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
+  std::uint32_t state = 1;
+  for (std::byte& value : noise.data) value = static_cast<std::byte>((state = state * 1664525u + 1013904223u) >> 24);
+  GltfBuilder builder;
+  const std::vector<std::byte> png = io::encodePng(noise);
+  ASSERT_GT(png.size(), 100'000u);
+  const int alone = builder.addView(png), shared = builder.addView(png);
+  // The same bytes, and some before them.
+  Json wider = builder.root["bufferViews"][1];
+  wider["byteOffset"] = wider["byteOffset"].get<std::uint64_t>() - 8;
+  wider["byteLength"] = png.size() + 8;
+  builder.add("bufferViews", wider);
+  for (int i = 0; i < 12; ++i) {
+    builder.add("images", {{"bufferView", i == 0 ? alone : shared}, {"mimeType", "image/png"}});
+    builder.add("textures", {{"source", i}});
+    builder.add("materials", {{"emissiveTexture", {{"index", i}}}});
+  }
+  const scene::Scene scene = builder.load();
+  ASSERT_EQ(scene.images.size(), 12u);
+  for (const scene::NamedImage& image : scene.images) EXPECT_TRUE(image.image.data == noise.data) << image.name;
+}
+
+// Two materials with an image each, of 3 and 4 channels.
+struct TwoImages : TextureBuilder {
+  TwoImages() {
+    use();
+    const io::Image veil = io::makeImage(3, 5, 4, io::PixelType::u8, io::ColorEncoding::sRgb);
+    add("images", {{"bufferView", addView(io::encodePng(veil))}, {"mimeType", "image/png"}});
+    add("textures", {{"source", 1}});
+    add("materials", {{"emissiveTexture", {{"index", 1}}}});
+  }
+};
+
+TEST(GltfImage, IsDescribedBeforeItIsDecoded) {
+  const TempFolder folder;
+  writeFile(folder / "scene.glb", TwoImages().glb());
+  scene::PendingScene pending = scene::beginLoadingGltf(folder / "scene.glb");
+  EXPECT_TRUE(pending.described());
+  const scene::Scene& partial = pending.scene();
+  EXPECT_EQ(partial.materials.size(), 2u);
+  EXPECT_EQ(partial.textures.size(), 2u);
+  ASSERT_EQ(partial.images.size(), 2u);
+  EXPECT_EQ(partial.images[0].image.channels, 3u);
+  EXPECT_EQ(partial.images[1].image.channels, 4u);
+  EXPECT_EQ(partial.images[1].image.height, 5u);
+  for (const scene::NamedImage& image : partial.images) EXPECT_TRUE(image.image.data.empty());
+  EXPECT_EQ(partial.seconds.images, 0.0);
+
+  const scene::Scene scene = std::move(pending).finish();
+  EXPECT_NO_THROW(scene::validate(scene));
+  EXPECT_EQ(scene.images[1].image.data.size(), 3u * 5 * 4);
+  EXPECT_GT(scene.seconds.document, 0.0);
+  EXPECT_GT(scene.seconds.images, 0.0);
+  EXPECT_EQ(scene::contentHash(scene), scene::contentHash(scene::loadGltf(folder / "scene.glb")));
+}
+
+TEST(GltfImage, IsNotDescribedInAnExternalFile) {
+  TwoImages builder;
+  builder.root["images"][0] = {{"uri", "tiles.png"}};
+  const TempFolder folder;
+  writeFile(folder / "tiles.png", tinyPng());
+  writeFile(folder / "scene.glb", builder.glb());
+  scene::PendingScene pending = scene::beginLoadingGltf(folder / "scene.glb");
+  EXPECT_FALSE(pending.described());
+  const scene::Scene scene = std::move(pending).finish();
+  ASSERT_EQ(scene.images.size(), 2u);
+  EXPECT_EQ(scene.images[0].image.channels, 3u);
+  EXPECT_EQ(scene.images[1].image.channels, 4u);
+}
+
+TEST(GltfImage, InvalidDataIsReportedWhenItIsDecoded) {
+  TwoImages builder;
+  builder.root["bufferViews"][1]["byteLength"] = 60;  // the header is complete, the pixels are not
+  const TempFolder folder;
+  writeFile(folder / "scene.glb", builder.glb());
+  scene::PendingScene pending = scene::beginLoadingGltf(folder / "scene.glb");
+  EXPECT_TRUE(pending.described());
+  EXPECT_THROW(std::move(pending).finish(), FileError);
+}
+
+TEST(GltfImage, ReadsExternalFiles) {
+  TextureBuilder builder;
+  builder.use();
+  builder.root["images"][0] = {{"uri", "my%20tiles.png"}};
+  const TempFolder folder;
+  writeFile(folder / "my tiles.png", tinyPng());
+  writeFile(folder / "scene.glb", builder.glb());
+  const scene::Scene scene = scene::loadGltf(folder / "scene.glb");
+  EXPECT_EQ(scene.images.at(0).name, (folder / "my tiles.png").string());
+  writeFile(folder / "my tiles.png", "not an image");
+  try {
+    scene::loadGltf(folder / "scene.glb");
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.file(), folder / "scene.glb");
+    EXPECT_EQ(error.location(), "/images/0");
+    EXPECT_THAT(error.problem(), StartsWith("my tiles.png: "));
+  }
+}
+
+}  // namespace
+}  // namespace quintet::test
