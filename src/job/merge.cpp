@@ -169,7 +169,8 @@ std::vector<SampleRange> missingSamples(const render::SampleCounts& counts, std:
 
 }  // namespace
 
-RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer) {
+RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer,
+                   const std::string& commandLine) {
   Merger merger(observer);
   for (const std::filesystem::path& part : parts) merger.add(part);
   FilmFile& film = merger.film();
@@ -183,6 +184,7 @@ RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& ob
     p.rays += pixel.x;
     p.droppedSamples += pixel.y;
   }
+  if (!commandLine.empty()) p.commandLine = commandLine;
   if (result.error.known()) {
     p.error = result.error.upper;
     p.tileError = result.error.tiles;

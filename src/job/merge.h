@@ -14,8 +14,9 @@ namespace quintet::job {
 // Reads the films one after the other, so that two of them are in memory at a time. Facts in which the parts may differ
 // (device, exposure, …) are joined or taken from the part with the first samples, and reported as notes. Throws FileError
 // for a part that cannot be read, belongs to a different render, or shares samples with another part; Error if there are
-// no samples at all.
-RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer);
+// no samples at all. `commandLine` becomes that of the result, for metadata; empty keeps that of the first part.
+RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer,
+                   const std::string& commandLine = {});
 
 // What the merged film lacks: "samples 16–31 are missing"; empty if it is complete.
 std::string missingText(const RenderResult& merged);

@@ -416,7 +416,8 @@ RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& obser
     if (last.abandoned) return last;
     seconds += last.provenance.seconds;
     last.provenance.seconds = last.seconds.render = seconds;
-    last.provenance.frame = frame;
+    // The name of a single frame needs no number.
+    if (scene_->onDevice->animated()) last.provenance.frame = frame;
     const bool stop = observer.stopRequested() == StopRequest::finish && frame + 1 < count;
     last.interrupted = last.provenance.interrupted = last.interrupted || stop;
     if (frames.every) observer.frame(last);

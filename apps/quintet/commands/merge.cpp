@@ -67,7 +67,7 @@ int mergeCommand(Arguments arguments) {
   const std::optional<Options> options = parseOptions(arguments);
   if (!options) return 0;
   Console console(options->console);
-  job::RenderResult result = job::merge(options->parts, console);
+  job::RenderResult result = job::merge(options->parts, console, commandLine("merge", arguments));
   const output::OutputPlan plan = output::planOutputs(options->output, result, options->parts.front());
   if (const std::string missing = job::missingText(result); !missing.empty()) {
     if (plan.kind != output::FileKind::film && !options->partial)

@@ -100,7 +100,9 @@ class HeaderScan {
     for (std::size_t i = 0; i < 4; ++i)
       if (coordinate(i) < -(1 << 30) || coordinate(i) > 1 << 30)
         source_.fail(at_, fmt::format("broken OpenEXR: the {} is out of range", name));
-    source_.checkSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 1);
+    // Only pixels of the data window are stored; the decoder limits the display window (checkChannels).
+    if (name == "dataWindow")
+      source_.checkSize(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 1);
     return {static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height)};
   }
 

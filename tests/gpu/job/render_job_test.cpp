@@ -147,7 +147,8 @@ TEST_F(RenderJobTest, ResumesFromACheckpoint) {
 TEST_F(RenderJobTest, APartHasItsBatches) {
   RenderRequest request = makeRequest(16);
   request.batches = BatchRange{1, 2};
-  const RenderResult part = makeJob(request)->run(request.limits, observer_);
+  const auto job = makeJob(request);
+  const RenderResult part = job->run(request.limits, observer_);
   EXPECT_EQ(part.film->counts().ranges, (std::vector<render::SampleRange>{{4, 12}}));
   EXPECT_EQ(part.provenance.plannedSamples, 16u);
 }
