@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the command, runs it, and turns exceptions into one line on standard error and an exit status: 2 for a wrong command
 // line, 1 for every other failure.
 #include <fcntl.h>

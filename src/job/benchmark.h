@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays per second, and the rate of minimal shaders for the same rays: the rays of a program's first sample are recorded
 // and traced again, in the same order, by minimal shaders. Both rates come from one run, so their ratio holds on noisy
 // machines.

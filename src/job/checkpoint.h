@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The checkpoint of a long render: a film file that is replaced as rendering proceeds, and from which it resumes.
 #ifndef QUINTET_JOB_CHECKPOINT_H
 #define QUINTET_JOB_CHECKPOINT_H
@@ -18,7 +19,7 @@ class Checkpoint {
  public:
   explicit Checkpoint(CheckpointRequest request) : request_(std::move(request)) {}
 
-  // The film to resume from; nothing if there is none or the request starts over. `expected`: provenance and arrays of
+  // The film to resume from; empty if it does not exist or the request starts over. `expected`: provenance and arrays of
   // this render. Throws FileError if the file belongs to a different render, is damaged, or would be lost.
   std::optional<StoredFilm> load(const Provenance& expected, const render::FilmState& empty, const StartPoint& start,
                                  const RenderLimits& limits, Observer& observer);

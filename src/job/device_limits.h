@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits and driver defects of a device, for the check of a program.
 #ifndef QUINTET_JOB_DEVICE_LIMITS_H
 #define QUINTET_JOB_DEVICE_LIMITS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The device with its compiler and caches. Jobs that run one after the other share an engine.
 #ifndef QUINTET_JOB_ENGINE_H
 #define QUINTET_JOB_ENGINE_H

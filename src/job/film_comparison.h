@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether two films show the same image, except for noise: the statistical test of render/film/film_ztest.h on film files.
 #ifndef QUINTET_JOB_FILM_COMPARISON_H
 #define QUINTET_JOB_FILM_COMPARISON_H

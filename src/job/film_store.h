@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Film files on disk: reading them with their provenance, whether they belong to a render, what they hold in words, and
 // protection against losing samples.
 #ifndef QUINTET_JOB_FILM_STORE_H

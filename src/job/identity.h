@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part of a render's provenance that follows from the program and its parameters.
 #ifndef QUINTET_JOB_IDENTITY_H
 #define QUINTET_JOB_IDENTITY_H

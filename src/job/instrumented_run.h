@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small image with run-time checks in the shaders: `quintet check --instrument`.
 #ifndef QUINTET_JOB_INSTRUMENTED_RUN_H
 #define QUINTET_JOB_INSTRUMENTED_RUN_H

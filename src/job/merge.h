@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Joins parts of a render, made by any number of processes, to the film that one process would have made.
 #ifndef QUINTET_JOB_MERGE_H
 #define QUINTET_JOB_MERGE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a running job reports to its front end, and how the front end stops it.
 #ifndef QUINTET_JOB_OBSERVER_H
 #define QUINTET_JOB_OBSERVER_H
@@ -40,7 +41,7 @@ struct BatchReport {
 enum class StopRequest {
   none,
   finish,   // complete the current batch and return what there is
-  abandon,  // return at once; the result is of no use
+  abandon,  // return at once; the result is incomplete and must not be used
 };
 
 // Calls come from the thread that runs the job, except warning(), which any thread may call.
@@ -70,7 +71,7 @@ class Observer {
   virtual void write(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
   // A launch did not end in time. The device still works on it, so destroying GPU objects would block: a program
-  // should report this and exit without unwinding. If this function returns, gpu::TimeoutError is thrown on.
+  // should report this and exit without unwinding. If this function returns, gpu::TimeoutError propagates.
   virtual void deviceHung(const Diagnostic& /*diagnostic*/) {}
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that an image, a film and --json say about how they were made. One table of fields gives each fact its
 // names, says whether films must agree in it, and converts it to text and back.
 #ifndef QUINTET_JOB_PROVENANCE_H

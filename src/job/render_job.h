@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A render from the loaded scene to its result. The construction does everything that precedes the first sample; run()
 // renders.
 #ifndef QUINTET_JOB_RENDER_JOB_H

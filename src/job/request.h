@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a front end asks for: plain data, without decisions that depend on the scene or the device. resolve() checks it.
 #ifndef QUINTET_JOB_REQUEST_H
 #define QUINTET_JOB_REQUEST_H

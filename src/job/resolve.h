@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The first step of every render: a request becomes a resolved job, or an error that needs no device to be found.
 #ifndef QUINTET_JOB_RESOLVE_H
 #define QUINTET_JOB_RESOLVE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "job/result.h"
 
 #include <algorithm>
@@ -30,6 +31,17 @@ class StoredFilm : public FilmView {
   bool transparent_;
 };
 
+// Why the target error was not reached.
+std::string targetMissedText(const RenderResult& result) {
+  const std::string missed =
+      fmt::format("the target error of {:.2g} % was not reached", 100.0 * *result.provenance.targetError);
+  if (result.provenance.samples <= render::kBatchSamples) return missed + ": the error is unknown below two batches";
+  if (!result.error.known())
+    return missed + ": the error is unknown, because some pixels exceed the range of the film's sums";
+  return fmt::format("{}: the error is {:.2g} %, and at most {:.2g} % in 95 % of the tiles", missed,
+                     100.0 * result.error.upper, 100.0 * result.error.tiles);
+}
+
 }  // namespace
 
 std::shared_ptr<const FilmView> viewOf(render::FilmState film, bool transparent) {
@@ -46,14 +58,13 @@ double RenderResult::raysPerSecond() const {
   return provenance.seconds > 0 ? static_cast<double>(provenance.rays) / provenance.seconds : 0;
 }
 
-std::string targetMissedText(const RenderResult& result) {
-  const std::string missed =
-      fmt::format("the target error of {:.2g} % was not reached", 100.0 * *result.provenance.targetError);
-  if (result.provenance.samples <= render::kBatchSamples) return missed + ": the error is unknown below two batches";
-  if (!result.error.known())
-    return missed + ": the error is unknown, because some pixels exceed the range of the film's sums";
-  return fmt::format("{}: the error is {:.2g} %, and at most {:.2g} % in 95 % of the tiles", missed,
-                     100.0 * result.error.upper, 100.0 * result.error.tiles);
+std::vector<std::string> resultWarnings(const RenderResult& result) {
+  std::vector<std::string> warnings;
+  if (result.targetMissed && !result.interrupted) warnings.push_back(targetMissedText(result));
+  if (const std::uint64_t count = result.provenance.droppedSamples; count > 0)
+    warnings.push_back(count == 1 ? "1 sample was not finite and is omitted"
+                                  : fmt::format("{} samples were not finite and are omitted", count));
+  return warnings;
 }
 
 render::FilmFile filmFileOf(const RenderResult& result) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a job returns: the film, how it was made, and what that took.
 #ifndef QUINTET_JOB_RESULT_H
 #define QUINTET_JOB_RESULT_H
@@ -72,7 +73,7 @@ struct RenderResult {
   std::vector<std::uint32_t> plan;  // of adaptive sampling: render::FilmFile::plan
   bool accumulatesFrames = false;   // the program accumulates: `samples` counts frames
   bool interrupted = false;         // stopped by the observer before a limit was reached
-  bool abandoned = false;           // StopRequest::abandon: the film is of no use
+  bool abandoned = false;           // StopRequest::abandon: the film is incomplete and must not be used
   bool targetMissed = false;        // the target error is not reached
   render::ErrorEstimate error;      // of output 0
   Timings seconds;
@@ -84,8 +85,9 @@ struct RenderResult {
   double raysPerSecond() const;
 };
 
-// Why the target error was not reached.
-std::string targetMissedText(const RenderResult& result);
+// What a user must know about a complete or interrupted render: a missed target error, unless the render was interrupted,
+// and discarded samples. Empty if there is nothing to report.
+std::vector<std::string> resultWarnings(const RenderResult& result);
 
 // The result as a film file: what a checkpoint or a part contains.
 render::FilmFile filmFileOf(const RenderResult& result);

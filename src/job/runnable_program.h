@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiles and checks a program for one scene and one device, so that a renderer can run it.
 #ifndef QUINTET_JOB_RUNNABLE_PROGRAM_H
 #define QUINTET_JOB_RUNNABLE_PROGRAM_H

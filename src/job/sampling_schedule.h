@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides which batch is rendered next and when rendering stops: number of samples, target error, adaptive sampling.
 #ifndef QUINTET_JOB_SAMPLING_SCHEDULE_H
 #define QUINTET_JOB_SAMPLING_SCHEDULE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a scene and decides how it is seen, in the background, while the device opens and shaders compile.
 #ifndef QUINTET_JOB_SCENE_LOADING_H
 #define QUINTET_JOB_SCENE_LOADING_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the scene of a job comes from: a file, memory, the program's own scene, or the built-in one.
 #ifndef QUINTET_JOB_SCENE_SOURCE_H
 #define QUINTET_JOB_SCENE_SOURCE_H

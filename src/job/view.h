@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How the scene is seen: camera, image size and environment, chosen from the request and the scene.
 #ifndef QUINTET_JOB_VIEW_H
 #define QUINTET_JOB_VIEW_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Re-renders a program whenever one of its files is saved. Device, scene and acceleration structures stay as long as the
 // files of the scene do not change.
 #ifndef QUINTET_JOB_WATCH_H

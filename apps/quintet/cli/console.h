@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a command prints for people on standard error: progress, notes, warnings and diagnostics; and how Ctrl-C reaches the job.
 #ifndef QUINTET_CLI_CONSOLE_H
 #define QUINTET_CLI_CONSOLE_H

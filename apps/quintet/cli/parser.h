@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CLI11 with Quintet's conventions: errors are UsageErrors of one line that name the nearest option, and help goes to
 // standard output. Slow to compile: included only where options are declared.
 #ifndef QUINTET_CLI_PARSER_H

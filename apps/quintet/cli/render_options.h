@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options that `render`, `run` and `merge` share: declared in groups, parsed as text, then converted to requests.
 #ifndef QUINTET_CLI_RENDER_OPTIONS_H
 #define QUINTET_CLI_RENDER_OPTIONS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ctrl-C (SIGINT) and SIGTERM. Normally they end the process at once with status 128 + signal. While a GracefulStop exists,
 // the first one is only recorded, and the second one ends the process. While a ProtectedWrite exists, the process ends
 // after the file is complete.

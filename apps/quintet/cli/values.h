@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values of options that are more than one number, and the command line as text. All parsers throw UsageError that names the
 // option.
 #ifndef QUINTET_CLI_VALUES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet bench`: rays per second, and the rate of minimal shaders for the same rays (job/benchmark.h).
 #include "job/benchmark.h"
 

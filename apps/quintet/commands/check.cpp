@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet check`: compiles programs and checks how their shaders fit together, on a scene. Requires a device only with
 // --instrument.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet compare`: the difference between two images, or the statistical test of two films.
 #include <cmath>
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet explain`: the pages of the diagnostics.
 #include <fmt/format.h>
 

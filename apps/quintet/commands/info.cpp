@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet info`: devices, a scene, an image or a film.
 #include "output/info.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet merge`: parts of a render become the image, or the film, that one render would have written.
 #include "job/merge.h"
 

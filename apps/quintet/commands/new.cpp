@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet new`: creates a program that renders at once, from a template or as a copy of an existing program.
 #include <fmt/format.h>
 

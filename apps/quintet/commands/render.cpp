@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet render`: a request becomes a job, the job a result, and the result files.
 #include "commands/render.h"
 
@@ -76,9 +77,7 @@ uvec2 requestedSize(const job::RenderRequest& request) {
 }  // namespace
 
 void addWarnings(job::RenderResult& result, Console& console) {
-  if (result.targetMissed && !result.interrupted) console.warning(job::targetMissedText(result));
-  if (result.provenance.droppedSamples > 0)
-    console.warning(fmt::format("{} samples were not finite and are omitted", result.provenance.droppedSamples));
+  for (const std::string& text : job::resultWarnings(result)) console.warning(text);
   result.warnings = console.warnings();
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One render from options to files on disk: what `render` does, and `run` without --watch.
 #ifndef QUINTET_COMMANDS_RENDER_H
 #define QUINTET_COMMANDS_RENDER_H

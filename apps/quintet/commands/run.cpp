@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet run`: a user's program or a built-in one, on a scene or on the built-in one; with --watch again after each save.
 #include <algorithm>
 
