@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Shortcuts for frequent commands; 'make help' lists them. CMake does the actual build.
 #
 # Variables: PRESET       release, debug or asan (CMakePresets.json)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Finds all third-party libraries; docs/design/dependencies.md states the reason for each.
 find_package(PkgConfig REQUIRED)
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # quintet_embed(TARGET SYMBOL ROOT FILES…) adds a C++ source to TARGET with the bytes of the files. Its function
 #   std::span<const quintet::EmbeddedFile> quintet::SYMBOL();
 # returns them (base/embedded.h) with paths relative to ROOT, sorted by path. Declare the function where it is used.

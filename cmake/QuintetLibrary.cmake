@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # quintet_library(NAME [DEPENDS layer…] [LINK target…] [LINK_PUBLIC target…] [DEFINES definition…] [EXCLUDE folder…])
 #
 # Creates the static library quintet_NAME from the sources of the current folder and its subfolders, except the folders
@@ -23,4 +24,5 @@ function(quintet_library NAME)
   endforeach()
   target_link_libraries(${target} PUBLIC ${ARG_LINK_PUBLIC} PRIVATE quintet_flags ${ARG_LINK})
   target_compile_definitions(${target} PRIVATE ${ARG_DEFINES})
+  quintet_precompile(${target})
 endfunction()

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # quintet_add_suites(TARGET LABEL TIMEOUT source…)
 #
 # Adds one CTest entry LABEL.SUITE per GoogleTest suite of TARGET: the tests of a suite share the device and its

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Compares the error of two builds of quintet at equal time, on the scenes of tests/bench/scenes.txt.
 #
 #   scripts/equal_time.sh A B [OPTION…]         A and B are quintet binaries; see quintet_equal_time --help
@@ -11,7 +12,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${BUILD:-$root/build/release/bin}
 
 usage() {
-    sed -n '2,7s/^# \?//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '3,8s/^# \?//p' "${BASH_SOURCE[0]}" >&2
     exit 2
 }
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Renders the images of the lesson pages: scripts/lessons.sh QUINTET [OUTPUT_FOLDER] [NAME…]
 # Renders all lessons if no name is given. The frame counts, parameters and size are those of docs/images/lessons.
 set -euo pipefail

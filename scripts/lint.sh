@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Checks the format of C++ (clang-format 14, because other versions format differently) and the scripts (shellcheck).
 #   lint.sh        checks C++ and scripts with the installed tools
 #   lint.sh --cpp  checks only C++

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Installs with apt the packages of scripts/lib/packages.txt that are missing or too old. Prints the steps before it
 # runs them, asks no questions, and returns quickly if nothing is missing.
 #
@@ -25,7 +26,7 @@ main() {
         '') ;;
         --plan) mode=plan ;;
         -h | --help)
-            sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"
+            sed -n '3,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"
             return
             ;;
         *) die "unknown argument '$1'; see --help" ;;

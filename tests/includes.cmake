@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Reads every #include "x/…" below src/ and apps/ and reports those that break a rule of docs/design/structure.md:
 #   - A layer includes only the layers below it (`mayInclude_…`, identical to the link lines in src/*/CMakeLists.txt).
 #   - Includes have no cycles. A header and its source file count as one file.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 01 with the C++ API: shows which pixels the scene covers. Writes first_ray.png.
 #include <cstdio>
 #include <exception>

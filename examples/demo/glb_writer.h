@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a generated scene as one binary glTF 2.0 file: images as embedded PNG, attributes as floats, extensions only
 // if a material requires them. The same calls give the same bytes.
 #ifndef QUINTET_DEMO_GLB_WRITER_H

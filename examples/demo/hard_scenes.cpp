@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scenes of test_scenes.h that are difficult to sample, for comparisons of error at equal time.
 #include <array>
 

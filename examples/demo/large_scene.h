@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene of any number of triangles for measurements of loading: a displaced sphere, split into meshes along its
 // meridians, with normals and texture coordinates. It is written in pieces, so that the file is never in memory as a
 // whole.

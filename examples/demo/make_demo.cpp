@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // quintet_make_demo OUTDIR: writes demo.glb and sky.hdr, the scene and the sky of `make demo`.
 #include <cstdio>
 #include <exception>

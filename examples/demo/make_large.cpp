@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // quintet_make_large OUT.glb: writes a scene of ten million triangles, or another number, for measurements of loading.
 #include <cstdio>
 #include <cstdlib>

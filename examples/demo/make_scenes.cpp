@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // quintet_make_scenes OUTDIR: writes the scenes of the tests and the benchmark.
 #include <cstdio>
 #include <exception>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A triangle mesh under construction, and properties of its shape: normals with creases, tangents, closedness, volume.
 // The front of a triangle is counter-clockwise.
 #ifndef QUINTET_DEMO_MESH_H

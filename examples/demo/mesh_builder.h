@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solids and sheets for the scenes. Every solid is closed, has normals and the front outside, and rests on the plane y
 // = 0 unless stated otherwise. u and v are stated where they are useful.
 #ifndef QUINTET_DEMO_MESH_BUILDER_H

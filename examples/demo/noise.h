@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Deterministic noise for textures, terrain and scattered objects.
 #ifndef QUINTET_DEMO_NOISE_H
 #define QUINTET_DEMO_NOISE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plant parts of mesh_builder.h: ropes along curves, and leaves.
 #include "demo/mesh_builder.h"
 

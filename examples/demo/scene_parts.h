@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of the test scenes: materials, terrain, transforms.
 #ifndef QUINTET_DEMO_SCENE_PARTS_H
 #define QUINTET_DEMO_SCENE_PARTS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A clear sky over the sea as an equirectangular image: the daylight model of Preetham, Shirley & Smits, "A Practical
 // Analytic Model for Daylight", SIGGRAPH 1999. The disc of the sun is larger and softer than the real one, so that its
 // shadows are soft and its light is easy to sample. Thin clouds, hills in the haze and the sea are not physical; they

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene of `make demo` and of the image at the top of README.
 #ifndef QUINTET_DEMO_STILL_LIFE_H
 #define QUINTET_DEMO_STILL_LIFE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small scenes with known contents for image tests, analytic tests and the benchmark. Each has one camera, "main".
 // Surfaces with analytic results are Lambert reflectors without specular reflection (specular factor 0).
 #ifndef QUINTET_DEMO_TEST_SCENES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Procedural materials as images: base color (sRGB), roughness and metalness (g and b as in glTF), tangent-space
 // normals (y up) from a height field. All textures repeat without a seam.
 #ifndef QUINTET_DEMO_TEXTURES_H

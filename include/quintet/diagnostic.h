@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Diagnostics: what the GLSL compiler or the check of the linked pipeline reports about a program.
 #ifndef QUINTET_DIAGNOSTIC_H
 #define QUINTET_DIAGNOSTIC_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exceptions for failures at run time: one type per cause. what() is one line that names the object and the location.
 #ifndef QUINTET_ERROR_H
 #define QUINTET_ERROR_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Quintet's C++ API: a scene, a program of ray tracing shaders and a device give an image.
 //
 //   quintet::Device device;

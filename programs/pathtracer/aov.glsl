@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The path tracer's outputs besides the image: properties of the first surface, and the radiance of a path classified by its
 // first scattering event. Only requested outputs are compiled (QUINTET_OUTPUT_…).
 #ifndef PATHTRACER_AOV_GLSL

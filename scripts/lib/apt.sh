@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash
 # Carries out the plan of plan.sh with apt. Sourced by setup.sh.
 # shellcheck disable=SC2154  # plan.sh sets the variables of the plan

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash
 # The plan of setup.sh: compares the package list with the packages that dpkg has and that apt offers. Does not change
 # the system. Sourced by setup.sh.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Alpha in any-hit shaders: the coverage of the surface, and the stochastic alpha test. The result of the test depends
 // only on the ray's seed and on the surface point. Drivers may call any-hit twice for one candidate; both calls give
 // the same result.

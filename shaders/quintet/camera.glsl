@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Camera rays: pinhole, thin lens (Kolb et al. 1995, thin-lens model) and orthographic.
 #ifndef QUINTET_CAMERA_GLSL
 #define QUINTET_CAMERA_GLSL

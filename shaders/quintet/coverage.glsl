@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Coverage of a surface from its alpha and the alpha mode of its material.
 #ifndef QUINTET_COVERAGE_GLSL
 #define QUINTET_COVERAGE_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Features of the scene. The renderer defines QUINTET_NO_… for each feature that no material and no light of the scene
 // needs (src/render/scene/scene_features.h). The compiler then removes that code. Results do not change.
 #ifndef QUINTET_FEATURES_GLSL

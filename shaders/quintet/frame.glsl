@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Access to the frame and the scene's arrays from any stage. `launch` is the push-constant block of every program and
 // of every compute shader that includes this file.
 #ifndef QUINTET_FRAME_GLSL

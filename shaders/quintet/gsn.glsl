@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The predeclared names of the lecture form (docs/lecture-form.md): gsnSetPixel, gsnGetPositions, frameID, baryCoord, …
 // src/program/gsn/stage.cpp defines QUINTET_GSN_… for a stage and inserts before it: this file, getters of the inputs,
 // and gsn/names_end.glsl. Up to names_end, the names of the library are renamed, so that a program can use them for its

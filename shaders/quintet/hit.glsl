@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For closest-hit and any-hit shaders on triangles: the payload of a hit, and the alpha test.
 #ifndef QUINTET_HIT_GLSL
 #define QUINTET_HIT_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For intersection, any-hit and closest-hit shaders: geometry and primitive of the candidate or the hit.
 #ifndef QUINTET_HIT_GEOMETRY_GLSL
 #define QUINTET_HIT_GEOMETRY_GLSL

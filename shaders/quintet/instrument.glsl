@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runtime checks (quintet check --instrument). program::instrumentStage inserts this file before a stage and a new
 // main() after it, and defines QUINTET_INSTRUMENT_STAGE and QUINTET_INSTRUMENT_KIND (0 ray generation, 1 closest hit, 2
 // any-hit, 3 other). A macro replaces traceRayEXT and checks the arguments first.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The material of glTF evaluated at a surface point: textures and factors, the shading frame, and the emission.
 #ifndef QUINTET_MATERIAL_GLSL
 #define QUINTET_MATERIAL_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes results. If the film averages (the default), an output is the sum over the samples of a batch; the film
 // divides later. A program loads the sum, adds its samples one by one in sample order, and stores the sum. The result
 // then does not depend on the number of samples per launch, bit for bit.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Payloads of hit and miss shaders. They identify the surface but hold no shading data. The ray generation shader runs
 // the path loop and gets the shading data from surface.glsl.
 #ifndef QUINTET_PAYLOAD_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The surface at a hit: position and its error bound, frames, texture coordinates.
 #ifndef QUINTET_SURFACE_GLSL
 #define QUINTET_SURFACE_GLSL

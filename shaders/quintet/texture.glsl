@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Texture coordinates and lookups. Ray tracing stages have no derivatives and the textures have no mip levels: textures
 // are filtered by many samples per pixel.
 #ifndef QUINTET_TEXTURE_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays, payloads, and the two traces that the built-in programs use. A program that includes this file
 // declares the ray types `radiance` and `shadow` in its program.toml; the constants kRay_…, kMiss_… and
 // kRayTypeCount are generated from there.

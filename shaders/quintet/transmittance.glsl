@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transmittance of a surface for a shadow ray, in any-hit shaders: the part that alpha does not cover, plus, for the
 // covered part, the weight of a path that passes undeflected (bsdfStraight: only smooth thin walls).
 #ifndef QUINTET_TRANSMITTANCE_GLSL

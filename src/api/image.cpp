@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images of the public API: access to pixels, and files.
 #include <algorithm>
 #include <cctype>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The classes of quintet.h, each a thin handle of the layers below.
 #include <quintet/quintet.h>
 

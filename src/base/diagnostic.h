@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Helpers for the diagnostics of the public API.
 #ifndef QUINTET_BASE_DIAGNOSTIC_H
 #define QUINTET_BASE_DIAGNOSTIC_H

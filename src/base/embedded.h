@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that are compiled into the binary (shader library, built-in programs); see cmake/QuintetEmbed.cmake.
 #ifndef QUINTET_BASE_EMBEDDED_H
 #define QUINTET_BASE_EMBEDDED_H

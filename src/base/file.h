@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads whole files, replaces files atomically, and finds the folders of the cache and of the executable.
 #ifndef QUINTET_BASE_FILE_H
 #define QUINTET_BASE_FILE_H

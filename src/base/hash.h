@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // 128-bit content hash (XXH3) for the names of cache entries and for the scene hash in image metadata. It is not
 // cryptographic.
 #ifndef QUINTET_BASE_HASH_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Log callbacks. The library never prints; the application passes a sink for messages that are not errors.
 #ifndef QUINTET_BASE_LOG_H
 #define QUINTET_BASE_LOG_H

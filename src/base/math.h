@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The glm configuration of the project, and bounding boxes. Vectors are columns, matrices are column-major, frames are
 // right-handed, and the name of a transform has both spaces (worldFromObject).
 #ifndef QUINTET_BASE_MATH_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Memory of this process: resident size, and control over when freed memory returns to the system.
 #ifndef QUINTET_BASE_MEMORY_H
 #define QUINTET_BASE_MEMORY_H

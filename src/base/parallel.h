@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Data-parallel loops on the cores of the host.
 #ifndef QUINTET_BASE_PARALLEL_H
 #define QUINTET_BASE_PARALLEL_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers in text, without locale and without exceptions.
 #ifndef QUINTET_BASE_PARSE_H
 #define QUINTET_BASE_PARSE_H

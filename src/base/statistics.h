@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Statistical hypothesis tests of means: Student's t, Fisher's F, Welch-Satterthwaite variances, Šidák correction.
 #ifndef QUINTET_BASE_STATISTICS_H
 #define QUINTET_BASE_STATISTICS_H

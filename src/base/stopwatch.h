@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wall-clock time since construction and since the last lap.
 #ifndef QUINTET_BASE_STOPWATCH_H
 #define QUINTET_BASE_STOPWATCH_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hints for names that do not exist: the nearest known name.
 #ifndef QUINTET_BASE_SUGGESTION_H
 #define QUINTET_BASE_SUGGESTION_H

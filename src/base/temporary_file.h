@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A hidden temporary file beside the target file that it replaces once it is complete. Its name is derived from the
 // target's. The writing process holds a lock on it (flock), which ends with the process. A file without a lock was left
 // by a killed process, and the next writer of the same target removes it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text for one line of a terminal or a log: safe text from files and devices, sizes and durations.
 #ifndef QUINTET_BASE_TEXT_H
 #define QUINTET_BASE_TEXT_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Strict, typed access to one table of a TOML document. Every error is a FileError at "line N" that names the key and
 // the table; unknown keys are rejected with the nearest known key.
 #ifndef QUINTET_BASE_TOML_READER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A TOML document as plain values that know their line. Only toml_value.cpp includes the parser (toml++).
 #ifndef QUINTET_BASE_TOML_VALUE_H
 #define QUINTET_BASE_TOML_VALUE_H

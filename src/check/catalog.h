@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The catalog of diagnostics: one row per id, and the page of docs/diagnostics that explains it. The check (check.h)
 // and instrumented runs take severities and texts from here; `quintet explain` prints the page.
 #ifndef QUINTET_CHECK_CATALOG_H

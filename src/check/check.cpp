@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order of the rules, within each stage and across stages.
 #include "check/check.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The check of the linked pipeline: program, scene and device together. Vulkan validates each shader alone; the check
 // connects them and reports mismatches with file and line. Ids and texts: catalog.h, docs/diagnostics.
 #ifndef QUINTET_CHECK_CHECK_H

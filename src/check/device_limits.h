@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The properties of a device that the check depends on. The check never opens a device; the renderer fills this in.
 #ifndef QUINTET_CHECK_DEVICE_LIMITS_H
 #define QUINTET_CHECK_DEVICE_LIMITS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Diagnostics as text, "file:line:column: error: text [id]" with the source line and a caret, and as JSON.
 #ifndef QUINTET_CHECK_DIAGNOSTIC_TEXT_H
 #define QUINTET_CHECK_DIAGNOSTIC_TEXT_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pipeline as a graph: the facts of each stage, its traces and callable calls, and the stages that these can
 // reach over the program's shader binding table. Constant arguments select exactly; for other arguments all values
 // within the table are assumed. The graph is independent of a scene: a hit group is reachable if some geometry can be

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collects the diagnostics of the rules. Severities come from the catalog.
 #ifndef QUINTET_CHECK_REPORT_H
 #define QUINTET_CHECK_REPORT_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The facts of a scene on which the rules depend.
 #ifndef QUINTET_CHECK_SCENE_FACTS_H
 #define QUINTET_CHECK_SCENE_FACTS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Global memory barriers between pipeline stages (synchronization2).
 #ifndef QUINTET_GPU_BARRIER_H
 #define QUINTET_GPU_BARRIER_H

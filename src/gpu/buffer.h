@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A buffer with its memory. A buffer can be destroyed at any time: its memory is freed after the work that is submitted
 // so far has ended.
 #ifndef QUINTET_GPU_BUFFER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A command buffer during recording (see Context::submit): barriers, layout transitions and copies.
 #ifndef QUINTET_GPU_COMMANDS_H
 #define QUINTET_GPU_COMMANDS_H

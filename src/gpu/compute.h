@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A compute pipeline with the layout of the bindless set, for film passes and tests of shader functions.
 #ifndef QUINTET_GPU_COMPUTE_H
 #define QUINTET_GPU_COMPUTE_H

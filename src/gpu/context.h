@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Vulkan instance, device, queue and allocator that all GPU objects use. Create one Context, pass it by reference,
 // and destroy it after all objects that use it.
 #ifndef QUINTET_GPU_CONTEXT_H

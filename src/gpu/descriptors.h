@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The only descriptor set: the TLAS and a bindless array of textures. Shaders access everything else by device address
 // (docs/design/structure.md). Binding numbers are in shaders/quintet/shared/bindings.h.
 #ifndef QUINTET_GPU_DESCRIPTORS_H

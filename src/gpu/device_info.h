@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Properties of a Vulkan device, and the choice of one of the machine's devices.
 #ifndef QUINTET_GPU_DEVICE_INFO_H
 #define QUINTET_GPU_DEVICE_INFO_H

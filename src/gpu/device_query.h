@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Queries the devices of the machine and selects the extensions and features to enable.
 #ifndef QUINTET_GPU_DEVICE_QUERY_H
 #define QUINTET_GPU_DEVICE_QUERY_H

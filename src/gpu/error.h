@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exceptions for failed Vulkan calls. Messages contain the operation, the object and the VkResult.
 #ifndef QUINTET_GPU_ERROR_H
 #define QUINTET_GPU_ERROR_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // 2D images with one view, and samplers. Both can be destroyed at any time, like buffers.
 #ifndef QUINTET_GPU_IMAGE_H
 #define QUINTET_GPU_IMAGE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Vulkan instance: environment variables of drivers, the loader, and the messages of the validation layers.
 #ifndef QUINTET_GPU_INSTANCE_H
 #define QUINTET_GPU_INSTANCE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Device memory: the allocator, its block sizes, and the account of which purposes use the memory.
 #ifndef QUINTET_GPU_MEMORY_H
 #define QUINTET_GPU_MEMORY_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // File format: 8 bytes with magic and version, 16 bytes with the hash of the data, then the data of the driver. Drivers
 // check only their header of 32 bytes; the hash protects them from corrupt files.
 #include "gpu/pipeline_cache.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A VkPipelineCache that is stored in one file per device and driver version. Corrupt files and files of different
 // devices are ignored. Files are written atomically, and a folder that cannot be written only disables the cache.
 #ifndef QUINTET_GPU_PIPELINE_CACHE_H

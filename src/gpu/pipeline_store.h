@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Creates each pipeline of a device once and shares it; recently released pipelines are kept. Caches of drivers do not
 // replace this: lavapipe compiles the group handles of a pipeline, which differ each time, into its code, so its cache
 // never finds the pipeline (docs/design/quirks.md).

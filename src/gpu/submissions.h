@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Submissions to the queue: recycled command buffers, the timeline semaphore that counts submissions, and the objects
 // to destroy after the work that may use them.
 #ifndef QUINTET_GPU_SUBMISSIONS_H

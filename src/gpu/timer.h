@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures GPU time with timestamp queries.
 #ifndef QUINTET_GPU_TIMER_H
 #define QUINTET_GPU_TIMER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fills device buffers and images through a staging ring of fixed size with few submissions.
 #ifndef QUINTET_GPU_UPLOADER_H
 #define QUINTET_GPU_UPLOADER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Implementation of the Vulkan Memory Allocator, compiled without warnings.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"

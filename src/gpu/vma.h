@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Vulkan Memory Allocator, for the .cpp files of src/gpu only. It loads its functions with vkGetInstanceProcAddr
 // and vkGetDeviceProcAddr, so nothing links to the Vulkan loader.
 #ifndef QUINTET_GPU_VMA_H

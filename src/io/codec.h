@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Image files. Reads PNG, JPEG, WebP, Radiance HDR and OpenEXR, detected by content and not by name; writes PNG,
 // OpenEXR and Radiance HDR. Decoding returns the complete image or fails: truncated data, a wrong checksum, or a size
 // above the limits is a FileError such as "name: byte 312: PNG data ends early".

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sRGB transfer functions (IEC 61966-2-1:1999, equations 5 to 8 with the rounded constants of amendment 1). The
 // primaries are always those of Rec. 709.
 #ifndef QUINTET_IO_COLOR_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Differences of two images: error metrics, FLIP and a color map for error images.
 #ifndef QUINTET_IO_COMPARE_H
 #define QUINTET_IO_COMPARE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // LDR-FLIP from the equations of Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", Proc. ACM
 // Comput. Graph. Interact. Tech. 3(2), HPG 2020, https://doi.org/10.1145/3406183. Section and table numbers refer to
 // it.

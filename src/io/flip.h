@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Private to src/io: LDR-FLIP, the perceptual error metric behind compare.h.
 #ifndef QUINTET_IO_FLIP_H
 #define QUINTET_IO_FLIP_H

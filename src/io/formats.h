@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Private to src/io: the input of the decoders, and one table of functions for each format.
 #ifndef QUINTET_IO_FORMATS_H
 #define QUINTET_IO_FORMATS_H

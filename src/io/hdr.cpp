@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Radiance HDR (RGBE), from the descriptions in Radiance's "File Formats" (Ward 2006) and "Real Pixels" (Graphics Gems
 // II, 1991). This is an own implementation because stb_image supports one orientation and one of the two run-length
 // encodings, ignores EXPOSURE, and returns zeros for truncated data.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An image in host memory and conversions between sample types, encodings and channel counts. Rows run from top to
 // bottom, pixels are tightly packed, samples are in host byte order. Channels are gray, gray + alpha, RGB or RGBA with
 // Rec. 709 primaries. Alpha is coverage in [0,1] and always linear.

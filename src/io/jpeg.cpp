@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JPEG (baseline and progressive, 8 bit) through TurboJPEG.
 #include <turbojpeg.h>
 

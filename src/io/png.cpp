@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PNG through libspng, with an own read callback so that errors contain the offset.
 #include <fmt/format.h>
 #include <spng.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two images and their difference side by side, for visual comparison.
 #ifndef QUINTET_IO_SIDE_BY_SIDE_H
 #define QUINTET_IO_SIDE_BY_SIDE_H

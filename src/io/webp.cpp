@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // WebP (lossy, lossless, alpha) through libwebp. libwebp accepts some missing bytes at the end, so the sizes in the
 // RIFF container are checked here.
 #include <webp/decode.h>

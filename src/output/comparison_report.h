@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `quintet compare` prints: measures of two images, or the test of two films.
 #ifndef QUINTET_OUTPUT_COMPARISON_REPORT_H
 #define QUINTET_OUTPUT_COMPARISON_REPORT_H

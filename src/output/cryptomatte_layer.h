@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the ids that a film counts to the ranks of Cryptomatte (specification 1.1.0; io/exr has hashes and metadata).
 #ifndef QUINTET_OUTPUT_CRYPTOMATTE_LAYER_H
 #define QUINTET_OUTPUT_CRYPTOMATTE_LAYER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names of the files that a render writes: one for each frame and each output.
 #ifndef QUINTET_OUTPUT_FILE_NAMES_H
 #define QUINTET_OUTPUT_FILE_NAMES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `quintet info` prints about devices and files, as text for people or as one JSON object on one line.
 #ifndef QUINTET_OUTPUT_INFO_H
 #define QUINTET_OUTPUT_INFO_H

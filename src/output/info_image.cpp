@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet info` for images and films: OpenEXR files with parts, layers and attributes; other images; films.
 #include <algorithm>
 #include <optional>

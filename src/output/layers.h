@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Layers besides the image (AOVs): which a program offers, which were selected, and their channels in an OpenEXR file.
 // docs/aov.md lists those of the path tracer.
 #ifndef QUINTET_OUTPUT_LAYERS_H

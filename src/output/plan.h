@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which files a render writes, and what they show. The plan is made before the render, so that a wrong name or option fails
 // at once.
 #ifndef QUINTET_OUTPUT_PLAN_H

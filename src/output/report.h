@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A finished render for machines and for people: --json and the line at the end.
 #ifndef QUINTET_OUTPUT_REPORT_H
 #define QUINTET_OUTPUT_REPORT_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the files of a plan from a result: PNG, OpenEXR with layers, Radiance HDR, or the film itself.
 #ifndef QUINTET_OUTPUT_WRITE_H
 #define QUINTET_OUTPUT_WRITE_H

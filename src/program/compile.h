@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiles every stage of a program to SPIR-V.
 #ifndef QUINTET_PROGRAM_COMPILE_H
 #define QUINTET_PROGRAM_COMPILE_H

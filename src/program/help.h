@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a program offers to its user: parameters, outputs and ray types, as help text and as JSON; and the list of
 // built-in programs.
 #ifndef QUINTET_PROGRAM_HELP_H

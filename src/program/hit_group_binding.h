@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a program treats the geometry of a scene: which hit group serves it, and for which instances any-hit shaders run.
 #ifndef QUINTET_PROGRAM_HIT_GROUP_BINDING_H
 #define QUINTET_PROGRAM_HIT_GROUP_BINDING_H

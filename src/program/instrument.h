@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Instruments shaders with checks at run time: wraps quintet/instrument.glsl around the source of a stage. The renderer
 // reads what the shaders wrote (render/renderer/instrument.h).
 #ifndef QUINTET_PROGRAM_INSTRUMENT_H

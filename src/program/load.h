@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds and reads programs: a folder with program.toml, a file of the lecture form, or a built-in program.
 #ifndef QUINTET_PROGRAM_LOAD_H
 #define QUINTET_PROGRAM_LOAD_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Creates programs: from a template, or by copying an existing program under a new name.
 #ifndef QUINTET_PROGRAM_NEW_PROGRAM_H
 #define QUINTET_PROGRAM_NEW_PROGRAM_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program that has been compiled and checked: what a renderer runs.
 #ifndef QUINTET_PROGRAM_RUNNABLE_PROGRAM_H
 #define QUINTET_PROGRAM_RUNNABLE_PROGRAM_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What linking and checking need to know about a scene: which geometry runs which shaders. It holds no vertices.
 // check/scene_facts.h derives it from a scene::Scene; tests write it by hand.
 #ifndef QUINTET_PROGRAM_SCENE_FACTS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Acceleration structure objects, and Vulkan's description of one build; for both levels.
 #ifndef QUINTET_RT_ACCELERATION_STRUCTURE_H
 #define QUINTET_RT_ACCELERATION_STRUCTURE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bottom-level acceleration structure; blas_builder.h builds them.
 #ifndef QUINTET_RT_BLAS_H
 #define QUINTET_RT_BLAS_H

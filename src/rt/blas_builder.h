@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds bottom-level acceleration structures in batches with a scratch budget, compacts and refits them.
 #ifndef QUINTET_RT_BLAS_BUILDER_H
 #define QUINTET_RT_BLAS_BUILDER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Host side of a BLAS build: the input, and which primitives are built in which order. Primitives are sorted spatially
 // for drivers that keep the input order (docs/design/quirks.md).
 #ifndef QUINTET_RT_BLAS_INPUT_H

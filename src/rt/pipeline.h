@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ray tracing pipelines, their shader binding tables on the device, their statistics, and traces.
 #ifndef QUINTET_RT_PIPELINE_H
 #define QUINTET_RT_PIPELINE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The layout of the shader binding table as a pure function. Vulkan 1.3, chapter "Shader Binding Table": record = base
 // + stride · index, with handles of `handleSize` bytes at multiples of `handleAlignment` and regions at multiples of
 // `baseAlignment`.

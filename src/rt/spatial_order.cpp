@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recursive median split. Each node uses the axis whose halves have the smallest surface areas (the surface area
 // heuristic with equal counts) for a sample of its boxes. Axes with little expected gain are not evaluated, which
 // halves the time (0.84 → 0.46 µs per box) and makes the tree less than 2 % worse than evaluating all axes with 256

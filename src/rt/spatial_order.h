@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A spatially coherent order of primitives or instances for drivers that build a tree over the input order by halving
 // the index range (Quirks::keepsPrimitiveOrder).
 #ifndef QUINTET_RT_SPATIAL_ORDER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Top-level acceleration structures and their instances.
 #ifndef QUINTET_RT_TLAS_H
 #define QUINTET_RT_TLAS_H

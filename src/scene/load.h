@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loads a scene file of any supported format: glTF (.gltf, .glb) or a scene file in TOML.
 #ifndef QUINTET_SCENE_LOAD_H
 #define QUINTET_SCENE_LOAD_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums up the memory that a scene file requests, before it is allocated. A few bytes of JSON can refer to the same
 // large data a million times; without the budget the system would kill the process instead of reporting an error.
 #ifndef QUINTET_SCENE_MEMORY_BUDGET_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene in the process of loading. Image data is the last part to be decoded; everything else is available before, so
 // that a caller can compile shaders for the scene while the images are decoded:
 //

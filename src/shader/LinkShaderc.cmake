@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Finds a way to link shaderc. In the packages of Debian and Ubuntu (2023.2), neither libshaderc.so nor
 # libshaderc_combined.a contains glslang and SPIRV-Tools, so neither links alone. On other systems the combined archive is
 # complete. Static linking is preferred: the binary then runs where shaderc is not installed.

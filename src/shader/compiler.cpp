@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A compilation validates the source, finds the files that it can include, looks up the key in the cache, and runs
 // glslang and spirv-opt only if that fails.
 #include "shader/compiler.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turns the messages of shaderc into diagnostics.
 #ifndef QUINTET_SHADER_COMPILER_MESSAGES_H
 #define QUINTET_SHADER_COMPILER_MESSAGES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "shader/file_watcher.h"
 
 #include <poll.h>

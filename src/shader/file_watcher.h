@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reports changes of files on disk, with inotify. It watches folders rather than files: editors write a new file and
 // rename it over the old one, and a missing file can appear later.
 #ifndef QUINTET_SHADER_FILE_WATCHER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Resolves the #include directives of one compilation and keeps the texts of the files that it found.
 //
 // #include <x>  searches the virtual files, the override folder, the embedded library, the include folders.

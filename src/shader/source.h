@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The input of a compilation: the GLSL source of one stage, and the options of the compiler.
 #ifndef QUINTET_SHADER_SOURCE_H
 #define QUINTET_SHADER_SOURCE_H

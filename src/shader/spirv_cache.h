@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Disk cache of SPIR-V with one file per key: "<folder>/<32 hex digits>.qspv". Entries are verified when they are
 // read; a corrupt entry counts as missing. Failures to write are ignored.
 #ifndef QUINTET_SHADER_SPIRV_CACHE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shader stages with their names and file extensions.
 #ifndef QUINTET_SHADER_STAGE_H
 #define QUINTET_SHADER_STAGE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stages in which each built-in variable and function of GLSL_EXT_ray_tracing exists, and explanations of the
 // compiler's messages about the others: Q706 for built-ins, Q204 for hit attributes.
 #ifndef QUINTET_SHADER_STAGE_BUILTINS_H

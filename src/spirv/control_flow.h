@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Control flow of one function: dominators, the conditions that decide a phi, and the paths that start at an
 // instruction such as a trace.
 #ifndef QUINTET_SPIRV_CONTROL_FLOW_H

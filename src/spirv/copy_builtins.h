@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Workaround for drivers on which a nested trace overwrites the built-ins of the outer hit (Mesa's lavapipe 25.0.7;
 // docs/design/quirks.md): copies them at the start of main and uses the copies after traces.
 #ifndef QUINTET_SPIRV_COPY_BUILTINS_H

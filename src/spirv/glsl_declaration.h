@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the GLSL declaration of a variable that stages share. SPIR-V has neither its line nor, for payloads and
 // callable data, its location.
 #ifndef QUINTET_SPIRV_GLSL_DECLARATION_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A SPIR-V module for analysis: instructions with their source lines, functions with their basic blocks, types,
 // constants, names, decorations and variables. The reader is our own, on top of spirv-headers. Any input is safe: a
 // malformed module is rejected with a reason, and every accessor accepts any id.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines and tokens of GLSL source text, as diagnostics need them.
 #ifndef QUINTET_SPIRV_SOURCE_TEXT_H
 #define QUINTET_SPIRV_SOURCE_TEXT_H

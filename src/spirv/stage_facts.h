@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a ray tracing stage shares with other stages: its traces, callable calls and intersection reports, and its
 // accesses to payloads, hit attributes and callable data by member. check/pipeline_graph.h connects the stages.
 //

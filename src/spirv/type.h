@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Types of a SPIR-V module: sizes, GLSL names, and a member-by-member comparison across modules.
 #ifndef QUINTET_SPIRV_TYPE_H
 #define QUINTET_SPIRV_TYPE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Data flow of a module: what a value depends on, and what depends on it, through SSA values and local variables. The
 // order of stores is ignored: a load of a local variable depends on every store to it.
 #ifndef QUINTET_SPIRV_VALUE_FLOW_H

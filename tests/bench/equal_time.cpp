@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // quintet_equal_time A B: compares the error of two builds of quintet that render for the same time.
 //
 // A long reference of each scene is rendered once and kept. Then both builds alternately render several seeds with as

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error of a noisy image relative to a reference.
 #ifndef QUINTET_TESTS_BENCH_EQUAL_TIME_ERROR_H
 #define QUINTET_TESTS_BENCH_EQUAL_TIME_ERROR_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a quintet binary and measures its cost.
 #ifndef QUINTET_TESTS_BENCH_EQUAL_TIME_RENDER_H
 #define QUINTET_TESTS_BENCH_EQUAL_TIME_RENDER_H

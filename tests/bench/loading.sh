@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Measures the time from file to first pixel, and the memory.
 #
 #   tests/bench/loading.sh BIN [FOLDER] [TRIANGLES]

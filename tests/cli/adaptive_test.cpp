@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // --adaptive with interruptions: a resumed render follows the same plan and gives the same image.
 #include <chrono>
 #include <csignal>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // --aov: layers in one OpenEXR file, tested with a program that writes known values.
 #include <gmock/gmock.h>
 

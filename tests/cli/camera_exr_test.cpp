@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera attributes of OpenEXR files, as oiiotool reads them: they project the position of each pixel to that pixel.
 #include <gmock/gmock.h>
 

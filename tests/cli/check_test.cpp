@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `check` and `explain`, and the diagnostics of `run` and `render` for programs that do not compile.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checkpoints: a render that was killed or interrupted resumes without a change of any pixel.
 #include <sys/wait.h>
 #include <unistd.h>

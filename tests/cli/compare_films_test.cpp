@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `compare --z-test`: accepts two renders of the same scene, rejects different images, and reports films that cannot be tested.
 #include <sys/wait.h>
 

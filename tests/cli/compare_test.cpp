@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `compare`: measures, images and exit status.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The error that `render --until-error` states covers the real error of path traced images, measured against a reference
 // with many samples.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cryptomatte files, read as the specification describes (Friedman and Jones, Psyop: "Cryptomatte Specification"). This file
 // implements hash, conversion and names itself and uses nothing of src/io/exr/cryptomatte. The matte of an object must equal
 // an image in which this object is white and everything else is black.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // --until-error and --adaptive: numbers of samples, and the stated error in image, JSON, summary and progress bar.
 #include <algorithm>
 #include <csignal>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Input files for the tests of the command line, and the form that every error message has.
 #ifndef QUINTET_TESTS_CLI_FIXTURES_H
 #define QUINTET_TESTS_CLI_FIXTURES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `run` with programs that render frame by frame: number of frames, written frames, file names.
 #include <csignal>
 

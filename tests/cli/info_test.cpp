@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `info` for devices, scenes and images, as text and as JSON.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Missing and broken scenes and images: status 1 and one line with the file and the location in it.
 #include "fixtures.h"
 #include "io/codec.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ctrl-C: the first one writes the image of the finished batches, the second one ends the process without an image.
 #include <algorithm>
 #include <csignal>

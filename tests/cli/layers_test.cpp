@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenEXR files: `info` lists their layers, `compare` selects one, and `render` writes types, compressions and tiles.
 #include <gmock/gmock.h>
 

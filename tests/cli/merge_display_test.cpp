@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films that `quintet merge` writes keep the display settings, as the film of a render does.
 #include <optional>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of a render: merged in any order they give the bytes of one render; films that do not belong together are rejected.
 #include <algorithm>
 #include <regex>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `new`: new programs render and pass the check, and existing files are not overwritten.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that cannot be written and devices that do not exist: status 1, one line, and no incomplete files.
 #include "fixtures.h"
 #include "io/codec.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the quintet binary as a separate process and returns its output.
 #ifndef QUINTET_TESTS_CLI_PROCESS_H
 #define QUINTET_TESTS_CLI_PROCESS_H

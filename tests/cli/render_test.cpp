@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Output of `render`: pixels, file formats, metadata, JSON and notes.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `run`: programs by name and by folder, their help, outputs, and parameters from a file.
 #include <gmock/gmock.h>
 

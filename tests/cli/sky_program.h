@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small program in a folder: a sky without surfaces, whose color is set by one line of sky.rmiss.
 #ifndef QUINTET_TESTS_CLI_SKY_PROGRAM_H
 #define QUINTET_TESTS_CLI_SKY_PROGRAM_H

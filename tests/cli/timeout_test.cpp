@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A shader with an infinite loop: one line of error within the time limit.
 #include <chrono>
 

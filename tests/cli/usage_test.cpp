@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wrong command lines: status 2 and one line that names the option, the value and the nearest name.
 #include "fixtures.h"
 

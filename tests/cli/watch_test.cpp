@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `run --watch` as a process: saved files start a new image, errors print diagnostics, fixed files render again.
 #include <chrono>
 #include <csignal>

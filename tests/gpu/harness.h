@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Harness of the device tests: one Context per process, and functions of the shader library that run in compute shaders
 // and map vectors to vectors.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The path tracer against brute force: both must converge to the same image. Welch's t-test per block of
 // pixels and channel, Šidák-corrected at 0.01 (Subr & Arvo 2007, "Statistical Hypothesis Testing for Assessing
 // Monte Carlo Estimators"; per pixel in Mitsuba 3's test_renders.py). The test uses blocks and long batches instead of

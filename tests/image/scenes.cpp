@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lights are large and scenes are open, so that `naive` finds light often enough. There are no point, spot or directional
 // lights, because `naive` cannot find them.
 #include "scenes.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scenes in which the path tracer must agree with brute force: one entry each in the table of scenes.cpp.
 #ifndef QUINTET_TESTS_IMAGE_SCENES_H
 #define QUINTET_TESTS_IMAGE_SCENES_H

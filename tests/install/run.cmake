@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs Quintet into an empty folder, then builds and runs examples/cpp and consumer/ with the installed package:
 #   cmake -DBUILD=… -DSOURCE=… -P run.cmake
 set(work ${BUILD}/tests/install-test)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lessons 12, 13 and 14: box, triangle and combined solids with intersection shaders, compared with the host.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 02: three ways to compute a camera ray give the same ray.
 #include <gtest/gtest.h>
 

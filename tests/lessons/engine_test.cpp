@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lessons 17 and 20: the folder programs, compared with the host.
 #include <gtest/gtest.h>
 

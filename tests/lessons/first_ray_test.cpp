@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 01: every pixel shows whether its ray hits a triangle.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lessons 09 and 19: changes from frame to frame.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a lesson at a small size as `quintet run` does and returns what its ray generation shader wrote; and geometry on the
 // host in double precision as the reference.
 #ifndef QUINTET_TESTS_LESSON_H

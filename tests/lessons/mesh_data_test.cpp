@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 03: positions, normals, texture coordinates and barycentrics of the hit triangle.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lessons 21 and 22: path tracers, compared with path tracers on the host that use other random numbers and, for lesson 22,
 // no next-event estimation. The comparison uses blocks of pixels and their standard errors.
 #include <gtest/gtest.h>

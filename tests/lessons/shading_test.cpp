@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lessons 04 to 07: light, shadow and reflection, compared with the host.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Solids on the host for the lessons with intersection shaders: the interval of a ray, and normals.
 #ifndef QUINTET_TESTS_LESSON_SOLIDS_H
 #define QUINTET_TESTS_LESSON_SOLIDS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lessons 08, 10 and 11: spheres with intersection shaders, compared with the closed form.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lessons 15, 16 and 18: any-hit, callable shaders, instances.
 #include <gtest/gtest.h>
 

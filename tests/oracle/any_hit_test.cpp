@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any-hit shaders: effects of ignoring and terminating, and the candidates that they receive.
 #include "checks.h"
 #include "probe.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hit attributes must belong to the committed hit, not to later candidates. Where they do not, the two workarounds of
 // the shader library must work: recompute the attributes in closest-hit from the ray and t (shaders/quintet/hit.glsl),
 // or write them only for t in range and use no any-hit shader.

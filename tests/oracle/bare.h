@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vulkan without the workarounds of the library, for tests of the driver itself.
 #ifndef QUINTET_TESTS_ORACLE_BARE_H
 #define QUINTET_TESTS_ORACLE_BARE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The built-in variables of every stage. Closest-hit and miss shaders read them before a nested trace, or only after
 // it.
 #include <algorithm>

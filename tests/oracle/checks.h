@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the values of a device with those of the specification and evaluates the differences with known_quirks.h.
 // Every test creates one Checks object and ends with a call of done().
 #ifndef QUINTET_TESTS_ORACLE_CHECKS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs one test of this executable in a separate process, for tests that can crash or need different environment
 // variables.
 #ifndef QUINTET_TESTS_ORACLE_CHILD_H

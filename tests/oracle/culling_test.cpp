@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Candidates of a ray for every combination of facing, ray flags, instance flags and geometry flags. The expected
 // values follow Vulkan 1.3, "Ray Culling" and "Ray Opacity".
 #include "checks.h"

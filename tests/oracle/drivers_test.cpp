@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Acceleration structures and pipeline caches of drivers without the workarounds of rt::BlasBuilder (suite BareDriver)
 // and with them (suite Workarounds).
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hit groups and pipelines without the workarounds of rt::Pipeline (suite BareDriver) and with them (suite
 // Workarounds).
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integer arithmetic of ray tracing shaders, with the environment variables that the library sets for drivers and, in a
 // separate process, without them.
 #include "checks.h"

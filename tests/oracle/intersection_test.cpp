@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Intersection shaders: the result of reportIntersectionEXT, gl_RayTmaxEXT and the attributes before and after it.
 #include "checks.h"
 #include "probe.h"

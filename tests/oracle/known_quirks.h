@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Known driver defects (docs/design/quirks.md). A test of the oracle that detects a defect passes its entry to
 // Checks::done(): the test passes while the driver is wrong as documented, and fails once this or a newer version is
 // correct, so that the workaround can be removed. On every other driver the same values must be correct.

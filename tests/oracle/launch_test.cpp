@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Launches whose size is in device memory: vkCmdTraceRaysIndirectKHR.
 #include <iterator>
 

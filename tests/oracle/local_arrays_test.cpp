@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Dynamically indexed local arrays of an intersection shader across reports, while the any-hit shader uses such an
 // array too.
 #include "checks.h"

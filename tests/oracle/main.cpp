@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // quintet_oracle_tests: supports the options of GoogleTest and --table (table.h).
 #include <cstdio>
 #include <string_view>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Payloads and callable data: sizes from 4 to 256 bytes, several locations, nested traces and calls.
 #include <iterator>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program that many tests share: it maps rays with all arguments of traceRayEXT to hits.
 #ifndef QUINTET_TESTS_ORACLE_PROBE_H
 #define QUINTET_TESTS_ORACLE_PROBE_H

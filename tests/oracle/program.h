@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The small programs of the oracle: GLSL stages, one launch, and an array of results.
 //
 // The header of every stage enables GL_EXT_ray_tracing and scalar layout, declares `tlas`, and contains the `common`

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arguments of traceRayEXT: origin, direction and its length, tmin, tmax and cull mask; and empty scenes.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shader binding table: the record of a hit, a miss or a callable, and its data. Vulkan 1.3, "Hit Shader Binding
 // Table": record = instance offset (24 bits) + geometry index · stride (4 bits) + offset (4 bits). The miss index has
 // 16 bits. Higher bits of the arguments are not used.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Geometry and instances of an oracle test. Primitives and instances keep their order on every device, so
 // gl_PrimitiveID and gl_InstanceID are the indices in the scene.
 #ifndef QUINTET_TESTS_ORACLE_SCENE_H

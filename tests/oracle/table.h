@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `quintet_oracle_tests --table`: the results as a Markdown table, for docs/measurements.md.
 #ifndef QUINTET_TESTS_ORACLE_TABLE_H
 #define QUINTET_TESTS_ORACLE_TABLE_H

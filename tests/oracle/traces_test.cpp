@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recursion up to the limit of the device, several scenes in one launch, and gl_RayTmaxEXT from candidate to candidate.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangles: barycentrics, watertight fans, shared edges, triangles without area.
 #include <random>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # shellcheck shell=bash
 # A simulated system for tests of scripts/setup.sh: os-release, installed packages, packages and sources of apt, the
 # user. Sourced by run.sh. Each test calls 'newSystem', describes the system, and runs setup.sh with 'setup ARGUMENTS'.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Tests of scripts/setup.sh on simulated systems (fakes.sh): without network and root, and nothing is installed.
 # Exit status 77 means skipped, because dpkg is not installed, which compares versions.
 set -euo pipefail

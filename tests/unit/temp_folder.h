@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A temporary folder that is removed at the end of a test.
 #ifndef QUINTET_TESTS_TEMP_FOLDER_H
 #define QUINTET_TESTS_TEMP_FOLDER_H

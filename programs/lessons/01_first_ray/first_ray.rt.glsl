@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 01: the first ray. One ray per pixel shows red where it hits a surface and black where it misses.
 // scene: first_ray.scene.toml
 /**** COMMON START ****/

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 02: a camera anywhere. Three ways to compute the same camera ray: a frame of vectors (look-at), the inverse of
 // the model-view-projection matrix, and a point on the far plane. The color is the distance of a hit, or the direction
 // of a ray that misses.

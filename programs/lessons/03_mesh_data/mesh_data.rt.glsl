@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 03: mesh data at a hit. The built-ins give the instance and the triangle, functions fetch its three vertices,
 // and barycentric coordinates interpolate between them.
 // scene: mesh_data.scene.toml

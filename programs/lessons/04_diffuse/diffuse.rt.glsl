@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 04: diffuse light. One lamp lights each surface by Lambert's cosine law, plus an ambient term, without
 // shadows.
 // scene: diffuse.scene.toml

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 05: shadow. At each surface a second ray tests whether the lamp is visible. It stops at the first hit and runs
 // no closest-hit shader; the miss shader reports that the lamp is visible. The lamp circles once in 45 frames.
 // scene: shadow.scene.toml

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 06: reflection as a loop. The closest-hit shader returns the direct light of the surface and the reflected
 // ray. The ray generation shader traces five rays at most and stops when the remaining weight is negligible.
 // scene: mirror_loop.scene.toml

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // gsnShaderOptions: precompiler="GL_EXT_ray_tracing, recursion: 6"
 // Lesson 07: reflection by recursion. The image of lesson 06, but the closest-hit shader traces the reflected ray
 // itself and adds its color. The payload carries the level down and the color up. Nested shaders write the same

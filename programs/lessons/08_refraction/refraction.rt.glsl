@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 08: refraction. Rays change direction where they enter and leave a sphere (Snell's law) and are reflected
 // inside where they cannot leave (total internal reflection). The two media are `inside` and `outside` the sphere.
 // scene: refraction.scene.toml

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 09: smooth edges, frame by frame. Each frame takes one sample in the pixel at a point of the Halton sequence
 // in bases 2 and 3. The image is the average of all frames so far.
 // scene: progressive.scene.toml

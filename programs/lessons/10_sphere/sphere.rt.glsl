@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 10: a sphere with an intersection shader, in world space and in object space. The acceleration structure holds
 // only boxes; the intersection shader computes and reports the hit inside a box.
 // scene: sphere.scene.toml

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 11: 10,000 spheres. One instance shows one BLAS of 10,000 boxes; gl_PrimitiveID is the box that the
 // intersection shader tests.
 // scene: many_spheres.scene.toml

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 12: a box from three slabs. Each pair of parallel faces bounds a slab; the ray is inside the box where it is
 // inside all three slabs (Kay and Kajiya 1986).
 // scene: box.scene.toml

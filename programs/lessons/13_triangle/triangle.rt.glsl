@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 13: a triangle with an intersection shader, by the method of Möller and Trumbore (1997). Half of the scene's
 // triangles use the built-in test, half are boxes with a triangle inside. The colors are the barycentric coordinates of
 // both.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 14: constructive solid geometry. One intersection shader computes union, intersection and difference of a
 // sphere and a box. Each solid has an interval of t in which the ray is inside; the operation combines the intervals.
 // scene: csg.scene.toml

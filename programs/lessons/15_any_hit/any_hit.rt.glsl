@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 15: the any-hit shader. It runs for every candidate hit and can ignore it, so camera rays and shadow rays pass
 // through the holes in the plates. Mode 1 ignores all candidates and counts them; mode 2 ends the search at the first
 // candidate found, which is not necessarily the nearest.

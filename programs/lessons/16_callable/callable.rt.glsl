@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 16: callable shaders. Each material is a callable shader, selected by an index at run time: the closest-hit
 // shader passes position and normal to material number gl_InstanceID.
 // scene: callable.scene.toml

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A diffuse surface in the sun. Color and stripes come from the record of the hit group.
 #version 460
 #extension GL_EXT_ray_tracing : require

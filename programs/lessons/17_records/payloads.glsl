@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One payload per ray type, each at its own location.
 struct Radiance {
   vec3 color;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 18: instances. Many instances of one mesh, each with a transform, a mask, flags and a custom index. The custom
 // index selects the color; a ray sees only instances whose mask shares a bit with its cull mask.
 // scene: instances.scene.toml

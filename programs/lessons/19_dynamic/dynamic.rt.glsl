@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 19: a scene that moves. The BLASes stay the same; the TLAS is rebuilt for each frame from the new transforms.
 // The shaders need no changes: they read the matrices of the current frame.
 // scene: dynamic.scene.toml

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The payload of primary rays. Shadow rays have their own payload at location 1.
 struct Hit {
   vec3 color;      // base color, or the background

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mesh and material buffers are found from the custom index of the instance; textures are selected by an index at run
 // time.
 #version 460

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lesson 21: the final scene of "Ray Tracing in One Weekend" (Shirley 2016): random diffuse, metal and glass spheres
 // with depth of field, in four shaders. Each frame takes 8 samples per pixel with at most 16 bounces and is averaged
 // with the frames before.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Directional albedos from the tables at Frame::albedoTables (layout: shared/albedo.h). They compensate for the energy that
 // single scattering loses, and they couple layers.
 #ifndef QUINTET_BSDF_ALBEDO_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Terms that the lobes of the base share: the specular, diffuse and transmission lobes below the clearcoat.
 // makeBsdf (lobes.glsl) computes them once for each wo.
 #ifndef QUINTET_BSDF_BASE_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The BSDF of glTF 2.0's metallic-roughness material with KHR_materials_transmission, _volume, _ior, _specular
 // and _clearcoat: a sum of lobes. lobes.glsl lists them; this file evaluates and samples the sum.
 //

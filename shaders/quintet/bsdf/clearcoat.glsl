@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clearcoat lobe: a clear layer over all other lobes (KHR_materials_clearcoat). GGX with f0 = 0.04 around its own normal.
 // The lobes below are scaled by 1 - weight E(wo), where E is the coat's albedo. The extension's formula uses Fresnel at
 // the normal instead of E; with E no energy is lost or gained for rough coats. The factor depends on wo alone, so it is

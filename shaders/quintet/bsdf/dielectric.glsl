@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rough interface of a solid dielectric: reflection, refraction and total reflection, from both sides.
 // Walter, Marschner, Li, Torrance 2007, "Microfacet Models for Refraction through Rough Surfaces": eq. 20 and 21
 // with GGX. Masking is height-correlated for reflection and separable for refraction. The sum is divided by the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Diffuse lobe: Lambert's reflection under a specular layer. The layer's albedo E couples the two, multiple scattering
 // included. What the layer does not reflect reaches the diffuse base, so a white base loses nothing:
 // f = color (1 - E(wo)) (1 - E(wi)) / (pi (1 - E_average)). This is reciprocal.

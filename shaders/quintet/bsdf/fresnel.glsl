@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fresnel reflectance: exact for dielectrics, Schlick's approximation for all others.
 #ifndef QUINTET_BSDF_FRESNEL_GLSL
 #define QUINTET_BSDF_FRESNEL_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The isotropic GGX (Trowbridge-Reitz) microfacet distribution with Smith's shadowing, and sampling of its visible normals.
 // Half vectors may have any length, and no tangent is computed from a cosine. So the functions are precise down to
 // alpha = 1e-4.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The list of lobes: their indices, the material's parameters, the lobes for one wo, and the functions that dispatch to
 // a lobe. Each function has one line per lobe. bsdf.glsl works on this list and names no lobe.
 // To add a lobe: docs/design/path-tracer.md, "How to add a lobe".

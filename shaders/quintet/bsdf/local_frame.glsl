@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Orthonormal basis around a normal, to transform directions to a local frame (z is the normal) and back.
 #ifndef QUINTET_BSDF_LOCAL_FRAME_GLSL
 #define QUINTET_BSDF_LOCAL_FRAME_GLSL

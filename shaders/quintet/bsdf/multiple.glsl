@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Multiple scattering at a rough surface. For f0 = f90 = 1 single scattering loses the fraction L(wo) of the light
 // (albedoSchlick). This lobe returns it: f = F L(wo) L(wi) / (pi M), where M is the average of L. It is reciprocal and
 // its albedo is F L(wo). Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks".

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Specular lobe: reflection by the base. GGX with Schlick's Fresnel, single and multiple scattering. Metals and
 // dielectrics share the lobe, because both are linear in f0 and f90.
 #ifndef QUINTET_BSDF_SPECULAR_GLSL

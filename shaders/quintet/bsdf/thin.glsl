@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transmission through a thin wall, without refraction. It is the base's GGX reflection mirrored at the surface, times
 // 1 - F per micronormal (KHR_materials_transmission, "Implementation notes": one interface). Multiple scattering that
 // is not reflected is transmitted, so reflection and transmission of a white wall sum to 1. Both sides are the same

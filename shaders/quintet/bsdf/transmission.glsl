@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transmission lobe. A solid refracts and reflects (dielectric.glsl); a thin wall transmits without refraction (thin.glsl).
 // A smooth thin wall is a pane: light passes it straight on.
 #ifndef QUINTET_BSDF_TRANSMISSION_GLSL

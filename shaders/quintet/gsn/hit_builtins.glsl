@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The built-ins of a hit, copied at the start of the shader, because a nested trace overwrites them on some drivers
 // (docs/design/quirks.md). Indices of primitives and instances are those of the scene, which can differ from the order
 // in the acceleration structure.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images of the lecture form: a uniform sampler2D is an index into the textures, and sampler2D in the program means
 // gsnImage. Lookups are those of GLSL at the finest mip level, with t upwards: (0, 0) is the lower left corner.
 struct gsnImage {

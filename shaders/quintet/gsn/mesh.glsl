@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mesh data by instance and primitive, both as indices in the scene; zeros for indices out of range. For a mesh with
 // several geometries, shaders of a hit read the geometry of the hit, other shaders the first one.
 uint gsnGeometryOf_(int inst) {

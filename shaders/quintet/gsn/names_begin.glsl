@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renames names of the library that a lecture-form program can use itself, up to names_end.glsl.
 #define AliasArray gsnAliasArray_
 #define AliasEntry gsnAliasEntry_

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ends the renaming of names_begin.glsl, and replaces built-ins that depend on the driver, the launch strip or the order of
 // primitives: from here on gl_PrimitiveID is the index in the scene, and so on.
 #ifndef QUINTET_GSN_OPEN

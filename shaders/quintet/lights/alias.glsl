@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sampling of an alias table (Walker 1974; Vose 1991; built by src/render/lights/alias_table.cpp).
 #ifndef QUINTET_LIGHTS_ALIAS_GLSL
 #define QUINTET_LIGHTS_ALIAS_GLSL

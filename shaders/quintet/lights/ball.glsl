@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light sampling of a sphere in world space, seen from outside: uniform over the cone of its directions, on the near side
 // (Shirley et al. 1996, "Monte Carlo Techniques for Direct Lighting Calculations").
 #ifndef QUINTET_LIGHTS_BALL_GLSL

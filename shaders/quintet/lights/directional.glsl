@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Directional light of KHR_lights_punctual: parallel rays from infinity. The intensity is the irradiance of a surface that
 // faces the light.
 #ifndef QUINTET_LIGHTS_DIRECTIONAL_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The environment, an equirectangular texture (bilinear) or a constant, and its importance sampling. A cell of the table
 // is sampled by its probability, then a direction within the cell, uniform in solid angle: uniform in u and in cos θ. The
 // density in a cell is its probability divided by its solid angle, which contains the sin θ of the map's Jacobian.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Directions and equirectangular texture coordinates: u = atan2(d.z, d.x) / 2pi + 0.5, v = acos(d.y) / pi. d is in the
 // environment's frame (EnvironmentData: rotated about +y). The formulas are precise at the poles, where acos(y) is not.
 // They do not use the built-in functions: Vulkan allows an error of 2^-11 in sin and cos and of 4096 ulp in atan, more

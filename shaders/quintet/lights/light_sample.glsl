@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The result of light samplers. They take a position and no normal, so they also work for points in volumes.
 #ifndef QUINTET_LIGHTS_LIGHT_SAMPLE_GLSL
 #define QUINTET_LIGHTS_LIGHT_SAMPLE_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sampling of all lights of the scene. selection.glsl chooses a light; each type of light has its own file. A sampler
 // returns false if the chosen light does not contribute; the estimate is then 0.
 #ifndef QUINTET_LIGHTS_LIGHTS_GLSL

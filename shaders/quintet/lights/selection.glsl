@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selection of one light, and its probability. The default is the tree of bounds (tree.glsl). QUINTET_LIGHTS_BY_POWER
 // selects an alias table of the lights' powers, which the tests compare with the tree.
 #ifndef QUINTET_LIGHTS_SELECTION_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light sampling of emissive spheres, boxes, cylinders, cones and tori, which emit on both sides. A sphere in world space
 // that is seen from outside is sampled on its near side (ball.glsl). For all others, a point of the whole surface is
 // sampled: uniform by area on the canonical sphere, cylinder and cone, by the areas of the faces in world space on a box,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spot light of KHR_lights_punctual: a point light with a smooth cone. It has full intensity within the inner angle and
 // none outside the outer angle.
 #ifndef QUINTET_LIGHTS_SPOT_GLSL

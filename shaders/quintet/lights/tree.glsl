@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples one light of many, by a binary tree of bounds: A. Conty Estevez and C. Kulla, "Importance Sampling of Many
 // Lights with Adaptive Tree Splitting" (2018), section 5, without the splitting. At each node the probability of a child
 // is proportional to an estimate of the irradiance from its lights. The index of a leaf determines the path from the root

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light sampling of emissive triangles, uniform over the world-space area. They emit on both sides.
 #ifndef QUINTET_LIGHTS_TRIANGLE_GLSL
 #define QUINTET_LIGHTS_TRIANGLE_GLSL

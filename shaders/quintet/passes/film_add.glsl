@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // total += batch, squares += batch² / samples. A compute shader with one invocation per pixel; see
 // src/render/film/film.h.
 #extension GL_EXT_scalar_block_layout : require

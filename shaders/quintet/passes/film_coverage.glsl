@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts the ids of a batch's samples. A compute shader with one invocation per pixel.
 #extension GL_EXT_scalar_block_layout : require
 #include <quintet/shared/film.h>

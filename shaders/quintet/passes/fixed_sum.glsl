@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arithmetic of FixedSum (quintet/shared/film.h); src/render/film/fixed_sum.h does the same on the host.
 #ifndef QUINTET_PASSES_FIXED_SUM_GLSL
 #define QUINTET_PASSES_FIXED_SUM_GLSL

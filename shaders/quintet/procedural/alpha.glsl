@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Alpha in any-hit shaders on solids and CSG trees. As in quintet/alpha.glsl, the result of the test depends only on
 // the ray's seed and on the surface point, which is computed from the ray and the candidate's t.
 #ifndef QUINTET_PROCEDURAL_ALPHA_GLSL

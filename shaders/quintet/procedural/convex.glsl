@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Intersection of a line with a canonical sphere, box, cylinder or cone: one interval, because all of them are convex.
 // The formulas never confuse inside and outside for an origin near the surface. In the quadratic a t² + 2 b t + c, the
 // sign of c depends only on the origin's side of the surface, and the nearest root is c / q (Kahan's form). The

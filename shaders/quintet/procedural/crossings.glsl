@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All crossings of a ray with one solid of the scene.
 #ifndef QUINTET_PROCEDURAL_CROSSINGS_GLSL
 #define QUINTET_PROCEDURAL_CROSSINGS_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CSG trees: which crossings of the solids are crossings of the tree, and which solid's surface is at a crossing. The
 // algorithm stores no lists of crossings. It steps from crossing to crossing, and evaluates the whole tree for one t in
 // one pass over its postfix nodes with a stack of bits. (Arrays with computed indices are slow, and lavapipe shares

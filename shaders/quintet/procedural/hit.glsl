@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For closest-hit and any-hit shaders on solids and CSG trees: the surface that was hit, and the point on it.
 // Everything is computed from the ray and t. Hit attributes are not used, because some drivers corrupt them
 // (docs/design/quirks.md).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points on canonical solids: the point that a ray has hit, its two coordinates, and the surface at it. A point
 // computed from its coordinates lies on the surface up to a few rounding errors, for any distance of the ray's origin.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The surface of a solid at a hit. Included by quintet/surface.glsl, which declares Surface.
 #ifndef QUINTET_PROCEDURAL_SURFACE_GLSL
 #define QUINTET_PROCEDURAL_SURFACE_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Crossings of a line with the canonical torus (about the y axis, major radius 1, minor radius r): up to four. The
 // signed distance defines inside and surface, so that rounding of the quartic's coefficients has no effect. The extrema
 // of the quartic, which are roots of a depressed cubic, only separate its roots.

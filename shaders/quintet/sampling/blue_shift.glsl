@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Digital shifts that distribute one net over the pixels of a tile. The errors of neighboring pixels then cancel in the
 // mean, and the remaining error is blue noise. The hierarchical order of the pixels and its random permutations are
 // those of A. Ahmed & P. Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical

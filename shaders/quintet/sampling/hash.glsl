@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Integer mixers: every output bit depends on every input bit. Bijective where they map 32 bits to 32.
 #ifndef QUINTET_SAMPLING_HASH_GLSL
 #define QUINTET_SAMPLING_HASH_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Independent random numbers, for `naive` and for tests. The generator is counter-based: a number is a bijective mix of
 // the 128 bits of (pixel, sample, dimension, seed). Two streams therefore never overlap, for any number of samples.
 // Mixer: pcg4d of M. Jarzynski & M. Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The common interface of the two samplers: `struct Sampler` with
 //   Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed)                       pixels are independent
 //   Sampler makeSampler(uvec2 pixel, uint sampleIndex, uint seed, uint plannedSamples)  their errors are blue noise;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Owen-scrambled Sobol points, padded (B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020,
 // https://jcgt.org/published/0009/04/01/), with errors that are blue noise over the image (blue_shift.glsl).
 // A draw is one call of next1D or next2D. Draw d of a pixel uses the first two Sobol dimensions, shifted by the digits

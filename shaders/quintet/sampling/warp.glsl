@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Area-preserving maps from the unit square to other domains: the density of the result is constant (or
 // cosine-weighted), and stratified points stay stratified. u in [0,1)²; z is the local up direction.
 #ifndef QUINTET_SAMPLING_WARP_GLSL

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Layout of the albedo tables at Frame::albedoTables: floats, computed by src/render/scene/albedo_tables.cpp and read by
 // quintet/bsdf/albedo.glsl. All axes include both ends:
 // - cosine: cos^(1/4) from 0 to 1. The albedo of narrow lobes changes where the cosine is as small as alpha.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bindings of the only descriptor set. All other data is passed by buffer address (shared/frame.h).
 #ifndef QUINTET_SHARED_BINDINGS_H
 #define QUINTET_SHARED_BINDINGS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Memory layout of the film, and push constants of its passes (see src/render/film/film.h).
 #ifndef QUINTET_SHARED_FILM_H
 #define QUINTET_SHARED_FILM_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The data of a frame that programs read: camera, film, and the addresses of the scene's arrays. There is one Frame per
 // image; its address is the first push constant.
 #ifndef QUINTET_SHARED_FRAME_H

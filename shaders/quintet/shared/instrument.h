@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Data that an instrumented program (quintet check --instrument) writes at Frame::instrument: one Instrument, then
 // kInstrumentReports InstrumentReports, then one InstrumentPixel per pixel of the film.
 #ifndef QUINTET_SHARED_INSTRUMENT_H

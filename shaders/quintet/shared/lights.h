@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lights, and the tables from which they are sampled.
 #ifndef QUINTET_SHARED_LIGHTS_H
 #define QUINTET_SHARED_LIGHTS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Materials on the device (scene::Material documents meaning, units and ranges).
 #ifndef QUINTET_SHARED_MATERIAL_H
 #define QUINTET_SHARED_MATERIAL_H

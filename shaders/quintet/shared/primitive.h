@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Analytic solids and CSG trees (constructive solid geometry) on the device; scene/model/procedural.h documents them.
 #ifndef QUINTET_SHARED_PRIMITIVE_H
 #define QUINTET_SHARED_PRIMITIVE_H

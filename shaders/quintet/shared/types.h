@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Types and macros that C++ and GLSL share. A struct in shaders/quintet/shared/*.h is declared once and has the same
 // layout in both languages. Rules: layout(scalar), 8-byte members first, explicit padding to a multiple of 8 bytes if a
 // struct has a 64-bit member, static_assert(sizeof) below each struct, and a round-trip test in tests/gpu/shared. An

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stores which solid was hit, also in a CSG tree. The ray generation shader does the shading.
 #include <quintet/features.glsl>
 #include <quintet/frame.glsl>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ray missed the scene: t is negative.
 #include <quintet/frame.glsl>
 #include <quintet/payload.glsl>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shadow ray is not occluded.
 #include <quintet/frame.glsl>
 #include <quintet/payload.glsl>

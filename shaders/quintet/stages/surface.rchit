@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stores which triangle was hit. The ray generation shader does the shading.
 #include <quintet/hit.glsl>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rules of the check. check.cpp calls them, in order. Each id belongs to one rule, as the catalog says.
 #ifndef QUINTET_CHECK_RULES_RULES_H
 #define QUINTET_CHECK_RULES_RULES_H

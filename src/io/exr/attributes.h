@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Private to src/io: converts attributes of an OpenEXR header to our types and to text.
 #ifndef QUINTET_IO_EXR_ATTRIBUTES_H
 #define QUINTET_IO_EXR_ATTRIBUTES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cryptomatte (Friedman and Jones, Psyop; specification 1.1.0 and later): for each pixel the ids of the visible objects
 // and their coverage. Ids are hashes of names, so a compositing program can create mattes from names.
 #ifndef QUINTET_IO_EXR_CRYPTOMATTE_H

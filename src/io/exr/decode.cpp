@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decodes OpenEXR: an image of up to four channels, one layer, or all channels.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encodes OpenEXR in memory: validation, then scan lines or tiles in one part, or in two parts if a lossy compression
 // must not change some channels.
 #include <ImfChannelList.h>

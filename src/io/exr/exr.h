@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenEXR files with any layers and channels: AOVs, Cryptomatte, data. codec.h handles images of up to four channels.
 #ifndef QUINTET_IO_EXR_EXR_H
 #define QUINTET_IO_EXR_EXR_H

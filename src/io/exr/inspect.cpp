@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Describes the parts of an OpenEXR file from its headers.
 #include <ImfTileDescription.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Private to src/io: reads channels of one part of an OpenEXR file. OpenEXR allocates memory as its header states
 // (attribute sizes, windows, tiles, chunk counts), so these numbers are first compared with the size of the file.
 // Exceptions of OpenEXR become FileErrors.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "program/description/generated_glsl.h"
 
 #include <fmt/format.h>

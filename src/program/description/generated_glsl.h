@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GLSL that Quintet generates for a program: constants and `parameters` (<quintet/generated/program.glsl>), and the
 // shader record (<quintet/generated/record.glsl>); and the names that a program can give to things that become GLSL names.
 #ifndef QUINTET_PROGRAM_DESCRIPTION_GENERATED_GLSL_H

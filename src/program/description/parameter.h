@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parameters of a program: declared in program.toml, set by --set name=value or from JSON, read in GLSL as
 // `parameters.name`. The fields of the shader record use the same declarations and types.
 #ifndef QUINTET_PROGRAM_DESCRIPTION_PARAMETER_H

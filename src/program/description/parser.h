@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads program.toml.
 #ifndef QUINTET_PROGRAM_DESCRIPTION_PARSER_H
 #define QUINTET_PROGRAM_DESCRIPTION_PARSER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The description of a program: ray tracing shaders and how they connect (program.toml, docs/programs.md). Plain structs
 // without a device: load.h reads them, compile.h makes SPIR-V, linked/ makes a pipeline.
 #ifndef QUINTET_PROGRAM_DESCRIPTION_PROGRAM_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "program/gsn/lecture.h"
 
 #include <fmt/format.h>
@@ -236,7 +237,7 @@ std::string sceneNamedIn(const std::string& text, const std::map<std::string, st
   return {};
 }
 
-// Returns the first sentence of the comment at the start of the file, without its period. A title of less than 40
+// Returns the first sentence of the comment at the start of the file, after its license, without its period. A title of less than 40
 // characters, such as "Lesson 05: shadow", includes the sentence after it.
 std::string descriptionOf(const std::string& text) {
   std::string words;
@@ -244,6 +245,7 @@ std::string descriptionOf(const std::string& text) {
     if (token.kind != TokenKind::comment) break;
     std::string_view comment = textOf(text, token);
     if (comment.find("gsnShaderOptions") != comment.npos) continue;
+    if (comment.find("SPDX-License-Identifier") != comment.npos) continue;
     if (!comment.starts_with("//") || comment.find("scene:") != comment.npos) break;
     comment.remove_prefix(std::min(comment.size(), std::size_t{3}));
     words.append(words.empty() ? "" : " ").append(comment);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The front end of the lecture form: one file, NAME.rt.glsl, with several main() functions that markers assign to stages,
 // as in the ray tracing node of the GSN Composer (docs/lecture-form.md). The result is a Program like any other.
 #ifndef QUINTET_PROGRAM_GSN_LECTURE_H

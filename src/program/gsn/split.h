@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Splits a lecture-form file into its stages: which bytes are common, which belong to which main(), and which common
 // functions each stage needs.
 #ifndef QUINTET_PROGRAM_GSN_SPLIT_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GLSL of one stage of a lecture-form file: the file with the text of other stages blanked, so that line numbers stay,
 // after the declarations that the form provides.
 #ifndef QUINTET_PROGRAM_GSN_STAGE_H

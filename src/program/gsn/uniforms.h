@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The inputs of a lecture-form file: its uniforms, and those that are predeclared.
 #ifndef QUINTET_PROGRAM_GSN_UNIFORMS_H
 #define QUINTET_PROGRAM_GSN_UNIFORMS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "program/linked/device_stages.h"
 
 #include "spirv/copy_builtins.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The compiled stages as one device's pipeline gets them, with workarounds for driver defects that a change to a shader or
 // to the list of stages avoids (docs/design/quirks.md).
 #ifndef QUINTET_PROGRAM_LINKED_DEVICE_STAGES_H

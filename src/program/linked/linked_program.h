@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program on a device: its ray tracing pipeline, and shader binding tables for the geometry of scenes.
 #ifndef QUINTET_PROGRAM_LINKED_LINKED_PROGRAM_H
 #define QUINTET_PROGRAM_LINKED_LINKED_PROGRAM_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adaptive sampling: how many batches each cell of a film gets, and which cells the next batch renders.
 #ifndef QUINTET_RENDER_FILM_ADAPTIVE_PLAN_H
 #define QUINTET_RENDER_FILM_ADAPTIVE_PLAN_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The film of a render on the device. A batch holds samples [k · kBatchSamples, (k+1) · kBatchSamples) of every pixel,
 // which the program sums in float32 in sample order. Batch sums are added to the totals in fixed point
 // (shared::FixedSum), which is exact and independent of order. The bytes therefore depend neither on launch sizes, nor

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error estimate of a film's image from the spread of its batches.
 //
 // The error of an image I with the expectation R is relative, and the root mean square over pixels p and channels c:

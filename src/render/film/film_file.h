@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A film in a file (.qfilm): the checkpoint of a render, or a part of one. All sums are stored exactly, so that
 // resuming from a file, and merging files, gives the same bytes as one uninterrupted render.
 //

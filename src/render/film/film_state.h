@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The contents of a film in host memory: read from the device, stored in files, merged, and converted to images.
 // Merging is exact: the parts of a render give the same words as one render of all samples (see film.h).
 #ifndef QUINTET_RENDER_FILM_FILM_STATE_H

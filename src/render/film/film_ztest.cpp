@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/film/film_ztest.h"
 
 #include <algorithm>

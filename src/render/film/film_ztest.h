@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Statistical test of whether two renders show the same image up to their noise. The null hypothesis is that the first
 // outputs of two films have the same expectation; the noise is known from the films' batches (varianceOfMean in
 // film_state.h).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Host arithmetic of shared::FixedSum, a 128-bit fixed-point sum that does not depend on the order of its terms. The
 // device counterpart is shaders/quintet/passes/fixed_sum.glsl.
 #ifndef QUINTET_RENDER_FILM_FIXED_SUM_H

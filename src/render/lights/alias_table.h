@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Walker/Vose alias tables, which sample one of n entries with given probabilities in constant time.
 #ifndef QUINTET_RENDER_LIGHTS_ALIAS_TABLE_H
 #define QUINTET_RENDER_LIGHTS_ALIAS_TABLE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The importance sampling table of an environment (shared::EnvironmentData::table).
 #ifndef QUINTET_RENDER_LIGHTS_ENVIRONMENT_TABLE_H
 #define QUINTET_RENDER_LIGHTS_ENVIRONMENT_TABLE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bounds of the light that one or many lights emit: positions, directions and power. A. Conty Estevez and C. Kulla,
 // "Importance Sampling of Many Lights with Adaptive Tree Splitting" (2018), section 4; thetaO and thetaE are the
 // paper's names.

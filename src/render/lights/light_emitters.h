@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The emissive geometries of a scene's meshes in object space: mean luminance with textures, area, and bounds. The
 // light tables are built from them for any transforms of the instances.
 #ifndef QUINTET_RENDER_LIGHTS_LIGHT_EMITTERS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All lights of a scene and the data that samples them (shared::Frame::lights, lightNodes, lightTable, lightSlots).
 #ifndef QUINTET_RENDER_LIGHTS_LIGHT_TABLE_H
 #define QUINTET_RENDER_LIGHTS_LIGHT_TABLE_H

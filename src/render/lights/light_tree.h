@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tree from which lights are sampled (shared::LightNode, quintet/lights/tree.glsl). It is built top down with the
 // surface area orientation heuristic of Conty Estevez and Kulla 2018, section 4.4, on all cores. The result does not
 // depend on the number of cores.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The luminance by which samples are distributed over lights. It affects sampling probabilities only, never the
 // expected image.
 #ifndef QUINTET_RENDER_LIGHTS_LUMINANCE_H

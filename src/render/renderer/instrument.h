@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runtime checks: the device buffer of an instrumented program (program/instrument.h), and the diagnostics that its
 // contents and the film give.
 #ifndef QUINTET_RENDER_RENDERER_INSTRUMENT_H

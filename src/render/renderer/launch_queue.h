@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The launches of a renderer in flight. It limits how many wait on the device, chooses their size so that each takes
 // about the requested time, and measures each launch once it has finished.
 #ifndef QUINTET_RENDER_RENDERER_LAUNCH_QUEUE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The images of a program's parameters on the device. Each takes a slot of the scene's bindless array, after the
 // scene's own textures. The shader reads the slot's index as parameters.NAME.
 #ifndef QUINTET_RENDER_RENDERER_PARAMETER_TEXTURES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The settings of a render, their defaults and limits, and the shader definitions that follow from them.
 #ifndef QUINTET_RENDER_RENDERER_RENDER_SETTINGS_H
 #define QUINTET_RENDER_RENDERER_RENDER_SETTINGS_H

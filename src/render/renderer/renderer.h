@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a program over a scene, batch by batch, into a film. Built-in programs and user programs are treated alike.
 #ifndef QUINTET_RENDER_RENDERER_RENDERER_H
 #define QUINTET_RENDER_RENDERER_RENDERER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An albedo is the mean of Fresnel times shadowing over the visible micronormals. It is integrated by Gauss-Legendre
 // quadrature along the axis of the spherical cap of Dupuy and Benyoub 2023, and by the midpoint rule around it, on one
 // half of the symmetric cap.

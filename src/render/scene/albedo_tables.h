@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tables of directional albedos for quintet/bsdf (Frame::albedoTables). Their layout is in quintet/shared/albedo.h.
 #ifndef QUINTET_RENDER_SCENE_ALBEDO_TABLES_H
 #define QUINTET_RENDER_SCENE_ALBEDO_TABLES_H

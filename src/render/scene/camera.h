@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conversion of the scene's camera to the device's form, and to matrices for other programs.
 #ifndef QUINTET_RENDER_SCENE_CAMERA_H
 #define QUINTET_RENDER_SCENE_CAMERA_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scene on the device: attributes, textures, materials, lights and acceleration structures. It is uploaded once and
 // used by any number of renderers (programs, sizes, cameras).
 #ifndef QUINTET_RENDER_SCENE_DEVICE_SCENE_H

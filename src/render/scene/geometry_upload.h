@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uploads the vertex attributes, triangles and primitive sets of a scene into a few large buffers.
 #ifndef QUINTET_RENDER_SCENE_GEOMETRY_UPLOAD_H
 #define QUINTET_RENDER_SCENE_GEOMETRY_UPLOAD_H

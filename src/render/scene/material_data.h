@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // scene::Material to the device's form.
 #ifndef QUINTET_RENDER_SCENE_MATERIAL_DATA_H
 #define QUINTET_RENDER_SCENE_MATERIAL_DATA_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conversion of scene::PrimitiveSet to the device's form.
 #ifndef QUINTET_RENDER_SCENE_PROCEDURAL_DATA_H
 #define QUINTET_RENDER_SCENE_PROCEDURAL_DATA_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/scene/scene_features.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a scene does without, as preprocessor definitions (quintet/features.glsl): shaders without the code
 // for it compile faster and leave more registers.
 #ifndef QUINTET_RENDER_SCENE_SCENE_FEATURES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uploads images as textures: those of a scene's materials, its environment, and the images of program parameters.
 #ifndef QUINTET_RENDER_SCENE_TEXTURE_UPLOAD_H
 #define QUINTET_RENDER_SCENE_TEXTURE_UPLOAD_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The instances of a scene on the device: the instance table, which shaders index by gl_InstanceCustomIndexEXT, and the
 // top-level acceleration structure. It is rebuilt for a different number of ray types, order, or frame of the
 // animation.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "render/tone_map/tone_map.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conversion of linear radiance to display values. Tone curves and gamma are applied nowhere else.
 #ifndef QUINTET_RENDER_TONE_MAP_TONE_MAP_H
 #define QUINTET_RENDER_TONE_MAP_TONE_MAP_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Deformations into the rest pose of a file, computed on the host: morph targets with their default weights, skins with
 // the rest transforms of the joints (glTF 2.0 sections 3.7.2.2 and 3.7.3).
 #ifndef QUINTET_SCENE_ANIMATION_DEFORM_H

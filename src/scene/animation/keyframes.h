@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transforms of animated instances.
 #ifndef QUINTET_SCENE_ANIMATION_KEYFRAMES_H
 #define QUINTET_SCENE_ANIMATION_KEYFRAMES_H

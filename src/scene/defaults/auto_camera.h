@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cameras from the bounds of a scene, or from two points.
 #ifndef QUINTET_SCENE_DEFAULTS_AUTO_CAMERA_H
 #define QUINTET_SCENE_DEFAULTS_AUTO_CAMERA_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The default environment, and the rule that decides when a scene uses it.
 #ifndef QUINTET_SCENE_DEFAULTS_DEFAULT_ENVIRONMENT_H
 #define QUINTET_SCENE_DEFAULTS_DEFAULT_ENVIRONMENT_H

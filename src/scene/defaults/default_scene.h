@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The built-in scene for programs that run without a scene file.
 #ifndef QUINTET_SCENE_DEFAULTS_DEFAULT_SCENE_H
 #define QUINTET_SCENE_DEFAULTS_DEFAULT_SCENE_H

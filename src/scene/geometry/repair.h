@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Repairs of imported numbers: finite positions, unit normals and tangents, rigid frames. The repair functions return
 // the number of elements that they replaced.
 #ifndef QUINTET_SCENE_GEOMETRY_REPAIR_H

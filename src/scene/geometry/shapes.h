@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangle meshes of simple shapes with normals and texture coordinates (v points down, as in glTF). Triangles are
 // counter-clockwise seen from outside.
 #ifndef QUINTET_SCENE_GEOMETRY_SHAPES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tangent frames for normal maps, if the file has none. The tangent of a vertex is the sum of dP/du of the triangles
 // around it, weighted by the corner angle and made perpendicular to the normal (E. Lengyel, "Computing Tangent Space
 // Basis Vectors for an Arbitrary Mesh", 2001; Foundations of Game Engine Development 2, section 7.5). MikkTSpace, which

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Buffer views and accessors: their bounds checks, and accessors as vectors of floats or indices with strides,
 // component types, normalized integers and sparse data (glTF 2.0 sections 3.6.2 and 3.11). Elements are converted in
 // bulk. Misaligned data is accepted.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two compression extensions: EXT_meshopt_compression (buffer views in meshoptimizer's vertex and index codecs) and
 // KHR_draco_mesh_compression (triangles and attributes of one primitive in a Draco stream).
 #ifndef QUINTET_SCENE_GLTF_COMPRESSION_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A glTF file as checked JSON and buffers. JSON goes through schema.cpp first; tinygltf then only turns valid JSON into
 // structs. Buffers and images are read here, because tinygltf reads them without bounds checks. When the importer has
 // called readDocument, resolveBufferViews and checkAccessors (accessor.h), every index is valid, every number has its

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The glTF extensions that Quintet supports, and typed access to their JSON values.
 #ifndef QUINTET_SCENE_GLTF_EXTENSIONS_H
 #define QUINTET_SCENE_GLTF_EXTENSIONS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loads glTF 2.0 files (.gltf and .glb, recognized by content). docs/gltf.md specifies the conversion.
 #ifndef QUINTET_SCENE_GLTF_GLTF_H
 #define QUINTET_SCENE_GLTF_GLTF_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Instances of the scene, and the meshes that they need in each pose.
 #ifndef QUINTET_SCENE_GLTF_INSTANCES_H
 #define QUINTET_SCENE_GLTF_INSTANCES_H

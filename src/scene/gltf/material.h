@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // glTF materials with the supported extensions.
 #ifndef QUINTET_SCENE_GLTF_MATERIAL_H
 #define QUINTET_SCENE_GLTF_MATERIAL_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Primitives of glTF meshes as geometries: attributes from accessors or Draco, indices, all modes that have a surface,
 // morph targets and skins in the rest pose, repairs, tangents.
 #ifndef QUINTET_SCENE_GLTF_MESH_H

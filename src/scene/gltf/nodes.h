@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The node hierarchy: world transforms, the nodes of the chosen scene, and the cameras and lights of nodes.
 #ifndef QUINTET_SCENE_GLTF_NODES_H
 #define QUINTET_SCENE_GLTF_NODES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks the JSON of a glTF file against one table of all properties that the importer reads: type, range, and the
 // array that an index points into.
 #ifndef QUINTET_SCENE_GLTF_SCHEMA_H

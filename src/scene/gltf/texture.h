@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Textures, samplers and images of a glTF file. Only images that a material uses are decoded, on all cores.
 #ifndef QUINTET_SCENE_GLTF_TEXTURE_H
 #define QUINTET_SCENE_GLTF_TEXTURE_H

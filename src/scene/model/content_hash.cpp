@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scene/model/content_hash.h"
 
 #include <type_traits>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A hash of the contents of a scene. Films store it, so that it must not change between versions.
 #ifndef QUINTET_SCENE_MODEL_CONTENT_HASH_H
 #define QUINTET_SCENE_MODEL_CONTENT_HASH_H

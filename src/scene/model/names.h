@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Unique names of instances and materials, for Cryptomatte and tables. They depend only on the scene: an instance
 // without a name takes that of its mesh, else "instance"; a material without a name is called "material". A name that
 // an earlier object has becomes the first of "name#2", "name#3", ... that no object has.

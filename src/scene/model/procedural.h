@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surfaces other than triangles: analytic solids, trees of them (constructive solid geometry, CSG), and boxes for the
 // intersection shader of a program.
 #ifndef QUINTET_SCENE_MODEL_PROCEDURAL_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene as plain structs. Importers fill it; `render` uploads it to the GPU. Units are meters; the frame is
 // right-handed with y up; radiometric values use linear Rec. 709 primaries. References are indices into the vectors of
 // the scene (-1 means none); importers return only valid ones (validate.h).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Classes of surfaces by the effect of their material on a ray, which decide the any-hit shaders that a geometry needs:
 //   alpha-tested     coverage below 1 is possible (alpha mode mask or blend)
 //   pane             thin-walled (KHR_materials_transmission with thickness 0) and smooth, so that light can pass

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Consistency check of a scene: the properties that the renderer relies on.
 #ifndef QUINTET_SCENE_MODEL_VALIDATE_H
 #define QUINTET_SCENE_MODEL_VALIDATE_H

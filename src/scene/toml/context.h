@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // State that the readers of a scene file share: the scene so far, and the objects behind its names.
 #ifndef QUINTET_SCENE_TOML_CONTEXT_H
 #define QUINTET_SCENE_TOML_CONTEXT_H

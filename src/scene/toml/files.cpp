@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [[file]]: makes the meshes, materials, lights and cameras of a glTF file available under its name.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [[instance]]: instances of meshes, primitive sets and glTF files. Then, once at the origin, the objects that no
 // instance refers to.
 #include <fmt/format.h>

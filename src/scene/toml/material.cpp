@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [[material]]: all members of scene::Material, with textures. The keys are the names of the members in snake_case.
 #include <fmt/format.h>
 

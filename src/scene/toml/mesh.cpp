@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [[mesh]]: triangles from lists or from a named shape.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [[spheres]], [[boxes]], [[cylinders]], [[cones]], [[tori]], [[csg]] and [[custom]]: sets of procedural primitives.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scene files (*.scene.toml, docs/scenes.md): glTF files, materials, triangle shapes, analytic solids, CSG trees,
 // custom boxes, instances, lights, cameras and an environment.
 #ifndef QUINTET_SCENE_TOML_SCENE_TOML_H

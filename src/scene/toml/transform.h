@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transforms of a scene file: the keys translate, rotate, scale and matrix, and the generators random and grid.
 // docs/scenes.md specifies the generators exactly, so that other programs can reproduce them.
 #ifndef QUINTET_SCENE_TOML_TRANSFORM_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [[light]], [[camera]] and [environment].
 #include <fmt/format.h>
 

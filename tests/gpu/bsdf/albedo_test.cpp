@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The albedo tables, as the shader interpolates them, against an oracle in double precision. The oracle shares no code
 // with src/render/scene/albedo_tables.cpp. It integrates Walter's BSDF over all micronormals, weighted by D cos theta.
 #include <gtest/gtest.h>

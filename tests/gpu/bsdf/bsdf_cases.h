@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Materials and directions that the tests of quintet/bsdf share, and the GLSL that runs them.
 #ifndef QUINTET_TESTS_GPU_BSDF_CASES_H
 #define QUINTET_TESTS_GPU_BSDF_CASES_H

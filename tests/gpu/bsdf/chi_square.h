@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pearson's chi-square test with pooling of cells.
 #ifndef QUINTET_TESTS_GPU_BSDF_CHI_SQUARE_H
 #define QUINTET_TESTS_GPU_BSDF_CHI_SQUARE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // White furnace: in uniform light of radiance 1 a white surface reflects radiance 1. The mean of the sample weights is the
 // albedo. For refraction the factor 1/eta² is divided out, because in equilibrium the radiance inside a solid is eta²
 // times that outside.

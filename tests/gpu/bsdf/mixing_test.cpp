@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The BSDF is the sum of its lobes: its density is their weighted sum, and the number of samples from each lobe follows
 // the lobe's probability. The direction of a sample identifies the part of the BSDF that it comes from, because each
 // part maps the same numbers u to a different direction. Tested at every roughness and angle.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A second implementation of the BSDF, in double precision and in the form of the papers: normalized half vectors,
 // tangents, Smith's Lambda, polarized Fresnel. It shares only the albedo tables with the shader. albedo_test.cpp tests
 // the tables.

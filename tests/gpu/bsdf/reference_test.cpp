@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // bsdfEval against a second implementation of the model on the host, for every material, roughness and angle.
 #include "bsdf/reference.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each lobe, and the whole BSDF, samples directions with the density of its pdf: a chi-square test of counted against
 // integrated density. The integral must equal the fraction of the samples that is not rejected.
 //

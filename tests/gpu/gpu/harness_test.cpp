@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The test harness: sizes, indices, defines, addresses and errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

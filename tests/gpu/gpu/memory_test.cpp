@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The account of device memory: purposes, peaks, and when memory is freed. Each test has its own context.
 #include "gpu/memory.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The store creates each pipeline once and keeps released ones for a while.
 #include "gpu/pipeline_store.h"
 

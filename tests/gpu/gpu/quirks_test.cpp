@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Driver defects that the environment variables of prepareDriverEnvironment() work around (docs/design/quirks.md). With
 // QUINTET_NO_DRIVER_WORKAROUNDS=1 the tests show whether a driver still has them.
 #include <gtest/gtest.h>

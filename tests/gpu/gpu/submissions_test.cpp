@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Order, waiting, retirement and errors of submissions.
 #include <thread>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Render jobs as a front end uses them: runs that continue, stop, and resume give the film of one uninterrupted run.
 #include "job/render_job.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The environment: orientation, sampling against the table, densities, irradiance.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenes for the tests of quintet/lights: a scene on the device as programs see it, small builders, and the
 // Z-test of an estimate against its exact value.
 #ifndef QUINTET_TESTS_GPU_LIGHTS_LIGHT_SCENE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Point, spot and directional lights against their formulas, and the choice among many lights.
 #include <algorithm>
 

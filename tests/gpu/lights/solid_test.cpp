@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Emissive solids: solid angles in closed form, irradiance of balls, power of the table.
 #include <array>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sampling of the tree against exact integer arithmetic. Floats would round the number that decides.
 #include <array>
 #include <random>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The probabilities of quintet/lights/tree.glsl, computed in double precision and with angles instead of cosines.
 #ifndef QUINTET_TESTS_GPU_LIGHTS_TREE_ORACLE_H
 #define QUINTET_TESTS_GPU_LIGHTS_TREE_ORACLE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The choice among many lights by the tree: probabilities against the oracle, drawing against probabilities, and
 // estimates against the choice by power and against closed forms.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Emissive triangles: solid angle, irradiance in closed form, textures, alpha, and densities of BSDF hits.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CSG trees, compared with the oracle on the host, and with explicit expected values where surfaces coincide.
 #include <cstdio>
 #include <functional>

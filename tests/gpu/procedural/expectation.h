@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hit that the oracle (csg_oracle.h, double precision on the host) computes for a probe's ray, and the tolerances.
 #ifndef QUINTET_TESTS_GPU_PROCEDURAL_EXPECTATION_H
 #define QUINTET_TESTS_GPU_PROCEDURAL_EXPECTATION_H

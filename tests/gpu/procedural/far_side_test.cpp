@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Emissive solids whose far side is visible through the near side: light samples and BSDF samples must be weighted
 // consistently.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light transport on solids and CSG trees: furnaces, closed rooms, glass, lamps, alpha. Expected values are closed
 // forms, or images of triangle meshes of the same shape.
 #include <gtest/gtest.h>

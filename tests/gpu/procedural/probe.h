@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Traces rays given by the host through the stages of the library, and returns the hit and the surface of each.
 #ifndef QUINTET_TESTS_GPU_PROCEDURAL_PROBE_H
 #define QUINTET_TESTS_GPU_PROCEDURAL_PROBE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each solid, compared with the oracle on the host: t, entering or leaving, normal; and rays that leave a surface.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program that averages its own samples reads the frame number and the output of the previous frame.
 #include "harness.h"
 #include "program/description/parser.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks at run time: each mistake is reported at its line, and correct programs give no reports.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Procedural primitives in the lecture form: boxes, `hit`, hit kinds and any-hit. Attributes are those of the hit even if
 // shaders write them for rejected candidates.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The values of every predeclared name of the lecture form: one ray per pixel straight down onto known triangles and boxes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

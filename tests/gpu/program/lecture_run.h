@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a program of the lecture form on a small scene and returns what gsnSetPixel wrote.
 #ifndef QUINTET_TESTS_GPU_PROGRAM_LECTURE_RUN_H
 #define QUINTET_TESTS_GPU_PROGRAM_LECTURE_RUN_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Built-ins that a closest-hit shader reads after a nested trace are those of its own hit. On drivers that overwrite them
 // (Quirks::changesNestedBuiltIns), linking works around the defect.
 #include "run_program.h"

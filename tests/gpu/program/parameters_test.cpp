@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parameters of every type on the device: numbers in scalar layout, choices, and images as textures.
 #include <unistd.h>
 

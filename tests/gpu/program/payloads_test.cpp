@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Payloads and callable data of any type at any location: three payloads, two ray types and an additional miss shader, a
 // trace from a closest-hit shader, and callables with data at two locations.
 #include "run_program.h"

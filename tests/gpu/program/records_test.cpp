@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Data of shader records: fields of every type reach every stage, for each hit group and ray type.
 #include "run_program.h"
 

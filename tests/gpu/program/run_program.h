@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a program given as texts once per pixel on a small scene and returns its outputs.
 #ifndef QUINTET_TESTS_GPU_PROGRAM_RUN_PROGRAM_H
 #define QUINTET_TESTS_GPU_PROGRAM_RUN_PROGRAM_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lecture programs of the source documents (../shared/seeds, next to the repository): cut from the text of a page, with
 // the lines that the slides omit ("...") supplied. The documents are not part of the repository; tests skip without them.
 #ifndef QUINTET_TESTS_GPU_PROGRAM_SEEDS_H

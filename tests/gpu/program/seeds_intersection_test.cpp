@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The intersection shaders of document 003, unchanged from its slides: sphere in world and in object space, box, triangle,
 // and the three CSG operations, compared with references in double precision.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The programs of document 002, unchanged from its slides: first ray, shadow, reflection as a loop, progressive average.
 // Every pixel is compared with a reference in double precision, except pixels close to an edge.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The path tracer's AOVs: the components of the light add up to the image, and the properties of the first surface are
 // correct.
 #include <gtest/gtest.h>

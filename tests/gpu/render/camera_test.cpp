@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Projection of known points by both kinds of cameras, and blur by a lens.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Area, point, spot and directional lights on a Lambert plane, against closed forms.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The error estimate of images computed from the sampler's own numbers with the sample plans of `render`. The pixels of
 // a tile share their scrambles, so the error of an image varies more than with independent pixels. The integrands
 // depend on up to four sample dimensions, on one whole tile of 64 x 64: with simpler integrands low discrepancy would

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The error estimate of rendered images: its bound covers the true error, and is not much larger.
 #include <gtest/gtest.h>
 

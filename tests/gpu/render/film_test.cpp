@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The film on the device: sums, optional outputs, center values, coverage ids, adaptive cells, and merged parts.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lambert surfaces under uniform light, whose radiance is known in closed form.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Instances as programs see them: order, custom index, masks, and keyframes.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The memory that remains allocated after a scene is on the device.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Panes, alpha materials and bubbles for the tests of light through them.
 #ifndef QUINTET_TESTS_GPU_RENDER_PANE_SCENES_H
 #define QUINTET_TESTS_GPU_RENDER_PANE_SCENES_H

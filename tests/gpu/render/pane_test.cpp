@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light through panes (smooth thin walls) and alpha. Shadow rays carry exactly the light that goes straight through; a
 // lamp's light is compared with closed forms. All other light, and the weights, are compared with brute force in
 // pane_weights_test.cpp.

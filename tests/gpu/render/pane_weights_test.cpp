@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Multiple importance sampling through panes, alpha and bubbles, against BSDF sampling alone (`naive`): Welch's t-test
 // per pixel and channel and on the whole image, at level 0.01. The test itself is tested, too: it must reject path
 // tracers with wrong weights, tints or bounce counts.

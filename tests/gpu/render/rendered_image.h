@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders small images for tests, and computes the mean and standard error of each pixel from the film's batches. The
 // batches of a pixel share a low-discrepancy sequence, so they vary more than independent batches with the same total
 // error: the standard errors are too large rather than too small.

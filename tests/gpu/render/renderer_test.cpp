@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Properties of a renderer besides correct images: bytes that do not depend on how the work is divided, regions,
 // cancellation, and the location of errors.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Concise construction of scenes for analytic tests.
 #ifndef QUINTET_TESTS_GPU_RENDER_SCENE_BUILDER_H
 #define QUINTET_TESTS_GPU_RENDER_SCENE_BUILDER_H

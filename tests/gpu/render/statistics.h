@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Means of independent batches, and significance tests on them. The distributions are in base/statistics.h.
 #ifndef QUINTET_TESTS_GPU_RENDER_STATISTICS_H
 #define QUINTET_TESTS_GPU_RENDER_STATISTICS_H

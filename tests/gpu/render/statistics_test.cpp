@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The statistics of the tests themselves. The distributions are tested in tests/unit/base.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fetchSurface and shadeSurface against the host: one triangle with all attributes and textures, at random points and
 // from random directions, under transforms that stretch and mirror.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light through glass and alpha against closed forms: slabs, thin walls, blend, mask, transparent backgrounds, and
 // unlit surfaces.
 #include <gtest/gtest.h>

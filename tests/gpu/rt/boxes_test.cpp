@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Boxes with an intersection shader that reports the inscribed sphere.
 #include "base/error.h"
 #include "rt_test_support.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TLAS: transforms, masks, records per instance, and rebuilds while the device is busy.
 #include "base/error.h"
 #include "rt_test_support.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pipelines and launches: invalid options, empty tables, callable shaders, and the reuse of pipelines.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refits of moved vertices.
 #include "base/error.h"
 #include "rt_test_support.h"

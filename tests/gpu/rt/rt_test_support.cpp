@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "rt_test_support.h"
 
 #include "program/linked/device_stages.h"

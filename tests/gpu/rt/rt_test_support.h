@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small ray tracer that maps rays to hits. The data of hit records is part of the hits, so every test also tests the
 // shader binding table.
 #ifndef QUINTET_TESTS_GPU_RT_SUPPORT_H

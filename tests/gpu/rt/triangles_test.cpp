@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangles: known rays, comparison with brute force, inactive primitives, several geometries and builds.
 #include "base/error.h"
 #include "rt_test_support.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pixels that share nets: blocks of pixels are nets, and errors cancel over small neighborhoods. Within each pixel, the
 // numbers are uniform, independent between draws, and as well distributed as those of independent pixels.
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Properties of points in the unit square, for the tests of both samplers.
 #ifndef QUINTET_TESTS_GPU_SAMPLING_NETS_H
 #define QUINTET_TESTS_GPU_SAMPLING_NETS_H

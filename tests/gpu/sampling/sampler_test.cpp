@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two samplers: range, uniformity, independence of pixels and of draws, stratification, and convergence. Every
 // statistical test also runs on a deliberately wrong input, which it must reject.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps from the unit square: a chi-square test of the density, on cells of equal measure.
 #include <string>
 #include <vector>

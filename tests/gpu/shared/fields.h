@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 32-bit words of the members of a shared struct, in C++ and GLSL. `GPU_FIELDS(Type, members…)` is the list for
 // both. C++ binds it to all members in order, so that a missing or extra member does not compile. GLSL reads each
 // member by name: a wrong name does not compile, and a wrong order makes the test fail.

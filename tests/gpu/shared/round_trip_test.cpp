@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every struct of quintet/shared/*.h has the same layout in C++ and GLSL, for each member and in both directions.
 #include <gtest/gtest.h>
 

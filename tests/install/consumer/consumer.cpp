@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests the installed library: animation, parameters, errors. Writes animation.png, lesson 19 after 14 frames, which
 // run.cmake compares with the output of the command-line program.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text forms of diagnostics, and lists without duplicates.
 #include "base/diagnostic.h"
 

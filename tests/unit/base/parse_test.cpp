@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers and lists in text: the whole text must be valid.
 #include "base/parse.h"
 

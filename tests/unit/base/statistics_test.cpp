@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares distributions and corrections with published tables.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values and lines of TOML documents, and the rejection of dotted keys that would overflow the parser's stack.
 #include "base/toml_value.h"
 

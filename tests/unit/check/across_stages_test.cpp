@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q201 to Q203, Q401, Q402, Q501 to Q506, Q601 to Q605, Q801, Q802; results of the check.
 #include "check_test_support.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The built-in programs have no diagnostics, and the check is fast.
 #include <algorithm>
 #include <cstdio>

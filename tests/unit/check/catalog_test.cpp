@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The catalog of diagnostics: unique sorted ids, texts, pages, and the rule that reports each id.
 #include "check/catalog.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small programs in memory, and helpers to edit and check them.
 #ifndef QUINTET_TESTS_UNIT_CHECK_CHECK_TEST_SUPPORT_H
 #define QUINTET_TESTS_UNIT_CHECK_CHECK_TEST_SUPPORT_H

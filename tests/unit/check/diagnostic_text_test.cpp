@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text and JSON of diagnostics: location, source line, caret, order, limit, keys.
 #include "check/diagnostic_text.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q701: recognizes a t that is a distance in object space.
 #include <gmock/gmock.h>
 

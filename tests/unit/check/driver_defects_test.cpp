@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q901, Q902, Q904, Q905: reported for a driver with the defect, and only there.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q703 and Q704: instances selected by gl_InstanceID, descriptor indices without nonuniformEXT.
 #include <gmock/gmock.h>
 

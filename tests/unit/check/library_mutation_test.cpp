@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mutations of the traces and stages of the shader library: mistakes of users who write such files themselves.
 // mutation_test.cpp mutates the files of programs.
 #include <fmt/format.h>

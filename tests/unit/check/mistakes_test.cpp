@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The corpus of mistakes (tests/check/mistakes): each program has exactly one mistake, which is reported in the marked
 // line, and its repaired version has none. The device of these tests has all defects of docs/design/quirks.md.
 #include <fmt/format.h>

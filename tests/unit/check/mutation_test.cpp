@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mutations of the built-in programs: the check must find at least 95 % of the mistakes that text replacement creates.
 #include <fmt/format.h>
 

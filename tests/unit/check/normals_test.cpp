@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q702: recognizes normals that are multiplied by gl_ObjectToWorldEXT.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q101 to Q105 and Q301 to Q303: mistakes with payloads and callable data, and similar code that is correct.
 #include "check_test_support.h"
 

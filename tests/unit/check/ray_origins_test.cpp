@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q705: recognizes rays with tmin 0 that start on a surface.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiles one stage and lists the diagnostics of the rules within a stage as "Q701:12".
 #ifndef QUINTET_TESTS_UNIT_CHECK_STAGE_TEST_SUPPORT_H
 #define QUINTET_TESTS_UNIT_CHECK_STAGE_TEST_SUPPORT_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks a built-in program on a scene. The executable links quintet_check alone, so it builds only as long as the
 // check needs neither gpu, rt nor render. Exits with 0 if nothing is reported.
 #include <cstdio>

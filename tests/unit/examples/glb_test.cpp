@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the generated files back. Every reference and every accessor must satisfy glTF 2.0.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scene for measurements of loading, read back by the importer.
 #include "demo/large_scene.h"
 

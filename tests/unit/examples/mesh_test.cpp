@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shapes: solids are closed with the front outside; normals and tangents are correct.
 #include "demo/mesh_builder.h"
 

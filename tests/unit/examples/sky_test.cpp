@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sky: finite values, the requested irradiance, the direction of the sun, a dim lower half.
 #include "demo/sky.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Round trips of layers, compressions, tiles, windows and attributes of OpenEXR files.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads our OpenEXR files with an independent program, oiiotool (OpenImageIO): every compression, layers, types,
 // windows and attributes. Fails if oiiotool is not installed; `make setup` installs it.
 #include <gmock/gmock.h>

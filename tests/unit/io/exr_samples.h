@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An image with every kind of channel for the tests of OpenEXR files.
 #ifndef QUINTET_TESTS_IO_EXR_SAMPLES_H
 #define QUINTET_TESTS_IO_EXR_SAMPLES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs every decoder on truncated and changed files. A changed file gives an image or a FileError; a truncated file
 // always gives a FileError.
 #include <gtest/gtest.h>

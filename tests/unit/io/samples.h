@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images and small files for the codec tests. They are generated, so the repository contains no binary files.
 #ifndef QUINTET_TESTS_IO_SAMPLES_H
 #define QUINTET_TESTS_IO_SAMPLES_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decodes every image of the shared data: image files and images inside .glb files.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

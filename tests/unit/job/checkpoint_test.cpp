@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A checkpoint continues exactly its own render; everything else is an error that names the file.
 #include "job/checkpoint.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Film files are never overwritten by a film that lacks their samples, unless the user insists.
 #include "job/film_store.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small films for tests: their sums are arbitrary, their facts are those of a render.
 #ifndef QUINTET_TESTS_UNIT_JOB_FILMS_H
 #define QUINTET_TESTS_UNIT_JOB_FILMS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts join to the film of the whole render; parts that do not belong together are rejected by name.
 #include "job/merge.h"
 

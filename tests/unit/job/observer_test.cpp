@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The progress that front ends show.
 #include "job/observer.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one table of facts: every field survives a film, and reaches the metadata under its key.
 #include "job/provenance.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A request that cannot succeed fails before a device is opened; a good one is complete.
 #include "job/resolve.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adaptive sampling: plans stay within the limits, end at them, and depend on the film alone.
 #include "job/sampling_schedule.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stated error of renders that a target error stops. Samples are drawn on the host from known distributions, and the
 // renderer's own rules stop the render (isErrorCheckpoint, planNextBatches, estimateError). The stated error must cover the
 // real one, which is measured against the known mean. docs/measurements.md has results for more distributions.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Camera, image size and environment of a render, by the rules of docs/cli.md.
 #include "job/view.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the frame number and the name of the output go in a file name.
 #include "output/file_names.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which files a render writes: decided, and rejected, before it starts.
 #include "output/plan.h"
 

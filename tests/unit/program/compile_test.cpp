@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiling a program to SPIR-V: library stages, defines, errors.
 #include "program/compile.h"
 

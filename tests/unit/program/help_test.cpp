@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The description of a program as help text and JSON, and the list of built-in programs.
 #include "program/help.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which hit group serves which geometry: every rank of the precedence, and lists of names.
 #include "program/hit_group_binding.h"
 

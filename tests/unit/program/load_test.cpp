@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finding and reading programs: folders, files of the lecture form, built-in programs and their short names.
 #include "program/load.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // New programs: templates, copies under a new name, and what createProgram refuses to overwrite.
 #include "program/new_program.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small valid program.toml, and functions that change it and check errors.
 #ifndef QUINTET_TESTS_UNIT_PROGRAM_SUPPORT_H
 #define QUINTET_TESTS_UNIT_PROGRAM_SUPPORT_H

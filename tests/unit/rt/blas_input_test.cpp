@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inactive primitives and primitive maps of BLAS builds, and packed instances.
 #include "rt/blas_input.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The layout of the shader binding table: examples, and the rules of the specification for random tables.
 #include "rt/sbt_layout.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spatial orders for drivers that halve the index range.
 #include "rt/spatial_order.h"
 

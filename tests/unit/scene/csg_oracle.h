@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Intersections of rays with analytic solids and CSG trees in double precision: the reference for tests of the shaders.
 // It shares no algorithm with them: a solid is the list of all its crossings with the infinite line, and an operation
 // merges two lists. Everything is in the object space of the primitive set; t refers to the direction, which is not

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests of the oracle: points between crossings agree with a point test, crossings of simple rays agree with closed
 // forms, normals point out of the solid.
 #include "scene/csg_oracle.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Matches messages by location and essential words, so that tests do not depend on whole sentences.
 #ifndef QUINTET_TESTS_ERROR_MATCHER_H
 #define QUINTET_TESTS_ERROR_MATCHER_H

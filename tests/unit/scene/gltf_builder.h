@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds small glTF files in tests: JSON and one buffer, as .glb, or as .gltf with a data URI.
 #ifndef QUINTET_TESTS_GLTF_BUILDER_H
 #define QUINTET_TESTS_GLTF_BUILDER_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loading of scene files of any format, in one step and in two.
 #include "scene/load.h"
 

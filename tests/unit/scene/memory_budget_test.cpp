@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The limit on the memory that a scene file requests.
 #include "scene/memory_budget.h"
 

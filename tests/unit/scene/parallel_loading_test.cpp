@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parallel steps of loading give the same results as on one core and as serial loops.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random transforms, solids and trees for tests, determined by the state of the generator.
 #ifndef QUINTET_TESTS_RANDOM_SOLIDS_H
 #define QUINTET_TESTS_RANDOM_SOLIDS_H

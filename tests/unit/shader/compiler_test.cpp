@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiles sources to SPIR-V, or to diagnostics that point into the right file.
 #include <thread>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reports files that are written in place, replaced by a rename, removed or recreated.
 #include "shader/file_watcher.h"
 

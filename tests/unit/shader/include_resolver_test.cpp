@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Includes: the order of the search, and diagnostics for included and missing files.
 #include "shader/include_resolver.h"
 #include "shader_test_support.h"

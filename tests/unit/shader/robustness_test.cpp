@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any text gives a result and diagnostics without a crash.
 #include <random>
 

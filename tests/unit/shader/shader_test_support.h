@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Temporary folders and helpers to compile small sources.
 #ifndef QUINTET_TESTS_UNIT_SHADER_SUPPORT_H
 #define QUINTET_TESTS_UNIT_SHADER_SUPPORT_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The SPIR-V disk cache: hits are identical, keys cover all inputs, corrupt entries are ignored.
 #include "shader/spirv_cache.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the table of built-ins by stage with the compiler, and checks the messages made from it.
 #include "shader/stage_builtins.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The workaround for built-ins that a nested trace overwrites: which loads it replaces, and that the module stays
 // valid. tests/gpu/shader shows that the device then computes what the specification requires.
 #include "spirv/copy_builtins.h"

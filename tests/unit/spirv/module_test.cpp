@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads compiled shaders, analyzes their data flow and types, and rejects malformed modules safely.
 #include "spirv/module.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Facts of a stage: arguments, accesses by member, control flow. Malformed modules are safe.
 #include "spirv/stage_facts.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q302, Q501 to Q506: arguments of traces and calls that select records of the shader binding table. Q605: ray flags.
 #include <fmt/format.h>
 

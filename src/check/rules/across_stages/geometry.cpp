@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q601 to Q604: hit groups and the geometry that uses them.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q201 to Q203: type and size of hit attributes.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q104: a payload member is read after a trace, but some shader that the trace can run does not write it. Q105: a
 // nested trace with the incoming payload overwrites a member that is read afterwards.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q101 to Q103: types, locations and qualifiers of payloads. Q301, Q303: types and locations of callable data.
 #include <fmt/format.h>
 

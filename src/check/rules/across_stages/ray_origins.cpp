@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q705: a ray with tmin 0 whose origin is a hit position without an offset.
 //
 // A hit position is recognized by its computation: origin + t * direction, with the t of the hit in a hit shader or

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q401, Q402: depth of nested traces and calls; the depth and the minimum stack size that the pipeline needs.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q903: intersection shaders that hit groups with different any-hit shaders share, on drivers that would run the
 // any-hit shader of the first group for all of them.
 #include <fmt/format.h>

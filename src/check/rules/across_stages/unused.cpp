@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q801: stages that no trace or call can reach. Q802: hit groups that match no geometry.
 #include <fmt/format.h>
 

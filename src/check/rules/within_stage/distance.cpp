@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q701: an intersection shader reports a t that does not depend on the length of the ray direction, because the
 // direction was normalized.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q901, Q902, Q904, Q905: valid code that drivers or the optimizer execute incorrectly (docs/design/quirks.md).
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q703: gl_InstanceID as an index or as the identity of an instance. Q704: descriptor arrays indexed by a value that
 // differs between invocations, without nonuniformEXT.
 #include "check/rules/rules.h"

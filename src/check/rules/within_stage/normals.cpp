@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Q702: a normal that is transformed to world space with gl_ObjectToWorldEXT, like a direction. Normals are
 // recognized by name: that of the member or variable that the vector was loaded from, or a name in the line of the
 // multiplication.

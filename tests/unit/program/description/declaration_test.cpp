@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Declarations of parameters and shader records in program.toml, and values of records.
 #include <gmock/gmock.h>
 

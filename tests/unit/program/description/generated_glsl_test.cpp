@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The GLSL that Quintet generates for a program: constants, the parameter block and the shader record.
 #include "program/description/generated_glsl.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parameters: the values that --set and JSON accept, the errors, and the bytes that shaders read.
 #include "program/description/parameter.h"
 

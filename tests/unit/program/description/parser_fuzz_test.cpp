@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program.toml is untrusted text: parseProgram returns a usable Program or throws one FileError with a line of the text.
 // Deterministic mutations of the built-in programs and of a text with every key.
 #include <gtest/gtest.h>

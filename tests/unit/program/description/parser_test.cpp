@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // program.toml: what the parser reads, and the line and key of every error.
 #include "program/description/parser.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stages of devices with driver defects. tests/gpu/program tests the images.
 #include "program/linked/device_stages.h"
 

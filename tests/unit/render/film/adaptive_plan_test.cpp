@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plan of adaptive sampling for films whose samples are known, and the cells of the next batch.
 #include "render/film/adaptive_plan.h"
 

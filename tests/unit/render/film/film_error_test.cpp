@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The error estimate of films whose samples are known.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Film files: contents are read back word for word, and all damage is detected and named.
 #include "render/film/film_file.h"
 

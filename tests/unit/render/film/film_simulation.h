@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films whose samples are known: renders gray pixels on the host, batch by batch.
 #ifndef QUINTET_TESTS_UNIT_RENDER_FILM_FILM_SIMULATION_H
 #define QUINTET_TESTS_UNIT_RENDER_FILM_FILM_SIMULATION_H

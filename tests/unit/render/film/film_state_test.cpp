@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Films on the host: sample counts, means and variances, and parts that merge to the same words as one film.
 #include <gtest/gtest.h>
 

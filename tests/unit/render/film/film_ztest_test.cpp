@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The statistical test of two films whose samples are known: what it accepts, what it rejects, and its error rate.
 #include <gtest/gtest.h>
 

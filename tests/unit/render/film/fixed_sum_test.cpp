@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // FixedSum on the host: exact sums in any order.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The alias table: its entries imply the stored probabilities, which equal the weights.
 #include "render/lights/alias_table.h"
 

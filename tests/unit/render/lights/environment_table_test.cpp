@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The environment table: the probability of each cell computed by hand.
 #include "render/lights/environment_table.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact quality of light sampling: the relative variance Σ E²/p / (Σ E)² - 1, where E is the irradiance of an emitter
 // at a receiver without occlusion, and p its probability. The optimal choice has variance 0.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surface areas of solids under transforms, against closed forms.
 #include "render/lights/light_emitters.h"
 

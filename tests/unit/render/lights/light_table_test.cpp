@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table of all lights: powers of each kind computed by hand, slots, instances, and textures.
 #include "render/lights/light_table.h"
 

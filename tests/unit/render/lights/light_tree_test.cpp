@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The light tree: each node bounds the lights below it, each light has one leaf, and builds are deterministic.
 #include "render/lights/light_tree.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera's matrices for other programs, as OpenEXR's own accessors and Imath apply them to points.
 #include "render/scene/camera.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Payload sizes of the path tracer: at most 64 bytes for all scenes. The sizes are those of the compiled shaders, for
 // each feature of scene_features.h alone.
 #include <gtest/gtest.h>

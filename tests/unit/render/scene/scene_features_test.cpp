@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The features of a scene are known before its images are decoded.
 #include "render/scene/scene_features.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tone curves at points computed by hand from their definitions, and properties that hold for all values.
 #include "render/tone_map/tone_map.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Interpolation between, before and after keyframes.
 #include "scene/animation/keyframes.h"
 

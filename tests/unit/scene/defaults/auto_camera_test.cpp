@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The automatic camera frames all bounds tightly and is always finite.
 #include "scene/defaults/auto_camera.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The default environment: neutral, brightest from above. The rule that chooses the environment of a scene.
 #include "scene/defaults/default_environment.h"
 

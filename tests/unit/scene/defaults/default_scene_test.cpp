@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The built-in scene is valid, faces outwards and is in front of its camera.
 #include "scene/defaults/default_scene.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Repairs of imported geometry.
 #include "scene/geometry/repair.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Generated tangent frames.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bounds checks and conversion of accessors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // KHR_draco_mesh_compression and EXT_meshopt_compression, with streams from the encoders of the libraries.
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // GLB headers and chunks, JSON syntax, extensions, buffers and URIs.
 #include <fmt/format.h>
 #include <gmock/gmock.h>

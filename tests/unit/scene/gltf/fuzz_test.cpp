@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Deterministic mutations of one file that uses all features. Every result loads or throws an Error. Most useful under
 // -DQUINTET_SANITIZE=address,undefined.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Materials, textures, samplers and images.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

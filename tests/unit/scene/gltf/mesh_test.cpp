@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Primitives: modes, attributes, repairs, morph targets and skins.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Node hierarchy, instances, cameras and lights.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sample models of Khronos and invalid files of the glTF validator. Skipped if the files are missing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bounds of solids and trees, order of operands, validation of primitive sets.
 #include "scene/model/procedural.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bounds, counts, validation and content hash of a scene.
 #include "scene/model/scene.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Classes of surfaces: alpha-tested, pane, shadow-tinting.
 #include "scene/model/surface_class.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Errors in scene files: one line with the file, the line, the key and the nearest name. Mutated files load or give
 // such an error, within a memory limit.
 #include <gmock/gmock.h>

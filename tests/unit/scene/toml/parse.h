@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Helpers of the tests of scene files.
 #ifndef QUINTET_TESTS_SCENE_TOML_PARSE_H
 #define QUINTET_TESTS_SCENE_TOML_PARSE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scene files: primitive sets, CSG trees, random and grid, instances.
 #include <gmock/gmock.h>
 

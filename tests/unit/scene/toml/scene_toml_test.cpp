@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scene files: materials, meshes, glTF files, lights, cameras and environment.
 #include "scene/toml/scene_toml.h"
 

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+# Precompiled headers: the headers that most sources include and that rarely change. They only save compile time. Sources
+# include what they use, and CI compiles every header alone (tests/headers.cmake).
+#
+# quintet_precompile(TARGET)        the standard library, fmt and glm
+# quintet_precompile(TARGET TESTS)  also GoogleTest and nlohmann-json
+option(QUINTET_PRECOMPILED "Precompile frequent headers" ON)
+
+set(QUINTET_PRECOMPILED_HEADERS
+  <algorithm> <array> <atomic> <cmath> <cstdint> <cstring> <filesystem> <functional> <map> <memory> <mutex> <optional> <set>
+  <span> <string> <string_view> <unordered_map> <utility> <variant> <vector>
+  <fmt/format.h> <fmt/ranges.h>
+  ${CMAKE_SOURCE_DIR}/src/base/math.h)
+
+# quintet_add_precompiled(NAME LINK target… HEADERS header…): a target that owns the precompiled headers of others.
+function(quintet_add_precompiled NAME)
+  cmake_parse_arguments(ARG "" "" "LINK;HEADERS" ${ARGN})
+  if(QUINTET_PRECOMPILED)
+    file(WRITE ${CMAKE_BINARY_DIR}/precompiled/${NAME}.cpp.new "// Owner of precompiled headers.\n")
+    file(COPY_FILE ${CMAKE_BINARY_DIR}/precompiled/${NAME}.cpp.new ${CMAKE_BINARY_DIR}/precompiled/${NAME}.cpp ONLY_IF_DIFFERENT)
+    add_library(${NAME} OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled/${NAME}.cpp)
+    target_link_libraries(${NAME} PRIVATE quintet_flags ${ARG_LINK})
+    target_precompile_headers(${NAME} PRIVATE ${QUINTET_PRECOMPILED_HEADERS} ${ARG_HEADERS})
+  endif()
+endfunction()
+
+function(quintet_precompile TARGET)
+  if(NOT QUINTET_PRECOMPILED)
+    return()
+  endif()
+  if(ARGN STREQUAL TESTS)
+    if(NOT TARGET quintet_test_precompiled)
+      quintet_add_precompiled(quintet_test_precompiled LINK fmt::fmt glm::glm GTest::gmock nlohmann_json::nlohmann_json
+        HEADERS <gmock/gmock.h> <gtest/gtest.h> <nlohmann/json.hpp>)
+    endif()
+    target_precompile_headers(${TARGET} REUSE_FROM quintet_test_precompiled)
+    # A precompiled header requires the same code model in all its users, executables and libraries.
+    set_target_properties(${TARGET} quintet_test_precompiled PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  else()
+    if(NOT TARGET quintet_precompiled)
+      quintet_add_precompiled(quintet_precompiled LINK fmt::fmt glm::glm)
+    endif()
+    target_precompile_headers(${TARGET} REUSE_FROM quintet_precompiled)
+  endif()
+endfunction()
