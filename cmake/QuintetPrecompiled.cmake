@@ -10,7 +10,7 @@ set(QUINTET_PRECOMPILED_HEADERS
   <algorithm> <array> <atomic> <cmath> <cstdint> <cstring> <filesystem> <functional> <map> <memory> <mutex> <optional> <set>
   <span> <string> <string_view> <unordered_map> <utility> <variant> <vector>
   <fmt/format.h> <fmt/ranges.h>
-  ${CMAKE_SOURCE_DIR}/src/base/math.h)
+  <base/math.h>)  # no absolute path: it would be part of the content, and ccache could not share it between clones
 
 # quintet_add_precompiled(NAME LINK target… HEADERS header…): a target that owns the precompiled headers of others.
 function(quintet_add_precompiled NAME)
@@ -20,6 +20,7 @@ function(quintet_add_precompiled NAME)
     file(COPY_FILE ${CMAKE_BINARY_DIR}/precompiled/${NAME}.cpp.new ${CMAKE_BINARY_DIR}/precompiled/${NAME}.cpp ONLY_IF_DIFFERENT)
     add_library(${NAME} OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/precompiled/${NAME}.cpp)
     target_link_libraries(${NAME} PRIVATE quintet_flags ${ARG_LINK})
+    target_include_directories(${NAME} PRIVATE ${CMAKE_SOURCE_DIR}/src)
     target_precompile_headers(${NAME} PRIVATE ${QUINTET_PRECOMPILED_HEADERS} ${ARG_HEADERS})
   endif()
 endfunction()

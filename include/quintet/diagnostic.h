@@ -14,11 +14,11 @@ enum class Severity { note, warning, error };
 
 struct Diagnostic {
   Severity severity = Severity::error;
-  std::string file;  // as the user knows it: a path, or "<quintet/bsdf/ggx.glsl>" for the embedded library
-  int line = 0;      // 1-based; 0: unknown
-  int column = 0;    // 1-based, in bytes; 0: unknown
-  std::string id;    // "GLSL" for the compiler's own, "Q101", … for the check's (docs/diagnostics)
-  std::string text;  // one sentence without a period
+  std::string file{};  // as the user knows it: a path, or "<quintet/bsdf/ggx.glsl>" for the embedded library
+  int line = 0;        // 1-based; 0: unknown
+  int column = 0;      // 1-based, in bytes; 0: unknown
+  std::string id{};    // "GLSL" for the compiler's own, "Q101", … for the check's (docs/diagnostics)
+  std::string text{};  // one sentence without a period
   // "file:line:column: error: text [id]"; unknown parts are left out.
   std::string format() const;
 };

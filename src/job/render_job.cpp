@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <future>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -151,7 +152,8 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   prepared->seconds.load = loaded.seconds;
   const scene::ImportSeconds import = loaded.scene.seconds;
   prepared->onDevice =
-      std::make_unique<render::DeviceScene>(engine_.context(), std::move(loaded.scene), loaded.environment.environment);
+      std::make_unique<render::DeviceScene>(engine_.context(), std::move(loaded.scene), loaded.environment.environment,
+                                            render::DeviceSceneOptions{.editable = job_.request.editable});
   prepared->seconds.build = building.seconds();
   const render::DeviceSceneStatistics& built = prepared->onDevice->statistics();
   prepared->seconds.stages = {{"document", import.document},
@@ -314,6 +316,7 @@ StartPoint RenderJob::startPoint(RenderLimits& limits, Observer& observer) {
 
 RenderResult RenderJob::run(const RenderLimits& limits, Observer& observer) {
   try {
+    applyEdits(observer);
     if (job_.accumulatesFrames()) return runFrames(limits, observer);
     const FrameRequest& frames = job_.request.frames;
     const bool several = frames.count.value_or(1) > 1;
@@ -473,6 +476,34 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
       lastPreview = clock.seconds();
     }
   }
+}
+
+RenderResult RenderJob::result(bool withError) const {
+  if (!renderer_) throw Error("a change of the scene failed; the next render repeats it");
+  RenderResult result = makeResult(start_.seconds, start_, withError);
+  if (job_.accumulatesFrames() && nextFrame_ > 0) result.provenance.frame = nextFrame_ - 1;
+  return result;
+}
+
+bool RenderJob::resume(const std::filesystem::path& file, Observer& observer) {
+  if (job_.accumulatesFrames())
+    throw UsageError(fmt::format("the program '{}' averages its samples itself, so checkpoints are not available",
+                                 job_.program.name));
+  applyEdits(observer);
+  restart();
+  CheckpointRequest request;
+  request.file = file;
+  request.resume = true;
+  RenderLimits limits;
+  limits.adaptive = job_.request.limits.adaptive;
+  if (job_.request.batches) limits.samples = std::numeric_limits<std::uint64_t>::max();  // startPoint() restricts it
+  start_ = startPoint(limits, observer);
+  const std::optional<StoredFilm> film =
+      Checkpoint(request).load(provenance_, renderer_->saveFilm(), start_, limits, observer);
+  if (!film) return false;
+  renderer_->restoreFilm(film->file.film);
+  start_ = resumePoint(*film, provenance_, file, start_, observer);
+  return true;
 }
 
 void RenderJob::outputsWritten(const RenderResult& result, Observer& observer) {

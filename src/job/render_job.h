@@ -4,7 +4,9 @@
 #ifndef QUINTET_JOB_RENDER_JOB_H
 #define QUINTET_JOB_RENDER_JOB_H
 
+#include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -54,6 +56,24 @@ class RenderJob {
   // long as the job. Throws FileError (checkpoint, film to overwrite), UsageError, gpu errors.
   RenderResult run(const RenderLimits& limits, Observer& observer);
 
+  // The state between two calls of run(), as run() returned it. With the error estimate only on request, because it takes
+  // time.
+  RenderResult result(bool withError = false) const;
+
+  // Edits between two calls of run(), for jobs with RenderRequest::editable. Each discards the samples so far and takes effect
+  // in the next run(). They throw UsageError, and then change nothing.
+  void setCamera(const CameraRequest& camera);
+  void setParameters(const std::vector<std::string>& assignments);       // replaces RenderRequest::assignments
+  void setTransform(std::size_t instance, const mat4& worldFromObject);  // of an instance without keyframes
+  // Rebuilds the scene on the device if lights, alpha tests, textures or shader definitions depend on the change.
+  void setMaterial(std::size_t index, const scene::Material& material);
+  void setFrame(float frame);  // of an animated scene; not for programs that accumulate, which count their frames
+  void restart();              // only discards the samples
+
+  // Replaces the film by the one in `file`, which belongs to this render. Returns false if the file does not exist. Throws
+  // FileError.
+  bool resume(const std::filesystem::path& file, Observer& observer);
+
   // Call one of them after the outputs of run() were written, or could not be written: the checkpoint is removed unless
   // it must stay (CheckpointRequest::keep, incomplete render), or saved so that no sample is lost.
   void outputsWritten(const RenderResult& result, Observer& observer);
@@ -74,6 +94,9 @@ class RenderJob {
   void link(program::CompiledProgram compiled, Observer& observer);
   Provenance makeProvenance() const;
 
+  scene::Scene& editedScene();  // a copy of the loaded scene, for edits
+  void applyEdits(Observer& observer);
+
   RenderResult runFilm(const RenderLimits& limits, Observer& observer);
   RenderResult runAnimation(const RenderLimits& limits, Observer& observer);
   RenderResult runFrames(const RenderLimits& limits, Observer& observer);
@@ -90,11 +113,15 @@ class RenderJob {
   std::unique_ptr<render::Renderer> renderer_;
   Provenance provenance_;  // without the facts that a result adds
   std::optional<Checkpoint> checkpoint_;
-  StartPoint start_;              // of the next run()
-  bool started_ = false;          // run() was called
-  std::uint32_t nextFrame_ = 0;   // of a program that accumulates
-  double linkedSeconds_ = 0;      // on clock_
-  double firstPixelSeconds_ = 0;  // on clock_; 0: no launch has ended
+  StartPoint start_;                            // of the next run()
+  bool started_ = false;                        // run() was called
+  std::uint32_t nextFrame_ = 0;                 // of a program that accumulates
+  std::shared_ptr<scene::Scene> editedScene_;   // with all edits; null before the first one
+  std::map<std::size_t, mat4> movedInstances_;  // edits that the device does not have yet
+  bool sceneOutdated_ = false;                  // edits require a new scene on the device
+  bool sceneEdited_ = false;                    // since the hash of the scene was computed
+  double linkedSeconds_ = 0;                    // on clock_
+  double firstPixelSeconds_ = 0;                // on clock_; 0: no launch has ended
 };
 
 }  // namespace quintet::job

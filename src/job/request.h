@@ -77,6 +77,7 @@ struct OutputNotes {
 struct RenderRequest {
   std::filesystem::path scene;                      // empty means the program's own scene, else the built-in one
   std::shared_ptr<const scene::Scene> loadedScene;  // instead of `scene`: one in host memory; may be null
+  bool editable = false;                            // keep what the edits of RenderJob require; needs `loadedScene`
   CameraRequest camera;
   EnvironmentRequest environment;
   uvec2 size{0};                         // pixels; a 0 is chosen by the camera's aspect ratio

@@ -22,6 +22,7 @@ struct GeometryFacts {
   bool tints = false;    // any-hit shaders multiply the transmittance (thin, blend): built with NO_DUPLICATE_ANY_HIT
   bool opaque() const { return !alpha && !thin; }  // built with the opaque flag: no any-hit shader runs
   bool procedural() const { return kind != GeometryKind::triangles; }
+  bool operator==(const GeometryFacts&) const = default;
 };
 
 // One instance of the TLAS with the geometries of its BLAS.
@@ -32,12 +33,14 @@ struct InstanceFacts {
   std::uint32_t mask = 0xFF;
   bool forceOpaque = false;
   bool forceNoOpaque = false;
+  bool operator==(const InstanceFacts&) const = default;
 };
 
 struct SceneFacts {
   std::string name;  // file, for messages
   std::vector<GeometryFacts> geometries;
   std::vector<InstanceFacts> instances;
+  bool operator==(const SceneFacts&) const = default;
 };
 
 }  // namespace quintet::program

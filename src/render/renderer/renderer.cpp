@@ -31,7 +31,8 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
               settings_.profile),
       table_(linked_.makeTable(scene.facts().geometries)),
       film_(context_, scene.set(), compiler, settings_.region, runnable_.description, settings_.outputs),
-      parameterTextures_(context_, scene.parameterSlots(), runnable_.description, settings_.parameters),
+      parameterTextures_(std::make_unique<ParameterTextures>(context_, scene.parameterSlots(), runnable_.description,
+                                                             settings_.parameters)),
       queue_(context_, settings_, statistics_) {
   statistics_.compileSeconds = runnable_.compiled.seconds;
   statistics_.pipelineSeconds = linked_.pipelineSeconds();
@@ -43,7 +44,7 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
                         linked_.recursionDepth(), program::missShaders(description).size());
   uploadFrame();
   parameterBuffer_ =
-      gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_.indices()), 0, "parameters");
+      gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_->indices()), 0, "parameters");
 }
 
 void Renderer::uploadFrame() {
@@ -195,6 +196,24 @@ void Renderer::restart() {
   statistics_.samples = 0;
   statistics_.batches = 0;
   nextBatch_ = 0;
+}
+
+void Renderer::setCamera(const scene::Camera& camera) {
+  settings_.camera = camera;
+  sceneChanged();
+}
+
+void Renderer::setParameters(const program::ParameterValues& values) {
+  restart();
+  parameterTextures_ =
+      std::make_unique<ParameterTextures>(context_, scene_.parameterSlots(), runnable_.description, values);
+  settings_.parameters = values;
+  parameterBuffer_ = gpu::makeBuffer(context_, values.pack(parameterTextures_->indices()), 0, "parameters");
+}
+
+void Renderer::sceneChanged() {
+  restart();
+  uploadFrame();
 }
 
 io::Image Renderer::image(std::size_t output) const {

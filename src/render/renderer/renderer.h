@@ -4,6 +4,7 @@
 #define QUINTET_RENDER_RENDERER_RENDERER_H
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -51,6 +52,13 @@ class Renderer {
   void restoreFilm(const FilmState& state);
   // Discards all samples or frames, for the next frame of an animation.
   void restart();
+
+  // Edits: each discards all samples. The scene's own changes (DeviceScene::setTransforms, setMaterial) require a call of
+  // sceneChanged() before the next batch, and finish() before the change.
+  void setCamera(const scene::Camera& camera);
+  // For the same program. Throws FileError for an image that cannot be read, and then changes nothing.
+  void setParameters(const program::ParameterValues& values);
+  void sceneChanged();
 
   // Waits for the launches in flight; statistics() and launches() then cover all of them. The functions that read the
   // film or its counters wait by themselves.
@@ -103,7 +111,7 @@ class Renderer {
   Film film_;
   gpu::Buffer frameBuffer_;
   gpu::Buffer tileBuffer_;  // tiles of the latest adaptive batch
-  ParameterTextures parameterTextures_;
+  std::unique_ptr<ParameterTextures> parameterTextures_;
   gpu::Buffer parameterBuffer_;
   std::optional<InstrumentBuffer> instrument_;
   // Mutable so that const functions can wait for launches, which changes no result.

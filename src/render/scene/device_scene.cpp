@@ -2,6 +2,7 @@
 #include "render/scene/device_scene.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "base/memory.h"
@@ -61,14 +62,30 @@ void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environme
   for (const scene::Instance& instance : scene.instances)
     worldFromObject.push_back(scene::worldFromObjectAt(instance, 0.0f));
   LightTable table = builder.build(worldFromObject);
-  table.environment = std::move(builder.environment());
-  if (builder.hasMovingLights()) {
-    padTables(table);
+  const EnvironmentTable environmentTable = std::move(builder.environment());
+  firstLightSlots_ = table.firstSlots;
+  if (builder.hasMovingLights() || options_.editable) {
     builder.copyGeometry();
-    movingLights_ = std::move(builder);
-  } else if (table.hasNoPower()) {
-    table.clear();
+    lightBuilder_ = std::move(builder);
   }
+  uploadLightTable(std::move(table));
+  if (environmentTable.width > 0) {
+    environmentTable_ = gpu::makeBufferOf(context_, environmentTable.entries, 0, "environment table");
+    frame_.environment.table = environmentTable_.address();
+    frame_.environment.width = environmentTable.width;
+    frame_.environment.height = environmentTable.height;
+  }
+  statistics_.lightCount = frame_.lightCount;
+
+  albedoTable_ = gpu::makeBufferOf(context_, albedoTables(), 0, "albedo tables");
+  frame_.albedoTables = albedoTable_.address();
+}
+
+void DeviceScene::uploadLightTable(LightTable table) {
+  if (lightBuilder_ && lightBuilder_->hasMovingLights())
+    padTables(table);
+  else if (table.hasNoPower())
+    table.clear();
   lights_ = gpu::makeBufferOf(context_, table.lights, 0, "lights");
   lightTable_ = gpu::makeBufferOf(context_, table.entries, 0, "light table");
   lightNodes_ = gpu::makeBufferOf(context_, table.nodes, 0, "light nodes");
@@ -79,17 +96,6 @@ void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environme
   frame_.lightSlots = lightSlots_.address();
   frame_.lightCount = static_cast<std::uint32_t>(table.entries.size());
   frame_.environmentLight = table.environmentLight;
-  if (table.environment.width > 0) {
-    environmentTable_ = gpu::makeBufferOf(context_, table.environment.entries, 0, "environment table");
-    frame_.environment.table = environmentTable_.address();
-    frame_.environment.width = table.environment.width;
-    frame_.environment.height = table.environment.height;
-  }
-  statistics_.lightCount = frame_.lightCount;
-  firstLightSlots_ = table.firstSlots;
-
-  albedoTable_ = gpu::makeBufferOf(context_, albedoTables(), 0, "albedo tables");
-  frame_.albedoTables = albedoTable_.address();
 }
 
 void DeviceScene::uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader) {
@@ -187,12 +193,32 @@ void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder,
 }
 
 void DeviceScene::setFrame(float frame) {
-  if (!topLevel_->setFrame(frame) || !movingLights_) return;
-  LightTable table = movingLights_->build(topLevel_->worldFromObject());
+  if (!topLevel_->setFrame(frame) || !lightBuilder_ || !lightBuilder_->hasMovingLights()) return;
+  LightTable table = lightBuilder_->build(topLevel_->worldFromObject());
   padTables(table);
   lights_.uploadAs(std::span<const shared::LightData>(table.lights));
   lightTable_.uploadAs(std::span<const shared::AliasEntry>(table.entries));
   lightNodes_.uploadAs(std::span<const shared::LightNode>(table.nodes));
+}
+
+void DeviceScene::setTransforms(std::span<const InstanceTransform> transforms) {
+  assert(options_.editable);
+  for (const InstanceTransform& transform : transforms)
+    topLevel_->setTransform(transform.instance, transform.worldFromObject);
+  topLevel_->update();
+  uploadLightTable(lightBuilder_->build(topLevel_->worldFromObject()));
+}
+
+bool DeviceScene::setMaterial(std::size_t index, const scene::Material& material) {
+  bool complete = true;
+  const TextureIndex textureIndex = [&](int texture, bool sRgb) {
+    const std::optional<std::uint32_t> found = textures_->find(texture, sRgb);
+    complete = complete && found;
+    return found.value_or(shared::kNoTexture);
+  };
+  const shared::MaterialData data = makeMaterial(material, textureIndex);
+  if (complete) materialTable_.upload(std::as_bytes(std::span(&data, 1)), index * sizeof(data));
+  return complete;
 }
 
 }  // namespace quintet::render

@@ -4,6 +4,7 @@
 #ifndef QUINTET_RENDER_SCENE_DEVICE_SCENE_H
 #define QUINTET_RENDER_SCENE_DEVICE_SCENE_H
 
+#include <cstddef>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -25,6 +26,12 @@ namespace quintet::render {
 
 struct DeviceSceneOptions {
   bool keepInputOrder = false;  // for benchmarks: do not sort primitives and instances spatially
+  bool editable = false;        // keep what DeviceScene::setTransforms requires: the emissive geometry in host memory
+};
+
+struct InstanceTransform {
+  std::size_t instance = 0;    // index in scene.instances
+  mat4 worldFromObject{1.0f};  // affine, invertible
 };
 
 struct DeviceSceneStatistics {
@@ -69,10 +76,18 @@ class DeviceScene {
   // and the light tables if a moving instance emits. Addresses do not change, so frameTemplate() stays valid. Blocks;
   // no launch can be under way. The scene starts at frame 0.
   void setFrame(float frame);
+  // Moves instances without keyframes: updates the instance table, the TLAS and the light tables. frameTemplate() can
+  // change. Requires DeviceSceneOptions::editable. Blocks; no launch can be under way.
+  void setTransforms(std::span<const InstanceTransform> transforms);
+  // Replaces a row of the material table. Returns false, and changes nothing, if the material uses a texture that is not
+  // on the device. The caller makes sure that everything else that depends on materials stays the same: features, facts and
+  // lights. Blocks; no launch can be under way.
+  bool setMaterial(std::size_t index, const scene::Material& material);
   bool animated() const { return topLevel_->animated(); }  // an instance has keyframes
 
  private:
   void uploadLights(const scene::Scene& scene, const scene::Environment& environment);
+  void uploadLightTable(LightTable table);
   void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
   // Returns the geometries of a mesh. The boxes of primitive sets are stored in `boxes`, which must live until the
   // build ends.
@@ -90,7 +105,7 @@ class DeviceScene {
   gpu::Buffer geometryTable_, materialTable_, environmentTable_, albedoTable_;
   gpu::Buffer lights_, lightTable_, lightNodes_, lightSlots_;
   std::vector<std::uint32_t> firstLightSlots_;     // per instance
-  std::optional<LightTableBuilder> movingLights_;  // only if an instance with keyframes has lights
+  std::optional<LightTableBuilder> lightBuilder_;  // only if an instance with keyframes has lights, or for edits
   std::vector<rt::Blas> blas_;                     // one per mesh that an instance uses
   std::vector<int> blasOfMesh_;                    // index in blas_; -1 if no instance uses the mesh
   std::uint64_t bottomLevelBytes_ = 0;

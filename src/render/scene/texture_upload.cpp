@@ -69,6 +69,11 @@ void TextureUpload::freeImage(int image, bool sRgb) {
   std::vector<std::byte>().swap(scene_.images[static_cast<std::size_t>(image)].image.data);
 }
 
+std::optional<std::uint32_t> TextureUpload::find(int texture, bool sRgb) const {
+  const auto known = indexByTexture_.find({texture, sRgb});
+  return known == indexByTexture_.end() ? std::nullopt : std::optional(known->second);
+}
+
 std::uint32_t TextureUpload::index(int texture, bool sRgb) {
   const auto known = indexByTexture_.find({texture, sRgb});
   if (known != indexByTexture_.end()) return known->second;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -36,6 +37,8 @@ class TextureUpload {
   void expect(int texture, bool sRgb);
   // Returns the bindless index of a texture of the scene; uploads its image on the first call.
   std::uint32_t index(int texture, bool sRgb);
+  // Returns the index if index() was called for this texture and encoding before.
+  std::optional<std::uint32_t> find(int texture, bool sRgb) const;
   // Uploads the environment, which is repeated in u and clamped in v. Returns its bindless index.
   std::uint32_t addEnvironment(const io::Image& image);
 

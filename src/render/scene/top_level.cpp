@@ -8,7 +8,7 @@
 namespace quintet::render {
 namespace {
 
-void setTransform(shared::InstanceData& data, const mat4& worldFromObject) {
+void storeTransform(shared::InstanceData& data, const mat4& worldFromObject) {
   const mat4 forward = glm::transpose(worldFromObject);
   const mat4 backward = glm::transpose(glm::inverse(worldFromObject));
   for (int i = 0; i < 3; ++i) {
@@ -35,7 +35,7 @@ TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<c
     data.firstLightSlot = references[i].firstLightSlot;
     data.customIndex = instance.customIndex;
     data.flags = (instance.flags & scene::kInstanceForceOpaque) != 0 ? shared::kInstanceOpaque : 0;
-    setTransform(data, worldFromObject);
+    storeTransform(data, worldFromObject);
     rt::InstanceInput& input = inputs_.emplace_back();
     input.worldFromObject = worldFromObject;
     input.blas = references[i].blas;
@@ -61,15 +61,26 @@ bool TopLevel::setFrame(float frame) {
   frame_ = frame;
   std::vector<shared::InstanceData> before = data_;
   for (std::size_t k = 0; k < moving_.size(); ++k) {
-    setTransform(before[movingIndex_[k]], scene::worldFromObjectAt(moving_[k], std::max(0.0f, frame - 1.0f)));
+    storeTransform(before[movingIndex_[k]], scene::worldFromObjectAt(moving_[k], std::max(0.0f, frame - 1.0f)));
     const mat4 worldFromObject = scene::worldFromObjectAt(moving_[k], frame);
-    setTransform(data_[movingIndex_[k]], worldFromObject);
+    storeTransform(data_[movingIndex_[k]], worldFromObject);
     inputs_[movingIndex_[k]].worldFromObject = worldFromObject;
   }
   table_.upload(std::as_bytes(std::span(data_)));
   previousTable_.upload(std::as_bytes(std::span(before)));
   if (tlas_) build();
   return true;
+}
+
+void TopLevel::setTransform(std::size_t instance, const mat4& worldFromObject) {
+  storeTransform(data_[instance], worldFromObject);
+  inputs_[instance].worldFromObject = worldFromObject;
+}
+
+void TopLevel::update() {
+  table_.upload(std::as_bytes(std::span(data_)));
+  if (animated()) previousTable_.upload(std::as_bytes(std::span(data_)));
+  if (tlas_) build();
 }
 
 std::vector<mat4> TopLevel::worldFromObject() const {

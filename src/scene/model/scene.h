@@ -45,6 +45,7 @@ struct TextureUse {
   vec2 scale{1.0f};
   float rotation = 0.0f;  // radians; direction as in KHR_texture_transform
   bool used() const { return texture != kNone; }
+  bool operator==(const TextureUse&) const = default;
 };
 
 enum class AlphaMode : std::uint32_t { opaque, mask, blend };

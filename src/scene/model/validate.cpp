@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/error.h"
 
@@ -133,6 +135,25 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
       fail("{}: texture {} of {}", name, use->texture, scene.textures.size());
     if (!inRange(use->uvSet, kMaxUvSets)) fail("{}: texture coordinate set {} of {}", name, use->uvSet, kMaxUvSets);
   }
+  const auto checkRange = [&](float value, float min, float max, const char* property) {
+    if (!(value >= min && value <= max)) fail("{}.{}: {} is not in [{}, {}]", name, property, value, min, max);
+  };
+  const auto checkUnit = [&](float value, const char* property) { checkRange(value, 0.0f, 1.0f, property); };
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  for (int i = 0; i < 4; ++i) checkUnit(material.baseColor[i], "baseColor");
+  checkUnit(material.metallic, "metallic");
+  checkUnit(material.roughness, "roughness");
+  checkUnit(material.transmission, "transmission");
+  checkUnit(material.specular, "specular");
+  checkUnit(material.clearcoat, "clearcoat");
+  checkUnit(material.clearcoatRoughness, "clearcoatRoughness");
+  for (int i = 0; i < 3; ++i) {
+    checkRange(material.emissive[i], 0.0f, kLargest, "emissive");
+    checkRange(material.specularColor[i], 0.0f, kLargest, "specularColor");
+    checkUnit(material.attenuationColor[i], "attenuationColor");
+  }
+  checkRange(material.thickness, 0.0f, kLargest, "thickness");
+  if (material.ior != 0.0f) checkRange(material.ior, 1.0f, kLargest, "ior");
   if (!(material.attenuationDistance > 0.0f)) fail("{}.attenuationDistance: {}", name, material.attenuationDistance);
 }
 
@@ -144,25 +165,47 @@ void checkImage(const io::Image& image, const std::string& name) {
 
 }  // namespace
 
-void validate(const Scene& scene) {
-  for (std::size_t i = 0; i < scene.meshes.size(); ++i) checkMesh(scene, scene.meshes[i], fmt::format("meshes[{}]", i));
-  for (std::size_t i = 0; i < scene.instances.size(); ++i)
-    checkInstance(scene, scene.instances[i], fmt::format("instances[{}]", i));
-  for (std::size_t i = 0; i < scene.materials.size(); ++i)
-    checkMaterial(scene, scene.materials[i], fmt::format("materials[{}]", i));
-  for (std::size_t i = 0; i < scene.textures.size(); ++i)
-    if (!inRange(scene.textures[i].image, scene.images.size()))
-      fail("textures[{}].image: {} of {}", i, scene.textures[i].image, scene.images.size());
-  for (std::size_t i = 0; i < scene.images.size(); ++i) checkImage(scene.images[i].image, fmt::format("images[{}]", i));
-  for (std::size_t i = 0; i < scene.cameras.size(); ++i)
-    if (!isFinite(scene.cameras[i].worldFromCamera)) fail("cameras[{}].worldFromCamera: not finite", i);
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    const Light& light = scene.lights[i];
-    if (!quintet::isFinite(light.intensity) || !quintet::isFinite(light.position) ||
-        !quintet::isFinite(light.direction))
-      fail("lights[{}]: not finite", i);
-  }
+void validateMesh(const Scene& scene, std::size_t index) {
+  checkMesh(scene, scene.meshes[index], fmt::format("meshes[{}]", index));
+}
+
+void validateInstance(const Scene& scene, std::size_t index) {
+  checkInstance(scene, scene.instances[index], fmt::format("instances[{}]", index));
+}
+
+void validateMaterial(const Scene& scene, std::size_t index) {
+  checkMaterial(scene, scene.materials[index], fmt::format("materials[{}]", index));
+}
+
+void validateTexture(const Scene& scene, std::size_t index) {
+  const int image = scene.textures[index].image;
+  if (!inRange(image, scene.images.size())) fail("textures[{}].image: {} of {}", index, image, scene.images.size());
+  checkImage(scene.images[static_cast<std::size_t>(image)].image, fmt::format("images[{}]", image));
+}
+
+void validateCamera(const Scene& scene, std::size_t index) {
+  if (!isFinite(scene.cameras[index].worldFromCamera)) fail("cameras[{}].worldFromCamera: not finite", index);
+}
+
+void validateLight(const Scene& scene, std::size_t index) {
+  const Light& light = scene.lights[index];
+  if (!quintet::isFinite(light.intensity) || !quintet::isFinite(light.position) || !quintet::isFinite(light.direction))
+    fail("lights[{}]: not finite", index);
+}
+
+void validateEnvironment(const Scene& scene) {
   if (!scene.environment.image.empty()) checkImage(scene.environment.image, "environment.image");
+}
+
+void validate(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) validateMesh(scene, i);
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) validateInstance(scene, i);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) validateMaterial(scene, i);
+  for (std::size_t i = 0; i < scene.images.size(); ++i) checkImage(scene.images[i].image, fmt::format("images[{}]", i));
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) validateTexture(scene, i);
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) validateCamera(scene, i);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) validateLight(scene, i);
+  validateEnvironment(scene);
 }
 
 }  // namespace quintet::scene

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Vulkan devices of the machine, and the one that renders.
+#ifndef QUINTET_DEVICE_H
+#define QUINTET_DEVICE_H
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <quintet/error.h>
+
+namespace quintet {
+
+struct DeviceInfo {
+  std::uint32_t index = 0;        // for DeviceOptions::choice
+  std::string name{};             // "NVIDIA H200"
+  std::string driver{};           // name, version and details: "lavapipe 25.0.7 (LLVM 15.0.6)"
+  std::string uuid{};             // 32 hexadecimal digits
+  std::string kind{};             // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
+  std::uint64_t memoryBytes = 0;  // of the largest device-local heap
+  std::uint32_t maxRecursionDepth = 0;
+  std::string unusableReason{};  // "no VK_KHR_ray_tracing_pipeline"; empty if Quintet can use the device
+  bool usable() const { return unusableReason.empty(); }
+};
+
+// All devices of the machine, usable or not, GPUs before CPUs; empty without a Vulkan loader or driver.
+std::vector<DeviceInfo> devices();
+
+struct DeviceOptions {
+  // Index, or part of the name ("h200", "lavapipe", "cpu"). Empty means $QUINTET_DEVICE, else the first usable device.
+  std::string choice{};
+  std::filesystem::path cacheFolder{};                  // for compiled shaders and pipelines; empty disables the caches
+  std::function<void(const std::string&)> onWarning{};  // of the driver; called from any thread; may be empty
+};
+
+// An open device. It must outlive the renderers that use it.
+class Device {
+ public:
+  // Throws Error if no device can be used; the message gives the reason for each one.
+  explicit Device(const DeviceOptions& options = {});
+  Device(Device&&) noexcept;
+  Device& operator=(Device&&) noexcept;
+  ~Device();
+  DeviceInfo info() const;
+  std::string name() const;    // info().name
+  std::string driver() const;  // info().driver
+
+ private:
+  friend class Renderer;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace quintet
+#endif

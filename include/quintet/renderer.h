@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renders a scene with a program: to a number of samples, a time or an error, with progress and edits between renders.
+#ifndef QUINTET_RENDERER_H
+#define QUINTET_RENDERER_H
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <quintet/device.h>
+#include <quintet/film.h>
+#include <quintet/program.h>
+#include <quintet/scene.h>
+
+namespace quintet {
+
+// A rectangle of pixels, measured from the top left corner.
+struct Region {
+  std::uint32_t x = 0, y = 0, width = 0, height = 0;
+};
+
+// Batches of 4 samples per pixel, both ends included, starting at 0.
+struct Batches {
+  std::uint64_t first = 0, last = 0;
+};
+
+struct Settings {
+  std::uint32_t width = 1280;  // pixels, [1, 65536]
+  std::uint32_t height = 720;
+  std::optional<Region> region{};  // render only this part of the image
+  std::uint32_t seed = 0;          // of the random number generator
+  std::optional<Camera> camera{};  // default: the scene's first camera, else one that shows the whole scene
+  std::string cameraName{};        // or a camera of the scene, by name or index
+  bool transparent = false;        // alpha 0 where a camera ray leaves the scene, instead of the environment
+  std::vector<std::pair<std::string, std::string>> parameters{};  // name, value as on the command line ("1,0.5,0")
+  std::vector<std::string> outputs{};  // optional outputs (AOVs) to render, by name; "all" renders every one
+  bool adaptive = false;             // distribute samples by the error of each tile; only for programs that support it
+  std::optional<Batches> batches{};  // render this part of a render; Film::merge() joins parts
+  // Number of samples for which the sampler distributes its points best; 0 means after each power of two. It decides the
+  // values of samples. `quintet render --spp N` uses N.
+  std::uint32_t plannedSamples = 0;
+};
+
+// A render stops at the first limit that is reached. At least one must be set, unless the progress function stops it.
+struct Limits {
+  std::optional<std::uint64_t>
+      samples{};  // in total, per pixel; an average if adaptive. For a program that accumulates: frames
+  std::optional<double> seconds{};  // wall clock of this and earlier calls since the last edit
+  std::optional<double> error{};    // relative, with 95 % confidence: docs/cli.md; > 0
+};
+
+struct Progress {
+  double samples = 0;   // per pixel, or frames, with the finished fraction of the current batch
+  double seconds = 0;   // wall clock of rendering
+  double fraction = 0;  // of the limit that is reached first, [0,1]; 0 if unknown
+  double secondsLeft = std::numeric_limits<double>::infinity();  // infinity if unknown
+  double raysPerSecond = 0;                                      // 0 if unknown
+  std::optional<double> error{};  // relative error, if it is estimated; infinity if it is unknown yet
+};
+// Called several times per second from the thread that calls render(). Returning false stops after the current batch.
+using ProgressFunction = std::function<bool(const Progress&)>;
+
+enum class StopReason { samples, time, error, canceled };
+
+struct RenderReport {
+  StopReason reason = StopReason::samples;
+  double samples = 0;                // per pixel, or frames, in total
+  double seconds = 0;                // wall clock of rendering since the last edit
+  std::uint64_t rays = 0;            // since the last edit
+  std::uint64_t droppedSamples = 0;  // not finite and therefore not in the image
+  std::optional<double> error{};     // relative error of the image; empty if it is unknown
+  std::vector<std::string> warnings{};
+};
+
+// Renders a scene with a program. Use an object from one thread at a time; renderers of different devices can run in
+// parallel.
+class Renderer {
+ public:
+  // Uploads the scene, then compiles, checks and links the program. `device` must outlive the renderer; later changes of
+  // `scene` have no effect. Throws ProgramError, UsageError, FileError, MemoryError, Error.
+  Renderer(Device& device, const Scene& scene, const Program& program, const Settings& settings = {});
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+  ~Renderer();
+
+  // Renders until a limit is reached or `progress` returns false. Another call with higher limits continues. Throws
+  // UsageError, Error (device lost, launch hung).
+  RenderReport render(const Limits& limits, const ProgressFunction& progress = {});
+  // Adds `count` samples per pixel, or frames for a program that accumulates; multiples of 4 are fastest.
+  RenderReport render(std::uint32_t count);
+
+  std::uint64_t sampleCount() const;                  // per pixel, or frames, so far
+  std::vector<Diagnostic> diagnostics() const;        // warnings of the check of the program
+  Image image(const std::string& output = {}) const;  // film().image(output) without copying the rest
+  Film film() const;                                  // everything so far, copied to host memory
+
+  // Edits. Each discards the samples so far; they take effect in the next render(). A change of camera, parameters or
+  // transforms keeps the pipeline and the bottom-level acceleration structures. A change of a material also rebuilds the
+  // scene on the device if it changes emission, alpha mode, textures, or which features the materials use.
+  // They throw UsageError for unknown names, indices out of range and invalid values, and then change nothing.
+  void setCamera(const Camera& camera);
+  void setParameter(const std::string& name, const std::string& value);
+  void setTransform(int instance, const Transform& worldFromObject);  // of an instance without keyframes
+  void setMaterial(int index, const Material& material);
+  void setFrame(float frame);  // of the animation; instances with keyframes move. Not for programs that accumulate
+  void restart();              // discards the samples so far
+
+  // Writes the film to `file` (.qfilm) in one step, and continues from such a file. resume() returns false if the file does
+  // not exist. Throws FileError if the file belongs to a different render or is damaged. Not for programs that accumulate.
+  void saveCheckpoint(const std::filesystem::path& file) const;
+  bool resume(const std::filesystem::path& file);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace quintet
+#endif

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes: from files, or built from meshes, materials, textures, instances, lights and cameras in memory.
+//
+// Units are meters; the frame is right-handed with y up. Radiometric values use linear Rec. 709 primaries. Objects are
+// referred to by the index that the function that added them returned.
+#ifndef QUINTET_SCENE_H
+#define QUINTET_SCENE_H
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <quintet/diagnostic.h>
+#include <quintet/error.h>
+#include <quintet/types.h>
+
+namespace quintet {
+
+class Program;
+
+enum class Wrap { repeat, mirroredRepeat, clampToEdge };
+enum class Filter { linear, nearest };
+
+// Pixels of an image in memory: rows from the top, interleaved, width · height · channels values. Integers are unsigned
+// normalized.
+using PixelSpan = std::variant<std::span<const std::uint8_t>, std::span<const std::uint16_t>, std::span<const float>>;
+
+struct Texture {
+  std::string name{};
+  std::uint32_t width = 0;     // pixels
+  std::uint32_t height = 0;    // pixels
+  std::uint32_t channels = 4;  // 1 gray, 2 gray and alpha, 3 RGB, 4 RGBA with straight alpha
+  PixelSpan pixels{};          // copied by addTexture. Integer colors are sRGB-encoded; floats are linear
+  Wrap wrapU = Wrap::repeat;
+  Wrap wrapV = Wrap::repeat;
+  Filter filter = Filter::linear;
+};
+
+// One use of a texture by a material. Texture coordinates are transformed as in KHR_texture_transform.
+struct TextureUse {
+  int texture = -1;  // index of addTexture(); -1 means none
+  int uvSet = 0;     // 0 or 1: Triangles::uv0 or uv1
+  Float2 offset{0, 0};
+  Float2 scale{1, 1};
+  float rotation = 0;  // radians
+  bool operator==(const TextureUse&) const = default;
+};
+
+enum class AlphaMode { opaque, mask, blend };
+
+// The metallic-roughness material of glTF 2.0 with its extensions. Factors multiply the value of the texture. Textures of
+// base color, emission and specular color are sRGB-encoded unless they are floats; all others are linear.
+struct Material {
+  std::string name{};
+  Float4 baseColor{1, 1, 1, 1};           // linear, [0,1]; alpha is coverage
+  TextureUse baseColorTexture{};          // rgb: color, a: alpha
+  float metallic = 0;                     // [0,1]; unlike glTF, the default is a dielectric
+  float roughness = 1;                    // perceptual, [0,1]
+  TextureUse metallicRoughnessTexture{};  // g: roughness, b: metallic
+  TextureUse normalTexture{};             // tangent space, y up
+  float normalScale = 1;
+  Float3 emissive{0, 0, 0};  // radiance in W/(sr·m²), >= 0
+  TextureUse emissiveTexture{};
+  AlphaMode alphaMode = AlphaMode::opaque;
+  float alphaCutoff = 0.5f;
+  bool doubleSided = false;
+  bool unlit = false;                // the base color is the outgoing radiance
+  float ior = 1.5f;                  // index of refraction, >= 1
+  float transmission = 0;            // [0,1]
+  TextureUse transmissionTexture{};  // r
+  float thickness = 0;               // meters; 0 means thin-walled, above 0 a closed solid
+  float attenuationDistance = std::numeric_limits<float>::infinity();  // meters, > 0
+  Float3 attenuationColor{1, 1, 1};        // color of white light after attenuationDistance, (0,1]
+  float specular = 1;                      // [0,1]
+  TextureUse specularTexture{};            // a
+  Float3 specularColor{1, 1, 1};           // >= 0, tint of the reflectance at normal incidence
+  TextureUse specularColorTexture{};       // rgb
+  float clearcoat = 0;                     // [0,1]
+  TextureUse clearcoatTexture{};           // r
+  float clearcoatRoughness = 0;            // [0,1]
+  TextureUse clearcoatRoughnessTexture{};  // g
+  TextureUse clearcoatNormalTexture{};
+  float clearcoatNormalScale = 1;
+  bool operator==(const Material&) const = default;
+};
+
+// Triangles with one material. The spans are read by addMesh() and can be freed afterwards. Every attribute has
+// positions.size() elements or is empty.
+struct Triangles {
+  std::span<const Float3> positions{};  // object space
+  std::span<const UInt3>
+      indices{};  // counter-clockwise seen from the front; empty: every three vertices are a triangle
+  std::span<const Float3> normals{};     // unit; empty means flat shading
+  std::span<const Float4> tangents{};    // xyz unit, w = ±1; bitangent = w · cross(normal, tangent); empty: computed
+  std::span<const Float2> uv0{}, uv1{};  // texture coordinates; v points down
+  std::span<const Float4> colors{};      // linear RGBA, multiplies the base color
+  int material = -1;                     // index of addMaterial(); -1 means the default material
+};
+
+// Transform of an instance at a frame. Translation and scale are interpolated linearly, rotation spherically.
+struct Keyframe {
+  float frame = 0;
+  Float3 translation{0, 0, 0};
+  Float4 rotation{0, 0, 0, 1};  // unit quaternion x, y, z, w
+  Float3 scale{1, 1, 1};
+};
+
+struct Instance {
+  int mesh = -1;                // index of addMesh() or addBoxes()
+  Transform worldFromObject{};  // invertible; can mirror
+  std::string name{};
+  std::uint32_t mask = 0xFF;          // 8 bits, ANDed with the cull mask of a ray
+  std::uint32_t customIndex = 0;      // 24 bits, for the program
+  std::vector<Keyframe> keyframes{};  // ascending frames; if not empty, they replace worldFromObject
+};
+
+enum class LightType { point, spot, directional };
+
+struct Light {
+  LightType type = LightType::point;
+  Float3 intensity{1, 1, 1};   // with the color; point and spot: W/sr, directional: W/m²
+  Float3 position{0, 0, 0};    // world space; not used by directional lights
+  Float3 direction{0, -1, 0};  // world space, in which the light travels, any length but 0; not used by point lights
+  float innerConeAngle = 0;    // radians from the axis, spot only
+  float outerConeAngle = 0.785398163f;  // radians from the axis, (innerConeAngle, pi/2], spot only
+  std::string name{};
+};
+
+struct Camera {
+  Float3 lookFrom{0, 0, 5};     // world space
+  Float3 lookAt{0, 0, 0};       // world space; also the point in focus
+  Float3 up{0, 1, 0};           // world space, any length but 0
+  float verticalFov = 0.7854f;  // radians, (0, pi)
+  float apertureRadius = 0;     // meters; 0 is a pinhole camera
+  bool operator==(const Camera&) const = default;
+};
+
+// Light from all directions, as an equirectangular image or a constant. u = 0.5 is +x, v = 0 is +y (up).
+struct Environment {
+  Float3 radiance{0, 0, 0};  // constant, W/(sr·m²), >= 0; used if `pixels` is empty
+  std::uint32_t width = 0;   // pixels
+  std::uint32_t height = 0;
+  std::span<const Float3> pixels{};  // linear radiance, rows from the top; copied by setEnvironment
+  float intensity = 1;               // factor
+  float rotation = 0;                // radians about +y, counter-clockwise seen from above
+};
+
+// A scene in host memory: a value. Copies share their data until one of them changes. Functions that add objects throw
+// UsageError with the name of the object for indices out of range, attributes of the wrong length, values that are not
+// finite, and transforms that are not invertible; the scene is then unchanged. Use an object from one thread at a time;
+// copies can be used from different threads.
+class Scene {
+ public:
+  Scene();  // empty
+  // Reads glTF (.gltf, .glb) or .scene.toml. Throws FileError, MemoryError.
+  static Scene load(const std::filesystem::path& file);
+  // Reads a scene in the format of .scene.toml. `folder` is where it looks for files that the text names. Throws FileError
+  // with the line, MemoryError.
+  static Scene fromToml(std::string_view text, const std::filesystem::path& folder = ".");
+  // Returns the program's own scene, else a small built-in one with geometry that its hit groups support.
+  static Scene of(const Program& program);
+
+  // Each returns the index of the new object.
+  int addTexture(const Texture& texture);
+  int addTexture(const std::filesystem::path& file);  // PNG, JPEG, WebP, HDR or OpenEXR; throws FileError
+  int addMaterial(const Material& material);
+  int addMesh(const Triangles& triangles, const std::string& name = {});
+  int addMesh(std::span<const Triangles> geometries, const std::string& name = {});  // one mesh with several materials
+  // Boxes in object space for the intersection shader of a program. Hit groups are bound to them by `name`.
+  int addBoxes(std::span<const Bounds> boxes, int material = -1, const std::string& name = {});
+  int addInstance(const Instance& instance);
+  int addLight(const Light& light);
+  int addCamera(const Camera& camera, const std::string& name = {});
+  void setEnvironment(const Environment& environment);
+  void setEnvironment(const std::filesystem::path& file);  // an equirectangular image; throws FileError
+  // The renderer adds the default environment to a scene without lights unless an environment is set; black counts.
+
+  void setMaterial(int index, const Material& material);
+  void setTransform(int instance, const Transform& worldFromObject);
+
+  std::string name() const;  // of the file; empty for a scene from memory
+  std::size_t meshCount() const;
+  std::size_t materialCount() const;
+  std::size_t instanceCount() const;
+  std::size_t lightCount() const;
+  std::size_t cameraCount() const;
+  Material material(int index) const;                            // throws UsageError
+  Transform transform(int instance) const;                       // at frame 0; throws UsageError
+  std::optional<int> findInstance(std::string_view name) const;  // the first with this name
+  std::optional<int> findMaterial(std::string_view name) const;
+  Bounds bounds() const;  // world space; empty for a scene without instances
+
+ private:
+  friend class Renderer;
+  friend std::vector<Diagnostic> checkProgram(const Program&, const Scene*);
+  struct Impl;
+  Impl& change();  // not shared with other copies
+  std::shared_ptr<Impl> impl_;
+};
+
+}  // namespace quintet
+#endif

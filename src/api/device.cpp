@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/impl.h"
+#include "gpu/context.h"
+#include "gpu/instance.h"
+
+namespace quintet {
+namespace {
+
+DeviceInfo toPublic(const gpu::DeviceInfo& info) {
+  return {
+      info.index,         info.name, info.driver, info.uuid, info.kind, info.memoryBytes, info.limits.maxRecursionDepth,
+      info.unusableReason};
+}
+
+}  // namespace
+
+std::vector<DeviceInfo> devices() {
+  gpu::prepareDriverEnvironment();
+  std::vector<DeviceInfo> result;
+  for (const gpu::DeviceInfo& info : gpu::Context::devices()) result.push_back(toPublic(info));
+  return result;
+}
+
+Device::Device(const DeviceOptions& options) {
+  gpu::prepareDriverEnvironment();
+  LogSink log;
+  if (options.onWarning)
+    log = [warn = options.onWarning](LogLevel level, const std::string& text) {
+      if (level == LogLevel::warning) warn(text);
+    };
+  impl_ = std::make_unique<Impl>(job::EngineOptions{options.choice, options.cacheFolder, std::move(log)});
+  impl_->engine.context();
+}
+Device::Device(Device&&) noexcept = default;
+Device& Device::operator=(Device&&) noexcept = default;
+Device::~Device() = default;
+
+DeviceInfo Device::info() const { return toPublic(impl_->engine.context().info()); }
+std::string Device::name() const { return info().name; }
+std::string Device::driver() const { return info().driver; }
+
+}  // namespace quintet

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// Images and films of the public API: pixels, layers, files.
+#include <algorithm>
+#include <cctype>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "api/impl.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/suggestion.h"
+#include "io/codec.h"
+#include "job/film_store.h"
+#include "job/merge.h"
+#include "output/write.h"
+#include "render/tone_map/tone_map.h"
+
+namespace quintet {
+namespace {
+
+io::Image toIoImage(const Image& image) {
+  const std::size_t expected = std::size_t{4} * image.width * image.height;
+  if (image.pixels.size() != expected)
+    throw UsageError(fmt::format("an image of {}x{} has {} floats, not {}", image.width, image.height, expected,
+                                 image.pixels.size()));
+  io::Image result = io::makeImage(image.width, image.height, 4, io::PixelType::f32, io::ColorEncoding::linear);
+  result.premultiplied = true;
+  std::memcpy(result.data.data(), image.pixels.data(), result.data.size());
+  return result;
+}
+
+// The layers of the film besides the image: those that it names, and what every film knows.
+std::vector<output::Layer> storedLayers(const job::RenderResult& result) {
+  std::vector<output::Layer> layers = output::parseLayers(result.provenance.layers, *result.film);
+  program::Program none;  // offers the layers that do not depend on the program
+  none.outputs.resize(1);
+  for (output::Layer& layer : output::availableLayers(none))
+    if (std::ranges::find(layers, layer.name, &output::Layer::name) == layers.end()) layers.push_back(std::move(layer));
+  return layers;
+}
+
+}  // namespace
+
+std::array<float, 4> Image::at(std::uint32_t x, std::uint32_t y) const {
+  if (x >= width || y >= height)
+    throw UsageError(fmt::format("pixel ({}, {}) is outside of the image of {}x{}", x, y, width, height));
+  const float* p = &pixels[4 * (std::size_t{y} * width + x)];
+  return {p[0], p[1], p[2], p[3]};
+}
+
+void Image::write(const std::filesystem::path& file) const {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const render::ToneMap operation = toneMap ? render::ToneMap::neutral : render::ToneMap::linear;
+  if (extension == ".png")
+    return writeFile(file, io::encodePng(render::toDisplay(toIoImage(*this), operation, 0.0f, true), {}));
+  if (extension == ".exr") return writeFile(file, io::encodeExr(toIoImage(*this), {}));
+  if (extension == ".hdr") return writeFile(file, io::encodeHdr(toIoImage(*this)));
+  throw UsageError(fmt::format("{}: the extension must be .png, .exr or .hdr", file.string()));
+}
+
+Image toImage(const job::FilmView& film, const std::string& output) {
+  const std::vector<render::FilmPlane>& planes = film.planes();
+  std::vector<std::string> names;
+  for (const render::FilmPlane& plane : planes) names.push_back(plane.name);
+  const auto found = output.empty() ? names.begin() : std::ranges::find(names, output);
+  if (found == names.end()) throw UsageError(fmt::format("output '{}' not found{}", output, suggestion(output, names)));
+  const auto index = static_cast<std::size_t>(found - names.begin());
+  if (!film.stores(index))
+    throw UsageError(fmt::format("output '{}' was not rendered; name it in Settings::outputs", *found));
+  const io::Image image = film.image(index);
+  const std::span<const float> samples = image.samples<float>();
+  return {
+      image.width, image.height, {samples.begin(), samples.end()}, planes[index].kind == program::OutputKind::color};
+}
+
+Film Film::Impl::make(job::RenderResult result, std::vector<output::Layer> layers) {
+  Film film;
+  film.impl_ = std::make_shared<const Impl>(Impl{std::move(result), std::move(layers)});
+  return film;
+}
+
+Film Film::load(const std::filesystem::path& file) { return merge({file}); }
+
+Film Film::merge(const std::vector<std::filesystem::path>& parts) {
+  job::Observer ignored;
+  job::RenderResult result = job::merge(parts, ignored);
+  std::vector<output::Layer> layers = storedLayers(result);
+  return Impl::make(std::move(result), std::move(layers));
+}
+
+std::uint32_t Film::width() const { return impl_->result.provenance.region.width; }
+std::uint32_t Film::height() const { return impl_->result.provenance.region.height; }
+
+double Film::sampleCount() const {
+  const job::RenderResult& result = impl_->result;
+  if (result.accumulatesFrames) return static_cast<double>(result.provenance.samples);
+  return render::averageSamples(result.provenance.region, result.film->counts());
+}
+
+std::vector<std::string> Film::layers() const {
+  std::vector<std::string> names;
+  for (const output::Layer& layer : impl_->layers) names.push_back(layer.name);
+  return names;
+}
+
+Image Film::image(const std::string& output) const { return toImage(*impl_->result.film, output); }
+
+Layer Film::layer(const std::string& name) const {
+  const output::Layer selected = output::selectLayers(impl_->layers, {name}, "the film").front();
+  io::ExrImage channels{width(), height(), {}};
+  output::addLayer(channels, selected, impl_->result, io::ExrType::f32);
+  Layer layer{name, width(), height(), {}, {}, {}};
+  const std::size_t count = channels.channels.size();
+  const std::size_t pixels = std::size_t{layer.width} * layer.height;
+  layer.values.resize(count * pixels);
+  for (std::size_t c = 0; c < count; ++c) {
+    const io::ExrChannel& channel = channels.channels[c];
+    const bool prefixed = channel.name.starts_with(name + ".");
+    layer.channels.push_back(prefixed ? channel.name.substr(name.size() + 1) : channel.name);
+    for (std::size_t i = 0; i < pixels; ++i) layer.values[i * count + c] = channel.samples[i];
+  }
+  const bool isId = selected.source == output::Layer::Source::output &&
+                    impl_->result.film->planes()[selected.output].kind == program::OutputKind::id;
+  if (isId) {
+    for (const float value : layer.values) layer.ids.push_back(static_cast<std::uint32_t>(value));
+    layer.values.clear();
+  }
+  return layer;
+}
+
+std::vector<std::pair<std::string, std::string>> Film::metadata() const {
+  return job::metadataOf(impl_->result.provenance);
+}
+
+void Film::write(const std::filesystem::path& file, const WriteOptions& options) const {
+  output::OutputPlan plan;
+  plan.request.file = file;
+  plan.kind = output::fileKind(file);
+  if (!options.layers.empty() && plan.kind != output::FileKind::exr)
+    throw UsageError(fmt::format("{}: only OpenEXR files have layers; use the extension .exr", file.string()));
+  if (plan.kind == output::FileKind::film && impl_->result.accumulatesFrames)
+    throw UsageError(
+        fmt::format("{}: the program averages its samples itself, so there is no film to store", file.string()));
+  plan.request.exposure = options.exposure;
+  if (options.floats) plan.request.exr = output::ExrFormat{io::ExrType::f32, {}};
+  plan.outputs = {0};
+  plan.layers = output::selectLayers(impl_->layers, options.layers, "the film");
+  output::checkChannels(plan.layers);
+  output::checkSize(plan, {width(), height()});
+  job::Observer ignored;
+  output::writeOutputs(plan, impl_->result, ignored);
+}
+
+}  // namespace quintet

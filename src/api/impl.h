@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the public classes hide: each is a thin handle of the layers below.
+#ifndef QUINTET_API_IMPL_H
+#define QUINTET_API_IMPL_H
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <quintet/quintet.h>
+
+#include "base/math.h"
+#include "job/render_job.h"
+#include "output/layers.h"
+#include "program/description/program.h"
+#include "scene/model/scene.h"
+
+namespace quintet {
+
+struct Device::Impl {
+  explicit Impl(job::EngineOptions options) : engine(std::move(options)) {}
+  job::Engine engine;
+};
+
+struct Scene::Impl {
+  std::shared_ptr<scene::Scene> scene = std::make_shared<scene::Scene>();  // never null
+};
+
+struct Program::Impl {
+  program::Program program;
+};
+
+struct Film::Impl {
+  job::RenderResult result;           // its film is in host memory
+  std::vector<output::Layer> layers;  // that the film stores
+  // Of the film on a device, or in a file.
+  static Film make(job::RenderResult result, std::vector<output::Layer> layers);
+};
+
+// Of a film view: film.cpp.
+Image toImage(const job::FilmView& film, const std::string& output);
+
+inline vec2 toGlm(const Float2& v) { return {v[0], v[1]}; }
+inline vec3 toGlm(const Float3& v) { return {v[0], v[1], v[2]}; }
+inline vec4 toGlm(const Float4& v) { return {v[0], v[1], v[2], v[3]}; }
+inline Float2 fromGlm(const vec2& v) { return {v.x, v.y}; }
+inline Float3 fromGlm(const vec3& v) { return {v.x, v.y, v.z}; }
+inline Float4 fromGlm(const vec4& v) { return {v.x, v.y, v.z, v.w}; }
+mat4 toGlm(const Transform& transform);  // scene.cpp
+scene::Material toScene(const Material& material);
+scene::Camera toScene(const Camera& camera);  // throws UsageError
+
+}  // namespace quintet
+#endif

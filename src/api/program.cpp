@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "api/impl.h"
+#include "check/check.h"
+#include "check/scene_facts.h"
+#include "program/description/parser.h"
+#include "program/gsn/lecture.h"
+#include "program/load.h"
+
+namespace quintet {
+
+Program Program::load(const std::string& nameOrPath) {
+  Program result;
+  result.impl_ = std::make_shared<const Impl>(Impl{program::loadProgram(nameOrPath)});
+  return result;
+}
+
+Program Program::fromSource(std::string_view text, const std::string& name) {
+  Program result;
+  result.impl_ = std::make_shared<const Impl>(
+      Impl{program::parseLecture(std::string(text), name + std::string(program::kLectureExtension), "")});
+  return result;
+}
+
+Program Program::fromFiles(std::map<std::string, std::string> files, const std::string& name) {
+  const auto description = files.find("program.toml");
+  if (description == files.end()) throw UsageError("program '" + name + "': the files contain no program.toml");
+  const std::string text = description->second;
+  Program result;
+  result.impl_ = std::make_shared<const Impl>(Impl{program::parseProgram(text, name, "", std::move(files))});
+  return result;
+}
+
+std::vector<std::string> Program::builtIn() { return program::builtInPrograms(); }
+std::string Program::name() const { return impl_->program.name; }
+std::string Program::description() const { return impl_->program.description; }
+
+std::vector<ParameterInfo> Program::parameters() const {
+  std::vector<ParameterInfo> result;
+  for (const program::Parameter& p : impl_->program.parameters)
+    result.push_back(
+        {p.name, std::string(program::typeName(p.type)), program::formatDefault(p), p.min, p.max, p.unit, p.help});
+  return result;
+}
+
+std::vector<OutputInfo> Program::outputs() const {
+  std::vector<OutputInfo> result;
+  for (const program::Output& output : impl_->program.outputs)
+    result.push_back({output.name, output.help, program::outputChannels(output), output.optional});
+  return result;
+}
+
+std::vector<Diagnostic> checkProgram(const Program& program, const Scene* scene) {
+  const shader::Compiler compiler{shader::CompilerOptions{}};
+  std::optional<program::SceneFacts> facts;
+  if (scene) facts = check::sceneFacts(*scene->impl_->scene);
+  return check::check(program.impl_->program, compiler, facts ? &*facts : nullptr, check::DeviceLimits{}).diagnostics;
+}
+
+}  // namespace quintet

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// The renderer of the public API: settings to a job, limits to a run, edits to the job's edits.
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "api/impl.h"
+#include "base/error.h"
+#include "base/suggestion.h"
+
+namespace quintet {
+namespace {
+
+// Passes progress on, and collects warnings.
+class ApiObserver : public job::Observer {
+ public:
+  explicit ApiObserver(const ProgressFunction* function = nullptr) : function_(function) {}
+
+  void progress(const job::Progress& p) override {
+    if (!function_ || !*function_ || stop_) return;
+    stop_ = !(*function_)({p.samples, p.seconds, p.fraction(), p.secondsLeft(), p.raysPerSecond, p.error});
+  }
+  bool showsError() const override { return false; }
+  job::StopRequest stopRequested() override { return stop_ ? job::StopRequest::finish : job::StopRequest::none; }
+  void warning(const std::string& text) override {  // from any thread
+    const std::lock_guard lock(mutex_);
+    warnings_.push_back(text);
+  }
+  std::vector<std::string> takeWarnings() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(warnings_, {});
+  }
+
+ private:
+  const ProgressFunction* function_;
+  bool stop_ = false;
+  std::mutex mutex_;
+  std::vector<std::string> warnings_;
+};
+
+job::CameraRequest toRequest(const Camera& camera) {
+  static_cast<void>(toScene(camera));  // validates
+  job::CameraRequest request;
+  request.lookFrom = toGlm(camera.lookFrom);
+  request.lookAt = toGlm(camera.lookAt);
+  request.up = toGlm(camera.up);
+  request.verticalFov = glm::degrees(camera.verticalFov);
+  request.apertureRadius = camera.apertureRadius;
+  return request;
+}
+
+std::vector<std::string> optionalOutputs(const Settings& settings, const program::Program& program) {
+  std::vector<std::string> names = program::outputNames(program);
+  if (std::ranges::find(settings.outputs, "all") != settings.outputs.end()) {
+    std::erase_if(names, [&](const std::string& name) {
+      return !std::ranges::find(program.outputs, name, &program::Output::name)->optional;
+    });
+    return names;
+  }
+  std::vector<std::string> result;
+  for (const std::string& name : settings.outputs) {
+    const auto output = std::ranges::find(program.outputs, name, &program::Output::name);
+    if (output == program.outputs.end())
+      throw UsageError(
+          fmt::format("output '{}' not found in the program '{}'{}", name, program.name, suggestion(name, names)));
+    if (output->optional && std::ranges::find(result, name) == result.end()) result.push_back(name);
+  }
+  return result;
+}
+
+// The layers of a film that are outputs of the program.
+std::vector<output::Layer> renderedLayers(const program::Program& program, const std::vector<std::string>& optional) {
+  std::vector<output::Layer> layers = output::availableLayers(program);
+  std::erase_if(layers, [&](const output::Layer& layer) {
+    if (layer.output == 0) return true;
+    const program::Output& output = program.outputs[layer.output];
+    return output.optional && std::ranges::find(optional, output.name) == optional.end();
+  });
+  return layers;
+}
+
+job::RenderRequest toRequest(const Settings& settings, std::shared_ptr<const scene::Scene> scene,
+                             const program::Program& program) {
+  if (settings.width == 0 || settings.height == 0)
+    throw UsageError("an image has at least one pixel in each direction");
+  job::RenderRequest request;
+  request.loadedScene = std::move(scene);
+  request.editable = true;
+  request.size = {settings.width, settings.height};
+  if (settings.region)
+    request.region = {settings.region->x, settings.region->y, settings.region->width, settings.region->height};
+  if (settings.region && (settings.region->width == 0 || settings.region->height == 0))
+    throw UsageError("a region has at least one pixel in each direction");
+  request.seed = settings.seed;
+  request.transparent = settings.transparent;
+  for (const auto& [name, value] : settings.parameters) request.assignments.push_back(name + "=" + value);
+  request.outputs = optionalOutputs(settings, program);
+  request.camera.name = settings.cameraName;
+  if (settings.camera && !settings.cameraName.empty()) throw UsageError("camera and cameraName exclude each other");
+  if (settings.camera) request.camera = toRequest(*settings.camera);
+  request.limits.adaptive = settings.adaptive;
+  if (settings.plannedSamples > 0) request.limits.samples = settings.plannedSamples;
+  if (settings.batches) {
+    if (settings.plannedSamples == 0)
+      throw UsageError("batches: plannedSamples must be the number of samples of the whole render");
+    if (settings.batches->first > settings.batches->last) throw UsageError("batches: first is above last");
+    request.batches = job::BatchRange{settings.batches->first, settings.batches->last};
+  }
+  const std::vector<output::Layer> layers = renderedLayers(program, request.outputs);
+  request.outputNotes.layers = output::layersText(layers);
+  request.outputNotes.names =
+      std::ranges::find(layers, output::Layer::Source::coverage, &output::Layer::source) != layers.end();
+  return request;
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  Impl(job::Engine& engine, job::ResolvedJob resolved, job::Observer& observer)
+      : layers(renderedLayers(resolved.program, resolved.request.outputs)),
+        assignments(resolved.request.assignments),
+        batches(resolved.request.batches),
+        job(engine, std::move(resolved), observer) {
+    for (const output::Layer& layer : output::availableLayers(job.resolved().program))
+      if (layer.source == output::Layer::Source::variance || layer.source == output::Layer::Source::sampleCount)
+        layers.push_back(layer);
+  }
+
+  std::vector<output::Layer> layers;
+  std::vector<std::string> assignments;
+  std::optional<job::BatchRange> batches;
+  std::vector<std::string> warnings;  // of the preparation
+  job::RenderJob job;
+};
+
+Renderer::Renderer(Device& device, const Scene& scene, const Program& program, const Settings& settings) {
+  ApiObserver observer;
+  impl_ = std::make_unique<Impl>(
+      device.impl_->engine,
+      job::resolve(toRequest(settings, scene.impl_->scene, program.impl_->program), program.impl_->program), observer);
+  impl_->warnings = observer.takeWarnings();
+}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+RenderReport Renderer::render(const Limits& limits, const ProgressFunction& progress) {
+  if (!limits.samples && !limits.seconds && !limits.error && !progress)
+    throw UsageError("a render without limits requires a progress function, which stops it");
+  if ((limits.seconds && !(*limits.seconds > 0)) || (limits.error && !(*limits.error > 0)))
+    throw UsageError("limits of time and error must be above 0");
+  job::RenderJob& job = impl_->job;
+  const bool accumulates = job.resolved().accumulatesFrames();
+  if (limits.error && accumulates)
+    throw UsageError("the program averages its samples itself, so the error of its image is unknown");
+  job::RenderLimits requested;
+  requested.samples = limits.samples;
+  requested.seconds = limits.seconds;
+  requested.error = limits.error;
+  requested.adaptive = job.resolved().request.limits.adaptive;
+  if (impl_->batches && !requested.samples) requested.samples = std::numeric_limits<std::uint64_t>::max();
+  RenderReport report;
+  report.warnings = std::exchange(impl_->warnings, {});
+  if (accumulates && limits.samples && sampleCount() >= *limits.samples) {
+    report.samples = static_cast<double>(sampleCount());
+    return report;
+  }
+  ApiObserver observer(&progress);
+  const job::RenderResult result = job.run(requested, observer);
+  report.samples = result.film->counts().cellBatches.empty()
+                       ? static_cast<double>(result.provenance.samples)
+                       : render::averageSamples(result.provenance.region, result.film->counts());
+  report.seconds = result.provenance.seconds;
+  report.rays = result.provenance.rays;
+  report.droppedSamples = result.provenance.droppedSamples;
+  report.error = result.provenance.error;
+  if (result.interrupted)
+    report.reason = StopReason::canceled;
+  else if (limits.error && !result.targetMissed)
+    report.reason = StopReason::error;
+  else if (!limits.samples || report.samples < static_cast<double>(*limits.samples))
+    report.reason = impl_->batches ? StopReason::samples : StopReason::time;
+  for (std::string& text : observer.takeWarnings()) report.warnings.push_back(std::move(text));
+  for (std::string& text : job::resultWarnings(result)) report.warnings.push_back(std::move(text));
+  return report;
+}
+
+RenderReport Renderer::render(std::uint32_t count) { return render({.samples = sampleCount() + count}); }
+
+std::uint64_t Renderer::sampleCount() const { return impl_->job.renderer().statistics().samples; }
+std::vector<Diagnostic> Renderer::diagnostics() const { return impl_->job.result().diagnostics; }
+Image Renderer::image(const std::string& output) const { return toImage(*impl_->job.result().film, output); }
+
+Film Renderer::film() const {
+  job::RenderResult result = impl_->job.result(true);
+  result.film = job::viewOf(result.film->state(), result.provenance.transparent);
+  return Film::Impl::make(std::move(result), impl_->layers);
+}
+
+void Renderer::setCamera(const Camera& camera) { impl_->job.setCamera(toRequest(camera)); }
+
+void Renderer::setParameter(const std::string& name, const std::string& value) {
+  std::vector<std::string> assignments = impl_->assignments;
+  std::erase_if(assignments, [&](const std::string& assignment) { return assignment.starts_with(name + "="); });
+  assignments.push_back(name + "=" + value);
+  impl_->job.setParameters(assignments);
+  impl_->assignments = std::move(assignments);
+}
+
+void Renderer::setTransform(int instance, const Transform& worldFromObject) {
+  if (instance < 0) throw UsageError(fmt::format("instance {} does not exist", instance));
+  impl_->job.setTransform(static_cast<std::size_t>(instance), toGlm(worldFromObject));
+}
+
+void Renderer::setMaterial(int index, const Material& material) {
+  if (index < 0) throw UsageError(fmt::format("material {} does not exist", index));
+  impl_->job.setMaterial(static_cast<std::size_t>(index), toScene(material));
+}
+
+void Renderer::setFrame(float frame) { impl_->job.setFrame(frame); }
+void Renderer::restart() { impl_->job.restart(); }
+
+void Renderer::saveCheckpoint(const std::filesystem::path& file) const { film().write(file); }
+
+bool Renderer::resume(const std::filesystem::path& file) {
+  ApiObserver observer;
+  return impl_->job.resume(file, observer);
+}
+
+}  // namespace quintet

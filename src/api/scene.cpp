@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "api/impl.h"
+#include "io/codec.h"
+#include "job/scene_source.h"
+#include "scene/animation/keyframes.h"
+#include "scene/defaults/auto_camera.h"
+#include "scene/geometry/repair.h"
+#include "scene/geometry/tangents.h"
+#include "scene/load.h"
+#include "scene/model/validate.h"
+#include "scene/toml/scene_toml.h"
+
+namespace quintet {
+namespace {
+
+// A row per property of a material that the public and the internal struct have in common.
+template <class To, class From, class Value, class Use>
+void copyMaterial(To& to, const From& from, const Value& value, const Use& use) {
+  to.name = from.name;
+  value(to.baseColor, from.baseColor);
+  use(to.baseColorTexture, from.baseColorTexture);
+  to.metallic = from.metallic;
+  to.roughness = from.roughness;
+  use(to.metallicRoughnessTexture, from.metallicRoughnessTexture);
+  use(to.normalTexture, from.normalTexture);
+  to.normalScale = from.normalScale;
+  value(to.emissive, from.emissive);
+  use(to.emissiveTexture, from.emissiveTexture);
+  to.alphaMode = static_cast<decltype(to.alphaMode)>(from.alphaMode);
+  to.alphaCutoff = from.alphaCutoff;
+  to.doubleSided = from.doubleSided;
+  to.unlit = from.unlit;
+  to.ior = from.ior;
+  to.transmission = from.transmission;
+  use(to.transmissionTexture, from.transmissionTexture);
+  to.thickness = from.thickness;
+  to.attenuationDistance = from.attenuationDistance;
+  value(to.attenuationColor, from.attenuationColor);
+  to.specular = from.specular;
+  use(to.specularTexture, from.specularTexture);
+  value(to.specularColor, from.specularColor);
+  use(to.specularColorTexture, from.specularColorTexture);
+  to.clearcoat = from.clearcoat;
+  use(to.clearcoatTexture, from.clearcoatTexture);
+  to.clearcoatRoughness = from.clearcoatRoughness;
+  use(to.clearcoatRoughnessTexture, from.clearcoatRoughnessTexture);
+  use(to.clearcoatNormalTexture, from.clearcoatNormalTexture);
+  to.clearcoatNormalScale = from.clearcoatNormalScale;
+}
+
+Material toPublic(const scene::Material& material) {
+  Material result;
+  copyMaterial(
+      result, material, [](auto& to, const auto& from) { to = fromGlm(from); },
+      [](TextureUse& to, const scene::TextureUse& from) {
+        to = {from.texture, from.uvSet, fromGlm(from.offset), fromGlm(from.scale), from.rotation};
+      });
+  return result;
+}
+
+Transform toPublic(const mat4& m) {
+  Transform result;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column)
+      result.rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] = m[column][row];
+  return result;
+}
+
+template <class T, class V>
+std::vector<T> copyOf(std::span<const V> values) {
+  std::vector<T> result;
+  result.reserve(values.size());
+  for (const V& value : values) result.push_back(toGlm(value));
+  return result;
+}
+
+// Of three vertices per triangle.
+std::vector<uvec3> consecutiveTriangles(std::size_t vertices) {
+  if (vertices % 3 != 0)
+    throw UsageError(fmt::format("triangles without indices have {} vertices, which is not a multiple of 3", vertices));
+  std::vector<uvec3> result(vertices / 3);
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = uvec3(3 * i, 3 * i + 1, 3 * i + 2);
+  return result;
+}
+
+scene::Geometry toGeometry(const Triangles& triangles) {
+  scene::Geometry geometry;
+  geometry.positions = copyOf<vec3>(triangles.positions);
+  if (triangles.indices.empty()) {
+    geometry.triangles = consecutiveTriangles(triangles.positions.size());
+  } else {
+    geometry.triangles.reserve(triangles.indices.size());
+    for (const UInt3& t : triangles.indices) geometry.triangles.push_back({t[0], t[1], t[2]});
+  }
+  geometry.normals = copyOf<vec3>(triangles.normals);
+  geometry.tangents = copyOf<vec4>(triangles.tangents);
+  geometry.uvs = {copyOf<vec2>(triangles.uv0), copyOf<vec2>(triangles.uv1)};
+  geometry.colors = copyOf<vec4>(triangles.colors);
+  geometry.material = triangles.material;
+  return geometry;
+}
+
+io::Image toIo(const Texture& texture) {
+  if (texture.channels < 1 || texture.channels > 4)
+    throw UsageError(fmt::format("texture '{}': {} channels, must be 1 to 4", texture.name, texture.channels));
+  if (texture.width == 0 || texture.height == 0 || std::max(texture.width, texture.height) > io::kMaxImageSide)
+    throw UsageError(fmt::format("texture '{}': {}x{} pixels, must be 1 to {} in each direction", texture.name,
+                                 texture.width, texture.height, io::kMaxImageSide));
+  constexpr io::PixelType kTypes[] = {io::PixelType::u8, io::PixelType::u16, io::PixelType::f32};
+  const io::PixelType type = kTypes[texture.pixels.index()];
+  io::Image image = io::makeImage(texture.width, texture.height, texture.channels, type,
+                                  type == io::PixelType::f32 ? io::ColorEncoding::linear : io::ColorEncoding::sRgb);
+  std::visit(
+      [&](const auto& pixels) {
+        if (pixels.size() != image.sampleCount())
+          throw UsageError(fmt::format("texture '{}': {} values for {}x{} pixels of {} channels", texture.name,
+                                       pixels.size(), texture.width, texture.height, texture.channels));
+        std::ranges::copy(std::as_bytes(pixels), image.data.begin());
+      },
+      texture.pixels);
+  return image;
+}
+
+// Appends `object` and validates it; removes it again if it is invalid.
+template <class T>
+int append(scene::Scene& scene, std::vector<T>& list, T object, void (*validate)(const scene::Scene&, std::size_t)) {
+  list.push_back(std::move(object));
+  try {
+    validate(scene, list.size() - 1);
+  } catch (const Error& error) {
+    list.pop_back();
+    throw UsageError(error.what());
+  }
+  return static_cast<int>(list.size() - 1);
+}
+
+// Replaces an object by a valid one, or throws UsageError and changes nothing.
+template <class T>
+void replace(scene::Scene& scene, T& object, T value, std::size_t index,
+             void (*validate)(const scene::Scene&, std::size_t)) {
+  std::swap(object, value);
+  try {
+    validate(scene, index);
+  } catch (const Error& error) {
+    std::swap(object, value);
+    throw UsageError(error.what());
+  }
+}
+
+template <class T>
+std::size_t checkedIndex(int index, const std::vector<T>& list, const char* what) {
+  if (index < 0 || static_cast<std::size_t>(index) >= list.size())
+    throw UsageError(fmt::format("{} {} does not exist; the scene has {}", what, index, list.size()));
+  return static_cast<std::size_t>(index);
+}
+
+template <class T>
+std::optional<int> findByName(const std::vector<T>& list, std::string_view name) {
+  const auto found = std::ranges::find(list, name, &T::name);
+  return found == list.end() ? std::nullopt : std::optional(static_cast<int>(found - list.begin()));
+}
+
+void requireFinite(const Float3& v, const char* what) {
+  if (!isFinite(toGlm(v))) throw UsageError(fmt::format("{} is not finite", what));
+}
+
+}  // namespace
+
+mat4 toGlm(const Transform& transform) {
+  mat4 m(1.0f);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column)
+      m[column][row] = transform.rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+  return m;
+}
+
+scene::Material toScene(const Material& material) {
+  scene::Material result;
+  copyMaterial(
+      result, material, [](auto& to, const auto& from) { to = toGlm(from); },
+      [](scene::TextureUse& to, const TextureUse& from) {
+        to = {from.texture, from.uvSet, toGlm(from.offset), toGlm(from.scale), from.rotation};
+      });
+  return result;
+}
+
+scene::Camera toScene(const Camera& camera) {
+  requireFinite(camera.lookFrom, "lookFrom");
+  requireFinite(camera.lookAt, "lookAt");
+  requireFinite(camera.up, "up");
+  if (!(camera.verticalFov > 0.0f && camera.verticalFov < kPi))
+    throw UsageError(fmt::format("verticalFov: {} is not between 0 and pi", camera.verticalFov));
+  if (!(camera.apertureRadius >= 0.0f && std::isfinite(camera.apertureRadius)))
+    throw UsageError(fmt::format("apertureRadius: {} is negative or not finite", camera.apertureRadius));
+  return scene::lookAtCamera(toGlm(camera.lookFrom), toGlm(camera.lookAt), toGlm(camera.up), camera.verticalFov,
+                             camera.apertureRadius);
+}
+
+Scene::Scene() : impl_(std::make_shared<Impl>()) {}
+
+Scene::Impl& Scene::change() {
+  // Renderers and copies keep what they have.
+  if (impl_.use_count() > 1 || impl_->scene.use_count() > 1)
+    impl_ = std::make_shared<Impl>(Impl{std::make_shared<scene::Scene>(*impl_->scene)});
+  return *impl_;
+}
+
+Scene Scene::load(const std::filesystem::path& file) {
+  Scene result;
+  result.impl_->scene = std::make_shared<scene::Scene>(scene::loadScene(file));
+  return result;
+}
+
+Scene Scene::fromToml(std::string_view text, const std::filesystem::path& folder) {
+  Scene result;
+  result.impl_->scene = std::make_shared<scene::Scene>(scene::parseSceneToml(text, folder / "scene.toml"));
+  return result;
+}
+
+Scene Scene::of(const Program& program) {
+  Scene result;
+  result.impl_->scene =
+      std::make_shared<scene::Scene>(job::loadScene(job::chooseSceneSource({}, program.impl_->program)));
+  return result;
+}
+
+int Scene::addTexture(const Texture& texture) {
+  io::Image image = toIo(texture);
+  scene::Scene& scene = *change().scene;
+  scene.images.push_back({texture.name, std::move(image)});
+  scene.textures.push_back({texture.name,
+                            static_cast<int>(scene.images.size() - 1),
+                            {static_cast<scene::Wrap>(texture.wrapU), static_cast<scene::Wrap>(texture.wrapV),
+                             static_cast<scene::Filter>(texture.filter)}});
+  return static_cast<int>(scene.textures.size() - 1);
+}
+
+int Scene::addTexture(const std::filesystem::path& file) {
+  io::Image image = io::readImage(file);
+  scene::Scene& scene = *change().scene;
+  scene.images.push_back({file.string(), std::move(image)});
+  scene.textures.push_back({file.filename().string(), static_cast<int>(scene.images.size() - 1), {}});
+  return static_cast<int>(scene.textures.size() - 1);
+}
+
+int Scene::addMaterial(const Material& material) {
+  scene::Scene& scene = *change().scene;
+  return append(scene, scene.materials, toScene(material), scene::validateMaterial);
+}
+
+int Scene::addMesh(const Triangles& triangles, const std::string& name) {
+  return addMesh(std::span(&triangles, 1), name);
+}
+
+int Scene::addMesh(std::span<const Triangles> geometries, const std::string& name) {
+  scene::Scene& scene = *change().scene;
+  scene::Mesh mesh;
+  mesh.name = name;
+  for (const Triangles& triangles : geometries) mesh.geometries.push_back(toGeometry(triangles));
+  const int index = append(scene, scene.meshes, std::move(mesh), scene::validateMesh);
+  for (scene::Geometry& geometry : scene.meshes.back().geometries) {
+    scene::repairNormals(geometry);
+    scene::repairTangents(geometry);
+    scene::repairUvsAndColors(geometry);
+    if (geometry.material != scene::kNone)
+      scene::addTangents(geometry, scene.materials[static_cast<std::size_t>(geometry.material)]);
+  }
+  return index;
+}
+
+int Scene::addBoxes(std::span<const Bounds> boxes, int material, const std::string& name) {
+  scene::Scene& scene = *change().scene;
+  scene::PrimitiveSet set;
+  set.name = name;
+  set.kind = scene::PrimitiveSetKind::custom;
+  set.material = material;
+  for (const Bounds& box : boxes) set.boxes.push_back({toGlm(box.min), toGlm(box.max)});
+  scene::Mesh mesh;
+  mesh.name = name;
+  mesh.primitiveSets.push_back(std::move(set));
+  return append(scene, scene.meshes, std::move(mesh), scene::validateMesh);
+}
+
+int Scene::addInstance(const Instance& instance) {
+  scene::Instance added;
+  added.name = instance.name;
+  added.mesh = instance.mesh;
+  added.worldFromObject = toGlm(instance.worldFromObject);
+  added.mask = instance.mask;
+  added.customIndex = instance.customIndex;
+  for (const Keyframe& key : instance.keyframes) {
+    const Float4& q = key.rotation;
+    added.keyframes.push_back({key.frame, toGlm(key.translation), quat(q[3], q[0], q[1], q[2]), toGlm(key.scale)});
+  }
+  scene::Scene& scene = *change().scene;
+  const int index = append(scene, scene.instances, std::move(added), scene::validateInstance);
+  scene::Instance& last = scene.instances.back();
+  if (!last.keyframes.empty()) last.worldFromObject = scene::worldFromObjectAt(last, 0.0f);
+  return index;
+}
+
+int Scene::addLight(const Light& light) {
+  scene::Light added;
+  added.name = light.name;
+  added.type = static_cast<scene::LightType>(light.type);
+  added.intensity = toGlm(light.intensity);
+  added.position = toGlm(light.position);
+  const float length = glm::length(toGlm(light.direction));
+  if (light.type != LightType::point && !(length > 0.0f && std::isfinite(length)))
+    throw UsageError("a light's direction has length 0 or is not finite");
+  if (light.type != LightType::point) added.direction = toGlm(light.direction) / length;
+  if (light.type == LightType::spot && !(light.innerConeAngle >= 0.0f && light.innerConeAngle < light.outerConeAngle &&
+                                         light.outerConeAngle <= 0.5f * kPi + 1e-6f))
+    throw UsageError(fmt::format("a spot light's cone angles are {} and {}, must be 0 <= inner < outer <= pi/2",
+                                 light.innerConeAngle, light.outerConeAngle));
+  if (glm::any(glm::lessThan(added.intensity, vec3(0.0f)))) throw UsageError("a light's intensity is negative");
+  added.innerConeAngle = light.innerConeAngle;
+  added.outerConeAngle = light.outerConeAngle;
+  scene::Scene& scene = *change().scene;
+  return append(scene, scene.lights, std::move(added), scene::validateLight);
+}
+
+int Scene::addCamera(const Camera& camera, const std::string& name) {
+  scene::Camera added = quintet::toScene(camera);
+  added.name = name;
+  scene::Scene& scene = *change().scene;
+  return append(scene, scene.cameras, std::move(added), scene::validateCamera);
+}
+
+void Scene::setEnvironment(const Environment& environment) {
+  scene::Environment added;
+  added.present = true;
+  added.intensity = environment.intensity;
+  added.rotation = environment.rotation;
+  added.constant = toGlm(environment.radiance);
+  if (!isFinite(added.constant) || glm::any(glm::lessThan(added.constant, vec3(0.0f))) ||
+      !(environment.intensity >= 0.0f) || !std::isfinite(environment.intensity + environment.rotation))
+    throw UsageError("environment: radiance and intensity must be finite and not negative, the rotation finite");
+  if (!environment.pixels.empty()) {
+    const std::span<const float> values(environment.pixels.front().data(), 3 * environment.pixels.size());
+    added.image = toIo({"environment", environment.width, environment.height, 3, values});
+  }
+  change().scene->environment = std::move(added);
+}
+
+void Scene::setEnvironment(const std::filesystem::path& file) {
+  scene::Environment added;
+  added.present = true;
+  added.name = file.string();
+  added.image = io::toFloat(io::readImage(file));
+  change().scene->environment = std::move(added);
+}
+
+void Scene::setMaterial(int index, const Material& material) {
+  const std::size_t i = checkedIndex(index, impl_->scene->materials, "material");
+  scene::Scene& scene = *change().scene;
+  replace(scene, scene.materials[i], toScene(material), i, scene::validateMaterial);
+}
+
+void Scene::setTransform(int instance, const Transform& worldFromObject) {
+  const std::size_t i = checkedIndex(instance, impl_->scene->instances, "instance");
+  scene::Scene& scene = *change().scene;
+  scene::Instance moved = scene.instances[i];
+  moved.worldFromObject = toGlm(worldFromObject);
+  moved.keyframes.clear();
+  replace(scene, scene.instances[i], std::move(moved), i, scene::validateInstance);
+}
+
+std::string Scene::name() const { return impl_->scene->name; }
+std::size_t Scene::meshCount() const { return impl_->scene->meshes.size(); }
+std::size_t Scene::materialCount() const { return impl_->scene->materials.size(); }
+std::size_t Scene::instanceCount() const { return impl_->scene->instances.size(); }
+std::size_t Scene::lightCount() const { return impl_->scene->lights.size(); }
+std::size_t Scene::cameraCount() const { return impl_->scene->cameras.size(); }
+
+Material Scene::material(int index) const {
+  return toPublic(impl_->scene->materials[checkedIndex(index, impl_->scene->materials, "material")]);
+}
+
+Transform Scene::transform(int instance) const {
+  return toPublic(impl_->scene->instances[checkedIndex(instance, impl_->scene->instances, "instance")].worldFromObject);
+}
+
+std::optional<int> Scene::findInstance(std::string_view name) const {
+  return findByName(impl_->scene->instances, name);
+}
+std::optional<int> Scene::findMaterial(std::string_view name) const {
+  return findByName(impl_->scene->materials, name);
+}
+
+Bounds Scene::bounds() const {
+  const Bounds3 b = scene::worldBounds(*impl_->scene);
+  return {fromGlm(b.min), fromGlm(b.max)};
+}
+
+}  // namespace quintet

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// Renderers: limits, progress, cancellation, checkpoints, and edits, which give the image of a scene that was built with them.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "scenes.h"
+
+namespace quintet::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class ApiRenderer : public testing::Test {
+ protected:
+  Scene scene_ = lampScene();
+  Renderer renderer_{device(), scene_, pathTracer(), smallImage()};
+
+  std::vector<float> image(std::uint32_t samples = 4) {
+    renderer_.render(samples);
+    return renderer_.image().pixels;
+  }
+};
+
+TEST_F(ApiRenderer, ContinuesToTheSameBytes) {
+  EXPECT_EQ(renderer_.render(4).samples, 4);
+  const RenderReport report = renderer_.render({.samples = 12});
+  EXPECT_EQ(report.samples, 12);
+  EXPECT_EQ(report.reason, StopReason::samples);
+  EXPECT_GT(report.rays, 48u * 32u * 12u);
+  EXPECT_EQ(report.droppedSamples, 0u);
+  EXPECT_EQ(renderer_.sampleCount(), 12u);
+  EXPECT_EQ(renderer_.image().pixels, rendered(scene_, smallImage(), 12));
+}
+
+TEST_F(ApiRenderer, StopsWhenProgressReturnsFalse) {
+  int calls = 0;
+  double last = 0;
+  const RenderReport report = renderer_.render({.samples = 4000}, [&](const Progress& progress) {
+    EXPECT_GE(progress.samples, last);
+    EXPECT_LE(progress.fraction, 1);
+    last = progress.samples;
+    return ++calls < 3;
+  });
+  EXPECT_EQ(report.reason, StopReason::canceled);
+  EXPECT_LT(report.samples, 4000);
+  EXPECT_GE(report.samples, 4);
+  EXPECT_EQ(report.samples, static_cast<double>(renderer_.sampleCount()));
+  EXPECT_EQ(renderer_.image().pixels, rendered(scene_, smallImage(), static_cast<std::uint32_t>(report.samples)));
+}
+
+TEST_F(ApiRenderer, StopsAtAnErrorAndAtATime) {
+  const RenderReport error = renderer_.render({.samples = 4096, .error = 0.5});
+  EXPECT_EQ(error.reason, StopReason::error);
+  ASSERT_TRUE(error.error);
+  EXPECT_LE(*error.error, 0.5);
+  renderer_.restart();
+  EXPECT_EQ(renderer_.sampleCount(), 0u);
+  const RenderReport time = renderer_.render({.seconds = 0.01});
+  EXPECT_EQ(time.reason, StopReason::time);
+  EXPECT_GE(time.samples, 4);
+  EXPECT_THROW(renderer_.render(Limits{}), UsageError);
+  EXPECT_THROW(renderer_.render({.error = -1.0}), UsageError);
+}
+
+TEST_F(ApiRenderer, WarnsOfAMissedTarget) {
+  const RenderReport report = renderer_.render({.samples = 8, .error = 1e-6});
+  EXPECT_EQ(report.reason, StopReason::samples);
+  EXPECT_THAT(report.warnings, ElementsAre(HasSubstr("target error")));
+}
+
+// Every edit gives exactly the image of a new renderer of the edited scene.
+
+TEST_F(ApiRenderer, MovesInstances) {
+  const std::vector<float> before = image();
+  const Transform moved = Transform::translation({-0.5f, 1.5f, 0.3f}) * Transform::rotation({0, 0, 1}, 0.4f);
+  renderer_.setTransform(2, moved);
+  scene_.setTransform(2, moved);
+  EXPECT_EQ(renderer_.sampleCount(), 0u);
+  EXPECT_EQ(image(), rendered(scene_));
+  EXPECT_NE(image(), before);
+}
+
+TEST_F(ApiRenderer, MovesLamps) {
+  image();
+  const Transform moved = Transform::translation({1, 3, 0}) * Transform::scaling({1, 1, 0.2f});
+  renderer_.setTransform(1, moved);
+  scene_.setTransform(1, moved);
+  EXPECT_EQ(image(), rendered(scene_));
+}
+
+TEST_F(ApiRenderer, MovesInstancesSeveralTimes) {
+  for (const float x : {0.1f, 0.2f, 0.3f}) {
+    for (const int instance : {1, 2}) {
+      renderer_.setTransform(instance, Transform::translation({x, 2, 0}));
+      scene_.setTransform(instance, Transform::translation({x, 2, 0}));
+    }
+    EXPECT_EQ(image(), rendered(scene_)) << x;
+  }
+}
+
+TEST_F(ApiRenderer, ChangesMaterialsInPlace) {
+  image();
+  Material material = scene_.material(0);
+  material.baseColor = {0.1f, 0.3f, 0.9f, 1};
+  material.roughness = 0.2f;
+  material.metallic = 1;
+  renderer_.setMaterial(0, material);
+  scene_.setMaterial(0, material);
+  EXPECT_EQ(image(), rendered(scene_));
+}
+
+TEST_F(ApiRenderer, ChangesMaterialsWithARebuild) {
+  image();
+  Material coated = scene_.material(0);  // a feature that no material had
+  coated.clearcoat = 1;
+  Material bright = scene_.material(1);  // emission
+  bright.emissive = {20, 2, 2};
+  Material cut = scene_.material(2);  // an alpha test
+  cut.alphaMode = AlphaMode::blend;
+  cut.baseColor[3] = 0.5f;
+  int index = 0;
+  for (const Material& material : {coated, bright, cut}) {
+    renderer_.setMaterial(index, material);
+    scene_.setMaterial(index++, material);
+    EXPECT_EQ(image(), rendered(scene_)) << material.name;
+  }
+  renderer_.setTransform(2, Transform::translation({0, 1, 1}));  // the rebuilt scene can be edited, too
+  scene_.setTransform(2, Transform::translation({0, 1, 1}));
+  EXPECT_EQ(image(), rendered(scene_));
+}
+
+TEST_F(ApiRenderer, ChangesCameraAndParameters) {
+  image();
+  const Camera camera{.lookFrom = {3, 3, 3}, .verticalFov = 0.9f, .apertureRadius = 0.1f};
+  renderer_.setCamera(camera);
+  renderer_.setParameter("bounces", "1");
+  renderer_.setParameter("bounces", "2");
+  Settings settings = smallImage();
+  settings.camera = camera;
+  settings.parameters = {{"bounces", "2"}};
+  EXPECT_EQ(image(), rendered(scene_, settings));
+}
+
+TEST_F(ApiRenderer, RejectedEditsChangeNothing) {
+  EXPECT_THROW(renderer_.setTransform(3, {}), UsageError);
+  EXPECT_THROW(renderer_.setTransform(-1, {}), UsageError);
+  EXPECT_THROW(renderer_.setTransform(0, Transform::scaling({0, 1, 1})), UsageError);
+  EXPECT_THROW(renderer_.setMaterial(9, {}), UsageError);
+  EXPECT_THROW(renderer_.setMaterial(0, {.roughness = -1}), UsageError);
+  EXPECT_THROW(renderer_.setParameter("bouncs", "2"), UsageError);
+  EXPECT_THROW(renderer_.setParameter("bounces", "many"), UsageError);
+  EXPECT_THROW(renderer_.setCamera({.verticalFov = -1}), UsageError);
+  EXPECT_EQ(image(), rendered(scene_));
+}
+
+TEST_F(ApiRenderer, SetsFramesOfKeyframes) {
+  Scene animated = lampScene();
+  const int added = animated.addInstance(
+      {.mesh = 1, .keyframes = {{.frame = 0, .translation = {-1, 1, 0}}, {.frame = 10, .translation = {1, 2, 0}}}});
+  Renderer renderer(device(), animated, pathTracer(), smallImage());
+  renderer.setFrame(10);
+  renderer.render(4);
+  Scene still = lampScene();
+  still.addInstance({.mesh = 1, .worldFromObject = Transform::translation({1, 2, 0})});
+  // The tables of moving lights have more entries, so the random numbers differ, but not the geometry.
+  Renderer expected(device(), still, pathTracer(), smallImage());
+  expected.render(4);
+  double difference = 0, total = 0;
+  const std::vector<float> a = renderer.image().pixels, b = expected.image().pixels;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference += static_cast<double>(a[i]) - b[i];
+    total += b[i];
+  }
+  EXPECT_LT(std::abs(difference), 0.05 * total);
+  EXPECT_THROW(renderer.setTransform(added, {}), UsageError);
+}
+
+TEST_F(ApiRenderer, ResumesFromACheckpoint) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "api_checkpoint.qfilm";
+  std::filesystem::remove(file);
+  EXPECT_FALSE(renderer_.resume(file));
+  renderer_.render(8);
+  renderer_.saveCheckpoint(file);
+
+  Renderer second(device(), scene_, pathTracer(), smallImage());
+  EXPECT_TRUE(second.resume(file));
+  EXPECT_EQ(second.sampleCount(), 8u);
+  second.render(4);
+  EXPECT_EQ(second.image().pixels, rendered(scene_, smallImage(), 12));
+
+  renderer_.setTransform(2, Transform::translation({0, 1, 0}));  // a different render
+  EXPECT_THROW(renderer_.resume(file), FileError);
+  std::filesystem::remove(file);
+}
+
+TEST_F(ApiRenderer, RejectsUnknownNames) {
+  Settings settings = smallImage();
+  settings.outputs = {"albdo"};
+  EXPECT_THROW(Renderer(device(), scene_, pathTracer(), settings), UsageError);
+  EXPECT_THROW(renderer_.image("albedo"), UsageError);  // exists, but was not requested
+  settings = smallImage();
+  settings.camera.reset();
+  settings.cameraName = "Front";
+  EXPECT_THROW(Renderer(device(), scene_, pathTracer(), settings), UsageError);
+  settings = smallImage();
+  settings.region = Region{40, 0, 20, 20};
+  EXPECT_THROW(Renderer(device(), scene_, pathTracer(), settings), UsageError);
+}
+
+TEST_F(ApiRenderer, RegionsArePartsOfTheImage) {
+  Settings settings = smallImage();
+  settings.region = Region{10, 6, 16, 8};
+  Renderer part(device(), scene_, pathTracer(), settings);
+  part.render(4);
+  renderer_.render(4);
+  const Image whole = renderer_.image(), cut = part.image();
+  ASSERT_EQ(cut.width, 16u);
+  ASSERT_EQ(cut.height, 8u);
+  for (std::uint32_t y = 0; y < 8; ++y)
+    for (std::uint32_t x = 0; x < 16; ++x) EXPECT_EQ(cut.at(x, y), whole.at(x + 10, y + 6));
+}
+
+}  // namespace
+}  // namespace quintet::test

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes from memory: what they hold, what they reject, and that they render like the same scene from a file.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "scenes.h"
+
+namespace quintet::test {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+TEST(ApiScene, CountsWhatWasAdded) {
+  const Scene scene = lampScene();
+  EXPECT_EQ(scene.meshCount(), 3u);
+  EXPECT_EQ(scene.materialCount(), 3u);
+  EXPECT_EQ(scene.instanceCount(), 3u);
+  EXPECT_EQ(scene.lightCount(), 0u);
+  EXPECT_EQ(scene.findInstance("lamp"), 1);
+  EXPECT_EQ(scene.findMaterial("panel"), 2);
+  EXPECT_EQ(scene.findInstance("sun"), std::nullopt);
+  EXPECT_EQ(scene.bounds(), (Bounds{{-3, 0, -3}, {3, 2.5f, 3}}));
+  EXPECT_EQ(scene.transform(2), Transform::translation({0.6f, 1, 0}) * Transform::scaling({0.5f, 1, 0.5f}));
+}
+
+TEST(ApiScene, ReturnsMaterialsAsTheyWereAdded) {
+  Scene scene;
+  const std::array<std::uint8_t, 3> pixel{10, 20, 30};
+  const int texture =
+      scene.addTexture({.width = 1, .height = 1, .channels = 3, .pixels = std::span<const std::uint8_t>(pixel)});
+  const Material material{
+      .name = "all",
+      .baseColor = {0.1f, 0.2f, 0.3f, 0.4f},
+      .baseColorTexture = {.texture = texture, .uvSet = 1, .offset = {0.5f, 1}, .scale = {2, 3}, .rotation = 1},
+      .metallic = 0.5f,
+      .roughness = 0.25f,
+      .emissive = {1, 2, 3},
+      .alphaMode = AlphaMode::mask,
+      .alphaCutoff = 0.3f,
+      .doubleSided = true,
+      .ior = 1.7f,
+      .transmission = 0.6f,
+      .thickness = 0.1f,
+      .attenuationDistance = 2,
+      .attenuationColor = {0.5f, 0.6f, 0.7f},
+      .specular = 0.9f,
+      .specularColor = {1, 2, 3},
+      .clearcoat = 0.8f,
+      .clearcoatRoughness = 0.15f};
+  EXPECT_EQ(scene.material(scene.addMaterial(material)), material);
+}
+
+TEST(ApiScene, CopiesAreIndependent) {
+  const Scene original = lampScene();
+  Scene copy = original;
+  copy.addInstance({.mesh = 0});
+  copy.setTransform(0, Transform::translation({0, 5, 0}));
+  EXPECT_EQ(original.instanceCount(), 3u);
+  EXPECT_EQ(copy.instanceCount(), 4u);
+  EXPECT_EQ(original.transform(0), Transform::scaling({3, 1, 3}));
+}
+
+TEST(ApiScene, RejectsInvalidObjectsAndStaysUnchanged) {
+  Scene scene = lampScene();
+  const std::array<Float3, 3> normals{{{0, 1, 0}, {0, 1, 0}, {0, 1, 0}}};
+  const std::array<UInt3, 1> beyond{{{0, 1, 4}}};
+  std::array<Float3, 4> infinite = kCorners;
+  infinite[2][1] = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(scene.addMesh({.positions = kCorners, .indices = kSquare, .normals = normals}), UsageError);
+  EXPECT_THROW(scene.addMesh({.positions = kCorners, .indices = beyond}), UsageError);
+  EXPECT_THROW(scene.addMesh({.positions = infinite, .indices = kSquare}), UsageError);
+  EXPECT_THROW(scene.addMesh({.positions = kCorners}), UsageError);  // 4 vertices are no list of triangles
+  EXPECT_THROW(scene.addMesh({.positions = kCorners, .indices = kSquare, .material = 3}), UsageError);
+  EXPECT_THROW(scene.addInstance({.mesh = 3}), UsageError);
+  EXPECT_THROW(scene.addInstance({.mesh = 0, .worldFromObject = Transform::scaling({1, 0, 1})}), UsageError);
+  EXPECT_THROW(scene.addInstance({.mesh = 0, .mask = 256}), UsageError);
+  EXPECT_THROW(scene.addMaterial({.roughness = 1.5f}), UsageError);
+  EXPECT_THROW(scene.addMaterial({.baseColorTexture = {.texture = 0}}), UsageError);
+  EXPECT_THROW(scene.setMaterial(0, {.metallic = kNan}), UsageError);
+  EXPECT_THROW(scene.setMaterial(3, {}), UsageError);
+  EXPECT_THROW(scene.setTransform(-1, {}), UsageError);
+  EXPECT_THROW(scene.addLight({.intensity = {1, -1, 1}}), UsageError);
+  EXPECT_THROW(scene.addLight({.type = LightType::spot, .direction = {0, 0, 0}}), UsageError);
+  EXPECT_THROW(scene.addCamera({.verticalFov = 4}), UsageError);
+  EXPECT_THROW(scene.setEnvironment({.radiance = {0, kNan, 0}}), UsageError);
+  const std::array<float, 5> values{};
+  EXPECT_THROW(scene.addTexture({.width = 2, .height = 1, .channels = 3, .pixels = std::span<const float>(values)}),
+               UsageError);
+  EXPECT_EQ(scene.meshCount(), 3u);
+  EXPECT_EQ(scene.materialCount(), 3u);
+  EXPECT_EQ(scene.instanceCount(), 3u);
+  EXPECT_EQ(scene.lightCount() + scene.cameraCount(), 0u);
+  EXPECT_EQ(scene.material(0).metallic, 0.0f);
+}
+
+TEST(ApiScene, RendersLikeTheSameSceneInAFile) {
+  Scene memory;
+  const std::array<Float2, 4> uv{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  const std::array<Float4, 4> colors{{{1, 0.2f, 0.2f, 1}, {0.2f, 1, 0.2f, 1}, {0.2f, 0.2f, 1, 1}, {1, 1, 1, 1}}};
+  memory.addMesh({.positions = kCorners,
+                  .indices = kSquare,
+                  .uv0 = uv,
+                  .colors = colors,
+                  .material = memory.addMaterial({.baseColor = {0.8f, 0.7f, 0.6f, 1}, .roughness = 0.5f})});
+  memory.addInstance({.mesh = 0});
+  memory.addLight({.intensity = {20, 20, 20}, .position = {1, 2, 1}});
+  memory.setEnvironment({.radiance = {0.1f, 0.1f, 0.2f}});
+  const Scene file = Scene::fromToml(R"(
+[[material]]
+name = "m"
+base_color = [0.8, 0.7, 0.6]
+roughness = 0.5
+[[mesh]]
+positions = [[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]]
+indices = [[0, 1, 2], [0, 2, 3]]
+uvs = [[0, 0], [1, 0], [1, 1], [0, 1]]
+colors = [[1, 0.2, 0.2, 1], [0.2, 1, 0.2, 1], [0.2, 0.2, 1, 1], [1, 1, 1, 1]]
+material = "m"
+[[light]]
+type = "point"
+intensity = 20
+position = [1, 2, 1]
+[environment]
+color = [0.1, 0.1, 0.2]
+)");
+  EXPECT_EQ(rendered(memory), rendered(file));
+}
+
+TEST(ApiScene, TexturesCoverTheMesh) {
+  // The left half is red, the right half green; unlit, so the image shows the texels.
+  const std::array<float, 6> texels{1, 0, 0, 0, 1, 0};
+  const std::array<Float2, 4> uv{{{0, 1}, {1, 1}, {1, 0}, {0, 0}}};
+  Scene scene;
+  const int texture = scene.addTexture({.width = 2,
+                                        .height = 1,
+                                        .channels = 3,
+                                        .pixels = std::span<const float>(texels),
+                                        .wrapU = Wrap::clampToEdge,
+                                        .filter = Filter::nearest});
+  const int material = scene.addMaterial({.baseColorTexture = {.texture = texture}, .unlit = true});
+  scene.addMesh({.positions = kCorners, .indices = kSquare, .uv0 = uv, .material = material});
+  scene.addInstance({.mesh = 0});
+  Renderer renderer(
+      device(), scene, pathTracer(),
+      {.width = 32, .height = 32, .camera = Camera{.lookFrom = {0, 3, 0}, .up = {0, 0, -1}, .verticalFov = 0.5f}});
+  renderer.render(4);
+  const Image image = renderer.image();
+  const auto left = image.at(8, 16), right = image.at(24, 16);
+  EXPECT_NEAR(left[0], 1, 1e-3);
+  EXPECT_NEAR(left[1], 0, 1e-3);
+  EXPECT_NEAR(right[0], 0, 1e-3);
+  EXPECT_NEAR(right[1], 1, 1e-3);
+}
+
+TEST(ApiScene, FromTomlReportsTheLine) {
+  try {
+    Scene::fromToml("[[material]]\nname = \"a\"\nrougness = 1\n");
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.location(), "line 3");
+  }
+}
+
+}  // namespace
+}  // namespace quintet::test
