@@ -24,7 +24,7 @@ MUTATION_FLAGS ?=
 LINT_FLAGS ?=
 
 .DEFAULT_GOAL := build
-.PHONY: demo test build setup bench lessons reference mutation lint clean help configure
+.PHONY: demo test build setup bench lessons reference mutation sanitize lint tidy clean help configure
 # Targets run one by one; each of them is parallel.
 .NOTPARALLEL:
 
@@ -62,9 +62,18 @@ reference: build ## Compare with the reference images and values (tests/referenc
 mutation: build ## Insert bugs one by one and check that the tests detect them (tests/mutation/run)
 	@tests/mutation/run $(BUILD)/bin --jobs $(JOBS) $(MUTATION_FLAGS)
 
+sanitize: setup ## Build with ASan and UBSan and run the unit tests (build/asan)
+	@cmake --preset asan -DQUINTET_TESTS=ON $(CMAKE_FLAGS)
+	@cmake --build --preset asan -j $(JOBS) --target quintet_unit_tests
+	@ctest --preset asan -L '^unit$$' --no-tests=error -j $(JOBS) $(CTEST_FLAGS)
+
 lint: ## Install the tools and check the format of C++ and the scripts (LINT_FLAGS=--fix formats the C++ files)
 	@bash scripts/setup.sh lint
 	@bash scripts/lint.sh $(LINT_FLAGS)
+
+tidy: configure ## Install clang-tidy and check the C++ sources (takes an hour on two cores)
+	@bash scripts/setup.sh tidy
+	@bash scripts/lint.sh --tidy
 
 clean: ## Remove all build results
 	@rm -rf build
