@@ -24,11 +24,15 @@ MUTATION_FLAGS ?=
 LINT_FLAGS ?=
 
 .DEFAULT_GOAL := build
-.PHONY: demo test build setup bench lessons reference mutation lint clean help configure
+.PHONY: demo test build setup bench lessons reference mutation sanitize lint tidy clean help configure
 # Targets run one by one; each of them is parallel.
 .NOTPARALLEL:
 
-demo: build ## Install packages, build, create the demo scene and render it
+# Does not build or install what only the tests require. The tests stay configured if they are.
+demo: ## Install packages, build, create the demo scene and render it
+	@bash scripts/setup.sh build
+	@cmake --preset $(PRESET) $$(test -e $(BUILD)/build.ninja || echo -DQUINTET_TESTS=OFF) $(CMAKE_FLAGS)
+	@cmake --build --preset $(PRESET) -j $(JOBS) --target quintet quintet_make_demo
 	@$(BUILD)/bin/quintet_make_demo $(DEMO)
 	@$(BUILD)/bin/quintet render $(DEMO)/demo.glb --env $(DEMO)/sky.hdr -o $(DEMO)/demo.png $(RENDER_FLAGS)
 	@echo "Image: $(DEMO)/demo.png"
@@ -40,10 +44,10 @@ build: configure ## Install packages and build
 	@cmake --build --preset $(PRESET) -j $(JOBS)
 
 configure: setup
-	@cmake --preset $(PRESET) $(CMAKE_FLAGS)
+	@cmake --preset $(PRESET) -DQUINTET_TESTS=ON $(CMAKE_FLAGS)
 
 setup: ## Install missing packages (scripts/setup.sh --plan only lists them)
-	@bash scripts/setup.sh
+	@bash scripts/setup.sh build test
 
 bench: build ## Measure rays per second relative to the limit of the device (BENCH_FLAGS)
 	@$(BUILD)/bin/quintet_make_scenes $(SCENES)
@@ -58,8 +62,18 @@ reference: build ## Compare with the reference images and values (tests/referenc
 mutation: build ## Insert bugs one by one and check that the tests detect them (tests/mutation/run)
 	@tests/mutation/run $(BUILD)/bin --jobs $(JOBS) $(MUTATION_FLAGS)
 
-lint: ## Check the format of C++ and the scripts (LINT_FLAGS=--fix formats the C++ files)
+sanitize: setup ## Build with ASan and UBSan and run the unit tests (build/asan)
+	@cmake --preset asan -DQUINTET_TESTS=ON $(CMAKE_FLAGS)
+	@cmake --build --preset asan -j $(JOBS) --target quintet_unit_tests
+	@ctest --preset asan -L '^unit$$' --no-tests=error -j $(JOBS) $(CTEST_FLAGS)
+
+lint: ## Install the tools and check the format of C++ and the scripts (LINT_FLAGS=--fix formats the C++ files)
+	@bash scripts/setup.sh lint
 	@bash scripts/lint.sh $(LINT_FLAGS)
+
+tidy: configure ## Install clang-tidy and check the C++ sources (takes an hour on two cores)
+	@bash scripts/setup.sh tidy
+	@bash scripts/lint.sh --tidy
 
 clean: ## Remove all build results
 	@rm -rf build

@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Checks the format of C++ (clang-format 14, because other versions format differently) and the scripts (shellcheck).
-#   lint.sh        checks C++ and scripts with the installed tools
-#   lint.sh --cpp  checks only C++
-#   lint.sh --fix  formats C++, then checks the scripts
-# Exit status: 1 for problems, 77 if no tool is installed.
+# Checks the format of C++ (clang-format 14, because other versions format differently) and all scripts (shellcheck).
+#   lint.sh              checks everything with the installed tools
+#   lint.sh --fix        formats C++, then checks
+#   lint.sh --cpp        checks only C++
+#   lint.sh --scripts    checks only the scripts
+#   lint.sh --tidy [FILE…]   runs clang-tidy 14 on the C++ sources (default: all; slow) with build/release
+# Exit status: 1 for problems, 77 if no tool is installed. With CI=true a tool that apt can install must be installed.
 # The headers below shaders/, which C++ and GLSL share, are formatted by hand.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
@@ -22,26 +24,76 @@ check() {  # LABEL COMMAND…
   fi
 }
 
-clang_format=
-for name in clang-format-14 clang-format; do
-  if command -v "$name" >/dev/null && [[ $("$name" --version) =~ version\ 14\. ]]; then
-    clang_format=$name
-    break
+# missing LABEL PACKAGE: reports a missing tool. In CI it is an error, unless the system does not have the package.
+missing() {
+  if [ "${CI-}" = true ] && [ -n "$(apt-cache show "$2" 2>/dev/null)" ]; then
+    echo "lint: $1: error: $2 is not installed; run: bash scripts/setup.sh lint"
+    status=1
+  else
+    echo "lint: $1: not checked, $2 is not installed"
   fi
-done
-mapfile -d '' sources < <(find apps examples include src tests \( -name '*.cpp' -o -name '*.h' \) -print0)
-if [ -z "$clang_format" ]; then
-  echo "lint: C++ not checked, clang-format 14 is not installed"
-elif [ "${1-}" = --fix ]; then
-  check "C++ formatted" "$clang_format" -i "${sources[@]}"
-else
-  check "C++ format" "$clang_format" --dry-run -Werror "${sources[@]}"
-fi
+}
 
-[ "${1-}" = --cpp ] && exit "$status"
-if command -v shellcheck >/dev/null; then
-  check "scripts" shellcheck -x scripts/*.sh tests/setup/*.sh tests/mutation/run tests/mutation/*.sh tests/bench/*.sh .ci/run
-else
-  echo "lint: scripts not checked, shellcheck is not installed"
-fi
+# version14 NAME: prints the path of version 14 of a tool of LLVM, if it is installed.
+version14() {
+  local name
+  for name in "$1-14" "$1"; do
+    if command -v "$name" >/dev/null && [[ $("$name" --version) =~ version\ 14\. ]]; then
+      command -v "$name"
+      return
+    fi
+  done
+}
+
+checkCpp() {
+  local tool sources
+  tool=$(version14 clang-format)
+  mapfile -d '' sources < <(find apps examples include src tests \( -name '*.cpp' -o -name '*.h' \) -print0)
+  if [ -z "$tool" ]; then
+    missing "C++ format" clang-format-14
+  elif [ "${1-}" = --fix ]; then
+    check "C++ formatted" "$tool" -i "${sources[@]}"
+  else
+    check "C++ format" "$tool" --dry-run -Werror "${sources[@]}"
+  fi
+}
+
+# All files that begin like a shell script, so that a new script is checked at once.
+checkScripts() {
+  local scripts
+  mapfile -t scripts < <(find .ci scripts tests -type f -size -200k -exec \
+    awk 'FNR == 1 && /^#!.*[\/ ](ba)?sh$/ || FNR < 4 && /^# shellcheck shell=/ { print FILENAME } FNR > 3 { nextfile }' {} + | sort -u)
+  if command -v shellcheck >/dev/null; then
+    check "scripts" shellcheck -x "${scripts[@]}"
+  else
+    missing scripts shellcheck
+  fi
+}
+
+checkTidy() {
+  local tool files=("$@")
+  tool=$(version14 clang-tidy)
+  ((${#files[@]})) || mapfile -t files < <(find apps examples src -name '*.cpp' | sort)
+  if [ -z "$tool" ]; then
+    missing clang-tidy clang-tidy-14
+  elif [ ! -e build/release/compile_commands.json ]; then
+    echo "lint: clang-tidy: no build/release/compile_commands.json; run: make build"
+    status=1
+  else
+    # The compile commands are those of GCC, with precompiled headers that clang cannot read.
+    mkdir -p build/tidy
+    sed 's/ -include [^ ]*cmake_pch\.hxx//; s/ -Winvalid-pch//; s/ -fpch-preprocess//' build/release/compile_commands.json \
+      >build/tidy/compile_commands.json
+    # shellcheck disable=SC2016  # the inner shell expands the variable
+    check clang-tidy xargs -P "$(nproc)" -n 1 "$tool" -p build/tidy --quiet --extra-arg=-Wno-unknown-warning-option < <(printf '%s\n' "${files[@]}")
+  fi
+}
+
+case ${1-} in
+  '' | --fix) checkCpp "${1-}"; checkScripts ;;
+  --cpp) checkCpp ;;
+  --scripts) checkScripts ;;
+  --tidy) shift; checkTidy "$@" ;;
+  *) sed -n '3,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+esac
 exit "$status"

@@ -3,8 +3,9 @@
 # Installs with apt the packages of scripts/lib/packages.txt that are missing or too old. Prints the steps before it
 # runs them, asks no questions, and returns quickly if nothing is missing.
 #
-#     scripts/setup.sh           install
-#     scripts/setup.sh --plan    print the steps and change nothing (exit status 1: a package cannot be installed)
+#     scripts/setup.sh [GROUP…]           install the groups: build, test, lint, tidy (default: all)
+#     scripts/setup.sh --plan [GROUP…]    print the steps and change nothing (exit status 1: a package cannot be
+#                                         installed)
 #
 # Environment:
 #     QUINTET_SETUP=skip         do nothing; the packages are installed in another way
@@ -23,20 +24,22 @@ source "$here/lib/apt.sh"
 main() {
     local mode=apply
     case "${1-}" in
-        '') ;;
-        --plan) mode=plan ;;
+        --plan)
+            mode=plan
+            shift
+            ;;
         -h | --help)
             sed -n '3,/^set /{/^set /d;s/^# \{0,1\}//;p}' "${BASH_SOURCE[0]}"
             return
             ;;
-        *) die "unknown argument '$1'; see --help" ;;
+        -*) die "unknown option '$1'; see --help" ;;
     esac
     if [[ ${QUINTET_SETUP-} == skip ]]; then
         say "skipped because of QUINTET_SETUP=skip"
         return
     fi
 
-    readPackageList "$here/lib/packages.txt"
+    readPackageList "$here/lib/packages.txt" "$@"
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         say "this system has no apt; install these packages:"
         printNeeds

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plant parts of mesh_builder.h: ropes along curves, and leaves.
+#include <algorithm>
+
 #include "demo/mesh_builder.h"
 
 namespace quintet::demo {

@@ -17,14 +17,25 @@ needVersion=()  # minimum version, or empty
 needOptional=() # 'optional' or empty
 needRemark=()   # consequence if it is missing, or empty
 
+# readPackageList FILE [GROUP…]: reads the packages of these groups; of all groups if none is given.
 readPackageList() {
-    local line name names version optional remark
+    local file=$1 line name names version optional remark group='' wanted
+    shift
+    wanted=" $* "
+    for name in "$@"; do
+        grep -Fxq -- "[$name]" "$file" || die "unknown group '$name'; see --help"
+    done
     while IFS= read -r line || [[ -n $line ]]; do
         version='' optional='' remark=''
         if [[ $line =~ ^([^#]*)#[[:space:]]*(.*)$ ]]; then
             line=${BASH_REMATCH[1]} remark=${BASH_REMATCH[2]}
         fi
         [[ $line =~ [^[:space:]] ]] || continue
+        if [[ $line =~ ^\[([a-z]+)\][[:space:]]*$ ]]; then
+            group=${BASH_REMATCH[1]}
+            continue
+        fi
+        [[ $wanted == '  ' || $wanted == *" $group "* ]] || continue
         if [[ $line =~ ^(.*[[:space:]])optional[[:space:]]*$ ]]; then
             line=${BASH_REMATCH[1]} optional=optional
         fi
@@ -33,13 +44,13 @@ readPackageList() {
         fi
         read -ra names <<<"${line//|/ }"
         for name in "${names[@]}"; do
-            [[ $name =~ ^[a-z0-9][a-z0-9.+-]+$ ]] || die "$1: '$name' is not a package name"
+            [[ $name =~ ^[a-z0-9][a-z0-9.+-]+$ ]] || die "$file: '$name' is not a package name"
         done
         needNames+=("${names[*]}")
         needVersion+=("$version")
         needOptional+=("$optional")
         needRemark+=("$remark")
-    done <"$1"
+    done <"$file"
 }
 
 # describe INDEX: prints 'cmake >= 3.25'.

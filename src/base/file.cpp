@@ -216,7 +216,7 @@ fs::path cacheFolder() {
     const char* value = std::getenv(name);
     return value ? value : "";
   };
-  if (const fs::path own = variable("QUINTET_CACHE_DIR"); !own.empty()) return own;
+  if (fs::path own = variable("QUINTET_CACHE_DIR"); !own.empty()) return own;
   // The XDG base directory specification requires that relative paths are ignored.
   if (const fs::path xdg = variable("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / "quintet";
   if (const fs::path home = variable("HOME"); home.is_absolute()) return home / ".cache" / "quintet";

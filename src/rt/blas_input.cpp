@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cstring>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "base/parallel.h"

@@ -2,6 +2,7 @@
 #include "shader/include_resolver.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <system_error>
 
 #include "base/error.h"

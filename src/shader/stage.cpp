@@ -2,6 +2,7 @@
 #include "shader/stage.h"
 
 #include <array>
+#include <string>
 
 namespace quintet::shader {
 namespace {

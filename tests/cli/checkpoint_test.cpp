@@ -9,6 +9,7 @@
 #include <cstring>
 #include <random>
 #include <regex>
+#include <sstream>
 #include <thread>
 
 #include "base/file.h"

@@ -2,6 +2,7 @@
 #include "checks.h"
 
 #include <cstdio>
+#include <exception>
 
 #include <fmt/ranges.h>
 

@@ -142,7 +142,7 @@ suite() { printf '%s %s %s\n' "$1" "$2" "$3" >>"$system/suites"; }
 offerAll() { namesInList | sed 's/$/ 9:99/' >>"$system/offered"; }
 installAll() { namesInList | sed 's/$/ 9:99/' >"$system/installed"; }
 namesInList() {
-    sed 's/#.*//; s/|.*//; s/>=.*//; s/optional//; s/ *$//; /^$/d' "$repo/scripts/lib/packages.txt"
+    sed 's/#.*//; s/|.*//; s/>=.*//; s/optional//; s/ *$//; /^$/d; /^\[/d' "$repo/scripts/lib/packages.txt"
 }
 
 # setup ARGUMENTS: runs setup.sh. $output has both output streams, $status the exit status.

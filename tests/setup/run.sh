@@ -60,7 +60,7 @@ bookwormPlan() {
     expectOutput "add trixie to the sources of apt for the next step, then remove it"
     expectOutput "install from bookworm-backports: mesa-vulkan-drivers"
     expectOutput "install from trixie: libvulkan-memory-allocator-dev"
-    expectOutput "install: g++ cmake make ninja-build pkg-config git ccache"
+    expectOutput "install: g++ cmake make ninja-build pkg-config ccache"
     expectNoOutput CANNOT
     expectCalls '' # a plan changes nothing
 }
@@ -353,6 +353,24 @@ versions() {
     [[ -z $output ]] || complain "versions"
 }
 
+groups() { # of packages.txt
+    bookworm
+    setup --plan build
+    expectStatus 0
+    expectOutput "libshaderc-dev"
+    expectNoOutput gtest
+    expectNoOutput shellcheck
+    setup --plan lint
+    expectStatus 0
+    expectOutput "install: git shellcheck clang-format-14"
+    setup --plan build nothing
+    expectStatus 1
+    expectOutput "unknown group 'nothing'"
+    setup --wrong
+    expectStatus 1
+    expectOutput "unknown option '--wrong'"
+}
+
 badList() {
     status=0
     output=$(bash -c '
@@ -374,7 +392,7 @@ hideSudo() {
 # All tests run in parallel, each in its own shell with its own simulated system. Results are printed in this order.
 tests=(bookwormPlan bookwormInstalls bookwormWithBackports bookwormOldMesaInstalled keyWithinTheSource noMirrorOfDebian
     trixiePlan otherNameTaken nobleWithUpdates nobleWithoutUpdates tooOldASystem neededNotOffered optionalNotOffered
-    noListsYet offline aptInUse noRootNoSudo sudoRefuses withSudo noApt skipped noHostNames versions badList)
+    noListsYet offline aptInUse noRootNoSudo sudoRefuses withSudo noApt skipped noHostNames versions groups badList)
 runs=()
 for test in "${tests[@]}"; do
     (

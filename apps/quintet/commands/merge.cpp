@@ -2,6 +2,8 @@
 // `quintet merge`: parts of a render become the image, or the film, that one render would have written.
 #include "job/merge.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/error.h"

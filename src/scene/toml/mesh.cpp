@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // [[mesh]]: triangles from lists or from a named shape.
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "scene/animation/deform.h"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // [[light]], [[camera]] and [environment].
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include "base/error.h"

@@ -4,6 +4,7 @@
 // times that outside.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "bsdf/bsdf_cases.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Properties of the lobes at single pairs of directions: weights, reciprocity, deltas, total reflection, sides. No
 // parameters may lead to invalid results.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "bsdf/bsdf_cases.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/uploader.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include <gmock/gmock.h>

@@ -2,6 +2,7 @@
 // The choice among many lights by the tree: probabilities against the oracle, drawing against probabilities, and
 // estimates against the choice by power and against closed forms.
 #include <algorithm>
+#include <cstdio>
 #include <random>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // CSG trees, compared with the oracle on the host, and with explicit expected values where surfaces coincide.
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 

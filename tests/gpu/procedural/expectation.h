@@ -3,6 +3,9 @@
 #ifndef QUINTET_TESTS_GPU_PROCEDURAL_EXPECTATION_H
 #define QUINTET_TESTS_GPU_PROCEDURAL_EXPECTATION_H
 
+#include <algorithm>
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "../../unit/scene/csg_oracle.h"

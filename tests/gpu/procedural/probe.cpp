@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "probe.h"
 
+#include <bit>
+
 #include <gtest/gtest.h>
 
 #include "harness.h"

@@ -2,6 +2,7 @@
 // Each solid, compared with the oracle on the host: t, entering or leaving, normal; and rays that leave a surface.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "expectation.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pixels, frames and inputs of the lecture form: where gsnSetPixel writes, the previous frame, uniforms and images; and the
 // image file shows the written values.
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

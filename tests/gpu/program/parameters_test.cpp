@@ -2,6 +2,7 @@
 // Parameters of every type on the device: numbers in scalar layout, choices, and images as textures.
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/file.h"

@@ -3,6 +3,7 @@
 // Every pixel is compared with a reference in double precision, except pixels close to an edge.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "lecture_run.h"

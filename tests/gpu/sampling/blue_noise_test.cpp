@@ -2,6 +2,7 @@
 // Pixels that share nets: blocks of pixels are nets, and errors cancel over small neighborhoods. Within each pixel, the
 // numbers are uniform, independent between draws, and as well distributed as those of independent pixels.
 #include <cmath>
+#include <cstdio>
 #include <vector>
 
 #include <gtest/gtest.h>

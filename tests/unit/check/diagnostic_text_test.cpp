@@ -2,6 +2,8 @@
 // Text and JSON of diagnostics: location, source line, caret, order, limit, keys.
 #include "check/diagnostic_text.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 

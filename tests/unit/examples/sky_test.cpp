@@ -2,6 +2,8 @@
 // The sky: finite values, the requested irradiance, the direction of the sun, a dim lower half.
 #include "demo/sky.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "demo/still_life.h"

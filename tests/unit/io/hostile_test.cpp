@@ -3,6 +3,7 @@
 // always gives a FileError.
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <random>
 
 #include "base/error.h"

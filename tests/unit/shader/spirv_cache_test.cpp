@@ -2,6 +2,7 @@
 // The SPIR-V disk cache: hits are identical, keys cover all inputs, corrupt entries are ignored.
 #include "shader/spirv_cache.h"
 
+#include <chrono>
 #include <fstream>
 
 #include "shader_test_support.h"

@@ -2,6 +2,8 @@
 // The lecture form: which text becomes which stage, the errors, and the line and column of messages of the compiler.
 #include "program/gsn/lecture.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 

@@ -2,6 +2,7 @@
 // The error estimate of films whose samples are known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>

@@ -6,6 +6,7 @@
 #include <ImfStandardAttributes.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "base/file.h"

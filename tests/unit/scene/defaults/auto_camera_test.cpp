@@ -2,6 +2,8 @@
 // The automatic camera frames all bounds tightly and is always finite.
 #include "scene/defaults/auto_camera.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace quintet::test {

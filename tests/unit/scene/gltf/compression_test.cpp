@@ -7,6 +7,7 @@
 #include <meshoptimizer.h>
 #include <algorithm>
 #include <array>
+#include <memory>
 
 #include <random>
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Node hierarchy, instances, cameras and lights.
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
