@@ -8,14 +8,10 @@
 #include "base/file.h"
 #include "base/suggestion.h"
 #include "check/catalog.h"
-#include "cli/parser.h"
+#include "cli/option_table.h"
 
 namespace quintet::cli {
 namespace {
-
-constexpr const char* kExamples =
-    "  quintet explain            every id, one line each\n"
-    "  quintet explain Q101       what it means, why it matters, how to fix it\n";
 
 std::string listText() {
   std::string text;
@@ -43,23 +39,44 @@ const check::DiagnosticInfo& find(const std::string& id) {
   throw UsageError(fmt::format("unknown diagnostic '{}'{}; 'quintet explain' lists all", id, suggestion(id, ids)));
 }
 
+struct Options {
+  std::optional<std::string> id;
+  bool json = false;
+};
+
+OptionTable declare(Options& options) {
+  std::vector<std::string> ids;
+  for (const check::DiagnosticInfo& info : check::allDiagnostics()) ids.emplace_back(info.id);
+  OptionTable table("explain", "Explains a diagnostic of the check, or lists all of them.");
+  table.add({{.names = "ID",
+              .help = "Id as in the message, e.g. Q101; without it, the list of all",
+              .target = &options.id,
+              .candidates = {.names = ids}},
+             {.names = "--json", .help = "Print JSON instead of text", .target = &options.json}});
+  table.addExamples({
+      {"quintet explain", "every id, one line each"},
+      {"quintet explain Q101", "what it means, why it matters, how to fix it"},
+  });
+  return table;
+}
+
 }  // namespace
 
+OptionTable explainOptions() {
+  Options options;
+  return declare(options).withoutTargets();
+}
+
 int explainCommand(Arguments arguments) {
-  CLI::App app("Explains a diagnostic of the check, or lists all of them.", "quintet explain");
-  std::string id;
-  bool json = false;
-  app.add_option("ID", id, "Id as in the message, e.g. Q101; without it, the list of all")->type_name("");
-  app.add_flag("--json", json, "Print JSON instead of text");
-  setUp(app, kExamples);
-  if (!parse(app, arguments)) return 0;
-  if (app.count("ID") == 0) {
-    writeFile("-", json ? listJson() : listText());
+  Options options;
+  if (!declare(options).parse(arguments)) return 0;
+  if (!options.id) {
+    writeFile("-", options.json ? listJson() : listText());
     return 0;
   }
-  const check::DiagnosticInfo& info = find(id);
+  const check::DiagnosticInfo& info = find(*options.id);
   const std::string page(check::explanation(info.id));
-  if (json) {
+  if (options.json) {
     nlohmann::ordered_json object = toJson(info);
     object["page"] = page;
     writeFile("-", object.dump() + "\n");
