@@ -35,7 +35,14 @@ std::vector<std::string> wrapLines(std::string_view text, std::size_t firstWidth
 }  // namespace
 
 std::size_t columnsOf(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+  std::size_t columns = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text.substr(i, 2) == "\x1b[")
+      i = std::min(text.find('m', i), text.size());
+    else if ((text[i] & 0xC0) != 0x80)
+      ++columns;
+  }
+  return columns;
 }
 
 std::string padded(std::string_view text, std::size_t columns) {

@@ -10,7 +10,7 @@
 
 namespace quintet {
 
-// Returns the number of code points of UTF-8 text, which is the number of columns for the scripts that messages use.
+// Returns the number of code points of UTF-8 text without sequences that set colors, which is the number of columns for the scripts that messages use.
 std::size_t columnsOf(std::string_view text);
 
 // Returns the text with spaces appended, so that it has at least this many columns.

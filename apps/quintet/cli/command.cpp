@@ -18,6 +18,7 @@ std::span<const Command> commands() {
       Command{"info", "describe the devices, or a scene, image or film", infoCommand, infoOptions},
       Command{"compare", "measure the difference between two images", compareCommand, compareOptions},
       Command{"bench", "measure rays per second, and compare with minimal shaders", benchCommand, benchOptions},
+      Command{"help", "print the help of a command", helpCommand, helpOptions},
   };
   return kCommands;
 }

@@ -32,6 +32,7 @@ int explainCommand(Arguments);
 int infoCommand(Arguments);
 int compareCommand(Arguments);
 int benchCommand(Arguments);
+int helpCommand(Arguments);
 
 OptionTable renderOptions();
 OptionTable mergeOptions();
@@ -42,6 +43,7 @@ OptionTable explainOptions();
 OptionTable infoOptions();
 OptionTable compareOptions();
 OptionTable benchOptions();
+OptionTable helpOptions();
 
 }  // namespace quintet::cli
 #endif

@@ -2,11 +2,14 @@
 // `quintet render`: a request becomes a job, the job a result, and the result files.
 #include "commands/render.h"
 
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "cli/candidates.h"
+#include "cli/terminal.h"
 #include "cli/values.h"
 #include "job/render_job.h"
 #include "output/layers.h"
@@ -157,7 +160,7 @@ int renderCommand(Arguments arguments) {
   if (!options) return 0;
   const program::Program program = program::loadProgram(options->program);
   if (options->programHelp) {
-    writeFile("-", program::describeAsText(program));
+    writeFile("-", program::describeAsText(program, terminalWidth(STDOUT_FILENO).value_or(0)));
   } else if (options->layerList) {
     writeFile("-", output::layerList(program));
   } else {

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // `quintet run`: a user's program or a built-in one, on a scene or on the built-in one; with --watch again after each save.
+#include <unistd.h>
+
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 #include "base/text.h"
 #include "check/diagnostic_text.h"
 #include "cli/candidates.h"
 #include "cli/help_text.h"
+#include "cli/terminal.h"
 #include "cli/values.h"
 #include "commands/render.h"
 #include "job/watch.h"
@@ -157,7 +161,7 @@ class Watch {
     bool good = live_.reload(console_);
     stop_.emplace();
     console_.setGracefulStop(&*stop_);
-    console_.note(fmt::format("watching {} files; press Ctrl-C to stop", live_.watchFiles()));
+    console_.note(fmt::format("watching {}; press Ctrl-C to stop", counted(live_.watchFiles(), "file")));
     while (true) {
       if (good) render();
       while (!stop_->requested() && live_.waitForChange(kSignalSeconds).empty()) {
@@ -229,13 +233,14 @@ int runCommand(Arguments arguments) {
   if (!options) return 0;
   const bool json = options->console.json;
   if (options->list) {
-    writeFile("-", json ? program::listAsJson() + "\n" : program::listAsText());
+    writeFile("-", json ? program::listAsJson() + "\n" : program::listAsText(terminalWidth(STDOUT_FILENO).value_or(0)));
     return 0;
   }
   try {
     const program::Program program = program::loadProgram(options->program);
     if (options->programHelp) {
-      writeFile("-", json ? program::describeAsJson(program) + "\n" : program::describeAsText(program));
+      writeFile("-", json ? program::describeAsJson(program) + "\n"
+                          : program::describeAsText(program, terminalWidth(STDOUT_FILENO).value_or(0)));
       return 0;
     }
     if (options->layerList) {
