@@ -7,46 +7,28 @@
 #include <algorithm>
 #include <csignal>
 #include <exception>
-#include <iterator>
 #include <new>
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/suggestion.h"
 #include "base/text.h"
+#include "base/typographic.h"
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/signals.h"
+#include "commands/help.h"
 #include "gpu/instance.h"
 
 namespace quintet::cli {
 namespace {
 
-std::string helpText() {
-  std::string text =
-      "Quintet: five shaders in, image out. A path tracer for glTF scenes on Vulkan ray tracing.\n\n"
-      "Usage: quintet COMMAND [OPTIONS]\n\nCommands:\n";
-  for (const Command& command : commands()) text += fmt::format("  {:<10}{}\n", command.name, command.summary);
-  return text +
-         "\n  quintet COMMAND --help      options and examples of a command\n  quintet --version           version of "
-         "Quintet\n\n"
-         "Examples:\n"
-         "  quintet render scene.glb                          scene.png, 1280x720, 64 samples per pixel\n"
-         "  quintet render scene.glb -o out.exr --time 60     as many samples as possible in a minute\n"
-         "  quintet run ao                                    a program on the built-in scene\n"
-         "  quintet info                                      the Vulkan devices\n"
-         "  quintet compare out.png reference.png             measures of their difference\n";
-}
-
 int dispatch(const std::vector<std::string>& arguments) {
   const std::string first = arguments.empty() ? "--help" : arguments.front();
-  if (first == "--help" || first == "-h" || first == "help") {
-    writeFile("-", helpText());
+  if (first == "--help" || first == "-h") {
+    writeFile("-", overviewText());
     return arguments.empty() ? 2 : 0;
   }
   if (first == "--version" || first == "version") {
@@ -57,10 +39,7 @@ int dispatch(const std::vector<std::string>& arguments) {
   const auto found = std::ranges::find(all, first, &Command::name);
   if (found != all.end()) return found->run(Arguments(arguments).subspan(1));
 
-  std::vector<std::string> names{"--help", "--version"};
-  std::ranges::transform(all, std::back_inserter(names), [](const Command& c) { return std::string(c.name); });
-  throw UsageError(fmt::format("unknown {} '{}'{}; 'quintet --help' lists the commands",
-                               first.starts_with('-') ? "option" : "command", first, suggestion(first, names)));
+  throw UsageError(unknownCommandText(first));
 }
 
 // The descriptor of a closed standard stream would be reused by the next file that is opened. It is replaced by one that is
@@ -71,10 +50,13 @@ void occupyStandardStreams() {
       const int opened = ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
 }
 
-// The message on one line.
-int fail(std::string message, int status) {
+// The message on one line. Commands that were copied from a text may contain typographic quotes.
+int fail(std::string message, int status, const std::vector<std::string>& arguments = {}) {
   std::ranges::replace(message, '\n', ' ');
-  printError("quintet: " + printable(message) + "\n");
+  const auto quoted = std::ranges::find_if(
+      arguments, [](const std::string& argument) { return !findTypographicQuote(argument).empty(); });
+  if (quoted != arguments.end()) message += "; " + typographicQuoteHint(findTypographicQuote(*quoted));
+  printMessage("quintet: " + printable(message));
   return status;
 }
 
@@ -88,16 +70,17 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   cli::installSignalHandlers();
+  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   try {
     releaseLargeBlocksImmediately();
     gpu::prepareDriverEnvironment();  // before other threads exist
-    return cli::dispatch({argv + std::min(argc, 1), argv + argc});
+    return cli::dispatch(arguments);
   } catch (const UsageError& error) {
-    return cli::fail(error.what(), 2);
+    return cli::fail(error.what(), 2, arguments);
   } catch (const std::bad_alloc&) {
     return cli::fail("out of memory", 1);
   } catch (const std::exception& error) {
-    return cli::fail(error.what(), 1);
+    return cli::fail(error.what(), 1, arguments);
   } catch (...) {
     return cli::fail("unknown error", 1);
   }

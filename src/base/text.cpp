@@ -48,7 +48,8 @@ std::string bytesText(std::uint64_t bytes) {
   double value = static_cast<double>(bytes);
   std::size_t unit = 0;
   while (value >= 1024.0 && unit + 1 < kUnits.size()) value /= 1024.0, ++unit;
-  return unit == 0 ? fmt::format("{} bytes", bytes) : fmt::format("{:.1f} {}", value, kUnits[unit]);
+  return unit == 0 ? fmt::format("{} byte{}", bytes, bytes == 1 ? "" : "s")
+                   : fmt::format("{:.1f} {}", value, kUnits[unit]);
 }
 
 std::string durationText(double seconds) {

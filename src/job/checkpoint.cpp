@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 #include "gpu/error.h"
 
 namespace quintet::job {
@@ -55,9 +56,8 @@ std::optional<StoredFilm> Checkpoint::load(const Provenance& expected, const ren
   }
   if (!request_.resume) {
     if (request_.force) return std::nullopt;
-    throw FileError(path,
-                    fmt::format("holds {} samples of this render; use --resume to continue or --force to start over",
-                                averageSamples(file.film)));
+    throw FileError(path, fmt::format("holds {} {} of this render; use --resume to continue or --force to start over",
+                                      averageSamples(file.film), nounFor(averageSamples(file.film), "sample")));
   }
   if (file.film.counts.ranges.empty()) return std::nullopt;
   savedCounts_ = file.film.counts;
@@ -116,7 +116,8 @@ StartPoint resumePoint(const StoredFilm& film, const Provenance& current, const 
         fmt::format("{}: started with {}, resuming with {}; a render from the start would distribute its samples "
                     "differently",
                     file.string(), text(earlier.targetError), text(current.targetError)));
-  observer.note(fmt::format("{}: resuming after {} samples", file.string(), averageSamples(film.file.film)));
+  observer.note(fmt::format("{}: resuming after {} {}", file.string(), averageSamples(film.file.film),
+                            nounFor(averageSamples(film.file.film), "sample")));
   return point;
 }
 

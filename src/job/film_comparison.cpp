@@ -65,7 +65,9 @@ std::vector<std::string> notesOn(const FilmComparison& c) {
   for (std::size_t i = 0; i < 2; ++i) {
     std::uint64_t dropped = 0;
     for (const uvec2& pixel : c.films[i].film.statistics) dropped += pixel.y;
-    if (dropped > 0) notes.push_back(fmt::format("{} samples of {} were not finite and are omitted", dropped, "AB"[i]));
+    if (dropped > 0)
+      notes.push_back(dropped == 1 ? fmt::format("1 sample of {} was not finite and is omitted", "AB"[i])
+                                   : fmt::format("{} samples of {} were not finite and are omitted", dropped, "AB"[i]));
   }
   return notes;
 }

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/plural.h"
 #include "base/text.h"
 #include "job/film_store.h"
 
@@ -48,6 +49,11 @@ std::string meansText(const ZTestMeans& m) {
   return fmt::format("{:.6g} ± {:.2g} against {:.6g} ± {:.2g}", m.mean[0], m.error[0], m.mean[1], m.error[1]);
 }
 
+std::string nonFiniteText(const ZTest& test) {
+  return test.nonFinitePixels == 1 ? "1 pixel is not finite"
+                                   : fmt::format("{} pixels are not finite", test.nonFinitePixels);
+}
+
 }  // namespace
 
 std::vector<Measure> measures(const io::Comparison& c) {
@@ -64,7 +70,9 @@ std::string comparisonText(const io::Comparison& comparison) {
   std::string text;
   for (const Measure& m : measures(comparison)) text += fmt::format("{:<8}{:<12.6g}{}\n", m.name, m.value, m.meaning);
   if (comparison.nonFinitePixels > 0)
-    text += fmt::format("{} pixels contain NaN or infinity\n", comparison.nonFinitePixels);
+    text += fmt::format("{} NaN or infinity\n", comparison.nonFinitePixels == 1
+                                                    ? "1 pixel contains"
+                                                    : fmt::format("{} pixels contain", comparison.nonFinitePixels));
   return text;
 }
 
@@ -118,9 +126,9 @@ std::string comparisonText(const job::FilmComparison& c) {
     text += fmt::format("{}: {}, seed {}, {}\n", printable(c.files[i].string()), job::samplesText(c.films[i].film),
                         c.provenance[i].seed, printable(c.provenance[i].device));
   const ZTestMeans& smallest = test.blocks[test.smallest];
-  text += fmt::format("blocks: {} of {}x{} pixels, {} channels; rejected if p is below {:.3g}\n",
-                      test.blocks.size() / test.image.size(), c.options.block, c.options.block, test.image.size(),
-                      test.blockLevel);
+  text += fmt::format("blocks: {} of {}x{} pixels, {}; rejected if p is below {:.3g}\n",
+                      test.blocks.size() / test.image.size(), c.options.block, c.options.block,
+                      counted(test.image.size(), "channel"), test.blockLevel);
   text += fmt::format("   smallest p {:.3g} at {}: {}\n", smallest.p, regionText(smallest), meansText(smallest));
   text += fmt::format("   |t| of {} noisy blocks: root mean square {:.2f}", test.noisy, test.rms);
   constexpr std::array<double, 3> kExpected{5, 1, 0.1};
@@ -131,17 +139,19 @@ std::string comparisonText(const job::FilmComparison& c) {
   for (const ZTestMeans& m : test.image)
     text += fmt::format("   {:<5} p {:<8.3g} {:+.4f} % ± {:.4f} %   {}\n", kChannels[m.channel], m.p,
                         100.0 * relative(m, m.difference()), 100.0 * relative(m, m.differenceError()), meansText(m));
-  if (test.nonFinitePixels > 0) text += fmt::format("{} pixels are not finite\n", test.nonFinitePixels);
+  if (test.nonFinitePixels > 0) text += nonFiniteText(test) + "\n";
   if (test.unknownPixels > 0)
-    text +=
-        fmt::format("{} pixels are too bright for their noise to be known and were not tested\n", test.unknownPixels);
+    text += test.unknownPixels == 1
+                ? "1 pixel is too bright for its noise to be known and was not tested\n"
+                : fmt::format("{} pixels are too bright for their noise to be known and were not tested\n",
+                              test.unknownPixels);
   for (const std::string& note : c.notes) text += "note: " + note + "\n";
   return text + fmt::format("{} at level {}\n", test.rejected ? "different images" : "the same image", c.options.level);
 }
 
 std::string rejectionText(const job::FilmComparison& c) {
   const ZTest& test = c.test;
-  if (test.nonFinitePixels > 0) return fmt::format("{} pixels are not finite", test.nonFinitePixels);
+  if (test.nonFinitePixels > 0) return nonFiniteText(test);
   const auto worst = std::ranges::min_element(test.image, {}, &ZTestMeans::p);
   if (worst->p < test.imageLevel)
     return fmt::format("the whole image, {}, p {:.3g}: {}", kChannels[worst->channel], worst->p, meansText(*worst));

@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 #include "base/text.h"
 #include "io/codec.h"
 #include "io/exr/exr.h"
@@ -147,9 +148,9 @@ std::string exrInfo(const std::filesystem::path& file, Bytes bytes, bool json) {
   }
   const std::string layout =
       first.tileWidth > 0 ? fmt::format("tiles of {}x{}", first.tileWidth, first.tileHeight) : "scan lines";
-  std::string text =
-      fmt::format("{}: OpenEXR, {}x{}, {} channels, {}, {}, {}\n", printable(file.string()), first.display.width,
-                  first.display.height, channels, first.compression, layout, bytesText(bytes.size()));
+  std::string text = fmt::format("{}: OpenEXR, {}x{}, {}, {}, {}, {}\n", printable(file.string()), first.display.width,
+                                 first.display.height, counted(channels, "channel"), first.compression, layout,
+                                 bytesText(bytes.size()));
   for (const Part& part : parts) text += partText(part, parts.size() > 1);
   return text + attributesText(first);
 }
@@ -160,11 +161,17 @@ Json factsJson(const render::FilmFacts& facts) {
   return json;
 }
 
-std::string factsText(const render::FilmFacts& facts) {
+// `other`: facts that are printed, too. A fact of the identity that has the name of a note says the same exactly: the hash of the
+// scene's contents next to its name.
+std::string factsText(const render::FilmFacts& facts, const render::FilmFacts& other) {
   std::string text;
-  for (const auto& [name, value] : facts)
-    if (!value.empty())
-      text += fmt::format("   {:<25} {}\n", printable(name), shortened(printable(value), kMaxFactText));
+  for (const auto& [name, value] : facts) {
+    if (value.empty()) continue;
+    const std::string label = !render::findFact(other, name) ? name
+                              : name == "camera"             ? "camera projection"
+                                                             : name + " contents";
+    text += fmt::format("   {:<25} {}\n", printable(label), shortened(printable(value), kMaxFactText));
+  }
   return text;
 }
 
@@ -176,7 +183,7 @@ std::string filmInfo(const std::filesystem::path& file, Bytes bytes, bool json) 
         provenance.plannedSamples ? fmt::format(" of {}", *provenance.plannedSamples) : std::string();
     return fmt::format("{}: film, {}x{}, {}{}, {}\n", printable(file.string()), region.width, region.height,
                        job::samplesText(film.film), planned, bytesText(bytes.size())) +
-           factsText(film.identity) + factsText(film.notes);
+           factsText(film.identity, film.notes) + factsText(film.notes, {});
   }
   Json samples = Json::array();
   for (const render::SampleRange& range : film.film.counts.ranges) samples.push_back({range.begin, range.end});
@@ -213,8 +220,9 @@ std::string imageInfo(const std::filesystem::path& file, Bytes bytes, bool json)
                     {"bytes", bytes.size()},
                     {"metadata", std::move(texts)}});
   }
-  std::string text = fmt::format("{}: {}, {}x{}, {} channels, {}, {}\n", printable(file.string()), info.format,
-                                 info.width, info.height, info.channels, typeText(info.type), bytesText(bytes.size()));
+  std::string text =
+      fmt::format("{}: {}, {}x{}, {}, {}, {}\n", printable(file.string()), info.format, info.width, info.height,
+                  counted(info.channels, "channel"), typeText(info.type), bytesText(bytes.size()));
   for (const auto& [keyword, value] : metadata)
     text += fmt::format("   {:<13}{}\n", printable(keyword), printable(value));
   return text;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/wrap.h"
 #include "program/load.h"
 
 namespace quintet::program {
@@ -45,7 +46,12 @@ Json parameterJson(const Parameter& parameter) {
 
 std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-std::string parameterHelp(const Parameter& parameter) {
+// Lines in two columns: the first has `column` characters.
+std::string twoColumns(const std::string& left, const std::string& right, std::size_t column, std::size_t width) {
+  return padded(left, column) + wrapped(right, width == 0 ? std::string::npos : width, column, column) + "\n";
+}
+
+std::string parameterFacts(const Parameter& parameter) {
   const bool white = parameter.type == ParameterType::image && parameter.defaultImage.empty();
   const std::string value = white ? "white" : formatDefault(parameter);
   std::string range;
@@ -53,31 +59,35 @@ std::string parameterHelp(const Parameter& parameter) {
   if (hasMax(parameter)) range += fmt::format(", at most {}", parameter.max);
   if (!parameter.choices.empty()) range = fmt::format(", one of {}", fmt::join(parameter.choices, ", "));
   const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
-  return fmt::format("  {:<18}{}\n{:20}{}, default {}{}{}\n", parameter.name, parameter.help, "",
-                     typeName(parameter.type), value, unit, range);
+  return fmt::format("{}, default {}{}{}", typeName(parameter.type), value, unit, range);
 }
 
-// Returns the first sentence of a text, shortened to one line.
-std::string firstSentence(const std::string& text) {
-  constexpr std::size_t kMost = 90;
-  const std::string sentence = text.substr(0, text.find(". "));
-  if (sentence.size() <= kMost) return sentence;
-  const std::size_t space = sentence.rfind(' ', kMost);
-  return sentence.substr(0, space == sentence.npos ? kMost : space) + " ...";
+std::string firstSentence(const std::string& text) { return text.substr(0, text.find(". ")); }
+
+// Column of the help texts.
+std::size_t helpColumn(const Program& program) {
+  std::size_t longest = 16;
+  for (const Parameter& parameter : program.parameters) longest = std::max(longest, columnsOf(parameter.name));
+  for (const Output& output : program.outputs) longest = std::max(longest, columnsOf(output.name));
+  return longest + 4;
 }
 
 }  // namespace
 
-std::string describeAsText(const Program& program) {
-  std::string text = fmt::format("{}: {}\n\n", program.name, program.description);
+std::string describeAsText(const Program& program, std::size_t width) {
+  const std::size_t column = helpColumn(program);
+  std::string text = twoColumns("", program.name + ": " + program.description, 0, width) + "\n";
   if (program.accumulation == Accumulation::program) text += "Renders frame by frame: --frames N.\n\n";
   text += "Parameters (--set NAME=VALUE):\n";
   if (program.parameters.empty()) text += "  none\n";
-  for (const Parameter& parameter : program.parameters) text += parameterHelp(parameter);
+  for (const Parameter& parameter : program.parameters) {
+    text += twoColumns("  " + parameter.name, parameter.help, column, width);
+    text += twoColumns("", parameterFacts(parameter), column, width);
+  }
   text += "\nOutputs (--output NAME, --all-outputs, --aov NAMES):\n";
   for (const Output& output : program.outputs)
-    text += fmt::format("  {:<18}{}\n", output.name,
-                        output.help.empty() ? std::string(outputKindName(output.kind)) : output.help);
+    text += twoColumns("  " + output.name, output.help.empty() ? std::string(outputKindName(output.kind)) : output.help,
+                       column, width);
   return text + "\nSee 'quintet run --help' for the options of all programs.\n";
 }
 
@@ -101,13 +111,13 @@ std::string describeAsJson(const Program& program) {
   return oneLine(json);
 }
 
-std::string listAsText() {
+std::string listAsText(std::size_t width) {
   const std::vector<std::string> names = builtInPrograms();
-  std::size_t width = 0;
-  for (const std::string& name : names) width = std::max(width, name.size());
+  std::size_t longest = 0;
+  for (const std::string& name : names) longest = std::max(longest, name.size());
   std::string text;
   for (const std::string& name : names)
-    text += fmt::format("{:<{}}  {}\n", name, width, firstSentence(loadProgram(name).description));
+    text += twoColumns(name, firstSentence(loadProgram(name).description), longest + 2, width);
   return text;
 }
 

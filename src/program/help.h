@@ -11,13 +11,15 @@
 namespace quintet::program {
 
 // Parameters with type, default, range, unit and help, and outputs: `quintet run PROGRAM --help`.
-std::string describeAsText(const Program& program);
+// `width`: columns of the terminal; 0 means that lines are not broken.
+std::string describeAsText(const Program& program, std::size_t width = 0);
 
 // One object in one line without a line break (docs/programs.md, "The description as JSON").
 std::string describeAsJson(const Program& program);
 
 // The built-in programs with the first sentence of their descriptions, one line each.
-std::string listAsText();
+// With a `width`, longer lines are broken.
+std::string listAsText(std::size_t width = 0);
 
 // The built-in programs as an array of {"name", "description"}, in one line without a line break.
 std::string listAsJson();

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "base/typographic.h"
 #include "spirv/glsl_declaration.h"
 #include "spirv/source_text.h"
 
@@ -76,6 +77,23 @@ bool isNoise(const Diagnostic& d) {
   return d.text == "'' : compilation terminated" || d.text.ends_with("while in source code it is (460, none)");
 }
 
+// The compiler reports only one byte of a character that GLSL does not have. Restores the character.
+void restoreCharacter(Diagnostic& d, std::string_view source) {
+  constexpr std::string_view kEnd = "' : unexpected token";
+  if (d.line <= 0 || d.text.size() != kEnd.size() + 2 || !d.text.ends_with(kEnd) || (d.text[1] & 0x80) == 0) return;
+  const std::string_view line = spirv::lineOf(source, d.line);
+  const std::string_view quote = findTypographicQuote(line);
+  std::size_t at = quote.find(d.text[1]) != quote.npos ? line.find(quote) : line.find(d.text[1]);
+  if (at == line.npos) return;
+  while (at > 0 && (line[at] & 0xC0) == 0x80) --at;
+  std::size_t length = 1;
+  while (at + length < line.size() && (line[at + length] & 0xC0) == 0x80) ++length;
+  const std::string_view character = line.substr(at, length);
+  d.text = "'" + std::string(character) + std::string(kEnd);
+  if (!findTypographicQuote(character).empty()) d.text += "; " + typographicQuoteHint(character);
+  d.column = static_cast<int>(at) + 1;
+}
+
 }  // namespace
 
 int columnOfToken(std::string_view text, int line, std::string_view message) {
@@ -104,6 +122,7 @@ std::vector<Diagnostic> parseMessages(std::string_view messages, const IncludeRe
     diagnostic.id = kCompilerId;
     if (parseMessage(message, known, diagnostic)) {
       diagnostic.column = columnOfToken(files.textOf(diagnostic.file), diagnostic.line, diagnostic.text);
+      restoreCharacter(diagnostic, files.textOf(diagnostic.file));
       if (!isNoise(diagnostic)) diagnostics.push_back(std::move(diagnostic));
     } else if (diagnostics.empty()) {
       diagnostic.file = files.root().name;

@@ -3,19 +3,22 @@
 
 #include <array>
 
+#include "cli/option_table.h"
+
 namespace quintet::cli {
 
 std::span<const Command> commands() {
   static constexpr std::array kCommands{
-      Command{"render", "render an image of a scene", renderCommand},
-      Command{"merge", "join parts of a render", mergeCommand},
-      Command{"run", "run a program: your own or a built-in one", runCommand},
-      Command{"new", "create a program that renders at once", newCommand},
-      Command{"check", "compile and check programs, without rendering", checkCommand},
-      Command{"explain", "explain a diagnostic and how to fix it", explainCommand},
-      Command{"info", "describe the devices, or a scene, image or film", infoCommand},
-      Command{"compare", "measure the difference between two images", compareCommand},
-      Command{"bench", "measure rays per second, and compare with minimal shaders", benchCommand},
+      Command{"render", "render an image of a scene", renderCommand, renderOptions},
+      Command{"merge", "join parts of a render", mergeCommand, mergeOptions},
+      Command{"run", "run a program: your own or a built-in one", runCommand, runOptions},
+      Command{"new", "create a program that renders at once", newCommand, newOptions},
+      Command{"check", "compile and check programs, without rendering", checkCommand, checkOptions},
+      Command{"explain", "explain a diagnostic and how to fix it", explainCommand, explainOptions},
+      Command{"info", "describe the devices, or a scene, image or film", infoCommand, infoOptions},
+      Command{"compare", "measure the difference between two images", compareCommand, compareOptions},
+      Command{"bench", "measure rays per second, and compare with minimal shaders", benchCommand, benchOptions},
+      Command{"help", "print the help of a command", helpCommand, helpOptions},
   };
   return kCommands;
 }

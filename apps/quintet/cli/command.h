@@ -12,10 +12,13 @@ namespace quintet::cli {
 // The arguments after the command's name.
 using Arguments = std::span<const std::string>;
 
+class OptionTable;
+
 struct Command {
   std::string_view name;
-  std::string_view summary;         // one line for `quintet --help`
-  int (*run)(Arguments) = nullptr;  // returns the exit status; exceptions become 1 or 2 in main
+  std::string_view summary;            // one line for `quintet --help`
+  int (*run)(Arguments) = nullptr;     // returns the exit status; exceptions become 1 or 2 in main
+  OptionTable (*options)() = nullptr;  // for documentation: without targets
 };
 
 std::span<const Command> commands();
@@ -29,6 +32,18 @@ int explainCommand(Arguments);
 int infoCommand(Arguments);
 int compareCommand(Arguments);
 int benchCommand(Arguments);
+int helpCommand(Arguments);
+
+OptionTable renderOptions();
+OptionTable mergeOptions();
+OptionTable runOptions();
+OptionTable newOptions();
+OptionTable checkOptions();
+OptionTable explainOptions();
+OptionTable infoOptions();
+OptionTable compareOptions();
+OptionTable benchOptions();
+OptionTable helpOptions();
 
 }  // namespace quintet::cli
 #endif

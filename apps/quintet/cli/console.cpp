@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/console.h"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,8 +14,12 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/parse.h"
+#include "base/plural.h"
 #include "base/text.h"
+#include "base/wrap.h"
 #include "check/diagnostic_text.h"
+#include "cli/terminal.h"
 
 namespace quintet::cli {
 namespace {
@@ -35,17 +38,15 @@ bool wantsColor() {
   return !(noColor && *noColor) && !(term && std::string_view(term) == "dumb");
 }
 
-int terminalWidth() {
-  winsize size{};
-  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
+int barWidth() { return static_cast<int>(terminalWidth(STDERR_FILENO).value_or(80)); }
 
 std::string jsonLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 std::string figures(const job::Progress& p, std::string_view separator) {
   std::string text = fmt::format("{}", static_cast<std::uint64_t>(p.samples));
   if (p.sampleLimit) text += fmt::format("/{}", *p.sampleLimit);
-  text += p.countsFrames ? " frames" : " samples";
+  text += " " + nounFor(p.sampleLimit ? *p.sampleLimit : static_cast<std::uint64_t>(p.samples),
+                        p.countsFrames ? "frame" : "sample");
   if (p.raysPerSecond > 0) text += fmt::format("{}{:.3g} Mrays/s", separator, p.raysPerSecond * 1e-6);
   if (p.error && std::isfinite(*p.error)) text += fmt::format("{}error {:.2g} %", separator, 100.0 * *p.error);
   text += fmt::format("{}{}", separator, durationText(p.seconds));
@@ -59,6 +60,11 @@ std::string figures(const job::Progress& p, std::string_view separator) {
 void printError(const std::string& text) {
   [[maybe_unused]] const std::size_t written = std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
+}
+
+void printMessage(const std::string& text) {
+  const std::optional<std::size_t> width = terminalWidth(STDERR_FILENO);
+  printError((width ? wrapped(text, *width, 2) : text) + "\n");
 }
 
 bool colorOnStandardError() { return isTerminal() && wantsColor(); }
@@ -80,8 +86,13 @@ std::string progressLine(const job::Progress& progress) { return figures(progres
 
 void printDiagnostics(const std::vector<Diagnostic>& diagnostics, const program::Program* program, bool json) {
   if (json) return writeFile("-", check::diagnosticsJson(diagnostics));
-  printError(check::diagnosticsText(diagnostics, program ? check::sourcesOf(*program) : check::sourcesOnDisk(),
-                                    colorOnStandardError()));
+  const std::string text = check::diagnosticsText(
+      diagnostics, program ? check::sourcesOf(*program) : check::sourcesOnDisk(), colorOnStandardError());
+  if (!terminalWidth(STDERR_FILENO)) return printError(text);
+  std::vector<std::string> lines = splitText(text, '\n');
+  lines.pop_back();  // after the last line break
+  for (const std::string& line : lines)
+    line.starts_with(' ') ? printError(line + "\n") : printMessage(line);  // lines of sources stay whole
 }
 
 Console::Console(const ConsoleOptions& options)
@@ -111,14 +122,17 @@ void Console::note(const std::string& text) {
   if (options_.quiet || options_.jsonProgress) return;
   const std::lock_guard lock(mutex_);
   clearLocked();
-  printError(text + "\n");
+  printMessage(text);
 }
 
 void Console::warning(const std::string& text) {
   const std::lock_guard lock(mutex_);
   warnings_.push_back(text);
   clearLocked();
-  printError(options_.jsonProgress ? jsonLine({{"warning", text}}) : "quintet: warning: " + printable(text) + "\n");
+  if (options_.jsonProgress)
+    printError(jsonLine({{"warning", text}}));
+  else
+    printMessage("quintet: warning: " + printable(text));
 }
 
 void Console::clearWarnings() {
@@ -145,7 +159,7 @@ void Console::progress(const job::Progress& state) {
   lastProgress_ = now;
   const std::lock_guard lock(mutex_);
   if (terminal_) {
-    show(progressBar(state, terminalWidth(), color_));
+    show(progressBar(state, barWidth(), color_));
   } else {
     printError(progressLine(state) + "\n");
   }

@@ -21,6 +21,9 @@ namespace quintet::cli {
 // would throw.
 void printError(const std::string& text);
 
+// Prints one line to standard error. A terminal gets lines that break between words.
+void printMessage(const std::string& text);
+
 // A terminal, and neither NO_COLOR (no-color.org) nor TERM=dumb is set.
 bool colorOnStandardError();
 

@@ -26,12 +26,6 @@ std::optional<float> parseFloat(const std::string& option, const std::string& te
   return value ? std::optional(static_cast<float>(*value)) : std::nullopt;
 }
 
-// Declares an option with a value in a group.
-template <class T>
-void add(CLI::App& app, const char* group, const char* name, T& value, const char* form, const std::string& help) {
-  app.add_option(name, value, help)->type_name(form)->group(group);
-}
-
 void convertView(const RenderTexts& texts, job::RenderRequest& request) {
   request.camera.lookFrom = parsePoint("--look-from", texts.lookFrom);
   request.camera.lookAt = parsePoint("--look-at", texts.lookAt);
@@ -65,117 +59,193 @@ void convertCheckpoints(const RenderTexts& texts, RenderOptions& options) {
 
 }  // namespace
 
-void declareImage(CLI::App& app, RenderTexts& texts, RenderOptions& options) {
-  const char* group = "Image";
-  add(app, group, "--size", texts.size, "WxH",
-      "Size in pixels, or the width alone (default: 1280x720, or 1280 on the longer\nside of the camera's image)");
-  add(app, group, "--region", texts.region, "X,Y,W,H", "Render and write only this part, in pixels from the top left");
-  app.add_flag("--transparent", options.request.transparent, "Alpha 0 in the background instead of the environment")
-      ->group(group);
-  declareDisplay(app, texts, group, "default: 0, and neutral for colors");
+void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+  table.add(
+      "Image",
+      {{.names = "--size",
+        .value = "WxH",
+        .help =
+            "Size in pixels, or the width alone (default: 1280x720, or 1280 on the longer side of the camera's image)",
+        .target = &texts.size},
+       {.names = "--region",
+        .value = "X,Y,W,H",
+        .help = "Render and write only this part, in pixels from the top left",
+        .target = &texts.region},
+       {.names = "--transparent",
+        .help = "Alpha 0 in the background instead of the environment",
+        .target = &options.request.transparent}});
+  declareDisplay(table, texts, "Image", "default: 0, and neutral for colors");
 }
 
-void declareDisplay(CLI::App& app, RenderTexts& texts, const char* group, const char* otherwise) {
-  add(app, group, "--exposure", texts.exposure, "STOPS", fmt::format("Multiply by 2^STOPS (PNG only; {})", otherwise));
-  add(app, group, "--tonemap", texts.toneMap, "NAME", "Tone mapping: linear, aces, agx or neutral (PNG only)");
+void declareDisplay(OptionTable& table, RenderTexts& texts, const char* group, const char* otherwise) {
+  table.add(group, {{.names = "--exposure",
+                     .value = "STOPS",
+                     .help = fmt::format("Multiply by 2^STOPS (PNG only; {})", otherwise),
+                     .target = &texts.exposure},
+                    {.names = "--tonemap",
+                     .value = "NAME",
+                     .help = "Tone mapping: linear, aces, agx or neutral (PNG only)",
+                     .target = &texts.toneMap,
+                     .candidates = {.names = render::toneMapNames()}}});
 }
 
-void declareQuality(CLI::App& app, RenderTexts& texts, RenderOptions& options) {
-  const char* group = "Quality";
-  add(app, group, "--spp", texts.spp, "N",
-      "Number of samples per pixel (default: 64; none with --time or --until-error)");
-  add(app, group, "--time", texts.time, "SECONDS", "Time limit of rendering");
-  add(app, group, "--until-error", texts.untilError, "E",
-      "Target for the relative error of the image, e.g. 0.02; the error of 95 % of its\n"
-      "tiles must be below 2 E (stated with 95 % confidence)");
-  app.add_flag("--adaptive", options.request.limits.adaptive,
-               "Distribute samples by the error of each tile; --spp is then the average")
-      ->group(group);
-  add(app, group, "--seed", texts.seed, "N", "Seed of the random number generator (default: 0)");
-  add(app, group, "--bounces", texts.bounces, "N", "Same as --set bounces=N");
-  add(app, group, "--clamp", texts.clamp, "X", "Same as --set clamp=X");
+void declareQuality(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+  table.add(
+      "Quality",
+      {{.names = "--spp",
+        .value = "N",
+        .help = "Number of samples per pixel (default: 64; none with --time or --until-error)",
+        .target = &texts.spp},
+       {.names = "--time", .value = "SECONDS", .help = "Time limit of rendering", .target = &texts.time},
+       {.names = "--until-error",
+        .value = "E",
+        .help =
+            "Target for the relative error of the image, e.g. 0.02; the error of 95 % of its tiles must be below 2 E "
+            "(stated with 95 % confidence)",
+        .target = &texts.untilError},
+       {.names = "--adaptive",
+        .help = "Distribute samples by the error of each tile; --spp is then the average",
+        .target = &options.request.limits.adaptive},
+       {.names = "--seed",
+        .value = "N",
+        .help = "Seed of the random number generator (default: 0)",
+        .target = &texts.seed},
+       {.names = "--bounces", .value = "N", .help = "Same as --set bounces=N", .target = &texts.bounces},
+       {.names = "--clamp", .value = "X", .help = "Same as --set clamp=X", .target = &texts.clamp}});
 }
 
-void declareView(CLI::App& app, RenderTexts& texts, RenderOptions& options) {
-  const char* camera = "Camera";
-  add(app, camera, "--camera", options.request.camera.name, "NAME",
-      "Index or name of a camera in the file (default: the first, else automatic)");
-  add(app, camera, "--look-from", texts.lookFrom, "X,Y,Z", "Position of the camera, meters");
-  add(app, camera, "--look-at", texts.lookAt, "X,Y,Z",
-      "Point at the center of the image (default: center of the scene)");
-  add(app, camera, "--up", texts.up, "X,Y,Z", "Up direction of the image (default: 0,1,0)");
-  add(app, camera, "--fov", texts.fov, "DEGREES", "Vertical field of view (default: the camera's, or 45)");
-  add(app, camera, "--aperture", texts.aperture, "METERS", "Radius of the lens (default: the camera's, or 0: pinhole)");
-  add(app, camera, "--focus", texts.focus, "METERS", "Focus distance (default: the distance of --look-at)");
-  const char* light = "Light";
-  add(app, light, "--env", options.request.environment.source, "WHAT",
-      "Environment: an equirectangular image, none, default, or R,G,B (default: the\n"
-      "scene's; 'default' if the scene has no lights)");
-  add(app, light, "--env-intensity", texts.envIntensity, "X", "Factor for the environment (default: 1)");
-  add(app, light, "--env-rotation", texts.envRotation, "DEGREES",
-      "Rotation about the y axis, counter-clockwise seen from above");
+void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+  table.add(
+      "Camera",
+      {{.names = "--camera",
+        .value = "NAME",
+        .help = "Index or name of a camera in the file (default: the first, else automatic)",
+        .target = &options.request.camera.name},
+       {.names = "--look-from", .value = "X,Y,Z", .help = "Position of the camera, meters", .target = &texts.lookFrom},
+       {.names = "--look-at",
+        .value = "X,Y,Z",
+        .help = "Point at the center of the image (default: center of the scene)",
+        .target = &texts.lookAt},
+       {.names = "--up", .value = "X,Y,Z", .help = "Up direction of the image (default: 0,1,0)", .target = &texts.up},
+       {.names = "--fov",
+        .value = "DEGREES",
+        .help = "Vertical field of view (default: the camera's, or 45)",
+        .target = &texts.fov},
+       {.names = "--aperture",
+        .value = "METERS",
+        .help = "Radius of the lens (default: the camera's, or 0: pinhole)",
+        .target = &texts.aperture},
+       {.names = "--focus",
+        .value = "METERS",
+        .help = "Focus distance (default: the distance of --look-at)",
+        .target = &texts.focus}});
+  table.add(
+      "Light",
+      {{.names = "--env",
+        .value = "WHAT",
+        .help =
+            "Environment: an equirectangular image, none, default, or R,G,B (default: the scene's; 'default' if the "
+            "scene has no lights)",
+        .target = &options.request.environment.source,
+        .candidates = {.names = {"none", "default"}, .extensions = {"hdr", "exr", "png", "jpg", "jpeg", "webp"}}},
+       {.names = "--env-intensity",
+        .value = "X",
+        .help = "Factor for the environment (default: 1)",
+        .target = &texts.envIntensity},
+       {.names = "--env-rotation",
+        .value = "DEGREES",
+        .help = "Rotation about the y axis, counter-clockwise seen from above",
+        .target = &texts.envRotation}});
 }
 
-void declareProgram(CLI::App& app, RenderOptions& options) {
-  const char* group = "Program";
-  app.add_option("--set", options.request.assignments, "Parameter of the program; may be repeated")
-      ->expected(1)
-      ->take_all()
-      ->type_name("NAME=VALUE")
-      ->group(group);
-  app.add_option("--set-file", options.request.parameterFile, "Parameters as a JSON object; --set overrides them")
-      ->type_name("FILE.json")
-      ->group(group);
-  app.add_flag("--all-outputs", options.output.allOutputs, "Write every output of the program: out.NAME.png")
-      ->group(group);
+void declareProgram(OptionTable& table, RenderOptions& options) {
+  table.add("Program", {{.names = "--set",
+                         .value = "NAME=VALUE",
+                         .help = "Parameter of the program; may be repeated",
+                         .target = &options.request.assignments},
+                        {.names = "--set-file",
+                         .value = "FILE.json",
+                         .help = "Parameters as a JSON object; --set overrides them",
+                         .target = &options.request.parameterFile,
+                         .candidates = {.extensions = {"json"}}},
+                        {.names = "--all-outputs",
+                         .help = "Write every output of the program: out.NAME.png",
+                         .target = &options.output.allOutputs}});
 }
 
-void declareProcess(CLI::App& app, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
-  const char* group = "Run";
-  app.add_option("--device", options.device, "Index or part of the name: 0, h200, lavapipe, cpu, gpu")
-      ->type_name("NAME")
-      ->group(group);
-  app.add_option("--timeout", texts.timeout, timeoutHelp)->type_name("SECONDS")->group(group);
-  app.add_flag("-q,--quiet", options.console.quiet, "Print neither progress nor notes")->group(group);
+void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
+  table.add("Run",
+            {{.names = "--device",
+              .value = "NAME",
+              .help = "Index or part of the name: 0, h200, lavapipe, cpu, gpu",
+              .target = &options.device,
+              .candidates = {.names = {"0", "cpu", "gpu", "lavapipe"}}},
+             {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout},
+             {.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet}});
 }
 
-void declareCheckpoints(CLI::App& app, RenderTexts& texts, RenderOptions& options) {
-  const char* group = "Long renders";
+void declareCheckpoints(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
   job::CheckpointRequest& checkpoint = options.request.checkpoint;
-  add(app, group, "--checkpoint", texts.checkpoint, "SECONDS",
-      "Write a checkpoint every N seconds, 0: after each batch (default with the\n"
-      "options below: 60); it is removed when the image is written");
-  add(app, group, "--checkpoint-file", checkpoint.file, "FILE",
-      "Name of the checkpoint (default: OUTPUT.checkpoint.qfilm)");
-  app.add_flag("--keep-checkpoint", checkpoint.keep, "Keep the checkpoint when the image is written")->group(group);
-  app.add_flag("--resume", checkpoint.resume,
-               "Continue from the checkpoint, to the same bytes as without interruption; start\n"
-               "from the first sample if it does not exist")
-      ->group(group);
-  add(app, group, "--batches", texts.batches, "A-B",
-      "Render only batches A to B of --spp (4 samples each, from 0, B included) into\n"
-      "-o FILE.qfilm; 'quintet merge' joins the parts");
-  app.add_flag("--force", checkpoint.force, "Overwrite a checkpoint or film although its samples are lost")
-      ->group(group);
-  app.add_flag("--json-progress", options.console.jsonProgress, "Print a line of JSON on standard error for each batch")
-      ->group(group);
+  table.add(
+      "Long renders",
+      {{.names = "--checkpoint",
+        .value = "SECONDS",
+        .help = "Write a checkpoint every N seconds, 0: after each batch (default with the options below: 60); it is "
+                "removed when the image is written",
+        .target = &texts.checkpoint},
+       {.names = "--checkpoint-file",
+        .value = "FILE",
+        .help = "Name of the checkpoint (default: OUTPUT.checkpoint.qfilm)",
+        .target = &checkpoint.file,
+        .candidates = {.extensions = {"qfilm"}}},
+       {.names = "--keep-checkpoint",
+        .help = "Keep the checkpoint when the image is written",
+        .target = &checkpoint.keep},
+       {.names = "--resume",
+        .help =
+            "Continue from the checkpoint, to the same bytes as without interruption; start from the first sample if "
+            "it does not exist",
+        .target = &checkpoint.resume},
+       {.names = "--batches",
+        .value = "A-B",
+        .help = "Render only batches A to B of --spp (4 samples each, from 0, B included) into -o FILE.qfilm; 'quintet "
+                "merge' joins the parts",
+        .target = &texts.batches},
+       {.names = "--force",
+        .help = "Overwrite a checkpoint or film although its samples are lost",
+        .target = &checkpoint.force},
+       {.names = "--json-progress",
+        .help = "Print a line of JSON on standard error for each batch",
+        .target = &options.console.jsonProgress}});
 }
 
-void declareExr(CLI::App& app, RenderTexts& texts, bool ofFilms) {
-  const char* group = "OpenEXR";
-  app.add_option("--aov", texts.layers,
-                 ofFilms ? "Layers of the films to write (default: all); may be repeated"
-                         : "Layers to write besides the image; 'list' prints their names. May be\nrepeated")
-      ->expected(1)
-      ->take_all()
-      ->delimiter(',')
-      ->type_name(ofFilms ? "NAMES|all" : "NAMES|all|list")
-      ->group(group);
-  add(app, group, "--exr-type", texts.exrType, "half|float", "Type of colors (default: half); data are always floats");
-  add(app, group, "--exr-compression", texts.exrCompression, "NAME[:LEVEL]",
-      "Compression: none, rle, zips, zip, piz, dwaa or dwab (default: zip); levels:\n"
-      "zip:1 to 9, dwaa:45 (lossy, colors only)");
-  add(app, group, "--exr-tiles", texts.exrTiles, "N", "Write tiles of N x N pixels (default: scan lines)");
+void declareExr(OptionTable& table, RenderTexts& texts, bool ofFilms) {
+  const std::vector<std::string> layers =
+      ofFilms ? std::vector<std::string>{"all"} : std::vector<std::string>{"all", "list"};
+  table.add(
+      "OpenEXR",
+      {{.names = "--aov",
+        .value = ofFilms ? "NAMES|all" : "NAMES|all|list",
+        .help = ofFilms ? "Layers of the films to write (default: all); may be repeated"
+                        : "Layers to write besides the image; 'list' prints their names. May be repeated",
+        .target = &texts.layers,
+        .candidates = {.names = layers},
+        .delimiter = ','},
+       {.names = "--exr-type",
+        .value = "half|float",
+        .help = "Type of colors (default: half); data are always floats",
+        .target = &texts.exrType,
+        .candidates = {.names = {"half", "float"}}},
+       {.names = "--exr-compression",
+        .value = "NAME[:LEVEL]",
+        .help = "Compression: none, rle, zips, zip, piz, dwaa or dwab (default: zip); levels: zip:1 to 9, dwaa:45 "
+                "(lossy, colors only)",
+        .target = &texts.exrCompression,
+        .candidates = {.names = io::exrCompressionNames()}},
+       {.names = "--exr-tiles",
+        .value = "N",
+        .help = "Write tiles of N x N pixels (default: scan lines)",
+        .target = &texts.exrTiles}});
 }
 
 void convertOutput(const RenderTexts& texts, output::OutputRequest& output) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/console.h"
-#include "cli/parser.h"
+#include "cli/option_table.h"
 #include "job/request.h"
 #include "output/plan.h"
 
@@ -34,14 +34,14 @@ struct RenderTexts {
   std::vector<std::string> layers;
 };
 
-void declareImage(CLI::App& app, RenderTexts& texts, RenderOptions& options);  // except the output file
-void declareDisplay(CLI::App& app, RenderTexts& texts, const char* group, const char* otherwise);
-void declareQuality(CLI::App& app, RenderTexts& texts, RenderOptions& options);
-void declareView(CLI::App& app, RenderTexts& texts, RenderOptions& options);
-void declareProgram(CLI::App& app, RenderOptions& options);
-void declareProcess(CLI::App& app, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
-void declareCheckpoints(CLI::App& app, RenderTexts& texts, RenderOptions& options);
-void declareExr(CLI::App& app, RenderTexts& texts, bool ofFilms = false);
+void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options);  // except the output file
+void declareDisplay(OptionTable& table, RenderTexts& texts, const char* group, const char* otherwise);
+void declareQuality(OptionTable& table, RenderTexts& texts, RenderOptions& options);
+void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options);
+void declareProgram(OptionTable& table, RenderOptions& options);
+void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
+void declareCheckpoints(OptionTable& table, RenderTexts& texts, RenderOptions& options);
+void declareExr(OptionTable& table, RenderTexts& texts, bool ofFilms = false);
 
 // Fills in requests from the texts, except `output.file` and `request.scene`. Throws UsageError.
 void convert(const RenderTexts& texts, RenderOptions& options);

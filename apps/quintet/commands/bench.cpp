@@ -6,19 +6,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/file.h"
-#include "cli/parser.h"
+#include "cli/candidates.h"
+#include "cli/option_table.h"
 #include "cli/values.h"
 
 namespace quintet::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kExamples =
-    "  quintet bench scene.glb                        a table\n"
-    "  quintet bench scene.glb --json --repeat 9      the same as JSON, medians of nine measurements\n"
-    "  quintet bench scene.glb --profile              time by pass, rays by kind, launches, registers\n";
 
 std::string asTable(const Json& json, const std::string& prefix = {}) {
   std::string text;
@@ -35,34 +32,67 @@ std::string asTable(const Json& json, const std::string& prefix = {}) {
   return text;
 }
 
-}  // namespace
-
-int benchCommand(Arguments arguments) {
-  CLI::App app("Measures rays per second, and the rate of minimal shaders for the same rays.", "quintet bench");
+struct Options {
   job::BenchmarkRequest request;
   std::string size;
   bool json = false;
-  app.add_option("SCENE", request.scene, "Scene of triangles without alpha (minimal shaders support nothing else)")
-      ->type_name("")
-      ->required();
-  app.add_option("--device", request.device, "Index or part of the name")->type_name("NAME");
-  app.add_option("--env", request.environment, "Environment, as in 'quintet render'")->type_name("WHAT");
-  app.add_option("--size", size, "Size in pixels (default: 512x512 on a CPU, else 1920x1080)")->type_name("WxH");
-  app.add_option("--repeat", request.repeat, "Number of measurements; the result is their median (default: 5)")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N");
-  app.add_option("--program", request.program,
-                 "Program to measure; its rays go through traceClosest and traceVisible "
-                 "(default: pathtracer)")
-      ->type_name("NAME");
-  app.add_flag("--profile", request.profile,
-               "Show where the time goes, instead of the gains by primitive order and launch balance");
-  app.add_flag("--json", json, "Print one JSON object instead of a table");
-  setUp(app, kExamples);
-  if (!parse(app, arguments)) return 0;
-  if (!size.empty()) request.size = parseSize("--size", size);
+};
+
+OptionTable declare(Options& options) {
+  OptionTable table("bench", "Measures rays per second, and the rate of minimal shaders for the same rays.");
+  job::BenchmarkRequest& request = options.request;
+  table.add({{.names = "SCENE",
+              .help = "Scene of triangles without alpha (minimal shaders support nothing else)",
+              .target = &request.scene,
+              .candidates = {.extensions = kSceneExtensions},
+              .required = true},
+             {.names = "--device", .value = "NAME", .help = "Index or part of the name", .target = &request.device},
+             {.names = "--env",
+              .value = "WHAT",
+              .help = "Environment, as in 'quintet render'",
+              .target = &request.environment},
+             {.names = "--size",
+              .value = "WxH",
+              .help = "Size in pixels (default: 512x512 on a CPU, else 1920x1080)",
+              .target = &options.size},
+             {.names = "--repeat",
+              .value = "N",
+              .help = "Number of measurements; the result is their median (default: 5)",
+              .target = &request.repeat,
+              .min = 1,
+              .max = 1000},
+             {.names = "--program",
+              .value = "NAME",
+              .help = "Program to measure; its rays go through traceClosest and traceVisible (default: pathtracer)",
+              .target = &request.program,
+              .candidates = programCandidates()},
+             {.names = "--profile",
+              .help = "Show where the time goes, instead of the gains by primitive order and launch balance",
+              .target = &request.profile},
+             {.names = "--json", .help = "Print one JSON object instead of a table", .target = &options.json}});
+  table.addExamples({
+      {"quintet bench scene.glb", "a table"},
+      {"quintet bench scene.glb --json --repeat 9", "the same as JSON, medians of nine measurements"},
+      {"quintet bench scene.glb --profile", "time by pass, rays by kind, launches, registers"},
+  });
+  return table;
+}
+
+}  // namespace
+
+OptionTable benchOptions() {
+  Options options;
+  return declare(options).withoutTargets();
+}
+
+int benchCommand(Arguments arguments) {
+  Options options;
+  if (!declare(options).parse(arguments)) return 0;
+  job::BenchmarkRequest& request = options.request;
+  if (request.scene.empty()) throw UsageError("no scene given; see 'quintet bench --help'");
+  if (!options.size.empty()) request.size = parseSize("--size", options.size);
   const Json result = job::runBenchmark(request);
-  writeFile("-", json ? result.dump() + "\n" : asTable(result));
+  writeFile("-", options.json ? result.dump() + "\n" : asTable(result));
   return 0;
 }
 

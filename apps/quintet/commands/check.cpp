@@ -13,8 +13,9 @@
 #include "check/check.h"
 #include "check/diagnostic_text.h"
 #include "check/scene_facts.h"
+#include "cli/candidates.h"
 #include "cli/console.h"
-#include "cli/parser.h"
+#include "cli/option_table.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
 #include "job/instrumented_run.h"
@@ -25,14 +26,8 @@
 namespace quintet::cli {
 namespace {
 
-constexpr const char* kExamples =
-    "  quintet check my_program/                  its shaders, and how they fit together\n"
-    "  quintet check my_program/ scene.glb        and how they fit this scene\n"
-    "  quintet check my_program/ --json           for editors: an array of diagnostics\n"
-    "  quintet check programs/ --strict           all programs in a folder; warnings are failures, too\n"
-    "  quintet check my_program/ --instrument     also find NaN, wrong records and self-intersections in a short run\n";
-
 struct Options {
+  std::vector<std::string> positional;  // programs, and possibly a scene
   std::vector<std::string> programs;
   std::filesystem::path scene;
   std::string device;
@@ -70,25 +65,44 @@ std::vector<std::string> programsOf(const std::string& name) {
   return found.empty() ? std::vector{name} : found;
 }
 
+OptionTable declare(Options& options) {
+  OptionTable table("check",
+                    "Compiles programs and checks how their shaders fit together and to a scene, without rendering.");
+  Candidates candidates = programCandidates();
+  candidates.extensions.insert(candidates.extensions.end(), kSceneExtensions.begin(), kSceneExtensions.end());
+  table.add(
+      {{.names = "PROGRAM",
+        .help =
+            "One or more programs, folders of programs, or built-in names; the last argument can be a scene: .gltf, "
+            ".glb or .scene.toml (default: each program's own)",
+        .target = &options.positional,
+        .candidates = candidates,
+        .required = true},
+       {.names = "--json", .help = "Print an array of diagnostics on standard output", .target = &options.json},
+       {.names = "--strict", .help = "Exit with status 1 also for warnings", .target = &options.strict},
+       {.names = "--instrument",
+        .help = "Also render a small image with checks in the shaders (Q001 to Q006)",
+        .target = &options.instrument},
+       {.names = "--device",
+        .value = "NAME",
+        .help = "Device whose limits and driver defects count, and on which --instrument runs: index or part of the "
+                "name; 'none' for limits that hold everywhere",
+        .target = &options.device,
+        .candidates = {.names = {"none", "0", "cpu", "gpu", "lavapipe"}}}});
+  table.addExamples({
+      {"quintet check my_program/", "its shaders, and how they fit together"},
+      {"quintet check my_program/ scene.glb", "and how they fit this scene"},
+      {"quintet check my_program/ --json", "for editors: an array of diagnostics"},
+      {"quintet check programs/ --strict", "all programs; warnings count"},
+      {"quintet check my_program/ --instrument", "also find NaN and wrong hit records"},
+  });
+  return table;
+}
+
 std::optional<Options> parseOptions(Arguments arguments) {
-  CLI::App app("Compiles programs and checks how their shaders fit together and to a scene, without rendering.",
-               "quintet check");
   Options options;
-  std::vector<std::string> positional;
-  app.add_option("PROGRAM", positional,
-                 "One or more programs, folders of programs, or built-in names; the last argument can be a\n"
-                 "scene: .gltf, .glb or .scene.toml (default: each program's own)")
-      ->type_name("");
-  app.add_flag("--json", options.json, "Print an array of diagnostics on standard output");
-  app.add_flag("--strict", options.strict, "Exit with status 1 also for warnings");
-  app.add_flag("--instrument", options.instrument,
-               "Also render a small image with checks in the shaders (Q001 to Q006)");
-  app.add_option("--device", options.device,
-                 "Device whose limits and driver defects count, and on which --instrument runs:\n"
-                 "index or part of the name; 'none' for limits that hold everywhere")
-      ->type_name("NAME");
-  setUp(app, kExamples);
-  if (!parse(app, arguments)) return std::nullopt;
+  if (!declare(options).parse(arguments)) return std::nullopt;
+  std::vector<std::string>& positional = options.positional;
   if (!positional.empty() && looksLikeScene(positional.back())) {
     options.scene = positional.back();
     positional.pop_back();
@@ -117,6 +131,11 @@ std::vector<Diagnostic> checkProgram(const program::Program& program, const shad
 }
 
 }  // namespace
+
+OptionTable checkOptions() {
+  Options options;
+  return declare(options).withoutTargets();
+}
 
 int checkCommand(Arguments arguments) {
   const std::optional<Options> options = parseOptions(arguments);

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "cli/parser.h"
+#include "cli/option_table.h"
 #include "cli/signals.h"
 #include "cli/values.h"
 #include "io/codec.h"
@@ -24,17 +24,6 @@
 namespace quintet::cli {
 namespace {
 
-constexpr const char* kExamples =
-    "  quintet compare out.png reference.png\n"
-    "  quintet compare out.png reference.png --max 2            status 1 if mae8 exceeds 2\n"
-    "  quintet compare out.exr big.exr --resize --metric flip --max 0.05 -o difference.png\n"
-    "  quintet compare a.exr b.exr --layer normal --metric rmse --max 1e-3\n"
-    "  quintet compare out.png reference.png --json | jq .psnr\n"
-    "  quintet compare a.qfilm b.qfilm --z-test                 status 1 if they differ by more than noise\n"
-    "  quintet compare a.qfilm b.qfilm --z-test --may-differ program --may-differ parameter\n";
-
-constexpr const char* kFilmGroup = "Films";
-
 struct Options {
   std::string a, b, output, sideBySide, metric = "mae8", max, gammaB;
   std::string level, block, tolerance;
@@ -44,28 +33,6 @@ struct Options {
   bool resize = false;
   bool json = false;
 };
-
-void declareFilmOptions(CLI::App& app, Options& options) {
-  app.add_flag("--z-test", options.zTest,
-               "Test whether two films (.qfilm) with different seeds show the same image except\n"
-               "for noise; status 1 if not; -o writes |t| of each block")
-      ->group(kFilmGroup);
-  const auto add = [&app](const char* name, std::string& value, const char* form, const char* help) {
-    app.add_option(name, value, help)->type_name(form)->group(kFilmGroup);
-  };
-  add("--level", options.level, "P", "Probability with which equal images are rejected, at most (default: 0.01)");
-  add("--block", options.block, "N", "Test the means of blocks of N x N pixels (default: 8)");
-  add("--tolerance", options.tolerance, "X", "Relative difference that counts as rounding (default: 1e-5)");
-  app.add_option("--may-differ", options.mayDiffer,
-                 "Fact that may differ besides seed and number of samples: program, parameter,\n"
-                 "shader library, ... (a name listed by 'quintet info FILM', or its first word);\n"
-                 "may be repeated")
-      ->expected(1)
-      ->take_all()
-      ->allow_extra_args(false)
-      ->type_name("NAME")
-      ->group(kFilmGroup);
-}
 
 // Rejects options that have no effect.
 void checkApplicable(const Options& options) {
@@ -86,27 +53,88 @@ void checkApplicable(const Options& options) {
   reject("--resize", options.zTest && options.resize, kImages);
 }
 
+OptionTable declare(Options& options) {
+  OptionTable table("compare", "Measures the difference between image A and image B, the reference.");
+  const Candidates images{.extensions = {"png", "exr", "hdr", "jpg", "jpeg", "webp", "qfilm"}};
+  std::vector<std::string> measures;
+  for (const output::Measure& measure : output::measures({})) measures.push_back(measure.name);
+  table.add({{.names = "A",
+              .help = "The image: PNG, JPEG, WebP, Radiance HDR or OpenEXR",
+              .target = &options.a,
+              .candidates = images,
+              .required = true},
+             {.names = "B", .help = "The reference", .target = &options.b, .candidates = images, .required = true},
+             {.names = "-o,--output",
+              .value = "FILE",
+              .help = "Write the FLIP error of each pixel as PNG, from black (none) to yellow",
+              .target = &options.output,
+              .candidates = {.extensions = {"png"}}},
+             {.names = "--side-by-side",
+              .value = "FILE",
+              .help = "Write A, B and the error side by side",
+              .target = &options.sideBySide,
+              .candidates = {.extensions = {"png"}}},
+             {.names = "--max",
+              .value = "VALUE",
+              .help = "Exit with status 1 if the metric exceeds this value (psnr: is below it)",
+              .target = &options.max},
+             {.names = "--metric",
+              .value = "NAME",
+              .help = "Metric of --max: mae8, max8, rmse, relmse, psnr, flip, alpha8 (default: mae8)",
+              .target = &options.metric,
+              .candidates = {.names = measures}},
+             {.names = "--resize",
+              .help = "Reduce the larger image to the size of the smaller one (box filter)",
+              .target = &options.resize},
+             {.names = "--layer",
+              .value = "NAME",
+              .help = "Layer of both OpenEXR files (beauty, normal), or one channel (depth.Z)",
+              .target = &options.layer},
+             {.names = "--gamma-b",
+              .value = "X",
+              .help = "B is encoded by this power instead of the sRGB curve",
+              .target = &options.gammaB},
+             {.names = "--json", .help = "Print one JSON object instead of text", .target = &options.json}});
+  table.add(
+      "Films",
+      {{.names = "--z-test",
+        .help =
+            "Test whether two films (.qfilm) with different seeds show the same image except for noise; status 1 if "
+            "not; -o writes |t| of each block",
+        .target = &options.zTest},
+       {.names = "--level",
+        .value = "P",
+        .help = "Probability with which equal images are rejected, at most (default: 0.01)",
+        .target = &options.level},
+       {.names = "--block",
+        .value = "N",
+        .help = "Test the means of blocks of N x N pixels (default: 8)",
+        .target = &options.block},
+       {.names = "--tolerance",
+        .value = "X",
+        .help = "Relative difference that counts as rounding (default: 1e-5)",
+        .target = &options.tolerance},
+       {.names = "--may-differ",
+        .value = "NAME",
+        .help = "Fact that may differ besides seed and number of samples: program, parameter, shader library, ... (a "
+                "name listed by 'quintet info FILM', or its first word); may be repeated",
+        .target = &options.mayDiffer,
+        .candidates = {.names = {"program", "parameter", "outputs"}}}});
+  table.addExamples({
+      {"quintet compare out.png reference.png"},
+      {"quintet compare out.png reference.png --max 2", "status 1 if mae8 exceeds 2"},
+      {"quintet compare out.exr big.exr --resize --metric flip --max 0.05 -o diff.png"},
+      {"quintet compare a.exr b.exr --layer normal --metric rmse --max 1e-3"},
+      {"quintet compare out.png reference.png --json | jq .psnr"},
+      {"quintet compare a.qfilm b.qfilm --z-test", "status 1 if they differ by more than noise"},
+      {"quintet compare a.qfilm b.qfilm --z-test --may-differ program"},
+  });
+  return table;
+}
+
 std::optional<Options> parseOptions(Arguments arguments) {
-  CLI::App app("Measures the difference between image A and image B, the reference.", "quintet compare");
   Options options;
-  const auto add = [&app](const char* name, std::string& value, const char* form, const char* help) {
-    app.add_option(name, value, help)->type_name(form);
-  };
-  add("A", options.a, "", "The image: PNG, JPEG, WebP, Radiance HDR or OpenEXR");
-  add("B", options.b, "", "The reference");
-  add("-o,--output", options.output, "FILE", "Write the FLIP error of each pixel as PNG, from black (none) to yellow");
-  add("--side-by-side", options.sideBySide, "FILE", "Write A, B and the error side by side");
-  add("--max", options.max, "VALUE", "Exit with status 1 if the metric exceeds this value (psnr: is below it)");
-  add("--metric", options.metric, "NAME",
-      "Metric of --max: mae8, max8, rmse, relmse, psnr, flip, alpha8 (default: mae8)");
-  app.add_flag("--resize", options.resize, "Reduce the larger image to the size of the smaller one (box filter)");
-  app.add_option("--layer", options.layer, "Layer of both OpenEXR files (beauty, normal), or one channel (depth.Z)")
-      ->type_name("NAME");
-  add("--gamma-b", options.gammaB, "X", "B is encoded by this power instead of the sRGB curve");
-  app.add_flag("--json", options.json, "Print one JSON object instead of text");
-  declareFilmOptions(app, options);
-  setUp(app, kExamples);
-  if (!parse(app, arguments)) return std::nullopt;
+  if (!declare(options).parse(arguments)) return std::nullopt;
   if (options.b.empty()) throw UsageError("two images are required; see 'quintet compare --help'");
   checkApplicable(options);
   return options;
@@ -198,6 +226,11 @@ void compareImages(const Options& options) {
 }
 
 }  // namespace
+
+OptionTable compareOptions() {
+  Options options;
+  return declare(options).withoutTargets();
+}
 
 int compareCommand(Arguments arguments) {
   const std::optional<Options> options = parseOptions(arguments);

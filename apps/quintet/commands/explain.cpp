@@ -1,26 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 // `quintet explain`: the pages of the diagnostics.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/parse.h"
 #include "base/suggestion.h"
+#include "base/text.h"
+#include "base/wrap.h"
 #include "check/catalog.h"
-#include "cli/parser.h"
+#include "cli/option_table.h"
+#include "cli/terminal.h"
 
 namespace quintet::cli {
 namespace {
 
-constexpr const char* kExamples =
-    "  quintet explain            every id, one line each\n"
-    "  quintet explain Q101       what it means, why it matters, how to fix it\n";
+using Infos = std::vector<const check::DiagnosticInfo*>;
 
-std::string listText() {
+std::string lowerCase(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+// The diagnostics that mention all words of the topic: first those with the words in the title.
+Infos search(const std::string& topic) {
+  Infos inTitle, inText;
+  const std::vector<std::string> words = splitText(lowerCase(topic), ' ');
+  for (const check::DiagnosticInfo& info : check::allDiagnostics()) {
+    const std::string title = lowerCase(fmt::format("{} {}", info.id, info.title));
+    const std::string text =
+        title + lowerCase(fmt::format(" {} {} {}", info.why, info.fix, check::explanation(info.id)));
+    const auto contains = [](const std::string& where) {
+      return [&where](const std::string& word) { return where.find(word) != where.npos; };
+    };
+    if (std::ranges::all_of(words, contains(title)))
+      inTitle.push_back(&info);
+    else if (std::ranges::all_of(words, contains(text)))
+      inText.push_back(&info);
+  }
+  inTitle.insert(inTitle.end(), inText.begin(), inText.end());
+  return inTitle;
+}
+
+std::string listText(const Infos& infos) {
+  const std::size_t width = terminalWidth(STDOUT_FILENO).value_or(std::string::npos);
   std::string text;
-  for (const check::DiagnosticInfo& info : check::allDiagnostics())
-    text += fmt::format("{:<6}{:<9}{}\n", info.id, severityName(info.severity), info.title);
+  for (const check::DiagnosticInfo* info : infos)
+    text += fmt::format("{:<6}{:<9}{}\n", info->id, severityName(info->severity), wrapped(info->title, width, 15, 15));
   return text;
 }
 
@@ -30,42 +65,74 @@ nlohmann::ordered_json toJson(const check::DiagnosticInfo& info) {
           {"fix", info.fix},     {"rule", info.rule}};
 }
 
-std::string listJson() {
+std::string listJson(const Infos& infos) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
-  for (const check::DiagnosticInfo& info : check::allDiagnostics()) array.push_back(toJson(info));
+  for (const check::DiagnosticInfo* info : infos) array.push_back(toJson(*info));
   return array.dump() + "\n";
 }
 
-const check::DiagnosticInfo& find(const std::string& id) {
-  if (const check::DiagnosticInfo* info = check::findDiagnostic(id)) return *info;
+// An id or a topic. At least one diagnostic.
+Infos find(const std::string& text) {
+  if (const check::DiagnosticInfo* info = check::findDiagnostic(text)) return {info};
+  if (Infos found = search(text); !found.empty() && text.find_first_not_of(' ') != text.npos) return found;
   std::vector<std::string> ids;
   for (const check::DiagnosticInfo& info : check::allDiagnostics()) ids.emplace_back(info.id);
-  throw UsageError(fmt::format("unknown diagnostic '{}'{}; 'quintet explain' lists all", id, suggestion(id, ids)));
+  throw UsageError(
+      fmt::format("unknown diagnostic '{}'{}; 'quintet explain' lists all", printable(text), suggestion(text, ids)));
 }
 
-}  // namespace
-
-int explainCommand(Arguments arguments) {
-  CLI::App app("Explains a diagnostic of the check, or lists all of them.", "quintet explain");
-  std::string id;
-  bool json = false;
-  app.add_option("ID", id, "Id as in the message, e.g. Q101; without it, the list of all")->type_name("");
-  app.add_flag("--json", json, "Print JSON instead of text");
-  setUp(app, kExamples);
-  if (!parse(app, arguments)) return 0;
-  if (app.count("ID") == 0) {
-    writeFile("-", json ? listJson() : listText());
-    return 0;
-  }
-  const check::DiagnosticInfo& info = find(id);
+void printPage(const check::DiagnosticInfo& info, bool json) {
   const std::string page(check::explanation(info.id));
   if (json) {
     nlohmann::ordered_json object = toJson(info);
     object["page"] = page;
     writeFile("-", object.dump() + "\n");
-    return 0;
+    return;
   }
   writeFile("-", page.empty() ? fmt::format("{}: {}\n\n{}\n{}\n", info.id, info.title, info.why, info.fix) : page);
+}
+
+struct Options {
+  std::vector<std::string> id;  // or words of a topic
+  bool json = false;
+};
+
+OptionTable declare(Options& options) {
+  std::vector<std::string> ids;
+  for (const check::DiagnosticInfo& info : check::allDiagnostics()) ids.emplace_back(info.id);
+  OptionTable table("explain", "Explains a diagnostic of the check, or lists all of them.");
+  table.add({{.names = "ID|TOPIC",
+              .help = "Id as in the message, e.g. Q101, or words to search for; without it, the list of all",
+              .target = &options.id,
+              .candidates = {.names = ids}},
+             {.names = "--json", .help = "Print JSON instead of text", .target = &options.json}});
+  table.addExamples({
+      {"quintet explain", "every id, one line each"},
+      {"quintet explain Q101", "what it means, why it matters, how to fix it"},
+      {"quintet explain payload", "the diagnostics about payloads"},
+  });
+  return table;
+}
+
+}  // namespace
+
+OptionTable explainOptions() {
+  Options options;
+  return declare(options).withoutTargets();
+}
+
+int explainCommand(Arguments arguments) {
+  Options options;
+  if (!declare(options).parse(arguments)) return 0;
+  Infos found;
+  if (options.id.empty())
+    for (const check::DiagnosticInfo& info : check::allDiagnostics()) found.push_back(&info);
+  else
+    found = find(fmt::format("{}", fmt::join(options.id, " ")));
+  if (!options.id.empty() && found.size() == 1)
+    printPage(*found.front(), options.json);
+  else
+    writeFile("-", options.json ? listJson(found) : listText(found));
   return 0;
 }
 

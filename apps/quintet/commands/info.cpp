@@ -3,30 +3,46 @@
 #include "output/info.h"
 
 #include "base/file.h"
-#include "cli/parser.h"
+#include "cli/option_table.h"
 
 namespace quintet::cli {
 namespace {
 
-constexpr const char* kExamples =
-    "  quintet info               every device, and why one cannot be used\n"
-    "  quintet info scene.glb     counts, cameras, extensions; what was ignored or repaired\n"
-    "  quintet info out.png       size, format, and how Quintet rendered it\n"
-    "  quintet info out.exr       layers, channels, types, compression, windows, attributes\n"
-    "  quintet info part.qfilm    which samples of which render\n"
-    "  quintet info --json | jq '.devices[].name'\n";
+struct Options {
+  std::optional<std::string> file;
+  bool json = false;
+};
+
+OptionTable declare(Options& options) {
+  OptionTable table("info", "Describes the Vulkan devices, or a scene, an image or a film.");
+  table.add({{.names = "FILE",
+              .help = "A scene, an image or a film (.qfilm); without it, the devices",
+              .target = &options.file,
+              .candidates = {.extensions = {"gltf", "glb", "scene.toml", "png", "exr", "hdr", "jpg", "jpeg", "webp",
+                                            "qfilm"}}},
+             {.names = "--json", .help = "Print one JSON object instead of text", .target = &options.json}});
+  table.addExamples({
+      {"quintet info", "every device, and why one cannot be used"},
+      {"quintet info scene.glb", "counts, cameras, extensions; what was ignored or repaired"},
+      {"quintet info out.png", "size, format, and how Quintet rendered it"},
+      {"quintet info out.exr", "layers, channels, types, compression, windows, attributes"},
+      {"quintet info part.qfilm", "which samples of which render"},
+      {"quintet info --json | jq '.devices[].name'"},
+  });
+  return table;
+}
 
 }  // namespace
 
+OptionTable infoOptions() {
+  Options options;
+  return declare(options).withoutTargets();
+}
+
 int infoCommand(Arguments arguments) {
-  CLI::App app("Describes the Vulkan devices, or a scene, an image or a film.", "quintet info");
-  std::string file;
-  bool json = false;
-  app.add_option("FILE", file, "A scene, an image or a film (.qfilm); without it, the devices")->type_name("");
-  app.add_flag("--json", json, "Print one JSON object instead of text");
-  setUp(app, kExamples);
-  if (!parse(app, arguments)) return 0;
-  writeFile("-", app.count("FILE") == 0 ? output::devicesInfo(json) : output::fileInfo(file, json));
+  Options options;
+  if (!declare(options).parse(arguments)) return 0;
+  writeFile("-", options.file ? output::fileInfo(*options.file, options.json) : output::devicesInfo(options.json));
   return 0;
 }
 

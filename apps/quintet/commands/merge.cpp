@@ -18,12 +18,6 @@
 namespace quintet::cli {
 namespace {
 
-constexpr const char* kExamples =
-    "  quintet merge a.qfilm b.qfilm -o scene.png                in any order; the bytes of one render\n"
-    "  quintet merge part*.qfilm -o scene.exr\n"
-    "  quintet merge a.qfilm b.qfilm -o ab.qfilm                 more parts can follow\n"
-    "  quintet merge out.checkpoint.qfilm --partial -o preview.png  an image of an unfinished render\n";
-
 struct Options {
   std::vector<std::filesystem::path> parts;
   output::OutputRequest output;
@@ -32,23 +26,42 @@ struct Options {
   bool force = false;
 };
 
+OptionTable declare(Options& options, RenderTexts& texts) {
+  OptionTable table("merge", "Joins parts of a render, made by 'render --batches' on any number of machines.");
+  table.add({{.names = "PART",
+              .help = "Films (.qfilm): parts or checkpoints",
+              .target = &options.parts,
+              .candidates = {.extensions = {"qfilm"}},
+              .required = true},
+             {.names = "-o,--output",
+              .value = "FILE",
+              .help = "Output file: .png, .exr, .hdr or .qfilm; - is PNG on standard output",
+              .target = &texts.output,
+              .candidates = {.extensions = {"png", "exr", "hdr", "qfilm"}}},
+             {.names = "--all-outputs",
+              .help = "Write every output of the films: out.NAME.png (stored by a film)",
+              .target = &options.output.allOutputs},
+             {.names = "--partial", .help = "Write the image even if samples are missing", .target = &options.partial},
+             {.names = "--force", .help = "Overwrite a film although its samples are lost", .target = &options.force},
+             {.names = "--json",
+              .help = "Print one JSON object on standard output at the end",
+              .target = &options.console.json},
+             {.names = "-q,--quiet", .help = "Print no notes on standard error", .target = &options.console.quiet}});
+  declareDisplay(table, texts, "Image", "default: as rendered; stored by a film");
+  declareExr(table, texts, true);
+  table.addExamples({
+      {"quintet merge a.qfilm b.qfilm -o scene.png", "in any order; the bytes of one render"},
+      {"quintet merge part*.qfilm -o scene.exr"},
+      {"quintet merge a.qfilm b.qfilm -o ab.qfilm", "more parts can follow"},
+      {"quintet merge out.checkpoint.qfilm --partial -o preview.png", "an image of an unfinished render"},
+  });
+  return table;
+}
+
 std::optional<Options> parseOptions(Arguments arguments) {
-  CLI::App app("Joins parts of a render, made by 'render --batches' on any number of machines.", "quintet merge");
   Options options;
   RenderTexts texts;
-  app.add_option("PART", options.parts, "Films (.qfilm): parts or checkpoints")->type_name("");
-  app.add_option("-o,--output", texts.output, "Output file: .png, .exr, .hdr or .qfilm; - is PNG on standard output")
-      ->type_name("FILE");
-  declareDisplay(app, texts, "Image", "default: as rendered; stored by a film");
-  app.add_flag("--all-outputs", options.output.allOutputs,
-               "Write every output of the films: out.NAME.png (stored by a film)");
-  app.add_flag("--partial", options.partial, "Write the image even if samples are missing");
-  app.add_flag("--force", options.force, "Overwrite a film although its samples are lost");
-  app.add_flag("--json", options.console.json, "Print one JSON object on standard output at the end");
-  app.add_flag("-q,--quiet", options.console.quiet, "Print no notes on standard error");
-  declareExr(app, texts, true);
-  setUp(app, kExamples);
-  if (!parse(app, arguments)) return std::nullopt;
+  if (!declare(options, texts).parse(arguments)) return std::nullopt;
   if (options.parts.empty()) throw UsageError("no parts given; see 'quintet merge --help'");
   if (texts.output.empty()) throw UsageError("no output given (-o FILE); see 'quintet merge --help'");
   if (std::ranges::find(texts.layers, "list") != texts.layers.end())
@@ -64,6 +77,12 @@ std::optional<Options> parseOptions(Arguments arguments) {
 }
 
 }  // namespace
+
+OptionTable mergeOptions() {
+  Options options;
+  RenderTexts texts;
+  return declare(options, texts).withoutTargets();
+}
 
 int mergeCommand(Arguments arguments) {
   const Stopwatch clock;

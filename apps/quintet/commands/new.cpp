@@ -5,29 +5,46 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "cli/parser.h"
-#include "cli/values.h"
+#include "cli/candidates.h"
+#include "cli/option_table.h"
 #include "program/new_program.h"
 
 namespace quintet::cli {
 namespace {
 
-constexpr const char* kExamples =
-    "  quintet new first                       first.rt.glsl, a commented lesson in one file\n"
-    "  quintet new sketches/first --folder     the same as a folder with program.toml\n"
-    "  quintet new mine --from pathtracer      a copy of a built-in program (quintet run --list)\n";
+OptionTable declare(program::NewProgramOptions& options) {
+  OptionTable table("new", "Creates a program that renders at once: one file, or a folder.");
+  table.add({{.names = "NAME",
+              .help = "Name of the program; parent folders are created",
+              .target = &options.name,
+              .candidates = {.folders = true},
+              .required = true},
+             {.names = "--from",
+              .value = "PROGRAM",
+              .help = "Copy this program: a lesson, another built-in program, or a path",
+              .target = &options.from,
+              .candidates = programCandidates()},
+             {.names = "--folder",
+              .help = "Create a folder with program.toml instead of one file",
+              .target = &options.folder}});
+  table.addExamples({
+      {"quintet new first", "first.rt.glsl, a commented lesson in one file"},
+      {"quintet new sketches/first --folder", "the same as a folder with program.toml"},
+      {"quintet new mine --from pathtracer", "a copy of a built-in program (quintet run --list)"},
+  });
+  return table;
+}
 
 }  // namespace
 
-int newCommand(Arguments arguments) {
-  CLI::App app("Creates a program that renders at once: one file, or a folder.", "quintet new");
+OptionTable newOptions() {
   program::NewProgramOptions options;
-  app.add_option("NAME", options.name, "Name of the program; parent folders are created")->type_name("");
-  app.add_option("--from", options.from, "Copy this program: a lesson, another built-in program, or a path")
-      ->type_name("PROGRAM");
-  app.add_flag("--folder", options.folder, "Create a folder with program.toml instead of one file");
-  setUp(app, kExamples);
-  if (!parse(app, arguments)) return 0;
+  return declare(options).withoutTargets();
+}
+
+int newCommand(Arguments arguments) {
+  program::NewProgramOptions options;
+  if (!declare(options).parse(arguments)) return 0;
   if (options.name.empty()) throw UsageError("no name given; see 'quintet new --help'");
 
   const program::NewProgram created = program::planNewProgram(options);

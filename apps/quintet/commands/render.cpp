@@ -2,10 +2,14 @@
 // `quintet render`: a request becomes a job, the job a result, and the result files.
 #include "commands/render.h"
 
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "cli/candidates.h"
+#include "cli/terminal.h"
 #include "cli/values.h"
 #include "job/render_job.h"
 #include "output/layers.h"
@@ -17,44 +21,60 @@
 namespace quintet::cli {
 namespace {
 
-constexpr const char* kExamples =
-    "  quintet render scene.glb                                scene.png\n"
-    "  quintet render scene.glb -o out.exr --size 1920x1080 --spp 256\n"
-    "  quintet render scene.glb -o out.exr --aov albedo,normal  with layers; --aov list prints their names\n"
-    "  quintet render scene.glb --time 60 --env sky.hdr        as many samples as possible in a minute\n"
-    "  quintet render scene.glb --look-from 2,1,3 --look-at 0,0.5,0 --fov 35\n"
-    "  quintet render scene.glb --program ao --set distance=0.5  another program with a parameter\n"
-    "  quintet render --program pathtracer --help-program      the program's parameters\n"
-    "  quintet render scene.glb -o - --quiet | display         PNG on standard output\n"
-    "  quintet render scene.glb --spp 4096 --checkpoint 60 --resume  continue after an interruption\n"
-    "  quintet render scene.glb --spp 64 --batches 0-7 -o a.qfilm    first half; after the second half (8-15),\n"
-    "  quintet merge a.qfilm b.qfilm -o scene.png                    the same bytes as in one render\n";
+OptionTable declare(RenderOptions& options, RenderTexts& texts) {
+  OptionTable table("render", "Renders a scene with the path tracer, or with another program.");
+  table.add({{.names = "SCENE",
+              .help = "Scene file: .gltf, .glb or .scene.toml",
+              .target = &texts.scene,
+              .candidates = {.extensions = kSceneExtensions},
+              .required = true}});
+  table.add(
+      "Image",
+      {{.names = "-o,--output",
+        .value = "FILE",
+        .help = "Output file: .png, .exr, .hdr or .qfilm (the whole film, for 'quintet merge'); - is PNG on standard "
+                "output (default: SCENE.png in the current folder)",
+        .target = &texts.output,
+        .candidates = {.extensions = {"png", "exr", "hdr", "qfilm"}}}});
+  declareImage(table, texts, options);
+  declareExr(table, texts);
+  declareQuality(table, texts, options);
+  declareView(table, texts, options);
+  table.add("Program", {{.names = "--program",
+                         .value = "NAME",
+                         .help = "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)",
+                         .target = &options.program,
+                         .candidates = programCandidates()}});
+  declareProgram(table, options);
+  table.add(
+      "Program",
+      {{.names = "--help-program", .help = "Print the program's parameters and exit", .target = &options.programHelp}});
+  declareProcess(table, texts, options, "Time limit of one launch (default: 60; on a CPU 600)");
+  table.add("Run", {{.names = "--json",
+                     .help = "Print one JSON object on standard output at the end",
+                     .target = &options.console.json}});
+  declareCheckpoints(table, texts, options);
+  table.addExamples({
+      {"quintet render scene.glb", "scene.png"},
+      {"quintet render scene.glb -o out.exr --size 1920x1080 --spp 256"},
+      {"quintet render scene.glb -o out.exr --aov albedo,normal", "with layers; --aov list prints their names"},
+      {"quintet render scene.glb --time 60 --env sky.hdr", "as many samples as possible in a minute"},
+      {"quintet render scene.glb --look-from 2,1,3 --look-at 0,0.5,0 --fov 35"},
+      {"quintet render scene.glb --program ao --set distance=0.5", "another program with a parameter"},
+      {"quintet render --program pathtracer --help-program", "the program's parameters"},
+      {"quintet render scene.glb -o - --quiet | display", "PNG on standard output"},
+      {"quintet render scene.glb --spp 4096 --checkpoint 60 --resume", "continue after an interruption"},
+      {"quintet render scene.glb --spp 64 --batches 0-7 -o a.qfilm",
+       "the first half of a render; 8-15 is the second half"},
+      {"quintet merge a.qfilm b.qfilm -o scene.png", "joins both halves: the same bytes as one render"},
+  });
+  return table;
+}
 
 std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
-  CLI::App app("Renders a scene with the path tracer, or with another program.", "quintet render");
   RenderOptions options;
   RenderTexts texts;
-  app.add_option("SCENE", texts.scene, "Scene file: .gltf, .glb or .scene.toml")->type_name("");
-  app.add_option("-o,--output", texts.output,
-                 "Output file: .png, .exr, .hdr or .qfilm (the whole film, for 'quintet merge'); - is\n"
-                 "PNG on standard output (default: SCENE.png in the current folder)")
-      ->type_name("FILE")
-      ->group("Image");
-  declareImage(app, texts, options);
-  declareExr(app, texts);
-  declareQuality(app, texts, options);
-  declareView(app, texts, options);
-  app.add_option("--program", options.program,
-                 "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)")
-      ->type_name("NAME")
-      ->group("Program");
-  declareProgram(app, options);
-  app.add_flag("--help-program", options.programHelp, "Print the program's parameters and exit")->group("Program");
-  declareProcess(app, texts, options, "Time limit of one launch (default: 60; on a CPU 600)");
-  app.add_flag("--json", options.console.json, "Print one JSON object on standard output at the end")->group("Run");
-  declareCheckpoints(app, texts, options);
-  setUp(app, kExamples);
-  if (!parse(app, arguments)) return std::nullopt;
+  if (!declare(options, texts).parse(arguments)) return std::nullopt;
   options.layerList = std::ranges::find(texts.layers, "list") != texts.layers.end();
   if (options.programHelp || options.layerList) return options;
   if (texts.scene.empty()) throw UsageError("no scene given; see 'quintet render --help'");
@@ -128,13 +148,19 @@ int renderImages(const RenderOptions& options, const program::Program& program, 
   }
 }
 
+OptionTable renderOptions() {
+  RenderOptions options;
+  RenderTexts texts;
+  return declare(options, texts).withoutTargets();
+}
+
 int renderCommand(Arguments arguments) {
   const Stopwatch clock;
   const std::optional<RenderOptions> options = parseRenderOptions(arguments);
   if (!options) return 0;
   const program::Program program = program::loadProgram(options->program);
   if (options->programHelp) {
-    writeFile("-", program::describeAsText(program));
+    writeFile("-", program::describeAsText(program, terminalWidth(STDOUT_FILENO).value_or(0)));
   } else if (options->layerList) {
     writeFile("-", output::layerList(program));
   } else {

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // `quintet run`: a user's program or a built-in one, on a scene or on the built-in one; with --watch again after each save.
+#include <unistd.h>
+
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 #include "base/text.h"
 #include "check/diagnostic_text.h"
+#include "cli/candidates.h"
+#include "cli/help_text.h"
+#include "cli/terminal.h"
 #include "cli/values.h"
 #include "commands/render.h"
 #include "job/watch.h"
@@ -21,15 +27,6 @@
 namespace quintet::cli {
 namespace {
 
-constexpr const char* kExamples =
-    "  quintet run --list                                 the built-in programs\n"
-    "  quintet run ao                                     a built-in program on the built-in scene: ao.png\n"
-    "  quintet run ao --help                              its parameters and outputs\n"
-    "  quintet run my_program/ scene.glb --set tint=1,0.5,0 --size 640x360 --spp 16\n"
-    "  quintet run my_program/ --watch                    render again whenever a file is saved\n"
-    "  quintet run lesson.rt.glsl --frames 45 -o light.%04d.png\n"
-    "  quintet run my_program/ --set-file values.json --all-outputs -o out.exr\n";
-
 constexpr double kTimeout = 30.0;  // seconds: a shader that takes longer probably does not end
 constexpr double kMaxFrames = 1e6;
 constexpr double kSignalSeconds = 0.25;  // a signal that arrives just before the wait is noticed after this time
@@ -37,10 +34,9 @@ constexpr double kSignalSeconds = 0.25;  // a signal that arrives just before th
 struct RunOptions : RenderOptions {
   bool list = false;  // print the built-in programs
   bool watch = false;
+  std::string frames;           // their number
   bool namedByProgram = false;  // no output file was given
 };
-
-bool isHelp(const std::string& argument) { return argument == "-h" || argument == "--help"; }
 
 // In the current folder, named like the program: "ao.png", "sphere.png" for lessons/sphere.rt.glsl.
 std::filesystem::path defaultOutput(const program::Program& program) {
@@ -49,63 +45,83 @@ std::filesystem::path defaultOutput(const program::Program& program) {
   return (stem.empty() ? "out" : stem) + ".png";
 }
 
-void convertFrames(const std::string& frames, const RenderTexts& texts, RunOptions& options) {
+void convertFrames(const RenderTexts& texts, RunOptions& options) {
   job::FrameRequest& request = options.request.frames;
-  if (const auto count = parseInteger("--frames", frames, 1, kMaxFrames))
+  if (const auto count = parseInteger("--frames", options.frames, 1, kMaxFrames))
     request.count = static_cast<std::uint32_t>(*count);
   if (!texts.spp.empty()) request.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
   if (!request.accumulated && !options.request.limits.seconds) request.accumulated = 1;
   request.every = options.output.everyFrame = options.output.everyFrame || output::hasFramePattern(options.output.file);
 }
 
+OptionTable declare(RunOptions& options, RenderTexts& texts) {
+  OptionTable table("run",
+                    "Runs a program: a folder with program.toml, a file NAME.rt.glsl, or a built-in one by name.");
+  table.redirectHelp(&options.programHelp);  // with a program, its help
+  table.add({{.names = "PROGRAM",
+              .help = "Folder or file of a program, or name of a built-in one (--list)",
+              .target = &options.program,
+              .candidates = programCandidates(),
+              .required = true},
+             {.names = "SCENE",
+              .help = "Scene file: .gltf, .glb or .scene.toml (default: the program's own, or built in)",
+              .target = &texts.scene,
+              .candidates = {.extensions = kSceneExtensions}}});
+  table.add("Image",
+            {{.names = "-o",
+              .value = "FILE",
+              .help = "Output file: .png, .exr or .hdr; - is PNG on standard output (default: PROGRAM.png in the "
+                      "current folder)",
+              .target = &texts.output,
+              .candidates = {.extensions = {"png", "exr", "hdr"}}}});
+  declareImage(table, texts, options);
+  table.add("Image",
+            {{.names = "--frames",
+              .value = "N",
+              .help = "Number of frames, for an animated scene or a program that draws frame after frame (default: 1)",
+              .target = &options.frames},
+             {.names = "--all-frames",
+              .help = "Write each frame: out.0000.png (also with %04d in the name)",
+              .target = &options.output.everyFrame}});
+  declareExr(table, texts);
+  declareQuality(table, texts, options);
+  declareView(table, texts, options);
+  declareProgram(table, options);
+  table.add("Program", {{.names = "--output",
+                         .value = "NAME",
+                         .help = "Output of the program to write (default: the first)",
+                         .target = &options.output.output},
+                        {.names = "--list", .help = "List the built-in programs and exit", .target = &options.list}});
+  table.add(
+      "Run",
+      {{.names = "--watch", .help = "Keep running: render again whenever a file is saved", .target = &options.watch}});
+  declareProcess(table, texts, options, "Time limit of one launch (default: 30)");
+  table.add("Run", {{.names = "--json",
+                     .help = "Print JSON on standard output at the end (or with --help, --list)",
+                     .target = &options.console.json}});
+  table.addExamples({
+      {"quintet run --list", "the built-in programs"},
+      {"quintet run ao", "a built-in program on the built-in scene: ao.png"},
+      {"quintet run ao --help", "its parameters and outputs"},
+      {"quintet run my_program/ scene.glb --set tint=1,0.5,0 --size 640x360 --spp 16"},
+      {"quintet run my_program/ --watch", "render again whenever a file is saved"},
+      {"quintet run lesson.rt.glsl --frames 45 -o light.%04d.png"},
+      {"quintet run my_program/ --set-file values.json --all-outputs -o out.exr"},
+  });
+  return table;
+}
+
 std::optional<RunOptions> parseRunOptions(Arguments arguments) {
-  CLI::App app("Runs a program: a folder with program.toml, a file NAME.rt.glsl, or a built-in one by name.",
-               "quintet run");
   RunOptions options;
   RenderTexts texts;
-  std::string frames;
   options.program.clear();
-  app.add_option("PROGRAM", options.program, "Folder or file of a program, or name of a built-in one (--list)")
-      ->type_name("");
-  app.add_option("SCENE", texts.scene,
-                 "Scene file: .gltf, .glb or .scene.toml (default: the program's own, or built in)")
-      ->type_name("");
-  app.add_option("-o", texts.output,
-                 "Output file: .png, .exr or .hdr; - is PNG on standard output (default: PROGRAM.png in the\n"
-                 "current folder)")
-      ->type_name("FILE")
-      ->group("Image");
-  declareImage(app, texts, options);
-  app.add_option("--frames", frames,
-                 "Number of frames, for an animated scene or a program that draws frame after frame\n(default: 1)")
-      ->type_name("N")
-      ->group("Image");
-  app.add_flag("--all-frames", options.output.everyFrame, "Write each frame: out.0000.png (also with %04d in the name)")
-      ->group("Image");
-  declareExr(app, texts);
-  declareQuality(app, texts, options);
-  declareView(app, texts, options);
-  declareProgram(app, options);
-  app.add_option("--output", options.output.output, "Output of the program to write (default: the first)")
-      ->type_name("NAME")
-      ->group("Program");
-  app.add_flag("--list", options.list, "List the built-in programs and exit")->group("Program");
-  app.add_flag("--watch", options.watch, "Keep running: render again whenever a file is saved")->group("Run");
-  declareProcess(app, texts, options, "Time limit of one launch (default: 30)");
-  app.add_flag("--json", options.console.json, "Print JSON on standard output at the end (or with --help, --list)")
-      ->group("Run");
-  setUp(app, kExamples);
-
-  // --help with a program prints the program's help.
-  std::vector<std::string> given(arguments.begin(), arguments.end());
-  const bool help = std::erase_if(given, isHelp) > 0;
-  if (!parse(app, given)) return std::nullopt;
-  if (help && options.program.empty()) {
-    parse(app, std::vector<std::string>{"--help"});
+  const OptionTable table = declare(options, texts);
+  table.parse(arguments);
+  if (options.programHelp && options.program.empty()) {
+    writeFile("-", helpText(table, helpWidth()));
     return std::nullopt;
   }
-  options.programHelp = help;
-  if (help || options.list) return options;
+  if (options.programHelp || options.list) return options;
   if (options.program.empty()) throw UsageError("no program given; 'quintet run --list' lists the built-in ones");
   options.layerList = std::ranges::find(texts.layers, "list") != texts.layers.end();
   if (options.layerList) return options;
@@ -117,7 +133,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
     throw UsageError(
         fmt::format("{}: run writes images; use 'quintet render' for films", options.output.file.string()));
   convert(texts, options);
-  convertFrames(frames, texts, options);
+  convertFrames(texts, options);
   if (texts.timeout.empty()) options.request.launchTimeout = kTimeout;
   checkStandardOutput(options);
   if (options.watch && options.output.file == "-")
@@ -145,7 +161,7 @@ class Watch {
     bool good = live_.reload(console_);
     stop_.emplace();
     console_.setGracefulStop(&*stop_);
-    console_.note(fmt::format("watching {} files; press Ctrl-C to stop", live_.watchFiles()));
+    console_.note(fmt::format("watching {}; press Ctrl-C to stop", counted(live_.watchFiles(), "file")));
     while (true) {
       if (good) render();
       while (!stop_->requested() && live_.waitForChange(kSignalSeconds).empty()) {
@@ -205,19 +221,26 @@ class Watch {
 
 }  // namespace
 
+OptionTable runOptions() {
+  RunOptions options;
+  RenderTexts texts;
+  return declare(options, texts).withoutTargets();
+}
+
 int runCommand(Arguments arguments) {
   const Stopwatch clock;
   std::optional<RunOptions> options = parseRunOptions(arguments);
   if (!options) return 0;
   const bool json = options->console.json;
   if (options->list) {
-    writeFile("-", json ? program::listAsJson() + "\n" : program::listAsText());
+    writeFile("-", json ? program::listAsJson() + "\n" : program::listAsText(terminalWidth(STDOUT_FILENO).value_or(0)));
     return 0;
   }
   try {
     const program::Program program = program::loadProgram(options->program);
     if (options->programHelp) {
-      writeFile("-", json ? program::describeAsJson(program) + "\n" : program::describeAsText(program));
+      writeFile("-", json ? program::describeAsJson(program) + "\n"
+                          : program::describeAsText(program, terminalWidth(STDOUT_FILENO).value_or(0)));
       return 0;
     }
     if (options->layerList) {

@@ -159,7 +159,8 @@ std::vector<Diagnostic> outputDiagnostics(const program::Program& description, c
   }
   if (const std::uint64_t dropped = film.countRays().droppedSamples; dropped > 0)
     result.push_back({Severity::error, file, 0, 0, "Q002",
-                      fmt::format("{} samples were not finite; the program dropped them", dropped)});
+                      dropped == 1 ? "1 sample was not finite; the program dropped it"
+                                   : fmt::format("{} samples were not finite; the program dropped them", dropped)});
   return result;
 }
 

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// `quintet help`: the help of a command; for packages, also its man page and the completions of shells.
+#include "commands/help.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/suggestion.h"
+#include "base/text.h"
+#include "base/wrap.h"
+#include "cli/completion.h"
+#include "cli/help_text.h"
+#include "cli/manual.h"
+#include "cli/option_table.h"
+#include "cli/values.h"
+
+namespace quintet::cli {
+namespace {
+
+struct Options {
+  std::optional<std::string> command;
+  bool man = false;
+  bool list = false;
+  std::optional<std::string> completion;
+};
+
+OptionTable declare(Options& options) {
+  std::vector<std::string> names;
+  for (const Command& command : commands()) names.emplace_back(command.name);
+  OptionTable table("help", "Prints the help of a command, or the list of commands.");
+  table.add({{.names = "COMMAND",
+              .help = "Name of a command; without it, the list of all",
+              .target = &options.command,
+              .candidates = {.names = names}}});
+  table.add("For packages",
+            {{.names = "--man", .help = "Print the man page of COMMAND, or of quintet", .target = &options.man},
+             {.names = "--completion",
+              .value = "SHELL",
+              .help = "Print the completions for a shell: bash, zsh or fish",
+              .target = &options.completion,
+              .candidates = {.names = {"bash", "zsh", "fish"}}},
+             {.names = "--commands", .help = "Print the names of the commands", .target = &options.list}});
+  table.addExamples({
+      {"quintet help render", "the same as quintet render --help"},
+      {"quintet help --man render | man -l -", "the man page"},
+      {"source <(quintet help --completion bash)", "completions in this shell"},
+  });
+  return table;
+}
+
+OptionTable tableOf(const std::string& name) {
+  const auto all = commands();
+  const auto found = std::ranges::find(all, name, &Command::name);
+  if (found == all.end()) throw UsageError(unknownCommandText(name));
+  return found->options();
+}
+
+std::string completionFor(const std::string& shell) {
+  switch (parseChoice("--completion", shell, {"bash", "zsh", "fish"})) {
+    case 0: return bashCompletion();
+    case 1: return zshCompletion();
+    default: return fishCompletion();
+  }
+}
+
+std::string commandNames() {
+  std::string text;
+  for (const Command& command : commands()) text += fmt::format("{}\n", command.name);
+  return text;
+}
+
+}  // namespace
+
+std::string unknownCommandText(std::string_view name) {
+  std::vector<std::string> names{"--help", "--version"};
+  for (const Command& command : commands()) names.emplace_back(command.name);
+  return fmt::format("unknown {} '{}'{}; 'quintet --help' lists the commands",
+                     name.starts_with('-') ? "option" : "command", printable(name), suggestion(name, names));
+}
+
+std::string overviewText() {
+  const std::size_t width = helpWidth();
+  std::string text =
+      wrapped("Quintet: five shaders in, image out. A path tracer for glTF scenes on Vulkan ray tracing.", width, 0) +
+      "\n\nUsage: quintet COMMAND [OPTIONS]\n\nCommands:\n";
+  for (const Command& command : commands())
+    text += fmt::format("  {:<10}{}\n", command.name, wrapped(command.summary, width, 12, 12));
+  return text +
+         "\n  quintet COMMAND --help      options and examples of a command\n"
+         "  quintet --version           version of Quintet\n\nExamples:\n" +
+         examplesText({{"quintet render scene.glb", "scene.png, 64 samples per pixel"},
+                       {"quintet render scene.glb -o out.exr --time 60", "as many samples as possible"},
+                       {"quintet run ao", "a program on the built-in scene"},
+                       {"quintet info", "the Vulkan devices"},
+                       {"quintet compare out.png reference.png", "measures of their difference"}},
+                      width);
+}
+
+OptionTable helpOptions() {
+  Options options;
+  return declare(options).withoutTargets();
+}
+
+int helpCommand(Arguments arguments) {
+  Options options;
+  if (!declare(options).parse(arguments)) return 0;
+  if (options.man + options.list + options.completion.has_value() > 1)
+    throw UsageError("--man, --completion and --commands exclude each other");
+  if (options.command && (options.list || options.completion))
+    throw UsageError(fmt::format("unexpected argument '{}'; see 'quintet help --help'", printable(*options.command)));
+  if (options.completion)
+    writeFile("-", completionFor(*options.completion));
+  else if (options.list)
+    writeFile("-", commandNames());
+  else if (options.man)
+    writeFile("-", options.command ? manualPage(tableOf(*options.command)) : mainManualPage());
+  else
+    writeFile("-", options.command ? helpText(tableOf(*options.command), helpWidth()) : overviewText());
+  return 0;
+}
+
+}  // namespace quintet::cli

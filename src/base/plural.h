@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers with a noun in messages.
+#ifndef QUINTET_BASE_PLURAL_H
+#define QUINTET_BASE_PLURAL_H
+
+#include <string>
+#include <string_view>
+
+namespace quintet {
+
+// Returns "sample" for 1 and "samples" for other numbers.
+template <class Number>
+std::string nounFor(Number number, std::string_view noun) {
+  return std::string(noun) + (number == 1 ? "" : "s");
+}
+
+// Returns "1 sample", "2 samples".
+template <class Integer>
+std::string counted(Integer number, std::string_view noun) {
+  return std::to_string(number) + " " + nounFor(number, noun);
+}
+
+}  // namespace quintet
+#endif

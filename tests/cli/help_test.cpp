@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tables of options give: help, man pages, completions of shells, and errors of the command line.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include <gmock/gmock.h>
+
+#include "base/parse.h"
+#include "base/wrap.h"
+#include "fixtures.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Help : public CliTest {
+ protected:
+  std::vector<std::string> commandNames() {
+    std::vector<std::string> names = splitText(quintet({"help", "--commands"}).out, '\n');
+    names.pop_back();
+    return names;
+  }
+  // The names of a command's options, as its help lists them: "-o", "--output".
+  std::vector<std::string> optionNames(const std::string& command) {
+    std::vector<std::string> names;
+    for (const std::string& line : splitText(quintet({command, "--help"}).out, '\n')) {
+      if (!line.starts_with("  -")) continue;
+      for (std::string part : splitText(line.substr(2), ',')) {
+        part.erase(0, part.find_first_not_of(' '));
+        if (!part.starts_with('-')) break;
+        names.push_back(part.substr(0, part.find(' ')));
+        if (part.find(' ') != part.npos) break;
+      }
+    }
+    return names;
+  }
+  std::filesystem::path write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  // Output of a shell command in the test's folder; fails the test if its status is not 0.
+  std::string shell(const std::string& command) {
+    const std::string line = "cd '" + folder_.path().string() + "' && (" + command + ") 2>&1";
+    FILE* pipe = ::popen(line.c_str(), "r");
+    std::string text;
+    std::array<char, 4096> buffer{};
+    while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe)) text.append(buffer.data(), got);
+    EXPECT_EQ(::pclose(pipe), 0) << command << "\n" << text;
+    return text;
+  }
+  static bool has(const std::string& program) {
+    return std::system(("command -v " + program + " > /dev/null").c_str()) == 0;
+  }
+};
+
+TEST_F(Help, OfACommandIsThatOfItsOption) {
+  for (const std::string& command : commandNames()) {
+    const RunResult help = quintet({"help", command});
+    EXPECT_EQ(help.status, 0);
+    EXPECT_EQ(help.out, quintet({command, "--help"}).out) << command;
+  }
+  EXPECT_EQ(quintet({"help"}).out, quintet({"--help"}).out);
+  expectError(quintet({"help", "rendr"}), 2, {"unknown command 'rendr'", "'render'"});
+  expectError(quintet({"help", "--completion", "bsh"}), 2, {"--completion", "'bsh'", "'bash'"});
+  expectError(quintet({"help", "--man", "--commands"}), 2, {"exclude"});
+}
+
+TEST_F(Help, FitsInto80Columns) {
+  std::vector<std::string> texts{quintet({"--help"}).out};
+  for (const std::string& command : commandNames()) texts.push_back(quintet({command, "--help"}).out);
+  for (const std::string& text : texts)
+    for (const std::string& line : splitText(text, '\n')) EXPECT_LE(columnsOf(line), 80u) << line;
+}
+
+// A terminal gets lines that break between words; files and pipes get one line.
+TEST_F(Help, ErrorsBreakBetweenWords) {
+  const std::vector<std::string> arguments{"render", "a", "--tonemap", "a-name-that-is-rather-long"};
+  const std::string line = quintet(arguments).err;
+  EXPECT_EQ(std::ranges::count(line, '\n'), 1);
+  std::string shown = TerminalRun(arguments, folder_.path(), 60).finish().err;
+  std::erase(shown, '\r');
+  EXPECT_GT(std::ranges::count(shown, '\n'), 1);
+  std::string joined;
+  for (const std::string& part : splitText(shown, '\n')) {
+    EXPECT_LE(columnsOf(part), 60u);
+    joined +=
+        (joined.empty() || part.empty() ? "" : " ") + part.substr(std::min(part.find_first_not_of(' '), part.size()));
+  }
+  EXPECT_EQ(joined + "\n", line);
+}
+
+TEST_F(Help, MissingValuesAreNamed) {
+  expectError(quintet({"render", "scene.gltf", "--spp"}), 2,
+              {"--spp: the value N is missing", "quintet render --help"});
+  expectError(quintet({"render", "scene.gltf", "-o"}), 2, {"--output: the value FILE is missing"});
+  expectError(quintet({"info", "--json=no"}), 2, {"--json: this option takes no value"});
+  expectError(quintet({"bench"}), 2, {"no scene given"});
+  expectError(quintet({"render", "--spp", "1", "--spp", "2"}), 2, {"--spp: given 2 times"});
+  expectError(quintet({"render", "--size=", "3x3"}), 2, {"--size: the value is empty"});
+  expectError(quintet({"bench", "scene.gltf", "--repeat", "0"}), 2, {"--repeat", "[1, 1000]"});
+  expectError(quintet({"bench", "scene.gltf", "--repeat", "1.5"}), 2, {"--repeat", "integer"});
+}
+
+TEST_F(Help, TwoDashesEndTheOptions) {
+  std::filesystem::rename(folder_ / "scene.gltf", folder_ / "-scene.gltf");
+  EXPECT_THAT(quintet({"info", "--", "-scene.gltf"}).out, HasSubstr("-scene.gltf: "));
+  expectError(quintet({"info", "-scene.gltf"}), 2, {"unknown option"});
+  expectError(quintet({"info", "--", "-scene.gltf", "--json"}), 2, {"unexpected argument '--json'"});
+  expectError(quintet({"run", "--", "--help"}), 2, {"--help"});
+}
+
+TEST_F(Help, ListOfProgramsIsComplete) {
+  const std::string piped = quintet({"run", "--list"}).out;
+  EXPECT_THAT(piped, Not(HasSubstr("...")));
+  EXPECT_TRUE(std::ranges::any_of(splitText(piped, '\n'), [](const std::string& l) { return l.size() > 110; }));
+}
+
+TEST_F(Help, ColumnsOfProgramsDoNotCollide) {
+  write("long.rt.glsl",
+        shell(std::string(QUINTET_BINARY) + " new first > /dev/null && sed "
+                                            "'s/lampDirection/aVeryLongNameOfAParameter/g' first.rt.glsl"));
+  const std::string text = quintet({"run", "long.rt.glsl", "--help"}).out;
+  EXPECT_THAT(text, HasSubstr("aVeryLongNameOfAParameter  Direction to the lamp"));
+}
+
+TEST_F(Help, ManPagesHaveEveryOption) {
+  for (const std::string& command : commandNames()) {
+    const std::string page = quintet({"help", "--man", command}).out;
+    EXPECT_THAT(page, AllOf(HasSubstr(".TH QUINTET-"), HasSubstr(".SH NAME"), HasSubstr(".SH OPTIONS")));
+    EXPECT_FALSE(optionNames(command).empty());
+    for (std::string name : optionNames(command)) {
+      for (std::size_t at = name.find('-'); at != name.npos; at = name.find('-', at + 2)) name.replace(at, 1, "\\-");
+      EXPECT_THAT(page, HasSubstr("\\fB" + name + "\\fR")) << command;
+    }
+  }
+  const std::string main = quintet({"help", "--man"}).out;
+  for (const std::string& command : commandNames()) EXPECT_THAT(main, HasSubstr(".BR quintet\\-" + command + " (1)"));
+}
+
+TEST_F(Help, ManPagesAreValid) {
+  if (!has("groff")) GTEST_SKIP() << "groff is missing";
+  std::vector<std::string> pages{quintet({"help", "--man"}).out};
+  for (const std::string& command : commandNames()) pages.push_back(quintet({"help", "--man", command}).out);
+  for (const std::string& page : pages) {
+    write("page.1", page);
+    EXPECT_EQ(shell("groff -man -ww -z -Tutf8 -Kutf8 page.1"), "");
+    EXPECT_THAT(shell("groff -man -Tutf8 -Kutf8 -P-c page.1"), Not(HasSubstr("\\")));
+  }
+}
+
+TEST_F(Help, CompletionsHaveEveryOption) {
+  const std::string bash = quintet({"help", "--completion", "bash"}).out;
+  const std::string zsh = quintet({"help", "--completion", "zsh"}).out;
+  const std::string fish = quintet({"help", "--completion", "fish"}).out;
+  for (const std::string& command : commandNames()) {
+    const std::string inBash = bash.substr(bash.find("    " + command + ")\n"));
+    const std::string inZsh = zsh.substr(zsh.find("_quintet_" + command + "() {"));
+    for (const std::string& name : optionNames(command)) {
+      EXPECT_THAT(inBash.substr(0, inBash.find("\n      ;;")), HasSubstr(name)) << command;
+      EXPECT_THAT(inZsh.substr(0, inZsh.find("\n}")), HasSubstr(name)) << command;
+      const std::string inFish = name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+      EXPECT_TRUE(std::ranges::any_of(splitText(fish, '\n'),
+                                      [&](const std::string& line) {
+                                        return line.find("seen_subcommand_from " + command + "'") != line.npos &&
+                                               (line + " ").find(inFish + " ") != line.npos;
+                                      }))
+          << command << name;
+    }
+  }
+}
+
+TEST_F(Help, CompletionsAreValid) {
+  const std::array<const char*, 3> shells{"bash", "zsh", "fish"};
+  for (const char* name : shells) {
+    write(name, quintet({"help", "--completion", name}).out);
+    if (has(name)) {
+      EXPECT_EQ(shell(std::string(name) + " -n ./" + name), "");
+    }
+  }
+}
+
+class BashCompletion : public Help {
+ protected:
+  void SetUp() override {
+    Help::SetUp();
+    if (!has("bash")) GTEST_SKIP() << "bash is missing";
+    write("completion", quintet({"help", "--completion", "bash"}).out);
+  }
+  // What bash offers after these words.
+  std::vector<std::string> complete(const std::string& words) {
+    std::vector<std::string> found =
+        splitText(shell("bash -c 'source ./completion; COMP_WORDS=(" + words +
+                        "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _quintet; printf \"%s\\n\" \"${COMPREPLY[@]}\"'"),
+                  '\n');
+    std::erase(found, "");
+    std::ranges::sort(found);
+    return found;
+  }
+};
+
+TEST_F(BashCompletion, Names) {
+  EXPECT_THAT(complete("quintet ren"), ElementsAre("render"));
+  EXPECT_EQ(complete("quintet \"\"").size(), commandNames().size());
+  EXPECT_THAT(complete("quintet --v"), ElementsAre("--version"));
+  EXPECT_THAT(complete("quintet render --ou"), ElementsAre("--output"));
+  EXPECT_THAT(complete("quintet render scene.gltf --until"), ElementsAre("--until-error"));
+  EXPECT_THAT(complete("quintet help exp"), ElementsAre("explain"));
+}
+
+TEST_F(BashCompletion, ValuesAndFiles) {
+  write("a.glb", "");
+  write("b.png", "");
+  write("c.txt", "");
+  write("-d.glb", "");
+  std::filesystem::create_directory(folder_ / "folder");
+  EXPECT_THAT(complete("quintet render --tonemap a"), ElementsAre("aces", "agx"));
+  EXPECT_THAT(complete("quintet render --tonemap = ag"), ElementsAre("agx"));
+  EXPECT_THAT(complete("quintet render \"\""), ElementsAre("-d.glb", "a.glb", "folder", "scene.gltf"));
+  EXPECT_THAT(complete("quintet render -- -"), ElementsAre("-d.glb"));
+  EXPECT_THAT(complete("quintet render a.glb -o \"\""), ElementsAre("b.png", "folder"));
+  EXPECT_THAT(complete("quintet run pathtr"), ElementsAre("pathtracer"));
+  EXPECT_TRUE(complete("quintet render a.glb --spp \"\"").empty());
+}
+
+// The topic may be in the id, the title or the text of a diagnostic.
+TEST_F(Help, ExplainsTopics) {
+  const RunResult several = quintet({"explain", "payload"});
+  EXPECT_EQ(several.status, 0);
+  EXPECT_GT(std::ranges::count(several.out, '\n'), 1);
+  for (const std::string& line : splitText(several.out, '\n'))
+    EXPECT_TRUE(line.empty() || line.starts_with('Q')) << line;
+  EXPECT_EQ(quintet({"explain", "PAYLOAD"}).out, several.out);
+  EXPECT_GT(nlohmann::json::parse(quintet({"explain", "payload", "--json"}).out).size(), 1u);
+  expectError(quintet({"explain", "flying saucers"}), 2, {"unknown diagnostic 'flying saucers'"});
+  // A topic that one title has alone prints the page.
+  const std::string page = quintet({"explain", "Q101"}).out;
+  const std::string title = page.substr(page.find("Q101"), page.find('\n') - page.find("Q101"));
+  EXPECT_EQ(quintet({"explain", title.substr(title.find_first_of(": ") + 2)}).out.substr(0, 4), page.substr(0, 4));
+}
+
+TEST_F(Help, TypographicQuotes) {
+  expectError(quintet({"render", "“scene.gltf”"}), 1, {"“scene.gltf”", "“ is a typographic quote; type \" instead"});
+  expectError(quintet({"render", "scene.gltf", "--tonemap", "‘aces’"}), 2,
+              {"‘ is a typographic quote; type ' instead"});
+  ASSERT_EQ(quintet({"new", "first"}).status, 0);
+  for (const char* quote : {"“", "”", "‘", "’"}) {
+    write("bad.rt.glsl", shell(std::string("sed '0,/vec3(/s//vec3(") + quote + "/' first.rt.glsl"));
+    const RunResult result = quintet({"check", "bad.rt.glsl", "--device", "none"});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, AllOf(HasSubstr(std::string("'") + quote + "' : unexpected token; " + quote +
+                                            " is a typographic quote"),
+                                  HasSubstr("^")));
+  }
+}
+
+}  // namespace
+}  // namespace quintet::test
