@@ -24,7 +24,7 @@ MUTATION_FLAGS ?=
 LINT_FLAGS ?=
 
 .DEFAULT_GOAL := build
-.PHONY: demo test build setup bench lessons reference mutation sanitize lint tidy clean help configure
+.PHONY: demo test build setup bench lessons reference mutation sanitize docs lint tidy clean help configure
 # Targets run one by one; each of them is parallel.
 .NOTPARALLEL:
 
@@ -66,6 +66,10 @@ sanitize: setup ## Build with ASan and UBSan and run the unit tests (build/asan)
 	@cmake --preset asan -DQUINTET_TESTS=ON $(CMAKE_FLAGS)
 	@cmake --build --preset asan -j $(JOBS) --target quintet_unit_tests
 	@ctest --preset asan -L '^unit$$' --no-tests=error -j $(JOBS) $(CTEST_FLAGS)
+
+docs: ## Install Doxygen and build the reference of the C++ API (build/docs/html/index.html)
+	@bash scripts/setup.sh docs
+	@bash scripts/docs.sh
 
 lint: ## Install the tools and check the format of C++ and the scripts (LINT_FLAGS=--fix formats the C++ files)
 	@bash scripts/setup.sh lint

@@ -14,21 +14,24 @@
 
 namespace quintet {
 
+// A device of the machine, whether Quintet can use it or not.
 struct DeviceInfo {
-  std::uint32_t index = 0;        // for DeviceOptions::choice
-  std::string name{};             // "NVIDIA H200"
-  std::string driver{};           // name, version and details: "lavapipe 25.0.7 (LLVM 15.0.6)"
-  std::string uuid{};             // 32 hexadecimal digits
-  std::string kind{};             // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
-  std::uint64_t memoryBytes = 0;  // of the largest device-local heap
-  std::uint32_t maxRecursionDepth = 0;
-  std::string unusableReason{};  // "no VK_KHR_ray_tracing_pipeline"; empty if Quintet can use the device
+  std::uint32_t index = 0;              // for DeviceOptions::choice
+  std::string name{};                   // "NVIDIA H200"
+  std::string driver{};                 // name, version and details: "lavapipe 25.0.7 (LLVM 15.0.6)"
+  std::string uuid{};                   // 32 hexadecimal digits
+  std::string kind{};                   // "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
+  std::uint64_t memoryBytes = 0;        // of the largest device-local heap
+  std::uint32_t maxRecursionDepth = 0;  // of nested traces
+  std::string unusableReason{};         // "no VK_KHR_ray_tracing_pipeline"; empty if Quintet can use the device
+  // Quintet can use the device.
   bool usable() const { return unusableReason.empty(); }
 };
 
 // All devices of the machine, usable or not, GPUs before CPUs; empty without a Vulkan loader or driver.
 std::vector<DeviceInfo> devices();
 
+// Which device to open, and what it may keep on disk.
 struct DeviceOptions {
   // Index, or part of the name ("h200", "lavapipe", "cpu"). Empty means $QUINTET_DEVICE, else the first usable device.
   std::string choice{};
@@ -44,7 +47,7 @@ class Device {
   Device(Device&&) noexcept;
   Device& operator=(Device&&) noexcept;
   ~Device();
-  DeviceInfo info() const;
+  DeviceInfo info() const;     // of the open device
   std::string name() const;    // info().name
   std::string driver() const;  // info().driver
 

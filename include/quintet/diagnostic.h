@@ -10,8 +10,10 @@
 
 namespace quintet {
 
+// A program with an error does not run.
 enum class Severity { note, warning, error };
 
+// One problem of a program, with its location.
 struct Diagnostic {
   Severity severity = Severity::error;
   std::string file{};  // as the user knows it: a path, or "<quintet/bsdf/ggx.glsl>" for the embedded library
@@ -27,6 +29,7 @@ struct Diagnostic {
 class ProgramError : public Error {
  public:
   explicit ProgramError(std::vector<Diagnostic> diagnostics);
+  // Errors and warnings, in the order of the check.
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
 
  private:

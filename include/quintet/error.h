@@ -22,9 +22,9 @@ class FileError : public Error {
  public:
   FileError(const std::filesystem::path& file, std::string_view location, std::string_view problem);
   FileError(const std::filesystem::path& file, std::string_view problem) : FileError(file, {}, problem) {}
-  const std::filesystem::path& file() const { return file_; }
-  const std::string& location() const { return location_; }
-  const std::string& problem() const { return problem_; }
+  const std::filesystem::path& file() const { return file_; }  // as the caller named it
+  const std::string& location() const { return location_; }    // in the file; empty if unknown
+  const std::string& problem() const { return problem_; }      // one sentence without a period
 
  private:
   std::filesystem::path file_;

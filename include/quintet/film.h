@@ -39,6 +39,7 @@ struct Layer {
   std::vector<std::uint32_t> ids{};
 };
 
+// What Film::write() stores besides the image.
 struct WriteOptions {
   std::vector<std::string> layers{};  // .exr: names of layers beside the image, or "all"
   bool floats = false;  // .exr: colors as 32-bit floats instead of half; all other layers are always floats
@@ -55,8 +56,8 @@ class Film {
   // parts belong to different renders or share samples.
   static Film merge(const std::vector<std::filesystem::path>& parts);
 
-  std::uint32_t width() const;  // pixels, of the rendered region
-  std::uint32_t height() const;
+  std::uint32_t width() const;              // pixels, of the rendered region
+  std::uint32_t height() const;             // pixels, of the rendered region
   double sampleCount() const;               // per pixel, an average for adaptive sampling; or frames
   std::vector<std::string> layers() const;  // the names that layer() and WriteOptions::layers accept
   // The mean of the samples, or the last frame. An empty name means the first output. Throws UsageError for an unknown name

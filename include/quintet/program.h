@@ -15,6 +15,7 @@
 
 namespace quintet {
 
+// A parameter that a program declares.
 struct ParameterInfo {
   std::string name{};
   std::string type{};          // "bool", "int", "float", "vec2", "vec3", "vec4", "color", …: docs/programs.md
@@ -24,6 +25,7 @@ struct ParameterInfo {
   std::string help{};
 };
 
+// An image or layer that a program renders.
 struct OutputInfo {
   std::string name{};
   std::string help{};
@@ -43,9 +45,9 @@ class Program {
   static Program fromFiles(std::map<std::string, std::string> files, const std::string& name = "program");
   static std::vector<std::string> builtIn();  // names
 
-  std::string name() const;
-  std::string description() const;
-  std::vector<ParameterInfo> parameters() const;
+  std::string name() const;                       // of the folder or file
+  std::string description() const;                // one sentence; can be empty
+  std::vector<ParameterInfo> parameters() const;  // in the order of their declaration
   // The image is the first one. The names of all, and "variance" and "sample_count", are valid in Film::layer().
   std::vector<OutputInfo> outputs() const;
 

@@ -30,6 +30,7 @@ struct Batches {
   std::uint64_t first = 0, last = 0;
 };
 
+// What decides the values of an image, besides scene and program.
 struct Settings {
   std::uint32_t width = 1280;  // pixels, [1, 65536]
   std::uint32_t height = 720;
@@ -55,6 +56,7 @@ struct Limits {
   std::optional<double> error{};    // relative, with 95 % confidence: docs/cli.md; > 0
 };
 
+// The state of a render between two launches.
 struct Progress {
   double samples = 0;   // per pixel, or frames, with the finished fraction of the current batch
   double seconds = 0;   // wall clock of rendering
@@ -66,8 +68,10 @@ struct Progress {
 // Called several times per second from the thread that calls render(). Returning false stops after the current batch.
 using ProgressFunction = std::function<bool(const Progress&)>;
 
+// Why a render stopped.
 enum class StopReason { samples, time, error, canceled };
 
+// What Renderer::render() did.
 struct RenderReport {
   StopReason reason = StopReason::samples;
   double samples = 0;                // per pixel, or frames, in total
@@ -104,16 +108,17 @@ class Renderer {
   // transforms keeps the pipeline and the bottom-level acceleration structures. A change of a material also rebuilds the
   // scene on the device if it changes emission, alpha mode, textures, or which features the materials use.
   // They throw UsageError for unknown names, indices out of range and invalid values, and then change nothing.
-  void setCamera(const Camera& camera);
-  void setParameter(const std::string& name, const std::string& value);
-  void setTransform(int instance, const Transform& worldFromObject);  // of an instance without keyframes
-  void setMaterial(int index, const Material& material);
+  void setCamera(const Camera& camera);  // replaces the camera of the settings or the scene
+  void setParameter(const std::string& name, const std::string& value);  // as in Settings::parameters
+  void setTransform(int instance, const Transform& worldFromObject);     // of an instance without keyframes
+  void setMaterial(int index, const Material& material);                 // index of Scene::addMaterial()
   void setFrame(float frame);  // of the animation; instances with keyframes move. Not for programs that accumulate
   void restart();              // discards the samples so far
 
-  // Writes the film to `file` (.qfilm) in one step, and continues from such a file. resume() returns false if the file does
-  // not exist. Throws FileError if the file belongs to a different render or is damaged. Not for programs that accumulate.
+  // Writes the film to `file` (.qfilm) in one step. Throws FileError; UsageError for a program that accumulates.
   void saveCheckpoint(const std::filesystem::path& file) const;
+  // Continues from such a file. Returns false if it does not exist. Throws FileError if it belongs to a different render or
+  // is damaged; UsageError for a program that accumulates.
   bool resume(const std::filesystem::path& file);
 
  private:

@@ -26,13 +26,16 @@ namespace quintet {
 
 class Program;
 
+// What a texture coordinate outside [0,1] shows.
 enum class Wrap { repeat, mirroredRepeat, clampToEdge };
+// How texels are interpolated; there are no mip levels.
 enum class Filter { linear, nearest };
 
 // Pixels of an image in memory: rows from the top, interleaved, width · height · channels values. Integers are unsigned
 // normalized.
 using PixelSpan = std::variant<std::span<const std::uint8_t>, std::span<const std::uint16_t>, std::span<const float>>;
 
+// An image in memory with its sampler.
 struct Texture {
   std::string name{};
   std::uint32_t width = 0;     // pixels
@@ -54,6 +57,7 @@ struct TextureUse {
   bool operator==(const TextureUse&) const = default;
 };
 
+// What the alpha of the base color means: nothing; a cutout at Material::alphaCutoff; coverage.
 enum class AlphaMode { opaque, mask, blend };
 
 // The metallic-roughness material of glTF 2.0 with its extensions. Factors multiply the value of the texture. Textures of
@@ -113,6 +117,7 @@ struct Keyframe {
   Float3 scale{1, 1, 1};
 };
 
+// A mesh with its position in the scene.
 struct Instance {
   int mesh = -1;                // index of addMesh() or addBoxes()
   Transform worldFromObject{};  // invertible; can mirror
@@ -122,8 +127,10 @@ struct Instance {
   std::vector<Keyframe> keyframes{};  // ascending frames; if not empty, they replace worldFromObject
 };
 
+// Lights without area (KHR_lights_punctual). Surfaces with Material::emissive are lights, too.
 enum class LightType { point, spot, directional };
 
+// A light without area.
 struct Light {
   LightType type = LightType::point;
   Float3 intensity{1, 1, 1};   // with the color; point and spot: W/sr, directional: W/m²
@@ -134,6 +141,7 @@ struct Light {
   std::string name{};
 };
 
+// A perspective camera with a thin lens.
 struct Camera {
   Float3 lookFrom{0, 0, 5};     // world space
   Float3 lookAt{0, 0, 0};       // world space; also the point in focus
@@ -168,35 +176,35 @@ class Scene {
   // Returns the program's own scene, else a small built-in one with geometry that its hit groups support.
   static Scene of(const Program& program);
 
-  // Each returns the index of the new object.
+  // Each function returns the index of the new object.
   int addTexture(const Texture& texture);
   int addTexture(const std::filesystem::path& file);  // PNG, JPEG, WebP, HDR or OpenEXR; throws FileError
-  int addMaterial(const Material& material);
-  int addMesh(const Triangles& triangles, const std::string& name = {});
+  int addMaterial(const Material& material);          // its textures exist already
+  int addMesh(const Triangles& triangles, const std::string& name = {});             // its material exists already
   int addMesh(std::span<const Triangles> geometries, const std::string& name = {});  // one mesh with several materials
   // Boxes in object space for the intersection shader of a program. Hit groups are bound to them by `name`.
   int addBoxes(std::span<const Bounds> boxes, int material = -1, const std::string& name = {});
-  int addInstance(const Instance& instance);
-  int addLight(const Light& light);
-  int addCamera(const Camera& camera, const std::string& name = {});
+  int addInstance(const Instance& instance);  // its mesh exists already
+  int addLight(const Light& light);           // punctual; emissive surfaces are lights without this
+  int addCamera(const Camera& camera, const std::string& name = {});  // the first one is the default of renderers
+  // A scene without lights and without an environment gets the default one. A black environment counts as one.
   void setEnvironment(const Environment& environment);
   void setEnvironment(const std::filesystem::path& file);  // an equirectangular image; throws FileError
-  // The renderer adds the default environment to a scene without lights unless an environment is set; black counts.
 
-  void setMaterial(int index, const Material& material);
-  void setTransform(int instance, const Transform& worldFromObject);
+  void setMaterial(int index, const Material& material);              // replaces a material
+  void setTransform(int instance, const Transform& worldFromObject);  // replaces a transform, and removes keyframes
 
-  std::string name() const;  // of the file; empty for a scene from memory
-  std::size_t meshCount() const;
-  std::size_t materialCount() const;
-  std::size_t instanceCount() const;
-  std::size_t lightCount() const;
-  std::size_t cameraCount() const;
+  std::string name() const;                                      // of the file; empty for a scene from memory
+  std::size_t meshCount() const;                                 // number of meshes
+  std::size_t materialCount() const;                             // number of materials
+  std::size_t instanceCount() const;                             // number of instances
+  std::size_t lightCount() const;                                // number of lights without area
+  std::size_t cameraCount() const;                               // number of cameras
   Material material(int index) const;                            // throws UsageError
   Transform transform(int instance) const;                       // at frame 0; throws UsageError
   std::optional<int> findInstance(std::string_view name) const;  // the first with this name
-  std::optional<int> findMaterial(std::string_view name) const;
-  Bounds bounds() const;  // world space; empty for a scene without instances
+  std::optional<int> findMaterial(std::string_view name) const;  // the first with this name
+  Bounds bounds() const;                                         // world space; empty for a scene without instances
 
  private:
   friend class Renderer;

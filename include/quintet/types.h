@@ -19,9 +19,11 @@ using UInt3 = std::array<std::uint32_t, 3>;
 struct Transform {
   std::array<Float4, 3> rows{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
+  // Moves by `offset`.
   static Transform translation(Float3 offset) {
     return {{{{1, 0, 0, offset[0]}, {0, 1, 0, offset[1]}, {0, 0, 1, offset[2]}}}};
   }
+  // Scales along the axes.
   static Transform scaling(Float3 factors) {
     return {{{{factors[0], 0, 0, 0}, {0, factors[1], 0, 0}, {0, 0, factors[2], 0}}}};
   }

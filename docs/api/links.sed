@@ -1,0 +1,2 @@
+# Links to files outside the reference become text.
+s|\[([^]]*)\]\(\.\.?/[^)]*\)|\1|g
