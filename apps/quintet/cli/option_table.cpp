@@ -46,7 +46,7 @@ CLI::Option* declare(CLI::App& app, const Option& option) {
   CLI::Option* result = app.add_option(option.names);
   result->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   if (option.isArgument() && option.isList())
-    result->expected(1, -1);
+    result->expected(1, -1)->allow_extra_args(true);
   else
     result->expected(1)->allow_extra_args(false);
   return result;
