@@ -8,16 +8,17 @@
 
 namespace quintet {
 
-// Returns "sample" for 1 and "samples" for other numbers.
+// Returns "sample" for 1 and "samples" for other numbers. `plural`: of irregular nouns.
 template <class Number>
-std::string nounFor(Number number, std::string_view noun) {
-  return std::string(noun) + (number == 1 ? "" : "s");
+std::string nounFor(Number number, std::string_view noun, std::string_view plural = {}) {
+  if (number == 1) return std::string(noun);
+  return plural.empty() ? std::string(noun) + "s" : std::string(plural);
 }
 
 // Returns "1 sample", "2 samples".
 template <class Integer>
-std::string counted(Integer number, std::string_view noun) {
-  return std::to_string(number) + " " + nounFor(number, noun);
+std::string counted(Integer number, std::string_view noun, std::string_view plural = {}) {
+  return std::to_string(number) + " " + nounFor(number, noun, plural);
 }
 
 }  // namespace quintet

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/plural.h"
 #include "job/film_store.h"
 #include "job/sampling_schedule.h"
 
@@ -207,8 +208,8 @@ std::string missingText(const RenderResult& merged) {
     film.counts = counts;
     if (isComplete(film, merged.plan, merged.error, {p.plannedSamples, std::nullopt, p.targetError, true})) return "";
     if (p.plannedSamples)
-      return fmt::format("{:.1f} of {} samples per pixel are rendered", render::averageSamples(p.region, counts),
-                         *p.plannedSamples);
+      return fmt::format("{:.1f} of {} per pixel are rendered", render::averageSamples(p.region, counts),
+                         counted(*p.plannedSamples, "sample"));
   } else if (const std::vector<SampleRange> missing = missingSamples(counts, p.plannedSamples); !missing.empty()) {
     return fmt::format("samples {} are missing", rangesText(missing));
   }

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 #include "render/film/film_file.h"
 
 namespace quintet::job {
@@ -36,8 +37,8 @@ void checkLimits(const RenderRequest& request, const program::Program& program) 
         "adaptive sampling");
   const std::uint64_t count = (*limits.samples + render::kBatchSamples - 1) / render::kBatchSamples;
   if (request.batches->last >= count)
-    throw UsageError(fmt::format("batches: batch {} does not exist; {} samples are batches 0–{}", request.batches->last,
-                                 *limits.samples, count - 1));
+    throw UsageError(fmt::format("batches: batch {} does not exist; {} {} batches 0–{}", request.batches->last,
+                                 counted(*limits.samples, "sample"), *limits.samples == 1 ? "is" : "are", count - 1));
 }
 
 // True if both name the same file, also through links or "..".

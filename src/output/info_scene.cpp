@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/plural.h"
 #include "base/text.h"
 #include "output/info.h"
 #include "scene/load.h"
@@ -207,13 +208,15 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
          fmt::format("{:.4g} {:.4g} {:.4g} to {:.4g} {:.4g} {:.4g} ({:.4g} x {:.4g} x {:.4g} m)", bounds.min.x,
                      bounds.min.y, bounds.min.z, bounds.max.x, bounds.max.y, bounds.max.z, size.x, size.y, size.z));
   }
-  line("meshes", fmt::format("{} with {} geometries", scene.meshes.size(), geometryCount(scene)));
+  line("meshes",
+       fmt::format("{} with {}", scene.meshes.size(), counted(geometryCount(scene), "geometry", "geometries")));
   line("triangles", fmt::format("{} stored, {} in instances", triangles.stored, triangles.instanced));
   const scene::ProceduralCount procedural = scene::countProcedural(scene);
   if (procedural.sets > 0)
     line("procedural",
-         fmt::format("{} sets: {} solids, {} trees of {} leaves, {} custom boxes", procedural.sets, procedural.solids,
-                     procedural.csgTrees, procedural.csgLeaves, procedural.customBoxes));
+         fmt::format("{}: {}, {} of {}, {}", counted(procedural.sets, "set"), counted(procedural.solids, "solid"),
+                     counted(procedural.csgTrees, "tree"), counted(procedural.csgLeaves, "leaf", "leaves"),
+                     counted(procedural.customBoxes, "custom box", "custom boxes")));
   line("instances", describe(countInstances(scene), scene.instances.size()));
   line("materials", fmt::format("{} ({} with alpha, {} emissive, {} transmissive, {} unlit)", scene.materials.size(),
                                 materials.alpha, materials.emissive, materials.transmissive, materials.unlit));

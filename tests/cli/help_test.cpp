@@ -116,6 +116,11 @@ TEST_F(Help, TwoDashesEndTheOptions) {
   expectError(quintet({"run", "--", "--help"}), 2, {"--help"});
 }
 
+// Options may stand between the values of a list.
+TEST_F(Help, ListsOfArguments) {
+  expectError(quintet({"merge", "a.qfilm", "b.qfilm", "-o", "c.png", "d.qfilm"}), 1, {"a.qfilm: cannot be read"});
+}
+
 TEST_F(Help, ListOfProgramsIsComplete) {
   const std::string piped = quintet({"run", "--list"}).out;
   EXPECT_THAT(piped, Not(HasSubstr("...")));
@@ -237,6 +242,7 @@ TEST_F(Help, ExplainsTopics) {
   for (const std::string& line : splitText(several.out, '\n'))
     EXPECT_TRUE(line.empty() || line.starts_with('Q')) << line;
   EXPECT_EQ(quintet({"explain", "PAYLOAD"}).out, several.out);
+  EXPECT_THAT(quintet({"explain", "nested", "incoming", "payload"}).out, HasSubstr("Q105"));
   EXPECT_GT(nlohmann::json::parse(quintet({"explain", "payload", "--json"}).out).size(), 1u);
   expectError(quintet({"explain", "flying saucers"}), 2, {"unknown diagnostic 'flying saucers'"});
   // A topic that one title has alone prints the page.

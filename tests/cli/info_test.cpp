@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `info` for devices, scenes and images, as text and as JSON.
+#include <set>
+
 #include <gmock/gmock.h>
 
+#include "base/parse.h"
 #include "fixtures.h"
 #include "io/codec.h"
 
@@ -31,8 +34,31 @@ TEST_F(Info, DescribesDevices) {
 TEST_F(Info, DescribesAGltfScene) {
   const RunResult text = quintet({"info", "scene.gltf"});
   EXPECT_EQ(text.status, 0);
-  for (const char* part : {"quintet tests", "2 stored, 2 in instances", "'front'", "'side'", "1 with 1 geometries"})
+  for (const char* part : {"quintet tests", "2 stored, 2 in instances", "'front'", "'side'", "1 with 1 geometry\n"})
     EXPECT_THAT(text.out, HasSubstr(part));
+}
+
+// The hash of the scene's contents and the scene's name are different facts.
+TEST_F(Info, AFilmHasEachFactOnce) {
+  ASSERT_EQ(quintet(quick({"-o", "a.qfilm"})).status, 0);
+  const RunResult text = quintet({"info", "a.qfilm"});
+  std::set<std::string> labels;
+  for (const std::string& line : splitText(text.out, '\n'))
+    if (line.starts_with("   ")) {
+      EXPECT_TRUE(labels.insert(line.substr(3, line.find("  ", 3) - 3)).second) << text.out;
+    }
+  for (const char* label : {"scene", "scene contents", "camera", "camera projection"})
+    EXPECT_TRUE(labels.contains(label)) << text.out;
+}
+
+// "1 sample", not "1 samples".
+TEST_F(Info, PluralsFollowTheNumber) {
+  const std::vector<std::string> one = quick({"-o", "a.qfilm", "--spp", "1"});
+  ASSERT_EQ(quintet(one).status, 0);
+  ASSERT_EQ(quintet(quick({"--spp", "8", "-o", "b.png", "--checkpoint", "0", "--keep-checkpoint"})).status, 0);
+  expectError(quintet(quick({"--spp", "1", "--batches", "3", "-o", "c.qfilm"})), 2, {"1 sample is batches 0"});
+  expectError(quintet({"compare", "a.qfilm", "a.qfilm", "--z-test"}), 1, {"1 batch of 4 samples"});
+  EXPECT_THAT(quintet({"info", "scene.gltf"}).out, ::testing::Not(::testing::ContainsRegex("[^0-9]1 [a-z]+s[,\n]")));
 }
 
 TEST_F(Info, DescribesASceneAsJson) {
@@ -54,7 +80,7 @@ TEST_F(Info, DescribesASceneFile) {
         "[[mesh]]\nname = 'm'\nshape = 'cube'\n[[instance]]\nof = 'm'\nmask = 1\n");
   const RunResult text = quintet({"info", "s.scene.toml"});
   EXPECT_EQ(text.status, 0);
-  for (const char* part : {"s.scene.toml: scene\n", "2 sets: 2 solids, 1 trees of 2 leaves, 0 custom boxes",
+  for (const char* part : {"s.scene.toml: scene\n", "2 sets: 2 solids, 1 tree of 2 leaves, 0 custom boxes",
                            "3 (2 procedural, 1 with a mask)", "line 4: 'tree' of [[csg]]"})
     EXPECT_THAT(text.out, HasSubstr(part));
   const auto json = nlohmann::json::parse(quintet({"info", "s.scene.toml", "--json"}).out);

@@ -18,6 +18,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/plural.h"
 #include "io/codec.h"
 
 namespace quintet::render {
@@ -375,7 +376,8 @@ Parts checkedParts(Bytes bytes, const std::filesystem::path& file) {
   if (bytes.empty()) throw FileError(file, "is empty");
   const std::size_t known = std::min(bytes.size(), kMagic.size());
   if (std::memcmp(bytes.data(), kMagic.data(), known) != 0) throw FileError(file, "is not a film file (.qfilm)");
-  if (bytes.size() < kPrefixBytes) throw FileError(file, fmt::format("is truncated after {} bytes", bytes.size()));
+  if (bytes.size() < kPrefixBytes)
+    throw FileError(file, fmt::format("is truncated after {}", counted(bytes.size(), "byte")));
   Prefix prefix;
   std::memcpy(&prefix, bytes.data() + kMagic.size(), sizeof prefix);
   if (prefix.version != kFilmFileVersion)
@@ -384,7 +386,7 @@ Parts checkedParts(Bytes bytes, const std::filesystem::path& file) {
   const std::size_t rest = bytes.size() - kPrefixBytes;
   const std::uint64_t expected = prefix.headerBytes + kHashBytes;
   if (rest < expected || rest - expected < prefix.payloadBytes)
-    throw FileError(file, fmt::format("is truncated after {} bytes", bytes.size()));
+    throw FileError(file, fmt::format("is truncated after {}", counted(bytes.size(), "byte")));
   if (rest - expected > prefix.payloadBytes)
     throw FileError(file, fmt::format("is damaged: it has {} excess bytes", rest - expected - prefix.payloadBytes));
   const auto hash = hashOf(bytes.first(bytes.size() - kHashBytes));

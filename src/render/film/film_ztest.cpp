@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/plural.h"
 #include "base/statistics.h"
 #include "render/film/fixed_sum.h"
 
@@ -44,8 +45,9 @@ void validateFilm(const FilmState& film) {
     for (std::uint32_t x = 0; x < film.region.width; ++x)
       least = std::min(least, film.counts.batchesOf(film.cellOf(x, y)));
   if (least < kZTestBatches)
-    throw UsageError(fmt::format("a film has {} batches of {} samples; the test needs at least {} ({} samples)", least,
-                                 kBatchSamples, kZTestBatches, kZTestBatches * kBatchSamples));
+    throw UsageError(fmt::format("a film has {} of {} samples; the test needs at least {} ({} samples)",
+                                 counted(least, "batch", "batches"), kBatchSamples, kZTestBatches,
+                                 kZTestBatches * kBatchSamples));
 }
 
 // Adds one pixel and channel of film f: the mean, and its variance with the degrees of freedom of its batches.

@@ -152,10 +152,10 @@ std::vector<Diagnostic> outputDiagnostics(const program::Program& description, c
     if (bad == values.end()) continue;
     const auto count = std::ranges::count_if(values, [](float v) { return !std::isfinite(v); });
     const auto pixel = static_cast<std::uint64_t>(bad - values.begin()) / 4;
-    result.push_back(
-        {Severity::error, file, 0, 0, "Q002",
-         fmt::format("output '{}' is {} at pixel {}, {}; {} values are not finite", description.outputs[output].name,
-                     *bad, film.region().x + pixel % image.width, film.region().y + pixel / image.width, count)});
+    result.push_back({Severity::error, file, 0, 0, "Q002",
+                      fmt::format("output '{}' is {} at pixel {}, {}; {} not finite", description.outputs[output].name,
+                                  *bad, film.region().x + pixel % image.width, film.region().y + pixel / image.width,
+                                  count == 1 ? "1 value is" : fmt::format("{} values are", count))});
   }
   if (const std::uint64_t dropped = film.countRays().droppedSamples; dropped > 0)
     result.push_back({Severity::error, file, 0, 0, "Q002",

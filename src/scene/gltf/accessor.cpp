@@ -8,6 +8,7 @@
 #include <span>
 #include <type_traits>
 
+#include "base/plural.h"
 #include "scene/gltf/compression.h"
 #include "scene/gltf/extensions.h"
 
@@ -52,15 +53,15 @@ void checkRange(const Document& document, int view, std::size_t offset, std::siz
   const std::size_t end = count == 0 ? 0 : offset + (count - 1) * stride + size;
   if (end > available)
     document.fail(location + "/bufferView",
-                  fmt::format("extends {} bytes past the end of buffer view {}", end - available, view));
+                  fmt::format("extends {} past the end of buffer view {}", counted(end - available, "byte"), view));
 }
 
 void checkSparse(const Document& document, const tinygltf::Accessor& accessor, const std::string& location) {
   const auto& sparse = accessor.sparse;
   const auto count = static_cast<std::size_t>(sparse.count);
   if (count > accessor.count)
-    document.fail(location + "/count",
-                  fmt::format("{} values, but the accessor has {} elements", count, accessor.count));
+    document.fail(location + "/count", fmt::format("{}, but the accessor has {}", counted(count, "value"),
+                                                   counted(accessor.count, "element")));
   const std::size_t indexSize = componentSize(sparse.indices.componentType);
   checkRange(document, sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset), count, indexSize,
              indexSize, location + "/indices");
@@ -134,8 +135,8 @@ std::vector<std::uint32_t> readSparseIndices(const Document& document, const tin
                   indices.data());
   for (std::size_t i = 0; i < indices.size(); ++i) {
     if (indices[i] >= accessor.count)
-      document.fail(location,
-                    fmt::format("element {} is {}, but the accessor has {} elements", i, indices[i], accessor.count));
+      document.fail(location, fmt::format("element {} is {}, but the accessor has {}", i, indices[i],
+                                          counted(accessor.count, "element")));
     if (i > 0 && indices[i] <= indices[i - 1])
       document.fail(location,
                     fmt::format("element {} is {} after {}; the indices must increase", i, indices[i], indices[i - 1]));
@@ -256,8 +257,8 @@ void resolveBufferViews(Document& document) {
     const Buffer& buffer = document.buffers[static_cast<std::size_t>(view.buffer)];
     const std::size_t end = view.byteOffset + view.byteLength;  // both < 2^53
     if (end > buffer.byteLength)
-      document.fail(location,
-                    fmt::format("extends {} bytes past the end of buffer {}", end - buffer.byteLength, view.buffer));
+      document.fail(location, fmt::format("extends {} past the end of buffer {}",
+                                          counted(end - buffer.byteLength, "byte"), view.buffer));
     document.bufferViews.push_back(buffer.data.data() ? buffer.data.subspan(view.byteOffset, view.byteLength)
                                                       : std::span<const std::byte>{});
   }
@@ -270,7 +271,8 @@ void checkAccessors(const Document& document) {
     if (accessor.bufferView != kNone) {
       const std::size_t stride = strideOf(document, accessor), size = elementSize(accessor);
       if (stride < size)
-        document.fail(location, fmt::format("the element size is {} bytes, but byteStride is {}", size, stride));
+        document.fail(location,
+                      fmt::format("the element size is {}, but byteStride is {}", counted(size, "byte"), stride));
       checkRange(document, accessor.bufferView, accessor.byteOffset, accessor.count, stride, size, location);
     }
     if (accessor.sparse.isSparse) checkSparse(document, accessor, location + "/sparse");

@@ -7,6 +7,7 @@
 
 #include <span>
 
+#include "base/plural.h"
 #include "scene/gltf/extensions.h"
 
 namespace quintet::scene {
@@ -50,8 +51,8 @@ FileBytes decodeMeshopt(const Document& document, const tinygltf::BufferView& vi
   const std::string mode = stringOf(extension, "mode", ""), filter = stringOf(extension, "filter", "NONE");
 
   if (offset + length > bytes.size())
-    document.fail(location,
-                  fmt::format("extends {} bytes past the end of buffer {}", offset + length - bytes.size(), buffer));
+    document.fail(location, fmt::format("extends {} past the end of buffer {}",
+                                        counted(offset + length - bytes.size(), "byte"), buffer));
   if (!strideFits(mode, filter, stride))
     document.fail(location + "/byteStride",
                   fmt::format("{} is not valid for mode {} with filter {}", stride, mode, filter));
@@ -62,7 +63,8 @@ FileBytes decodeMeshopt(const Document& document, const tinygltf::BufferView& vi
   if (mode != "ATTRIBUTES" && filter != "NONE")
     document.fail(location + "/filter", "only attributes can have a filter");
   if (count * stride > kMaxRatio * length)
-    document.fail(location + "/count", fmt::format("{} bytes cannot hold {} elements", length, count));
+    document.fail(location + "/count",
+                  fmt::format("{} cannot hold {}", counted(length, "byte"), counted(count, "element")));
 
   FileBytes result(count * stride);
   if (count == 0) return result;
@@ -117,7 +119,8 @@ DracoMesh::DracoMesh(const Document& document, const tinygltf::Primitive& primit
     document.fail(state_->location, "only TRIANGLES and TRIANGLE_STRIP can be compressed");
   const auto bytes = document.view(indexOf(extension, "bufferView"));
   if (const std::uint64_t claimed = claimedTriangles(bytes); claimed > kMaxTrianglesPerByte * bytes.size())
-    document.fail(state_->location, fmt::format("{} bytes cannot hold {} triangles", bytes.size(), claimed));
+    document.fail(state_->location,
+                  fmt::format("{} cannot hold {}", counted(bytes.size(), "byte"), counted(claimed, "triangle")));
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   draco::Decoder decoder;

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 #include "base/text.h"
 #include "scene/gltf/extensions.h"
 #include "scene/gltf/schema.h"
@@ -60,9 +61,9 @@ Container splitContainer(const std::filesystem::path& file, std::span<const std:
     fail(4, fmt::format("GLB version {} is not supported; only version 2 is", version));
   const std::size_t length = readU32(bytes, 8);
   if (length > bytes.size())
-    fail(8, fmt::format("the header states {} bytes, but the file has {}", length, bytes.size()));
+    fail(8, fmt::format("the header states {}, but the file has {}", counted(length, "byte"), bytes.size()));
   if (length < kHeaderSize + kChunkHeaderSize)
-    fail(8, fmt::format("the stated length of {} bytes is too small", length));
+    fail(8, fmt::format("the stated length of {} is too small", counted(length, "byte")));
 
   Container result;
   std::size_t offset = kHeaderSize;
@@ -72,7 +73,8 @@ Container splitContainer(const std::filesystem::path& file, std::span<const std:
     const std::uint32_t type = readU32(bytes, offset + 4);
     const std::size_t begin = offset + kChunkHeaderSize;
     if (size > length - begin)
-      fail(offset, fmt::format("the chunk extends {} bytes past the end of the file", size - (length - begin)));
+      fail(offset,
+           fmt::format("the chunk extends {} past the end of the file", counted(size - (length - begin), "byte")));
     const auto data = bytes.subspan(begin, size);
     if (chunk == 0 && type != kJson) fail(offset, "the first chunk is not JSON");
     if (chunk > 0 && type == kJson) fail(offset, "second JSON chunk");
@@ -264,7 +266,7 @@ void loadBuffers(Document& document, const json& buffers, const Container& conta
     }
     if (data.size() < result.byteLength)
       document.fail(location + "/byteLength",
-                    fmt::format("{} bytes, but the buffer has only {}", result.byteLength, data.size()));
+                    fmt::format("{}, but the buffer has only {}", counted(result.byteLength, "byte"), data.size()));
     result.data = data.first(result.byteLength);
     document.buffers.push_back(result);
   }

@@ -41,7 +41,7 @@ TEST(GltfAccessor, RejectsAccessorsOutsideTheirView) {
   EXPECT_THAT(errorOf(builder), IsErrorAt("/accessors/0/count", "4294967296"));
   accessor["count"] = 3;
   accessor["byteOffset"] = 1;
-  EXPECT_THAT(errorOf(builder), IsErrorAt("/accessors/0/bufferView", "1 bytes"));
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/accessors/0/bufferView", "1 byte past"));
   accessor["byteOffset"] = 9007199254740991;
   EXPECT_THAT(errorOf(builder), IsErrorAt("/accessors/0/bufferView", "9007199254740991 bytes"));
   accessor["byteOffset"] = 0;

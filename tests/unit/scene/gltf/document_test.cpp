@@ -121,7 +121,7 @@ TEST(GltfBuffers, RejectsBuffersShorterThanStated) {
   builder.root["buffers"] = {{{"byteLength", 40}}};
   EXPECT_THAT(errorOf(builder), IsErrorAt("/buffers/0/byteLength", "40 bytes"));
   builder.root["buffers"] = {{{"byteLength", 35}}};
-  EXPECT_THAT(errorOf(builder), IsErrorAt("/bufferViews/0", "1 bytes"));
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/bufferViews/0", "1 byte"));
   builder.root["buffers"] = {{{"byteLength", -1}}};
   EXPECT_THAT(errorOf(builder), IsErrorAt("/buffers/0/byteLength", "-1"));
   builder.root["buffers"] = {{{"byteLength", 36.5}}};
