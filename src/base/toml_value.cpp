@@ -91,8 +91,8 @@ class Converter {
     if (const toml::table* table = node.as_table()) {
       value.kind = TomlValue::Kind::table;
       for (const auto& [key, member] : *table)
-        value.members.emplace_back(std::string(key.str()), (*this)(member, value.line, depth + 1));
-      std::ranges::sort(value.members, {}, &std::pair<std::string, TomlValue>::first);
+        value.members.push_back({std::string(key.str()), (*this)(member, value.line, depth + 1)});
+      std::ranges::sort(value.members, {}, &TomlMember::key);
     } else if (const toml::array* array = node.as_array()) {
       value.kind = TomlValue::Kind::array;
       value.elements.reserve(array->size());
@@ -124,8 +124,8 @@ class Converter {
 
 const TomlValue* TomlValue::find(std::string_view key) const {
   const auto found =
-      std::ranges::lower_bound(members, key, {}, [](const auto& member) { return std::string_view(member.first); });
-  return found != members.end() && found->first == key ? &found->second : nullptr;
+      std::ranges::lower_bound(members, key, {}, [](const auto& member) { return std::string_view(member.key); });
+  return found != members.end() && found->key == key ? &found->value : nullptr;
 }
 
 TomlValue parseToml(std::string_view text, const std::filesystem::path& file) {

@@ -7,10 +7,11 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace quintet {
+
+struct TomlMember;
 
 struct TomlValue {
   enum class Kind { boolean, integer, real, text, array, table };
@@ -19,13 +20,18 @@ struct TomlValue {
   std::int64_t integer = 0;
   double real = 0.0;  // also set for an integer
   std::string text;
-  std::vector<TomlValue> elements;                         // of an array
-  std::vector<std::pair<std::string, TomlValue>> members;  // of a table, sorted by key
-  int line = 1;                                            // 1-based
+  std::vector<TomlValue> elements;  // of an array
+  std::vector<TomlMember> members;  // of a table, sorted by key
+  int line = 1;                     // 1-based
 
   bool isNumber() const { return kind == Kind::integer || kind == Kind::real; }
   // Returns the value of a table's key; null if it is absent.
   const TomlValue* find(std::string_view key) const;
+};
+
+struct TomlMember {
+  std::string key;
+  TomlValue value;
 };
 
 // Dots of the deepest dotted key that parseToml accepts.

@@ -169,7 +169,7 @@ std::vector<Part> splitParts(const ExrImage& image, const ExrOptions& options) {
   std::vector<Part> parts;
   for (Part& part : {std::ref(all), std::ref(data)})
     if (!part.channels.empty()) parts.push_back(std::move(part));
-  std::ranges::stable_partition(parts, hasPlainChannels);
+  std::stable_partition(parts.begin(), parts.end(), hasPlainChannels);
   return parts;
 }
 
