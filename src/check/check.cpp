@@ -67,6 +67,7 @@ std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageConte
   if (hit) checkNormals(module, report);
   if (hit && !context.keepsInstanceOrder) checkInstanceIndices(module, report);
   checkDescriptorIndices(module, report);
+  checkDebugPrintf(module, report);
   if (intersection) checkRayTmaxReads(module, report);
   const DriverDefects& defects = context.defects;
   if (defects.changesNestedBuiltIns && stage == Model::ClosestHitKHR) checkNestedBuiltIns(module, report);
