@@ -107,7 +107,8 @@ std::vector<Diagnostic> checkProgram(const program::Program& program, const shad
   std::optional<program::SceneFacts> facts;
   if (hasScene || options.instrument) scene = job::loadScene(source);
   if (hasScene) facts = check::sceneFacts(*scene);
-  std::vector<Diagnostic> found = check::check(program, compiler, facts ? &*facts : nullptr, limits).diagnostics;
+  std::vector<Diagnostic> found =
+      check::checkWithOptionalOutputs(program, compiler, facts ? &*facts : nullptr, limits).diagnostics;
   if (!options.instrument || hasErrors(found)) return found;
   Console console({.json = options.json});
   console.setProgram(&program);
