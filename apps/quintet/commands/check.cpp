@@ -15,6 +15,7 @@
 #include "check/scene_facts.h"
 #include "cli/console.h"
 #include "cli/parser.h"
+#include "cli/values.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
 #include "job/instrumented_run.h"
@@ -30,7 +31,9 @@ constexpr const char* kExamples =
     "  quintet check my_program/ scene.glb        and how they fit this scene\n"
     "  quintet check my_program/ --json           for editors: an array of diagnostics\n"
     "  quintet check programs/ --strict           all programs in a folder; warnings are failures, too\n"
-    "  quintet check my_program/ --instrument     also find NaN, wrong records and self-intersections in a short run\n";
+    "  quintet check my_program/ --instrument     also find NaN, wrong records and self-intersections in a short run\n"
+    "  quintet check my_program/ --instrument --size 1280x720 --region 600,300,64,64 --spp 16\n"
+    "                                             the same for a part of a larger image\n";
 
 struct Options {
   std::vector<std::string> programs;
@@ -39,12 +42,8 @@ struct Options {
   bool json = false;
   bool strict = false;
   bool instrument = false;
+  job::RenderRequest run;  // of --instrument
 };
-
-bool looksLikeScene(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
-  return extension == ".gltf" || extension == ".glb" || (extension == ".toml" && file.filename() != "program.toml");
-}
 
 // The programs in a folder and its subfolders.
 void collectPrograms(const std::filesystem::path& folder, std::vector<std::string>& found) {
@@ -75,6 +74,7 @@ std::optional<Options> parseOptions(Arguments arguments) {
                "quintet check");
   Options options;
   std::vector<std::string> positional;
+  std::string size, region, spp;
   app.add_option("PROGRAM", positional,
                  "One or more programs, folders of programs, or built-in names; the last argument can be a\n"
                  "scene: .gltf, .glb or .scene.toml (default: each program's own)")
@@ -83,13 +83,27 @@ std::optional<Options> parseOptions(Arguments arguments) {
   app.add_flag("--strict", options.strict, "Exit with status 1 also for warnings");
   app.add_flag("--instrument", options.instrument,
                "Also render a small image with checks in the shaders (Q001 to Q006)");
+  app.add_option("--size", size, "Size of the image of --instrument in pixels (default: 96x64)")->type_name("WxH");
+  app.add_option("--region", region, "Part of it to render, in pixels from the top left")->type_name("X,Y,W,H");
+  app.add_option("--spp", spp, "Number of samples per pixel (default: 4), or of frames (default: 2)")->type_name("N");
+  app.add_option("--set", options.run.assignments, "Parameter of the program; may be repeated")
+      ->expected(1)
+      ->take_all()
+      ->type_name("NAME=VALUE");
+  app.add_option("--set-file", options.run.parameterFile, "Parameters as a JSON object; --set overrides them")
+      ->type_name("FILE.json");
   app.add_option("--device", options.device,
                  "Device whose limits and driver defects count, and on which --instrument runs:\n"
                  "index or part of the name; 'none' for limits that hold everywhere")
       ->type_name("NAME");
   setUp(app, kExamples);
   if (!parse(app, arguments)) return std::nullopt;
-  if (!positional.empty() && looksLikeScene(positional.back())) {
+  for (const char* name : {"--size", "--region", "--spp", "--set", "--set-file"})
+    if (app.count(name) > 0 && !options.instrument) throw UsageError(fmt::format("{} requires --instrument", name));
+  if (!size.empty()) options.run.size = parseSize("--size", size);
+  if (!region.empty()) options.run.region = parseRegion("--region", region);
+  options.run.limits.samples = parseInteger("--spp", spp, 1, 1u << 24);
+  if (!positional.empty() && job::isSceneFile(positional.back())) {
     options.scene = positional.back();
     positional.pop_back();
   }
@@ -113,7 +127,8 @@ std::vector<Diagnostic> checkProgram(const program::Program& program, const shad
   Console console({.json = options.json});
   console.setProgram(&program);
   job::Engine engine({.device = options.device});
-  std::ranges::move(job::runInstrumented(engine, program, std::move(*scene), console), std::back_inserter(found));
+  std::ranges::move(job::runInstrumented(engine, program, std::move(*scene), options.run, console),
+                    std::back_inserter(found));
   return found;
 }
 
