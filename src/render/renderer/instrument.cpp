@@ -157,9 +157,10 @@ std::vector<Diagnostic> outputDiagnostics(const program::Program& description, c
          fmt::format("output '{}' is {} at pixel {}, {}; {} values are not finite", description.outputs[output].name,
                      *bad, film.region().x + pixel % image.width, film.region().y + pixel / image.width, count)});
   }
-  if (const std::uint64_t dropped = film.countRays().droppedSamples; dropped > 0)
+  if (const RayCount count = film.countRays(); count.droppedSamples > 0)
     result.push_back({Severity::error, file, 0, 0, "Q002",
-                      fmt::format("{} samples were not finite; the program dropped them", dropped)});
+                      fmt::format("{} samples were not finite; the program dropped them; the first is at pixel {}, {}",
+                                  count.droppedSamples, count.firstDropped.x, count.firstDropped.y)});
   return result;
 }
 

@@ -125,6 +125,8 @@ GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
 GPU_FIELDS(FixedSum, word);
 GPU_FIELDS(CoverageSlot, id, samples);
+GPU_FIELDS(NotFinite, count, first);
+GPU_FIELDS(FilmCheck, values, result, count, sums);
 GPU_FIELDS(FilmTile, x, y, drawn);
 GPU_FIELDS(Launch, frame, parameters, offset, firstSample, sampleCount, tiles);
 
