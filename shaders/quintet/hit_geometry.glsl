@@ -22,4 +22,11 @@ GeometryData hitGeometry() {
   return GeometryArray(frame.geometries).at[first + uint(gl_GeometryIndexEXT)];
 }
 
+// The box of the candidate or the hit in object space, as the scene declares it. For intersection shaders, and for the
+// other hit shaders on boxes; triangles have no boxes.
+BoxData hitBox() {
+  const GeometryData geometry = hitGeometry();
+  return BoxArray(geometry.boxes).at[hitTriangle(geometry)];
+}
+
 #endif

@@ -59,6 +59,7 @@ bool instrumentTrace_(uint offset, uint stride, uint miss, vec3 origin, float tm
     instrumentReport_(kReportMiss, line, depth, 0.0, miss, origin, direction);
     return false;
   }
+  atomicAdd(instrument_.value.rays[offset & 15u], 1u);
   return true;
 }
 void instrumentAfter_() { instrument_.pixels[instrumentPixel_()].depth--; }

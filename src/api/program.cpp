@@ -53,7 +53,9 @@ std::vector<Diagnostic> checkProgram(const Program& program, const Scene* scene)
   const shader::Compiler compiler{shader::CompilerOptions{}};
   std::optional<program::SceneFacts> facts;
   if (scene) facts = check::sceneFacts(*scene->impl_->scene);
-  return check::check(program.impl_->program, compiler, facts ? &*facts : nullptr, check::DeviceLimits{}).diagnostics;
+  return check::checkWithOptionalOutputs(program.impl_->program, compiler, facts ? &*facts : nullptr,
+                                         check::DeviceLimits{})
+      .diagnostics;
 }
 
 }  // namespace quintet

@@ -180,6 +180,9 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q706", kError, "shader/stage_builtins", "built-in does not exist in this stage",
      "The value is unknown in this stage: for example, a miss shader has no hit.",
      "Pass the value through the payload from a stage that has it."},
+    {"Q707", kError, "within_stage/unsupported", "debugPrintfEXT is not supported",
+     "Quintet does not receive the texts that shaders print, so the call would have no effect.",
+     "Remove the call, and store the value in an output of the program: an optional [[output]] for debugging."},
 
     // Unused parts.
     {"Q801", kWarning, "across_stages/unused", "stage is unreachable", "It costs compile time without any effect.",

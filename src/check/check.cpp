@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -14,6 +18,9 @@ namespace {
 
 // A wrong index leaves stages unreachable. Only the index is reported then.
 constexpr std::array<std::string_view, 6> kWrongIndex{"Q302", "Q501", "Q502", "Q503", "Q504", "Q506"};
+
+// Ids whose cause is code that is missing. More outputs can remove them.
+constexpr std::array<std::string_view, 1> kUnreachable{"Q801"};
 
 bool hasAnyHit(const program::Program& program, const std::string& intersection) {
   return std::ranges::any_of(program.hitGroups, [&](const program::HitGroup& group) {
@@ -54,6 +61,49 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   return needs;
 }
 
+CheckResult checkOutputs(const program::Program& program, const shader::Compiler& compiler,
+                         const program::SceneFacts* scene, const DeviceLimits& limits,
+                         const std::vector<std::string>& outputs) {
+  std::vector<std::pair<std::string, std::string>> defines;
+  for (const std::string& output : outputs) defines.emplace_back(program::outputMacro(output), "1");
+  return check(program, compiler, scene, limits, defines);
+}
+
+// Returns whether the list has a diagnostic of the same id and line. The texts of compiler messages must be equal too;
+// those of rules can contain numbers that depend on the outputs, or a note (withNote).
+bool contains(const std::vector<Diagnostic>& list, const Diagnostic& diagnostic) {
+  return std::ranges::any_of(list, [&](const Diagnostic& d) {
+    const bool sameText = d.text.starts_with(diagnostic.text) || diagnostic.id.starts_with('Q');
+    return d.id == diagnostic.id && d.file == diagnostic.file && d.line == diagnostic.line && sameText;
+  });
+}
+
+Diagnostic withNote(Diagnostic diagnostic, const std::string& condition) {
+  diagnostic.text += fmt::format(" (with {})", condition);
+  return diagnostic;
+}
+
+// Returns what a check with more outputs found in addition. A stage that is unreachable only then does not count.
+std::vector<Diagnostic> newFindings(const CheckResult& known, const CheckResult& variant) {
+  std::vector<Diagnostic> found;
+  for (const Diagnostic& d : variant.diagnostics)
+    if (!std::ranges::count(kUnreachable, d.id) && !contains(known.diagnostics, d)) found.push_back(d);
+  return found;
+}
+
+// Joins the facts of a check with more outputs. Its rays can reach more stages.
+void addVariant(CheckResult& result, const CheckResult& variant) {
+  result.recursionDepth = std::max(result.recursionDepth, variant.recursionDepth);
+  result.stackBytes = std::max(result.stackBytes, variant.stackBytes);
+  result.seconds += variant.seconds;
+  for (const std::string& file : variant.reached)
+    if (std::ranges::find(result.reached, file) == result.reached.end()) result.reached.push_back(file);
+  if (!variant.ok()) return;
+  std::erase_if(result.diagnostics, [&](const Diagnostic& d) {
+    return std::ranges::count(kUnreachable, d.id) && !contains(variant.diagnostics, d);
+  });
+}
+
 }  // namespace
 
 std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageContext& context) {
@@ -67,6 +117,7 @@ std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageConte
   if (hit) checkNormals(module, report);
   if (hit && !context.keepsInstanceOrder) checkInstanceIndices(module, report);
   checkDescriptorIndices(module, report);
+  checkDebugPrintf(module, report);
   if (intersection) checkRayTmaxReads(module, report);
   const DriverDefects& defects = context.defects;
   if (defects.changesNestedBuiltIns && stage == Model::ClosestHitKHR) checkNestedBuiltIns(module, report);
@@ -107,6 +158,36 @@ CheckResult check(const program::Program& program, const shader::Compiler& compi
   const bool features =
       std::ranges::any_of(defines, [](const auto& define) { return define.first.starts_with("QUINTET_NO_"); });
   return check(program, compile(program, compiler, defines), scene, limits, features);
+}
+
+CheckResult checkWithOptionalOutputs(const program::Program& program, const shader::Compiler& compiler,
+                                     const program::SceneFacts* scene, const DeviceLimits& limits) {
+  CheckResult result = check(program, compiler, scene, limits);
+  const std::vector<std::string> outputs = program::optionalOutputs(program);
+  if (outputs.empty()) return result;
+  const CheckResult all = checkOutputs(program, compiler, scene, limits, outputs);
+  addVariant(result, all);
+
+  std::vector<Diagnostic> found = newFindings(result, all);
+  if (!found.empty() && outputs.size() > 1) {
+    // Which output causes them? An error can also hide those of other outputs.
+    std::vector<Diagnostic> precise;
+    for (const std::string& output : outputs) {
+      const CheckResult single = checkOutputs(program, compiler, scene, limits, {output});
+      result.seconds += single.seconds;
+      for (Diagnostic& d : newFindings(result, single))
+        if (!contains(precise, d))
+          precise.push_back(withNote(std::move(d), fmt::format("optional output '{}'", output)));
+    }
+    for (Diagnostic& d : found)
+      if (!contains(precise, d))
+        precise.push_back(withNote(std::move(d), fmt::format("all optional outputs: {}", fmt::join(outputs, ", "))));
+    found = std::move(precise);
+  } else {
+    for (Diagnostic& d : found) d = withNote(std::move(d), fmt::format("optional output '{}'", outputs.front()));
+  }
+  std::ranges::move(found, std::back_inserter(result.diagnostics));
+  return result;
 }
 
 }  // namespace quintet::check

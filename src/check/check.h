@@ -39,6 +39,12 @@ CheckResult check(const program::Program& program, const program::CompiledProgra
 CheckResult check(const program::Program& program, const shader::Compiler& compiler, const program::SceneFacts* scene,
                   const DeviceLimits& limits, const std::vector<std::pair<std::string, std::string>>& defines = {});
 
+// As above, with the default outputs and once more with all optional outputs, so that the code of each of them is
+// checked (#ifdef QUINTET_OUTPUT_…). What only the second check finds names the optional output in its text. If it is not
+// found with a single output, it names all of them.
+CheckResult checkWithOptionalOutputs(const program::Program& program, const shader::Compiler& compiler,
+                                     const program::SceneFacts* scene, const DeviceLimits& limits);
+
 // Runs the rules within one stage.
 std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageContext& context);
 

@@ -22,8 +22,8 @@ class Commands;
 class PipelineStore;
 
 struct ContextOptions {
-  // An index ("1") or a part of the name, the driver or the kind, case-insensitive ("h200", "lavapipe", "cpu"). Empty
-  // means $QUINTET_DEVICE; if that is empty too, the first usable device, GPUs before CPUs.
+  // An index ("1") or a part of the name, the driver's name or the kind, case-insensitive ("h200", "lavapipe", "cpu").
+  // Empty means $QUINTET_DEVICE; if that is empty too, the first usable device, GPUs before CPUs.
   std::string device;
   // Enables the validation layer with synchronization validation. Its messages are counted and logged as warnings. The
   // default is true if $QUINTET_VALIDATE is set and not "0". A missing layer is an Error.

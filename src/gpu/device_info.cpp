@@ -5,7 +5,9 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <limits>
 #include <optional>
+#include <regex>
 
 #include <fmt/format.h>
 
@@ -23,18 +25,26 @@ std::string lowerCase(std::string_view text) {
   return result;
 }
 
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+
+// Returns the text without version numbers: "llvmpipe (LLVM , 256 bits)" of "llvmpipe (LLVM 15.0.6, 256 bits)".
+std::string withoutVersions(const std::string& text) {
+  static const std::regex kVersion("[0-9]+(\\.[0-9]+)+");
+  return std::regex_replace(text, kVersion, "");
+}
+
 bool matches(const DeviceInfo& device, const std::string& request) {
-  for (const std::string& text : {device.name, device.driver, device.kind})
+  for (const std::string& text : {withoutVersions(device.name), device.driverName, device.kind})
     if (lowerCase(text).find(request) != std::string::npos) return true;
   return false;
 }
 
-// A number that is not the index of a device is part of a name, such as "4090".
-std::optional<std::size_t> asIndex(std::string_view text, std::size_t count) {
+// Returns the number that the text consists of, or the largest one if it is too large; nullopt for any other text.
+std::optional<std::size_t> asIndex(std::string_view text) {
+  if (text.empty() || !std::ranges::all_of(text, isDigit)) return std::nullopt;
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-  if (error != std::errc{} || end != text.data() + text.size() || index >= count) return std::nullopt;
-  return index;
+  return error == std::errc{} ? index : std::numeric_limits<std::size_t>::max();
 }
 
 std::string listing(std::span<const DeviceInfo> devices) {
@@ -67,7 +77,7 @@ std::size_t chooseDevice(std::span<const DeviceInfo> devices, std::string_view r
     throw NoDeviceError(
         "no Vulkan device found; install mesa-vulkan-drivers (CPU) or the driver of your GPU, then check the output of "
         "`quintet info`");
-  const std::optional<std::size_t> index = asIndex(request, devices.size());
+  const std::optional<std::size_t> index = asIndex(request);
   const std::string wanted = lowerCase(request);
   bool matched = false;
   for (std::size_t i = 0; i < devices.size(); ++i) {
@@ -76,8 +86,9 @@ std::size_t chooseDevice(std::span<const DeviceInfo> devices, std::string_view r
     if (devices[i].usable()) return i;
   }
   if (request.empty()) throw NoDeviceError(fmt::format("no usable device; found {}", listing(devices)));
-  throw NoDeviceError(
-      fmt::format("{} device '{}'; found {}", matched ? "cannot use" : "no", request, listing(devices)));
+  const std::string_view problem = matched ? "cannot use device" : index ? "no device with index" : "no device";
+  throw NoDeviceError(index ? fmt::format("{} {}; found {}", problem, request, listing(devices))
+                            : fmt::format("{} '{}'; found {}", problem, request, listing(devices)));
 }
 
 }  // namespace quintet::gpu

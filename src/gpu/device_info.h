@@ -44,6 +44,7 @@ struct DeviceInfo {
   std::uint32_t index = 0;  // in the order of Context::devices()
   std::string name;         // "NVIDIA H200"
   std::string driver;       // name, version and info: "lavapipe 25.0.7 (LLVM 15.0.6)"
+  std::string driverName;   // "lavapipe"
   std::string uuid;         // 32 hexadecimal digits
   std::string kind;         // "discrete GPU", "integrated GPU", "CPU", …
   bool software = false;    // the device is the CPU (lavapipe): device memory is host memory
@@ -71,7 +72,9 @@ std::string deviceKindName(VkPhysicalDeviceType type);
 int devicePreference(std::string_view kind);
 
 // Returns the index of the device that ContextOptions::device = `request` selects. `devices` are in the order of
-// preference. Throws NoDeviceError with a list of all devices if none matches.
+// preference. A request of digits is an index and never a part of a name. Any other request is a part of the device's
+// name without version numbers, of the driver's name, or of the kind. Throws NoDeviceError with a list of all devices
+// if none matches.
 std::size_t chooseDevice(std::span<const DeviceInfo> devices, std::string_view request);
 
 }  // namespace quintet::gpu

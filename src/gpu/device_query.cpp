@@ -99,12 +99,15 @@ std::uint64_t largestDeviceHeap(VkPhysicalDevice device) {
   return largest;
 }
 
+std::string driverName(const VkPhysicalDeviceDriverProperties& driver) {
+  if (driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE) return "lavapipe";  // llvmpipe is Mesa's OpenGL driver
+  return driver.driverName;
+}
+
 std::string driverText(const VkPhysicalDeviceDriverProperties& driver) {
-  std::string name = driver.driverName;
   std::string version = driver.driverInfo;
-  if (driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE) name = "lavapipe";  // llvmpipe is Mesa's OpenGL driver
   if (version.starts_with("Mesa ")) version.erase(0, 5);
-  return fmt::format("{} {}", name, version);
+  return fmt::format("{} {}", driverName(driver), version);
 }
 
 Quirks quirksOf(VkDriverId driver) {
@@ -165,6 +168,7 @@ DeviceInfo describe(VkPhysicalDevice device, const Capabilities& capabilities, s
   DeviceInfo info;
   info.name = core.deviceName;
   info.driver = driverText(properties.driver);
+  info.driverName = driverName(properties.driver);
   for (const std::uint8_t byte : properties.vulkan11.deviceUUID) info.uuid += fmt::format("{:02x}", byte);
   info.kind = deviceKindName(core.deviceType);
   info.apiVersion = capabilities.apiVersion;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <optional>
 #include <random>
 #include <span>
 #include <utility>
@@ -13,11 +14,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
+#include "job/resolve.h"
 #include "job/runnable_program.h"
+#include "job/scene_source.h"
 #include "job/view.h"
 #include "program/load.h"
 #include "render/renderer/renderer.h"
@@ -35,6 +39,12 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+uvec2 sizeOf(uvec2 requested, bool softwareDevice) {
+  uvec2 size = requested.x > 0 ? requested : softwareDevice ? uvec2(512, 512) : uvec2(1920, 1080);
+  if (size.y == 0) size.y = size.x;
+  return size;
+}
+
 // Scene, view and settings that all measurements share.
 struct Setup {
   const BenchmarkRequest& request;
@@ -46,8 +56,7 @@ struct Setup {
 
   Setup(const BenchmarkRequest& r, bool softwareDevice)
       : request(r), scene(scene::loadScene(r.scene)), compiler(makeCompiler(cacheFolder())) {
-    size = r.size.x > 0 ? r.size : softwareDevice ? uvec2(512, 512) : uvec2(1920, 1080);
-    if (size.y == 0) size.y = size.x;
+    size = sizeOf(r.size, softwareDevice);
     camera = chooseCamera(scene, {}, static_cast<float>(size.x) / static_cast<float>(size.y)).camera;
     environment = chooseEnvironment(scene, {r.environment, {}, {}}).environment;
   }
@@ -115,6 +124,11 @@ Json rateRatio(const Setup& setup, render::DeviceScene& scene) {
   recorder.renderBatch(1);
   const std::uint64_t rays = recorder.rays().rays;
   const shared::RayKinds kinds = records.downloadAs<shared::RayKinds>(1)[0];
+  if (kinds.camera == 0)
+    throw UsageError(
+        fmt::format("the program '{}' traces no rays with traceClosest and traceVisible; use 'quintet bench {} "
+                    "SCENE' to measure its launches",
+                    setup.request.program, setup.request.program));
 
   render::Renderer tracer = setup.renderer(scene, program, setup.settings(program, setup.size));
   render::RenderSettings replaying = setup.settings(replay, setup.size);
@@ -301,7 +315,122 @@ Json balanceGain(const Setup& setup, gpu::Context& context) {
           {"gain", balanced / unbalanced}};
 }
 
+// A program with its scene on the device, for runProgramBenchmark.
+class ProgramBenchmark {
+ public:
+  explicit ProgramBenchmark(const ProgramBenchmarkRequest& request)
+      : request_(request),
+        program_(program::loadProgram(request.program)),
+        parameters_(parameterValues(program_, request.render)),
+        source_(chooseSceneSource(request.render.scene, program_)),
+        context_([&] {
+          gpu::ContextOptions options;
+          options.device = request.device;
+          return options;
+        }()),
+        compiler_(makeCompiler(cacheFolder())),
+        size_(sizeOf(request.render.size, context_.info().software)) {
+    scene::Scene scene = loadScene(source_);
+    camera_ =
+        chooseCamera(scene, request.render.camera, static_cast<float>(size_.x) / static_cast<float>(size_.y)).camera;
+    const scene::Environment environment = chooseEnvironment(scene, request.render.environment).environment;
+    scene_.emplace(context_, std::move(scene), environment);
+  }
+
+  Json run() {
+    Json result = {{"device", context_.info().name}, {"driver", context_.info().driver},
+                   {"program", request_.program},    {"parameters", parameters_.describe()},
+                   {"scene", source_.path()},        {"size", {size_.x, size_.y}}};
+    render::Renderer renderer = makeRenderer(false);
+    const std::vector<double> seconds = measure(renderer);
+    const double typical = median(seconds);
+    const render::RenderStatistics& statistics = renderer.statistics();
+    result["compileSeconds"] = statistics.compileSeconds;
+    result["pipelineSeconds"] = statistics.pipelineSeconds;
+    result["firstLaunchSeconds"] = statistics.firstLaunchSeconds;
+    result["launch"] = {{"count", seconds.size()},
+                        {"strips", strips_},
+                        {"medianSeconds", typical},
+                        {"minSeconds", *std::ranges::min_element(seconds)},
+                        {"maxSeconds", *std::ranges::max_element(seconds)}};
+    result["samplesPerSecond"] = static_cast<double>(size_.x) * size_.y / typical;
+    const shared::Instrument counts = countRays();
+    result["rays"] = raysJson(counts);
+    result["MraysPerSecond"] = static_cast<double>(counts.traceCount) / typical * 1e-6;
+    result["pipeline"] = pipelineFacts(renderer.linked().pipeline());
+    result["pipeline"]["payloadBytes"] = payloadFacts(program::compile(program_, compiler_, scene_->defines()));
+    return result;
+  }
+
+ private:
+  render::Renderer makeRenderer(bool instrument) {
+    render::RenderSettings settings;
+    settings.width = size_.x;
+    settings.height = size_.y;
+    settings.camera = camera_;
+    settings.seed = request_.render.seed;
+    settings.parameters = parameters_;
+    settings.launchSeconds = 1.0;
+    settings.timeoutSeconds = 300;
+    settings.profile = !instrument;
+    settings.instrument = instrument;
+    CheckedProgram checked = compileAndCheck(program_, compiler_, render::renderDefines(scene_->defines(), {}),
+                                             scene_->facts(), deviceLimits(context_.info()), instrument);
+    return render::Renderer(*scene_, std::move(checked.runnable), compiler_, nullptr, settings);
+  }
+
+  // Seconds of the device for the traces of one sample per pixel.
+  double traceSeconds(render::Renderer& renderer) {
+    const std::size_t before = renderer.launches().size();
+    renderer.renderBatch(1);
+    renderer.finish();
+    const std::span<const render::LaunchTiming> launches = std::span(renderer.launches()).subspan(before);
+    strips_ = launches.size();
+    double seconds = 0;
+    for (const render::LaunchTiming& launch : launches) seconds += launch.traceSeconds;
+    return seconds;
+  }
+
+  std::vector<double> measure(render::Renderer& renderer) {
+    // The driver compiles in the first launch. The second one measures the rate that decides the size of the next ones.
+    for (int i = 0; i < 2; ++i) traceSeconds(renderer);
+    std::vector<double> seconds;
+    for (int i = 0; i < request_.repeat; ++i) seconds.push_back(traceSeconds(renderer));
+    return seconds;
+  }
+
+  // Counted by the runtime checks, which are slow, in the first sample.
+  shared::Instrument countRays() {
+    render::Renderer renderer = makeRenderer(true);
+    renderer.renderBatch(1);
+    return renderer.instrumentCounts();
+  }
+
+  Json raysJson(const shared::Instrument& counts) const {
+    Json types = Json::object();
+    for (std::size_t i = 0; i < program_.rays.size(); ++i) types[program_.rays[i].name] = counts.rays[i];
+    return {{"total", counts.traceCount},
+            {"perPixel", static_cast<double>(counts.traceCount) / (static_cast<double>(size_.x) * size_.y)},
+            {"byType", std::move(types)},
+            {"deepestTrace", counts.deepest},
+            {"anyHitCalls", counts.anyHitCount}};
+  }
+
+  const ProgramBenchmarkRequest& request_;
+  const program::Program program_;
+  const program::ParameterValues parameters_;
+  const SceneSource source_;
+  gpu::Context context_;
+  const shader::Compiler compiler_;
+  const uvec2 size_;
+  scene::Camera camera_;
+  std::optional<render::DeviceScene> scene_;
+  std::size_t strips_ = 0;  // launches of the latest sample
+};
+
 }  // namespace
+
+Json runProgramBenchmark(const ProgramBenchmarkRequest& request) { return ProgramBenchmark(request).run(); }
 
 Json runBenchmark(const BenchmarkRequest& request) {
   gpu::ContextOptions contextOptions;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays per second, and the rate of minimal shaders for the same rays: the rays of a program's first sample are recorded
 // and traced again, in the same order, by minimal shaders. Both rates come from one run, so their ratio holds on noisy
-// machines.
+// machines. For programs with other rays, the time of a launch and what the driver reports about the pipeline.
 #ifndef QUINTET_JOB_BENCHMARK_H
 #define QUINTET_JOB_BENCHMARK_H
 
@@ -11,6 +11,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "base/math.h"
+#include "job/request.h"
 
 namespace quintet::job {
 
@@ -27,6 +28,18 @@ struct BenchmarkRequest {
 // One object: device, scene, "pathTracer" (rates and ratio), "accelerationStructures", and "profile" or "primitiveOrder"
 // and "launchBalance". Keys end in their unit. Throws FileError, UsageError, ProgramError, gpu errors.
 nlohmann::ordered_json runBenchmark(const BenchmarkRequest& request);
+
+struct ProgramBenchmarkRequest {
+  std::string program;   // any program, with any rays
+  std::string device;    // gpu::ContextOptions::device
+  int repeat = 5;        // measured launches; at least 1
+  RenderRequest render;  // scene, camera, environment, size (0: as above), seed and parameters; the rest is unused
+};
+
+// One object about one launch of the whole image with a sample per pixel, or a frame: device, scene, "launch" (seconds
+// on the device), "rays" by ray type (counted in a separate, instrumented launch), and "pipeline" (what the driver
+// reports). Keys end in their unit. Throws FileError, UsageError, ProgramError, gpu errors.
+nlohmann::ordered_json runProgramBenchmark(const ProgramBenchmarkRequest& request);
 
 }  // namespace quintet::job
 #endif

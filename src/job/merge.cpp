@@ -182,10 +182,7 @@ RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& ob
   result.plan = std::move(film.plan);
   Provenance& p = result.provenance = std::move(merger.provenance());
   p.samples = static_cast<std::uint64_t>(render::averageSamples(film.film.region, film.film.counts));
-  for (const uvec2& pixel : film.film.statistics) {
-    p.rays += pixel.x;
-    p.droppedSamples += pixel.y;
-  }
+  setCounts(result, render::countRays(film.film.statistics, film.film.region), render::findNotFinite(film.film));
   if (!commandLine.empty()) p.commandLine = commandLine;
   if (result.error.known()) {
     p.error = result.error.upper;

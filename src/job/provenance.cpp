@@ -28,6 +28,7 @@ FieldValue toValue(double value) { return value; }
 FieldValue toValue(const uvec2& value) { return value; }
 FieldValue toValue(const render::Region& value) { return value; }
 FieldValue toValue(const mat4& value) { return value; }
+FieldValue toValue(const PixelPosition& value) { return value; }
 FieldValue toValue(const std::vector<std::string>& value) { return value; }
 template <class T>
 FieldValue toValue(const std::optional<T>& value) {
@@ -74,6 +75,12 @@ bool fromText(render::Region& value, const std::string& text) {
   if (!parseList(numbers, text, ',')) return false;
   value = {numbers[0], numbers[1], numbers[2], numbers[3]};
   return value.width > 0 && value.height > 0;
+}
+bool fromText(PixelPosition& value, const std::string& text) {
+  std::array<std::uint32_t, 2> numbers{};
+  if (!parseList(numbers, text, ',')) return false;
+  value = {numbers[0], numbers[1]};
+  return true;
 }
 // In the order of an OpenEXR file, for row vectors.
 bool fromText(mat4& value, const std::string& text) {
@@ -146,6 +153,9 @@ constexpr std::array kFields{
     field<&P::frame>(Role::result, "", "frame", "Frame"),
     field<&P::rays>(Role::result, "", "rays", "Rays"),
     field<&P::droppedSamples>(Role::result, "", "droppedSamples", "DroppedSamples"),
+    field<&P::firstDroppedSample>(Role::result, "", "firstDroppedSample", "FirstDroppedSample"),
+    field<&P::notFinitePixels>(Role::result, "", "notFinitePixels", "NotFinitePixels"),
+    field<&P::firstNotFinitePixel>(Role::result, "", "firstNotFinitePixel", "FirstNotFinitePixel"),
     field<&P::interrupted>(Role::result, "", "interrupted", "Interrupted"),
     field<&P::targetError>(Role::note, "target error", "", "TargetError"),
     field<&P::error>(Role::result, "", "", "Error"),
@@ -177,6 +187,7 @@ std::string toText(const FieldValue& value) {
     std::string operator()(const render::Region& r) const {
       return fmt::format("{},{},{},{}", r.x, r.y, r.width, r.height);
     }
+    std::string operator()(const PixelPosition& p) const { return fmt::format("{},{}", p.x, p.y); }
     std::string operator()(const mat4& m) const {
       std::string text;
       for (glm::length_t column = 0; column < 4; ++column)
@@ -240,6 +251,7 @@ io::Metadata metadataOf(const Provenance& provenance) {
     if (text.empty() || (flag && !*flag)) continue;
     if (f.metadataKey == "Region" && !provenance.cropped()) continue;
     if (f.metadataKey == "DroppedSamples" && provenance.droppedSamples == 0) continue;
+    if (f.metadataKey == "NotFinitePixels" && provenance.notFinitePixels == 0) continue;
     metadata.emplace_back(f.metadataKey, std::move(text));
   }
   return metadata;

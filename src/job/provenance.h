@@ -21,6 +21,13 @@ namespace quintet::job {
 
 inline constexpr double kMaxExposure = 100.0;  // stops, in both directions
 
+// A pixel of the whole image; (0, 0) is in the top left corner.
+struct PixelPosition {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  bool operator==(const PixelPosition&) const = default;
+};
+
 struct Provenance {
   // Identity: equal for renders whose samples belong together.
   std::string version;    // of Quintet
@@ -66,8 +73,11 @@ struct Provenance {
   std::string output;         // of the program, shown by an image
   std::uint64_t samples = 0;  // per pixel, an average if adaptive; or frames
   std::uint64_t rays = 0;
-  std::uint64_t droppedSamples = 0;    // not finite
-  std::optional<std::uint64_t> frame;  // of an animation
+  std::uint64_t droppedSamples = 0;  // not finite
+  std::optional<PixelPosition> firstDroppedSample;
+  std::uint64_t notFinitePixels = 0;                 // of all stored outputs together
+  std::optional<PixelPosition> firstNotFinitePixel;  // of the first output that has one
+  std::optional<std::uint64_t> frame;                // of an animation
   bool interrupted = false;
   std::optional<double> error;      // stated relative error of the image; unset if unknown
   std::optional<double> tileError;  // 95 % of the tiles have a smaller one
@@ -77,7 +87,7 @@ struct Provenance {
 
 // std::monostate: the fact is absent.
 using FieldValue = std::variant<std::monostate, std::string, bool, std::uint64_t, double, uvec2, render::Region, mat4,
-                                std::vector<std::string>>;
+                                std::vector<std::string>, PixelPosition>;
 
 struct ProvenanceField {
   enum class Role {
@@ -97,7 +107,7 @@ struct ProvenanceField {
 // All fields but parameterValues, in the order in which they are shown.
 std::span<const ProvenanceField> provenanceFields();
 
-// "" if absent, "yes" or "no", "1280x720", "0,0,64,64"; a matrix as 16 numbers for row vectors; a list as JSON.
+// "" if absent, "yes" or "no", "1280x720", "0,0,64,64", "34,120" for a pixel; a matrix as 16 numbers for row vectors; a list as JSON.
 std::string toText(const FieldValue& value);
 
 // The fields of a role, `parameterValues` among the identity as "parameter NAME".
@@ -106,7 +116,7 @@ render::FilmFacts toFacts(const Provenance& provenance, ProvenanceField::Role ro
 Provenance fromFacts(const render::FilmFacts& identity, const render::FilmFacts& notes);
 
 // (key, text) for PNG and OpenEXR. Absent and empty facts and "no" are omitted, and so are the region of a whole image and
-// zero dropped samples. Numbers have 6 significant digits.
+// counts of zero dropped samples and pixels. Numbers have 6 significant digits.
 io::Metadata metadataOf(const Provenance& provenance);
 
 }  // namespace quintet::job

@@ -240,7 +240,9 @@ RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool
   if (withError && !result.accumulatesFrames) result.error = renderer_->film().estimateError();
 
   const render::RenderStatistics& statistics = renderer_->statistics();
-  const render::RayCount rays = renderer_->rays();
+  // Checkpoints and previews do not need them.
+  const bool isFinal = withError || result.accumulatesFrames;
+  setCounts(result, renderer_->rays(), isFinal ? renderer_->notFinitePixels() : std::vector<render::NotFinitePixels>());
   Provenance& p = result.provenance;
   p.seconds = seconds;
   p.batchSeconds = start.batchSeconds;
@@ -248,8 +250,6 @@ RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool
       job_.request.limits.adaptive
           ? static_cast<std::uint64_t>(render::averageSamples(renderer_->film().region(), renderer_->film().counts()))
           : statistics.samples;
-  p.rays = rays.rays;
-  p.droppedSamples = rays.droppedSamples;
   if (result.error.known()) {
     p.error = result.error.upper;
     p.tileError = result.error.tiles;
@@ -411,7 +411,7 @@ RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& obser
   const FrameRequest& frames = job_.request.frames;
   const std::uint32_t count = frames.count.value_or(1);
   double seconds = 0;
-  RenderResult last;
+  RenderResult last, earlier;
   for (std::uint32_t frame = frames.every ? 0 : count - 1; frame < count; ++frame) {
     scene_->onDevice->setFrame(static_cast<float>(frame));
     renderer_->restart();
@@ -426,7 +426,9 @@ RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& obser
     last.interrupted = last.provenance.interrupted = last.interrupted || stop;
     if (frames.every) observer.frame(last);
     if (last.interrupted) break;
+    if (frame + 1 < count) addFrame(earlier, last);
   }
+  addFrame(last, earlier);
   return last;
 }
 
@@ -442,6 +444,7 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
   progress.secondLimit = limits.seconds;
   bool previewed = false;
   double lastPreview = 0;
+  RenderResult earlier;
   for (std::uint32_t frame = nextFrame_;; ++frame) {
     if (scene_->onDevice->animated()) scene_->onDevice->setFrame(static_cast<float>(frame));
     bool abandoned = false;
@@ -469,7 +472,11 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
     done.provenance.frame = frame;
     done.interrupted = done.provenance.interrupted = interrupted;
     if (frames.every) observer.frame(done);
-    if (isLast || interrupted) return done;
+    if (isLast || interrupted) {
+      addFrame(done, earlier);
+      return done;
+    }
+    if (frames.every) addFrame(earlier, done);
     if (preview) {
       observer.preview(done);
       previewed = true;

@@ -2,6 +2,8 @@
 #include "job/result.h"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -42,6 +44,29 @@ std::string targetMissedText(const RenderResult& result) {
                      100.0 * result.error.upper, 100.0 * result.error.tiles);
 }
 
+// "; the first is at pixel (34, 120), counted from the top left corner"
+std::string pixelText(std::uint64_t count, const std::optional<PixelPosition>& first) {
+  if (!first) return "";
+  return fmt::format("; {} at pixel ({}, {}), counted from the top left corner", count == 1 ? "it is" : "the first is",
+                     first->x, first->y);
+}
+
+void describeNotFinite(RenderResult& result) {
+  Provenance& p = result.provenance;
+  p.notFinitePixels = 0;
+  p.firstNotFinitePixel.reset();
+  for (const render::NotFinitePixels& pixels : result.notFinite) {
+    if (!p.firstNotFinitePixel) p.firstNotFinitePixel = PixelPosition{pixels.first.x, pixels.first.y};
+    p.notFinitePixels += pixels.count;
+  }
+}
+
+// The one that comes first row by row.
+std::optional<PixelPosition> firstOf(const std::optional<PixelPosition>& a, const std::optional<PixelPosition>& b) {
+  if (!a || !b) return a ? a : b;
+  return std::tie(a->y, a->x) <= std::tie(b->y, b->x) ? a : b;
+}
+
 }  // namespace
 
 std::shared_ptr<const FilmView> viewOf(render::FilmState film, bool transparent) {
@@ -62,9 +87,42 @@ std::vector<std::string> resultWarnings(const RenderResult& result) {
   std::vector<std::string> warnings;
   if (result.targetMissed && !result.interrupted) warnings.push_back(targetMissedText(result));
   if (const std::uint64_t count = result.provenance.droppedSamples; count > 0)
-    warnings.push_back(count == 1 ? "1 sample was not finite and is omitted"
-                                  : fmt::format("{} samples were not finite and are omitted", count));
+    warnings.push_back((count == 1 ? "1 sample was not finite and is omitted"
+                                   : fmt::format("{} samples were not finite and are omitted", count)) +
+                       pixelText(count, result.provenance.firstDroppedSample));
+  for (const render::NotFinitePixels& pixels : result.notFinite)
+    warnings.push_back(
+        (pixels.count == 1 ? fmt::format("1 pixel of the output '{}' is not finite", pixels.output)
+                           : fmt::format("{} pixels of the output '{}' are not finite", pixels.count, pixels.output)) +
+        pixelText(pixels.count, PixelPosition{pixels.first.x, pixels.first.y}) + "; see 'quintet explain Q002'");
   return warnings;
+}
+
+void setCounts(RenderResult& result, const render::RayCount& rays, std::vector<render::NotFinitePixels> notFinite) {
+  Provenance& p = result.provenance;
+  p.rays = rays.rays;
+  p.droppedSamples = rays.droppedSamples;
+  p.firstDroppedSample.reset();
+  if (rays.droppedSamples > 0) p.firstDroppedSample = PixelPosition{rays.firstDropped.x, rays.firstDropped.y};
+  result.notFinite = std::move(notFinite);
+  describeNotFinite(result);
+}
+
+void addFrame(RenderResult& result, const RenderResult& frame) {
+  Provenance& p = result.provenance;
+  p.droppedSamples += frame.provenance.droppedSamples;
+  p.firstDroppedSample = firstOf(p.firstDroppedSample, frame.provenance.firstDroppedSample);
+  for (const render::NotFinitePixels& pixels : frame.notFinite) {
+    const auto known = std::ranges::find(result.notFinite, pixels.output, &render::NotFinitePixels::output);
+    if (known == result.notFinite.end()) {
+      result.notFinite.push_back(pixels);
+      continue;
+    }
+    known->count += pixels.count;
+    if (std::tie(pixels.first.y, pixels.first.x) < std::tie(known->first.y, known->first.x))
+      known->first = pixels.first;
+  }
+  describeNotFinite(result);
 }
 
 render::FilmFile filmFileOf(const RenderResult& result) {

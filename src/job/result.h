@@ -78,15 +78,22 @@ struct RenderResult {
   render::ErrorEstimate error;      // of output 0
   Timings seconds;
   MemoryUse memory;
-  std::uint64_t filmBytes = 0;  // on the device
+  std::uint64_t filmBytes = 0;                     // on the device
+  std::vector<render::NotFinitePixels> notFinite;  // outputs with pixels that are not finite
   std::vector<std::string> warnings;
   std::vector<Diagnostic> diagnostics;  // warnings about the program
 
   double raysPerSecond() const;
 };
 
+// Stores what the film counted in the result and its provenance: rays, discarded samples, and pixels that are not
+// finite.
+void setCounts(RenderResult& result, const render::RayCount& rays, std::vector<render::NotFinitePixels> notFinite);
+// Adds the discarded samples and the pixels that are not finite in a further frame, for the result of several images.
+void addFrame(RenderResult& result, const RenderResult& frame);
+
 // What a user must know about a complete or interrupted render: a missed target error, unless the render was interrupted,
-// and discarded samples. Empty if there is nothing to report.
+// discarded samples, and pixels that are not finite. Empty if there is nothing to report.
 std::vector<std::string> resultWarnings(const RenderResult& result);
 
 // The result as a film file: what a checkpoint or a part contains.

@@ -37,6 +37,11 @@ scene::DefaultSceneOptions defaultSceneOptions(const program::Program& program) 
 
 }  // namespace
 
+bool isSceneFile(const std::filesystem::path& file) {
+  const std::string extension = file.extension().string();
+  return extension == ".gltf" || extension == ".glb" || (extension == ".toml" && file.filename() != "program.toml");
+}
+
 SceneSource chooseSceneSource(const std::filesystem::path& requested, const program::Program& program) {
   if (!requested.empty()) {
     checkReadable(requested);

@@ -25,6 +25,9 @@ struct SceneSource {
   std::string path() const { return file.empty() ? name : file.string(); }
 };
 
+// Returns whether the name is that of a scene file rather than a program: .gltf, .glb or .toml, except program.toml.
+bool isSceneFile(const std::filesystem::path& file);
+
 // `requested` if it is not empty, else the scene that the program names, else the built-in one. Throws FileError if the
 // file cannot be read.
 SceneSource chooseSceneSource(const std::filesystem::path& requested, const program::Program& program);

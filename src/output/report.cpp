@@ -19,6 +19,7 @@ Json valueJson(const job::FieldValue& value) {
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* size = std::get_if<uvec2>(&value)) return {size->x, size->y};
   if (const auto* r = std::get_if<render::Region>(&value)) return {r->x, r->y, r->width, r->height};
+  if (const auto* p = std::get_if<job::PixelPosition>(&value)) return {p->x, p->y};
   const std::string text = job::toText(value);
   return text.empty() ? Json() : Json(text);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `bench --profile`: the measurements are consistent.
-#include "fixtures.h"
+// `bench`: the measurements are consistent, also those of any program.
+#include "sky_program.h"
 
 namespace quintet::test {
 namespace {
@@ -71,6 +71,49 @@ TEST_F(Bench, PrintsATable) {
                            "\nprofile.launches.count "})
     EXPECT_NE(result.out.find(line), std::string::npos) << line;
   EXPECT_EQ(result.out.find("primitiveOrder"), std::string::npos);
+}
+
+// The program traces one ray per pixel, and none with traceClosest.
+TEST_F(Bench, MeasuresAnyProgram) {
+  writeSkyProgram(folder_ / "mine", "payload.color = vec3(0.5);");
+  for (const std::vector<std::string>& program :
+       {std::vector<std::string>{"mine", "scene.gltf"}, {"mine"}, {"lessons/10_sphere"}}) {
+    std::vector<std::string> arguments{"bench", "--size", "64x48", "--repeat", "3", "--json"};
+    arguments.insert(arguments.begin() + 1, program.begin(), program.end());
+    const RunResult result = quintet(arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json["program"], program[0]);
+    const nlohmann::json& launch = json["launch"];
+    EXPECT_EQ(launch["count"], 3);
+    EXPECT_GT(launch["minSeconds"].get<double>(), 0.0);
+    EXPECT_LE(launch["minSeconds"].get<double>(), launch["medianSeconds"].get<double>());
+    EXPECT_LE(launch["medianSeconds"].get<double>(), launch["maxSeconds"].get<double>());
+    EXPECT_GE(launch["strips"].get<int>(), 1);
+    EXPECT_GT(json["pipelineSeconds"].get<double>(), 0.0);
+    EXPECT_NEAR(json["samplesPerSecond"].get<double>() * launch["medianSeconds"].get<double>(), 64 * 48, 0.1);
+    EXPECT_TRUE(json["pipeline"]["stackBytes"].contains("ray generation")) << json;
+    EXPECT_GE(json["rays"]["total"].get<int>(), 64 * 48) << json["rays"];
+    std::uint64_t sum = 0;
+    for (const auto& [type, count] : json["rays"]["byType"].items()) sum += count.get<std::uint64_t>();
+    EXPECT_EQ(sum, json["rays"]["total"].get<std::uint64_t>());
+  }
+}
+
+TEST_F(Bench, PrintsTheErrorsOfAProgram) {
+  writeSkyProgram(folder_ / "bad", "payload.tint = vec3(0.5);");
+  const RunResult result = quintet({"bench", "bad", "scene.gltf"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("'tint' : no such field"), std::string::npos) << result.err;
+}
+
+TEST_F(Bench, ExplainsWhichFormAnOptionRequires) {
+  writeSkyProgram(folder_ / "mine", "payload.color = vec3(0.5);");
+  expectError(quintet({"bench", "mine", "--profile"}), 2, {"--profile requires", "bench SCENE"});
+  expectError(quintet({"bench", "scene.gltf", "--set", "a=1"}), 2, {"--set requires", "bench PROGRAM"});
+  expectError(quintet({"bench", "mine", "--set", "a=1"}), 2, {"'a'"});
+  expectError(quintet({"bench", "scene.gltf", "--program", "mine", "--size", "16x16"}), 2,
+              {"traceClosest", "quintet bench mine SCENE"});
 }
 
 }  // namespace

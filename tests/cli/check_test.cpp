@@ -183,5 +183,39 @@ TEST_F(Check, Explain) {
   expectError(quintet({"explain", "Q1O1"}), 2, {"'Q1O1'", "'Q101'"});
 }
 
+TEST_F(Check, InstrumentedRunsHaveASizeAndParameters) {
+  write(folder_ / "wide.rt.glsl",
+        "uniform float bad; // defaultval=\"0\"\nvoid main() { /**** RAY GENERATION SHADER ****/ float t = "
+        "float(gl_LaunchIDEXT.x) + 1.0; gsnSetPixel(vec4(t > 100.0 ? sqrt(-t * bad) : t)); }\n");
+  const std::vector<std::string> check{"check", "wide.rt.glsl", "--instrument"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), check.begin(), check.end());
+    return quintet(more);
+  };
+  EXPECT_EQ(with({"--set", "bad=1"}).err, "wide.rt.glsl: clean\n");
+  EXPECT_EQ(with({"--size", "128x8"}).err, "wide.rt.glsl: clean\n");
+  const RunResult found = with({"--size", "128x8", "--set", "bad=1"});
+  EXPECT_EQ(found.status, 1);
+  EXPECT_THAT(found.err, HasSubstr("at pixel 100, 0"));
+  EXPECT_EQ(with({"--size", "128x8", "--set", "bad=1", "--region", "0,0,50,8", "--spp", "3"}).status, 0);
+  expectError(quintet({"check", "wide.rt.glsl", "--size", "8x8"}), 2, {"--size requires --instrument"});
+}
+
+// The error is in code that only an optional output compiles.
+TEST_F(Check, CompilesTheCodeOfOptionalOutputs) {
+  writeProgram("aov", "payload.color", "sky.rmiss");
+  const std::string toml =
+      skyToml("sky.rmiss") + "\n[[output]]\nname = \"color\"\n[[output]]\nname = \"extra\"\noptional = true\n";
+  write(folder_ / "aov" / "program.toml", toml);
+  EXPECT_EQ(quintet({"check", "aov"}).err, "aov: clean\n");
+  writeSkyProgram(folder_ / "aov",
+                  "payload.color = vec3(0.5);\n#ifdef QUINTET_OUTPUT_extra\n  payload.tint = vec3(1.0);\n#endif");
+  write(folder_ / "aov" / "program.toml", toml);
+  const RunResult result = quintet({"check", "aov"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("aov/sky.rmiss:8:11: error: 'tint'"));
+  EXPECT_THAT(result.err, HasSubstr("(with optional output 'extra')"));
+}
+
 }  // namespace
 }  // namespace quintet::test

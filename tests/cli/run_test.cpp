@@ -162,5 +162,44 @@ TEST_F(Run, InvalidCommandLines) {
   expectError(flat({"-o", "out.jpg"}), 2, {"out.jpg"});
 }
 
+// In both forms, a warning, --json and the metadata of the image report NaN with the first pixel from the top left.
+TEST_F(Run, ReportsPixelsThatAreNotFinite) {
+  write(folder_ / "bad.rt.glsl",
+        "void main() { /**** RAY GENERATION SHADER ****/ float t = float(gl_LaunchIDEXT.x) + 1.0; bool bad = "
+        "gl_LaunchIDEXT.y < 2u && gl_LaunchIDEXT.x == 5u; gsnSetPixel(vec4(bad ? sqrt(-t) : t)); }\n");
+  std::string rgen = kRgen;
+  rgen.insert(rgen.rfind('}'),
+              "  if (pixel == uvec2(5u, 6u) || pixel == uvec2(5u, 7u)) storeOutput(kOutput_second, pixel, "
+              "vec4(sqrt(-value - float(pixel.x))));\n");
+  write(folder_ / "flat" / "flat.rgen", rgen);
+  for (const auto& [program, output] : {std::pair{"bad.rt.glsl", "image"}, {"flat", "second"}}) {
+    const RunResult result = quintet({"run", program, "--size", "16x8", "--spp", "3", "-o", "out.png", "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.err,
+                HasSubstr("warning: 2 pixels of the output '" + std::string(output) +
+                          "' are not finite; the first is at pixel (5, 6), counted from the top left corner"));
+    const auto json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json["notFinitePixels"], 2);
+    EXPECT_EQ(json["firstNotFinitePixel"], nlohmann::json({5, 6}));
+    EXPECT_EQ(json["warnings"].size(), 1u);
+    const std::string info = quintet({"info", "out.png"}).out;
+    EXPECT_THAT(info, HasSubstr("NotFinitePixels"));
+    EXPECT_THAT(info, HasSubstr("5,6"));
+  }
+}
+
+TEST_F(Run, ReportsTheFirstDiscardedSample) {
+  std::string rgen = kRgen;
+  rgen.insert(rgen.rfind('}'), "  countRays(pixel, 1u, pixel.x == 7u && pixel.y >= 2u ? 1u : 0u);\n");
+  write(folder_ / "flat" / "flat.rgen", rgen);
+  const RunResult result = quintet({"run", "flat", "--size", "16x4", "--spp", "4", "-o", "out.png", "--json"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("8 samples were not finite and are omitted; the first is at pixel (7, 2)"));
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["droppedSamples"], 8);
+  EXPECT_EQ(json["firstDroppedSample"], nlohmann::json({7, 2}));
+  EXPECT_TRUE(json["firstNotFinitePixel"].is_null());
+}
+
 }  // namespace
 }  // namespace quintet::test

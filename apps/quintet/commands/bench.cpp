@@ -9,8 +9,10 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "cli/candidates.h"
+#include "cli/console.h"
 #include "cli/option_table.h"
 #include "cli/values.h"
+#include "job/scene_source.h"
 
 namespace quintet::cli {
 namespace {
@@ -34,17 +36,25 @@ std::string asTable(const Json& json, const std::string& prefix = {}) {
 
 struct Options {
   job::BenchmarkRequest request;
+  job::ProgramBenchmarkRequest own;
+  std::vector<std::string> positional;
+  std::string program;  // --program
   std::string size;
   bool json = false;
 };
 
 OptionTable declare(Options& options) {
-  OptionTable table("bench", "Measures rays per second, and the rate of minimal shaders for the same rays.");
+  OptionTable table("bench",
+                    "Measures the rays per second of a scene with the path tracer, and the rate of minimal shaders for "
+                    "the same rays; or the launches of any program.");
   job::BenchmarkRequest& request = options.request;
-  table.add({{.names = "SCENE",
-              .help = "Scene of triangles without alpha (minimal shaders support nothing else)",
-              .target = &request.scene,
-              .candidates = {.extensions = kSceneExtensions},
+  Candidates candidates = programCandidates();
+  candidates.extensions.insert(candidates.extensions.end(), kSceneExtensions.begin(), kSceneExtensions.end());
+  table.add({{.names = "SCENE|PROGRAM",
+              .help = "Scene of triangles without alpha (minimal shaders support nothing else); or a program, and its "
+                      "scene: .gltf, .glb or .scene.toml (default: the program's own, or built in)",
+              .target = &options.positional,
+              .candidates = candidates,
               .required = true},
              {.names = "--device", .value = "NAME", .help = "Index or part of the name", .target = &request.device},
              {.names = "--env",
@@ -63,19 +73,46 @@ OptionTable declare(Options& options) {
               .max = 1000},
              {.names = "--program",
               .value = "NAME",
-              .help = "Program to measure; its rays go through traceClosest and traceVisible (default: pathtracer)",
-              .target = &request.program,
+              .help = "Without PROGRAM: program to measure; its rays go through traceClosest and traceVisible "
+                      "(default: pathtracer)",
+              .target = &options.program,
               .candidates = programCandidates()},
              {.names = "--profile",
-              .help = "Show where the time goes, instead of the gains by primitive order and launch balance",
+              .help = "Without PROGRAM: show where the time goes, instead of the gains by primitive order and launch "
+                      "balance",
               .target = &request.profile},
+             {.names = "--set",
+              .value = "NAME=VALUE",
+              .help = "With PROGRAM: parameter of the program; may be repeated",
+              .target = &options.own.render.assignments},
+             {.names = "--set-file",
+              .value = "FILE.json",
+              .help = "With PROGRAM: parameters as a JSON object",
+              .target = &options.own.render.parameterFile,
+              .candidates = {.extensions = {"json"}}},
              {.names = "--json", .help = "Print one JSON object instead of a table", .target = &options.json}});
   table.addExamples({
       {"quintet bench scene.glb", "a table"},
       {"quintet bench scene.glb --json --repeat 9", "the same as JSON, medians of nine measurements"},
       {"quintet bench scene.glb --profile", "time by pass, rays by kind, launches, registers"},
+      {"quintet bench my_program/ scene.glb", "time of a launch and rays of your own program"},
+      {"quintet bench my_program/ --set width=30", "on its own scene, with a parameter"},
   });
   return table;
+}
+
+// Options of the other form are errors.
+void rejectOptions(const Options& options, bool ofScene) {
+  const auto reject = [&](bool given, const char* name, const char* form) {
+    if (given) throw UsageError(fmt::format("{} requires the form 'quintet bench {}'", name, form));
+  };
+  if (ofScene) {
+    reject(!options.own.render.assignments.empty(), "--set", "PROGRAM [SCENE]");
+    reject(!options.own.render.parameterFile.empty(), "--set-file", "PROGRAM [SCENE]");
+  } else {
+    reject(!options.program.empty(), "--program", "SCENE");
+    reject(options.request.profile, "--profile", "SCENE");
+  }
 }
 
 }  // namespace
@@ -88,11 +125,29 @@ OptionTable benchOptions() {
 int benchCommand(Arguments arguments) {
   Options options;
   if (!declare(options).parse(arguments)) return 0;
+  const std::vector<std::string>& positional = options.positional;
+  if (positional.empty()) throw UsageError("no scene or program given; see 'quintet bench --help'");
+  if (positional.size() > 2)
+    throw UsageError(fmt::format("unexpected argument '{}'; see 'quintet bench --help'", positional[2]));
+  const bool ofScene = positional.size() == 1 && job::isSceneFile(positional[0]);
+  rejectOptions(options, ofScene);
   job::BenchmarkRequest& request = options.request;
-  if (request.scene.empty()) throw UsageError("no scene given; see 'quintet bench --help'");
+  job::ProgramBenchmarkRequest& own = options.own;
   if (!options.size.empty()) request.size = parseSize("--size", options.size);
-  const Json result = job::runBenchmark(request);
-  writeFile("-", options.json ? result.dump() + "\n" : asTable(result));
+  if (!options.program.empty()) request.program = options.program;
+  request.scene = own.program = positional[0];
+  if (positional.size() > 1) own.render.scene = positional[1];
+  own.device = request.device;
+  own.repeat = request.repeat;
+  own.render.size = request.size;
+  own.render.environment.source = request.environment;
+  try {
+    const Json result = ofScene ? job::runBenchmark(request) : job::runProgramBenchmark(own);
+    writeFile("-", options.json ? result.dump() + "\n" : asTable(result));
+  } catch (const ProgramError& error) {
+    printDiagnostics(error.diagnostics(), nullptr, false);
+    return 1;
+  }
   return 0;
 }
 

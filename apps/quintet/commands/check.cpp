@@ -16,6 +16,7 @@
 #include "cli/candidates.h"
 #include "cli/console.h"
 #include "cli/option_table.h"
+#include "cli/values.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
 #include "job/instrumented_run.h"
@@ -28,18 +29,15 @@ namespace {
 
 struct Options {
   std::vector<std::string> positional;  // programs, and possibly a scene
+  std::string size, region, samples;    // of --instrument
   std::vector<std::string> programs;
   std::filesystem::path scene;
   std::string device;
   bool json = false;
   bool strict = false;
   bool instrument = false;
+  job::RenderRequest run;  // of --instrument
 };
-
-bool looksLikeScene(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
-  return extension == ".gltf" || extension == ".glb" || (extension == ".toml" && file.filename() != "program.toml");
-}
 
 // The programs in a folder and its subfolders.
 void collectPrograms(const std::filesystem::path& folder, std::vector<std::string>& found) {
@@ -83,6 +81,27 @@ OptionTable declare(Options& options) {
        {.names = "--instrument",
         .help = "Also render a small image with checks in the shaders (Q001 to Q006)",
         .target = &options.instrument},
+       {.names = "--size",
+        .value = "WxH",
+        .help = "Size of the image of --instrument in pixels (default: 96x64)",
+        .target = &options.size},
+       {.names = "--region",
+        .value = "X,Y,W,H",
+        .help = "Part of it to render, in pixels from the top left",
+        .target = &options.region},
+       {.names = "--spp",
+        .value = "N",
+        .help = "Number of samples per pixel (default: 4), or of frames (default: 2)",
+        .target = &options.samples},
+       {.names = "--set",
+        .value = "NAME=VALUE",
+        .help = "Parameter of the program; may be repeated",
+        .target = &options.run.assignments},
+       {.names = "--set-file",
+        .value = "FILE.json",
+        .help = "Parameters as a JSON object; --set overrides them",
+        .target = &options.run.parameterFile,
+        .candidates = {.extensions = {"json"}}},
        {.names = "--device",
         .value = "NAME",
         .help = "Device whose limits and driver defects count, and on which --instrument runs: index or part of the "
@@ -95,6 +114,7 @@ OptionTable declare(Options& options) {
       {"quintet check my_program/ --json", "for editors: an array of diagnostics"},
       {"quintet check programs/ --strict", "all programs; warnings count"},
       {"quintet check my_program/ --instrument", "also find NaN and wrong hit records"},
+      {"quintet check my_program/ --instrument --size 1280x720 --region 600,300,64,64", "a part of a larger image"},
   });
   return table;
 }
@@ -102,8 +122,21 @@ OptionTable declare(Options& options) {
 std::optional<Options> parseOptions(Arguments arguments) {
   Options options;
   if (!declare(options).parse(arguments)) return std::nullopt;
+  if (!options.instrument) {
+    const auto reject = [](bool given, const char* name) {
+      if (given) throw UsageError(fmt::format("{} requires --instrument", name));
+    };
+    reject(!options.size.empty(), "--size");
+    reject(!options.region.empty(), "--region");
+    reject(!options.samples.empty(), "--spp");
+    reject(!options.run.assignments.empty(), "--set");
+    reject(!options.run.parameterFile.empty(), "--set-file");
+  }
+  if (!options.size.empty()) options.run.size = parseSize("--size", options.size);
+  if (!options.region.empty()) options.run.region = parseRegion("--region", options.region);
+  options.run.limits.samples = parseInteger("--spp", options.samples, 1, 1u << 24);
   std::vector<std::string>& positional = options.positional;
-  if (!positional.empty() && looksLikeScene(positional.back())) {
+  if (!positional.empty() && job::isSceneFile(positional.back())) {
     options.scene = positional.back();
     positional.pop_back();
   }
@@ -121,12 +154,14 @@ std::vector<Diagnostic> checkProgram(const program::Program& program, const shad
   std::optional<program::SceneFacts> facts;
   if (hasScene || options.instrument) scene = job::loadScene(source);
   if (hasScene) facts = check::sceneFacts(*scene);
-  std::vector<Diagnostic> found = check::check(program, compiler, facts ? &*facts : nullptr, limits).diagnostics;
+  std::vector<Diagnostic> found =
+      check::checkWithOptionalOutputs(program, compiler, facts ? &*facts : nullptr, limits).diagnostics;
   if (!options.instrument || hasErrors(found)) return found;
   Console console({.json = options.json});
   console.setProgram(&program);
   job::Engine engine({.device = options.device});
-  std::ranges::move(job::runInstrumented(engine, program, std::move(*scene), console), std::back_inserter(found));
+  std::ranges::move(job::runInstrumented(engine, program, std::move(*scene), options.run, console),
+                    std::back_inserter(found));
   return found;
 }
 

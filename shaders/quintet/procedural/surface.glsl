@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface of a solid at a hit. Included by quintet/surface.glsl, which declares Surface.
+// The surface of a solid at a hit. quintet/surface.glsl declares Surface and then includes this file. It is therefore
+// included before the guard, so that either file can be the first.
+#include "../surface.glsl"
 #ifndef QUINTET_PROCEDURAL_SURFACE_GLSL
 #define QUINTET_PROCEDURAL_SURFACE_GLSL
 

@@ -5,6 +5,9 @@
 // https://jcgt.org/published/0009/03/02/ (after M. O'Neill's PCG, 2014).
 #ifndef QUINTET_SAMPLING_PCG_GLSL
 #define QUINTET_SAMPLING_PCG_GLSL
+#ifdef QUINTET_SAMPLING_SOBOL_GLSL
+#error "include either quintet/sampling/sobol.glsl or quintet/sampling/pcg.glsl"
+#endif
 
 #include "sampler.glsl"
 

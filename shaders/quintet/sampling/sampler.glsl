@@ -6,12 +6,12 @@
 //   float next1D(inout Sampler)   vec2 next2D(inout Sampler)   in [0,1)
 //   uint nextBits(inout Sampler)  32 independent bits, e.g. a ray's seed
 // A program includes either sobol.glsl (converges faster) or pcg.glsl (independent numbers), not both.
-#ifdef QUINTET_SAMPLER
-#error "include either quintet/sampling/sobol.glsl or quintet/sampling/pcg.glsl"
-#endif
-#define QUINTET_SAMPLER
+#ifndef QUINTET_SAMPLING_SAMPLER_GLSL
+#define QUINTET_SAMPLING_SAMPLER_GLSL
 
 #include "hash.glsl"
 
 // For each seed a bijection on pixels up to 65536 x 65536: no two pixels of an image share a value.
 uint pixelSeed(uvec2 pixel, uint seed) { return hashCombine(hash(pixel.x | pixel.y << 16), seed); }
+
+#endif

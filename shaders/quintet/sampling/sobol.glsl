@@ -13,6 +13,9 @@
 // Seeds are 32-bit hashes. For one d, all tiles (or pixels) have distinct seeds; for two d, equal seeds are improbable.
 #ifndef QUINTET_SAMPLING_SOBOL_GLSL
 #define QUINTET_SAMPLING_SOBOL_GLSL
+#ifdef QUINTET_SAMPLING_PCG_GLSL
+#error "include either quintet/sampling/sobol.glsl or quintet/sampling/pcg.glsl"
+#endif
 
 #include "../shared/frame.h"
 #include "blue_shift.glsl"

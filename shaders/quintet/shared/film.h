@@ -47,6 +47,22 @@ struct FilmCoverage {
 };
 QT_SHARED_SIZE(FilmCoverage, 24);
 
+// Pixels of an output with a channel that is not finite.
+struct NotFinite {
+  uint count;
+  uint first;  // smallest index of such a pixel, row by row from the top; 0xFFFFFFFF: none
+};
+QT_SHARED_SIZE(NotFinite, 8);
+
+// Push constants of the pass that finds them.
+struct FilmCheck {
+  Address values;  // FixedSum[4 · count] or vec4[count]
+  Address result;  // NotFinite
+  uint count;      // pixels
+  uint sums;       // 1: `values` are sums
+};
+QT_SHARED_SIZE(FilmCheck, 24);
+
 QT_SHARED_END
 
 #endif

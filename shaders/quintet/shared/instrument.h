@@ -38,9 +38,10 @@ struct Instrument {
   uint pixelCount;
   uint missCount;      // in: number of miss shaders in the table
   uint depthLimit;     // in: recursion depth of the pipeline
+  uint rays[16];        // executed traces by offset (modulo 16): by ray type
   uint recordPairs[8];  // bit offset + 16 · stride: used by a trace (both taken modulo 16, as Vulkan does)
 };
-QT_SHARED_SIZE(Instrument, 64);
+QT_SHARED_SIZE(Instrument, 128);
 
 struct InstrumentPixel {
   uint depth;      // nesting depth of active traces

@@ -49,6 +49,7 @@ void checkDistance(const spirv::Module& module, Report& report);           // Q7
 void checkNormals(const spirv::Module& module, Report& report);            // Q702
 void checkInstanceIndices(const spirv::Module& module, Report& report);    // Q703
 void checkDescriptorIndices(const spirv::Module& module, Report& report);  // Q704
+void checkDebugPrintf(const spirv::Module& module, Report& report);        // Q707
 void checkNestedBuiltIns(const spirv::Module& module, Report& report);     // Q901
 void checkAttributeWrites(const spirv::Module& module, Report& report);    // Q902
 void checkRayTmaxReads(const spirv::Module& module, Report& report);       // Q904

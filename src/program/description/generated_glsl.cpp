@@ -64,7 +64,7 @@ std::string generatedConstants(const Program& program) {
   const std::vector<MissShader> misses = missShaders(program);
   std::string text =
       "// Generated from program.toml.\n#ifndef QUINTET_GENERATED_PROGRAM\n#define QUINTET_GENERATED_PROGRAM\n"
-      "#extension GL_EXT_scalar_block_layout : require\n#extension GL_EXT_buffer_reference : require\n";
+      "#include <quintet/frame.glsl>\n";
   text += constant("", "RayTypeCount", program.rays.size());
   text += constant("", "MissCount", misses.size());
   text += constant("", "CallableCount", program.callables.size());

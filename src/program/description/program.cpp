@@ -56,6 +56,15 @@ std::vector<std::string> outputNames(const Program& program) {
   return names;
 }
 
+std::vector<std::string> optionalOutputs(const Program& program) {
+  std::vector<std::string> names;
+  for (const Output& output : program.outputs)
+    if (output.optional) names.push_back(output.name);
+  return names;
+}
+
+std::string outputMacro(const std::string& name) { return "QUINTET_OUTPUT_" + name; }
+
 void chooseDefaultScene(Program& program) {
   if (!program.scene.empty()) return;
   const auto isScene = [](const auto& file) { return file.first.ends_with(".scene.toml"); };

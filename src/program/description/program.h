@@ -146,6 +146,9 @@ struct Program {
 // Returns every miss shader in table order: those of the ray types, then the others.
 std::vector<MissShader> missShaders(const Program& program);
 std::vector<std::string> outputNames(const Program& program);
+std::vector<std::string> optionalOutputs(const Program& program);  // names
+// Returns the macro that is defined if an optional output is rendered: "QUINTET_OUTPUT_albedo".
+std::string outputMacro(const std::string& name);
 
 // Sets `program.scene` to the only *.scene.toml among its files unless a scene is already named.
 void chooseDefaultScene(Program& program);

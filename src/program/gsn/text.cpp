@@ -127,8 +127,11 @@ std::vector<Token> tokenize(std::string_view text) {
       token.kind = TokenKind::word;
       while (token.end < text.size() && isWord(text[token.end])) ++token.end;
     } else if (!token.inactive) {
-      braces += c == '{' ? 1 : c == '}' ? -1 : 0;
       parens += c == '(' ? 1 : c == ')' ? -1 : 0;
+      // In GLSL, neither a brace nor the end of a declaration outside functions can be inside parentheses. So a missing
+      // ')' affects only the code up to there, and the declarations after it are still found.
+      if (c == '{' || c == '}' || (c == ';' && braces == 0)) parens = 0;
+      braces += c == '{' ? 1 : c == '}' ? -1 : 0;
     }
     if (token.kind != TokenKind::comment) lineStart = false;
     at = token.end;

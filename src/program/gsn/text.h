@@ -26,7 +26,8 @@ struct Token {
   std::size_t begin = 0;  // offset in the text
   std::size_t end = 0;    // one past the last byte
   bool inactive = false;  // between #if 0 and its #else or #endif
-  // Number of { and ( that are open before the token. If a conditional has several branches, the last one counts.
+  // Number of { and ( that are open before the token. If a conditional has several branches, the last one counts. A
+  // brace closes all parentheses, and so does a ';' outside functions.
   int braces = 0;
   int parens = 0;
 };

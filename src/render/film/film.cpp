@@ -57,7 +57,8 @@ Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Com
     : context_(context),
       region_(region),
       accumulation_(program.accumulation),
-      add_(makePass(context, set, compiler, "film_add")) {
+      add_(makePass(context, set, compiler, "film_add")),
+      check_(makePass(context, set, compiler, "film_check")) {
   const std::vector<std::string> names = program::outputNames(program);
   for (const std::string& name : wanted)
     if (std::ranges::find(names, name) == names.end())
@@ -265,12 +266,30 @@ std::vector<vec4> Film::downloadBatch(std::size_t output) const {
 }
 
 RayCount Film::countRays() const {
-  RayCount count;
-  for (const uvec2& pixel : statistics_.downloadAs<uvec2>(std::size_t{region_.width} * region_.height)) {
-    count.rays += pixel.x;
-    count.droppedSamples += pixel.y;
-  }
-  return count;
+  return render::countRays(statistics_.downloadAs<uvec2>(std::size_t{region_.width} * region_.height), region_);
+}
+
+std::vector<NotFinitePixels> Film::notFinitePixels() const {
+  std::vector<shared::NotFinite> results(outputs_.size(), {0, ~0u});
+  gpu::Buffer buffer = gpu::makeBuffer(context_, std::as_bytes(std::span(results)), 0, "not finite");
+  const std::uint32_t pixels = region_.width * region_.height;
+  context_.submitAndWait([&](gpu::Commands& commands) {
+    commands.barrier(gpu::Stage::all, gpu::Stage::all);
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+      const OutputPixel pixel = outputs_[i].facts.pixel;
+      if (!outputs_[i].total || pixel == OutputPixel::coverage) continue;
+      const bool sums = accumulation_ == Accumulation::film && pixel == OutputPixel::mean;
+      const shared::FilmCheck pass{outputs_[i].total.address(), buffer.address() + i * sizeof(shared::NotFinite),
+                                   pixels, sums ? 1u : 0u};
+      dispatch(*check_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+    }
+  });
+  results = buffer.downloadAs<shared::NotFinite>(results.size());
+  std::vector<NotFinitePixels> found;
+  for (std::size_t i = 0; i < outputs_.size(); ++i)
+    if (results[i].count > 0)
+      found.push_back({outputs_[i].facts.name, results[i].count, pixelAt(region_, results[i].first)});
+  return found;
 }
 
 }  // namespace quintet::render

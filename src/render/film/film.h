@@ -19,11 +19,6 @@
 
 namespace quintet::render {
 
-struct RayCount {
-  std::uint64_t rays = 0;
-  std::uint64_t droppedSamples = 0;  // samples that were not finite
-};
-
 class Film {
  public:
   // Stores the program's outputs, of the optional ones only those in `wanted`. Throws UsageError for an unknown name in
@@ -56,6 +51,8 @@ class Film {
   // Returns the sums of the latest batch, RGBA per pixel in row-major order from the top. Blocks.
   std::vector<vec4> downloadBatch(std::size_t output) const;
   RayCount countRays() const;  // blocks
+  // Returns findNotFinite() of the current contents, found on the device. Blocks.
+  std::vector<NotFinitePixels> notFinitePixels() const;
 
   // Read the whole film, or its first output only. Block.
   FilmState save() const;
@@ -90,6 +87,7 @@ class Film {
   SampleCounts counts_;
   std::unique_ptr<gpu::ComputePipeline> add_;
   std::unique_ptr<gpu::ComputePipeline> coverage_;
+  std::unique_ptr<gpu::ComputePipeline> check_;
 };
 
 }  // namespace quintet::render

@@ -93,6 +93,37 @@ std::uint32_t FilmState::cellOf(std::uint32_t x, std::uint32_t y) const {
   return 2 * (y / shared::kTileSize * tileColumns(region.width) + x / shared::kTileSize) + ((x + y) & 1u);
 }
 
+uvec2 pixelAt(const Region& region, std::uint64_t index) {
+  return {region.x + static_cast<std::uint32_t>(index % region.width),
+          region.y + static_cast<std::uint32_t>(index / region.width)};
+}
+
+RayCount countRays(std::span<const uvec2> statistics, const Region& region) {
+  RayCount count;
+  for (std::size_t i = 0; i < statistics.size(); ++i) {
+    if (statistics[i].y > 0 && count.droppedSamples == 0) count.firstDropped = pixelAt(region, i);
+    count.rays += statistics[i].x;
+    count.droppedSamples += statistics[i].y;
+  }
+  return count;
+}
+
+std::vector<NotFinitePixels> findNotFinite(const FilmState& film) {
+  std::vector<NotFinitePixels> found;
+  for (const FilmPlane& plane : film.planes) {
+    NotFinitePixels pixels{plane.name, 0, {0, 0}};
+    for (std::size_t i = 0; i < std::max(plane.sums.size() / 4, plane.values.size()); ++i) {
+      bool bad = false;
+      for (int c = 0; c < 4; ++c)
+        bad = bad || (plane.sums.empty() ? !std::isfinite(plane.values[i][c])
+                                         : isNotFinite(plane.sums[4 * i + static_cast<std::size_t>(c)]));
+      if (bad && pixels.count++ == 0) pixels.first = pixelAt(film.region, i);
+    }
+    if (pixels.count > 0) found.push_back(std::move(pixels));
+  }
+  return found;
+}
+
 bool areConsistent(const SampleCounts& counts, const std::vector<std::uint32_t>& plan) {
   if (counts.cellBatches.empty() && plan.empty()) return true;
   const std::vector<SampleRange>& ranges = counts.ranges;

@@ -5,6 +5,7 @@
 #define QUINTET_RENDER_FILM_FILM_STATE_H
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,28 @@ struct FilmState {
   // Returns the cell of the pixel at column x and row y of the film.
   std::uint32_t cellOf(std::uint32_t x, std::uint32_t y) const;
 };
+
+// Rays traced, and samples that the program discarded because they were not finite (countRays of
+// quintet/output.glsl).
+struct RayCount {
+  std::uint64_t rays = 0;
+  std::uint64_t droppedSamples = 0;
+  uvec2 firstDropped{0};  // the first pixel with such a sample: in the whole image, row by row from the top
+};
+// `statistics`: FilmState::statistics of a film of this region.
+RayCount countRays(std::span<const uvec2> statistics, const Region& region);
+
+// Pixels of an output that have a channel that is not finite. The samples of such a pixel are lost.
+struct NotFinitePixels {
+  std::string output;
+  std::uint64_t count = 0;
+  uvec2 first{0};  // in the whole image, row by row from the top
+  bool operator==(const NotFinitePixels&) const = default;
+};
+// Returns the outputs with such pixels, in the order of the film. Outputs that count ids have none.
+std::vector<NotFinitePixels> findNotFinite(const FilmState& film);
+// Returns the pixel of the whole image with this index in the film.
+uvec2 pixelAt(const Region& region, std::uint64_t index);
 
 // Returns the number of tiles in a row of a film of this width in pixels.
 std::uint32_t tileColumns(std::uint32_t width);

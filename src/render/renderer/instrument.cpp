@@ -157,10 +157,12 @@ std::vector<Diagnostic> outputDiagnostics(const program::Program& description, c
                                   *bad, film.region().x + pixel % image.width, film.region().y + pixel / image.width,
                                   count == 1 ? "1 value is" : fmt::format("{} values are", count))});
   }
-  if (const std::uint64_t dropped = film.countRays().droppedSamples; dropped > 0)
-    result.push_back({Severity::error, file, 0, 0, "Q002",
-                      dropped == 1 ? "1 sample was not finite; the program dropped it"
-                                   : fmt::format("{} samples were not finite; the program dropped them", dropped)});
+  if (const RayCount count = film.countRays(); count.droppedSamples > 0)
+    result.push_back(
+        {Severity::error, file, 0, 0, "Q002",
+         fmt::format("{} not finite; the program dropped {}; the first is at pixel {}, {}",
+                     count.droppedSamples == 1 ? "1 sample was" : fmt::format("{} samples were", count.droppedSamples),
+                     count.droppedSamples == 1 ? "it" : "them", count.firstDropped.x, count.firstDropped.y)});
   return result;
 }
 

@@ -40,7 +40,7 @@ RenderSettings decideSettings(RenderSettings settings, const program::Program& p
 Defines renderDefines(const Defines& sceneDefines, const std::vector<std::string>& outputs, const Defines& extra) {
   Defines defines = extra;
   defines.insert(defines.end(), sceneDefines.begin(), sceneDefines.end());
-  for (const std::string& output : outputs) defines.emplace_back("QUINTET_OUTPUT_" + output, "1");
+  for (const std::string& output : outputs) defines.emplace_back(program::outputMacro(output), "1");
   return defines;
 }
 

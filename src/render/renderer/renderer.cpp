@@ -228,6 +228,16 @@ RayCount Renderer::rays() const {
   return film_.countRays();
 }
 
+std::vector<NotFinitePixels> Renderer::notFinitePixels() const {
+  finishLaunches();
+  return film_.notFinitePixels();
+}
+
+shared::Instrument Renderer::instrumentCounts() const {
+  finishLaunches();
+  return instrument_ ? instrument_->download().counts : shared::Instrument{};
+}
+
 std::vector<Diagnostic> Renderer::runtimeDiagnostics() const {
   finishLaunches();
   if (!instrument_) return {};

@@ -70,12 +70,16 @@ class Renderer {
   // Blocks.
   io::Image image(std::size_t output = 0) const;
   RayCount rays() const;  // blocks
+  // Returns the outputs that have pixels that are not finite. Blocks.
+  std::vector<NotFinitePixels> notFinitePixels() const;
   const RenderStatistics& statistics() const { return statistics_; }
   // Returns the finished launches if RenderSettings::profile is set.
   const std::vector<LaunchTiming>& launches() const { return queue_.timings(); }
   const program::LinkedProgram& linked() const { return linked_; }
   // Returns the findings of the runtime checks so far (Q001 to Q006) if RenderSettings::instrument is set. Blocks.
   std::vector<Diagnostic> runtimeDiagnostics() const;
+  // Returns what the runtime checks counted so far if RenderSettings::instrument is set, else zeros. Blocks.
+  shared::Instrument instrumentCounts() const;
   const program::Program& program() const { return runnable_.description; }
 
  private:

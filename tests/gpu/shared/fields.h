@@ -48,6 +48,7 @@ void put(vec4 v[3]) { for (int i = 0; i < 3; ++i) put(v[i]); }
 void put(uint v[4]) { for (int i = 0; i < 4; ++i) put(v[i]); }
 void put(uint v[2]) { for (int i = 0; i < 2; ++i) put(v[i]); }
 void put(uint v[8]) { for (int i = 0; i < 8; ++i) put(v[i]); }
+void put(uint v[16]) { for (int i = 0; i < 16; ++i) put(v[i]); }
 void put(uint64_t v[2]) { for (int i = 0; i < 2; ++i) put(v[i]); }
 void put(uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) put(v[i]); }
 uint nextWord() { return words[wordCount++]; }
@@ -62,6 +63,7 @@ void take(out vec4 v[3]) { for (int i = 0; i < 3; ++i) take(v[i]); }
 void take(out uint v[4]) { for (int i = 0; i < 4; ++i) take(v[i]); }
 void take(out uint v[2]) { for (int i = 0; i < 2; ++i) take(v[i]); }
 void take(out uint v[8]) { for (int i = 0; i < 8; ++i) take(v[i]); }
+void take(out uint v[16]) { for (int i = 0; i < 16; ++i) take(v[i]); }
 void take(out uint64_t v[2]) { for (int i = 0; i < 2; ++i) take(v[i]); }
 void take(out uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) take(v[i]); }
 )";
@@ -120,9 +122,11 @@ GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlo
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, depthLimit,
-           recordPairs);
+           rays, recordPairs);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
+GPU_FIELDS(NotFinite, count, first);
+GPU_FIELDS(FilmCheck, values, result, count, sums);
 GPU_FIELDS(FixedSum, word);
 GPU_FIELDS(CoverageSlot, id, samples);
 GPU_FIELDS(FilmTile, x, y, drawn);

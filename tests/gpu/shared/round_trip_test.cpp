@@ -51,9 +51,9 @@ using SharedStructs =
     testing::Types<shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::LightNode,
                    shared::EnvironmentData, shared::InstanceData, shared::GeometryData, shared::PrimitiveData,
                    shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord,
-                   shared::RayKinds, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::FilmTile,
-                   shared::FixedSum, shared::CoverageSlot, shared::Launch, shared::Instrument, shared::InstrumentReport,
-                   shared::InstrumentPixel>;
+                   shared::RayKinds, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::NotFinite,
+                   shared::FilmCheck, shared::FilmTile, shared::FixedSum, shared::CoverageSlot, shared::Launch,
+                   shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel>;
 
 struct StructNames {
   template <class T>

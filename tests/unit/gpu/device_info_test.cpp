@@ -19,13 +19,16 @@ std::vector<DeviceInfo> threeDevices() {
   std::vector<DeviceInfo> devices(3);
   devices[0].name = "NVIDIA H200";
   devices[0].driver = "NVIDIA 580.159.04";
+  devices[0].driverName = "NVIDIA";
   devices[0].kind = "discrete GPU";
   devices[1].name = "Old Card 7";
   devices[1].driver = "oldie 1.0";
+  devices[1].driverName = "oldie";
   devices[1].kind = "discrete GPU";
   devices[1].unusableReason = "no VK_KHR_ray_tracing_pipeline";
   devices[2].name = "llvmpipe (LLVM 15.0.6, 256 bits)";
   devices[2].driver = "lavapipe 25.0.7 (LLVM 15.0.6)";
+  devices[2].driverName = "lavapipe";
   devices[2].kind = "CPU";
   for (std::uint32_t i = 0; i < 3; ++i) devices[i].index = i;
   return devices;
@@ -50,10 +53,26 @@ TEST(DeviceChoice, SelectsByIndexNameDriverOrKind) {
   EXPECT_EQ(chooseDevice(devices, "2"), 2u);
   EXPECT_EQ(chooseDevice(devices, "h200"), 0u);
   EXPECT_EQ(chooseDevice(devices, "LavaPipe"), 2u);
-  EXPECT_EQ(chooseDevice(devices, "580"), 0u) << "a number is an index only if such a device exists";
   EXPECT_EQ(chooseDevice(devices, "llvmpipe"), 2u);
   EXPECT_EQ(chooseDevice(devices, "cpu"), 2u);
   EXPECT_EQ(chooseDevice(devices, "gpu"), 0u);
+}
+
+TEST(DeviceChoice, UsesANumberAsAnIndexOnly) {
+  const std::vector<DeviceInfo> devices = threeDevices();
+  for (const char* request : {"3", "7", "15", "20", "200", "580", "99999999999999999999999"})
+    EXPECT_THAT(
+        [&] { chooseDevice(devices, request); },
+        ThrowsMessage<NoDeviceError>(
+            AllOf(HasSubstr(std::string("no device with index ") + request + "; found 0: "), HasSubstr("2: llvmpipe"))))
+        << "part of a name or of a version";
+}
+
+TEST(DeviceChoice, MatchesNoVersionNumbers) {
+  const std::vector<DeviceInfo> devices = threeDevices();
+  for (const char* request : {"15.0.6", "25.0", "580.159.04", "159.", "llvm 15"})
+    EXPECT_THROW(chooseDevice(devices, request), NoDeviceError) << request;
+  EXPECT_EQ(chooseDevice(devices, "llvm"), 2u);
 }
 
 TEST(DeviceChoice, ListsAllDevicesIfNoneMatches) {

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "base/error.h"
 #include "job/films.h"
 #include "temp_folder.h"
@@ -49,6 +51,19 @@ TEST_F(Merge, JoinsParts) {
   EXPECT_DOUBLE_EQ(merged.provenance.seconds, 2 * provenance_.seconds);
   EXPECT_TRUE(observer_.notes.empty());
   EXPECT_EQ(missingText(merged), "");
+}
+
+TEST_F(Merge, ReportsPixelsThatAreNotFinite) {
+  const auto a = write("a.qfilm", provenance_, {{0, 8}});
+  render::FilmFile film = test::makeFilmFile(provenance_, {{8, 16}});
+  film.film.planes[0].sums[4 * 6 + 2] = render::fixedFromFloat(std::numeric_limits<float>::quiet_NaN());
+  film.film.statistics[0] = uvec2(7, 0);
+  render::writeFilm(folder_ / "b.qfilm", film);
+  const RenderResult merged = merge({a, folder_ / "b.qfilm"}, observer_);
+  // The film is the region 4x3 at (2, 1).
+  EXPECT_THAT(merged.notFinite, testing::ElementsAre(render::NotFinitePixels{"color", 1, {4, 2}}));
+  EXPECT_EQ(merged.provenance.notFinitePixels, 1u);
+  EXPECT_EQ(merged.provenance.firstDroppedSample, (PixelPosition{2, 1}));
 }
 
 TEST_F(Merge, ReportsMissingSamples) {

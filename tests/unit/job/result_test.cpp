@@ -56,6 +56,37 @@ TEST(ResultWarnings, CountDiscardedSamples) {
   EXPECT_THAT(resultWarnings(result), ElementsAre(HasSubstr("1 sample was")));
   result.provenance.droppedSamples = 3;
   EXPECT_THAT(resultWarnings(result), ElementsAre(HasSubstr("3 samples were")));
+  setCounts(result, {100, 12, {34, 120}}, {});
+  EXPECT_THAT(
+      resultWarnings(result),
+      ElementsAre("12 samples were not finite and are omitted; the first is at pixel (34, 120), counted from the "
+                  "top left corner"));
+}
+
+TEST(ResultWarnings, CountPixelsThatAreNotFinite) {
+  RenderResult result;
+  setCounts(result, {}, {{"color", 3, {34, 120}}, {"depth", 1, {0, 7}}});
+  EXPECT_THAT(
+      resultWarnings(result),
+      ElementsAre("3 pixels of the output 'color' are not finite; the first is at pixel (34, 120), counted from "
+                  "the top left corner; see 'quintet explain Q002'",
+                  HasSubstr("1 pixel of the output 'depth' is not finite; it is at pixel (0, 7)")));
+  EXPECT_EQ(result.provenance.notFinitePixels, 4u);
+  EXPECT_EQ(result.provenance.firstNotFinitePixel, (PixelPosition{34, 120}));
+  setCounts(result, {}, {});
+  EXPECT_THAT(resultWarnings(result), IsEmpty());
+}
+
+TEST(ResultWarnings, AddUpFrames) {
+  RenderResult sum, frame;
+  setCounts(sum, {5, 1, {3, 4}}, {{"color", 2, {8, 1}}});
+  setCounts(frame, {5, 2, {9, 3}}, {{"color", 3, {1, 1}}, {"depth", 1, {0, 0}}});
+  addFrame(sum, frame);
+  EXPECT_EQ(sum.provenance.droppedSamples, 3u);
+  EXPECT_EQ(sum.provenance.firstDroppedSample, (PixelPosition{9, 3}));
+  EXPECT_THAT(sum.notFinite,
+              ElementsAre(render::NotFinitePixels{"color", 5, {1, 1}}, render::NotFinitePixels{"depth", 1, {0, 0}}));
+  EXPECT_EQ(sum.provenance.notFinitePixels, 6u);
 }
 
 }  // namespace

@@ -298,6 +298,20 @@ TEST(Lecture, RejectsInvalidUniforms) {
     EXPECT_THAT(problems(line + std::string("\n") + kRayGeneration), Contains(isError(position, "Q015", word))) << line;
 }
 
+// Uniforms after the error are still found, so the compiler reports no errors about them.
+TEST(Lecture, ReportsOnlyAMissingParenthesis) {
+  const std::string uniforms = "uniform float size; // defaultval=\"2\"\nuniform vec3 tint;\n";
+  const std::string use = "void main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(vec4(size * tint, 1.0)); }\n";
+  for (const std::string broken : {"float atLeast(float x) { return max(x, 0.5; }\n",
+                                   "const float kMost = max(1.0, 2.0;\n", "float most(float x { return x; }\n"}) {
+    const std::vector<std::string> found = problems(broken + uniforms + use);
+    ASSERT_EQ(found.size(), 1u) << broken << testing::PrintToString(found);
+    EXPECT_THAT(found[0], StartsWith("here/demo.rt.glsl:1"));
+    EXPECT_THAT(found[0], HasSubstr("syntax error"));
+    EXPECT_EQ(lecture(broken + uniforms + use).parameters.size(), 2u) << broken;
+  }
+}
+
 TEST(Lecture, IncludesFilesOfItsFolder) {
   EXPECT_THAT(problems("#include \"types.glsl\"\n" + std::string(kRayGeneration) +
                            "void main() { /**** MISS SHADER ****/ payload.color = gray(); }\n",

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// `check --instrument` for a requested size, region, number of samples and parameters.
+#include "job/instrumented_run.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "job/scene_source.h"
+#include "program/gsn/lecture.h"
+
+namespace quintet::job {
+namespace {
+
+// Traces a ray that is not finite in column 200 of frame `badFrame`.
+program::Program programWithBadColumn() {
+  return program::parseLecture(
+      "struct RayPayloadType { vec3 color; };\nuniform int badFrame; // defaultval=\"1\"\n"
+      "void main() { /**** RAY GENERATION SHADER ****/ vec3 d = vec3(0.0, 0.0, -1.0); payload.color = vec3(0.0);\n"
+      "  if (gl_LaunchIDEXT.x == 200u && frameID == badFrame) d.y = sqrt(d.z - float(gl_LaunchIDEXT.x));\n"
+      "  traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(0.0, 0.0, 9.0), 0.0, d, 100.0, 0);\n"
+      "  gsnSetPixel(vec4(payload.color, 1.0)); }\n"
+      "void main() { /**** MISS SHADER ****/ payload.color = vec3(0.0); }\n"
+      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = vec3(1.0); }\n",
+      "demo.rt.glsl", "here");
+}
+
+std::string idsFor(const RenderRequest& request) {
+  static Engine engine({.caches = {}});
+  const program::Program program = programWithBadColumn();
+  Observer observer;
+  std::string ids;
+  for (const Diagnostic& d :
+       runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, observer))
+    ids += d.id + ":" + std::to_string(d.line) + " ";
+  return ids;
+}
+
+TEST(InstrumentedRun, RendersTheRequestedSizeAndRegion) {
+  RenderRequest request;
+  EXPECT_EQ(idsFor(request), "") << "96x64 by default";
+  request.size = {256, 8};
+  EXPECT_EQ(idsFor(request), "Q001:5 ");
+  request.region = {0, 0, 100, 8};
+  EXPECT_EQ(idsFor(request), "");
+  request.region = {195, 4, 10, 2};
+  EXPECT_EQ(idsFor(request), "Q001:5 ");
+  request.region = {250, 0, 10, 8};
+  EXPECT_THROW(idsFor(request), UsageError);
+}
+
+TEST(InstrumentedRun, RendersTheRequestedFramesAndParameters) {
+  RenderRequest request;
+  request.size = {256, 8};
+  request.limits.samples = 1;
+  EXPECT_EQ(idsFor(request), "");
+  request.assignments = {"badFrame=6"};
+  request.limits.samples = 6;
+  EXPECT_EQ(idsFor(request), "");
+  request.limits.samples = 7;
+  EXPECT_EQ(idsFor(request), "Q001:5 ");
+  request.assignments = {"badFram=6"};
+  EXPECT_THROW(idsFor(request), UsageError);
+}
+
+}  // namespace
+}  // namespace quintet::job
