@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the command, runs it, and turns exceptions into one line on standard error and an exit status: 2 for a wrong command
-// line, 1 for every other failure.
+// Finds the command, runs it, and turns exceptions into an exit status and messages (cli/failure.h).
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -8,7 +7,6 @@
 #include <csignal>
 #include <exception>
 #include <iterator>
-#include <new>
 #include <string>
 #include <vector>
 
@@ -18,9 +16,8 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/suggestion.h"
-#include "base/text.h"
 #include "cli/command.h"
-#include "cli/console.h"
+#include "cli/failure.h"
 #include "cli/signals.h"
 #include "gpu/instance.h"
 
@@ -71,11 +68,9 @@ void occupyStandardStreams() {
       const int opened = ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
 }
 
-// The message on one line.
-int fail(std::string message, int status) {
-  std::ranges::replace(message, '\n', ' ');
-  printError("quintet: " + printable(message) + "\n");
-  return status;
+// Also if the command line cannot be parsed.
+bool wantsJson(const std::vector<std::string>& arguments) {
+  return std::ranges::find(arguments, "--json") != arguments.end();
 }
 
 }  // namespace
@@ -88,17 +83,14 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   cli::installSignalHandlers();
+  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   try {
     releaseLargeBlocksImmediately();
     gpu::prepareDriverEnvironment();  // before other threads exist
-    return cli::dispatch({argv + std::min(argc, 1), argv + argc});
-  } catch (const UsageError& error) {
-    return cli::fail(error.what(), 2);
-  } catch (const std::bad_alloc&) {
-    return cli::fail("out of memory", 1);
+    return cli::dispatch(arguments);
   } catch (const std::exception& error) {
-    return cli::fail(error.what(), 1);
+    return cli::reportFailure(error, cli::wantsJson(arguments));
   } catch (...) {
-    return cli::fail("unknown error", 1);
+    return cli::reportFailure(Error("unknown error"), cli::wantsJson(arguments));
   }
 }

@@ -44,8 +44,8 @@ std::optional<StoredFilm> Checkpoint::load(const Provenance& expected, const ren
   const render::FilmFile& file = stored.file;
   try {
     stored = readStoredFilm(path);
-    requireSameIdentity(file.identity, toFacts(expected, ProvenanceField::Role::identity), path, "a different render",
-                        "use --force to start over");
+    requireSameIdentity(file.identity, toFacts(expected, ProvenanceField::Role::identity), path, "a different render", "",
+                        Remedy::startOver);
     if (!render::sameArrays(file.film, empty)) throw FileError(path, "its outputs differ from those of the program");
     checkSamples(path, file.film, start, limits);
   } catch (const FileError& error) {
@@ -55,9 +55,8 @@ std::optional<StoredFilm> Checkpoint::load(const Provenance& expected, const ren
   }
   if (!request_.resume) {
     if (request_.force) return std::nullopt;
-    throw FileError(path,
-                    fmt::format("holds {} samples of this render; use --resume to continue or --force to start over",
-                                averageSamples(file.film)));
+    throw FileError(path, fmt::format("holds {} samples of this render", averageSamples(file.film)),
+                    Remedy::resumeOrStartOver);
   }
   if (file.film.counts.ranges.empty()) return std::nullopt;
   savedCounts_ = file.film.counts;

@@ -39,9 +39,10 @@ void checkMemory(const gpu::DeviceInfo& device, uvec2 size, std::uint64_t filmBy
   const std::uint64_t available = device.memoryBytes - device.memoryBytes / 16;
   const bool tooLargeBuffer = device.maxBufferBytes > 0 && pixels * kSumBytes > device.maxBufferBytes;
   if (needed <= available && !tooLargeBuffer) return;
-  throw MemoryError(fmt::format(
-      "an image of {}x{} requires {}, but {} has {} and buffers of at most {}; render a part of it with --region",
-      size.x, size.y, bytesText(needed), device.name, bytesText(device.memoryBytes), bytesText(device.maxBufferBytes)));
+  throw MemoryError(
+      fmt::format("an image of {}x{} requires {}, but {} has {} and buffers of at most {}", size.x, size.y,
+                  bytesText(needed), device.name, bytesText(device.memoryBytes), bytesText(device.maxBufferBytes)),
+      Remedy::renderRegion);
 }
 
 // Size of what is rendered, as far as it is known.
@@ -80,7 +81,7 @@ void describeScene(const LoadedScene& loaded, const ResolvedJob& job, Observer& 
   // Lecture programs bring their own lights.
   if (loaded.environment.isFallback && !job.accumulatesFrames())
     observer.note(
-        fmt::format("{}: no lights in the scene, using the default environment (--env none disables it)", name));
+        fmt::format("{}: no lights in the scene, using the default environment (the environment 'none' disables it)", name));
   if (loaded.scene.instances.empty()) observer.warning(fmt::format("{}: the scene has no surfaces", name));
   const scene::Report& report = loaded.scene.report;
   const std::size_t ignored = report.ignored.size() + report.extensionsIgnored.size();

@@ -31,9 +31,7 @@ Diagnostic hangDiagnostic(const program::Program& program, double seconds) {
       0,
       0,
       "HANG",
-      fmt::format("a launch did not end within {:g} s, possibly because of an infinite loop in a shader; use --timeout "
-                  "to allow more time",
-                  seconds)};
+      fmt::format("a launch did not end within {:g} s, possibly because of an infinite loop in a shader", seconds)};
 }
 
 }  // namespace quintet::job

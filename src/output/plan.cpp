@@ -50,8 +50,7 @@ std::vector<std::size_t> selectOutputs(const OutputRequest& request, const progr
                                  program.name, suggestion(request.output, names), fmt::join(names, ", ")));
   const auto index = static_cast<std::size_t>(found - names.begin());
   if (counts(index))
-    throw UsageError(fmt::format("output '{}' counts ids and is not an image; select it as a layer: --aov {}",
-                                 request.output, request.output));
+    throw UsageError(fmt::format("output '{}' counts ids and is not an image", request.output), Remedy::selectLayer);
   return {index};
 }
 

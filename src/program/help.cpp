@@ -70,15 +70,15 @@ std::string firstSentence(const std::string& text) {
 
 std::string describeAsText(const Program& program) {
   std::string text = fmt::format("{}: {}\n\n", program.name, program.description);
-  if (program.accumulation == Accumulation::program) text += "Renders frame by frame: --frames N.\n\n";
-  text += "Parameters (--set NAME=VALUE):\n";
+  if (program.accumulation == Accumulation::program) text += "Renders frame by frame.\n\n";
+  text += "Parameters:\n";
   if (program.parameters.empty()) text += "  none\n";
   for (const Parameter& parameter : program.parameters) text += parameterHelp(parameter);
-  text += "\nOutputs (--output NAME, --all-outputs, --aov NAMES):\n";
+  text += "\nOutputs:\n";
   for (const Output& output : program.outputs)
     text += fmt::format("  {:<18}{}\n", output.name,
                         output.help.empty() ? std::string(outputKindName(output.kind)) : output.help);
-  return text + "\nSee 'quintet run --help' for the options of all programs.\n";
+  return text;
 }
 
 std::string describeAsJson(const Program& program) {

@@ -88,6 +88,15 @@ job::RenderRequest requestFor(const RenderOptions& options, const output::Output
   return request;
 }
 
+std::string programHelpText(const program::Program& program) {
+  std::string options;
+  if (program.accumulation == program::Accumulation::program) options = "--frames N; ";
+  return fmt::format(
+      "{}\nOptions: {}--set NAME=VALUE for parameters; --output NAME, --all-outputs and --aov NAMES for outputs.\nSee "
+      "'quintet run --help' for the options of all programs.\n",
+      program::describeAsText(program), options);
+}
+
 int renderImages(const RenderOptions& options, const program::Program& program, const Stopwatch& clock) {
   const output::OutputPlan plan = output::planOutputs(options.output, program);
   Console console(options.console);
@@ -134,7 +143,7 @@ int renderCommand(Arguments arguments) {
   if (!options) return 0;
   const program::Program program = program::loadProgram(options->program);
   if (options->programHelp) {
-    writeFile("-", program::describeAsText(program));
+    writeFile("-", programHelpText(program));
   } else if (options->layerList) {
     writeFile("-", output::layerList(program));
   } else {

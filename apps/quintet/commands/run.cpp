@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "check/diagnostic_text.h"
 #include "cli/values.h"
 #include "commands/render.h"
 #include "job/watch.h"
@@ -214,23 +213,17 @@ int runCommand(Arguments arguments) {
     writeFile("-", json ? program::listAsJson() + "\n" : program::listAsText());
     return 0;
   }
-  try {
-    const program::Program program = program::loadProgram(options->program);
-    if (options->programHelp) {
-      writeFile("-", json ? program::describeAsJson(program) + "\n" : program::describeAsText(program));
-      return 0;
-    }
-    if (options->layerList) {
-      writeFile("-", output::layerList(program));
-      return 0;
-    }
-    if (options->namedByProgram) options->output.file = defaultOutput(program);
-    return options->watch ? Watch(*options).run() : renderImages(*options, program, clock);
-  } catch (const FileError& error) {
-    // An editor reads the location; main prints the error for people.
-    if (json && !options->programHelp) writeFile("-", check::diagnosticsJson({asDiagnostic(error)}));
-    throw;
+  const program::Program program = program::loadProgram(options->program);
+  if (options->programHelp) {
+    writeFile("-", json ? program::describeAsJson(program) + "\n" : programHelpText(program));
+    return 0;
   }
+  if (options->layerList) {
+    writeFile("-", output::layerList(program));
+    return 0;
+  }
+  if (options->namedByProgram) options->output.file = defaultOutput(program);
+  return options->watch ? Watch(*options).run() : renderImages(*options, program, clock);
 }
 
 }  // namespace quintet::cli

@@ -79,7 +79,7 @@ TEST_F(PlanOutputs, RejectsWhatCannotBeWritten) {
   wrong.output = "nothing";
   EXPECT_THAT(errorFor(wrong), HasSubstr("'nothing'"));
   wrong.output = "cryptomatte_object";
-  EXPECT_THAT(errorFor(wrong), HasSubstr("--aov"));
+  EXPECT_THAT(errorFor(wrong), HasSubstr("counts ids"));
   OutputRequest standardOutput{.file = "-"};
   EXPECT_EQ(errorFor(standardOutput), "");
   standardOutput.allOutputs = true;
