@@ -109,6 +109,8 @@ RenderJob::RenderJob(Engine& engine, ResolvedJob job, Observer& observer, std::s
 
 void RenderJob::prepare(Observer& observer) {
   const RenderRequest& request = job_.request;
+  if (!request.checkpoint.file.empty())
+    checkpoint_.emplace(request.checkpoint);  // its lock fails before anything is loaded
   std::optional<SceneLoading> loading;
   if (!scene_) loading.emplace(job_.scene, request);  // continues while the driver starts
   gpu::Context& context = engine_.context();
@@ -131,7 +133,6 @@ void RenderJob::prepare(Observer& observer) {
   observer.stage("compiling shaders");
   link(compiling.get(), observer);
   provenance_ = makeProvenance();
-  if (!request.checkpoint.file.empty()) checkpoint_.emplace(request.checkpoint);
   linkedSeconds_ = clock_.seconds();
 }
 

@@ -109,18 +109,27 @@ RenderResult resultOf(const Provenance& p, std::vector<render::SampleRange> rang
 }
 
 TEST_F(CheckpointLoad, SavesAndRemoves) {
-  Checkpoint checkpoint({.file = file_, .seconds = 0});
-  EXPECT_TRUE(checkpoint.isDue());
   const RenderResult result = resultOf(provenance_, {{0, 12}});
-  checkpoint.save(result, observer_);
-  EXPECT_EQ(checkpoint.savedSamples(), 12u);
+  {
+    Checkpoint checkpoint({.file = file_, .seconds = 0});
+    EXPECT_TRUE(checkpoint.isDue());
+    checkpoint.save(result, observer_);
+    EXPECT_EQ(checkpoint.savedSamples(), 12u);
+  }
   EXPECT_EQ(folder_.entryCount(), 1u);
   const auto film = load({.resume = true});
   ASSERT_TRUE(film);
   EXPECT_TRUE(test::equalSums(film->file.film.planes[0].sums, result.film->plane(0).sums));
-  checkpoint.remove(observer_);
+  Checkpoint({.file = file_}).remove(observer_);
   EXPECT_EQ(folder_.entryCount(), 0u);
   EXPECT_TRUE(observer_.warnings.empty());
+}
+
+TEST_F(CheckpointLoad, BelongsToOneProcessAtATime) {
+  Checkpoint checkpoint({.file = file_, .seconds = 0});
+  EXPECT_THAT(errorFor({.resume = true}), HasSubstr("scene.qfilm: is in use by process "));
+  checkpoint.save(resultOf(provenance_, {{0, 8}}), observer_);  // replaces the file
+  EXPECT_THAT(errorFor({.resume = true, .force = true}), HasSubstr("is in use"));
 }
 
 TEST_F(CheckpointLoad, AFailureToSaveIsOneWarning) {
