@@ -376,6 +376,7 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
     }
     const double now = elapsed();
     if (firstPixelSeconds_ == 0) firstPixelSeconds_ = clock_.seconds();
+      progress.targetSamples = schedule.targetSamples();
     start.done = schedule.nextSample();
     start.batchSeconds = now - begin;
     if (!std::exchange(previewed, true) && observer.wantsPreviews()) observer.preview(resultNow(now, true));

@@ -87,7 +87,8 @@ void declareQuality(CLI::App& app, RenderTexts& texts, RenderOptions& options) {
   add(app, group, "--time", texts.time, "SECONDS", "Time limit of rendering");
   add(app, group, "--until-error", texts.untilError, "E",
       "Target for the relative error of the image, e.g. 0.02; the error of 95 % of its\n"
-      "tiles must be below 2 E (stated with 95 % confidence)");
+      "tiles must be below 2 E (stated with 95 % confidence). The status is 3 if another\n"
+      "limit ends the render first");
   app.add_flag("--adaptive", options.request.limits.adaptive,
                "Distribute samples by the error of each tile; --spp is then the average")
       ->group(group);

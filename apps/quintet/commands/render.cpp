@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "cli/failure.h"
 #include "cli/values.h"
 #include "job/render_job.h"
 #include "output/layers.h"
@@ -130,7 +131,8 @@ int renderImages(const RenderOptions& options, const program::Program& program, 
     console.clear();
     if (options.console.json) writeFile("-", output::resultJson(result, files, clock.seconds()));
     console.note(output::resultSummary(result, files));
-    return result.interrupted ? stop.exitStatus() : 0;
+    if (result.interrupted) return stop.exitStatus();
+    return result.targetMissed || result.earlierTargetMissed ? kTargetNotReached : 0;
   } catch (const ProgramError& error) {
     console.diagnostics(error.diagnostics());
     return 1;
