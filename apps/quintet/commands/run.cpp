@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `quintet run`: a user's program or a built-in one, on a scene or on the built-in one; with --watch again after each save.
 #include <algorithm>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -48,10 +49,18 @@ std::filesystem::path defaultOutput(const program::Program& program) {
   return (stem.empty() ? "out" : stem) + ".png";
 }
 
-void convertFrames(const std::string& frames, const RenderTexts& texts, RunOptions& options) {
+void convertFrames(const std::string& frames, const std::string& frame, const RenderTexts& texts, RunOptions& options) {
   job::FrameRequest& request = options.request.frames;
-  if (const auto count = parseInteger("--frames", frames, 1, kMaxFrames))
+  if (!frames.empty() && !frame.empty()) throw UsageError("--frame and --frames exclude each other");
+  if (frames.find('-', 1) != std::string::npos) {
+    std::tie(request.first, request.count) = parseFrames("--frames", frames, kMaxFrames);
+  } else if (const auto count = parseInteger("--frames", frames, 1, kMaxFrames)) {
     request.count = static_cast<std::uint32_t>(*count);
+  }
+  if (const auto number = parseInteger("--frame", frame, 0, kMaxFrames)) {
+    request.first = static_cast<std::uint32_t>(*number);
+    request.count = 1;
+  }
   if (!texts.spp.empty()) request.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
   if (!request.accumulated && !options.request.limits.seconds) request.accumulated = 1;
   request.every = options.output.everyFrame = options.output.everyFrame || output::hasFramePattern(options.output.file);
@@ -62,7 +71,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
                "quintet run");
   RunOptions options;
   RenderTexts texts;
-  std::string frames;
+  std::string frames, frame;
   options.program.clear();
   app.add_option("PROGRAM", options.program, "Folder or file of a program, or name of a built-in one (--list)")
       ->type_name("");
@@ -76,7 +85,11 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
       ->group("Image");
   declareImage(app, texts, options);
   app.add_option("--frames", frames,
-                 "Number of frames, for an animated scene or a program that draws frame after frame\n(default: 1)")
+                 "Number of frames, for an animated scene or a program that draws frame after frame\n"
+                 "(default: 1); A-B renders only frames A to B of an animated scene")
+      ->type_name("N|A-B")
+      ->group("Image");
+  app.add_option("--frame", frame, "Render only this frame of an animated scene; the first one is 0")
       ->type_name("N")
       ->group("Image");
   app.add_flag("--all-frames", options.output.everyFrame, "Write each frame: out.0000.png (also with %04d in the name)")
@@ -116,7 +129,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
     throw UsageError(
         fmt::format("{}: run writes images; use 'quintet render' for films", options.output.file.string()));
   convert(texts, options);
-  convertFrames(frames, texts, options);
+  convertFrames(frames, frame, texts, options);
   if (texts.timeout.empty()) options.request.launchTimeout = kTimeout;
   checkStandardOutput(options);
   if (options.watch && options.output.file == "-")
