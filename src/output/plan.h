@@ -40,6 +40,7 @@ struct OutputRequest {
   std::optional<ExrFormat> exr;            // only for OpenEXR files
 };
 
+  std::optional<unsigned> pngBits;         // 8 or 16 per channel; PNG only. Default: 8
 struct OutputPlan {
   OutputRequest request;
   FileKind kind = FileKind::png;

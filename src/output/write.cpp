@@ -32,7 +32,7 @@ std::vector<std::byte> encodePng(const OutputPlan& plan, const job::RenderResult
   provenance.toneMap = render::toneMapNames()[static_cast<std::size_t>(toneMap)];
   provenance.exposure = exposure;
   return io::encodePng(render::toDisplay(result.film->image(output), toneMap, static_cast<float>(exposure),
-                                         !result.provenance.transparent),
+                                         !result.provenance.transparent, plan.request.pngBits.value_or(8)),
                        job::metadataOf(provenance));
 }
 

@@ -78,6 +78,7 @@ void declareImage(CLI::App& app, RenderTexts& texts, RenderOptions& options) {
 void declareDisplay(CLI::App& app, RenderTexts& texts, const char* group, const char* otherwise) {
   add(app, group, "--exposure", texts.exposure, "STOPS", fmt::format("Multiply by 2^STOPS (PNG only; {})", otherwise));
   add(app, group, "--tonemap", texts.toneMap, "NAME", "Tone mapping: linear, aces, agx or neutral (PNG only)");
+  add(app, group, "--png-bits", texts.pngBits, "N", "Bits per channel of PNG files: 8 or 16 (default: 8)");
 }
 
 void declareQuality(CLI::App& app, RenderTexts& texts, RenderOptions& options) {
@@ -183,6 +184,7 @@ void convertOutput(const RenderTexts& texts, output::OutputRequest& output) {
   output.layers = texts.layers;
   output.exposure = parseReal("--exposure", texts.exposure, -job::kMaxExposure, job::kMaxExposure);
   output.toneMap = parseToneMap("--tonemap", texts.toneMap);
+  if (!texts.pngBits.empty()) output.pngBits = parseChoice("--png-bits", texts.pngBits, {"8", "16"}) == 0 ? 8u : 16u;
   output.exr = parseExrFormat(texts.exrType, texts.exrCompression, texts.exrTiles);
 }
 
