@@ -44,8 +44,8 @@ std::optional<StoredFilm> Checkpoint::load(const Provenance& expected, const ren
   const render::FilmFile& file = stored.file;
   try {
     stored = readStoredFilm(path);
-    requireSameIdentity(file.identity, toFacts(expected, ProvenanceField::Role::identity), path, "a different render", "",
-                        Remedy::startOver);
+    requireSameIdentity(file.identity, toFacts(expected, ProvenanceField::Role::identity), path, "a different render",
+                        "", Remedy::startOver);
     if (!render::sameArrays(file.film, empty)) throw FileError(path, "its outputs differ from those of the program");
     checkSamples(path, file.film, start, limits);
   } catch (const FileError& error) {

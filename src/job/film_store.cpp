@@ -62,8 +62,9 @@ void requireSameIdentity(const FilmFacts& found, const FilmFacts& expected, cons
                          const std::string& owner, const std::string& consequence, Remedy remedy) {
   const std::string differences = differencesText(found, expected);
   if (differences.empty()) return;
-  throw FileError(file, fmt::format("belongs to {} ({}){}{}", owner, differences, consequence.empty() ? "" : "; ", consequence),
-                  remedy);
+  throw FileError(
+      file, fmt::format("belongs to {} ({}){}{}", owner, differences, consequence.empty() ? "" : "; ", consequence),
+      remedy);
 }
 
 void rejectLoss(const std::filesystem::path& file, const FilmFacts& identity, const render::SampleCounts& samples) {
@@ -75,8 +76,8 @@ void rejectLoss(const std::filesystem::path& file, const FilmFacts& identity, co
   } catch (const FileError& error) {
     throw FileError(file, error.location(), error.problem(), Remedy::overwrite);
   }
-  requireSameIdentity(found.identity, identity, file, "a different render",
-                      "its samples would be lost", Remedy::overwrite);
+  requireSameIdentity(found.identity, identity, file, "a different render", "its samples would be lost",
+                      Remedy::overwrite);
   for (const SampleRange& held : found.film.counts.ranges)
     if (std::ranges::none_of(samples.ranges,
                              [&](const SampleRange& s) { return s.begin <= held.begin && held.end <= s.end; }))

@@ -10,9 +10,10 @@ namespace {
 
 TEST(ErrorJson, NamesFileAndLocation) {
   const FileError error("a.gltf", "/nodes/0", "is \"broken\"");
-  EXPECT_EQ(errorJson(error.what(), &error, 1),
-            R"({"error":{"message":"a.gltf: /nodes/0: is \"broken\"","file":"a.gltf","location":"/nodes/0","exitStatus":1}})"
-            "\n");
+  EXPECT_EQ(
+      errorJson(error.what(), &error, 1),
+      R"({"error":{"message":"a.gltf: /nodes/0: is \"broken\"","file":"a.gltf","location":"/nodes/0","exitStatus":1}})"
+      "\n");
 }
 
 TEST(ErrorJson, UnknownValuesAreNull) {
