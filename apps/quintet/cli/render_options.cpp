@@ -55,7 +55,7 @@ void convertCheckpoints(const RenderTexts& texts, RenderOptions& options) {
     return;
   if (!checkpoint.file.empty()) return;
   const std::filesystem::path& output = options.output.file;
-  if (output == "-" || !output.has_extension())
+  if (output::isStandardOutput(output) || !output.has_extension())
     throw UsageError(
         fmt::format("{}: the name of the checkpoint cannot be derived from it; use --checkpoint-file FILE{}",
                     output.string(), render::kFilmExtension));
@@ -209,10 +209,13 @@ void convert(const RenderTexts& texts, RenderOptions& options) {
 }
 
 void checkStandardOutput(const RenderOptions& options) {
-  if (options.output.file != "-") return;
-  if (options.console.json) throw UsageError("--json and -o - both write to standard output");
+  const std::filesystem::path& file = options.output.file;
+  if (!output::isStandardOutput(file)) return;
+  if (options.console.json)
+    throw UsageError(fmt::format("--json and -o {} both write to standard output", file.string()));
   if (::isatty(STDOUT_FILENO) == 1)
-    throw UsageError("-o -: standard output is a terminal; redirect it to a file or a program");
+    throw UsageError(
+        fmt::format("-o {}: standard output is a terminal; redirect it to a file or a program", file.string()));
 }
 
 }  // namespace quintet::cli

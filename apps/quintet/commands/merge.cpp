@@ -35,7 +35,8 @@ std::optional<Options> parseOptions(Arguments arguments) {
   Options options;
   RenderTexts texts;
   app.add_option("PART", options.parts, "Films (.qfilm): parts or checkpoints")->type_name("");
-  app.add_option("-o,--output", texts.output, "Output file: .png, .exr, .hdr or .qfilm; - is PNG on standard output")
+  app.add_option("-o,--output", texts.output,
+                 "Output file: .png, .exr, .hdr or .qfilm; - is PNG on\nstandard output, -.exr OpenEXR")
       ->type_name("FILE");
   declareDisplay(app, texts, "Image", "default: as rendered; stored by a film");
   app.add_flag("--all-outputs", options.output.allOutputs,

@@ -9,6 +9,7 @@
 #include "cli/failure.h"
 #include "cli/values.h"
 #include "job/render_job.h"
+#include "output/file_names.h"
 #include "output/layers.h"
 #include "output/report.h"
 #include "output/write.h"
@@ -37,8 +38,8 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   RenderTexts texts;
   app.add_option("SCENE", texts.scene, "Scene file: .gltf, .glb or .scene.toml")->type_name("");
   app.add_option("-o,--output", texts.output,
-                 "Output file: .png, .exr, .hdr or .qfilm (the whole film, for 'quintet merge'); - is\n"
-                 "PNG on standard output (default: SCENE.png in the current folder)")
+                 "Output file: .png, .exr, .hdr or .qfilm (the whole film, for 'quintet merge'); - is PNG\n"
+                 "on standard output, -.exr OpenEXR (default: SCENE.png in the current folder)")
       ->type_name("FILE")
       ->group("Image");
   declareImage(app, texts, options);
@@ -62,6 +63,9 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   options.request.scene = texts.scene;
   options.output.file = texts.output.empty() ? options.request.scene.filename().replace_extension(".png")
                                              : std::filesystem::path(texts.output);
+  // Without --frames there is one frame, so a pattern in the name is the number 0 or the last frame.
+  options.output.everyFrame = !texts.output.empty() && output::hasFramePattern(options.output.file) &&
+                              output::fileKind(options.output.file) != output::FileKind::film;
   options.request.commandLine = commandLine("render", arguments);
   convert(texts, options);
   checkStandardOutput(options);
@@ -99,7 +103,7 @@ std::string programHelpText(const program::Program& program) {
 }
 
 int renderImages(const RenderOptions& options, const program::Program& program, const Stopwatch& clock) {
-  const output::OutputPlan plan = output::planOutputs(options.output, program);
+  const output::OutputPlan plan = output::planOutputs(options.output, program, options.request.frames);
   Console console(options.console);
   console.setProgram(&program);
   try {
@@ -115,12 +119,14 @@ int renderImages(const RenderOptions& options, const program::Program& program, 
     console.setGracefulStop(&stop);
 
     std::vector<output::WrittenFile> files;
-    const auto write = [&](const job::RenderResult& result) { files = output::writeOutputs(plan, result, console); };
+    const auto write = [&](const job::RenderResult& result) {
+      output::addWritten(files, output::writeOutputs(plan, result, console));
+    };
     console.onFrame = write;
     job::RenderResult result = job.run(options.request.limits, console);
     try {
       if (!options.request.overwriteFilm) output::checkFilmLoss(plan, result);  // the render can have stopped early
-      if (!options.output.everyFrame) write(result);
+      if (!options.request.frames.every) write(result);
     } catch (...) {
       job.outputsFailed(result, console);
       throw;

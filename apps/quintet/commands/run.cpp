@@ -27,7 +27,7 @@ constexpr const char* kExamples =
     "  quintet run ao --help                              its parameters and outputs\n"
     "  quintet run my_program/ scene.glb --set tint=1,0.5,0 --size 640x360 --spp 16\n"
     "  quintet run my_program/ --watch                    render again whenever a file is saved\n"
-    "  quintet run lesson.rt.glsl --frames 45 -o light.%04d.png\n"
+    "  quintet run lesson.rt.glsl --frames 45 -o light.####.png\n"
     "  quintet run my_program/ --set-file values.json --all-outputs -o out.exr\n";
 
 constexpr double kTimeout = 30.0;  // seconds: a shader that takes longer probably does not end
@@ -79,8 +79,8 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
                  "Scene file: .gltf, .glb or .scene.toml (default: the program's own, or built in)")
       ->type_name("");
   app.add_option("-o", texts.output,
-                 "Output file: .png, .exr or .hdr; - is PNG on standard output (default: PROGRAM.png in the\n"
-                 "current folder)")
+                 "Output file: .png, .exr or .hdr; #### is the frame number; - is PNG on standard output, -.exr\n"
+                 "OpenEXR (default: PROGRAM.png in the current folder)")
       ->type_name("FILE")
       ->group("Image");
   declareImage(app, texts, options);
@@ -92,7 +92,8 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   app.add_option("--frame", frame, "Render only this frame of an animated scene; the first one is 0")
       ->type_name("N")
       ->group("Image");
-  app.add_flag("--all-frames", options.output.everyFrame, "Write each frame: out.0000.png (also with %04d in the name)")
+  app.add_flag("--all-frames", options.output.everyFrame,
+               "Write each frame: out.0000.png (also with #### or %04d in the name)")
       ->group("Image");
   declareExr(app, texts);
   declareQuality(app, texts, options);
@@ -132,7 +133,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   convertFrames(frames, frame, texts, options);
   if (texts.timeout.empty()) options.request.launchTimeout = kTimeout;
   checkStandardOutput(options);
-  if (options.watch && options.output.file == "-")
+  if (options.watch && output::isStandardOutput(options.output.file))
     throw UsageError("--watch writes the same file repeatedly: it cannot be standard output");
   return options;
 }
@@ -178,11 +179,12 @@ class Watch {
   job::ResolvedJob resolve() {
     program_ = program::loadProgram(options_.program);
     console_.setProgram(&program_);
-    plan_ = output::planOutputs(options_.output, program_);
+    plan_ = output::planOutputs(options_.output, program_, options_.request.frames);
     return job::resolve(requestFor(options_, plan_), program_);
   }
 
   void render() {
+    files_.clear();
     job::RenderResult result = live_.job()->run(options_.request.limits, console_);
     if (result.abandoned) return;
     interrupted_ = result.interrupted;
@@ -194,7 +196,7 @@ class Watch {
   }
 
   void write(const job::RenderResult& result) {
-    files_ = output::writeOutputs(plan_, result, console_);
+    output::addWritten(files_, output::writeOutputs(plan_, result, console_));
     hasImage_ = true;
     if (!std::exchange(changed_, false)) return;
     console_.note(fmt::format("{} saved: {} after {:.2f} s", live_.changedNames(),
