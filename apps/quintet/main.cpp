@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the command, runs it, and turns exceptions into one line on standard error and an exit status: 2 for a wrong command
-// line, 1 for every other failure.
+// Finds the command, runs it, and turns exceptions into an exit status and messages (cli/failure.h).
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <exception>
-#include <new>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "base/text.h"
 #include "base/typographic.h"
 #include "cli/command.h"
-#include "cli/console.h"
+#include "cli/failure.h"
 #include "cli/signals.h"
 #include "commands/help.h"
 #include "gpu/instance.h"
@@ -50,14 +47,17 @@ void occupyStandardStreams() {
       const int opened = ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
 }
 
-// The message on one line. Commands that were copied from a text may contain typographic quotes.
-int fail(std::string message, int status, const std::vector<std::string>& arguments = {}) {
-  std::ranges::replace(message, '\n', ' ');
+// Also if the command line cannot be parsed. After "--" it is the name of a file.
+bool wantsJson(const std::vector<std::string>& arguments) {
+  const auto end = std::ranges::find(arguments, "--");
+  return std::find(arguments.begin(), end, "--json") != end;
+}
+
+// Commands that were copied from a text may contain typographic quotes. Returns the end of an error message.
+std::string quoteHint(const std::vector<std::string>& arguments) {
   const auto quoted = std::ranges::find_if(
       arguments, [](const std::string& argument) { return !findTypographicQuote(argument).empty(); });
-  if (quoted != arguments.end()) message += "; " + typographicQuoteHint(findTypographicQuote(*quoted));
-  printMessage("quintet: " + printable(message));
-  return status;
+  return quoted == arguments.end() ? "" : "; " + typographicQuoteHint(findTypographicQuote(*quoted));
 }
 
 }  // namespace
@@ -75,13 +75,9 @@ int main(int argc, char** argv) {
     releaseLargeBlocksImmediately();
     gpu::prepareDriverEnvironment();  // before other threads exist
     return cli::dispatch(arguments);
-  } catch (const UsageError& error) {
-    return cli::fail(error.what(), 2, arguments);
-  } catch (const std::bad_alloc&) {
-    return cli::fail("out of memory", 1);
   } catch (const std::exception& error) {
-    return cli::fail(error.what(), 1, arguments);
+    return cli::reportFailure(error, cli::wantsJson(arguments), cli::quoteHint(arguments));
   } catch (...) {
-    return cli::fail("unknown error", 1);
+    return cli::reportFailure(Error("unknown error"), cli::wantsJson(arguments));
   }
 }

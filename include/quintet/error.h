@@ -10,18 +10,36 @@
 
 namespace quintet {
 
+// What a caller can change in the request so that it succeeds. A front end adds the name of its option or control.
+enum class Remedy {
+  none,
+  overwrite,          // allow to lose the samples of a film
+  startOver,          // discard the checkpoint
+  resumeOrStartOver,  // continue from the checkpoint, or discard it
+  renderRegion,       // render a part of the image
+  selectLayer,        // request the output as a layer
+  allowDifference,    // name the facts of two films that may differ
+};
+
 // Base of all exceptions that the library throws on purpose; also thrown itself, for example if no device can be used.
 class Error : public std::runtime_error {
  public:
-  explicit Error(const std::string& message) : std::runtime_error(message) {}
+  explicit Error(const std::string& message, Remedy remedy = Remedy::none)
+      : std::runtime_error(message), remedy_(remedy) {}
+  Remedy remedy() const { return remedy_; }
+
+ private:
+  Remedy remedy_;
 };
 
 // A file that is missing, unreadable, not writable or invalid. `location` is a JSON pointer, "line 3", "byte 12", or
 // empty. Example: "scene.gltf: /accessors/3/bufferView: 12 bytes past the end of buffer 0".
 class FileError : public Error {
  public:
-  FileError(const std::filesystem::path& file, std::string_view location, std::string_view problem);
-  FileError(const std::filesystem::path& file, std::string_view problem) : FileError(file, {}, problem) {}
+  FileError(const std::filesystem::path& file, std::string_view location, std::string_view problem,
+            Remedy remedy = Remedy::none);
+  FileError(const std::filesystem::path& file, std::string_view problem, Remedy remedy = Remedy::none)
+      : FileError(file, {}, problem, remedy) {}
   const std::filesystem::path& file() const { return file_; }  // as the caller named it
   const std::string& location() const { return location_; }    // in the file; empty if unknown
   const std::string& problem() const { return problem_; }      // one sentence without a period

@@ -12,7 +12,8 @@ std::string describe(const std::filesystem::path& file, std::string_view locatio
 
 }  // namespace
 
-FileError::FileError(const std::filesystem::path& file, std::string_view location, std::string_view problem)
-    : Error(describe(file, location, problem)), file_(file), location_(location), problem_(problem) {}
+FileError::FileError(const std::filesystem::path& file, std::string_view location, std::string_view problem,
+                     Remedy remedy)
+    : Error(describe(file, location, problem), remedy), file_(file), location_(location), problem_(problem) {}
 
 }  // namespace quintet

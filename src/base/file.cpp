@@ -208,7 +208,19 @@ void removeLeftovers(const fs::path& file) {
 }
 
 void checkWritable(const fs::path& file) {
-  if (file != "-") findTarget(file);
+  if (file == "-") {
+    const int flags = ::fcntl(STDOUT_FILENO, F_GETFL);
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) failWriting("standard output", EBADF);
+    return;
+  }
+  const Target target = findTarget(file);
+  if (!target.regular()) return;
+  // Permissions alone do not say it: root may write everywhere, but /proc and read-only file systems take no files.
+  try {
+    const TemporaryFile probe(target.path);
+  } catch (const std::system_error& error) {
+    failWriting(file, "the folder " + target.folder().string() + " takes no files: " + reason(error.code().value()));
+  }
 }
 
 fs::path cacheFolder() {

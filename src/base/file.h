@@ -50,8 +50,9 @@ void writeFile(const std::filesystem::path& file, std::string_view text);
 // Throws the errors of checkWritable.
 void removeLeftovers(const std::filesystem::path& file);
 
-// Throws the FileError of writeFile for a path that cannot be written (missing folder, a folder itself, no permission)
-// without touching an existing file, so that a long job can fail before it starts.
+// Throws the FileError of writeFile for a path that cannot be written (missing folder, a folder itself, no permission, a
+// file system that takes no files; a closed standard output for "-") without touching an existing file, so that a long
+// job can fail before it starts. Creates and removes a temporary file in the folder.
 void checkWritable(const std::filesystem::path& file);
 
 // Returns $QUINTET_CACHE_DIR, $XDG_CACHE_HOME/quintet or ~/.cache/quintet, the first that is set. The folder may not

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace quintet::io {
 
@@ -19,10 +20,14 @@ inline float srgbFromLinear(float linear) {
   return linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1.0f / 2.4f) - 0.055f;
 }
 
-// Converts [0,1] to 0 … 255, rounded to nearest. Values outside are clamped; NaN becomes 0.
-inline std::uint8_t byteFromUnit(float value) {
-  return static_cast<std::uint8_t>(!(value > 0.0f) ? 0.0f : value >= 1.0f ? 255.0f : value * 255.0f + 0.5f);
+// Converts [0,1] to 0 … 255 (uint8_t) or 0 … 65535 (uint16_t), rounded to nearest. Values outside are clamped; NaN becomes
+// 0.
+template <class T>
+T integerFromUnit(float value) {
+  constexpr float kMax = static_cast<float>(std::numeric_limits<T>::max());
+  return static_cast<T>(!(value > 0.0f) ? 0.0f : value >= 1.0f ? kMax : value * kMax + 0.5f);
 }
+inline std::uint8_t byteFromUnit(float value) { return integerFromUnit<std::uint8_t>(value); }
 
 }  // namespace quintet::io
 #endif

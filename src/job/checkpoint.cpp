@@ -32,12 +32,12 @@ void checkSamples(const std::filesystem::path& file, const render::FilmState& fi
 
 }  // namespace
 
-std::optional<StoredFilm> Checkpoint::load(const Provenance& expected, const render::FilmState& empty,
-                                           const StartPoint& start, const RenderLimits& limits, Observer& observer) {
-  const std::filesystem::path& path = request_.file;
-  removeLeftovers(path);
+std::optional<StoredFilm> loadCheckpoint(const CheckpointRequest& request, const Provenance& expected,
+                                         const render::FilmState& empty, const StartPoint& start,
+                                         const RenderLimits& limits, Observer& observer) {
+  const std::filesystem::path& path = request.file;
   if (!std::filesystem::exists(path)) {
-    if (request_.resume)
+    if (request.resume)
       observer.note(fmt::format("{}: no checkpoint found, starting from the first sample", path.string()));
     return std::nullopt;
   }
@@ -46,22 +46,33 @@ std::optional<StoredFilm> Checkpoint::load(const Provenance& expected, const ren
   try {
     stored = readStoredFilm(path);
     requireSameIdentity(file.identity, toFacts(expected, ProvenanceField::Role::identity), path, "a different render",
-                        "use --force to start over");
+                        "", Remedy::startOver);
     if (!render::sameArrays(file.film, empty)) throw FileError(path, "its outputs differ from those of the program");
     checkSamples(path, file.film, start, limits);
   } catch (const FileError& error) {
-    if (!request_.force) throw;
+    if (!request.force) throw;
     observer.note(fmt::format("{}; starting over", error.what()));
     return std::nullopt;
   }
-  if (!request_.resume) {
-    if (request_.force) return std::nullopt;
-    throw FileError(path, fmt::format("holds {} {} of this render; use --resume to continue or --force to start over",
-                                      averageSamples(file.film), nounFor(averageSamples(file.film), "sample")));
+  if (!request.resume) {
+    if (request.force) return std::nullopt;
+    throw FileError(path,
+                    fmt::format("holds {} {} of this render", averageSamples(file.film),
+                                nounFor(averageSamples(file.film), "sample")),
+                    Remedy::resumeOrStartOver);
   }
   if (file.film.counts.ranges.empty()) return std::nullopt;
-  savedCounts_ = file.film.counts;
-  savedSamples_ = averageSamples(file.film);
+  return stored;
+}
+
+std::optional<StoredFilm> Checkpoint::load(const Provenance& expected, const render::FilmState& empty,
+                                           const StartPoint& start, const RenderLimits& limits, Observer& observer) {
+  removeLeftovers(request_.file);
+  std::optional<StoredFilm> stored = loadCheckpoint(request_, expected, empty, start, limits, observer);
+  if (stored) {
+    savedCounts_ = stored->file.film.counts;
+    savedSamples_ = averageSamples(stored->file.film);
+  }
   return stored;
 }
 

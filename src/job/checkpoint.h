@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checkpoint of a long render: a film file that is replaced as rendering proceeds, and from which it resumes.
+// The checkpoint of a long render: a film file that is replaced as rendering proceeds, and from which it resumes. One
+// process at a time uses it.
 #ifndef QUINTET_JOB_CHECKPOINT_H
 #define QUINTET_JOB_CHECKPOINT_H
 
 #include <cstdint>
 #include <optional>
 
+#include "base/file_lock.h"
 #include "base/stopwatch.h"
 #include "job/film_store.h"
 #include "job/observer.h"
@@ -15,12 +17,19 @@
 
 namespace quintet::job {
 
+// The film to resume from; empty if it does not exist or the request starts over. `expected`: provenance and arrays of this
+// render. Only reads the file, without a lock. Throws FileError if the file belongs to a different render, is damaged, or
+// would be lost.
+std::optional<StoredFilm> loadCheckpoint(const CheckpointRequest& request, const Provenance& expected,
+                                         const render::FilmState& empty, const StartPoint& start,
+                                         const RenderLimits& limits, Observer& observer);
+
 class Checkpoint {
  public:
-  explicit Checkpoint(CheckpointRequest request) : request_(std::move(request)) {}
+  // Locks the file until the destruction. Throws FileError if another process uses it.
+  explicit Checkpoint(CheckpointRequest request) : request_(std::move(request)), lock_(request_.file) {}
 
-  // The film to resume from; empty if it does not exist or the request starts over. `expected`: provenance and arrays of
-  // this render. Throws FileError if the file belongs to a different render, is damaged, or would be lost.
+  // Like loadCheckpoint(). Also removes temporary files that an interrupted save() left behind.
   std::optional<StoredFilm> load(const Provenance& expected, const render::FilmState& empty, const StartPoint& start,
                                  const RenderLimits& limits, Observer& observer);
 
@@ -38,6 +47,7 @@ class Checkpoint {
 
  private:
   const CheckpointRequest request_;
+  const FileLock lock_;
   const Stopwatch clock_;
   double lastSave_ = 0;  // on clock_
   std::uint64_t savedSamples_ = 0;

@@ -56,7 +56,7 @@ std::vector<std::string> notesOn(const FilmComparison& c) {
   if (c.provenance[0].seed == c.provenance[1].seed && shareSamples(c.films[0], c.films[1]))
     notes.push_back(
         fmt::format("both films contain the same samples of seed {}: their difference is rounding, not noise, and the "
-                    "test says little; render one of them with a different --seed",
+                    "test says little; render one of them with a different seed",
                     c.provenance[0].seed));
   if (c.samples(0) != c.samples(1))
     notes.push_back(
@@ -91,7 +91,7 @@ FilmComparison compareFilms(const std::filesystem::path& a, const std::filesyste
   std::vector<std::string> ignored = mayDiffer;
   ignored.insert(ignored.end(), {"seed", "planned samples"});
   requireSameIdentity(without(c.films[1].identity, ignored), without(c.films[0].identity, ignored), b,
-                      fmt::format("a different render than {}", a.string()), "--may-differ NAME allows a difference");
+                      fmt::format("a different render than {}", a.string()), "", Remedy::allowDifference);
   c.options = options;
   c.options.channels = c.provenance[0].transparent && c.provenance[1].transparent ? 4 : 3;
   try {

@@ -59,32 +59,35 @@ StoredFilm decodeStoredFilm(std::span<const std::byte> bytes, const std::filesys
 }
 
 void requireSameIdentity(const FilmFacts& found, const FilmFacts& expected, const std::filesystem::path& file,
-                         const std::string& owner, const std::string& advice) {
+                         const std::string& owner, const std::string& consequence, Remedy remedy) {
   const std::string differences = differencesText(found, expected);
   if (differences.empty()) return;
-  throw FileError(file, fmt::format("belongs to {} ({}){}{}", owner, differences, advice.empty() ? "" : "; ", advice));
+  throw FileError(
+      file, fmt::format("belongs to {} ({}){}{}", owner, differences, consequence.empty() ? "" : "; ", consequence),
+      remedy);
 }
 
 void rejectLoss(const std::filesystem::path& file, const FilmFacts& identity, const render::SampleCounts& samples) {
-  constexpr const char* kAdvice = "which would be lost; use --force to overwrite it";
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) return;
   render::FilmFile found;
   try {
     found = render::readFilm(file);
   } catch (const FileError& error) {
-    throw FileError(file, error.location(), error.problem() + "; use --force to overwrite it");
+    throw FileError(file, error.location(), error.problem(), Remedy::overwrite);
   }
-  requireSameIdentity(found.identity, identity, file, "a different render",
-                      "its samples would be lost; use --force to overwrite it");
+  requireSameIdentity(found.identity, identity, file, "a different render", "its samples would be lost",
+                      Remedy::overwrite);
   for (const SampleRange& held : found.film.counts.ranges)
     if (std::ranges::none_of(samples.ranges,
                              [&](const SampleRange& s) { return s.begin <= held.begin && held.end <= s.end; }))
-      throw FileError(file, fmt::format("holds samples {} of this render, {}", rangesText({held}), kAdvice));
+      throw FileError(file, fmt::format("holds samples {} of this render, which would be lost", rangesText({held})),
+                      Remedy::overwrite);
   const std::vector<std::uint32_t>& batches = found.film.counts.cellBatches;
   for (std::size_t c = 0; c < batches.size(); ++c)
     if (c >= samples.cellBatches.size() || samples.cellBatches[c] < batches[c])
-      throw FileError(file, fmt::format("holds {} of this render, {}", samplesText(found.film), kAdvice));
+      throw FileError(file, fmt::format("holds {} of this render, which would be lost", samplesText(found.film)),
+                      Remedy::overwrite);
 }
 
 std::string rangesText(const std::vector<SampleRange>& ranges) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "job/provenance.h"
 #include "render/film/film_file.h"
 
@@ -25,10 +26,11 @@ StoredFilm readStoredFilm(const std::filesystem::path& path);
 // `path`: for messages only.
 StoredFilm decodeStoredFilm(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
-// Throws FileError "belongs to `owner` (seed 3, expected 7); ADVICE" unless the identities agree. `owner`: "a different
-// render"; an empty advice is omitted.
+// Throws FileError "belongs to `owner` (seed 3, expected 7); CONSEQUENCE" unless the identities agree. `owner`: "a
+// different render"; an empty consequence is omitted.
 void requireSameIdentity(const render::FilmFacts& found, const render::FilmFacts& expected,
-                         const std::filesystem::path& file, const std::string& owner, const std::string& advice);
+                         const std::filesystem::path& file, const std::string& owner, const std::string& consequence,
+                         Remedy remedy);
 
 // Throws FileError if `file` is a film that holds samples which a film of this identity with these samples would not
 // hold: they would be lost. Sample counts of an adaptive render that are not known yet have no cells.

@@ -71,7 +71,8 @@ class Merger {
       provenance_ = provenance;
       return;
     }
-    requireSameIdentity(part.identity, whole_.identity, path, fmt::format("a different render than {}", first()), "");
+    requireSameIdentity(part.identity, whole_.identity, path, fmt::format("a different render than {}", first()), "",
+                        Remedy::none);
     if (provenance.adaptive)
       throw FileError(path,
                       fmt::format("is a film of an adaptive render, like {}: such a render has no parts, because all "

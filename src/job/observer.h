@@ -25,7 +25,8 @@ struct Progress {
   bool countsFrames = false;  // `samples` and `sampleLimit` count frames
   std::optional<std::uint64_t> sampleLimit;
   std::optional<double> secondLimit;
-  std::optional<double> error;  // stated relative error; infinite if unknown
+  std::optional<double> error;          // stated relative error; infinite if unknown
+  std::optional<double> targetSamples;  // probable `samples` when the target error is reached; unset if unknown
 
   double fraction() const;     // of the limit that is reached first, [0,1]; 0 without limits
   double secondsLeft() const;  // infinity if unknown

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/plural.h"
 #include "base/text.h"
 #include "gpu/error.h"
 #include "job/device_limits.h"
@@ -40,9 +41,10 @@ void checkMemory(const gpu::DeviceInfo& device, uvec2 size, std::uint64_t filmBy
   const std::uint64_t available = device.memoryBytes - device.memoryBytes / 16;
   const bool tooLargeBuffer = device.maxBufferBytes > 0 && pixels * kSumBytes > device.maxBufferBytes;
   if (needed <= available && !tooLargeBuffer) return;
-  throw MemoryError(fmt::format(
-      "an image of {}x{} requires {}, but {} has {} and buffers of at most {}; render a part of it with --region",
-      size.x, size.y, bytesText(needed), device.name, bytesText(device.memoryBytes), bytesText(device.maxBufferBytes)));
+  throw MemoryError(
+      fmt::format("an image of {}x{} requires {}, but {} has {} and buffers of at most {}", size.x, size.y,
+                  bytesText(needed), device.name, bytesText(device.memoryBytes), bytesText(device.maxBufferBytes)),
+      Remedy::renderRegion);
 }
 
 // Size of what is rendered, as far as it is known.
@@ -80,8 +82,8 @@ void describeScene(const LoadedScene& loaded, const ResolvedJob& job, Observer& 
   const std::string& name = job.scene.name;
   // Lecture programs bring their own lights.
   if (loaded.environment.isFallback && !job.accumulatesFrames())
-    observer.note(
-        fmt::format("{}: no lights in the scene, using the default environment (--env none disables it)", name));
+    observer.note(fmt::format(
+        "{}: no lights in the scene, using the default environment (the environment 'none' disables it)", name));
   if (loaded.scene.instances.empty()) observer.warning(fmt::format("{}: the scene has no surfaces", name));
   const scene::Report& report = loaded.scene.report;
   const std::size_t ignored = report.ignored.size() + report.extensionsIgnored.size();
@@ -109,6 +111,8 @@ RenderJob::RenderJob(Engine& engine, ResolvedJob job, Observer& observer, std::s
 
 void RenderJob::prepare(Observer& observer) {
   const RenderRequest& request = job_.request;
+  if (!request.checkpoint.file.empty())
+    checkpoint_.emplace(request.checkpoint);  // its lock fails before anything is loaded
   std::optional<SceneLoading> loading;
   if (!scene_) loading.emplace(job_.scene, request);  // continues while the driver starts
   gpu::Context& context = engine_.context();
@@ -131,7 +135,6 @@ void RenderJob::prepare(Observer& observer) {
   observer.stage("compiling shaders");
   link(compiling.get(), observer);
   provenance_ = makeProvenance();
-  if (!request.checkpoint.file.empty()) checkpoint_.emplace(request.checkpoint);
   linkedSeconds_ = clock_.seconds();
 }
 
@@ -147,6 +150,7 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   prepared->environmentHash = loaded.environmentHash;
   prepared->size = loaded.size;
   prepared->files = loaded.scene.report.files;
+  prepared->ignoredAnimations = loaded.scene.report.ignoredAnimations;
   prepared->instanceNames = scene::instanceNames(loaded.scene);
   prepared->materialNames = scene::materialNames(loaded.scene);
   prepared->seconds.load = loaded.seconds;
@@ -319,15 +323,26 @@ RenderResult RenderJob::run(const RenderLimits& limits, Observer& observer) {
     applyEdits(observer);
     if (job_.accumulatesFrames()) return runFrames(limits, observer);
     const FrameRequest& frames = job_.request.frames;
-    const bool several = frames.count.value_or(1) > 1;
-    if (several && !scene_->onDevice->animated())
-      throw UsageError("frames: nothing in the scene moves, so all frames would be the same");
-    if (several || frames.every) return runAnimation(limits, observer);
+    if (frames.lastFrame() > 0) requireAnimation();
+    if (frames.first || frames.lastFrame() > 0 || frames.every) return runAnimation(limits, observer);
     return runFilm(limits, observer);
   } catch (const gpu::TimeoutError& error) {
     observer.deviceHung(hangDiagnostic(job_.program, error.seconds()));
     throw;
   }
+}
+
+void RenderJob::requireAnimation() const {
+  if (scene_->onDevice->animated()) return;
+  const std::size_t ignored = scene_->ignoredAnimations;
+  const std::string cause = ignored == 0
+                                ? "no instance has keyframes"
+                                : fmt::format("{} {} not played, and no instance has keyframes",
+                                              counted(ignored, "glTF animation"), nounFor(ignored, "is", "are"));
+  throw UsageError(
+      fmt::format("{}: {}, so all frames would be the same; render one frame, or add keyframes in a .scene.toml file "
+                  "(docs/scenes.md)",
+                  job_.scene.name, cause));
 }
 
 RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observer) {
@@ -366,6 +381,7 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
       progress.samples = before + fraction * schedule.batchSamples();
       progress.seconds = elapsed();
       if (schedule.estimate()) progress.error = schedule.estimate()->upper;
+      progress.targetSamples = schedule.targetSamples();
       observer.progress(progress);
       abandoned = observer.stopRequested() == StopRequest::abandon;
       return !abandoned;
@@ -409,10 +425,11 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
 // Each frame is an image of its own; if only the last one is written, only that one is rendered.
 RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& observer) {
   const FrameRequest& frames = job_.request.frames;
-  const std::uint32_t count = frames.count.value_or(1);
   double seconds = 0;
+  bool missed = false;
   RenderResult last, earlier;
-  for (std::uint32_t frame = frames.every ? 0 : count - 1; frame < count; ++frame) {
+  for (std::uint32_t frame = frames.every ? frames.firstFrame() : frames.lastFrame(); frame <= frames.lastFrame();
+       ++frame) {
     scene_->onDevice->setFrame(static_cast<float>(frame));
     renderer_->restart();
     start_ = {};
@@ -422,11 +439,16 @@ RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& obser
     last.provenance.seconds = last.seconds.render = seconds;
     // The name of a single frame needs no number.
     if (scene_->onDevice->animated()) last.provenance.frame = frame;
-    const bool stop = observer.stopRequested() == StopRequest::finish && frame + 1 < count;
+    const bool isLast = frame == frames.lastFrame();
+    const bool stop = observer.stopRequested() == StopRequest::finish && !isLast;
     last.interrupted = last.provenance.interrupted = last.interrupted || stop;
+    last.earlierTargetMissed = missed;
     if (frames.every) observer.frame(last);
-    if (last.interrupted) break;
-    if (frame + 1 < count) addFrame(earlier, last);
+    if (last.interrupted || isLast) break;
+    addFrame(earlier, last);
+    // The caller sees only the last result, to which addFrame() adds what is not finite.
+    if (last.targetMissed) observer.warning(fmt::format("frame {}: {}", frame, resultWarnings(last).front()));
+    missed = missed || last.targetMissed;
   }
   addFrame(last, earlier);
   return last;
@@ -506,7 +528,7 @@ bool RenderJob::resume(const std::filesystem::path& file, Observer& observer) {
   if (job_.request.batches) limits.samples = std::numeric_limits<std::uint64_t>::max();  // startPoint() restricts it
   start_ = startPoint(limits, observer);
   const std::optional<StoredFilm> film =
-      Checkpoint(request).load(provenance_, renderer_->saveFilm(), start_, limits, observer);
+      loadCheckpoint(request, provenance_, renderer_->saveFilm(), start_, limits, observer);
   if (!film) return false;
   renderer_->restoreFilm(film->file.film);
   start_ = resumePoint(*film, provenance_, file, start_, observer);

@@ -34,6 +34,7 @@ struct PreparedScene {
   uvec2 size{0};                                          // of the whole image, pixels
   std::vector<std::filesystem::path> files;               // that the scene file names
   std::vector<std::string> instanceNames, materialNames;  // scene/model/names.h
+  std::size_t ignoredAnimations = 0;                      // of glTF files
   Timings seconds;
   std::unique_ptr<render::DeviceScene> onDevice;
 };
@@ -97,6 +98,7 @@ class RenderJob {
   scene::Scene& editedScene();  // a copy of the loaded scene, for edits
   void applyEdits(Observer& observer);
 
+  void requireAnimation() const;  // throws UsageError if nothing in the scene moves
   RenderResult runFilm(const RenderLimits& limits, Observer& observer);
   RenderResult runAnimation(const RenderLimits& limits, Observer& observer);
   RenderResult runFrames(const RenderLimits& limits, Observer& observer);

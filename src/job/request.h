@@ -44,11 +44,16 @@ struct RenderLimits {
 
 struct FrameRequest {
   std::optional<std::uint32_t> count;  // of an animated scene or of a program that accumulates its own frames
+  // Number of the first frame, if only a part of an animation is rendered; unset means the whole animation, from frame 0.
+  std::optional<std::uint32_t> first;
   // Number of frames for a program that accumulates, if `count` is unset; if both are, it runs until the time limit.
   std::optional<std::uint32_t> accumulated;
   bool every = false;  // an image of each frame, not only of the last one
 
   std::optional<std::uint32_t> accumulatedCount() const { return count ? count : accumulated; }
+  // Of an animated scene, both ends included.
+  std::uint32_t firstFrame() const { return first.value_or(0); }
+  std::uint32_t lastFrame() const { return firstFrame() + count.value_or(1) - 1; }
 };
 
 // Batches of render::kBatchSamples samples per pixel, both ends included, starting at 0.

@@ -16,6 +16,15 @@
 namespace quintet::job {
 namespace {
 
+[[noreturn]] void rejectFrames(const FrameRequest& frames, const program::Program& program) {
+  const std::uint32_t first = frames.firstFrame(), last = frames.lastFrame();
+  throw UsageError(fmt::format(
+      "{}: the program '{}' accumulates, so each frame depends on all frames before it and on their total number; "
+      "render "
+      "all frames in one process",
+      first == last ? fmt::format("frame {}", first) : fmt::format("frames {}–{}", first, last), program.name));
+}
+
 void checkLimits(const RenderRequest& request, const program::Program& program) {
   const RenderLimits& limits = request.limits;
   const bool accumulates = program.accumulation == program::Accumulation::program;
@@ -30,6 +39,7 @@ void checkLimits(const RenderRequest& request, const program::Program& program) 
   if (accumulates && (!request.checkpoint.file.empty() || !request.film.empty()))
     throw UsageError(fmt::format(
         "the program '{}' averages its samples itself, so checkpoints and films are not available", program.name));
+  if (accumulates && request.frames.first) rejectFrames(request.frames, program);
   if (!request.batches) return;
   if (limits.seconds || limits.error || limits.adaptive || !limits.samples)
     throw UsageError(

@@ -25,15 +25,12 @@ CheckedProgram compileAndCheck(const program::Program& program, const shader::Co
 }
 
 Diagnostic hangDiagnostic(const program::Program& program, double seconds) {
-  return {
-      Severity::error,
-      program.path(program.rayGeneration),
-      0,
-      0,
-      "HANG",
-      fmt::format("a launch did not end within {:g} s, possibly because of an infinite loop in a shader; use --timeout "
-                  "to allow more time",
-                  seconds)};
+  return {Severity::error,
+          program.path(program.rayGeneration),
+          0,
+          0,
+          "HANG",
+          fmt::format("a launch did not end within {:g} s, possibly because of an infinite loop in a shader", seconds)};
 }
 
 }  // namespace quintet::job

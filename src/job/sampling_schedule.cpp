@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 namespace quintet::job {
@@ -59,6 +60,12 @@ bool isComplete(const render::FilmState& film, const std::vector<std::uint32_t>&
   return planNextBatches(film.region, counts, estimate, limits).empty();
 }
 
+std::optional<double> expectedSamples(const render::ErrorEstimate& estimate, double target, double samples) {
+  if (!estimate.known() || !std::isfinite(estimate.tiles)) return std::nullopt;
+  const double ratio = std::max(estimate.upper, 0.5 * estimate.tiles) / target;  // ErrorEstimate::reaches
+  return samples * ratio * ratio;
+}
+
 bool targetUnreachable(const render::ErrorEstimate& estimate, const RenderLimits& limits) {
   return limits.error && !limits.samples && !limits.seconds && !estimate.known();
 }
@@ -84,6 +91,12 @@ std::optional<std::uint64_t> SamplingSchedule::sampleLimit() const {
 void SamplingSchedule::estimateError() {
   renderer_.finish();
   estimate_ = renderer_.film().estimateError();
+  estimatedAt_ = samples_;
+}
+
+std::optional<double> SamplingSchedule::targetSamples() const {
+  if (!limits_.error || !estimate_) return std::nullopt;
+  return expectedSamples(*estimate_, *limits_.error, estimatedAt_);
 }
 
 bool SamplingSchedule::next() {

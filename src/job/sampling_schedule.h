@@ -39,6 +39,8 @@ class SamplingSchedule {
   std::optional<std::uint64_t> sampleLimit() const;
   const std::optional<render::ErrorEstimate>& estimate() const { return estimate_; }  // the latest one
   bool targetReached() const { return targetReached_; }
+  // expectedSamples() by the latest estimate; unset without target error.
+  std::optional<double> targetSamples() const;
   // Batches per cell that adaptive sampling has decided on. Film and plan determine how the render continues.
   const std::vector<std::uint32_t>& plan() const { return plan_; }
   void estimateError();  // waits for the device
@@ -57,7 +59,12 @@ class SamplingSchedule {
   double batchSamples_ = 0;
   bool targetReached_ = false;
   std::optional<render::ErrorEstimate> estimate_;
+  double estimatedAt_ = 0;  // samples per pixel of estimate_
 };
+
+// Samples per pixel after which the target error will probably be reached: the error falls with the square root of their
+// number. `samples`: of the estimate. Unset if the error is unknown.
+std::optional<double> expectedSamples(const render::ErrorEstimate& estimate, double target, double samples);
 
 // Some cell has fewer batches than planned.
 bool hasRemainingBatches(const std::vector<std::uint32_t>& plan, const render::SampleCounts& counts);

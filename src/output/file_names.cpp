@@ -15,7 +15,7 @@ constexpr std::uint32_t kFrameDigits = 4;
 constexpr std::uint32_t kMaxDigits = 9;
 
 struct FramePattern {
-  std::size_t begin = 0;  // of "%04d"
+  std::size_t begin = 0;  // of "%04d" or "####"
   std::size_t end = 0;
   std::uint32_t digits = 0;
 };
@@ -23,8 +23,13 @@ struct FramePattern {
 bool isDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 std::optional<FramePattern> findPattern(const std::string& name, std::size_t from) {
-  for (std::size_t at = name.find('%', from); at != name.npos; at = name.find('%', at + 1)) {
+  for (std::size_t at = name.find_first_of("%#", from); at != name.npos; at = name.find_first_of("%#", at + 1)) {
     FramePattern pattern{at, at + 1, 0};
+    if (name[at] == '#') {
+      pattern.end = std::min(name.find_first_not_of('#', at), name.size());
+      pattern.digits = std::min(static_cast<std::uint32_t>(pattern.end - at), kMaxDigits);
+      return pattern;
+    }
     while (pattern.end < name.size() && isDigit(name[pattern.end]))
       pattern.digits =
           std::min(pattern.digits * 10 + static_cast<std::uint32_t>(name[pattern.end++] - '0'), kMaxDigits);

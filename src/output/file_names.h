@@ -10,10 +10,11 @@
 
 namespace quintet::output {
 
-// "name.%04d.png": the file name contains a pattern for the frame number, %d or %0Nd. Throws UsageError for two patterns.
+// "name####.png", "name.%04d.png": the file name contains a pattern for the frame number: one or more #, as many as the
+// number has digits at least, or %d, or %0Nd. Throws UsageError for two patterns.
 bool hasFramePattern(const std::filesystem::path& file);
 
-// "out.png" with output "normal" and frame 7 becomes "out.normal.0007.png"; "a_%03d.png" becomes "a_normal_007.png".
+// "out.png" with output "normal" and frame 7 becomes "out.normal.0007.png"; "a_###.png" becomes "a_normal_007.png".
 // An empty `output` adds no name. Without a frame no number is added, and a pattern stays as it is.
 std::filesystem::path fileName(const std::filesystem::path& file, const std::string& output,
                                std::optional<std::uint64_t> frame);

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/suggestion.h"
+#include "output/file_names.h"
 
 namespace quintet::output {
 namespace {
@@ -28,10 +29,32 @@ FileKind checkRequest(const OutputRequest& request) {
     throw UsageError(fmt::format("{}: only OpenEXR files have layers; use the extension .exr", request.file.string()));
   if (request.exr && kind != FileKind::exr)
     throw UsageError(fmt::format("{}: OpenEXR options require the extension .exr", request.file.string()));
-  if (request.file == "-" && (request.allOutputs || request.everyFrame))
-    throw UsageError("standard output takes one image, not several files");
-  checkWritable(request.file);
+  if (request.pngBits && kind != FileKind::png)
+    throw UsageError(fmt::format("{}: the number of bits applies to PNG only", request.file.string()));
+  if (request.pngBits && *request.pngBits != 8 && *request.pngBits != 16)
+    throw UsageError(fmt::format("{} bits per channel: PNG files have 8 or 16", *request.pngBits));
+  if (isStandardOutput(request.file)) {
+    if (kind == FileKind::film) throw UsageError("standard output takes an image, not a film");
+    if (request.allOutputs || request.everyFrame)
+      throw UsageError("standard output takes one image, not several files");
+  }
+  checkWritable(isStandardOutput(request.file) ? "-" : request.file);
   return kind;
+}
+
+// Files that the plan writes are writable. Frames share a folder, so only files that exist can fail after the first.
+void checkFiles(const OutputPlan& plan, const std::vector<std::string>& names, const job::FrameRequest& frames) {
+  const OutputRequest& request = plan.request;
+  if (plan.kind == FileKind::film || isStandardOutput(request.file)) return;
+  if (!request.allOutputs && !request.everyFrame) return;
+  const std::uint64_t first = frames.firstFrame(), last = request.everyFrame ? frames.lastFrame() : first;
+  for (const std::size_t output : plan.outputs)
+    for (std::uint64_t frame = first; frame <= last; ++frame) {
+      const std::filesystem::path file = fileName(request.file, request.allOutputs ? names[output] : "",
+                                                  request.everyFrame ? std::optional(frame) : std::nullopt);
+      std::error_code ignored;
+      if (frame == first || std::filesystem::exists(file, ignored)) checkWritable(file);
+    }
 }
 
 std::vector<std::size_t> selectOutputs(const OutputRequest& request, const program::Program& program) {
@@ -50,8 +73,7 @@ std::vector<std::size_t> selectOutputs(const OutputRequest& request, const progr
                                  program.name, suggestion(request.output, names), fmt::join(names, ", ")));
   const auto index = static_cast<std::size_t>(found - names.begin());
   if (counts(index))
-    throw UsageError(fmt::format("output '{}' counts ids and is not an image; select it as a layer: --aov {}",
-                                 request.output, request.output));
+    throw UsageError(fmt::format("output '{}' counts ids and is not an image", request.output), Remedy::selectLayer);
   return {index};
 }
 
@@ -74,6 +96,10 @@ FileKind fileKind(const std::filesystem::path& file) {
   throw UsageError(fmt::format("{}: the extension must be .png, .exr, .hdr or .qfilm", file.string()));
 }
 
+bool isStandardOutput(const std::filesystem::path& file) {
+  return file == "-" || (!file.has_parent_path() && file.stem() == "-");
+}
+
 job::OutputNotes OutputPlan::notes() const {
   job::OutputNotes notes;
   notes.exposure = request.exposure.value_or(0.0);
@@ -84,7 +110,7 @@ job::OutputNotes OutputPlan::notes() const {
   return notes;
 }
 
-OutputPlan planOutputs(const OutputRequest& request, const program::Program& program) {
+OutputPlan planOutputs(const OutputRequest& request, const program::Program& program, const job::FrameRequest& frames) {
   OutputPlan plan;
   plan.request = request;
   plan.kind = checkRequest(request);
@@ -98,6 +124,7 @@ OutputPlan planOutputs(const OutputRequest& request, const program::Program& pro
     if (description.optional && std::ranges::find(plan.optionalOutputs, description.name) == plan.optionalOutputs.end())
       plan.optionalOutputs.push_back(description.name);
   }
+  checkFiles(plan, program::outputNames(program), frames);
   return plan;
 }
 
@@ -114,7 +141,7 @@ OutputPlan planOutputs(const OutputRequest& request, const job::RenderResult& me
   plan.request = request;
   plan.kind = fileKind(request.file);
   plan.request.allOutputs = request.allOutputs || p.allOutputs;
-  if (plan.request.allOutputs && request.file == "-")
+  if (plan.request.allOutputs && isStandardOutput(request.file))
     throw UsageError("the parts were rendered with all outputs, but standard output takes one image");
   if (!plan.request.exposure) plan.request.exposure = p.exposure.value_or(0.0);
   if (!plan.request.toneMap) plan.request.toneMap = render::toneMapByName(p.toneMap);
@@ -129,6 +156,9 @@ OutputPlan planOutputs(const OutputRequest& request, const job::RenderResult& me
     if ((i == 0 || plan.request.allOutputs) && merged.film->stores(i) &&
         planes[i].pixel != program::OutputPixel::coverage)
       plan.outputs.push_back(i);
+  std::vector<std::string> names;
+  for (const render::FilmPlane& plane : planes) names.push_back(plane.name);
+  checkFiles(plan, names, {});
   return plan;
 }
 

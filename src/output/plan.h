@@ -24,19 +24,23 @@ enum class FileKind { png, exr, hdr, film };
 // By the extension, in any case; "-" and devices without extension are PNG. Throws UsageError.
 FileKind fileKind(const std::filesystem::path& file);
 
+// "-" means PNG on standard output; "-.png", "-.exr" and "-.hdr" name the format.
+bool isStandardOutput(const std::filesystem::path& file);
+
 struct ExrFormat {
   io::ExrType colors = io::ExrType::half;  // data are always floats
   io::ExrOptions options;
 };
 
 struct OutputRequest {
-  std::filesystem::path file;              // "-": PNG on standard output
+  std::filesystem::path file;              // or standard output: isStandardOutput()
   std::string output;                      // of the program; empty means the first
   bool allOutputs = false;                 // one file for each output
-  bool everyFrame = false;                 // one file for each frame
+  bool everyFrame = false;                 // the names of files contain the frame number (file_names.h)
   std::vector<std::string> layers;         // names of layers besides the image, or "all"
   std::optional<double> exposure;          // stops; PNG only. Default: 0, or as stored in a film
   std::optional<render::ToneMap> toneMap;  // PNG only. Default: by the kind of output, or as stored in a film
+  std::optional<unsigned> pngBits;         // 8 or 16 per channel; PNG only. Default: 8
   std::optional<ExrFormat> exr;            // only for OpenEXR files
 };
 
@@ -52,9 +56,10 @@ struct OutputPlan {
   job::OutputNotes notes() const;
 };
 
-// For a program. Throws UsageError for unknown names and for options that exclude each other, FileError if the file cannot
-// be written.
-OutputPlan planOutputs(const OutputRequest& request, const program::Program& program);
+// For a program. Throws UsageError for unknown names and for options that exclude each other, FileError if one of the files
+// cannot be written: of each output and, with `everyFrame`, of each frame.
+OutputPlan planOutputs(const OutputRequest& request, const program::Program& program,
+                       const job::FrameRequest& frames = {});
 
 // For a merged film. What the request leaves open is as the render would have written it. `film`: name of the first part, for
 // messages. Throws also FileError if the layers that the film stores are invalid.

@@ -75,6 +75,16 @@ std::string resultJson(const job::RenderResult& result, const std::vector<Writte
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string errorJson(const std::string& message, const FileError* file, int exitStatus) {
+  const auto known = [](const std::string& text) { return text.empty() ? Json() : Json(text); };
+  const Json json{{"error",
+                   {{"message", message},
+                    {"file", file ? known(file->file().string()) : Json()},
+                    {"location", file ? known(file->location()) : Json()},
+                    {"exitStatus", exitStatus}}}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 std::string resultSummary(const job::RenderResult& result, const std::vector<WrittenFile>& files) {
   const job::Provenance& p = result.provenance;
   const std::string file = files.empty() ? "" : files.back().path.string();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "job/result.h"
 #include "output/write.h"
 
@@ -13,6 +14,10 @@ namespace quintet::output {
 
 // One object on one line. `files`: written by the command, in their order; `totalSeconds`: of the command so far.
 std::string resultJson(const job::RenderResult& result, const std::vector<WrittenFile>& files, double totalSeconds);
+
+// A failed command as one object on one line: {"error": {"message", "file", "location", "exitStatus"}}. `file`: the error if
+// it is about a file, else null; then the file and its location are null, as is a location that is unknown.
+std::string errorJson(const std::string& message, const FileError* file, int exitStatus);
 
 // "out.png: 1280x720, 64 samples per pixel, error 1.2 %, 12.3 s, 4.56 Mrays/s"
 std::string resultSummary(const job::RenderResult& result, const std::vector<WrittenFile>& files);

@@ -32,7 +32,7 @@ std::vector<std::byte> encodePng(const OutputPlan& plan, const job::RenderResult
   provenance.toneMap = render::toneMapNames()[static_cast<std::size_t>(toneMap)];
   provenance.exposure = exposure;
   return io::encodePng(render::toDisplay(result.film->image(output), toneMap, static_cast<float>(exposure),
-                                         !result.provenance.transparent),
+                                         !result.provenance.transparent, plan.request.pngBits.value_or(8)),
                        job::metadataOf(provenance));
 }
 
@@ -62,18 +62,20 @@ std::vector<std::byte> encodeExr(const OutputPlan& plan, const job::RenderResult
 std::vector<WrittenFile> writeOutputs(const OutputPlan& plan, const job::RenderResult& result,
                                       job::Observer& observer) {
   const std::filesystem::path& file = plan.request.file;
-  observer.stage("writing " + file.string());
+  const bool toStandardOutput = isStandardOutput(file);
+  observer.stage("writing " + (toStandardOutput ? "standard output" : file.string()));
   if (plan.kind == FileKind::film) {
     observer.write(file, render::encodeFilm(job::filmFileOf(result)));
     return {{file, ""}};
   }
-  const std::optional<std::uint64_t> frame =
-      plan.request.everyFrame ? result.provenance.frame : std::optional<std::uint64_t>();
+  std::optional<std::uint64_t> frame;
+  if (plan.request.everyFrame) frame = result.provenance.frame;
+  if (plan.request.everyFrame && !frame && hasFramePattern(file)) frame = 0;
   std::vector<WrittenFile> written;
   for (const std::size_t output : plan.outputs) {
     const render::FilmPlane& plane = result.film->planes()[output];
     WrittenFile& entry = written.emplace_back();
-    entry.path = fileName(file, plan.request.allOutputs ? plane.name : "", frame);
+    entry.path = toStandardOutput ? "-" : fileName(file, plan.request.allOutputs ? plane.name : "", frame);
     if (plan.kind == FileKind::png) {
       entry.toneMap = render::toneMapNames()[static_cast<std::size_t>(toneMapOf(plan, plane))];
       observer.write(entry.path, encodePng(plan, result, output));
@@ -84,6 +86,13 @@ std::vector<WrittenFile> writeOutputs(const OutputPlan& plan, const job::RenderR
     }
   }
   return written;
+}
+
+void addWritten(std::vector<WrittenFile>& files, const std::vector<WrittenFile>& more) {
+  for (const WrittenFile& file : more) {
+    std::erase_if(files, [&](const WrittenFile& known) { return known.path == file.path; });
+    files.push_back(file);
+  }
 }
 
 void checkFilmLoss(const OutputPlan& plan, const job::RenderResult& result) {

@@ -14,13 +14,16 @@
 namespace quintet::output {
 
 struct WrittenFile {
-  std::filesystem::path path;
-  std::string toneMap;  // empty for linear values and films
+  std::filesystem::path path;  // "-": standard output
+  std::string toneMap;         // empty for linear values and films
 };
 
-// Each file replaces an existing one in one step. A frame number goes into the names if the plan has a file for each frame
-// and the result is a frame. Throws FileError.
+// Each file replaces an existing one in one step. With OutputRequest::everyFrame, names get the number of the result's
+// frame; a result that is not a frame has number 0 if the name has a pattern, and no number otherwise. Throws FileError.
 std::vector<WrittenFile> writeOutputs(const OutputPlan& plan, const job::RenderResult& result, job::Observer& observer);
+
+// Adds the files of one more frame. A file that was written again is listed once.
+void addWritten(std::vector<WrittenFile>& files, const std::vector<WrittenFile>& more);
 
 // Throws FileError if the plan's film would lose samples that its file holds (job::rejectLoss).
 void checkFilmLoss(const OutputPlan& plan, const job::RenderResult& result);

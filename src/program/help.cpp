@@ -77,18 +77,18 @@ std::size_t helpColumn(const Program& program) {
 std::string describeAsText(const Program& program, std::size_t width) {
   const std::size_t column = helpColumn(program);
   std::string text = twoColumns("", program.name + ": " + program.description, 0, width) + "\n";
-  if (program.accumulation == Accumulation::program) text += "Renders frame by frame: --frames N.\n\n";
-  text += "Parameters (--set NAME=VALUE):\n";
+  if (program.accumulation == Accumulation::program) text += "Renders frame by frame.\n\n";
+  text += "Parameters:\n";
   if (program.parameters.empty()) text += "  none\n";
   for (const Parameter& parameter : program.parameters) {
     text += twoColumns("  " + parameter.name, parameter.help, column, width);
     text += twoColumns("", parameterFacts(parameter), column, width);
   }
-  text += "\nOutputs (--output NAME, --all-outputs, --aov NAMES):\n";
+  text += "\nOutputs:\n";
   for (const Output& output : program.outputs)
     text += twoColumns("  " + output.name, output.help.empty() ? std::string(outputKindName(output.kind)) : output.help,
                        column, width);
-  return text + "\nSee 'quintet run --help' for the options of all programs.\n";
+  return text;
 }
 
 std::string describeAsJson(const Program& program) {

@@ -145,7 +145,10 @@ TEST_F(Check, ErrorsInDescriptions) {
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.err, ::testing::ContainsRegex("bad/program\\.toml:6: error: .*'skyy\\.rmiss'.*'sky\\.rmiss'"));
   EXPECT_THAT(result.err, HasSubstr("    6 | miss = \"skyy.rmiss\"\n"));
-  const auto array = nlohmann::json::parse(quintet({"run", "bad", "--json"}).out);
+  const auto error = nlohmann::json::parse(quintet({"run", "bad", "--json"}).out).at("error");
+  EXPECT_EQ(error["file"], "bad/program.toml");
+  EXPECT_EQ(error["location"], "line 6");
+  const auto array = nlohmann::json::parse(quintet({"check", "bad", "--json"}).out);
   EXPECT_EQ(array[0]["file"], "bad/program.toml");
   EXPECT_EQ(array[0]["line"], 6);
   const auto scene = nlohmann::json::parse(quintet({"check", "good", "none.glb", "--json"}).out);

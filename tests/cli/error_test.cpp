@@ -37,12 +37,13 @@ class StatedError : public CliTest {
     return arguments;
   }
   // Renders and returns the output of --json.
-  nlohmann::json render(std::vector<std::string> arguments) {
+  nlohmann::json render(std::vector<std::string> arguments, int status = 0) {
     arguments.insert(arguments.end(), {"-q", "--json"});
     const RunResult result = quintet(arguments);
-    EXPECT_EQ(result.status, 0) << result.err;
-    return result.status == 0 ? nlohmann::json::parse(result.out) : nlohmann::json();
+    EXPECT_EQ(result.status, status) << result.err;
+    return result.status == status ? nlohmann::json::parse(result.out) : nlohmann::json();
   }
+  static constexpr int kNotReached = 3;
   // The value of a metadata key; empty if there is none.
   std::string metadata(const std::string& name, const std::string& key) const {
     for (const auto& [k, text] : io::readMetadata(readFile(folder_ / name), name))
@@ -120,7 +121,8 @@ TEST_F(StatedError, IsInMetadataJsonAndSummary) {
 TEST_F(StatedError, WarnsIfTheTargetIsNotReached) {
   const RunResult result =
       quintet(command({"--spp", "12", "--until-error", "0.0001", "-o", "out.png", "-q", "--json"}));
-  ASSERT_EQ(result.status, 0) << result.err;
+  ASSERT_EQ(result.status, kNotReached) << result.err;
+  EXPECT_EQ(readImage("out.png").width, 64u);
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json.at("error").at("target"), 0.0001);
   EXPECT_EQ(json.at("error").at("reached"), false);
@@ -133,11 +135,12 @@ TEST_F(StatedError, WarnsIfTheTargetIsNotReached) {
   std::snprintf(percent, sizeof percent, " %.2g %%", 100.0 * json.at("error").at("image").get<double>());
   EXPECT_THAT(warning, HasSubstr(percent));
   // The time limit stops the render.
-  const nlohmann::json late = render(command({"--time", "0.01", "--until-error", "0.0001", "-o", "out.png"}));
+  const nlohmann::json late =
+      render(command({"--time", "0.01", "--until-error", "0.0001", "-o", "out.png"}), kNotReached);
   EXPECT_EQ(late.at("error").at("reached"), false);
   EXPECT_EQ(late.at("warnings").size(), 1u);
   // The error of one batch is unknown.
-  const nlohmann::json one = render(command({"--spp", "4", "--until-error", "0.5", "-o", "out.png"}));
+  const nlohmann::json one = render(command({"--spp", "4", "--until-error", "0.5", "-o", "out.png"}), kNotReached);
   EXPECT_EQ(one.at("error"), nlohmann::json::parse(R"({"target": 0.5, "reached": false})"));
   EXPECT_THAT(one.at("warnings").at(0), HasSubstr("unknown"));
 }
@@ -155,7 +158,7 @@ TEST_F(StatedError, ReachedWithTheLastSample) {
 }
 
 TEST_F(StatedError, KeepsTheCheckpointUntilTheTargetIsReached) {
-  render(command({"--spp", "12", "--until-error", "0.0001", "-o", "out.png", "--checkpoint", "1000"}));
+  render(command({"--spp", "12", "--until-error", "0.0001", "-o", "out.png", "--checkpoint", "1000"}), kNotReached);
   ASSERT_TRUE(exists(kCheckpoint));
   EXPECT_EQ(render::readFilm(folder_ / kCheckpoint).film.counts.samples(), 12u);
   const io::Image before = readImage("out.png");
@@ -198,6 +201,7 @@ TEST_F(StatedError, IsInTheProgressBar) {
       folder_.path());
   ASSERT_TRUE(process.waitFor("Mrays/s  error "));
   ASSERT_TRUE(process.waitForNext(" %  "));
+  ASSERT_TRUE(process.waitForNext(" left"));  // by the error, because there is no other limit
   process.signal(SIGINT);
   const RunResult result = process.finish();
   EXPECT_EQ(result.status, 130) << result.err;
@@ -265,7 +269,7 @@ TEST_F(StatedError, StopsIfTheErrorCannotBeKnown) {
     std::vector<std::string> arguments{"render",        "scene.gltf", "--env", "1e10,1e10,1e10", "--size", "32x32",
                                        "--until-error", "0.1",        "-o",    "out.exr"};
     if (isAdaptive) arguments.push_back("--adaptive");
-    const nlohmann::json json = render(arguments);
+    const nlohmann::json json = render(arguments, kNotReached);
     EXPECT_EQ(json.at("error").at("reached"), false);
     EXPECT_THAT(json.at("warnings").at(0), HasSubstr("unknown"));
     EXPECT_LE(json.at("samples"), 64);

@@ -165,6 +165,20 @@ void expectError(const RunResult& result, int status, const std::vector<std::str
     EXPECT_NE(result.err.find(part), std::string::npos) << "'" << part << "' not found in: " << result.err;
 }
 
+nlohmann::json expectJsonError(const RunResult& result, int status, const std::vector<std::string>& parts) {
+  expectError({result.status, "", result.err}, status, parts);
+  const nlohmann::json json = nlohmann::json::parse(result.out, nullptr, false);
+  if (!json.is_object() || !json.contains("error")) {
+    ADD_FAILURE() << "no error on standard output: " << result.out;
+    return {};
+  }
+  const nlohmann::json& error = json.at("error");
+  EXPECT_EQ(error.at("exitStatus"), status);
+  EXPECT_EQ("quintet: " + error.at("message").get<std::string>() + "\n", result.err);
+  EXPECT_EQ(error.size(), 4u);
+  return error;
+}
+
 io::Image CliTest::readImage(const std::string& name) const { return io::readImage(folder_ / name); }
 
 std::string CliTest::timeForOneBatch(const std::string& checkpoint) const {

@@ -45,6 +45,9 @@ std::vector<std::byte> pngWithStatedSize(std::uint32_t width, std::uint32_t heig
 // of `parts`.
 void expectError(const RunResult& result, int status, const std::vector<std::string>& parts);
 
+// The same for a command with --json, whose standard output is the object {"error": …}. Returns its value.
+nlohmann::json expectJsonError(const RunResult& result, int status, const std::vector<std::string>& parts);
+
 // A folder that contains scene.gltf.
 class CliTest : public ::testing::Test {
  protected:

@@ -107,12 +107,14 @@ TEST_F(Frames, WatchRestartsTheAnimation) {
 }
 
 // A program without accumulation of its own, and a quad that moves out of the image.
+constexpr const char* kMovingQuad =
+    "[[file]]\nname = \"quad\"\npath = \"scene.gltf\"\n"
+    "[[instance]]\nof = \"quad\"\n"
+    "keyframes = [{ frame = 0 }, { frame = 2, translate = [8.0, 0.0, 0.0] }]\n"
+    "[[camera]]\nlook_from = [0, 0, 4]\nlook_at = [0, 0, 0]\n";
+
 TEST_F(Frames, AnimatedScenes) {
-  write(folder_ / "moving.scene.toml",
-        "[[file]]\nname = \"quad\"\npath = \"scene.gltf\"\n"
-        "[[instance]]\nof = \"quad\"\n"
-        "keyframes = [{ frame = 0 }, { frame = 2, translate = [8.0, 0.0, 0.0] }]\n"
-        "[[camera]]\nlook_from = [0, 0, 4]\nlook_at = [0, 0, 0]\n");
+  write(folder_ / "moving.scene.toml", kMovingQuad);
   const std::vector<std::string> run{"run",   "normals", "moving.scene.toml", "--size", "16x12", "--spp", "4", "-q",
                                      "--env", "none"};
   auto all = run, last = run;
@@ -125,6 +127,67 @@ TEST_F(Frames, AnimatedScenes) {
   EXPECT_NE(readImage("m.1.exr").data, readImage("m.0.exr").data);
   ASSERT_EQ(quintet(last).status, 0);
   EXPECT_EQ(readImage("last.exr").data, readImage("m.2.exr").data);
+}
+
+// The frames of an animation that is split over processes are those of the whole one.
+TEST_F(Frames, PartsOfAnAnimation) {
+  write(folder_ / "moving.scene.toml", kMovingQuad);
+  const auto run = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments{"run",   "normals", "moving.scene.toml", "--size", "16x12", "--spp", "4", "-q",
+                                       "--env", "none"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return quintet(arguments);
+  };
+  const RunResult whole = run({"--frames", "3", "-o", "w####.png", "--json"});
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  EXPECT_EQ(nlohmann::json::parse(whole.out)["files"],
+            (nlohmann::json{"w0000.png", "w0001.png", "w0002.png"}));  // not only the last one
+  const RunResult part = run({"--frames", "1-2", "-o", "p##.png", "--json"});
+  ASSERT_EQ(part.status, 0) << part.err;
+  EXPECT_EQ(nlohmann::json::parse(part.out)["files"], (nlohmann::json{"p01.png", "p02.png"}));
+  ASSERT_EQ(run({"--frame", "1", "-o", "single.png"}).status, 0);
+  ASSERT_EQ(run({"--frame", "2", "-o", "s#.png"}).status, 0);
+  EXPECT_EQ(readImage("p01.png").data, readImage("w0001.png").data);
+  EXPECT_EQ(readImage("p02.png").data, readImage("w0002.png").data);
+  EXPECT_EQ(readImage("single.png").data, readImage("w0001.png").data);
+  EXPECT_EQ(readImage("s2.png").data, readImage("w0002.png").data);
+  EXPECT_NE(readImage("w0001.png").data, readImage("w0002.png").data);
+  // A program that accumulates needs the frames before.
+  expectError(runCount({"--frames", "1-2"}), 2, {"frames 1–2", "'count'", "accumulates"});
+  expectError(runCount({"--frame", "0"}), 2, {"accumulates"});
+  for (const char* range : {"2-1", "1-", "-1", "1-2-3", "a-b", "0-1000000"})
+    expectError(run({"--frames", range}), 2, {"--frames", range});
+  expectError(run({"--frames", "1-2", "--frame", "3"}), 2, {"--frame ", "--frames"});
+}
+
+// A pattern in the name is replaced also without frames, and by `render`.
+TEST_F(Frames, PatternOfAStillImage) {
+  for (const char* command : {"run", "render"}) {
+    std::vector<std::string> arguments{command, "--size", "8x8", "--spp", "1", "-q", "-o", "f####.png"};
+    if (std::string(command) == "run")
+      arguments.insert(arguments.begin() + 1, {"normals", "scene.gltf"});
+    else
+      arguments.insert(arguments.begin() + 1, {"scene.gltf", "--program", "normals"});
+    const RunResult result = quintet(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(fileNames(), (std::vector<std::string>{"count.rt.glsl", "f0000.png", "scene.gltf"})) << command;
+    std::filesystem::remove(folder_ / "f0000.png");
+  }
+  // The default name is no pattern.
+  std::filesystem::rename(folder_ / "scene.gltf", folder_ / "a#b#.gltf");
+  ASSERT_EQ(quintet({"render", "a#b#.gltf", "--program", "normals", "--size", "8x8", "--spp", "1", "-q"}).status, 0);
+  EXPECT_EQ(readImage("a#b#.png").width, 8u);
+}
+
+// Animations of glTF files are not played, and the message says so.
+TEST_F(Frames, GltfAnimations) {
+  nlohmann::json json = quadScene();
+  json["animations"] = nlohmann::json::parse(R"([{"channels": [], "samplers": []}])");
+  write(folder_ / "fox.gltf", json.dump());
+  expectError(quintet({"run", "normals", "fox.gltf", "--frames", "4", "--size", "8x8", "-q", "--env", "none"}), 2,
+              {"fox.gltf: 1 glTF animation is not played", "keyframes", "scenes.md"});
+  expectError(quintet({"run", "normals", "scene.gltf", "--frames", "4", "--size", "8x8", "-q", "--env", "none"}), 2,
+              {"scene.gltf: no instance has keyframes"});
 }
 
 // A scene without animation has one frame, whose name gets no number.

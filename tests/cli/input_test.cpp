@@ -139,5 +139,28 @@ TEST_F(Input, ControlCharactersOfAFileAreNotPrinted) {
   EXPECT_EQ((result.out + result.err).find('\x1b'), std::string::npos);
 }
 
+// With --json, each command prints its error as an object.
+TEST_F(Input, ErrorsAsJson) {
+  nlohmann::json json = quadScene();
+  json["nodes"][0]["mesh"] = 5;
+  write(folder_ / "bad.gltf", json.dump());
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"render", "bad.gltf", "-o", "out.png"},
+                                                  {"run", "normals", "bad.gltf", "-o", "out.png"},
+                                                  {"info", "bad.gltf"},
+                                                  {"bench", "bad.gltf"}}) {
+    std::vector<std::string> arguments = command;
+    arguments.push_back("--json");
+    const nlohmann::json error = expectJsonError(quintet(arguments), 1, {"bad.gltf: /nodes/0/mesh"});
+    EXPECT_EQ(error.at("file"), "bad.gltf") << command[0];
+    EXPECT_EQ(error.at("location"), "/nodes/0/mesh") << command[0];
+  }
+  EXPECT_EQ(expectJsonError(quintet({"compare", "none.png", "b.png", "--json"}), 1, {"none.png"})["location"], nullptr);
+  EXPECT_EQ(expectJsonError(quintet({"merge", "none.qfilm", "-o", "a.png", "--json"}), 1, {"none.qfilm"})["file"],
+            "none.qfilm");
+  EXPECT_EQ(expectJsonError(quintet({"explain", "Q1O1", "--json"}), 2, {"'Q101'"})["file"], nullptr);
+  EXPECT_EQ(expectJsonError(quintet({"check", "--json"}), 2, {"program"})["file"], nullptr);
+  EXPECT_EQ(expectJsonError(quintet({"render", "--json", "--sice", "3x3"}), 2, {"'--size'"})["file"], nullptr);
+}
+
 }  // namespace
 }  // namespace quintet::test

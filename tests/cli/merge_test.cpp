@@ -452,7 +452,7 @@ TEST_F(Merge, InvalidOptions) {
   expectError(merge({"a.qfilm"}, "m.png", {"--tonemap", "acess"}), 2, {"--tonemap", "'acess'", "'aces'"});
   expectError(merge({"a.qfilm"}, "m.png", {"--exposure", "x"}), 2, {"--exposure", "'x'"});
   expectError(merge({"all.qfilm"}, "m.png", {"--exr-type", "half"}), 2, {"m.png", ".exr"});
-  expectError(merge({"a.qfilm"}, "-", {"--json"}), 2, {"--json"});
+  expectJsonError(merge({"a.qfilm"}, "-", {"--json"}), 2, {"--json"});
   expectError(merge({"a.qfilm"}, "no/such/folder/m.png"), 1, {"no/such/folder"});
   expectError(quintet({"run", "normals", "-o", "a.qfilm"}), 2, {"a.qfilm", "render"});
 }

@@ -80,6 +80,45 @@ TEST_F(Output, ImagesOfCompare) {
   expectError(quintet({"compare", "a.png", "a.png", "--side-by-side", "-"}), 2, {"--side-by-side"});
 }
 
+// OpenEXR and Radiance HDR through a pipe have the pixels of the files.
+TEST_F(Output, FormatOfStandardOutput) {
+  for (const std::string& extension : {std::string(".exr"), std::string(".hdr"), std::string(".png")}) {
+    ASSERT_EQ(quintet(quick({"-o", "file" + extension})).status, 0);
+    const RunResult result = quintet(quick({"-o", "-" + extension}));
+    ASSERT_EQ(result.status, 0) << result.err;
+    write(folder_ / "pipe", result.out);
+    EXPECT_EQ(readImage("pipe").data, readImage("file" + extension).data) << extension;
+    std::filesystem::remove(folder_ / "pipe");
+    std::filesystem::remove(folder_ / ("file" + extension));
+  }
+  const RunResult layers =
+      quintet({"render", "scene.gltf", "--size", "8x8", "--spp", "1", "-q", "-o", "-.exr", "--aov", "albedo"});
+  EXPECT_NE(layers.out.find("albedo.R"), std::string::npos);
+  expectError(quintet(quick({"-o", "-.qfilm"})), 2, {"film"});
+  expectJsonError(quintet(quick({"-o", "-.exr", "--json"})), 2, {"--json", "-.exr"});
+  expectNoNewFiles();
+}
+
+TEST_F(Output, PngWith16Bits) {
+  ASSERT_EQ(quintet(quick({"-o", "deep.png", "--png-bits", "16"})).status, 0);
+  ASSERT_EQ(quintet(quick({"-o", "flat.png"})).status, 0);
+  const io::Image deep = readImage("deep.png"), flat = readImage("flat.png");
+  ASSERT_EQ(deep.type, io::PixelType::u16);
+  ASSERT_EQ(flat.type, io::PixelType::u8);
+  for (std::uint32_t x = 0; x < 32; ++x)
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_NEAR(deep.pixel<std::uint16_t>(x, 12)[c] / 257.0, flat.pixel<std::uint8_t>(x, 12)[c], 0.51) << x;
+  expectError(quintet(quick({"-o", "a.png", "--png-bits", "12"})), 2, {"--png-bits", "12"});
+  expectError(quintet(quick({"-o", "a.exr", "--png-bits", "16"})), 2, {"a.exr", "PNG"});
+}
+
+// Each of several files is checked before the render starts.
+TEST_F(Output, ChecksEachFileBeforeItStarts) {
+  std::filesystem::create_directory(folder_ / "f0000.png");
+  const RunResult result = quintet({"run", "normals", "scene.gltf", "-o", "f####.png", "--size", "4000x4000"});
+  expectError(result, 1, {"f0000.png", "directory"});
+}
+
 class Device : public CliTest {};
 
 TEST_F(Device, NoVulkanDevice) {

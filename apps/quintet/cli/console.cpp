@@ -194,7 +194,7 @@ void Console::deviceHung(const Diagnostic& diagnostic) {
     }
   }
   // No destructors: they would wait for the device.
-  printError(fmt::format("{}quintet: {}{}\n", terminal_ ? kClearLine : "",
+  printError(fmt::format("{}quintet: {}{}; use --timeout to allow more time\n", terminal_ ? kClearLine : "",
                          program_ ? printable(program_->name) + ": " : "", diagnostic.text));
   std::fflush(nullptr);
   ::_exit(1);

@@ -49,7 +49,7 @@ void convertCheckpoints(const RenderTexts& texts, RenderOptions& options) {
     return;
   if (!checkpoint.file.empty()) return;
   const std::filesystem::path& output = options.output.file;
-  if (output == "-" || !output.has_extension())
+  if (output::isStandardOutput(output) || !output.has_extension())
     throw UsageError(
         fmt::format("{}: the name of the checkpoint cannot be derived from it; use --checkpoint-file FILE{}",
                     output.string(), render::kFilmExtension));
@@ -86,7 +86,12 @@ void declareDisplay(OptionTable& table, RenderTexts& texts, const char* group, c
                      .value = "NAME",
                      .help = "Tone mapping: linear, aces, agx or neutral (PNG only)",
                      .target = &texts.toneMap,
-                     .candidates = {.names = render::toneMapNames()}}});
+                     .candidates = {.names = render::toneMapNames()}},
+                    {.names = "--png-bits",
+                     .value = "N",
+                     .help = "Bits per channel of PNG files: 8 or 16 (default: 8)",
+                     .target = &texts.pngBits,
+                     .candidates = {.names = {"8", "16"}}}});
 }
 
 void declareQuality(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
@@ -101,7 +106,7 @@ void declareQuality(OptionTable& table, RenderTexts& texts, RenderOptions& optio
         .value = "E",
         .help =
             "Target for the relative error of the image, e.g. 0.02; the error of 95 % of its tiles must be below 2 E "
-            "(stated with 95 % confidence)",
+            "(stated with 95 % confidence). The status is 3 if another limit ends the render first",
         .target = &texts.untilError},
        {.names = "--adaptive",
         .help = "Distribute samples by the error of each tile; --spp is then the average",
@@ -252,6 +257,7 @@ void convertOutput(const RenderTexts& texts, output::OutputRequest& output) {
   output.layers = texts.layers;
   output.exposure = parseReal("--exposure", texts.exposure, -job::kMaxExposure, job::kMaxExposure);
   output.toneMap = parseToneMap("--tonemap", texts.toneMap);
+  if (!texts.pngBits.empty()) output.pngBits = parseChoice("--png-bits", texts.pngBits, {"8", "16"}) == 0 ? 8u : 16u;
   output.exr = parseExrFormat(texts.exrType, texts.exrCompression, texts.exrTiles);
 }
 
@@ -276,10 +282,13 @@ void convert(const RenderTexts& texts, RenderOptions& options) {
 }
 
 void checkStandardOutput(const RenderOptions& options) {
-  if (options.output.file != "-") return;
-  if (options.console.json) throw UsageError("--json and -o - both write to standard output");
+  const std::filesystem::path& file = options.output.file;
+  if (!output::isStandardOutput(file)) return;
+  if (options.console.json)
+    throw UsageError(fmt::format("--json and -o {} both write to standard output", file.string()));
   if (::isatty(STDOUT_FILENO) == 1)
-    throw UsageError("-o -: standard output is a terminal; redirect it to a file or a program");
+    throw UsageError(
+        fmt::format("-o {}: standard output is a terminal; redirect it to a file or a program", file.string()));
 }
 
 }  // namespace quintet::cli

@@ -26,7 +26,7 @@ struct RenderOptions {
 
 // Option values as text.
 struct RenderTexts {
-  std::string scene, output, size, region, exposure, toneMap;
+  std::string scene, output, size, region, exposure, toneMap, pngBits;
   std::string spp, time, untilError, seed, bounces, clamp;
   std::string lookFrom, lookAt, up, fov, aperture, focus, envIntensity, envRotation;
   std::string exrType, exrCompression, exrTiles;

@@ -84,6 +84,15 @@ job::BatchRange parseBatches(const std::string& option, const std::string& text)
   return {*first, *last};
 }
 
+std::pair<std::uint32_t, std::uint32_t> parseFrames(const std::string& option, const std::string& text, double limit) {
+  const std::vector<std::string> parts = splitText(text, '-');
+  const std::optional<std::uint32_t> first = parseNumber<std::uint32_t>(parts.front());
+  const std::optional<std::uint32_t> last = parseNumber<std::uint32_t>(parts.back());
+  if (!first || !last || parts.size() > 2 || *first > *last || *last >= limit)
+    fail(option, text, "is not A-B with A <= B: frames from 0, B included");
+  return {*first, *last - *first + 1};
+}
+
 std::size_t parseChoice(const std::string& option, const std::string& name, const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i] == name) return i;

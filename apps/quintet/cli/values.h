@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/math.h"
@@ -26,6 +27,8 @@ uvec2 parseSize(const std::string& option, const std::string& text);            
 render::Region parseRegion(const std::string& option, const std::string& text);  // "x,y,width,height", pixels
 std::optional<vec3> parsePoint(const std::string& option, const std::string& text);  // "1,2.5,-3"
 job::BatchRange parseBatches(const std::string& option, const std::string& text);    // "3" or "0-7"
+// "0-7": first frame and number of frames, the last one below `limit`.
+std::pair<std::uint32_t, std::uint32_t> parseFrames(const std::string& option, const std::string& text, double limit);
 std::optional<render::ToneMap> parseToneMap(const std::string& option, const std::string& name);
 
 // The position of `name` in `names`.

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "cli/failure.h"
 #include "cli/option_table.h"
 #include "cli/signals.h"
 #include "cli/values.h"
@@ -190,7 +191,7 @@ void checkPng(const std::string& option, const std::string& file) {
   checkWritable(file);
 }
 
-void compareFilms(const Options& options) {
+int compareFilms(const Options& options) {
   render::ZTestOptions test;
   test.level = parseReal("--level", options.level, 1e-12, 0.5).value_or(test.level);
   test.block = static_cast<std::uint32_t>(parseInteger("--block", options.block, 4, 4096).value_or(test.block));
@@ -199,12 +200,13 @@ void compareFilms(const Options& options) {
   if (!options.output.empty())
     writePng(options.output, io::colorMap(render::zTestMap(comparison.test, comparison.films[0].film.region)));
   writeFile("-", options.json ? output::comparisonJson(comparison) : output::comparisonText(comparison));
-  if (comparison.test.rejected)
-    throw Error(fmt::format("{} and {}: different images at level {}: {}", options.a, options.b, test.level,
-                            output::rejectionText(comparison)));
+  if (!comparison.test.rejected) return 0;
+  return printFailure(fmt::format("{} and {}: different images at level {}: {}", options.a, options.b, test.level,
+                                  output::rejectionText(comparison)),
+                      kRuntimeError);
 }
 
-void compareImages(const Options& options) {
+int compareImages(const Options& options) {
   const std::optional<double> limit = parseReal("--max", options.max, 0.0, 1e30);
   io::Image a = readInput(options.a, options.layer);
   io::Image b = readInput(options.b, options.layer);
@@ -220,9 +222,10 @@ void compareImages(const Options& options) {
 
   const std::vector<output::Measure> all = output::measures(comparison);
   const output::Measure& measure = findMeasure(all, options.metric);
-  if (limit && !(measure.largerIsBetter ? measure.value >= *limit : measure.value <= *limit))
-    throw Error(fmt::format("{} and {}: {} {:.6g} is {} than {:.6g}", options.a, options.b, measure.name, measure.value,
-                            measure.largerIsBetter ? "less" : "more", *limit));
+  if (!limit || (measure.largerIsBetter ? measure.value >= *limit : measure.value <= *limit)) return 0;
+  return printFailure(fmt::format("{} and {}: {} {:.6g} is {} than {:.6g}", options.a, options.b, measure.name,
+                                  measure.value, measure.largerIsBetter ? "less" : "more", *limit),
+                      kRuntimeError);
 }
 
 }  // namespace
@@ -238,11 +241,7 @@ int compareCommand(Arguments arguments) {
   findMeasure(output::measures({}), options->metric);
   checkPng("-o", options->output);
   checkPng("--side-by-side", options->sideBySide);
-  if (options->zTest)
-    compareFilms(*options);
-  else
-    compareImages(*options);
-  return 0;
+  return options->zTest ? compareFilms(*options) : compareImages(*options);
 }
 
 }  // namespace quintet::cli

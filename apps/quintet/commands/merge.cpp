@@ -35,7 +35,7 @@ OptionTable declare(Options& options, RenderTexts& texts) {
               .required = true},
              {.names = "-o,--output",
               .value = "FILE",
-              .help = "Output file: .png, .exr, .hdr or .qfilm; - is PNG on standard output",
+              .help = "Output file: .png, .exr, .hdr or .qfilm; - is PNG on standard output, -.exr OpenEXR",
               .target = &texts.output,
               .candidates = {.extensions = {"png", "exr", "hdr", "qfilm"}}},
              {.names = "--all-outputs",

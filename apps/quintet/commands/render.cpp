@@ -8,10 +8,13 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/wrap.h"
 #include "cli/candidates.h"
+#include "cli/failure.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "job/render_job.h"
+#include "output/file_names.h"
 #include "output/layers.h"
 #include "output/report.h"
 #include "output/write.h"
@@ -33,7 +36,7 @@ OptionTable declare(RenderOptions& options, RenderTexts& texts) {
       {{.names = "-o,--output",
         .value = "FILE",
         .help = "Output file: .png, .exr, .hdr or .qfilm (the whole film, for 'quintet merge'); - is PNG on standard "
-                "output (default: SCENE.png in the current folder)",
+                "output, -.exr OpenEXR (default: SCENE.png in the current folder)",
         .target = &texts.output,
         .candidates = {.extensions = {"png", "exr", "hdr", "qfilm"}}}});
   declareImage(table, texts, options);
@@ -81,6 +84,9 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   options.request.scene = texts.scene;
   options.output.file = texts.output.empty() ? options.request.scene.filename().replace_extension(".png")
                                              : std::filesystem::path(texts.output);
+  // Without --frames there is one frame, so a pattern in the name is the number 0 or the last frame.
+  options.output.everyFrame = !texts.output.empty() && output::hasFramePattern(options.output.file) &&
+                              output::fileKind(options.output.file) != output::FileKind::film;
   options.request.commandLine = commandLine("render", arguments);
   convert(texts, options);
   checkStandardOutput(options);
@@ -108,8 +114,18 @@ job::RenderRequest requestFor(const RenderOptions& options, const output::Output
   return request;
 }
 
+std::string programHelpText(const program::Program& program) {
+  const std::size_t width = terminalWidth(STDOUT_FILENO).value_or(0);
+  std::string options = "Options: ";
+  if (program.accumulation == program::Accumulation::program) options += "--frames N; ";
+  options += "--set NAME=VALUE for parameters; --output NAME, --all-outputs and --aov NAMES for outputs.";
+  return fmt::format("{}\n{}\nSee 'quintet run --help' for the options of all programs.\n",
+                     program::describeAsText(program, width),
+                     wrapped(options, width == 0 ? std::string::npos : width, 0));
+}
+
 int renderImages(const RenderOptions& options, const program::Program& program, const Stopwatch& clock) {
-  const output::OutputPlan plan = output::planOutputs(options.output, program);
+  const output::OutputPlan plan = output::planOutputs(options.output, program, options.request.frames);
   Console console(options.console);
   console.setProgram(&program);
   try {
@@ -125,12 +141,14 @@ int renderImages(const RenderOptions& options, const program::Program& program, 
     console.setGracefulStop(&stop);
 
     std::vector<output::WrittenFile> files;
-    const auto write = [&](const job::RenderResult& result) { files = output::writeOutputs(plan, result, console); };
+    const auto write = [&](const job::RenderResult& result) {
+      output::addWritten(files, output::writeOutputs(plan, result, console));
+    };
     console.onFrame = write;
     job::RenderResult result = job.run(options.request.limits, console);
     try {
       if (!options.request.overwriteFilm) output::checkFilmLoss(plan, result);  // the render can have stopped early
-      if (!options.output.everyFrame) write(result);
+      if (!options.request.frames.every) write(result);
     } catch (...) {
       job.outputsFailed(result, console);
       throw;
@@ -141,7 +159,8 @@ int renderImages(const RenderOptions& options, const program::Program& program, 
     console.clear();
     if (options.console.json) writeFile("-", output::resultJson(result, files, clock.seconds()));
     console.note(output::resultSummary(result, files));
-    return result.interrupted ? stop.exitStatus() : 0;
+    if (result.interrupted) return stop.exitStatus();
+    return result.targetMissed || result.earlierTargetMissed ? kTargetNotReached : 0;
   } catch (const ProgramError& error) {
     console.diagnostics(error.diagnostics());
     return 1;
@@ -160,7 +179,7 @@ int renderCommand(Arguments arguments) {
   if (!options) return 0;
   const program::Program program = program::loadProgram(options->program);
   if (options->programHelp) {
-    writeFile("-", program::describeAsText(program, terminalWidth(STDOUT_FILENO).value_or(0)));
+    writeFile("-", programHelpText(program));
   } else if (options->layerList) {
     writeFile("-", output::layerList(program));
   } else {

@@ -3,6 +3,8 @@
 #ifndef QUINTET_COMMANDS_RENDER_H
 #define QUINTET_COMMANDS_RENDER_H
 
+#include <string>
+
 #include "base/stopwatch.h"
 #include "cli/render_options.h"
 #include "job/resolve.h"
@@ -13,6 +15,9 @@ namespace quintet::cli {
 
 // `clock`: started with the command. Returns the exit status.
 int renderImages(const RenderOptions& options, const program::Program& program, const Stopwatch& clock);
+
+// Parameters and outputs of the program, and the options that set and select them.
+std::string programHelpText(const program::Program& program);
 
 // Prints warnings about the result, and adds all warnings of the render to it.
 void addWarnings(job::RenderResult& result, Console& console);

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -10,7 +11,6 @@
 #include "base/file.h"
 #include "base/plural.h"
 #include "base/text.h"
-#include "check/diagnostic_text.h"
 #include "cli/candidates.h"
 #include "cli/help_text.h"
 #include "cli/terminal.h"
@@ -34,7 +34,7 @@ constexpr double kSignalSeconds = 0.25;  // a signal that arrives just before th
 struct RunOptions : RenderOptions {
   bool list = false;  // print the built-in programs
   bool watch = false;
-  std::string frames;           // their number
+  std::string frames, frame;    // number or range; a single one
   bool namedByProgram = false;  // no output file was given
 };
 
@@ -47,8 +47,17 @@ std::filesystem::path defaultOutput(const program::Program& program) {
 
 void convertFrames(const RenderTexts& texts, RunOptions& options) {
   job::FrameRequest& request = options.request.frames;
-  if (const auto count = parseInteger("--frames", options.frames, 1, kMaxFrames))
+  const std::string& frames = options.frames;
+  if (!frames.empty() && !options.frame.empty()) throw UsageError("--frame and --frames exclude each other");
+  if (frames.find('-', 1) != std::string::npos) {
+    std::tie(request.first, request.count) = parseFrames("--frames", frames, kMaxFrames);
+  } else if (const auto count = parseInteger("--frames", frames, 1, kMaxFrames)) {
     request.count = static_cast<std::uint32_t>(*count);
+  }
+  if (const auto number = parseInteger("--frame", options.frame, 0, kMaxFrames)) {
+    request.first = static_cast<std::uint32_t>(*number);
+    request.count = 1;
+  }
   if (!texts.spp.empty()) request.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
   if (!request.accumulated && !options.request.limits.seconds) request.accumulated = 1;
   request.every = options.output.everyFrame = options.output.everyFrame || output::hasFramePattern(options.output.file);
@@ -70,18 +79,23 @@ OptionTable declare(RunOptions& options, RenderTexts& texts) {
   table.add("Image",
             {{.names = "-o",
               .value = "FILE",
-              .help = "Output file: .png, .exr or .hdr; - is PNG on standard output (default: PROGRAM.png in the "
-                      "current folder)",
+              .help = "Output file: .png, .exr or .hdr; #### is the frame number; - is PNG on standard output, -.exr "
+                      "OpenEXR (default: PROGRAM.png in the current folder)",
               .target = &texts.output,
               .candidates = {.extensions = {"png", "exr", "hdr"}}}});
   declareImage(table, texts, options);
   table.add("Image",
             {{.names = "--frames",
-              .value = "N",
-              .help = "Number of frames, for an animated scene or a program that draws frame after frame (default: 1)",
+              .value = "N|A-B",
+              .help = "Number of frames, for an animated scene or a program that draws frame after frame (default: 1); "
+                      "A-B renders only frames A to B of an animated scene",
               .target = &options.frames},
+             {.names = "--frame",
+              .value = "N",
+              .help = "Render only this frame of an animated scene; the first one is 0",
+              .target = &options.frame},
              {.names = "--all-frames",
-              .help = "Write each frame: out.0000.png (also with %04d in the name)",
+              .help = "Write each frame: out.0000.png (also with #### or %04d in the name)",
               .target = &options.output.everyFrame}});
   declareExr(table, texts);
   declareQuality(table, texts, options);
@@ -105,7 +119,7 @@ OptionTable declare(RunOptions& options, RenderTexts& texts) {
       {"quintet run ao --help", "its parameters and outputs"},
       {"quintet run my_program/ scene.glb --set tint=1,0.5,0 --size 640x360 --spp 16"},
       {"quintet run my_program/ --watch", "render again whenever a file is saved"},
-      {"quintet run lesson.rt.glsl --frames 45 -o light.%04d.png"},
+      {"quintet run lesson.rt.glsl --frames 45 -o light.####.png"},
       {"quintet run my_program/ --set-file values.json --all-outputs -o out.exr"},
   });
   return table;
@@ -136,7 +150,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   convertFrames(texts, options);
   if (texts.timeout.empty()) options.request.launchTimeout = kTimeout;
   checkStandardOutput(options);
-  if (options.watch && options.output.file == "-")
+  if (options.watch && output::isStandardOutput(options.output.file))
     throw UsageError("--watch writes the same file repeatedly: it cannot be standard output");
   return options;
 }
@@ -182,11 +196,12 @@ class Watch {
   job::ResolvedJob resolve() {
     program_ = program::loadProgram(options_.program);
     console_.setProgram(&program_);
-    plan_ = output::planOutputs(options_.output, program_);
+    plan_ = output::planOutputs(options_.output, program_, options_.request.frames);
     return job::resolve(requestFor(options_, plan_), program_);
   }
 
   void render() {
+    files_.clear();
     job::RenderResult result = live_.job()->run(options_.request.limits, console_);
     if (result.abandoned) return;
     interrupted_ = result.interrupted;
@@ -198,7 +213,7 @@ class Watch {
   }
 
   void write(const job::RenderResult& result) {
-    files_ = output::writeOutputs(plan_, result, console_);
+    output::addWritten(files_, output::writeOutputs(plan_, result, console_));
     hasImage_ = true;
     if (!std::exchange(changed_, false)) return;
     console_.note(fmt::format("{} saved: {} after {:.2f} s", live_.changedNames(),
@@ -236,24 +251,17 @@ int runCommand(Arguments arguments) {
     writeFile("-", json ? program::listAsJson() + "\n" : program::listAsText(terminalWidth(STDOUT_FILENO).value_or(0)));
     return 0;
   }
-  try {
-    const program::Program program = program::loadProgram(options->program);
-    if (options->programHelp) {
-      writeFile("-", json ? program::describeAsJson(program) + "\n"
-                          : program::describeAsText(program, terminalWidth(STDOUT_FILENO).value_or(0)));
-      return 0;
-    }
-    if (options->layerList) {
-      writeFile("-", output::layerList(program));
-      return 0;
-    }
-    if (options->namedByProgram) options->output.file = defaultOutput(program);
-    return options->watch ? Watch(*options).run() : renderImages(*options, program, clock);
-  } catch (const FileError& error) {
-    // An editor reads the location; main prints the error for people.
-    if (json && !options->programHelp) writeFile("-", check::diagnosticsJson({asDiagnostic(error)}));
-    throw;
+  const program::Program program = program::loadProgram(options->program);
+  if (options->programHelp) {
+    writeFile("-", json ? program::describeAsJson(program) + "\n" : programHelpText(program));
+    return 0;
   }
+  if (options->layerList) {
+    writeFile("-", output::layerList(program));
+    return 0;
+  }
+  if (options->namedByProgram) options->output.file = defaultOutput(program);
+  return options->watch ? Watch(*options).run() : renderImages(*options, program, clock);
 }
 
 }  // namespace quintet::cli

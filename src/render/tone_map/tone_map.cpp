@@ -76,6 +76,29 @@ vec3 clean(const vec3& color) {
   return result;
 }
 
+template <class T>
+io::Image encodeDisplay(const io::Image& image, ToneMap operation, float exposure, bool opaque) {
+  assert(image.channels == 4 && image.type == io::PixelType::f32);
+  constexpr io::PixelType kType = sizeof(T) == 2 ? io::PixelType::u16 : io::PixelType::u8;
+  const std::uint32_t channels = opaque ? 3 : 4;
+  io::Image result = io::makeImage(image.width, image.height, channels, kType, io::ColorEncoding::sRgb);
+  const auto source = image.samples<float>();
+  const auto target = result.samples<T>();
+  const float scale = std::exp2(exposure);
+  parallelFor(image.height, [&](std::size_t y) {
+    const float* in = source.data() + y * image.width * 4;
+    T* out = target.data() + y * image.width * channels;
+    for (std::uint32_t x = 0; x < image.width; ++x, in += 4, out += channels) {
+      const float alpha = in[3];
+      const vec3 straight = alpha > 0.0f ? vec3(in[0], in[1], in[2]) / alpha : vec3(0.0f);
+      const vec3 display = toneMap(operation, straight * scale);
+      for (glm::length_t i = 0; i < 3; ++i) out[i] = io::integerFromUnit<T>(io::srgbFromLinear(display[i]));
+      if (!opaque) out[3] = io::integerFromUnit<T>(alpha);
+    }
+  });
+  return result;
+}
+
 }  // namespace
 
 std::optional<ToneMap> toneMapByName(const std::string& name) {
@@ -101,25 +124,9 @@ vec3 toneMap(ToneMap operation, vec3 color) {
   return glm::clamp(color, 0.0f, 1.0f);
 }
 
-io::Image toDisplay(const io::Image& image, ToneMap operation, float exposure, bool opaque) {
-  assert(image.channels == 4 && image.type == io::PixelType::f32);
-  const std::uint32_t channels = opaque ? 3 : 4;
-  io::Image result = io::makeImage(image.width, image.height, channels, io::PixelType::u8, io::ColorEncoding::sRgb);
-  const auto source = image.samples<float>();
-  const auto target = result.samples<std::uint8_t>();
-  const float scale = std::exp2(exposure);
-  parallelFor(image.height, [&](std::size_t y) {
-    const float* in = source.data() + y * image.width * 4;
-    std::uint8_t* out = target.data() + y * image.width * channels;
-    for (std::uint32_t x = 0; x < image.width; ++x, in += 4, out += channels) {
-      const float alpha = in[3];
-      const vec3 straight = alpha > 0.0f ? vec3(in[0], in[1], in[2]) / alpha : vec3(0.0f);
-      const vec3 display = toneMap(operation, straight * scale);
-      for (glm::length_t i = 0; i < 3; ++i) out[i] = io::byteFromUnit(io::srgbFromLinear(display[i]));
-      if (!opaque) out[3] = io::byteFromUnit(alpha);
-    }
-  });
-  return result;
+io::Image toDisplay(const io::Image& image, ToneMap operation, float exposure, bool opaque, unsigned bits) {
+  return bits == 16 ? encodeDisplay<std::uint16_t>(image, operation, exposure, opaque)
+                    : encodeDisplay<std::uint8_t>(image, operation, exposure, opaque);
 }
 
 void decodeDisplay(io::Image& image, bool transparent) {

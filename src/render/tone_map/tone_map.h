@@ -20,9 +20,9 @@ std::vector<std::string> toneMapNames();
 // Converts one color from linear Rec. 709 radiance, with exposure applied, to linear display light in [0, 1].
 vec3 toneMap(ToneMap operation, vec3 color);
 
-// Converts linear premultiplied float RGBA to 8-bit sRGB: multiplies by 2^exposure, divides the color by alpha, tone
-// maps and encodes it. Returns straight RGBA, or RGB if `opaque`.
-io::Image toDisplay(const io::Image& image, ToneMap operation, float exposure, bool opaque);
+// Converts linear premultiplied float RGBA to sRGB with 8 or 16 bits per channel: multiplies by 2^exposure, divides the
+// color by alpha, tone maps and encodes it. Returns straight RGBA, or RGB if `opaque`.
+io::Image toDisplay(const io::Image& image, ToneMap operation, float exposure, bool opaque, unsigned bits = 8);
 
 // Converts display values (sRGB-encoded, straight alpha) to linear premultiplied light. Alpha becomes 1 unless
 // `transparent`.

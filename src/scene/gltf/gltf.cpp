@@ -43,6 +43,7 @@ void readHeader(const Document& document, Scene& scene) {
   scene.report.copyright = document.model.asset.copyright;
   scene.report.files = document.files;
   reportExtensions(document.model.extensionsUsed, scene.report);
+  scene.report.ignoredAnimations = document.animationCount;
   if (document.animationCount > 0)
     scene.report.ignored.push_back(
         fmt::format("/animations: {} not played; the rest pose is used", document.animationCount));

@@ -183,6 +183,7 @@ struct Report {
   std::vector<std::string> extensionsUsed;     // used by the file and supported
   std::vector<std::string> extensionsIgnored;  // used by the file and not supported
   std::vector<std::string> ignored;            // "/meshes/0/primitives/2: mode LINES has no surface"
+  std::size_t ignoredAnimations = 0;           // of glTF files; also listed in `ignored`
   std::vector<std::string> repaired;           // "/meshes/0/primitives/0: 3 triangles with non-finite vertices dropped"
   std::string generator;                       // asset.generator
   std::string copyright;                       // asset.copyright

@@ -53,6 +53,7 @@ void appendReport(Report& report, const Report& part, const std::string& name) {
   for (const std::string& extension : part.extensionsUsed) addNew(report.extensionsUsed, extension);
   for (const std::string& extension : part.extensionsIgnored) addNew(report.extensionsIgnored, extension);
   for (const std::string& line : part.ignored) report.ignored.push_back(name + ": " + line);
+  report.ignoredAnimations += part.ignoredAnimations;
   for (const std::string& line : part.repaired) report.repaired.push_back(name + ": " + line);
   if (!part.copyright.empty()) report.copyright += (report.copyright.empty() ? "" : "; ") + part.copyright;
 }

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "job/film_store.h"
 #include "job/films.h"
@@ -184,6 +185,77 @@ TEST_F(RenderJobTest, EveryFrameIsReported) {
   request.frames = {.count = 3, .every = true};
   makeJob(request, "lessons/01_first_ray")->run(request.limits, observer_);
   EXPECT_THAT(observer_.frames, testing::ElementsAre(0u, 1u, 2u));
+}
+
+// A scene whose quad moves, so that no two frames are equal. The light moves with it.
+class AnimatedJobTest : public RenderJobTest {
+ protected:
+  AnimatedJobTest() {
+    writeFile(folder_ / "a.scene.toml",
+              "[[material]]\nname = \"lamp\"\nemissive = [2.0, 1.0, 0.5]\n"
+              "[[mesh]]\nname = \"quad\"\nshape = \"quad\"\nmaterial = \"lamp\"\n"
+              "[[instance]]\nof = \"quad\"\n"
+              "keyframes = [{ frame = 0 }, { frame = 8, translate = [1.0, 2.0, 0.5] }]\n"
+              "[[camera]]\nlook_from = [0, 1, 5]\nlook_at = [0, 0, 0]\n");
+  }
+  struct Recorder : TestObserver {
+    void frame(const RenderResult& result) override {
+      TestObserver::frame(result);
+      sums.push_back(result.film->plane(0).sums);
+    }
+    void warning(const std::string& text) override { warnings.push_back(text); }
+    std::vector<std::vector<shared::FixedSum>> sums;
+    std::vector<std::string> warnings;
+  };
+  RenderResult render(const FrameRequest& frames, Recorder& recorder, std::optional<double> error = {}) {
+    RenderRequest request = makeRequest(4);
+    request.scene = folder_ / "a.scene.toml";
+    request.frames = frames;
+    request.limits.error = error;
+    return RenderJob(engine(), resolve(request, program::loadProgram("pathtracer")), recorder)
+        .run(request.limits, recorder);
+  }
+  const quintet::test::TempFolder folder_;
+};
+
+TEST_F(AnimatedJobTest, PartsHaveTheFramesOfTheWhole) {
+  Recorder whole, part, single;
+  render({.count = 5, .every = true}, whole);
+  render({.count = 2, .first = 3, .every = true}, part);
+  render({.count = 1, .first = 2}, single);
+  EXPECT_THAT(whole.frames, testing::ElementsAre(0u, 1u, 2u, 3u, 4u));
+  EXPECT_THAT(part.frames, testing::ElementsAre(3u, 4u));
+  EXPECT_TRUE(single.frames.empty()) << "the result is the frame";
+  ASSERT_EQ(part.sums.size(), 2u);
+  EXPECT_TRUE(test::equalSums(part.sums[0], whole.sums[3]));
+  EXPECT_TRUE(test::equalSums(part.sums[1], whole.sums[4]));
+  EXPECT_FALSE(test::equalSums(whole.sums[3], whole.sums[4]));
+  const RenderResult last = render({.count = 1, .first = 4}, single);
+  EXPECT_EQ(last.provenance.frame, 4u);
+}
+
+TEST_F(AnimatedJobTest, ReportsFramesThatMissTheTarget) {
+  Recorder recorder;
+  const RenderResult result = render({.count = 2, .every = true}, recorder, 1e-6);
+  EXPECT_TRUE(result.targetMissed);
+  EXPECT_TRUE(result.earlierTargetMissed);
+  ASSERT_EQ(recorder.warnings.size(), 1u);
+  EXPECT_THAT(recorder.warnings[0], testing::HasSubstr("frame 0: the target error"));
+}
+
+TEST_F(RenderJobTest, AStillSceneHasOneFrame) {
+  RenderRequest request = makeRequest(4);
+  for (const FrameRequest& frames : {FrameRequest{.count = 4}, FrameRequest{.count = 1, .first = 2}}) {
+    request.frames = frames;
+    try {
+      makeJob(request)->run(request.limits, observer_);
+      FAIL();
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("no instance has keyframes"));
+    }
+  }
+  request.frames = {.count = 1, .first = 0};
+  EXPECT_NO_THROW(makeJob(request)->run(request.limits, observer_));
 }
 
 // A front end that watches files loads the scene once, even if the program is broken at first.

@@ -306,6 +306,12 @@ TEST(CheckWritableTest, TouchesNothing) {
   EXPECT_EQ(folder.entryCount(), 1u);
 }
 
+// Also for root, who has the permission to write everywhere.
+TEST(CheckWritableTest, RejectsFoldersThatTakeNoFiles) {
+  if (!fs::is_directory("/proc/self")) GTEST_SKIP() << "no /proc";
+  EXPECT_THROW(checkWritable("/proc/x.png"), FileError);
+}
+
 TEST(FoldersTest, ReadsTheCacheFolderFromTheEnvironment) {
   const Variable own("QUINTET_CACHE_DIR", nullptr);
   const Variable home("HOME", "/home/x");

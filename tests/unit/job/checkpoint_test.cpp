@@ -30,6 +30,7 @@ class CheckpointLoad : public testing::Test {
     try {
       load(request, start, samples);
     } catch (const FileError& error) {
+      remedy_ = error.remedy();
       return error.what();
     }
     return "";
@@ -39,6 +40,7 @@ class CheckpointLoad : public testing::Test {
   const std::filesystem::path file_ = folder_ / "scene.qfilm";
   Provenance provenance_ = test::makeProvenance();
   test::RecordingObserver observer_;
+  Remedy remedy_ = Remedy::none;  // of the last error
 };
 
 TEST_F(CheckpointLoad, ResumesTheSameRender) {
@@ -59,9 +61,10 @@ TEST_F(CheckpointLoad, StartsWithoutAFile) {
 
 TEST_F(CheckpointLoad, KeepsAnExistingCheckpointUnlessForced) {
   write(provenance_, {{0, 8}});
-  EXPECT_THAT(errorFor({}), AllOf(HasSubstr("8 samples"), HasSubstr("--resume"), HasSubstr("--force")));
+  EXPECT_THAT(errorFor({}), HasSubstr("8 samples"));
+  EXPECT_EQ(remedy_, Remedy::resumeOrStartOver);
   EXPECT_FALSE(load({.force = true}));
-  EXPECT_TRUE(load({.resume = true, .force = true})) << "--force does not discard a checkpoint of this render";
+  EXPECT_TRUE(load({.resume = true, .force = true})) << "force does not discard a checkpoint of this render";
 }
 
 TEST_F(CheckpointLoad, RejectsADifferentRender) {
@@ -69,8 +72,8 @@ TEST_F(CheckpointLoad, RejectsADifferentRender) {
   other.seed = 3;
   write(other, {{0, 8}});
   EXPECT_THAT(errorFor({.resume = true}),
-              AllOf(HasSubstr("scene.qfilm: belongs to a different render (seed 3, expected 4000000000)"),
-                    HasSubstr("--force")));
+              HasSubstr("scene.qfilm: belongs to a different render (seed 3, expected 4000000000)"));
+  EXPECT_EQ(remedy_, Remedy::startOver);
   EXPECT_FALSE(load({.resume = true, .force = true}));
 }
 
@@ -106,18 +109,27 @@ RenderResult resultOf(const Provenance& p, std::vector<render::SampleRange> rang
 }
 
 TEST_F(CheckpointLoad, SavesAndRemoves) {
-  Checkpoint checkpoint({.file = file_, .seconds = 0});
-  EXPECT_TRUE(checkpoint.isDue());
   const RenderResult result = resultOf(provenance_, {{0, 12}});
-  checkpoint.save(result, observer_);
-  EXPECT_EQ(checkpoint.savedSamples(), 12u);
+  {
+    Checkpoint checkpoint({.file = file_, .seconds = 0});
+    EXPECT_TRUE(checkpoint.isDue());
+    checkpoint.save(result, observer_);
+    EXPECT_EQ(checkpoint.savedSamples(), 12u);
+  }
   EXPECT_EQ(folder_.entryCount(), 1u);
   const auto film = load({.resume = true});
   ASSERT_TRUE(film);
   EXPECT_TRUE(test::equalSums(film->file.film.planes[0].sums, result.film->plane(0).sums));
-  checkpoint.remove(observer_);
+  Checkpoint({.file = file_}).remove(observer_);
   EXPECT_EQ(folder_.entryCount(), 0u);
   EXPECT_TRUE(observer_.warnings.empty());
+}
+
+TEST_F(CheckpointLoad, BelongsToOneProcessAtATime) {
+  Checkpoint checkpoint({.file = file_, .seconds = 0});
+  EXPECT_THAT(errorFor({.resume = true}), HasSubstr("scene.qfilm: is in use by process "));
+  checkpoint.save(resultOf(provenance_, {{0, 8}}), observer_);  // replaces the file
+  EXPECT_THAT(errorFor({.resume = true, .force = true}), HasSubstr("is in use"));
 }
 
 TEST_F(CheckpointLoad, AFailureToSaveIsOneWarning) {

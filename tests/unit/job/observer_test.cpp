@@ -26,5 +26,22 @@ TEST(Progress, FollowsTheLimitThatIsReachedFirst) {
   EXPECT_DOUBLE_EQ(progress.secondsLeft(), 0.0);
 }
 
+// The error falls with the square root of the number of samples.
+TEST(Progress, FollowsTheTargetError) {
+  Progress progress;
+  progress.samples = 16;
+  progress.seconds = 10;
+  progress.targetSamples = 64;
+  EXPECT_DOUBLE_EQ(progress.fraction(), 0.25);
+  EXPECT_DOUBLE_EQ(progress.secondsLeft(), 30.0);
+  progress.sampleLimit = 32;  // earlier
+  EXPECT_DOUBLE_EQ(progress.fraction(), 0.5);
+  EXPECT_DOUBLE_EQ(progress.secondsLeft(), 10.0);
+  progress.sampleLimit.reset();
+  progress.samples = 80;  // more than expected
+  EXPECT_DOUBLE_EQ(progress.fraction(), 1.0);
+  EXPECT_DOUBLE_EQ(progress.secondsLeft(), 0.0);
+}
+
 }  // namespace
 }  // namespace quintet::job

@@ -85,6 +85,20 @@ TEST(Resolve, Batches) {
   EXPECT_NE(errorFor({0, 1}, [](RenderRequest& r) { r.limits.samples.reset(); }), "");
 }
 
+// A frame of a program that accumulates depends on the frames before it.
+TEST(Resolve, PartsOfAnAnimation) {
+  RenderRequest request = makeRequest();
+  request.frames.count = 4;
+  EXPECT_NO_THROW(resolve(request, lecture()));
+  for (const std::uint32_t first : {0u, 4u}) {
+    request.frames.first = first;
+    EXPECT_NO_THROW(resolve(request, pathTracer()));
+    EXPECT_THROW(resolve(request, lecture()), UsageError);
+  }
+  EXPECT_EQ(request.frames.firstFrame(), 4u);
+  EXPECT_EQ(request.frames.lastFrame(), 7u);
+}
+
 TEST(Resolve, ChecksFiles) {
   const quintet::test::TempFolder folder;
   RenderRequest request = makeRequest();

@@ -134,5 +134,15 @@ TEST(IsErrorCheckpoint, EightTimesPerDoubling) {
                                                 30, 32, 36, 40, 44, 48, 52, 56, 60, 64));
 }
 
+TEST(ExpectedSamples, GrowWithTheSquareOfTheErrorRatio) {
+  render::ErrorEstimate estimate;
+  EXPECT_FALSE(expectedSamples(estimate, 0.1, 16));  // unknown
+  estimate.upper = 0.2;
+  estimate.tiles = 0.3;
+  EXPECT_DOUBLE_EQ(expectedSamples(estimate, 0.1, 16).value(), 64.0);
+  estimate.tiles = 0.6;  // at most twice the target
+  EXPECT_DOUBLE_EQ(expectedSamples(estimate, 0.1, 16).value(), 144.0);
+}
+
 }  // namespace
 }  // namespace quintet::job

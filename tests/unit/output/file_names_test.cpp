@@ -35,7 +35,20 @@ TEST(FileNames, Outputs) {
   EXPECT_EQ(name("%d.png", "normal", 7), "normal.7.png");
 }
 
+TEST(FileNames, Hashes) {
+  EXPECT_EQ(name("a#b/f####.png", "", 7), "a#b/f0007.png");
+  EXPECT_EQ(name("f#.exr", "", 12), "f12.exr");
+  EXPECT_EQ(name("##_f.png", "", 0), "00_f.png");
+  EXPECT_EQ(name("f.####.png", "normal", 7), "f.normal.0007.png");
+  EXPECT_EQ(name("100%_##.png", "", 7), "100%_07.png");
+  EXPECT_EQ(name("f####.png", "", {}), "f####.png");
+}
+
 TEST(FileNames, FramePattern) {
+  EXPECT_TRUE(hasFramePattern("out####.png"));
+  EXPECT_FALSE(hasFramePattern("take#1/out.png"));
+  EXPECT_THROW(hasFramePattern("a#_#.png"), UsageError);
+  EXPECT_THROW(hasFramePattern("%d_##.png"), UsageError);
   EXPECT_TRUE(hasFramePattern("out.%04d.png"));
   EXPECT_FALSE(hasFramePattern("%04d/out.png"));
   EXPECT_FALSE(hasFramePattern("out.png"));

@@ -79,11 +79,51 @@ TEST_F(PlanOutputs, RejectsWhatCannotBeWritten) {
   wrong.output = "nothing";
   EXPECT_THAT(errorFor(wrong), HasSubstr("'nothing'"));
   wrong.output = "cryptomatte_object";
-  EXPECT_THAT(errorFor(wrong), HasSubstr("--aov"));
+  EXPECT_THAT(errorFor(wrong), HasSubstr("counts ids"));
   OutputRequest standardOutput{.file = "-"};
   EXPECT_EQ(errorFor(standardOutput), "");
   standardOutput.allOutputs = true;
   EXPECT_THAT(errorFor(standardOutput), HasSubstr("standard output"));
+}
+
+TEST_F(PlanOutputs, StandardOutput) {
+  EXPECT_EQ(planOutputs({.file = "-"}, program_).kind, FileKind::png);
+  EXPECT_EQ(planOutputs({.file = "-.exr"}, program_).kind, FileKind::exr);
+  OutputRequest layers{.file = "-.exr"};
+  layers.layers = {"albedo"};
+  EXPECT_EQ(planOutputs(layers, program_).layers.size(), 1u);
+  EXPECT_TRUE(isStandardOutput("-.hdr"));
+  EXPECT_FALSE(isStandardOutput("./-.exr"));
+  EXPECT_FALSE(isStandardOutput("a-.exr"));
+  EXPECT_THAT(errorFor({.file = "-.qfilm"}), HasSubstr("film"));
+  EXPECT_THAT(errorFor({.file = "-.exr", .everyFrame = true}), HasSubstr("standard output"));
+}
+
+TEST_F(PlanOutputs, BitsOfPngFiles) {
+  OutputRequest deep = request("out.png");
+  deep.pngBits = 16;
+  EXPECT_EQ(errorFor(deep), "");
+  deep.pngBits = 12;
+  EXPECT_THAT(errorFor(deep), HasSubstr("8 or 16"));
+  deep = request("out.exr");
+  deep.pngBits = 16;
+  EXPECT_THAT(errorFor(deep), HasSubstr("PNG only"));
+}
+
+// A folder has the name of one of the files.
+TEST_F(PlanOutputs, ChecksEachFile) {
+  OutputRequest all = request("out.exr");
+  all.allOutputs = true;
+  EXPECT_EQ(errorFor(all), "");
+  std::filesystem::create_directory(folder_ / "out.albedo.exr");
+  EXPECT_THAT(errorFor(all), HasSubstr("out.albedo.exr"));
+  OutputRequest frames = request("f##.png");
+  frames.everyFrame = true;
+  std::filesystem::create_directory(folder_ / "f07.png");
+  EXPECT_NO_THROW(planOutputs(frames, program_, {.count = 7}));
+  EXPECT_THROW(planOutputs(frames, program_, {.count = 8}), FileError);
+  EXPECT_NO_THROW(planOutputs(frames, program_, {.count = 3, .first = 8}));
+  EXPECT_EQ(folder_.entryCount(), 2u) << "the check leaves no files";
 }
 
 TEST_F(PlanOutputs, DisplaySettingsApplyToPngOnly) {

@@ -117,6 +117,15 @@ TEST(ToDisplay, EncodesOpaqueAsSrgbBytes) {
   EXPECT_EQ(bytes(result), (std::vector<int>{0, 0, 0, 118, 188, 255, 255, 0, 0}));
 }
 
+TEST(ToDisplay, EncodesWith16Bits) {
+  const auto result = toDisplay(row({{0, 0.18f, 1, 1}, {0.0001f, 0.5f, kNaN, 0.5f}}), ToneMap::linear, 0.0f, false, 16);
+  ASSERT_EQ(result.type, io::PixelType::u16);
+  const auto values = result.samples<std::uint16_t>();
+  // 65535 · sRGB(x) by IEC 61966-2-1.
+  const std::vector<int> expected{0, 30235, 65535, 65535, 169, 65535, 0, 32768};
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(values[i], expected[i], 1) << i;
+}
+
 TEST(ToDisplay, DividesByAlphaBeforeTheCurve) {
   const auto result =
       toDisplay(row({{0.09f, 0.25f, 0.5f, 0.5f}, {0, 0, 0, 0}, {1, 1, 1, 0}}), ToneMap::linear, 0.0f, false);

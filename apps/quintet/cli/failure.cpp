@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/failure.h"
+
+#include <algorithm>
+#include <new>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "cli/console.h"
+#include "output/report.h"
+
+namespace quintet::cli {
+
+std::string optionHint(Remedy remedy) {
+  switch (remedy) {
+    case Remedy::none: break;
+    case Remedy::overwrite: return "; use --force to overwrite it";
+    case Remedy::startOver: return "; use --force to start over";
+    case Remedy::resumeOrStartOver: return "; use --resume to continue or --force to start over";
+    case Remedy::renderRegion: return "; render a part of it with --region";
+    case Remedy::selectLayer: return "; select it as a layer with --aov";
+    case Remedy::allowDifference: return "; --may-differ NAME allows a difference";
+  }
+  return "";
+}
+
+int printFailure(std::string message, int status) {
+  std::ranges::replace(message, '\n', ' ');
+  printMessage("quintet: " + printable(message));
+  return status;
+}
+
+int reportFailure(const std::exception& error, bool json, const std::string& hint) {
+  const int status = dynamic_cast<const UsageError*>(&error) ? kWrongCommandLine : kRuntimeError;
+  const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
+  std::string message = memory ? "out of memory" : error.what();
+  if (const auto* ours = dynamic_cast<const Error*>(&error)) message += optionHint(ours->remedy());
+  if (!memory) message += hint;
+  if (json) {
+    try {
+      writeFile("-", output::errorJson(message, dynamic_cast<const FileError*>(&error), status));
+    } catch (const FileError&) {  // standard output is closed
+    }
+  }
+  return printFailure(message, status);
+}
+
+}  // namespace quintet::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a command fails: its exit status, one line on standard error, and with --json one object on standard output.
+#ifndef QUINTET_CLI_FAILURE_H
+#define QUINTET_CLI_FAILURE_H
+
+#include <exception>
+#include <string>
+
+#include "base/error.h"
+
+namespace quintet::cli {
+
+// docs/cli.md, "Output, errors and exit status".
+constexpr int kRuntimeError = 1;
+constexpr int kWrongCommandLine = 2;
+constexpr int kTargetNotReached = 3;
+
+// The end of an error message that names the option: "; use --force to overwrite it". Empty for Remedy::none.
+std::string optionHint(Remedy remedy);
+
+// Prints "quintet: MESSAGE"; line breaks in it become spaces. Returns `status`.
+int printFailure(std::string message, int status);
+
+// Prints the error with the option that helps, with `json` also as an object. `hint`: appended to the message, for example
+// "; write 'x'". Returns the exit status.
+int reportFailure(const std::exception& error, bool json, const std::string& hint = {});
+
+}  // namespace quintet::cli
+#endif
