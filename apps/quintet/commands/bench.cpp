@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "cli/candidates.h"
-#include "cli/option_table.h"
+#include "cli/parser.h"
 #include "cli/values.h"
 
 namespace quintet::cli {
@@ -87,7 +87,7 @@ OptionTable benchOptions() {
 
 int benchCommand(Arguments arguments) {
   Options options;
-  if (!declare(options).parse(arguments)) return 0;
+  if (!parse(declare(options), arguments)) return 0;
   job::BenchmarkRequest& request = options.request;
   if (request.scene.empty()) throw UsageError("no scene given; see 'quintet bench --help'");
   if (!options.size.empty()) request.size = parseSize("--size", options.size);

@@ -15,7 +15,7 @@
 #include "check/scene_facts.h"
 #include "cli/candidates.h"
 #include "cli/console.h"
-#include "cli/option_table.h"
+#include "cli/parser.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
 #include "job/instrumented_run.h"
@@ -101,7 +101,7 @@ OptionTable declare(Options& options) {
 
 std::optional<Options> parseOptions(Arguments arguments) {
   Options options;
-  if (!declare(options).parse(arguments)) return std::nullopt;
+  if (!parse(declare(options), arguments)) return std::nullopt;
   std::vector<std::string>& positional = options.positional;
   if (!positional.empty() && looksLikeScene(positional.back())) {
     options.scene = positional.back();
