@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "cli/command.h"
 
 namespace quintet::cli {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The options of a command as data. One table serves the parser, --help, the man page and the completions of shells
-// (cli/manual.h, cli/completion.h). Only option_table.cpp includes the parser (CLI11), which is slow to compile.
+// (cli/parser.h, cli/help_text.h, cli/manual.h, cli/completion.h).
 #ifndef QUINTET_CLI_OPTION_TABLE_H
 #define QUINTET_CLI_OPTION_TABLE_H
 
@@ -10,8 +10,6 @@
 #include <string_view>
 #include <variant>
 #include <vector>
-
-#include "cli/command.h"
 
 namespace quintet::cli {
 
@@ -65,6 +63,7 @@ class OptionTable {
   void addExamples(std::vector<Example> examples);
   // The command handles -h and --help: they set this target instead of printing the help.
   void redirectHelp(bool* target) { help_ = target; }
+  bool* redirectedHelp() const { return help_; }  // null if --help prints the help
 
   const std::string& command() const { return command_; }
   std::string program() const { return "quintet " + command_; }
@@ -74,10 +73,6 @@ class OptionTable {
   const std::vector<Example>& examples() const { return examples_; }
   std::vector<Option> options() const;  // of all groups
   std::string usage() const;            // "quintet render [OPTIONS] SCENE"
-
-  // Sets the targets. False: --help was requested and printed. Throws UsageError, which names the option, the expected value
-  // and the nearest name.
-  bool parse(Arguments arguments) const;
 
   // The table without targets, which can outlive them.
   OptionTable withoutTargets() &&;

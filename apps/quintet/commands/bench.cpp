@@ -10,7 +10,7 @@
 #include "base/file.h"
 #include "cli/candidates.h"
 #include "cli/console.h"
-#include "cli/option_table.h"
+#include "cli/parser.h"
 #include "cli/values.h"
 #include "job/scene_source.h"
 
@@ -124,7 +124,7 @@ OptionTable benchOptions() {
 
 int benchCommand(Arguments arguments) {
   Options options;
-  if (!declare(options).parse(arguments)) return 0;
+  if (!parse(declare(options), arguments)) return 0;
   const std::vector<std::string>& positional = options.positional;
   if (positional.empty()) throw UsageError("no scene or program given; see 'quintet bench --help'");
   if (positional.size() > 2)

@@ -15,7 +15,7 @@
 #include "check/scene_facts.h"
 #include "cli/candidates.h"
 #include "cli/console.h"
-#include "cli/option_table.h"
+#include "cli/parser.h"
 #include "cli/values.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
@@ -121,7 +121,7 @@ OptionTable declare(Options& options) {
 
 std::optional<Options> parseOptions(Arguments arguments) {
   Options options;
-  if (!declare(options).parse(arguments)) return std::nullopt;
+  if (!parse(declare(options), arguments)) return std::nullopt;
   if (!options.instrument) {
     const auto reject = [](bool given, const char* name) {
       if (given) throw UsageError(fmt::format("{} requires --instrument", name));

@@ -11,7 +11,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/failure.h"
-#include "cli/option_table.h"
+#include "cli/parser.h"
 #include "cli/signals.h"
 #include "cli/values.h"
 #include "io/codec.h"
@@ -135,7 +135,7 @@ OptionTable declare(Options& options) {
 
 std::optional<Options> parseOptions(Arguments arguments) {
   Options options;
-  if (!declare(options).parse(arguments)) return std::nullopt;
+  if (!parse(declare(options), arguments)) return std::nullopt;
   if (options.b.empty()) throw UsageError("two images are required; see 'quintet compare --help'");
   checkApplicable(options);
   return options;

@@ -17,7 +17,7 @@
 #include "base/text.h"
 #include "base/wrap.h"
 #include "check/catalog.h"
-#include "cli/option_table.h"
+#include "cli/parser.h"
 #include "cli/terminal.h"
 
 namespace quintet::cli {
@@ -123,7 +123,7 @@ OptionTable explainOptions() {
 
 int explainCommand(Arguments arguments) {
   Options options;
-  if (!declare(options).parse(arguments)) return 0;
+  if (!parse(declare(options), arguments)) return 0;
   Infos found;
   if (options.id.empty())
     for (const check::DiagnosticInfo& info : check::allDiagnostics()) found.push_back(&info);

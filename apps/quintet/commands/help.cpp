@@ -15,7 +15,7 @@
 #include "cli/completion.h"
 #include "cli/help_text.h"
 #include "cli/manual.h"
-#include "cli/option_table.h"
+#include "cli/parser.h"
 #include "cli/values.h"
 
 namespace quintet::cli {
@@ -107,7 +107,7 @@ OptionTable helpOptions() {
 
 int helpCommand(Arguments arguments) {
   Options options;
-  if (!declare(options).parse(arguments)) return 0;
+  if (!parse(declare(options), arguments)) return 0;
   if (options.man + options.list + options.completion.has_value() > 1)
     throw UsageError("--man, --completion and --commands exclude each other");
   if (options.command && (options.list || options.completion))

@@ -3,7 +3,7 @@
 #include "output/info.h"
 
 #include "base/file.h"
-#include "cli/option_table.h"
+#include "cli/parser.h"
 
 namespace quintet::cli {
 namespace {
@@ -41,7 +41,7 @@ OptionTable infoOptions() {
 
 int infoCommand(Arguments arguments) {
   Options options;
-  if (!declare(options).parse(arguments)) return 0;
+  if (!parse(declare(options), arguments)) return 0;
   writeFile("-", options.file ? output::fileInfo(*options.file, options.json) : output::devicesInfo(options.json));
   return 0;
 }

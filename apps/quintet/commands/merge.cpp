@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/stopwatch.h"
+#include "cli/parser.h"
 #include "cli/render_options.h"
 #include "cli/values.h"
 #include "output/plan.h"
@@ -61,7 +62,7 @@ OptionTable declare(Options& options, RenderTexts& texts) {
 std::optional<Options> parseOptions(Arguments arguments) {
   Options options;
   RenderTexts texts;
-  if (!declare(options, texts).parse(arguments)) return std::nullopt;
+  if (!parse(declare(options, texts), arguments)) return std::nullopt;
   if (options.parts.empty()) throw UsageError("no parts given; see 'quintet merge --help'");
   if (texts.output.empty()) throw UsageError("no output given (-o FILE); see 'quintet merge --help'");
   if (std::ranges::find(texts.layers, "list") != texts.layers.end())

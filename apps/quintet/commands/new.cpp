@@ -6,7 +6,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/candidates.h"
-#include "cli/option_table.h"
+#include "cli/parser.h"
 #include "program/new_program.h"
 
 namespace quintet::cli {
@@ -44,7 +44,7 @@ OptionTable newOptions() {
 
 int newCommand(Arguments arguments) {
   program::NewProgramOptions options;
-  if (!declare(options).parse(arguments)) return 0;
+  if (!parse(declare(options), arguments)) return 0;
   if (options.name.empty()) throw UsageError("no name given; see 'quintet new --help'");
 
   const program::NewProgram created = program::planNewProgram(options);

@@ -77,7 +77,7 @@ OptionTable declare(RenderOptions& options, RenderTexts& texts) {
 std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   RenderOptions options;
   RenderTexts texts;
-  if (!declare(options, texts).parse(arguments)) return std::nullopt;
+  if (!parse(declare(options, texts), arguments)) return std::nullopt;
   options.layerList = std::ranges::find(texts.layers, "list") != texts.layers.end();
   if (options.programHelp || options.layerList) return options;
   if (texts.scene.empty()) throw UsageError("no scene given; see 'quintet render --help'");

@@ -13,6 +13,7 @@
 #include "base/text.h"
 #include "cli/candidates.h"
 #include "cli/help_text.h"
+#include "cli/parser.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "commands/render.h"
@@ -130,7 +131,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   RenderTexts texts;
   options.program.clear();
   const OptionTable table = declare(options, texts);
-  table.parse(arguments);
+  parse(table, arguments);
   if (options.programHelp && options.program.empty()) {
     writeFile("-", helpText(table, helpWidth()));
     return std::nullopt;
