@@ -30,7 +30,7 @@ TEST(TomlValue, HoldsValuesOfEveryKindWithTheirLines) {
   const TomlValue root =
       parseToml("z = 1\n\na = true\nt = { r = 1.5, s = 'x' }\n\nl = [1,\n2]\n[x.y]\nk = 1\n", "t.toml");
   ASSERT_EQ(root.members.size(), 5u);
-  EXPECT_EQ(root.members[0].first, "a");
+  EXPECT_EQ(root.members[0].key, "a");
   EXPECT_TRUE(root.find("a")->boolean);
   EXPECT_EQ(root.find("a")->line, 3);
   EXPECT_EQ(root.find("z")->integer, 1);
