@@ -11,6 +11,7 @@
 #include "base/wrap.h"
 #include "cli/candidates.h"
 #include "cli/failure.h"
+#include "cli/parser.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "job/render_job.h"

@@ -15,13 +15,6 @@
 namespace quintet::test {
 namespace {
 
-std::vector<std::string> optionalOutputs(const program::Program& program) {
-  std::vector<std::string> names;
-  for (const program::Output& output : program.outputs)
-    if (output.optional) names.push_back(output.name);
-  return names;
-}
-
 struct Layers {
   program::Program program = program::loadProgram("pathtracer");
   std::map<std::string, io::Image> images;
