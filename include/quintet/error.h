@@ -26,7 +26,7 @@ class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message, Remedy remedy = Remedy::none)
       : std::runtime_error(message), remedy_(remedy) {}
-  Remedy remedy() const { return remedy_; }
+  Remedy remedy() const { return remedy_; }  // none if a change of the request does not help
 
  private:
   Remedy remedy_;
