@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Precompiled headers: the headers that most sources include and that rarely change. They only save compile time. Sources
-# include what they use, and CI compiles every header alone (tests/headers.cmake).
+# include what they use, and CI compiles every header alone (tests/headers/run).
 #
 # quintet_precompile(TARGET)        the standard library, fmt and glm
 # quintet_precompile(TARGET TESTS)  also GoogleTest and nlohmann-json

@@ -101,7 +101,7 @@ TEST_F(Help, MissingValuesAreNamed) {
               {"--spp: the value N is missing", "quintet render --help"});
   expectError(quintet({"render", "scene.gltf", "-o"}), 2, {"--output: the value FILE is missing"});
   expectError(quintet({"info", "--json=no"}), 2, {"--json: this option takes no value"});
-  expectError(quintet({"bench"}), 2, {"no scene given"});
+  expectError(quintet({"bench"}), 2, {"no scene or program given"});
   expectError(quintet({"render", "--spp", "1", "--spp", "2"}), 2, {"--spp: given 2 times"});
   expectError(quintet({"render", "--size=", "3x3"}), 2, {"--size: the value is empty"});
   expectError(quintet({"bench", "scene.gltf", "--repeat", "0"}), 2, {"--repeat", "[1, 1000]"});

@@ -151,7 +151,7 @@ TEST(FilmFile, DetectsTruncationAtEveryLength) {
   EXPECT_EQ(problemOf(std::span(bytes).first(0)), "part.qfilm: is empty");
   for (std::size_t size = 1; size < bytes.size(); ++size)
     ASSERT_EQ(problemOf(std::span(bytes).first(size)),
-              "part.qfilm: is truncated after " + std::to_string(size) + " bytes");
+              "part.qfilm: is truncated after " + std::to_string(size) + (size == 1 ? " byte" : " bytes"));
   std::vector<std::byte> longer = bytes;
   longer.resize(bytes.size() + 3);
   EXPECT_EQ(problemOf(longer), "part.qfilm: is damaged: it has 3 excess bytes");
