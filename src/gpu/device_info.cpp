@@ -34,6 +34,7 @@ std::string withoutVersions(const std::string& text) {
 }
 
 bool matches(const DeviceInfo& device, const std::string& request) {
+  if (lowerCase(device.name) == request) return true;  // scripts pass on what `quintet info` prints
   for (const std::string& text : {withoutVersions(device.name), device.driverName, device.kind})
     if (lowerCase(text).find(request) != std::string::npos) return true;
   return false;

@@ -139,11 +139,14 @@ TEST_F(RenderJobTest, ResumesFromACheckpoint) {
   }
   observer_.finishAfter = 1000;
   observer_.request = StopRequest::none;
-  const auto job = makeJob(request);
-  const RenderResult complete = job->run(request.limits, observer_);
-  EXPECT_TRUE(test::equalSums(complete.film->plane(0).sums, reference(12)));
-  job->outputsWritten(complete, observer_);
-  EXPECT_EQ(folder.entryCount(), 0u);
+  {
+    const auto job = makeJob(request);
+    const RenderResult complete = job->run(request.limits, observer_);
+    EXPECT_TRUE(test::equalSums(complete.film->plane(0).sums, reference(12)));
+    job->outputsWritten(complete, observer_);
+    EXPECT_FALSE(std::filesystem::exists(request.checkpoint.file));
+  }
+  EXPECT_EQ(folder.entryCount(), 0u) << "the lock is released with the job";
 }
 
 TEST_F(RenderJobTest, APartHasItsBatches) {
