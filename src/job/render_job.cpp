@@ -207,7 +207,8 @@ Provenance RenderJob::makeProvenance() const {
   const RenderRequest& request = job_.request;
   Provenance p = identityOf(job_, *renderer_, scene_->camera, scene_->size);
   p.programHash = provenance_.programHash;
-  p.sceneHash = scene_->hash;
+  // Frames of an animation are different scenes: the film of one does not continue another.
+  p.sceneHash = frame_ == 0 ? scene_->hash : fmt::format("{}, frame {}", scene_->hash, frame_);
   p.environmentHash = scene_->environmentHash;
   p.commandLine = request.commandLine;
   p.scene = job_.scene.path();
@@ -430,7 +431,7 @@ RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& obser
   RenderResult last, earlier;
   for (std::uint32_t frame = frames.every ? frames.firstFrame() : frames.lastFrame(); frame <= frames.lastFrame();
        ++frame) {
-    scene_->onDevice->setFrame(static_cast<float>(frame));
+    showFrame(static_cast<float>(frame));
     renderer_->restart();
     start_ = {};
     last = runFilm(limits, observer);
@@ -507,8 +508,24 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
   }
 }
 
-RenderResult RenderJob::result(bool withError) const {
+void RenderJob::requireRenderer() const {
   if (!renderer_) throw Error("a change of the scene failed; the next render repeats it");
+}
+
+std::shared_ptr<FilmView> RenderJob::film() const {
+  requireRenderer();
+  return std::make_shared<DeviceFilm>(*renderer_);
+}
+
+void RenderJob::showFrame(float frame) {
+  if (!scene_->onDevice->animated()) return;
+  scene_->onDevice->setFrame(frame);
+  frame_ = frame;
+  provenance_ = makeProvenance();
+}
+
+RenderResult RenderJob::result(bool withError) const {
+  requireRenderer();
   RenderResult result = makeResult(start_.seconds, start_, withError);
   if (job_.accumulatesFrames() && nextFrame_ > 0) result.provenance.frame = nextFrame_ - 1;
   return result;
