@@ -105,6 +105,27 @@ TEST(ApiFilm, MergesPartsToTheSameBytes) {
   for (const std::filesystem::path& part : parts) std::filesystem::remove(part);
 }
 
+TEST(ApiFilm, WritesPngAsRequested) {
+  Renderer renderer(device(), lampScene(), pathTracer(), smallImage());
+  renderer.render(4);
+  const Film film = renderer.film();
+  const std::filesystem::path file = temporary("options.png");
+  std::set<std::string> files;
+  for (const WriteOptions& options : {WriteOptions{}, WriteOptions{.toneMap = "linear"}, WriteOptions{.toneMap = "agx"},
+                                      WriteOptions{.pngBits = 16}}) {
+    film.write(file, options);
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(in), {});
+    ASSERT_GT(bytes.size(), 25u);
+    EXPECT_EQ(bytes[24], static_cast<char>(options.pngBits));  // IHDR: bit depth
+    files.insert(bytes);
+  }
+  EXPECT_EQ(files.size(), 4u);
+  EXPECT_THROW(film.write(file, {.toneMap = "acess"}), UsageError);
+  EXPECT_THROW(film.write(file, {.pngBits = 12}), UsageError);
+  std::filesystem::remove(file);
+}
+
 TEST(ApiFilm, WritesLayersToOpenExr) {
   Settings settings = smallImage();
   settings.outputs = {"albedo", "depth"};
