@@ -1,10 +1,9 @@
-#define STRUCT_PAYLOAD struct RayPayloadType
 #define TRACE(o, d, n, f) traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, o, n, d, f, 0)
 #define HITPOS (gl_WorldRayOriginEXT + gl_WorldRayDirectionEXT * gl_HitTEXT)
 #define WORLD_NORMAL(n) normalize(vec3((n) * gl_WorldToObjectEXT))
 #define LERP3(a, b, c) ((a) * (1.0 - baryCoord.x - baryCoord.y) + (b) * baryCoord.x + (c) * baryCoord.y)
 
-STRUCT_PAYLOAD { vec3 col; };
+struct RayPayloadType { vec3 col; };
 
 void main() { /**** RAY GENERATION SHADER ****/
   vec2 ndc = 2.0 * (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy) - 1.0;

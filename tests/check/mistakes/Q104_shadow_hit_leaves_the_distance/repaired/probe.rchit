@@ -2,4 +2,4 @@
 #extension GL_EXT_ray_tracing : require
 #include "p.glsl"
 layout(location = 0) rayPayloadInEXT Probe probe;
-void main() { probe.dist = gl_HitTEXT; probe.occluded = true; }
+void main() { probe = Probe(gl_HitTEXT, true); }
