@@ -9,9 +9,9 @@ layout(location = 0) rayPayloadInEXT Payload p;
 void main() {
   const vec3 x = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;
   float sum = 0.0;
-  p.light = 0.25 * abs(gl_WorldRayDirectionEXT.y);
-  for (int i = 0; i < 4; ++i) {
-    const vec3 l = normalize(vec3(float(i) - 1.5, 6.0, 1.0));
+  p.light = 0.5 * abs(gl_WorldRayDirectionEXT.y);
+  for (int i = 0; i < 2; ++i) {
+    const vec3 l = normalize(vec3(float(i) - 0.5, 6.0, 1.0));
     // EXPECT+1 Q105
     traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFF, kRay_shadow,
                 kRayTypeCount, kMiss_shadow, x, 0.001, l, 100.0, 0);

@@ -10,7 +10,7 @@ void main() { /**** RAY GENERATION SHADER ****/
 }
 
 void main() { /**** INTERSECTION SHADER ****/
-  // Six planes of a cube; the kind is the index of the plane.
+  // Two planes; the kind is the index of the plane.
   for (uint i = 4u; i < 6u; ++i) {
     float z = i % 2u == 0u ? -0.5 : 0.5;
     float t = (z - gl_ObjectRayOriginEXT.z) / gl_ObjectRayDirectionEXT.z;

@@ -11,7 +11,7 @@ void main() { /**** RAY GENERATION SHADER ****/
 }
 
 LocalRay localRay() {
-  return LocalRay(gl_ObjectRayOriginEXT, normalize(gl_ObjectRayDirectionEXT));
+  return LocalRay(gl_ObjectRayOriginEXT, normalize(gl_ObjectRayDirectionEXT));  // EXPECT Q701
 }
 
 float plane(LocalRay r, float height) { return (height - r.o.y) / r.d.y; }
@@ -21,7 +21,7 @@ void main() { /**** INTERSECTION SHADER ****/
   float t = plane(r, 0.1);
   hit.p = r.o + t * r.d;
   if (max(abs(hit.p.x), abs(hit.p.z)) > 0.5) return;
-  reportIntersectionEXT(t, 0u);  // EXPECT Q701
+  reportIntersectionEXT(t, 0u);
 }
 
 void main() { /**** CLOSEST-HIT SHADER ****/ payload.d = length(hit.p); }
