@@ -9,8 +9,8 @@ void main() { /**** RAY GENERATION SHADER ****/
   gsnSetPixel(vec4(payload.color, 1.0));
 }
 
-bool candidate(float t, uint kind) {
-  if (t < gl_RayTminEXT || t > gl_RayTmaxEXT) return false;
+bool candidate(float t, float tmax, uint kind) {
+  if (t < gl_RayTminEXT || t > tmax) return false;
   hit.n = (gl_ObjectRayOriginEXT + t * gl_ObjectRayDirectionEXT) * (kind == 0u ? 1.0 : -1.0);
   return reportIntersectionEXT(t, kind);
 }
@@ -19,7 +19,8 @@ void main() { /**** INTERSECTION SHADER ****/
   vec3 o = gl_ObjectRayOriginEXT, d = gl_ObjectRayDirectionEXT;
   float a = dot(d, d), b = dot(o, d), h = b * b - a * (dot(o, o) - 0.3);
   if (h < 0.0) return;
-  if (!candidate((-b - sqrt(h)) / a, 0u)) candidate((-b + sqrt(h)) / a, 1u);
+  float tmax = gl_RayTmaxEXT;
+  if (!candidate((-b - sqrt(h)) / a, tmax, 0u)) candidate((-b + sqrt(h)) / a, tmax, 1u);
 }
 
 void main() { /**** CLOSEST-HIT SHADER ****/
