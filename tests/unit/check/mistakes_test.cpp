@@ -159,7 +159,8 @@ TEST_P(Idioms, AreNotReported) {
   EXPECT_EQ(reported, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Corpus, Idioms, testing::ValuesIn(programsIn(kIdioms)), [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Corpus, Idioms, testing::ValuesIn(programsIn(kIdioms)),
+                         [](const auto& test) { return test.param; });
 
 // Only a run can report Q001 to Q006 (tests/gpu/program/instrument_test.cpp), and Q016 needs a file of a megabyte.
 TEST(MistakesCorpus, HasAnEntryForEachId) {
@@ -174,7 +175,8 @@ TEST(MistakesCorpus, HasAnEntryForEachId) {
 
 TEST(MistakesCorpus, ListsOfKnownErrorsNameExistingPrograms) {
   for (const std::string& name : namesIn("known_misses.txt")) EXPECT_TRUE(fs::is_directory(kMistakes / name)) << name;
-  for (const std::string& name : namesIn("known_false_alarms.txt")) EXPECT_TRUE(fs::is_directory(kIdioms / name)) << name;
+  for (const std::string& name : namesIn("known_false_alarms.txt"))
+    EXPECT_TRUE(fs::is_directory(kIdioms / name)) << name;
 }
 
 }  // namespace
