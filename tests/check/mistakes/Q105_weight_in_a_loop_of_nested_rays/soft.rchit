@@ -13,7 +13,7 @@ void main() {
   for (int i = 0; i < 2; ++i) {
     const vec3 l = normalize(vec3(float(i) - 0.5, 6.0, 1.0));
     // EXPECT+1 Q105
-    traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFF, kRay_shadow,
+    traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT, 0xFF, kRay_shadow,
                 kRayTypeCount, kMiss_shadow, x, 0.001, l, 100.0, 0);
     sum += p.light;
   }

@@ -10,11 +10,11 @@ void main() { /**** RAY GENERATION SHADER ****/
   gsnSetPixel(vec4(payload.color, 1.0));
 }
 
-void main() { /**** ANY-HIT SHADER ****/  // EXPECT Q606
+void main() { /**** ANY-HIT SHADER ****/
   // Cuts holes into the surface.
   float u = fract(10.0 * baryCoord.x);
   if (u > 0.0) ignoreIntersectionEXT;
-  ignoreIntersectionEXT;
+  ignoreIntersectionEXT;  // EXPECT Q606
 }
 
 void main() { /**** CLOSEST-HIT SHADER ****/

@@ -12,8 +12,7 @@ void main() {
   const float weight = 0.5 * abs(gl_WorldRayDirectionEXT.y);
   for (int i = 0; i < 2; ++i) {
     const vec3 l = normalize(vec3(float(i) - 0.5, 6.0, 1.0));
-    p.light = 0.0;
-    traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFF, kRay_shadow,
+    traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT, 0xFF, kRay_shadow,
                 kRayTypeCount, kMiss_shadow, x, 0.001, l, 100.0, 0);
     sum += weight * p.light;
   }
