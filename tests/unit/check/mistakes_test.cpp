@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The corpus of mistakes (tests/check/mistakes): each program has exactly one mistake, which is reported in the marked
-// line, and its repaired version has none. The device of these tests has all defects of docs/design/quirks.md.
+// line, and its repaired version has none. The corpus of idioms (tests/check/idioms): unusual but correct programs, for
+// which nothing is reported. The device of these tests has all defects of docs/design/quirks.md.
+//
+// tests/check/known_misses.txt and known_false_alarms.txt list the programs for which the check is wrong today. The
+// tests fail if a listed program is reported correctly, so the lists stay true.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kCorpus = fs::path(QUINTET_SOURCE_ROOT) / "tests/check/mistakes";
+const fs::path kCheck = fs::path(QUINTET_SOURCE_ROOT) / "tests/check";
+const fs::path kMistakes = kCheck / "mistakes";
+const fs::path kIdioms = kCheck / "idioms";
 
 std::string textOf(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -29,11 +35,20 @@ std::string textOf(const fs::path& file) {
   return text.str();
 }
 
-std::vector<std::string> mistakes() {
+std::vector<std::string> programsIn(const fs::path& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(kCorpus))
+  for (const auto& entry : fs::directory_iterator(folder))
     if (entry.is_directory()) names.push_back(entry.path().filename());
   std::ranges::sort(names);
+  return names;
+}
+
+// The names in a list: the first word of each line that is not empty and no comment.
+std::set<std::string> namesIn(const char* list) {
+  std::istringstream lines(textOf(kCheck / list));
+  std::set<std::string> names;
+  for (std::string line, name; std::getline(lines, line);)
+    if (std::istringstream(line) >> name && name.front() != '#') names.insert(name);
   return names;
 }
 
@@ -85,7 +100,7 @@ std::set<std::string> expectedOf(const Files& files) {
   return result;
 }
 
-CheckResult checkMistake(const Files& files) {
+CheckResult checkProgram(const Files& files) {
   DeviceLimits limits;
   limits.defects.changesNestedBuiltIns = limits.defects.corruptsHitAttributes = true;
   limits.defects.sharesAnyHit = limits.defects.sharesLocalArrays = true;
@@ -100,11 +115,11 @@ class Mistakes : public testing::TestWithParam<std::string> {};
 
 TEST_P(Mistakes, AreReportedInTheMarkedLines) {
   Files files;
-  readFolder(kCorpus / GetParam(), files);
+  readFolder(kMistakes / GetParam(), files);
   const std::set<std::string> expected = expectedOf(files);
   ASSERT_FALSE(expected.empty()) << "no line has an EXPECT mark";
   for (const std::string& line : expected) EXPECT_EQ(line.substr(0, 4), GetParam().substr(0, 4));
-  const CheckResult result = checkMistake(files);
+  const CheckResult result = checkProgram(files);
   std::set<std::string> reported;
   for (const Diagnostic& d : result.diagnostics) {
     reported.insert(fmt::format("{} {}:{}", d.id, fs::path(d.file).filename().string(), d.line));
@@ -112,28 +127,56 @@ TEST_P(Mistakes, AreReportedInTheMarkedLines) {
     ASSERT_NE(info, nullptr) << d.id;
     EXPECT_EQ(d.severity, info->severity);
   }
+  if (namesIn("known_misses.txt").contains(GetParam())) {
+    EXPECT_NE(reported, expected) << "is reported now: remove it from known_misses.txt";
+    return;
+  }
   EXPECT_EQ(reported, expected) << textOf(result);
 }
 
 TEST_P(Mistakes, AreNotReportedAfterRepair) {
   Files files;
-  readFolder(kCorpus / GetParam(), files);
-  readFolder(kCorpus / GetParam() / "repaired", files);
+  readFolder(kMistakes / GetParam(), files);
+  readFolder(kMistakes / GetParam() / "repaired", files);
   EXPECT_TRUE(expectedOf(files).empty()) << "the repaired version has an EXPECT mark";
-  EXPECT_EQ(textOf(checkMistake(files)), "");
+  EXPECT_EQ(textOf(checkProgram(files)), "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Corpus, Mistakes, testing::ValuesIn(mistakes()), [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Corpus, Mistakes, testing::ValuesIn(programsIn(kMistakes)),
+                         [](const auto& test) { return test.param; });
+
+class Idioms : public testing::TestWithParam<std::string> {};
+
+TEST_P(Idioms, AreNotReported) {
+  Files files;
+  readFolder(kIdioms / GetParam(), files);
+  EXPECT_TRUE(expectedOf(files).empty()) << "an idiom has an EXPECT mark";
+  const std::string reported = textOf(checkProgram(files));
+  if (namesIn("known_false_alarms.txt").contains(GetParam())) {
+    EXPECT_NE(reported, "") << "is not reported now: remove it from known_false_alarms.txt";
+    return;
+  }
+  EXPECT_EQ(reported, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Corpus, Idioms, testing::ValuesIn(programsIn(kIdioms)),
+                         [](const auto& test) { return test.param; });
 
 // Only a run can report Q001 to Q006 (tests/gpu/program/instrument_test.cpp), and Q016 needs a file of a megabyte.
 TEST(MistakesCorpus, HasAnEntryForEachId) {
-  const std::vector<std::string> names = mistakes();
+  const std::vector<std::string> names = programsIn(kMistakes);
   for (const DiagnosticInfo& info : allDiagnostics()) {
     if (info.id < "Q010" || info.id == "Q016") continue;
     EXPECT_TRUE(std::ranges::any_of(names, [&](const std::string& name) {
       return name.starts_with(std::string(info.id) + "_");
     })) << info.id;
   }
+}
+
+TEST(MistakesCorpus, ListsOfKnownErrorsNameExistingPrograms) {
+  for (const std::string& name : namesIn("known_misses.txt")) EXPECT_TRUE(fs::is_directory(kMistakes / name)) << name;
+  for (const std::string& name : namesIn("known_false_alarms.txt"))
+    EXPECT_TRUE(fs::is_directory(kIdioms / name)) << name;
 }
 
 }  // namespace

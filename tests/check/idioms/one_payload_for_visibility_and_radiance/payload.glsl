@@ -1,0 +1,5 @@
+struct Payload {
+  vec3 radiance;
+  float t;
+  bool visible;
+};

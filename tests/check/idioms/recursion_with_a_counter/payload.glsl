@@ -1,0 +1,1 @@
+struct Bounce { vec3 color; uint remaining; };

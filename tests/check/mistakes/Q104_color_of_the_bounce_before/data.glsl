@@ -1,0 +1,1 @@
+struct Step { vec3 emission; vec3 position; bool done; };

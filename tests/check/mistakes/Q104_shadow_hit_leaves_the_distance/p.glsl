@@ -1,0 +1,4 @@
+struct Probe {
+  float dist;
+  bool occluded;
+};

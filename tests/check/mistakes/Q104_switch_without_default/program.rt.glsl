@@ -1,0 +1,22 @@
+struct RayPayloadType {
+  vec3 color;
+};
+
+void main() { /**** RAY GENERATION SHADER ****/
+  vec2 ndc = 2.0 * (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy) - 1.0;
+  // EXPECT+1 Q104
+  traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(0, 0, 6), 0.001, normalize(vec3(ndc, -2)), 1e3, 0);
+  gsnSetPixel(vec4(payload.color, 1.0));
+}
+
+void main() { /**** CLOSEST-HIT SHADER ****/
+  switch (gl_InstanceCustomIndexEXT) {
+    case 0: payload.color = vec3(1.0, 0.0, 0.0); break;
+    case 1: payload.color = vec3(0.0, 1.0, 0.0); break;
+    case 2: payload.color = vec3(0.0, 0.0, 1.0); break;
+  }
+}
+
+void main() { /**** MISS SHADER ****/
+  payload.color = vec3(0.0);
+}

@@ -1,0 +1,1 @@
+struct Payload { vec3 color; float light; };

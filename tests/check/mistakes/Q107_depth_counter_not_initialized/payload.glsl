@@ -1,0 +1,8 @@
+struct Info {
+  int depth;
+  float ior;
+};
+struct Payload {
+  vec3 color;
+  Info info;
+};

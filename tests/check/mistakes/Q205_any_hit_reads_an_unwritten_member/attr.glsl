@@ -1,0 +1,1 @@
+struct Strand { float along; float across; };

@@ -1,0 +1,4 @@
+struct TextureArgs {
+  vec2 uv;
+  vec3 color;
+};

@@ -1,0 +1,4 @@
+struct Sight {
+  vec3 point;
+  bool blocked;
+};

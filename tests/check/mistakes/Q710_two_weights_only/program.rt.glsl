@@ -1,0 +1,19 @@
+struct RayPayloadType { vec3 color; };
+
+void main() { /**** RAY GENERATION SHADER ****/
+  vec2 ndc = 2.0 * (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy) - 1.0;
+  traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(0, 0, 6), 0.001, normalize(vec3(ndc, -2)), 1e3, 0);
+  gsnSetPixel(vec4(payload.color, 1.0));
+}
+
+void main() { /**** CLOSEST-HIT SHADER ****/
+  vec2 uv0, uv1, uv2;
+  gsnGetTexCoords(gl_InstanceID, gl_PrimitiveID, uv0, uv1, uv2);
+  vec3 b;
+  b.yz = baryCoord;
+  b.x = 1.0 - b.y;
+  vec2 uv = b.x * uv0 + b.y * uv1 + b.z * uv2;  // EXPECT Q710
+  payload.color = vec3(uv, 0.0);
+}
+
+void main() { /**** MISS SHADER ****/ payload.color = vec3(0.0); }

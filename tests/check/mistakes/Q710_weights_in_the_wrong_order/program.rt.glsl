@@ -1,0 +1,19 @@
+struct RayPayloadType { vec3 color; };
+
+void main() { /**** RAY GENERATION SHADER ****/
+  vec2 ndc = 2.0 * (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy) - 1.0;
+  traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(0, 0, 6), 0.001, normalize(vec3(ndc, -2)), 1e3, 0);
+  gsnSetPixel(vec4(payload.color, 1.0));
+}
+
+void main() { /**** CLOSEST-HIT SHADER ****/
+  vec2 t0, t1, t2;
+  gsnGetTexCoords(gl_InstanceID, gl_PrimitiveID, t0, t1, t2);
+  float u = baryCoord.x, v = baryCoord.y, w = 1.0 - u - v;
+  vec2 st = u * t0 + v * t1 + w * t2;  // EXPECT Q710
+  payload.color = vec3(fract(8.0 * st), 0.0);
+}
+
+void main() { /**** MISS SHADER ****/
+  payload.color = vec3(0.0);
+}

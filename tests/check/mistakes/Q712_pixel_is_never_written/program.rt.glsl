@@ -1,0 +1,16 @@
+struct RayPayloadType { vec3 color; };
+
+void main() { /**** RAY GENERATION SHADER ****/  // EXPECT Q712
+  vec2 ndc = 2.0 * (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy) - 1.0;
+  vec4 pixelColor = vec4(0.0, 0.0, 0.0, 1.0);
+  traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(0, 0, 6), 0.001, normalize(vec3(ndc, -2)), 1e3, 0);
+  pixelColor.rgb = payload.color;
+}
+
+void main() { /**** CLOSEST-HIT SHADER ****/
+  payload.color = vec3(baryCoord, 0.0);
+}
+
+void main() { /**** MISS SHADER ****/
+  payload.color = vec3(0.2, 0.2, 0.2);
+}
