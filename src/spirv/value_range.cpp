@@ -86,8 +86,6 @@ ValueRange joined(const ValueRange& a, const ValueRange& b) {
   ValueRange result = ValueRange::between(std::min(a.min, b.min), std::max(a.max, b.max));
   result.nan = a.nan || b.nan;
   result.ones = a.ones & b.ones, result.zeros = a.zeros & b.zeros;
-  const bool each = a.occurrence == Occurrence::each && b.occurrence == Occurrence::each;
-  result.occurrence = each ? Occurrence::each : Occurrence::unknown;
   if (a.values.empty() || b.values.empty()) return result;
   std::vector<double> all;
   std::ranges::set_union(a.values, b.values, std::back_inserter(all));
@@ -670,12 +668,15 @@ struct ValueRanges::Impl {
   ValueRange phiRange(Evaluator& in, const Instruction& phi, const Path& path);
   ValueRange extendedRange(Evaluator& in, const Instruction& value, const Type& type, const Path& path);
   ValueRange converted(const Instruction& value, const ValueRange& from, const Type& type);
+  ValueRange sum(Evaluator& in, std::span<const std::uint32_t> operands, const Type& type, const Path& path);
   ValueRange operation(Evaluator& in, Op op, std::span<const std::uint32_t> operands, const Type& type,
                        const Path& path);
 
   const std::optional<CountedLoop>& countedLoop(Id phi);
   std::optional<CountedLoop> findLoop(const Instruction& phi);
   Evaluator& at(std::size_t function, std::size_t block);
+  void addConditions(Evaluator& in, std::size_t function, std::size_t block);
+  ValueRange chosenFrom(const Type& type, const std::vector<ValueRange>& choices, const std::vector<Id>& conditions);
   void addCondition(Evaluator& in, Id condition, bool holds, int nesting = 0);
   void addLimit(Evaluator& in, Id value, const Path& path, double min, double max);
   void addEdge(Evaluator& in, const Function& function, std::size_t from, std::size_t to);
@@ -790,6 +791,26 @@ ValueRange ValueRanges::Impl::converted(const Instruction& value, const ValueRan
   return result;
 }
 
+// Consecutive integers plus a value that is the same in all invocations, such as gl_LaunchIDEXT.x + launch.offset.x, are
+// consecutive.
+ValueRange ValueRanges::Impl::sum(Evaluator& in, std::span<const std::uint32_t> operands, const Type& type,
+                                  const Path& path) {
+  if (operands.size() < 2) return rangeOf(type);
+  const ValueRange a = evaluate(in, operands[0], path), b = evaluate(in, operands[1], path);
+  ValueRange result = binary(type, Op::OpIAdd, a, b);
+  const auto isUniform = [&](Id value) {
+    const Key key = canonical(value, path);
+    const Instruction* load = module.definition(key.first);
+    const Chain chain = load && load->op == Op::OpLoad ? chainOf(module, load->at(0)) : Chain{};
+    const Variable* variable = module.variable(chain.base);
+    return variable && variable->storage == spv::StorageClass::PushConstant;
+  };
+  if ((a.occurrence == Occurrence::many && isUniform(operands[1])) ||
+      (b.occurrence == Occurrence::many && isUniform(operands[0])))
+    result.occurrence = Occurrence::many;
+  return result;
+}
+
 ValueRange ValueRanges::Impl::operation(Evaluator& in, Op op, std::span<const std::uint32_t> operands,
                                         const Type& type, const Path& path) {
   const auto operand = [&](std::size_t i) {
@@ -807,6 +828,7 @@ ValueRange ValueRanges::Impl::operation(Evaluator& in, Op op, std::span<const st
     case Op::OpSRem:
       if (!isInteger(type)) return rangeOf(type);
       if ((op == Op::OpUDiv || op == Op::OpUMod) && type.isSigned) return rangeOf(type);
+      if (op == Op::OpIAdd) return sum(in, operands, type, path);
       return binary(type, op, operand(0), operand(1));
     case Op::OpFAdd:
     case Op::OpFSub:
@@ -842,7 +864,7 @@ ValueRange ValueRanges::Impl::operation(Evaluator& in, Op op, std::span<const st
       const bool vector = typeOf(operands[0]).kind == Kind::vector;
       const std::optional<double> chosenBy = evaluate(in, operands[0], vector ? path : Path{}).constant();
       if (chosenBy) return operand(*chosenBy != 0.0 ? 1 : 2);
-      return fitted(type, joined(operand(1), operand(2)));
+      return chosenFrom(type, {operand(1), operand(2)}, {operands[0]});
     }
     case Op::OpVectorExtractDynamic: {
       if (operands.size() < 2) return rangeOf(type);
@@ -850,9 +872,9 @@ ValueRange ValueRanges::Impl::operation(Evaluator& in, Op op, std::span<const st
       ValueRange result = never();
       for (std::uint32_t i = 0; i < typeOf(operands[0]).count; ++i)
         if (index.contains(i)) result = joined(result, evaluate(in, operands[0], {i}));
+      if (!result.constant()) result.occurrence = Occurrence::unknown;
       return result.empty() ? rangeOf(type) : fitted(type, std::move(result));
     }
-    case Op::OpFunctionCall:
     default: return rangeOf(type);
   }
 }
@@ -945,10 +967,40 @@ ValueRange ValueRanges::Impl::phiRange(Evaluator& in, const Instruction& phi, co
     }
   }
   // The values come from other blocks, where the conditions of this one need not hold.
+  std::vector<ValueRange> choices;
+  for (std::size_t i = 0; i + 1 < phi.operands.size(); i += 2) choices.push_back(evaluate(base, phi.at(i), path));
+  const auto position = module.position(module.definitionIndex(phi.result));
+  if (!position) return rangeOf(type);
+  return chosenFrom(type, choices, flow(position->function).phiConditions(position->block));
+}
+
+// One of several ranges. Values of a choice occur only if the conditions do not depend on the same inputs.
+ValueRange ValueRanges::Impl::chosenFrom(const Type& type, const std::vector<ValueRange>& choices,
+                                         const std::vector<Id>& conditions) {
   ValueRange result = never();
-  for (std::size_t i = 0; i + 1 < phi.operands.size(); i += 2)
-    result = joined(result, evaluate(base, phi.at(i), path));
-  return result.empty() ? rangeOf(type) : fitted(type, std::move(result));
+  bool constant = true, each = true, many = false;
+  for (const ValueRange& choice : choices) {
+    if (choice.empty()) continue;
+    result = joined(result, choice);
+    constant = constant && choice.constant();
+    each = each && choice.occurrence == Occurrence::each;
+    many = many || choice.occurrence == Occurrence::many;
+  }
+  if (result.empty()) return rangeOf(type);
+  const auto independent = [&] {
+    return std::ranges::none_of(conditions, [&](Id condition) {
+      return dependsOn(module, condition, [&](const Instruction& i) {
+        return i.op == Op::OpPhi || i.op == Op::OpFunctionCall || (i.op == Op::OpLoad && !bufferMember(module, i));
+      });
+    });
+  };
+  if (constant || (each && independent()))
+    result.occurrence = Occurrence::each;
+  else if (many && independent())
+    result.occurrence = Occurrence::many;
+  else
+    result.occurrence = Occurrence::unknown;
+  return fitted(type, std::move(result));
 }
 
 // Ranges of a part of `value`. `rest` are the remaining indices; nullopt means any element.
@@ -1114,6 +1166,12 @@ ValueRanges::Impl::Evaluator& ValueRanges::Impl::at(std::size_t f, std::size_t b
   Evaluator& in = found->second;
   if (!isNew) return in;
   in.block = Module::Position{f, block};
+  addConditions(in, f, block);
+  return in;
+}
+
+// Adds the conditions of the branches that lead to a block.
+void ValueRanges::Impl::addConditions(Evaluator& in, std::size_t f, std::size_t block) {
   const Function& function = module.functions()[f];
   const ControlFlow& dominators = flow(f);
   for (std::size_t b = block; b != kNone; b = dominators.dominator(b)) {
@@ -1121,7 +1179,6 @@ ValueRanges::Impl::Evaluator& ValueRanges::Impl::at(std::size_t f, std::size_t b
     if (predecessors.size() == 1 && function.blocks[predecessors[0]].successors.size() > 1)
       addEdge(in, function, predecessors[0], b);
   }
-  return in;
 }
 
 const std::optional<CountedLoop>& ValueRanges::Impl::countedLoop(Id phi) {
@@ -1173,7 +1230,7 @@ std::optional<CountedLoop> ValueRanges::Impl::findLoop(const Instruction& phi) {
 
   // The conditions that hold when the loop continues.
   Evaluator continues;
-  continues.limits = at(loop.function, loop.latch).limits;
+  addConditions(continues, loop.function, loop.latch);
   addEdge(continues, function, loop.latch, loop.header);
   const auto limitsOf = [&](const Key& key) {
     const auto found = continues.limits.find(key);

@@ -23,7 +23,7 @@ namespace quintet::spirv {
 enum class Occurrence {
   unknown,
   each,  // each of ValueRange::values occurs, or min and max if there are none, wherever no branch depends on it
-  many,  // all integers from min up to a large number, such as the indices of pixels
+  many,  // long runs of consecutive integers, such as the coordinates of pixels
 };
 
 // Integers of up to 32 bits, booleans (0 or 1) and floats.

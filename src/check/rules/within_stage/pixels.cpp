@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "check/rules/rules.h"
+#include "spirv/source_text.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -189,12 +190,34 @@ bool guardedByLaunch(const spirv::Module& module, const spirv::ValueRanges& rang
   return false;
 }
 
+// Location of a store to an output, in the user's file: the call of a library function at or after the line where the
+// stored value is computed.
+SourceLocation locationOf(const spirv::Module& module, const spirv::Instruction& store) {
+  const auto isLibrary = [](const SourceLocation& location) { return location.file.starts_with("<quintet/"); };
+  const SourceLocation own = module.location(store, "imageStore");
+  if (!isLibrary(own) || store.op != Op::OpStore) return own;
+  SourceLocation from;
+  (void)spirv::dependsOn(module, store.at(1), [&](const spirv::Instruction& i) {
+    const SourceLocation location = module.location(i);
+    if (location.line > 0 && !isLibrary(location) && location.line > from.line) from = location;
+    return false;
+  });
+  if (from.line == 0) return own;
+  const std::string_view text = module.source(from.file);
+  const int last = static_cast<int>(std::ranges::count(text, '\n')) + 1;
+  for (int line = from.line; line <= last; ++line)
+    for (const std::string_view name : {"storeOutput", "addOutput", "storeCoverage"})
+      if (const std::size_t at = spirv::findToken(spirv::lineOf(text, line), name); at != std::string_view::npos)
+        return {from.file, line, static_cast<int>(at) + 1};
+  return from;
+}
+
 void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, std::size_t instruction,
                  const Target& target, Report& report) {
   Parts x, y;
   addParts(module, ranges, target.x.first, target.x.second, x);
   addParts(module, ranges, target.y.first, target.y.second, y);
-  const SourceLocation location = module.location(module.instructions()[instruction]);
+  const SourceLocation location = locationOf(module, module.instructions()[instruction]);
   if (!x.x && x.y && y.x && !y.y)
     return report.addOncePerLine("Q713", location,
                                  "the result is stored at the transposed pixel: x comes from gl_LaunchIDEXT.y and y from "
