@@ -121,6 +121,10 @@ constexpr DiagnosticInfo kCatalog[] = {
      "A trace beyond maxPipelineRayRecursionDepth is undefined.",
      "Reduce the depth, increase max_recursion, or replace the recursion by a loop in the ray generation shader."},
 
+    {"Q403", kError, "across_stages/endless_recursion", "trace that always runs closes a cycle",
+     "max_recursion is a promise of the program; a ray that recurses further overwrites memory, or the device is lost.",
+     "Trace only while a depth in the payload is below max_recursion."},
+
     // The shader binding table.
     {"Q501", kError, "across_stages/arguments", "hit record is out of range for an instance of the scene",
      "The device reads a shader handle outside of the table and jumps to it.",
@@ -139,6 +143,29 @@ constexpr DiagnosticInfo kCatalog[] = {
      "With closest-hit shaders skipped, only the miss shader returns a result, and this one writes a color, not "
      "visibility.",
      "Add a ray type with its own miss shader, and pass its kMiss_NAME."},
+    {"Q507", kWarning, "across_stages/ray_arguments", "cull mask excludes all instances",
+     "A ray hits an instance only if the masks of both have a common bit, so this ray always misses.",
+     "Use 0xFF for all instances, or set `mask` of the instances in the scene."},
+    {"Q508", kError, "across_stages/ray_arguments", "arguments of a trace are swapped",
+     "The arguments have the same types, so the compiler accepts them in any order.",
+     "Use the order of traceRayEXT: structure, flags, mask, offset, stride, miss index, origin, tmin, direction, tmax, "
+     "payload."},
+    {"Q509", kError, "across_stages/ray_arguments", "ray interval is empty or invalid",
+     "Vulkan requires 0 <= tmin <= tmax; a ray with an empty interval hits nothing.",
+     "Pass a small tmin and a larger tmax, such as 0.001 and kInfinity."},
+    {"Q510", kError, "across_stages/ray_arguments", "ray direction is the zero vector",
+     "The ray has no direction: its hits are undefined, and traversal may not terminate.",
+     "Pass the direction of the ray, of any length but 0."},
+    {"Q511", kError, "across_stages/ray_arguments", "stride is 0 although geometries need different hit groups",
+     "With a stride of 0, all geometries of an instance use the hit records of its first geometry.",
+     "Use kRayTypeCount as stride."},
+    {"Q512", kWarning, "across_stages/ray_arguments", "ray that ends at any hit is shaded as the closest hit",
+     "With gl_RayFlagsTerminateOnFirstHitEXT, the closest-hit shader runs for the first hit that the device finds, in an "
+     "arbitrary order.",
+     "Remove the flag, or read only whether there is a hit."},
+    {"Q513", kWarning, "across_stages/ray_arguments", "ray flags leave no geometry to hit",
+     "The flags skip all geometry that exists, so this ray always misses.",
+     "Remove the flag, or add geometry of the other kind."},
 
     // Hit groups and geometry.
     {"Q601", kError, "across_stages/geometry", "procedural geometry uses a hit group without an intersection shader",
@@ -158,6 +185,13 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q605", kError, "across_stages/arguments", "ray flags exclude each other",
      "Vulkan forbids the combination, and its effect depends on the driver.",
      "Keep only one of the two flags that the message names."},
+    {"Q607", kWarning, "across_stages/hit_kinds", "hit kind of triangles in a procedural hit group",
+     "Only the built-in triangle intersection reports gl_HitKindFrontFacingTriangleEXT and "
+     "gl_HitKindBackFacingTriangleEXT, so the comparison always has the same result.",
+     "Compare with the kind that the intersection shader passes to reportIntersectionEXT."},
+    {"Q608", kError, "across_stages/hit_kinds", "reported hit kind is above 127",
+     "Vulkan allows 0 to 127 and reserves larger values for triangles; drivers can use only 7 bits.",
+     "Number the kinds of the program from 0, and pass other data as a hit attribute."},
 
     // Shading mistakes.
     {"Q701", kError, "within_stage/distance", "normalized object-space direction is used for t",
@@ -183,6 +217,16 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q707", kError, "within_stage/unsupported", "debugPrintfEXT is not supported",
      "Quintet does not receive the texts that shaders print, so the call would have no effect.",
      "Remove the call, and store the value in an output of the program: an optional [[output]] for debugging."},
+    {"Q711", kError, "across_stages/array_indices", "array index is beyond the array",
+     "GLSL does not check indices: the shader reads or overwrites other memory.",
+     "Make the array larger, or limit the index, for example with min()."},
+    {"Q713", kWarning, "within_stage/pixels", "result is stored at a wrong pixel",
+     "Other pixels keep their old values, several invocations write the same pixel, or the write is outside of the "
+     "image.",
+     "Store at launchPixel(), or at gl_LaunchIDEXT.xy."},
+    {"Q716", kWarning, "within_stage/pixels", "integer division of the launch id by the size",
+     "The id is smaller than the size, so the result of the integer division is always 0.",
+     "Convert both to float first: vec2(gl_LaunchIDEXT.xy) / vec2(gl_LaunchSizeEXT.xy)."},
 
     // Unused parts.
     {"Q801", kWarning, "across_stages/unused", "stage is unreachable", "It costs compile time without any effect.",

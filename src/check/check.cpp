@@ -17,7 +17,7 @@ namespace quintet::check {
 namespace {
 
 // A wrong index leaves stages unreachable. Only the index is reported then.
-constexpr std::array<std::string_view, 6> kWrongIndex{"Q302", "Q501", "Q502", "Q503", "Q504", "Q506"};
+constexpr std::array<std::string_view, 8> kWrongIndex{"Q302", "Q501", "Q502", "Q503", "Q504", "Q506", "Q507", "Q513"};
 
 // Ids whose cause is code that is missing. More outputs can remove them.
 constexpr std::array<std::string_view, 1> kUnreachable{"Q801"};
@@ -51,9 +51,13 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   checkHitAttributes(input, report);
   checkCallableTypes(input, report);
   const RecursionNeeds needs = checkRecursion(input, report);
+  checkEndlessRecursion(input, report);
   checkArguments(input, report);
+  checkRayArguments(input, report);
   checkGeometry(input, report);
+  checkHitKinds(input, report);
   checkRayOrigins(input, report);
+  checkArrayIndices(input, report);
   if (input.limits.defects.sharesAnyHit) checkSharedIntersections(input, report);
   if (input.graph.error.empty() && !input.featureDefines && !report.hasAny(kWrongIndex))
     checkUnreachableStages(input, report);
@@ -118,6 +122,8 @@ std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageConte
   if (hit && !context.keepsInstanceOrder) checkInstanceIndices(module, report);
   checkDescriptorIndices(module, report);
   checkDebugPrintf(module, report);
+  if (stage == Model::RayGenerationKHR) checkPixels(module, report);
+  checkPixelDivision(module, report);
   if (intersection) checkRayTmaxReads(module, report);
   const DriverDefects& defects = context.defects;
   if (defects.changesNestedBuiltIns && stage == Model::ClosestHitKHR) checkNestedBuiltIns(module, report);

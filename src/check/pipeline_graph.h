@@ -6,6 +6,7 @@
 #ifndef QUINTET_CHECK_PIPELINE_GRAPH_H
 #define QUINTET_CHECK_PIPELINE_GRAPH_H
 
+#include <deque>
 #include <memory>
 #include <set>
 
@@ -45,9 +46,10 @@ struct Edge {
 
 struct TraceSite {
   std::size_t stage = 0;
-  const spirv::TraceFacts* trace = nullptr;
+  const spirv::TraceFacts* trace = nullptr;  // as intended, if arguments are swapped
   std::vector<Edge> edges;
-  std::vector<HitGroupRay> hits;  // that a hit can use
+  std::vector<HitGroupRay> hits;     // that a hit can use
+  std::vector<std::string> swapped;  // which arguments are swapped (swapped_arguments.h)
   bool skipsClosestHit() const { return trace->flags.mustHave(kFlagSkipClosestHit); }
 };
 
@@ -91,6 +93,8 @@ struct PipelineGraph {
   SourceLocation location(const CallSite& site) const;
 
  private:
+  std::deque<spirv::TraceFacts> intended_;  // of traces with swapped arguments
+
   void addTraces(std::size_t stage);
   void addCalls(std::size_t stage);
   void addHits(TraceSite& site);

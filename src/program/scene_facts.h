@@ -33,6 +33,7 @@ struct InstanceFacts {
   std::uint32_t mask = 0xFF;
   bool forceOpaque = false;
   bool forceNoOpaque = false;
+  std::uint32_t customIndex = 0;  // set by the user: scene::Instance::customIndex
   bool operator==(const InstanceFacts&) const = default;
 };
 

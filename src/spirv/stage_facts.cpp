@@ -85,14 +85,24 @@ bool hasEffect(Op op) {
 }  // namespace
 
 bool ArgumentValues::mayHave(std::uint32_t bits) const {
-  return !known || std::ranges::any_of(values, [&](std::uint32_t value) { return (value & bits) != 0; });
+  if (!known) return (~zeros & bits) != 0;
+  return std::ranges::any_of(values, [&](std::uint32_t value) { return (value & bits) != 0; });
 }
 
 bool ArgumentValues::mustHave(std::uint32_t bits) const {
-  return known && std::ranges::all_of(values, [&](std::uint32_t value) { return (value & bits) == bits; });
+  if (!known) return bits != 0 && (ones & bits) == bits;
+  return std::ranges::all_of(values, [&](std::uint32_t value) { return (value & bits) == bits; });
 }
 
-StageFacts::StageFacts(Module module) : module_(std::move(module)) {
+std::optional<std::uint32_t> ArgumentValues::atLeast(std::uint32_t count) const {
+  if (min >= count) return min;
+  if (!certain()) return {};
+  const auto found = std::ranges::lower_bound(values, count);
+  return found == values.end() ? std::nullopt : std::optional(*found);
+}
+
+StageFacts::StageFacts(Module module, ValueContext context)
+    : module_(std::move(module)), ranges_(module_, std::move(context)) {
   for (std::size_t i = 0; i < module_.functions().size(); ++i) flows_.emplace_back(module_, i);
   for (const Variable& variable : module_.variables())
     if (!keywordOf(variable.storage).empty()) variables_.push_back(sharedVariable(module_, variable));
@@ -115,25 +125,38 @@ void StageFacts::markUsed() {
   for (const CallFacts& call : calls_) mark(call.data);
 }
 
-ArgumentValues StageFacts::values(Id id) const {
-  auto found = module_.possibleValues(id);
-  return found ? ArgumentValues{true, std::move(*found)} : ArgumentValues{};
+ArgumentValues StageFacts::values(std::size_t index, Id id) const {
+  ArgumentValues result;
+  if (auto found = module_.possibleValues(id)) {
+    result.values = std::move(*found);
+  } else {
+    const ValueRange range = ranges_.rangeAt(index, id);
+    if (range.empty()) return result;
+    for (const double value : range.values) result.values.push_back(static_cast<std::uint32_t>(std::int64_t(value)));
+    std::ranges::sort(result.values);
+    result.each = range.occurrence == Occurrence::each && !ranges_.guarded(index, id);
+    result.ones = range.ones, result.zeros = range.zeros;
+    if (range.min >= 0.0 && range.min <= 4294967295.0) result.min = static_cast<std::uint32_t>(range.min);
+  }
+  result.known = !result.values.empty();
+  if (result.known) result.min = result.values.front();
+  return result;
 }
 
 void StageFacts::readInstruction(std::size_t index) {
   const Instruction& i = module_.instructions()[index];
   switch (i.op) {
     case Op::OpTraceRayKHR:
-      traces_.push_back({index, module_.location(i, "traceRayEXT"), module_.access(i.at(10)).variable, values(i.at(1)),
-                         values(i.at(2)), values(i.at(3)), values(i.at(4)), values(i.at(5)),
+      traces_.push_back({index, module_.location(i, "traceRayEXT"), module_.access(i.at(10)).variable, values(index, i.at(1)),
+                         values(index, i.at(2)), values(index, i.at(3)), values(index, i.at(4)), values(index, i.at(5)),
                          flows_[module_.position(index)->function].inLoop(module_.position(index)->block)});
       return;
     case Op::OpExecuteCallableKHR:
       calls_.push_back(
-          {index, module_.location(i, "executeCallableEXT"), module_.access(i.at(1)).variable, values(i.at(0))});
+          {index, module_.location(i, "executeCallableEXT"), module_.access(i.at(1)).variable, values(index, i.at(0))});
       return;
     case Op::OpReportIntersectionKHR:
-      reports_.push_back({index, module_.location(i, "reportIntersectionEXT"), values(i.at(1))});
+      reports_.push_back({index, module_.location(i, "reportIntersectionEXT"), values(index, i.at(1))});
       return;
     case Op::OpIgnoreIntersectionKHR: ignores_ = true; return;
     case Op::OpTerminateRayKHR: terminates_ = true; return;

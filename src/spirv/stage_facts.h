@@ -10,15 +10,22 @@
 
 #include "spirv/control_flow.h"
 #include "spirv/module.h"
+#include "spirv/value_range.h"
 
 namespace quintet::spirv {
 
 // The values that an argument can have.
 struct ArgumentValues {
-  bool known = false;                 // false if it can have any value
-  std::vector<std::uint32_t> values;  // sorted
+  bool known = false;                 // false if `values` is empty because they are not known
+  std::vector<std::uint32_t> values;  // all values, sorted
+  bool each = true;                   // each of them occurs; false if some need not
+  std::uint32_t min = 0;              // a lower bound, also if the values are not known
+  std::uint32_t ones = 0, zeros = 0;  // bits that are always set, never set
 
   bool exact() const { return known && values.size() == 1; }
+  bool certain() const { return known && each; }  // not only an estimate
+  // A value of at least `count` that certainly occurs; nullopt if there may be none.
+  std::optional<std::uint32_t> atLeast(std::uint32_t count) const;
   bool mayHave(std::uint32_t bits) const;   // one of the bits can be set
   bool mustHave(std::uint32_t bits) const;  // all bits are set in each value
 };
@@ -80,10 +87,12 @@ struct SharedVariable {
 // Not thread-safe: some results are cached.
 class StageFacts {
  public:
-  explicit StageFacts(Module module);
+  // `context`: what is known about values in any scene.
+  explicit StageFacts(Module module, ValueContext context = {});
   StageFacts(StageFacts&&) noexcept = default;
 
   const Module& module() const { return module_; }
+  const ValueRanges& ranges() const { return ranges_; }
   const std::vector<TraceFacts>& traces() const { return traces_; }
   const std::vector<CallFacts>& calls() const { return calls_; }
   const std::vector<ReportFacts>& reports() const { return reports_; }
@@ -125,7 +134,7 @@ class StageFacts {
   void addWholeLoad(std::size_t index, Id variable);
   void addWholeStore(std::size_t index, Id variable, Id value);
   void markUsed();
-  ArgumentValues values(Id id) const;
+  ArgumentValues values(std::size_t index, Id id) const;
 
   std::vector<std::size_t> writers(Id variable, std::uint32_t member) const;
   std::vector<std::size_t> readsAfter(const PathsAfter& paths, const TraceFacts& trace, std::uint32_t member) const;
@@ -136,6 +145,7 @@ class StageFacts {
   bool choosesByPayload(const Instruction& use, Id value, const AccessFacts& read) const;
 
   Module module_;
+  ValueRanges ranges_;
   std::vector<ControlFlow> flows_;
   std::vector<TraceFacts> traces_;
   std::vector<CallFacts> calls_;

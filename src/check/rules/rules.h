@@ -29,7 +29,11 @@ void checkHitAttributes(const CheckInput& input, Report& report);        // Q201
 void checkCallableTypes(const CheckInput& input, Report& report);        // Q301, Q303
 RecursionNeeds checkRecursion(const CheckInput& input, Report& report);  // Q401, Q402
 void checkArguments(const CheckInput& input, Report& report);            // Q302, Q501 to Q506, Q605
+void checkArrayIndices(const CheckInput& input, Report& report);         // Q711
+void checkEndlessRecursion(const CheckInput& input, Report& report);     // Q403
 void checkGeometry(const CheckInput& input, Report& report);             // Q601 to Q604
+void checkHitKinds(const CheckInput& input, Report& report);             // Q607, Q608
+void checkRayArguments(const CheckInput& input, Report& report);         // Q507 to Q513
 void checkRayOrigins(const CheckInput& input, Report& report);           // Q705
 void checkRayOrigins(const spirv::Module& module, Report& report);       // Q705 within one stage
 void checkUnreachableStages(const CheckInput& input, Report& report);    // Q801
@@ -50,6 +54,8 @@ void checkNormals(const spirv::Module& module, Report& report);            // Q7
 void checkInstanceIndices(const spirv::Module& module, Report& report);    // Q703
 void checkDescriptorIndices(const spirv::Module& module, Report& report);  // Q704
 void checkDebugPrintf(const spirv::Module& module, Report& report);        // Q707
+void checkPixels(const spirv::Module& module, Report& report);             // Q713
+void checkPixelDivision(const spirv::Module& module, Report& report);      // Q716
 void checkNestedBuiltIns(const spirv::Module& module, Report& report);     // Q901
 void checkAttributeWrites(const spirv::Module& module, Report& report);    // Q902
 void checkRayTmaxReads(const spirv::Module& module, Report& report);       // Q904

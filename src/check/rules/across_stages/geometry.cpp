@@ -105,11 +105,10 @@ class GeometryRule {
     if ((pair.opaque && trace.flags.mustHave(kFlagCullOpaque)) ||
         (pair.notOpaque && trace.flags.mustHave(kFlagCullNoOpaque)))
       return;
-    // With a stride of 0, all geometries of the instance use the records of the first one.
-    const bool own = !trace.stride.exact() || trace.stride.values[0] != 0;
-    const std::size_t owner = instance.firstGeometry + (own ? k : 0);
+    // With a stride of 0, all geometries of the instance use the records of the first one. Q511 reports geometries that
+    // need other records.
     for (const std::size_t ray : graph_.rayTypes(trace)) {
-      pair.hit = {program::hitGroupFor(graph_.program, scene.geometries[owner]), ray};
+      pair.hit = {program::hitGroupFor(graph_.program, geometry), ray};
       pairs_.push_back(pair);
     }
   }
@@ -139,7 +138,7 @@ class GeometryRule {
   // Q601, Q602: triangles with an intersection shader, procedural geometry without one.
   void checkKind(const TraceGeometryPair& pair) {
     const bool hasShader = !graph_.shaders(pair.hit).intersection.empty();
-    const bool known = pair.site->trace->offset.known;
+    const bool known = pair.site->trace->offset.certain();
     if (pair.geometry->procedural() && !hasShader && known)
       report_.add(
           "Q601", location(pair.hit),
@@ -176,7 +175,7 @@ class GeometryRule {
     const std::string& anyHit = graph_.shaders(pair.hit).anyHit;
     const spirv::TraceFacts& trace = *pair.site->trace;
     if (anyHit.empty()) {
-      if (trace.offset.known)
+      if (trace.offset.certain())
         report_.add("Q604", location(pair.hit),
                     fmt::format("{} is opaque for this ray type: {} has no any-hit shader", surface, group));
     } else if (pair.instance->forceOpaque && !trace.flags.mustHave(kFlagOpaque)) {
