@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 #include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "cli/command.h"
 #include "cli/failure.h"
 #include "cli/signals.h"
+#include "cli/supervisor.h"
 #include "commands/help.h"
 #include "gpu/instance.h"
 
@@ -37,6 +39,12 @@ int dispatch(const std::vector<std::string>& arguments) {
   if (found != all.end()) return found->run(Arguments(arguments).subspan(1));
 
   throw UsageError(unknownCommandText(first));
+}
+
+bool isIsolated(const std::vector<std::string>& arguments) {
+  const auto all = commands();
+  const auto found = arguments.empty() ? all.end() : std::ranges::find(all, arguments.front(), &Command::name);
+  return found != all.end() && found->isolated;
 }
 
 // The descriptor of a closed standard stream would be reused by the next file that is opened. It is replaced by one that is
@@ -69,8 +77,10 @@ int main(int argc, char** argv) {
   // A reader that has ended and a file that becomes too large are ordinary errors.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  cli::installSignalHandlers();
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  if (cli::isIsolated(arguments))
+    if (const std::optional<int> status = cli::supervise(arguments)) return *status;
+  cli::installSignalHandlers();
   try {
     releaseLargeBlocksImmediately();
     gpu::prepareDriverEnvironment();  // before other threads exist

@@ -53,6 +53,7 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   const RecursionNeeds needs = checkRecursion(input, report);
   checkArguments(input, report);
   checkGeometry(input, report);
+  checkResources(input, report);
   checkRayOrigins(input, report);
   if (input.limits.defects.sharesAnyHit) checkSharedIntersections(input, report);
   if (input.graph.error.empty() && !input.featureDefines && !report.hasAny(kWrongIndex))
@@ -95,6 +96,7 @@ std::vector<Diagnostic> newFindings(const CheckResult& known, const CheckResult&
 void addVariant(CheckResult& result, const CheckResult& variant) {
   result.recursionDepth = std::max(result.recursionDepth, variant.recursionDepth);
   result.stackBytes = std::max(result.stackBytes, variant.stackBytes);
+  result.cyclic = result.cyclic || variant.cyclic;
   result.seconds += variant.seconds;
   for (const std::string& file : variant.reached)
     if (std::ranges::find(result.reached, file) == result.reached.end()) result.reached.push_back(file);
@@ -142,6 +144,7 @@ CheckResult check(const program::Program& program, const program::CompiledProgra
     const RecursionNeeds needs = runRulesAcrossStages(input, report);
     result.recursionDepth = needs.depth;
     result.stackBytes = needs.stackBytes;
+    result.cyclic = needs.cyclic;
     if (graph.error.empty())
       for (const std::size_t stage : graph.reachableStages()) result.reached.push_back(graph.stages[stage].file);
     for (Diagnostic& d : report.take()) {

@@ -14,6 +14,7 @@ namespace quintet::cli {
 constexpr int kRuntimeError = 1;
 constexpr int kWrongCommandLine = 2;
 constexpr int kTargetNotReached = 3;
+constexpr int kCrashed = 4;
 
 // The end of an error message that names the option: "; use --force to overwrite it". Empty for Remedy::none.
 std::string optionHint(Remedy remedy);

@@ -12,6 +12,7 @@
 #include "cli/candidates.h"
 #include "cli/failure.h"
 #include "cli/parser.h"
+#include "cli/supervisor.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "job/render_job.h"
@@ -141,6 +142,7 @@ int renderImages(const RenderOptions& options, const program::Program& program, 
     const GracefulStop stop;  // from here on, Ctrl-C completes the batch
     console.setGracefulStop(&stop);
 
+    setWorkStage("rendering");
     std::vector<output::WrittenFile> files;
     const auto write = [&](const job::RenderResult& result) {
       output::addWritten(files, output::writeOutputs(plan, result, console));

@@ -125,7 +125,7 @@ TEST_P(Mistakes, AreNotReportedAfterRepair) {
 
 INSTANTIATE_TEST_SUITE_P(Corpus, Mistakes, testing::ValuesIn(mistakes()), [](const auto& test) { return test.param; });
 
-// Only a run can report Q001 to Q006 (tests/gpu/program/instrument_test.cpp), and Q016 needs a file of a megabyte.
+// Only a run can report Q001 to Q007 (tests/gpu/program/instrument_test.cpp), and Q016 needs a file of a megabyte.
 TEST(MistakesCorpus, HasAnEntryForEachId) {
   const std::vector<std::string> names = mistakes();
   for (const DiagnosticInfo& info : allDiagnostics()) {
