@@ -55,12 +55,6 @@ void occupyStandardStreams() {
       const int opened = ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
 }
 
-// Also if the command line cannot be parsed. After "--" it is the name of a file.
-bool wantsJson(const std::vector<std::string>& arguments) {
-  const auto end = std::ranges::find(arguments, "--");
-  return std::find(arguments.begin(), end, "--json") != end;
-}
-
 // Commands that were copied from a text may contain typographic quotes. Returns the end of an error message.
 std::string quoteHint(const std::vector<std::string>& arguments) {
   const auto quoted = std::ranges::find_if(

@@ -58,10 +58,10 @@ Head findHead(std::string_view source) {
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
                             Instrumentation instrumentation) {
   const bool checks = instrumentation == Instrumentation::checks;
-  const bool traces = stage == shader::Stage::rayGeneration || stage == shader::Stage::closestHit ||
-                      stage == shader::Stage::miss;
-  const bool wanted = checks ? stage != shader::Stage::intersection
-                             : traces && instrumentation == Instrumentation::recursion;
+  const bool traces =
+      stage == shader::Stage::rayGeneration || stage == shader::Stage::closestHit || stage == shader::Stage::miss;
+  const bool wanted =
+      checks ? stage != shader::Stage::intersection : traces && instrumentation == Instrumentation::recursion;
   if (!wanted) return source;
   const Head head = findHead(source);
   const bool lecture = source.find("#include <quintet/gsn.glsl>") != source.npos;

@@ -67,16 +67,18 @@ enum Outcome : std::uint8_t {
   kStuck,  // killed by the supervisor
   kOutcomes
 };
-constexpr std::array<const char*, kOutcomes> kNames{"not run",     "invalid description", "rejected by compiler or check",
-                                                    "scene error", "rendered",            "hang",
-                                                    "GPU error",   "unexpected exception", "crash",
-                                                    "stuck"};
+constexpr std::array<const char*, kOutcomes> kNames{
+    "not run", "invalid description", "rejected by compiler or check", "scene error", "rendered",
+    "hang",    "GPU error",           "unexpected exception",          "crash",       "stuck"};
 
 enum Stage : std::uint8_t { kMutate, kParse, kCheck, kScenes, kCompile, kLink, kRun, kStages };
-constexpr std::array<const char*, kStages> kStageNames{"mutation", "parsing", "check", "scene", "compilation", "pipeline", "launch"};
+constexpr std::array<const char*, kStages> kStageNames{"mutation",    "parsing",  "check", "scene",
+                                                       "compilation", "pipeline", "launch"};
 
-constexpr int kStuckSeconds = 120;
-constexpr double kLaunchSeconds = 15;
+// On a busy machine, the driver compiles the path tracer for half a minute in the first launch.
+constexpr int kStuckSeconds = 240;
+constexpr double kLaunchSeconds = 45;
+constexpr long kProgressSeconds = 60;
 constexpr unsigned kMutantsPerWorker = 150;  // memory that a wrong program overwrote must not harm later ones for long
 
 // Of one worker, shared with the supervisor.
@@ -117,8 +119,9 @@ class Runner {
       slot.stage = kScenes;
       render::DeviceScene& scene = sceneOf(program);
       slot.stage = kCompile;
-      job::CheckedProgram compiled = job::compileAndCheck(program, *compiler_, render::renderDefines(scene.defines(), {}),
-                                                          scene.facts(), job::deviceLimits(context().info()));
+      job::CheckedProgram compiled =
+          job::compileAndCheck(program, *compiler_, render::renderDefines(scene.defines(), {}), scene.facts(),
+                               job::deviceLimits(context().info()));
       slot.stage = kLink;
       render::RenderSettings settings;
       settings.width = settings.height = 16;
@@ -254,8 +257,15 @@ int supervise(const Options& options, const std::vector<Source>& sources) {
   std::vector<pid_t> workers(options.jobs, 0);
   std::vector<Crash> crashes;
   const long begin = nowSeconds();
+  long lastProgress = begin;
   const std::uint64_t end = options.first + options.count;
   while (true) {
+    if (nowSeconds() - lastProgress >= kProgressSeconds) {
+      lastProgress = nowSeconds();
+      fmt::print(stderr, "{} of {} mutants, {} s\n",
+                 std::min<std::uint64_t>(shared->next - options.first, options.count), options.count,
+                 lastProgress - begin);
+    }
     bool running = false;
     for (std::size_t w = 0; w < workers.size(); ++w) {
       if (workers[w] == 0 && shared->next < end) {
@@ -318,14 +328,22 @@ int main(int argc, char** argv) {
     }
     if (i + 1 >= argc) return 2;
     const std::string value = argv[++i];
-    if (name == "--root") options.root = value;
-    else if (name == "--keep") options.keep = value;
-    else if (name == "--count") options.count = std::stoull(value);
-    else if (name == "--seed") options.seed = std::stoull(value);
-    else if (name == "--first") options.first = std::stoull(value);
-    else if (name == "--only") options.only = std::stoull(value);
-    else if (name == "--jobs") options.jobs = std::min(64u, static_cast<unsigned>(std::stoul(value)));
-    else return 2;
+    if (name == "--root")
+      options.root = value;
+    else if (name == "--keep")
+      options.keep = value;
+    else if (name == "--count")
+      options.count = std::stoull(value);
+    else if (name == "--seed")
+      options.seed = std::stoull(value);
+    else if (name == "--first")
+      options.first = std::stoull(value);
+    else if (name == "--only")
+      options.only = std::stoull(value);
+    else if (name == "--jobs")
+      options.jobs = std::min(64u, static_cast<unsigned>(std::stoul(value)));
+    else
+      return 2;
   }
   gpu::prepareDriverEnvironment();
   const std::vector<Source> sources = findSources(options.root);

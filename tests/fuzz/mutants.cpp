@@ -112,21 +112,21 @@ class Editor {
     if (tokens_.size() < 4) return {};
     using Change = std::string (Editor::*)();
     static constexpr std::array<Change, 24> kChanges{
-        &Editor::deleteStatement, &Editor::deleteStatement,   &Editor::duplicateStatement, &Editor::moveStatement,
-        &Editor::moveStatement,   &Editor::swapArguments,     &Editor::swapArguments,      &Editor::replaceArgument,
-        &Editor::replaceArgument, &Editor::replaceArgument,   &Editor::changeNumber,       &Editor::changeNumber,
-        &Editor::changeNumber,    &Editor::changeType,        &Editor::changeQualifier,    &Editor::negateCondition,
-        &Editor::emptyBlock,      &Editor::replaceWord,       &Editor::replaceWord,        &Editor::replaceSign,
-        &Editor::addDeclaration,  &Editor::addStatement,      &Editor::addStatement,       &Editor::changeToken};
+        &Editor::deleteStatement, &Editor::deleteStatement, &Editor::duplicateStatement, &Editor::moveStatement,
+        &Editor::moveStatement,   &Editor::swapArguments,   &Editor::swapArguments,      &Editor::replaceArgument,
+        &Editor::replaceArgument, &Editor::replaceArgument, &Editor::changeNumber,       &Editor::changeNumber,
+        &Editor::changeNumber,    &Editor::changeType,      &Editor::changeQualifier,    &Editor::negateCondition,
+        &Editor::emptyBlock,      &Editor::replaceWord,     &Editor::replaceWord,        &Editor::replaceSign,
+        &Editor::addDeclaration,  &Editor::addStatement,    &Editor::addStatement,       &Editor::changeToken};
     return (this->*random_.pick(kChanges))();
   }
 
  private:
   static constexpr std::array<std::string_view, 26> kNumbers{
-      "0",    "1",   "-1",   "2",      "7",         "31",          "64",          "255",   "256",
-      "0u",   "1u",  "2u",   "15u",    "16u",       "0xFFu",       "0x100u",      "65536u", "0xFFFFFFFFu",
-      "0.0",  "1.0", "-1.0", "1e-20",  "1e30",      "2147483647",  "(0.0 / 0.0)", "(1.0 / 0.0)"};
-  static constexpr std::array<std::string_view, 12> kTypes{"float", "int",  "uint", "vec2", "vec3",  "vec4",
+      "0",   "1",   "-1",   "2",     "7",    "31",         "64",          "255",        "256",
+      "0u",  "1u",  "2u",   "15u",   "16u",  "0xFFu",      "0x100u",      "65536u",     "0xFFFFFFFFu",
+      "0.0", "1.0", "-1.0", "1e-20", "1e30", "2147483647", "(0.0 / 0.0)", "(1.0 / 0.0)"};
+  static constexpr std::array<std::string_view, 12> kTypes{"float", "int",  "uint", "vec2",  "vec3",   "vec4",
                                                            "bool",  "mat3", "mat4", "uvec2", "double", "uint64_t"};
   static constexpr std::array<std::string_view, 9> kQualifiers{
       "rayPayloadEXT",   "rayPayloadInEXT", "hitAttributeEXT", "callableDataEXT", "callableDataInEXT",
@@ -245,9 +245,9 @@ class Editor {
     if (all.empty()) return {};
     const auto [begin, end] = random_.pick(all);
     const std::string old = text_.substr(begin, end - begin);
-    static constexpr std::array<std::string_view, 8> kWrong{"vec3(0.0)",        "vec3(0.0 / 0.0)", "gl_LaunchIDEXT.x",
-                                                            "gl_LaunchIDEXT.yx", "1e38",            "gl_LaunchSizeEXT.xy",
-                                                            "vec4(1e30)",       "-vec3(1.0)"};
+    static constexpr std::array<std::string_view, 8> kWrong{
+        "vec3(0.0)", "vec3(0.0 / 0.0)",     "gl_LaunchIDEXT.x", "gl_LaunchIDEXT.yx",
+        "1e38",      "gl_LaunchSizeEXT.xy", "vec4(1e30)",       "-vec3(1.0)"};
     const std::size_t kind = random_.below(4);
     const std::string with = kind == 0   ? std::string(random_.pick(kNumbers))
                              : kind == 1 ? "(" + old + ") * " + std::string(random_.pick(kNumbers))
@@ -266,8 +266,8 @@ class Editor {
     // Keep the kind of most numbers, so that the result compiles.
     const bool real = old.find('.') != old.npos, isUnsigned = old.ends_with('u');
     for (int tries = 0; tries < 20; ++tries) {
-      const bool sameKind = (with.find('.') != with.npos || with.find('e') != with.npos) == real &&
-                            with.ends_with('u') == isUnsigned;
+      const bool sameKind =
+          (with.find('.') != with.npos || with.find('e') != with.npos) == real && with.ends_with('u') == isUnsigned;
       if (sameKind) break;
       with = random_.pick(kNumbers);
     }
@@ -335,16 +335,20 @@ class Editor {
   // A resource, variable or function that other changes can use.
   std::string addDeclaration() {
     static constexpr std::array<std::string_view, 10> kDeclarations{
-        "layout(set = 0, binding = 2, rgba32f) uniform image2D fuzzImage;\nvoid fuzzUse() { imageStore(fuzzImage, ivec2(0), "
+        "layout(set = 0, binding = 2, rgba32f) uniform image2D fuzzImage;\nvoid fuzzUse() { imageStore(fuzzImage, "
+        "ivec2(0), "
         "vec4(1.0)); }\n",
         "layout(set = 0, binding = 1) uniform sampler2D fuzzTexture;\nvec4 fuzzUse() { return textureLod(fuzzTexture, "
         "vec2(0.5), 0.0); }\n",
-        "layout(set = 1, binding = 0) buffer FuzzBuffer { uint fuzzWords[]; };\nvoid fuzzUse() { fuzzWords[0] = 1u; }\n",
+        "layout(set = 1, binding = 0) buffer FuzzBuffer { uint fuzzWords[]; };\nvoid fuzzUse() { fuzzWords[0] = 1u; "
+        "}\n",
         "layout(set = 0, binding = 0) uniform FuzzBlock { vec4 fuzzColor; };\nvec4 fuzzUse() { return fuzzColor; }\n",
         "layout(push_constant) uniform FuzzPush { vec4 fuzzColor; };\nvec4 fuzzUse() { return fuzzColor; }\n",
-        "layout(shaderRecordEXT, std430) buffer FuzzRecord { vec4 fuzzColor; };\nvec4 fuzzUse() { return fuzzColor; }\n",
+        "layout(shaderRecordEXT, std430) buffer FuzzRecord { vec4 fuzzColor; };\nvec4 fuzzUse() { return fuzzColor; "
+        "}\n",
         "layout(location = 7) rayPayloadEXT vec4 fuzzPayload;\nvoid fuzzUse() { fuzzPayload = vec4(1.0); }\n",
-        "layout(location = 7) callableDataEXT vec4 fuzzData;\nvoid fuzzUse() { executeCallableEXT(gl_LaunchIDEXT.x, 7); }\n",
+        "layout(location = 7) callableDataEXT vec4 fuzzData;\nvoid fuzzUse() { executeCallableEXT(gl_LaunchIDEXT.x, "
+        "7); }\n",
         "float fuzzArray[64];\nvoid fuzzUse() { fuzzArray[gl_LaunchIDEXT.x * 1000u] = 1.0; }\n",
         "void fuzzUse() { float big[4096]; for (int i = 0; i < 4096; ++i) big[i] = float(i); }\n"};
     const std::size_t main = text_.find("void main()");
@@ -374,7 +378,8 @@ class Editor {
         "gsnSetPixel(vec4(0.0));",
         "traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(0.0), 0.001, vec3(0.0, 0.0, -1.0), 1000.0, 0);",
         "traceRayEXT(topLevelAS, 0u, 0xFFu, 9u, 3u, 5u, vec3(0.0), 0.001, vec3(0.0, 0.0, -1.0), 1000.0, 0);",
-        "traceRayEXT(topLevelAS, 0u, 0xFFu, gl_LaunchIDEXT.x, 1u, gl_LaunchIDEXT.y, vec3(0.0), 0.0, vec3(1.0), 1e30, 0);",
+        "traceRayEXT(topLevelAS, 0u, 0xFFu, gl_LaunchIDEXT.x, 1u, gl_LaunchIDEXT.y, vec3(0.0), 0.0, vec3(1.0), 1e30, "
+        "0);",
         "traceRayEXT(topLevelAS, 0x2FFu, 0u, 0u, 1u, 0u, vec3(0.0 / 0.0), -1.0, vec3(0.0), -2.0, 0);",
         "float fuzzLocal[8]; fuzzLocal[gl_LaunchIDEXT.x * 77u] = 1.0;",
         "if (gl_LaunchIDEXT.x > 3u) return;",
@@ -477,7 +482,8 @@ std::vector<Source> findSources(const fs::path& root) {
     if (!fs::exists(root / top)) continue;
     add(root / top, {});
     for (const auto& entry : fs::recursive_directory_iterator(root / top))
-      if (entry.is_directory()) add(entry.path(), entry.path().filename() == "repaired" ? filesOf(entry.path().parent_path()) : Files());
+      if (entry.is_directory())
+        add(entry.path(), entry.path().filename() == "repaired" ? filesOf(entry.path().parent_path()) : Files());
   }
   std::ranges::sort(sources, {}, &Source::name);
   return sources;
@@ -490,15 +496,16 @@ Mutant makeMutant(const std::vector<Source>& sources, std::uint64_t seed, std::u
   mutant.files = mutant.source->files;
   std::vector<std::string> shaders;
   for (const auto& [name, text] : mutant.files)
-    if (!name.ends_with(".toml") && text.find('\0') == text.npos && name.find(".r") != name.npos) shaders.push_back(name);
+    if (!name.ends_with(".toml") && text.find('\0') == text.npos && name.find(".r") != name.npos)
+      shaders.push_back(name);
   const std::size_t changes = 1 + random.below(3);
   for (std::size_t k = 0; k < changes;) {
     const bool description = mutant.files.contains("program.toml") && random.once(10);
     const std::string name = description || shaders.empty() ? "program.toml" : random.pick(shaders);
     const auto file = mutant.files.find(name);
     if (file == mutant.files.end()) break;
-    const std::string change = description ? mutateDescription(file->second, mutant.files, random)
-                                           : Editor(file->second, random).mutate();
+    const std::string change =
+        description ? mutateDescription(file->second, mutant.files, random) : Editor(file->second, random).mutate();
     if (change.empty() && !random.once(20)) continue;  // does not apply: try another one
     mutant.changes += (k > 0 ? "; " : "") + name + ": " + change;
     ++k;

@@ -19,8 +19,8 @@
 #include "base/text.h"
 #include "base/wrap.h"
 #include "check/diagnostic_text.h"
-#include "cli/supervisor.h"
 #include "cli/terminal.h"
+#include "cli/work.h"
 
 namespace quintet::cli {
 namespace {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/supervisor.h"
 
-#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,7 +12,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <initializer_list>
-#include <new>
 
 #include <fmt/format.h>
 
@@ -24,26 +22,11 @@
 #include "check/diagnostic_text.h"
 #include "cli/failure.h"
 #include "cli/signals.h"
+#include "cli/work.h"
 #include "output/report.h"
 
 namespace quintet::cli {
 namespace {
-
-// In memory that both processes share. The parent reads it after the child has ended.
-struct Work {
-  std::array<char, 128> stage{};
-  std::array<char, 256> program{};
-  std::array<char, 4096> file{};
-};
-
-Work* work = nullptr;  // null without a child
-
-template <std::size_t N>
-void assign(std::array<char, N>& target, std::string_view text) {
-  const std::size_t length = std::min(text.size(), N - 1);
-  target[length] = '\0';
-  std::memcpy(target.data(), text.data(), length);
-}
 
 volatile pid_t child = 0;  // for the signal handler
 
@@ -71,25 +54,19 @@ bool isCrash(int signal) {
   return std::ranges::find(kCrashes, signal) != kCrashes.end();
 }
 
-bool wantsJson(std::span<const std::string> arguments) {
-  const auto end = std::ranges::find(arguments, "--");
-  return std::find(arguments.begin(), end, "--json") != end;
-}
-
 int reportCrash(int signal, std::span<const std::string> arguments) {
-  const std::string program = work->program.data(), stage = work->stage.data();
+  const std::string program(workProgram()), stage(workStage());
   const char* description = ::strsignal(signal);
   const std::string text =
       fmt::format("crash in the driver or in Quintet{}{} (signal {}, {}); see docs/debugging.md, \"Crashes\"",
                   stage.empty() ? "" : " while ", stage, signal, description ? description : "unknown");
   const std::string message = program.empty() ? text : fmt::format("{}: {}", program, text);
-  if (work->file[0] != '\0') TemporaryFile::removeLeftovers(work->file.data());
+  if (!workFile().empty()) TemporaryFile::removeLeftovers(workFile());
   if (wantsJson(arguments)) {
     try {
       const bool diagnostics = arguments.front() == "check";
-      writeFile("-", diagnostics
-                         ? check::diagnosticsJson({{Severity::error, program, 0, 0, "CRASH", text}})
-                         : output::errorJson(message, nullptr, kCrashed));
+      writeFile("-", diagnostics ? check::diagnosticsJson({{Severity::error, program, 0, 0, "CRASH", text}})
+                                 : output::errorJson(message, nullptr, kCrashed));
     } catch (const Error&) {  // the reader has ended
     }
   }
@@ -112,8 +89,7 @@ int relay(int status, std::span<const std::string> arguments) {
 std::optional<int> supervise(std::span<const std::string> arguments) {
   const char* isolation = std::getenv("QUINTET_ISOLATION");
   if (isolation && std::string_view(isolation) == "off") return {};
-  void* memory = ::mmap(nullptr, sizeof(Work), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (memory == MAP_FAILED) return {};
+  if (!shareWork()) return {};
   sigset_t signals, before;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
@@ -126,7 +102,6 @@ std::optional<int> supervise(std::span<const std::string> arguments) {
     if (::getppid() != parent) ::_exit(kRuntimeError);  // the parent was killed before
     setSupervisor(parent);
   }
-  if (process >= 0) work = new (memory) Work;
   if (process > 0) {
     child = process;
     forwardSignals();
@@ -138,18 +113,6 @@ std::optional<int> supervise(std::span<const std::string> arguments) {
     if (errno != EINTR) return kRuntimeError;
   child = 0;
   return relay(status, arguments);
-}
-
-void setWorkStage(std::string_view stage) {
-  if (work) assign(work->stage, stage);
-}
-
-void setWorkProgram(std::string_view program) {
-  if (work) assign(work->program, program);
-}
-
-void setWorkFile(const std::filesystem::path& file) {
-  if (work) assign(work->file, file.native());
 }
 
 }  // namespace quintet::cli

@@ -5,11 +5,9 @@
 #ifndef QUINTET_CLI_SUPERVISOR_H
 #define QUINTET_CLI_SUPERVISOR_H
 
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 
 namespace quintet::cli {
 
@@ -17,11 +15,6 @@ namespace quintet::cli {
 // child has ended. Returns nullopt without a child if the environment variable QUINTET_ISOLATION is "off" (for debuggers)
 // or if no process can be created. `arguments` are those of the process, with the command.
 std::optional<int> supervise(std::span<const std::string> arguments);
-
-// What the child does, for the message about a crash. Without a child these have no effect.
-void setWorkStage(std::string_view stage);      // "compiling shaders"
-void setWorkProgram(std::string_view program);  // name
-void setWorkFile(const std::filesystem::path& file);  // that is being written; empty for none
 
 }  // namespace quintet::cli
 #endif

@@ -66,9 +66,9 @@ std::string describe(const shared::InstrumentReport& report, const shared::Instr
       if (report.index >= program.outputs.size())
         return fmt::format("output {} does not exist: the program has {}; nothing was stored (pixel {}, {})",
                            report.index, counted(program.outputs.size(), "output"), report.pixel.x, report.pixel.y);
-      return fmt::format("output '{}' is stored at {}, {} of the film, which is outside; nothing was stored (pixel {}, {})",
-                         program.outputs[report.index].name, report.origin.x, report.origin.y, report.pixel.x,
-                         report.pixel.y);
+      return fmt::format(
+          "output '{}' is stored at {}, {} of the film, which is outside; nothing was stored (pixel {}, {})",
+          program.outputs[report.index].name, report.origin.x, report.origin.y, report.pixel.x, report.pixel.y);
     case shared::kReportDepth:
       return fmt::format("this trace exceeds the recursion depth of the pipeline; it was not executed ({})", where);
     default:
@@ -101,11 +101,13 @@ void addReports(const InstrumentData& data, const program::RunnableProgram& runn
     std::string text = describe(first, data.counts, program);
     if (location.count > 1)
       text += fmt::format("; {}{} such {}", data.counts.reportCount > shared::kInstrumentReports ? "at least " : "",
-                          location.count, first.kind == shared::kReportCall     ? "calls"
-                                          : first.kind == shared::kReportOutput ? "stores"
-                                                                                : "traces");
+                          location.count,
+                          first.kind == shared::kReportCall     ? "calls"
+                          : first.kind == shared::kReportOutput ? "stores"
+                                                                : "traces");
     result.push_back({first.kind == shared::kReportSelfHit ? Severity::warning : Severity::error, program.path(file),
-                      callLine(program, file, first.line, callOf(first)), 0, fmt::format("Q00{}", first.kind % 16), text});
+                      callLine(program, file, first.line, callOf(first)), 0, fmt::format("Q00{}", first.kind % 16),
+                      text});
   }
 }
 
@@ -155,11 +157,10 @@ InstrumentData InstrumentBuffer::download() const {
 // Invocations of a launch: the pixels of the film, or those of its tiles. Ray generation shaders set the depth before they
 // trace, so only the header is initialized.
 RecursionBuffer::RecursionBuffer(gpu::Context& context, const Region& region, std::uint32_t depthLimit) {
-  const std::uint64_t invocations =
-      std::max(std::uint64_t{region.width} * region.height,
-               std::uint64_t{tileCount(region)} * shared::kTileSize * shared::kTileSize);
-  buffer_ = gpu::Buffer(context, {.size = sizeof(shared::RecursionGuard) + invocations * sizeof(std::uint32_t),
-                                  .name = "recursion"});
+  const std::uint64_t invocations = std::max(std::uint64_t{region.width} * region.height,
+                                             std::uint64_t{tileCount(region)} * shared::kTileSize * shared::kTileSize);
+  buffer_ = gpu::Buffer(
+      context, {.size = sizeof(shared::RecursionGuard) + invocations * sizeof(std::uint32_t), .name = "recursion"});
   const shared::RecursionGuard header{0, depthLimit};
   buffer_.uploadAs(std::span(&header, 1));
 }

@@ -118,7 +118,8 @@ TEST(Instrument, ReportsMissIndicesOutOfRange) {
 
 TEST(Instrument, ReportsCallableIndicesOutOfRange) {
   const std::string callable =
-      "struct CallableDataType { vec3 value; };\nvoid main() { /**** CALLABLE SHADER ****/ callableData.value *= 0.5; }\n";
+      "struct CallableDataType { vec3 value; };\nvoid main() { /**** CALLABLE SHADER ****/ callableData.value *= 0.5; "
+      "}\n";
   const std::string call = " callableData.value = vec3(1.0);\nexecuteCallableEXT(gl_LaunchIDEXT.x < 15u ? 0u : 9u, 0);";
   const auto notes = notesOf(kCommon + callable + rayGeneration(trace("eye", "d") + call) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q004:5");
@@ -128,14 +129,15 @@ TEST(Instrument, ReportsCallableIndicesOutOfRange) {
 
 // A folder with a ray generation shader only.
 program::Program storing(const std::string& statement) {
-  return program::parseProgram("[program]\nray_generation = \"main.rgen\"\n[[ray]]\nname = \"primary\"\nmiss = "
-                               "\"sky.rmiss\"\n[[output]]\nname = \"color\"\n",
-                               "demo", "here",
-                               {{"main.rgen",
-                                 "#version 460\n#extension GL_EXT_ray_tracing : require\n#include <quintet/output.glsl>\n"
-                                 "#include <quintet/generated/program.glsl>\nvoid main() {\n" +
-                                     statement + "\n}\n"},
-                                {"sky.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n"}});
+  return program::parseProgram(
+      "[program]\nray_generation = \"main.rgen\"\n[[ray]]\nname = \"primary\"\nmiss = "
+      "\"sky.rmiss\"\n[[output]]\nname = \"color\"\n",
+      "demo", "here",
+      {{"main.rgen",
+        "#version 460\n#extension GL_EXT_ray_tracing : require\n#include <quintet/output.glsl>\n"
+        "#include <quintet/generated/program.glsl>\nvoid main() {\n" +
+            statement + "\n}\n"},
+       {"sky.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n"}});
 }
 
 TEST(Instrument, ReportsOutputsOutsideOfTheImage) {
@@ -176,7 +178,8 @@ program::Program endlessRecursion(int depth) {
       "gl_WorldRayDirectionEXT;\n" +
       trace("o", "d") + " payload.color = vec3(payload.level); }\n";
   return program::parseLecture(
-      options + kCommon + rayGeneration(" payload.level = 0; " + trace("eye", "d")) + hit + kMiss, "demo.rt.glsl", "here");
+      options + kCommon + rayGeneration(" payload.level = 0; " + trace("eye", "d")) + hit + kMiss, "demo.rt.glsl",
+      "here");
 }
 
 // Every run skips the traces that are too deep, and counts them.
@@ -189,7 +192,8 @@ TEST(Recursion, EndsAtTheDepthOfThePipeline) {
     settings.width = 24;
     settings.height = 16;
     settings.region = {4, 2, 16, 12};
-    settings.camera = scene.cameras.empty() ? scene::frameScene(scene::worldBounds(scene), 1.0f) : scene.cameras.front();
+    settings.camera =
+        scene.cameras.empty() ? scene::frameScene(scene::worldBounds(scene), 1.0f) : scene.cameras.front();
     render::Renderer renderer = makeRenderer(deviceScene, program, settings);
     renderer.renderBatch(1);
     float deepest = 0;

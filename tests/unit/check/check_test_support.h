@@ -45,9 +45,8 @@ name = "surface"
 primary = { closest_hit = "surface.rchit", any_hit = "cut.rahit" }
 shadow = { any_hit = "cut_shadow.rahit" }
 )"},
-          {"main.rgen",
-           changed(head, "require\n", "require\n#include <quintet/output.glsl>\n") +
-               R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
+          {"main.rgen", changed(head, "require\n", "require\n#include <quintet/output.glsl>\n") +
+                            R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
 layout(location = 0) rayPayloadEXT Payload payload;
 void main() {
   traceRayEXT(tlas, gl_RayFlagsNoneEXT, 0xFFu, kRay_primary, kRayTypeCount, kMiss_primary, vec3(0), 0.0, vec3(0, 0, 1), 1e30, 0);

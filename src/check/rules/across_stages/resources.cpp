@@ -61,8 +61,9 @@ const std::vector<Leaf>& launchMembers() {
   static const std::vector<Leaf> kMembers = {LAUNCH_MEMBER(frame),       LAUNCH_MEMBER(parameters),
                                              LAUNCH_MEMBER(offset),      LAUNCH_MEMBER(firstSample),
                                              LAUNCH_MEMBER(sampleCount), LAUNCH_MEMBER(tiles)};
-  static_assert(sizeof(shared::Launch) == 3 * sizeof(shared::Address) + sizeof(shared::uvec2) + 2 * sizeof(shared::uint),
-                "list all members of Launch");
+  static_assert(
+      sizeof(shared::Launch) == 3 * sizeof(shared::Address) + sizeof(shared::uvec2) + 2 * sizeof(shared::uint),
+      "list all members of Launch");
   return kMembers;
 }
 #undef LAUNCH_MEMBER
@@ -91,8 +92,8 @@ std::string listText(std::span<const Leaf> leaves) {
 std::string bindingsText() {
   std::string text;
   for (const shared::Binding& binding : shared::kBindings)
-    text += fmt::format("{}binding {} {} ({})", text.empty() ? "" : ", ", binding.number, binding.glsl,
-                        binding.constant);
+    text +=
+        fmt::format("{}binding {} {} ({})", text.empty() ? "" : ", ", binding.number, binding.glsl, binding.constant);
   return "set 0 has: " + text;
 }
 
@@ -160,18 +161,16 @@ class BlockReader {
 };
 
 std::string imageName(const spirv::Module& module, const spirv::Instruction& image, bool sampled) {
-  static constexpr std::array<std::string_view, 7> kDimensions{"1D",     "2D",     "3D",   "Cube",
-                                                               "2DRect", "Buffer", "pass"};
+  static constexpr std::array<std::string_view, 7> kDimensions{"1D", "2D", "3D", "Cube", "2DRect", "Buffer", "pass"};
   const Type& type = module.types().get(image.at(0));
   const bool integer = type.kind == Type::Kind::integer;
   const std::string_view prefix = !integer ? "" : type.isSigned ? "i" : "u";
   const std::uint32_t dimension = image.at(1);
   if (dimension == static_cast<std::uint32_t>(spv::Dim::SubpassData)) return fmt::format("{}subpassInput", prefix);
   const std::string_view kind = sampled ? "sampler" : image.at(5) == 2 ? "image" : "texture";
-  return fmt::format("{}{}{}{}{}{}", prefix, kind,
-                     dimension < kDimensions.size() ? kDimensions[dimension] : std::string_view("?"),
-                     image.at(4) != 0 ? "MS" : "", image.at(3) != 0 ? "Array" : "",
-                     sampled && image.at(2) == 1 ? "Shadow" : "");
+  return fmt::format(
+      "{}{}{}{}{}{}", prefix, kind, dimension < kDimensions.size() ? kDimensions[dimension] : std::string_view("?"),
+      image.at(4) != 0 ? "MS" : "", image.at(3) != 0 ? "Array" : "", sampled && image.at(2) == 1 ? "Shadow" : "");
 }
 
 // GLSL type of a descriptor: "sampler2D", "uniform block 'Camera'".
@@ -220,7 +219,7 @@ class ResourceRule {
     const Type& declared = module_.types().get(variable.type);
     const bool array = declared.kind == Type::Kind::array || declared.kind == Type::Kind::runtimeArray;
     const std::string element = descriptorName(module_, array ? declared.element : variable.type, variable.storage);
-    const std::string suffix = !array                                   ? ""
+    const std::string suffix = !array                               ? ""
                                : declared.kind == Type::Kind::array ? fmt::format("[{}]", declared.count)
                                                                     : "[]";
     const auto* provided = std::ranges::find(shared::kBindings, number, &shared::Binding::number);
@@ -273,8 +272,8 @@ class ResourceRule {
       const auto part = std::ranges::find_if(fields, [&](const Leaf& field) { return isPart(leaf, field); });
       const auto named = std::ranges::find(fields, leaf.name, &Leaf::name);
       if (part != fields.end() && (named == fields.end() || named == part)) continue;
-      std::string text = fmt::format("member '{}' of the shader record is {} at byte {}", leaf.name, leaf.type(),
-                                     leaf.offset);
+      std::string text =
+          fmt::format("member '{}' of the shader record is {} at byte {}", leaf.name, leaf.type(), leaf.offset);
       const auto at = std::ranges::find_if(
           fields, [&](const Leaf& field) { return leaf.offset >= field.offset && leaf.offset < field.end(); });
       text += at == fields.end() ? fmt::format(", but the record of the program ends at byte {}", fields.back().end())
@@ -289,8 +288,8 @@ class ResourceRule {
   SourceLocation location(const spirv::Variable& variable) const {
     const std::string block = module_.types().get(variable.type).name;
     const auto findIn = [&](const std::string& file, std::string_view text) -> std::optional<SourceLocation> {
-      const auto found = block.empty() ? spirv::findDeclaration(text, "uniform", variable.name)
-                                       : spirv::findWord(text, block);
+      const auto found =
+          block.empty() ? spirv::findDeclaration(text, "uniform", variable.name) : spirv::findWord(text, block);
       if (!found) return {};
       return SourceLocation{found->file.empty() ? file : found->file, found->line, found->column};
     };
