@@ -39,6 +39,9 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q006", kNote, "render/renderer/instrument", "number of any-hit shader invocations per ray",
      "Each invocation interrupts traversal; many of them per ray limit the speed of the program.",
      "Build geometry without alpha as opaque, or trace with gl_RayFlagsOpaqueEXT."},
+    {"Q007", kError, "render/renderer/instrument", "output is written outside of the image",
+     "The value is discarded: the pixel for which it was meant keeps its old value.",
+     "Compute the pixel with launchPixel() of <quintet/output.glsl>."},
 
     // Files of the lecture form.
     {"Q010", kError, "program/gsn/split", "ray generation shader is missing",
@@ -192,6 +195,20 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q608", kError, "across_stages/hit_kinds", "reported hit kind is above 127",
      "Vulkan allows 0 to 127 and reserves larger values for triangles; drivers can use only 7 bits.",
      "Number the kinds of the program from 0, and pass other data as a hit attribute."},
+
+    // Resources.
+    {"Q651", kError, "across_stages/resources", "resource that Quintet does not provide",
+     "The descriptor set has no such binding: the driver reads unrelated memory, and the process crashes.",
+     "Use the bindings of <quintet/frame.glsl>, and buffer addresses, parameters and outputs for all other data."},
+    {"Q652", kError, "across_stages/resources", "push constant block that Quintet does not provide",
+     "Quintet pushes its own block, so members of a different one have wrong values, and a longer one is undefined.",
+     "Include <quintet/frame.glsl>, and declare values of the program as [[parameter]]."},
+    {"Q653", kError, "across_stages/resources", "shader record block differs from the declared record",
+     "Both describe the same bytes: members are read from wrong offsets or with a wrong type.",
+     "Include <quintet/generated/record.glsl> instead of declaring the block."},
+    {"Q654", kError, "across_stages/resources", "shader record is read but the program declares none",
+     "The records hold only shader handles, so the block reads the next record or memory behind the table.",
+     "Declare the fields as [[record]] in program.toml, and include <quintet/generated/record.glsl>."},
 
     // Shading mistakes.
     {"Q701", kError, "within_stage/distance", "normalized object-space direction is used for t",

@@ -56,6 +56,7 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   checkRayArguments(input, report);
   checkGeometry(input, report);
   checkHitKinds(input, report);
+  checkResources(input, report);
   checkRayOrigins(input, report);
   checkArrayIndices(input, report);
   if (input.limits.defects.sharesAnyHit) checkSharedIntersections(input, report);
@@ -99,6 +100,7 @@ std::vector<Diagnostic> newFindings(const CheckResult& known, const CheckResult&
 void addVariant(CheckResult& result, const CheckResult& variant) {
   result.recursionDepth = std::max(result.recursionDepth, variant.recursionDepth);
   result.stackBytes = std::max(result.stackBytes, variant.stackBytes);
+  result.cyclic = result.cyclic || variant.cyclic;
   result.seconds += variant.seconds;
   for (const std::string& file : variant.reached)
     if (std::ranges::find(result.reached, file) == result.reached.end()) result.reached.push_back(file);
@@ -148,6 +150,7 @@ CheckResult check(const program::Program& program, const program::CompiledProgra
     const RecursionNeeds needs = runRulesAcrossStages(input, report);
     result.recursionDepth = needs.depth;
     result.stackBytes = needs.stackBytes;
+    result.cyclic = needs.cyclic;
     if (graph.error.empty())
       for (const std::size_t stage : graph.reachableStages()) result.reached.push_back(graph.stages[stage].file);
     for (Diagnostic& d : report.take()) {

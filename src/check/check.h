@@ -24,6 +24,8 @@ struct CheckResult {
   // Bytes of payloads, callable data and hit attributes along the worst chain: a lower bound of the stack size. Only
   // the driver knows what it adds for registers (rt::Pipeline).
   std::uint64_t stackBytes = 0;
+  // Traces form a cycle, so the depth depends on values: runs count it (program::Instrumentation::recursion).
+  bool cyclic = false;
   std::vector<std::string> reached;  // files of the reachable stages
   double seconds = 0;                // wall time, including compilation
   bool ok() const { return !hasErrors(diagnostics); }

@@ -181,6 +181,7 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   const std::vector<Hash> includedHashes = compiled.fileHashes;
   CheckedProgram checked =
       checkCompiled(job_.program, std::move(compiled), scene.facts(), deviceLimits(engine_.context().info()));
+  countRecursion(checked, engine_.compiler(), render::renderDefines(scene.defines(), request.outputs));
   diagnostics_ = std::move(checked.diagnostics);
   std::erase_if(diagnostics_, [](const Diagnostic& d) { return d.severity == Severity::note; });
   if (!diagnostics_.empty()) observer.diagnostics(diagnostics_);
@@ -247,6 +248,8 @@ RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool
   const render::RenderStatistics& statistics = renderer_->statistics();
   // Checkpoints and previews do not need them.
   const bool isFinal = withError || result.accumulatesFrames;
+  if (isFinal) result.skippedTraces = renderer_->skippedTraces();
+  result.recursionDepth = renderer_->linked().recursionDepth();
   setCounts(result, renderer_->rays(), isFinal ? renderer_->notFinitePixels() : std::vector<render::NotFinitePixels>());
   Provenance& p = result.provenance;
   p.seconds = seconds;

@@ -11,6 +11,7 @@
 
 #include "base/hash.h"
 #include "program/description/program.h"
+#include "program/instrument.h"
 #include "shader/compiler.h"
 
 namespace quintet::program {
@@ -36,10 +37,10 @@ struct CompiledProgram {
 // "<folder/file>".
 std::string userFile(const Program& program, const std::string& file);
 
-// Compiles all stages in parallel. `defines` apply to every stage (features of the scene and the device). `instrument`
-// adds the checks of instrument.h.
+// Compiles all stages in parallel. `defines` apply to every stage (features of the scene and the device).
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
-                        const std::vector<std::pair<std::string, std::string>>& defines, bool instrument = false);
+                        const std::vector<std::pair<std::string, std::string>>& defines,
+                        Instrumentation instrumentation = Instrumentation::none);
 
 struct PayloadSize {
   std::string stage;    // file

@@ -20,6 +20,7 @@
 #include "base/wrap.h"
 #include "check/diagnostic_text.h"
 #include "cli/terminal.h"
+#include "cli/work.h"
 
 namespace quintet::cli {
 namespace {
@@ -113,7 +114,13 @@ void Console::clearLocked() {
   barVisible_ = false;
 }
 
+void Console::setProgram(const program::Program* program) {
+  program_ = program;
+  setWorkProgram(program ? program->name : "");
+}
+
 void Console::stage(const std::string& text) {
+  setWorkStage(text);
   const std::lock_guard lock(mutex_);
   if (!options_.quiet && !options_.jsonProgress && terminal_) show(text + " ...");
 }
@@ -154,6 +161,7 @@ void Console::diagnostics(const std::vector<Diagnostic>& found) {
 }
 
 void Console::progress(const job::Progress& state) {
+  setWorkStage("rendering");
   const double now = clock_.seconds();
   if (options_.quiet || options_.jsonProgress || now - lastProgress_ < (terminal_ ? kBarSeconds : kLineSeconds)) return;
   lastProgress_ = now;
@@ -183,7 +191,9 @@ job::StopRequest Console::stopRequested() {
 void Console::write(const std::filesystem::path& file, std::span<const std::byte> bytes) {
   if (file == "-") return writeFile(file, bytes);  // no temporary file to protect
   const ProtectedWrite protect;
+  setWorkFile(file);
   writeFile(file, bytes);
+  setWorkFile({});
 }
 
 void Console::deviceHung(const Diagnostic& diagnostic) {

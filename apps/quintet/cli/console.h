@@ -49,7 +49,7 @@ class Console : public job::Observer {
   ~Console() override { clear(); }
 
   // For source lines of diagnostics; null: the files on disk. Must stay valid.
-  void setProgram(const program::Program* program) { program_ = program; }
+  void setProgram(const program::Program* program);
   // While set, Ctrl-C ends the job after the current batch. Must stay valid.
   void setGracefulStop(const GracefulStop* stop) { stop_ = stop; }
 

@@ -17,6 +17,7 @@
 #include "cli/console.h"
 #include "cli/parser.h"
 #include "cli/values.h"
+#include "cli/work.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
 #include "job/instrumented_run.h"
@@ -79,7 +80,7 @@ OptionTable declare(Options& options) {
        {.names = "--json", .help = "Print an array of diagnostics on standard output", .target = &options.json},
        {.names = "--strict", .help = "Exit with status 1 also for warnings", .target = &options.strict},
        {.names = "--instrument",
-        .help = "Also render a small image with checks in the shaders (Q001 to Q006)",
+        .help = "Also render a small image with checks in the shaders (Q001 to Q007)",
         .target = &options.instrument},
        {.names = "--size",
         .value = "WxH",
@@ -159,6 +160,7 @@ std::vector<Diagnostic> checkProgram(const program::Program& program, const shad
   if (!options.instrument || hasErrors(found)) return found;
   Console console({.json = options.json});
   console.setProgram(&program);
+  setWorkStage("rendering with --instrument");
   job::Engine engine({.device = options.device});
   std::ranges::move(job::runInstrumented(engine, program, std::move(*scene), options.run, console),
                     std::back_inserter(found));
@@ -181,6 +183,8 @@ int checkCommand(Arguments arguments) {
   for (const std::string& name : options->programs) {
     std::optional<program::Program> program;
     std::vector<Diagnostic> found;
+    setWorkProgram(name);
+    setWorkStage("checking the program");
     try {
       program = program::loadProgram(name);
       found = checkProgram(*program, compiler, *options, limits);

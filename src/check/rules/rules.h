@@ -21,6 +21,7 @@ struct CheckInput {
 struct RecursionNeeds {
   std::uint32_t depth = 1;       // of nested traces
   std::uint64_t stackBytes = 0;  // of payloads, callable data and hit attributes
+  bool cyclic = false;           // traces form a cycle, so only a run can exceed the declared depth
 };
 
 void checkPayloadTypes(const CheckInput& input, Report& report);         // Q101 to Q103
@@ -34,6 +35,7 @@ void checkEndlessRecursion(const CheckInput& input, Report& report);     // Q403
 void checkGeometry(const CheckInput& input, Report& report);             // Q601 to Q604
 void checkHitKinds(const CheckInput& input, Report& report);             // Q607, Q608
 void checkRayArguments(const CheckInput& input, Report& report);         // Q507 to Q513
+void checkResources(const CheckInput& input, Report& report);            // Q651 to Q654
 void checkRayOrigins(const CheckInput& input, Report& report);           // Q705
 void checkRayOrigins(const spirv::Module& module, Report& report);       // Q705 within one stage
 void checkUnreachableStages(const CheckInput& input, Report& report);    // Q801

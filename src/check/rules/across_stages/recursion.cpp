@@ -158,14 +158,14 @@ class CallChains {
 RecursionNeeds checkRecursion(const CheckInput& input, Report& report) {
   const PipelineGraph& graph = input.graph;
   const auto& declared = graph.program.declaredRecursion;
-  RecursionNeeds needs{declared.value_or(1), 0};
+  RecursionNeeds needs{declared.value_or(1), 0, false};
   const PipelineStage* start = graph.stage(graph.program.rayGeneration);
   if (!start || !start->facts) return needs;
   const TraceChains chains(graph);
   const CallChains calls(graph, report);
   const auto stage = static_cast<std::size_t>(start - graph.stages.data());
   const std::uint32_t derived = std::max(1u, chains.depth(stage));
-  const bool cyclic = !chains.cycles().empty();
+  const bool cyclic = needs.cyclic = !chains.cycles().empty();
   needs.depth = derived;
   needs.stackBytes = chains.bytes(stage);
   if (cyclic) {
