@@ -251,6 +251,12 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q802", kWarning, "across_stages/unused", "hit group matches no geometry of the scene",
      "The group has no effect: a name is misspelled, or the program was written for a different scene.",
      "Compare geometry, material and primitives of the group with `quintet info SCENE`."},
+    {"Q803", kNote, "check/suppression", "suppression of a diagnostic that is not reported",
+     "A comment that allows what does not occur hides the next mistake of this kind in its line.",
+     "Remove the comment, or move it to the line of the diagnostic."},
+    {"Q804", kWarning, "check/suppression", "suppression is invalid",
+     "The comment has no effect: its id does not exist or is that of an error.",
+     "Write // quintet: allow Q604 reason, with the id of a warning or note."},
 
     // Driver defects (docs/design/quirks.md).
     {"Q901", kWarning, "within_stage/driver_defects", "built-in is read after a nested trace",

@@ -42,7 +42,8 @@ void runRulesWithinStages(const CheckInput& input, Report& report) {
   });
   for (std::size_t i = 0; i < found.size(); ++i)
     for (Diagnostic& d : found[i])
-      report.add(d.id, graph.location(graph.stages[i], {d.file, d.line, d.column}), std::move(d.text));
+      report.add(d.id, graph.location(graph.stages[i], {d.file, d.line, d.column}), std::move(d.text),
+                 std::move(d.related));
 }
 
 RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
@@ -66,12 +67,24 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   return needs;
 }
 
+// Without the suppressions.
+CheckResult runRules(const program::Program& program, const program::CompiledProgram& compiled,
+                     const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines);
+
+// Moves the diagnostics that comments accept to CheckResult::suppressed. `complete`: the check saw all code, so it knows
+// which suppressions are unused.
+void suppress(CheckResult& result, const program::Program& program, bool complete) {
+  Suppressions suppressions(program);
+  result.suppressed = suppressions.apply(result.diagnostics);
+  if (complete && result.ok()) std::ranges::move(suppressions.problems(), std::back_inserter(result.diagnostics));
+}
+
 CheckResult checkOutputs(const program::Program& program, const shader::Compiler& compiler,
                          const program::SceneFacts* scene, const DeviceLimits& limits,
                          const std::vector<std::string>& outputs) {
   std::vector<std::pair<std::string, std::string>> defines;
   for (const std::string& output : outputs) defines.emplace_back(program::outputMacro(output), "1");
-  return check(program, compiler, scene, limits, defines);
+  return runRules(program, compile(program, compiler, defines), scene, limits, false);
 }
 
 // Returns whether the list has a diagnostic of the same id and line. The texts of compiler messages must be equal too;
@@ -102,6 +115,8 @@ void addVariant(CheckResult& result, const CheckResult& variant) {
   result.stackBytes = std::max(result.stackBytes, variant.stackBytes);
   result.cyclic = result.cyclic || variant.cyclic;
   result.seconds += variant.seconds;
+  for (const std::filesystem::path& file : variant.files)
+    if (std::ranges::find(result.files, file) == result.files.end()) result.files.push_back(file);
   for (const std::string& file : variant.reached)
     if (std::ranges::find(result.reached, file) == result.reached.end()) result.reached.push_back(file);
   if (!variant.ok()) return;
@@ -134,11 +149,14 @@ std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageConte
   return report.take();
 }
 
-CheckResult check(const program::Program& program, const program::CompiledProgram& compiled,
-                  const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
+namespace {
+
+CheckResult runRules(const program::Program& program, const program::CompiledProgram& compiled,
+                     const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
   const Stopwatch clock;
   CheckResult result;
   result.diagnostics = compiled.diagnostics;
+  result.files = compiled.files;
   result.recursionDepth = program.declaredRecursion.value_or(1);
   if (compiled.ok) {
     const PipelineGraph graph(program, compiled);
@@ -155,10 +173,20 @@ CheckResult check(const program::Program& program, const program::CompiledProgra
       for (const std::size_t stage : graph.reachableStages()) result.reached.push_back(graph.stages[stage].file);
     for (Diagnostic& d : report.take()) {
       d.file = program::userFile(program, d.file);
+      for (RelatedLocation& r : d.related) r.file = program::userFile(program, r.file);
       result.diagnostics.push_back(std::move(d));
     }
   }
   result.seconds = compiled.seconds + clock.seconds();
+  return result;
+}
+
+}  // namespace
+
+CheckResult check(const program::Program& program, const program::CompiledProgram& compiled,
+                  const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
+  CheckResult result = runRules(program, compiled, scene, limits, featureDefines);
+  suppress(result, program, !featureDefines);
   return result;
 }
 
@@ -169,11 +197,13 @@ CheckResult check(const program::Program& program, const shader::Compiler& compi
   return check(program, compile(program, compiler, defines), scene, limits, features);
 }
 
-CheckResult checkWithOptionalOutputs(const program::Program& program, const shader::Compiler& compiler,
-                                     const program::SceneFacts* scene, const DeviceLimits& limits) {
-  CheckResult result = check(program, compiler, scene, limits);
+namespace {
+
+// Adds what a check with the optional outputs finds. Diagnostics name the output that causes them.
+void addOptionalOutputs(CheckResult& result, const program::Program& program, const shader::Compiler& compiler,
+                        const program::SceneFacts* scene, const DeviceLimits& limits) {
   const std::vector<std::string> outputs = program::optionalOutputs(program);
-  if (outputs.empty()) return result;
+  if (outputs.empty()) return;
   const CheckResult all = checkOutputs(program, compiler, scene, limits, outputs);
   addVariant(result, all);
 
@@ -196,6 +226,15 @@ CheckResult checkWithOptionalOutputs(const program::Program& program, const shad
     for (Diagnostic& d : found) d = withNote(std::move(d), fmt::format("optional output '{}'", outputs.front()));
   }
   std::ranges::move(found, std::back_inserter(result.diagnostics));
+}
+
+}  // namespace
+
+CheckResult checkWithOptionalOutputs(const program::Program& program, const shader::Compiler& compiler,
+                                     const program::SceneFacts* scene, const DeviceLimits& limits) {
+  CheckResult result = checkOutputs(program, compiler, scene, limits, {});
+  addOptionalOutputs(result, program, compiler, scene, limits);
+  suppress(result, program, true);
   return result;
 }
 

@@ -125,8 +125,12 @@ std::string PipelineGraph::describe(HitGroupRay hit) const {
   return rayCount() > 1 ? fmt::format("{}, ray type '{}'", group, program.rays[hit.ray].name) : group;
 }
 
+const std::string& PipelineGraph::nameOf(const std::string& file) const {
+  return file.starts_with(program.descriptionFile + ".") ? program.descriptionFile : file;
+}
+
 std::string PipelineGraph::describe(const Edge& edge) const {
-  const std::string& file = stages[edge.stage].file;
+  const std::string& file = nameOf(stages[edge.stage].file);
   if (edge.role == Role::miss || edge.role == Role::callable)
     return fmt::format("{} shader '{}' ({} index {})", roleName(edge.role), file,
                        edge.role == Role::miss ? "miss" : "callable", edge.index);
@@ -138,7 +142,7 @@ SourceLocation PipelineGraph::descriptionLocation(int line) const {
 }
 
 SourceLocation PipelineGraph::location(const PipelineStage& stage, const SourceLocation& location) const {
-  return location.line > 0 ? location : SourceLocation{program.path(stage.file), 0, 0};
+  return location.line > 0 ? location : SourceLocation{program.path(nameOf(stage.file)), 0, 0};
 }
 
 SourceLocation PipelineGraph::location(const TraceSite& site) const {

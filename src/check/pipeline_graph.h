@@ -82,6 +82,8 @@ struct PipelineGraph {
   // Stages reachable from ray generation. An any-hit shader counts as reachable even if opacity prevents it.
   std::set<std::size_t> reachableStages() const;
 
+  // Name of a stage's file as the user knows it. The stages of the lecture form are parts of one file.
+  const std::string& nameOf(const std::string& file) const;
   // "closest-hit shader 'a.rchit' (hit group 'surface', ray type 'primary')"
   std::string describe(const Edge& edge) const;
   std::string describe(HitGroupRay hit) const;  // "hit group 'surface', ray type 'primary'"

@@ -20,6 +20,7 @@
 #include "base/wrap.h"
 #include "check/diagnostic_text.h"
 #include "cli/terminal.h"
+#include "cli/values.h"
 #include "cli/work.h"
 
 namespace quintet::cli {
@@ -70,6 +71,11 @@ void printMessage(const std::string& text) {
 
 bool colorOnStandardError() { return isTerminal() && wantsColor(); }
 
+bool parseColor(const std::string& name) {
+  const std::size_t choice = parseChoice("--color", name, {"auto", "always", "never"});
+  return choice == 0 ? colorOnStandardError() : choice == 1;
+}
+
 std::string progressBar(const job::Progress& progress, int width, bool color) {
   const std::string text = figures(progress, "  ");
   const int room = width - static_cast<int>(text.size()) - 4;
@@ -87,13 +93,8 @@ std::string progressLine(const job::Progress& progress) { return figures(progres
 
 void printDiagnostics(const std::vector<Diagnostic>& diagnostics, const program::Program* program, bool json) {
   if (json) return writeFile("-", check::diagnosticsJson(diagnostics));
-  const std::string text = check::diagnosticsText(
-      diagnostics, program ? check::sourcesOf(*program) : check::sourcesOnDisk(), colorOnStandardError());
-  if (!terminalWidth(STDERR_FILENO)) return printError(text);
-  std::vector<std::string> lines = splitText(text, '\n');
-  lines.pop_back();  // after the last line break
-  for (const std::string& line : lines)
-    line.starts_with(' ') ? printError(line + "\n") : printMessage(line);  // lines of sources stay whole
+  printError(check::diagnosticsText(diagnostics, program ? check::sourcesOf(*program) : check::sourcesOnDisk(),
+                                    {.color = colorOnStandardError(), .width = terminalWidth(STDERR_FILENO)}));
 }
 
 Console::Console(const ConsoleOptions& options)

@@ -156,13 +156,14 @@ class ArgumentRule {
   void checkShadowMiss(const TraceSite& site) {
     const spirv::TraceFacts& trace = *site.trace;
     if (!isShadow(trace) || !trace.miss.exact() || trace.miss.values[0] >= graph_.misses.size()) return;
-    const auto forRadiance = [&](const std::string& file) {
-      return std::ranges::any_of(graph_.traces, [&](const TraceSite& other) {
+    const auto radianceTrace = [&](const std::string& file) {
+      return std::ranges::find_if(graph_.traces, [&](const TraceSite& other) {
         return !isShadow(*other.trace) && std::ranges::any_of(other.edges, [&](const Edge& e) {
           return e.role == Role::miss && graph_.stages[e.stage].file == file;
         });
       });
     };
+    const auto forRadiance = [&](const std::string& file) { return radianceTrace(file) != graph_.traces.end(); };
     const program::MissShader& used = graph_.misses[trace.miss.values[0]];
     if (!forRadiance(used.file)) return;
     for (std::size_t i = 0; i < graph_.misses.size(); ++i) {
@@ -171,7 +172,8 @@ class ArgumentRule {
           "Q506", location_,
           fmt::format("this shadow ray uses miss shader '{}' (index {}) of radiance rays, but '{}' (index {}) is "
                       "not used by radiance rays",
-                      used.file, trace.miss.values[0], graph_.misses[i].file, i));
+                      used.file, trace.miss.values[0], graph_.misses[i].file, i),
+          {relatedTo(graph_.location(*radianceTrace(used.file)), "radiance rays use the same miss shader")});
       return;
     }
   }

@@ -82,6 +82,11 @@ class GeometryRule {
     }
   }
 
+  // The trace and the geometry meet here.
+  std::vector<RelatedLocation> traceOf(const TraceGeometryPair& pair) const {
+    return {relatedTo(graph_.location(*pair.site), "this trace uses the hit group")};
+  }
+
   void collectPairs() {
     const program::SceneFacts& scene = *input_.scene;
     for (const TraceSite& site : graph_.traces)
@@ -142,11 +147,13 @@ class GeometryRule {
     if (pair.geometry->procedural() && !hasShader && known)
       report_.add(
           "Q601", location(pair.hit),
-          fmt::format("{} uses {}, which has no intersection shader", describe(pair), graph_.describe(pair.hit)));
+          fmt::format("{} uses {}, which has no intersection shader", describe(pair), graph_.describe(pair.hit)),
+          traceOf(pair));
     if (!pair.geometry->procedural() && hasShader)
       report_.add("Q602", location(pair.hit),
                   fmt::format("{} uses {}, which has an intersection shader for procedural geometry", describe(pair),
-                              graph_.describe(pair.hit)));
+                              graph_.describe(pair.hit)),
+                  traceOf(pair));
   }
 
   bool hasAnyHits() const {
@@ -177,16 +184,19 @@ class GeometryRule {
     if (anyHit.empty()) {
       if (trace.offset.certain())
         report_.add("Q604", location(pair.hit),
-                    fmt::format("{} is opaque for this ray type: {} has no any-hit shader", surface, group));
+                    fmt::format("{} is opaque for this ray type: {} has no any-hit shader", surface, group),
+                    traceOf(pair));
     } else if (pair.instance->forceOpaque && !trace.flags.mustHave(kFlagOpaque)) {
       report_.add("Q604", location(pair.hit),
                   fmt::format("{} is opaque on instance '{}', which is forced opaque: any-hit shader '{}' does not run",
-                              surface, pair.instance->name, anyHit));
+                              surface, pair.instance->name, graph_.nameOf(anyHit)),
+                  traceOf(pair));
     } else {
       report_.add("Q604", graph_.location(*pair.site),
                   fmt::format("{} is opaque for this trace: with gl_RayFlagsOpaqueEXT, any-hit shader '{}' of {} does "
                               "not run",
-                              surface, anyHit, group));
+                              surface, graph_.nameOf(anyHit), group),
+                  {relatedTo(location(pair.hit), "the hit group with the any-hit shader")});
     }
   }
 
@@ -208,7 +218,7 @@ class GeometryRule {
     // The stages of the library are for all scenes, with or without alpha.
     if (input_.scene && !byFlags && program::isLibraryStage(file)) return;
     report_.add("Q603", location(hit),
-                fmt::format("any-hit shader '{}' of {} never runs: {}", file, graph_.describe(hit),
+                fmt::format("any-hit shader '{}' of {} never runs: {}", graph_.nameOf(file), graph_.describe(hit),
                             byFlags        ? "all traces of this ray type have gl_RayFlagsOpaqueEXT"
                             : input_.scene ? fmt::format("its geometry in {} is opaque", input_.scene->name)
                                            : "the group is bound to opaque geometry"));

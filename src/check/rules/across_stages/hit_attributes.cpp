@@ -32,14 +32,16 @@ void checkTypes(const PipelineGraph& graph, HitGroupRay hit, Report& report) {
       if (!isVec2(types, read->type) && !graph.hasIntersection(hit.group))
         report.add("Q202", graph.location(*stage, read->declaration),
                    fmt::format("hit attribute '{}' is {}, but {} is for triangles, whose attribute is vec2", read->name,
-                               types.describe(read->type), graph.describe(hit)));
+                               types.describe(read->type), graph.describe(hit)),
+                   {relatedTo(graph.descriptionLocation(graph.program.hitGroups[hit.group].line), "the hit group")});
     } else if (written) {
       const auto& writtenTypes = writer->facts->module().types();
       if (const auto difference = spirv::differenceOf(writtenTypes, written->type, types, read->type))
         report.add("Q201", graph.location(*stage, read->declaration),
                    fmt::format("hit attribute '{}' is {} here, but intersection shader '{}' of {} writes {}: {}",
-                               read->name, types.describe(read->type), files.intersection, graph.describe(hit),
-                               writtenTypes.describe(written->type), *difference));
+                               read->name, types.describe(read->type), graph.nameOf(files.intersection), graph.describe(hit),
+                               writtenTypes.describe(written->type), *difference),
+                   {relatedTo(graph.location(*writer, written->declaration), "written here")});
     }
   }
 }

@@ -149,6 +149,22 @@ class MemberRule {
     });
   }
 
+  // Where the member is read, and the shaders that end the trace without writing it.
+  std::vector<RelatedLocation> relatedOf(const TraceSite& site, std::uint32_t member, std::size_t access) const {
+    const spirv::StageFacts& tracer = graph_.facts(site);
+    const spirv::Module& module = tracer.module();
+    const SourceLocation read = module.location(module.instructions()[tracer.accesses()[access].instruction]);
+    std::vector<RelatedLocation> result{relatedTo(graph_.location(graph_.stages[site.stage], read), "read here")};
+    for (const Edge& edge : site.edges) {
+      const bool ends = edge.role == Role::miss || edge.role == Role::closestHit;
+      const spirv::SharedVariable* received = graph_.facts(edge).incoming(StorageClass::IncomingRayPayloadKHR);
+      if (ends && received && result.size() < 4 && !writes(edge, member, true))
+        result.push_back(relatedTo(graph_.location(graph_.stages[edge.stage], received->declaration),
+                                   fmt::format("not written by the {}", graph_.describe(edge))));
+    }
+    return result;
+  }
+
   void reportUnwritten(const TraceSite& site, std::uint32_t member, const std::string& name) {
     const spirv::StageFacts& tracer = graph_.facts(site);
     const std::vector<std::size_t> reads = tracer.unguardedReads(*site.trace, member);
@@ -158,7 +174,8 @@ class MemberRule {
     report_.add("Q104", graph_.location(site),
                 fmt::format("{} is read after this trace{}, but {} {} not write it, and it is not set before the trace",
                             name, lineText(tracer, reads.front(), site), fmt::join(missing, " and "),
-                            missing.size() == 1 ? "does" : "do"));
+                            missing.size() == 1 ? "does" : "do"),
+                relatedOf(site, member, reads.front()));
   }
 
   // Reports a member that has the same constant after the trace on all paths.
@@ -241,7 +258,8 @@ class MemberRule {
       report_.add("Q105", graph_.location(site),
                   fmt::format("this trace uses the incoming payload: {}, written in line {}, is overwritten by the {} "
                               "before it is read{}",
-                              name, written.line, graph_.describe(*writer), lineText(tracer, reads.front(), site)));
+                              name, written.line, graph_.describe(*writer), lineText(tracer, reads.front(), site)),
+                  {relatedTo(written, "written here"), relatedOf(site, member, reads.front()).front()});
       return;
     }
   }

@@ -73,6 +73,16 @@ struct Wording {
   std::string_view site;  // "trace"
 };
 
+// The declarations of both ends.
+std::vector<RelatedLocation> endsOf(const PipelineGraph& graph, const PipelineStage& sender, const Pair& pair) {
+  const PipelineStage& receiver = graph.stages[pair.edge->stage];
+  const auto text = [](std::string_view verb, const PipelineStage& stage, const spirv::SharedVariable& variable) {
+    return fmt::format("{} here as {}", verb, stage.facts->module().types().describe(variable.type));
+  };
+  return {relatedTo(graph.location(sender, pair.sent->declaration), text("sent", sender, *pair.sent)),
+          relatedTo(graph.location(receiver, pair.received->declaration), text("received", receiver, *pair.received))};
+}
+
 template <class Site>
 void checkPairs(const PipelineGraph& graph, const std::vector<Site>& sites, StorageClass incoming,
                 const Wording& wording, Report& report) {
@@ -86,14 +96,27 @@ void checkPairs(const PipelineGraph& graph, const std::vector<Site>& sites, Stor
       report.add(wording.typeId, location,
                  fmt::format("{} is {}, but the {} expects {}: {}", wording.data,
                              sender.module().types().describe(pair.sent->type), graph.describe(*pair.edge),
-                             receiver.module().types().describe(pair.received->type), *pair.difference));
+                             receiver.module().types().describe(pair.received->type), *pair.difference),
+                 endsOf(graph, graph.stages[site.stage], pair));
     } else if (!pair.difference && pair.edge->exact && locationsDiffer(sender, pair)) {
       report.add(
           wording.locationId, graph.location(graph.stages[pair.edge->stage], pair.received->declaration),
           fmt::format("'{}' has location {} here, but the {} at {}:{} sends location {}", pair.received->name,
-                      *pair.received->location, wording.site, location.file, location.line, *pair.sent->location));
+                      *pair.received->location, wording.site, location.file, location.line, *pair.sent->location),
+          {relatedTo(location, fmt::format("the {}", wording.site)),
+           relatedTo(graph.location(graph.stages[site.stage], pair.sent->declaration),
+                     fmt::format("location {} is sent", *pair.sent->location))});
     }
   }
+}
+
+// The first trace that can run the stage.
+std::vector<RelatedLocation> firstTraceOf(const PipelineGraph& graph, const PipelineStage& stage) {
+  for (const TraceSite& site : graph.traces)
+    for (const Edge& edge : site.edges)
+      if (&graph.stages[edge.stage] == &stage)
+        return {relatedTo(graph.location(site), "this trace runs the shader with its own payload")};
+  return {};
 }
 
 // Q103: an outgoing payload in a shader that never traces with it.
@@ -109,7 +132,8 @@ void checkQualifiers(const PipelineGraph& graph, Report& report) {
       report.add("Q103", graph.location(stage, variable.declaration),
                  fmt::format("'{}' is a rayPayloadEXT, but no trace of this {} shader uses it; declare the payload of "
                              "the incoming ray as rayPayloadInEXT",
-                             variable.name, shader::stageName(stage.kind)));
+                             variable.name, shader::stageName(stage.kind)),
+                 firstTraceOf(graph, stage));
     }
   }
 }

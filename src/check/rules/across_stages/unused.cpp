@@ -77,7 +77,7 @@ void checkUnreachableStages(const CheckInput& input, Report& report) {
     const PipelineStage& stage = graph.stages[i];
     if (reachable.contains(i) || stage.file.ends_with(program::kStubMissExtension)) continue;
     report.add("Q801", graph.descriptionLocation(lineOfFile(graph.program, stage.file)),
-               fmt::format("no trace or call can reach {} shader '{}'", shader::stageName(stage.kind), stage.file));
+               fmt::format("no trace or call can reach {} shader '{}'", shader::stageName(stage.kind), graph.nameOf(stage.file)));
   }
 }
 
