@@ -141,6 +141,9 @@ constexpr DiagnosticInfo kCatalog[] = {
      "Add a ray type with its own miss shader, and pass its kMiss_NAME."},
 
     // Hit groups and geometry.
+    {"Q514", kWarning, "within_stage/ray_lengths", "ray direction is not normalized although tmax is its length",
+     "The unit of t is the length of the direction, so the ray ends at the square of the length.",
+     "Normalize the direction, or use a tmax of 1 with the direction as it is."},
     {"Q601", kError, "across_stages/geometry", "procedural geometry uses a hit group without an intersection shader",
      "Without an intersection shader no ray can hit a bounding box, and the hit record is invalid.",
      "Add an intersection shader to the group, or bind the procedural geometry to a different group."},
@@ -164,7 +167,7 @@ constexpr DiagnosticInfo kCatalog[] = {
      "The unit of t is the length of the ray direction, so scaled instances get wrong distances and a wrong order of "
      "hits.",
      "Intersect with gl_ObjectRayDirectionEXT as it is, or divide the t of the unit direction by its length."},
-    {"Q702", kWarning, "within_stage/normals", "normal is transformed by gl_ObjectToWorldEXT",
+    {"Q702", kWarning, "across_stages/spaces", "normal is transformed by gl_ObjectToWorldEXT",
      "With non-uniform scale the result is not perpendicular to the surface, and shading is wrong.",
      "Multiply from the left with world-to-object: normalize(vec3(normal * gl_WorldToObjectEXT))."},
     {"Q703", kWarning, "within_stage/indices", "gl_InstanceID is used instead of the custom index",
@@ -183,6 +186,18 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q707", kError, "within_stage/unsupported", "debugPrintfEXT is not supported",
      "Quintet does not receive the texts that shaders print, so the call would have no effect.",
      "Remove the call, and store the value in an output of the program: an optional [[output]] for debugging."},
+    {"Q708", kWarning, "across_stages/spaces", "position is transformed like a direction, or a direction like a position",
+     "A position must be translated (w = 1) and a direction must not (w = 0), or instances that are moved look wrong.",
+     "Use matrix * vec4(position, 1.0) and matrix * vec4(direction, 0.0)."},
+    {"Q709", kWarning, "across_stages/spaces", "values of different spaces are mixed",
+     "The result is right only for instances without a transform.",
+     "Transform one of the values first: gl_ObjectToWorldEXT maps object space to world space."},
+    {"Q710", kWarning, "across_stages/barycentrics", "weights of the three vertices of a triangle are wrong",
+     "The attribute gives the weights of vertices 1 and 2, so values of the vertices end up at other corners.",
+     "Interpolate with (1.0 - b.x - b.y) * v0 + b.x * v1 + b.y * v2."},
+    {"Q715", kWarning, "across_stages/color_encoding", "color is encoded twice",
+     "Quintet encodes an output of kind color when it writes an image, so the image is too bright and pale.",
+     "Store linear color, or declare the output with kind = \"display\"."},
 
     // Unused parts.
     {"Q801", kWarning, "across_stages/unused", "stage is unreachable", "It costs compile time without any effect.",

@@ -33,6 +33,7 @@ struct InstanceFacts {
   std::uint32_t mask = 0xFF;
   bool forceOpaque = false;
   bool forceNoOpaque = false;
+  bool transformed = false;  // object space differs from world space, at least at some time
   bool operator==(const InstanceFacts&) const = default;
 };
 
