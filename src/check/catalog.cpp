@@ -123,7 +123,6 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q402", kError, "across_stages/recursion", "recursion is deeper than declared or than the device allows",
      "A trace beyond maxPipelineRayRecursionDepth is undefined.",
      "Reduce the depth, increase max_recursion, or replace the recursion by a loop in the ray generation shader."},
-
     {"Q403", kError, "across_stages/endless_recursion", "trace that always runs closes a cycle",
      "max_recursion is a promise of the program; a ray that recurses further overwrites memory, or the device is lost.",
      "Trace only while a depth in the payload is below max_recursion."},
@@ -169,6 +168,9 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q513", kWarning, "across_stages/ray_arguments", "ray flags leave no geometry to hit",
      "The flags skip all geometry that exists, so this ray always misses.",
      "Remove the flag, or add geometry of the other kind."},
+    {"Q514", kWarning, "within_stage/ray_lengths", "ray direction is not normalized although tmax is its length",
+     "The unit of t is the length of the direction, so the ray ends at the square of the length.",
+     "Normalize the direction, or use a tmax of 1 with the direction as it is."},
 
     // Hit groups and geometry.
     {"Q601", kError, "across_stages/geometry", "procedural geometry uses a hit group without an intersection shader",
@@ -215,7 +217,7 @@ constexpr DiagnosticInfo kCatalog[] = {
      "The unit of t is the length of the ray direction, so scaled instances get wrong distances and a wrong order of "
      "hits.",
      "Intersect with gl_ObjectRayDirectionEXT as it is, or divide the t of the unit direction by its length."},
-    {"Q702", kWarning, "within_stage/normals", "normal is transformed by gl_ObjectToWorldEXT",
+    {"Q702", kWarning, "across_stages/spaces", "normal is transformed by gl_ObjectToWorldEXT",
      "With non-uniform scale the result is not perpendicular to the surface, and shading is wrong.",
      "Multiply from the left with world-to-object: normalize(vec3(normal * gl_WorldToObjectEXT))."},
     {"Q703", kWarning, "within_stage/indices", "gl_InstanceID is used instead of the custom index",
@@ -234,6 +236,15 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q707", kError, "within_stage/unsupported", "debugPrintfEXT is not supported",
      "Quintet does not receive the texts that shaders print, so the call would have no effect.",
      "Remove the call, and store the value in an output of the program: an optional [[output]] for debugging."},
+    {"Q708", kWarning, "across_stages/spaces", "position is transformed like a direction, or a direction like a position",
+     "A position must be translated (w = 1) and a direction must not (w = 0), or instances that are moved look wrong.",
+     "Use matrix * vec4(position, 1.0) and matrix * vec4(direction, 0.0)."},
+    {"Q709", kWarning, "across_stages/spaces", "values of different spaces are mixed",
+     "The result is right only for instances without a transform.",
+     "Transform one of the values first: gl_ObjectToWorldEXT maps object space to world space."},
+    {"Q710", kWarning, "across_stages/barycentrics", "weights of the three vertices of a triangle are wrong",
+     "The attribute gives the weights of vertices 1 and 2, so values of the vertices end up at other corners.",
+     "Interpolate with (1.0 - b.x - b.y) * v0 + b.x * v1 + b.y * v2."},
     {"Q711", kError, "across_stages/array_indices", "array index is beyond the array",
      "GLSL does not check indices: the shader reads or overwrites other memory.",
      "Make the array larger, or limit the index, for example with min()."},
@@ -241,6 +252,9 @@ constexpr DiagnosticInfo kCatalog[] = {
      "Other pixels keep their old values, several invocations write the same pixel, or the write is outside of the "
      "image.",
      "Store at launchPixel(), or at gl_LaunchIDEXT.xy."},
+    {"Q715", kWarning, "across_stages/color_encoding", "color is encoded twice",
+     "Quintet encodes an output of kind color when it writes an image, so the image is too bright and pale.",
+     "Store linear color, or declare the output with kind = \"display\"."},
     {"Q716", kWarning, "within_stage/pixels", "integer division of the launch id by the size",
      "The id is smaller than the size, so the result of the integer division is always 0.",
      "Convert both to float first: vec2(gl_LaunchIDEXT.xy) / vec2(gl_LaunchSizeEXT.xy)."},

@@ -60,6 +60,7 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   checkResources(input, report);
   checkRayOrigins(input, report);
   checkArrayIndices(input, report);
+  checkSpaces(input, report);
   if (input.limits.defects.sharesAnyHit) checkSharedIntersections(input, report);
   if (input.graph.error.empty() && !input.featureDefines && !report.hasAny(kWrongIndex))
     checkUnreachableStages(input, report);
@@ -135,12 +136,12 @@ std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageConte
   const bool intersection = stage == Model::IntersectionKHR;
   const bool hit = intersection || stage == Model::AnyHitKHR || stage == Model::ClosestHitKHR;
   if (intersection) checkDistance(module, report);
-  if (hit) checkNormals(module, report);
   if (hit && !context.keepsInstanceOrder) checkInstanceIndices(module, report);
   checkDescriptorIndices(module, report);
   checkDebugPrintf(module, report);
   if (stage == Model::RayGenerationKHR) checkPixels(module, report);
   checkPixelDivision(module, report);
+  checkRayLengths(module, report);
   if (intersection) checkRayTmaxReads(module, report);
   const DriverDefects& defects = context.defects;
   if (defects.changesNestedBuiltIns && stage == Model::ClosestHitKHR) checkNestedBuiltIns(module, report);

@@ -39,8 +39,17 @@ void checkResources(const CheckInput& input, Report& report);            // Q651
 void checkRayOrigins(const CheckInput& input, Report& report);           // Q705
 void checkRayOrigins(const spirv::Module& module, Report& report);       // Q705 within one stage
 void checkUnreachableStages(const CheckInput& input, Report& report);    // Q801
+void checkSpaces(const CheckInput& input, Report& report);               // Q702, Q708 to Q710, Q715
 void checkUnusedHitGroups(const CheckInput& input, Report& report);      // Q802
 void checkSharedIntersections(const CheckInput& input, Report& report);  // Q903
+
+// The parts of checkSpaces(). `stage` is an index of PipelineGraph::stages.
+class PipelineSpaces;
+// `transformed`: instances have transforms, as far as known.
+void checkSpaces(const PipelineSpaces& spaces, std::size_t stage, bool transformed, Report& report);  // Q702, Q708, Q709
+void checkSpaces(const spirv::Module& module, Report& report);  // the same, of one stage alone
+void checkBarycentrics(const PipelineSpaces& spaces, std::size_t stage, Report& report);  // Q710
+void checkColorEncoding(const PipelineGraph& graph, const PipelineSpaces& spaces, Report& report);  // Q715
 
 // Rules within one stage (rules/within_stage): they follow values through a module that was compiled with `optimize`
 // and `debugInfo`. A value that cannot be followed is not reported.
@@ -52,7 +61,6 @@ struct StageContext {
 };
 
 void checkDistance(const spirv::Module& module, Report& report);           // Q701
-void checkNormals(const spirv::Module& module, Report& report);            // Q702
 void checkInstanceIndices(const spirv::Module& module, Report& report);    // Q703
 void checkDescriptorIndices(const spirv::Module& module, Report& report);  // Q704
 void checkDebugPrintf(const spirv::Module& module, Report& report);        // Q707
@@ -60,6 +68,7 @@ void checkPixels(const spirv::Module& module, Report& report);             // Q7
 void checkPixelDivision(const spirv::Module& module, Report& report);      // Q716
 void checkNestedBuiltIns(const spirv::Module& module, Report& report);     // Q901
 void checkAttributeWrites(const spirv::Module& module, Report& report);    // Q902
+void checkRayLengths(const spirv::Module& module, Report& report);         // Q514
 void checkRayTmaxReads(const spirv::Module& module, Report& report);       // Q904
 void checkLocalArrays(const spirv::Module& module, Report& report);        // Q905
 
