@@ -48,8 +48,11 @@ void runRulesWithinStages(const CheckInput& input, Report& report) {
 RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   checkPayloadTypes(input, report);
   checkPayloadMembers(input, report);
+  checkPayloadInputs(input, report);
   checkHitAttributes(input, report);
   checkCallableTypes(input, report);
+  checkCallableData(input, report);
+  checkCandidates(input, report);
   const RecursionNeeds needs = checkRecursion(input, report);
   checkArguments(input, report);
   checkGeometry(input, report);
@@ -58,12 +61,13 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   if (input.graph.error.empty() && !input.featureDefines && !report.hasAny(kWrongIndex))
     checkUnreachableStages(input, report);
   checkUnusedHitGroups(input, report);
+  checkOutputs(input, report);
   return needs;
 }
 
-CheckResult checkOutputs(const program::Program& program, const shader::Compiler& compiler,
-                         const program::SceneFacts* scene, const DeviceLimits& limits,
-                         const std::vector<std::string>& outputs) {
+CheckResult checkWithOutputs(const program::Program& program, const shader::Compiler& compiler,
+                             const program::SceneFacts* scene, const DeviceLimits& limits,
+                             const std::vector<std::string>& outputs) {
   std::vector<std::pair<std::string, std::string>> defines;
   for (const std::string& output : outputs) defines.emplace_back(program::outputMacro(output), "1");
   return check(program, compiler, scene, limits, defines);
@@ -136,7 +140,7 @@ CheckResult check(const program::Program& program, const program::CompiledProgra
     const PipelineGraph graph(program, compiled);
     const std::optional<program::SceneFacts> facts =
         scene ? std::optional(program::factsFor(program, *scene)) : std::nullopt;
-    const CheckInput input{graph, facts ? &*facts : nullptr, limits, featureDefines};
+    const CheckInput input{graph, facts ? &*facts : nullptr, limits, featureDefines, compiled.outputs};
     Report report;
     runRulesWithinStages(input, report);
     const RecursionNeeds needs = runRulesAcrossStages(input, report);
@@ -165,7 +169,7 @@ CheckResult checkWithOptionalOutputs(const program::Program& program, const shad
   CheckResult result = check(program, compiler, scene, limits);
   const std::vector<std::string> outputs = program::optionalOutputs(program);
   if (outputs.empty()) return result;
-  const CheckResult all = checkOutputs(program, compiler, scene, limits, outputs);
+  const CheckResult all = checkWithOutputs(program, compiler, scene, limits, outputs);
   addVariant(result, all);
 
   std::vector<Diagnostic> found = newFindings(result, all);
@@ -173,7 +177,7 @@ CheckResult checkWithOptionalOutputs(const program::Program& program, const shad
     // Which output causes them? An error can also hide those of other outputs.
     std::vector<Diagnostic> precise;
     for (const std::string& output : outputs) {
-      const CheckResult single = checkOutputs(program, compiler, scene, limits, {output});
+      const CheckResult single = checkWithOutputs(program, compiler, scene, limits, {output});
       result.seconds += single.seconds;
       for (Diagnostic& d : newFindings(result, single))
         if (!contains(precise, d))
