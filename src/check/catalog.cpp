@@ -87,6 +87,12 @@ constexpr DiagnosticInfo kCatalog[] = {
      "nested trace overwrites the incoming payload, which is read afterwards",
      "The shaders of the inner ray write the same memory, so the value read afterwards belongs to the inner ray.",
      "Trace with a separate rayPayloadEXT, or copy the values to local variables before the trace."},
+    {"Q106", kError, "across_stages/payload_types", "stage has two incoming payloads or callable data variables",
+     "Vulkan allows one per stage: the two share memory on one driver, and the pipeline fails on another.",
+     "Declare one rayPayloadInEXT (or callableDataInEXT) whose struct has all members."},
+    {"Q107", kWarning, "across_stages/payload_inputs", "payload member is read before anything has set it",
+     "A payload is not cleared: the value is undefined, often that of a different pixel, or zero by accident.",
+     "Set the member in the tracing stage before the trace."},
 
     // Hit attributes.
     {"Q201", kError, "across_stages/hit_attributes", "hit attribute type differs between the shaders of a hit group",
@@ -102,6 +108,12 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q204", kError, "shader/stage_builtins", "hit attribute in a stage without a hit",
      "Only intersection, any-hit and closest-hit shaders have a hit; a miss shader has none.",
      "Pass the values through the payload."},
+    {"Q205", kWarning, "across_stages/hit_attributes", "hit attribute is read but not written before the report",
+     "reportIntersectionEXT passes on the attributes that were written before it; all others are undefined.",
+     "Write the attribute in the intersection shader before reportIntersectionEXT."},
+    {"Q206", kWarning, "across_stages/candidates", "intersection shader never reports an intersection",
+     "Without a call of reportIntersectionEXT, no ray can hit the geometry, which is invisible.",
+     "Call reportIntersectionEXT(t, kind), and check the conditions around it."},
 
     // Callable shaders.
     {"Q301", kError, "across_stages/payload_types",
@@ -115,6 +127,9 @@ constexpr DiagnosticInfo kCatalog[] = {
      "callable data location differs between the call and the callable shader",
      "Only the location of the call counts; a different location of callableDataInEXT is ignored but misleads readers.",
      "Use the same location for both."},
+    {"Q304", kWarning, "across_stages/callable_data", "callable data is read but not written",
+     "Callable data is not cleared: the value is undefined, often that of an earlier call.",
+     "Set what the callable shader reads before the call, and write the result in it on each path."},
 
     // Recursion.
     {"Q401", kError, "across_stages/recursion", "cycle of traces without a declared bound",
@@ -190,6 +205,9 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q605", kError, "across_stages/arguments", "ray flags exclude each other",
      "Vulkan forbids the combination, and its effect depends on the driver.",
      "Keep only one of the two flags that the message names."},
+    {"Q606", kWarning, "across_stages/candidates", "any-hit shader ignores every intersection",
+     "The rays pass through all geometry of the hit group, as if it did not exist.",
+     "Call ignoreIntersectionEXT only under a condition, or remove the geometry from these rays by the cull mask."},
     {"Q607", kWarning, "across_stages/hit_kinds", "hit kind of triangles in a procedural hit group",
      "Only the built-in triangle intersection reports gl_HitKindFrontFacingTriangleEXT and "
      "gl_HitKindBackFacingTriangleEXT, so the comparison always has the same result.",
@@ -248,10 +266,16 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q711", kError, "across_stages/array_indices", "array index is beyond the array",
      "GLSL does not check indices: the shader reads or overwrites other memory.",
      "Make the array larger, or limit the index, for example with min()."},
+    {"Q712", kWarning, "across_stages/outputs", "output is never written",
+     "Its image is black: outputs start with zeros.",
+     "Store the value with storeOutput or addOutput, or remove the output from program.toml."},
     {"Q713", kWarning, "within_stage/pixels", "result is stored at a wrong pixel",
      "Other pixels keep their old values, several invocations write the same pixel, or the write is outside of the "
      "image.",
      "Store at launchPixel(), or at gl_LaunchIDEXT.xy."},
+    {"Q714", kWarning, "across_stages/outputs", "output is overwritten instead of accumulated",
+     "An output is the sum over the samples of a batch. Only one sample remains, so the image is too dark and noisy.",
+     "Add to the sum: storeOutput(kOutput_x, pixel, loadOutput(kOutput_x, pixel) + value), or call addOutput."},
     {"Q715", kWarning, "across_stages/color_encoding", "color is encoded twice",
      "Quintet encodes an output of kind color when it writes an image, so the image is too bright and pale.",
      "Store linear color, or declare the output with kind = \"display\"."},

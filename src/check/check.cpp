@@ -49,8 +49,11 @@ void runRulesWithinStages(const CheckInput& input, Report& report) {
 RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   checkPayloadTypes(input, report);
   checkPayloadMembers(input, report);
+  checkPayloadInputs(input, report);
   checkHitAttributes(input, report);
   checkCallableTypes(input, report);
+  checkCallableData(input, report);
+  checkCandidates(input, report);
   const RecursionNeeds needs = checkRecursion(input, report);
   checkEndlessRecursion(input, report);
   checkArguments(input, report);
@@ -65,6 +68,7 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   if (input.graph.error.empty() && !input.featureDefines && !report.hasAny(kWrongIndex))
     checkUnreachableStages(input, report);
   checkUnusedHitGroups(input, report);
+  checkOutputs(input, report);
   return needs;
 }
 
@@ -80,7 +84,7 @@ void suppress(CheckResult& result, const program::Program& program, bool complet
   if (complete && result.ok()) std::ranges::move(suppressions.problems(), std::back_inserter(result.diagnostics));
 }
 
-CheckResult checkOutputs(const program::Program& program, const shader::Compiler& compiler,
+CheckResult checkWithOutputs(const program::Program& program, const shader::Compiler& compiler,
                          const program::SceneFacts* scene, const DeviceLimits& limits,
                          const std::vector<std::string>& outputs) {
   std::vector<std::pair<std::string, std::string>> defines;
@@ -163,7 +167,7 @@ CheckResult runRules(const program::Program& program, const program::CompiledPro
     const PipelineGraph graph(program, compiled);
     const std::optional<program::SceneFacts> facts =
         scene ? std::optional(program::factsFor(program, *scene)) : std::nullopt;
-    const CheckInput input{graph, facts ? &*facts : nullptr, limits, featureDefines};
+    const CheckInput input{graph, facts ? &*facts : nullptr, limits, featureDefines, compiled.outputs};
     Report report;
     runRulesWithinStages(input, report);
     const RecursionNeeds needs = runRulesAcrossStages(input, report);
@@ -205,7 +209,7 @@ void addOptionalOutputs(CheckResult& result, const program::Program& program, co
                         const program::SceneFacts* scene, const DeviceLimits& limits) {
   const std::vector<std::string> outputs = program::optionalOutputs(program);
   if (outputs.empty()) return;
-  const CheckResult all = checkOutputs(program, compiler, scene, limits, outputs);
+  const CheckResult all = checkWithOutputs(program, compiler, scene, limits, outputs);
   addVariant(result, all);
 
   std::vector<Diagnostic> found = newFindings(result, all);
@@ -213,7 +217,7 @@ void addOptionalOutputs(CheckResult& result, const program::Program& program, co
     // Which output causes them? An error can also hide those of other outputs.
     std::vector<Diagnostic> precise;
     for (const std::string& output : outputs) {
-      const CheckResult single = checkOutputs(program, compiler, scene, limits, {output});
+      const CheckResult single = checkWithOutputs(program, compiler, scene, limits, {output});
       result.seconds += single.seconds;
       for (Diagnostic& d : newFindings(result, single))
         if (!contains(precise, d))

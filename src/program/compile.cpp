@@ -92,6 +92,9 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
   });
   compiled.ok = std::ranges::none_of(compiled.stages, [](const auto& stage) { return stage.spirv.empty(); });
   compiled.diagnostics = program.diagnostics;
+  for (const std::string& output : optionalOutputs(program))
+    if (std::ranges::find(defines, outputMacro(output), &std::pair<std::string, std::string>::first) != defines.end())
+      compiled.outputs.push_back(output);
   for (shader::Result& result : results) addResult(compiled, result);
   std::ranges::sort(compiled.fileHashes);
   compiled.fileHashes.erase(std::unique(compiled.fileHashes.begin(), compiled.fileHashes.end()),

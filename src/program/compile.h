@@ -25,6 +25,7 @@ struct CompiledProgram {
   };
   std::vector<Stage> stages;  // one per file that the program uses
   std::vector<Diagnostic> diagnostics;
+  std::vector<std::string> outputs;          // names of the optional outputs that the shaders were compiled with
   std::vector<std::filesystem::path> files;  // read from disk in addition to Program::files, for --watch
   std::vector<Hash> fileHashes;              // of the texts of `files`, sorted, without duplicates
   double seconds = 0;                        // wall-clock time of the compilation

@@ -15,7 +15,8 @@ struct CheckInput {
   const PipelineGraph& graph;
   const program::SceneFacts* scene;  // null for any scene
   const DeviceLimits& limits;
-  bool featureDefines;  // the shaders are compiled for one scene, so code can be missing
+  bool featureDefines;                    // the shaders are compiled for one scene, so code can be missing
+  std::vector<std::string> outputs = {};  // names of the optional outputs that are rendered
 };
 
 struct RecursionNeeds {
@@ -24,9 +25,13 @@ struct RecursionNeeds {
   bool cyclic = false;           // traces form a cycle, so only a run can exceed the declared depth
 };
 
-void checkPayloadTypes(const CheckInput& input, Report& report);         // Q101 to Q103
+void checkPayloadTypes(const CheckInput& input, Report& report);         // Q101 to Q103, Q106
 void checkPayloadMembers(const CheckInput& input, Report& report);       // Q104, Q105
-void checkHitAttributes(const CheckInput& input, Report& report);        // Q201 to Q203
+void checkPayloadInputs(const CheckInput& input, Report& report);        // Q107
+void checkHitAttributes(const CheckInput& input, Report& report);        // Q201 to Q203, Q205
+void checkCandidates(const CheckInput& input, Report& report);           // Q206, Q606
+void checkCallableData(const CheckInput& input, Report& report);         // Q304
+void checkOutputs(const CheckInput& input, Report& report);              // Q712, Q714
 void checkCallableTypes(const CheckInput& input, Report& report);        // Q301, Q303
 RecursionNeeds checkRecursion(const CheckInput& input, Report& report);  // Q401, Q402
 void checkArguments(const CheckInput& input, Report& report);            // Q302, Q501 to Q506, Q605

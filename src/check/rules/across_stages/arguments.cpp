@@ -152,30 +152,52 @@ class ArgumentRule {
     return trace.flags.mustHave(kFlagTerminateOnFirstHit | kFlagSkipClosestHit);
   }
 
-  // Reports a shadow ray with the miss shader of radiance rays, if the program has a miss shader that these do not use.
+  // Reports a shadow ray with the miss shader of radiance rays, if the program has one that it should use: that of the
+  // ray's own type, or one that no ray uses while this one does not return what is read.
   void checkShadowMiss(const TraceSite& site) {
     const spirv::TraceFacts& trace = *site.trace;
     if (!isShadow(trace) || !trace.miss.exact() || trace.miss.values[0] >= graph_.misses.size()) return;
+    const auto reaches = [&](const TraceSite& other, const std::string& file) {
+      return std::ranges::any_of(
+          other.edges, [&](const Edge& e) { return e.role == Role::miss && graph_.stages[e.stage].file == file; });
+    };
     const auto radianceTrace = [&](const std::string& file) {
-      return std::ranges::find_if(graph_.traces, [&](const TraceSite& other) {
-        return !isShadow(*other.trace) && std::ranges::any_of(other.edges, [&](const Edge& e) {
-          return e.role == Role::miss && graph_.stages[e.stage].file == file;
-        });
-      });
+      return std::ranges::find_if(
+          graph_.traces, [&](const TraceSite& other) { return !isShadow(*other.trace) && reaches(other, file); });
     };
     const auto forRadiance = [&](const std::string& file) { return radianceTrace(file) != graph_.traces.end(); };
     const program::MissShader& used = graph_.misses[trace.miss.values[0]];
     if (!forRadiance(used.file)) return;
     for (std::size_t i = 0; i < graph_.misses.size(); ++i) {
-      if (forRadiance(graph_.misses[i].file)) continue;
+      const std::string& file = graph_.misses[i].file;
+      if (forRadiance(file)) continue;
+      const bool own = trace.offset.exact() && trace.offset.values[0] == i;
+      const bool unused =
+          std::ranges::none_of(graph_.traces, [&](const TraceSite& other) { return reaches(other, file); });
+      if (!own && (!unused || returnsWhatIsRead(site))) continue;
       report_.add(
           "Q506", location_,
           fmt::format("this shadow ray uses miss shader '{}' (index {}) of radiance rays, but '{}' (index {}) is "
                       "not used by radiance rays",
-                      used.file, trace.miss.values[0], graph_.misses[i].file, i),
+                      used.file, trace.miss.values[0], file, i),
           {relatedTo(graph_.location(*radianceTrace(used.file)), "radiance rays use the same miss shader")});
       return;
     }
+  }
+
+  // True if the miss shader of the ray writes all that is read from the payload afterwards.
+  bool returnsWhatIsRead(const TraceSite& site) const {
+    const spirv::StageFacts& tracer = graph_.facts(site);
+    const spirv::Id payload = site.trace->payload;
+    const auto miss = std::ranges::find(site.edges, Role::miss, &Edge::role);
+    if (miss == site.edges.end()) return false;
+    const spirv::StageFacts& facts = graph_.facts(*miss);
+    const spirv::SharedVariable* received = facts.incoming(spv::StorageClass::IncomingRayPayloadKHR);
+    if (!received) return false;
+    for (std::uint32_t leaf = 0; leaf < tracer.leaves(payload).count(); ++leaf)
+      if (!tracer.readsAfter(site.trace->instruction, payload, leaf).empty() && !facts.writesAlways(received->id, leaf))
+        return false;
+    return true;
   }
 
   // Each of these sets allows at most one flag: VUID-RuntimeSpirv-OpTraceRayKHR-06892 to 06894.

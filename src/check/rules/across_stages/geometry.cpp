@@ -156,19 +156,19 @@ class GeometryRule {
                   traceOf(pair));
   }
 
-  bool hasAnyHits() const {
-    return std::ranges::any_of(graph_.program.hitGroups, [](const program::HitGroup& group) {
-      return std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.anyHit.empty(); });
-    });
+  bool hasAnyHits(std::size_t ray) const {
+    for (std::size_t group = 0; group < graph_.program.hitGroups.size(); ++group)
+      if (!graph_.shaders({group, ray}).anyHit.empty()) return true;
+    return false;
   }
 
-  // Q604: surfaces with alpha that a trace treats as opaque. A program without any any-hit shader does so on purpose,
-  // unless a group is bound to class alpha.
+  // Q604: surfaces with alpha that a trace treats as opaque. A program without an any-hit shader for the ray type does so
+  // on purpose, unless a group is bound to class alpha.
   void checkAlphaTests() {
     for (const TraceGeometryPair& pair : pairs_) {
       const bool bound = binds(groupOf(pair.hit), "alpha");
       const bool alpha = input_.scene ? pair.geometry->alpha : bound;
-      if (!alpha || (!bound && !hasAnyHits())) continue;
+      if (!alpha || (!bound && !hasAnyHits(pair.hit.ray))) continue;
       const bool hasShader = !graph_.shaders(pair.hit).anyHit.empty();
       if (!hasShader || pair.opaque) reportSkippedAlphaTest(pair);
     }

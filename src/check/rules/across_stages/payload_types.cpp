@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Q101 to Q103: types, locations and qualifiers of payloads. Q301, Q303: types and locations of callable data.
+// Q101 to Q103, Q106: types, locations and qualifiers of payloads. Q301, Q303: types and locations of callable data.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "check/rules/rules.h"
+#include "spirv/source_text.h"
 
 namespace quintet::check {
 namespace {
@@ -119,6 +120,52 @@ std::vector<RelatedLocation> firstTraceOf(const PipelineGraph& graph, const Pipe
   return {};
 }
 
+// Returns the last argument of the call that starts at `at`; empty if the call does not end.
+std::string_view lastArgument(std::string_view text, std::size_t at) {
+  const std::size_t open = text.find('(', at);
+  std::size_t begin = open;
+  int depth = 0;
+  for (std::size_t i = open; i < text.size(); ++i) {
+    if (text[i] == '(') ++depth;
+    if (text[i] == ',' && depth == 1) begin = i;
+    if (text[i] != ')' || --depth > 0) continue;
+    std::string_view argument = text.substr(begin + 1, i - begin - 1);
+    argument.remove_prefix(std::min(argument.find_first_not_of(" \t\r\n"), argument.size()));
+    return argument.substr(0, argument.find_last_not_of(" \t\r\n") + 1);
+  }
+  return {};
+}
+
+// True if the source has a trace with the payload that the compiler removed: #if, a constant condition.
+bool hasRemovedTrace(const spirv::StageFacts& facts, const spirv::SharedVariable& payload) {
+  if (!payload.location) return false;
+  for (const auto& [file, text] : facts.module().sources()) {
+    constexpr std::string_view kTrace = "traceRayEXT";
+    for (std::size_t at = spirv::findToken(text, kTrace); at != text.npos; at = spirv::findToken(text, kTrace, at + 1))
+      if (lastArgument(text, at) == std::to_string(*payload.location)) return true;
+  }
+  return false;
+}
+
+// Q106: Vulkan allows one variable of these storage classes in the interface of a stage
+// (VUID-StandaloneSpirv-IncomingRayPayloadKHR-04700, VUID-StandaloneSpirv-IncomingCallableDataKHR-04706).
+void checkIncoming(const PipelineGraph& graph, StorageClass storage, std::string_view qualifier, Report& report) {
+  for (const PipelineStage& stage : graph.stages) {
+    if (!stage.facts) continue;
+    const spirv::SharedVariable* first = nullptr;
+    for (const spirv::SharedVariable& variable : stage.facts->variables()) {
+      if (variable.storage != storage || !variable.used) continue;
+      if (first)
+        report.add(
+            "Q106", graph.location(stage, variable.declaration),
+            fmt::format("'{}' is the second {} that this {} shader uses; the first one is '{}' (line {})",
+                        variable.name, qualifier, shader::stageName(stage.kind), first->name, first->declaration.line));
+      else
+        first = &variable;
+    }
+  }
+}
+
 // Q103: an outgoing payload in a shader that never traces with it.
 void checkQualifiers(const PipelineGraph& graph, Report& report) {
   for (const PipelineStage& stage : graph.stages) {
@@ -129,6 +176,8 @@ void checkQualifiers(const PipelineGraph& graph, Report& report) {
       const bool traced =
           std::ranges::any_of(stage.facts->traces(), [&](const auto& trace) { return trace.payload == variable.id; });
       if (variable.storage != StorageClass::RayPayloadKHR || !variable.used || traced) continue;
+      if (stage.facts->incoming(StorageClass::IncomingRayPayloadKHR) || hasRemovedTrace(*stage.facts, variable))
+        continue;
       report.add("Q103", graph.location(stage, variable.declaration),
                  fmt::format("'{}' is a rayPayloadEXT, but no trace of this {} shader uses it; declare the payload of "
                              "the incoming ray as rayPayloadInEXT",
@@ -144,6 +193,8 @@ void checkPayloadTypes(const CheckInput& input, Report& report) {
   checkPairs(input.graph, input.graph.traces, StorageClass::IncomingRayPayloadKHR,
              {"Q101", "Q102", "the payload of this trace", "trace"}, report);
   checkQualifiers(input.graph, report);
+  checkIncoming(input.graph, StorageClass::IncomingRayPayloadKHR, "rayPayloadInEXT", report);
+  checkIncoming(input.graph, StorageClass::IncomingCallableDataKHR, "callableDataInEXT", report);
 }
 
 void checkCallableTypes(const CheckInput& input, Report& report) {
