@@ -237,7 +237,7 @@ void addOptionalOutputs(CheckResult& result, const program::Program& program, co
 
 CheckResult checkWithOptionalOutputs(const program::Program& program, const shader::Compiler& compiler,
                                      const program::SceneFacts* scene, const DeviceLimits& limits) {
-  CheckResult result = checkOutputs(program, compiler, scene, limits, {});
+  CheckResult result = checkWithOutputs(program, compiler, scene, limits, {});
   addOptionalOutputs(result, program, compiler, scene, limits);
   suppress(result, program, true);
   return result;

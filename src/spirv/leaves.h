@@ -31,8 +31,6 @@ struct LeafRange {
 
 class Leaves {
  public:
-  using Path = std::vector<std::uint32_t>;  // from the outermost type inwards
-
   Leaves() = default;
   Leaves(const Types& types, Id type);
 

@@ -15,7 +15,6 @@ using spv::StorageClass;
 using Indices = std::vector<std::size_t>;
 constexpr std::size_t kNone = Module::kNone;
 constexpr std::size_t kMaxPath = 32;  // of an extracted part
-constexpr int kMaxSteps = 1024;       // of sourceOf()
 
 // Returns the GLSL qualifier of a storage class; empty if stages do not share it.
 std::string_view keywordOf(StorageClass storage) {
@@ -73,41 +72,6 @@ std::vector<std::uint32_t> shuffledFrom(const Module& module, const Instruction&
   return result;
 }
 
-// Follows a part of a composite into the operand that holds it. Returns false if no single operand does.
-bool enterConstruct(const Module& module, const Instruction& construct, ValuePart& part) {
-  if (part.path.empty()) return false;
-  const bool vector = module.types().get(construct.type).kind == Type::Kind::vector;
-  std::uint32_t index = part.path.front();
-  for (std::size_t i = 0; i < construct.operands.size(); ++i) {
-    const Instruction* operand = module.definition(construct.at(i));
-    const Type& type = module.types().get(operand ? operand->type : 0);
-    const bool several = vector && type.kind == Type::Kind::vector;
-    const std::uint32_t count = several ? type.count : 1;
-    if (index < count) {
-      part.id = construct.at(i);
-      part.path.erase(part.path.begin());
-      if (several) part.path.insert(part.path.begin(), index);
-      return true;
-    }
-    index -= count;
-  }
-  return false;
-}
-
-// As enterConstruct() for OpCompositeInsert.
-bool enterInsert(const Instruction& insert, ValuePart& part) {
-  const auto inserted = insert.operands.subspan(std::min<std::size_t>(2, insert.operands.size()));
-  const auto differ = std::ranges::mismatch(inserted, part.path);
-  if (differ.in1 == inserted.end()) {  // a part of the object
-    part.id = insert.at(0);
-    part.path.erase(part.path.begin(), part.path.begin() + static_cast<std::ptrdiff_t>(inserted.size()));
-    return true;
-  }
-  if (differ.in2 == part.path.end()) return false;  // partly of the object
-  part.id = insert.at(1);
-  return true;
-}
-
 bool hasEffect(Op op) {
   switch (op) {
     case Op::OpStore:
@@ -137,41 +101,6 @@ bool hasEffect(Op op) {
 }
 
 }  // namespace
-
-ValuePart sourceOf(const Module& module, ValuePart part) {
-  for (int steps = 0; steps < kMaxSteps; ++steps) {
-    const Instruction* value = module.definition(part.id);
-    if (!value) return part;
-    bool entered = false;
-    switch (value->op) {
-      case Op::OpCompositeConstruct:
-      case Op::OpConstantComposite: entered = enterConstruct(module, *value, part); break;
-      case Op::OpCompositeInsert: entered = enterInsert(*value, part); break;
-      case Op::OpCompositeExtract:
-        part.id = value->at(0);
-        part.path.insert(part.path.begin(), value->operands.begin() + 1, value->operands.end());
-        entered = true;
-        break;
-      case Op::OpVectorShuffle: {
-        const Instruction* vector = module.definition(value->at(0));
-        const std::uint32_t first = vector ? module.types().get(vector->type).count : 0;
-        if (part.path.size() != 1 || part.path[0] + 2 >= value->operands.size()) break;
-        const std::uint32_t component = value->operands[part.path[0] + 2];
-        part = {value->at(component < first ? 0 : 1), {component < first ? component : component - first}};
-        entered = true;
-        break;
-      }
-      case Op::OpCopyObject:
-      case Op::OpCopyLogical:
-        part.id = value->at(0);
-        entered = true;
-        break;
-      default: break;
-    }
-    if (!entered) return part;
-  }
-  return part;
-}
 
 bool ArgumentValues::mayHave(std::uint32_t bits) const {
   if (!known) return (~zeros & bits) != 0;
@@ -276,7 +205,7 @@ void StageFacts::addAccess(std::size_t index, Id pointer, bool reads, bool write
   const LeafRange range = leaves(shared->id).range(access.indices);
   const bool constant = std::ranges::all_of(access.indices, [](const auto& i) { return i.has_value(); });
   if (instruction.op == Op::OpLoad && constant) {
-    Leaves::Path path;
+    Path path;
     for (const auto& i : access.indices) path.push_back(*i);
     addLoad(index, shared->id, path, instruction.result);
   } else if (instruction.op == Op::OpStore && range.exact) {
@@ -289,7 +218,7 @@ void StageFacts::addAccess(std::size_t index, Id pointer, bool reads, bool write
 
 // Adds the parts that are extracted from a loaded value, and the whole value if it has any other use. What is only stored
 // to the variable again is left to addStore().
-void StageFacts::addLoad(std::size_t index, Id variable, const Leaves::Path& path, Id value) {
+void StageFacts::addLoad(std::size_t index, Id variable, const Path& path, Id value) {
   const LeafRange range = leaves(variable).range(path);
   const Type::Kind kind = module_.types().get(module_.definition(value) ? module_.definition(value)->type : 0).kind;
   const auto isUsed = [&](Id id) {
@@ -304,13 +233,13 @@ void StageFacts::addLoad(std::size_t index, Id variable, const Leaves::Path& pat
   for (const std::size_t user : module_.users(value)) {
     const Instruction& use = module_.instructions()[user];
     if (use.op == Op::OpCompositeExtract && use.operands.size() > 1) {
-      Leaves::Path part = path;
+      Path part = path;
       part.insert(part.end(), use.operands.begin() + 1, use.operands.end());
       addLoad(index, variable, part, use.result);
     } else if (use.op == Op::OpVectorShuffle && kind == Type::Kind::vector) {
       if (!isUsed(use.result)) continue;
       for (const std::uint32_t component : shuffledFrom(module_, use, value)) {
-        Leaves::Path part = path;
+        Path part = path;
         part.push_back(component);
         accesses_.push_back({index, variable, leaves(variable).range(part), use.result, true, false, true});
       }
@@ -361,18 +290,18 @@ void StageFacts::addStore(std::size_t index, Id variable, const Access& target, 
       accesses_.push_back({index, variable, {leaf, leaf + 1, true}, 0, false, true, false});
   };
   for (std::uint32_t leaf = range.first; leaf < range.last; ++leaf) {
-    const Leaves::Path& path = all.path(leaf);
+    const Path& path = all.path(leaf);
     if (path.size() < target.indices.size()) {  // a part of the leaf
       write(leaf);
       continue;
     }
-    const Leaves::Path rest(path.begin() + static_cast<std::ptrdiff_t>(target.indices.size()), path.end());
-    const ValuePart source = sourceOf(module_, {value, rest});
+    const Path rest(path.begin() + static_cast<std::ptrdiff_t>(target.indices.size()), path.end());
+    const ValuePart source = originOf(module_, {value, rest});
     const Instruction* load = module_.definition(source.id);
     const Access from = load && load->op == Op::OpLoad ? module_.access(load->at(0)) : Access{};
     const bool constant = std::ranges::all_of(from.indices, [](const auto& i) { return i.has_value(); });
     if (from.variable == variable && constant) {
-      Leaves::Path origin;
+      Path origin;
       for (const auto& i : from.indices) origin.push_back(*i);
       origin.insert(origin.end(), source.path.begin(), source.path.end());
       if (origin == path) continue;
@@ -385,10 +314,10 @@ void StageFacts::addStore(std::size_t index, Id variable, const Access& target, 
 ValuePart StageFacts::storedValue(const AccessFacts& write, std::uint32_t leaf) const {
   const Instruction& store = module_.instructions()[write.instruction];
   if (store.op != Op::OpStore || !write.leaves.exact || !write.leaves.covers(leaf)) return {};
-  const Leaves::Path& path = leaves(write.variable).path(leaf);
+  const Path& path = leaves(write.variable).path(leaf);
   const std::size_t depth = module_.access(store.at(0)).indices.size();
   if (depth > path.size()) return {store.at(1), {}};
-  return sourceOf(module_, {store.at(1), {path.begin() + static_cast<std::ptrdiff_t>(depth), path.end()}});
+  return originOf(module_, {store.at(1), {path.begin() + static_cast<std::ptrdiff_t>(depth), path.end()}});
 }
 
 const SharedVariable* StageFacts::incoming(spv::StorageClass storage) const {

@@ -12,6 +12,7 @@
 #include "spirv/control_flow.h"
 #include "spirv/leaves.h"
 #include "spirv/module.h"
+#include "spirv/value_part.h"
 #include "spirv/value_range.h"
 
 namespace quintet::spirv {
@@ -66,15 +67,6 @@ struct AccessFacts {
   bool writes = false;
   bool separateParts = false;  // of a read: extracted parts of `value`, and stores to the variable, are other accesses
 };
-
-// A constituent of a value: the part of `id` with this path.
-struct ValuePart {
-  Id id = 0;
-  Leaves::Path path;
-};
-
-// Follows a part of a value through instructions that compose and extract, to the instruction that makes it.
-ValuePart sourceOf(const Module& module, ValuePart part);
 
 struct BuiltInRead {
   spv::BuiltIn builtIn = spv::BuiltIn::Max;
@@ -153,7 +145,7 @@ class StageFacts {
  private:
   void readInstruction(std::size_t index);
   void addAccess(std::size_t index, Id pointer, bool reads, bool writes);
-  void addLoad(std::size_t index, Id variable, const Leaves::Path& path, Id value);
+  void addLoad(std::size_t index, Id variable, const Path& path, Id value);
   void addStore(std::size_t index, Id variable, const Access& target, LeafRange range, Id value);
   bool onlyStoredTo(Id variable, const Instruction& use) const;
   void markUsed();

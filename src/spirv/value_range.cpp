@@ -525,58 +525,6 @@ bool ValueRange::contains(double value) const {
   return value >= min && value <= max;
 }
 
-ValuePart originOf(const Module& module, Id id, Path path) {
-  const auto typeOf = [&](Id part) -> const Type& {
-    const Instruction* value = module.definition(part);
-    return module.types().get(value ? value->type : 0);
-  };
-  for (int step = 0; step < 64; ++step) {
-    const Instruction* value = module.definition(id);
-    if (!value) break;
-    const auto& operands = value->operands;
-    if (value->op == Op::OpCopyObject || value->op == Op::OpCopyLogical) {
-      id = value->at(0);
-    } else if (value->op == Op::OpCompositeExtract && !operands.empty()) {
-      path.insert(path.begin(), operands.begin() + 1, operands.end());
-      id = value->at(0);
-    } else if ((value->op == Op::OpCompositeConstruct || value->op == Op::OpConstantComposite ||
-                value->op == Op::OpSpecConstantComposite) &&
-               !path.empty()) {
-      std::uint32_t index = path.front();
-      std::size_t part = 0;
-      const bool vector = module.types().get(value->type).kind == Kind::vector;
-      Path inside;
-      for (; vector && part < operands.size(); ++part) {
-        const Type& type = typeOf(operands[part]);
-        const std::uint32_t count = type.kind == Kind::vector ? type.count : 1;
-        if (index < count) {
-          if (type.kind == Kind::vector) inside = {index};
-          break;
-        }
-        index -= count;
-      }
-      if (!vector) part = index;
-      if (part >= operands.size()) break;
-      id = operands[part];
-      path.erase(path.begin());
-      path.insert(path.begin(), inside.begin(), inside.end());
-    } else if (value->op == Op::OpVectorShuffle && path.size() == 1 && path[0] + 2 < operands.size()) {
-      const std::uint32_t index = operands[path[0] + 2], count = typeOf(value->at(0)).count;
-      if (index == 0xFFFFFFFFu) break;
-      id = index < count ? value->at(0) : value->at(1);
-      path = {index < count ? index : index - count};
-    } else if (value->op == Op::OpCompositeInsert && operands.size() >= 2 && path.size() >= operands.size() - 2) {
-      const auto at = operands.subspan(2);
-      const bool inside = std::equal(at.begin(), at.end(), path.begin());
-      id = inside ? value->at(0) : value->at(1);
-      if (inside) path.erase(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(at.size()));
-    } else {
-      break;
-    }
-  }
-  return {id, std::move(path)};
-}
-
 std::optional<BufferMember> bufferMember(const Module& module, const Instruction& access, const Path& path) {
   if (access.op != Op::OpLoad && access.op != Op::OpStore) return {};
   const Chain chain = chainOf(module, access.at(0));
@@ -657,7 +605,7 @@ struct ValueRanges::Impl {
     return module.types().get(value ? typeAt(module, value->type, path) : 0);
   }
 
-  Key canonical(Id id, Path path) const { return originOf(module, id, std::move(path)); }
+  Key canonical(Id id, Path path) const { return originOf(module, {id, std::move(path)}); }
   ValueRange evaluate(Evaluator& in, Id id, const Path& path);
   ValueRange compute(Evaluator& in, Id id, const Path& path);
   ValueRange constantRange(const Instruction& value, const Type& type) const;
@@ -685,10 +633,10 @@ struct ValueRanges::Impl {
 ValueRange ValueRanges::Impl::evaluate(Evaluator& in, Id id, const Path& given) {
   const Key key = canonical(id, given);
   if (const auto found = in.memo.find(key); found != in.memo.end()) return found->second;
-  const Type& type = typeOf(key.first, key.second);
+  const Type& type = typeOf(key.id, key.path);
   if (depth >= kMaxDepth || !in.open.insert(key).second) return rangeOf(type);
   ++depth;
-  ValueRange result = compute(in, key.first, key.second);
+  ValueRange result = compute(in, key.id, key.path);
   --depth;
   in.open.erase(key);
   if (const auto found = in.limits.find(key); found != in.limits.end())
@@ -800,7 +748,7 @@ ValueRange ValueRanges::Impl::sum(Evaluator& in, std::span<const std::uint32_t> 
   ValueRange result = binary(type, Op::OpIAdd, a, b);
   const auto isUniform = [&](Id value) {
     const Key key = canonical(value, path);
-    const Instruction* load = module.definition(key.first);
+    const Instruction* load = module.definition(key.id);
     const Chain chain = load && load->op == Op::OpLoad ? chainOf(module, load->at(0)) : Chain{};
     const Variable* variable = module.variable(chain.base);
     return variable && variable->storage == spv::StorageClass::PushConstant;
@@ -1097,12 +1045,12 @@ void ValueRanges::Impl::addLimit(Evaluator& in, Id value, const Path& path, doub
     Limits& limits = in.limits[key];
     limits.min = std::max(limits.min, min), limits.max = std::min(limits.max, max);
     // The same bits as the other type of integer.
-    const Instruction* definition = module.definition(key.first);
+    const Instruction* definition = module.definition(key.id);
     if (!definition || definition->op != Op::OpBitcast) return;
-    const Type& type = typeOf(key.first, key.second);
-    const ValueRange known = evaluate(base, key.first, key.second);
+    const Type& type = typeOf(key.id, key.path);
+    const ValueRange known = evaluate(base, key.id, key.path);
     min = std::max(limits.min, known.min), max = std::min(limits.max, known.max);
-    if (!isInteger(type) || !isInteger(typeOf(definition->at(0), key.second)) || min < 0.0 || max > 2147483647.0) return;
+    if (!isInteger(type) || !isInteger(typeOf(definition->at(0), key.path)) || min < 0.0 || max > 2147483647.0) return;
     value = definition->at(0);
   }
 }
@@ -1217,7 +1165,7 @@ std::optional<CountedLoop> ValueRanges::Impl::findLoop(const Instruction& phi) {
   if (entry == kNone || function.blocks[loop.header].predecessors.size() != 2) return {};
   const Id next = phi.at(2 * (1 - entry));
   const Key nextKey = canonical(next, {}), phiKey{phi.result, {}};
-  const Instruction* advance = module.definition(nextKey.first);
+  const Instruction* advance = module.definition(nextKey.id);
   if (!advance || (advance->op != Op::OpIAdd && advance->op != Op::OpISub)) return {};
   const bool swapped = advance->op == Op::OpIAdd && canonical(advance->at(1), {}) == phiKey;
   if (!swapped && canonical(advance->at(0), {}) != phiKey) return {};

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "spirv/control_flow.h"
+#include "spirv/value_part.h"
 
 namespace quintet::spirv {
 
@@ -47,13 +48,6 @@ struct ValueRange {
   std::optional<double> atLeast(double count) const;
   bool contains(double value) const;
 };
-
-// Literal indices into a composite, from the outermost type inwards. Empty for a scalar.
-using Path = std::vector<std::uint32_t>;
-
-using ValuePart = std::pair<Id, Path>;
-// Follows copies and composites to the value of a part.
-ValuePart originOf(const Module& module, Id value, Path path = {});
 
 // What is known about values from outside of the module.
 struct ValueContext {

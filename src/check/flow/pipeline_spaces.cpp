@@ -55,7 +55,7 @@ bool usesOf(const spirv::Module& module, Id value, std::initializer_list<unsigne
 struct PipelineSpaces::Search {
   ValueUses uses;
   std::vector<Open> open;
-  std::set<std::tuple<std::size_t, Id, Path>> seen;
+  std::set<std::tuple<std::size_t, Id, spirv::Path>> seen;
 
   void push(Open next) {
     if (next.depth > kMaxDepth || seen.size() > kMaxValues) return;
@@ -208,8 +208,8 @@ void PipelineSpaces::visitDot(const Open& open, const spirv::Instruction& dot, S
 void PipelineSpaces::visitStore(const Open& open, const spirv::Instruction& store, Search& search) const {
   const SpaceTags& tags = *stages_[open.stage];
   const PointerPath target = resolvePointer(tags.module(), store.at(0));
-  Path path;
-  for (const auto& index : target.path) path.push_back(index.value_or(spirv::kWholeValue));
+  spirv::Path path;
+  for (const auto& index : target.path) path.push_back(index.value_or(kAnyIndex));
   path.insert(path.end(), open.inner.begin(), open.inner.end());
   bool followed = false;
   for (const Shared& other : linked({open.stage, target.base})) {
@@ -219,10 +219,10 @@ void PipelineSpaces::visitStore(const Open& open, const spirv::Instruction& stor
       bool overlaps = true;
       const std::size_t common = std::min(from.path.size(), path.size());
       for (std::size_t k = 0; k < common; ++k)
-        overlaps = overlaps && (!from.path[k] || path[k] == spirv::kWholeValue || *from.path[k] == path[k]);
+        overlaps = overlaps && (!from.path[k] || path[k] == kAnyIndex || *from.path[k] == path[k]);
       if (!overlaps) continue;
       followed = true;
-      Path inner(path.begin() + static_cast<std::ptrdiff_t>(common), path.end());
+      spirv::Path inner(path.begin() + static_cast<std::ptrdiff_t>(common), path.end());
       search.push({other.first, module.instructions()[load].result, std::move(inner), open.scaled, open.direct,
                    open.depth + 1});
     }
@@ -276,7 +276,7 @@ void PipelineSpaces::visit(const Open& open, std::size_t user, Search& search) c
       return;
     case Op::OpFNegate: return follow();
     case Op::OpCompositeConstruct: {
-      Path inner = open.inner;
+      spirv::Path inner = open.inner;
       const auto kind = module.types().get(i.type).kind;
       const auto at = static_cast<std::uint32_t>(std::ranges::find(i.operands, open.id) - i.operands.begin());
       if (kind == spirv::Type::Kind::structure || kind == spirv::Type::Kind::array) inner.insert(inner.begin(), at);
@@ -288,13 +288,13 @@ void PipelineSpaces::visit(const Open& open, std::size_t user, Search& search) c
       const auto path = i.operands.subspan(1);
       const std::size_t common = std::min(path.size(), open.inner.size());
       for (std::size_t k = 0; k < common; ++k)
-        if (open.inner[k] != path[k] && open.inner[k] != spirv::kWholeValue) return;
-      Path inner(open.inner.begin() + static_cast<std::ptrdiff_t>(common), open.inner.end());
+        if (open.inner[k] != path[k] && open.inner[k] != kAnyIndex) return;
+      spirv::Path inner(open.inner.begin() + static_cast<std::ptrdiff_t>(common), open.inner.end());
       search.push({open.stage, i.result, std::move(inner), open.scaled, open.direct, open.depth + 1});
       return;
     }
     case Op::OpCompositeInsert: {
-      Path inner = open.inner;
+      spirv::Path inner = open.inner;
       if (i.at(0) == open.id) inner.insert(inner.begin(), i.operands.begin() + 2, i.operands.end());
       const spirv::Type& type = module.types().get(i.type);
       if (type.kind == spirv::Type::Kind::vector || type.kind == spirv::Type::Kind::matrix) return;

@@ -44,11 +44,10 @@ class PipelineSpaces {
   std::vector<Shared> linked(const Shared& shared) const;
 
  private:
-  using Path = std::vector<std::uint32_t>;
   struct Open {
     std::size_t stage;
     spirv::Id id;
-    Path inner;  // where the value is in `id`, if that is a structure
+    spirv::Path inner;  // where the value is in `id`, if that is a structure
     bool scaled = false;
     bool direct = true;  // the value itself, up to scale
     int depth = 0;

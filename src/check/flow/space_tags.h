@@ -18,6 +18,8 @@ namespace quintet::check {
 
 using SpaceLeaves = std::vector<SpaceTag>;
 
+constexpr std::uint32_t kAnyIndex = ~0u;  // in a path: the index is unknown
+
 // A pointer resolved to its base and the path into what the base points to.
 struct PointerPath {
   spirv::Id base = 0;  // variable, or the pointer of a buffer reference

@@ -140,7 +140,7 @@ class ColorEncoding {
     const PointerPath pointer = resolvePointer(module, i.at(0));
     if (!spirv::isLocal(module, pointer.base) && !graph_.stages[open.stage].facts->variable(pointer.base)) return;
     Path wanted;
-    for (const auto& index : pointer.path) wanted.push_back(index.value_or(spirv::kWholeValue));
+    for (const auto& index : pointer.path) wanted.push_back(index.value_or(kAnyIndex));
     wanted.insert(wanted.end(), open.path.begin(), open.path.end());
     for (const auto& [stage, variable] : spaces_.linked({open.stage, pointer.base})) {
       const spirv::Module& writer = graph_.stages[stage].facts->module();
@@ -151,7 +151,7 @@ class ColorEncoding {
         const std::size_t common = std::min(wanted.size(), target.path.size());
         bool overlaps = true;
         for (std::size_t k = 0; k < common; ++k)
-          overlaps = overlaps && (!target.path[k] || wanted[k] == spirv::kWholeValue || *target.path[k] == wanted[k]);
+          overlaps = overlaps && (!target.path[k] || wanted[k] == kAnyIndex || *target.path[k] == wanted[k]);
         if (overlaps) open_.push_back({stage, store.at(1), Path(wanted.begin() + static_cast<std::ptrdiff_t>(common), wanted.end())});
       }
     }

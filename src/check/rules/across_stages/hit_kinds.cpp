@@ -29,7 +29,7 @@ bool onlyProcedural(const PipelineGraph& graph, const std::string& file) {
 }
 
 bool isHitKind(const spirv::Module& module, spirv::Id value) {
-  const spirv::Instruction* load = module.definition(spirv::originOf(module, value).first);
+  const spirv::Instruction* load = module.definition(spirv::originOf(module, {value}).id);
   return load && spirv::loadsBuiltIn(module, *load, spv::BuiltIn::HitKindKHR);
 }
 

@@ -167,20 +167,16 @@ class RayRule {
     });
   }
 
-  // Returns the line where the stage stores a value that depends on the hit to the member of its payload; 0 if none.
-  static int lineOfHitStore(const spirv::StageFacts& facts, std::uint32_t member) {
+  // Returns the line where the stage stores a value that depends on the hit to the leaf of its payload; 0 if none.
+  static int lineOfHitStore(const spirv::StageFacts& facts, std::uint32_t leaf) {
     const spirv::SharedVariable* payload = facts.incoming(spv::StorageClass::IncomingRayPayloadKHR);
     const spirv::Module& module = facts.module();
     for (const spirv::AccessFacts& a : facts.accesses()) {
-      if (!payload || !a.writes || a.variable != payload->id || a.member != member) continue;
-      const spirv::Instruction& store = module.instructions()[a.instruction];
-      if (store.op != Op::OpStore) continue;
+      if (!payload || !a.writes || a.variable != payload->id || !a.leaves.covers(leaf)) continue;
       const auto position = module.position(a.instruction);
-      const spirv::Instruction* made = module.definition(store.at(1));
-      const bool whole = module.access(store.at(0)).indices.empty() && made && made->op == Op::OpCompositeConstruct;
-      const spirv::Id value = whole && member < made->operands.size() ? made->at(member) : store.at(1);
-      if (position && dependsOnHit(module, facts.flow(position->function), value))
-        return std::max(1, module.location(store).line);
+      const spirv::Id value = facts.storedValue(a, leaf).id;
+      if (position && value != 0 && dependsOnHit(module, facts.flow(position->function), value))
+        return std::max(1, module.location(module.instructions()[a.instruction]).line);
     }
     return 0;
   }
@@ -201,15 +197,15 @@ class RayRule {
     const spirv::StageFacts& tracer = graph_.facts(site);
     const spirv::SharedVariable* payload = tracer.variable(trace.payload);
     if (!payload || payload->storage != spv::StorageClass::RayPayloadKHR) return;
-    for (std::uint32_t member = 0; member < tracer.memberCount(payload->id); ++member) {
-      const std::vector<std::size_t> reads = tracer.readsAfter(trace, member);
+    for (std::uint32_t leaf = 0; leaf < tracer.leaves(payload->id).count(); ++leaf) {
+      const std::vector<std::size_t> reads = tracer.readsAfter(trace.instruction, payload->id, leaf);
       const bool used = std::ranges::any_of(reads, [&](std::size_t read) {
         return !onlyCompared(tracer.module(), tracer.accesses()[read].value);
       });
       if (!used) continue;
       for (const Edge& edge : site.edges) {
         if (edge.role != Role::closestHit || !edge.exact) continue;
-        const int line = lineOfHitStore(graph_.facts(edge), member);
+        const int line = lineOfHitStore(graph_.facts(edge), leaf);
         if (line == 0) continue;
         report_.add("Q512", location_,
                     fmt::format("this trace ends at the first hit that is found, which need not be the closest one, but "

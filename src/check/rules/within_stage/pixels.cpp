@@ -46,11 +46,11 @@ struct Coordinate {
 };
 
 std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Path given, int depth = 0) {
-  const auto [id, path] = spirv::originOf(module, value, std::move(given));
+  const auto [id, path] = spirv::originOf(module, {value, std::move(given)});
   const spirv::Instruction* i = module.definition(id);
   if (!i || depth > kMaxDepth) return {};
-  const auto operand = [&](std::size_t k) { return module.definition(spirv::originOf(module, i->at(k), path).first); };
-  const auto partOf = [&](std::size_t k) { return spirv::originOf(module, i->at(k), path).second; };
+  const auto operand = [&](std::size_t k) { return module.definition(spirv::originOf(module, {i->at(k), path}).id); };
+  const auto partOf = [&](std::size_t k) { return spirv::originOf(module, {i->at(k), path}).path; };
   switch (i->op) {
     case Op::OpLoad: {
       const auto axis = componentOf(module, *i, path, spv::BuiltIn::LaunchIdKHR);
@@ -70,7 +70,7 @@ std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Pa
       const auto found = coordinateOf(module, i->at(1), path, depth + 1);
       const spirv::Instruction* top = operand(0);
       if (!found || found->axis != 1 || !top || (top->op != Op::OpISub && top->op != Op::OpIAdd)) return {};
-      const spirv::Instruction* height = module.definition(spirv::originOf(module, top->at(0), partOf(0)).first);
+      const spirv::Instruction* height = module.definition(spirv::originOf(module, {top->at(0), partOf(0)}).id);
       return height && isMember(module, *height, {}, "Frame", "height") ? found : std::nullopt;
     }
     case Op::OpPhi:
@@ -96,7 +96,7 @@ struct Parts {
 
 void addParts(const spirv::Module& module, const spirv::ValueRanges& ranges, Id value, Path given, Parts& parts,
               double factor = 1.0, int depth = 0) {
-  const auto [id, path] = spirv::originOf(module, value, std::move(given));
+  const auto [id, path] = spirv::originOf(module, {value, std::move(given)});
   const spirv::Instruction* i = module.definition(id);
   if (!i || depth > kMaxDepth) return;
   const auto follow = [&](std::size_t k, double by = 1.0, int deeper = 1) {
@@ -140,13 +140,13 @@ void addParts(const spirv::Module& module, const spirv::ValueRanges& ranges, Id 
 
 // A value without `- frame.filmOffset`.
 spirv::ValuePart withoutFilmOffset(const spirv::Module& module, Id value, Path path) {
-  const spirv::ValuePart part = spirv::originOf(module, value, std::move(path));
-  const spirv::Instruction* i = module.definition(part.first);
+  const spirv::ValuePart part = spirv::originOf(module, {value, std::move(path)});
+  const spirv::Instruction* i = module.definition(part.id);
   if (!i || i->op != Op::OpISub) return part;
-  const spirv::ValuePart subtracted = spirv::originOf(module, i->at(1), part.second);
-  const spirv::Instruction* offset = module.definition(subtracted.first);
-  if (!offset || !isMember(module, *offset, subtracted.second, "Frame", "filmOffset")) return part;
-  return spirv::originOf(module, i->at(0), part.second);
+  const spirv::ValuePart subtracted = spirv::originOf(module, {i->at(1), part.path});
+  const spirv::Instruction* offset = module.definition(subtracted.id);
+  if (!offset || !isMember(module, *offset, subtracted.path, "Frame", "filmOffset")) return part;
+  return spirv::originOf(module, {i->at(0), part.path});
 }
 
 // The coordinates of a stored pixel.
@@ -161,15 +161,15 @@ std::optional<Target> outputTarget(const spirv::Module& module, const spirv::Ins
     return {};
   const auto member = spirv::bufferMember(module, store);
   if (!member || (member->structure != "OutputArray" && member->structure != "gsnOutputArray_")) return {};
-  const spirv::Instruction* sum = module.definition(spirv::originOf(module, chain->at(2)).first);
+  const spirv::Instruction* sum = module.definition(spirv::originOf(module, {chain->at(2)}).id);
   if (!sum || sum->op != Op::OpIAdd) return {};
   for (const std::size_t k : {0u, 1u}) {
-    const spirv::Instruction* row = module.definition(spirv::originOf(module, sum->at(k)).first);
+    const spirv::Instruction* row = module.definition(spirv::originOf(module, {sum->at(k)}).id);
     if (!row || row->op != Op::OpIMul) continue;
     for (const std::size_t f : {0u, 1u}) {
-      const spirv::ValuePart factor = spirv::originOf(module, row->at(f));
-      const spirv::Instruction* width = module.definition(factor.first);
-      if (width && isMember(module, *width, factor.second, "Frame", "filmWidth"))
+      const spirv::ValuePart factor = spirv::originOf(module, {row->at(f)});
+      const spirv::Instruction* width = module.definition(factor.id);
+      if (width && isMember(module, *width, factor.path, "Frame", "filmWidth"))
         return Target{withoutFilmOffset(module, sum->at(1 - k), {}), withoutFilmOffset(module, row->at(1 - f), {})};
     }
   }
@@ -179,7 +179,7 @@ std::optional<Target> outputTarget(const spirv::Module& module, const spirv::Ins
 std::optional<Target> targetOf(const spirv::Module& module, const spirv::Instruction& i) {
   if (i.op == Op::OpStore) return outputTarget(module, i);
   if (i.op != Op::OpImageWrite) return {};
-  return Target{spirv::originOf(module, i.at(1), {0}), spirv::originOf(module, i.at(1), {1})};
+  return Target{spirv::originOf(module, {i.at(1), {0}}), spirv::originOf(module, {i.at(1), {1}})};
 }
 
 // True if a condition on the launch id decides whether the instruction runs.
@@ -215,16 +215,16 @@ SourceLocation locationOf(const spirv::Module& module, const spirv::Instruction&
 void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, std::size_t instruction,
                  const Target& target, Report& report) {
   Parts x, y;
-  addParts(module, ranges, target.x.first, target.x.second, x);
-  addParts(module, ranges, target.y.first, target.y.second, y);
+  addParts(module, ranges, target.x.id, target.x.path, x);
+  addParts(module, ranges, target.y.id, target.y.path, y);
   const SourceLocation location = locationOf(module, module.instructions()[instruction]);
   if (!x.x && x.y && y.x && !y.y)
     return report.addOncePerLine("Q713", location,
                                  "the result is stored at the transposed pixel: x comes from gl_LaunchIDEXT.y and y from "
                                  "gl_LaunchIDEXT.x");
   if (guardedByLaunch(module, ranges, instruction)) return;
-  const std::optional<double> column = ranges.range(target.x.first, target.x.second).constant();
-  const std::optional<double> row = ranges.range(target.y.first, target.y.second).constant();
+  const std::optional<double> column = ranges.range(target.x.id, target.x.path).constant();
+  const std::optional<double> row = ranges.range(target.y.id, target.y.path).constant();
   if (column && row)
     return report.addOncePerLine(
         "Q713", location, fmt::format("all invocations store their result at the same pixel ({}, {})", *column, *row));
@@ -243,7 +243,7 @@ void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, 
 
 // True if the divisor is the size along the axis of the coordinate, which is larger.
 bool isSizeOf(const spirv::Module& module, Id value, const Path& given, const Coordinate& coordinate) {
-  const auto [id, path] = spirv::originOf(module, value, given);
+  const auto [id, path] = spirv::originOf(module, {value, given});
   const spirv::Instruction* i = module.definition(id);
   if (!i) return false;
   if (i->op == Op::OpBitcast) return isSizeOf(module, i->at(0), path, coordinate);
