@@ -31,4 +31,5 @@ void main() { /**** CLOSEST-HIT SHADER ****/
 
 void main() { /**** MISS SHADER ****/
   payload.radiance = vec3(0.6, 0.7, 0.9);
+  payload.throughput = vec3(1.0);
 }
