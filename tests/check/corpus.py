@@ -86,15 +86,17 @@ def scene_of(facts):
                 mode = '\nbase_color = [0.8, 0.8, 0.8, 0.4]\nalpha_mode = "mask"' if geometry.get("alpha") else ""
                 text.append(f'[[material]]\nname = "{name}"{mode}')
     # Instances with the same geometries share an acceleration structure.
+    names = [geometry.get("name") or f"geometry{index}" for index, geometry in enumerate(geometries)]
     objects = {}
     for instance in facts.get("instance", []):
-        key = (instance.get("first", 0), instance.get("count", 1))
-        objects.setdefault(key, f"object{key[0]}")
+        first, count = instance.get("first", 0), instance.get("count", 1)
+        objects.setdefault((first, count), names[first] if count == 1 else f"object{first}")
     for (first, count), name in objects.items():
         for index in range(first, first + count):
             geometry = geometries[index]
-            lines = [SHAPES[geometry["kind"]], f'name = "{geometry.get("name") or f"geometry{index}"}"']
-            lines.append(f'object = "{name}"')
+            lines = [SHAPES[geometry["kind"]], f'name = "{names[index]}"']
+            if count > 1:
+                lines.append(f'object = "{name}"')
             if geometry.get("alpha") or geometry.get("material"):
                 lines.append(f'material = "{geometry.get("material") or f"material{index}"}"')
             text.append("\n".join(lines))

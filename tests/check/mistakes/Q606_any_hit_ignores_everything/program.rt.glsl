@@ -13,8 +13,8 @@ void main() { /**** RAY GENERATION SHADER ****/
 void main() { /**** ANY-HIT SHADER ****/
   // Cuts holes into the surface.
   float u = fract(10.0 * baryCoord.x);
-  if (u > 0.0) ignoreIntersectionEXT;
-  ignoreIntersectionEXT;  // EXPECT Q606
+  if (u > 0.0) ignoreIntersectionEXT;  // EXPECT Q606
+  ignoreIntersectionEXT;
 }
 
 void main() { /**** CLOSEST-HIT SHADER ****/

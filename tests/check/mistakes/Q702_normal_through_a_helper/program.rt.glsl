@@ -1,7 +1,7 @@
 /**** COMMON START ****/
 struct RayPayloadType { vec3 color; };
 
-vec3 worldVector(vec3 v) { return normalize(gl_ObjectToWorldEXT * vec4(v, 0.0)); }
+vec3 worldVector(vec3 v) { return normalize(gl_ObjectToWorldEXT * vec4(v, 0.0)); }  // EXPECT Q702
 /**** COMMON END ****/
 
 void main() { /**** RAY GENERATION SHADER ****/
@@ -14,7 +14,7 @@ void main() { /**** CLOSEST-HIT SHADER ****/
   vec3 a, b, c;
   gsnGetNormals(gl_InstanceID, gl_PrimitiveID, a, b, c);
   vec3 x = (1.0 - baryCoord.x - baryCoord.y) * a + baryCoord.x * b + baryCoord.y * c;
-  vec3 y = worldVector(x);  // EXPECT Q702
+  vec3 y = worldVector(x);
   payload.color = vec3(0.1) + 0.9 * max(dot(y, vec3(0.0, 0.8, 0.6)), 0.0);
 }
 

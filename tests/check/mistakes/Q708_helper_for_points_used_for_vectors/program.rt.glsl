@@ -1,6 +1,6 @@
 /**** COMMON START ****/
 struct RayPayloadType { vec3 color; };
-vec3 toWorld(vec3 p) { return gl_ObjectToWorldEXT * vec4(p, 1.0); }
+vec3 toWorld(vec3 p) { return gl_ObjectToWorldEXT * vec4(p, 1.0); }  // EXPECT Q708
 /**** COMMON END ****/
 
 void main() { /**** RAY GENERATION SHADER ****/
@@ -12,7 +12,7 @@ void main() { /**** RAY GENERATION SHADER ****/
 void main() { /**** CLOSEST-HIT SHADER ****/
   vec3 p[3];
   gsnGetPositions(gl_InstanceID, gl_PrimitiveID, p[0], p[1], p[2]);
-  vec3 e1 = toWorld(p[1] - p[0]);  // EXPECT Q708
+  vec3 e1 = toWorld(p[1] - p[0]);
   vec3 e2 = toWorld(p[2] - p[0]);
   payload.color = 0.5 + 0.5 * normalize(cross(e1, e2));
 }

@@ -15,7 +15,7 @@ void main() { /**** INTERSECTION SHADER ****/
   vec3 ro = gl_WorldRayOriginEXT;
   vec3 rd = gl_WorldRayDirectionEXT;
   vec3 t0 = (mn - ro) / rd;  // EXPECT Q709
-  vec3 t1 = (mx - ro) / rd;
+  vec3 t1 = (mx - ro) / rd;  // EXPECT Q709
   vec3 lo = min(t0, t1), hi = max(t0, t1);
   float enter = max(lo.x, max(lo.y, lo.z)), leave = min(hi.x, min(hi.y, hi.z));
   if (enter > leave) return;

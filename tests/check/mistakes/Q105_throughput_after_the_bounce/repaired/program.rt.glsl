@@ -21,14 +21,14 @@ void main() { /**** CLOSEST-HIT SHADER ****/
   payload.throughput = gl_HitTEXT * albedo;
   vec3 mine = payload.throughput;
   payload.radiance = vec3(0.0);
-  if (payload.depth < 2) {
-    payload.depth++;
-    vec3 p = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;
-    traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, p, 0.001, reflect(gl_WorldRayDirectionEXT, vec3(0, 1, 0)), 1e3, 0);
-  }
+  if (payload.depth >= 2) return;
+  payload.depth++;
+  vec3 p = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;
+  traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, p, 0.001, reflect(gl_WorldRayDirectionEXT, vec3(0, 1, 0)), 1e3, 0);
   payload.radiance = emitted + mine * payload.radiance;
 }
 
 void main() { /**** MISS SHADER ****/
   payload.radiance = vec3(0.6, 0.7, 0.9);
+  payload.throughput = vec3(1.0);
 }

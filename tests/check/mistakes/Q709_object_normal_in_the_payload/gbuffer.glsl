@@ -1,0 +1,1 @@
+struct GBuffer { vec3 position; vec3 normal; bool valid; };
