@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts the depth of nested traces and skips those for which the pipeline has no stack. program::instrumentStage inserts
 // this file before each stage that can trace, if the traces of the program form a cycle, and defines
-// QUINTET_RECURSION_START in the ray generation shader. A macro replaces traceRayEXT.
+// QUINTET_RECURSION_START in the ray generation shader. job::countRecursion defines QUINTET_RECURSION_DEPTH. A macro replaces
+// traceRayEXT.
 #ifndef QUINTET_RECURSION_GLSL
 #define QUINTET_RECURSION_GLSL
 
@@ -14,8 +15,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RecursionRef
 };
 
 uint recursionSlot_() {
-  const uint row = gl_LaunchIDEXT.y + launch.offset.y - (launch.tiles == 0ul ? frame.filmOffset.y : 0u);
-  return row * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x;
+  return (gl_LaunchIDEXT.y + launch.offset.y) * gl_LaunchSizeEXT.x + gl_LaunchIDEXT.x;
 }
 
 // Returns false if the trace must not run. `above` becomes the number of traces around it.
@@ -25,7 +25,7 @@ bool recursionEnter_(out uint above) {
   above = 0u;
 #else
   above = recursion.depth[recursionSlot_()];
-  if (above >= recursion.guard.depthLimit) {
+  if (above >= QUINTET_RECURSION_DEPTH) {
     atomicAdd(recursion.guard.cutCount, 1u);
     return false;
   }

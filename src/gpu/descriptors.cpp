@@ -148,4 +148,18 @@ void BindlessSet::setTexture(std::uint32_t index, const Image& image, const Samp
   context_.vk().vkUpdateDescriptorSets(context_.device(), 1, &write, 0, nullptr);
 }
 
+void BindlessSet::fillTextures(std::uint32_t first, const Image& image, const Sampler& sampler) {
+  if (first >= textureCount_) return;
+  const std::vector<VkDescriptorImageInfo> textures(
+      textureCount_ - first, {sampler.handle(), image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+  VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+  write.dstSet = set_;
+  write.dstBinding = shared::kBindingTextures;
+  write.dstArrayElement = first;
+  write.descriptorCount = static_cast<std::uint32_t>(textures.size());
+  write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  write.pImageInfo = textures.data();
+  context_.vk().vkUpdateDescriptorSets(context_.device(), 1, &write, 0, nullptr);
+}
+
 }  // namespace quintet::gpu

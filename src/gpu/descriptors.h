@@ -30,6 +30,8 @@ class BindlessSet {
   // Pending work must not use the set.
   void setAccelerationStructure(VkAccelerationStructureKHR structure);
   void setTexture(std::uint32_t index, const Image& image, const Sampler& sampler);
+  // Sets all textures from `first` on.
+  void fillTextures(std::uint32_t first, const Image& image, const Sampler& sampler);
 
  private:
   void release();

@@ -23,8 +23,10 @@ CheckedProgram checkCompiled(program::Program description, program::CompiledProg
 void countRecursion(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines) {
   if (!checked.cyclic) return;
   program::RunnableProgram& runnable = checked.runnable;
+  render::Defines limited = defines;
+  limited.emplace_back("QUINTET_RECURSION_DEPTH", fmt::format("{}u", runnable.recursionDepth));
   program::CompiledProgram counting =
-      program::compile(runnable.description, compiler, defines, program::Instrumentation::recursion);
+      program::compile(runnable.description, compiler, limited, program::Instrumentation::recursion);
   if (!counting.ok) throw ProgramError(std::move(counting.diagnostics));
   counting.seconds += runnable.compiled.seconds;
   runnable.compiled = std::move(counting);

@@ -49,10 +49,9 @@ QT_SHARED_SIZE(Instrument, 132);
 
 // The depth of the nested traces of each invocation follows.
 struct RecursionGuard {
-  uint cutCount;       // traces that were not executed
-  uint depthLimit;     // in: recursion depth of the pipeline
+  uint cutCount;  // traces that were not executed
 };
-QT_SHARED_SIZE(RecursionGuard, 8);
+QT_SHARED_SIZE(RecursionGuard, 4);
 
 struct InstrumentPixel {
   uint depth;      // nesting depth of active traces

@@ -154,14 +154,14 @@ InstrumentData InstrumentBuffer::download() const {
   return data;
 }
 
-// Invocations of a launch: the pixels of the film, or those of its tiles. Ray generation shaders set the depth before they
+// Invocations of a launch: the rows of the image up to the end of the film, or the pixels of its tiles. Ray generation shaders set the depth before they
 // trace, so only the header is initialized.
-RecursionBuffer::RecursionBuffer(gpu::Context& context, const Region& region, std::uint32_t depthLimit) {
-  const std::uint64_t invocations = std::max(std::uint64_t{region.width} * region.height,
+RecursionBuffer::RecursionBuffer(gpu::Context& context, const Region& region) {
+  const std::uint64_t invocations = std::max(std::uint64_t{region.width} * (region.y + region.height),
                                              std::uint64_t{tileCount(region)} * shared::kTileSize * shared::kTileSize);
   buffer_ = gpu::Buffer(
       context, {.size = sizeof(shared::RecursionGuard) + invocations * sizeof(std::uint32_t), .name = "recursion"});
-  const shared::RecursionGuard header{0, depthLimit};
+  const shared::RecursionGuard header{0};
   buffer_.uploadAs(std::span(&header, 1));
 }
 

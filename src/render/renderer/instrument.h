@@ -34,7 +34,7 @@ class InstrumentBuffer {
 // The device buffer of a program that counts its recursion (Instrumentation::recursion).
 class RecursionBuffer {
  public:
-  RecursionBuffer(gpu::Context& context, const Region& region, std::uint32_t depthLimit);
+  RecursionBuffer(gpu::Context& context, const Region& region);
   shared::Address address() const { return buffer_.address(); }
   std::uint32_t skippedTraces() const;  // since the construction, modulo 2^32; blocks
 

@@ -42,7 +42,7 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
   if (settings_.instrument)
     instrument_.emplace(context_, std::uint64_t{settings_.region.width} * settings_.region.height,
                         linked_.recursionDepth(), description);
-  if (runnable_.countsRecursion) recursion_.emplace(context_, settings_.region, linked_.recursionDepth());
+  if (runnable_.countsRecursion) recursion_.emplace(context_, settings_.region);
   uploadFrame();
   parameterBuffer_ =
       gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_->indices()), 0, "parameters");

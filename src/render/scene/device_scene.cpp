@@ -16,6 +16,8 @@
 namespace quintet::render {
 namespace {
 
+constexpr std::uint32_t kMinSlots = 1024;  // of textures; those without a texture are white
+
 // Returns the environment's texels as the device samples them: finite and not negative.
 io::Image cleanEnvironment(const io::Image& image) {
   io::Image clean = io::toChannels(io::toFloat(image), 4);
@@ -116,7 +118,9 @@ void DeviceScene::uploadMaterials(scene::Scene& scene, const scene::Environment&
   data.cosRotation = std::cos(environment.rotation);
   data.sinRotation = std::sin(environment.rotation);
 
-  set_ = std::make_unique<gpu::BindlessSet>(context_, textures_->count() + TextureSlots::kCount,
+  textures_->addUnused();
+  const std::uint32_t slots = textures_->count() + TextureSlots::kCount;
+  set_ = std::make_unique<gpu::BindlessSet>(context_, std::max(slots, std::min(kMinSlots, context_.info().maxTextures)),
                                             static_cast<std::uint32_t>(sizeof(shared::Launch)));
   parameterSlots_.emplace(*set_, textures_->count(), TextureSlots::kCount);
   uploader.flush();

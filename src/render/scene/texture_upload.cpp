@@ -103,6 +103,13 @@ std::uint32_t TextureUpload::addEnvironment(const io::Image& image) {
 
 void TextureUpload::bind(gpu::BindlessSet& set) const {
   for (std::uint32_t i = 0; i < count(); ++i) set.setTexture(i, *entries_[i].image, *entries_[i].sampler);
+  if (unused_.image) set.fillTextures(count(), *unused_.image, *unused_.sampler);
+}
+
+void TextureUpload::addUnused() {
+  io::Image white = io::makeImage(1, 1, 4, io::PixelType::u8, io::ColorEncoding::linear);
+  for (std::uint8_t& sample : white.samples<std::uint8_t>()) sample = 255;
+  unused_ = {&addTexture(images_, context_, uploader_, white, false, "unused slots"), &sampler({})};
 }
 
 const gpu::Image& TextureUpload::upload(const io::Image& source, bool sRgb, const std::string& name) {

@@ -42,7 +42,11 @@ class TextureUpload {
   // Uploads the environment, which is repeated in u and clamped in v. Returns its bindless index.
   std::uint32_t addEnvironment(const io::Image& image);
 
-  std::uint32_t count() const { return static_cast<std::uint32_t>(entries_.size()); }
+  // Uploads a white texture for the slots that have no other. A program with a wrong index then reads it instead of a
+  // descriptor that was never written, which crashes lavapipe.
+  void addUnused();
+
+  std::uint32_t count() const { return static_cast<std::uint32_t>(entries_.size()); }  // without the unused slots
   void bind(gpu::BindlessSet& set) const;
   std::uint64_t bytes() const { return bytes_; }
 
@@ -65,6 +69,7 @@ class TextureUpload {
   std::map<std::pair<int, bool>, const gpu::Image*> imageByKey_;
   std::map<std::pair<int, bool>, std::uint32_t> indexByTexture_;
   std::vector<Entry> entries_;
+  Entry unused_{nullptr, nullptr};
   std::uint64_t bytes_ = 0;
 };
 

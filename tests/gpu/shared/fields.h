@@ -120,7 +120,7 @@ GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlo
            filmHeight, lightCount, environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount,
            plannedSamples, lightNodes, previousInstances);
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction);
-GPU_FIELDS(RecursionGuard, cutCount, depthLimit);
+GPU_FIELDS(RecursionGuard, cutCount);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, callableCount,
            depthLimit, rays, recordPairs);

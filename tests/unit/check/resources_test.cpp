@@ -34,8 +34,8 @@ TEST(Resources, OfTheLibraryAreProvided) {
 }
 
 TEST(Resources, ListsTheBindings) {
-  const CheckResult result = checkWith("layout(set = 2, binding = 5) uniform sampler2D own;",
-                                       "color += textureLod(own, vec2(0.5), 0.0).rgb;");
+  const CheckResult result =
+      checkWith("layout(set = 2, binding = 5) uniform sampler2D own;", "color += textureLod(own, vec2(0.5), 0.0).rgb;");
   ASSERT_EQ(idsOf(result), "Q651");
   const std::string& text = result.diagnostics[0].text;
   EXPECT_THAT(text, testing::HasSubstr("'own' is sampler2D at set 2, binding 5"));
@@ -70,9 +70,9 @@ TEST(Resources, NamesTheTypesOfImages) {
 // The rgen stage includes <quintet/output.glsl>, so another block goes to the miss shader.
 std::string idsOfPushConstants(const std::string& block, const std::string& use) {
   Files files = cleanFiles();
-  files["sky.rmiss"] = changed(files["sky.rmiss"], "void main() {",
-                               "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n" + block +
-                                   "\nvoid main() {");
+  files["sky.rmiss"] =
+      changed(files["sky.rmiss"], "void main() {",
+              "#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require\n" + block + "\nvoid main() {");
   files["sky.rmiss"] = changed(files["sky.rmiss"], "payload.t = -1.0;", "payload.t = -1.0 - float(" + use + ");");
   return idsOf(checkFiles(files));
 }
@@ -103,8 +103,8 @@ constexpr const char* kFields =
     "default = [1.0, 1.0, 1.0]\n";
 
 std::string idsOfRecord(const std::string& layout, const std::string& members) {
-  return idsWith("#extension GL_EXT_scalar_block_layout : require\nlayout(shaderRecordEXT, " + layout + ") buffer R { " +
-                     members + " } r;",
+  return idsWith("#extension GL_EXT_scalar_block_layout : require\nlayout(shaderRecordEXT, " + layout +
+                     ") buffer R { " + members + " } r;",
                  "color += r.tint;", kFields);
 }
 
