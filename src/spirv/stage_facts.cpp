@@ -173,6 +173,70 @@ ValuePart sourceOf(const Module& module, ValuePart part) {
   return part;
 }
 
+std::optional<double> constantNumber(const Module& module, const ValuePart& value) {
+  const Instruction* constant = module.definition(value.id);
+  if (!constant) return {};
+  if (constant->op == Op::OpConstantNull) return 0.0;
+  if (!value.path.empty()) return {};
+  if (const auto number = module.constantFloat(value.id)) return number;
+  const auto bits = module.constantBits(value.id);
+  if (!bits) return {};
+  const Type& type = module.types().get(constant->type);
+  return type.isSigned ? static_cast<double>(static_cast<std::int32_t>(*bits)) : static_cast<double>(*bits);
+}
+
+std::optional<double> evaluate(const Module& module, Id value, const std::function<std::optional<double>(Id)>& known,
+                               int depth) {
+  if (const auto number = known(value)) return number;
+  if (const auto number = constantNumber(module, {value, {}})) return number;
+  const Instruction* i = module.definition(value);
+  if (!i || depth > 16) return {};
+  const auto operand = [&](std::size_t k) { return evaluate(module, i->at(k), known, depth + 1); };
+  switch (i->op) {
+    case Op::OpLogicalNot:
+      if (const auto a = operand(0)) return *a == 0.0 ? 1.0 : 0.0;
+      return {};
+    case Op::OpLogicalAnd:
+    case Op::OpLogicalOr: {
+      const double decides = i->op == Op::OpLogicalAnd ? 0.0 : 1.0;
+      const auto a = operand(0), b = operand(1);
+      if (a == decides || b == decides) return decides;
+      return a && b ? std::optional(1.0 - decides) : std::nullopt;
+    }
+    default: break;
+  }
+  if (i->operands.size() != 2) return {};
+  const auto a = operand(0), b = operand(1);
+  if (!a || !b) return {};
+  switch (i->op) {
+    case Op::OpFOrdEqual:
+    case Op::OpFUnordEqual:
+    case Op::OpIEqual:
+    case Op::OpLogicalEqual: return *a == *b;
+    case Op::OpFOrdNotEqual:
+    case Op::OpFUnordNotEqual:
+    case Op::OpINotEqual:
+    case Op::OpLogicalNotEqual: return *a != *b;
+    case Op::OpFOrdLessThan:
+    case Op::OpFUnordLessThan:
+    case Op::OpSLessThan:
+    case Op::OpULessThan: return *a < *b;
+    case Op::OpFOrdLessThanEqual:
+    case Op::OpFUnordLessThanEqual:
+    case Op::OpSLessThanEqual:
+    case Op::OpULessThanEqual: return *a <= *b;
+    case Op::OpFOrdGreaterThan:
+    case Op::OpFUnordGreaterThan:
+    case Op::OpSGreaterThan:
+    case Op::OpUGreaterThan: return *a > *b;
+    case Op::OpFOrdGreaterThanEqual:
+    case Op::OpFUnordGreaterThanEqual:
+    case Op::OpSGreaterThanEqual:
+    case Op::OpUGreaterThanEqual: return *a >= *b;
+    default: return {};
+  }
+}
+
 bool ArgumentValues::mayHave(std::uint32_t bits) const {
   return !known || std::ranges::any_of(values, [&](std::uint32_t value) { return (value & bits) != 0; });
 }
@@ -424,11 +488,49 @@ Indices StageFacts::inputReads(Id variable, std::uint32_t leaf) const {
     const auto position = module_.position(a.instruction);
     if (!position || &module_.functions()[position->function] != entry) continue;
     const auto runsBefore = [&](std::size_t mark) { return canRunAfter(module_, a.instruction, mark); };
-    if (std::ranges::any_of(marks, runsBefore)) continue;
+    if (std::ranges::any_of(marks, runsBefore) &&
+        (runsAlwaysBefore(marks, a.instruction) || !runsInFirstIteration(a.instruction)))
+      continue;
     const PathsAfter& paths = pathsAfter(entry->blocks[0].first);
     if (!guarded(paths, a.instruction, variable) && usedUnguarded(paths, a, leaf)) result.push_back(i);
   }
   return result;
+}
+
+// True if each condition that decides whether the instruction runs is that of a loop around it, or holds in the first
+// iteration.
+bool StageFacts::runsInFirstIteration(std::size_t instruction) const {
+  const auto position = module_.position(instruction);
+  const Function* entry = module_.entry();
+  if (!position || !entry) return false;
+  const ControlFlow& flow = flows_[position->function];
+  const auto initial = [&](Id id) -> std::optional<double> {
+    const auto phi = module_.position(module_.definitionIndex(id));
+    const Instruction* value = module_.definition(id);
+    if (!value || value->op != Op::OpPhi || !phi) return {};
+    for (std::size_t i = 0; i + 1 < value->operands.size(); i += 2) {
+      const auto from = std::ranges::find(entry->blocks, value->at(i + 1), &Block::label);
+      if (from == entry->blocks.end()) return {};
+      if (!flow.dominates(phi->block, static_cast<std::size_t>(from - entry->blocks.begin())))
+        return constantNumber(module_, {value->at(i), {}});
+    }
+    return {};
+  };
+  const PathsAfter& paths = pathsAfter(entry->blocks[0].first);
+  for (const std::size_t guard : paths.guards(instruction)) {
+    const Block& block = entry->blocks[guard];
+    const Instruction& branch = module_.instructions()[block.end - 1];
+    const auto outcome = branch.op == Op::OpBranchConditional ? evaluate(module_, branch.at(0), initial) : std::nullopt;
+    if (outcome) {
+      const auto next = std::ranges::find(entry->blocks, branch.at(*outcome != 0.0 ? 1 : 2), &Block::label);
+      if (next == entry->blocks.end() ||
+          !flow.dominates(static_cast<std::size_t>(next - entry->blocks.begin()), position->block))
+        return false;
+    } else if (std::ranges::none_of(loops_, [&](const auto& loop) { return loop.first == guard; })) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool StageFacts::writes(Id variable, std::uint32_t leaf) const { return !writers(variable, leaf).empty(); }

@@ -7,6 +7,7 @@
 #ifndef QUINTET_SPIRV_STAGE_FACTS_H
 #define QUINTET_SPIRV_STAGE_FACTS_H
 
+#include <functional>
 #include <memory>
 
 #include "spirv/control_flow.h"
@@ -69,6 +70,14 @@ struct ValuePart {
 // Follows a part of a value through instructions that compose and extract, to the instruction that makes it.
 ValuePart sourceOf(const Module& module, ValuePart part);
 
+// The value of a scalar constant: booleans are 0 or 1. Nullopt if it is not one.
+std::optional<double> constantNumber(const Module& module, const ValuePart& value);
+
+// Evaluates comparisons and logical operations of constants and of the values that `known` returns. Nullopt if the value
+// depends on anything else.
+std::optional<double> evaluate(const Module& module, Id value, const std::function<std::optional<double>(Id)>& known,
+                               int depth = 0);
+
 struct BuiltInRead {
   spv::BuiltIn builtIn = spv::BuiltIn::Max;
   std::size_t instruction = 0;
@@ -117,7 +126,8 @@ class StageFacts {
   bool reads(Id variable, std::uint32_t leaf) const;
   // True if the stage reads the leaf on a path where it has not written it: the caller's value is an input.
   bool readsBeforeWriting(Id variable, std::uint32_t leaf) const;
-  // Indices into accesses() of the reads that have an effect although no write of the stage can run before them.
+  // Indices into accesses() of the reads that have an effect although no write of the stage has run before them. Reads on
+  // which a condition decides that is unknown in the first iteration of a loop are left out.
   std::vector<std::size_t> inputReads(Id variable, std::uint32_t leaf) const;
   // True if the leaf is written on each path from the stage's start to the instruction. Another trace or call with the
   // variable counts as a write.
@@ -151,6 +161,7 @@ class StageFacts {
   ArgumentValues values(Id id) const;
 
   bool runsAlwaysBefore(std::vector<std::size_t> marks, std::size_t instruction) const;
+  bool runsInFirstIteration(std::size_t instruction) const;
   bool guarded(const PathsAfter& paths, std::size_t instruction, Id variable) const;
   bool usedUnguarded(const PathsAfter& paths, const AccessFacts& read, std::uint32_t leaf) const;
   bool choosesByVariable(const Instruction& use, Id value, const AccessFacts& read, std::uint32_t leaf) const;
