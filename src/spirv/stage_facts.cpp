@@ -376,11 +376,49 @@ Indices StageFacts::inputReads(Id variable, std::uint32_t leaf) const {
     const auto position = module_.position(a.instruction);
     if (!position || &module_.functions()[position->function] != entry) continue;
     const auto runsBefore = [&](std::size_t mark) { return canRunAfter(module_, a.instruction, mark); };
-    if (std::ranges::any_of(marks, runsBefore)) continue;
+    if (std::ranges::any_of(marks, runsBefore) &&
+        (runsAlwaysBefore(marks, a.instruction) || !runsInFirstIteration(a.instruction)))
+      continue;
     const PathsAfter& paths = pathsAfter(entry->blocks[0].first);
     if (!guarded(paths, a.instruction, variable) && usedUnguarded(paths, a, leaf)) result.push_back(i);
   }
   return result;
+}
+
+// True if each condition that decides whether the instruction runs is that of a loop around it, or holds in the first
+// iteration.
+bool StageFacts::runsInFirstIteration(std::size_t instruction) const {
+  const auto position = module_.position(instruction);
+  const Function* entry = module_.entry();
+  if (!position || !entry) return false;
+  const ControlFlow& flow = flows_[position->function];
+  const auto initial = [&](Id id) -> std::optional<double> {
+    const auto phi = module_.position(module_.definitionIndex(id));
+    const Instruction* value = module_.definition(id);
+    if (!value || value->op != Op::OpPhi || !phi) return {};
+    for (std::size_t i = 0; i + 1 < value->operands.size(); i += 2) {
+      const auto from = std::ranges::find(entry->blocks, value->at(i + 1), &Block::label);
+      if (from == entry->blocks.end()) return {};
+      if (!flow.dominates(phi->block, static_cast<std::size_t>(from - entry->blocks.begin())))
+        return constantNumber(module_, {value->at(i), {}});
+    }
+    return {};
+  };
+  const PathsAfter& paths = pathsAfter(entry->blocks[0].first);
+  for (const std::size_t guard : paths.guards(instruction)) {
+    const Block& block = entry->blocks[guard];
+    const Instruction& branch = module_.instructions()[block.end - 1];
+    const auto outcome = branch.op == Op::OpBranchConditional ? evaluate(module_, branch.at(0), initial) : std::nullopt;
+    if (outcome) {
+      const auto next = std::ranges::find(entry->blocks, branch.at(*outcome != 0.0 ? 1 : 2), &Block::label);
+      if (next == entry->blocks.end() ||
+          !flow.dominates(static_cast<std::size_t>(next - entry->blocks.begin()), position->block))
+        return false;
+    } else if (std::ranges::none_of(loops_, [&](const auto& loop) { return loop.first == guard; })) {
+      return false;
+    }
+  }
+  return true;
 }
 
 bool StageFacts::writes(Id variable, std::uint32_t leaf) const { return !writers(variable, leaf).empty(); }

@@ -7,6 +7,7 @@
 #ifndef QUINTET_SPIRV_STAGE_FACTS_H
 #define QUINTET_SPIRV_STAGE_FACTS_H
 
+#include <functional>
 #include <memory>
 
 #include "spirv/control_flow.h"
@@ -118,7 +119,8 @@ class StageFacts {
   bool reads(Id variable, std::uint32_t leaf) const;
   // True if the stage reads the leaf on a path where it has not written it: the caller's value is an input.
   bool readsBeforeWriting(Id variable, std::uint32_t leaf) const;
-  // Indices into accesses() of the reads that have an effect although no write of the stage can run before them.
+  // Indices into accesses() of the reads that have an effect although no write of the stage has run before them. Reads on
+  // which a condition decides that is unknown in the first iteration of a loop are left out.
   std::vector<std::size_t> inputReads(Id variable, std::uint32_t leaf) const;
   // True if the leaf is written on each path from the stage's start to the instruction. Another trace or call with the
   // variable counts as a write.
@@ -152,6 +154,7 @@ class StageFacts {
   ArgumentValues values(std::size_t index, Id id) const;
 
   bool runsAlwaysBefore(std::vector<std::size_t> marks, std::size_t instruction) const;
+  bool runsInFirstIteration(std::size_t instruction) const;
   bool guarded(const PathsAfter& paths, std::size_t instruction, Id variable) const;
   bool usedUnguarded(const PathsAfter& paths, const AccessFacts& read, std::uint32_t leaf) const;
   bool choosesByVariable(const Instruction& use, Id value, const AccessFacts& read, std::uint32_t leaf) const;

@@ -89,4 +89,68 @@ ValuePart originOf(const Module& module, ValuePart part) {
   return part;
 }
 
+std::optional<double> constantNumber(const Module& module, const ValuePart& value) {
+  const Instruction* constant = module.definition(value.id);
+  if (!constant) return {};
+  if (constant->op == Op::OpConstantNull) return 0.0;
+  if (!value.path.empty()) return {};
+  if (const auto number = module.constantFloat(value.id)) return number;
+  const auto bits = module.constantBits(value.id);
+  if (!bits) return {};
+  const Type& type = module.types().get(constant->type);
+  return type.isSigned ? static_cast<double>(static_cast<std::int32_t>(*bits)) : static_cast<double>(*bits);
+}
+
+std::optional<double> evaluate(const Module& module, Id value, const std::function<std::optional<double>(Id)>& known,
+                               int depth) {
+  if (const auto number = known(value)) return number;
+  if (const auto number = constantNumber(module, {value, {}})) return number;
+  const Instruction* i = module.definition(value);
+  if (!i || depth > 16) return {};
+  const auto operand = [&](std::size_t k) { return evaluate(module, i->at(k), known, depth + 1); };
+  switch (i->op) {
+    case Op::OpLogicalNot:
+      if (const auto a = operand(0)) return *a == 0.0 ? 1.0 : 0.0;
+      return {};
+    case Op::OpLogicalAnd:
+    case Op::OpLogicalOr: {
+      const double decides = i->op == Op::OpLogicalAnd ? 0.0 : 1.0;
+      const auto a = operand(0), b = operand(1);
+      if (a == decides || b == decides) return decides;
+      return a && b ? std::optional(1.0 - decides) : std::nullopt;
+    }
+    default: break;
+  }
+  if (i->operands.size() != 2) return {};
+  const auto a = operand(0), b = operand(1);
+  if (!a || !b) return {};
+  switch (i->op) {
+    case Op::OpFOrdEqual:
+    case Op::OpFUnordEqual:
+    case Op::OpIEqual:
+    case Op::OpLogicalEqual: return *a == *b;
+    case Op::OpFOrdNotEqual:
+    case Op::OpFUnordNotEqual:
+    case Op::OpINotEqual:
+    case Op::OpLogicalNotEqual: return *a != *b;
+    case Op::OpFOrdLessThan:
+    case Op::OpFUnordLessThan:
+    case Op::OpSLessThan:
+    case Op::OpULessThan: return *a < *b;
+    case Op::OpFOrdLessThanEqual:
+    case Op::OpFUnordLessThanEqual:
+    case Op::OpSLessThanEqual:
+    case Op::OpULessThanEqual: return *a <= *b;
+    case Op::OpFOrdGreaterThan:
+    case Op::OpFUnordGreaterThan:
+    case Op::OpSGreaterThan:
+    case Op::OpUGreaterThan: return *a > *b;
+    case Op::OpFOrdGreaterThanEqual:
+    case Op::OpFUnordGreaterThanEqual:
+    case Op::OpSGreaterThanEqual:
+    case Op::OpUGreaterThanEqual: return *a >= *b;
+    default: return {};
+  }
+}
+
 }  // namespace quintet::spirv

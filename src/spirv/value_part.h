@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of composite values: which instruction makes a component, member or element.
+// Parts of composite values: which instruction makes a component, member or element. Evaluation of constants.
 #ifndef QUINTET_SPIRV_VALUE_PART_H
 #define QUINTET_SPIRV_VALUE_PART_H
 
 #include <compare>
+#include <functional>
+#include <optional>
 
 #include "spirv/module.h"
 
@@ -19,6 +21,14 @@ struct ValuePart {
 // Follows a part through copies and through instructions that compose, extract, insert and shuffle, to the instruction that
 // makes it.
 ValuePart originOf(const Module& module, ValuePart part);
+
+// The value of a scalar constant: booleans are 0 or 1. Nullopt if it is not one.
+std::optional<double> constantNumber(const Module& module, const ValuePart& value);
+
+// Evaluates comparisons and logical operations of constants and of the values that `known` returns. Nullopt if the value
+// depends on anything else.
+std::optional<double> evaluate(const Module& module, Id value, const std::function<std::optional<double>(Id)>& known,
+                               int depth = 0);
 
 }  // namespace quintet::spirv
 #endif

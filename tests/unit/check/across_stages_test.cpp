@@ -197,10 +197,12 @@ TEST(CheckGeometry, Q603ReportsAnyHitShadersThatNeverRun) {
 
 TEST(CheckGeometry, Q604ReportsAlphaTestsThatNeverRun) {
   program::SceneFacts leaf = sceneWith({kLeaf});
-  EXPECT_TRUE(reports(tomlWith(cleanFiles(), ", any_hit = \"cut.rahit\"", "", &leaf), "Q604 program.toml:14:0 ",
+  const Files bound =
+      edited(cleanFiles(), "program.toml", "name = \"surface\"", "name = \"surface\"\ngeometry = \"alpha\"");
+  EXPECT_TRUE(reports(tomlWith(bound, ", any_hit = \"cut.rahit\"", "", &leaf), "Q604 program.toml:15:0 ",
                       {"material 'leaf' of scene.glb", "hit group 'surface', ray type 'primary'"}));
-  EXPECT_TRUE(reports(tomlWith(cleanFiles(), "{ any_hit = \"cut_shadow.rahit\" }\n", "{}\n", &leaf),
-                      "Q604 program.toml:15:0 "));
+  EXPECT_TRUE(
+      reports(tomlWith(bound, "{ any_hit = \"cut_shadow.rahit\" }\n", "{}\n", &leaf), "Q604 program.toml:16:0 "));
   EXPECT_TRUE(reports(traceWith("gl_RayFlagsNoneEXT", "gl_RayFlagsOpaqueEXT", &leaf), "Q604 main.rgen:10:3 ",
                       {"material 'leaf' of scene.glb", "gl_RayFlagsOpaqueEXT"}));
   EXPECT_EQ(textOf(checkFiles(cleanFiles(), &leaf)), "");
@@ -217,6 +219,21 @@ TEST(CheckGeometry, Q604AcceptsProgramsWithoutAnyHitShaders) {
   const program::SceneFacts leaf = sceneWith({kLeaf});
   const Files solid = edited(cleanFiles(), "program.toml", ", any_hit = \"cut.rahit\"", "");
   EXPECT_EQ(tomlWith(solid, "{ any_hit = \"cut_shadow.rahit\" }\n", "{}\n", &leaf), "");
+}
+
+// A group that is not bound to class alpha can test alpha for one ray type only, on purpose. But not if a different group
+// tests it for that ray type.
+TEST(CheckGeometry, Q604AcceptsAnyHitShadersForOneRayType) {
+  const program::SceneFacts leaf = sceneWith({kLeaf});
+  EXPECT_EQ(tomlWith(cleanFiles(), ", any_hit = \"cut.rahit\"", "", &leaf), "");
+  Files solid = edited(cleanFiles(), "program.toml", "{ any_hit = \"cut_shadow.rahit\" }\n", "{}\n");
+  EXPECT_EQ(textOf(checkFiles(solid, &leaf)), "");
+  solid["program.toml"] +=
+      "\n[[hit_group]]\nname = \"stones\"\nmaterial = \"stone\"\nprimary = { closest_hit = \"surface.rchit\" }\nshadow "
+      "= "
+      "{ any_hit = \"cut_shadow.rahit\" }\n";
+  const program::SceneFacts both = sceneWith({kLeaf, kStone});
+  EXPECT_THAT(textOf(checkFiles(solid, &both)), HasSubstr("Q604 program.toml:15:0 "));
 }
 
 TEST(CheckArguments, Q605ReportsFlagsThatExcludeEachOther) {

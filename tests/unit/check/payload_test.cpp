@@ -147,7 +147,7 @@ TEST(CheckPayload, Q104AcceptsReadsThatThePayloadGuards) {
 TEST(CheckPayload, Q104AcceptsALoopThatAMissEnds) {
   Files files = edited(cleanFiles(), "sky.rmiss", "payload.color = gl_WorldRayDirectionEXT;", "");
   const std::string& text = files["main.rgen"];
-  const std::size_t begin = text.find("  traceRayEXT"), end = text.find("  storeOutput");
+  const std::size_t begin = text.find("  traceRayEXT"), end = text.find("  addOutput");
   const std::string trace = text.substr(begin, text.find(";\n", begin) + 2 - begin);
   files["main.rgen"] = text.substr(0, begin) + "  vec3 color = vec3(1);\n  for (int i = 0; i < 8; ++i) {\n" + trace +
                        "    if (payload.t < 0.0) break;\n    color *= payload.color;\n  }\n" + text.substr(end);
@@ -187,6 +187,53 @@ TEST(CheckPayload, Q105ReportsAValueThatANestedTraceOverwrites) {
                           {"'payload.color'", "line 15", "'sky.rmiss'", "(line 17)"}));
 }
 
+// The default is read if no trace runs, or if the trace keeps it.
+TEST(CheckPayload, Q105AcceptsDefaults) {
+  Files files = recursiveFiles();
+  files["surface.rchit"] = changed(files["surface.rchit"], "const vec3 local =", "payload.color =");
+  files["surface.rchit"] = changed(files["surface.rchit"], "payload.color = 0.5 * payload.color + local",
+                                   "payload.color = 0.5 * payload.color");
+  files["main.rgen"] = changed(files["main.rgen"], "  traceRayEXT", "  payload.color = vec3(0.0);\n  traceRayEXT");
+  EXPECT_EQ(checkEdited(files, "surface.rchit", "  traceRayEXT(tlas, gl_RayFlagsNoneEXT",
+                        "  if (attribs.x > 0.5) traceRayEXT(tlas, gl_RayFlagsNoneEXT"),
+            "");
+  EXPECT_EQ(
+      checkEdited(files, "sky.rmiss", "  payload.color = ", "  if (gl_WorldRayDirectionEXT.y > 0.0) payload.color = "),
+      "");
+}
+
+// A payload that has the result of the previous shadow ray.
+Files loopFiles(const std::string& before, const std::string& inside, const std::string& test) {
+  Files files = cleanFiles();
+  std::string& text = files["surface.rchit"];
+  text =
+      changed(text, "  shadow.lit = 0u;\n  traceRayEXT",
+              before + "  uint lit = 0u;\n  for (int i = 0; i < gl_PrimitiveID; ++i) {\n" + inside + "  traceRayEXT");
+  text = changed(text, "1e30, 1);\n", "1e30, 1);\n" + test + "  }\n");
+  text = changed(text, "shadow.lit != 0u", "lit != 0u");
+  return files;
+}
+
+TEST(CheckPayload, Q104ReportsTheValueOfThePreviousRay) {
+  const std::string clear = "  shadow.lit = 0u;\n", sum = "  lit += shadow.lit;\n";
+  EXPECT_TRUE(reportsOnly(textOf(checkFiles(loopFiles(clear, "", sum))), "Q104 surface.rchit:15:3 ",
+                          {"'shadow.lit'", "closest-hit shaders are skipped", "previous ray", "before each trace"}));
+  EXPECT_EQ(textOf(checkFiles(loopFiles("", clear, sum))), "");
+  // The loop ends if the value changes, or goes on only if it has changed.
+  EXPECT_EQ(textOf(checkFiles(loopFiles(clear, "", sum + "  if (shadow.lit != 0u) break;\n"))), "");
+  EXPECT_TRUE(reportsOnly(textOf(checkFiles(loopFiles(clear, "", sum + "  if (shadow.lit == 0u) break;\n"))),
+                          "Q104 surface.rchit:15:3 "));
+  // The miss shader adds to the value.
+  const Files counts = loopFiles(clear, "", sum);
+  EXPECT_EQ(checkEdited(counts, "lit.rmiss", "payload.lit = 1u", "payload.lit += 1u"), "");
+}
+
+TEST(CheckPayload, Q107ReportsInputsThatNothingSets) {
+  const Files files = edited(cleanFiles(), "cut.rahit", "attribs.x < 0.5", "attribs.x < payload.t");
+  EXPECT_TRUE(reportsOnly(textOf(checkFiles(files)), "Q107 cut.rahit:8:", {"'payload.t'", "main.rgen:10"}));
+  EXPECT_EQ(checkEdited(files, "main.rgen", "  traceRayEXT", "  payload.t = 0.5;\n  traceRayEXT"), "");
+}
+
 TEST(CheckCallable, Q301ReportsADifferentType) {
   EXPECT_TRUE(reportsOnly(checkEdited(callFiles(), "tint.rcall", "callableDataInEXT vec4", "callableDataInEXT vec3"),
                           "Q301 main.rgen:12:3 ", {"callable shader 'tint.rcall' (callable index 0)", "vec4 vs vec3"}));
@@ -198,6 +245,14 @@ TEST(CheckCallable, Q302ReportsAnIndexOutOfRange) {
   Files files = callFiles();
   files["program.toml"] = cleanFiles()["program.toml"];
   EXPECT_TRUE(reports(textOf(checkFiles(files)), "Q302 main.rgen:12:3 ", {"no callable shaders"}));
+}
+
+TEST(CheckCallable, Q304ReportsUnsetInputAndUnwrittenResult) {
+  EXPECT_TRUE(reportsOnly(checkEdited(callFiles(), "main.rgen", "data = vec4(0.5);\n", "\n"), "Q304 main.rgen:12:3 ",
+                          {"'data'", "callable shader 'tint.rcall' (callable index 0)", "tint.rcall:7"}));
+  Files partly = edited(callFiles(), "main.rgen", "data = vec4(0.5);\n", "\n");
+  EXPECT_TRUE(reportsOnly(checkEdited(partly, "tint.rcall", "data *= 2.0", "data.rgb = vec3(2.0)"),
+                          "Q304 main.rgen:12:3 ", {"'data.w' is read after this call (line "}));
 }
 
 TEST(CheckCallable, Q303ReportsADifferentLocation) {

@@ -100,14 +100,29 @@ class InputRule {
         const spirv::SharedVariable* sent = tracer.variable(site.trace->payload);
         if (sent->storage == StorageClass::IncomingRayPayloadKHR) {
           if (isSet(site.stage, leaf, seen, unset)) return true;
-        } else if (tracer.unguardedReads(site.trace->instruction, sent->id, leaf).empty()) {
-          unset.push_back(&site);
-        } else {
+        } else if (isReadUnwritten(i, leaf)) {
           return true;  // Q104 reports it
+        } else {
+          unset.push_back(&site);
         }
       }
     }
     return false;
+  }
+
+  // True if the stage reads the leaf after the trace, which can end without writing it.
+  bool isReadUnwritten(std::size_t index, std::uint32_t leaf) const {
+    const TraceSite& site = graph_.traces[index];
+    if (graph_.facts(site).unguardedReads(site.trace->instruction, site.trace->payload, leaf).empty()) return false;
+    const auto leaves = [&](const Edge& edge) {
+      if (edge.role != Role::miss && edge.role != Role::closestHit) return false;
+      const spirv::SharedVariable* received = graph_.facts(edge).incoming(StorageClass::IncomingRayPayloadKHR);
+      return !received || !graph_.facts(edge).writesAlways(received->id, leaf);
+    };
+    const auto unshaded = [&](HitGroupRay hit) {
+      return site.skipsClosestHit() || graph_.shaders(hit).closestHit.empty();
+    };
+    return std::ranges::any_of(site.edges, leaves) || std::ranges::any_of(site.hits, unshaded);
   }
 
   // True if the tracing stage, or a shader that it runs before, sets the leaf without reading it first.

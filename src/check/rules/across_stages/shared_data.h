@@ -3,8 +3,6 @@
 #ifndef QUINTET_CHECK_RULES_SHARED_DATA_H
 #define QUINTET_CHECK_RULES_SHARED_DATA_H
 
-#include <functional>
-
 #include "check/pipeline_graph.h"
 
 namespace quintet::check {
@@ -38,14 +36,6 @@ std::vector<bool> sameTypes(const PipelineGraph& graph, const std::vector<Edge>&
 
 // True if the stage writes memory or images, traces or calls.
 bool hasEffects(const spirv::StageFacts& facts);
-
-// The value of a scalar constant: booleans are 0 or 1. Nullopt if it is not one.
-std::optional<double> constantNumber(const spirv::Module& module, const spirv::ValuePart& value);
-
-// Evaluates comparisons and logical operations of constants and of the values that `known` returns. Nullopt if the value
-// depends on anything else.
-std::optional<double> evaluate(const spirv::Module& module, spirv::Id value,
-                               const std::function<std::optional<double>(spirv::Id)>& known, int depth = 0);
 
 // The line of main() in the source of a stage; only the file if it is not found.
 SourceLocation mainLocation(const PipelineGraph& graph, const PipelineStage& stage);
