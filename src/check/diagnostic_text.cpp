@@ -81,8 +81,8 @@ std::string headline(const Diagnostic& d, std::string_view severity, bool color)
   std::string location = withoutControls(locationText(d.file, d.line, d.column));
   if (!location.empty()) location += ": ";
   const std::string id = d.id.empty() ? "" : fmt::format(" [{}]", d.id);
-  return colored(location, "\x1b[1m", color) + colored(fmt::format("{}: ", severity), severityColor(d.severity), color) +
-         withoutControls(d.text + id);
+  return colored(location, "\x1b[1m", color) +
+         colored(fmt::format("{}: ", severity), severityColor(d.severity), color) + withoutControls(d.text + id);
 }
 
 // Appends a line after a margin; on a terminal it breaks between words, and further lines are indented.

@@ -26,8 +26,8 @@ SourceLookup sourcesOf(const program::Program& program);
 SourceLookup sourcesOnDisk();
 
 struct TextOptions {
-  bool color = false;    // ANSI escape sequences
-  bool explain = false;  // with the whole page of each id (docs/diagnostics)
+  bool color = false;                  // ANSI escape sequences
+  bool explain = false;                // with the whole page of each id (docs/diagnostics)
   std::optional<std::size_t> width{};  // of the terminal: lines except those of sources break between words
 };
 

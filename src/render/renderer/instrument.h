@@ -22,8 +22,9 @@ struct InstrumentData {
 class InstrumentBuffer {
  public:
   // `pixels` is the number of pixels of the film, `depthLimit` the recursion depth of the pipeline, and `missCount` the
-  // number of miss shaders in the shader binding table.
-  InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit, std::size_t missCount);
+  // number of miss shaders in the shader binding table, whose hit records are those of `facts` for each ray type.
+  InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit, std::size_t missCount,
+                   const program::SceneFacts& facts, std::size_t rayCount);
   shared::Address address() const { return buffer_.address(); }
   InstrumentData download() const;  // blocks
 

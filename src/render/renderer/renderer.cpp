@@ -41,7 +41,8 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
                    description.anyHitForAll);
   if (settings_.instrument)
     instrument_.emplace(context_, std::uint64_t{settings_.region.width} * settings_.region.height,
-                        linked_.recursionDepth(), program::missShaders(description).size());
+                        linked_.recursionDepth(), program::missShaders(description).size(), scene.facts(),
+                        description.rays.size());
   uploadFrame();
   parameterBuffer_ =
       gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_->indices()), 0, "parameters");
