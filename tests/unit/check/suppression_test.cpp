@@ -112,11 +112,8 @@ TEST(CheckSuppression, CannotHideErrors) {
 TEST(CheckSuppression, WorksInDescriptions) {
   Files files = cleanFiles();
   files["program.toml"] +=
-      "\n# quintet: allow Q802 for scenes with glass\n[[hit_group]]\nname = \"glass\"
-material = \"glass\"
-"
-      "primary = { closest_hit = \"surface.rchit\" }
-";
+      "\n# quintet: allow Q802 for scenes with glass\n[[hit_group]]\nname = \"glass\"\nmaterial = \"glass\"\n"
+      "primary = { closest_hit = \"surface.rchit\" }\n";
   const program::SceneFacts scene = sceneWith({{program::GeometryKind::triangles, true, "tree", "leaf"}});
   const CheckResult result = checkFiles(files, &scene);
   EXPECT_EQ(textOf(result), "");
