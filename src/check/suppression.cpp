@@ -11,7 +11,7 @@
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "check/catalog.h"
-#include "check/diagnostic_text.h"
+#include "check/sources.h"
 
 namespace quintet::check {
 namespace {

@@ -80,7 +80,7 @@ TEST(PipelineModel, MarksTheEdgeOfADiagnostic) {
 }
 
 TEST(PipelineModel, ExistsOnlyForProgramsThatCompile) {
-  const Files files = edited(cleanFiles(), "sky.rmiss", "payload.color", "payload.colour");
+  const Files files = edited(cleanFiles(), "sky.rmiss", "payload.color", "payload.tint");
   const program::Program program = program::parseProgram(files.at("program.toml"), "demo", "folder/demo", files);
   EXPECT_FALSE(describePipeline(program, checkCompiler(), nullptr, {}));
 }
