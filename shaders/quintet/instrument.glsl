@@ -20,6 +20,8 @@ uint instrumentPixel_() {
   return film.y * frame.filmWidth + film.x;
 }
 
+vec2 instrumentInterval_ = vec2(0.0);  // of the trace
+
 void instrumentReport_(uint kind, uint line, uint depth, float distance, uint index, vec3 origin, vec3 direction) {
   const uint slot = atomicAdd(instrument_.value.reportCount, 1u);
   if (slot >= kInstrumentReports) return;
@@ -33,6 +35,7 @@ void instrumentReport_(uint kind, uint line, uint depth, float distance, uint in
   report.index = index;
   report.origin = origin;
   report.direction = direction;
+  report.interval = instrumentInterval_;
   instrument_.reports[slot] = report;
 }
 
@@ -60,13 +63,13 @@ bool instrumentCall_(uint index, uint line) {
 bool instrumentBad_(vec3 v) { return any(isnan(v)) || any(isinf(v)); }
 
 // Checks the arguments before a trace. Returns false if the trace must not run.
-bool instrumentTrace_(uint offset, uint stride, uint miss, vec3 origin, float tmin, vec3 direction, float tmax, uint line) {
+bool instrumentTrace_(uint mask, uint offset, uint stride, uint miss, vec3 origin, float tmin, vec3 direction, float tmax, uint line) {
   const uint pixel = instrumentPixel_();
   const uint depth = ++instrument_.pixels[pixel].depth;
   atomicAdd(instrument_.value.traceCount, 1u);
   atomicMax(instrument_.value.deepest, depth);
+  instrumentInterval_ = vec2(tmin, tmax);
   const uint pair = (offset & 15u) + 16u * (stride & 15u);
-  atomicOr(instrument_.value.recordPairs[pair / 32u], 1u << (pair % 32u));
   if (instrumentBad_(origin) || instrumentBad_(direction) || direction == vec3(0.0) || isnan(tmin) || isnan(tmax) || tmin < 0.0 || tmax < tmin) {
     instrumentReport_(kReportRay, line, depth, 0.0, 0u, origin, direction);
     return false;
@@ -77,6 +80,11 @@ bool instrumentTrace_(uint offset, uint stride, uint miss, vec3 origin, float tm
   }
   if ((miss & 0xFFFFu) >= instrument_.value.missCount) {
     instrumentReport_(kReportMiss, line, depth, 0.0, miss, origin, direction);
+    return false;
+  }
+  if (((instrument_.value.badRecords[pair / 4u] >> (8u * (pair % 4u))) & mask & 0xFFu) != 0u) {
+    atomicOr(instrument_.value.recordPairs[pair / 32u], 1u << (pair % 32u));
+    instrumentReport_(kReportRecord, line, depth, 0.0, pair, origin, direction);
     return false;
   }
   atomicAdd(instrument_.value.rays[offset & 15u], 1u);
@@ -90,7 +98,7 @@ void instrumentAfter_() { instrument_.pixels[instrumentPixel_()].depth--; }
     const uint iFlags_ = (flags_), iMask_ = (mask_), iOffset_ = (offset_), iStride_ = (stride_), iMiss_ = (miss_);         \
     const vec3 iOrigin_ = (origin_), iDirection_ = (direction_);                                                           \
     const float iTmin_ = (tmin_), iTmax_ = (tmax_);                                                                        \
-    if (instrumentTrace_(iOffset_, iStride_, iMiss_, iOrigin_, iTmin_, iDirection_, iTmax_, uint(__LINE__))) {             \
+    if (instrumentTrace_(iMask_, iOffset_, iStride_, iMiss_, iOrigin_, iTmin_, iDirection_, iTmax_, uint(__LINE__))) {             \
       traceRayEXT(as_, iFlags_, iMask_, iOffset_, iStride_, iMiss_, iOrigin_, iTmin_, iDirection_, iTmax_, location_);     \
     }                                                                                                                      \
     instrumentAfter_();                                                                                                    \

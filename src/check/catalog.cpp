@@ -20,9 +20,12 @@ constexpr auto kNote = Severity::note;
 
 constexpr DiagnosticInfo kCatalog[] = {
     // Found by an instrumented run (--instrument).
-    {"Q001", kError, "render/renderer/instrument", "ray origin or direction is not finite",
-     "Traversal of a ray with NaN or infinity misses everything or does not terminate, depending on the driver.",
-     "Find its cause: a division by zero, normalize of a zero vector or sqrt of a negative number."},
+    {"Q001", kError, "render/renderer/instrument", "ray is invalid",
+     "Traversal of a ray with NaN, infinity, direction 0 or an empty interval misses everything or does not terminate, "
+     "depending on the driver.",
+     "Find its cause: a division by zero, normalize of a zero vector, sqrt of a negative number, or tmin and tmax in "
+     "the "
+     "wrong order."},
     {"Q002", kError, "render/renderer/instrument", "output is not finite",
      "One NaN or infinity makes the average of its pixel invalid, and every filter spreads it to other pixels.",
      "Find the operation that produces it, or discard the sample and count it."},

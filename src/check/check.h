@@ -18,7 +18,7 @@ namespace quintet::check {
 struct StageContext;
 
 struct CheckResult {
-  std::vector<Diagnostic> diagnostics;  // of the compiler, then of the rules by id
+  std::vector<Diagnostic> diagnostics;           // of the compiler, then of the rules by id
   std::vector<SuppressedDiagnostic> suppressed;  // that comments in the sources accept (check/suppression.h)
   // Depth of nested traces that the pipeline needs: the longest chain of traces, or the declared bound if traces form a
   // cycle.
@@ -30,7 +30,7 @@ struct CheckResult {
   bool cyclic = false;
   std::vector<std::string> reached;  // files of the reachable stages
   std::vector<std::filesystem::path> files;  // read from disk in addition to Program::files
-  double seconds = 0;                // wall time, including compilation
+  double seconds = 0;                        // wall time, including compilation
   bool ok() const { return !hasErrors(diagnostics); }
 };
 

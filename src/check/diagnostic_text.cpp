@@ -2,17 +2,14 @@
 #include "check/diagnostic_text.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
 #include "base/parse.h"
 #include "base/wrap.h"
 #include "check/catalog.h"
-#include "shader/library.h"
 #include "spirv/source_text.h"
 
 namespace quintet::check {
@@ -31,27 +28,6 @@ std::string withoutControls(std::string text) {
 
 std::string_view severityColor(Severity severity) {
   return severity == Severity::error ? "\x1b[1;31m" : severity == Severity::warning ? "\x1b[1;35m" : "\x1b[1;36m";
-}
-
-// Files in memory have names in brackets: "<quintet/hit.glsl>".
-std::string withoutBrackets(const std::string& file) {
-  return file.size() > 2 && file.front() == '<' && file.back() == '>' ? file.substr(1, file.size() - 2) : file;
-}
-
-std::optional<std::string> inLibrary(const std::string& path) {
-  const auto library = embeddedShaderLibrary();
-  const auto found = std::ranges::find(library, std::string_view(path), &EmbeddedFile::path);
-  return found == library.end() ? std::nullopt : std::optional(std::string(found->data));
-}
-
-std::optional<std::string> onDisk(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
-  try {
-    return readTextFile(path);
-  } catch (const FileError&) {
-    return std::nullopt;
-  }
 }
 
 // Returns the source line and a line with the caret. Tabs are kept, so both are aligned on all terminals.
@@ -81,8 +57,8 @@ std::string headline(const Diagnostic& d, std::string_view severity, bool color)
   std::string location = withoutControls(locationText(d.file, d.line, d.column));
   if (!location.empty()) location += ": ";
   const std::string id = d.id.empty() ? "" : fmt::format(" [{}]", d.id);
-  return colored(location, "\x1b[1m", color) + colored(fmt::format("{}: ", severity), severityColor(d.severity), color) +
-         withoutControls(d.text + id);
+  return colored(location, "\x1b[1m", color) +
+         colored(fmt::format("{}: ", severity), severityColor(d.severity), color) + withoutControls(d.text + id);
 }
 
 // Appends a line after a margin; on a terminal it breaks between words, and further lines are indented.
@@ -119,21 +95,6 @@ void addPage(std::string& text, std::string_view id, const TextOptions& options)
 }
 
 }  // namespace
-
-SourceLookup sourcesOf(const program::Program& program) {
-  return [&program](const std::string& file) -> std::optional<std::string> {
-    for (const auto& [path, text] : program.files)
-      if (program.path(path) == file) return text;
-    return sourcesOnDisk()(file);
-  };
-}
-
-SourceLookup sourcesOnDisk() {
-  return [](const std::string& file) {
-    const std::optional<std::string> text = inLibrary(withoutBrackets(file));
-    return text ? text : onDisk(file);
-  };
-}
 
 std::string diagnosticsText(std::vector<Diagnostic> diagnostics, const SourceLookup& sources,
                             const TextOptions& options) {

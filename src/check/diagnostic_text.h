@@ -4,30 +4,21 @@
 #ifndef QUINTET_CHECK_DIAGNOSTIC_TEXT_H
 #define QUINTET_CHECK_DIAGNOSTIC_TEXT_H
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "check/sources.h"
 #include "check/suppression.h"
-#include "program/description/program.h"
 
 namespace quintet::check {
 
 inline constexpr std::size_t kMaxShownDiagnostics = 20;  // in a text; further ones are only counted
 
-// Returns the text of a file by its name in diagnostics; nullopt if unknown.
-using SourceLookup = std::function<std::optional<std::string>(const std::string& file)>;
-
-// Searches the files of the program, the shader library and the disk. `program` must outlive the result.
-SourceLookup sourcesOf(const program::Program& program);
-// Searches the shader library and the disk.
-SourceLookup sourcesOnDisk();
-
 struct TextOptions {
-  bool color = false;    // ANSI escape sequences
-  bool explain = false;  // with the whole page of each id (docs/diagnostics)
+  bool color = false;                  // ANSI escape sequences
+  bool explain = false;                // with the whole page of each id (docs/diagnostics)
   std::optional<std::size_t> width{};  // of the terminal: lines except those of sources break between words
 };
 

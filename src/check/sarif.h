@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "check/diagnostic_text.h"
+#include "check/sources.h"
 #include "check/suppression.h"
 
 namespace quintet::check {

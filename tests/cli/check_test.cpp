@@ -2,6 +2,10 @@
 // `check` and `explain`, and the diagnostics of `run` and `render` for programs that do not compile.
 #include <gmock/gmock.h>
 
+#include <fstream>
+#include <regex>
+#include <sstream>
+
 #include "sky_program.h"
 
 namespace quintet::test {
@@ -160,6 +164,108 @@ TEST_F(Check, UsesColorsOnTerminalsOnly) {
   TerminalRun terminal({"check", "bad"}, folder_.path());
   EXPECT_THAT(terminal.finish().err, HasSubstr("\x1b[1;31merror: "));
   EXPECT_THAT(quintet({"check", "bad"}).err, Not(HasSubstr("\x1b")));
+}
+
+constexpr const char* kTrace = "  traceRayEXT";
+
+class CheckReports : public Check {
+ protected:
+  // A program with the warning Q505 in line 11 or, with a suppression, in line 12.
+  void writeWideMask(const std::string& name, const std::string& comment) {
+    writeProgram(name, "payload.color", "sky.rmiss");
+    std::ifstream in(folder_ / name / "sky.rgen");
+    std::string text((std::istreambuf_iterator<char>(in)), {});
+    const std::size_t mask = text.find("0xFF");
+    ASSERT_NE(mask, std::string::npos) << text;
+    text.insert(mask + 2, "1");
+    if (!comment.empty()) text.insert(text.find(kTrace), comment + "\n");
+    write(folder_ / name / "sky.rgen", text);
+  }
+  nlohmann::json readJson(const std::string& name) {
+    std::ifstream in(folder_ / name);
+    return nlohmann::json::parse(in);
+  }
+};
+
+TEST_F(CheckReports, SuppressionsAreCountedAndListed) {
+  writeWideMask("wide", "");
+  const RunResult warned = quintet({"check", "wide", "--strict"});
+  EXPECT_EQ(warned.status, 1);
+  EXPECT_THAT(warned.err, HasSubstr("[Q505]"));
+  EXPECT_THAT(warned.err, HasSubstr("= fix: "));
+  writeWideMask("wide", "  // quintet: allow Q505 the low bits count");
+  EXPECT_EQ(quintet({"check", "wide", "--strict"}).err, "wide: clean (1 suppressed)\n");
+  const RunResult shown = quintet({"check", "wide", "--strict", "--show-suppressed"});
+  EXPECT_EQ(shown.status, 0);
+  EXPECT_THAT(shown.err, HasSubstr(": suppressed warning: "));
+  EXPECT_THAT(shown.err, HasSubstr(": the low bits count\n"));
+  const auto array = nlohmann::json::parse(quintet({"check", "wide", "--json"}).out);
+  ASSERT_EQ(array.size(), 1u);
+  EXPECT_EQ(array[0]["suppressed"]["reason"], "the low bits count");
+  // run does not print it either.
+  EXPECT_THAT(quintet({"run", "wide", "--size", "8x8", "-o", "out.png"}).err, Not(HasSubstr("Q505")));
+}
+
+TEST_F(CheckReports, ExplainPrintsThePages) {
+  writeWideMask("wide", "");
+  EXPECT_THAT(quintet({"check", "wide", "--explain"}).err, HasSubstr("\n# Q505: "));
+  EXPECT_THAT(quintet({"check", "wide"}).err, Not(HasSubstr("# Q505")));
+}
+
+TEST_F(CheckReports, Sarif) {
+  writeWideMask("wide", "");
+  const RunResult result = quintet({"check", "wide", "good", "--sarif", "out.sarif"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.err, HasSubstr("wide: 1 warning\n"));
+  const nlohmann::json log = readJson("out.sarif");
+  ASSERT_EQ(log["runs"][0]["results"].size(), 1u);
+  EXPECT_EQ(log["runs"][0]["results"][0]["ruleId"], "Q505");
+  const RunResult out = quintet({"check", "wide", "--sarif", "-"});
+  EXPECT_EQ(nlohmann::json::parse(out.out)["version"], "2.1.0");
+  expectError(quintet({"check", "wide", "--sarif", "-", "--json"}), 2, {"--sarif", "--json"});
+}
+
+TEST_F(CheckReports, Graph) {
+  EXPECT_EQ(quintet({"check", "good", "--graph", "out.json"}).status, 0);
+  EXPECT_EQ(readJson("out.json")["program"], "good");
+  EXPECT_THAT(quintet({"check", "good", "--graph", "-.svg"}).out, HasSubstr("</svg>"));
+  EXPECT_THAT(quintet({"check", "good", "--graph", "-.dot"}).out, HasSubstr("digraph"));
+  expectError(quintet({"check", "good", "--graph", "out.png"}), 2, {"out.png", ".svg"});
+  expectError(quintet({"check", "good", "ao", "--graph", "out.svg"}), 2, {"one program"});
+  writeProgram("bad", "payload.tint", "sky.rmiss");
+  const RunResult bad = quintet({"check", "bad", "--graph", "bad.svg"});
+  EXPECT_EQ(bad.status, 1);
+  EXPECT_THAT(bad.err, HasSubstr("bad.svg: not written"));
+}
+
+TEST_F(CheckReports, ColorIsChosenByTheOption) {
+  writeWideMask("wide", "");
+  EXPECT_THAT(quintet({"check", "wide", "--color", "always"}).err, HasSubstr("\x1b[1;35mwarning: "));
+  TerminalRun terminal({"check", "wide", "--color", "never"}, folder_.path());
+  EXPECT_THAT(terminal.finish().err, Not(HasSubstr("\x1b[1;35m")));
+  expectError(quintet({"check", "wide", "--color", "allways"}), 2, {"'allways'", "'always'"});
+}
+
+// The regular expression for GitHub and editors matches the first line of diagnostics and no other line.
+TEST_F(CheckReports, MatchTheProblemMatcher) {
+  std::ifstream in(std::filesystem::path(QUINTET_SOURCE_ROOT) / "docs/examples/github-problem-matcher.json");
+  const nlohmann::json pattern = nlohmann::json::parse(in)["problemMatcher"][0]["pattern"][0];
+  const std::regex expression(pattern["regexp"].get<std::string>());
+  writeWideMask("wide", "");
+  std::istringstream lines(quintet({"check", "wide"}).err);
+  std::vector<std::string> texts;
+  for (std::string line; std::getline(lines, line);) texts.push_back(line);
+  std::size_t matched = 0;
+  for (const std::string& line : texts) {
+    std::smatch match;
+    if (!std::regex_match(line, match, expression)) continue;
+    ++matched;
+    EXPECT_EQ(match[pattern["file"].get<std::size_t>()], "wide/sky.rgen");
+    EXPECT_EQ(match[pattern["severity"].get<std::size_t>()], "warning");
+    EXPECT_EQ(match[pattern["code"].get<std::size_t>()], "Q505");
+    EXPECT_GT(std::stoi(match[pattern["line"].get<std::size_t>()]), 5);
+  }
+  EXPECT_EQ(matched, 1u);
 }
 
 TEST_F(Check, InvalidCommandLines) {

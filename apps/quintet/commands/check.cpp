@@ -116,9 +116,7 @@ OptionTable declare(Options& options) {
         .help = "Colors in messages: auto (on a terminal), always, never (default: auto)",
         .target = &options.colorName,
         .candidates = {.names = {"auto", "always", "never"}}},
-       {.names = "--watch",
-        .help = "Keep running: check again whenever a file is saved",
-        .target = &options.watch},
+       {.names = "--watch", .help = "Keep running: check again whenever a file is saved", .target = &options.watch},
        {.names = "--strict", .help = "Exit with status 1 also for warnings", .target = &options.strict},
        {.names = "--instrument",
         .help = "Also render a small image with checks in the shaders (Q001 to Q007)",
@@ -176,11 +174,11 @@ void checkFiles(const Options& options) {
   if (!options.graph.empty()) {
     const std::string extension = graphExtension(options.graph);
     if (extension != ".svg" && extension != ".dot" && extension != ".json")
-      throw UsageError(fmt::format("--graph: {}: the file must end in .svg, .dot or .json",
-                                   printable(options.graph.string())));
+      throw UsageError(
+          fmt::format("--graph: {}: the file must end in .svg, .dot or .json", printable(options.graph.string())));
   }
-  const int outputs = (options.json ? 1 : 0) + (isStandardOutput(options.sarif) ? 1 : 0) +
-                      (isStandardOutput(options.graph) ? 1 : 0);
+  const int outputs =
+      (options.json ? 1 : 0) + (isStandardOutput(options.sarif) ? 1 : 0) + (isStandardOutput(options.graph) ? 1 : 0);
   if (outputs > 1) throw UsageError("--json, --sarif - and --graph -.svg exclude each other");
 }
 
@@ -276,8 +274,8 @@ void writeGraph(const Checked& checked, const Options& options, const shader::Co
   const std::filesystem::path file = isStandardOutput(options.graph) ? "-" : options.graph;
   std::optional<check::PipelineModel> model;
   if (checked.program)
-    model = check::describePipeline(*checked.program, compiler, checked.facts ? &*checked.facts : nullptr,
-                                    checked.result);
+    model =
+        check::describePipeline(*checked.program, compiler, checked.facts ? &*checked.facts : nullptr, checked.result);
   if (!model)
     printMessage(fmt::format("quintet: {}: not written, because the program does not compile",
                              printable(options.graph.string())));
@@ -293,9 +291,7 @@ void writeGraph(const Checked& checked, const Options& options, const shader::Co
 class ProgramChecks {
  public:
   explicit ProgramChecks(const Options& options)
-      : options_(options),
-        compiler_(job::makeCompiler(cacheFolder())),
-        limits_(job::limitsOfDevice(options.device)) {}
+      : options_(options), compiler_(job::makeCompiler(cacheFolder())), limits_(job::limitsOfDevice(options.device)) {}
 
   // Returns the exit status.
   int run() {
@@ -316,7 +312,8 @@ class ProgramChecks {
       suppressed.insert(suppressed.end(), result.suppressed.begin(), result.suppressed.end());
     }
     if (options_.json) writeFile("-", check::diagnosticsJson(all, suppressed));
-    if (!options_.sarif.empty()) writeFile(options_.sarif, check::sarifText(all, suppressed, sources(), QUINTET_VERSION));
+    if (!options_.sarif.empty())
+      writeFile(options_.sarif, check::sarifText(all, suppressed, sources(), QUINTET_VERSION));
     if (!options_.graph.empty()) writeGraph(checked_.front(), options_, compiler_);
     const bool warned = std::ranges::find(all, Severity::warning, &Diagnostic::severity) != all.end();
     return hasErrors(all) || (options_.strict && warned) ? kRuntimeError : 0;

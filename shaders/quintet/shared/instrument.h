@@ -13,6 +13,7 @@ QT_SHARED_BEGIN
 QT_CONSTANT kReportRay = 1u;      // Q001: origin, direction, tmin or tmax not finite, or direction 0
 QT_CONSTANT kReportDepth = 3u;    // Q003: a trace deeper than the pipeline's recursion depth (not executed)
 QT_CONSTANT kReportMiss = 4u;     // Q004: a miss index beyond the table (the trace is not executed)
+QT_CONSTANT kReportRecord = 36u;  // Q004 (modulo 16): a hit record beyond the table (the trace is not executed)
 QT_CONSTANT kReportSelfHit = 5u;  // Q005: a hit on the primitive just left, closer than the rounding error
 QT_CONSTANT kReportOutput = 7u;   // Q007: an output or a pixel outside of the film (not stored)
 QT_CONSTANT kReportCall = 20u;    // Q004 (modulo 16): a callable index beyond the table (the call is not executed)
@@ -26,11 +27,12 @@ struct InstrumentReport {
   uint depth;   // nesting depth of traces; 1: called by the ray generation shader
   uvec2 pixel;
   float distance;  // Q005
-  uint index;   // Q004: of the miss or callable shader; Q007: of the output
+  uint index;   // Q004: of the miss or callable shader, or offset + 16 · stride of the hit records; Q007: of the output
   vec3 origin;  // Q007: the pixel, relative to the film; negative values are too large as unsigned numbers
   vec3 direction;
+  vec2 interval;  // tmin, tmax of a trace
 };
-QT_SHARED_SIZE(InstrumentReport, 56);
+QT_SHARED_SIZE(InstrumentReport, 64);
 
 struct Instrument {
   uint reportCount;    // all, stored or not
@@ -43,9 +45,12 @@ struct Instrument {
   uint callableCount;  // in: number of callable shaders in the table
   uint depthLimit;     // in: recursion depth of the pipeline
   uint rays[16];        // executed traces by offset (modulo 16): by ray type
-  uint recordPairs[8];  // bit offset + 16 · stride: used by a trace (both taken modulo 16, as Vulkan does)
+  uint recordPairs[8];  // bit offset + 16 · stride: of a report Q004 (both taken modulo 16, as Vulkan does)
+  // in: for each of these pairs 8 bits, 4 pairs in a word: the masks of the instances for which the pair selects a hit
+  // record beyond the table
+  uint badRecords[64];
 };
-QT_SHARED_SIZE(Instrument, 132);
+QT_SHARED_SIZE(Instrument, 388);
 
 // The depth of the nested traces of each invocation follows.
 struct RecursionGuard {

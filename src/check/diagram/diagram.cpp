@@ -42,8 +42,7 @@ class Builder {
     diagram_.rays = model_.rays;
     std::string recursion = fmt::format("recursion depth {}", model_.recursionDepth);
     if (model_.declaredRecursion) recursion += fmt::format(" ({} declared)", *model_.declaredRecursion);
-    diagram_.facts.push_back(
-        fmt::format("{}, stack of at least {}", recursion, counted(model_.stackBytes, "byte")));
+    diagram_.facts.push_back(fmt::format("{}, stack of at least {}", recursion, counted(model_.stackBytes, "byte")));
     diagram_.facts.push_back(model_.scene.empty() ? "any scene" : "scene " + model_.scene);
   }
 
@@ -55,7 +54,8 @@ class Builder {
   }
 
   std::string diagnosticsOf(std::optional<std::size_t> stage, Indices others = {}) const {
-    if (stage) others.insert(others.end(), model_.stages[*stage].diagnostics.begin(), model_.stages[*stage].diagnostics.end());
+    if (stage)
+      others.insert(others.end(), model_.stages[*stage].diagnostics.begin(), model_.stages[*stage].diagnostics.end());
     return idsOf(others);
   }
 
@@ -147,8 +147,8 @@ class Builder {
     std::vector<const std::vector<HitUse>*> order;
     for (const HitUse& use : uses) {
       const PipelineModel::Hit& hit = model_.hits[use.hit];
-      std::vector<HitUse>& box = boxes[{hit.ray, hit.closestHit, hit.anyHit, hit.intersection, use.skipsClosestHit,
-                                        use.skipsAnyHit}];
+      std::vector<HitUse>& box =
+          boxes[{hit.ray, hit.closestHit, hit.anyHit, hit.intersection, use.skipsClosestHit, use.skipsAnyHit}];
       if (box.empty()) order.push_back(&box);
       box.push_back(use);
     }
@@ -188,12 +188,14 @@ class Builder {
   static std::string geometryText(const PipelineModel::Hit& hit) {
     if (hit.geometry.empty()) return "none in the scene";
     const std::size_t shown = std::min(hit.geometry.size(), kMaxNames);
-    std::string text = fmt::format("{}", fmt::join(hit.geometry.begin(), hit.geometry.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+    std::string text = fmt::format(
+        "{}", fmt::join(hit.geometry.begin(), hit.geometry.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
     if (shown < hit.geometry.size()) text += fmt::format(" and {} more", hit.geometry.size() - shown);
     return text;
   }
 
-  void addRecords(const std::vector<PipelineModel::Record>& records, NodeKind kind, std::map<std::size_t, std::size_t>& nodes) {
+  void addRecords(const std::vector<PipelineModel::Record>& records, NodeKind kind,
+                  std::map<std::size_t, std::size_t>& nodes) {
     const char* noun = kind == NodeKind::miss ? "miss" : "callable";
     for (std::size_t i = 0; i < records.size(); ++i) {
       const std::optional<std::size_t> stage = records[i].stage;
@@ -211,11 +213,13 @@ class Builder {
   template <class Site>
   void connect(const std::vector<Site>& sites, const Indices& nodes) {
     for (std::size_t i = 0; i < sites.size(); ++i) {
-      for (const std::size_t source : stageNodes_[sites[i].stage]) diagram_.edges.push_back({source, nodes[i], {}, true, {}});
+      for (const std::size_t source : stageNodes_[sites[i].stage])
+        diagram_.edges.push_back({source, nodes[i], {}, true, {}});
       std::map<std::size_t, DiagramEdge> edges;  // by node
       for (const PipelineModel::Target& target : sites[i].targets) {
         const std::size_t node = nodeOf(sites[i], target);
-        DiagramEdge& edge = edges.try_emplace(node, DiagramEdge{nodes[i], node, onlyRay(sites[i]), false, {}}).first->second;
+        DiagramEdge& edge =
+            edges.try_emplace(node, DiagramEdge{nodes[i], node, onlyRay(sites[i]), false, {}}).first->second;
         edge.exact = edge.exact || target.exact;
         if (edge.ids.empty()) edge.ids = idsOf(target.diagnostics);
       }
@@ -240,7 +244,7 @@ class Builder {
   Indices traceNodes_, callNodes_;
   std::map<HitUse, std::size_t> hitNodes_;
   std::map<std::size_t, std::size_t> missNodes_, callableNodes_;  // index in the model -> node
-  std::map<std::size_t, Indices> stageNodes_;                                // that run the stage
+  std::map<std::size_t, Indices> stageNodes_;                     // that run the stage
 };
 
 std::string dotString(std::string_view text) {
@@ -288,7 +292,8 @@ std::string dotText(const Diagram& diagram) {
   for (std::size_t i = 0; i < diagram.nodes.size(); ++i) {
     const DiagramNode& node = diagram.nodes[i];
     std::vector<std::string> rows{node.title};
-    for (const DiagramNode::Row& row : node.rows) rows.push_back(row.label.empty() ? row.text : row.label + ": " + row.text);
+    for (const DiagramNode::Row& row : node.rows)
+      rows.push_back(row.label.empty() ? row.text : row.label + ": " + row.text);
     if (!node.ids.empty()) rows.push_back(node.ids);
     text += fmt::format("  n{} [label=\"{}\", fillcolor=\"{}\"{}{}];\n", i, lines(rows), dotColor(node.kind),
                         node.ids.empty() ? "" : ", ", node.ids.empty() ? "" : kHighlight);

@@ -154,8 +154,7 @@ class LayeredLayout {
       }
     }
     for (int sweep = 0; sweep < kPositionSweeps; ++sweep)
-      for (std::size_t i = 0; i < layers_.size(); ++i)
-        placeLayer(layers_[sweep % 2 == 0 ? i : layers_.size() - 1 - i]);
+      for (std::size_t i = 0; i < layers_.size(); ++i) placeLayer(layers_[sweep % 2 == 0 ? i : layers_.size() - 1 - i]);
     double top = 0;
     for (std::size_t vertex = 0; vertex < layer_.size(); ++vertex)
       top = std::min(top, center_[vertex] - 0.5 * heights_[vertex]);
@@ -257,7 +256,8 @@ class LayeredLayout {
 
 }  // namespace
 
-Layout layoutLayers(const std::vector<LayoutSize>& nodes, const std::vector<LayoutEdge>& edges, const LayoutGaps& gaps) {
+Layout layoutLayers(const std::vector<LayoutSize>& nodes, const std::vector<LayoutEdge>& edges,
+                    const LayoutGaps& gaps) {
   return LayeredLayout(nodes, edges, gaps).run();
 }
 

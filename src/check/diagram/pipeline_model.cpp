@@ -263,10 +263,9 @@ Json locationJson(const SourceLocation& location) {
 Json targetsJson(const std::vector<PipelineModel::Target>& targets) {
   Json array = Json::array();
   for (const PipelineModel::Target& target : targets) {
-    const char* list = target.role == Role::miss       ? "misses"
-                       : target.role == Role::callable ? "callables"
-                                                       : "hits";
-    array.push_back({{"list", list}, {"index", target.index}, {"exact", target.exact}, {"diagnostics", target.diagnostics}});
+    const char* list = target.role == Role::miss ? "misses" : target.role == Role::callable ? "callables" : "hits";
+    array.push_back(
+        {{"list", list}, {"index", target.index}, {"exact", target.exact}, {"diagnostics", target.diagnostics}});
   }
   return array;
 }
@@ -306,20 +305,21 @@ std::string pipelineJson(const PipelineModel& model) {
   json["callables"] = recordsJson(model.callables);
   for (const char* list : {"traces", "calls"}) json[list] = Json::array();
   for (const PipelineModel::Trace& trace : model.traces)
-    json["traces"].push_back({{"stage", trace.stage},
-                              {"location", locationJson(trace.location)},
-                              {"rays", trace.rays},
-                              {"flags", trace.flags},
-                              {"mask", trace.mask},
-                              {"offset", trace.offset},
-                              {"stride", trace.stride},
-                              {"miss", trace.miss},
-                              {"payload", {{"name", trace.payload}, {"type", trace.payloadType}, {"bytes", trace.payloadBytes}}},
-                              {"inLoop", trace.inLoop},
-                              {"skipsClosestHit", trace.skipsClosestHit},
-                              {"skipsAnyHit", trace.skipsAnyHit},
-                              {"targets", targetsJson(trace.targets)},
-                              {"diagnostics", trace.diagnostics}});
+    json["traces"].push_back(
+        {{"stage", trace.stage},
+         {"location", locationJson(trace.location)},
+         {"rays", trace.rays},
+         {"flags", trace.flags},
+         {"mask", trace.mask},
+         {"offset", trace.offset},
+         {"stride", trace.stride},
+         {"miss", trace.miss},
+         {"payload", {{"name", trace.payload}, {"type", trace.payloadType}, {"bytes", trace.payloadBytes}}},
+         {"inLoop", trace.inLoop},
+         {"skipsClosestHit", trace.skipsClosestHit},
+         {"skipsAnyHit", trace.skipsAnyHit},
+         {"targets", targetsJson(trace.targets)},
+         {"diagnostics", trace.diagnostics}});
   for (const PipelineModel::Call& call : model.calls)
     json["calls"].push_back({{"stage", call.stage},
                              {"location", locationJson(call.location)},

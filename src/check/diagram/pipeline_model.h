@@ -29,7 +29,7 @@ struct PipelineModel {
   struct Hit {
     std::string group, ray;
     std::optional<std::size_t> closestHit, anyHit, intersection;  // stages
-    std::string record;                                           // "tint=0.85,0.35,0.15 stripes=4"; empty without fields
+    std::string record;                 // "tint=0.85,0.35,0.15 stripes=4"; empty without fields
     std::vector<std::string> binding;   // "material 'glass'"; empty if the group is bound to nothing
     std::vector<std::string> geometry;  // of the scene, that uses the group; empty without a scene
     Indices diagnostics;                // whose location is the line of the hit group
@@ -53,9 +53,9 @@ struct PipelineModel {
   struct Trace {
     std::size_t stage = 0;
     SourceLocation location;
-    Indices rays;                                    // ray types that it can select
-    std::string flags, mask, offset, stride, miss;   // values, or "not constant"
-    std::string payload, payloadType;                // names
+    Indices rays;                                   // ray types that it can select
+    std::string flags, mask, offset, stride, miss;  // values, or "not constant"
+    std::string payload, payloadType;               // names
     std::uint64_t payloadBytes = 0;
     bool inLoop = false;
     bool skipsClosestHit = false, skipsAnyHit = false;  // always, because of the flags

@@ -183,8 +183,9 @@ class Drawing {
     const LayoutPoint a = shifted(points[points.size() - 2]), b = shifted(points.back());
     const double width = static_cast<double>(columnsOf(ids)) * kCharacter + 6;
     const LayoutPoint middle{0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
-    body_ += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"16\" rx=\"3\" fill=\"#ffffff\" stroke=\"{}\"/>\n",
-                         middle.x - 0.5 * width, middle.y - 8, width, kHighlight);
+    body_ += fmt::format(
+        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"16\" rx=\"3\" fill=\"#ffffff\" stroke=\"{}\"/>\n",
+        middle.x - 0.5 * width, middle.y - 8, width, kHighlight);
     body_ += textAt(middle.x - 0.5 * width + 3, middle.y + 4, ids, kHighlight, true);
   }
 
@@ -206,7 +207,8 @@ class Drawing {
       // Spaces at the start of a label are an indentation.
       const std::size_t indent = std::min(line.label.find_first_not_of(' '), line.label.size());
       if (!line.label.empty())
-        body_ += textAt(at.x + kPadding + static_cast<double>(indent) * kCharacter, y, line.label.substr(indent), kFaint);
+        body_ +=
+            textAt(at.x + kPadding + static_cast<double>(indent) * kCharacter, y, line.label.substr(indent), kFaint);
       body_ += textAt(at.x + kPadding + static_cast<double>(line.column) * kCharacter, y, line.text);
     }
     if (marked) body_ += textAt(at.x + kPadding, y + kLine, node.ids, kHighlight, true);
@@ -215,7 +217,8 @@ class Drawing {
   void drawDiagnostics() {
     const auto columns = static_cast<std::size_t>((width_ - 2 * kMargin) / kCharacter);
     for (const std::string& diagnostic : diagram_.diagnostics)
-      for (const std::string& line : linesOf(diagnostic, columns)) body_ += textAt(kMargin, y_ += kLine, line, kHighlight);
+      for (const std::string& line : linesOf(diagnostic, columns))
+        body_ += textAt(kMargin, y_ += kLine, line, kHighlight);
   }
 
   std::string document() const {
@@ -229,7 +232,8 @@ class Drawing {
           color.substr(1), color);
     const double height = y_ + kMargin;
     return fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
+        "{1:.0f}\" "
         "font-family=\"ui-monospace, Menlo, Consolas, 'DejaVu Sans Mono', 'Liberation Mono', monospace\" "
         "font-size=\"{2}\">\n<title>{3}</title>\n<defs>\n{4}</defs>\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{5}</svg>\n",

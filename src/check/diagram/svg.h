@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A diagram as a picture: SVG 1.1 with its own colors, which needs neither scripts nor fonts beyond a monospaced one.
+// A diagram as an image: SVG 1.1 with its own colors, which needs neither scripts nor fonts beyond a monospaced one.
 #ifndef QUINTET_CHECK_DIAGRAM_SVG_H
 #define QUINTET_CHECK_DIAGRAM_SVG_H
 

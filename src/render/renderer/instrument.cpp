@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "base/plural.h"
+#include "render/renderer/trace_location.h"
 
 namespace quintet::render {
 namespace {
@@ -49,13 +50,48 @@ int callLine(const program::Program& program, const std::string& file, std::uint
   return endsBefore ? 0 : static_cast<int>(line);
 }
 
+// What is wrong with a ray (kReportRay).
+std::string_view problemOf(const shared::InstrumentReport& ray) {
+  const auto finite = [](const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+  if (!finite(ray.origin)) return "its origin is not finite";
+  if (!finite(ray.direction)) return "its direction is not finite";
+  if (ray.direction == vec3(0)) return "its direction is 0";
+  if (std::isnan(ray.interval.x) || std::isnan(ray.interval.y)) return "its interval is not a number";
+  return ray.interval.x < 0 ? "tmin is negative" : "tmin is greater than tmax";
+}
+
+// The first instance that uses a hit record beyond the table with an offset and a stride (offset + 16 * stride).
+struct BadRecord {
+  const program::InstanceFacts* instance = nullptr;  // null if there is none
+  std::uint64_t record = 0;
+};
+
+BadRecord findBadRecord(std::uint32_t pair, const program::SceneFacts& facts, std::size_t rayCount, auto&& visit) {
+  const std::uint32_t offset = pair % 16, stride = pair / 16;
+  for (const program::InstanceFacts& instance : facts.instances) {
+    if (instance.geometryCount == 0) continue;
+    const std::uint64_t record =
+        std::uint64_t{instance.firstGeometry} * rayCount + std::uint64_t{instance.geometryCount - 1} * stride + offset;
+    if (record >= std::uint64_t{facts.geometries.size()} * rayCount && visit(instance)) return {&instance, record};
+  }
+  return {};
+}
+
+std::string describeRecord(std::uint32_t pair, const program::SceneFacts& facts, std::size_t rayCount) {
+  const BadRecord bad = findBadRecord(pair, facts, rayCount, [](const auto&) { return true; });
+  return fmt::format(
+      "with offset {} and stride {}, this trace uses hit record {} for instance '{}', but the table has {}", pair % 16,
+      pair / 16, bad.record, bad.instance ? bad.instance->name : "", facts.geometries.size() * rayCount);
+}
+
 std::string describe(const shared::InstrumentReport& report, const shared::Instrument& counts,
                      const program::Program& program) {
   const std::string where = fmt::format("pixel {}, {}, depth {}", report.pixel.x, report.pixel.y, report.depth);
   switch (report.kind) {
     case shared::kReportRay:
-      return fmt::format("the ray is invalid: origin {}, direction {} ({})", vectorText(report.origin),
-                         vectorText(report.direction), where);
+      return fmt::format("the ray is invalid, because {}: origin {}, direction {}, t in [{:g}, {:g}] ({})",
+                         problemOf(report), vectorText(report.origin), vectorText(report.direction), report.interval.x,
+                         report.interval.y, where);
     case shared::kReportMiss:
       return fmt::format("miss index {} is beyond the {} miss shaders of the table; the trace was not executed ({})",
                          report.index, counts.missCount, where);
@@ -81,7 +117,8 @@ std::string describe(const shared::InstrumentReport& report, const shared::Instr
 }
 
 // Adds the reports, one diagnostic for each kind and source location.
-void addReports(const InstrumentData& data, const program::RunnableProgram& runnable, std::vector<Diagnostic>& result) {
+void addReports(const InstrumentData& data, const program::RunnableProgram& runnable, const program::SceneFacts& facts,
+                std::vector<Diagnostic>& result) {
   const program::Program& program = runnable.description;
   struct Location {
     std::uint32_t count = 0;
@@ -98,53 +135,56 @@ void addReports(const InstrumentData& data, const program::RunnableProgram& runn
     const std::vector<program::CompiledProgram::Stage>& stages = runnable.compiled.stages;
     const std::string file =
         sourceFile(program, first.stage < stages.size() ? stages[first.stage].file : program.rayGeneration);
-    std::string text = describe(first, data.counts, program);
+    std::string text = first.kind == shared::kReportRecord
+                           ? fmt::format("{}; it was not executed (pixel {}, {}, depth {})",
+                                         describeRecord(first.index, facts, program.rays.size()), first.pixel.x,
+                                         first.pixel.y, first.depth)
+                           : describe(first, data.counts, program);
     if (location.count > 1)
       text += fmt::format("; {}{} such {}", data.counts.reportCount > shared::kInstrumentReports ? "at least " : "",
                           location.count,
                           first.kind == shared::kReportCall     ? "calls"
                           : first.kind == shared::kReportOutput ? "stores"
                                                                 : "traces");
-    result.push_back({first.kind == shared::kReportSelfHit ? Severity::warning : Severity::error, program.path(file),
-                      callLine(program, file, first.line, callOf(first)), 0, fmt::format("Q00{}", first.kind % 16),
-                      text});
+    const std::string_view call = callOf(first);
+    SourceLocation at = call == "traceRayEXT" ? traceLocation(runnable, first.stage, first.line) : SourceLocation{};
+    if (at.line == 0) at = {program.path(file), callLine(program, file, first.line, call), 0};
+    result.push_back({first.kind == shared::kReportSelfHit ? Severity::warning : Severity::error, at.file, at.line,
+                      at.column, fmt::format("Q00{}", first.kind % 16), text, {}});
   }
 }
 
-// Adds a diagnostic Q004 for each combination of offset and stride that exceeds the hit records of the table.
-void addRecords(const shared::Instrument& counts, const program::Program& program, const program::SceneFacts& facts,
+// Adds the reports of hit records that were only counted.
+void addRecords(const InstrumentData& data, const program::Program& program, const program::SceneFacts& facts,
                 std::vector<Diagnostic>& result) {
-  const auto rays = static_cast<std::uint32_t>(program.rays.size());
-  const std::uint64_t records = std::uint64_t{facts.geometries.size()} * rays;
-  const std::string file = program.path(sourceFile(program, program.rayGeneration));
+  const std::uint32_t stored = std::min(data.counts.reportCount, shared::kInstrumentReports);
   for (std::uint32_t pair = 0; pair < 256; ++pair) {
-    if ((counts.recordPairs[pair / 32] >> (pair % 32) & 1u) == 0) continue;
-    const std::uint32_t offset = pair % 16, stride = pair / 16;
-    for (const program::InstanceFacts& instance : facts.instances) {
-      if (instance.geometryCount == 0) continue;
-      const std::uint64_t record =
-          std::uint64_t{instance.firstGeometry} * rays + std::uint64_t{instance.geometryCount - 1} * stride + offset;
-      if (record < records) continue;
-      result.push_back(
-          {Severity::error, file, 0, 0, "Q004",
-           fmt::format(
-               "a trace with offset {} and stride {} uses hit record {} for instance '{}', but the table has {}",
-               offset, stride, record, instance.name, records)});
-      break;
-    }
+    if ((data.counts.recordPairs[pair / 32] >> (pair % 32) & 1u) == 0) continue;
+    const bool known =
+        std::ranges::any_of(std::span(data.reports, stored), [&](const shared::InstrumentReport& report) {
+          return report.kind == shared::kReportRecord && report.index == pair;
+        });
+    if (!known)
+      result.push_back({Severity::error, program.path(sourceFile(program, program.rayGeneration)), 0, 0, "Q004",
+                        describeRecord(pair, facts, program.rays.size())});
   }
 }
 
 }  // namespace
 
 InstrumentBuffer::InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit,
-                                   const program::Program& program) {
+                                   const program::Program& program, const program::SceneFacts& facts) {
   std::vector<std::byte> bytes(sizeof(InstrumentData) + pixels * sizeof(shared::InstrumentPixel));
   auto& header = *reinterpret_cast<shared::Instrument*>(bytes.data());
   header.pixelCount = static_cast<std::uint32_t>(pixels);
   header.depthLimit = depthLimit;
   header.missCount = static_cast<std::uint32_t>(program::missShaders(program).size());
   header.callableCount = static_cast<std::uint32_t>(program.callables.size());
+  for (std::uint32_t pair = 0; pair < 256; ++pair)
+    findBadRecord(pair, facts, program.rays.size(), [&](const program::InstanceFacts& instance) {
+      header.badRecords[pair / 4] |= (instance.mask & 0xFFu) << (8 * (pair % 4));
+      return false;
+    });
   buffer_ = gpu::makeBuffer(context, bytes, 0, "instrument");
 }
 
@@ -174,8 +214,8 @@ std::vector<Diagnostic> instrumentDiagnostics(const InstrumentData& data, const 
   std::vector<Diagnostic> result;
   const program::Program& program = runnable.description;
   const shared::Instrument& counts = data.counts;
-  addReports(data, runnable, result);
-  addRecords(counts, program, facts, result);
+  addReports(data, runnable, facts, result);
+  addRecords(data, program, facts, result);
   if (counts.anyHitCount > 0)
     result.push_back(
         {Severity::note, program.path(sourceFile(program, program.rayGeneration)), 0, 0, "Q006",

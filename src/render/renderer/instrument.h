@@ -21,9 +21,10 @@ struct InstrumentData {
 
 class InstrumentBuffer {
  public:
-  // `pixels` is the number of pixels of the film, and `depthLimit` the recursion depth of the pipeline.
+  // `pixels` is the number of pixels of the film, and `depthLimit` the recursion depth of the pipeline. The shader binding
+  // table has the shaders of `program`, and hit records of `facts` for each ray type.
   InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit,
-                   const program::Program& program);
+                   const program::Program& program, const program::SceneFacts& facts);
   shared::Address address() const { return buffer_.address(); }
   InstrumentData download() const;  // blocks
 

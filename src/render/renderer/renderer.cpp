@@ -41,7 +41,7 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
                    description.anyHitForAll);
   if (settings_.instrument)
     instrument_.emplace(context_, std::uint64_t{settings_.region.width} * settings_.region.height,
-                        linked_.recursionDepth(), description);
+                        linked_.recursionDepth(), description, scene.facts());
   if (runnable_.countsRecursion) recursion_.emplace(context_, settings_.region);
   uploadFrame();
   parameterBuffer_ =

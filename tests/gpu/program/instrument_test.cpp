@@ -78,17 +78,35 @@ TEST(Instrument, ReportsRaysThatAreNotFinite) {
   EXPECT_NE(notes[0].text.find("16 such"), std::string::npos) << notes[0].text;
 }
 
-// The line of a trace in an included file is not a line of the program, so it is not reported: here line 2 of both files.
-TEST(Instrument, ReportsNoLineForATraceInAnIncludedFile) {
+// A trace in an included file, in a line that the program also has.
+TEST(Instrument, ReportsTheFileOfATraceInAnIncludedFile) {
   const std::string text = kCommon + "void side() { vec2 unused = vec2(0.0); }\n#include \"far.glsl\"\n" +
                            rayGeneration("far(eye, 0.0 * d);") + kHit + kMiss;
   const std::string far = "void far(vec3 o, vec3 d) {\n" + trace("o", "d") + " }\n";
   const program::Program program = program::parseLecture(text, "demo.rt.glsl", "here", {{"far.glsl", far}});
-  EXPECT_EQ(idsOf(notesOf(program, job::loadScene(job::chooseSceneSource({}, program)))), "Q001:0");
+  const auto notes = notesOf(program, job::loadScene(job::chooseSceneSource({}, program)));
+  EXPECT_EQ(idsOf(notes), "Q001:2");
+  ASSERT_FALSE(notes.empty());
+  EXPECT_EQ(notes[0].file, "here/far.glsl");
 }
 
 TEST(Instrument, ReportsRaysWithoutDirection) {
-  EXPECT_EQ(idsOf(notesOf(kCommon + rayGeneration(trace("eye", "0.0 * d")) + kHit + kMiss)), "Q001:2");
+  const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "0.0 * d")) + kHit + kMiss);
+  EXPECT_EQ(idsOf(notes), "Q001:2");
+  ASSERT_FALSE(notes.empty());
+  EXPECT_NE(notes[0].text.find("its direction is 0: "), std::string::npos) << notes[0].text;
+  EXPECT_NE(notes[0].text.find("t in [0, 100]"), std::string::npos) << notes[0].text;
+}
+
+// The offset is not a constant, so only the run finds that the table has no such record.
+TEST(Instrument, ReportsHitRecordsOutOfRange) {
+  const auto notes =
+      notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" +
+              rayGeneration("\ntraceRayEXT(topLevelAS, 0u, 0xFFu, uint(which), 1u, 0u, eye, 0.0, d, 100.0, 0);") +
+              kHit + kMiss);
+  EXPECT_EQ(idsOf(notes), "Q004:4");
+  ASSERT_FALSE(notes.empty());
+  EXPECT_NE(notes[0].text.find("with offset 7 and stride 1"), std::string::npos) << notes[0].text;
 }
 
 TEST(Instrument, ReportsOutputsThatAreNotFinite) {

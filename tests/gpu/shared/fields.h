@@ -119,11 +119,11 @@ GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlo
            rayRecords, instrument, outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth,
            filmHeight, lightCount, environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount,
            plannedSamples, lightNodes, previousInstances);
-GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction);
+GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction, interval);
 GPU_FIELDS(RecursionGuard, cutCount);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, callableCount,
-           depthLimit, rays, recordPairs);
+           depthLimit, rays, recordPairs, badRecords);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
 GPU_FIELDS(NotFinite, count, first);

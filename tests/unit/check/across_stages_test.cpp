@@ -268,10 +268,23 @@ TEST(CheckUnused, Q802ReportsHitGroupsWithoutGeometry) {
   const program::SceneFacts scene = sceneWith({kStone, kLeaf});
   const Files bound = edited(files, "program.toml", "name = \"more\"", "name = \"more\"\nmaterial = \"leef\"");
   EXPECT_TRUE(reportsOnly(textOf(checkFiles(bound, &scene)), "Q802 program.toml:17:0 ",
-                          {"hit group 'more'", "scene.glb has no material 'leef'"}));
+                          {"hit group 'more'", "scene.glb has no material 'leef' (did you mean 'leaf'?)"}));
   EXPECT_EQ(textOf(checkFiles(bound)), "");
   const program::SceneFacts other = sceneWith({kStone, {program::GeometryKind::triangles, true, "tree", "leef"}});
   EXPECT_THAT(textOf(checkFiles(bound, &other)), Not(HasSubstr("Q802")));
+}
+
+// The boxes of glass use the group for triangles, because the name of their material is misspelled.
+TEST(CheckUnused, Q802IsReportedInsteadOfItsConsequences) {
+  Files files = boxFiles();
+  files["program.toml"] = changed(files["program.toml"], "geometry = \"procedural\"", "material = \"glas\"");
+  const program::SceneFacts scene = sceneWith({kLeaf, kBalls});
+  EXPECT_TRUE(reportsOnly(textOf(checkFiles(files, &scene)), "Q802 program.toml:17:0 ",
+                          {"no material 'glas' (did you mean 'glass'?)"}));
+  // Without a near name, both are reported.
+  const Files other = edited(files, "program.toml", "\"glas\"", "\"wood\"");
+  EXPECT_TRUE(reports(textOf(checkFiles(other, &scene)), "Q802 program.toml:17:0 ", {"'wood'"}));
+  EXPECT_TRUE(reports(textOf(checkFiles(other, &scene)), "Q601 program.toml:14:0 ", {"'balls'"}));
 }
 
 TEST(Check, ListsReachableStages) {

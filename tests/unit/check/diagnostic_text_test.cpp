@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "check/catalog.h"
+
 namespace quintet::check {
 namespace {
 
@@ -17,11 +19,61 @@ SourceLookup oneFile(std::string text) {
 }
 
 TEST(DiagnosticText, HasASourceLineAndACaret) {
-  const std::vector<Diagnostic> one{{Severity::error, "a.rgen", 2, 3, "Q101", "bad thing"}};
+  const std::vector<Diagnostic> one{{Severity::error, "a.rgen", 2, 3, "GLSL", "bad thing"}};
   EXPECT_EQ(diagnosticsText(one, oneFile("first\n\tsecond\nthird\n")),
-            "a.rgen:2:3: error: bad thing [Q101]\n"
+            "a.rgen:2:3: error: bad thing [GLSL]\n"
             "    2 | \tsecond\n"
             "      | \t ^\n");
+}
+
+TEST(DiagnosticText, ShowsBothEndsReasonAndFix) {
+  Diagnostic d{Severity::error, "a.rgen", 2, 1, "Q101", "bad thing"};
+  d.related = {{"a.rgen", 1, 3, "sent here"}, {"b.rmiss", 7, 0, "received here"}};
+  const DiagnosticInfo& info = *findDiagnostic("Q101");
+  EXPECT_EQ(diagnosticsText({d, {Severity::error, "", 0, 0, "Q101", "again"}}, oneFile("first\nsecond\n")),
+            "a.rgen:2:1: error: bad thing [Q101]\n"
+            "    2 | second\n"
+            "      | ^\n"
+            "a.rgen:1:3: note: sent here\n"
+            "    1 | first\n"
+            "      |   ^\n"
+            "b.rmiss:7: note: received here\n"
+            "      = why: " +
+                std::string(info.why) + "\n      = fix: " + std::string(info.fix) +
+                "\nerror: again [Q101]\n");  // the reason appears once
+}
+
+TEST(DiagnosticText, PrintsPagesOnRequest) {
+  const std::string text =
+      diagnosticsText({{Severity::warning, "", 0, 0, "Q604", "odd"}, {Severity::warning, "", 0, 0, "Q604", "too"}},
+                      sourcesOnDisk(), {.explain = true});
+  const std::size_t page = text.find("\n# Q604: ");
+  ASSERT_NE(page, std::string::npos);
+  EXPECT_EQ(text.find("# Q604: ", page + 2), std::string::npos);
+  EXPECT_GT(page, text.find("warning: too"));
+}
+
+TEST(DiagnosticText, BreaksLinesOfATerminal) {
+  const std::string text =
+      diagnosticsText({{Severity::warning, "a.rgen", 1, 0, "Q604", "one two three four five six"}},
+                      oneFile("a line of the source that is longer than the terminal"), {.width = 40});
+  EXPECT_TRUE(
+      text.starts_with("a.rgen:1: warning: one two three four\n  five six [Q604]\n"
+                       "    1 | a line of the source that is longer than the terminal\n"
+                       "      = why: "))
+      << text;
+  EXPECT_NE(text.find("\n             "), std::string::npos) << text;
+}
+
+TEST(DiagnosticText, ListsSuppressedDiagnostics) {
+  const Diagnostic d{Severity::warning, "a.rgen", 4, 3, "Q604", "odd"};
+  const std::vector<SuppressedDiagnostic> suppressed{{d, {"a.rgen", 3, 1}, "solid"}, {d, {"a.rgen", 3, 1}, ""}};
+  EXPECT_EQ(suppressedText(suppressed),
+            "a.rgen:4:3: suppressed warning: odd [Q604], allowed in line 3: solid\n"
+            "a.rgen:4:3: suppressed warning: odd [Q604], allowed in line 3\n");
+  const auto json = nlohmann::json::parse(diagnosticsJson({}, suppressed));
+  EXPECT_EQ(json[0]["suppressed"]["reason"], "solid");
+  EXPECT_EQ(json[0]["suppressed"]["line"], 3);
 }
 
 TEST(DiagnosticText, OmitsTheCaretWithoutAColumn) {

@@ -70,9 +70,8 @@ TEST(PipelineModel, HasCallsAndRecords) {
 
 // The edge from the trace to the miss shader with another payload, and nothing else.
 TEST(PipelineModel, MarksTheEdgeOfADiagnostic) {
-  const nlohmann::json json =
-      jsonOf(edited(cleanFiles(), "sky.rmiss", "struct Payload { vec3 color; float t; };",
-                    "struct Payload { vec3 color; int t; };"));
+  const nlohmann::json json = jsonOf(edited(cleanFiles(), "sky.rmiss", "struct Payload { vec3 color; float t; };",
+                                            "struct Payload { vec3 color; float t; float more; };"));
   ASSERT_EQ(json["diagnostics"].size(), 1u) << json["diagnostics"];
   const nlohmann::json& targets = json["traces"][0]["targets"];
   EXPECT_EQ(targets[0]["diagnostics"], nlohmann::json::array());
@@ -81,7 +80,7 @@ TEST(PipelineModel, MarksTheEdgeOfADiagnostic) {
 }
 
 TEST(PipelineModel, ExistsOnlyForProgramsThatCompile) {
-  const Files files = edited(cleanFiles(), "sky.rmiss", "payload.color", "payload.colour");
+  const Files files = edited(cleanFiles(), "sky.rmiss", "payload.color", "payload.tint");
   const program::Program program = program::parseProgram(files.at("program.toml"), "demo", "folder/demo", files);
   EXPECT_FALSE(describePipeline(program, checkCompiler(), nullptr, {}));
 }
@@ -105,8 +104,9 @@ TEST(Diagram, WritesDot) {
 
 TEST(Diagram, WritesSvg) {
   Files files = edited(cleanFiles(), "sky.rmiss", "struct Payload { vec3 color; float t; };",
-                       "struct Payload { vec3 color; int t; };");
-  files["program.toml"] = changed(files["program.toml"], "name = \"surface\"", "name = \"surface\"\nmaterial = \"a<b&c\"");
+                       "struct Payload { vec3 color; float t; float more; };");
+  files["program.toml"] =
+      changed(files["program.toml"], "name = \"surface\"", "name = \"surface\"\nmaterial = \"a<b&c\"");
   const std::string svg = svgText(diagramOf(modelOf(files)));
   EXPECT_TRUE(svg.starts_with("<svg xmlns="));
   EXPECT_TRUE(svg.ends_with("</svg>\n"));

@@ -71,8 +71,7 @@ TEST(LayeredLayout, NeitherBoxesNorLinesOverlap) {
     for (const std::vector<LayoutPoint>& path : layout.edges)
       for (std::size_t i = 1; i + 1 < path.size(); i += 2)
         for (std::size_t node = 0; node < count; ++node)
-          EXPECT_FALSE(overlap(layout.nodes[node], nodes[node],
-                               {std::min(path[i].x, path[i + 1].x), path[i].y},
+          EXPECT_FALSE(overlap(layout.nodes[node], nodes[node], {std::min(path[i].x, path[i + 1].x), path[i].y},
                                {std::abs(path[i].x - path[i + 1].x), 0}))
               << "graph " << graph;
   }

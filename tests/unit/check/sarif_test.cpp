@@ -10,7 +10,8 @@
 namespace quintet::check {
 namespace {
 
-nlohmann::json sarif(const std::vector<Diagnostic>& diagnostics, const std::vector<SuppressedDiagnostic>& suppressed = {}) {
+nlohmann::json sarif(const std::vector<Diagnostic>& diagnostics,
+                     const std::vector<SuppressedDiagnostic>& suppressed = {}) {
   const SourceLookup sources = [](const std::string& file) {
     return file == "a b.rgen" ? std::optional<std::string>("\xc3\xa4\xc3\xb6 trace\n") : std::nullopt;
   };
@@ -65,8 +66,8 @@ TEST(Sarif, HasBothLocations) {
 }
 
 TEST(Sarif, OmitsUnknownLocations) {
-  const nlohmann::json results =
-      sarif({{Severity::error, "x.rgen", 0, 0, "Q001", "bad"}, {Severity::note, "", 0, 0, "", "so"}})["runs"][0]["results"];
+  const nlohmann::json results = sarif(
+      {{Severity::error, "x.rgen", 0, 0, "Q001", "bad"}, {Severity::note, "", 0, 0, "", "so"}})["runs"][0]["results"];
   EXPECT_FALSE(results[0]["locations"][0]["physicalLocation"].contains("region"));
   EXPECT_TRUE(results[1]["locations"].empty());
   EXPECT_FALSE(results[1].contains("ruleId"));

@@ -89,10 +89,12 @@ TEST(CheckSuppression, MovesAcceptedDiagnosticsToTheirOwnList) {
 }
 
 TEST(CheckSuppression, Q803ReportsUnusedSuppressions) {
-  EXPECT_TRUE(reportsOnly(checkEdited(cleanFiles(), "main.rgen", "  traceRayEXT", "  // quintet: allow Q505\n  traceRayEXT"),
-                          "Q803 main.rgen:10:3 ", {"Q505", "line 11"}));
+  EXPECT_TRUE(
+      reportsOnly(checkEdited(cleanFiles(), "main.rgen", "  traceRayEXT", "  // quintet: allow Q505\n  traceRayEXT"),
+                  "Q803 main.rgen:10:3 ", {"Q505", "line 11"}));
   // Only a run or a device can give these.
-  EXPECT_EQ(checkEdited(cleanFiles(), "main.rgen", "  traceRayEXT", "  // quintet: allow Q005, Q901\n  traceRayEXT"), "");
+  EXPECT_EQ(checkEdited(cleanFiles(), "main.rgen", "  traceRayEXT", "  // quintet: allow Q005, Q901\n  traceRayEXT"),
+            "");
 }
 
 TEST(CheckSuppression, Q804ReportsInvalidSuppressions) {
@@ -109,7 +111,9 @@ TEST(CheckSuppression, CannotHideErrors) {
 
 TEST(CheckSuppression, WorksInDescriptions) {
   Files files = cleanFiles();
-  files["program.toml"] += "\n# quintet: allow Q802 for scenes with glass\n[[hit_group]]\nname = \"glass\"\nmaterial = \"glass\"\n";
+  files["program.toml"] +=
+      "\n# quintet: allow Q802 for scenes with glass\n[[hit_group]]\nname = \"glass\"\nmaterial = \"glass\"\n"
+      "primary = { closest_hit = \"surface.rchit\" }\n";
   const program::SceneFacts scene = sceneWith({{program::GeometryKind::triangles, true, "tree", "leaf"}});
   const CheckResult result = checkFiles(files, &scene);
   EXPECT_EQ(textOf(result), "");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -108,6 +109,23 @@ INSTANTIATE_TEST_SUITE_P(All, LibraryHeader, testing::ValuesIn(headers()), [](co
       name, [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
   return name;
 });
+
+// All headers of a stage in a few random orders, except pcg.glsl, which replaces sobol.glsl.
+TEST(LibraryHeaders, CompileInAnyOrder) {
+  std::mt19937 random(13);
+  for (const Stage stage : kRayTracingStages) {
+    std::vector<std::string> includes;
+    for (const std::string& header : headers())
+      if (const std::vector<Stage> stages = stagesOf(header);
+          header != "quintet/sampling/pcg.glsl" && std::ranges::find(stages, stage) != stages.end())
+        includes.push_back(header);
+    for (int order = 0; order < 3; ++order) {
+      std::ranges::shuffle(includes, random);
+      EXPECT_EQ(errorsWith(includes, stage), "")
+          << shader::stageName(stage) << ": " << testing::PrintToString(includes);
+    }
+  }
+}
 
 TEST(LibraryHeaders, AreAllTested) {
   const std::vector<std::string> all = headers();

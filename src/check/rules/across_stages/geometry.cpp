@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "check/rules/across_stages/binding_names.h"
 #include "check/rules/rules.h"
 
 namespace quintet::check {
@@ -30,6 +31,7 @@ struct TraceGeometryPair {
   HitGroupRay hit;
   bool opaque = false;     // certainly: no any-hit shader runs
   bool notOpaque = false;  // certainly
+  bool misplaced = false;  // the name in a binding is misspelled, and only that is reported (Q802)
 };
 
 class GeometryRule {
@@ -40,7 +42,8 @@ class GeometryRule {
     for (std::size_t group = 0; group < graph_.program.hitGroups.size(); ++group) checkBinding(group);
     if (input_.scene) {
       collectPairs();
-      for (const TraceGeometryPair& pair : pairs_) checkKind(pair);
+      for (const TraceGeometryPair& pair : pairs_)
+        if (!pair.misplaced) checkKind(pair);
     } else {
       assumePairs();
     }
@@ -89,6 +92,7 @@ class GeometryRule {
 
   void collectPairs() {
     const program::SceneFacts& scene = *input_.scene;
+    unknownNames_ = unknownNames(graph_.program, scene);
     for (const TraceSite& site : graph_.traces)
       for (const program::InstanceFacts& instance : scene.instances)
         for (std::uint32_t k = 0; k < instance.geometryCount && instance.firstGeometry + k < scene.geometries.size();
@@ -104,6 +108,7 @@ class GeometryRule {
         trace.flags.mustHave(geometry.procedural() ? kFlagSkipAabbs : kFlagSkipTriangles))
       return;
     TraceGeometryPair pair{&site, &instance, &geometry, {}, false, false};
+    pair.misplaced = isMisplaced(geometry, unknownNames_);
     const bool builtOpaque = (geometry.opaque() && !instance.forceNoOpaque) || instance.forceOpaque;
     pair.opaque = (builtOpaque && !trace.flags.mayHave(kFlagNoOpaque)) || trace.flags.mustHave(kFlagOpaque);
     pair.notOpaque = (!builtOpaque && !trace.flags.mayHave(kFlagOpaque)) || trace.flags.mustHave(kFlagNoOpaque);
@@ -168,7 +173,7 @@ class GeometryRule {
     for (const TraceGeometryPair& pair : pairs_) {
       const bool bound = binds(groupOf(pair.hit), "alpha");
       const bool alpha = input_.scene ? pair.geometry->alpha : bound;
-      if (!alpha || (!bound && !hasAnyHits(pair.hit.ray))) continue;
+      if (!alpha || pair.misplaced || (!bound && !hasAnyHits(pair.hit.ray))) continue;
       const bool hasShader = !graph_.shaders(pair.hit).anyHit.empty();
       if (!hasShader || pair.opaque) reportSkippedAlphaTest(pair);
     }
@@ -228,6 +233,7 @@ class GeometryRule {
   const PipelineGraph& graph_;
   Report& report_;
   std::vector<TraceGeometryPair> pairs_;
+  std::vector<UnknownName> unknownNames_;  // of the scene
 };
 
 }  // namespace

@@ -44,8 +44,8 @@ void checkTypes(const PipelineGraph& graph, HitGroupRay hit, Report& report) {
       if (const auto difference = spirv::differenceOf(writtenTypes, written->type, types, read->type))
         report.add("Q201", graph.location(*stage, read->declaration),
                    fmt::format("hit attribute '{}' is {} here, but intersection shader '{}' of {} writes {}: {}",
-                               read->name, types.describe(read->type), graph.nameOf(files.intersection), graph.describe(hit),
-                               writtenTypes.describe(written->type), *difference),
+                               read->name, types.describe(read->type), graph.nameOf(files.intersection),
+                               graph.describe(hit), writtenTypes.describe(written->type), *difference),
                    {relatedTo(graph.location(*writer, written->declaration), "written here")});
     }
   }

@@ -124,16 +124,21 @@ std::string cycleText(const PipelineGraph& graph, const TraceChains::Cycle& cycl
   return fmt::format("this trace closes a cycle: {} -> {}", fmt::join(names, " -> "), names.front());
 }
 
-// The other traces of a cycle.
+// The other traces of a cycle, and the shader that runs again.
 std::vector<RelatedLocation> otherTraces(const PipelineGraph& graph, const TraceChains::Cycle& cycle) {
   std::vector<RelatedLocation> result;
   for (std::size_t i = 0; i + 1 < cycle.stages.size(); ++i) {
     const auto continues = [&](const TraceSite& site) {
-      return site.stage == cycle.stages[i] && std::ranges::find(site.edges, cycle.stages[i + 1], &Edge::stage) != site.edges.end();
+      return site.stage == cycle.stages[i] &&
+             std::ranges::find(site.edges, cycle.stages[i + 1], &Edge::stage) != site.edges.end();
     };
     const auto found = std::ranges::find_if(graph.traces, continues);
     if (found != graph.traces.end()) result.push_back(relatedTo(graph.location(*found), "trace of the cycle"));
   }
+  const auto* payload = graph.facts(*cycle.edge).incoming(spv::StorageClass::IncomingRayPayloadKHR);
+  if (payload)
+    result.push_back(relatedTo(graph.location(graph.stages[cycle.edge->stage], payload->declaration),
+                               "payload of the shader that runs again"));
   return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "check/rules/across_stages/binding_names.h"
 #include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
 #include "program/gsn/lecture.h"
@@ -30,15 +31,12 @@ bool isBound(const program::HitGroup& group) {
 
 // Describes the first name in the group's binding that the scene does not have; empty if it has all. Geometry classes
 // are ignored.
-std::string missingName(const program::HitGroup& group, const program::SceneFacts& scene) {
-  const auto has = [&](const std::string& name, auto member) {
-    return std::ranges::any_of(scene.geometries, [&](const program::GeometryFacts& g) { return g.*member == name; });
-  };
-  for (const std::string& name : group.primitives)
-    if (!has(name, &program::GeometryFacts::name))
-      return fmt::format("{} has no mesh or primitive set '{}'", scene.name, name);
-  for (const std::string& name : group.material)
-    if (!has(name, &program::GeometryFacts::material)) return fmt::format("{} has no material '{}'", scene.name, name);
+std::string missingName(const program::Program& program, std::size_t group, const program::SceneFacts& scene) {
+  for (const UnknownName& unknown : unknownNames(program, scene))
+    if (unknown.group == group)
+      return fmt::format("{} has no {} '{}'{}", scene.name, unknown.material ? "material" : "mesh or primitive set",
+                         unknown.name,
+                         unknown.nearest.empty() ? "" : fmt::format(" (did you mean '{}'?)", unknown.nearest));
   return {};
 }
 
@@ -65,7 +63,7 @@ std::string reasonUnused(const CheckInput& input, std::size_t index) {
     return program::hitGroupFor(program, geometry) == index;
   };
   if (std::ranges::any_of(input.scene->geometries, uses)) return {};
-  const std::string missing = missingName(group, *input.scene);
+  const std::string missing = missingName(program, index, *input.scene);
   return missing.empty() ? "other groups come first for all geometry with these names" : missing;
 }
 
