@@ -186,7 +186,8 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q707", kError, "within_stage/unsupported", "debugPrintfEXT is not supported",
      "Quintet does not receive the texts that shaders print, so the call would have no effect.",
      "Remove the call, and store the value in an output of the program: an optional [[output]] for debugging."},
-    {"Q708", kWarning, "across_stages/spaces", "position is transformed like a direction, or a direction like a position",
+    {"Q708", kWarning, "across_stages/spaces",
+     "position is transformed like a direction, or a direction like a position",
      "A position must be translated (w = 1) and a direction must not (w = 0), or instances that are moved look wrong.",
      "Use matrix * vec4(position, 1.0) and matrix * vec4(direction, 0.0)."},
     {"Q709", kWarning, "across_stages/spaces", "values of different spaces are mixed",
@@ -195,7 +196,7 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q710", kWarning, "across_stages/barycentrics", "weights of the three vertices of a triangle are wrong",
      "The attribute gives the weights of vertices 1 and 2, so values of the vertices end up at other corners.",
      "Interpolate with (1.0 - b.x - b.y) * v0 + b.x * v1 + b.y * v2."},
-    {"Q715", kWarning, "across_stages/color_encoding", "color is encoded twice",
+    {"Q715", kWarning, "across_stages/color_encoding", "color is encoded or decoded twice",
      "Quintet encodes an output of kind color when it writes an image, so the image is too bright and pale.",
      "Store linear color, or declare the output with kind = \"display\"."},
 
