@@ -65,6 +65,7 @@ struct PipelineSpaces::Search {
 PipelineSpaces::PipelineSpaces(const spirv::Module& module) {
   stages_.push_back(std::make_unique<SpaceTags>(module));
   stages_[0]->run();
+  stages_[0]->finish();
 }
 
 PipelineSpaces::PipelineSpaces(const PipelineGraph& graph) {
@@ -100,6 +101,10 @@ PipelineSpaces::PipelineSpaces(const PipelineGraph& graph) {
                        Storage::HitAttributeKHR);
     }
   }
+  propagate();
+  parallelFor(stages_.size(), [&](std::size_t i) {
+    if (stages_[i]) stages_[i]->finish();
+  });
   propagate();
 }
 

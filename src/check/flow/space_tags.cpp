@@ -465,6 +465,23 @@ void SpaceTags::run() {
   }
 }
 
+void SpaceTags::finish() {
+  for (const auto& [variable, loads] : loads_) {
+    const Id pointer = module_.definition(variable)->type;
+    SpaceLeaves& own = variables_[variable];
+    own.resize(layout(module_.types().get(pointer).element).count);
+    bool changed = false;
+    for (SpaceTag& tag : own) {
+      if (tag.kind != Kind::undefined) continue;
+      tag = unknownTag();
+      changed = true;
+    }
+    if (!changed) continue;
+    for (const std::size_t load : loads) push(load);
+  }
+  run();
+}
+
 SpaceLeaves SpaceTags::evaluate(const spirv::Instruction& i) const {
   const std::size_t count = layout(i.type).count;
   switch (i.op) {

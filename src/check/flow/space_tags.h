@@ -40,6 +40,8 @@ class SpaceTags {
   SpaceLeaves contents(spirv::Id variable) const;
   // Propagates tags until they do not change.
   void run();
+  // Makes the tags of variables that no stage stores to unknown, and propagates them.
+  void finish();
 
   const spirv::Module& module() const { return module_; }
   // Tag of a vector, scalar or matrix; unknown for a structure.
