@@ -45,9 +45,8 @@ bool isClamped(const spirv::Module& module, Id value) {
 }
 
 bool usesOf(const spirv::Module& module, Id value, std::initializer_list<unsigned> extended) {
-  return std::ranges::any_of(module.users(value), [&](std::size_t user) {
-    return isExtended(module, module.instructions()[user], extended);
-  });
+  return std::ranges::any_of(
+      module.users(value), [&](std::size_t user) { return isExtended(module, module.instructions()[user], extended); });
 }
 
 }  // namespace
@@ -66,6 +65,7 @@ struct PipelineSpaces::Search {
 PipelineSpaces::PipelineSpaces(const spirv::Module& module) {
   stages_.push_back(std::make_unique<SpaceTags>(module));
   stages_[0]->run();
+  stages_[0]->finish();
 }
 
 PipelineSpaces::PipelineSpaces(const PipelineGraph& graph) {
@@ -101,6 +101,10 @@ PipelineSpaces::PipelineSpaces(const PipelineGraph& graph) {
                        Storage::HitAttributeKHR);
     }
   }
+  propagate();
+  parallelFor(stages_.size(), [&](std::size_t i) {
+    if (stages_[i]) stages_[i]->finish();
+  });
   propagate();
 }
 
@@ -241,6 +245,7 @@ void PipelineSpaces::visitExtended(const Open& open, const spirv::Instruction& i
       search.uses.radius = search.uses.radius || open.direct;
       return follow(true);
     case GLSLstd450Length: search.uses.measured = true; return;
+    case GLSLstd450Cross: search.uses.crossed = true; return;
     case GLSLstd450Distance: search.uses.difference = true; return;
     case GLSLstd450Reflect:
     case GLSLstd450Refract:
@@ -327,13 +332,17 @@ void PipelineSpaces::visit(const Open& open, std::size_t user, Search& search) c
       return follow(false, false);
     }
     case Op::OpFSub: {
+      if (tags.of(other).untranslated) {
+        search.uses.relative = true;
+        return;
+      }
       const spirv::Instruction& difference = i;
-      const bool directed =
-          usesOf(module, difference.result, {GLSLstd450Normalize, GLSLstd450Length}) ||
-          std::ranges::any_of(module.users(difference.result), [&](std::size_t k) {
-            const spirv::Instruction& d = module.instructions()[k];
-            return (d.op == Op::OpDot && d.at(0) == d.at(1)) || (d.op == Op::OpTraceRayKHR && d.at(8) == difference.result);
-          });
+      const bool directed = usesOf(module, difference.result, {GLSLstd450Normalize, GLSLstd450Length}) ||
+                            std::ranges::any_of(module.users(difference.result), [&](std::size_t k) {
+                              const spirv::Instruction& d = module.instructions()[k];
+                              return (d.op == Op::OpDot && d.at(0) == d.at(1)) ||
+                                     (d.op == Op::OpTraceRayKHR && d.at(8) == difference.result);
+                            });
       if (directed) search.uses.difference = true;
       if (splatConstant(module, other) == 1.0 && open.scaled) search.uses.shown = true;
       // A point minus a step along the value.

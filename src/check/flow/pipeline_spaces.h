@@ -15,17 +15,19 @@ namespace quintet::check {
 // What a value is used for.
 struct ValueUses {
   bool normalized = false;
-  bool measured = false;        // its length
-  bool dot = false;             // in a dot product with another value
-  bool asNormal = false;        // surface normal of reflect, refract, faceforward, or of a cosine: max(dot(n, l), 0)
+  bool measured = false;  // its length
+  bool dot = false;       // in a dot product with another value
+  bool asNormal = false;  // surface normal of reflect, refract, faceforward, or of a cosine: max(dot(n, l), 0)
   bool traceDirection = false;
   bool traceOrigin = false;
-  bool difference = false;      // operand of a difference that is used as a direction
-  bool moves = false;           // added to a point
-  bool shown = false;           // 0.5 + 0.5 * v
-  bool translated = false;      // the translation of a matrix is added
-  bool stored = false;          // somewhere where it cannot be followed
-  bool radius = false;          // normalized directly
+  bool difference = false;  // operand of a difference that is used as a direction
+  bool relative = false;    // operand of a difference of points that were transformed without translation
+  bool crossed = false;     // operand of a cross product
+  bool moves = false;       // added to a point
+  bool shown = false;       // 0.5 + 0.5 * v
+  bool translated = false;  // the translation of a matrix is added
+  bool stored = false;      // somewhere where it cannot be followed
+  bool radius = false;      // normalized directly
 };
 
 class PipelineSpaces {

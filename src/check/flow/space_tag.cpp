@@ -56,8 +56,7 @@ SpaceTag pointPlus(const SpaceTag& point, const SpaceTag& other) {
 SpaceTag vectorSum(const SpaceTag& a, const SpaceTag& b) {
   if (a.kind == Kind::any || b.kind == Kind::any) return like(a, Kind::any);
   if (a.kind == Kind::normal && b.kind == Kind::normal) return like(a, Kind::normal);
-  if (a.kind == Kind::radial || b.kind == Kind::radial)
-    return like(a, a.kind == b.kind ? Kind::any : Kind::radial);
+  if (a.kind == Kind::radial || b.kind == Kind::radial) return like(a, a.kind == b.kind ? Kind::any : Kind::radial);
   SpaceTag result = like(a, Kind::direction);
   const bool bothDirections = a.kind == Kind::direction && b.kind == Kind::direction;
   result.onRay = bothDirections && a.onRay && b.onRay;
@@ -66,6 +65,10 @@ SpaceTag vectorSum(const SpaceTag& a, const SpaceTag& b) {
     return like(a, Kind::radial);
   return result;
 }
+
+// True if a constant offset keeps the value a point. A constant plus any other vector, or plus a scaled point, can be a
+// color: 0.5 + 0.5 * normal.
+bool movesPoint(const SpaceTag& tag) { return tag.kind == Kind::point && !tag.scaled; }
 
 SpaceTag sumOfTerms(const SpaceTag& a, const SpaceTag& b) {
   SpaceTag result = a;
@@ -126,10 +129,10 @@ SpaceTag sumOf(const SpaceTag& a, const SpaceTag& b) {
   SpaceTag result = unknownTag();
   if (a.kind == Kind::neutral && b.kind == Kind::neutral)
     result = neutralTag();
-  else if (a.kind == Kind::neutral && b.geometric())
-    result = like(b, b.kind == Kind::point ? Kind::point : Kind::any);
-  else if (b.kind == Kind::neutral && a.geometric())
-    result = like(a, a.kind == Kind::point ? Kind::point : Kind::any);
+  else if (a.kind == Kind::neutral && movesPoint(b))
+    result = like(b, Kind::point);
+  else if (b.kind == Kind::neutral && movesPoint(a))
+    result = like(a, Kind::point);
   else if (a.geometric() && b.geometric() && sameSpace(a, b))
     result = a.kind == Kind::point ? pointPlus(a, b) : b.kind == Kind::point ? pointPlus(b, a) : vectorSum(a, b);
   if (result.kind != Kind::unknown) result.w = w;
@@ -143,9 +146,9 @@ SpaceTag differenceOf(const SpaceTag& a, const SpaceTag& b) {
   if (a.kind == Kind::neutral && b.kind == Kind::neutral) {
     result = neutralTag();
   } else if (a.kind == Kind::neutral && b.geometric()) {
-    result = like(b, b.kind == Kind::point ? Kind::direction : Kind::any);
+    if (b.kind == Kind::point) result = like(b, Kind::direction);
   } else if (b.kind == Kind::neutral && a.geometric()) {
-    result = like(a, a.kind == Kind::point ? (a.onRay ? Kind::radial : Kind::direction) : Kind::any);
+    if (a.kind == Kind::point) result = like(a, a.onRay ? Kind::radial : Kind::direction);
   } else if (a.geometric() && b.geometric() && sameSpace(a, b)) {
     if (a.kind == Kind::point && b.kind == Kind::point)
       result = like(a, a.onRay && !b.onRay ? Kind::radial : Kind::direction);

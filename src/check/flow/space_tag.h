@@ -28,12 +28,12 @@ struct SpaceTag {
     point,
     direction,
     normal,
-    radial,   // from a point, such as a center, to a point on the ray
-    matrix,   // transform `map`, or its transpose
-    frame,    // matrix whose columns are vectors of `space`
-    row,      // row `index` of an affine matrix: the linear part and the translation
-    term,     // sum of some of the three terms of a product of matrix and vector
-    address,  // buffer address of the library's array `array`
+    radial,       // from a point, such as a center, to a point on the ray
+    matrix,       // transform `map`, or its transpose
+    frame,        // matrix whose columns are vectors of `space`
+    row,          // row `index` of an affine matrix: the linear part and the translation
+    term,         // sum of some of the three terms of a product of matrix and vector
+    address,      // buffer address of the library's array `array`
     barycentric,  // weights of the vertices 1 and 2 at a triangle hit; as a scalar, weight `component` + 1
     unknown,
   };
@@ -45,17 +45,17 @@ struct SpaceTag {
   Space space = Space::none;
   std::uint8_t component = kWholeVector;  // for a scalar that is component 0, 1 or 2 of such a vector
   W w = W::none;
-  bool scaled = false;        // times a factor
-  bool onRay = false;         // point: origin + t * direction. direction: of the ray
-  bool fromMesh = false;      // depends on vertices of a mesh or was transformed, so the space is more than a convention
-  bool varies = false;        // any: not a constant
-  bool untranslated = false;  // any: a point times a matrix without its translation
-  bool translation = false;   // point: the translation of a matrix
-  bool column = false;        // direction: column `index` of a matrix
-  bool transposed = false;    // matrix
-  bool covariant = false;     // term: the result transforms like a normal
-  SpaceMap map;               // of matrix, row, column and term
-  std::uint8_t index = 0;     // of row and column; of a term: bits of the terms in the sum
+  bool scaled = false;    // times a factor
+  bool onRay = false;     // point: origin + t * direction. direction: of the ray
+  bool fromMesh = false;  // depends on vertices of a mesh or was transformed, so the space is more than a convention
+  bool varies = false;    // any: not a constant
+  bool untranslated = false;       // any: a point times a matrix without its translation
+  bool translation = false;        // point: the translation of a matrix
+  bool column = false;             // direction: column `index` of a matrix
+  bool transposed = false;         // matrix
+  bool covariant = false;          // term: the result transforms like a normal
+  SpaceMap map;                    // of matrix, row, column and term
+  std::uint8_t index = 0;          // of row and column; of a term: bits of the terms in the sum
   Kind operand = Kind::undefined;  // term: kind of the vector
   Array array = Array::none;
 
@@ -93,7 +93,7 @@ struct Transform {
 Transform transformOf(const SpaceMap& map, bool transposed, bool affine);
 SpaceTag transformed(const Transform& transform, const SpaceTag& vector);
 
-std::string nameOf(Space space);           // "world space"
+std::string nameOf(Space space);            // "world space"
 std::string describe(const SpaceTag& tag);  // "a normal in object space"
 
 }  // namespace quintet::check

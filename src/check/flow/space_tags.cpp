@@ -15,9 +15,9 @@ using spv::Op;
 using Kind = SpaceTag::Kind;
 using TypeKind = spirv::Type::Kind;
 
-constexpr std::size_t kMaxLeaves = 96;   // of a type
+constexpr std::size_t kMaxLeaves = 96;     // of a type
 constexpr std::uint32_t kMaxElements = 4;  // of an array whose elements have leaves of their own
-constexpr std::uint8_t kMaxVisits = 24;  // of an instruction
+constexpr std::uint8_t kMaxVisits = 24;    // of an instruction
 constexpr int kMaxChain = 64;
 
 bool isLeaf(const spirv::Type& type) {
@@ -130,7 +130,8 @@ PointerPath resolvePointer(const spirv::Module& module, Id pointer) {
 
 bool isSplat(const spirv::Module& module, Id value) {
   const spirv::Instruction* i = module.definition(value);
-  if (!i || (i->op != Op::OpCompositeConstruct && i->op != Op::OpConstantComposite) || i->operands.empty()) return false;
+  if (!i || (i->op != Op::OpCompositeConstruct && i->op != Op::OpConstantComposite) || i->operands.empty())
+    return false;
   return std::ranges::all_of(i->operands, [&](Id id) { return id == i->operands.front(); });
 }
 
@@ -147,7 +148,8 @@ SpaceTags::SpaceTags(const spirv::Module& module) : module_(module) {
       if (isTable(pointer.base)) loads_[pointer.base].push_back(i);
     } else if (instructions[i].op == Op::OpVariable && isTable(instructions[i].result)) {
       const Id type = module.types().get(instructions[i].type).element;
-      if (instructions[i].operands.size() > 1) variables_[instructions[i].result] = SpaceLeaves(layout(type).count, neutralTag());
+      if (instructions[i].operands.size() > 1)
+        variables_[instructions[i].result] = SpaceLeaves(layout(type).count, neutralTag());
     } else if (instructions[i].op == Op::OpFunctionCall || instructions[i].op == Op::OpCopyMemory) {
       // A function that is not inlined can store anything.
       for (const Id id : spirv::valueOperands(instructions[i]))
@@ -463,6 +465,23 @@ void SpaceTags::run() {
   }
 }
 
+void SpaceTags::finish() {
+  for (const auto& [variable, loads] : loads_) {
+    const Id pointer = module_.definition(variable)->type;
+    SpaceLeaves& own = variables_[variable];
+    own.resize(layout(module_.types().get(pointer).element).count);
+    bool changed = false;
+    for (SpaceTag& tag : own) {
+      if (tag.kind != Kind::undefined) continue;
+      tag = unknownTag();
+      changed = true;
+    }
+    if (!changed) continue;
+    for (const std::size_t load : loads) push(load);
+  }
+  run();
+}
+
 SpaceLeaves SpaceTags::evaluate(const spirv::Instruction& i) const {
   const std::size_t count = layout(i.type).count;
   switch (i.op) {
@@ -495,8 +514,7 @@ SpaceLeaves SpaceTags::evaluate(const spirv::Instruction& i) const {
       const std::size_t offset = target.offsets[0];
       if (target.rest.empty()) {
         for (std::size_t k = 0; k < object.size() && offset + k < result.size(); ++k) result[offset + k] = object[k];
-      } else if (offset < result.size() &&
-                 (result[offset].kind != Kind::neutral || object[0].kind != Kind::neutral)) {
+      } else if (offset < result.size() && (result[offset].kind != Kind::neutral || object[0].kind != Kind::neutral)) {
         const SpaceTag& old = result[offset];
         const bool same = old.geometric() && object[0].geometric() && object[0].space == old.space &&
                           target.rest.size() == 1 && target.rest[0] == object[0].component;
@@ -512,7 +530,8 @@ SpaceLeaves SpaceTags::evaluate(const spirv::Instruction& i) const {
       SpaceLeaves result;
       bool defined = false;
       for (std::size_t k = 0; k < i.operands.size(); ++k) {
-        const Id member = type.kind == TypeKind::structure ? (k < type.members.size() ? type.members[k] : 0) : type.element;
+        const Id member =
+            type.kind == TypeKind::structure ? (k < type.members.size() ? type.members[k] : 0) : type.element;
         SpaceLeaves leaves = leavesOf(i.at(k));
         defined = defined || !leaves.empty();
         leaves.resize(layout(member).count);
@@ -696,9 +715,8 @@ SpaceTag SpaceTags::construct(const spirv::Instruction& i) const {
     last = n == 1 ? module_.constantFloat(id) : std::nullopt;
   }
   if (count < 3) {
-    const bool neutral =
-        std::all_of(components.begin(), components.begin() + static_cast<std::ptrdiff_t>(count),
-                    [](const SpaceTag& tag) { return tag.kind == Kind::neutral; });
+    const bool neutral = std::all_of(components.begin(), components.begin() + static_cast<std::ptrdiff_t>(count),
+                                     [](const SpaceTag& tag) { return tag.kind == Kind::neutral; });
     const auto isWeight = [&](std::size_t k) {
       return components[k].kind == Kind::barycentric && components[k].component == k;
     };
@@ -769,8 +787,7 @@ SpaceTag SpaceTags::shuffle(const spirv::Instruction& i) const {
     tag.w = SpaceTag::W::none;
     return tag;
   }
-  if (count < 3)
-    return a.kind == Kind::neutral && b.kind == Kind::neutral ? neutralTag() : unknownTag();
+  if (count < 3) return a.kind == Kind::neutral && b.kind == Kind::neutral ? neutralTag() : unknownTag();
   SpaceTag result = vectorOf(std::span(components).first(3));
   if (count == 4 && result.kind != Kind::unknown) result.w = SpaceTag::W::other;
   return result;
@@ -781,7 +798,8 @@ SpaceTag SpaceTags::dot(const spirv::Instruction& i) const {
   SpaceTag row = of(i.at(0)), vector = of(i.at(1));
   if (row.kind == Kind::undefined || vector.kind == Kind::undefined) return {};
   if (row.kind != Kind::row) std::swap(row, vector);
-  if (row.kind != Kind::row) return row.kind == Kind::neutral && vector.kind == Kind::neutral ? neutralTag() : unknownTag();
+  if (row.kind != Kind::row)
+    return row.kind == Kind::neutral && vector.kind == Kind::neutral ? neutralTag() : unknownTag();
   if (vector.kind == Kind::row || (vector.geometric() && !vector.whole())) return unknownTag();
   const bool affine = module_.types().get(module_.definition(i.at(0))->type).count == 4;
   SpaceTag result = transformed({row.map, false, affine}, vector);

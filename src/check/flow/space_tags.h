@@ -22,8 +22,8 @@ constexpr std::uint32_t kAnyIndex = ~0u;  // in a path: the index is unknown
 
 // A pointer resolved to its base and the path into what the base points to.
 struct PointerPath {
-  spirv::Id base = 0;  // variable, or the pointer of a buffer reference
-  spirv::Id type = 0;  // that the base points to
+  spirv::Id base = 0;                              // variable, or the pointer of a buffer reference
+  spirv::Id type = 0;                              // that the base points to
   std::vector<std::optional<std::uint32_t>> path;  // nullopt for dynamic indices
   std::vector<spirv::Id> ids;                      // of the indices
 };
@@ -42,6 +42,8 @@ class SpaceTags {
   SpaceLeaves contents(spirv::Id variable) const;
   // Propagates tags until they do not change.
   void run();
+  // Makes the tags of variables that no stage stores to unknown, and propagates them.
+  void finish();
 
   const spirv::Module& module() const { return module_; }
   // Tag of a vector, scalar or matrix; unknown for a structure.
@@ -65,7 +67,7 @@ class SpaceTags {
     bool summary = false;              // array: all elements share their leaves
     std::vector<std::size_t> offsets;  // of the members of a structure
   };
-  struct Slice {  // part of a value
+  struct Slice {                       // part of a value
     std::vector<std::size_t> offsets;  // one per possible element
     spirv::Id type = 0;
     std::vector<std::optional<std::uint32_t>> rest;  // indices within the leaf
@@ -73,7 +75,8 @@ class SpaceTags {
 
   const Layout& layout(spirv::Id type) const;
   Slice slice(spirv::Id type, const std::vector<std::optional<std::uint32_t>>& path) const;
-  SpaceLeaves read(const SpaceLeaves& leaves, spirv::Id type, const std::vector<std::optional<std::uint32_t>>& path) const;
+  SpaceLeaves read(const SpaceLeaves& leaves, spirv::Id type,
+                   const std::vector<std::optional<std::uint32_t>>& path) const;
   SpaceTag part(SpaceTag tag, spirv::Id type, std::span<const std::optional<std::uint32_t>> rest) const;
 
   SpaceLeaves leavesOf(spirv::Id value) const;

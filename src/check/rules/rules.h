@@ -51,9 +51,10 @@ void checkSharedIntersections(const CheckInput& input, Report& report);  // Q903
 // The parts of checkSpaces(). `stage` is an index of PipelineGraph::stages.
 class PipelineSpaces;
 // `transformed`: instances have transforms, as far as known.
-void checkSpaces(const PipelineSpaces& spaces, std::size_t stage, bool transformed, Report& report);  // Q702, Q708, Q709
+void checkSpaces(const PipelineSpaces& spaces, std::size_t stage, bool transformed,
+                 Report& report);                               // Q702, Q708, Q709
 void checkSpaces(const spirv::Module& module, Report& report);  // the same, of one stage alone
-void checkBarycentrics(const PipelineSpaces& spaces, std::size_t stage, Report& report);  // Q710
+void checkBarycentrics(const PipelineSpaces& spaces, std::size_t stage, Report& report);            // Q710
 void checkColorEncoding(const PipelineGraph& graph, const PipelineSpaces& spaces, Report& report);  // Q715
 
 // Rules within one stage (rules/within_stage): they follow values through a module that was compiled with `optimize`

@@ -82,9 +82,9 @@ TEST(Leaves, NumbersPartsInOrder) {
   const Leaves leaves(types, 5);
   EXPECT_EQ(leaves.count(), 6u);
   EXPECT_THAT(leaves.path(4), ElementsAre(0, 1, 1));
-  EXPECT_EQ(leaves.range(Leaves::Path{0}), (LeafRange{0, 5, true}));
-  EXPECT_EQ(leaves.range(Leaves::Path{0, 1, 1}), (LeafRange{4, 5, true}));
-  EXPECT_EQ(leaves.range(Leaves::Path{1, 7}), (LeafRange{5, 6, true}));  // into a leaf
+  EXPECT_EQ(leaves.range(Path{0}), (LeafRange{0, 5, true}));
+  EXPECT_EQ(leaves.range(Path{0, 1, 1}), (LeafRange{4, 5, true}));
+  EXPECT_EQ(leaves.range(Path{1, 7}), (LeafRange{5, 6, true}));  // into a leaf
   const std::vector<std::optional<std::uint32_t>> dynamic{0, 1, std::nullopt};
   EXPECT_EQ(leaves.range(dynamic), (LeafRange{3, 5, false}));
   EXPECT_EQ(leaves.member(4), (LeafRange{0, 5, true}));

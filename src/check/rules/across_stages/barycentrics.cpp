@@ -45,7 +45,9 @@ std::string textOf(const Weight& weight) {
     const bool negative = factor < 0.0;
     text += text.empty() ? (negative ? "-" : "") : (negative ? " - " : " + ");
     const double size = std::abs(factor);
-    text += name.empty() ? fmt::format("{:g}", size) : size == 1.0 ? std::string(name) : fmt::format("{:g} {}", size, name);
+    text += name.empty()  ? fmt::format("{:g}", size)
+            : size == 1.0 ? std::string(name)
+                          : fmt::format("{:g} {}", size, name);
   };
   add(weight.constant, "");
   add(weight.x, "x");
@@ -116,9 +118,11 @@ class Interpolations {
     const Weight total = w[0] + w[1] + w[2];
     const std::string weights = fmt::format("{}, {} and {}", textOf(w[0]), textOf(w[1]), textOf(w[2]));
     if (total.varies())
-      return fmt::format("the weights {} of the three vertices do not sum to 1 (x and y are the barycentrics)", weights);
+      return fmt::format("the weights {} of the three vertices do not sum to 1 (x and y are the barycentrics)",
+                         weights);
     if (total.isZero()) return {};
-    const std::array<Weight, 3> unit{w[0] * (1 / total.constant), w[1] * (1 / total.constant), w[2] * (1 / total.constant)};
+    const std::array<Weight, 3> unit{w[0] * (1 / total.constant), w[1] * (1 / total.constant),
+                                     w[2] * (1 / total.constant)};
     const std::array<Weight, 3> right{kFirst, kSecond, kThird};
     if (unit == right || !std::ranges::is_permutation(unit, right)) return {};
     return fmt::format(
@@ -152,7 +156,8 @@ class Interpolations {
     if (const auto constant = constantOf(value)) return ofWeight({*constant, 0, 0});
     if (module_.isConstant(value)) return {};
     const SpaceTag tag = tags_.of(value);
-    if (tag.kind == SpaceTag::Kind::barycentric && tag.component < 2) return ofWeight(tag.component == 0 ? kSecond : kThird);
+    if (tag.kind == SpaceTag::Kind::barycentric && tag.component < 2)
+      return ofWeight(tag.component == 0 ? kSecond : kThird);
     switch (i->op) {
       case Op::OpLoad: return evaluateLoad(*i);
       case Op::OpFAdd: return sum(of(i->at(0)), of(i->at(1)), 1.0);
@@ -226,7 +231,8 @@ class Interpolations {
     for (const Id id : spirv::valueOperands(i)) {
       const Form form = of(id);
       if (form.kind == FormKind::none || (form.kind == FormKind::weight && !form.weight.varies())) continue;
-      const bool same = form.kind == FormKind::vertex && (result.kind == FormKind::none || result.vertex == form.vertex);
+      const bool same =
+          form.kind == FormKind::vertex && (result.kind == FormKind::none || result.vertex == form.vertex);
       if (!same) return unknownForm();
       result = form;
     }
@@ -249,7 +255,8 @@ class Interpolations {
     if (a.kind == FormKind::vertex && fixed) return a;
     if (b.kind == FormKind::vertex && fixed) return b;
     if (hasVertices(a) || hasVertices(b)) return unknownForm();
-    const bool varies = (a.kind == FormKind::weight && a.weight.varies()) || (b.kind == FormKind::weight && b.weight.varies());
+    const bool varies =
+        (a.kind == FormKind::weight && a.weight.varies()) || (b.kind == FormKind::weight && b.weight.varies());
     return varies ? unknownForm() : Form{};
   }
 
@@ -262,7 +269,8 @@ class Interpolations {
     const Form& vertices = hasVertices(a) ? a : b;
     const Form& factor = hasVertices(a) ? b : a;
     if (!hasVertices(vertices)) {
-      const bool varies = (a.kind == FormKind::weight && a.weight.varies()) || (b.kind == FormKind::weight && b.weight.varies());
+      const bool varies =
+          (a.kind == FormKind::weight && a.weight.varies()) || (b.kind == FormKind::weight && b.weight.varies());
       return varies ? unknownForm() : Form{};
     }
     if (factor.kind == FormKind::none) return vertices.kind == FormKind::vertex ? vertices : unknownForm();
@@ -299,8 +307,8 @@ class Interpolations {
   // an index that is loaded from there.
   std::optional<std::size_t> vertexOf(Id index) const {
     const spirv::Instruction* i = module_.definition(index);
-    for (int depth = 0; i && (i->op == Op::OpBitcast || i->op == Op::OpUConvert || i->op == Op::OpCopyObject) && depth < 4;
-         ++depth)
+    for (int depth = 0;
+         i && (i->op == Op::OpBitcast || i->op == Op::OpUConvert || i->op == Op::OpCopyObject) && depth < 4; ++depth)
       i = module_.definition(i->at(0));
     if (!i) return {};
     if (const auto corner = cornerOf(*i)) return corner;
@@ -317,7 +325,8 @@ class Interpolations {
     if (last && !module_.isConstant(pointer.ids.back())) return cornerOf(*last);
     // uvec3 indices[]: indices[triangle].y
     const auto component = pointer.path.back();
-    const bool ofVector = pointer.path.size() >= 2 && !pointer.path[pointer.path.size() - 2] && component && *component < 3;
+    const bool ofVector =
+        pointer.path.size() >= 2 && !pointer.path[pointer.path.size() - 2] && component && *component < 3;
     return ofVector ? std::optional<std::size_t>(*component) : std::nullopt;
   }
 

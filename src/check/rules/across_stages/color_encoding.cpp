@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Q715: a color is encoded (gamma, sRGB) before it is stored to an output that holds linear color, which Quintet encodes.
+// Q715: a color is encoded (gamma, sRGB) before it is stored to an output that holds linear color, which Quintet encodes;
+// or the color of a texture is decoded, which Quintet has decoded.
 //
 // The rule follows the stored value back through sums, scaling by scalars, selection and payloads, to pow with an exponent
 // near 1 / 2.2 or the square root of a color.
@@ -18,6 +19,7 @@ using spirv::Id;
 using spv::Op;
 
 constexpr double kSmallestExponent = 1.0 / 2.6, kLargestExponent = 1.0 / 1.8;
+constexpr double kSmallestDecoding = 2.0, kLargestDecoding = 2.6;
 constexpr std::size_t kMaxValues = 2000;
 
 bool isLibraryFile(const std::string& file) { return file.starts_with("<quintet/"); }
@@ -32,6 +34,7 @@ class ColorEncoding {
       if (!graph_.stages[stage].facts) continue;
       const spirv::Module& module = graph_.stages[stage].facts->module();
       for (const spirv::Instruction& i : module.instructions()) {
+        if (spirv::isExtended(module, i, GLSLstd450Pow)) checkDecoding(stage, i);
         if (i.op != Op::OpStore) continue;
         const program::Output* output = outputOf(module, i.at(0));
         if (output && output->kind == program::OutputKind::color) follow(stage, i.at(1), *output);
@@ -104,9 +107,7 @@ class ColorEncoding {
         if (i->op == Op::OpFMul && isFactor(i->at(0))) push(open, i->at(1));
         return;
       }
-      case Op::OpVectorShuffle:
-        push(open, i->at(0));
-        return push(open, i->at(1));
+      case Op::OpVectorShuffle: push(open, i->at(0)); return push(open, i->at(1));
       case Op::OpCompositeConstruct: return construct(open, module, *i);
       case Op::OpCompositeExtract: {
         Open next{open.stage, i->at(0), open.path};
@@ -152,12 +153,15 @@ class ColorEncoding {
         bool overlaps = true;
         for (std::size_t k = 0; k < common; ++k)
           overlaps = overlaps && (!target.path[k] || wanted[k] == kAnyIndex || *target.path[k] == wanted[k]);
-        if (overlaps) open_.push_back({stage, store.at(1), Path(wanted.begin() + static_cast<std::ptrdiff_t>(common), wanted.end())});
+        if (overlaps)
+          open_.push_back(
+              {stage, store.at(1), Path(wanted.begin() + static_cast<std::ptrdiff_t>(common), wanted.end())});
       }
     }
   }
 
-  void extended(const Open& open, const spirv::Module& module, const spirv::Instruction& i, const program::Output& output) {
+  void extended(const Open& open, const spirv::Module& module, const spirv::Instruction& i,
+                const program::Output& output) {
     if (module.extendedSet(i.at(0)) != "GLSL.std.450") return;
     switch (i.at(1)) {
       case GLSLstd450Pow: {
@@ -169,15 +173,11 @@ class ColorEncoding {
       case GLSLstd450Sqrt:
         if (module.types().get(i.type).count >= 3) found(open.stage, i, "sqrt", "sqrt(color)", output);
         return;
-      case GLSLstd450FMix:
-        push(open, i.at(2));
-        return push(open, i.at(3));
+      case GLSLstd450FMix: push(open, i.at(2)); return push(open, i.at(3));
       case GLSLstd450FMin:
       case GLSLstd450FMax:
       case GLSLstd450NMin:
-      case GLSLstd450NMax:
-        push(open, i.at(2));
-        return push(open, i.at(3));
+      case GLSLstd450NMax: push(open, i.at(2)); return push(open, i.at(3));
       case GLSLstd450FClamp:
       case GLSLstd450NClamp: return push(open, i.at(2));
       case GLSLstd450Fma:
@@ -186,6 +186,66 @@ class ColorEncoding {
         return push(open, i.at(4));
       default: return;
     }
+  }
+
+  // pow(texture color, 2.2)
+  void checkDecoding(std::size_t stage, const spirv::Instruction& pow) {
+    const spirv::Module& module = graph_.stages[stage].facts->module();
+    const auto exponent = constantOf(module, pow.at(3));
+    if (!exponent || *exponent <= kSmallestDecoding || *exponent > kLargestDecoding) return;
+    const auto samples = [&](const spirv::Instruction& i) {
+      return (i.op == Op::OpImageSampleExplicitLod || i.op == Op::OpImageFetch) && isDecoded(module, i.at(0));
+    };
+    const auto stops = [&](const spirv::Instruction& i) {
+      return i.op != Op::OpCompositeExtract && i.op != Op::OpCompositeConstruct && i.op != Op::OpVectorShuffle &&
+             i.op != Op::OpPhi && !spirv::isExtended(module, i, GLSLstd450FMax) &&
+             !spirv::isExtended(module, i, GLSLstd450FClamp) && !spirv::isExtended(module, i, GLSLstd450NMax) &&
+             !spirv::isExtended(module, i, GLSLstd450NClamp);
+    };
+    if (!spirv::dependsOn(module, pow.at(2), samples, stops)) return;
+    const SourceLocation location = module.location(pow, "pow");
+    if (isLibraryFile(location.file)) return;
+    report_.addOncePerLine(
+        "Q715", graph_.location(graph_.stages[stage], location),
+        fmt::format("pow(color, {:.3g}) decodes the color of a texture, but Quintet has decoded it", *exponent));
+  }
+
+  // True if the image is a texture that Quintet decodes: an image parameter, or a color texture of a material.
+  bool isDecoded(const spirv::Module& module, Id image) const {
+    const spirv::Instruction* load = module.definition(image);
+    while (load && load->op == Op::OpImage) load = module.definition(load->at(0));
+    if (!load || load->op != Op::OpLoad) return false;
+    const PointerPath texture = resolvePointer(module, load->at(0));
+    if (texture.ids.size() != 1 || module.name(texture.base).find("extures") == std::string::npos) return false;
+    const spirv::Instruction* index = module.definition(texture.ids[0]);
+    while (index && index->op == Op::OpCopyObject) index = module.definition(index->at(0));
+    if (!index) return false;
+    std::vector<std::optional<std::uint32_t>> path;
+    while (index && index->op == Op::OpCompositeExtract) {
+      path.insert(path.begin(), index->operands.begin() + 1, index->operands.end());
+      index = module.definition(index->at(0));
+      while (index && index->op == Op::OpCopyLogical) index = module.definition(index->at(0));
+    }
+    if (!index || index->op != Op::OpLoad) return false;
+    PointerPath from = resolvePointer(module, index->at(0));
+    from.path.insert(from.path.end(), path.begin(), path.end());
+    spirv::Id type = from.type;
+    for (const auto& k : from.path) {
+      const spirv::Type& t = module.types().get(type);
+      if (t.kind == spirv::Type::Kind::runtimeArray || t.kind == spirv::Type::Kind::array) {
+        type = t.element;
+        continue;
+      }
+      if (t.kind != spirv::Type::Kind::structure || !k || *k >= t.members.size()) return false;
+      const std::string& name = t.memberNames[*k];
+      if (t.name == "Parameters")
+        return std::ranges::any_of(graph_.program.parameters, [&](const program::Parameter& p) {
+          return p.name == name && p.type == program::ParameterType::image && p.sRgb;
+        });
+      if (t.name == "MaterialData") return name == "baseColorTexture" || name == "emissiveTexture";
+      type = t.members[*k];
+    }
+    return false;
   }
 
   // A constant, a quotient of constants, or the default of a parameter.

@@ -98,7 +98,8 @@ class SpaceRules {
     if (!product.transform.covariant && asVector && (checkPointAsVector(i, product) || !toWorld)) return;
     if (!product.transform.covariant && asVector && toWorld && isTransformedNormal(i, product)) {
       add("Q702", i, "gl_ObjectToWorldEXT",
-          "a normal is multiplied by gl_ObjectToWorldEXT; with non-uniform scale the result is not perpendicular to the "
+          "a normal is multiplied by gl_ObjectToWorldEXT; with non-uniform scale the result is not perpendicular to "
+          "the "
           "surface");
     }
   }
@@ -125,7 +126,9 @@ class SpaceRules {
         return use.asNormal || (product.vector.onRay && use.radius);
       case Kind::radial: return use.asNormal || use.shown;
       case Kind::direction: return false;
-      case Kind::neutral: return use.asNormal && product.operand != 0 && !module_.isConstant(product.operand) && !isFixed(product.operand);
+      case Kind::neutral:
+        return use.asNormal && product.operand != 0 && !module_.isConstant(product.operand) &&
+               !isFixed(product.operand);
       default: return use.asNormal;
     }
   }
@@ -144,7 +147,10 @@ class SpaceRules {
   bool checkPointAsVector(const spirv::Instruction& i, const SpaceTags::Product& product) {
     if (product.vector.kind != Kind::point) return false;
     const ValueUses use = uses(i);
-    if (use.translated || use.asNormal || use.radius || !(use.traceOrigin || use.difference)) return false;
+    if (use.translated || use.relative || use.asNormal || use.radius) return false;
+    // vec4(position, 0.0) of vertices is not meant as a direction.
+    const bool explicitly = product.vector.w == W::zero && product.vector.fromMesh && !use.measured;
+    if (!explicitly && !use.traceOrigin && !use.difference) return false;
     add("Q708", i, tokenOf(product.transform),
         product.vector.w == W::zero
             ? fmt::format("{} is transformed with w = 0, like a direction, so it is not translated",
@@ -156,11 +162,12 @@ class SpaceRules {
 
   void checkVectorAsPoint(const spirv::Instruction& i, const SpaceTags::Product& product) {
     const SpaceTag& vector = product.vector;
-    const bool certain = (vector.kind == Kind::normal && !vector.scaled) || (vector.kind == Kind::direction && vector.onRay);
+    const bool certain =
+        (vector.kind == Kind::normal && !vector.scaled) || (vector.kind == Kind::direction && vector.onRay);
     if (vector.kind == Kind::point || vector.kind == Kind::neutral || vector.kind == Kind::undefined) return;
     const ValueUses use = uses(i);
     if (use.difference || use.traceOrigin) return;
-    const bool directed = use.asNormal || use.traceDirection || (use.radius && use.dot);
+    const bool directed = use.asNormal || use.traceDirection || use.crossed || (use.radius && use.dot);
     if (!certain && (!directed || vector.kind == Kind::radial)) return;
     add("Q708", i, tokenOf(product.transform),
         fmt::format("{} is transformed with w = 1, like a position, so it is translated",
@@ -214,8 +221,11 @@ class SpaceRules {
   }
 
   // False for values of object space in programs that can assume that instances have no transform: nothing is
-  // transformed, and the values come from the object-space ray or from boxes.
-  bool differs(const SpaceTag& tag) const { return tag.space != Space::object || tag.fromMesh || transformed_; }
+  // transformed, and the values come from the object-space ray or from boxes. An intersection shader must not assume it.
+  bool differs(const SpaceTag& tag) const {
+    return tag.space != Space::object || tag.fromMesh || transformed_ || isIntersection();
+  }
+  bool isIntersection() const { return module_.stage() == spv::ExecutionModel::IntersectionKHR; }
 
   bool isTraced(Id value) const {
     return std::ranges::any_of(module_.users(value), [&](std::size_t user) {
