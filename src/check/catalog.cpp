@@ -280,7 +280,6 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q714", kWarning, "across_stages/outputs", "output is overwritten instead of accumulated",
      "An output is the sum over the samples of a batch. Only one sample remains, so the image is too dark and noisy.",
      "Add to the sum: storeOutput(kOutput_x, pixel, loadOutput(kOutput_x, pixel) + value), or call addOutput."},
-    {"Q715", kWarning, "across_stages/color_encoding", "color is encoded twice",
     {"Q715", kWarning, "across_stages/color_encoding", "color is encoded or decoded twice",
      "Quintet encodes an output of kind color when it writes an image, so the image is too bright and pale.",
      "Store linear color, or declare the output with kind = \"display\"."},

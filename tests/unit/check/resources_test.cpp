@@ -17,7 +17,7 @@ CheckResult checkWith(const std::string& declarations, const std::string& statem
   Files files = cleanFiles();
   files["program.toml"] += toml;
   files["main.rgen"] = changed(files["main.rgen"], "void main() {", declarations + "\nvoid main() {");
-  files["main.rgen"] = changed(files["main.rgen"], "  storeOutput(0u", "  " + statement + "\n  storeOutput(0u");
+  files["main.rgen"] = changed(files["main.rgen"], "  addOutput(0u", "  " + statement + "\n  addOutput(0u");
   return checkFiles(files);
 }
 
