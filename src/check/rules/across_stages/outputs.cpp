@@ -135,7 +135,7 @@ class OutputRule {
     const bool lecture = graph_.program.accumulation == program::Accumulation::program && output.line == 0;
     report_.add("Q712", output.line > 0 ? graph_.descriptionLocation(output.line) : mainLocation(graph_, *generation),
                 lecture ? std::string("no shader writes the image: the ray generation shader does not call gsnSetPixel")
-                        : fmt::format("no shader stores output '{}': storeOutput(kOutput_{}, …) is missing",
+                        : fmt::format("no shader stores output '{}': there is no storeOutput(kOutput_{}, pixel, sum)",
                                       output.name, output.name));
   }
 
