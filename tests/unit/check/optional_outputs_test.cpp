@@ -11,7 +11,10 @@ Files withOutputs(const std::string& code) {
   files["program.toml"] +=
       "\n[[output]]\nname = \"color\"\n\n[[output]]\nname = \"albedo\"\noptional = true\n\n[[output]]\nname = "
       "\"depth\"\noptional = true\n";
-  files["main.rgen"] = changed(files["main.rgen"], "  addOutput(0u", code + "  addOutput(0u");
+  const std::string store = "  addOutput(0u, gl_LaunchIDEXT.xy, vec4(color, 1.0));\n";
+  files["main.rgen"] = changed(files["main.rgen"], store,
+                               code + store + "#ifdef QUINTET_OUTPUT_albedo\n" + changed(store, "0u", "1u") +
+                                   "#endif\n#ifdef QUINTET_OUTPUT_depth\n" + changed(store, "0u", "2u") + "#endif\n");
   return files;
 }
 
@@ -25,6 +28,12 @@ std::string checkDefaults(const std::string& code) { return textOf(checkFiles(wi
 TEST(OptionalOutputs, AreCheckedWithoutAMistake) {
   EXPECT_EQ(checkAll(withOutputs("#ifdef QUINTET_OUTPUT_albedo\n  color += 1.0;\n#endif\n")), "");
   EXPECT_EQ(checkAll(cleanFiles()), "");
+}
+
+TEST(OptionalOutputs, ReportOutputsThatAreNotStored) {
+  const Files files = withOutputs("");
+  EXPECT_TRUE(reportsOnly(checkAll(edited(files, "main.rgen", "addOutput(2u", "addOutput(1u")),
+                          "Q712 program.toml:24:0 ", {"'depth'", "(with optional output 'depth')"}));
 }
 
 TEST(OptionalOutputs, ReportTheirTypingErrorsWithFileAndLine) {

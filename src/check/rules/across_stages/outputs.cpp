@@ -123,8 +123,7 @@ class OutputRule {
       const bool atomic = instruction.op >= Op::OpAtomicStore && instruction.op <= Op::OpAtomicXor;
       if (instruction.op == Op::OpFunctionCall) unknown_ = true;
       if (instruction.op != Op::OpStore && instruction.op != Op::OpCopyMemory && !atomic) continue;
-      const spirv::Id pointer = atomic && instruction.op != Op::OpAtomicStore ? instruction.at(0) : instruction.at(0);
-      const OutputAccess access = outputOf(module, pointer);
+      const OutputAccess access = outputOf(module, instruction.at(0));
       if (access.target == Target::output) stores_.push_back({&stage, i, access.slot});
       unknown_ = unknown_ || access.target == Target::unknown;
     }
@@ -136,7 +135,7 @@ class OutputRule {
     const bool lecture = graph_.program.accumulation == program::Accumulation::program && output.line == 0;
     report_.add("Q712", output.line > 0 ? graph_.descriptionLocation(output.line) : mainLocation(graph_, *generation),
                 lecture ? std::string("no shader writes the image: the ray generation shader does not call gsnSetPixel")
-                        : fmt::format("no shader stores output '{}': storeOutput(kOutput_{}, …) is missing",
+                        : fmt::format("no shader stores output '{}': there is no storeOutput(kOutput_{}, pixel, sum)",
                                       output.name, output.name));
   }
 
@@ -185,15 +184,36 @@ class OutputRule {
   bool isStoredPerSample(const Store& store) const {
     const spirv::Module& module = store.stage->facts->module();
     const auto position = module.position(store.instruction);
-    if (!store.stage->facts->flow(position->function).inLoop(position->block)) return false;
+    const spirv::ControlFlow& flow = store.stage->facts->flow(position->function);
+    if (!flow.inLoop(position->block)) return false;
     const auto sums = [&](const spirv::Instruction& i) {
       if (i.op != Op::OpPhi) return false;
       const spirv::Type& type = module.types().get(i.type);
       const spirv::Type& scalar = type.kind == spirv::Type::Kind::vector ? module.types().get(type.element) : type;
-      if (scalar.kind != spirv::Type::Kind::floating) return false;
-      return spirv::findInUses(module, i.result, [&](const spirv::Instruction& use) { return &use == &i; }) != nullptr;
+      const auto phi = module.position(module.definitionIndex(i.result));
+      return scalar.kind == spirv::Type::Kind::floating && phi && phi->function == position->function &&
+             startsLoopAround(flow, phi->block, position->block);
     };
     return !spirv::dependsOn(module, module.instructions()[store.instruction].at(1), sums);
+  }
+
+  // True if `header` starts a loop that contains the block.
+  static bool startsLoopAround(const spirv::ControlFlow& flow, std::size_t header, std::size_t block) {
+    if (!flow.dominates(header, block)) return false;
+    const auto& blocks = flow.function().blocks;
+    std::vector<bool> seen(blocks.size(), false);
+    std::vector<std::size_t> open{block};
+    while (!open.empty()) {
+      const std::size_t next = open.back();
+      open.pop_back();
+      if (seen[next]) continue;
+      seen[next] = true;
+      for (const std::size_t successor : blocks[next].successors) {
+        if (successor == header && flow.dominates(header, next)) return true;
+        if (successor != header) open.push_back(successor);
+      }
+    }
+    return false;
   }
 
   // The line of storeOutput(kOutput_NAME, …) in the user's file, since the library stores the value.
