@@ -45,10 +45,10 @@ program::SceneFacts sceneFacts(const scene::Scene& scene) {
   }
   for (const scene::Instance& instance : scene.instances) {
     const auto mesh = static_cast<std::size_t>(instance.mesh);
-    facts.instances.push_back(
-        {instance.name, first[mesh], static_cast<std::uint32_t>(scene.meshes[mesh].geometryCount()), instance.mask,
-         (instance.flags & scene::kInstanceForceOpaque) != 0, (instance.flags & scene::kInstanceForceNoOpaque) != 0,
-         instance.customIndex});
+    facts.instances.push_back({instance.name, first[mesh],
+                               static_cast<std::uint32_t>(scene.meshes[mesh].geometryCount()), instance.mask,
+                               (instance.flags & scene::kInstanceForceOpaque) != 0,
+                               (instance.flags & scene::kInstanceForceNoOpaque) != 0, instance.customIndex});
   }
   return facts;
 }
