@@ -180,7 +180,8 @@ constexpr DiagnosticInfo kCatalog[] = {
      "With a stride of 0, all geometries of an instance use the hit records of its first geometry.",
      "Use kRayTypeCount as stride."},
     {"Q512", kWarning, "across_stages/ray_arguments", "ray that ends at any hit is shaded as the closest hit",
-     "With gl_RayFlagsTerminateOnFirstHitEXT, the closest-hit shader runs for the first hit that the device finds, in an "
+     "With gl_RayFlagsTerminateOnFirstHitEXT, the closest-hit shader runs for the first hit that the device finds, in "
+     "an "
      "arbitrary order.",
      "Remove the flag, or read only whether there is a hit."},
     {"Q513", kWarning, "across_stages/ray_arguments", "ray flags leave no geometry to hit",

@@ -35,8 +35,8 @@ PipelineGraph::PipelineGraph(const program::Program& given, const program::Compi
     auto module = spirv::Module::read(compiled.stages[i].spirv, &errors[i]);
     if (!module) return;
     for (const auto& [file, text] : program.files) module->addSource(program.path(file), text);
-    stages[i].facts = std::make_unique<spirv::StageFacts>(
-        std::move(*module), valueContext(given, stages[i].file, nullptr));
+    stages[i].facts =
+        std::make_unique<spirv::StageFacts>(std::move(*module), valueContext(given, stages[i].file, nullptr));
   });
   for (std::size_t i = 0; i < stages.size(); ++i) {
     if (!stages[i].facts && error.empty()) error = fmt::format("{}: {}", stages[i].file, errors[i]);

@@ -71,7 +71,8 @@ bool isConstantOfOtherLength(const spirv::StageFacts& facts, spirv::Id value) {
 std::string flagsAndMask(const spirv::TraceFacts& trace, const std::vector<std::string>& arguments) {
   std::string text = "ray flags and cull mask of this trace are swapped: traceRayEXT expects the flags first";
   if (trace.flags.exact() && trace.mask.exact())
-    text += fmt::format(", but the flags are {:#x} and the mask is {:#04x}", trace.flags.values[0], trace.mask.values[0]);
+    text +=
+        fmt::format(", but the flags are {:#x} and the mask is {:#04x}", trace.flags.values[0], trace.mask.values[0]);
   else if (!arguments.empty())
     text += fmt::format(", but the mask is {}", arguments[2]);
   return text;
@@ -108,8 +109,10 @@ std::vector<std::string> callArguments(std::string_view text, int line, int colu
       for (std::string& argument : arguments) trim(argument);
       return arguments;
     }
-    if (depth == 1 && c == ',') arguments.emplace_back();
-    else if (depth > 1 || c != '(') arguments.back() += c;
+    if (depth == 1 && c == ',')
+      arguments.emplace_back();
+    else if (depth > 1 || c != '(')
+      arguments.back() += c;
   }
   return {};
 }
@@ -141,7 +144,8 @@ SwappedArguments findSwappedArguments(const spirv::StageFacts& facts, const spir
   if (nameOrder || valueOrder) {
     std::string text = "offset and stride of this trace are swapped: traceRayEXT expects the offset first";
     if (records)
-      text += fmt::format(", but the offset is {} and the stride is {}", trace.offset.values[0], trace.stride.values[0]);
+      text +=
+          fmt::format(", but the offset is {} and the stride is {}", trace.offset.values[0], trace.stride.values[0]);
     result.texts.push_back(text);
     std::swap(result.intended.offset, result.intended.stride);
   }

@@ -151,8 +151,7 @@ std::string DefaultRanges::parameters(std::initializer_list<spirv::Id> values) c
       return false;
     });
   std::string text;
-  for (const std::string& name : found)
-    text += (text.empty() ? "" : name == *found.rbegin() ? " and " : ", ") + name;
+  for (const std::string& name : found) text += (text.empty() ? "" : name == *found.rbegin() ? " and " : ", ") + name;
   return found.empty() ? "" : (found.size() > 1 ? "parameters " : "parameter ") + text;
 }
 

@@ -169,8 +169,9 @@ void StageFacts::readInstruction(std::size_t index) {
   const Instruction& i = module_.instructions()[index];
   switch (i.op) {
     case Op::OpTraceRayKHR:
-      traces_.push_back({index, module_.location(i, "traceRayEXT"), module_.access(i.at(10)).variable, values(index, i.at(1)),
-                         values(index, i.at(2)), values(index, i.at(3)), values(index, i.at(4)), values(index, i.at(5)),
+      traces_.push_back({index, module_.location(i, "traceRayEXT"), module_.access(i.at(10)).variable,
+                         values(index, i.at(1)), values(index, i.at(2)), values(index, i.at(3)), values(index, i.at(4)),
+                         values(index, i.at(5)),
                          flows_[module_.position(index)->function].inLoop(module_.position(index)->block)});
       return;
     case Op::OpExecuteCallableKHR:

@@ -18,9 +18,9 @@ using Kind = Type::Kind;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::size_t kNone = Module::kNone;
-constexpr int kMaxDepth = 100;               // nested evaluations; deeper values are unknown
-constexpr std::size_t kMaxElements = 256;    // of an array whose elements are joined
-constexpr std::size_t kMaxPairs = 256;       // of values that an operation combines
+constexpr int kMaxDepth = 100;                      // nested evaluations; deeper values are unknown
+constexpr std::size_t kMaxElements = 256;           // of an array whose elements are joined
+constexpr std::size_t kMaxPairs = 256;              // of values that an operation combines
 constexpr double kRelativeError = 1.0 / (1 << 20);  // of float operations that are not correctly rounded
 
 bool isInteger(const Type& type) { return type.kind == Kind::integer && type.width <= 32; }
@@ -40,6 +40,12 @@ ValueRange rangeOf(const Type& type) {
 }
 
 ValueRange never() { return ValueRange::between(1.0, 0.0); }
+
+ValueRange onlyNan() {
+  ValueRange result = never();
+  result.nan = true;
+  return result;
+}
 
 std::uint32_t bitsOf(double value) { return static_cast<std::uint32_t>(static_cast<std::int64_t>(value)); }
 
@@ -83,6 +89,11 @@ ValueRange fitted(const Type& type, ValueRange range) {
 ValueRange joined(const ValueRange& a, const ValueRange& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;
+  if (a.onlyNan() || b.onlyNan()) {
+    ValueRange other = a.onlyNan() ? b : a;
+    other.nan = true, other.occurrence = Occurrence::unknown;
+    return other;
+  }
   ValueRange result = ValueRange::between(std::min(a.min, b.min), std::max(a.max, b.max));
   result.nan = a.nan || b.nan;
   result.ones = a.ones & b.ones, result.zeros = a.zeros & b.zeros;
@@ -94,6 +105,7 @@ ValueRange joined(const ValueRange& a, const ValueRange& b) {
 }
 
 ValueRange limited(ValueRange range, double min, double max) {
+  if (range.onlyNan()) return range;
   if (range.min >= min && range.max <= max) return range;
   range.min = std::max(range.min, min), range.max = std::min(range.max, max);
   std::erase_if(range.values, [&](double v) { return v < min || v > max; });
@@ -122,14 +134,17 @@ Occurrence combined(const ValueRange& a, const ValueRange& b, Keeps keeps) {
 ValueRange combine(const Type& type, const ValueRange& a, const ValueRange& b, const Exact& exact, const Hull& hull,
                    Keeps keeps) {
   if (a.empty() || b.empty()) return never();
+  if (a.onlyNan() || b.onlyNan()) return isFloat(type) ? onlyNan() : rangeOf(type);
   if (!a.values.empty() && !b.values.empty() && a.values.size() * b.values.size() <= kMaxPairs && !a.nan && !b.nan) {
     std::set<double> found;
     bool known = true;
     for (const double x : a.values)
       for (const double y : b.values) {
         const std::optional<double> value = exact(x, y);
-        if (value && !std::isnan(*value)) found.insert(stored(type, *value) + 0.0);
-        else known = false;
+        if (value && !std::isnan(*value))
+          found.insert(stored(type, *value) + 0.0);
+        else
+          known = false;
       }
     if (known) {
       const bool few = found.size() <= ValueRange::kMaxValues;
@@ -163,13 +178,20 @@ ValueRange binary(const Type& type, Op op, const ValueRange& a, const ValueRange
   switch (op) {
     case Op::OpIAdd:
     case Op::OpFAdd:
-      return combine(type, a, b, [](double x, double y) { return x + y; },
-                     [](auto& l, auto& r) { return Pair{l.min + r.min, l.max + r.max}; }, Keeps::many);
+      return combine(
+          type, a, b, [](double x, double y) { return x + y; },
+          [](auto& l, auto& r) {
+            return Pair{l.min + r.min, l.max + r.max};
+          },
+          Keeps::many);
     case Op::OpISub:
     case Op::OpFSub:
-      return combine(type, a, b, [](double x, double y) { return x - y; },
-                     [](auto& l, auto& r) { return Pair{l.min - r.max, l.max - r.min}; },
-                     b.values.size() == 1 ? Keeps::many : Keeps::each);
+      return combine(
+          type, a, b, [](double x, double y) { return x - y; },
+          [](auto& l, auto& r) {
+            return Pair{l.min - r.max, l.max - r.min};
+          },
+          b.values.size() == 1 ? Keeps::many : Keeps::each);
     case Op::OpIMul: {
       const auto exact = [](double x, double y) -> std::optional<double> {
         return std::abs(x * y) < 9e15 ? std::optional(x * y) : std::nullopt;
@@ -364,10 +386,10 @@ Relation mirrored(Relation relation) {
 }
 
 std::optional<bool> decided(Relation relation, const ValueRange& a, const ValueRange& b) {
-  const bool disjoint =
-      a.max < b.min || b.max < a.min ||
-      (!a.values.empty() && !b.values.empty() &&
-       std::ranges::none_of(a.values, [&](double v) { return std::ranges::binary_search(b.values, v); }));
+  const bool disjoint = a.max < b.min || b.max < a.min ||
+                        (!a.values.empty() && !b.values.empty() && std::ranges::none_of(a.values, [&](double v) {
+                          return std::ranges::binary_search(b.values, v);
+                        }));
   switch (relation) {
     case Relation::equal:
       if (disjoint) return false;
@@ -375,7 +397,8 @@ std::optional<bool> decided(Relation relation, const ValueRange& a, const ValueR
     case Relation::notEqual:
       if (disjoint) return true;
       return a.constant() && a.constant() == b.constant() ? std::optional(false) : std::nullopt;
-    case Relation::less: return a.max < b.min ? std::optional(true) : a.min >= b.max ? std::optional(false) : std::nullopt;
+    case Relation::less:
+      return a.max < b.min ? std::optional(true) : a.min >= b.max ? std::optional(false) : std::nullopt;
     case Relation::lessOrEqual:
       return a.max <= b.min ? std::optional(true) : a.min > b.max ? std::optional(false) : std::nullopt;
     case Relation::greater: return decided(Relation::less, b, a);
@@ -385,6 +408,7 @@ std::optional<bool> decided(Relation relation, const ValueRange& a, const ValueR
 }
 
 ValueRange compared(const Comparison& comparison, const ValueRange& a, const ValueRange& b) {
+  if (a.onlyNan() || b.onlyNan()) return truth(comparison.unordered);
   const std::optional<bool> result = decided(comparison.relation, a, b);
   if (result && (a.nan || b.nan) && *result != comparison.unordered) return truth({});
   return truth(result);
@@ -392,6 +416,7 @@ ValueRange compared(const Comparison& comparison, const ValueRange& a, const Val
 
 // Applies a monotone function to a range.
 ValueRange mapped(const Type& type, const ValueRange& a, double (*f)(double)) {
+  if (a.onlyNan()) return a;
   ValueRange result = a;
   result.min = f(a.min), result.max = f(a.max);
   std::set<double> values;
@@ -401,7 +426,10 @@ ValueRange mapped(const Type& type, const ValueRange& a, double (*f)(double)) {
 }
 
 ValueRange magnitude(const Type& type, const ValueRange& a) {
-  ValueRange result = ValueRange::between(a.min > 0.0 ? a.min : a.max < 0.0 ? -a.max : 0.0,
+  if (a.onlyNan()) return a;
+  ValueRange result = ValueRange::between(a.min > 0.0   ? a.min
+                                          : a.max < 0.0 ? -a.max
+                                                        : 0.0,
                                           std::max(std::abs(a.min), std::abs(a.max)));
   result.nan = a.nan;
   std::set<double> values;
@@ -418,7 +446,8 @@ ValueRange chosen(const Type& type, const ValueRange& a, const ValueRange& b, bo
   const auto hull = [&](const ValueRange& l, const ValueRange& r) {
     return std::optional(Pair{pick(l.min, r.min), pick(l.max, r.max)});
   };
-  return combine(type, a, b, [&](double x, double y) { return std::optional(pick(x, y)); }, hull, Keeps::each);
+  return combine(
+      type, a, b, [&](double x, double y) { return std::optional(pick(x, y)); }, hull, Keeps::each);
 }
 
 ValueRange clamped(const Type& type, ValueRange a, const ValueRange& low, const ValueRange& high) {
@@ -562,11 +591,11 @@ std::optional<BufferMember> bufferMember(const Module& module, const Instruction
 
 // A loop over an integer with a constant step: for (i = first; i < bound; i += step).
 struct CountedLoop {
-  ValueRange values;          // of the variable in the header: includes the value that ends the loop
-  ValueRange inside;          // in the body
-  std::vector<bool> blocks;   // of the loop, by block
+  ValueRange values;         // of the variable in the header: includes the value that ends the loop
+  ValueRange inside;         // in the body
+  std::vector<bool> blocks;  // of the loop, by block
   std::size_t function = 0, header = 0, latch = 0;
-  bool complete = false;      // only the header ends the loop, so each value of `inside` occurs
+  bool complete = false;  // only the header ends the loop, so each value of `inside` occurs
 };
 
 struct ValueRanges::Impl {
@@ -611,6 +640,7 @@ struct ValueRanges::Impl {
   ValueRange constantRange(const Instruction& value, const Type& type) const;
   ValueRange loadRange(Evaluator& in, const Instruction& load, const Type& type, const Path& path);
   ValueRange localRange(Evaluator& in, const Chain& chain, const Type& type, const Path& path);
+  ValueRange storedRange(const Chain& chain, const Type& type, const std::vector<std::optional<std::uint32_t>>& wanted);
   ValueRange partRange(Evaluator& in, Id value, const std::vector<std::optional<std::uint32_t>>& rest, Path& path,
                        std::size_t& budget, const Type& type);
   ValueRange phiRange(Evaluator& in, const Instruction& phi, const Path& path);
@@ -624,7 +654,8 @@ struct ValueRanges::Impl {
   std::optional<CountedLoop> findLoop(const Instruction& phi);
   Evaluator& at(std::size_t function, std::size_t block);
   void addConditions(Evaluator& in, std::size_t function, std::size_t block);
-  ValueRange chosenFrom(const Type& type, const std::vector<ValueRange>& choices, const std::vector<Id>& conditions);
+  ValueRange chosenFrom(Evaluator& in, const Type& type, const std::vector<Id>& values, const Path& path,
+                        const std::vector<Id>& conditions);
   void addCondition(Evaluator& in, Id condition, bool holds, int nesting = 0);
   void addLimit(Evaluator& in, Id value, const Path& path, double min, double max);
   void addEdge(Evaluator& in, const Function& function, std::size_t from, std::size_t to);
@@ -661,7 +692,8 @@ ValueRange ValueRanges::Impl::constantRange(const Instruction& value, const Type
   std::optional<double> number;
   if (type.width == 32) number = std::bit_cast<float>(value.at(0));
   if (type.width == 64) number = std::bit_cast<double>(value.at(0) | std::uint64_t{value.at(1)} << 32);
-  if (!number || std::isnan(*number)) return rangeOf(type);
+  if (!number) return rangeOf(type);
+  if (std::isnan(*number)) return onlyNan();
   return ValueRange::of(*number + 0.0);
 }
 
@@ -699,9 +731,10 @@ ValueRange ValueRanges::Impl::compute(Evaluator& in, Id id, const Path& path) {
 }
 
 ValueRange ValueRanges::Impl::converted(const Instruction& value, const ValueRange& from, const Type& type) {
-  const Type& source = module.types().get(
-      typeOf(value.at(0)).kind == Kind::vector ? typeOf(value.at(0)).element
-                                               : (module.definition(value.at(0)) ? module.definition(value.at(0))->type : 0));
+  const Type& source =
+      module.types().get(typeOf(value.at(0)).kind == Kind::vector
+                             ? typeOf(value.at(0)).element
+                             : (module.definition(value.at(0)) ? module.definition(value.at(0))->type : 0));
   const bool whole = isInteger(source), numbers = whole || isFloat(source);
   if (!numbers || from.empty()) return from.empty() ? from : rangeOf(type);
   ValueRange result = from;
@@ -759,8 +792,8 @@ ValueRange ValueRanges::Impl::sum(Evaluator& in, std::span<const std::uint32_t> 
   return result;
 }
 
-ValueRange ValueRanges::Impl::operation(Evaluator& in, Op op, std::span<const std::uint32_t> operands,
-                                        const Type& type, const Path& path) {
+ValueRange ValueRanges::Impl::operation(Evaluator& in, Op op, std::span<const std::uint32_t> operands, const Type& type,
+                                        const Path& path) {
   const auto operand = [&](std::size_t i) {
     return i < operands.size() ? evaluate(in, operands[i], path) : ValueRange{};
   };
@@ -812,7 +845,7 @@ ValueRange ValueRanges::Impl::operation(Evaluator& in, Op op, std::span<const st
       const bool vector = typeOf(operands[0]).kind == Kind::vector;
       const std::optional<double> chosenBy = evaluate(in, operands[0], vector ? path : Path{}).constant();
       if (chosenBy) return operand(*chosenBy != 0.0 ? 1 : 2);
-      return chosenFrom(type, {operand(1), operand(2)}, {operands[0]});
+      return chosenFrom(in, type, {operands[1], operands[2]}, path, {operands[0]});
     }
     case Op::OpVectorExtractDynamic: {
       if (operands.size() < 2) return rangeOf(type);
@@ -877,6 +910,7 @@ ValueRange ValueRanges::Impl::extendedRange(Evaluator& in, const Instruction& va
     }
     case GLSLstd450Sqrt: {
       const ValueRange a = operand(0);
+      if (a.onlyNan() || a.max < 0.0) return onlyNan();
       if (const auto constant = a.constant(); constant && *constant >= 0.0) return ValueRange::of(std::sqrt(*constant));
       ValueRange result = ValueRange::between(0.0, a.max >= 0.0 ? std::sqrt(a.max) * (1.0 + kRelativeError) : kInf);
       result.nan = a.nan || a.min < 0.0;
@@ -895,8 +929,7 @@ ValueRange ValueRanges::Impl::extendedRange(Evaluator& in, const Instruction& va
       result.nan = true;
       return result;
     }
-    case GLSLstd450Fma:
-      return binary(type, Op::OpFAdd, binary(type, Op::OpFMul, operand(0), operand(1)), operand(2));
+    case GLSLstd450Fma: return binary(type, Op::OpFAdd, binary(type, Op::OpFMul, operand(0), operand(1)), operand(2));
     default: return rangeOf(type);
   }
 }
@@ -915,19 +948,20 @@ ValueRange ValueRanges::Impl::phiRange(Evaluator& in, const Instruction& phi, co
     }
   }
   // The values come from other blocks, where the conditions of this one need not hold.
-  std::vector<ValueRange> choices;
-  for (std::size_t i = 0; i + 1 < phi.operands.size(); i += 2) choices.push_back(evaluate(base, phi.at(i), path));
+  std::vector<Id> values;
+  for (std::size_t i = 0; i + 1 < phi.operands.size(); i += 2) values.push_back(phi.at(i));
   const auto position = module.position(module.definitionIndex(phi.result));
   if (!position) return rangeOf(type);
-  return chosenFrom(type, choices, flow(position->function).phiConditions(position->block));
+  return chosenFrom(base, type, values, path, flow(position->function).phiConditions(position->block));
 }
 
 // One of several ranges. Values of a choice occur only if the conditions do not depend on the same inputs.
-ValueRange ValueRanges::Impl::chosenFrom(const Type& type, const std::vector<ValueRange>& choices,
-                                         const std::vector<Id>& conditions) {
+ValueRange ValueRanges::Impl::chosenFrom(Evaluator& in, const Type& type, const std::vector<Id>& values,
+                                         const Path& path, const std::vector<Id>& conditions) {
   ValueRange result = never();
   bool constant = true, each = true, many = false;
-  for (const ValueRange& choice : choices) {
+  for (const Id value : values) {
+    const ValueRange choice = evaluate(in, value, path);
     if (choice.empty()) continue;
     result = joined(result, choice);
     constant = constant && choice.constant();
@@ -936,9 +970,16 @@ ValueRange ValueRanges::Impl::chosenFrom(const Type& type, const std::vector<Val
   }
   if (result.empty()) return rangeOf(type);
   const auto independent = [&] {
+    std::set<Id> sources;
+    for (const Id value : values)
+      (void)dependsOn(module, value, [&](const Instruction& i) {
+        if (i.op == Op::OpLoad && !bufferMember(module, i)) sources.insert(chainOf(module, i.at(0)).base);
+        return false;
+      });
     return std::ranges::none_of(conditions, [&](Id condition) {
       return dependsOn(module, condition, [&](const Instruction& i) {
-        return i.op == Op::OpPhi || i.op == Op::OpFunctionCall || (i.op == Op::OpLoad && !bufferMember(module, i));
+        return i.op == Op::OpPhi || i.op == Op::OpFunctionCall ||
+               (i.op == Op::OpLoad && sources.contains(chainOf(module, i.at(0)).base));
       });
     });
   };
@@ -977,15 +1018,37 @@ ValueRange ValueRanges::Impl::partRange(Evaluator& in, Id value, const std::vect
 
 ValueRange ValueRanges::Impl::localRange(Evaluator& in, const Chain& chain, const Type& type, const Path& path) {
   std::vector<std::optional<std::uint32_t>> wanted;
+  std::size_t unknown = kNone;  // the last index that is not constant
+  int count = 0;
+  ValueRange indices;
   for (const Id index : chain.indices) {
-    const std::optional<double> known = evaluate(in, index, {}).constant();
+    const ValueRange range = evaluate(in, index, {});
+    const std::optional<double> known = range.constant();
+    if (!known) unknown = wanted.size(), indices = range, ++count;
     wanted.push_back(known && *known >= 0.0 ? std::optional(static_cast<std::uint32_t>(*known)) : std::nullopt);
   }
   for (const std::uint32_t index : path) wanted.emplace_back(index);
+  if (count != 1 || indices.values.empty() || indices.min < 0.0) return storedRange(chain, type, wanted);
+  ValueRange result = never();
+  bool each = indices.occurrence == Occurrence::each;
+  for (const double index : indices.values) {
+    wanted[unknown] = static_cast<std::uint32_t>(index);
+    const ValueRange element = storedRange(chain, type, wanted);
+    each = each && element.constant();
+    result = joined(result, element);
+  }
+  result.occurrence = each ? Occurrence::each : Occurrence::unknown;
+  return fitted(type, std::move(result));
+}
+
+// Range of a part of a local variable, from all stores to it.
+ValueRange ValueRanges::Impl::storedRange(const Chain& chain, const Type& type,
+                                          const std::vector<std::optional<std::uint32_t>>& wanted) {
   ValueRange result = never();
   std::size_t budget = kMaxElements;
   const auto add = [&](Id value, std::size_t skip) {
-    const std::vector<std::optional<std::uint32_t>> rest(wanted.begin() + static_cast<std::ptrdiff_t>(skip), wanted.end());
+    const std::vector<std::optional<std::uint32_t>> rest(wanted.begin() + static_cast<std::ptrdiff_t>(skip),
+                                                         wanted.end());
     Path at;
     result = joined(result, partRange(base, value, rest, at, budget, type));
   };
@@ -1026,8 +1089,8 @@ ValueRange ValueRanges::Impl::loadRange(Evaluator& in, const Instruction& load, 
     for (const Id index : chain.indices) component.push_back(module.constantBits(index).value_or(~0u));
     component.insert(component.end(), path.begin(), path.end());
     const auto known = context.builtIns.find(*shared->builtIn);
-    return fitted(type, known != context.builtIns.end() ? known->second
-                                                        : builtInRange(*shared->builtIn, type, component));
+    return fitted(type,
+                  known != context.builtIns.end() ? known->second : builtInRange(*shared->builtIn, type, component));
   }
   if (isLocal(module, chain.base) && !chain.offset) return localRange(in, chain, type, path);
   if (const auto member = bufferMember(module, load, path)) {

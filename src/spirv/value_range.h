@@ -43,6 +43,7 @@ struct ValueRange {
   static ValueRange among(std::vector<double> values, Occurrence occurrence);                      // not NaN
 
   bool empty() const { return min > max && !nan; }  // the instruction never runs
+  bool onlyNan() const { return min > max && nan; }
   std::optional<double> constant() const { return min == max && !nan ? std::optional(min) : std::nullopt; }
   // A value of at least `count` that certainly occurs: min, or the largest value. Nullopt if there may be none.
   std::optional<double> atLeast(double count) const;

@@ -32,7 +32,8 @@ class Ranges {
   ValueRange stored(std::size_t k = 0) const {
     for (std::size_t i = 0; i < module_.instructions().size(); ++i) {
       const Instruction& store = module_.instructions()[i];
-      const Variable* variable = store.op == spv::Op::OpStore ? module_.variable(module_.access(store.at(0)).variable) : nullptr;
+      const Variable* variable =
+          store.op == spv::Op::OpStore ? module_.variable(module_.access(store.at(0)).variable) : nullptr;
       if (variable && variable->name == "data" && k-- == 0) return ranges_.rangeAt(i, store.at(1));
     }
     ADD_FAILURE() << "no such store";
@@ -149,7 +150,8 @@ TEST(ValueRange, RefinesByBranches) {
   EXPECT_TRUE(isBetween(of("int k = gl_PrimitiveID; if (k < 10 && k > 2) data.i = k;"), 3.0, 9.0));
   EXPECT_TRUE(isBetween(of("int k = gl_PrimitiveID; if (k >= 10) return; data.i = k + 1;"), 1.0, 10.0));
   EXPECT_TRUE(isBetween(of("int k = data.i; if (uint(k) < 4u) data.i = k;"), 0.0, 3.0));
-  EXPECT_TRUE(isBetween(of("uint k = data.u; switch (k) { case 3u: data.x = float(k); break; default: break; }"), 3.0, 3.0));
+  EXPECT_TRUE(
+      isBetween(of("uint k = data.u; switch (k) { case 3u: data.x = float(k); break; default: break; }"), 3.0, 3.0));
   // A comparison with NaN is false: nothing is known after it.
   EXPECT_TRUE(of("float k = data.x; if (!(k < 1.0)) data.x = k;").nan);
   EXPECT_EQ(of("float k = data.x; if (k < 1.0) data.x = k;").max, 1.0);
@@ -163,7 +165,8 @@ TEST(ValueRange, FindsGuards) {
   EXPECT_FALSE(guarded);
   Ranges("void main() { " + table + "if (data.u != 0u) data.x = a[gl_PrimitiveID % 8]; }").index(&guarded);
   EXPECT_FALSE(guarded);
-  Ranges("void main() { " + table + "if ((gl_PrimitiveID & 15) != 7) data.x = a[gl_PrimitiveID % 8]; else data.u = 1u; }")
+  Ranges("void main() { " + table +
+         "if ((gl_PrimitiveID & 15) != 7) data.x = a[gl_PrimitiveID % 8]; else data.u = 1u; }")
       .index(&guarded);
   EXPECT_TRUE(guarded);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "check/rules/rules.h"
+#include "check/value_context.h"
 
 namespace quintet::check {
 namespace {
@@ -38,13 +39,27 @@ class ArgumentRule {
     const spirv::ArgumentValues& index = site.call->index;
     for (const std::uint32_t value : wrongValues(index, static_cast<std::uint32_t>(count)))
       report_.add("Q302", location_,
-                  fmt::format("the callable index of this call is {}{}, but the program has {}", boundText(index), value,
-                              countText(count, "callable shader")));
-    if (!site.call->index.known && count == 0)
+                  fmt::format("the callable index of this call is {}{}, but the program has {}", boundText(index),
+                              value, countText(count, "callable shader")));
+    if (!index.known && count > 0) checkSceneIndex(site, static_cast<std::uint32_t>(count));
+    if (!index.known && count == 0)
       report_.add("Q302", location_, "this calls a callable shader, but the program has none");
   }
 
  private:
+  // An index by the instance or geometry, of which the scene has too many.
+  void checkSceneIndex(const CallSite& site, std::uint32_t count) {
+    if (!input_.scene || site.call->index.atLeast(count)) return;
+    const spirv::Module& module = graph_.facts(site).module();
+    const spirv::Id index = module.instructions()[site.call->instruction].at(0);
+    const spirv::ValueRanges ranges(module, valueContext(graph_.program, graph_.stages[site.stage].file, input_.scene));
+    const auto value = ranges.rangeAt(site.call->instruction, index).atLeast(count);
+    if (value && !ranges.guarded(site.call->instruction, index))
+      report_.add("Q302", location_,
+                  fmt::format("the callable index of this call is up to {:.0f} in {}, but the program has {}", *value,
+                              input_.scene->name, countText(count, "callable shader")));
+  }
+
   // "no miss shaders", "1 miss shader (index 0)", "3 miss shaders (index 0 to 2)"
   static std::string countText(std::size_t count, std::string_view noun) {
     if (count == 0) return fmt::format("no {}s", noun);

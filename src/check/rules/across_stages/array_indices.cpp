@@ -67,16 +67,17 @@ class IndexRule {
       if (!always && (ranges_.guarded(user, index) || isSelected(use, index))) continue;
       // Without debug information, glslang calls a constant array "indexable".
       const bool named = !name.empty() && name != "indexable";
-      report_.addOncePerLine(
-          "Q711", module_.location(use),
-          fmt::format("the index of {} {} {:.0f}{}, but it has {} {} (index 0 to {})",
-                      named ? "'" + name + "'" : "this array",
-                      range.constant() ? "is" : always ? (negative ? "is at most" : "is at least") : "can be", *value,
-                      causeText(index), array.count,
-                      array.kind == Type::Kind::vector   ? "components"
-                      : array.kind == Type::Kind::matrix ? "columns"
-                                                         : "elements",
-                      array.count - 1));
+      report_.addOncePerLine("Q711", module_.location(use),
+                             fmt::format("the index of {} {} {:.0f}{}, but it has {} {} (index 0 to {})",
+                                         named ? "'" + name + "'" : "this array",
+                                         range.constant() ? "is"
+                                         : always         ? (negative ? "is at most" : "is at least")
+                                                          : "can be",
+                                         *value, causeText(index), array.count,
+                                         array.kind == Type::Kind::vector   ? "components"
+                                         : array.kind == Type::Kind::matrix ? "columns"
+                                                                            : "elements",
+                                         array.count - 1));
       return;
     }
   }
@@ -84,8 +85,9 @@ class IndexRule {
   // True if a condition that the index decides selects the loaded value: the optimizer replaces branches by selects.
   bool isSelected(const spirv::Instruction& use, spirv::Id) const {
     return use.op == Op::OpLoad &&
-           spirv::findInUses(module_, use.result, [](const spirv::Instruction& i) { return i.op == Op::OpSelect; },
-                             [](const spirv::Instruction& i) { return i.op == Op::OpStore; }) != nullptr;
+           spirv::findInUses(
+               module_, use.result, [](const spirv::Instruction& i) { return i.op == Op::OpSelect; },
+               [](const spirv::Instruction& i) { return i.op == Op::OpStore; }) != nullptr;
   }
 
   // " (gl_InstanceCustomIndexEXT in scene.toml)"

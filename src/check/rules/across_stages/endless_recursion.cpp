@@ -78,14 +78,14 @@ class EndlessRecursion {
     const std::size_t at = site.trace->instruction;
     const auto position = facts.module().position(at);
     if (!position || !runsAlways(facts, at) || !site.trace->mask.known) return false;
-    if (std::ranges::any_of(site.trace->mask.values, [](std::uint32_t mask) { return (mask & 0xFFu) == 0; })) return false;
+    if (std::ranges::any_of(site.trace->mask.values, [](std::uint32_t mask) { return (mask & 0xFFu) == 0; }))
+      return false;
     const spirv::Instruction& call = facts.module().instructions()[at];
     for (const std::size_t argument : {1u, 2u, 3u, 4u, 5u, 7u, 9u})
       if (dependsOnCaller(facts, position->function, call.at(argument))) return false;
     // An any-hit shader can end the recursion by ignoring hits.
-    return std::ranges::none_of(site.edges, [&](const Edge& edge) {
-      return edge.role == Role::anyHit && graph_.facts(edge).ignores();
-    });
+    return std::ranges::none_of(
+        site.edges, [&](const Edge& edge) { return edge.role == Role::anyHit && graph_.facts(edge).ignores(); });
   }
 
   bool hasSite(std::size_t stage) const {
@@ -94,8 +94,8 @@ class EndlessRecursion {
 
   bool isUsed(std::size_t group) const {
     return !input_.scene || std::ranges::any_of(input_.scene->geometries, [&](const program::GeometryFacts& geometry) {
-             return program::hitGroupFor(graph_.program, geometry) == group;
-           });
+      return program::hitGroupFor(graph_.program, geometry) == group;
+    });
   }
 
   // Returns the edge to a stage with such a trace if each hit of the trace, or its miss, runs one; else null.

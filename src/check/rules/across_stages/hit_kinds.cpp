@@ -16,8 +16,10 @@ using spv::Op;
 constexpr std::uint32_t kMaxHitKind = 127, kFrontFacing = 0xFE, kBackFacing = 0xFF;
 
 // True if the stage runs only for procedural geometry. The lecture form compiles hit shaders for both kinds.
-bool onlyProcedural(const PipelineGraph& graph, const std::string& file) {
+bool onlyProcedural(const PipelineGraph& graph, const std::string& file, const program::SceneFacts* scene) {
   bool found = false;
+  const bool sceneHasTriangles =
+      !scene || std::ranges::any_of(scene->geometries, [](const auto& geometry) { return !geometry.procedural(); });
   for (const program::HitGroup& group : graph.program.hitGroups) {
     for (const auto& [ray, shaders] : group.shaders) {
       if (shaders.closestHit != file && shaders.anyHit != file) continue;
@@ -25,7 +27,8 @@ bool onlyProcedural(const PipelineGraph& graph, const std::string& file) {
       found = true;
     }
   }
-  return found && !file.ends_with(".boxes.rchit") && !file.ends_with(".boxes.rahit");
+  const bool lecture = file.ends_with(".boxes.rchit") || file.ends_with(".boxes.rahit");
+  return found && !(lecture && sceneHasTriangles);
 }
 
 bool isHitKind(const spirv::Module& module, spirv::Id value) {
@@ -74,13 +77,16 @@ void checkHitKinds(const CheckInput& input, Report& report) {
     if (!stage.facts) continue;
     for (const spirv::ReportFacts& hit : stage.facts->reports())
       if (const std::optional<std::uint32_t> kind = hit.hitKind.atLeast(kMaxHitKind + 1))
-        report.add("Q608", locationOf(graph, stage, hit.location),
-                   fmt::format("the hit kind of this report is {}{}, but the maximum is {}; Vulkan reserves larger ones "
-                               "for triangles",
-                               hit.hitKind.exact() ? "" : hit.hitKind.min > kMaxHitKind ? "at least " : "up to ",
-                               hit.hitKind.known && hit.hitKind.min <= kMaxHitKind ? hit.hitKind.values.back() : *kind,
-                               kMaxHitKind));
-    if (stage.kind != shader::Stage::intersection && onlyProcedural(graph, stage.file))
+        report.add(
+            "Q608", locationOf(graph, stage, hit.location),
+            fmt::format("the hit kind of this report is {}{}, but the maximum is {}; Vulkan reserves larger ones "
+                        "for triangles",
+                        hit.hitKind.exact()             ? ""
+                        : hit.hitKind.min > kMaxHitKind ? "at least "
+                                                        : "up to ",
+                        hit.hitKind.known && hit.hitKind.min <= kMaxHitKind ? hit.hitKind.values.back() : *kind,
+                        kMaxHitKind));
+    if (stage.kind != shader::Stage::intersection && onlyProcedural(graph, stage.file, input.scene))
       checkTriangleKinds(graph, stage, report);
   }
 }

@@ -49,16 +49,19 @@ class RayRule {
     std::uint32_t all = 0;
     for (const program::InstanceFacts& instance : input_.scene->instances) all |= instance.mask & kMaskBits;
     if (mask.mayHave(all)) return;
-    report_.add("Q507", location_,
-                fmt::format("the cull mask of this trace is {:#04x}, but the instances of {} have only the bits {:#04x}, "
-                            "so it hits none of them",
-                            mask.values.back(), input_.scene->name, all));
+    report_.add(
+        "Q507", location_,
+        fmt::format("the cull mask of this trace is {:#04x}, but the instances of {} have only the bits {:#04x}, "
+                    "so it hits none of them",
+                    mask.values.back(), input_.scene->name, all));
   }
 
   // Describes why no value of the interval is valid; empty if some can be.
   static std::string invalid(const ValueRange& tmin, const ValueRange& tmax) {
     if (tmin.empty() || tmax.empty()) return {};
-    if (!tmin.nan && tmin.max < 0.0) return fmt::format("tmin is {}, but it must not be negative", numberText(tmin.max));
+    if (tmin.onlyNan() || tmax.onlyNan()) return fmt::format("{} is NaN", tmin.onlyNan() ? "tmin" : "tmax");
+    if (!tmin.nan && tmin.max < 0.0)
+      return fmt::format("tmin is {}, but it must not be negative", numberText(tmin.max));
     if (tmin.nan || tmax.nan) return {};
     const std::optional<double> low = tmin.constant(), high = tmax.constant();
     const auto text = [](std::string_view name, double value, bool exact) {
@@ -117,9 +120,9 @@ class RayRule {
     for (const std::size_t ray : graph_.rayTypes(trace)) {
       const program::HitShaders& first = graph_.shaders({a, ray});
       const program::HitShaders& second = graph_.shaders({b, ray});
-      const bool closest = !trace.flags.mustHave(kFlagSkipClosestHit) &&
-                           (first.closestHit != second.closestHit ||
-                            (!first.closestHit.empty() && first.record != second.record));
+      const bool closest =
+          !trace.flags.mustHave(kFlagSkipClosestHit) &&
+          (first.closestHit != second.closestHit || (!first.closestHit.empty() && first.record != second.record));
       const bool any = !trace.flags.mustHave(kFlagOpaque) && first.anyHit != second.anyHit;
       if (closest || any || first.intersection != second.intersection) return true;
     }
@@ -155,14 +158,10 @@ class RayRule {
       const spirv::Variable* variable = module.variable(module.access(i.at(0)).variable);
       if (!variable) return false;
       if (variable->storage == spv::StorageClass::HitAttributeKHR) return true;
-      static constexpr std::array kHit{spv::BuiltIn::RayTmaxKHR,
-                                       spv::BuiltIn::PrimitiveId,
-                                       spv::BuiltIn::InstanceId,
-                                       spv::BuiltIn::InstanceCustomIndexKHR,
-                                       spv::BuiltIn::RayGeometryIndexKHR,
-                                       spv::BuiltIn::HitKindKHR,
-                                       spv::BuiltIn::ObjectToWorldKHR,
-                                       spv::BuiltIn::WorldToObjectKHR};
+      static constexpr std::array kHit{spv::BuiltIn::RayTmaxKHR,          spv::BuiltIn::PrimitiveId,
+                                       spv::BuiltIn::InstanceId,          spv::BuiltIn::InstanceCustomIndexKHR,
+                                       spv::BuiltIn::RayGeometryIndexKHR, spv::BuiltIn::HitKindKHR,
+                                       spv::BuiltIn::ObjectToWorldKHR,    spv::BuiltIn::WorldToObjectKHR};
       return variable->builtIn && std::ranges::find(kHit, *variable->builtIn) != kHit.end();
     });
   }
@@ -207,10 +206,11 @@ class RayRule {
         if (edge.role != Role::closestHit || !edge.exact) continue;
         const int line = lineOfHitStore(graph_.facts(edge), leaf);
         if (line == 0) continue;
-        report_.add("Q512", location_,
-                    fmt::format("this trace ends at the first hit that is found, which need not be the closest one, but "
-                                "the {} writes values of the hit to the payload (line {}), which are read afterwards",
-                                graph_.describe(edge), line));
+        report_.add(
+            "Q512", location_,
+            fmt::format("this trace ends at the first hit that is found, which need not be the closest one, but "
+                        "the {} writes values of the hit to the payload (line {}), which are read afterwards",
+                        graph_.describe(edge), line));
         return;
       }
     }
@@ -262,21 +262,23 @@ class RayRule {
     if (reasons.empty()) return;
     std::string text;
     for (const std::string& reason : reasons) text += (text.empty() ? "" : " and ") + reason;
-    report_.add("Q513", location_,
-                fmt::format("this trace skips {}, but {} has nothing else, so it hits nothing", text,
-                            input_.scene->name));
+    report_.add(
+        "Q513", location_,
+        fmt::format("this trace skips {}, but {} has nothing else, so it hits nothing", text, input_.scene->name));
   }
 
   const DefaultRanges& defaultsOf(std::size_t stage) {
     auto& found = defaults_[stage];
-    if (!found) found = std::make_unique<DefaultRanges>(graph_.program, graph_.stages[stage].file, graph_.stages[stage].facts->module());
+    if (!found)
+      found = std::make_unique<DefaultRanges>(graph_.program, graph_.stages[stage].file,
+                                              graph_.stages[stage].facts->module());
     return *found;
   }
 
   const CheckInput& input_;
   const PipelineGraph& graph_;
   Report& report_;
-  SourceLocation location_;  // of the trace
+  SourceLocation location_;                                         // of the trace
   std::map<std::size_t, std::unique_ptr<DefaultRanges>> defaults_;  // by stage
 };
 

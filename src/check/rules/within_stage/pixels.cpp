@@ -21,8 +21,8 @@ using spv::Op;
 
 constexpr int kMaxDepth = 24;
 
-bool isMember(const spirv::Module& module, const spirv::Instruction& access, const Path& path, std::string_view structure,
-              std::string_view member) {
+bool isMember(const spirv::Module& module, const spirv::Instruction& access, const Path& path,
+              std::string_view structure, std::string_view member) {
   const auto found = spirv::bufferMember(module, access, path);
   // The lecture form renames the structures of the library.
   return found && found->member == member &&
@@ -63,7 +63,8 @@ std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Pa
       for (const std::size_t k : {0u, 1u}) {
         const auto found = coordinateOf(module, i->at(k), path, depth + 1);
         const spirv::Instruction* other = operand(1 - k);
-        if (found && other && isMember(module, *other, partOf(1 - k), "Launch", "offset")) return Coordinate{found->axis, true};
+        if (found && other && isMember(module, *other, partOf(1 - k), "Launch", "offset"))
+          return Coordinate{found->axis, true};
       }
       return {};
     case Op::OpISub: {  // height - 1 - y
@@ -92,7 +93,20 @@ std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Pa
 struct Parts {
   bool x = false, y = false;
   double factor = 1.0;
+  bool normalized = false;  // divided by the size of the image
 };
+
+// True for frame.width, frame.height and components of gl_LaunchSizeEXT, also as float.
+bool isSize(const spirv::Module& module, Id value, Path given) {
+  const auto [id, path] = spirv::originOf(module, value, std::move(given));
+  const spirv::Instruction* i = module.definition(id);
+  if (!i) return false;
+  if (i->op == Op::OpConvertUToF || i->op == Op::OpConvertSToF || i->op == Op::OpBitcast)
+    return isSize(module, i->at(0), path);
+  return i->op == Op::OpLoad &&
+         (spirv::loadsBuiltIn(module, *i, spv::BuiltIn::LaunchSizeKHR) ||
+          isMember(module, *i, path, "Frame", "width") || isMember(module, *i, path, "Frame", "height"));
+}
 
 void addParts(const spirv::Module& module, const spirv::ValueRanges& ranges, Id value, Path given, Parts& parts,
               double factor = 1.0, int depth = 0) {
@@ -111,16 +125,28 @@ void addParts(const spirv::Module& module, const spirv::ValueRanges& ranges, Id 
       return;
     case Op::OpBitcast:
     case Op::OpUConvert:
-    case Op::OpSConvert: return follow(0);
+    case Op::OpSConvert:
+    case Op::OpConvertUToF:
+    case Op::OpConvertSToF:
+    case Op::OpConvertFToU:
+    case Op::OpConvertFToS: return follow(0);
     case Op::OpIAdd:
-    case Op::OpISub: return follow(0), follow(1);
+    case Op::OpISub:
+    case Op::OpFAdd:
+    case Op::OpFSub: return follow(0), follow(1);
     case Op::OpIMul:
+    case Op::OpFMul:
+    case Op::OpVectorTimesScalar:
     case Op::OpUDiv:
-    case Op::OpSDiv: {
-      const std::optional<double> by = ranges.range(i->at(1), path).constant();
+    case Op::OpSDiv:
+    case Op::OpFDiv: {
+      const bool product = i->op == Op::OpIMul || i->op == Op::OpFMul || i->op == Op::OpVectorTimesScalar;
+      const Path second = i->op == Op::OpVectorTimesScalar ? Path{} : path;
+      const std::optional<double> by = ranges.range(i->at(1), second).constant();
       const std::optional<double> first = ranges.range(i->at(0), path).constant();
-      if (by && *by != 0.0) return follow(0, i->op == Op::OpIMul ? *by : 1.0 / *by);
-      if (first && i->op == Op::OpIMul) return follow(1, *first);
+      if (by && *by != 0.0) return follow(0, product ? *by : 1.0 / *by);
+      if (first && product) return follow(1, *first);
+      if (i->op == Op::OpFDiv && isSize(module, i->at(1), path)) parts.normalized = true, follow(0);
       return;
     }
     case Op::OpShiftLeftLogical:
@@ -157,7 +183,8 @@ struct Target {
 // The target of a store to an output: y * filmWidth + x.
 std::optional<Target> outputTarget(const spirv::Module& module, const spirv::Instruction& store) {
   const spirv::Instruction* chain = module.definition(store.at(0));
-  if (!chain || (chain->op != Op::OpAccessChain && chain->op != Op::OpInBoundsAccessChain) || chain->operands.size() < 3)
+  if (!chain || (chain->op != Op::OpAccessChain && chain->op != Op::OpInBoundsAccessChain) ||
+      chain->operands.size() < 3)
     return {};
   const auto member = spirv::bufferMember(module, store);
   if (!member || (member->structure != "OutputArray" && member->structure != "gsnOutputArray_")) return {};
@@ -214,31 +241,46 @@ SourceLocation locationOf(const spirv::Module& module, const spirv::Instruction&
 
 void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, std::size_t instruction,
                  const Target& target, Report& report) {
+  const bool isOutput = module.instructions()[instruction].op == Op::OpStore;
   Parts x, y;
   addParts(module, ranges, target.x.id, target.x.path, x);
   addParts(module, ranges, target.y.id, target.y.path, y);
   const SourceLocation location = locationOf(module, module.instructions()[instruction]);
   if (!x.x && x.y && y.x && !y.y)
-    return report.addOncePerLine("Q713", location,
-                                 "the result is stored at the transposed pixel: x comes from gl_LaunchIDEXT.y and y from "
-                                 "gl_LaunchIDEXT.x");
+    return report.addOncePerLine(
+        "Q713", location,
+        "the result is stored at the transposed pixel: x comes from gl_LaunchIDEXT.y and y from "
+        "gl_LaunchIDEXT.x");
   if (guardedByLaunch(module, ranges, instruction)) return;
   const std::optional<double> column = ranges.range(target.x.id, target.x.path).constant();
   const std::optional<double> row = ranges.range(target.y.id, target.y.path).constant();
   if (column && row)
     return report.addOncePerLine(
         "Q713", location, fmt::format("all invocations store their result at the same pixel ({}, {})", *column, *row));
+  if ((x.x && x.normalized) || (y.y && y.normalized))
+    return report.addOncePerLine("Q713", location,
+                                 fmt::format("the result is stored at the pixel scaled to a fixed size of {}, but the "
+                                             "image can have any size",
+                                             x.x && x.normalized ? x.factor : y.factor));
+  const auto coordinateX = coordinateOf(module, target.x.first, target.x.second);
+  const auto coordinateY = coordinateOf(module, target.y.first, target.y.second);
+  if (isOutput && coordinateX == Coordinate{0, false} && coordinateY == Coordinate{1, false})
+    return report.addOncePerLine("Q713", location,
+                                 "the result is stored at gl_LaunchIDEXT.xy, but a launch is a part of the image; the "
+                                 "pixel is launchPixel()");
   const bool xScaled = x.x && !x.y && x.factor != 1.0, yScaled = y.y && !y.x && y.factor != 1.0;
   if ((xScaled && x.factor > 1.0) || (yScaled && y.factor > 1.0))
-    report.addOncePerLine("Q713", location,
-                          fmt::format("the result is stored at the pixel times {}, which is outside of the image for most "
-                                      "pixels",
-                                      xScaled ? x.factor : y.factor));
+    report.addOncePerLine(
+        "Q713", location,
+        fmt::format("the result is stored at the pixel times {}, which is outside of the image for most "
+                    "pixels",
+                    xScaled ? x.factor : y.factor));
   else if ((xScaled && x.factor > 0.0) || (yScaled && y.factor > 0.0))
-    report.addOncePerLine("Q713", location,
-                          fmt::format("the result is stored at the pixel divided by {}, so several invocations store to "
-                                      "the same pixel",
-                                      1.0 / (xScaled ? x.factor : y.factor)));
+    report.addOncePerLine(
+        "Q713", location,
+        fmt::format("the result is stored at the pixel divided by {}, so several invocations store to "
+                    "the same pixel",
+                    1.0 / (xScaled ? x.factor : y.factor)));
 }
 
 // True if the divisor is the size along the axis of the coordinate, which is larger.
@@ -256,8 +298,7 @@ bool isSizeOf(const spirv::Module& module, Id value, const Path& given, const Co
 void checkPixels(const spirv::Module& module, Report& report) {
   const spirv::ValueRanges ranges(module);
   for (std::size_t k = 0; k < module.instructions().size(); ++k)
-    if (const auto target = targetOf(module, module.instructions()[k]))
-      checkTarget(module, ranges, k, *target, report);
+    if (const auto target = targetOf(module, module.instructions()[k])) checkTarget(module, ranges, k, *target, report);
 }
 
 void checkPixelDivision(const spirv::Module& module, Report& report) {
