@@ -43,7 +43,7 @@ class TextureUpload {
   std::uint32_t addEnvironment(const io::Image& image);
 
   // Uploads a white texture for the slots that have no other. A program with a wrong index then reads it instead of a
-  // descriptor that was never written, which crashes lavapipe.
+  // descriptor that was never written: undefined in Vulkan, and a crash of lavapipe.
   void addUnused();
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(entries_.size()); }  // without the unused slots
