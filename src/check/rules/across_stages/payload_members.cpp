@@ -159,7 +159,7 @@ class MemberRule {
       const bool ends = edge.role == Role::miss || edge.role == Role::closestHit;
       const spirv::SharedVariable* received = graph_.facts(edge).incoming(StorageClass::IncomingRayPayloadKHR);
       if (ends && received && result.size() < 4 && !writes(edge, member, true))
-        result.push_back(relatedTo(graph_.location(graph_.stages[edge.stage], received->declaration),
+        result.push_back(relatedTo(graph_.declarationOf(graph_.stages[edge.stage], *received),
                                    fmt::format("not written by the {}", graph_.describe(edge))));
     }
     return result;
