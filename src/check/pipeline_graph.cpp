@@ -8,6 +8,8 @@
 #include "base/parallel.h"
 #include "check/swapped_arguments.h"
 #include "check/value_context.h"
+#include "spirv/glsl_declaration.h"
+#include "spirv/source_text.h"
 
 namespace quintet::check {
 namespace {
@@ -143,6 +145,19 @@ SourceLocation PipelineGraph::descriptionLocation(int line) const {
 
 SourceLocation PipelineGraph::location(const PipelineStage& stage, const SourceLocation& location) const {
   return location.line > 0 ? location : SourceLocation{program.path(nameOf(stage.file)), 0, 0};
+}
+
+SourceLocation PipelineGraph::declarationOf(const PipelineStage& stage, const spirv::SharedVariable& variable) const {
+  const SourceLocation declared = location(stage, variable.declaration);
+  const auto source = program.files.find(program.descriptionFile);
+  if (nameOf(stage.file) == stage.file || source == program.files.end()) return declared;
+  // The text of a stage of the lecture form has declarations that the user's file does not have.
+  const std::string_view line = spirv::lineOf(source->second, declared.line);
+  if (declared.column > 0 && static_cast<std::size_t>(declared.column) <= line.size() &&
+      line.substr(static_cast<std::size_t>(declared.column) - 1).starts_with(variable.name))
+    return declared;
+  const auto start = spirv::findWord(program.files.at(stage.file), "main");
+  return {program.path(program.descriptionFile), start ? start->line : 0, start ? start->column : 0};
 }
 
 SourceLocation PipelineGraph::location(const TraceSite& site) const {

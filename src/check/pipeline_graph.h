@@ -91,6 +91,8 @@ struct PipelineGraph {
   SourceLocation descriptionLocation(int line) const;
   // The given location if its line is known, else the file of the stage.
   SourceLocation location(const PipelineStage& stage, const SourceLocation& location) const;
+  // Where the stage declares a variable that stages share; its main() if the lecture form declares it.
+  SourceLocation declarationOf(const PipelineStage& stage, const spirv::SharedVariable& variable) const;
   SourceLocation location(const TraceSite& site) const;
   SourceLocation location(const CallSite& site) const;
 

@@ -174,7 +174,7 @@ class Builder {
     return std::ranges::any_of(variables, [&](const spirv::SharedVariable& v) {
       const bool incoming = v.storage == spv::StorageClass::IncomingRayPayloadKHR ||
                             v.storage == spv::StorageClass::IncomingCallableDataKHR;
-      return incoming && isAt(diagnostic, userLocation(v.declaration));
+      return incoming && isAt(diagnostic, userLocation(graph_.declarationOf(graph_.stages[*stage], v)));
     });
   }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Q101 to Q105 and Q301 to Q303: mistakes with payloads and callable data, and similar code that is correct.
+#include <fmt/format.h>
+
 #include "check_test_support.h"
+#include "program/gsn/lecture.h"
 
 namespace quintet::check {
 namespace {
@@ -257,6 +260,44 @@ TEST(CheckCallable, Q304ReportsUnsetInputAndUnwrittenResult) {
 
 TEST(CheckCallable, Q303ReportsADifferentLocation) {
   EXPECT_TRUE(reports(checkEdited(callFiles(), "tint.rcall", "location = 0", "location = 2"), "Q303 tint.rcall:6:"));
+}
+
+// Returns "sky.rmiss:7 received here as vec3" for each related location.
+std::vector<std::string> relatedOf(const CheckResult& result) {
+  std::vector<std::string> texts;
+  for (const Diagnostic& d : result.diagnostics)
+    for (const RelatedLocation& r : d.related)
+      texts.push_back(fmt::format("{}:{} {}", r.file.substr(r.file.rfind('/') + 1), r.line, r.text));
+  return texts;
+}
+
+TEST(CheckPayload, NamesBothEnds) {
+  const Files types = edited(cleanFiles(), "sky.rmiss", "struct Payload { vec3 color; float t; };",
+                             "struct Payload { vec3 color; float t; float more; };");
+  EXPECT_THAT(relatedOf(checkFiles(types)),
+              testing::ElementsAre("main.rgen:8 sent here as struct Payload { vec3 color; float t; }",
+                                   "sky.rmiss:6 received here as struct Payload { vec3 color; float t; float more; }"));
+  const Files forgets = edited(cleanFiles(), "sky.rmiss", "  payload.t = -1.0;\n", "");
+  EXPECT_THAT(relatedOf(checkFiles(forgets)),
+              testing::ElementsAre("main.rgen:12 read here",
+                                   "sky.rmiss:6 not written by the miss shader 'sky.rmiss' (miss index 0)"));
+}
+
+// The lecture form declares the payload itself, so the other end is the main() of the shader.
+TEST(CheckPayload, NamesTheMainFunctionOfTheLectureForm) {
+  const std::string text =
+      "struct RayPayloadType { vec3 color; float t; };\n"
+      "void main() { /**** RAY GENERATION SHADER ****/\n"
+      "  traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 1u, 0u, vec3(0.0), 0.0, vec3(0.0, 0.0, 1.0), 1e9, 0);\n"
+      "  gsnSetPixel(vec4(payload.color, payload.t));\n"
+      "}\n"
+      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = vec3(1.0); payload.t = gl_HitTEXT; }\n"
+      "void main() { /**** MISS SHADER ****/ payload.color = gl_WorldRayDirectionEXT; }\n";
+  const CheckResult result =
+      check(program::parseLecture(text, "a.rt.glsl", "folder/demo"), checkCompiler(), nullptr, {});
+  EXPECT_THAT(relatedOf(result),
+              testing::ElementsAre("a.rt.glsl:4 read here",
+                                   "a.rt.glsl:7 not written by the miss shader 'a.rt.glsl' (miss index 0)"));
 }
 
 }  // namespace

@@ -440,7 +440,7 @@ class MemberRule {
       const bool ends = edge.role == Role::miss || edge.role == Role::closestHit;
       const spirv::SharedVariable* payload = received(edge);
       if (ends && payload && result.size() < kMaxRelated && !writes(edge, group.leaves.front(), true))
-        result.push_back(relatedTo(graph_.location(graph_.stages[edge.stage], payload->declaration),
+        result.push_back(relatedTo(graph_.declarationOf(graph_.stages[edge.stage], *payload),
                                    fmt::format("not written by the {}", graph_.describe(edge))));
     }
     return result;

@@ -80,8 +80,8 @@ std::vector<RelatedLocation> endsOf(const PipelineGraph& graph, const PipelineSt
   const auto text = [](std::string_view verb, const PipelineStage& stage, const spirv::SharedVariable& variable) {
     return fmt::format("{} here as {}", verb, stage.facts->module().types().describe(variable.type));
   };
-  return {relatedTo(graph.location(sender, pair.sent->declaration), text("sent", sender, *pair.sent)),
-          relatedTo(graph.location(receiver, pair.received->declaration), text("received", receiver, *pair.received))};
+  return {relatedTo(graph.declarationOf(sender, *pair.sent), text("sent", sender, *pair.sent)),
+          relatedTo(graph.declarationOf(receiver, *pair.received), text("received", receiver, *pair.received))};
 }
 
 template <class Site>
@@ -105,7 +105,7 @@ void checkPairs(const PipelineGraph& graph, const std::vector<Site>& sites, Stor
           fmt::format("'{}' has location {} here, but the {} at {}:{} sends location {}", pair.received->name,
                       *pair.received->location, wording.site, location.file, location.line, *pair.sent->location),
           {relatedTo(location, fmt::format("the {}", wording.site)),
-           relatedTo(graph.location(graph.stages[site.stage], pair.sent->declaration),
+           relatedTo(graph.declarationOf(graph.stages[site.stage], *pair.sent),
                      fmt::format("location {} is sent", *pair.sent->location))});
     }
   }

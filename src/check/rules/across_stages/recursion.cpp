@@ -137,7 +137,7 @@ std::vector<RelatedLocation> otherTraces(const PipelineGraph& graph, const Trace
   }
   const auto* payload = graph.facts(*cycle.edge).incoming(spv::StorageClass::IncomingRayPayloadKHR);
   if (payload)
-    result.push_back(relatedTo(graph.location(graph.stages[cycle.edge->stage], payload->declaration),
+    result.push_back(relatedTo(graph.declarationOf(graph.stages[cycle.edge->stage], *payload),
                                "payload of the shader that runs again"));
   return result;
 }
