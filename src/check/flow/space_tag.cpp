@@ -31,7 +31,7 @@ SpaceTag plain(SpaceTag tag) {
   return tag;
 }
 
-// A value of the space of `tag` and of another kind.
+// A value of the space of `tag` and with a different kind.
 SpaceTag like(const SpaceTag& tag, Kind kind) {
   SpaceTag result = geometricTag(tag.space, kind);
   result.component = tag.component;

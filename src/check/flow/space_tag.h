@@ -77,7 +77,7 @@ SpaceTag sumOf(const SpaceTag& a, const SpaceTag& b);
 SpaceTag differenceOf(const SpaceTag& a, const SpaceTag& b);
 // A vector or component times a scalar.
 SpaceTag scaledTag(const SpaceTag& tag);
-// A vector times a scalar, which can be the component of another vector.
+// A vector times a scalar, which can be the component of a different vector.
 SpaceTag productOf(const SpaceTag& vector, const SpaceTag& scalar);
 SpaceTag normalizedTag(const SpaceTag& tag);
 SpaceTag crossOf(const SpaceTag& a, const SpaceTag& b);

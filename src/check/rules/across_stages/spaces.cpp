@@ -104,7 +104,7 @@ class SpaceRules {
     }
   }
 
-  // A matrix from the one space that is applied to a value of another space.
+  // A matrix from the one space that is applied to a value of a different space.
   void checkDirectionOfMatrix(const spirv::Instruction& i, const SpaceTags::Product& product) {
     add("Q709", i, tokenOf(product.transform),
         fmt::format("{} is multiplied by {}, which here maps {} to {}", describe(product.vector),
