@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 #include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "cli/command.h"
 #include "cli/failure.h"
 #include "cli/signals.h"
+#include "cli/supervisor.h"
 #include "commands/help.h"
 #include "gpu/instance.h"
 
@@ -39,18 +41,18 @@ int dispatch(const std::vector<std::string>& arguments) {
   throw UsageError(unknownCommandText(first));
 }
 
+bool isIsolated(const std::vector<std::string>& arguments) {
+  const auto all = commands();
+  const auto found = arguments.empty() ? all.end() : std::ranges::find(all, arguments.front(), &Command::name);
+  return found != all.end() && found->isolated;
+}
+
 // The descriptor of a closed standard stream would be reused by the next file that is opened. It is replaced by one that is
 // open in the wrong direction, so that using it still fails.
 void occupyStandardStreams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(fd, F_GETFD) < 0) [[maybe_unused]]
       const int opened = ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY);
-}
-
-// Also if the command line cannot be parsed. After "--" it is the name of a file.
-bool wantsJson(const std::vector<std::string>& arguments) {
-  const auto end = std::ranges::find(arguments, "--");
-  return std::find(arguments.begin(), end, "--json") != end;
 }
 
 // Commands that were copied from a text may contain typographic quotes. Returns the end of an error message.
@@ -69,8 +71,10 @@ int main(int argc, char** argv) {
   // A reader that has ended and a file that becomes too large are ordinary errors.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  cli::installSignalHandlers();
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  if (cli::isIsolated(arguments))
+    if (const std::optional<int> status = cli::supervise(arguments)) return *status;
+  cli::installSignalHandlers();
   try {
     releaseLargeBlocksImmediately();
     gpu::prepareDriverEnvironment();  // before other threads exist

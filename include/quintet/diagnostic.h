@@ -13,6 +13,14 @@ namespace quintet {
 // A program with an error does not run.
 enum class Severity { note, warning, error };
 
+// A second location of a problem, such as the shader that receives a payload.
+struct RelatedLocation {
+  std::string file{};  // as in Diagnostic
+  int line = 0;        // 1-based; 0: unknown
+  int column = 0;      // 1-based, in bytes; 0: unknown
+  std::string text{};  // what is there, without a period
+};
+
 // One problem of a program, with its location.
 struct Diagnostic {
   Severity severity = Severity::error;
@@ -21,6 +29,7 @@ struct Diagnostic {
   int column = 0;      // 1-based, in bytes; 0: unknown
   std::string id{};    // "GLSL" for the compiler's own, "Q101", … for the check's (docs/diagnostics)
   std::string text{};  // one sentence without a period
+  std::vector<RelatedLocation> related{};
   // "file:line:column: error: text [id]"; unknown parts are left out.
   std::string format() const;
 };

@@ -42,8 +42,10 @@ struct Layer {
 // What Film::write() stores besides the image.
 struct WriteOptions {
   std::vector<std::string> layers{};  // .exr: names of layers beside the image, or "all"
-  bool floats = false;  // .exr: colors as 32-bit floats instead of half; all other layers are always floats
-  double exposure = 0;  // .png: stops
+  bool floats = false;    // .exr: colors as 32-bit floats instead of half; all other layers are always floats
+  double exposure = 0;    // .png: stops
+  std::string toneMap{};  // .png: "linear", "aces", "agx" or "neutral"; default: neutral for colors, linear for data
+  unsigned pngBits = 8;   // .png: bits per channel, 8 or 16
 };
 
 // The result of a render in host memory: the image, the layers that were rendered, the exact sums of samples, and how the

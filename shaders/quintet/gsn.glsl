@@ -13,6 +13,9 @@
 #ifdef QUINTET_INSTRUMENT
 #include "instrument.glsl"
 #endif
+#ifdef QUINTET_RECURSION
+#include "recursion.glsl"
+#endif
 #ifdef QUINTET_GSN_OPEN
 #include "output.glsl"
 #include "payload.glsl"

@@ -36,7 +36,27 @@ void instrumentReport_(uint kind, uint line, uint depth, float distance, uint in
   instrument_.reports[slot] = report;
 }
 
+// Checks the target before an output is stored. Returns false if it must not be stored.
+bool instrumentOutput_(uint slot, uvec2 pixel, uint line) {
+  const uvec2 film = pixel - frame.filmOffset;
+  if (slot < kMaxOutputs && film.x < frame.filmWidth && film.y < frame.filmHeight) return frame.outputs[slot] != 0ul;
+  instrumentReport_(kReportOutput, line, 0u, 0.0, slot, vec3(vec2(ivec2(film)), 0.0), vec3(0.0));
+  return false;
+}
+
 #if QUINTET_INSTRUMENT_KIND != 2
+// Checks the index before a call. Returns false if the call must not run.
+bool instrumentCall_(uint index, uint line) {
+  if (index < instrument_.value.callableCount) return true;
+  instrumentReport_(kReportCall, line, instrument_.pixels[instrumentPixel_()].depth, 0.0, index, vec3(0.0), vec3(0.0));
+  return false;
+}
+#define executeCallableEXT(index_, location_)                                                    \
+  do {                                                                                           \
+    const uint iIndex_ = (index_);                                                               \
+    if (instrumentCall_(iIndex_, uint(__LINE__))) executeCallableEXT(iIndex_, location_);        \
+  } while (false)
+
 bool instrumentBad_(vec3 v) { return any(isnan(v)) || any(isinf(v)); }
 
 // Checks the arguments before a trace. Returns false if the trace must not run.

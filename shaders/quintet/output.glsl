@@ -40,20 +40,46 @@ uint pixelIndex(uvec2 pixel) {
   return film.y * frame.filmWidth + film.x;
 }
 
+// True if the output exists and is rendered, and the pixel is inside the film. The functions below ignore anything else.
+bool holdsPixel(uint slot, uvec2 pixel) {
+  const uvec2 film = pixel - frame.filmOffset;
+  return slot < kMaxOutputs && film.x < frame.filmWidth && film.y < frame.filmHeight && frame.outputs[slot] != 0ul;
+}
+
 // `slot`: kOutput_… of the generated program constants.
-vec4 loadOutput(uint slot, uvec2 pixel) { return OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)]; }
-void storeOutput(uint slot, uvec2 pixel, vec4 sum) { OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] = sum; }
-void addOutput(uint slot, uvec2 pixel, vec4 sample_) { OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] += sample_; }
+vec4 loadOutput(uint slot, uvec2 pixel) {
+  return holdsPixel(slot, pixel) ? OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] : vec4(0.0);
+}
+void storeOutput(uint slot, uvec2 pixel, vec4 sum) {
+  if (holdsPixel(slot, pixel)) OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] = sum;
+}
+void addOutput(uint slot, uvec2 pixel, vec4 sample_) {
+  if (holdsPixel(slot, pixel)) OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)] += sample_;
+}
 // For an output that counts ids (pixel = "coverage"): stores the id that sample `index` of the pixel has hit; 0: no
 // hit.
 void storeCoverage(uint slot, uvec2 pixel, uint index, uint id) {
-  OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)][index % kBatchSamples] = uintBitsToFloat(id);
+  if (holdsPixel(slot, pixel))
+    OutputArray(frame.outputs[slot]).at[pixelIndex(pixel)][index % kBatchSamples] = uintBitsToFloat(id);
 }
+
+#ifdef QUINTET_INSTRUMENT
+// Checked, with the line of the call (Q007).
+void storeOutputAt_(uint slot, uvec2 pixel, vec4 sum, uint line) {
+  if (instrumentOutput_(slot, pixel, line)) storeOutput(slot, pixel, sum);
+}
+void addOutputAt_(uint slot, uvec2 pixel, vec4 sample_, uint line) {
+  if (instrumentOutput_(slot, pixel, line)) addOutput(slot, pixel, sample_);
+}
+#define storeOutput(slot_, pixel_, sum_) storeOutputAt_(slot_, pixel_, sum_, uint(__LINE__))
+#define addOutput(slot_, pixel_, sample_) addOutputAt_(slot_, pixel_, sample_, uint(__LINE__))
+#endif
 
 // For a program that averages by itself (accumulation = "program"): the index of the frame, and the value that the
 // previous frame stored. That value is 0 in the first frame, and always 0 if the film averages.
 uint launchFrame() { return launch.firstSample; }
 vec4 loadPrevious(uint slot, uvec2 pixel) {
+  if (!holdsPixel(slot, pixel)) return vec4(0.0);
   const Address previous = frame.previousOutputs[slot];
   return previous != 0ul ? OutputArray(previous).at[pixelIndex(pixel)] : vec4(0.0);
 }
@@ -63,7 +89,9 @@ bool isFinite(vec4 value) { return !(any(isnan(value)) || any(isinf(value))); }
 
 // Adds to this pixel's counters: rays traced, samples discarded.
 void countRays(uvec2 pixel, uint rays, uint dropped) {
-  if (frame.statistics != 0ul) StatisticsArray(frame.statistics).at[pixelIndex(pixel)] += uvec2(rays, dropped);
+  const uvec2 film = pixel - frame.filmOffset;
+  if (frame.statistics != 0ul && film.x < frame.filmWidth && film.y < frame.filmHeight)
+    StatisticsArray(frame.statistics).at[pixelIndex(pixel)] += uvec2(rays, dropped);
 }
 
 #endif

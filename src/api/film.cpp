@@ -144,7 +144,16 @@ void Film::write(const std::filesystem::path& file, const WriteOptions& options)
   if (plan.kind == output::FileKind::film && impl_->result.accumulatesFrames)
     throw UsageError(
         fmt::format("{}: the program averages its samples itself, so there is no film to store", file.string()));
+  if (options.pngBits != 8 && options.pngBits != 16)
+    throw UsageError(fmt::format("{} bits per channel: PNG files have 8 or 16", options.pngBits));
+  plan.request.pngBits = options.pngBits;
   plan.request.exposure = options.exposure;
+  if (!options.toneMap.empty()) {
+    plan.request.toneMap = render::toneMapByName(options.toneMap);
+    if (!plan.request.toneMap)
+      throw UsageError(fmt::format("tone map '{}' not found{}", options.toneMap,
+                                   suggestion(options.toneMap, render::toneMapNames())));
+  }
   if (options.floats) plan.request.exr = output::ExrFormat{io::ExrType::f32, {}};
   plan.outputs = {0};
   plan.layers = output::selectLayers(impl_->layers, options.layers, "the film");

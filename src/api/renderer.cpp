@@ -190,8 +190,8 @@ RenderReport Renderer::render(const Limits& limits, const ProgressFunction& prog
 RenderReport Renderer::render(std::uint32_t count) { return render({.samples = sampleCount() + count}); }
 
 std::uint64_t Renderer::sampleCount() const { return impl_->job.renderer().statistics().samples; }
-std::vector<Diagnostic> Renderer::diagnostics() const { return impl_->job.result().diagnostics; }
-Image Renderer::image(const std::string& output) const { return toImage(*impl_->job.result().film, output); }
+std::vector<Diagnostic> Renderer::diagnostics() const { return impl_->job.diagnostics(); }
+Image Renderer::image(const std::string& output) const { return toImage(*impl_->job.film(), output); }
 
 Film Renderer::film() const {
   job::RenderResult result = impl_->job.result(true);

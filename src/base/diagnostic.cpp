@@ -19,11 +19,7 @@ std::string firstError(const std::vector<Diagnostic>& diagnostics) {
 }  // namespace
 
 std::string Diagnostic::format() const {
-  std::string result = file;
-  if (!file.empty() && line > 0) {
-    result += ":" + std::to_string(line);
-    if (column > 0) result += ":" + std::to_string(column);
-  }
+  std::string result = locationText(file, line, column);
   if (!file.empty()) result += ": ";
   result.append(severityName(severity)).append(": ").append(text);
   if (!id.empty()) result.append(" [").append(id).append("]");
@@ -35,6 +31,15 @@ ProgramError::ProgramError(std::vector<Diagnostic> diagnostics)
 
 std::string_view severityName(Severity severity) {
   return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
+}
+
+std::string locationText(const std::string& file, int line, int column) {
+  std::string result = file;
+  if (!file.empty() && line > 0) {
+    result += ":" + std::to_string(line);
+    if (column > 0) result += ":" + std::to_string(column);
+  }
+  return result;
 }
 
 bool hasErrors(const std::vector<Diagnostic>& diagnostics) {

@@ -20,12 +20,15 @@ struct SourceLocation {
 
 std::string_view severityName(Severity severity);  // "error", "warning", "note"
 
+// Returns "file:line:column"; unknown parts are left out.
+std::string locationText(const std::string& file, int line, int column);
+
 bool hasErrors(const std::vector<Diagnostic>& diagnostics);
 
 // Returns "2 errors, 1 warning"; empty without errors and warnings. Notes do not count.
 std::string countText(const std::vector<Diagnostic>& diagnostics);
 
-// Appends a diagnostic unless the list has an equal one. Stages that share source text report the same problems.
+// Appends a diagnostic unless the list has an equal one; related locations do not count. Stages that share source text report the same problems.
 void addUnique(std::vector<Diagnostic>& diagnostics, Diagnostic diagnostic);
 
 // Returns a diagnostic with the id "FILE". The location "line 7" becomes its line.

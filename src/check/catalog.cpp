@@ -39,6 +39,9 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q006", kNote, "render/renderer/instrument", "number of any-hit shader invocations per ray",
      "Each invocation interrupts traversal; many of them per ray limit the speed of the program.",
      "Build geometry without alpha as opaque, or trace with gl_RayFlagsOpaqueEXT."},
+    {"Q007", kError, "render/renderer/instrument", "output is written outside of the image",
+     "The value is discarded: the pixel for which it was meant keeps its old value.",
+     "Compute the pixel with launchPixel() of <quintet/output.glsl>."},
 
     // Files of the lecture form.
     {"Q010", kError, "program/gsn/split", "ray generation shader is missing",
@@ -84,6 +87,12 @@ constexpr DiagnosticInfo kCatalog[] = {
      "nested trace overwrites the incoming payload, which is read afterwards",
      "The shaders of the inner ray write the same memory, so the value read afterwards belongs to the inner ray.",
      "Trace with a separate rayPayloadEXT, or copy the values to local variables before the trace."},
+    {"Q106", kError, "across_stages/payload_types", "stage has two incoming payloads or callable data variables",
+     "Vulkan allows one per stage: the two share memory on one driver, and the pipeline fails on another.",
+     "Declare one rayPayloadInEXT (or callableDataInEXT) whose struct has all members."},
+    {"Q107", kWarning, "across_stages/payload_inputs", "payload member is read before anything has set it",
+     "A payload is not cleared: the value is undefined, often that of a different pixel, or zero by accident.",
+     "Set the member in the tracing stage before the trace."},
 
     // Hit attributes.
     {"Q201", kError, "across_stages/hit_attributes", "hit attribute type differs between the shaders of a hit group",
@@ -99,6 +108,12 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q204", kError, "shader/stage_builtins", "hit attribute in a stage without a hit",
      "Only intersection, any-hit and closest-hit shaders have a hit; a miss shader has none.",
      "Pass the values through the payload."},
+    {"Q205", kWarning, "across_stages/hit_attributes", "hit attribute is read but not written before the report",
+     "reportIntersectionEXT passes on the attributes that were written before it; all others are undefined.",
+     "Write the attribute in the intersection shader before reportIntersectionEXT."},
+    {"Q206", kWarning, "across_stages/candidates", "intersection shader never reports an intersection",
+     "Without a call of reportIntersectionEXT, no ray can hit the geometry, which is invisible.",
+     "Call reportIntersectionEXT(t, kind), and check the conditions around it."},
 
     // Callable shaders.
     {"Q301", kError, "across_stages/payload_types",
@@ -112,6 +127,9 @@ constexpr DiagnosticInfo kCatalog[] = {
      "callable data location differs between the call and the callable shader",
      "Only the location of the call counts; a different location of callableDataInEXT is ignored but misleads readers.",
      "Use the same location for both."},
+    {"Q304", kWarning, "across_stages/callable_data", "callable data is read but not written",
+     "Callable data is not cleared: the value is undefined, often that of an earlier call.",
+     "Set what the callable shader reads before the call, and write the result in it on each path."},
 
     // Recursion.
     {"Q401", kError, "across_stages/recursion", "cycle of traces without a declared bound",
@@ -120,6 +138,9 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q402", kError, "across_stages/recursion", "recursion is deeper than declared or than the device allows",
      "A trace beyond maxPipelineRayRecursionDepth is undefined.",
      "Reduce the depth, increase max_recursion, or replace the recursion by a loop in the ray generation shader."},
+    {"Q403", kError, "across_stages/endless_recursion", "trace that always runs closes a cycle",
+     "max_recursion is a promise of the program; a ray that recurses further overwrites memory, or the device is lost.",
+     "Trace only while a depth in the payload is below max_recursion."},
 
     // The shader binding table.
     {"Q501", kError, "across_stages/arguments", "hit record is out of range for an instance of the scene",
@@ -139,6 +160,32 @@ constexpr DiagnosticInfo kCatalog[] = {
      "With closest-hit shaders skipped, only the miss shader returns a result, and this one writes a color, not "
      "visibility.",
      "Add a ray type with its own miss shader, and pass its kMiss_NAME."},
+    {"Q507", kWarning, "across_stages/ray_arguments", "cull mask excludes all instances",
+     "A ray hits an instance only if the masks of both have a common bit, so this ray always misses.",
+     "Use 0xFF for all instances, or set `mask` of the instances in the scene."},
+    {"Q508", kError, "across_stages/ray_arguments", "arguments of a trace are swapped",
+     "The arguments have the same types, so the compiler accepts them in any order.",
+     "Use the order of traceRayEXT: structure, flags, mask, offset, stride, miss index, origin, tmin, direction, tmax, "
+     "payload."},
+    {"Q509", kError, "across_stages/ray_arguments", "ray interval is empty or invalid",
+     "Vulkan requires 0 <= tmin <= tmax; a ray with an empty interval hits nothing.",
+     "Pass a small tmin and a larger tmax, such as 0.001 and kInfinity."},
+    {"Q510", kError, "across_stages/ray_arguments", "ray direction is the zero vector",
+     "The ray has no direction: its hits are undefined, and traversal may not terminate.",
+     "Pass the direction of the ray, of any length but 0."},
+    {"Q511", kError, "across_stages/ray_arguments", "stride is 0 although geometries need different hit groups",
+     "With a stride of 0, all geometries of an instance use the hit records of its first geometry.",
+     "Use kRayTypeCount as stride."},
+    {"Q512", kWarning, "across_stages/ray_arguments", "ray that ends at any hit is shaded as the closest hit",
+     "With gl_RayFlagsTerminateOnFirstHitEXT, the closest-hit shader runs for the first hit that the device finds, in an "
+     "arbitrary order.",
+     "Remove the flag, or read only whether there is a hit."},
+    {"Q513", kWarning, "across_stages/ray_arguments", "ray flags leave no geometry to hit",
+     "The flags skip all geometry that exists, so this ray always misses.",
+     "Remove the flag, or add geometry of the other kind."},
+    {"Q514", kWarning, "within_stage/ray_lengths", "ray direction is not normalized although tmax is its length",
+     "The unit of t is the length of the direction, so the ray ends at the square of the length.",
+     "Normalize the direction, or use a tmax of 1 with the direction as it is."},
 
     // Hit groups and geometry.
     {"Q601", kError, "across_stages/geometry", "procedural geometry uses a hit group without an intersection shader",
@@ -158,13 +205,37 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q605", kError, "across_stages/arguments", "ray flags exclude each other",
      "Vulkan forbids the combination, and its effect depends on the driver.",
      "Keep only one of the two flags that the message names."},
+    {"Q606", kWarning, "across_stages/candidates", "any-hit shader ignores every intersection",
+     "The rays pass through all geometry of the hit group, as if it did not exist.",
+     "Call ignoreIntersectionEXT only under a condition, or remove the geometry from these rays by the cull mask."},
+    {"Q607", kWarning, "across_stages/hit_kinds", "hit kind of triangles in a procedural hit group",
+     "Only the built-in triangle intersection reports gl_HitKindFrontFacingTriangleEXT and "
+     "gl_HitKindBackFacingTriangleEXT, so the comparison always has the same result.",
+     "Compare with the kind that the intersection shader passes to reportIntersectionEXT."},
+    {"Q608", kError, "across_stages/hit_kinds", "reported hit kind is above 127",
+     "Vulkan allows 0 to 127 and reserves larger values for triangles; drivers can use only 7 bits.",
+     "Number the kinds of the program from 0, and pass other data as a hit attribute."},
+
+    // Resources.
+    {"Q651", kError, "across_stages/resources", "resource that Quintet does not provide",
+     "The descriptor set has no such binding: the driver reads unrelated memory, and the process crashes.",
+     "Use the bindings of <quintet/frame.glsl>, and buffer addresses, parameters and outputs for all other data."},
+    {"Q652", kError, "across_stages/resources", "push constant block that Quintet does not provide",
+     "Quintet pushes its own block, so members of a different one have wrong values, and a longer one is undefined.",
+     "Include <quintet/frame.glsl>, and declare values of the program as [[parameter]]."},
+    {"Q653", kError, "across_stages/resources", "shader record block differs from the declared record",
+     "Both describe the same bytes: members are read from wrong offsets or with a wrong type.",
+     "Include <quintet/generated/record.glsl> instead of declaring the block."},
+    {"Q654", kError, "across_stages/resources", "shader record is read but the program declares none",
+     "The records hold only shader handles, so the block reads the next record or memory behind the table.",
+     "Declare the fields as [[record]] in program.toml, and include <quintet/generated/record.glsl>."},
 
     // Shading mistakes.
     {"Q701", kError, "within_stage/distance", "normalized object-space direction is used for t",
      "The unit of t is the length of the ray direction, so scaled instances get wrong distances and a wrong order of "
      "hits.",
      "Intersect with gl_ObjectRayDirectionEXT as it is, or divide the t of the unit direction by its length."},
-    {"Q702", kWarning, "within_stage/normals", "normal is transformed by gl_ObjectToWorldEXT",
+    {"Q702", kWarning, "across_stages/spaces", "normal is transformed by gl_ObjectToWorldEXT",
      "With non-uniform scale the result is not perpendicular to the surface, and shading is wrong.",
      "Multiply from the left with world-to-object: normalize(vec3(normal * gl_WorldToObjectEXT))."},
     {"Q703", kWarning, "within_stage/indices", "gl_InstanceID is used instead of the custom index",
@@ -183,6 +254,34 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q707", kError, "within_stage/unsupported", "debugPrintfEXT is not supported",
      "Quintet does not receive the texts that shaders print, so the call would have no effect.",
      "Remove the call, and store the value in an output of the program: an optional [[output]] for debugging."},
+    {"Q708", kWarning, "across_stages/spaces", "position is transformed like a direction, or a direction like a position",
+     "A position must be translated (w = 1) and a direction must not (w = 0), or instances that are moved look wrong.",
+     "Use matrix * vec4(position, 1.0) and matrix * vec4(direction, 0.0)."},
+    {"Q709", kWarning, "across_stages/spaces", "values of different spaces are mixed",
+     "The result is right only for instances without a transform.",
+     "Transform one of the values first: gl_ObjectToWorldEXT maps object space to world space."},
+    {"Q710", kWarning, "across_stages/barycentrics", "weights of the three vertices of a triangle are wrong",
+     "The attribute gives the weights of vertices 1 and 2, so values of the vertices end up at other corners.",
+     "Interpolate with (1.0 - b.x - b.y) * v0 + b.x * v1 + b.y * v2."},
+    {"Q711", kError, "across_stages/array_indices", "array index is beyond the array",
+     "GLSL does not check indices: the shader reads or overwrites other memory.",
+     "Make the array larger, or limit the index, for example with min()."},
+    {"Q712", kWarning, "across_stages/outputs", "output is never written",
+     "Its image is black: outputs start with zeros.",
+     "Store the value with storeOutput or addOutput, or remove the output from program.toml."},
+    {"Q713", kWarning, "within_stage/pixels", "result is stored at a wrong pixel",
+     "Other pixels keep their old values, several invocations write the same pixel, or the write is outside of the "
+     "image.",
+     "Store at launchPixel(), or at gl_LaunchIDEXT.xy."},
+    {"Q714", kWarning, "across_stages/outputs", "output is overwritten instead of accumulated",
+     "An output is the sum over the samples of a batch. Only one sample remains, so the image is too dark and noisy.",
+     "Add to the sum: storeOutput(kOutput_x, pixel, loadOutput(kOutput_x, pixel) + value), or call addOutput."},
+    {"Q715", kWarning, "across_stages/color_encoding", "color is encoded twice",
+     "Quintet encodes an output of kind color when it writes an image, so the image is too bright and pale.",
+     "Store linear color, or declare the output with kind = \"display\"."},
+    {"Q716", kWarning, "within_stage/pixels", "integer division of the launch id by the size",
+     "The id is smaller than the size, so the result of the integer division is always 0.",
+     "Convert both to float first: vec2(gl_LaunchIDEXT.xy) / vec2(gl_LaunchSizeEXT.xy)."},
 
     // Unused parts.
     {"Q801", kWarning, "across_stages/unused", "stage is unreachable", "It costs compile time without any effect.",
@@ -190,6 +289,12 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q802", kWarning, "across_stages/unused", "hit group matches no geometry of the scene",
      "The group has no effect: a name is misspelled, or the program was written for a different scene.",
      "Compare geometry, material and primitives of the group with `quintet info SCENE`."},
+    {"Q803", kNote, "check/suppression", "suppression of a diagnostic that is not reported",
+     "A comment that allows what does not occur hides the next mistake of this kind in its line.",
+     "Remove the comment, or move it to the line of the diagnostic."},
+    {"Q804", kWarning, "check/suppression", "suppression is invalid",
+     "The comment has no effect: its id does not exist or is that of an error.",
+     "Write // quintet: allow Q604 reason, with the id of a warning or note."},
 
     // Driver defects (docs/design/quirks.md).
     {"Q901", kWarning, "within_stage/driver_defects", "built-in is read after a nested trace",

@@ -17,7 +17,7 @@ namespace quintet::check {
 namespace {
 
 // A wrong index leaves stages unreachable. Only the index is reported then.
-constexpr std::array<std::string_view, 6> kWrongIndex{"Q302", "Q501", "Q502", "Q503", "Q504", "Q506"};
+constexpr std::array<std::string_view, 8> kWrongIndex{"Q302", "Q501", "Q502", "Q503", "Q504", "Q506", "Q507", "Q513"};
 
 // Ids whose cause is code that is missing. More outputs can remove them.
 constexpr std::array<std::string_view, 1> kUnreachable{"Q801"};
@@ -42,31 +42,54 @@ void runRulesWithinStages(const CheckInput& input, Report& report) {
   });
   for (std::size_t i = 0; i < found.size(); ++i)
     for (Diagnostic& d : found[i])
-      report.add(d.id, graph.location(graph.stages[i], {d.file, d.line, d.column}), std::move(d.text));
+      report.add(d.id, graph.location(graph.stages[i], {d.file, d.line, d.column}), std::move(d.text),
+                 std::move(d.related));
 }
 
 RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   checkPayloadTypes(input, report);
   checkPayloadMembers(input, report);
+  checkPayloadInputs(input, report);
   checkHitAttributes(input, report);
   checkCallableTypes(input, report);
+  checkCallableData(input, report);
+  checkCandidates(input, report);
   const RecursionNeeds needs = checkRecursion(input, report);
+  checkEndlessRecursion(input, report);
   checkArguments(input, report);
+  checkRayArguments(input, report);
   checkGeometry(input, report);
+  checkHitKinds(input, report);
+  checkResources(input, report);
   checkRayOrigins(input, report);
+  checkArrayIndices(input, report);
+  checkSpaces(input, report);
   if (input.limits.defects.sharesAnyHit) checkSharedIntersections(input, report);
   if (input.graph.error.empty() && !input.featureDefines && !report.hasAny(kWrongIndex))
     checkUnreachableStages(input, report);
   checkUnusedHitGroups(input, report);
+  checkOutputs(input, report);
   return needs;
 }
 
-CheckResult checkOutputs(const program::Program& program, const shader::Compiler& compiler,
+// Without the suppressions.
+CheckResult runRules(const program::Program& program, const program::CompiledProgram& compiled,
+                     const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines);
+
+// Moves the diagnostics that comments accept to CheckResult::suppressed. `complete`: the check saw all code, so it knows
+// which suppressions are unused.
+void suppress(CheckResult& result, const program::Program& program, bool complete) {
+  Suppressions suppressions(program);
+  result.suppressed = suppressions.apply(result.diagnostics);
+  if (complete && result.ok()) std::ranges::move(suppressions.problems(), std::back_inserter(result.diagnostics));
+}
+
+CheckResult checkWithOutputs(const program::Program& program, const shader::Compiler& compiler,
                          const program::SceneFacts* scene, const DeviceLimits& limits,
                          const std::vector<std::string>& outputs) {
   std::vector<std::pair<std::string, std::string>> defines;
   for (const std::string& output : outputs) defines.emplace_back(program::outputMacro(output), "1");
-  return check(program, compiler, scene, limits, defines);
+  return runRules(program, compile(program, compiler, defines), scene, limits, false);
 }
 
 // Returns whether the list has a diagnostic of the same id and line. The texts of compiler messages must be equal too;
@@ -95,7 +118,10 @@ std::vector<Diagnostic> newFindings(const CheckResult& known, const CheckResult&
 void addVariant(CheckResult& result, const CheckResult& variant) {
   result.recursionDepth = std::max(result.recursionDepth, variant.recursionDepth);
   result.stackBytes = std::max(result.stackBytes, variant.stackBytes);
+  result.cyclic = result.cyclic || variant.cyclic;
   result.seconds += variant.seconds;
+  for (const std::filesystem::path& file : variant.files)
+    if (std::ranges::find(result.files, file) == result.files.end()) result.files.push_back(file);
   for (const std::string& file : variant.reached)
     if (std::ranges::find(result.reached, file) == result.reached.end()) result.reached.push_back(file);
   if (!variant.ok()) return;
@@ -114,10 +140,12 @@ std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageConte
   const bool intersection = stage == Model::IntersectionKHR;
   const bool hit = intersection || stage == Model::AnyHitKHR || stage == Model::ClosestHitKHR;
   if (intersection) checkDistance(module, report);
-  if (hit) checkNormals(module, report);
   if (hit && !context.keepsInstanceOrder) checkInstanceIndices(module, report);
   checkDescriptorIndices(module, report);
   checkDebugPrintf(module, report);
+  if (stage == Model::RayGenerationKHR) checkPixels(module, report);
+  checkPixelDivision(module, report);
+  checkRayLengths(module, report);
   if (intersection) checkRayTmaxReads(module, report);
   const DriverDefects& defects = context.defects;
   if (defects.changesNestedBuiltIns && stage == Model::ClosestHitKHR) checkNestedBuiltIns(module, report);
@@ -126,30 +154,44 @@ std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageConte
   return report.take();
 }
 
-CheckResult check(const program::Program& program, const program::CompiledProgram& compiled,
-                  const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
+namespace {
+
+CheckResult runRules(const program::Program& program, const program::CompiledProgram& compiled,
+                     const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
   const Stopwatch clock;
   CheckResult result;
   result.diagnostics = compiled.diagnostics;
+  result.files = compiled.files;
   result.recursionDepth = program.declaredRecursion.value_or(1);
   if (compiled.ok) {
     const PipelineGraph graph(program, compiled);
     const std::optional<program::SceneFacts> facts =
         scene ? std::optional(program::factsFor(program, *scene)) : std::nullopt;
-    const CheckInput input{graph, facts ? &*facts : nullptr, limits, featureDefines};
+    const CheckInput input{graph, facts ? &*facts : nullptr, limits, featureDefines, compiled.outputs};
     Report report;
     runRulesWithinStages(input, report);
     const RecursionNeeds needs = runRulesAcrossStages(input, report);
     result.recursionDepth = needs.depth;
     result.stackBytes = needs.stackBytes;
+    result.cyclic = needs.cyclic;
     if (graph.error.empty())
       for (const std::size_t stage : graph.reachableStages()) result.reached.push_back(graph.stages[stage].file);
     for (Diagnostic& d : report.take()) {
       d.file = program::userFile(program, d.file);
+      for (RelatedLocation& r : d.related) r.file = program::userFile(program, r.file);
       result.diagnostics.push_back(std::move(d));
     }
   }
   result.seconds = compiled.seconds + clock.seconds();
+  return result;
+}
+
+}  // namespace
+
+CheckResult check(const program::Program& program, const program::CompiledProgram& compiled,
+                  const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
+  CheckResult result = runRules(program, compiled, scene, limits, featureDefines);
+  suppress(result, program, !featureDefines);
   return result;
 }
 
@@ -160,12 +202,14 @@ CheckResult check(const program::Program& program, const shader::Compiler& compi
   return check(program, compile(program, compiler, defines), scene, limits, features);
 }
 
-CheckResult checkWithOptionalOutputs(const program::Program& program, const shader::Compiler& compiler,
-                                     const program::SceneFacts* scene, const DeviceLimits& limits) {
-  CheckResult result = check(program, compiler, scene, limits);
+namespace {
+
+// Adds what a check with the optional outputs finds. Diagnostics name the output that causes them.
+void addOptionalOutputs(CheckResult& result, const program::Program& program, const shader::Compiler& compiler,
+                        const program::SceneFacts* scene, const DeviceLimits& limits) {
   const std::vector<std::string> outputs = program::optionalOutputs(program);
-  if (outputs.empty()) return result;
-  const CheckResult all = checkOutputs(program, compiler, scene, limits, outputs);
+  if (outputs.empty()) return;
+  const CheckResult all = checkWithOutputs(program, compiler, scene, limits, outputs);
   addVariant(result, all);
 
   std::vector<Diagnostic> found = newFindings(result, all);
@@ -173,7 +217,7 @@ CheckResult checkWithOptionalOutputs(const program::Program& program, const shad
     // Which output causes them? An error can also hide those of other outputs.
     std::vector<Diagnostic> precise;
     for (const std::string& output : outputs) {
-      const CheckResult single = checkOutputs(program, compiler, scene, limits, {output});
+      const CheckResult single = checkWithOutputs(program, compiler, scene, limits, {output});
       result.seconds += single.seconds;
       for (Diagnostic& d : newFindings(result, single))
         if (!contains(precise, d))
@@ -187,6 +231,15 @@ CheckResult checkWithOptionalOutputs(const program::Program& program, const shad
     for (Diagnostic& d : found) d = withNote(std::move(d), fmt::format("optional output '{}'", outputs.front()));
   }
   std::ranges::move(found, std::back_inserter(result.diagnostics));
+}
+
+}  // namespace
+
+CheckResult checkWithOptionalOutputs(const program::Program& program, const shader::Compiler& compiler,
+                                     const program::SceneFacts* scene, const DeviceLimits& limits) {
+  CheckResult result = checkWithOutputs(program, compiler, scene, limits, {});
+  addOptionalOutputs(result, program, compiler, scene, limits);
+  suppress(result, program, true);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #define QUINTET_CHECK_CHECK_H
 
 #include "check/device_limits.h"
+#include "check/suppression.h"
 #include "program/compile.h"
 #include "program/scene_facts.h"
 
@@ -18,20 +19,24 @@ struct StageContext;
 
 struct CheckResult {
   std::vector<Diagnostic> diagnostics;  // of the compiler, then of the rules by id
+  std::vector<SuppressedDiagnostic> suppressed;  // that comments in the sources accept (check/suppression.h)
   // Depth of nested traces that the pipeline needs: the longest chain of traces, or the declared bound if traces form a
   // cycle.
   std::uint32_t recursionDepth = 1;
   // Bytes of payloads, callable data and hit attributes along the worst chain: a lower bound of the stack size. Only
   // the driver knows what it adds for registers (rt::Pipeline).
   std::uint64_t stackBytes = 0;
+  // Traces form a cycle, so the depth depends on values: runs count it (program::Instrumentation::recursion).
+  bool cyclic = false;
   std::vector<std::string> reached;  // files of the reachable stages
+  std::vector<std::filesystem::path> files;  // read from disk in addition to Program::files
   double seconds = 0;                // wall time, including compilation
   bool ok() const { return !hasErrors(diagnostics); }
 };
 
 // Checks compiled stages. They must be compiled with `debugInfo`, or diagnostics have no lines, and with `optimize`, or
 // arguments are not constant. A null `scene` stands for any scene. `featureDefines` says that the shaders were compiled
-// for one scene (QUINTET_NO_…), so code can be missing: unreachable stages are then not reported.
+// for one scene (QUINTET_NO_…), so code can be missing: unreachable stages and unused suppressions are then not reported.
 CheckResult check(const program::Program& program, const program::CompiledProgram& compiled,
                   const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines = false);
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "check/swapped_arguments.h"
+#include "check/value_context.h"
 
 namespace quintet::check {
 namespace {
@@ -33,7 +35,8 @@ PipelineGraph::PipelineGraph(const program::Program& given, const program::Compi
     auto module = spirv::Module::read(compiled.stages[i].spirv, &errors[i]);
     if (!module) return;
     for (const auto& [file, text] : program.files) module->addSource(program.path(file), text);
-    stages[i].facts = std::make_unique<spirv::StageFacts>(std::move(*module));
+    stages[i].facts = std::make_unique<spirv::StageFacts>(
+        std::move(*module), valueContext(given, stages[i].file, nullptr));
   });
   for (std::size_t i = 0; i < stages.size(); ++i) {
     if (!stages[i].facts && error.empty()) error = fmt::format("{}: {}", stages[i].file, errors[i]);
@@ -75,11 +78,15 @@ void PipelineGraph::addEdge(std::vector<Edge>& edges, const std::string& file, E
 
 void PipelineGraph::addTraces(std::size_t stage) {
   for (const spirv::TraceFacts& trace : stages[stage].facts->traces()) {
-    TraceSite site{stage, &trace, {}, {}};
+    TraceSite site{stage, &trace, {}, {}, {}};
+    if (auto swapped = findSwappedArguments(*stages[stage].facts, trace, rayCount()); !swapped.texts.empty()) {
+      site.swapped = std::move(swapped.texts);
+      site.trace = &intended_.emplace_back(std::move(swapped.intended));
+    }
     for (std::size_t i = 0; i < misses.size(); ++i) {
       const bool reached = !trace.miss.known ||
                            std::ranges::any_of(trace.miss.values, [&](std::uint32_t v) { return (v & 0xFFFFu) == i; });
-      if (reached) addEdge(site.edges, misses[i].file, {0, Role::miss, trace.miss.known, {}, i});
+      if (reached) addEdge(site.edges, misses[i].file, {0, Role::miss, trace.miss.certain(), {}, i});
     }
     addHits(site);
     traces.push_back(std::move(site));
@@ -93,7 +100,7 @@ void PipelineGraph::addHits(TraceSite& site) {
     for (const std::size_t ray : rayTypes(trace)) {
       const HitGroupRay hit{group, ray};
       site.hits.push_back(hit);
-      const bool exact = trace.offset.known;
+      const bool exact = trace.offset.certain();
       const program::HitShaders& files = shaders(hit);
       if (!site.skipsClosestHit()) addEdge(site.edges, files.closestHit, {0, Role::closestHit, exact, hit, 0});
       if (!trace.flags.mustHave(kFlagOpaque)) addEdge(site.edges, files.anyHit, {0, Role::anyHit, exact, hit, 0});
@@ -107,7 +114,7 @@ void PipelineGraph::addCalls(std::size_t stage) {
     CallSite site{stage, &call, {}};
     for (std::size_t i = 0; i < program.callables.size(); ++i) {
       const bool reached = !call.index.known || std::ranges::find(call.index.values, i) != call.index.values.end();
-      if (reached) addEdge(site.edges, program.callables[i].file, {0, Role::callable, call.index.known, {}, i});
+      if (reached) addEdge(site.edges, program.callables[i].file, {0, Role::callable, call.index.certain(), {}, i});
     }
     calls.push_back(std::move(site));
   }
@@ -118,8 +125,12 @@ std::string PipelineGraph::describe(HitGroupRay hit) const {
   return rayCount() > 1 ? fmt::format("{}, ray type '{}'", group, program.rays[hit.ray].name) : group;
 }
 
+const std::string& PipelineGraph::nameOf(const std::string& file) const {
+  return file.starts_with(program.descriptionFile + ".") ? program.descriptionFile : file;
+}
+
 std::string PipelineGraph::describe(const Edge& edge) const {
-  const std::string& file = stages[edge.stage].file;
+  const std::string& file = nameOf(stages[edge.stage].file);
   if (edge.role == Role::miss || edge.role == Role::callable)
     return fmt::format("{} shader '{}' ({} index {})", roleName(edge.role), file,
                        edge.role == Role::miss ? "miss" : "callable", edge.index);
@@ -131,7 +142,7 @@ SourceLocation PipelineGraph::descriptionLocation(int line) const {
 }
 
 SourceLocation PipelineGraph::location(const PipelineStage& stage, const SourceLocation& location) const {
-  return location.line > 0 ? location : SourceLocation{program.path(stage.file), 0, 0};
+  return location.line > 0 ? location : SourceLocation{program.path(nameOf(stage.file)), 0, 0};
 }
 
 SourceLocation PipelineGraph::location(const TraceSite& site) const {

@@ -6,6 +6,7 @@
 #ifndef QUINTET_CHECK_PIPELINE_GRAPH_H
 #define QUINTET_CHECK_PIPELINE_GRAPH_H
 
+#include <deque>
 #include <memory>
 #include <set>
 
@@ -45,9 +46,10 @@ struct Edge {
 
 struct TraceSite {
   std::size_t stage = 0;
-  const spirv::TraceFacts* trace = nullptr;
+  const spirv::TraceFacts* trace = nullptr;  // as intended, if arguments are swapped
   std::vector<Edge> edges;
-  std::vector<HitGroupRay> hits;  // that a hit can use
+  std::vector<HitGroupRay> hits;     // that a hit can use
+  std::vector<std::string> swapped;  // which arguments are swapped (swapped_arguments.h)
   bool skipsClosestHit() const { return trace->flags.mustHave(kFlagSkipClosestHit); }
 };
 
@@ -80,6 +82,8 @@ struct PipelineGraph {
   // Stages reachable from ray generation. An any-hit shader counts as reachable even if opacity prevents it.
   std::set<std::size_t> reachableStages() const;
 
+  // Name of a stage's file as the user knows it. The stages of the lecture form are parts of one file.
+  const std::string& nameOf(const std::string& file) const;
   // "closest-hit shader 'a.rchit' (hit group 'surface', ray type 'primary')"
   std::string describe(const Edge& edge) const;
   std::string describe(HitGroupRay hit) const;  // "hit group 'surface', ray type 'primary'"
@@ -91,6 +95,8 @@ struct PipelineGraph {
   SourceLocation location(const CallSite& site) const;
 
  private:
+  std::deque<spirv::TraceFacts> intended_;  // of traces with swapped arguments
+
   void addTraces(std::size_t stage);
   void addCalls(std::size_t stage);
   void addHits(TraceSite& site);

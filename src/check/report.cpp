@@ -8,10 +8,19 @@
 
 namespace quintet::check {
 
-void Report::add(std::string_view id, const SourceLocation& location, std::string text) {
+RelatedLocation relatedTo(const SourceLocation& location, std::string text) {
+  return {location.file, location.line, location.column, std::move(text)};
+}
+
+void Report::add(std::string_view id, const SourceLocation& location, std::string text,
+                 std::vector<RelatedLocation> related) {
   const DiagnosticInfo* info = findDiagnostic(id);
   const Severity severity = info ? info->severity : Severity::error;
-  addUnique(diagnostics_, {severity, location.file, location.line, location.column, std::string(id), std::move(text)});
+  std::erase_if(related, [&](const RelatedLocation& r) {
+    return r.line <= 0 || (r.file == location.file && r.line == location.line);
+  });
+  addUnique(diagnostics_, {severity, location.file, location.line, location.column, std::string(id), std::move(text),
+                           std::move(related)});
 }
 
 void Report::addOncePerLine(std::string_view id, const SourceLocation& location, std::string text) {

@@ -12,10 +12,15 @@
 
 namespace quintet::check {
 
+// A second location of a diagnostic. `text` says what is there: "received here".
+RelatedLocation relatedTo(const SourceLocation& location, std::string text);
+
 class Report {
  public:
-  // Adds a diagnostic. Equal diagnostics are kept once, since stages can share source text.
-  void add(std::string_view id, const SourceLocation& location, std::string text);
+  // Adds a diagnostic. Equal diagnostics are kept once, since stages can share source text. Related locations without a
+  // line, and those in the same line, are dropped.
+  void add(std::string_view id, const SourceLocation& location, std::string text,
+           std::vector<RelatedLocation> related = {});
   // As add(), but keeps only the first diagnostic of an id per line, for rules that find several instructions there.
   void addOncePerLine(std::string_view id, const SourceLocation& location, std::string text);
 

@@ -47,7 +47,8 @@ program::SceneFacts sceneFacts(const scene::Scene& scene) {
     const auto mesh = static_cast<std::size_t>(instance.mesh);
     facts.instances.push_back(
         {instance.name, first[mesh], static_cast<std::uint32_t>(scene.meshes[mesh].geometryCount()), instance.mask,
-         (instance.flags & scene::kInstanceForceOpaque) != 0, (instance.flags & scene::kInstanceForceNoOpaque) != 0});
+         (instance.flags & scene::kInstanceForceOpaque) != 0, (instance.flags & scene::kInstanceForceNoOpaque) != 0,
+         instance.customIndex, instance.worldFromObject != mat4(1.0f) || !instance.keyframes.empty()});
   }
   return facts;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -21,23 +22,28 @@ constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_RAYGEN_BIT_KHR | VK_SHADE
                                        VK_SHADER_STAGE_INTERSECTION_BIT_KHR | VK_SHADER_STAGE_CALLABLE_BIT_KHR |
                                        VK_SHADER_STAGE_COMPUTE_BIT;
 
+VkDescriptorType descriptorType(shared::BindingType type) {
+  return type == shared::BindingType::accelerationStructure ? VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR
+                                                            : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+}
+
 VkDescriptorSetLayout createLayout(Context& context, std::uint32_t textures) {
-  const VkDescriptorSetLayoutBinding bindings[] = {
-      {shared::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1, kStages, nullptr},
-      {shared::kBindingTextures, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures, kStages, nullptr},
-  };
-  const VkDescriptorBindingFlags flags[] = {
-      VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT,
-      VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT | VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT,
-  };
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  std::vector<VkDescriptorBindingFlags> flags;
+  for (const shared::Binding& binding : shared::kBindings) {
+    const bool array = binding.type == shared::BindingType::textures;
+    bindings.push_back({binding.number, descriptorType(binding.type), array ? textures : 1, kStages, nullptr});
+    flags.push_back(VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT);
+    if (array) flags.back() |= VK_DESCRIPTOR_BINDING_VARIABLE_DESCRIPTOR_COUNT_BIT;  // it is the last binding
+  }
   VkDescriptorSetLayoutBindingFlagsCreateInfo flagsInfo{
       VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO};
-  flagsInfo.bindingCount = 2;
-  flagsInfo.pBindingFlags = flags;
+  flagsInfo.bindingCount = static_cast<std::uint32_t>(flags.size());
+  flagsInfo.pBindingFlags = flags.data();
   VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
   info.pNext = &flagsInfo;
-  info.bindingCount = 2;
-  info.pBindings = bindings;
+  info.bindingCount = static_cast<std::uint32_t>(bindings.size());
+  info.pBindings = bindings.data();
   VkDescriptorSetLayout layout = VK_NULL_HANDLE;
   check(context.vk().vkCreateDescriptorSetLayout(context.device(), &info, nullptr, &layout),
         "create the descriptor set layout");
@@ -57,14 +63,13 @@ VkPipelineLayout createPipelineLayout(Context& context, VkDescriptorSetLayout se
 }
 
 VkDescriptorPool createPool(Context& context, std::uint32_t textures) {
-  const VkDescriptorPoolSize sizes[] = {
-      {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1},
-      {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, textures},
-  };
+  std::vector<VkDescriptorPoolSize> sizes;
+  for (const shared::Binding& binding : shared::kBindings)
+    sizes.push_back({descriptorType(binding.type), binding.type == shared::BindingType::textures ? textures : 1});
   VkDescriptorPoolCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
   info.maxSets = 1;
-  info.poolSizeCount = 2;
-  info.pPoolSizes = sizes;
+  info.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
+  info.pPoolSizes = sizes.data();
   VkDescriptorPool pool = VK_NULL_HANDLE;
   check(context.vk().vkCreateDescriptorPool(context.device(), &info, nullptr, &pool), "create the descriptor pool");
   return pool;

@@ -108,6 +108,11 @@ Json rayKind(std::uint32_t rays, std::uint32_t hits) {
 Json rateRatio(const Setup& setup, render::DeviceScene& scene) {
   constexpr std::uint32_t kCapacity = 32;  // recorded rays per pixel
   gpu::Context& context = scene.context();
+  if (std::ranges::any_of(scene.facts().geometries, &program::GeometryFacts::procedural))
+    throw UsageError(
+        fmt::format("{}: the comparison with minimal shaders works for triangles only, and the scene has procedural "
+                    "geometry; use 'quintet bench {} SCENE' to measure the launches of the program",
+                    setup.request.scene.string(), setup.request.program));
   const program::Program program = program::loadProgram(setup.request.program);
   const program::Program replay = program::loadProgram("replay");
   gpu::BufferOptions recordOptions;

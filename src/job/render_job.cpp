@@ -181,6 +181,7 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   const std::vector<Hash> includedHashes = compiled.fileHashes;
   CheckedProgram checked =
       checkCompiled(job_.program, std::move(compiled), scene.facts(), deviceLimits(engine_.context().info()));
+  countRecursion(checked, engine_.compiler(), render::renderDefines(scene.defines(), request.outputs));
   diagnostics_ = std::move(checked.diagnostics);
   std::erase_if(diagnostics_, [](const Diagnostic& d) { return d.severity == Severity::note; });
   if (!diagnostics_.empty()) observer.diagnostics(diagnostics_);
@@ -207,7 +208,8 @@ Provenance RenderJob::makeProvenance() const {
   const RenderRequest& request = job_.request;
   Provenance p = identityOf(job_, *renderer_, scene_->camera, scene_->size);
   p.programHash = provenance_.programHash;
-  p.sceneHash = scene_->hash;
+  // Frames of an animation are different scenes: the film of one does not continue another.
+  p.sceneHash = frame_ == 0 ? scene_->hash : fmt::format("{}, frame {}", scene_->hash, frame_);
   p.environmentHash = scene_->environmentHash;
   p.commandLine = request.commandLine;
   p.scene = job_.scene.path();
@@ -246,6 +248,8 @@ RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool
   const render::RenderStatistics& statistics = renderer_->statistics();
   // Checkpoints and previews do not need them.
   const bool isFinal = withError || result.accumulatesFrames;
+  if (isFinal) result.skippedTraces = renderer_->skippedTraces();
+  result.recursionDepth = renderer_->linked().recursionDepth();
   setCounts(result, renderer_->rays(), isFinal ? renderer_->notFinitePixels() : std::vector<render::NotFinitePixels>());
   Provenance& p = result.provenance;
   p.seconds = seconds;
@@ -430,7 +434,7 @@ RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& obser
   RenderResult last, earlier;
   for (std::uint32_t frame = frames.every ? frames.firstFrame() : frames.lastFrame(); frame <= frames.lastFrame();
        ++frame) {
-    scene_->onDevice->setFrame(static_cast<float>(frame));
+    showFrame(static_cast<float>(frame));
     renderer_->restart();
     start_ = {};
     last = runFilm(limits, observer);
@@ -507,8 +511,24 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
   }
 }
 
-RenderResult RenderJob::result(bool withError) const {
+void RenderJob::requireRenderer() const {
   if (!renderer_) throw Error("a change of the scene failed; the next render repeats it");
+}
+
+std::shared_ptr<FilmView> RenderJob::film() const {
+  requireRenderer();
+  return std::make_shared<DeviceFilm>(*renderer_);
+}
+
+void RenderJob::showFrame(float frame) {
+  if (!scene_->onDevice->animated()) return;
+  scene_->onDevice->setFrame(frame);
+  frame_ = frame;
+  provenance_ = makeProvenance();
+}
+
+RenderResult RenderJob::result(bool withError) const {
+  requireRenderer();
   RenderResult result = makeResult(start_.seconds, start_, withError);
   if (job_.accumulatesFrames() && nextFrame_ > 0) result.provenance.frame = nextFrame_ - 1;
   return result;

@@ -60,6 +60,8 @@ class RenderJob {
   // The state between two calls of run(), as run() returned it. With the error estimate only on request, because it takes
   // time.
   RenderResult result(bool withError = false) const;
+  std::shared_ptr<FilmView> film() const;  // of result(), without its counts, which wait for the device
+  const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }  // warnings of the check
 
   // Edits between two calls of run(), for jobs with RenderRequest::editable. Each discards the samples so far and takes effect
   // in the next run(). They throw UsageError, and then change nothing.
@@ -95,7 +97,9 @@ class RenderJob {
   void link(program::CompiledProgram compiled, Observer& observer);
   Provenance makeProvenance() const;
 
-  scene::Scene& editedScene();  // a copy of the loaded scene, for edits
+  scene::Scene& editedScene();   // a copy of the loaded scene, for edits
+  void showFrame(float frame);   // moves the instances with keyframes
+  void requireRenderer() const;  // throws Error if an edit failed
   void applyEdits(Observer& observer);
 
   void requireAnimation() const;  // throws UsageError if nothing in the scene moves
@@ -122,6 +126,7 @@ class RenderJob {
   std::map<std::size_t, mat4> movedInstances_;  // edits that the device does not have yet
   bool sceneOutdated_ = false;                  // edits require a new scene on the device
   bool sceneEdited_ = false;                    // since the hash of the scene was computed
+  float frame_ = 0;                             // of an animated scene: the frame that the device has
   double linkedSeconds_ = 0;                    // on clock_
   double firstPixelSeconds_ = 0;                // on clock_; 0: no launch has ended
 };

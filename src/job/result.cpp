@@ -95,6 +95,11 @@ std::vector<std::string> resultWarnings(const RenderResult& result) {
         (pixels.count == 1 ? fmt::format("1 pixel of the output '{}' is not finite", pixels.output)
                            : fmt::format("{} pixels of the output '{}' are not finite", pixels.count, pixels.output)) +
         pixelText(pixels.count, PixelPosition{pixels.first.x, pixels.first.y}) + "; see 'quintet explain Q002'");
+  if (result.skippedTraces > 0)
+    warnings.push_back(fmt::format(
+        "{} deeper than the recursion depth {} of the pipeline and {} not executed; see 'quintet explain Q003'",
+        result.skippedTraces == 1 ? "1 trace was" : fmt::format("{} traces were", result.skippedTraces),
+        result.recursionDepth, result.skippedTraces == 1 ? "was" : "were"));
   return warnings;
 }
 
@@ -111,6 +116,9 @@ void setCounts(RenderResult& result, const render::RayCount& rays, std::vector<r
 void addFrame(RenderResult& result, const RenderResult& frame) {
   Provenance& p = result.provenance;
   p.droppedSamples += frame.provenance.droppedSamples;
+  // The frames of a program that accumulates are one render, whose count only increases.
+  result.skippedTraces = frame.accumulatesFrames ? std::max(result.skippedTraces, frame.skippedTraces)
+                                                 : result.skippedTraces + frame.skippedTraces;
   p.firstDroppedSample = firstOf(p.firstDroppedSample, frame.provenance.firstDroppedSample);
   for (const render::NotFinitePixels& pixels : frame.notFinite) {
     const auto known = std::ranges::find(result.notFinite, pixels.output, &render::NotFinitePixels::output);

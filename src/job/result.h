@@ -81,6 +81,8 @@ struct RenderResult {
   MemoryUse memory;
   std::uint64_t filmBytes = 0;                     // on the device
   std::vector<render::NotFinitePixels> notFinite;  // outputs with pixels that are not finite
+  std::uint32_t recursionDepth = 1;                // of the pipeline
+  std::uint64_t skippedTraces = 0;                 // beyond this depth (Q003), of a program whose traces form a cycle
   std::vector<std::string> warnings;
   std::vector<Diagnostic> diagnostics;  // warnings about the program
 
@@ -90,11 +92,11 @@ struct RenderResult {
 // Stores what the film counted in the result and its provenance: rays, discarded samples, and pixels that are not
 // finite.
 void setCounts(RenderResult& result, const render::RayCount& rays, std::vector<render::NotFinitePixels> notFinite);
-// Adds the discarded samples and the pixels that are not finite in a further frame, for the result of several images.
+// Adds the discarded samples, the skipped traces and the pixels that are not finite in a further frame, for the result of several images.
 void addFrame(RenderResult& result, const RenderResult& frame);
 
 // What a user must know about a complete or interrupted render: a missed target error, unless the render was interrupted,
-// discarded samples, and pixels that are not finite. Empty if there is nothing to report.
+// discarded samples, pixels that are not finite, and skipped traces. Empty if there is nothing to report.
 std::vector<std::string> resultWarnings(const RenderResult& result);
 
 // The result as a film file: what a checkpoint or a part contains.

@@ -15,13 +15,30 @@ CheckedProgram checkCompiled(program::Program description, program::CompiledProg
   // Compiled for this scene: code for features that it lacks is missing, so unused stages are not reported.
   check::CheckResult checked = check::check(description, compiled, &scene, limits, true);
   if (!checked.ok()) throw ProgramError(std::move(checked.diagnostics));
-  return {{std::move(description), std::move(compiled), checked.recursionDepth}, std::move(checked.diagnostics)};
+  return {{std::move(description), std::move(compiled), checked.recursionDepth, false},
+          std::move(checked.diagnostics),
+          checked.cyclic};
+}
+
+void countRecursion(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines) {
+  if (!checked.cyclic) return;
+  program::RunnableProgram& runnable = checked.runnable;
+  program::CompiledProgram counting =
+      program::compile(runnable.description, compiler, defines, program::Instrumentation::recursion);
+  if (!counting.ok) throw ProgramError(std::move(counting.diagnostics));
+  counting.seconds += runnable.compiled.seconds;
+  runnable.compiled = std::move(counting);
+  runnable.countsRecursion = true;
 }
 
 CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,
                                const render::Defines& defines, const program::SceneFacts& scene,
                                const check::DeviceLimits& limits, bool instrument) {
-  return checkCompiled(program, program::compile(program, compiler, defines, instrument), scene, limits);
+  const auto instrumentation = instrument ? program::Instrumentation::checks : program::Instrumentation::none;
+  CheckedProgram checked =
+      checkCompiled(program, program::compile(program, compiler, defines, instrumentation), scene, limits);
+  if (!instrument) countRecursion(checked, compiler, defines);
+  return checked;
 }
 
 Diagnostic hangDiagnostic(const program::Program& program, double seconds) {

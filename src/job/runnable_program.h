@@ -16,14 +16,20 @@ namespace quintet::job {
 struct CheckedProgram {
   program::RunnableProgram runnable;
   std::vector<Diagnostic> diagnostics;  // warnings and notes of the compiler and of the check
+  bool cyclic = false;                  // check::CheckResult::cyclic
 };
 
 // Checks `compiled`, which is `description` compiled for this scene. Throws ProgramError.
 CheckedProgram checkCompiled(program::Program description, program::CompiledProgram compiled,
                              const program::SceneFacts& scene, const check::DeviceLimits& limits);
 
-// `defines` are those of render::renderDefines. `instrument` adds the runtime checks of program/instrument.h. Throws
-// ProgramError.
+// If the traces of the program form a cycle, nothing proves that their depth stays within that of the pipeline: compiles
+// the stages again so that they count it and skip deeper traces, whose number Renderer::skippedTraces() returns.
+// `defines` are those of the first compilation. Throws ProgramError.
+void countRecursion(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines);
+
+// `defines` are those of render::renderDefines. `instrument` adds the runtime checks of program/instrument.h; otherwise
+// the program counts its recursion if necessary. Throws ProgramError.
 CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,
                                const render::Defines& defines, const program::SceneFacts& scene,
                                const check::DeviceLimits& limits, bool instrument = false);

@@ -122,7 +122,8 @@ void RenderJob::setFrame(float frame) {
   Observer ignored;
   applyEdits(ignored);
   restart();
-  scene_->onDevice->setFrame(frame);
+  renderer_->finish();
+  showFrame(frame);
   renderer_->sceneChanged();
 }
 
@@ -132,6 +133,10 @@ void RenderJob::applyEdits(Observer& observer) {
     renderer_.reset();
     scene_.reset();
     prepare(observer);
+    if (frame_ != 0) {
+      showFrame(frame_);
+      renderer_->sceneChanged();
+    }
   } else if (!movedInstances_.empty()) {
     std::vector<render::InstanceTransform> transforms;
     for (const auto& [instance, worldFromObject] : movedInstances_) transforms.push_back({instance, worldFromObject});

@@ -8,7 +8,6 @@
 #include "base/stopwatch.h"
 #include "program/description/generated_glsl.h"
 #include "program/gsn/lecture.h"
-#include "program/instrument.h"
 #include "spirv/module.h"
 
 namespace quintet::program {
@@ -34,13 +33,14 @@ std::vector<std::string> usedFiles(const Program& program) {
 
 // Returns the source of one stage. A stage of the library becomes a file that includes it. `index` is the position in
 // CompiledProgram::stages.
-shader::Source stageSource(const Program& program, const std::string& file, std::size_t index, bool instrument) {
+shader::Source stageSource(const Program& program, const std::string& file, std::size_t index,
+                           Instrumentation instrumentation) {
   shader::Source source;
   const bool library = isLibraryStage(file);
   source.stage = *shader::stageOfFile(library ? file.substr(1, file.size() - 2) : file);
   source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + file + "\n"
                         : program.files.at(file);
-  if (instrument) source.text = instrumentStage(source.text, source.stage, index);
+  source.text = instrumentStage(source.text, source.stage, index, instrumentation);
   source.name = program.path(file);
   return source;
 }
@@ -71,7 +71,8 @@ const CompiledProgram::Stage& CompiledProgram::stage(const std::string& file) co
 }
 
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
-                        const std::vector<std::pair<std::string, std::string>>& defines, bool instrument) {
+                        const std::vector<std::pair<std::string, std::string>>& defines,
+                        Instrumentation instrumentation) {
   const Stopwatch clock;
   if (hasErrors(program.diagnostics)) return {.stages = {}, .diagnostics = program.diagnostics};
   const std::vector<std::string> files = usedFiles(program);
@@ -82,7 +83,7 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
   CompiledProgram compiled;
   compiled.stages.resize(files.size());
   parallelFor(files.size(), [&](std::size_t i) {
-    shader::Source source = stageSource(program, files[i], i, instrument);
+    shader::Source source = stageSource(program, files[i], i, instrumentation);
     source.defines = defines;
     source.virtualFiles = virtualFiles;
     results[i] = compiler.compile(source);
@@ -91,6 +92,9 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
   });
   compiled.ok = std::ranges::none_of(compiled.stages, [](const auto& stage) { return stage.spirv.empty(); });
   compiled.diagnostics = program.diagnostics;
+  for (const std::string& output : optionalOutputs(program))
+    if (std::ranges::find(defines, outputMacro(output), &std::pair<std::string, std::string>::first) != defines.end())
+      compiled.outputs.push_back(output);
   for (shader::Result& result : results) addResult(compiled, result);
   std::ranges::sort(compiled.fileHashes);
   compiled.fileHashes.erase(std::unique(compiled.fileHashes.begin(), compiled.fileHashes.end()),

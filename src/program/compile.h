@@ -11,6 +11,7 @@
 
 #include "base/hash.h"
 #include "program/description/program.h"
+#include "program/instrument.h"
 #include "shader/compiler.h"
 
 namespace quintet::program {
@@ -24,6 +25,7 @@ struct CompiledProgram {
   };
   std::vector<Stage> stages;  // one per file that the program uses
   std::vector<Diagnostic> diagnostics;
+  std::vector<std::string> outputs;          // names of the optional outputs that the shaders were compiled with
   std::vector<std::filesystem::path> files;  // read from disk in addition to Program::files, for --watch
   std::vector<Hash> fileHashes;              // of the texts of `files`, sorted, without duplicates
   double seconds = 0;                        // wall-clock time of the compilation
@@ -36,10 +38,10 @@ struct CompiledProgram {
 // "<folder/file>".
 std::string userFile(const Program& program, const std::string& file);
 
-// Compiles all stages in parallel. `defines` apply to every stage (features of the scene and the device). `instrument`
-// adds the checks of instrument.h.
+// Compiles all stages in parallel. `defines` apply to every stage (features of the scene and the device).
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
-                        const std::vector<std::pair<std::string, std::string>>& defines, bool instrument = false);
+                        const std::vector<std::pair<std::string, std::string>>& defines,
+                        Instrumentation instrumentation = Instrumentation::none);
 
 struct PayloadSize {
   std::string stage;    // file

@@ -55,18 +55,29 @@ Head findHead(std::string_view source) {
 
 }  // namespace
 
-std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index) {
-  if (stage == shader::Stage::intersection || stage == shader::Stage::callable) return source;
+std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
+                            Instrumentation instrumentation) {
+  const bool checks = instrumentation == Instrumentation::checks;
+  const bool traces =
+      stage == shader::Stage::rayGeneration || stage == shader::Stage::closestHit || stage == shader::Stage::miss;
+  const bool wanted =
+      checks ? stage != shader::Stage::intersection : traces && instrumentation == Instrumentation::recursion;
+  if (!wanted) return source;
   const Head head = findHead(source);
   const bool lecture = source.find("#include <quintet/gsn.glsl>") != source.npos;
   std::string result = source.substr(0, head.bytes);
   if (!result.empty() && result.back() != '\n') result += '\n';
-  result += fmt::format(
-      "#define QUINTET_INSTRUMENT 1\n#define QUINTET_INSTRUMENT_STAGE {}u\n#define QUINTET_INSTRUMENT_KIND {}\n", index,
-      kindOf(stage));
-  if (!lecture) result += "#include <quintet/instrument.glsl>\n";
+  if (checks)
+    result += fmt::format(
+        "#define QUINTET_INSTRUMENT 1\n#define QUINTET_INSTRUMENT_STAGE {}u\n#define QUINTET_INSTRUMENT_KIND {}\n",
+        index, kindOf(stage));
+  else
+    result += "#define QUINTET_RECURSION 1\n";
+  if (!checks && stage == shader::Stage::rayGeneration) result += "#define QUINTET_RECURSION_START 1\n";
+  if (!lecture) result += fmt::format("#include <quintet/{}.glsl>\n", checks ? "instrument" : "recursion");
   result += fmt::format("#line {}\n", head.lines + 1);
   result += source.substr(head.bytes);
+  if (!checks) return result;
   return result + "\n#undef main\nvoid main() {\n  instrumentBegin_();\n  instrumentedMain_();\n}\n";
 }
 

@@ -10,11 +10,11 @@
 
 namespace quintet::program {
 
-// A program that has been compiled and checked: what a renderer runs.
 struct RunnableProgram {
   Program description;               // stages, ray types, outputs, and parameters
   CompiledProgram compiled;          // SPIR-V of every stage
   std::uint32_t recursionDepth = 1;  // nesting of traceRayEXT calls; 1 if only ray generation traces
+  bool countsRecursion = false;      // the stages are compiled with Instrumentation::recursion
 };
 
 }  // namespace quintet::program

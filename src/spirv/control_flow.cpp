@@ -110,7 +110,8 @@ std::vector<Id> ControlFlow::phiConditions(std::size_t block) const {
   return conditions;
 }
 
-bool dependsOnDataOrControl(const Module& module, const ControlFlow& flow, Id value, const InstructionTest& test) {
+bool dependsOnDataOrControl(const Module& module, const ControlFlow& flow, Id value, const InstructionTest& test,
+                            bool throughLoops) {
   std::vector<Id> open{value}, phis;
   std::unordered_set<Id> seen{value};
   const auto visit = [&](const Instruction& i) {
@@ -124,6 +125,8 @@ bool dependsOnDataOrControl(const Module& module, const ControlFlow& flow, Id va
     for (const Id phi : phis) {
       const auto position = module.position(module.definitionIndex(phi));
       if (!position || position->function != flow.functionIndex()) continue;
+      const auto repeats = [&](std::size_t predecessor) { return flow.dominates(position->block, predecessor); };
+      if (!throughLoops && std::ranges::any_of(flow.function().blocks[position->block].predecessors, repeats)) continue;
       for (const Id condition : flow.phiConditions(position->block))
         if (seen.insert(condition).second) open.push_back(condition);
     }
@@ -184,6 +187,11 @@ bool PathsAfter::reaches(std::size_t i, const std::vector<std::size_t>& kills) c
     for (const std::size_t next : successors(node)) open.push_back(next);
   }
   return false;
+}
+
+bool PathsAfter::leadsTo(std::size_t block, std::size_t instruction) const {
+  const std::size_t goal = nodeOf(instruction);
+  return goal != kNone && block < blockCount_ && from(block, kNone)[goal];
 }
 
 const std::vector<std::size_t>& PathsAfter::guards(std::size_t instruction) const {

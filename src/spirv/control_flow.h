@@ -32,8 +32,10 @@ class ControlFlow {
 };
 
 // As dependsOn (value_flow.h), including control dependence: a phi of this function also depends on the conditions that
-// choose between its values. In `t = -1; if (hit) t = x;` t depends on `hit`.
-bool dependsOnDataOrControl(const Module& module, const ControlFlow& flow, Id value, const InstructionTest& test);
+// choose between its values. In `t = -1; if (hit) t = x;` t depends on `hit`. Without `throughLoops`, the phis at the start
+// of a loop do not depend on the conditions in the loop, such as that of a break.
+bool dependsOnDataOrControl(const Module& module, const ControlFlow& flow, Id value, const InstructionTest& test,
+                            bool throughLoops = true);
 
 // The paths that start after an instruction, such as a trace, and end before it runs again.
 class PathsAfter {
@@ -42,6 +44,8 @@ class PathsAfter {
 
   // True if instruction `i` can run after the start on a path with none of the instructions `kills` before it.
   bool reaches(std::size_t i, const std::vector<std::size_t>& kills) const;
+  // True if a path can lead from the start of the block to the instruction.
+  bool leadsTo(std::size_t block, std::size_t instruction) const;
   // Blocks whose branch is on every path from the start to the instruction and can also lead elsewhere.
   const std::vector<std::size_t>& guards(std::size_t instruction) const;
 

@@ -14,6 +14,7 @@ using spv::Op;
 using spv::StorageClass;
 using Indices = std::vector<std::size_t>;
 constexpr std::size_t kNone = Module::kNone;
+constexpr std::size_t kMaxPath = 32;  // of an extracted part
 
 // Returns the GLSL qualifier of a storage class; empty if stages do not share it.
 std::string_view keywordOf(StorageClass storage) {
@@ -54,6 +55,23 @@ std::vector<std::pair<std::size_t, std::size_t>> loops(const Module& module, con
   return result;
 }
 
+// Returns the components of `vector` that a shuffle takes.
+std::vector<std::uint32_t> shuffledFrom(const Module& module, const Instruction& shuffle, Id vector) {
+  const auto sizeOf = [&](Id id) {
+    const Instruction* value = module.definition(id);
+    return value ? module.types().get(value->type).count : 0u;
+  };
+  const std::uint32_t first = sizeOf(shuffle.at(0)), second = sizeOf(shuffle.at(1));
+  std::vector<std::uint32_t> result;
+  for (std::size_t i = 2; i < shuffle.operands.size(); ++i) {
+    const std::uint32_t component = shuffle.operands[i];
+    if (component < first && shuffle.at(0) == vector) result.push_back(component);
+    if (component >= first && component - first < second && shuffle.at(1) == vector)
+      result.push_back(component - first);
+  }
+  return result;
+}
+
 bool hasEffect(Op op) {
   switch (op) {
     case Op::OpStore:
@@ -85,17 +103,31 @@ bool hasEffect(Op op) {
 }  // namespace
 
 bool ArgumentValues::mayHave(std::uint32_t bits) const {
-  return !known || std::ranges::any_of(values, [&](std::uint32_t value) { return (value & bits) != 0; });
+  if (!known) return (~zeros & bits) != 0;
+  return std::ranges::any_of(values, [&](std::uint32_t value) { return (value & bits) != 0; });
 }
 
 bool ArgumentValues::mustHave(std::uint32_t bits) const {
-  return known && std::ranges::all_of(values, [&](std::uint32_t value) { return (value & bits) == bits; });
+  if (!known) return bits != 0 && (ones & bits) == bits;
+  return std::ranges::all_of(values, [&](std::uint32_t value) { return (value & bits) == bits; });
 }
 
-StageFacts::StageFacts(Module module) : module_(std::move(module)) {
+std::optional<std::uint32_t> ArgumentValues::atLeast(std::uint32_t count) const {
+  if (min >= count) return min;
+  if (!certain()) return {};
+  const auto found = std::ranges::lower_bound(values, count);
+  return found == values.end() ? std::nullopt : std::optional(*found);
+}
+
+StageFacts::StageFacts(Module module, ValueContext context)
+    : module_(std::move(module)), ranges_(module_, std::move(context)) {
   for (std::size_t i = 0; i < module_.functions().size(); ++i) flows_.emplace_back(module_, i);
-  for (const Variable& variable : module_.variables())
-    if (!keywordOf(variable.storage).empty()) variables_.push_back(sharedVariable(module_, variable));
+  for (const Variable& variable : module_.variables()) {
+    if (keywordOf(variable.storage).empty()) continue;
+    variables_.push_back(sharedVariable(module_, variable));
+    leaves_.emplace(variable.id, Leaves(module_.types(), variable.type));
+  }
+  if (const Function* entry = module_.entry()) loops_ = loops(module_, *entry);
   for (std::size_t i = 0; i < module_.instructions().size(); ++i)
     if (const auto position = module_.position(i); position && flows_[position->function].reachable(position->block))
       readInstruction(i);
@@ -115,25 +147,38 @@ void StageFacts::markUsed() {
   for (const CallFacts& call : calls_) mark(call.data);
 }
 
-ArgumentValues StageFacts::values(Id id) const {
-  auto found = module_.possibleValues(id);
-  return found ? ArgumentValues{true, std::move(*found)} : ArgumentValues{};
+ArgumentValues StageFacts::values(std::size_t index, Id id) const {
+  ArgumentValues result;
+  if (auto found = module_.possibleValues(id)) {
+    result.values = std::move(*found);
+  } else {
+    const ValueRange range = ranges_.rangeAt(index, id);
+    if (range.empty()) return result;
+    for (const double value : range.values) result.values.push_back(static_cast<std::uint32_t>(std::int64_t(value)));
+    std::ranges::sort(result.values);
+    result.each = range.occurrence == Occurrence::each && !ranges_.guarded(index, id);
+    result.ones = range.ones, result.zeros = range.zeros;
+    if (range.min >= 0.0 && range.min <= 4294967295.0) result.min = static_cast<std::uint32_t>(range.min);
+  }
+  result.known = !result.values.empty();
+  if (result.known) result.min = result.values.front();
+  return result;
 }
 
 void StageFacts::readInstruction(std::size_t index) {
   const Instruction& i = module_.instructions()[index];
   switch (i.op) {
     case Op::OpTraceRayKHR:
-      traces_.push_back({index, module_.location(i, "traceRayEXT"), module_.access(i.at(10)).variable, values(i.at(1)),
-                         values(i.at(2)), values(i.at(3)), values(i.at(4)), values(i.at(5)),
+      traces_.push_back({index, module_.location(i, "traceRayEXT"), module_.access(i.at(10)).variable, values(index, i.at(1)),
+                         values(index, i.at(2)), values(index, i.at(3)), values(index, i.at(4)), values(index, i.at(5)),
                          flows_[module_.position(index)->function].inLoop(module_.position(index)->block)});
       return;
     case Op::OpExecuteCallableKHR:
       calls_.push_back(
-          {index, module_.location(i, "executeCallableEXT"), module_.access(i.at(1)).variable, values(i.at(0))});
+          {index, module_.location(i, "executeCallableEXT"), module_.access(i.at(1)).variable, values(index, i.at(0))});
       return;
     case Op::OpReportIntersectionKHR:
-      reports_.push_back({index, module_.location(i, "reportIntersectionEXT"), values(i.at(1))});
+      reports_.push_back({index, module_.location(i, "reportIntersectionEXT"), values(index, i.at(1))});
       return;
     case Op::OpIgnoreIntersectionKHR: ignores_ = true; return;
     case Op::OpTerminateRayKHR: terminates_ = true; return;
@@ -157,53 +202,122 @@ void StageFacts::addAccess(std::size_t index, Id pointer, bool reads, bool write
     builtIns_.push_back({*variable->builtIn, index, module_.location(instruction), false});
   const SharedVariable* shared = variable(access.variable);
   if (!shared) return;
-  const bool structure = module_.types().get(shared->type).kind == Type::Kind::structure;
-  if (!structure) {
-    accesses_.push_back({index, shared->id, 0, reads && !writes ? instruction.result : 0, reads, writes});
-  } else if (!access.indices.empty() && access.indices[0]) {
-    accesses_.push_back(
-        {index, shared->id, *access.indices[0], reads && !writes ? instruction.result : 0, reads, writes});
-  } else if (access.indices.empty() && instruction.op == Op::OpLoad) {
-    addWholeLoad(index, shared->id);
-  } else if (access.indices.empty() && instruction.op == Op::OpStore) {
-    addWholeStore(index, shared->id, instruction.at(1));
+  const LeafRange range = leaves(shared->id).range(access.indices);
+  const bool constant = std::ranges::all_of(access.indices, [](const auto& i) { return i.has_value(); });
+  if (instruction.op == Op::OpLoad && constant) {
+    Path path;
+    for (const auto& i : access.indices) path.push_back(*i);
+    addLoad(index, shared->id, path, instruction.result);
+  } else if (instruction.op == Op::OpStore && range.exact) {
+    addStore(index, shared->id, access, range, instruction.at(1));
   } else {
-    accesses_.push_back({index, shared->id, kWholeValue, 0, reads, writes});
+    const Id value = instruction.op == Op::OpLoad ? instruction.result : 0;
+    accesses_.push_back({index, shared->id, range, value, reads, writes, false});
   }
 }
 
-// Adds the members that are extracted from the value, and the whole value if it has any other use.
-void StageFacts::addWholeLoad(std::size_t index, Id variable) {
-  bool whole = false;
-  for (const std::size_t user : module_.users(module_.instructions()[index].result)) {
-    const Instruction& use = module_.instructions()[user];
-    if (use.op == Op::OpCompositeExtract)
-      accesses_.push_back({index, variable, use.at(1), use.result, true, false});
-    else
-      whole = true;
-  }
-  if (whole) accesses_.push_back({index, variable, kWholeValue, 0, true, false});
-}
-
-// A member that a store of the whole value puts back unchanged is not written: this is how `inout` parameters compile.
-void StageFacts::addWholeStore(std::size_t index, Id variable, Id value) {
-  const Instruction* made = module_.definition(value);
-  const auto unchanged = [&](std::uint32_t member, Id part) {
-    const Instruction* from = module_.definition(part);
-    if (from && from->op == Op::OpCompositeExtract && from->operands.size() == 2 && from->at(1) == member) {
-      const Instruction* whole = module_.definition(from->at(0));
-      const Access access = whole && whole->op == Op::OpLoad ? module_.access(whole->at(0)) : Access{};
-      return access.variable == variable && access.indices.empty();
-    }
-    const Access access = from && from->op == Op::OpLoad ? module_.access(from->at(0)) : Access{};
-    return access.variable == variable && access.indices.size() == 1 && access.indices[0] == member;
+// Adds the parts that are extracted from a loaded value, and the whole value if it has any other use. What is only stored
+// to the variable again is left to addStore().
+void StageFacts::addLoad(std::size_t index, Id variable, const Path& path, Id value) {
+  const LeafRange range = leaves(variable).range(path);
+  const Type::Kind kind = module_.types().get(module_.definition(value) ? module_.definition(value)->type : 0).kind;
+  const auto isUsed = [&](Id id) {
+    return std::ranges::any_of(module_.users(id),
+                               [&](std::size_t user) { return !onlyStoredTo(variable, module_.instructions()[user]); });
   };
-  if (!made || made->op != Op::OpCompositeConstruct) {
-    accesses_.push_back({index, variable, kWholeValue, 0, false, true});
+  if (range.count() <= 1 || path.size() > kMaxPath) {
+    if (isUsed(value)) accesses_.push_back({index, variable, range, value, true, false, true});
     return;
   }
-  for (std::uint32_t member = 0; member < made->operands.size(); ++member)
-    if (!unchanged(member, made->at(member))) accesses_.push_back({index, variable, member, 0, false, true});
+  bool whole = false;
+  for (const std::size_t user : module_.users(value)) {
+    const Instruction& use = module_.instructions()[user];
+    if (use.op == Op::OpCompositeExtract && use.operands.size() > 1) {
+      Path part = path;
+      part.insert(part.end(), use.operands.begin() + 1, use.operands.end());
+      addLoad(index, variable, part, use.result);
+    } else if (use.op == Op::OpVectorShuffle && kind == Type::Kind::vector) {
+      if (!isUsed(use.result)) continue;
+      for (const std::uint32_t component : shuffledFrom(module_, use, value)) {
+        Path part = path;
+        part.push_back(component);
+        accesses_.push_back({index, variable, leaves(variable).range(part), use.result, true, false, true});
+      }
+    } else {
+      whole = whole || !onlyStoredTo(variable, use);
+    }
+  }
+  if (whole) accesses_.push_back({index, variable, range, kind == Type::Kind::vector ? value : 0, true, false, true});
+}
+
+// True if the instruction only stores its operands to the variable, directly or as parts of composites.
+bool StageFacts::onlyStoredTo(Id variable, const Instruction& use) const {
+  std::vector<const Instruction*> open{&use};
+  std::unordered_set<Id> seen;
+  while (!open.empty()) {
+    const Instruction& next = *open.back();
+    open.pop_back();
+    switch (next.op) {
+      case Op::OpStore:
+        if (module_.access(next.at(0)).variable != variable) return false;
+        break;
+      case Op::OpCompositeConstruct:
+      case Op::OpCompositeInsert:
+      case Op::OpCopyObject:
+      case Op::OpCopyLogical:
+        if (!seen.insert(next.result).second) break;
+        for (const std::size_t user : module_.users(next.result)) {
+          // What is extracted can be anything.
+          if (module_.instructions()[user].op == Op::OpCompositeExtract) return false;
+          open.push_back(&module_.instructions()[user]);
+        }
+        break;
+      default: return false;
+    }
+  }
+  return true;
+}
+
+// A leaf that a store puts back unchanged is not written: this is how `inout` parameters compile. A leaf that the store
+// moves to a different one is read.
+void StageFacts::addStore(std::size_t index, Id variable, const Access& target, LeafRange range, Id value) {
+  const Leaves& all = leaves(variable);
+  const auto write = [&](std::uint32_t leaf) {
+    AccessFacts* last = accesses_.empty() ? nullptr : &accesses_.back();
+    if (last && last->instruction == index && last->writes && last->leaves.last == leaf)
+      ++last->leaves.last;
+    else
+      accesses_.push_back({index, variable, {leaf, leaf + 1, true}, 0, false, true, false});
+  };
+  for (std::uint32_t leaf = range.first; leaf < range.last; ++leaf) {
+    const Path& path = all.path(leaf);
+    if (path.size() < target.indices.size()) {  // a part of the leaf
+      write(leaf);
+      continue;
+    }
+    const Path rest(path.begin() + static_cast<std::ptrdiff_t>(target.indices.size()), path.end());
+    const ValuePart source = originOf(module_, {value, rest});
+    const Instruction* load = module_.definition(source.id);
+    const Access from = load && load->op == Op::OpLoad ? module_.access(load->at(0)) : Access{};
+    const bool constant = std::ranges::all_of(from.indices, [](const auto& i) { return i.has_value(); });
+    if (from.variable == variable && constant) {
+      Path origin;
+      for (const auto& i : from.indices) origin.push_back(*i);
+      origin.insert(origin.end(), source.path.begin(), source.path.end());
+      if (origin == path) continue;
+      accesses_.push_back({module_.definitionIndex(source.id), variable, all.range(origin), value, true, false, false});
+    }
+    write(leaf);
+  }
+}
+
+ValuePart StageFacts::storedValue(const AccessFacts& write, std::uint32_t leaf) const {
+  const Instruction& store = module_.instructions()[write.instruction];
+  if (store.op != Op::OpStore || !write.leaves.exact || !write.leaves.covers(leaf)) return {};
+  const Path& path = leaves(write.variable).path(leaf);
+  const std::size_t depth = module_.access(store.at(0)).indices.size();
+  if (depth > path.size()) return {store.at(1), {}};
+  return originOf(module_, {store.at(1), {path.begin() + static_cast<std::ptrdiff_t>(depth), path.end()}});
 }
 
 const SharedVariable* StageFacts::incoming(spv::StorageClass storage) const {
@@ -218,10 +332,10 @@ const SharedVariable* StageFacts::variable(Id id) const {
   return found == variables_.end() || id == 0 ? nullptr : &*found;
 }
 
-std::uint32_t StageFacts::memberCount(Id id) const {
-  const SharedVariable* shared = variable(id);
-  const Type& type = module_.types().get(shared ? shared->type : 0);
-  return type.kind == Type::Kind::structure ? static_cast<std::uint32_t>(type.members.size()) : 1;
+const Leaves& StageFacts::leaves(Id variable) const {
+  static const Leaves kNoLeaves;
+  const auto found = leaves_.find(variable);
+  return found == leaves_.end() ? kNoLeaves : found->second;
 }
 
 std::uint64_t StageFacts::frameBytes() const {
@@ -235,27 +349,46 @@ std::uint64_t StageFacts::frameBytes() const {
   return bytes;
 }
 
-bool StageFacts::reads(Id variable, std::uint32_t member) const {
-  return std::ranges::any_of(accesses_, [&](const AccessFacts& a) {
-    return a.reads && a.variable == variable && (a.member == member || a.member == kWholeValue);
-  });
+bool StageFacts::reads(Id variable, std::uint32_t leaf) const {
+  return std::ranges::any_of(
+      accesses_, [&](const AccessFacts& a) { return a.reads && a.variable == variable && a.leaves.covers(leaf); });
 }
 
-bool StageFacts::readsBeforeWriting(Id variable, std::uint32_t member) const {
-  const Indices marks = writers(variable, member);
-  return std::ranges::any_of(accesses_, [&](const AccessFacts& a) {
-    return a.reads && a.variable == variable && (a.member == member || a.member == kWholeValue) &&
-           !runsAlwaysBefore(marks, a.instruction);
+bool StageFacts::readsBeforeWriting(Id variable, std::uint32_t leaf) const {
+  const auto [found, isNew] = readsBeforeWriting_.try_emplace({variable, leaf}, false);
+  if (!isNew) return found->second;
+  const Indices marks = writers(variable, leaf);
+  found->second = std::ranges::any_of(accesses_, [&](const AccessFacts& a) {
+    return a.reads && a.variable == variable && a.leaves.covers(leaf) && !runsAlwaysBefore(marks, a.instruction);
   });
+  return found->second;
 }
 
-bool StageFacts::writes(Id variable, std::uint32_t member) const { return !writers(variable, member).empty(); }
+Indices StageFacts::inputReads(Id variable, std::uint32_t leaf) const {
+  const Function* entry = module_.entry();
+  if (!entry || entry->blocks.empty()) return {};
+  const Indices marks = writers(variable, leaf);
+  Indices result;
+  for (std::size_t i = 0; i < accesses_.size(); ++i) {
+    const AccessFacts& a = accesses_[i];
+    if (!a.reads || a.writes || a.variable != variable || a.value == 0 || !a.leaves.exact || !a.leaves.covers(leaf))
+      continue;
+    const auto position = module_.position(a.instruction);
+    if (!position || &module_.functions()[position->function] != entry) continue;
+    const auto runsBefore = [&](std::size_t mark) { return canRunAfter(module_, a.instruction, mark); };
+    if (std::ranges::any_of(marks, runsBefore)) continue;
+    const PathsAfter& paths = pathsAfter(entry->blocks[0].first);
+    if (!guarded(paths, a.instruction, variable) && usedUnguarded(paths, a, leaf)) result.push_back(i);
+  }
+  return result;
+}
 
-Indices StageFacts::writers(Id variable, std::uint32_t member) const {
+bool StageFacts::writes(Id variable, std::uint32_t leaf) const { return !writers(variable, leaf).empty(); }
+
+Indices StageFacts::writers(Id variable, std::uint32_t leaf) const {
   Indices result;
   for (const AccessFacts& a : accesses_)
-    if (a.writes && a.variable == variable && (a.member == member || a.member == kWholeValue))
-      result.push_back(a.instruction);
+    if (a.writes && a.variable == variable && a.leaves.covers(leaf)) result.push_back(a.instruction);
   for (const TraceFacts& trace : traces_)
     if (trace.payload == variable) result.push_back(trace.instruction);
   for (const CallFacts& call : calls_)
@@ -277,7 +410,7 @@ bool StageFacts::runsAlwaysBefore(Indices marks, std::size_t instruction) const 
     if (!position || position->function != goal->function) return true;
     first[position->block] = std::min(first[position->block], mark);
   }
-  for (const auto& [header, merge] : loops(module_, *entry)) {
+  for (const auto& [header, merge] : loops_) {
     const auto inside = [&, h = header, m = merge](std::size_t block) {
       return flow.dominates(h, block) && !flow.dominates(m, block);
     };
@@ -299,74 +432,88 @@ bool StageFacts::runsAlwaysBefore(Indices marks, std::size_t instruction) const 
   return true;
 }
 
-bool StageFacts::writesAlways(Id variable, std::uint32_t member) const {
-  const Indices marks = writers(variable, member);
+bool StageFacts::writesAlways(Id variable, std::uint32_t leaf) const {
+  const auto [found, isNew] = writesAlways_.try_emplace({variable, leaf}, false);
+  if (!isNew) return found->second;
+  const Indices marks = writers(variable, leaf);
   const Function* entry = module_.entry();
   if (marks.empty() || !entry) return false;
   for (const Block& block : entry->blocks)
     if (module_.instructions()[block.end - 1].op == Op::OpReturn && !runsAlwaysBefore(marks, block.end - 1))
       return false;
-  return true;
+  return found->second = true;
 }
 
-bool StageFacts::writtenBefore(Id variable, std::uint32_t member, std::size_t instruction) const {
-  Indices marks = writers(variable, member);
+bool StageFacts::writtenBefore(Id variable, std::uint32_t leaf, std::size_t instruction) const {
+  Indices marks = writers(variable, leaf);
   std::erase(marks, instruction);
   return !marks.empty() && runsAlwaysBefore(std::move(marks), instruction);
 }
 
-Indices StageFacts::readsAfter(const PathsAfter& paths, const TraceFacts& trace, std::uint32_t member) const {
-  const Indices kills = writers(trace.payload, member);
+const PathsAfter& StageFacts::pathsAfter(std::size_t instruction) const {
+  std::unique_ptr<PathsAfter>& paths = paths_[instruction];
+  if (!paths) {
+    const auto position = module_.position(instruction);
+    paths = std::make_unique<PathsAfter>(module_, flows_[position ? position->function : 0], instruction);
+  }
+  return *paths;
+}
+
+Indices StageFacts::readsAfter(std::size_t site, Id variable, std::uint32_t leaf) const {
+  if (!module_.position(site)) return {};
+  const Indices kills = writers(variable, leaf);
   Indices result;
   for (std::size_t i = 0; i < accesses_.size(); ++i) {
     const AccessFacts& a = accesses_[i];
-    if (a.reads && a.variable == trace.payload && a.member == member && a.value != 0 &&
-        paths.reaches(a.instruction, kills))
+    if (a.reads && a.variable == variable && a.leaves.covers(leaf) && a.value != 0 &&
+        pathsAfter(site).reaches(a.instruction, kills))
       result.push_back(i);
   }
   return result;
 }
 
-std::vector<std::size_t> StageFacts::readsAfter(const TraceFacts& trace, std::uint32_t member) const {
-  const auto position = module_.position(trace.instruction);
-  if (!position) return {};
-  return readsAfter(PathsAfter(module_, flows_[position->function], trace.instruction), trace, member);
-}
-
-std::vector<std::size_t> StageFacts::unguardedReads(const TraceFacts& trace, std::uint32_t member) const {
-  const auto position = module_.position(trace.instruction);
-  if (!position) return {};
-  const PathsAfter paths(module_, flows_[position->function], trace.instruction);
-  Indices result = readsAfter(paths, trace, member);
+Indices StageFacts::unguardedReads(std::size_t site, Id variable, std::uint32_t leaf) const {
+  Indices result = readsAfter(site, variable, leaf);
+  if (result.empty()) return result;
+  const PathsAfter& paths = pathsAfter(site);
   std::erase_if(result, [&](std::size_t i) {
-    return guarded(paths, accesses_[i].instruction, trace.payload) || !usedUnguarded(paths, accesses_[i]);
+    return guarded(paths, accesses_[i].instruction, variable) || !usedUnguarded(paths, accesses_[i], leaf);
   });
   return result;
 }
 
-bool StageFacts::dependsOnPayload(Id value, Id payload) const {
-  const auto [found, isNew] = dependsOnPayload_.try_emplace({value, payload}, false);
+bool StageFacts::dependsOnVariable(Id value, Id variable) const {
+  const auto [found, isNew] = dependsOnVariable_.try_emplace({value, variable}, false);
   if (!isNew) return found->second;
   const auto position = module_.position(module_.definitionIndex(value));
   if (!position) return false;  // a constant
   const auto loads = [&](const Instruction& i) {
-    return i.op == Op::OpLoad && module_.access(i.at(0)).variable == payload;
+    return i.op == Op::OpLoad && module_.access(i.at(0)).variable == variable;
   };
   found->second = dependsOnDataOrControl(module_, flows_[position->function], value, loads);
   return found->second;
 }
 
-bool StageFacts::guarded(const PathsAfter& paths, std::size_t instruction, Id payload) const {
+bool StageFacts::dependsOnLeaf(Id value, Id variable, std::uint32_t leaf) const {
+  return dependsOn(module_, value, [&](const Instruction& i) {
+    return i.result != 0 && std::ranges::any_of(accesses_, [&](const AccessFacts& a) {
+             return a.reads && a.value == i.result && a.variable == variable && a.leaves.covers(leaf);
+           });
+  });
+}
+
+bool StageFacts::guarded(const PathsAfter& paths, std::size_t instruction, Id variable) const {
   const auto position = module_.position(instruction);
   if (!position) return false;
   const ControlFlow& flow = flows_[position->function];
   return std::ranges::any_of(paths.guards(instruction),
-                             [&](std::size_t block) { return dependsOnPayload(flow.condition(block), payload); });
+                             [&](std::size_t block) { return dependsOnVariable(flow.condition(block), variable); });
 }
 
-// True if the instruction chooses, by a condition on the payload, between the value and one that does not come from the
-// member.
-bool StageFacts::choosesByPayload(const Instruction& use, Id value, const AccessFacts& read) const {
+// True if the instruction chooses, by a condition on the variable, between the value and one that does not come from the
+// leaf.
+bool StageFacts::choosesByVariable(const Instruction& use, Id value, const AccessFacts& read,
+                                   std::uint32_t leaf) const {
   std::vector<Id> choices, conditions;
   if (use.op == Op::OpPhi) {
     const auto position = module_.position(module_.definitionIndex(use.result));
@@ -377,18 +524,20 @@ bool StageFacts::choosesByPayload(const Instruction& use, Id value, const Access
     choices = {use.at(1), use.at(2)};
     conditions = {use.at(0)};
   }
-  const auto isRead = [&](const Instruction& i) {
-    return i.result != 0 && std::ranges::any_of(accesses_, [&](const AccessFacts& a) {
-             return a.value == i.result && a.variable == read.variable && a.member == read.member;
-           });
-  };
   const bool hasAlternative =
-      std::ranges::any_of(choices, [&](Id id) { return id != use.result && !dependsOn(module_, id, isRead); });
-  return hasAlternative && std::ranges::any_of(conditions, [&](Id c) { return dependsOnPayload(c, read.variable); });
+      std::ranges::any_of(choices, [&](Id id) { return id != use.result && !dependsOnLeaf(id, read.variable, leaf); });
+  return hasAlternative && std::ranges::any_of(conditions, [&](Id c) { return dependsOnVariable(c, read.variable); });
 }
 
-// True if the value that was read has an effect on a path that no condition on the payload guards.
-bool StageFacts::usedUnguarded(const PathsAfter& paths, const AccessFacts& read) const {
+// True for a part of a loaded value that is an access of its own, and for a store that puts the leaf back.
+bool StageFacts::isOwnAccess(const Instruction& use, Id value, const AccessFacts& read) const {
+  if (!read.separateParts || value != read.value) return false;
+  const bool part = use.op == Op::OpCompositeExtract || use.op == Op::OpVectorShuffle;
+  return (part && read.leaves.count() > 1) || onlyStoredTo(read.variable, use);
+}
+
+// True if the value that was read has an effect on a path that no condition on the variable guards.
+bool StageFacts::usedUnguarded(const PathsAfter& paths, const AccessFacts& read, std::uint32_t leaf) const {
   std::vector<Id> open{read.value};
   std::unordered_set<Id> seen{read.value};
   while (!open.empty()) {
@@ -396,7 +545,9 @@ bool StageFacts::usedUnguarded(const PathsAfter& paths, const AccessFacts& read)
     open.pop_back();
     for (const std::size_t user : module_.users(next)) {
       const Instruction& use = module_.instructions()[user];
-      if (guarded(paths, user, read.variable) || choosesByPayload(use, next, read)) continue;
+      if (isOwnAccess(use, next, read) || guarded(paths, user, read.variable) ||
+          choosesByVariable(use, next, read, leaf))
+        continue;
       if (hasEffect(use.op)) return true;
       if (use.result != 0 && seen.insert(use.result).second) open.push_back(use.result);
     }

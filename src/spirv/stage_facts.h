@@ -1,24 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a ray tracing stage shares with other stages: its traces, callable calls and intersection reports, and its
-// accesses to payloads, hit attributes and callable data by member. check/pipeline_graph.h connects the stages.
+// accesses to payloads, hit attributes and callable data by leaf (leaves.h). check/pipeline_graph.h connects the stages.
 //
-// Approximations: members are those of the outermost structure, and a part of a member counts as the member. An access
-// with a dynamic outermost index, or through a pointer that is passed to a function that was not inlined, counts for
-// all members.
+// Approximations: an access with a dynamic index counts for all elements, and an access through a pointer that is passed
+// to a function that was not inlined counts for all leaves.
 #ifndef QUINTET_SPIRV_STAGE_FACTS_H
 #define QUINTET_SPIRV_STAGE_FACTS_H
 
+#include <memory>
+
 #include "spirv/control_flow.h"
+#include "spirv/leaves.h"
 #include "spirv/module.h"
+#include "spirv/value_part.h"
+#include "spirv/value_range.h"
 
 namespace quintet::spirv {
 
 // The values that an argument can have.
 struct ArgumentValues {
-  bool known = false;                 // false if it can have any value
-  std::vector<std::uint32_t> values;  // sorted
+  bool known = false;                 // false if `values` is empty because they are not known
+  std::vector<std::uint32_t> values;  // all values, sorted
+  bool each = true;                   // each of them occurs; false if some need not
+  std::uint32_t min = 0;              // a lower bound, also if the values are not known
+  std::uint32_t ones = 0, zeros = 0;  // bits that are always set, never set
 
   bool exact() const { return known && values.size() == 1; }
+  bool certain() const { return known && each; }  // not only an estimate
+  // A value of at least `count` that certainly occurs; nullopt if there may be none.
+  std::optional<std::uint32_t> atLeast(std::uint32_t count) const;
   bool mayHave(std::uint32_t bits) const;   // one of the bits can be set
   bool mustHave(std::uint32_t bits) const;  // all bits are set in each value
 };
@@ -47,16 +57,15 @@ struct ReportFacts {
   ArgumentValues hitKind;
 };
 
-constexpr std::uint32_t kWholeValue = ~0u;  // all members
-
-// One read or write of a variable that stages share.
+// One read or write of leaves of a variable that stages share.
 struct AccessFacts {
   std::size_t instruction = 0;
   Id variable = 0;
-  std::uint32_t member = kWholeValue;  // of a structure; 0 for any other type
-  Id value = 0;                        // of a read: the id with the member's value; 0 if unknown
+  LeafRange leaves;
+  Id value = 0;  // of a read: the id with the value of the leaves; 0 if unknown
   bool reads = false;
   bool writes = false;
+  bool separateParts = false;  // of a read: extracted parts of `value`, and stores to the variable, are other accesses
 };
 
 struct BuiltInRead {
@@ -80,10 +89,12 @@ struct SharedVariable {
 // Not thread-safe: some results are cached.
 class StageFacts {
  public:
-  explicit StageFacts(Module module);
+  // `context`: what is known about values in any scene.
+  explicit StageFacts(Module module, ValueContext context = {});
   StageFacts(StageFacts&&) noexcept = default;
 
   const Module& module() const { return module_; }
+  const ValueRanges& ranges() const { return ranges_; }
   const std::vector<TraceFacts>& traces() const { return traces_; }
   const std::vector<CallFacts>& calls() const { return calls_; }
   const std::vector<ReportFacts>& reports() const { return reports_; }
@@ -99,22 +110,34 @@ class StageFacts {
   const SharedVariable* variable(Id id) const;
   const ControlFlow& flow(std::size_t function) const { return flows_[function]; }
 
-  std::uint32_t memberCount(Id variable) const;  // 1 for types other than structures
-  // True if the stage writes the member on each path to its end. The body of a loop counts as executed.
-  bool writesAlways(Id variable, std::uint32_t member) const;
-  bool writes(Id variable, std::uint32_t member) const;
-  bool reads(Id variable, std::uint32_t member) const;
-  // True if the stage reads the member on a path where it has not written it: the caller's value is an input.
-  bool readsBeforeWriting(Id variable, std::uint32_t member) const;
-  // True if the member is written on each path from the stage's start to the instruction. Another trace or call with
-  // the variable counts as a write.
-  bool writtenBefore(Id variable, std::uint32_t member, std::size_t instruction) const;
+  const Leaves& leaves(Id variable) const;  // of its type; none if the variable is unknown
 
-  // Indices into accesses() of the reads of a member that see the result of `trace` on a path that no condition on the
-  // payload guards. `if (payload.hit) use(payload.color)` is a guarded read of `color`.
-  std::vector<std::size_t> unguardedReads(const TraceFacts& trace, std::uint32_t member) const;
+  // True if the stage writes the leaf on each path to its end. The body of a loop counts as executed.
+  bool writesAlways(Id variable, std::uint32_t leaf) const;
+  bool writes(Id variable, std::uint32_t leaf) const;
+  bool reads(Id variable, std::uint32_t leaf) const;
+  // True if the stage reads the leaf on a path where it has not written it: the caller's value is an input.
+  bool readsBeforeWriting(Id variable, std::uint32_t leaf) const;
+  // Indices into accesses() of the reads that have an effect although no write of the stage can run before them.
+  std::vector<std::size_t> inputReads(Id variable, std::uint32_t leaf) const;
+  // True if the leaf is written on each path from the stage's start to the instruction. Another trace or call with the
+  // variable counts as a write.
+  bool writtenBefore(Id variable, std::uint32_t leaf, std::size_t instruction) const;
+  // Instructions that write the leaf, including traces and calls with the variable.
+  std::vector<std::size_t> writers(Id variable, std::uint32_t leaf) const;
+  // The part of a value that a write stores to the leaf; id 0 if unknown.
+  ValuePart storedValue(const AccessFacts& write, std::uint32_t leaf) const;
+
+  // Indices into accesses() of the reads of a leaf that see the result of a trace or call with the variable on a path
+  // that no condition on the variable guards. `if (payload.hit) use(payload.color)` is a guarded read of `color`.
+  std::vector<std::size_t> unguardedReads(std::size_t site, Id variable, std::uint32_t leaf) const;
   // The same with guarded reads.
-  std::vector<std::size_t> readsAfter(const TraceFacts& trace, std::uint32_t member) const;
+  std::vector<std::size_t> readsAfter(std::size_t site, Id variable, std::uint32_t leaf) const;
+  const PathsAfter& pathsAfter(std::size_t instruction) const;  // of an instruction inside a function; cached
+  // True if the value depends on a load of the variable, through data or control.
+  bool dependsOnVariable(Id value, Id variable) const;
+  // True if the value depends on a read of the leaf.
+  bool dependsOnLeaf(Id value, Id variable, std::uint32_t leaf) const;
 
   // Bytes of the variables in the stage's stack frame: its outgoing payloads and callable data, and hit attributes.
   std::uint64_t frameBytes() const;
@@ -122,20 +145,20 @@ class StageFacts {
  private:
   void readInstruction(std::size_t index);
   void addAccess(std::size_t index, Id pointer, bool reads, bool writes);
-  void addWholeLoad(std::size_t index, Id variable);
-  void addWholeStore(std::size_t index, Id variable, Id value);
+  void addLoad(std::size_t index, Id variable, const Path& path, Id value);
+  void addStore(std::size_t index, Id variable, const Access& target, LeafRange range, Id value);
+  bool onlyStoredTo(Id variable, const Instruction& use) const;
   void markUsed();
-  ArgumentValues values(Id id) const;
+  ArgumentValues values(std::size_t index, Id id) const;
 
-  std::vector<std::size_t> writers(Id variable, std::uint32_t member) const;
-  std::vector<std::size_t> readsAfter(const PathsAfter& paths, const TraceFacts& trace, std::uint32_t member) const;
   bool runsAlwaysBefore(std::vector<std::size_t> marks, std::size_t instruction) const;
-  bool dependsOnPayload(Id value, Id payload) const;
-  bool guarded(const PathsAfter& paths, std::size_t instruction, Id payload) const;
-  bool usedUnguarded(const PathsAfter& paths, const AccessFacts& read) const;
-  bool choosesByPayload(const Instruction& use, Id value, const AccessFacts& read) const;
+  bool guarded(const PathsAfter& paths, std::size_t instruction, Id variable) const;
+  bool usedUnguarded(const PathsAfter& paths, const AccessFacts& read, std::uint32_t leaf) const;
+  bool choosesByVariable(const Instruction& use, Id value, const AccessFacts& read, std::uint32_t leaf) const;
+  bool isOwnAccess(const Instruction& use, Id value, const AccessFacts& read) const;
 
   Module module_;
+  ValueRanges ranges_;
   std::vector<ControlFlow> flows_;
   std::vector<TraceFacts> traces_;
   std::vector<CallFacts> calls_;
@@ -145,7 +168,12 @@ class StageFacts {
   std::vector<SharedVariable> variables_;
   bool ignores_ = false;
   bool terminates_ = false;
-  mutable std::map<std::pair<Id, Id>, bool> dependsOnPayload_;  // cache, by value and payload
+  std::map<Id, Leaves> leaves_;                                        // by variable
+  std::vector<std::pair<std::size_t, std::size_t>> loops_;             // header and merge block, of the entry function
+  mutable std::map<std::pair<Id, Id>, bool> dependsOnVariable_;        // cache, by value and variable
+  mutable std::map<std::size_t, std::unique_ptr<PathsAfter>> paths_;   // cache, by instruction
+  mutable std::map<std::pair<Id, std::uint32_t>, bool> writesAlways_;  // cache, by variable and leaf
+  mutable std::map<std::pair<Id, std::uint32_t>, bool> readsBeforeWriting_;
 };
 
 }  // namespace quintet::spirv

@@ -12,6 +12,8 @@
 namespace quintet::spirv {
 
 using Id = std::uint32_t;
+// Literal indices into a composite, from the outermost type inwards. Empty for the whole value.
+using Path = std::vector<std::uint32_t>;
 
 struct Type {
   enum class Kind {

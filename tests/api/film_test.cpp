@@ -4,7 +4,10 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
+#include <string>
 
 #include "scenes.h"
 
@@ -102,6 +105,27 @@ TEST(ApiFilm, MergesPartsToTheSameBytes) {
   for (const std::filesystem::path& part : parts) std::filesystem::remove(part);
 }
 
+TEST(ApiFilm, WritesPngAsRequested) {
+  Renderer renderer(device(), lampScene(), pathTracer(), smallImage());
+  renderer.render(4);
+  const Film film = renderer.film();
+  const std::filesystem::path file = temporary("options.png");
+  std::set<std::string> files;
+  for (const WriteOptions& options : {WriteOptions{}, WriteOptions{.toneMap = "linear"}, WriteOptions{.toneMap = "agx"},
+                                      WriteOptions{.pngBits = 16}}) {
+    film.write(file, options);
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(in), {});
+    ASSERT_GT(bytes.size(), 25u);
+    EXPECT_EQ(bytes[24], static_cast<char>(options.pngBits));  // IHDR: bit depth
+    files.insert(bytes);
+  }
+  EXPECT_EQ(files.size(), 4u);
+  EXPECT_THROW(film.write(file, {.toneMap = "acess"}), UsageError);
+  EXPECT_THROW(film.write(file, {.pngBits = 12}), UsageError);
+  std::filesystem::remove(file);
+}
+
 TEST(ApiFilm, WritesLayersToOpenExr) {
   Settings settings = smallImage();
   settings.outputs = {"albedo", "depth"};
@@ -109,8 +133,16 @@ TEST(ApiFilm, WritesLayersToOpenExr) {
   renderer.render(4);
   const std::filesystem::path file = temporary("layers.exr");
   renderer.film().write(file, {.layers = {"albedo", "depth"}});
-  // A scene uses the file as a texture: the image without a layer is what readers show.
-  EXPECT_GT(std::filesystem::file_size(file), 48u * 32u);
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(in), {});
+  for (const char* channel : {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "depth.Z"}) {
+    // An entry of the list of channels is a name that ends with a zero, and its type: 2 for float, 1 for half.
+    const std::string entry = std::string(1, '\0') + channel + std::string(1, '\0');
+    const std::size_t at = bytes.find(entry);
+    ASSERT_NE(at, bytes.npos) << channel;
+    EXPECT_THAT(bytes[at + entry.size()], testing::AnyOf('\1', '\2')) << channel;
+  }
+  EXPECT_EQ(bytes.find("normal."), bytes.npos);
   EXPECT_THROW(renderer.film().write(temporary("layers.png"), {.layers = {"albedo"}}), UsageError);
   EXPECT_THROW(renderer.film().write(file, {.layers = {"albdo"}}), UsageError);
   EXPECT_THROW(renderer.film().write(temporary("image.txt")), UsageError);

@@ -177,6 +177,41 @@ TEST_F(ApiRenderer, SetsFramesOfKeyframes) {
   EXPECT_THROW(renderer.setTransform(added, {}), UsageError);
 }
 
+TEST_F(ApiRenderer, KeepsTheFrameAcrossARebuild) {
+  Scene animated = lampScene();
+  animated.addInstance(
+      {.mesh = 1, .keyframes = {{.frame = 0, .translation = {-1, 1, 0}}, {.frame = 10, .translation = {1, 2, 0}}}});
+  Material coated = animated.material(0);
+  coated.clearcoat = 1;
+  Renderer edited(device(), animated, pathTracer(), smallImage());
+  edited.setFrame(10);
+  edited.setMaterial(0, coated);
+  edited.render(4);
+  animated.setMaterial(0, coated);
+  Renderer expected(device(), animated, pathTracer(), smallImage());
+  expected.render(4);
+  EXPECT_NE(edited.image().pixels, expected.image().pixels);
+  expected.setFrame(10);
+  expected.render(4);
+  EXPECT_EQ(edited.image().pixels, expected.image().pixels);
+}
+
+TEST_F(ApiRenderer, ResumesOnlyTheSameFrame) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "api_frame.qfilm";
+  Scene animated = lampScene();
+  animated.addInstance(
+      {.mesh = 1, .keyframes = {{.frame = 0, .translation = {-1, 1, 0}}, {.frame = 10, .translation = {1, 2, 0}}}});
+  Renderer renderer(device(), animated, pathTracer(), smallImage());
+  renderer.setFrame(5);
+  renderer.render(4);
+  renderer.saveCheckpoint(file);
+  renderer.setFrame(6);
+  EXPECT_THROW(renderer.resume(file), FileError);
+  renderer.setFrame(5);
+  EXPECT_TRUE(renderer.resume(file));
+  std::filesystem::remove(file);
+}
+
 TEST_F(ApiRenderer, ResumesFromACheckpoint) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "api_checkpoint.qfilm";
   std::filesystem::remove(file);

@@ -107,6 +107,14 @@ TEST_F(Bench, PrintsTheErrorsOfAProgram) {
   EXPECT_NE(result.err.find("'tint' : no such field"), std::string::npos) << result.err;
 }
 
+TEST_F(Bench, ComparesTrianglesOnly) {
+  const RunResult result =
+      quintet({"bench", QUINTET_SOURCE_ROOT "/examples/scenes/spheres.scene.toml", "--size", "16x16"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, testing::HasSubstr("procedural geometry"));
+  EXPECT_THAT(result.err, testing::Not(testing::HasSubstr("Q601")));
+}
+
 TEST_F(Bench, ExplainsWhichFormAnOptionRequires) {
   writeSkyProgram(folder_ / "mine", "payload.color = vec3(0.5);");
   expectError(quintet({"bench", "mine", "--profile"}), 2, {"--profile requires", "bench SCENE"});

@@ -9,15 +9,15 @@ namespace quintet::cli {
 
 std::span<const Command> commands() {
   static constexpr std::array kCommands{
-      Command{"render", "render an image of a scene", renderCommand, renderOptions},
+      Command{"render", "render an image of a scene", renderCommand, renderOptions, true},
       Command{"merge", "join parts of a render", mergeCommand, mergeOptions},
-      Command{"run", "run a program: your own or a built-in one", runCommand, runOptions},
+      Command{"run", "run a program: your own or a built-in one", runCommand, runOptions, true},
       Command{"new", "create a program that renders at once", newCommand, newOptions},
-      Command{"check", "compile and check programs, without rendering", checkCommand, checkOptions},
+      Command{"check", "compile and check programs, without rendering", checkCommand, checkOptions, true},
       Command{"explain", "explain a diagnostic and how to fix it", explainCommand, explainOptions},
       Command{"info", "describe the devices, or a scene, image or film", infoCommand, infoOptions},
       Command{"compare", "measure the difference between two images", compareCommand, compareOptions},
-      Command{"bench", "measure rays per second, and compare with minimal shaders", benchCommand, benchOptions},
+      Command{"bench", "measure rays per second, and compare with minimal shaders", benchCommand, benchOptions, true},
       Command{"help", "print the help of a command", helpCommand, helpOptions},
   };
   return kCommands;

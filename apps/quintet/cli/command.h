@@ -19,6 +19,7 @@ struct Command {
   std::string_view summary;            // one line for `quintet --help`
   int (*run)(Arguments) = nullptr;     // returns the exit status; exceptions become 1 or 2 in main
   OptionTable (*options)() = nullptr;  // for documentation: without targets
+  bool isolated = false;               // compiles or runs programs: works in a child process (cli/supervisor.h)
 };
 
 std::span<const Command> commands();

@@ -20,6 +20,8 @@
 #include "base/wrap.h"
 #include "check/diagnostic_text.h"
 #include "cli/terminal.h"
+#include "cli/values.h"
+#include "cli/work.h"
 
 namespace quintet::cli {
 namespace {
@@ -69,6 +71,11 @@ void printMessage(const std::string& text) {
 
 bool colorOnStandardError() { return isTerminal() && wantsColor(); }
 
+bool parseColor(const std::string& name) {
+  const std::size_t choice = parseChoice("--color", name, {"auto", "always", "never"});
+  return choice == 0 ? colorOnStandardError() : choice == 1;
+}
+
 std::string progressBar(const job::Progress& progress, int width, bool color) {
   const std::string text = figures(progress, "  ");
   const int room = width - static_cast<int>(text.size()) - 4;
@@ -86,13 +93,8 @@ std::string progressLine(const job::Progress& progress) { return figures(progres
 
 void printDiagnostics(const std::vector<Diagnostic>& diagnostics, const program::Program* program, bool json) {
   if (json) return writeFile("-", check::diagnosticsJson(diagnostics));
-  const std::string text = check::diagnosticsText(
-      diagnostics, program ? check::sourcesOf(*program) : check::sourcesOnDisk(), colorOnStandardError());
-  if (!terminalWidth(STDERR_FILENO)) return printError(text);
-  std::vector<std::string> lines = splitText(text, '\n');
-  lines.pop_back();  // after the last line break
-  for (const std::string& line : lines)
-    line.starts_with(' ') ? printError(line + "\n") : printMessage(line);  // lines of sources stay whole
+  printError(check::diagnosticsText(diagnostics, program ? check::sourcesOf(*program) : check::sourcesOnDisk(),
+                                    {.color = colorOnStandardError(), .width = terminalWidth(STDERR_FILENO)}));
 }
 
 Console::Console(const ConsoleOptions& options)
@@ -113,7 +115,13 @@ void Console::clearLocked() {
   barVisible_ = false;
 }
 
+void Console::setProgram(const program::Program* program) {
+  program_ = program;
+  setWorkProgram(program ? program->name : "");
+}
+
 void Console::stage(const std::string& text) {
+  setWorkStage(text);
   const std::lock_guard lock(mutex_);
   if (!options_.quiet && !options_.jsonProgress && terminal_) show(text + " ...");
 }
@@ -154,6 +162,7 @@ void Console::diagnostics(const std::vector<Diagnostic>& found) {
 }
 
 void Console::progress(const job::Progress& state) {
+  setWorkStage("rendering");
   const double now = clock_.seconds();
   if (options_.quiet || options_.jsonProgress || now - lastProgress_ < (terminal_ ? kBarSeconds : kLineSeconds)) return;
   lastProgress_ = now;
@@ -183,7 +192,9 @@ job::StopRequest Console::stopRequested() {
 void Console::write(const std::filesystem::path& file, std::span<const std::byte> bytes) {
   if (file == "-") return writeFile(file, bytes);  // no temporary file to protect
   const ProtectedWrite protect;
+  setWorkFile(file);
   writeFile(file, bytes);
+  setWorkFile({});
 }
 
 void Console::deviceHung(const Diagnostic& diagnostic) {

@@ -26,6 +26,8 @@ void printMessage(const std::string& text);
 
 // A terminal, and neither NO_COLOR (no-color.org) nor TERM=dumb is set.
 bool colorOnStandardError();
+// The value of --color: "always", "never", or "auto" for colorOnStandardError(). Throws UsageError.
+bool parseColor(const std::string& name);
 
 // "[=====>    ] 32/64 samples  12.3 Mrays/s  5.0 s  5.1 s left", at most `width` characters.
 std::string progressBar(const job::Progress& progress, int width, bool color);
@@ -49,7 +51,7 @@ class Console : public job::Observer {
   ~Console() override { clear(); }
 
   // For source lines of diagnostics; null: the files on disk. Must stay valid.
-  void setProgram(const program::Program* program) { program_ = program; }
+  void setProgram(const program::Program* program);
   // While set, Ctrl-C ends the job after the current batch. Must stay valid.
   void setGracefulStop(const GracefulStop* stop) { stop_ = stop; }
 

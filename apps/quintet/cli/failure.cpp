@@ -24,6 +24,11 @@ std::string optionHint(Remedy remedy) {
   return "";
 }
 
+bool wantsJson(std::span<const std::string> arguments) {
+  const auto end = std::ranges::find(arguments, "--");
+  return std::find(arguments.begin(), end, "--json") != end;
+}
+
 int printFailure(std::string message, int status) {
   std::ranges::replace(message, '\n', ' ');
   printMessage("quintet: " + printable(message));

@@ -4,6 +4,7 @@
 #define QUINTET_CLI_FAILURE_H
 
 #include <exception>
+#include <span>
 #include <string>
 
 #include "base/error.h"
@@ -14,9 +15,14 @@ namespace quintet::cli {
 constexpr int kRuntimeError = 1;
 constexpr int kWrongCommandLine = 2;
 constexpr int kTargetNotReached = 3;
+constexpr int kCrashed = 4;
 
 // The end of an error message that names the option: "; use --force to overwrite it". Empty for Remedy::none.
 std::string optionHint(Remedy remedy);
+
+// True if the arguments of the process contain --json, also if the command line cannot be parsed. After "--" it is the name
+// of a file.
+bool wantsJson(std::span<const std::string> arguments);
 
 // Prints "quintet: MESSAGE"; line breaks in it become spaces. Returns `status`.
 int printFailure(std::string message, int status);

@@ -5,10 +5,15 @@
 #ifndef QUINTET_CLI_SIGNALS_H
 #define QUINTET_CLI_SIGNALS_H
 
+#include <sys/types.h>
+
 namespace quintet::cli {
 
 // Once, at the start of main.
 void installSignalHandlers();
+
+// The process that forwards signals to this one (cli/supervisor.h). A signal that was sent to both counts once.
+void setSupervisor(pid_t process);
 
 class GracefulStop {
  public:

@@ -14,6 +14,7 @@
 #include "cli/parser.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
+#include "cli/work.h"
 #include "job/render_job.h"
 #include "output/file_names.h"
 #include "output/layers.h"
@@ -141,6 +142,7 @@ int renderImages(const RenderOptions& options, const program::Program& program, 
     const GracefulStop stop;  // from here on, Ctrl-C completes the batch
     console.setGracefulStop(&stop);
 
+    setWorkStage("rendering");
     std::vector<output::WrittenFile> files;
     const auto write = [&](const job::RenderResult& result) {
       output::addWritten(files, output::writeOutputs(plan, result, console));

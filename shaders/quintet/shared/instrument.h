@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Data that an instrumented program (quintet check --instrument) writes at Frame::instrument: one Instrument, then
-// kInstrumentReports InstrumentReports, then one InstrumentPixel per pixel of the film.
+// kInstrumentReports InstrumentReports, then one InstrumentPixel per pixel of the film. Other programs whose traces form
+// a cycle have a RecursionGuard there, and behind it one uint per invocation of a launch.
 #ifndef QUINTET_SHARED_INSTRUMENT_H
 #define QUINTET_SHARED_INSTRUMENT_H
 
@@ -13,6 +14,8 @@ QT_CONSTANT kReportRay = 1u;      // Q001: origin, direction, tmin or tmax not f
 QT_CONSTANT kReportDepth = 3u;    // Q003: a trace deeper than the pipeline's recursion depth (not executed)
 QT_CONSTANT kReportMiss = 4u;     // Q004: a miss index beyond the table (the trace is not executed)
 QT_CONSTANT kReportSelfHit = 5u;  // Q005: a hit on the primitive just left, closer than the rounding error
+QT_CONSTANT kReportOutput = 7u;   // Q007: an output or a pixel outside of the film (not stored)
+QT_CONSTANT kReportCall = 20u;    // Q004 (modulo 16): a callable index beyond the table (the call is not executed)
 
 QT_CONSTANT kInstrumentReports = 64u;  // maximum stored; further reports are only counted
 
@@ -23,8 +26,8 @@ struct InstrumentReport {
   uint depth;   // nesting depth of traces; 1: called by the ray generation shader
   uvec2 pixel;
   float distance;  // Q005
-  uint index;   // Q004: of the miss shader
-  vec3 origin;
+  uint index;   // Q004: of the miss or callable shader; Q007: of the output
+  vec3 origin;  // Q007: the pixel, relative to the film; negative values are too large as unsigned numbers
   vec3 direction;
 };
 QT_SHARED_SIZE(InstrumentReport, 56);
@@ -37,11 +40,19 @@ struct Instrument {
   uint deepest;        // maximum nesting depth of traces
   uint pixelCount;
   uint missCount;      // in: number of miss shaders in the table
+  uint callableCount;  // in: number of callable shaders in the table
   uint depthLimit;     // in: recursion depth of the pipeline
   uint rays[16];        // executed traces by offset (modulo 16): by ray type
   uint recordPairs[8];  // bit offset + 16 · stride: used by a trace (both taken modulo 16, as Vulkan does)
 };
-QT_SHARED_SIZE(Instrument, 128);
+QT_SHARED_SIZE(Instrument, 132);
+
+// The depth of the nested traces of each invocation follows.
+struct RecursionGuard {
+  uint cutCount;       // traces that were not executed
+  uint depthLimit;     // in: recursion depth of the pipeline
+};
+QT_SHARED_SIZE(RecursionGuard, 8);
 
 struct InstrumentPixel {
   uint depth;      // nesting depth of active traces

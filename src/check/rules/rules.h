@@ -15,26 +15,46 @@ struct CheckInput {
   const PipelineGraph& graph;
   const program::SceneFacts* scene;  // null for any scene
   const DeviceLimits& limits;
-  bool featureDefines;  // the shaders are compiled for one scene, so code can be missing
+  bool featureDefines;                    // the shaders are compiled for one scene, so code can be missing
+  std::vector<std::string> outputs = {};  // names of the optional outputs that are rendered
 };
 
 struct RecursionNeeds {
   std::uint32_t depth = 1;       // of nested traces
   std::uint64_t stackBytes = 0;  // of payloads, callable data and hit attributes
+  bool cyclic = false;           // traces form a cycle, so only a run can exceed the declared depth
 };
 
-void checkPayloadTypes(const CheckInput& input, Report& report);         // Q101 to Q103
+void checkPayloadTypes(const CheckInput& input, Report& report);         // Q101 to Q103, Q106
 void checkPayloadMembers(const CheckInput& input, Report& report);       // Q104, Q105
-void checkHitAttributes(const CheckInput& input, Report& report);        // Q201 to Q203
+void checkPayloadInputs(const CheckInput& input, Report& report);        // Q107
+void checkHitAttributes(const CheckInput& input, Report& report);        // Q201 to Q203, Q205
+void checkCandidates(const CheckInput& input, Report& report);           // Q206, Q606
+void checkCallableData(const CheckInput& input, Report& report);         // Q304
+void checkOutputs(const CheckInput& input, Report& report);              // Q712, Q714
 void checkCallableTypes(const CheckInput& input, Report& report);        // Q301, Q303
 RecursionNeeds checkRecursion(const CheckInput& input, Report& report);  // Q401, Q402
 void checkArguments(const CheckInput& input, Report& report);            // Q302, Q501 to Q506, Q605
+void checkArrayIndices(const CheckInput& input, Report& report);         // Q711
+void checkEndlessRecursion(const CheckInput& input, Report& report);     // Q403
 void checkGeometry(const CheckInput& input, Report& report);             // Q601 to Q604
+void checkHitKinds(const CheckInput& input, Report& report);             // Q607, Q608
+void checkRayArguments(const CheckInput& input, Report& report);         // Q507 to Q513
+void checkResources(const CheckInput& input, Report& report);            // Q651 to Q654
 void checkRayOrigins(const CheckInput& input, Report& report);           // Q705
 void checkRayOrigins(const spirv::Module& module, Report& report);       // Q705 within one stage
 void checkUnreachableStages(const CheckInput& input, Report& report);    // Q801
+void checkSpaces(const CheckInput& input, Report& report);               // Q702, Q708 to Q710, Q715
 void checkUnusedHitGroups(const CheckInput& input, Report& report);      // Q802
 void checkSharedIntersections(const CheckInput& input, Report& report);  // Q903
+
+// The parts of checkSpaces(). `stage` is an index of PipelineGraph::stages.
+class PipelineSpaces;
+// `transformed`: instances have transforms, as far as known.
+void checkSpaces(const PipelineSpaces& spaces, std::size_t stage, bool transformed, Report& report);  // Q702, Q708, Q709
+void checkSpaces(const spirv::Module& module, Report& report);  // the same, of one stage alone
+void checkBarycentrics(const PipelineSpaces& spaces, std::size_t stage, Report& report);  // Q710
+void checkColorEncoding(const PipelineGraph& graph, const PipelineSpaces& spaces, Report& report);  // Q715
 
 // Rules within one stage (rules/within_stage): they follow values through a module that was compiled with `optimize`
 // and `debugInfo`. A value that cannot be followed is not reported.
@@ -46,12 +66,14 @@ struct StageContext {
 };
 
 void checkDistance(const spirv::Module& module, Report& report);           // Q701
-void checkNormals(const spirv::Module& module, Report& report);            // Q702
 void checkInstanceIndices(const spirv::Module& module, Report& report);    // Q703
 void checkDescriptorIndices(const spirv::Module& module, Report& report);  // Q704
 void checkDebugPrintf(const spirv::Module& module, Report& report);        // Q707
+void checkPixels(const spirv::Module& module, Report& report);             // Q713
+void checkPixelDivision(const spirv::Module& module, Report& report);      // Q716
 void checkNestedBuiltIns(const spirv::Module& module, Report& report);     // Q901
 void checkAttributeWrites(const spirv::Module& module, Report& report);    // Q902
+void checkRayLengths(const spirv::Module& module, Report& report);         // Q514
 void checkRayTmaxReads(const spirv::Module& module, Report& report);       // Q904
 void checkLocalArrays(const spirv::Module& module, Report& report);        // Q905
 

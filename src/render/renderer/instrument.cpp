@@ -6,7 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
+#include <string_view>
 #include <tuple>
+
+#include "base/plural.h"
 
 namespace quintet::render {
 namespace {
@@ -18,9 +22,18 @@ std::string sourceFile(const program::Program& program, const std::string& stage
   return stage.starts_with(program.descriptionFile + ".") ? program.descriptionFile : stage;
 }
 
-// Returns `line` if a call of traceRayEXT in the file covers it. Otherwise the call is in an included file, whose line
+// The call that a report is about, or the end of its name.
+std::string_view callOf(const shared::InstrumentReport& report) {
+  switch (report.kind) {
+    case shared::kReportCall: return "executeCallableEXT";
+    case shared::kReportOutput: return "Output";  // storeOutput, addOutput
+    default: return "traceRayEXT";
+  }
+}
+
+// Returns `line` if a call of this name in the file covers it. Otherwise the call is in an included file, whose line
 // numbers do not apply to this file, and the result is 0.
-int traceLine(const program::Program& program, const std::string& file, std::uint32_t line) {
+int callLine(const program::Program& program, const std::string& file, std::uint32_t line, std::string_view call) {
   const auto found = program.files.find(file);
   if (found == program.files.end() || line == 0) return 0;
   const std::string& text = found->second;
@@ -30,13 +43,14 @@ int traceLine(const program::Program& program, const std::string& file, std::uin
     if (begin == std::string::npos) return 0;
     ++begin;
   }
-  const std::size_t trace = text.rfind("traceRayEXT", text.find('\n', begin));
-  if (trace == std::string::npos) return 0;
-  const bool endsBefore = trace < begin && text.find(';', trace) < begin;
+  const std::size_t at = text.rfind(call, text.find('\n', begin));
+  if (at == std::string::npos) return 0;
+  const bool endsBefore = at < begin && text.find(';', at) < begin;
   return endsBefore ? 0 : static_cast<int>(line);
 }
 
-std::string describe(const shared::InstrumentReport& report, std::size_t missCount) {
+std::string describe(const shared::InstrumentReport& report, const shared::Instrument& counts,
+                     const program::Program& program) {
   const std::string where = fmt::format("pixel {}, {}, depth {}", report.pixel.x, report.pixel.y, report.depth);
   switch (report.kind) {
     case shared::kReportRay:
@@ -44,7 +58,17 @@ std::string describe(const shared::InstrumentReport& report, std::size_t missCou
                          vectorText(report.direction), where);
     case shared::kReportMiss:
       return fmt::format("miss index {} is beyond the {} miss shaders of the table; the trace was not executed ({})",
-                         report.index, missCount, where);
+                         report.index, counts.missCount, where);
+    case shared::kReportCall:
+      return fmt::format("callable index {} is beyond the {} of the table; the call was not executed ({})",
+                         report.index, counted(counts.callableCount, "callable shader"), where);
+    case shared::kReportOutput:
+      if (report.index >= program.outputs.size())
+        return fmt::format("output {} does not exist: the program has {}; nothing was stored (pixel {}, {})",
+                           report.index, counted(program.outputs.size(), "output"), report.pixel.x, report.pixel.y);
+      return fmt::format(
+          "output '{}' is stored at {}, {} of the film, which is outside; nothing was stored (pixel {}, {})",
+          program.outputs[report.index].name, report.origin.x, report.origin.y, report.pixel.x, report.pixel.y);
     case shared::kReportDepth:
       return fmt::format("this trace exceeds the recursion depth of the pipeline; it was not executed ({})", where);
     default:
@@ -74,12 +98,16 @@ void addReports(const InstrumentData& data, const program::RunnableProgram& runn
     const std::vector<program::CompiledProgram::Stage>& stages = runnable.compiled.stages;
     const std::string file =
         sourceFile(program, first.stage < stages.size() ? stages[first.stage].file : program.rayGeneration);
-    std::string text = describe(first, data.counts.missCount);
+    std::string text = describe(first, data.counts, program);
     if (location.count > 1)
-      text += fmt::format("; {}{} such traces", data.counts.reportCount > shared::kInstrumentReports ? "at least " : "",
-                          location.count);
+      text += fmt::format("; {}{} such {}", data.counts.reportCount > shared::kInstrumentReports ? "at least " : "",
+                          location.count,
+                          first.kind == shared::kReportCall     ? "calls"
+                          : first.kind == shared::kReportOutput ? "stores"
+                                                                : "traces");
     result.push_back({first.kind == shared::kReportSelfHit ? Severity::warning : Severity::error, program.path(file),
-                      traceLine(program, file, first.line), 0, fmt::format("Q00{}", first.kind), text});
+                      callLine(program, file, first.line, callOf(first)), 0, fmt::format("Q00{}", first.kind % 16),
+                      text});
   }
 }
 
@@ -110,12 +138,13 @@ void addRecords(const shared::Instrument& counts, const program::Program& progra
 }  // namespace
 
 InstrumentBuffer::InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit,
-                                   std::size_t missCount) {
+                                   const program::Program& program) {
   std::vector<std::byte> bytes(sizeof(InstrumentData) + pixels * sizeof(shared::InstrumentPixel));
   auto& header = *reinterpret_cast<shared::Instrument*>(bytes.data());
   header.pixelCount = static_cast<std::uint32_t>(pixels);
   header.depthLimit = depthLimit;
-  header.missCount = static_cast<std::uint32_t>(missCount);
+  header.missCount = static_cast<std::uint32_t>(program::missShaders(program).size());
+  header.callableCount = static_cast<std::uint32_t>(program.callables.size());
   buffer_ = gpu::makeBuffer(context, bytes, 0, "instrument");
 }
 
@@ -123,6 +152,21 @@ InstrumentData InstrumentBuffer::download() const {
   InstrumentData data;
   buffer_.download(std::as_writable_bytes(std::span(&data, 1)));
   return data;
+}
+
+// Invocations of a launch: the pixels of the film, or those of its tiles. Ray generation shaders set the depth before they
+// trace, so only the header is initialized.
+RecursionBuffer::RecursionBuffer(gpu::Context& context, const Region& region, std::uint32_t depthLimit) {
+  const std::uint64_t invocations = std::max(std::uint64_t{region.width} * region.height,
+                                             std::uint64_t{tileCount(region)} * shared::kTileSize * shared::kTileSize);
+  buffer_ = gpu::Buffer(
+      context, {.size = sizeof(shared::RecursionGuard) + invocations * sizeof(std::uint32_t), .name = "recursion"});
+  const shared::RecursionGuard header{0, depthLimit};
+  buffer_.uploadAs(std::span(&header, 1));
+}
+
+std::uint32_t RecursionBuffer::skippedTraces() const {
+  return buffer_.downloadAs<shared::RecursionGuard>(1).front().cutCount;
 }
 
 std::vector<Diagnostic> instrumentDiagnostics(const InstrumentData& data, const program::RunnableProgram& runnable,

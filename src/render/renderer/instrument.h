@@ -21,9 +21,9 @@ struct InstrumentData {
 
 class InstrumentBuffer {
  public:
-  // `pixels` is the number of pixels of the film, `depthLimit` the recursion depth of the pipeline, and `missCount` the
-  // number of miss shaders in the shader binding table.
-  InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit, std::size_t missCount);
+  // `pixels` is the number of pixels of the film, and `depthLimit` the recursion depth of the pipeline.
+  InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, std::uint32_t depthLimit,
+                   const program::Program& program);
   shared::Address address() const { return buffer_.address(); }
   InstrumentData download() const;  // blocks
 
@@ -31,7 +31,18 @@ class InstrumentBuffer {
   gpu::Buffer buffer_;
 };
 
-// Returns diagnostics Q001 and Q003 to Q006. Q004 (hit records or miss shaders beyond the table) uses the table of the
+// The device buffer of a program that counts its recursion (Instrumentation::recursion).
+class RecursionBuffer {
+ public:
+  RecursionBuffer(gpu::Context& context, const Region& region, std::uint32_t depthLimit);
+  shared::Address address() const { return buffer_.address(); }
+  std::uint32_t skippedTraces() const;  // since the construction, modulo 2^32; blocks
+
+ private:
+  gpu::Buffer buffer_;
+};
+
+// Returns diagnostics Q001 and Q003 to Q007. Q004 (hit records or shaders beyond the table) uses the table of the
 // scene. Reports from the same source location are merged into one diagnostic with their number and the first pixel.
 std::vector<Diagnostic> instrumentDiagnostics(const InstrumentData& data, const program::RunnableProgram& runnable,
                                               const program::SceneFacts& facts);

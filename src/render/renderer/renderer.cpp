@@ -41,7 +41,8 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
                    description.anyHitForAll);
   if (settings_.instrument)
     instrument_.emplace(context_, std::uint64_t{settings_.region.width} * settings_.region.height,
-                        linked_.recursionDepth(), program::missShaders(description).size());
+                        linked_.recursionDepth(), description);
+  if (runnable_.countsRecursion) recursion_.emplace(context_, settings_.region, linked_.recursionDepth());
   uploadFrame();
   parameterBuffer_ =
       gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_->indices()), 0, "parameters");
@@ -59,6 +60,7 @@ void Renderer::uploadFrame() {
   frame.rayRecords = settings_.rayRecords ? settings_.rayRecords->address() : 0;
   frame.rayRecordCapacity = settings_.rayRecords ? settings_.rayRecordCapacity : 0;
   if (instrument_) frame.instrument = instrument_->address();
+  if (recursion_) frame.instrument = recursion_->address();
   film_.describe(frame);
   frameBuffer_ = gpu::makeBuffer(context_, std::as_bytes(std::span(&frame, 1)), 0, "frame");
 }
@@ -196,6 +198,7 @@ void Renderer::restart() {
   statistics_.samples = 0;
   statistics_.batches = 0;
   nextBatch_ = 0;
+  if (recursion_) tracesSkippedBefore_ = recursion_->skippedTraces();
 }
 
 void Renderer::setCamera(const scene::Camera& camera) {
@@ -231,6 +234,11 @@ RayCount Renderer::rays() const {
 std::vector<NotFinitePixels> Renderer::notFinitePixels() const {
   finishLaunches();
   return film_.notFinitePixels();
+}
+
+std::uint64_t Renderer::skippedTraces() const {
+  finishLaunches();
+  return recursion_ ? recursion_->skippedTraces() - tracesSkippedBefore_ : 0u;
 }
 
 shared::Instrument Renderer::instrumentCounts() const {

@@ -76,8 +76,11 @@ class Renderer {
   // Returns the finished launches if RenderSettings::profile is set.
   const std::vector<LaunchTiming>& launches() const { return queue_.timings(); }
   const program::LinkedProgram& linked() const { return linked_; }
-  // Returns the findings of the runtime checks so far (Q001 to Q006) if RenderSettings::instrument is set. Blocks.
+  // Returns the findings of the runtime checks so far (Q001 to Q007) if RenderSettings::instrument is set. Blocks.
   std::vector<Diagnostic> runtimeDiagnostics() const;
+  // Returns the number of traces beyond the recursion depth of the pipeline that were not executed, since the start or
+  // restart(); 0 unless RunnableProgram::countsRecursion is set. Blocks.
+  std::uint64_t skippedTraces() const;
   // Returns what the runtime checks counted so far if RenderSettings::instrument is set, else zeros. Blocks.
   shared::Instrument instrumentCounts() const;
   const program::Program& program() const { return runnable_.description; }
@@ -118,6 +121,8 @@ class Renderer {
   std::unique_ptr<ParameterTextures> parameterTextures_;
   gpu::Buffer parameterBuffer_;
   std::optional<InstrumentBuffer> instrument_;
+  std::optional<RecursionBuffer> recursion_;
+  std::uint32_t tracesSkippedBefore_ = 0;  // the last restart()
   // Mutable so that const functions can wait for launches, which changes no result.
   mutable RenderStatistics statistics_;
   mutable LaunchQueue queue_;

@@ -2,8 +2,13 @@
 // Checks at run time: each mistake is reported at its line, and correct programs give no reports.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "harness.h"
+#include "job/device_limits.h"
+#include "job/runnable_program.h"
 #include "job/scene_source.h"
+#include "program/description/parser.h"
 #include "program/gsn/lecture.h"
 #include "program/load.h"
 #include "render/rendered_image.h"
@@ -109,6 +114,110 @@ TEST(Instrument, ReportsMissIndicesOutOfRange) {
   const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" +
                              rayGeneration(trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q004:3");
+}
+
+TEST(Instrument, ReportsCallableIndicesOutOfRange) {
+  const std::string callable =
+      "struct CallableDataType { vec3 value; };\nvoid main() { /**** CALLABLE SHADER ****/ callableData.value *= 0.5; "
+      "}\n";
+  const std::string call = " callableData.value = vec3(1.0);\nexecuteCallableEXT(gl_LaunchIDEXT.x < 15u ? 0u : 9u, 0);";
+  const auto notes = notesOf(kCommon + callable + rayGeneration(trace("eye", "d") + call) + kHit + kMiss);
+  EXPECT_EQ(idsOf(notes), "Q004:5");
+  EXPECT_NE(notes.at(0).text.find("callable index 9"), std::string::npos) << notes[0].text;
+  EXPECT_NE(notes.at(0).text.find("16 such calls"), std::string::npos) << notes[0].text;
+}
+
+// A folder with a ray generation shader only.
+program::Program storing(const std::string& statement) {
+  return program::parseProgram(
+      "[program]\nray_generation = \"main.rgen\"\n[[ray]]\nname = \"primary\"\nmiss = "
+      "\"sky.rmiss\"\n[[output]]\nname = \"color\"\n",
+      "demo", "here",
+      {{"main.rgen",
+        "#version 460\n#extension GL_EXT_ray_tracing : require\n#include <quintet/output.glsl>\n"
+        "#include <quintet/generated/program.glsl>\nvoid main() {\n" +
+            statement + "\n}\n"},
+       {"sky.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n"}});
+}
+
+TEST(Instrument, ReportsOutputsOutsideOfTheImage) {
+  const scene::Scene scene = job::loadScene(job::chooseSceneSource({}, storing("")));
+  const auto notes = notesOf(storing("storeOutput(kOutput_color, launchPixel() + uvec2(1, 0), vec4(1.0));"), scene);
+  EXPECT_EQ(idsOf(notes), "Q007:6");
+  EXPECT_NE(notes.at(0).text.find("16, "), std::string::npos) << notes[0].text;
+  EXPECT_NE(notes.at(0).text.find("16 such stores"), std::string::npos) << notes[0].text;
+  EXPECT_EQ(idsOf(notesOf(storing("addOutput(5u, launchPixel(), vec4(1.0));"), scene)), "Q007:6");
+  EXPECT_EQ(idsOf(notesOf(storing("addOutput(kOutput_color, launchPixel(), vec4(1.0));"), scene)), "");
+}
+
+// Without instrumentation they are ignored: no other pixel changes.
+TEST(Outputs, IgnorePixelsOutsideOfTheImage) {
+  const program::Program program = storing(
+      "storeOutput(kOutput_color, launchPixel() * 100000u + 7u, vec4(1.0));\n"
+      "storeOutput(1u + gl_LaunchIDEXT.x * 40u, launchPixel(), vec4(1.0));\n"
+      "addOutput(kOutput_color, launchPixel() - uvec2(1000), vec4(1.0));\n"
+      "storeCoverage(kOutput_color, uvec2(0xFFFFFFFFu), 3u, 1u);\n"
+      "countRays(uvec2(0x7FFFFFFFu), 1u, 0u);\n"
+      "if (loadOutput(kOutput_color, uvec2(1u << 30)) != vec4(0.0)) storeOutput(kOutput_color, uvec2(0), vec4(1.0));");
+  const scene::Scene scene = job::loadScene(job::chooseSceneSource({}, program));
+  render::DeviceScene deviceScene(testContext(), scene::Scene(scene), scene::effectiveEnvironment(scene));
+  render::RenderSettings settings;
+  settings.width = settings.height = 16;
+  render::Renderer renderer = makeRenderer(deviceScene, program, settings);
+  renderer.renderBatch(1);
+  for (const float value : renderer.image().samples<float>()) EXPECT_EQ(value, 0.0f);
+  EXPECT_EQ(renderer.rays().rays, 0u);
+}
+
+// Each hit traces the same ray again, with the declared recursion `depth`.
+program::Program endlessRecursion(int depth) {
+  const std::string options =
+      "// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: " + std::to_string(depth) + "\"\n";
+  const std::string hit =
+      "void main() { /**** CLOSEST-HIT SHADER ****/ payload.level++; vec3 o = gl_WorldRayOriginEXT; vec3 d = "
+      "gl_WorldRayDirectionEXT;\n" +
+      trace("o", "d") + " payload.color = vec3(payload.level); }\n";
+  return program::parseLecture(
+      options + kCommon + rayGeneration(" payload.level = 0; " + trace("eye", "d")) + hit + kMiss, "demo.rt.glsl",
+      "here");
+}
+
+// Every run skips the traces that are too deep, and counts them.
+TEST(Recursion, EndsAtTheDepthOfThePipeline) {
+  for (const int depth : {3, 31}) {
+    const program::Program program = endlessRecursion(depth);
+    const scene::Scene scene = job::loadScene(job::chooseSceneSource({}, program));
+    render::DeviceScene deviceScene(testContext(), scene::Scene(scene), scene::effectiveEnvironment(scene));
+    render::RenderSettings settings;
+    settings.width = 24;
+    settings.height = 16;
+    settings.region = {4, 2, 16, 12};
+    settings.camera =
+        scene.cameras.empty() ? scene::frameScene(scene::worldBounds(scene), 1.0f) : scene.cameras.front();
+    render::Renderer renderer = makeRenderer(deviceScene, program, settings);
+    renderer.renderBatch(1);
+    float deepest = 0;
+    std::uint64_t hits = 0;
+    for (const vec4& pixel : renderer.image().samples<vec4>()) {
+      deepest = std::max(deepest, pixel.x);
+      hits += pixel.x > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(deepest, static_cast<float>(depth));
+    EXPECT_GT(hits, 0u);
+    EXPECT_EQ(renderer.skippedTraces(), hits);
+    renderer.restart();
+    EXPECT_EQ(renderer.skippedTraces(), 0u);
+  }
+}
+
+TEST(Recursion, IsNotCountedWithoutACycle) {
+  const program::Program program = program::loadProgram("pathtracer");
+  const scene::Scene scene = job::loadScene(job::chooseSceneSource({}, program));
+  render::DeviceScene deviceScene(testContext(), scene::Scene(scene), scene::effectiveEnvironment(scene));
+  const job::CheckedProgram checked =
+      job::compileAndCheck(program, testCompiler(), render::renderDefines(deviceScene.defines(), {}),
+                           deviceScene.facts(), job::deviceLimits(testContext().info()));
+  EXPECT_FALSE(checked.runnable.countsRecursion);
 }
 
 TEST(Instrument, ReportsSelfIntersections) {

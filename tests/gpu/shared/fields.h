@@ -120,9 +120,10 @@ GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlo
            filmHeight, lightCount, environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount,
            plannedSamples, lightNodes, previousInstances);
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction);
+GPU_FIELDS(RecursionGuard, cutCount, depthLimit);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
-GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, depthLimit,
-           rays, recordPairs);
+GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, callableCount,
+           depthLimit, rays, recordPairs);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
 GPU_FIELDS(NotFinite, count, first);

@@ -53,7 +53,7 @@ using SharedStructs =
                    shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord,
                    shared::RayKinds, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::NotFinite,
                    shared::FilmCheck, shared::FilmTile, shared::FixedSum, shared::CoverageSlot, shared::Launch,
-                   shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel>;
+                   shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel, shared::RecursionGuard>;
 
 struct StructNames {
   template <class T>

@@ -45,14 +45,14 @@ name = "surface"
 primary = { closest_hit = "surface.rchit", any_hit = "cut.rahit" }
 shadow = { any_hit = "cut_shadow.rahit" }
 )"},
-          {"main.rgen", head + R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
-layout(set = 0, binding = 1, rgba32f) uniform image2D image;
+          {"main.rgen", changed(head, "require\n", "require\n#include <quintet/output.glsl>\n") +
+                            R"(layout(set = 0, binding = 0) uniform accelerationStructureEXT tlas;
 layout(location = 0) rayPayloadEXT Payload payload;
 void main() {
   traceRayEXT(tlas, gl_RayFlagsNoneEXT, 0xFFu, kRay_primary, kRayTypeCount, kMiss_primary, vec3(0), 0.0, vec3(0, 0, 1), 1e30, 0);
   vec3 color = payload.color;
   if (payload.t > 0.0) color *= payload.t;
-  imageStore(image, ivec2(gl_LaunchIDEXT.xy), vec4(color, 1.0));
+  addOutput(0u, gl_LaunchIDEXT.xy, vec4(color, 1.0));
 }
 )"},
           {"sky.rmiss", head + R"(layout(location = 0) rayPayloadInEXT Payload payload;

@@ -162,7 +162,7 @@ TEST_P(Idioms, AreNotReported) {
 INSTANTIATE_TEST_SUITE_P(Corpus, Idioms, testing::ValuesIn(programsIn(kIdioms)),
                          [](const auto& test) { return test.param; });
 
-// Only a run can report Q001 to Q006 (tests/gpu/program/instrument_test.cpp), and Q016 needs a file of a megabyte.
+// Only a run can report Q001 to Q007 (tests/gpu/program/instrument_test.cpp), and Q016 needs a file of a megabyte.
 TEST(MistakesCorpus, HasAnEntryForEachId) {
   const std::vector<std::string> names = programsIn(kMistakes);
   for (const DiagnosticInfo& info : allDiagnostics()) {

@@ -11,7 +11,7 @@ Files withOutputs(const std::string& code) {
   files["program.toml"] +=
       "\n[[output]]\nname = \"color\"\n\n[[output]]\nname = \"albedo\"\noptional = true\n\n[[output]]\nname = "
       "\"depth\"\noptional = true\n";
-  files["main.rgen"] = changed(files["main.rgen"], "  imageStore(image", code + "  imageStore(image");
+  files["main.rgen"] = changed(files["main.rgen"], "  storeOutput(0u", code + "  storeOutput(0u");
   return files;
 }
 

@@ -147,7 +147,7 @@ TEST(CheckPayload, Q104AcceptsReadsThatThePayloadGuards) {
 TEST(CheckPayload, Q104AcceptsALoopThatAMissEnds) {
   Files files = edited(cleanFiles(), "sky.rmiss", "payload.color = gl_WorldRayDirectionEXT;", "");
   const std::string& text = files["main.rgen"];
-  const std::size_t begin = text.find("  traceRayEXT"), end = text.find("  imageStore");
+  const std::size_t begin = text.find("  traceRayEXT"), end = text.find("  storeOutput");
   const std::string trace = text.substr(begin, text.find(";\n", begin) + 2 - begin);
   files["main.rgen"] = text.substr(0, begin) + "  vec3 color = vec3(1);\n  for (int i = 0; i < 8; ++i) {\n" + trace +
                        "    if (payload.t < 0.0) break;\n    color *= payload.color;\n  }\n" + text.substr(end);

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     const program::Program program = program::loadProgram(argv[1]);
     const program::SceneFacts facts = check::sceneFacts(scene::loadScene(argv[2]));
     const check::CheckResult result = check::check(program, shader::Compiler({}), &facts, {});
-    std::fputs(check::diagnosticsText(result.diagnostics, check::sourcesOf(program), false).c_str(), stderr);
+    std::fputs(check::diagnosticsText(result.diagnostics, check::sourcesOf(program)).c_str(), stderr);
     return result.diagnostics.empty() ? 0 : 1;
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -71,16 +71,18 @@ TEST(StageFacts, FindsArgumentsAndVariables) {
 TEST(StageFacts, FindsAccessesByMember) {
   const StageFacts facts = factsOf(Stage::closestHit, kHit);
   const Id payload = facts.incoming(spv::StorageClass::IncomingRayPayloadKHR)->id;
-  EXPECT_TRUE(facts.writesAlways(payload, 0));  // through the inout parameter
-  EXPECT_TRUE(facts.writes(payload, 1));
-  EXPECT_FALSE(facts.writesAlways(payload, 1));  // if
-  EXPECT_FALSE(facts.writes(payload, 2));        // put back unchanged
-  EXPECT_TRUE(facts.readsBeforeWriting(payload, 0));
-  EXPECT_TRUE(facts.readsBeforeWriting(payload, 2));
-  const Id inner = facts.traces()[0].payload;
-  EXPECT_TRUE(facts.writtenBefore(inner, 1, facts.traces()[0].instruction));
-  EXPECT_EQ(facts.unguardedReads(facts.traces()[0], 1).size(), 1u);
-  EXPECT_TRUE(facts.unguardedReads(facts.traces()[0], 0).empty());
+  constexpr std::uint32_t kColor = 0, kT = 3, kSeed = 4;  // leaves; the color has three
+  EXPECT_EQ(facts.leaves(payload).count(), 5u);
+  EXPECT_TRUE(facts.writesAlways(payload, kColor));  // through the inout parameter
+  EXPECT_TRUE(facts.writes(payload, kT));
+  EXPECT_FALSE(facts.writesAlways(payload, kT));  // if
+  EXPECT_FALSE(facts.writes(payload, kSeed));     // put back unchanged
+  EXPECT_TRUE(facts.readsBeforeWriting(payload, kColor));
+  EXPECT_TRUE(facts.readsBeforeWriting(payload, kSeed));
+  const TraceFacts& trace = facts.traces()[0];
+  EXPECT_TRUE(facts.writtenBefore(trace.payload, kT, trace.instruction));
+  EXPECT_EQ(facts.unguardedReads(trace.instruction, trace.payload, kT).size(), 1u);
+  EXPECT_TRUE(facts.unguardedReads(trace.instruction, trace.payload, kColor).empty());
 }
 
 TEST(StageFacts, FindsBuiltInsReadAfterATrace) {
@@ -111,11 +113,12 @@ TEST(StageFacts, AcceptsAnyModuleSafely) {
     if (!module) continue;
     const StageFacts facts(std::move(*module));
     for (const SharedVariable& variable : facts.variables()) {
-      for (std::uint32_t member = 0; member < std::min(facts.memberCount(variable.id), 8u); ++member) {
-        sum += facts.writesAlways(variable.id, member) + facts.readsBeforeWriting(variable.id, member);
+      for (std::uint32_t leaf = 0; leaf < std::min(facts.leaves(variable.id).count(), 8u); ++leaf) {
+        sum += facts.writesAlways(variable.id, leaf) + facts.readsBeforeWriting(variable.id, leaf);
+        sum += facts.inputReads(variable.id, leaf).size();
         for (const TraceFacts& trace : facts.traces())
-          sum +=
-              facts.unguardedReads(trace, member).size() + facts.writtenBefore(variable.id, member, trace.instruction);
+          sum += facts.unguardedReads(trace.instruction, variable.id, leaf).size() +
+                 facts.writtenBefore(variable.id, leaf, trace.instruction);
       }
     }
     sum += facts.frameBytes() > 0;

@@ -21,23 +21,25 @@ class ArgumentRule {
     if (inRange(trace.offset, "offset", "Q503", kRecordBits) && inRange(trace.stride, "stride", "Q503", kRecordBits))
       checkRecords(trace);
     if (inRange(trace.miss, "miss index", "Q504", kMissBits)) checkMiss(trace);
-    for (const std::uint32_t mask : trace.mask.values)
-      if (mask > kMaskBits)
-        report_.add("Q505", location_,
-                    fmt::format("the cull mask of this trace is {:#x}, but only its low 8 bits, {:#04x}, are used",
-                                mask, mask & kMaskBits));
+    for (const std::uint32_t mask : wrongValues(trace.mask, kMaskBits + 1))
+      report_.add("Q505", location_,
+                  fmt::format("the cull mask of this trace is {}{:#x}, but only its low 8 bits, {:#04x}, are used",
+                              boundText(trace.mask), mask, mask & kMaskBits));
     checkShadowMiss(site);
-    for (const std::uint32_t flags : trace.flags.values) checkFlags(flags);
+    if (trace.flags.certain())
+      for (const std::uint32_t flags : trace.flags.values) checkFlags(flags);
+    else
+      checkFlags(trace.flags.ones);
   }
 
   void check(const CallSite& site) {
     location_ = graph_.location(site);
     const std::size_t count = graph_.program.callables.size();
-    for (const std::uint32_t index : site.call->index.values)
-      if (index >= count)
-        report_.add("Q302", location_,
-                    fmt::format("the callable index of this call is {}, but the program has {}", index,
-                                countText(count, "callable shader")));
+    const spirv::ArgumentValues& index = site.call->index;
+    for (const std::uint32_t value : wrongValues(index, static_cast<std::uint32_t>(count)))
+      report_.add("Q302", location_,
+                  fmt::format("the callable index of this call is {}{}, but the program has {}", boundText(index), value,
+                              countText(count, "callable shader")));
     if (!site.call->index.known && count == 0)
       report_.add("Q302", location_, "this calls a callable shader, but the program has none");
   }
@@ -50,35 +52,49 @@ class ArgumentRule {
                       : fmt::format("{} {}s (index 0 to {})", count, noun, count - 1);
   }
 
+  // The values of at least `count` that occur; a lower bound if the values are not known.
+  static std::vector<std::uint32_t> wrongValues(const spirv::ArgumentValues& argument, std::uint32_t count) {
+    if (!argument.certain()) {
+      const auto value = argument.atLeast(count);
+      return value ? std::vector{*value} : std::vector<std::uint32_t>{};
+    }
+    std::vector<std::uint32_t> values = argument.values;
+    std::erase_if(values, [&](std::uint32_t value) { return value < count; });
+    return values;
+  }
+
+  static std::string_view boundText(const spirv::ArgumentValues& argument) {
+    return argument.certain() ? "" : "at least ";
+  }
+
   bool inRange(const spirv::ArgumentValues& argument, std::string_view name, std::string_view id, std::uint32_t limit) {
-    for (const std::uint32_t value : argument.values) {
-      if (value <= limit) continue;
+    for (const std::uint32_t value : wrongValues(argument, limit + 1)) {
       report_.add(id, location_,
-                  fmt::format("the {} of this trace is {}, but the maximum is {}; the device would use {}", name, value,
-                              limit, value & limit));
+                  fmt::format("the {} of this trace is {}{}, but the maximum is {}; the device would use {}", name,
+                              boundText(argument), value, limit,
+                              argument.certain() ? std::to_string(value & limit) : "its low bits"));
       return false;
     }
     return true;
   }
 
   void checkMiss(const spirv::TraceFacts& trace) {
-    for (const std::uint32_t index : trace.miss.values)
-      if (index >= graph_.misses.size())
-        report_.add("Q502", location_,
-                    fmt::format("the miss index of this trace is {}, but the program has {}", index,
-                                countText(graph_.misses.size(), "miss shader")));
+    for (const std::uint32_t index : wrongValues(trace.miss, static_cast<std::uint32_t>(graph_.misses.size())))
+      report_.add("Q502", location_,
+                  fmt::format("the miss index of this trace is {}{}, but the program has {}", boundText(trace.miss),
+                              index, countText(graph_.misses.size(), "miss shader")));
   }
 
   void checkRecords(const spirv::TraceFacts& trace) {
     const std::size_t rays = graph_.rayCount();
     if (graph_.program.hitGroups.empty()) return;
-    for (const std::uint32_t offset : trace.offset.values) {
-      if (offset < rays) continue;
+    for (const std::uint32_t offset : wrongValues(trace.offset, static_cast<std::uint32_t>(rays))) {
       report_.add("Q501", location_,
-                  fmt::format("the offset of this trace is {}, but each geometry has {} (one per ray type){}", offset,
-                              recordText(rays), sceneText(trace, offset)));
+                  fmt::format("the offset of this trace is {}{}, but each geometry has {} (one per ray type){}",
+                              boundText(trace.offset), offset, recordText(rays), sceneText(trace, offset)));
       return;
     }
+    if (!trace.stride.certain()) return;
     for (const std::uint32_t stride : trace.stride.values)
       if (stride != 0 && stride != rays) checkStride(trace, stride);
   }
@@ -136,28 +152,52 @@ class ArgumentRule {
     return trace.flags.mustHave(kFlagTerminateOnFirstHit | kFlagSkipClosestHit);
   }
 
-  // Reports a shadow ray with the miss shader of radiance rays, if the program has a miss shader that these do not use.
+  // Reports a shadow ray with the miss shader of radiance rays, if the program has one that it should use: that of the
+  // ray's own type, or one that no ray uses while this one does not return what is read.
   void checkShadowMiss(const TraceSite& site) {
     const spirv::TraceFacts& trace = *site.trace;
     if (!isShadow(trace) || !trace.miss.exact() || trace.miss.values[0] >= graph_.misses.size()) return;
-    const auto forRadiance = [&](const std::string& file) {
-      return std::ranges::any_of(graph_.traces, [&](const TraceSite& other) {
-        return !isShadow(*other.trace) && std::ranges::any_of(other.edges, [&](const Edge& e) {
-          return e.role == Role::miss && graph_.stages[e.stage].file == file;
-        });
-      });
+    const auto reaches = [&](const TraceSite& other, const std::string& file) {
+      return std::ranges::any_of(
+          other.edges, [&](const Edge& e) { return e.role == Role::miss && graph_.stages[e.stage].file == file; });
     };
+    const auto radianceTrace = [&](const std::string& file) {
+      return std::ranges::find_if(
+          graph_.traces, [&](const TraceSite& other) { return !isShadow(*other.trace) && reaches(other, file); });
+    };
+    const auto forRadiance = [&](const std::string& file) { return radianceTrace(file) != graph_.traces.end(); };
     const program::MissShader& used = graph_.misses[trace.miss.values[0]];
     if (!forRadiance(used.file)) return;
     for (std::size_t i = 0; i < graph_.misses.size(); ++i) {
-      if (forRadiance(graph_.misses[i].file)) continue;
+      const std::string& file = graph_.misses[i].file;
+      if (forRadiance(file)) continue;
+      const bool own = trace.offset.exact() && trace.offset.values[0] == i;
+      const bool unused =
+          std::ranges::none_of(graph_.traces, [&](const TraceSite& other) { return reaches(other, file); });
+      if (!own && (!unused || returnsWhatIsRead(site))) continue;
       report_.add(
           "Q506", location_,
           fmt::format("this shadow ray uses miss shader '{}' (index {}) of radiance rays, but '{}' (index {}) is "
                       "not used by radiance rays",
-                      used.file, trace.miss.values[0], graph_.misses[i].file, i));
+                      used.file, trace.miss.values[0], file, i),
+          {relatedTo(graph_.location(*radianceTrace(used.file)), "radiance rays use the same miss shader")});
       return;
     }
+  }
+
+  // True if the miss shader of the ray writes all that is read from the payload afterwards.
+  bool returnsWhatIsRead(const TraceSite& site) const {
+    const spirv::StageFacts& tracer = graph_.facts(site);
+    const spirv::Id payload = site.trace->payload;
+    const auto miss = std::ranges::find(site.edges, Role::miss, &Edge::role);
+    if (miss == site.edges.end()) return false;
+    const spirv::StageFacts& facts = graph_.facts(*miss);
+    const spirv::SharedVariable* received = facts.incoming(spv::StorageClass::IncomingRayPayloadKHR);
+    if (!received) return false;
+    for (std::uint32_t leaf = 0; leaf < tracer.leaves(payload).count(); ++leaf)
+      if (!tracer.readsAfter(site.trace->instruction, payload, leaf).empty() && !facts.writesAlways(received->id, leaf))
+        return false;
+    return true;
   }
 
   // Each of these sets allows at most one flag: VUID-RuntimeSpirv-OpTraceRayKHR-06892 to 06894.

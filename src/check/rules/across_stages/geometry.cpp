@@ -82,6 +82,11 @@ class GeometryRule {
     }
   }
 
+  // The trace and the geometry meet here.
+  std::vector<RelatedLocation> traceOf(const TraceGeometryPair& pair) const {
+    return {relatedTo(graph_.location(*pair.site), "this trace uses the hit group")};
+  }
+
   void collectPairs() {
     const program::SceneFacts& scene = *input_.scene;
     for (const TraceSite& site : graph_.traces)
@@ -105,11 +110,10 @@ class GeometryRule {
     if ((pair.opaque && trace.flags.mustHave(kFlagCullOpaque)) ||
         (pair.notOpaque && trace.flags.mustHave(kFlagCullNoOpaque)))
       return;
-    // With a stride of 0, all geometries of the instance use the records of the first one.
-    const bool own = !trace.stride.exact() || trace.stride.values[0] != 0;
-    const std::size_t owner = instance.firstGeometry + (own ? k : 0);
+    // With a stride of 0, all geometries of the instance use the records of the first one. Q511 reports geometries that
+    // need other records.
     for (const std::size_t ray : graph_.rayTypes(trace)) {
-      pair.hit = {program::hitGroupFor(graph_.program, scene.geometries[owner]), ray};
+      pair.hit = {program::hitGroupFor(graph_.program, geometry), ray};
       pairs_.push_back(pair);
     }
   }
@@ -139,30 +143,32 @@ class GeometryRule {
   // Q601, Q602: triangles with an intersection shader, procedural geometry without one.
   void checkKind(const TraceGeometryPair& pair) {
     const bool hasShader = !graph_.shaders(pair.hit).intersection.empty();
-    const bool known = pair.site->trace->offset.known;
+    const bool known = pair.site->trace->offset.certain();
     if (pair.geometry->procedural() && !hasShader && known)
       report_.add(
           "Q601", location(pair.hit),
-          fmt::format("{} uses {}, which has no intersection shader", describe(pair), graph_.describe(pair.hit)));
+          fmt::format("{} uses {}, which has no intersection shader", describe(pair), graph_.describe(pair.hit)),
+          traceOf(pair));
     if (!pair.geometry->procedural() && hasShader)
       report_.add("Q602", location(pair.hit),
                   fmt::format("{} uses {}, which has an intersection shader for procedural geometry", describe(pair),
-                              graph_.describe(pair.hit)));
+                              graph_.describe(pair.hit)),
+                  traceOf(pair));
   }
 
-  bool hasAnyHits() const {
-    return std::ranges::any_of(graph_.program.hitGroups, [](const program::HitGroup& group) {
-      return std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.anyHit.empty(); });
-    });
+  bool hasAnyHits(std::size_t ray) const {
+    for (std::size_t group = 0; group < graph_.program.hitGroups.size(); ++group)
+      if (!graph_.shaders({group, ray}).anyHit.empty()) return true;
+    return false;
   }
 
-  // Q604: surfaces with alpha that a trace treats as opaque. A program without any any-hit shader does so on purpose,
-  // unless a group is bound to class alpha.
+  // Q604: surfaces with alpha that a trace treats as opaque. A program without an any-hit shader for the ray type does so
+  // on purpose, unless a group is bound to class alpha.
   void checkAlphaTests() {
     for (const TraceGeometryPair& pair : pairs_) {
       const bool bound = binds(groupOf(pair.hit), "alpha");
       const bool alpha = input_.scene ? pair.geometry->alpha : bound;
-      if (!alpha || (!bound && !hasAnyHits())) continue;
+      if (!alpha || (!bound && !hasAnyHits(pair.hit.ray))) continue;
       const bool hasShader = !graph_.shaders(pair.hit).anyHit.empty();
       if (!hasShader || pair.opaque) reportSkippedAlphaTest(pair);
     }
@@ -176,18 +182,21 @@ class GeometryRule {
     const std::string& anyHit = graph_.shaders(pair.hit).anyHit;
     const spirv::TraceFacts& trace = *pair.site->trace;
     if (anyHit.empty()) {
-      if (trace.offset.known)
+      if (trace.offset.certain())
         report_.add("Q604", location(pair.hit),
-                    fmt::format("{} is opaque for this ray type: {} has no any-hit shader", surface, group));
+                    fmt::format("{} is opaque for this ray type: {} has no any-hit shader", surface, group),
+                    traceOf(pair));
     } else if (pair.instance->forceOpaque && !trace.flags.mustHave(kFlagOpaque)) {
       report_.add("Q604", location(pair.hit),
                   fmt::format("{} is opaque on instance '{}', which is forced opaque: any-hit shader '{}' does not run",
-                              surface, pair.instance->name, anyHit));
+                              surface, pair.instance->name, graph_.nameOf(anyHit)),
+                  traceOf(pair));
     } else {
       report_.add("Q604", graph_.location(*pair.site),
                   fmt::format("{} is opaque for this trace: with gl_RayFlagsOpaqueEXT, any-hit shader '{}' of {} does "
                               "not run",
-                              surface, anyHit, group));
+                              surface, graph_.nameOf(anyHit), group),
+                  {relatedTo(location(pair.hit), "the hit group with the any-hit shader")});
     }
   }
 
@@ -209,7 +218,7 @@ class GeometryRule {
     // The stages of the library are for all scenes, with or without alpha.
     if (input_.scene && !byFlags && program::isLibraryStage(file)) return;
     report_.add("Q603", location(hit),
-                fmt::format("any-hit shader '{}' of {} never runs: {}", file, graph_.describe(hit),
+                fmt::format("any-hit shader '{}' of {} never runs: {}", graph_.nameOf(file), graph_.describe(hit),
                             byFlags        ? "all traces of this ray type have gl_RayFlagsOpaqueEXT"
                             : input_.scene ? fmt::format("its geometry in {} is opaque", input_.scene->name)
                                            : "the group is bound to opaque geometry"));

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Q104: a payload member is read after a trace, but some shader that the trace can run does not write it. Q105: a
-// nested trace with the incoming payload overwrites a member that is read afterwards.
+// Q104: a part of a payload is read after a trace, but some shader that the trace can run does not write it. Q105: a
+// nested trace with the incoming payload overwrites a part that is read afterwards. Parts are leaves (spirv/leaves.h).
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
 
+#include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
 #include "spirv/value_flow.h"
 
@@ -14,6 +15,8 @@ namespace quintet::check {
 namespace {
 
 using spv::StorageClass;
+using LeafList = std::vector<std::uint32_t>;
+constexpr const char* kReadAfter = " is read after this trace";
 
 class MemberRule {
  public:
@@ -23,28 +26,30 @@ class MemberRule {
     const spirv::StageFacts& tracer = graph_.facts(site);
     const spirv::SharedVariable* payload = tracer.variable(site.trace->payload);
     if (!payload || hasWrongQualifier(site)) return;
-    reportHitsWithoutResult(site, *payload);
-    for (std::uint32_t member = 0; member < tracer.memberCount(payload->id); ++member) {
-      const std::string name = memberText(tracer, *payload, member);
-      const std::vector<std::size_t> all = tracer.readsAfter(*site.trace, member);
+    site_ = &site;
+    tracer_ = &tracer;
+    payload_ = payload;
+    sameType_ = sameTypes(graph_, site.edges, tracer, *payload, StorageClass::IncomingRayPayloadKHR);
+    LeafList read;
+    std::vector<LeafGroup> unwritten, overwritten, stale;
+    for (std::uint32_t leaf = 0; leaf < tracer.leaves(payload->id).count(); ++leaf) {
+      const std::vector<std::size_t> all = tracer.readsAfter(site.trace->instruction, payload->id, leaf);
       if (all.empty()) continue;
-      if (!writtenBefore(site, *payload, member))
-        reportUnwritten(site, member, name);
+      read.push_back(leaf);
+      if (!writtenBefore(leaf))
+        findUnwritten(leaf, unwritten);
       else
-        reportConstant(site, *payload, member, name, all);
-      if (payload->storage == StorageClass::IncomingRayPayloadKHR) reportOverwritten(site, *payload, member, name, all);
+        findStale(leaf, stale);
+      if (payload->storage == StorageClass::IncomingRayPayloadKHR) findOverwritten(leaf, all, overwritten);
     }
+    reportHitsWithoutResult(read);
+    reportGroups("Q104", unwritten);
+    reportGroups("Q104", stale);
+    reportGroups("Q105", overwritten);
+    reportConstants(read);
   }
 
  private:
-  static std::string memberText(const spirv::StageFacts& tracer, const spirv::SharedVariable& payload,
-                                std::uint32_t member) {
-    const spirv::Type& type = tracer.module().types().get(payload.type);
-    if (type.kind != spirv::Type::Kind::structure) return fmt::format("'{}'", payload.name);
-    return fmt::format("'{}.{}'", payload.name,
-                       type.memberNames[member].empty() ? fmt::format("member {}", member) : type.memberNames[member]);
-  }
-
   // Q103 reports these stages: they do not access the payload at all.
   bool hasWrongQualifier(const TraceSite& site) const {
     return std::ranges::any_of(site.edges, [&](const Edge& edge) {
@@ -57,207 +62,399 @@ class MemberRule {
     });
   }
 
+  std::size_t instruction() const { return site_->trace->instruction; }
+
   // Written by the tracing stage, or, for an incoming payload, by the stage that traced the incoming ray.
-  bool writtenBefore(const TraceSite& site, const spirv::SharedVariable& payload, std::uint32_t member) const {
-    if (graph_.facts(site).writtenBefore(payload.id, member, site.trace->instruction)) return true;
-    if (payload.storage != StorageClass::IncomingRayPayloadKHR) return false;
+  bool writtenBefore(std::uint32_t leaf) const {
+    if (tracer_->writtenBefore(payload_->id, leaf, instruction())) return true;
+    if (payload_->storage != StorageClass::IncomingRayPayloadKHR) return false;
     return std::ranges::any_of(graph_.traces, [&](const TraceSite& other) {
       const bool reaches = std::ranges::any_of(
-          other.edges, [&](const Edge& e) { return e.stage == site.stage && e.role != Role::intersection; });
+          other.edges, [&](const Edge& e) { return e.stage == site_->stage && e.role != Role::intersection; });
       const auto& accesses = graph_.facts(other).accesses();
       return reaches && std::ranges::any_of(accesses, [&](const auto& a) {
-               return a.writes && a.variable == other.trace->payload &&
-                      (a.member == member || a.member == spirv::kWholeValue);
+               return a.writes && a.variable == other.trace->payload && a.leaves.covers(leaf);
              });
     });
   }
 
-  bool writes(const Edge& edge, std::uint32_t member, bool always) const {
+  // The payload that a stage of the trace receives; null if it uses none or one of a different type.
+  const spirv::SharedVariable* received(const Edge& edge) const {
+    const spirv::SharedVariable* payload = graph_.facts(edge).incoming(StorageClass::IncomingRayPayloadKHR);
+    return hasSameType(edge) ? payload : nullptr;
+  }
+  bool hasSameType(const Edge& edge) const { return sameType_[static_cast<std::size_t>(&edge - site_->edges.data())]; }
+
+  bool writes(const Edge& edge, std::uint32_t leaf, bool always) const {
+    if (!hasSameType(edge)) return true;  // Q101
     const spirv::StageFacts& facts = graph_.facts(edge);
-    const spirv::SharedVariable* payload = facts.incoming(StorageClass::IncomingRayPayloadKHR);
-    return payload && (always ? facts.writesAlways(payload->id, member) : facts.writes(payload->id, member));
+    const spirv::SharedVariable* payload = received(edge);
+    return payload && (always ? facts.writesAlways(payload->id, leaf) : facts.writes(payload->id, leaf));
   }
 
-  bool anyHitWrites(const TraceSite& site, HitGroupRay hit, std::uint32_t member) const {
-    return std::ranges::any_of(site.edges, [&](const Edge& edge) {
+  bool readsInput(const Edge& edge, std::uint32_t leaf) const {
+    const spirv::SharedVariable* payload = received(edge);
+    return payload && graph_.facts(edge).readsBeforeWriting(payload->id, leaf);
+  }
+
+  bool anyHitWrites(HitGroupRay hit, std::uint32_t leaf) const {
+    return std::ranges::any_of(site_->edges, [&](const Edge& edge) {
       return edge.role == Role::anyHit && edge.hit.group == hit.group && edge.hit.ray == hit.ray &&
-             writes(edge, member, false);
+             writes(edge, leaf, false);
     });
   }
 
-  // Descriptions of shaders and hits that can end the trace without writing the member, up to 3.
-  std::vector<std::string> nonWriters(const TraceSite& site, std::uint32_t member) const {
-    std::vector<std::string> result;
-    for (const Edge& edge : site.edges) {
+  // Calls `use` for each way in which the trace can end: with whether it is a miss, whether the leaf is written then
+  // (0 never, 1 on some path, 2 always), and the shader or null. Stops if `use` returns false.
+  template <class Use>
+  void forEachEnd(std::uint32_t leaf, const Use& use) const {
+    for (const Edge& edge : site_->edges) {
       if (edge.role != Role::miss && edge.role != Role::closestHit) continue;
-      if (writes(edge, member, true) || (edge.role == Role::closestHit && anyHitWrites(site, edge.hit, member)))
-        continue;
-      result.push_back(
-          fmt::format("the {}{}", graph_.describe(edge), writes(edge, member, false) ? ", on some path," : ""));
+      const bool byAnyHit = edge.role == Role::closestHit && anyHitWrites(edge.hit, leaf);
+      const int written = writes(edge, leaf, true) || byAnyHit ? 2 : writes(edge, leaf, false) ? 1 : 0;
+      if (!use(edge.role == Role::miss, written, &edge, edge.hit)) return;
     }
-    for (const HitGroupRay hit : site.hits) {
-      if (anyHitWrites(site, hit, member)) continue;
-      if (site.skipsClosestHit()) {
-        result.push_back("a hit (closest-hit shaders are skipped)");
-        break;
-      }
-      if (graph_.shaders(hit).closestHit.empty())
-        result.push_back(fmt::format("a hit without a closest-hit shader ({})", graph_.describe(hit)));
+    for (const HitGroupRay hit : site_->hits) {
+      const bool without = site_->skipsClosestHit() || graph_.shaders(hit).closestHit.empty();
+      if (without && !use(false, anyHitWrites(hit, leaf) ? 2 : 0, nullptr, hit)) return;
     }
-    if (graph_.program.hitGroups.empty()) result.push_back("a hit (the program has no hit groups)");
+  }
+
+  // Descriptions of shaders and hits that can end the trace without writing the leaf, up to 3.
+  std::vector<std::string> nonWriters(std::uint32_t leaf) const {
+    std::vector<std::string> result;
     constexpr std::size_t kMaxNamed = 3;
+    bool skipped = false;
+    forEachEnd(leaf, [&](bool, int written, const Edge* edge, HitGroupRay hit) {
+      if (written == 2) return true;
+      if (edge)
+        result.push_back(fmt::format("the {}{}", graph_.describe(*edge), written == 1 ? ", on some path," : ""));
+      else if (!site_->skipsClosestHit())
+        result.push_back(fmt::format("a hit without a closest-hit shader ({})", graph_.describe(hit)));
+      else if (!skipped)
+        result.push_back("a hit (closest-hit shaders are skipped)"), skipped = true;
+      return result.size() < kMaxNamed;
+    });
+    if (graph_.program.hitGroups.empty()) result.push_back("a hit (the program has no hit groups)");
     if (result.size() > kMaxNamed) result.resize(kMaxNamed);
     return result;
   }
 
-  // Reports closest-hit shaders that write none of the members that are read afterwards and have no other effect.
-  void reportHitsWithoutResult(const TraceSite& site, const spirv::SharedVariable& payload) {
-    const spirv::StageFacts& tracer = graph_.facts(site);
-    std::vector<std::uint32_t> read;
-    for (std::uint32_t member = 0; member < tracer.memberCount(payload.id); ++member)
-      if (!tracer.readsAfter(*site.trace, member).empty()) read.push_back(member);
+  // ---- Q104
+
+  // Reports closest-hit shaders that write nothing that is read afterwards and have no other effect.
+  void reportHitsWithoutResult(const LeafList& read) {
     if (read.empty() || input_.featureDefines) return;
-    for (const Edge& edge : site.edges) {
-      const auto written = [&](std::uint32_t member) {
-        return writes(edge, member, false) || anyHitWrites(site, edge.hit, member);
+    for (const Edge& edge : site_->edges) {
+      const auto written = [&](std::uint32_t leaf) {
+        return writes(edge, leaf, false) || anyHitWrites(edge.hit, leaf);
       };
       if (edge.role != Role::closestHit || !edge.exact || std::ranges::any_of(read, written) ||
           hasEffects(graph_.facts(edge)))
         continue;
-      report_.add("Q104", graph_.location(site),
+      report_.add("Q104", graph_.location(*site_),
                   fmt::format("the payload is read after this trace, but the {} writes none of the members that are "
                               "read, so its hits have no effect",
                               graph_.describe(edge)));
     }
   }
 
-  // Writes memory or images, traces or calls.
-  static bool hasEffects(const spirv::StageFacts& facts) {
-    if (!facts.traces().empty() || !facts.calls().empty()) return true;
-    const spirv::Module& module = facts.module();
-    return std::ranges::any_of(module.instructions(), [&](const spirv::Instruction& i) {
-      if (i.op >= spv::Op::OpAtomicStore && i.op <= spv::Op::OpAtomicXor) return true;
-      if (i.op == spv::Op::OpImageWrite || i.op == spv::Op::OpFunctionCall) return true;
-      if (i.op != spv::Op::OpStore) return false;
-      const spirv::Id variable = module.access(i.at(0)).variable;
-      const spirv::Instruction* definition = module.definition(variable);
-      const auto storage = definition && definition->op == spv::Op::OpVariable
-                               ? static_cast<spv::StorageClass>(definition->at(0))
-                               : spv::StorageClass::Max;
-      return storage != spv::StorageClass::Function && storage != spv::StorageClass::Private &&
-             !facts.variable(variable);
-    });
-  }
-
-  void reportUnwritten(const TraceSite& site, std::uint32_t member, const std::string& name) {
-    const spirv::StageFacts& tracer = graph_.facts(site);
-    const std::vector<std::size_t> reads = tracer.unguardedReads(*site.trace, member);
+  void findUnwritten(std::uint32_t leaf, std::vector<LeafGroup>& groups) const {
+    const std::vector<std::size_t> reads = exactReads(tracer_->unguardedReads(instruction(), payload_->id, leaf));
     if (reads.empty()) return;
-    const std::vector<std::string> missing = nonWriters(site, member);
+    const std::vector<std::string> missing = nonWriters(leaf);
     if (missing.empty()) return;
-    report_.add("Q104", graph_.location(site),
-                fmt::format("{} is read after this trace{}, but {} {} not write it, and it is not set before the trace",
-                            name, lineText(tracer, reads.front(), site), fmt::join(missing, " and "),
-                            missing.size() == 1 ? "does" : "do"));
+    addTo(groups,
+          {"", kReadAfter,
+           fmt::format(", but {} {} not write it, and it is not set before the trace", fmt::join(missing, " and "),
+                       missing.size() == 1 ? "does" : "do")},
+          leaf, reads.front());
   }
 
-  // Reports a member that has the same constant after the trace on all paths.
-  void reportConstant(const TraceSite& site, const spirv::SharedVariable& payload, std::uint32_t member,
-                      const std::string& name, const std::vector<std::size_t>& reads) {
-    const spirv::StageFacts& tracer = graph_.facts(site);
-    if (payload.storage != StorageClass::RayPayloadKHR) return;
-    std::set<std::string> constants;
-    bool known = addConstants(tracer, payload.id, member, constants);
-    std::size_t callees = 0, writers = 0;
-    for (const Edge& edge : site.edges) {
-      if (edge.role == Role::intersection) continue;
-      const spirv::SharedVariable* received = graph_.facts(edge).incoming(StorageClass::IncomingRayPayloadKHR);
-      known = known && edge.exact && (!received || addConstants(graph_.facts(edge), received->id, member, constants));
-      ++callees;
-      writers += writes(edge, member, false) ? 1 : 0;
+  // Drops reads with a dynamic index if some element is written: which one is read is unknown.
+  std::vector<std::size_t> exactReads(std::vector<std::size_t> reads) const {
+    std::erase_if(reads, [&](std::size_t i) {
+      const spirv::LeafRange& range = tracer_->accesses()[i].leaves;
+      if (range.exact) return false;
+      for (std::uint32_t leaf = range.first; leaf < range.last; ++leaf)
+        if (writtenBefore(leaf) || nonWriters(leaf).empty()) return true;
+      return false;
+    });
+    return reads;
+  }
+
+  // The value of the previous ray: the trace runs again, or an equal trace follows, and nothing sets the leaf in
+  // between. Only hits write it, or only misses do, without reading it; all else can be a state on purpose.
+  void findStale(std::uint32_t leaf, std::vector<LeafGroup>& groups) const {
+    std::vector<std::size_t> reads = tracer_->unguardedReads(instruction(), payload_->id, leaf);
+    std::erase_if(reads, [&](std::size_t i) { return !tracer_->accesses()[i].leaves.exact; });
+    if (reads.empty() || !hasOneKindOfWriter(leaf)) return;
+    const auto earlier = std::ranges::find_if(graph_.traces, [&](const TraceSite& other) {
+      return other.stage == site_->stage && other.trace->payload == payload_->id && isSameRay(other) &&
+             canBeStale(*other.trace, leaf);
+    });
+    if (earlier == graph_.traces.end()) return;
+    if (earlier->trace == site_->trace) {
+      std::erase_if(reads, [&](std::size_t i) {
+        return !spirv::canRunAfter(tracer_->module(), instruction(), tracer_->accesses()[i].instruction);
+      });
+      if (reads.empty()) return;
     }
-    if (!known || callees == 0 || constants.size() != 1) return;
-    report_.add("Q104", graph_.location(site),
-                fmt::format("{} is read after this trace{}, but {}", name, lineText(tracer, reads.front(), site),
-                            writers == 0 ? "no shader that the trace can run writes it, so it keeps its constant value"
-                                         : "all shaders that the trace can run write the same constant that it had "
-                                           "before, so its value does not depend on the trace"));
+    const std::vector<std::string> missing = nonWriters(leaf);
+    addTo(groups,
+          {"", kReadAfter,
+           fmt::format(", but {} {} not write it: it then has the value of the previous ray, because it is not set "
+                       "before {} trace",
+                       fmt::join(missing, " and "), missing.size() == 1 ? "does" : "do",
+                       earlier->trace == site_->trace ? "each" : "this")},
+          leaf, reads.front());
   }
 
-  // Adds the values that the stage writes to the member. Returns false if one of them is not constant.
-  static bool addConstants(const spirv::StageFacts& facts, spirv::Id payload, std::uint32_t member,
+  bool isSameRay(const TraceSite& other) const {
+    const auto same = [](const spirv::ArgumentValues& a, const spirv::ArgumentValues& b) {
+      return a.exact() && b.exact() && a.values == b.values;
+    };
+    const spirv::TraceFacts &a = *site_->trace, &b = *other.trace;
+    return &a == &b || (same(a.flags, b.flags) && same(a.offset, b.offset) && same(a.miss, b.miss));
+  }
+
+  bool hasOneKindOfWriter(std::uint32_t leaf) const {
+    if (std::ranges::any_of(site_->edges, [&](const Edge& edge) {
+          return edge.role != Role::intersection && (!edge.exact || !hasSameType(edge) || readsInput(edge, leaf) ||
+                                                     (edge.role == Role::anyHit && writes(edge, leaf, false)));
+        }))
+      return false;
+    int ofMiss = -1, ofHit = -1;
+    bool clear = true;
+    forEachEnd(leaf, [&](bool miss, int written, const Edge*, HitGroupRay) {
+      int& kind = miss ? ofMiss : ofHit;
+      clear = clear && written != 1 && (kind == -1 || kind == written);
+      kind = written;
+      return clear;
+    });
+    return clear && ofMiss + ofHit == 2 && ofMiss != ofHit;  // one always, the other one never
+  }
+
+  // True if the leaf can have a value of the ray of `earlier` when the trace starts.
+  bool canBeStale(const spirv::TraceFacts& earlier, std::uint32_t leaf) const {
+    const spirv::PathsAfter& paths = tracer_->pathsAfter(earlier.instruction);
+    std::vector<std::size_t> kills = tracer_->writers(payload_->id, leaf);
+    std::erase(kills, instruction());
+    std::erase(kills, earlier.instruction);
+    if (!paths.reaches(instruction(), kills)) return false;
+    const auto position = tracer_->module().position(instruction());
+    const spirv::ControlFlow& flow = tracer_->flow(position->function);
+    const auto loads = [&](const spirv::Instruction& i) {
+      return i.op == spv::Op::OpLoad && tracer_->module().access(i.at(0)).variable == payload_->id;
+    };
+    bool ofLeaf = false, ofPayload = false, excludesInitial = false;
+    for (const std::size_t guard : paths.guards(instruction())) {
+      const spirv::Id condition = flow.condition(guard);
+      if (!spirv::dependsOnDataOrControl(tracer_->module(), flow, condition, loads, false)) continue;
+      if (!tracer_->dependsOnLeaf(condition, payload_->id, leaf)) {
+        ofPayload = true;
+        continue;
+      }
+      ofLeaf = true;
+      excludesInitial = excludesInitial || endsWithInitialValue(paths, guard, leaf);
+    }
+    // A condition on the leaf ends the loop, unless it has the value of before the loop.
+    if (ofLeaf) return excludesInitial;
+    bool missWrites = false;
+    forEachEnd(leaf, [&](bool miss, int written, const Edge*, HitGroupRay) {
+      missWrites = missWrites || (miss && written == 2);
+      return true;
+    });
+    return !ofPayload || !missWrites;
+  }
+
+  // True if the branch does not lead to the trace while the leaf has the constant that was set before.
+  bool endsWithInitialValue(const spirv::PathsAfter& paths, std::size_t guard, std::uint32_t leaf) const {
+    const spirv::Module& module = tracer_->module();
+    std::optional<double> initial;
+    for (const spirv::AccessFacts& a : tracer_->accesses()) {
+      if (!a.writes || a.variable != payload_->id || !a.leaves.covers(leaf)) continue;
+      const spirv::ValuePart value = tracer_->storedValue(a, leaf);
+      const auto constant = constantNumber(module, value);
+      if (!constant || (initial && *initial != *constant)) return false;
+      initial = constant;
+    }
+    if (!initial) return false;
+    const auto position = module.position(instruction());
+    const spirv::Block& block = tracer_->flow(position->function).function().blocks[guard];
+    const spirv::Instruction& branch = module.instructions()[block.end - 1];
+    const auto outcome = evaluate(module, branch.at(0), [&](spirv::Id id) -> std::optional<double> {
+      const auto reads = [&](const spirv::AccessFacts& a) {
+        return a.reads && a.value == id && a.variable == payload_->id && a.leaves == spirv::LeafRange{leaf, leaf + 1};
+      };
+      return std::ranges::any_of(tracer_->accesses(), reads) ? initial : std::nullopt;
+    });
+    if (!outcome || branch.op != spv::Op::OpBranchConditional) return false;
+    const spirv::Id target = branch.at(*outcome != 0.0 ? 1 : 2);
+    const auto& blocks = tracer_->flow(position->function).function().blocks;
+    const auto next = std::ranges::find(blocks, target, &spirv::Block::label);
+    if (next == blocks.end()) return false;
+    return !paths.leadsTo(static_cast<std::size_t>(next - blocks.begin()), instruction());
+  }
+
+  // Reports outermost members that have the same constant after the trace on all paths.
+  void reportConstants(const LeafList& read) {
+    const spirv::Leaves& leaves = tracer_->leaves(payload_->id);
+    std::uint32_t done = 0;
+    for (const std::uint32_t leaf : read) {
+      if (leaf < done) continue;
+      const spirv::LeafRange member = leaves.member(leaf);
+      done = member.last;
+      std::set<bool> written;
+      LeafList all;
+      for (std::uint32_t i = member.first; i < member.last; ++i) {
+        const std::optional<bool> constant = writtenBefore(i) ? isConstant(i) : std::nullopt;
+        if (!constant) break;
+        written.insert(*constant);
+        all.push_back(i);
+      }
+      if (all.size() != member.count()) continue;
+      const std::vector<std::size_t> reads = tracer_->readsAfter(instruction(), payload_->id, leaf);
+      report_.add("Q104", graph_.location(*site_),
+                  fmt::format("{} is read after this trace{}, but {}", nameOf(*payload_, leaves.names(all).front()),
+                              lineText(reads.front()),
+                              !written.contains(true)
+                                  ? "no shader that the trace can run writes it, so it keeps its constant value"
+                                  : "all shaders that the trace can run write the same constant that it had "
+                                    "before, so its value does not depend on the trace"));
+    }
+  }
+
+  // Nullopt if the leaf can have different values; else whether a shader that the trace can run writes it.
+  std::optional<bool> isConstant(std::uint32_t leaf) const {
+    if (payload_->storage != StorageClass::RayPayloadKHR) return {};
+    std::set<std::string> constants;
+    bool known = addConstants(*tracer_, payload_->id, leaf, constants);
+    std::size_t callees = 0, writers = 0;
+    for (const Edge& edge : site_->edges) {
+      if (edge.role == Role::intersection) continue;
+      const spirv::SharedVariable* payload = received(edge);
+      known = known && edge.exact && hasSameType(edge) &&
+              (!payload || addConstants(graph_.facts(edge), payload->id, leaf, constants));
+      ++callees;
+      writers += writes(edge, leaf, false) ? 1 : 0;
+    }
+    if (!known || callees == 0 || constants.size() != 1) return {};
+    return writers > 0;
+  }
+
+  // Adds the values that the stage writes to the leaf. Returns false if one of them is not constant.
+  static bool addConstants(const spirv::StageFacts& facts, spirv::Id payload, std::uint32_t leaf,
                            std::set<std::string>& constants) {
     for (const spirv::AccessFacts& a : facts.accesses()) {
-      if (!a.writes || a.variable != payload || (a.member != member && a.member != spirv::kWholeValue)) continue;
-      const spirv::Id value = storedValue(facts, a);
-      if (!facts.module().isConstant(value)) return false;
-      constants.insert(
-          constantText(facts.module(), value, a.member == spirv::kWholeValue ? member : spirv::kWholeValue));
+      if (!a.writes || a.variable != payload || !a.leaves.covers(leaf)) continue;
+      const spirv::ValuePart value = facts.storedValue(a, leaf);
+      if (!facts.module().isConstant(value.id)) return false;
+      constants.insert(constantText(facts.module(), value.id));
     }
     return true;
   }
 
-  // The value that a store writes to the member, or to the whole payload; 0 if unknown.
-  static spirv::Id storedValue(const spirv::StageFacts& facts, const spirv::AccessFacts& access) {
-    const spirv::Instruction& store = facts.module().instructions()[access.instruction];
-    if (store.op != spv::Op::OpStore) return 0;
-    const spirv::Instruction* value = facts.module().definition(store.at(1));
-    const bool made = value && value->op == spv::Op::OpCompositeConstruct && access.member < value->operands.size();
-    return made && facts.module().access(store.at(0)).indices.empty() ? value->at(access.member) : store.at(1);
-  }
-
-  // A text that is equal for equal constants of all modules. `part` selects a part of a composite.
-  static std::string constantText(const spirv::Module& module, spirv::Id id, std::uint32_t part, int depth = 0) {
+  // A text that is equal for equal constants of all modules.
+  static std::string constantText(const spirv::Module& module, spirv::Id id, int depth = 0) {
     const spirv::Instruction* value = module.definition(id);
     if (!value || depth > 8) return "?";
     if (value->op == spv::Op::OpConstantComposite) {
-      if (part < value->operands.size()) return constantText(module, value->at(part), spirv::kWholeValue, depth + 1);
       std::string text = "(";
-      for (const spirv::Id element : value->operands)
-        text += constantText(module, element, spirv::kWholeValue, depth + 1) + " ";
+      for (const spirv::Id element : value->operands) text += constantText(module, element, depth + 1) + " ";
       return text + ")";
     }
     return fmt::format("{} {}", static_cast<int>(value->op), fmt::join(value->operands, " "));
   }
 
-  void reportOverwritten(const TraceSite& site, const spirv::SharedVariable& payload, std::uint32_t member,
-                         const std::string& name, const std::vector<std::size_t>& reads) {
-    const spirv::StageFacts& tracer = graph_.facts(site);
+  // ---- Q105
+
+  void findOverwritten(std::uint32_t leaf, const std::vector<std::size_t>& reads,
+                       std::vector<LeafGroup>& groups) const {
     const Edge* writer = nullptr;
-    for (const Edge& edge : site.edges) {
-      const spirv::SharedVariable* received = graph_.facts(edge).incoming(StorageClass::IncomingRayPayloadKHR);
-      if (edge.role == Role::intersection || !received) continue;
-      if (graph_.facts(edge).readsBeforeWriting(received->id, member)) return;  // input of the inner ray
-      if (!writer && graph_.facts(edge).writes(received->id, member)) writer = &edge;
+    for (const Edge& edge : site_->edges) {
+      if (edge.role == Role::intersection || !received(edge)) continue;
+      if (readsInput(edge, leaf)) return;  // input of the inner ray
+      if (!writer && writes(edge, leaf, false)) writer = &edge;
     }
-    if (!writer) return;
-    for (const spirv::AccessFacts& a : tracer.accesses()) {
-      const bool overwritten = a.writes && a.variable == payload.id &&
-                               (a.member == member || a.member == spirv::kWholeValue) &&
-                               !tracer.module().isConstant(storedValue(tracer, a)) &&
-                               spirv::canRunAfter(tracer.module(), site.trace->instruction, a.instruction);
-      if (!overwritten) continue;
-      const SourceLocation written = tracer.module().location(tracer.module().instructions()[a.instruction]);
-      report_.add("Q105", graph_.location(site),
-                  fmt::format("this trace uses the incoming payload: {}, written in line {}, is overwritten by the {} "
-                              "before it is read{}",
-                              name, written.line, graph_.describe(*writer), lineText(tracer, reads.front(), site)));
+    // A value that some end of the trace keeps is a default, except if a shadow ray tells by another member what it hit.
+    if (!writer || (!nonWriters(leaf).empty() && !isTestedByOtherMember(leaf))) return;
+    const spirv::Module& module = tracer_->module();
+    const std::vector<std::size_t> kills = tracer_->writers(payload_->id, leaf);
+    for (const spirv::AccessFacts& a : tracer_->accesses()) {
+      const bool overwritten = a.writes && a.variable == payload_->id && a.leaves.covers(leaf) &&
+                               !module.isConstant(tracer_->storedValue(a, leaf).id) &&
+                               spirv::canRunAfter(module, instruction(), a.instruction);
+      // So is a value that is also read if the trace does not run.
+      const auto keeps = [&](std::size_t read) {
+        return tracer_->pathsAfter(a.instruction).reaches(tracer_->accesses()[read].instruction, kills);
+      };
+      if (!overwritten || std::ranges::any_of(reads, keeps)) continue;
+      const SourceLocation written = module.location(module.instructions()[a.instruction]);
+      addTo(groups,
+            {"this trace uses the incoming payload: ",
+             fmt::format(", written in line {}, is overwritten by the {} before it is read", written.line,
+                         graph_.describe(*writer)),
+             ""},
+            leaf, reads.front());
       return;
     }
   }
 
-  // " (line 12)", or " (file:12)" if the access is in a different file than the trace.
-  std::string lineText(const spirv::StageFacts& tracer, std::size_t access, const TraceSite& site) const {
-    const SourceLocation location =
-        tracer.module().location(tracer.module().instructions()[tracer.accesses()[access].instruction]);
-    if (location.line == 0) return {};
-    return location.file == site.trace->location.file ? fmt::format(" (line {})", location.line)
-                                                      : fmt::format(" ({}:{})", location.file, location.line);
+  // True if closest-hit shaders are skipped, and a condition depends on another member that the miss shader writes with
+  // this one.
+  bool isTestedByOtherMember(std::uint32_t leaf) const {
+    const auto miss = std::ranges::find(site_->edges, Role::miss, &Edge::role);
+    if (!site_->skipsClosestHit() || miss == site_->edges.end() || !writes(*miss, leaf, true)) return false;
+    const spirv::Module& module = tracer_->module();
+    const spirv::Leaves& leaves = tracer_->leaves(payload_->id);
+    for (std::uint32_t other = 0; other < leaves.count(); ++other) {
+      if (leaves.member(leaf).covers(other) || !writes(*miss, other, true)) continue;
+      if (tracer_->readsAfter(instruction(), payload_->id, other).empty()) continue;
+      const auto tests = [&](const spirv::Instruction& i) {
+        const bool chooses = i.op == spv::Op::OpBranchConditional || i.op == spv::Op::OpSelect;
+        return chooses && tracer_->dependsOnLeaf(i.at(0), payload_->id, other);
+      };
+      if (std::ranges::any_of(module.instructions(), tests)) return true;
+    }
+    return false;
   }
+
+  // ---- Messages
+
+  void reportGroups(std::string_view id, const std::vector<LeafGroup>& groups) {
+    for (const LeafGroup& group : groups)
+      for (const std::string& part : tracer_->leaves(payload_->id).names(group.leaves))
+        report_.add(
+            id, graph_.location(*site_),
+            group.text.before + nameOf(*payload_, part) + group.text.after + lineText(group.read) + group.text.end,
+            relatedOf(group));
+  }
+
+  // Where the leaves are read, and the shaders that end the trace without writing them.
+  std::vector<RelatedLocation> relatedOf(const LeafGroup& group) const {
+    const SourceLocation read = locationOf(*tracer_, tracer_->accesses()[group.read]);
+    std::vector<RelatedLocation> result{relatedTo(graph_.location(graph_.stages[site_->stage], read), "read here")};
+    constexpr std::size_t kMaxRelated = 4;
+    for (const Edge& edge : site_->edges) {
+      const bool ends = edge.role == Role::miss || edge.role == Role::closestHit;
+      const spirv::SharedVariable* payload = received(edge);
+      if (ends && payload && result.size() < kMaxRelated && !writes(edge, group.leaves.front(), true))
+        result.push_back(relatedTo(graph_.location(graph_.stages[edge.stage], payload->declaration),
+                                   fmt::format("not written by the {}", graph_.describe(edge))));
+    }
+    return result;
+  }
+
+  std::string lineText(std::size_t access) const { return readLine(*tracer_, access, site_->trace->location.file); }
 
   const CheckInput& input_;
   const PipelineGraph& graph_;
   Report& report_;
+  const TraceSite* site_ = nullptr;  // the trace that is checked
+  const spirv::StageFacts* tracer_ = nullptr;
+  const spirv::SharedVariable* payload_ = nullptr;
+  std::vector<bool> sameType_;  // by edge of the trace
 };
 
 }  // namespace

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Q101 to Q103: types, locations and qualifiers of payloads. Q301, Q303: types and locations of callable data.
+// Q101 to Q103, Q106: types, locations and qualifiers of payloads. Q301, Q303: types and locations of callable data.
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "check/rules/rules.h"
+#include "spirv/source_text.h"
 
 namespace quintet::check {
 namespace {
@@ -73,6 +74,16 @@ struct Wording {
   std::string_view site;  // "trace"
 };
 
+// The declarations of both ends.
+std::vector<RelatedLocation> endsOf(const PipelineGraph& graph, const PipelineStage& sender, const Pair& pair) {
+  const PipelineStage& receiver = graph.stages[pair.edge->stage];
+  const auto text = [](std::string_view verb, const PipelineStage& stage, const spirv::SharedVariable& variable) {
+    return fmt::format("{} here as {}", verb, stage.facts->module().types().describe(variable.type));
+  };
+  return {relatedTo(graph.location(sender, pair.sent->declaration), text("sent", sender, *pair.sent)),
+          relatedTo(graph.location(receiver, pair.received->declaration), text("received", receiver, *pair.received))};
+}
+
 template <class Site>
 void checkPairs(const PipelineGraph& graph, const std::vector<Site>& sites, StorageClass incoming,
                 const Wording& wording, Report& report) {
@@ -86,12 +97,71 @@ void checkPairs(const PipelineGraph& graph, const std::vector<Site>& sites, Stor
       report.add(wording.typeId, location,
                  fmt::format("{} is {}, but the {} expects {}: {}", wording.data,
                              sender.module().types().describe(pair.sent->type), graph.describe(*pair.edge),
-                             receiver.module().types().describe(pair.received->type), *pair.difference));
+                             receiver.module().types().describe(pair.received->type), *pair.difference),
+                 endsOf(graph, graph.stages[site.stage], pair));
     } else if (!pair.difference && pair.edge->exact && locationsDiffer(sender, pair)) {
       report.add(
           wording.locationId, graph.location(graph.stages[pair.edge->stage], pair.received->declaration),
           fmt::format("'{}' has location {} here, but the {} at {}:{} sends location {}", pair.received->name,
-                      *pair.received->location, wording.site, location.file, location.line, *pair.sent->location));
+                      *pair.received->location, wording.site, location.file, location.line, *pair.sent->location),
+          {relatedTo(location, fmt::format("the {}", wording.site)),
+           relatedTo(graph.location(graph.stages[site.stage], pair.sent->declaration),
+                     fmt::format("location {} is sent", *pair.sent->location))});
+    }
+  }
+}
+
+// The first trace that can run the stage.
+std::vector<RelatedLocation> firstTraceOf(const PipelineGraph& graph, const PipelineStage& stage) {
+  for (const TraceSite& site : graph.traces)
+    for (const Edge& edge : site.edges)
+      if (&graph.stages[edge.stage] == &stage)
+        return {relatedTo(graph.location(site), "this trace runs the shader with its own payload")};
+  return {};
+}
+
+// Returns the last argument of the call that starts at `at`; empty if the call does not end.
+std::string_view lastArgument(std::string_view text, std::size_t at) {
+  const std::size_t open = text.find('(', at);
+  std::size_t begin = open;
+  int depth = 0;
+  for (std::size_t i = open; i < text.size(); ++i) {
+    if (text[i] == '(') ++depth;
+    if (text[i] == ',' && depth == 1) begin = i;
+    if (text[i] != ')' || --depth > 0) continue;
+    std::string_view argument = text.substr(begin + 1, i - begin - 1);
+    argument.remove_prefix(std::min(argument.find_first_not_of(" \t\r\n"), argument.size()));
+    return argument.substr(0, argument.find_last_not_of(" \t\r\n") + 1);
+  }
+  return {};
+}
+
+// True if the source has a trace with the payload that the compiler removed: #if, a constant condition.
+bool hasRemovedTrace(const spirv::StageFacts& facts, const spirv::SharedVariable& payload) {
+  if (!payload.location) return false;
+  for (const auto& [file, text] : facts.module().sources()) {
+    constexpr std::string_view kTrace = "traceRayEXT";
+    for (std::size_t at = spirv::findToken(text, kTrace); at != text.npos; at = spirv::findToken(text, kTrace, at + 1))
+      if (lastArgument(text, at) == std::to_string(*payload.location)) return true;
+  }
+  return false;
+}
+
+// Q106: Vulkan allows one variable of these storage classes in the interface of a stage
+// (VUID-StandaloneSpirv-IncomingRayPayloadKHR-04700, VUID-StandaloneSpirv-IncomingCallableDataKHR-04706).
+void checkIncoming(const PipelineGraph& graph, StorageClass storage, std::string_view qualifier, Report& report) {
+  for (const PipelineStage& stage : graph.stages) {
+    if (!stage.facts) continue;
+    const spirv::SharedVariable* first = nullptr;
+    for (const spirv::SharedVariable& variable : stage.facts->variables()) {
+      if (variable.storage != storage || !variable.used) continue;
+      if (first)
+        report.add(
+            "Q106", graph.location(stage, variable.declaration),
+            fmt::format("'{}' is the second {} that this {} shader uses; the first one is '{}' (line {})",
+                        variable.name, qualifier, shader::stageName(stage.kind), first->name, first->declaration.line));
+      else
+        first = &variable;
     }
   }
 }
@@ -106,10 +176,13 @@ void checkQualifiers(const PipelineGraph& graph, Report& report) {
       const bool traced =
           std::ranges::any_of(stage.facts->traces(), [&](const auto& trace) { return trace.payload == variable.id; });
       if (variable.storage != StorageClass::RayPayloadKHR || !variable.used || traced) continue;
+      if (stage.facts->incoming(StorageClass::IncomingRayPayloadKHR) || hasRemovedTrace(*stage.facts, variable))
+        continue;
       report.add("Q103", graph.location(stage, variable.declaration),
                  fmt::format("'{}' is a rayPayloadEXT, but no trace of this {} shader uses it; declare the payload of "
                              "the incoming ray as rayPayloadInEXT",
-                             variable.name, shader::stageName(stage.kind)));
+                             variable.name, shader::stageName(stage.kind)),
+                 firstTraceOf(graph, stage));
     }
   }
 }
@@ -120,6 +193,8 @@ void checkPayloadTypes(const CheckInput& input, Report& report) {
   checkPairs(input.graph, input.graph.traces, StorageClass::IncomingRayPayloadKHR,
              {"Q101", "Q102", "the payload of this trace", "trace"}, report);
   checkQualifiers(input.graph, report);
+  checkIncoming(input.graph, StorageClass::IncomingRayPayloadKHR, "rayPayloadInEXT", report);
+  checkIncoming(input.graph, StorageClass::IncomingCallableDataKHR, "callableDataInEXT", report);
 }
 
 void checkCallableTypes(const CheckInput& input, Report& report) {

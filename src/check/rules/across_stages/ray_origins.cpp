@@ -3,13 +3,17 @@
 //
 // A hit position is recognized by its computation: origin + t * direction, with the t of the hit in a hit shader or
 // of a ray that the shader traced; or vertices that are interpolated with the barycentrics and transformed to world
-// space. A closest-hit shader can also pass it to the tracing stage in the payload.
+// space. A closest-hit shader can also pass it to the tracing stage in the payload. tmin can be 0 as the default of a
+// parameter.
 #include <fmt/format.h>
+
+#include <spirv/unified1/GLSL.std.450.h>
 
 #include <algorithm>
 
 #include "base/parallel.h"
 #include "check/rules/rules.h"
+#include "check/value_context.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -37,10 +41,14 @@ spirv::Id directionOfStep(const spirv::Module& module, spirv::Id value) {
   return step->at(0);
 }
 
-// True if it is the direction of a trace of this shader or of the incoming ray.
+// True if it is the direction of a trace of this shader or of the incoming ray, or normalized.
 bool isRayDirection(const spirv::Module& module, spirv::Id direction) {
   const spirv::Instruction* definition = module.definition(direction);
-  if (definition && spirv::loadsBuiltIn(module, *definition, spv::BuiltIn::WorldRayDirectionKHR)) return true;
+  if (definition && spirv::isExtended(module, *definition, GLSLstd450Normalize))
+    definition = module.definition(definition->at(2));
+  if (definition && (spirv::loadsBuiltIn(module, *definition, spv::BuiltIn::WorldRayDirectionKHR) ||
+                     spirv::loadsBuiltIn(module, *definition, spv::BuiltIn::ObjectRayDirectionKHR)))
+    return true;
   for (const std::size_t user : module.users(direction)) {
     const spirv::Instruction& i = module.instructions()[user];
     if (i.op == Op::OpTraceRayKHR && i.at(8) == direction) return true;
@@ -50,6 +58,13 @@ bool isRayDirection(const spirv::Module& module, spirv::Id direction) {
 
 // True for origin + t * direction.
 bool isPointOnRay(const spirv::Module& module, const spirv::Instruction& value) {
+  if (spirv::isExtended(module, value, GLSLstd450Fma)) {  // fma(vec3(t), direction, origin)
+    for (const std::size_t k : {2u, 3u}) {
+      const spirv::Instruction* t = module.definition(value.at(k));
+      if (t && t->op == Op::OpCompositeConstruct && isHitT(module, t->at(0)) && isRayDirection(module, value.at(5 - k)))
+        return true;
+    }
+  }
   if (value.op != Op::OpFAdd) return false;
   const spirv::Id a = directionOfStep(module, value.at(0)), b = directionOfStep(module, value.at(1));
   return (a != 0 && isRayDirection(module, a)) || (b != 0 && isRayDirection(module, b));
@@ -80,7 +95,8 @@ bool isPointByMatrix(const spirv::Module& module, const spirv::Instruction& valu
   spirv::Id vertex = point->at(0);
   const spirv::Instruction* part = module.definition(vertex);
   if (part && part->op == Op::OpCompositeExtract) vertex = part->at(0);  // vec4(p.x, p.y, p.z, 1)
-  return isInterpolation(module, vertex);
+  const spirv::Instruction* sum = module.definition(vertex);
+  return isInterpolation(module, vertex) || (sum && isPointOnRay(module, *sum));
 }
 
 // True for the same computation by rows, as in the library: vec3(dot(row.xyz, p) + row.w, …).
@@ -117,9 +133,15 @@ bool canBeHitPosition(const spirv::Module& module, spirv::Id value) {
   });
 }
 
-bool startsAtZero(const spirv::Module& module, const spirv::Instruction& trace) {
-  const auto tmin = module.constantFloat(trace.at(7));
-  return tmin && *tmin == 0.0;
+// Returns "tmin 0" if the trace starts there, with the parameter whose default it is; empty if it does not, or if tmin
+// is unknown. `defaults` can be null.
+std::string zeroText(const spirv::ValueRanges& ranges, const DefaultRanges* defaults, const spirv::Module& module,
+                     std::size_t trace) {
+  const spirv::Id tmin = module.instructions()[trace].at(7);
+  if (ranges.rangeAt(trace, tmin).constant() == 0.0) return "tmin 0";
+  if (!defaults || defaults->at(trace, tmin).constant() != 0.0) return {};
+  const std::string names = defaults->parameters({tmin});
+  return names.empty() ? "" : fmt::format("tmin 0, the default of {},", names);
 }
 
 const spirv::Variable* storedIn(const spirv::Module& module, spirv::Id pointer, spv::StorageClass storage) {
@@ -130,15 +152,18 @@ const spirv::Variable* storedIn(const spirv::Module& module, spirv::Id pointer, 
 // A trace with tmin 0 whose origin is a member of the payload of a ray that this shader traced before.
 struct PayloadOrigin {
   std::size_t trace = 0;  // instruction
+  std::string zero;       // zeroText
   spirv::Id payload = 0;
   std::uint32_t member = 0;  // 0 for a payload that is not a structure
 };
 
-std::vector<PayloadOrigin> payloadOrigins(const spirv::Module& module) {
+std::vector<PayloadOrigin> payloadOrigins(const spirv::StageFacts& facts, const DefaultRanges& defaults) {
+  const spirv::Module& module = facts.module();
   std::vector<PayloadOrigin> result;
   for (std::size_t i = 0; i < module.instructions().size(); ++i) {
     const spirv::Instruction& trace = module.instructions()[i];
-    if (trace.op != Op::OpTraceRayKHR || !startsAtZero(module, trace)) continue;
+    const std::string zero = trace.op == Op::OpTraceRayKHR ? zeroText(facts.ranges(), &defaults, module, i) : "";
+    if (zero.empty()) continue;
     const auto isMember = [&](const spirv::Instruction& value) {
       return value.op == Op::OpLoad && storedIn(module, value.at(0), spv::StorageClass::RayPayloadKHR);
     };
@@ -146,7 +171,7 @@ std::vector<PayloadOrigin> payloadOrigins(const spirv::Module& module) {
     if (!load) continue;
     const spirv::Access access = module.access(load->at(0));
     if (!access.indices.empty() && !access.indices[0]) continue;
-    result.push_back({i, access.variable, access.indices.empty() ? 0 : *access.indices[0]});
+    result.push_back({i, zero, access.variable, access.indices.empty() ? 0 : *access.indices[0]});
   }
   return result;
 }
@@ -189,29 +214,40 @@ void dropZeroAttributes(const PipelineGraph& graph, std::vector<std::vector<Diag
 // Reports the origins that a trace gets from its payload, where a closest-hit shader stored its hit position.
 void checkPayloadOrigins(const PipelineGraph& graph, std::size_t stage, Report& report) {
   const spirv::Module& module = graph.stages[stage].facts->module();
-  for (const PayloadOrigin& origin : payloadOrigins(module)) {
+  const DefaultRanges defaults(graph.program, graph.stages[stage].file, module);
+  for (const PayloadOrigin& origin : payloadOrigins(*graph.stages[stage].facts, defaults)) {
     for (const TraceSite& site : graph.traces) {
       if (site.stage != stage || site.trace->payload != origin.payload) continue;
       for (const Edge& edge : site.edges) {
         if (edge.role != Role::closestHit || !storesHitPosition(graph.facts(edge).module(), origin.member)) continue;
         const SourceLocation location = module.location(module.instructions()[origin.trace], "traceRayEXT");
         report.add("Q705", graph.location(graph.stages[stage], location),
-                   fmt::format("the ray starts with tmin 0 at the hit position that the {} stores in the payload; "
+                   fmt::format("the ray starts with {} at the hit position that the {} stores in the payload; "
                                "because of rounding it can hit the surface that it leaves",
-                               graph.describe(edge)));
+                               origin.zero, graph.describe(edge)));
       }
     }
+  }
+}
+
+void checkOrigins(const spirv::Module& module, const spirv::ValueRanges& ranges, const DefaultRanges* defaults,
+                  Report& report) {
+  for (std::size_t i = 0; i < module.instructions().size(); ++i) {
+    const spirv::Instruction& trace = module.instructions()[i];
+    if (trace.op != Op::OpTraceRayKHR || !canBeHitPosition(module, trace.at(6))) continue;
+    if (const std::string zero = zeroText(ranges, defaults, module, i); !zero.empty())
+      report.addOncePerLine(
+          "Q705", module.location(trace, "traceRayEXT"),
+          fmt::format("the ray starts with {} at a hit position; because of rounding it can hit the surface that it "
+                      "leaves",
+                      zero));
   }
 }
 
 }  // namespace
 
 void checkRayOrigins(const spirv::Module& module, Report& report) {
-  for (const spirv::Instruction& trace : module.instructions())
-    if (trace.op == Op::OpTraceRayKHR && startsAtZero(module, trace) && canBeHitPosition(module, trace.at(6)))
-      report.addOncePerLine("Q705", module.location(trace, "traceRayEXT"),
-                            "the ray starts with tmin 0 at a hit position; because of rounding it can hit the surface "
-                            "that it leaves");
+  checkOrigins(module, spirv::ValueRanges(module), nullptr, report);
 }
 
 void checkRayOrigins(const CheckInput& input, Report& report) {
@@ -220,7 +256,10 @@ void checkRayOrigins(const CheckInput& input, Report& report) {
   parallelFor(graph.stages.size(), [&](std::size_t i) {
     if (!graph.stages[i].facts) return;
     Report ofStage;
-    checkRayOrigins(graph.stages[i].facts->module(), ofStage);
+    const spirv::StageFacts& facts = *graph.stages[i].facts;
+    if (facts.traces().empty()) return;
+    const DefaultRanges defaults(graph.program, graph.stages[i].file, facts.module());
+    checkOrigins(facts.module(), facts.ranges(), &defaults, ofStage);
     found[i] = ofStage.take();
   });
   dropZeroAttributes(graph, found);
@@ -228,7 +267,7 @@ void checkRayOrigins(const CheckInput& input, Report& report) {
     for (Diagnostic& d : found[i])
       report.add(d.id, graph.location(graph.stages[i], {d.file, d.line, d.column}), std::move(d.text));
   for (std::size_t i = 0; i < graph.stages.size(); ++i)
-    if (graph.stages[i].facts) checkPayloadOrigins(graph, i, report);
+    if (graph.stages[i].facts && !graph.stages[i].facts->traces().empty()) checkPayloadOrigins(graph, i, report);
 }
 
 }  // namespace quintet::check

@@ -38,10 +38,21 @@ class TraceChains {
     std::string text;
     for (std::size_t steps = 0; next_[stage] && steps < graph_.stages.size(); ++steps) {
       const TraceSite& site = *next_[stage];
-      text += fmt::format("{}:{} -> ", graph_.stages[stage].file, site.trace->location.line);
+      text += fmt::format("{}:{} -> ", graph_.nameOf(graph_.stages[stage].file), site.trace->location.line);
       stage = deepest(site);
     }
-    return text + graph_.stages[stage].file;
+    return text + graph_.nameOf(graph_.stages[stage].file);
+  }
+
+  // The outer traces of the longest chain, without the innermost one.
+  std::vector<RelatedLocation> outerTraces(std::size_t stage) const {
+    std::vector<RelatedLocation> result;
+    for (std::size_t steps = 0; next_[stage] && steps < graph_.stages.size(); ++steps) {
+      result.push_back(relatedTo(graph_.location(*next_[stage]), fmt::format("trace at depth {}", steps + 1)));
+      stage = deepest(*next_[stage]);
+    }
+    if (!result.empty()) result.pop_back();
+    return result;
   }
 
   // Location of the innermost trace of the longest chain.
@@ -109,8 +120,21 @@ std::string cycleText(const PipelineGraph& graph, const TraceChains::Cycle& cycl
   if (cycle.stages.size() == 1)
     return fmt::format("this trace can run its own stage again: the {}", graph.describe(*cycle.edge));
   std::vector<std::string> names;
-  for (const std::size_t stage : cycle.stages) names.push_back(graph.stages[stage].file);
+  for (const std::size_t stage : cycle.stages) names.push_back(graph.nameOf(graph.stages[stage].file));
   return fmt::format("this trace closes a cycle: {} -> {}", fmt::join(names, " -> "), names.front());
+}
+
+// The other traces of a cycle.
+std::vector<RelatedLocation> otherTraces(const PipelineGraph& graph, const TraceChains::Cycle& cycle) {
+  std::vector<RelatedLocation> result;
+  for (std::size_t i = 0; i + 1 < cycle.stages.size(); ++i) {
+    const auto continues = [&](const TraceSite& site) {
+      return site.stage == cycle.stages[i] && std::ranges::find(site.edges, cycle.stages[i + 1], &Edge::stage) != site.edges.end();
+    };
+    const auto found = std::ranges::find_if(graph.traces, continues);
+    if (found != graph.traces.end()) result.push_back(relatedTo(graph.location(*found), "trace of the cycle"));
+  }
+  return result;
 }
 
 // Checks nested calls of callable shaders. The default stack size of a Vulkan pipeline allows for two levels
@@ -158,14 +182,14 @@ class CallChains {
 RecursionNeeds checkRecursion(const CheckInput& input, Report& report) {
   const PipelineGraph& graph = input.graph;
   const auto& declared = graph.program.declaredRecursion;
-  RecursionNeeds needs{declared.value_or(1), 0};
+  RecursionNeeds needs{declared.value_or(1), 0, false};
   const PipelineStage* start = graph.stage(graph.program.rayGeneration);
   if (!start || !start->facts) return needs;
   const TraceChains chains(graph);
   const CallChains calls(graph, report);
   const auto stage = static_cast<std::size_t>(start - graph.stages.data());
   const std::uint32_t derived = std::max(1u, chains.depth(stage));
-  const bool cyclic = !chains.cycles().empty();
+  const bool cyclic = needs.cyclic = !chains.cycles().empty();
   needs.depth = derived;
   needs.stackBytes = chains.bytes(stage);
   if (cyclic) {
@@ -174,17 +198,20 @@ RecursionNeeds checkRecursion(const CheckInput& input, Report& report) {
   }
   if (!declared)
     for (const TraceChains::Cycle& cycle : chains.cycles())
-      report.add("Q401", graph.location(*cycle.site), cycleText(graph, cycle) + "; the program declares no bound");
+      report.add("Q401", graph.location(*cycle.site), cycleText(graph, cycle) + "; the program declares no bound",
+                 otherTraces(graph, cycle));
   if (declared && *declared < derived)
     report.add("Q402", chains.lastTrace(stage),
                fmt::format("traces are nested {} deep ({}), but the program declares {}", derived, chains.chain(stage),
-                           *declared));
+                           *declared),
+               chains.outerTraces(stage));
   if ((!cyclic || declared) && needs.depth > input.limits.maxRecursion)
     report.add(
         "Q402", chains.lastTrace(stage),
         fmt::format("traces are nested {} deep ({}); {} {}", needs.depth, cyclic ? "declared" : chains.chain(stage),
                     input.limits.name.empty() ? "Vulkan devices allow" : input.limits.name + " allows",
-                    input.limits.maxRecursion));
+                    input.limits.maxRecursion),
+        chains.outerTraces(stage));
   return needs;
 }
 

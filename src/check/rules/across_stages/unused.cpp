@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
 #include "program/gsn/lecture.h"
 
@@ -76,8 +77,11 @@ void checkUnreachableStages(const CheckInput& input, Report& report) {
   for (std::size_t i = 0; i < graph.stages.size(); ++i) {
     const PipelineStage& stage = graph.stages[i];
     if (reachable.contains(i) || stage.file.ends_with(program::kStubMissExtension)) continue;
-    report.add("Q801", graph.descriptionLocation(lineOfFile(graph.program, stage.file)),
-               fmt::format("no trace or call can reach {} shader '{}'", shader::stageName(stage.kind), stage.file));
+    const int line = lineOfFile(graph.program, stage.file);
+    // The description has no lines in the lecture form, where a stage can have two variants.
+    report.addOncePerLine(
+        "Q801", line > 0 ? graph.descriptionLocation(line) : mainLocation(graph, stage),
+        fmt::format("no trace or call can reach {} shader '{}'", shader::stageName(stage.kind), graph.nameOf(stage.file)));
   }
 }
 

@@ -3,6 +3,7 @@
 // differs between invocations, without nonuniformEXT.
 #include "check/rules/rules.h"
 #include "spirv/value_flow.h"
+#include "spirv/value_range.h"
 
 namespace quintet::check {
 namespace {
@@ -21,7 +22,17 @@ bool selects(const spirv::Module& module, const spirv::Instruction& i) {
     case Op::OpConvertUToPtr:
     case Op::OpSwitch: return true;
     case Op::OpIEqual:
-    case Op::OpINotEqual: return module.isConstant(i.at(0)) || module.isConstant(i.at(1));
+    case Op::OpINotEqual:
+    case Op::OpSLessThan:
+    case Op::OpULessThan:
+    case Op::OpSLessThanEqual:
+    case Op::OpULessThanEqual:
+    case Op::OpSGreaterThan:
+    case Op::OpUGreaterThan:
+    case Op::OpSGreaterThanEqual:
+    case Op::OpUGreaterThanEqual:  // a bounds check, such as index < frame.instanceCount, is not a choice
+      return (module.isConstant(i.at(0)) || module.isConstant(i.at(1))) &&
+             !spirv::ValueRanges(module).range(i.result).constant();
     default: return false;
   }
 }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a command works on, in memory that it shares with its parent process: the message about a crash states it
+// (cli/supervisor.h).
+#ifndef QUINTET_CLI_WORK_H
+#define QUINTET_CLI_WORK_H
+
+#include <filesystem>
+#include <string_view>
+
+namespace quintet::cli {
+
+// Before the child is created. Returns false if there is no memory.
+bool shareWork();
+
+// In the child; longer texts are truncated. Without shareWork() these have no effect.
+void setWorkStage(std::string_view stage);            // "compiling shaders"
+void setWorkProgram(std::string_view program);        // name
+void setWorkFile(const std::filesystem::path& file);  // that is being written; empty for none
+
+// In the parent, after the child has ended. Empty if unknown.
+std::string_view workStage();
+std::string_view workProgram();
+std::string_view workFile();
+
+}  // namespace quintet::cli
+#endif

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// Q715: a color is encoded (gamma, sRGB) before it is stored to an output that holds linear color, which Quintet encodes.
+//
+// The rule follows the stored value back through sums, scaling by scalars, selection and payloads, to pow with an exponent
+// near 1 / 2.2 or the square root of a color.
+#include <fmt/format.h>
+#include <spirv/unified1/GLSL.std.450.h>
+
+#include <set>
+
+#include "check/flow/pipeline_spaces.h"
+#include "check/rules/rules.h"
+
+namespace quintet::check {
+namespace {
+
+using spirv::Id;
+using spv::Op;
+
+constexpr double kSmallestExponent = 1.0 / 2.6, kLargestExponent = 1.0 / 1.8;
+constexpr std::size_t kMaxValues = 2000;
+
+bool isLibraryFile(const std::string& file) { return file.starts_with("<quintet/"); }
+
+class ColorEncoding {
+ public:
+  ColorEncoding(const PipelineGraph& graph, const PipelineSpaces& spaces, Report& report)
+      : graph_(graph), spaces_(spaces), report_(report) {}
+
+  void check() {
+    for (std::size_t stage = 0; stage < graph_.stages.size(); ++stage) {
+      if (!graph_.stages[stage].facts) continue;
+      const spirv::Module& module = graph_.stages[stage].facts->module();
+      for (const spirv::Instruction& i : module.instructions()) {
+        if (i.op != Op::OpStore) continue;
+        const program::Output* output = outputOf(module, i.at(0));
+        if (output && output->kind == program::OutputKind::color) follow(stage, i.at(1), *output);
+      }
+    }
+  }
+
+ private:
+  using Path = std::vector<std::uint32_t>;
+  struct Open {
+    std::size_t stage;
+    Id id;
+    Path path;
+  };
+
+  // Returns the output to which a pointer points: OutputArray(frame.outputs[slot]).at[…]; null if it is none.
+  const program::Output* outputOf(const spirv::Module& module, Id pointer) const {
+    const spirv::Instruction* base = module.definition(resolvePointer(module, pointer).base);
+    if (!base || base->op != Op::OpConvertUToPtr) return nullptr;
+    const spirv::Instruction* address = module.definition(base->at(0));
+    if (!address || address->op != Op::OpLoad) return nullptr;
+    const PointerPath from = resolvePointer(module, address->at(0));
+    spirv::Id type = from.type;
+    for (std::size_t i = 0; i + 1 < from.path.size(); ++i) {
+      const spirv::Type& t = module.types().get(type);
+      if (t.kind != spirv::Type::Kind::structure || !from.path[i] || *from.path[i] >= t.members.size()) return nullptr;
+      if (t.memberNames[*from.path[i]] == "outputs" && i + 2 == from.path.size()) {
+        const auto slot = from.path[i + 1];
+        return slot && *slot < graph_.program.outputs.size() ? &graph_.program.outputs[*slot] : nullptr;
+      }
+      type = t.members[*from.path[i]];
+    }
+    return nullptr;
+  }
+
+  void follow(std::size_t stage, Id value, const program::Output& output) {
+    open_ = {{stage, value, {}}};
+    seen_.clear();
+    while (!open_.empty() && seen_.size() < kMaxValues) {
+      const Open next = open_.back();
+      open_.pop_back();
+      if (seen_.emplace(next.stage, next.id, next.path).second) visit(next, output);
+    }
+  }
+
+  void push(const Open& from, Id id) { open_.push_back({from.stage, id, from.path}); }
+
+  void visit(const Open& open, const program::Output& output) {
+    const spirv::Module& module = graph_.stages[open.stage].facts->module();
+    const spirv::Instruction* i = module.definition(open.id);
+    if (!i || module.isConstant(open.id)) return;
+    const auto all = [&](std::size_t first) {
+      for (std::size_t k = first; k < i->operands.size(); ++k) push(open, i->at(k));
+    };
+    switch (i->op) {
+      case Op::OpPhi:
+        for (std::size_t k = 0; k < i->operands.size(); k += 2) push(open, i->at(k));
+        return;
+      case Op::OpSelect: return all(1);
+      case Op::OpFAdd:
+      case Op::OpFSub: return all(0);
+      case Op::OpCopyObject:
+      case Op::OpCopyLogical:
+      case Op::OpFNegate:
+      case Op::OpVectorTimesScalar: return push(open, i->at(0));
+      case Op::OpFMul:
+      case Op::OpFDiv: {
+        const auto isFactor = [&](Id id) { return module.isConstant(id) || isSplat(module, id); };
+        if (isFactor(i->at(1))) push(open, i->at(0));
+        if (i->op == Op::OpFMul && isFactor(i->at(0))) push(open, i->at(1));
+        return;
+      }
+      case Op::OpVectorShuffle:
+        push(open, i->at(0));
+        return push(open, i->at(1));
+      case Op::OpCompositeConstruct: return construct(open, module, *i);
+      case Op::OpCompositeExtract: {
+        Open next{open.stage, i->at(0), open.path};
+        const spirv::Instruction* from = module.definition(i->at(0));
+        if (from && module.types().get(from->type).kind != spirv::Type::Kind::vector)
+          next.path.insert(next.path.begin(), i->operands.begin() + 1, i->operands.end());
+        open_.push_back(std::move(next));
+        return;
+      }
+      case Op::OpCompositeInsert:
+        push(open, i->at(1));
+        if (open.path.empty()) push(open, i->at(0));
+        return;
+      case Op::OpLoad: return load(open, module, *i);
+      case Op::OpExtInst: return extended(open, module, *i, output);
+      default: return;
+    }
+  }
+
+  void construct(const Open& open, const spirv::Module& module, const spirv::Instruction& i) {
+    const bool vector = module.types().get(i.type).kind == spirv::Type::Kind::vector;
+    if (vector || open.path.empty()) {
+      for (const Id id : i.operands) push(open, id);
+    } else if (open.path.front() < i.operands.size()) {
+      open_.push_back({open.stage, i.at(open.path.front()), Path(open.path.begin() + 1, open.path.end())});
+    }
+  }
+
+  // The values that are stored to a local variable or, in any stage, to a payload.
+  void load(const Open& open, const spirv::Module& module, const spirv::Instruction& i) {
+    const PointerPath pointer = resolvePointer(module, i.at(0));
+    if (!spirv::isLocal(module, pointer.base) && !graph_.stages[open.stage].facts->variable(pointer.base)) return;
+    Path wanted;
+    for (const auto& index : pointer.path) wanted.push_back(index.value_or(kAnyIndex));
+    wanted.insert(wanted.end(), open.path.begin(), open.path.end());
+    for (const auto& [stage, variable] : spaces_.linked({open.stage, pointer.base})) {
+      const spirv::Module& writer = graph_.stages[stage].facts->module();
+      for (const spirv::Instruction& store : writer.instructions()) {
+        if (store.op != Op::OpStore) continue;
+        const PointerPath target = resolvePointer(writer, store.at(0));
+        if (target.base != variable) continue;
+        const std::size_t common = std::min(wanted.size(), target.path.size());
+        bool overlaps = true;
+        for (std::size_t k = 0; k < common; ++k)
+          overlaps = overlaps && (!target.path[k] || wanted[k] == kAnyIndex || *target.path[k] == wanted[k]);
+        if (overlaps) open_.push_back({stage, store.at(1), Path(wanted.begin() + static_cast<std::ptrdiff_t>(common), wanted.end())});
+      }
+    }
+  }
+
+  void extended(const Open& open, const spirv::Module& module, const spirv::Instruction& i, const program::Output& output) {
+    if (module.extendedSet(i.at(0)) != "GLSL.std.450") return;
+    switch (i.at(1)) {
+      case GLSLstd450Pow: {
+        const auto exponent = constantOf(module, i.at(3));
+        if (exponent && *exponent >= kSmallestExponent && *exponent <= kLargestExponent)
+          found(open.stage, i, "pow", fmt::format("pow(color, {:.3g})", *exponent), output);
+        return;
+      }
+      case GLSLstd450Sqrt:
+        if (module.types().get(i.type).count >= 3) found(open.stage, i, "sqrt", "sqrt(color)", output);
+        return;
+      case GLSLstd450FMix:
+        push(open, i.at(2));
+        return push(open, i.at(3));
+      case GLSLstd450FMin:
+      case GLSLstd450FMax:
+      case GLSLstd450NMin:
+      case GLSLstd450NMax:
+        push(open, i.at(2));
+        return push(open, i.at(3));
+      case GLSLstd450FClamp:
+      case GLSLstd450NClamp: return push(open, i.at(2));
+      case GLSLstd450Fma:
+        if (module.isConstant(i.at(2)) || isSplat(module, i.at(2))) push(open, i.at(3));
+        if (module.isConstant(i.at(3)) || isSplat(module, i.at(3))) push(open, i.at(2));
+        return push(open, i.at(4));
+      default: return;
+    }
+  }
+
+  // A constant, a quotient of constants, or the default of a parameter.
+  std::optional<double> constantOf(const spirv::Module& module, Id value, int depth = 0) const {
+    const spirv::Instruction* i = module.definition(value);
+    if (!i || depth > 8) return {};
+    if (const auto scalar = module.constantFloat(value)) return scalar;
+    if (isSplat(module, value)) return constantOf(module, i->at(0), depth + 1);
+    if (i->op == Op::OpFDiv) {
+      const auto a = constantOf(module, i->at(0), depth + 1), b = constantOf(module, i->at(1), depth + 1);
+      return a && b && *b != 0.0 ? std::optional(*a / *b) : std::nullopt;
+    }
+    return i->op == Op::OpLoad ? defaultOf(module, i->at(0)) : std::nullopt;
+  }
+
+  std::optional<double> defaultOf(const spirv::Module& module, Id pointer) const {
+    const PointerPath from = resolvePointer(module, pointer);
+    spirv::Id type = from.type;
+    for (const auto& index : from.path) {
+      const spirv::Type& t = module.types().get(type);
+      if (t.kind != spirv::Type::Kind::structure || !index || *index >= t.members.size()) return {};
+      if (t.name == "Parameters" || t.name == "gsnParameters_") {
+        for (const program::Parameter& p : graph_.program.parameters)
+          if (p.name == t.memberNames[*index]) return p.defaultValue[0];
+        return {};
+      }
+      type = t.members[*index];
+    }
+    return {};
+  }
+
+  void found(std::size_t stage, const spirv::Instruction& i, std::string_view token, const std::string& what,
+             const program::Output& output) {
+    const spirv::Module& module = graph_.stages[stage].facts->module();
+    const SourceLocation location = module.location(i, token);
+    if (isLibraryFile(location.file)) return;
+    report_.addOncePerLine("Q715", graph_.location(graph_.stages[stage], location),
+                           fmt::format("{} encodes the color for a display, but Quintet encodes the output '{}' itself",
+                                       what, output.name));
+  }
+
+  const PipelineGraph& graph_;
+  const PipelineSpaces& spaces_;
+  Report& report_;
+  std::vector<Open> open_;
+  std::set<std::tuple<std::size_t, Id, Path>> seen_;
+};
+
+}  // namespace
+
+void checkColorEncoding(const PipelineGraph& graph, const PipelineSpaces& spaces, Report& report) {
+  ColorEncoding(graph, spaces, report).check();
+}
+
+}  // namespace quintet::check

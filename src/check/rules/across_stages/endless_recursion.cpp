@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// Q403: recursion that no condition ends. A stage counts if it traces on each path, if nothing that its caller passes
+// can disable the trace, and if each hit, or a miss, runs such a stage again.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "check/rules/rules.h"
+
+namespace quintet::check {
+namespace {
+
+using spv::Op;
+
+// True if the instruction runs on each path from the start of the entry function to its end.
+bool runsAlways(const spirv::StageFacts& facts, std::size_t instruction) {
+  const spirv::Module& module = facts.module();
+  const auto position = module.position(instruction);
+  const spirv::Function* entry = module.entry();
+  if (!position || !entry || &module.functions()[position->function] != entry) return false;
+  std::vector<bool> seen(entry->blocks.size(), false);
+  std::vector<std::size_t> open{0};
+  while (!open.empty()) {
+    const std::size_t block = open.back();
+    open.pop_back();
+    if (block == position->block || seen[block]) continue;
+    seen[block] = true;
+    if (entry->blocks[block].successors.empty()) return false;
+    open.insert(open.end(), entry->blocks[block].successors.begin(), entry->blocks[block].successors.end());
+  }
+  return true;
+}
+
+// True if the value can depend on the caller: on the payload, on the incoming ray, or on an image. Shaders do not write
+// the buffers that they read.
+bool dependsOnCaller(const spirv::StageFacts& facts, std::size_t function, spirv::Id value) {
+  const spirv::Module& module = facts.module();
+  return spirv::dependsOnDataOrControl(module, facts.flow(function), value, [&](const spirv::Instruction& i) {
+    if (i.op == Op::OpImageRead || i.op == Op::OpFunctionCall || i.op == Op::OpAtomicIAdd) return true;
+    if (i.op != Op::OpLoad) return false;
+    const spirv::Variable* variable = module.variable(module.access(i.at(0)).variable);
+    if (variable && variable->builtIn) {
+      // The interval and flags of the incoming ray can count its depth, too.
+      return *variable->builtIn == spv::BuiltIn::RayTminKHR || *variable->builtIn == spv::BuiltIn::RayTmaxKHR ||
+             *variable->builtIn == spv::BuiltIn::IncomingRayFlagsKHR || *variable->builtIn == spv::BuiltIn::CullMaskKHR;
+    }
+    return !spirv::isLocal(module, module.access(i.at(0)).variable) && !spirv::bufferMember(module, i);
+  });
+}
+
+class EndlessRecursion {
+ public:
+  explicit EndlessRecursion(const CheckInput& input) : input_(input), graph_(input.graph) {
+    for (const TraceSite& site : graph_.traces)
+      if (isUnconditional(site)) sites_.push_back(&site);
+    // The largest set of traces of which each leads to a stage with another one.
+    for (bool changed = true; changed;) {
+      changed = std::erase_if(sites_, [&](const TraceSite* site) { return !next(*site); }) > 0;
+    }
+  }
+
+  // Returns the traces of which each closes a cycle, with the stage that it runs.
+  std::vector<std::pair<const TraceSite*, const Edge*>> cycles() const {
+    std::vector<std::pair<const TraceSite*, const Edge*>> result;
+    for (const TraceSite* site : sites_) {
+      const Edge* edge = next(*site);
+      if (edge && reaches(edge->stage, site->stage)) result.emplace_back(site, edge);
+    }
+    return result;
+  }
+
+ private:
+  bool isUnconditional(const TraceSite& site) const {
+    const shader::Stage kind = graph_.stages[site.stage].kind;
+    if (kind != shader::Stage::closestHit && kind != shader::Stage::miss) return false;
+    const spirv::StageFacts& facts = graph_.facts(site);
+    const std::size_t at = site.trace->instruction;
+    const auto position = facts.module().position(at);
+    if (!position || !runsAlways(facts, at) || !site.trace->mask.known) return false;
+    if (std::ranges::any_of(site.trace->mask.values, [](std::uint32_t mask) { return (mask & 0xFFu) == 0; })) return false;
+    const spirv::Instruction& call = facts.module().instructions()[at];
+    for (const std::size_t argument : {1u, 2u, 3u, 4u, 5u, 7u, 9u})
+      if (dependsOnCaller(facts, position->function, call.at(argument))) return false;
+    // An any-hit shader can end the recursion by ignoring hits.
+    return std::ranges::none_of(site.edges, [&](const Edge& edge) {
+      return edge.role == Role::anyHit && graph_.facts(edge).ignores();
+    });
+  }
+
+  bool hasSite(std::size_t stage) const {
+    return std::ranges::any_of(sites_, [&](const TraceSite* site) { return site->stage == stage; });
+  }
+
+  bool isUsed(std::size_t group) const {
+    return !input_.scene || std::ranges::any_of(input_.scene->geometries, [&](const program::GeometryFacts& geometry) {
+             return program::hitGroupFor(graph_.program, geometry) == group;
+           });
+  }
+
+  // Returns the edge to a stage with such a trace if each hit of the trace, or its miss, runs one; else null.
+  const Edge* next(const TraceSite& site) const {
+    const Edge* found = nullptr;
+    bool allHits = !site.skipsClosestHit();
+    for (const HitGroupRay hit : site.hits) {
+      if (!isUsed(hit.group)) continue;
+      const auto edge = std::ranges::find_if(site.edges, [&](const Edge& e) {
+        return e.role == Role::closestHit && e.exact && e.hit.group == hit.group && e.hit.ray == hit.ray &&
+               hasSite(e.stage);
+      });
+      allHits = allHits && edge != site.edges.end();
+      if (edge != site.edges.end()) found = &*edge;
+    }
+    if (allHits && found) return found;
+    for (const Edge& edge : site.edges)
+      if (edge.role == Role::miss && edge.exact && hasSite(edge.stage)) return &edge;
+    return nullptr;
+  }
+
+  bool reaches(std::size_t from, std::size_t to) const {
+    std::vector<bool> seen(graph_.stages.size(), false);
+    std::vector<std::size_t> open{from};
+    while (!open.empty()) {
+      const std::size_t stage = open.back();
+      open.pop_back();
+      if (stage == to) return true;
+      if (seen[stage]) continue;
+      seen[stage] = true;
+      for (const TraceSite* site : sites_)
+        if (site->stage == stage)
+          for (const Edge& edge : site->edges)
+            if (edge.role == Role::closestHit || edge.role == Role::miss) open.push_back(edge.stage);
+    }
+    return false;
+  }
+
+  const CheckInput& input_;
+  const PipelineGraph& graph_;
+  std::vector<const TraceSite*> sites_;
+};
+
+}  // namespace
+
+void checkEndlessRecursion(const CheckInput& input, Report& report) {
+  const PipelineGraph& graph = input.graph;
+  if (!graph.program.declaredRecursion) return;  // Q401
+  const std::set<std::size_t> reachable = graph.reachableStages();
+  for (const auto& [site, edge] : EndlessRecursion(input).cycles()) {
+    if (!reachable.contains(site->stage)) continue;
+    report.add("Q403", graph.location(*site),
+               fmt::format("this trace always runs and its {} runs the {}, which traces again: no condition ends the "
+                           "recursion at the declared depth {}",
+                           edge->role == Role::miss ? "miss" : "hit", graph.describe(*edge),
+                           *graph.program.declaredRecursion));
+  }
+}
+
+}  // namespace quintet::check

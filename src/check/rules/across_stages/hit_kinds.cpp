@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Q607: kinds of triangle hits in shaders of procedural hit groups. Q608: reported hit kinds that Vulkan reserves.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/rules/rules.h"
+#include "spirv/source_text.h"
+#include "spirv/value_flow.h"
+
+namespace quintet::check {
+namespace {
+
+using spv::Op;
+
+constexpr std::uint32_t kMaxHitKind = 127, kFrontFacing = 0xFE, kBackFacing = 0xFF;
+
+// True if the stage runs only for procedural geometry. The lecture form compiles hit shaders for both kinds.
+bool onlyProcedural(const PipelineGraph& graph, const std::string& file) {
+  bool found = false;
+  for (const program::HitGroup& group : graph.program.hitGroups) {
+    for (const auto& [ray, shaders] : group.shaders) {
+      if (shaders.closestHit != file && shaders.anyHit != file) continue;
+      if (!graph.hasIntersection(static_cast<std::size_t>(&group - graph.program.hitGroups.data()))) return false;
+      found = true;
+    }
+  }
+  return found && !file.ends_with(".boxes.rchit") && !file.ends_with(".boxes.rahit");
+}
+
+bool isHitKind(const spirv::Module& module, spirv::Id value) {
+  const spirv::Instruction* load = module.definition(spirv::originOf(module, {value}).id);
+  return load && spirv::loadsBuiltIn(module, *load, spv::BuiltIn::HitKindKHR);
+}
+
+bool isOwnFile(const PipelineGraph& graph, const std::string& file) {
+  return std::ranges::any_of(graph.program.files,
+                             [&](const auto& entry) { return graph.program.path(entry.first) == file; });
+}
+
+void checkTriangleKinds(const PipelineGraph& graph, const PipelineStage& stage, Report& report) {
+  const spirv::Module& module = stage.facts->module();
+  for (const spirv::Instruction& i : module.instructions()) {
+    if (i.op != Op::OpIEqual && i.op != Op::OpINotEqual) continue;
+    const bool first = isHitKind(module, i.at(0));
+    if (!first && !isHitKind(module, i.at(1))) continue;
+    const std::optional<std::uint32_t> kind = module.constantBits(first ? i.at(1) : i.at(0));
+    if (kind != kFrontFacing && kind != kBackFacing) continue;
+    const SourceLocation location = module.location(i, "gl_HitKindEXT");
+    if (!isOwnFile(graph, location.file)) continue;  // a function of the library for both kinds of geometry
+    report.addOncePerLine(
+        "Q607", graph.location(stage, location),
+        fmt::format("gl_HitKindEXT is compared with gl_HitKind{}FacingTriangleEXT, but this shader runs only for "
+                    "procedural geometry, whose hit kind is what the intersection shader reports (0 to {})",
+                    kind == kFrontFacing ? "Front" : "Back", kMaxHitKind));
+  }
+}
+
+// In the lecture form, the library reports; the location is then the first report in the user's file.
+SourceLocation locationOf(const PipelineGraph& graph, const PipelineStage& stage, const SourceLocation& location) {
+  if (isOwnFile(graph, location.file)) return location;
+  const std::string file = graph.program.path(graph.program.descriptionFile);
+  const std::string_view text = stage.facts->module().source(file);
+  const std::size_t at = spirv::findToken(text, "reportIntersectionEXT");
+  if (at == std::string_view::npos) return graph.location(stage, location);
+  return {file, static_cast<int>(std::ranges::count(text.substr(0, at), '\n')) + 1, 0};
+}
+
+}  // namespace
+
+void checkHitKinds(const CheckInput& input, Report& report) {
+  const PipelineGraph& graph = input.graph;
+  for (const PipelineStage& stage : graph.stages) {
+    if (!stage.facts) continue;
+    for (const spirv::ReportFacts& hit : stage.facts->reports())
+      if (const std::optional<std::uint32_t> kind = hit.hitKind.atLeast(kMaxHitKind + 1))
+        report.add("Q608", locationOf(graph, stage, hit.location),
+                   fmt::format("the hit kind of this report is {}{}, but the maximum is {}; Vulkan reserves larger ones "
+                               "for triangles",
+                               hit.hitKind.exact() ? "" : hit.hitKind.min > kMaxHitKind ? "at least " : "up to ",
+                               hit.hitKind.known && hit.hitKind.min <= kMaxHitKind ? hit.hitKind.values.back() : *kind,
+                               kMaxHitKind));
+    if (stage.kind != shader::Stage::intersection && onlyProcedural(graph, stage.file))
+      checkTriangleKinds(graph, stage, report);
+  }
+}
+
+}  // namespace quintet::check

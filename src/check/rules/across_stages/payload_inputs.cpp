@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Q107: a part of a payload is read before anything has set it: in the tracing stage before its first trace, or in a
+// shader that the trace runs, if no tracing stage sets it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "check/rules/across_stages/shared_data.h"
+#include "check/rules/rules.h"
+#include "spirv/value_flow.h"
+
+namespace quintet::check {
+namespace {
+
+using spv::StorageClass;
+
+class InputRule {
+ public:
+  InputRule(const PipelineGraph& graph, Report& report) : graph_(graph), report_(report) {
+    for (const TraceSite& site : graph.traces) {
+      const spirv::StageFacts& tracer = graph.facts(site);
+      const spirv::SharedVariable* sent = tracer.variable(site.trace->payload);
+      sameTypes_.push_back(sent ? sameTypes(graph, site.edges, tracer, *sent, StorageClass::IncomingRayPayloadKHR)
+                                : std::vector<bool>(site.edges.size(), false));
+    }
+  }
+
+  void check() {
+    for (const PipelineStage& stage : graph_.stages) {
+      if (!stage.facts) continue;
+      for (const spirv::SharedVariable& variable : stage.facts->variables()) {
+        if (variable.storage == StorageClass::RayPayloadKHR) checkSent(stage, variable);
+        if (variable.storage == StorageClass::IncomingRayPayloadKHR) checkReceived(stage, variable);
+      }
+    }
+  }
+
+ private:
+  void checkSent(const PipelineStage& stage, const spirv::SharedVariable& payload) {
+    const spirv::StageFacts& facts = *stage.facts;
+    const auto traced = [&](const spirv::TraceFacts& trace) { return trace.payload == payload.id; };
+    if (std::ranges::none_of(facts.traces(), traced)) return;
+    std::vector<LeafGroup> groups;
+    for (std::uint32_t leaf = 0; leaf < facts.leaves(payload.id).count(); ++leaf)
+      for (const std::size_t read : facts.inputReads(payload.id, leaf))
+        addTo(groups, {"", " is read here, but no store to it and no trace with it comes before", ""}, leaf, read);
+    for (const LeafGroup& group : groups)
+      for (const std::string& part : facts.leaves(payload.id).names(group.leaves))
+        report_.add("Q107", graph_.location(stage, locationOf(facts, facts.accesses()[group.read])),
+                    nameOf(payload, part) + group.text.after);
+  }
+
+  void checkReceived(const PipelineStage& stage, const spirv::SharedVariable& payload) {
+    const spirv::StageFacts& facts = *stage.facts;
+    std::vector<LeafGroup> groups;
+    std::vector<const TraceSite*> origins;
+    for (std::uint32_t leaf = 0; leaf < facts.leaves(payload.id).count(); ++leaf) {
+      const std::vector<std::size_t> reads = facts.inputReads(payload.id, leaf);
+      if (reads.empty()) continue;
+      std::set<std::size_t> seen;
+      std::vector<const TraceSite*> unset;
+      if (isSet(indexOf(stage), leaf, seen, unset) || unset.empty()) continue;
+      origins = unset;
+      addTo(groups, {"", "", locationText(graph_.location(*unset.front()))}, leaf, reads.front());
+    }
+    for (const LeafGroup& group : groups) {
+      for (const std::string& part : facts.leaves(payload.id).names(group.leaves)) {
+        const std::string name = nameOf(payload, part);
+        if (program::isLibraryStage(stage.file))
+          report_.add("Q107", graph_.location(*origins.front()),
+                      fmt::format("the {} shader '{}' reads {}, but nothing sets it before this trace",
+                                  shader::stageName(stage.kind), stage.file, name));
+        else
+          report_.add("Q107", graph_.location(stage, locationOf(facts, facts.accesses()[group.read])),
+                      fmt::format("{} is read here, but nothing sets it before the trace at {}", name, group.text.end));
+      }
+    }
+  }
+
+  std::size_t indexOf(const PipelineStage& stage) const {
+    return static_cast<std::size_t>(&stage - graph_.stages.data());
+  }
+  static std::string locationText(const SourceLocation& location) {
+    return fmt::format("{}:{}", location.file, location.line);
+  }
+
+  // True if something can set the leaf of the payload that the stage receives. Adds the traces of stages that declare
+  // the payload and do not set the leaf.
+  bool isSet(std::size_t stage, std::uint32_t leaf, std::set<std::size_t>& seen,
+             std::vector<const TraceSite*>& unset) const {
+    if (!seen.insert(stage).second) return false;
+    for (std::size_t i = 0; i < graph_.traces.size(); ++i) {
+      const TraceSite& site = graph_.traces[i];
+      for (std::size_t e = 0; e < site.edges.size(); ++e) {
+        const Edge& edge = site.edges[e];
+        if (edge.stage != stage || edge.role == Role::intersection) continue;
+        if (!sameTypes_[i][e] || setsBefore(i, leaf)) return true;
+        const spirv::StageFacts& tracer = graph_.facts(site);
+        const spirv::SharedVariable* sent = tracer.variable(site.trace->payload);
+        if (sent->storage == StorageClass::IncomingRayPayloadKHR) {
+          if (isSet(site.stage, leaf, seen, unset)) return true;
+        } else if (tracer.unguardedReads(site.trace->instruction, sent->id, leaf).empty()) {
+          unset.push_back(&site);
+        } else {
+          return true;  // Q104 reports it
+        }
+      }
+    }
+    return false;
+  }
+
+  // True if the tracing stage, or a shader that it runs before, sets the leaf without reading it first.
+  bool setsBefore(std::size_t index, std::uint32_t leaf) const {
+    const TraceSite& site = graph_.traces[index];
+    const spirv::StageFacts& tracer = graph_.facts(site);
+    const spirv::Id sent = site.trace->payload;
+    const bool own = tracer.variable(sent)->storage == StorageClass::RayPayloadKHR;
+    const auto writes = [&](const spirv::AccessFacts& a) {
+      return a.writes && a.variable == sent && a.leaves.covers(leaf);
+    };
+    if (std::ranges::any_of(tracer.accesses(), writes) && (own || !tracer.readsBeforeWriting(sent, leaf))) return true;
+    for (std::size_t i = 0; i < graph_.traces.size(); ++i) {
+      const TraceSite& other = graph_.traces[i];
+      if (other.stage != site.stage || other.trace->payload != sent) continue;
+      const bool before = spirv::canRunAfter(tracer.module(), site.trace->instruction, other.trace->instruction);
+      for (std::size_t e = 0; e < other.edges.size(); ++e) {
+        const Edge& edge = other.edges[e];
+        if (edge.role == Role::intersection || (!before && edge.role != Role::anyHit)) continue;
+        const spirv::StageFacts& facts = graph_.facts(edge);
+        const spirv::SharedVariable* received = facts.incoming(StorageClass::IncomingRayPayloadKHR);
+        if (!received) continue;
+        if (!sameTypes_[i][e] || (facts.writes(received->id, leaf) && !facts.readsBeforeWriting(received->id, leaf)))
+          return true;
+      }
+    }
+    return false;
+  }
+
+  const PipelineGraph& graph_;
+  Report& report_;
+  std::vector<std::vector<bool>> sameTypes_;  // by trace and edge
+};
+
+}  // namespace
+
+void checkPayloadInputs(const CheckInput& input, Report& report) { InputRule(input.graph, report).check(); }
+
+}  // namespace quintet::check

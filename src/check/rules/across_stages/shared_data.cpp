@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "check/rules/across_stages/shared_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "spirv/glsl_declaration.h"
+
+namespace quintet::check {
+
+using spv::Op;
+
+void addTo(std::vector<LeafGroup>& groups, LeafText text, std::uint32_t leaf, std::size_t read) {
+  const auto found = std::ranges::find(groups, text, &LeafGroup::text);
+  if (found == groups.end()) {
+    groups.push_back({std::move(text), {leaf}, read});
+  } else {
+    found->leaves.push_back(leaf);
+    found->read = std::min(found->read, read);
+  }
+}
+
+std::string nameOf(const spirv::SharedVariable& variable, const std::string& part) {
+  return fmt::format("'{}{}'", variable.name, part);
+}
+
+SourceLocation locationOf(const spirv::StageFacts& facts, const spirv::AccessFacts& access) {
+  return facts.module().location(facts.module().instructions()[access.instruction]);
+}
+
+std::string readLine(const spirv::StageFacts& facts, std::size_t access, const std::string& file) {
+  const SourceLocation location = locationOf(facts, facts.accesses()[access]);
+  if (location.line == 0) return {};
+  return location.file == file ? fmt::format(" (line {})", location.line)
+                               : fmt::format(" ({}:{})", location.file, location.line);
+}
+
+std::vector<bool> sameTypes(const PipelineGraph& graph, const std::vector<Edge>& edges, const spirv::StageFacts& sender,
+                            const spirv::SharedVariable& sent, spv::StorageClass incoming) {
+  std::vector<bool> result;
+  for (const Edge& edge : edges) {
+    const spirv::StageFacts& facts = graph.facts(edge);
+    const spirv::SharedVariable* received = facts.incoming(incoming);
+    result.push_back(!received ||
+                     !differenceOf(sender.module().types(), sent.type, facts.module().types(), received->type));
+  }
+  return result;
+}
+
+bool hasEffects(const spirv::StageFacts& facts) {
+  if (!facts.traces().empty() || !facts.calls().empty()) return true;
+  const spirv::Module& module = facts.module();
+  return std::ranges::any_of(module.instructions(), [&](const spirv::Instruction& i) {
+    if (i.op >= Op::OpAtomicStore && i.op <= Op::OpAtomicXor) return true;
+    if (i.op == Op::OpImageWrite || i.op == Op::OpFunctionCall) return true;
+    if (i.op != Op::OpStore) return false;
+    const spirv::Id variable = module.access(i.at(0)).variable;
+    const spirv::Instruction* definition = module.definition(variable);
+    const auto storage = definition && definition->op == Op::OpVariable
+                             ? static_cast<spv::StorageClass>(definition->at(0))
+                             : spv::StorageClass::Max;
+    return storage != spv::StorageClass::Function && storage != spv::StorageClass::Private && !facts.variable(variable);
+  });
+}
+
+std::optional<double> constantNumber(const spirv::Module& module, const spirv::ValuePart& value) {
+  const spirv::Instruction* constant = module.definition(value.id);
+  if (!constant) return {};
+  if (constant->op == Op::OpConstantNull) return 0.0;
+  if (!value.path.empty()) return {};
+  if (const auto number = module.constantFloat(value.id)) return number;
+  const auto bits = module.constantBits(value.id);
+  if (!bits) return {};
+  const spirv::Type& type = module.types().get(constant->type);
+  return type.isSigned ? static_cast<double>(static_cast<std::int32_t>(*bits)) : static_cast<double>(*bits);
+}
+
+std::optional<double> evaluate(const spirv::Module& module, spirv::Id value,
+                               const std::function<std::optional<double>(spirv::Id)>& known, int depth) {
+  if (const auto number = known(value)) return number;
+  if (const auto number = constantNumber(module, {value, {}})) return number;
+  const spirv::Instruction* i = module.definition(value);
+  if (!i || depth > 16) return {};
+  const auto operand = [&](std::size_t k) { return evaluate(module, i->at(k), known, depth + 1); };
+  switch (i->op) {
+    case Op::OpLogicalNot:
+      if (const auto a = operand(0)) return *a == 0.0 ? 1.0 : 0.0;
+      return {};
+    case Op::OpLogicalAnd:
+    case Op::OpLogicalOr: {
+      const double decides = i->op == Op::OpLogicalAnd ? 0.0 : 1.0;
+      const auto a = operand(0), b = operand(1);
+      if (a == decides || b == decides) return decides;
+      return a && b ? std::optional(1.0 - decides) : std::nullopt;
+    }
+    default: break;
+  }
+  if (i->operands.size() != 2) return {};
+  const auto a = operand(0), b = operand(1);
+  if (!a || !b) return {};
+  switch (i->op) {
+    case Op::OpFOrdEqual:
+    case Op::OpFUnordEqual:
+    case Op::OpIEqual:
+    case Op::OpLogicalEqual: return *a == *b;
+    case Op::OpFOrdNotEqual:
+    case Op::OpFUnordNotEqual:
+    case Op::OpINotEqual:
+    case Op::OpLogicalNotEqual: return *a != *b;
+    case Op::OpFOrdLessThan:
+    case Op::OpFUnordLessThan:
+    case Op::OpSLessThan:
+    case Op::OpULessThan: return *a < *b;
+    case Op::OpFOrdLessThanEqual:
+    case Op::OpFUnordLessThanEqual:
+    case Op::OpSLessThanEqual:
+    case Op::OpULessThanEqual: return *a <= *b;
+    case Op::OpFOrdGreaterThan:
+    case Op::OpFUnordGreaterThan:
+    case Op::OpSGreaterThan:
+    case Op::OpUGreaterThan: return *a > *b;
+    case Op::OpFOrdGreaterThanEqual:
+    case Op::OpFUnordGreaterThanEqual:
+    case Op::OpSGreaterThanEqual:
+    case Op::OpUGreaterThanEqual: return *a >= *b;
+    default: return {};
+  }
+}
+
+SourceLocation mainLocation(const PipelineGraph& graph, const PipelineStage& stage) {
+  if (stage.facts) {
+    const std::string own = graph.program.path(stage.file);
+    for (const auto& [file, text] : stage.facts->module().sources()) {
+      const auto found = spirv::findWord(text, "main");
+      if (!found) continue;
+      const std::string& name = found->file.empty() ? file : found->file;
+      // A file that is included can have a main() too.
+      if (found->file.empty() && stage.facts->module().sources().size() > 1 && !file.ends_with(own)) continue;
+      return {name, found->line, found->column};
+    }
+  }
+  return graph.location(stage, {});
+}
+
+}  // namespace quintet::check

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+// Q713: results stored at a wrong pixel. Q716: integer division of the launch id by the size.
+//
+// Both follow the two coordinates of the launch id through sums, conversions and choices. Other operations, such as the
+// bits of a tile's Morton order, end the search.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "check/rules/rules.h"
+#include "spirv/source_text.h"
+#include "spirv/value_flow.h"
+
+namespace quintet::check {
+namespace {
+
+using spirv::Id;
+using spirv::Path;
+using spv::Op;
+
+constexpr int kMaxDepth = 24;
+
+bool isMember(const spirv::Module& module, const spirv::Instruction& access, const Path& path, std::string_view structure,
+              std::string_view member) {
+  const auto found = spirv::bufferMember(module, access, path);
+  // The lecture form renames the structures of the library.
+  return found && found->member == member &&
+         (found->structure == structure || found->structure == "gsn" + std::string(structure) + "_");
+}
+
+// The component of a vector built-in that is read; nullopt for any other value.
+std::optional<std::uint32_t> componentOf(const spirv::Module& module, const spirv::Instruction& load, const Path& path,
+                                         spv::BuiltIn builtIn) {
+  if (!spirv::loadsBuiltIn(module, load, builtIn)) return {};
+  const spirv::Access access = module.access(load.at(0));
+  if (access.indices.size() + path.size() != 1) return {};
+  return path.empty() ? access.indices[0] : std::optional(path[0]);
+}
+
+// A value that is a coordinate of the pixel: that of the launch, or of the image.
+struct Coordinate {
+  std::uint32_t axis = 0;  // 0 x, 1 y
+  bool ofImage = false;
+  bool operator==(const Coordinate&) const = default;
+};
+
+std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Path given, int depth = 0) {
+  const auto [id, path] = spirv::originOf(module, {value, std::move(given)});
+  const spirv::Instruction* i = module.definition(id);
+  if (!i || depth > kMaxDepth) return {};
+  const auto operand = [&](std::size_t k) { return module.definition(spirv::originOf(module, {i->at(k), path}).id); };
+  const auto partOf = [&](std::size_t k) { return spirv::originOf(module, {i->at(k), path}).path; };
+  switch (i->op) {
+    case Op::OpLoad: {
+      const auto axis = componentOf(module, *i, path, spv::BuiltIn::LaunchIdKHR);
+      return axis && *axis < 2 ? std::optional(Coordinate{*axis, false}) : std::nullopt;
+    }
+    case Op::OpBitcast:
+    case Op::OpUConvert:
+    case Op::OpSConvert: return coordinateOf(module, i->at(0), path, depth + 1);
+    case Op::OpIAdd:
+      for (const std::size_t k : {0u, 1u}) {
+        const auto found = coordinateOf(module, i->at(k), path, depth + 1);
+        const spirv::Instruction* other = operand(1 - k);
+        if (found && other && isMember(module, *other, partOf(1 - k), "Launch", "offset")) return Coordinate{found->axis, true};
+      }
+      return {};
+    case Op::OpISub: {  // height - 1 - y
+      const auto found = coordinateOf(module, i->at(1), path, depth + 1);
+      const spirv::Instruction* top = operand(0);
+      if (!found || found->axis != 1 || !top || (top->op != Op::OpISub && top->op != Op::OpIAdd)) return {};
+      const spirv::Instruction* height = module.definition(spirv::originOf(module, {top->at(0), partOf(0)}).id);
+      return height && isMember(module, *height, {}, "Frame", "height") ? found : std::nullopt;
+    }
+    case Op::OpPhi:
+    case Op::OpSelect: {
+      std::optional<Coordinate> result;
+      const bool phi = i->op == Op::OpPhi;
+      for (std::size_t k = phi ? 0 : 1; k < i->operands.size(); k += phi ? 2 : 1) {
+        const auto found = coordinateOf(module, i->at(k), path, depth + 4);
+        if (found && result && *found != *result) return {};
+        if (found) result = found;
+      }
+      return result;
+    }
+    default: return {};
+  }
+}
+
+// Which launch coordinates a value is made of by sums and differences, and by which factor they are scaled.
+struct Parts {
+  bool x = false, y = false;
+  double factor = 1.0;
+};
+
+void addParts(const spirv::Module& module, const spirv::ValueRanges& ranges, Id value, Path given, Parts& parts,
+              double factor = 1.0, int depth = 0) {
+  const auto [id, path] = spirv::originOf(module, {value, std::move(given)});
+  const spirv::Instruction* i = module.definition(id);
+  if (!i || depth > kMaxDepth) return;
+  const auto follow = [&](std::size_t k, double by = 1.0, int deeper = 1) {
+    addParts(module, ranges, i->at(k), path, parts, factor * by, depth + deeper);
+  };
+  switch (i->op) {
+    case Op::OpLoad:
+      if (const auto axis = componentOf(module, *i, path, spv::BuiltIn::LaunchIdKHR)) {
+        (*axis == 0 ? parts.x : parts.y) = true;
+        parts.factor = factor;
+      }
+      return;
+    case Op::OpBitcast:
+    case Op::OpUConvert:
+    case Op::OpSConvert: return follow(0);
+    case Op::OpIAdd:
+    case Op::OpISub: return follow(0), follow(1);
+    case Op::OpIMul:
+    case Op::OpUDiv:
+    case Op::OpSDiv: {
+      const std::optional<double> by = ranges.range(i->at(1), path).constant();
+      const std::optional<double> first = ranges.range(i->at(0), path).constant();
+      if (by && *by != 0.0) return follow(0, i->op == Op::OpIMul ? *by : 1.0 / *by);
+      if (first && i->op == Op::OpIMul) return follow(1, *first);
+      return;
+    }
+    case Op::OpShiftLeftLogical:
+    case Op::OpShiftRightLogical: {
+      const std::optional<double> by = ranges.range(i->at(1), path).constant();
+      if (by && *by >= 0.0 && *by < 16.0)
+        follow(0, i->op == Op::OpShiftLeftLogical ? 1 << static_cast<int>(*by) : 1.0 / (1 << static_cast<int>(*by)));
+      return;
+    }
+    case Op::OpPhi:
+      for (std::size_t k = 0; k < i->operands.size(); k += 2) follow(k, 1.0, 4);
+      return;
+    case Op::OpSelect: return follow(1, 1.0, 4), follow(2, 1.0, 4);
+    default: return;
+  }
+}
+
+// A value without `- frame.filmOffset`.
+spirv::ValuePart withoutFilmOffset(const spirv::Module& module, Id value, Path path) {
+  const spirv::ValuePart part = spirv::originOf(module, {value, std::move(path)});
+  const spirv::Instruction* i = module.definition(part.id);
+  if (!i || i->op != Op::OpISub) return part;
+  const spirv::ValuePart subtracted = spirv::originOf(module, {i->at(1), part.path});
+  const spirv::Instruction* offset = module.definition(subtracted.id);
+  if (!offset || !isMember(module, *offset, subtracted.path, "Frame", "filmOffset")) return part;
+  return spirv::originOf(module, {i->at(0), part.path});
+}
+
+// The coordinates of a stored pixel.
+struct Target {
+  spirv::ValuePart x, y;
+};
+
+// The target of a store to an output: y * filmWidth + x.
+std::optional<Target> outputTarget(const spirv::Module& module, const spirv::Instruction& store) {
+  const spirv::Instruction* chain = module.definition(store.at(0));
+  if (!chain || (chain->op != Op::OpAccessChain && chain->op != Op::OpInBoundsAccessChain) || chain->operands.size() < 3)
+    return {};
+  const auto member = spirv::bufferMember(module, store);
+  if (!member || (member->structure != "OutputArray" && member->structure != "gsnOutputArray_")) return {};
+  const spirv::Instruction* sum = module.definition(spirv::originOf(module, {chain->at(2)}).id);
+  if (!sum || sum->op != Op::OpIAdd) return {};
+  for (const std::size_t k : {0u, 1u}) {
+    const spirv::Instruction* row = module.definition(spirv::originOf(module, {sum->at(k)}).id);
+    if (!row || row->op != Op::OpIMul) continue;
+    for (const std::size_t f : {0u, 1u}) {
+      const spirv::ValuePart factor = spirv::originOf(module, {row->at(f)});
+      const spirv::Instruction* width = module.definition(factor.id);
+      if (width && isMember(module, *width, factor.path, "Frame", "filmWidth"))
+        return Target{withoutFilmOffset(module, sum->at(1 - k), {}), withoutFilmOffset(module, row->at(1 - f), {})};
+    }
+  }
+  return {};
+}
+
+std::optional<Target> targetOf(const spirv::Module& module, const spirv::Instruction& i) {
+  if (i.op == Op::OpStore) return outputTarget(module, i);
+  if (i.op != Op::OpImageWrite) return {};
+  return Target{spirv::originOf(module, {i.at(1), {0}}), spirv::originOf(module, {i.at(1), {1}})};
+}
+
+// True if a condition on the launch id decides whether the instruction runs.
+bool guardedByLaunch(const spirv::Module& module, const spirv::ValueRanges& ranges, std::size_t instruction) {
+  for (const spirv::Instruction& load : module.instructions())
+    if (load.op == Op::OpLoad && spirv::loadsBuiltIn(module, load, spv::BuiltIn::LaunchIdKHR))
+      return ranges.guarded(instruction, load.result);
+  return false;
+}
+
+// Location of a store to an output, in the user's file: the call of a library function at or after the line where the
+// stored value is computed.
+SourceLocation locationOf(const spirv::Module& module, const spirv::Instruction& store) {
+  const auto isLibrary = [](const SourceLocation& location) { return location.file.starts_with("<quintet/"); };
+  const SourceLocation own = module.location(store, "imageStore");
+  if (!isLibrary(own) || store.op != Op::OpStore) return own;
+  SourceLocation from;
+  (void)spirv::dependsOn(module, store.at(1), [&](const spirv::Instruction& i) {
+    const SourceLocation location = module.location(i);
+    if (location.line > 0 && !isLibrary(location) && location.line > from.line) from = location;
+    return false;
+  });
+  if (from.line == 0) return own;
+  const std::string_view text = module.source(from.file);
+  const int last = static_cast<int>(std::ranges::count(text, '\n')) + 1;
+  for (int line = from.line; line <= last; ++line)
+    for (const std::string_view name : {"storeOutput", "addOutput", "storeCoverage"})
+      if (const std::size_t at = spirv::findToken(spirv::lineOf(text, line), name); at != std::string_view::npos)
+        return {from.file, line, static_cast<int>(at) + 1};
+  return from;
+}
+
+void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, std::size_t instruction,
+                 const Target& target, Report& report) {
+  Parts x, y;
+  addParts(module, ranges, target.x.id, target.x.path, x);
+  addParts(module, ranges, target.y.id, target.y.path, y);
+  const SourceLocation location = locationOf(module, module.instructions()[instruction]);
+  if (!x.x && x.y && y.x && !y.y)
+    return report.addOncePerLine("Q713", location,
+                                 "the result is stored at the transposed pixel: x comes from gl_LaunchIDEXT.y and y from "
+                                 "gl_LaunchIDEXT.x");
+  if (guardedByLaunch(module, ranges, instruction)) return;
+  const std::optional<double> column = ranges.range(target.x.id, target.x.path).constant();
+  const std::optional<double> row = ranges.range(target.y.id, target.y.path).constant();
+  if (column && row)
+    return report.addOncePerLine(
+        "Q713", location, fmt::format("all invocations store their result at the same pixel ({}, {})", *column, *row));
+  const bool xScaled = x.x && !x.y && x.factor != 1.0, yScaled = y.y && !y.x && y.factor != 1.0;
+  if ((xScaled && x.factor > 1.0) || (yScaled && y.factor > 1.0))
+    report.addOncePerLine("Q713", location,
+                          fmt::format("the result is stored at the pixel times {}, which is outside of the image for most "
+                                      "pixels",
+                                      xScaled ? x.factor : y.factor));
+  else if ((xScaled && x.factor > 0.0) || (yScaled && y.factor > 0.0))
+    report.addOncePerLine("Q713", location,
+                          fmt::format("the result is stored at the pixel divided by {}, so several invocations store to "
+                                      "the same pixel",
+                                      1.0 / (xScaled ? x.factor : y.factor)));
+}
+
+// True if the divisor is the size along the axis of the coordinate, which is larger.
+bool isSizeOf(const spirv::Module& module, Id value, const Path& given, const Coordinate& coordinate) {
+  const auto [id, path] = spirv::originOf(module, {value, given});
+  const spirv::Instruction* i = module.definition(id);
+  if (!i) return false;
+  if (i->op == Op::OpBitcast) return isSizeOf(module, i->at(0), path, coordinate);
+  if (!coordinate.ofImage && componentOf(module, *i, path, spv::BuiltIn::LaunchSizeKHR) == coordinate.axis) return true;
+  return i->op == Op::OpLoad && isMember(module, *i, path, "Frame", coordinate.axis == 0 ? "width" : "height");
+}
+
+}  // namespace
+
+void checkPixels(const spirv::Module& module, Report& report) {
+  const spirv::ValueRanges ranges(module);
+  for (std::size_t k = 0; k < module.instructions().size(); ++k)
+    if (const auto target = targetOf(module, module.instructions()[k]))
+      checkTarget(module, ranges, k, *target, report);
+}
+
+void checkPixelDivision(const spirv::Module& module, Report& report) {
+  for (const spirv::Instruction& i : module.instructions()) {
+    if (i.op != Op::OpUDiv && i.op != Op::OpSDiv) continue;
+    const spirv::Type& type = module.types().get(i.type);
+    const std::uint32_t count = type.kind == spirv::Type::Kind::vector ? type.count : 0;
+    for (std::uint32_t c = 0; c < std::max(1u, count); ++c) {
+      const Path path = count > 0 ? Path{c} : Path{};
+      const auto coordinate = coordinateOf(module, i.at(0), path);
+      if (!coordinate || !isSizeOf(module, i.at(1), path, *coordinate)) continue;
+      report.addOncePerLine("Q716", module.location(i, "gl_LaunchIDEXT"),
+                            fmt::format("this integer division of gl_LaunchIDEXT.{} by the size is always 0; convert "
+                                        "both to float first",
+                                        coordinate->axis == 0 ? "x" : "y"));
+      break;
+    }
+  }
+}
+
+}  // namespace quintet::check

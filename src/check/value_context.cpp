@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "check/value_context.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "program/hit_group_binding.h"
+#include "spirv/value_flow.h"
+
+namespace quintet::check {
+namespace {
+
+using program::Parameter;
+using program::ParameterType;
+using spirv::Occurrence;
+using spirv::ValueRange;
+
+// The lecture form renames the structures of the library (quintet/gsn/names_begin.glsl).
+constexpr std::array<std::string_view, 2> kParameters{"Parameters", "gsnParameters_"};
+constexpr std::array<std::string_view, 2> kInstances{"InstanceData", "gsnInstanceData_"};
+constexpr std::string_view kRecord = "Record";
+
+ValueRange amongAll(const std::set<double>& values) {
+  if (values.empty()) return {};
+  if (values.size() <= ValueRange::kMaxValues)
+    return ValueRange::among({values.begin(), values.end()}, Occurrence::each);
+  return ValueRange::between(*values.begin(), *values.rbegin(), Occurrence::each);
+}
+
+std::vector<ValueRange> allValues(const Parameter& parameter) {
+  if (parameter.type == ParameterType::image) return {};
+  if (parameter.type == ParameterType::boolean) return {amongAll({0.0, 1.0})};
+  if (parameter.type == ParameterType::choice) {
+    std::set<double> values;
+    for (std::size_t i = 0; i < parameter.choices.size(); ++i) values.insert(static_cast<double>(i));
+    return {amongAll(values)};
+  }
+  const auto [low, high] = program::typeRange(parameter.type);
+  const bool declared = program::hasMin(parameter) && program::hasMax(parameter);
+  return {ValueRange::between(std::max(low, parameter.min), std::min(high, parameter.max),
+                              declared ? Occurrence::each : Occurrence::unknown)};
+}
+
+std::vector<ValueRange> valuesOf(const Parameter& parameter, const program::ParameterValue& value) {
+  if (parameter.type == ParameterType::image) return {};
+  std::vector<ValueRange> result;
+  for (int i = 0; i < program::componentCount(parameter.type); ++i)
+    result.push_back(ValueRange::of(value[static_cast<std::size_t>(i)]));
+  return result;
+}
+
+bool uses(const program::HitShaders& shaders, const std::string& file) {
+  return shaders.closestHit == file || shaders.anyHit == file || shaders.intersection == file;
+}
+
+bool hasIntersection(const program::HitGroup& group) {
+  return std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
+}
+
+// The record data of a stage, one entry for each record that it runs with.
+std::vector<const program::RecordValues*> recordsOf(const program::Program& program, const std::string& file) {
+  std::vector<const program::RecordValues*> records;
+  if (program.rayGeneration == file) records.push_back(&program.rayGenerationRecord);
+  for (const program::RayType& ray : program.rays)
+    if (ray.miss == file) records.push_back(&ray.record);
+  for (const program::MissShader& miss : program.misses)
+    if (miss.file == file) records.push_back(&miss.record);
+  for (const program::Callable& callable : program.callables)
+    if (callable.file == file) records.push_back(&callable.record);
+  for (const program::HitGroup& group : program.hitGroups)
+    for (const auto& [ray, shaders] : group.shaders)
+      if (uses(shaders, file)) records.push_back(&shaders.record);
+  return records;
+}
+
+void addRecords(const program::Program& program, const std::string& file, spirv::ValueContext& context) {
+  const std::vector<const program::RecordValues*> records = recordsOf(program, file);
+  if (records.empty()) return;
+  for (std::size_t i = 0; i < program.record.size(); ++i) {
+    const Parameter& field = program.record[i];
+    if (field.type == ParameterType::image) continue;
+    std::vector<std::set<double>> values(static_cast<std::size_t>(program::componentCount(field.type)));
+    for (const program::RecordValues* record : records)
+      for (std::size_t c = 0; c < values.size(); ++c)
+        values[c].insert(i < record->size() ? (*record)[i][c] : field.defaultValue[c]);
+    std::vector<ValueRange>& ranges = context.members[{std::string(kRecord), field.name}];
+    for (const std::set<double>& component : values) ranges.push_back(amongAll(component));
+  }
+}
+
+// Built-ins of the hits for which a stage of a hit group runs.
+void addHits(const program::Program& program, const std::string& file, const program::SceneFacts* scene,
+             spirv::ValueContext& context) {
+  std::set<std::size_t> groups;
+  for (std::size_t i = 0; i < program.hitGroups.size(); ++i)
+    for (const auto& [ray, shaders] : program.hitGroups[i].shaders)
+      if (uses(shaders, file)) groups.insert(i);
+  if (groups.empty()) return;
+  const auto procedural = [&](std::size_t group) { return hasIntersection(program.hitGroups[group]); };
+  if (std::ranges::all_of(groups, procedural))
+    context.builtIns[spv::BuiltIn::HitKindKHR] = ValueRange::between(0.0, 127.0);
+  if (!scene) return;
+  std::set<double> instances, geometries, all;
+  for (std::size_t i = 0; i < scene->instances.size(); ++i) {
+    const program::InstanceFacts& instance = scene->instances[i];
+    all.insert(static_cast<double>(i));
+    for (std::uint32_t k = 0; k < instance.geometryCount && instance.firstGeometry + k < scene->geometries.size(); ++k)
+      if (groups.contains(program::hitGroupFor(program, scene->geometries[instance.firstGeometry + k])))
+        instances.insert(static_cast<double>(i)), geometries.insert(k);
+  }
+  if (instances.empty()) return;
+  context.builtIns[spv::BuiltIn::InstanceCustomIndexKHR] = amongAll(instances);
+  context.builtIns[spv::BuiltIn::RayGeometryIndexKHR] = amongAll(geometries);
+  ValueRange ids = amongAll(program.keepsInstanceOrder ? instances : all);
+  if (!program.keepsInstanceOrder && instances != all) ids.occurrence = Occurrence::unknown;
+  context.builtIns[spv::BuiltIn::InstanceId] = ids;
+  std::set<double> custom;
+  for (const double i : instances) custom.insert(scene->instances[static_cast<std::size_t>(i)].customIndex);
+  for (const std::string_view name : kInstances) {
+    // Shaders can also read the data of other instances.
+    ValueRange range = amongAll(custom);
+    if (instances != all) range = {};
+    context.members[{std::string(name), "customIndex"}] = {range};
+  }
+}
+
+}  // namespace
+
+spirv::ValueContext valueContext(const program::Program& program, const std::string& file,
+                                 const program::SceneFacts* scene, ParameterUse parameters) {
+  spirv::ValueContext context;
+  for (const Parameter& parameter : program.parameters) {
+    const std::vector<ValueRange> ranges =
+        parameters == ParameterUse::defaults ? valuesOf(parameter, parameter.defaultValue) : allValues(parameter);
+    for (const std::string_view name : kParameters) context.members[{std::string(name), parameter.name}] = ranges;
+  }
+  addRecords(program, file, context);
+  addHits(program, file, scene, context);
+  return context;
+}
+
+DefaultRanges::DefaultRanges(const program::Program& program, const std::string& file, const spirv::Module& module)
+    : module_(module), ranges_(module, valueContext(program, file, nullptr, ParameterUse::defaults)) {}
+
+std::string DefaultRanges::parameters(std::initializer_list<spirv::Id> values) const {
+  std::set<std::string> found;
+  for (const spirv::Id value : values)
+    (void)spirv::dependsOn(module_, value, [&](const spirv::Instruction& i) {
+      if (const std::string name = parameterOf(module_, i); !name.empty()) found.insert("'" + name + "'");
+      return false;
+    });
+  std::string text;
+  for (const std::string& name : found)
+    text += (text.empty() ? "" : name == *found.rbegin() ? " and " : ", ") + name;
+  return found.empty() ? "" : (found.size() > 1 ? "parameters " : "parameter ") + text;
+}
+
+std::string parameterOf(const spirv::Module& module, const spirv::Instruction& load) {
+  const auto member = spirv::bufferMember(module, load);
+  return member && std::ranges::find(kParameters, member->structure) != kParameters.end() ? member->member : "";
+}
+
+}  // namespace quintet::check

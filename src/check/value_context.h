@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What program.toml and a scene say about the values in a stage: ranges of parameters, data of records, built-ins of a
+// hit.
+#ifndef QUINTET_CHECK_VALUE_CONTEXT_H
+#define QUINTET_CHECK_VALUE_CONTEXT_H
+
+#include <initializer_list>
+#include <string>
+
+#include "program/description/program.h"
+#include "program/scene_facts.h"
+#include "spirv/value_range.h"
+
+namespace quintet::check {
+
+enum class ParameterUse {
+  any,       // all values that the declarations allow
+  defaults,  // the defaults
+};
+
+// `file` is the stage's file in the program description. A null `scene` stands for any scene.
+spirv::ValueContext valueContext(const program::Program& program, const std::string& file,
+                                 const program::SceneFacts* scene, ParameterUse parameters = ParameterUse::any);
+
+// Returns the name of the parameter that the load reads; empty if it reads none.
+std::string parameterOf(const spirv::Module& module, const spirv::Instruction& load);
+
+// Ranges in a stage if all parameters have their defaults.
+class DefaultRanges {
+ public:
+  // `module` must outlive this object.
+  DefaultRanges(const program::Program& program, const std::string& file, const spirv::Module& module);
+
+  spirv::ValueRange at(std::size_t instruction, spirv::Id value, const spirv::Path& path = {}) const {
+    return ranges_.rangeAt(instruction, value, path);
+  }
+  // The parameters from which the values are computed: "parameter 'bias'", "parameters 'a' and 'b'"; empty if none.
+  std::string parameters(std::initializer_list<spirv::Id> values) const;
+
+ private:
+  const spirv::Module& module_;
+  spirv::ValueRanges ranges_;
+};
+
+}  // namespace quintet::check
+#endif

@@ -1,0 +1,3 @@
+struct Payload {
+  int layers;
+};

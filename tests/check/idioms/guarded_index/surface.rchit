@@ -1,0 +1,14 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#include "payload.glsl"
+
+layout(location = 0) rayPayloadInEXT Payload payload;
+hitAttributeEXT vec2 baryCoord;
+
+const vec3 kColors[4] = vec3[](vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0), vec3(1.0));
+
+void main() {
+  const int k = gl_PrimitiveID % 8;
+  payload.color = baryCoord.x * (k < 4 ? kColors[k] : vec3(0.5));
+  payload.t = gl_HitTEXT;
+}

@@ -1,0 +1,14 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#include "payload.glsl"
+
+layout(location = 0) rayPayloadInEXT Payload payload;
+hitAttributeEXT vec2 baryCoord;
+
+void main() {
+  Light light;
+  light.power = 2.0;
+  light.color = vec3(baryCoord, 1.0);
+  payload.light = light;
+  payload.t = gl_HitTEXT;
+}

@@ -1,0 +1,3 @@
+struct Payload {
+  vec4 color;  // w is not used
+};

@@ -1,0 +1,4 @@
+struct Payload {
+  float weights[2];
+  vec3 color;
+};

@@ -1,0 +1,7 @@
+struct Payload {
+  vec3 color;
+};
+struct Ball {
+  vec3 normal;
+  float height;
+};

@@ -1,0 +1,7 @@
+struct Payload {
+  vec3 color;
+};
+struct Data {
+  vec3 normal;  // in
+  vec3 color;   // out
+};

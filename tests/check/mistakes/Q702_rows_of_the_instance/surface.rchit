@@ -1,0 +1,20 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/hit.glsl>
+#include <quintet/surface.glsl>
+#include "payload.glsl"
+
+layout(location = 0) rayPayloadInEXT Payload payload;
+hitAttributeEXT vec2 attributes;
+
+void main() {
+  const GeometryData geometry = hitGeometry();
+  const uvec3 v = Uvec3Array(geometry.triangles).at[hitTriangle(geometry)];
+  Vec3Array data = Vec3Array(geometry.normals);
+  const vec3 b = vec3(1.0 - attributes.x - attributes.y, attributes);
+  const InstanceData instance = InstanceArray(frame.instances).at[gl_InstanceCustomIndexEXT];
+  const vec3 a = b.x * data.at[v.x] + b.y * data.at[v.y] + b.z * data.at[v.z];
+  payload.color = vec3(0.8);
+  payload.normal = normalize(rowsTimesVector(instance.worldFromObject, a));  // EXPECT Q702
+  payload.t = gl_HitTEXT;
+}

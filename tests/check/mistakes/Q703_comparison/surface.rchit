@@ -1,0 +1,12 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#include "payload.glsl"
+
+layout(location = 0) rayPayloadInEXT Payload payload;
+hitAttributeEXT vec2 baryCoord;
+
+void main() {
+  // EXPECT+1 Q703
+  payload.color = gl_InstanceID < 2 ? vec3(5.0) : vec3(baryCoord, 1.0);
+  payload.t = gl_HitTEXT;
+}

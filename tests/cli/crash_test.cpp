@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program that crashes the driver: the command ends with one error and an exit status, not with a signal.
+#include <algorithm>
+#include <csignal>
+
+#include <gmock/gmock.h>
+
+#include "sky_program.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+
+// Writes to an address that no buffer has.
+constexpr const char* kWildStore = R"(#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/output.glsl>
+#include <quintet/generated/program.glsl>
+void main() {
+  FloatArray(uint64_t(8) + gl_LaunchIDEXT.x).at[0] = 1.0;
+  storeOutput(kOutput_color, launchPixel(), vec4(1.0));
+}
+)";
+
+class Crash : public CliTest {
+ protected:
+  Crash() {
+    writeSkyProgram(folder_ / "wild", "payload.color = vec3(0.5);");
+    write(folder_ / "wild" / "sky.rgen", kWildStore);
+  }
+  // Software devices crash; others report a lost device.
+  static void expectOneError(const RunResult& result) {
+    EXPECT_THAT(result.status, AnyOf(4, 1)) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("quintet: "));
+    if (result.status != 4) return;
+    EXPECT_THAT(result.err, HasSubstr("quintet: wild: crash in the driver or in Quintet while rendering (signal 11, "));
+    EXPECT_THAT(result.err, HasSubstr("docs/debugging.md"));
+  }
+};
+
+TEST_F(Crash, IsOneErrorOfRunAndRender) {
+  write(folder_ / "out.png", "an older file");
+  expectOneError(quintet({"run", "wild", "--size", "16x16", "-q", "-o", "out.png"}));
+  expectOneError(
+      quintet({"render", "scene.gltf", "--program", "wild", "--size", "16x16", "--spp", "1", "-q", "-o", "out.png"}));
+  EXPECT_EQ(fileNames(), (std::vector<std::string>{"out.png", "scene.gltf", "wild"}));
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "out.png"), 13u);
+}
+
+TEST_F(Crash, IsAnErrorOfTheInstrumentedRun) {
+  const RunResult result = quintet({"check", "wild", "--instrument", "--size", "16x16"});
+  EXPECT_THAT(result.status, AnyOf(4, 1)) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("quintet: "));
+}
+
+TEST_F(Crash, IsAnErrorInJson) {
+  const RunResult result = quintet({"run", "wild", "--size", "16x16", "--json", "-q", "-o", "out.png"});
+  EXPECT_EQ(nlohmann::json::parse(result.out)["error"]["exitStatus"], result.status);
+  const RunResult check = quintet({"check", "wild", "--instrument", "--size", "16x16", "--json"});
+  if (check.status == 4) {
+    EXPECT_EQ(nlohmann::json::parse(check.out)[0]["id"], "CRASH");
+  }
+}
+
+// Expressions that are nested so deeply that they overflow the stack of the compiler.
+TEST_F(Crash, OfTheCompilerIsOneError) {
+  const std::string nested = std::string(200000, '(') + "0.5" + std::string(200000, ')');
+  writeSkyProgram(folder_ / "deep", "payload.color = vec3(" + nested + ");");
+  const RunResult result = quintet({"check", "deep"});
+  EXPECT_THAT(result.status, AnyOf(0, 1, 4)) << result.err;
+}
+
+// The process that works is a child. A signal to the parent, to both, and the end of the parent reach it.
+TEST_F(Crash, KillingTheProcessEndsItsChild) {
+  writeSkyProgram(folder_ / "good", "payload.color = vec3(0.5);");
+  TerminalRun process({"run", "good", "--size", "64x64", "--time", "1000", "-o", "out.png"}, folder_.path());
+  ASSERT_TRUE(process.waitFor(" s left"));
+  process.signal(SIGKILL);
+  EXPECT_EQ(process.finish().status, 1000 + SIGKILL);  // it waits until the child has closed the terminal
+}
+
+TEST_F(Crash, OneProcessIsPossible) {
+  writeSkyProgram(folder_ / "good", "payload.color = vec3(0.5);");
+  const RunResult result = quintet({"run", "good", "--size", "8x8", "--spp", "1", "-q", "-o", "out.png"},
+                                   {.environment = {{"QUINTET_ISOLATION", "off"}}});
+  EXPECT_EQ(result.status, 0) << result.err;
+}
+
+}  // namespace
+}  // namespace quintet::test
