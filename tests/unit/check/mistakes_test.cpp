@@ -57,7 +57,8 @@ void readFolder(const fs::path& folder, Files& files) {
     if (entry.is_regular_file()) files[entry.path().filename()] = textOf(entry.path());
 }
 
-// facts.toml: [[geometry]] kind, alpha, name, material; [[instance]] name, first, count, mask, force_opaque.
+// facts.toml: [[geometry]] kind, alpha, name, material; [[instance]] name, first, count, mask, force_opaque,
+// custom_index.
 std::optional<program::SceneFacts> factsOf(const Files& files) {
   const auto found = files.find("facts.toml");
   if (found == files.end()) return {};
@@ -77,7 +78,8 @@ std::optional<program::SceneFacts> factsOf(const Files& files) {
   for (const TomlValue& node : root.tables("instance")) {
     TomlReader i(node, "[[instance]]", root.file());
     facts.instances.push_back({i.text("name"), i.integer("first", 0, 0, 1000), i.integer("count", 1, 0, 1000),
-                               i.integer("mask", 0xFF, 0, 0xFF), i.boolean("force_opaque"), false});
+                               i.integer("mask", 0xFF, 0, 0xFF), i.boolean("force_opaque"), false,
+                               i.integer("custom_index", 0, 0, 0xFFFFFF)});
     i.rejectUnknownKeys();
   }
   root.rejectUnknownKeys();

@@ -1,0 +1,3 @@
+struct Payload {
+  vec3 color;
+};

@@ -1,0 +1,11 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#include "payload.glsl"
+
+layout(location = 0) rayPayloadInEXT Payload payload;
+layout(location = 1) rayPayloadInEXT Shadow shadow;  // EXPECT Q106
+
+void main() {
+  payload.color = vec3(0.3, 0.5, 0.9);
+  shadow.visible = 1.0;
+}

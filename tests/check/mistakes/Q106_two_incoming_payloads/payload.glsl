@@ -1,0 +1,6 @@
+struct Payload {
+  vec3 color;
+};
+struct Shadow {
+  float visible;
+};
