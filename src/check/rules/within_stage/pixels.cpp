@@ -98,7 +98,7 @@ struct Parts {
 
 // True for frame.width, frame.height and components of gl_LaunchSizeEXT, also as float.
 bool isSize(const spirv::Module& module, Id value, Path given) {
-  const auto [id, path] = spirv::originOf(module, value, std::move(given));
+  const auto [id, path] = spirv::originOf(module, {value, std::move(given)});
   const spirv::Instruction* i = module.definition(id);
   if (!i) return false;
   if (i->op == Op::OpConvertUToF || i->op == Op::OpConvertSToF || i->op == Op::OpBitcast)
@@ -262,8 +262,8 @@ void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, 
                                  fmt::format("the result is stored at the pixel scaled to a fixed size of {}, but the "
                                              "image can have any size",
                                              x.x && x.normalized ? x.factor : y.factor));
-  const auto coordinateX = coordinateOf(module, target.x.first, target.x.second);
-  const auto coordinateY = coordinateOf(module, target.y.first, target.y.second);
+  const auto coordinateX = coordinateOf(module, target.x.id, target.x.path);
+  const auto coordinateY = coordinateOf(module, target.y.id, target.y.path);
   if (isOutput && coordinateX == Coordinate{0, false} && coordinateY == Coordinate{1, false})
     return report.addOncePerLine("Q713", location,
                                  "the result is stored at gl_LaunchIDEXT.xy, but a launch is a part of the image; the "
