@@ -971,11 +971,13 @@ ValueRange ValueRanges::Impl::chosenFrom(Evaluator& in, const Type& type, const 
   if (result.empty()) return rangeOf(type);
   const auto independent = [&] {
     std::set<Id> sources;
-    for (const Id value : values)
+    for (const Id value : values) {
+      if (evaluate(in, value, path).occurrence == Occurrence::unknown) continue;
       (void)dependsOn(module, value, [&](const Instruction& i) {
         if (i.op == Op::OpLoad && !bufferMember(module, i)) sources.insert(chainOf(module, i.at(0)).base);
         return false;
       });
+    }
     return std::ranges::none_of(conditions, [&](Id condition) {
       return dependsOn(module, condition, [&](const Instruction& i) {
         return i.op == Op::OpPhi || i.op == Op::OpFunctionCall ||
