@@ -222,7 +222,7 @@ TEST_F(CheckReports, Sarif) {
   EXPECT_EQ(log["runs"][0]["results"][0]["ruleId"], "Q505");
   const RunResult out = quintet({"check", "wide", "--sarif", "-"});
   EXPECT_EQ(nlohmann::json::parse(out.out)["version"], "2.1.0");
-  expectError(quintet({"check", "wide", "--sarif", "-", "--json"}), 2, {"--sarif", "--json"});
+  expectJsonError(quintet({"check", "wide", "--sarif", "-", "--json"}), 2, {"--sarif", "--json"});
 }
 
 TEST_F(CheckReports, Graph) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `run --watch` and `check --watch` as processes: saved files start a new image, errors print diagnostics, fixed files render again.
+// `run --watch` as a process: saved files start a new image, errors print diagnostics, fixed files render again.
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -76,27 +76,6 @@ TEST_F(Watch, SaveBreakAndFix) {
   const RunResult result = process.finish();
   EXPECT_EQ(result.status, 0) << result.err;
   expectSky({0.0f, 0.0f, 0.75f});
-}
-
-TEST_F(Watch, ChecksAgain) {
-  TerminalRun process({"check", "sky", "--watch", "--sarif", "out.sarif"}, folder_.path());
-  ASSERT_TRUE(process.waitForNext("sky: clean"));
-  ASSERT_TRUE(process.waitForNext("watching"));
-  saveSky("payload.colr = vec3(0.0);");
-  ASSERT_TRUE(process.waitForNext("sky.rmiss saved"));
-  ASSERT_TRUE(process.waitForNext("'colr'"));
-  ASSERT_TRUE(process.waitForNext("sky: 1 error"));
-  ASSERT_TRUE(process.waitForNext("watching"));
-  save("sky/program.toml", skyToml("nothing.rmiss"));
-  ASSERT_TRUE(process.waitForNext("'nothing.rmiss'"));
-  ASSERT_TRUE(process.waitForNext("watching"));
-  saveSky("payload.color = vec3(0.0);");
-  save("sky/program.toml", skyToml("sky.rmiss"));
-  ASSERT_TRUE(process.waitForNext("sky: clean"));
-  ASSERT_TRUE(process.waitForNext("watching"));
-  process.signal(SIGINT);
-  EXPECT_EQ(process.finish().status, 0);
-  EXPECT_TRUE(fs::exists(folder_ / "out.sarif"));
 }
 
 TEST_F(Watch, StartsWithAnError) {
