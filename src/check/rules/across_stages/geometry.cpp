@@ -175,7 +175,9 @@ class GeometryRule {
       const bool alpha = input_.scene ? pair.geometry->alpha : bound;
       if (!alpha || pair.misplaced || (!bound && !hasAnyHits(pair.hit.ray))) continue;
       const bool hasShader = !graph_.shaders(pair.hit).anyHit.empty();
-      if (!hasShader || pair.opaque) reportSkippedAlphaTest(pair);
+      // A ray without the shader and with the flag ignores alpha on purpose.
+      const bool wanted = !hasShader && pair.site->trace->flags.mustHave(kFlagOpaque);
+      if (!wanted && (!hasShader || pair.opaque)) reportSkippedAlphaTest(pair);
     }
   }
 

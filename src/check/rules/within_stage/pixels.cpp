@@ -209,8 +209,27 @@ std::optional<Target> targetOf(const spirv::Module& module, const spirv::Instruc
   return Target{spirv::originOf(module, {i.at(1), {0}}), spirv::originOf(module, {i.at(1), {1}})};
 }
 
-// True if a condition on the launch id decides whether the instruction runs.
-bool guardedByLaunch(const spirv::Module& module, const spirv::ValueRanges& ranges, std::size_t instruction) {
+bool isLibrary(const SourceLocation& location) { return location.file.starts_with("<quintet/"); }
+
+// The branch that the library's own test of the pixel starts with, or the store if there is none.
+std::size_t withoutLibraryTests(const spirv::Module& module, std::size_t store) {
+  const auto position = module.position(store);
+  if (!position) return store;
+  const spirv::ControlFlow flow(module, position->function);
+  std::size_t found = store;
+  for (std::size_t block = flow.dominator(position->block); block != spirv::Module::kNone;
+       block = flow.dominator(block)) {
+    const std::size_t branch = flow.function().blocks[block].end - 1;
+    const bool conditional = module.instructions()[branch].op != Op::OpBranch;
+    if (conditional && !isLibrary(module.location(module.instructions()[branch]))) break;
+    found = branch;
+  }
+  return found;
+}
+
+// True if a condition on the launch id decides whether the store runs.
+bool guardedByLaunch(const spirv::Module& module, const spirv::ValueRanges& ranges, std::size_t store) {
+  const std::size_t instruction = withoutLibraryTests(module, store);
   for (const spirv::Instruction& load : module.instructions())
     if (load.op == Op::OpLoad && spirv::loadsBuiltIn(module, load, spv::BuiltIn::LaunchIdKHR))
       return ranges.guarded(instruction, load.result);
@@ -220,7 +239,6 @@ bool guardedByLaunch(const spirv::Module& module, const spirv::ValueRanges& rang
 // Location of a store to an output, in the user's file: the call of a library function at or after the line where the
 // stored value is computed.
 SourceLocation locationOf(const spirv::Module& module, const spirv::Instruction& store) {
-  const auto isLibrary = [](const SourceLocation& location) { return location.file.starts_with("<quintet/"); };
   const SourceLocation own = module.location(store, "imageStore");
   if (!isLibrary(own) || store.op != Op::OpStore) return own;
   SourceLocation from;
