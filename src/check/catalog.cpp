@@ -277,7 +277,7 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q713", kWarning, "within_stage/pixels", "result is stored at a wrong pixel",
      "Other pixels keep their old values, several invocations write the same pixel, or the write is outside of the "
      "image.",
-     "Store at launchPixel(), or at gl_LaunchIDEXT.xy."},
+     "Store at launchPixel()."},
     {"Q714", kWarning, "across_stages/outputs", "output is overwritten instead of accumulated",
      "An output is the sum over the samples of a batch. Only one sample remains, so the image is too dark and noisy.",
      "Add to the sum: storeOutput(kOutput_x, pixel, loadOutput(kOutput_x, pixel) + value), or call addOutput."},

@@ -85,8 +85,8 @@ void suppress(CheckResult& result, const program::Program& program, bool complet
 }
 
 CheckResult checkWithOutputs(const program::Program& program, const shader::Compiler& compiler,
-                         const program::SceneFacts* scene, const DeviceLimits& limits,
-                         const std::vector<std::string>& outputs) {
+                             const program::SceneFacts* scene, const DeviceLimits& limits,
+                             const std::vector<std::string>& outputs) {
   std::vector<std::pair<std::string, std::string>> defines;
   for (const std::string& output : outputs) defines.emplace_back(program::outputMacro(output), "1");
   return runRules(program, compile(program, compiler, defines), scene, limits, false);

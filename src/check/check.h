@@ -28,7 +28,7 @@ struct CheckResult {
   std::uint64_t stackBytes = 0;
   // Traces form a cycle, so the depth depends on values: runs count it (program::Instrumentation::recursion).
   bool cyclic = false;
-  std::vector<std::string> reached;  // files of the reachable stages
+  std::vector<std::string> reached;          // files of the reachable stages
   std::vector<std::filesystem::path> files;  // read from disk in addition to Program::files
   double seconds = 0;                        // wall time, including compilation
   bool ok() const { return !hasErrors(diagnostics); }

@@ -34,7 +34,7 @@ struct InstanceFacts {
   bool forceOpaque = false;
   bool forceNoOpaque = false;
   std::uint32_t customIndex = 0;  // set by the user: scene::Instance::customIndex
-  bool transformed = false;  // object space differs from world space, at least at some time
+  bool transformed = false;       // object space differs from world space, at least at some time
   bool operator==(const InstanceFacts&) const = default;
 };
 

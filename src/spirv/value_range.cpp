@@ -4,8 +4,10 @@
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <set>
 
 #include "spirv/value_flow.h"

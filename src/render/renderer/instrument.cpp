@@ -149,8 +149,13 @@ void addReports(const InstrumentData& data, const program::RunnableProgram& runn
     const std::string_view call = callOf(first);
     SourceLocation at = call == "traceRayEXT" ? traceLocation(runnable, first.stage, first.line) : SourceLocation{};
     if (at.line == 0) at = {program.path(file), callLine(program, file, first.line, call), 0};
-    result.push_back({first.kind == shared::kReportSelfHit ? Severity::warning : Severity::error, at.file, at.line,
-                      at.column, fmt::format("Q00{}", first.kind % 16), text, {}});
+    result.push_back({first.kind == shared::kReportSelfHit ? Severity::warning : Severity::error,
+                      at.file,
+                      at.line,
+                      at.column,
+                      fmt::format("Q00{}", first.kind % 16),
+                      text,
+                      {}});
   }
 }
 

@@ -52,7 +52,7 @@ void main() {
   traceRayEXT(tlas, gl_RayFlagsNoneEXT, 0xFFu, kRay_primary, kRayTypeCount, kMiss_primary, vec3(0), 0.0, vec3(0, 0, 1), 1e30, 0);
   vec3 color = payload.color;
   if (payload.t > 0.0) color *= payload.t;
-  addOutput(0u, gl_LaunchIDEXT.xy, vec4(color, 1.0));
+  addOutput(0u, launchPixel(), vec4(color, 1.0));
 }
 )"},
           {"sky.rmiss", head + R"(layout(location = 0) rayPayloadInEXT Payload payload;

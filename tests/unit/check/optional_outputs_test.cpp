@@ -11,7 +11,7 @@ Files withOutputs(const std::string& code) {
   files["program.toml"] +=
       "\n[[output]]\nname = \"color\"\n\n[[output]]\nname = \"albedo\"\noptional = true\n\n[[output]]\nname = "
       "\"depth\"\noptional = true\n";
-  const std::string store = "  addOutput(0u, gl_LaunchIDEXT.xy, vec4(color, 1.0));\n";
+  const std::string store = "  addOutput(0u, launchPixel(), vec4(color, 1.0));\n";
   files["main.rgen"] = changed(files["main.rgen"], store,
                                code + store + "#ifdef QUINTET_OUTPUT_albedo\n" + changed(store, "0u", "1u") +
                                    "#endif\n#ifdef QUINTET_OUTPUT_depth\n" + changed(store, "0u", "2u") + "#endif\n");

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <spirv/unified1/GLSL.std.450.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 

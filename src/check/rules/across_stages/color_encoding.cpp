@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 #include <spirv/unified1/GLSL.std.450.h>
 
+#include <algorithm>
 #include <set>
+#include <tuple>
 
 #include "check/flow/pipeline_spaces.h"
 #include "check/rules/rules.h"

@@ -198,9 +198,8 @@ class RayRule {
     if (!payload || payload->storage != spv::StorageClass::RayPayloadKHR) return;
     for (std::uint32_t leaf = 0; leaf < tracer.leaves(payload->id).count(); ++leaf) {
       const std::vector<std::size_t> reads = tracer.readsAfter(trace.instruction, payload->id, leaf);
-      const bool used = std::ranges::any_of(reads, [&](std::size_t read) {
-        return !onlyCompared(tracer.module(), tracer.accesses()[read].value);
-      });
+      const bool used = std::ranges::any_of(
+          reads, [&](std::size_t read) { return !onlyCompared(tracer.module(), tracer.accesses()[read].value); });
       if (!used) continue;
       for (const Edge& edge : site.edges) {
         if (edge.role != Role::closestHit || !edge.exact) continue;

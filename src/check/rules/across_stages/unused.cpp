@@ -77,9 +77,9 @@ void checkUnreachableStages(const CheckInput& input, Report& report) {
     if (reachable.contains(i) || stage.file.ends_with(program::kStubMissExtension)) continue;
     const int line = lineOfFile(graph.program, stage.file);
     // The description has no lines in the lecture form, where a stage can have two variants.
-    report.addOncePerLine(
-        "Q801", line > 0 ? graph.descriptionLocation(line) : mainLocation(graph, stage),
-        fmt::format("no trace or call can reach {} shader '{}'", shader::stageName(stage.kind), graph.nameOf(stage.file)));
+    report.addOncePerLine("Q801", line > 0 ? graph.descriptionLocation(line) : mainLocation(graph, stage),
+                          fmt::format("no trace or call can reach {} shader '{}'", shader::stageName(stage.kind),
+                                      graph.nameOf(stage.file)));
   }
 }
 

@@ -1,3 +1,6 @@
 #define RAY_MASK_CAMERA 0x01
 #define RAY_MASK_SHADOW 0x02
-struct Payload { vec3 color; float t; };
+struct Payload {
+  vec3 color;
+  float t;
+};
