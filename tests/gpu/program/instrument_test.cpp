@@ -82,7 +82,7 @@ TEST(Instrument, ReportsRaysThatAreNotFinite) {
 // A trace in an included file, in a line that the program also has.
 TEST(Instrument, ReportsTheFileOfATraceInAnIncludedFile) {
   const std::string text = kCommon + "void side() { vec2 unused = vec2(0.0); }\n#include \"far.glsl\"\n" +
-                           rayGeneration("far(eye, 0.0 * d);") + kHit + kMiss;
+                           rayGeneration("far(eye, float(gl_LaunchIDEXT.x & 1u) * d);") + kHit + kMiss;
   const std::string far = "void far(vec3 o, vec3 d) {\n" + trace("o", "d") + " }\n";
   const program::Program program = program::parseLecture(text, "demo.rt.glsl", "here", {{"far.glsl", far}});
   const auto notes = notesOf(program, job::loadScene(job::chooseSceneSource({}, program)));
@@ -92,7 +92,7 @@ TEST(Instrument, ReportsTheFileOfATraceInAnIncludedFile) {
 }
 
 TEST(Instrument, ReportsRaysWithoutDirection) {
-  const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "0.0 * d")) + kHit + kMiss);
+  const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "float(gl_LaunchIDEXT.x & 1u) * d")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q001:2");
   ASSERT_FALSE(notes.empty());
   EXPECT_NE(notes[0].text.find("its direction is 0: "), std::string::npos) << notes[0].text;
@@ -124,8 +124,8 @@ TEST(Instrument, ReportsRecursionBeyondTheDeclaredDepth) {
   const std::string options = "// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: 3\"\n";
   const std::string hit =
       "void main() { /**** CLOSEST-HIT SHADER ****/ vec3 o = gl_WorldRayOriginEXT; vec3 d = "
-      "gl_WorldRayDirectionEXT;\n" +
-      trace("o", "d") + " payload.color = vec3(0.1); }\n";
+      "gl_WorldRayDirectionEXT;\nif (gl_HitTEXT > 0.0) { " +
+      trace("o", "d") + " } payload.color = vec3(0.1); }\n";
   EXPECT_EQ(idsOf(notesOf(options + kCommon + rayGeneration(trace("eye", "d")) + hit + kMiss)), "Q003:5");
 }
 
@@ -189,14 +189,15 @@ TEST(Outputs, IgnorePixelsOutsideOfTheImage) {
   EXPECT_EQ(renderer.rays().rays, 0u);
 }
 
-// Each hit traces the same ray again, with the declared recursion `depth`.
+// Each hit traces the same ray again, with the declared recursion `depth`. The condition always holds, which the check does
+// not know.
 program::Program endlessRecursion(int depth) {
   const std::string options =
       "// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: " + std::to_string(depth) + "\"\n";
   const std::string hit =
       "void main() { /**** CLOSEST-HIT SHADER ****/ payload.level++; vec3 o = gl_WorldRayOriginEXT; vec3 d = "
-      "gl_WorldRayDirectionEXT;\n" +
-      trace("o", "d") + " payload.color = vec3(0.001 * payload.level); }\n";
+      "gl_WorldRayDirectionEXT;\nif (gl_HitTEXT > 0.0) { " +
+      trace("o", "d") + " } payload.color = vec3(0.001 * payload.level); }\n";
   return program::parseLecture(
       options + kCommon + rayGeneration(" payload.level = 0; " + trace("eye", "d")) + hit + kMiss, "demo.rt.glsl",
       "here");

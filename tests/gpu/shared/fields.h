@@ -49,6 +49,7 @@ void put(uint v[4]) { for (int i = 0; i < 4; ++i) put(v[i]); }
 void put(uint v[2]) { for (int i = 0; i < 2; ++i) put(v[i]); }
 void put(uint v[8]) { for (int i = 0; i < 8; ++i) put(v[i]); }
 void put(uint v[16]) { for (int i = 0; i < 16; ++i) put(v[i]); }
+void put(uint v[64]) { for (int i = 0; i < 64; ++i) put(v[i]); }
 void put(uint64_t v[2]) { for (int i = 0; i < 2; ++i) put(v[i]); }
 void put(uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) put(v[i]); }
 uint nextWord() { return words[wordCount++]; }
@@ -64,6 +65,7 @@ void take(out uint v[4]) { for (int i = 0; i < 4; ++i) take(v[i]); }
 void take(out uint v[2]) { for (int i = 0; i < 2; ++i) take(v[i]); }
 void take(out uint v[8]) { for (int i = 0; i < 8; ++i) take(v[i]); }
 void take(out uint v[16]) { for (int i = 0; i < 16; ++i) take(v[i]); }
+void take(out uint v[64]) { for (int i = 0; i < 64; ++i) take(v[i]); }
 void take(out uint64_t v[2]) { for (int i = 0; i < 2; ++i) take(v[i]); }
 void take(out uint64_t v[kMaxOutputs]) { for (int i = 0; i < int(kMaxOutputs); ++i) take(v[i]); }
 )";

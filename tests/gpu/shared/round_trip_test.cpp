@@ -102,6 +102,7 @@ TEST(SharedHeaders, HaveNoUntestedStruct) {
       declared.insert((*match)[1]);
   }
   EXPECT_GE(headers, 6u);
+  EXPECT_EQ(declared.erase("Binding"), 1u);  // only C++ has it
   std::set<std::string> tested;
   [&]<class... T>(testing::Types<T...>) { (tested.insert(Fields<T>::kName), ...); }(SharedStructs{});
   EXPECT_EQ(declared, tested);
