@@ -763,7 +763,7 @@ ValueRange ValueRanges::Impl::converted(const Instruction& value, const ValueRan
       if (from.values.empty()) return rangeOf(type);
       for (double& v : result.values) v = stored(type, v);
       std::ranges::sort(result.values);
-      result.values.erase(std::ranges::unique(result.values).begin(), result.values.end());
+      result.values.erase(std::unique(result.values.begin(), result.values.end()), result.values.end());
       result.min = result.values.front(), result.max = result.values.back();
       return fitted(type, std::move(result));
     default: return rangeOf(type);

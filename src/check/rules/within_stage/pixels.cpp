@@ -46,7 +46,9 @@ struct Coordinate {
 };
 
 std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Path given, int depth = 0) {
-  const auto [id, path] = spirv::originOf(module, {value, std::move(given)});
+  const spirv::ValuePart origin = spirv::originOf(module, {value, std::move(given)});
+  const Id id = origin.id;
+  const Path& path = origin.path;
   const spirv::Instruction* i = module.definition(id);
   if (!i || depth > kMaxDepth) return {};
   const auto operand = [&](std::size_t k) { return module.definition(spirv::originOf(module, {i->at(k), path}).id); };
@@ -98,7 +100,9 @@ struct Parts {
 
 // True for frame.width, frame.height and components of gl_LaunchSizeEXT, also as float.
 bool isSize(const spirv::Module& module, Id value, Path given) {
-  const auto [id, path] = spirv::originOf(module, {value, std::move(given)});
+  const spirv::ValuePart origin = spirv::originOf(module, {value, std::move(given)});
+  const Id id = origin.id;
+  const Path& path = origin.path;
   const spirv::Instruction* i = module.definition(id);
   if (!i) return false;
   if (i->op == Op::OpConvertUToF || i->op == Op::OpConvertSToF || i->op == Op::OpBitcast)
@@ -110,7 +114,9 @@ bool isSize(const spirv::Module& module, Id value, Path given) {
 
 void addParts(const spirv::Module& module, const spirv::ValueRanges& ranges, Id value, Path given, Parts& parts,
               double factor = 1.0, int depth = 0) {
-  const auto [id, path] = spirv::originOf(module, {value, std::move(given)});
+  const spirv::ValuePart origin = spirv::originOf(module, {value, std::move(given)});
+  const Id id = origin.id;
+  const Path& path = origin.path;
   const spirv::Instruction* i = module.definition(id);
   if (!i || depth > kMaxDepth) return;
   const auto follow = [&](std::size_t k, double by = 1.0, int deeper = 1) {
@@ -303,7 +309,9 @@ void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, 
 
 // True if the divisor is the size along the axis of the coordinate, which is larger.
 bool isSizeOf(const spirv::Module& module, Id value, const Path& given, const Coordinate& coordinate) {
-  const auto [id, path] = spirv::originOf(module, {value, given});
+  const spirv::ValuePart origin = spirv::originOf(module, {value, given});
+  const Id id = origin.id;
+  const Path& path = origin.path;
   const spirv::Instruction* i = module.definition(id);
   if (!i) return false;
   if (i->op == Op::OpBitcast) return isSizeOf(module, i->at(0), path, coordinate);
