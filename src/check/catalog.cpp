@@ -216,7 +216,7 @@ constexpr DiagnosticInfo kCatalog[] = {
      "Only the built-in triangle intersection reports gl_HitKindFrontFacingTriangleEXT and "
      "gl_HitKindBackFacingTriangleEXT, so the comparison always has the same result.",
      "Compare with the kind that the intersection shader passes to reportIntersectionEXT."},
-    {"Q608", kError, "across_stages/hit_kinds", "reported hit kind is above 127",
+    {"Q608", kWarning, "across_stages/hit_kinds", "reported hit kind is above 127",
      "Vulkan allows 0 to 127 and reserves larger values for triangles; drivers can use only 7 bits.",
      "Number the kinds of the program from 0, and pass other data as a hit attribute."},
 
