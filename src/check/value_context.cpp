@@ -6,6 +6,7 @@
 #include <set>
 
 #include "program/hit_group_binding.h"
+#include "spirv/access.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {

@@ -9,7 +9,7 @@
 
 #include "program/description/program.h"
 #include "program/scene_facts.h"
-#include "spirv/value_range.h"
+#include "spirv/value_ranges.h"
 
 namespace quintet::check {
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "spirv/access.h"
 #include "spirv/source_text.h"
 
 namespace quintet::spirv {
@@ -539,16 +540,20 @@ Access Module::access(Id pointer) const {
   Access result;
   for (int depth = 0; depth < kMaxChain; ++depth) {
     const Instruction* value = definition(pointer);
-    if (!value) break;
-    if (value->op == spv::Op::OpVariable || value->op == spv::Op::OpFunctionParameter) {
-      result.variable = pointer;
+    if (!value) return {};
+    const bool array = value->op == spv::Op::OpPtrAccessChain || value->op == spv::Op::OpInBoundsPtrAccessChain;
+    const bool chain = isAccessChain(value->op);
+    if (!chain && value->op != spv::Op::OpCopyObject) {
+      result.base = pointer;
+      if (value->op == spv::Op::OpVariable || value->op == spv::Op::OpFunctionParameter) result.variable = pointer;
+      result.type = types_.get(value->type).element;
+      for (const Id index : result.indexIds) result.indices.push_back(constantBits(index));
       return result;
     }
-    const bool chain = value->op == spv::Op::OpAccessChain || value->op == spv::Op::OpInBoundsAccessChain;
-    if (!chain && value->op != spv::Op::OpCopyObject) break;
-    std::vector<std::optional<std::uint32_t>> indices;
-    for (std::size_t i = 1; chain && i < value->operands.size(); ++i) indices.push_back(constantBits(value->at(i)));
-    result.indices.insert(result.indices.begin(), indices.begin(), indices.end());
+    if (chain) {
+      const auto ids = value->operands.subspan(std::min<std::size_t>(array ? 2 : 1, value->operands.size()));
+      result.indexIds.insert(result.indexIds.begin(), ids.begin(), ids.end());
+    }
     pointer = value->at(0);
   }
   return {};

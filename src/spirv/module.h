@@ -58,10 +58,14 @@ struct Variable {
   std::optional<spv::BuiltIn> builtIn;
 };
 
-// An access chain resolved to its variable.
+// A pointer resolved through access chains and copies. The index of OpPtrAccessChain into the array around the base is
+// left out.
 struct Access {
-  Id variable = 0;                                    // OpVariable or function parameter; 0 for any other pointer
+  Id base = 0;      // where the chains start: a variable, a function parameter, or the pointer of a buffer reference
+  Id variable = 0;  // the base if it is a variable or a function parameter, otherwise 0
+  Id type = 0;      // of what the base points to
   std::vector<std::optional<std::uint32_t>> indices;  // from the outermost type inwards; nullopt for dynamic indices
+  std::vector<Id> indexIds;
 };
 
 class Module {
@@ -102,7 +106,7 @@ class Module {
   // Returns all values that an id can have, sorted, if they are constants: follows OpPhi and OpSelect, up to 16 values.
   std::optional<std::vector<std::uint32_t>> possibleValues(Id id) const;
 
-  // Follows a pointer's access chain to its variable.
+  // Returns an Access without base if the pointer is malformed.
   Access access(Id pointer) const;
 
   // Source location of an instruction. `token` is the text to look for in that line; it gives the column, which

@@ -14,7 +14,7 @@
 #include "spirv/leaves.h"
 #include "spirv/module.h"
 #include "spirv/value_part.h"
-#include "spirv/value_range.h"
+#include "spirv/value_ranges.h"
 
 namespace quintet::spirv {
 

@@ -138,6 +138,11 @@ void Types::add(Id id, Type type) {
   types_[id] = std::move(type);
 }
 
+Id Types::part(Id id, const Path& path) const {
+  for (const std::uint32_t index : path) id = get(id).part(index);
+  return id;
+}
+
 std::string Types::nameOf(Id id) const {
   std::string suffix;
   for (int depth = 0; depth < kMaxDepth; ++depth) {

@@ -41,11 +41,20 @@ struct Type {
   std::vector<Id> members;
   std::vector<std::string> memberNames;
   std::uint64_t bytes = 0;  // in scalar layout (each scalar has its own size, bool has 4); 0 if unknown
+
+  // Members of a structure, or elements of any other composite.
+  std::size_t partCount() const { return kind == Kind::structure ? members.size() : count; }
+  // Type of a part; 0 if there is none.
+  Id part(std::uint32_t index) const {
+    if (kind != Kind::structure) return element;
+    return index < members.size() ? members[index] : 0;
+  }
 };
 
 class Types {
  public:
-  const Type& get(Id id) const;  // kind `none` if the id is not a type
+  const Type& get(Id id) const;            // kind `none` if the id is not a type
+  Id part(Id id, const Path& path) const;  // type of a part; 0 if there is none
   // GLSL name: "vec3", "uint", "mat4x3", "float[3]"; the name of a structure, or "struct" if it has none.
   std::string nameOf(Id id) const;
   // As nameOf, but a structure with its members: "struct Hit { vec3 color; bool hit; }".

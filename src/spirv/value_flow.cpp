@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "spirv/access.h"
+
 namespace quintet::spirv {
 namespace {
 
@@ -23,9 +25,7 @@ void addAccesses(const Module& module, Id pointer, Indices& result) {
     open.pop_back();
     for (const std::size_t user : module.users(next)) {
       const Instruction& instruction = module.instructions()[user];
-      const bool chain = instruction.op == spv::Op::OpAccessChain || instruction.op == spv::Op::OpInBoundsAccessChain ||
-                         instruction.op == spv::Op::OpCopyObject;
-      if (!chain)
+      if (!isAccessChain(instruction.op) && instruction.op != spv::Op::OpCopyObject)
         result.push_back(user);
       else if (seen.insert(instruction.result).second)
         open.push_back(instruction.result);
@@ -87,12 +87,6 @@ void addStores(const Module& module, Id pointer, std::vector<const Instruction*>
     else if (instruction.op != spv::Op::OpLoad)
       escapes = true;
   }
-}
-
-bool overlap(const Access& a, const Access& b) {
-  for (std::size_t i = 0; i < std::min(a.indices.size(), b.indices.size()); ++i)
-    if (a.indices[i] && b.indices[i] && *a.indices[i] != *b.indices[i]) return false;
-  return true;
 }
 
 // Returns the part of a stored value that the load of a smaller part sees.
@@ -195,7 +189,7 @@ std::optional<std::vector<Id>> storedValues(const Module& module, const Instruct
   std::vector<Id> values;
   for (const Instruction* store : stores) {
     const Access target = module.access(store->at(0));
-    if (overlap(target, access)) values.push_back(partOf(module, store->at(1), target, access));
+    if (overlap(target.indices, access.indices)) values.push_back(partOf(module, store->at(1), target, access));
   }
   return values;
 }

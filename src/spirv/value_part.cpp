@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <span>
 
+#include "spirv/comparison.h"
+
 namespace quintet::spirv {
 namespace {
 
@@ -121,36 +123,10 @@ std::optional<double> evaluate(const Module& module, Id value, const std::functi
     }
     default: break;
   }
-  if (i->operands.size() != 2) return {};
+  const std::optional<Comparison> comparison = comparisonOf(i->op);
+  if (!comparison || i->operands.size() != 2 || !hasSignOf(*comparison, typeOf(module, i->at(0)))) return {};
   const auto a = operand(0), b = operand(1);
-  if (!a || !b) return {};
-  switch (i->op) {
-    case Op::OpFOrdEqual:
-    case Op::OpFUnordEqual:
-    case Op::OpIEqual:
-    case Op::OpLogicalEqual: return *a == *b;
-    case Op::OpFOrdNotEqual:
-    case Op::OpFUnordNotEqual:
-    case Op::OpINotEqual:
-    case Op::OpLogicalNotEqual: return *a != *b;
-    case Op::OpFOrdLessThan:
-    case Op::OpFUnordLessThan:
-    case Op::OpSLessThan:
-    case Op::OpULessThan: return *a < *b;
-    case Op::OpFOrdLessThanEqual:
-    case Op::OpFUnordLessThanEqual:
-    case Op::OpSLessThanEqual:
-    case Op::OpULessThanEqual: return *a <= *b;
-    case Op::OpFOrdGreaterThan:
-    case Op::OpFUnordGreaterThan:
-    case Op::OpSGreaterThan:
-    case Op::OpUGreaterThan: return *a > *b;
-    case Op::OpFOrdGreaterThanEqual:
-    case Op::OpFUnordGreaterThanEqual:
-    case Op::OpSGreaterThanEqual:
-    case Op::OpUGreaterThanEqual: return *a >= *b;
-    default: return {};
-  }
+  return a && b ? std::optional(holds(*comparison, *a, *b) ? 1.0 : 0.0) : std::nullopt;
 }
 
 }  // namespace quintet::spirv

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which values a scalar can have: an abstract interpretation of a module by intervals, small sets and known bits. It
-// follows constants, composites, constant arrays, arithmetic, selections, counted loops and the branches that lead to
-// an instruction. ValueContext adds what the module does not know: built-ins, parameters and records.
+// Sets of values that a scalar can have, as intervals, small sets and known bits, and the arithmetic of SPIR-V on them.
 //
-// A range contains every value that can occur. An unknown value has the range of its type.
+// A range contains every value that can occur. The result of an operation contains all results of its operands' values.
 #ifndef QUINTET_SPIRV_VALUE_RANGE_H
 #define QUINTET_SPIRV_VALUE_RANGE_H
 
+#include <cstdint>
 #include <limits>
-#include <map>
-#include <memory>
 #include <optional>
-#include <string>
-#include <utility>
+#include <spirv/unified1/spirv.hpp11>
 #include <vector>
 
-#include "spirv/control_flow.h"
-#include "spirv/value_part.h"
+#include "spirv/comparison.h"
+#include "spirv/type.h"
 
 namespace quintet::spirv {
 
@@ -50,43 +46,36 @@ struct ValueRange {
   bool contains(double value) const;
 };
 
-// What is known about values from outside of the module.
-struct ValueContext {
-  std::map<spv::BuiltIn, ValueRange> builtIns;  // of each component; replaces the limits of Vulkan
-  // Members of structures in buffers, by the names of structure and member; one range per component, or one for all.
-  std::map<std::pair<std::string, std::string>, std::vector<ValueRange>> members;
-};
+// Types that ranges distinguish; a value of any other type has an unlimited range.
+bool isInteger(const Type& type);  // of up to 32 bits
+bool isFloat(const Type& type);    // of 32 bits
+double lowest(const Type& integer);
+double highest(const Type& integer);
 
-class ValueRanges {
- public:
-  // `module` must outlive this object.
-  explicit ValueRanges(const Module& module, ValueContext context = {});
-  ~ValueRanges();
-  ValueRanges(ValueRanges&&) noexcept;
-  ValueRanges& operator=(ValueRanges&&) noexcept;
+constexpr double kRangeError = 1.0 / (1 << 20);  // relative, of float operations that are not correctly rounded
 
-  // Range of a value, or of a part of a composite, in all invocations.
-  ValueRange range(Id value, const Path& path = {}) const;
-  // The same where an instruction runs: the conditions of the branches that lead to it are true. Empty if it never
-  // runs.
-  ValueRange rangeAt(std::size_t instruction, Id value, const Path& path = {}) const;
-  // True if a branch whose condition depends on what the value is computed from decides whether the instruction runs.
-  // The conditions of counted loops do not count.
-  bool guarded(std::size_t instruction, Id value) const;
+ValueRange rangeOf(const Type& type);  // of an unknown value
+ValueRange never();                    // no value
+ValueRange onlyNan();
+ValueRange truth(std::optional<bool> value);  // 0, 1, or both
 
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-};
+// The value as the type stores it: modulo 2^width, or rounded.
+double stored(const Type& type, double value);
+// Limits the range to the type, and derives bits from values and values from bits.
+ValueRange fitted(const Type& type, ValueRange range);
 
-// The member of a buffer that is read or written: the innermost structure and its member.
-struct BufferMember {
-  std::string structure, member;
-  std::uint32_t component = 0;
-};
-// Returns the member of a structure in a buffer or push constant that a load or store accesses, with `path` into the
-// value. Nullopt for any other storage.
-std::optional<BufferMember> bufferMember(const Module& module, const Instruction& access, const Path& path = {});
+ValueRange joined(const ValueRange& a, const ValueRange& b);   // union
+ValueRange limited(ValueRange range, double min, double max);  // intersection; NaN remains
+
+// `op` is an addition, subtraction, multiplication, division or remainder.
+ValueRange binary(const Type& type, spv::Op op, const ValueRange& a, const ValueRange& b);
+ValueRange bitwise(const Type& type, spv::Op op, const ValueRange& a, const ValueRange& b);  // or a shift
+ValueRange compared(const Comparison& comparison, const ValueRange& a, const ValueRange& b);
+ValueRange mapped(const Type& type, const ValueRange& a, double (*monotone)(double));
+ValueRange magnitude(const Type& type, const ValueRange& a);
+// min(a, b), or max(a, b) if `larger`. A NaN can give either operand.
+ValueRange chosen(const Type& type, const ValueRange& a, const ValueRange& b, bool larger);
+ValueRange clamped(const Type& type, ValueRange a, const ValueRange& low, const ValueRange& high);
 
 }  // namespace quintet::spirv
 #endif

@@ -212,20 +212,17 @@ void PipelineSpaces::visitDot(const Open& open, const spirv::Instruction& dot, S
 
 void PipelineSpaces::visitStore(const Open& open, const spirv::Instruction& store, Search& search) const {
   const SpaceTags& tags = *stages_[open.stage];
-  const PointerPath target = resolvePointer(tags.module(), store.at(0));
+  const spirv::Access target = tags.module().access(store.at(0));
   spirv::Path path;
-  for (const auto& index : target.path) path.push_back(index.value_or(kAnyIndex));
+  for (const auto& index : target.indices) path.push_back(index.value_or(kAnyIndex));
   path.insert(path.end(), open.inner.begin(), open.inner.end());
   bool followed = false;
   for (const Shared& other : linked({open.stage, target.base})) {
     const spirv::Module& module = stages_[other.first]->module();
     for (const std::size_t load : stages_[other.first]->loads(other.second)) {
-      const PointerPath from = resolvePointer(module, module.instructions()[load].at(0));
-      bool overlaps = true;
-      const std::size_t common = std::min(from.path.size(), path.size());
-      for (std::size_t k = 0; k < common; ++k)
-        overlaps = overlaps && (!from.path[k] || path[k] == kAnyIndex || *from.path[k] == path[k]);
-      if (!overlaps) continue;
+      const spirv::Access from = module.access(module.instructions()[load].at(0));
+      if (!overlaps(from, path)) continue;
+      const std::size_t common = std::min(from.indices.size(), path.size());
       followed = true;
       spirv::Path inner(path.begin() + static_cast<std::ptrdiff_t>(common), path.end());
       search.push({other.first, module.instructions()[load].result, std::move(inner), open.scaled, open.direct,

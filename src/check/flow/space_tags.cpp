@@ -7,6 +7,8 @@
 #include <array>
 #include <bit>
 
+#include "spirv/access.h"
+
 namespace quintet::check {
 namespace {
 
@@ -18,7 +20,6 @@ using TypeKind = spirv::Type::Kind;
 constexpr std::size_t kMaxLeaves = 96;     // of a type
 constexpr std::uint32_t kMaxElements = 4;  // of an array whose elements have leaves of their own
 constexpr std::uint8_t kMaxVisits = 24;    // of an instruction
-constexpr int kMaxChain = 64;
 
 bool isLeaf(const spirv::Type& type) {
   return type.kind != TypeKind::structure && type.kind != TypeKind::array && type.kind != TypeKind::runtimeArray;
@@ -105,27 +106,10 @@ bool isUndefined(const SpaceLeaves& leaves) {
 
 }  // namespace
 
-PointerPath resolvePointer(const spirv::Module& module, Id pointer) {
-  PointerPath result;
-  for (int depth = 0; depth < kMaxChain; ++depth) {
-    const spirv::Instruction* value = module.definition(pointer);
-    if (!value) return {};
-    const bool chain = value->op == Op::OpAccessChain || value->op == Op::OpInBoundsAccessChain;
-    if (!chain && value->op != Op::OpCopyObject) {
-      result.base = pointer;
-      result.type = module.types().get(value->type).element;
-      return result;
-    }
-    if (chain) {
-      const auto indices = value->operands.subspan(std::min<std::size_t>(1, value->operands.size()));
-      std::vector<std::optional<std::uint32_t>> path;
-      for (const Id id : indices) path.push_back(module.constantBits(id));
-      result.path.insert(result.path.begin(), path.begin(), path.end());
-      result.ids.insert(result.ids.begin(), indices.begin(), indices.end());
-    }
-    pointer = value->at(0);
-  }
-  return {};
+bool overlaps(const spirv::Access& access, const spirv::Path& path) {
+  std::vector<std::optional<std::uint32_t>> indices;
+  for (const std::uint32_t index : path) indices.push_back(index == kAnyIndex ? std::nullopt : std::optional(index));
+  return spirv::overlap(access.indices, indices);
 }
 
 bool isSplat(const spirv::Module& module, Id value) {
@@ -144,7 +128,7 @@ SpaceTags::SpaceTags(const spirv::Module& module) : module_(module) {
   isOpen_.resize(instructions.size());
   for (std::size_t i = 0; i < instructions.size(); ++i) {
     if (instructions[i].op == Op::OpLoad) {
-      const PointerPath pointer = resolvePointer(module, instructions[i].at(0));
+      const spirv::Access pointer = module.access(instructions[i].at(0));
       if (isTable(pointer.base)) loads_[pointer.base].push_back(i);
     } else if (instructions[i].op == Op::OpVariable && isTable(instructions[i].result)) {
       const Id type = module.types().get(instructions[i].type).element;
@@ -153,7 +137,7 @@ SpaceTags::SpaceTags(const spirv::Module& module) : module_(module) {
     } else if (instructions[i].op == Op::OpFunctionCall || instructions[i].op == Op::OpCopyMemory) {
       // A function that is not inlined can store anything.
       for (const Id id : spirv::valueOperands(instructions[i]))
-        if (const PointerPath pointer = resolvePointer(module, id); isTable(pointer.base))
+        if (const spirv::Access pointer = module.access(id); isTable(pointer.base))
           variables_[pointer.base] = unknownLeaves(pointer.type);
     }
   }
@@ -335,7 +319,7 @@ SpaceTag SpaceTags::builtInTag(const spirv::Variable& variable) const {
 }
 
 // The tags of what the base of a pointer points to.
-SpaceLeaves SpaceTags::sourceLeaves(const PointerPath& pointer) const {
+SpaceLeaves SpaceTags::sourceLeaves(const spirv::Access& pointer) const {
   if (isTable(pointer.base)) {
     const auto found = variables_.find(pointer.base);
     return found == variables_.end() ? SpaceLeaves(layout(pointer.type).count) : found->second;
@@ -403,20 +387,20 @@ bool SpaceTags::add(Id variable, const SpaceLeaves& leaves) {
 }
 
 SpaceLeaves SpaceTags::load(const spirv::Instruction& instruction) const {
-  const PointerPath pointer = resolvePointer(module_, instruction.at(0));
+  const spirv::Access pointer = module_.access(instruction.at(0));
   const SpaceLeaves source = sourceLeaves(pointer);
-  return source.empty() ? SpaceLeaves{} : read(source, pointer.type, pointer.path);
+  return source.empty() ? SpaceLeaves{} : read(source, pointer.type, pointer.indices);
 }
 
 bool SpaceTags::store(const spirv::Instruction& instruction) {
-  const PointerPath pointer = resolvePointer(module_, instruction.at(0));
+  const spirv::Access pointer = module_.access(instruction.at(0));
   if (!isTable(pointer.base)) return false;
   const SpaceLeaves value = leavesOf(instruction.at(1));
   if (value.empty()) return false;
   SpaceLeaves& own = variables_[pointer.base];
   if (own.empty()) own.resize(layout(pointer.type).count);
   SpaceLeaves changed = own;
-  const Slice target = slice(pointer.type, pointer.path);
+  const Slice target = slice(pointer.type, pointer.indices);
   if (target.offsets.empty()) {
     for (SpaceTag& tag : changed) tag = unknownTag();
   } else if (target.rest.empty()) {
@@ -530,8 +514,7 @@ SpaceLeaves SpaceTags::evaluate(const spirv::Instruction& i) const {
       SpaceLeaves result;
       bool defined = false;
       for (std::size_t k = 0; k < i.operands.size(); ++k) {
-        const Id member =
-            type.kind == TypeKind::structure ? (k < type.members.size() ? type.members[k] : 0) : type.element;
+        const Id member = type.part(static_cast<std::uint32_t>(k));
         SpaceLeaves leaves = leavesOf(i.at(k));
         defined = defined || !leaves.empty();
         leaves.resize(layout(member).count);

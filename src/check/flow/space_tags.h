@@ -20,14 +20,8 @@ using SpaceLeaves = std::vector<SpaceTag>;
 
 constexpr std::uint32_t kAnyIndex = ~0u;  // in a path: the index is unknown
 
-// A pointer resolved to its base and the path into what the base points to.
-struct PointerPath {
-  spirv::Id base = 0;                              // variable, or the pointer of a buffer reference
-  spirv::Id type = 0;                              // that the base points to
-  std::vector<std::optional<std::uint32_t>> path;  // nullopt for dynamic indices
-  std::vector<spirv::Id> ids;                      // of the indices
-};
-PointerPath resolvePointer(const spirv::Module& module, spirv::Id pointer);
+// True if an access and a path, which can have kAnyIndex, can select common parts.
+bool overlaps(const spirv::Access& access, const spirv::Path& path);
 
 // True for a vector of equal components.
 bool isSplat(const spirv::Module& module, spirv::Id value);
@@ -83,7 +77,7 @@ class SpaceTags {
   SpaceLeaves libraryLeaves(spirv::Id type) const;
   SpaceLeaves unknownLeaves(spirv::Id type) const;
   SpaceTag builtInTag(const spirv::Variable& variable) const;
-  SpaceLeaves sourceLeaves(const PointerPath& pointer) const;
+  SpaceLeaves sourceLeaves(const spirv::Access& pointer) const;
   SpaceTag constantTag(spirv::Id value) const;
 
   SpaceLeaves evaluate(const spirv::Instruction& instruction) const;

@@ -287,14 +287,14 @@ class Interpolations {
   }
 
   Form evaluateLoad(const spirv::Instruction& load) {
-    const PointerPath pointer = resolvePointer(module_, load.at(0));
+    const spirv::Access pointer = module_.access(load.at(0));
     if (spirv::isLocal(module_, pointer.base)) {
       const auto stored = spirv::storedValues(module_, load);
       return stored && stored->size() == 1 ? of(stored->front()) : Form{};
     }
     // The index of the vertex data itself, not that of the list of indices.
     if (module_.types().get(load.type).kind == spirv::Type::Kind::integer || isIntegerVector(load.type)) return {};
-    for (const Id index : pointer.ids)
+    for (const Id index : pointer.indexIds)
       if (const auto vertex = vertexOf(index)) return ofVertex(*vertex);
     return {};
   }
@@ -320,14 +320,14 @@ class Interpolations {
         return i->at(1);
     }
     if (i->op != Op::OpLoad) return {};
-    const PointerPath pointer = resolvePointer(module_, i->at(0));
-    if (pointer.ids.empty() || spirv::isLocal(module_, pointer.base) || module_.variable(pointer.base)) return {};
-    const spirv::Instruction* last = module_.definition(pointer.ids.back());
-    if (last && !module_.isConstant(pointer.ids.back())) return cornerOf(*last);
+    const spirv::Access pointer = module_.access(i->at(0));
+    if (pointer.indexIds.empty() || spirv::isLocal(module_, pointer.base) || module_.variable(pointer.base)) return {};
+    const spirv::Instruction* last = module_.definition(pointer.indexIds.back());
+    if (last && !module_.isConstant(pointer.indexIds.back())) return cornerOf(*last);
     // uvec3 indices[]: indices[triangle].y
-    const auto component = pointer.path.back();
+    const auto component = pointer.indices.back();
     const bool ofVector =
-        pointer.path.size() >= 2 && !pointer.path[pointer.path.size() - 2] && component && *component < 3;
+        pointer.indices.size() >= 2 && !pointer.indices[pointer.indices.size() - 2] && component && *component < 3;
     return ofVector ? std::optional<std::size_t>(*component) : std::nullopt;
   }
 

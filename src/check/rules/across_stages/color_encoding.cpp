@@ -12,7 +12,9 @@
 #include <tuple>
 
 #include "check/flow/pipeline_spaces.h"
+#include "check/output_access.h"
 #include "check/rules/rules.h"
+#include "spirv/access.h"
 
 namespace quintet::check {
 namespace {
@@ -38,8 +40,11 @@ class ColorEncoding {
       for (const spirv::Instruction& i : module.instructions()) {
         if (spirv::isExtended(module, i, GLSLstd450Pow)) checkDecoding(stage, i);
         if (i.op != Op::OpStore) continue;
-        const program::Output* output = outputOf(module, i.at(0));
-        if (output && output->kind == program::OutputKind::color) follow(stage, i.at(1), *output);
+        const OutputAccess access = outputOf(module, i.at(0));
+        const auto& outputs = graph_.program.outputs;
+        if (access.target == OutputTarget::output && access.slot < outputs.size() &&
+            outputs[access.slot].kind == program::OutputKind::color)
+          follow(stage, i.at(1), outputs[access.slot]);
       }
     }
   }
@@ -51,26 +56,6 @@ class ColorEncoding {
     Id id;
     Path path;
   };
-
-  // Returns the output to which a pointer points: OutputArray(frame.outputs[slot]).at[…]; null if it is none.
-  const program::Output* outputOf(const spirv::Module& module, Id pointer) const {
-    const spirv::Instruction* base = module.definition(resolvePointer(module, pointer).base);
-    if (!base || base->op != Op::OpConvertUToPtr) return nullptr;
-    const spirv::Instruction* address = module.definition(base->at(0));
-    if (!address || address->op != Op::OpLoad) return nullptr;
-    const PointerPath from = resolvePointer(module, address->at(0));
-    spirv::Id type = from.type;
-    for (std::size_t i = 0; i + 1 < from.path.size(); ++i) {
-      const spirv::Type& t = module.types().get(type);
-      if (t.kind != spirv::Type::Kind::structure || !from.path[i] || *from.path[i] >= t.members.size()) return nullptr;
-      if (t.memberNames[*from.path[i]] == "outputs" && i + 2 == from.path.size()) {
-        const auto slot = from.path[i + 1];
-        return slot && *slot < graph_.program.outputs.size() ? &graph_.program.outputs[*slot] : nullptr;
-      }
-      type = t.members[*from.path[i]];
-    }
-    return nullptr;
-  }
 
   void follow(std::size_t stage, Id value, const program::Output& output) {
     open_ = {{stage, value, {}}};
@@ -140,22 +125,19 @@ class ColorEncoding {
 
   // The values that are stored to a local variable or, in any stage, to a payload.
   void load(const Open& open, const spirv::Module& module, const spirv::Instruction& i) {
-    const PointerPath pointer = resolvePointer(module, i.at(0));
+    const spirv::Access pointer = module.access(i.at(0));
     if (!spirv::isLocal(module, pointer.base) && !graph_.stages[open.stage].facts->variable(pointer.base)) return;
     Path wanted;
-    for (const auto& index : pointer.path) wanted.push_back(index.value_or(kAnyIndex));
+    for (const auto& index : pointer.indices) wanted.push_back(index.value_or(kAnyIndex));
     wanted.insert(wanted.end(), open.path.begin(), open.path.end());
     for (const auto& [stage, variable] : spaces_.linked({open.stage, pointer.base})) {
       const spirv::Module& writer = graph_.stages[stage].facts->module();
       for (const spirv::Instruction& store : writer.instructions()) {
         if (store.op != Op::OpStore) continue;
-        const PointerPath target = resolvePointer(writer, store.at(0));
+        const spirv::Access target = writer.access(store.at(0));
         if (target.base != variable) continue;
-        const std::size_t common = std::min(wanted.size(), target.path.size());
-        bool overlaps = true;
-        for (std::size_t k = 0; k < common; ++k)
-          overlaps = overlaps && (!target.path[k] || wanted[k] == kAnyIndex || *target.path[k] == wanted[k]);
-        if (overlaps)
+        const std::size_t common = std::min(wanted.size(), target.indices.size());
+        if (overlaps(target, wanted))
           open_.push_back(
               {stage, store.at(1), Path(wanted.begin() + static_cast<std::ptrdiff_t>(common), wanted.end())});
       }
@@ -217,9 +199,9 @@ class ColorEncoding {
     const spirv::Instruction* load = module.definition(image);
     while (load && load->op == Op::OpImage) load = module.definition(load->at(0));
     if (!load || load->op != Op::OpLoad) return false;
-    const PointerPath texture = resolvePointer(module, load->at(0));
-    if (texture.ids.size() != 1 || module.name(texture.base).find("extures") == std::string::npos) return false;
-    const spirv::Instruction* index = module.definition(texture.ids[0]);
+    const spirv::Access texture = module.access(load->at(0));
+    if (texture.indexIds.size() != 1 || module.name(texture.base).find("extures") == std::string::npos) return false;
+    const spirv::Instruction* index = module.definition(texture.indexIds[0]);
     while (index && index->op == Op::OpCopyObject) index = module.definition(index->at(0));
     if (!index) return false;
     std::vector<std::optional<std::uint32_t>> path;
@@ -229,23 +211,15 @@ class ColorEncoding {
       while (index && index->op == Op::OpCopyLogical) index = module.definition(index->at(0));
     }
     if (!index || index->op != Op::OpLoad) return false;
-    PointerPath from = resolvePointer(module, index->at(0));
-    from.path.insert(from.path.end(), path.begin(), path.end());
-    spirv::Id type = from.type;
-    for (const auto& k : from.path) {
-      const spirv::Type& t = module.types().get(type);
-      if (t.kind == spirv::Type::Kind::runtimeArray || t.kind == spirv::Type::Kind::array) {
-        type = t.element;
-        continue;
-      }
-      if (t.kind != spirv::Type::Kind::structure || !k || *k >= t.members.size()) return false;
-      const std::string& name = t.memberNames[*k];
-      if (t.name == "Parameters")
+    spirv::Access from = module.access(index->at(0));
+    from.indices.insert(from.indices.end(), path.begin(), path.end());
+    for (const spirv::SelectedMember& selected : spirv::selectedMembers(module, from)) {
+      if (selected.structure.name == "Parameters")
         return std::ranges::any_of(graph_.program.parameters, [&](const program::Parameter& p) {
-          return p.name == name && p.type == program::ParameterType::image && p.sRgb;
+          return p.name == selected.name() && p.type == program::ParameterType::image && p.sRgb;
         });
-      if (t.name == "MaterialData") return name == "baseColorTexture" || name == "emissiveTexture";
-      type = t.members[*k];
+      if (selected.structure.name == "MaterialData")
+        return selected.name() == "baseColorTexture" || selected.name() == "emissiveTexture";
     }
     return false;
   }
@@ -264,18 +238,10 @@ class ColorEncoding {
   }
 
   std::optional<double> defaultOf(const spirv::Module& module, Id pointer) const {
-    const PointerPath from = resolvePointer(module, pointer);
-    spirv::Id type = from.type;
-    for (const auto& index : from.path) {
-      const spirv::Type& t = module.types().get(type);
-      if (t.kind != spirv::Type::Kind::structure || !index || *index >= t.members.size()) return {};
-      if (t.name == "Parameters" || t.name == "gsnParameters_") {
+    for (const spirv::SelectedMember& selected : spirv::selectedMembers(module, module.access(pointer)))
+      if (selected.structure.name == "Parameters" || selected.structure.name == "gsnParameters_")
         for (const program::Parameter& p : graph_.program.parameters)
-          if (p.name == t.memberNames[*index]) return p.defaultValue[0];
-        return {};
-      }
-      type = t.members[*index];
-    }
+          if (p.name == selected.name()) return p.defaultValue[0];
     return {};
   }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "check/rules/rules.h"
+#include "spirv/access.h"
 
 namespace quintet::check {
 namespace {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Q712: an output of the program that no shader stores. Q714: an output that is overwritten, although it is the sum over
-// samples. Stores are recognized by their address, which comes from Frame::outputs (shaders/quintet/shared/frame.h).
+// samples.
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "check/output_access.h"
 #include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
+#include "spirv/access.h"
 #include "spirv/source_text.h"
 #include "spirv/value_flow.h"
 
@@ -16,75 +18,6 @@ namespace {
 using spv::Op;
 
 constexpr std::uint32_t kBatchSamples = 4;  // shaders/quintet/shared/frame.h
-
-bool isChain(const spirv::Instruction& i) { return i.op == Op::OpAccessChain || i.op == Op::OpInBoundsAccessChain; }
-
-// A pointer's access chain: its base and all indices.
-struct Chain {
-  const spirv::Instruction* base = nullptr;
-  std::vector<std::optional<std::uint32_t>> indices;
-};
-
-Chain chainOf(const spirv::Module& module, spirv::Id pointer) {
-  Chain chain;
-  for (int depth = 0; depth < 64; ++depth) {
-    chain.base = module.definition(pointer);
-    if (!chain.base || (!isChain(*chain.base) && chain.base->op != Op::OpCopyObject)) break;
-    std::vector<std::optional<std::uint32_t>> indices;
-    for (std::size_t i = 1; isChain(*chain.base) && i < chain.base->operands.size(); ++i)
-      indices.push_back(module.constantBits(chain.base->at(i)));
-    chain.indices.insert(chain.indices.begin(), indices.begin(), indices.end());
-    pointer = chain.base->at(0);
-  }
-  return chain;
-}
-
-// Name of the last structure member on the way, and whether a constant index follows it.
-struct MemberAccess {
-  std::string name;
-  std::optional<std::uint32_t> index;
-};
-
-MemberAccess memberOf(const spirv::Module& module, const Chain& chain) {
-  MemberAccess result;
-  if (!chain.base) return result;
-  spirv::Id type = module.types().get(chain.base->type).element;
-  for (const std::optional<std::uint32_t>& index : chain.indices) {
-    const spirv::Type& at = module.types().get(type);
-    if (at.kind == spirv::Type::Kind::structure) {
-      if (!index || *index >= at.members.size()) return {};
-      result = {at.memberNames[*index], {}};
-      type = at.members[*index];
-    } else {
-      result.index = index;
-      type = at.element;
-    }
-  }
-  return result;
-}
-
-enum class Target { other, output, unknown };
-struct OutputAccess {
-  Target target = Target::other;
-  std::uint32_t slot = 0;
-};
-
-// What a pointer into a buffer points to.
-OutputAccess outputOf(const spirv::Module& module, spirv::Id pointer) {
-  const spirv::Instruction* access = module.definition(pointer);
-  const spirv::Type& type = module.types().get(access ? access->type : 0);
-  if (static_cast<spv::StorageClass>(type.storage) != spv::StorageClass::PhysicalStorageBuffer) return {};
-  const Chain chain = chainOf(module, pointer);
-  const spirv::Instruction* address = chain.base;
-  for (int depth = 0; depth < 8 && address; ++depth) {
-    if (address->op != Op::OpConvertUToPtr && address->op != Op::OpBitcast && address->op != Op::OpCopyObject) break;
-    address = module.definition(address->at(0));
-  }
-  if (!address || address->op != Op::OpLoad) return {Target::unknown, 0};
-  const MemberAccess member = memberOf(module, chainOf(module, address->at(0)));
-  if (member.name != "outputs") return {};
-  return member.index ? OutputAccess{Target::output, *member.index} : OutputAccess{Target::unknown, 0};
-}
 
 struct Store {
   const PipelineStage* stage = nullptr;
@@ -124,8 +57,8 @@ class OutputRule {
       if (instruction.op == Op::OpFunctionCall) unknown_ = true;
       if (instruction.op != Op::OpStore && instruction.op != Op::OpCopyMemory && !atomic) continue;
       const OutputAccess access = outputOf(module, instruction.at(0));
-      if (access.target == Target::output) stores_.push_back({&stage, i, access.slot});
-      unknown_ = unknown_ || access.target == Target::unknown;
+      if (access.target == OutputTarget::output) stores_.push_back({&stage, i, access.slot});
+      unknown_ = unknown_ || access.target == OutputTarget::unknown;
     }
   }
 
@@ -142,7 +75,7 @@ class OutputRule {
   bool loadsOutput(const spirv::Module& module, const spirv::Instruction& i, std::uint32_t slot) const {
     if (i.op != Op::OpLoad) return false;
     const OutputAccess access = outputOf(module, i.at(0));
-    return access.target == Target::output && access.slot == slot;
+    return access.target == OutputTarget::output && access.slot == slot;
   }
 
   // Q714: reported if no store to the output adds to its old value.
@@ -171,7 +104,9 @@ class OutputRule {
     const auto position = module.position(store.instruction);
     const spirv::ControlFlow& flow = store.stage->facts->flow(position->function);
     const auto loadsIndex = [&](const spirv::Instruction& i) {
-      return i.op == Op::OpLoad && memberOf(module, chainOf(module, i.at(0))).name == "firstSample";
+      if (i.op != Op::OpLoad) return false;
+      const auto members = spirv::selectedMembers(module, module.access(i.at(0)));
+      return !members.empty() && members.back().name() == "firstSample";
     };
     for (std::size_t b = flow.dominator(position->block); b != spirv::Module::kNone; b = flow.dominator(b)) {
       const spirv::Id condition = flow.condition(b);

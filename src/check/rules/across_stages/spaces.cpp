@@ -138,7 +138,7 @@ class SpaceRules {
     return !spirv::dependsOn(module_, value, [&](const spirv::Instruction& i) {
       if (i.op == Op::OpPhi || i.op == Op::OpSelect) return true;
       if (i.op != Op::OpLoad) return false;
-      const PointerPath pointer = resolvePointer(module_, i.at(0));
+      const spirv::Access pointer = module_.access(i.at(0));
       return module_.variable(pointer.base) != nullptr &&
              module_.variable(pointer.base)->storage != spv::StorageClass::PushConstant;
     });

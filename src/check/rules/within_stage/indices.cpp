@@ -3,7 +3,7 @@
 // differs between invocations, without nonuniformEXT.
 #include "check/rules/rules.h"
 #include "spirv/value_flow.h"
-#include "spirv/value_range.h"
+#include "spirv/value_ranges.h"
 
 namespace quintet::check {
 namespace {

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "check/rules/rules.h"
+#include "spirv/access.h"
 #include "spirv/source_text.h"
 #include "spirv/value_flow.h"
 

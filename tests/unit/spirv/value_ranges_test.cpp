@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ranges of values: of the argument of a store to a payload member in small shaders.
-#include "spirv/value_range.h"
+#include "spirv/value_ranges.h"
 
 #include <random>
 
