@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# quintet_add_suites(TARGET LABEL TIMEOUT source…)
+# quintet_add_suites(TARGET LABEL TIMEOUT source…)         tests that use the device
+# quintet_add_host_suites(TARGET LABEL TIMEOUT source…)    tests that use none
 #
-# Adds one CTest entry LABEL.SUITE per GoogleTest suite of TARGET: the tests of a suite share the device and its
-# compiled shaders. Suites are found by the TEST macros of the sources; CMake runs again if a source changes.
+# Adds one CTest entry LABEL.SUITE per GoogleTest suite of TARGET: the tests of a suite share the device, its compiled
+# shaders, and the tables of the GLSL compiler. Suites are found by the TEST macros of the sources; CMake runs again if a
+# source changes.
 #
 # Suites share the device. On a CPU they spend most of their time in the driver's compiler, which has one thread. On
 # machines with many cores each suite counts as several jobs, so that at most eight suites use the device at a time.
@@ -25,6 +27,7 @@ set(QUINTET_SUITE_COSTS
   gpu.BsdfSampling 30 gpu.SolidFarSide 25 gpu.TriangleLight 25 gpu.LampBehindPanes 22 gpu.ErrorEstimate 22
   gpu.LightTreeDevice 20 gpu.Instrument 17 gpu.BsdfFurnace 15 gpu.SolidGlass 15 gpu.Csg 13 gpu.Furnace 11
   gpu.SolidLamp 10
+  unit.Mistakes 60 unit.Idioms 30 unit.Mutation 30 unit.LibraryMutation 30 unit.CheckBuiltIn 25 unit.BuiltInPrograms 20
 )
 
 # Sets OUT to the seconds of an entry of QUINTET_SUITE_COSTS; 0 if it is missing.
@@ -38,7 +41,8 @@ function(quintet_suite_cost OUT NAME)
   set(${OUT} ${cost} PARENT_SCOPE)
 endfunction()
 
-function(quintet_add_suites TARGET LABEL TIMEOUT)
+# Adds the entries and sets OUT to their names.
+function(quintet_add_suite_tests OUT TARGET LABEL TIMEOUT)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${ARGN})
   foreach(source IN LISTS ARGN)
     file(STRINGS ${source} lines REGEX "^(TYPED_)?TEST(_F|_P)?\\(")
@@ -50,10 +54,23 @@ function(quintet_add_suites TARGET LABEL TIMEOUT)
   list(REMOVE_DUPLICATES suites)
   foreach(suite IN LISTS suites)
     set(name ${LABEL}.${suite})
+    list(APPEND names ${name})
     quintet_suite_cost(cost ${name})
     add_test(NAME ${name} COMMAND ${TARGET} --gtest_filter=${suite}.*:*/${suite}.*:${suite}/*)
-    set_tests_properties(${name} PROPERTIES ENVIRONMENT "QUINTET_VALIDATE=1;LP_NUM_THREADS=4" LABELS ${LABEL} TIMEOUT ${TIMEOUT}
-      PROCESSORS ${QUINTET_DEVICE_JOBS} COST ${cost})
+    set_tests_properties(${name} PROPERTIES LABELS ${LABEL} TIMEOUT ${TIMEOUT} COST ${cost})
+  endforeach()
+  set(${OUT} ${names} PARENT_SCOPE)
+endfunction()
+
+function(quintet_add_host_suites TARGET LABEL TIMEOUT)
+  quintet_add_suite_tests(names ${TARGET} ${LABEL} ${TIMEOUT} ${ARGN})
+endfunction()
+
+function(quintet_add_suites TARGET LABEL TIMEOUT)
+  quintet_add_suite_tests(names ${TARGET} ${LABEL} ${TIMEOUT} ${ARGN})
+  foreach(name IN LISTS names)
+    set_tests_properties(${name} PROPERTIES ENVIRONMENT "QUINTET_VALIDATE=1;LP_NUM_THREADS=4"
+      PROCESSORS ${QUINTET_DEVICE_JOBS})
     if(name STREQUAL gpu.GpuContext)  # tests the variables that the library sets for lavapipe
       set_tests_properties(${name} PROPERTIES ENVIRONMENT QUINTET_VALIDATE=1)
     endif()

@@ -13,9 +13,8 @@
 namespace quintet::spirv {
 namespace {
 
-constexpr int kMaxChain = 64;           // nested access chains
-constexpr std::size_t kMaxValues = 16;  // of possibleValues()
-constexpr int kMaxCallLines = 16;       // lines of a call that location() searches
+constexpr int kMaxChain = 64;      // nested access chains
+constexpr int kMaxCallLines = 16;  // lines of a call that location() searches
 constexpr std::size_t kHeaderWords = 5;
 constexpr std::size_t kMaxWords = std::size_t{1} << 26;
 
@@ -506,34 +505,6 @@ bool Module::isConstant(Id id) const {
   return value && (value->op == spv::Op::OpConstant || value->op == spv::Op::OpConstantTrue ||
                    value->op == spv::Op::OpConstantFalse || value->op == spv::Op::OpConstantNull ||
                    value->op == spv::Op::OpConstantComposite || value->op == spv::Op::OpUndef);
-}
-
-std::optional<std::vector<std::uint32_t>> Module::possibleValues(Id id) const {
-  std::vector<Id> open{id}, seen;
-  std::vector<std::uint32_t> values;
-  while (!open.empty()) {
-    const Id next = open.back();
-    open.pop_back();
-    if (std::ranges::find(seen, next) != seen.end()) continue;
-    seen.push_back(next);
-    if (const auto bits = constantBits(next)) {
-      if (std::ranges::find(values, *bits) == values.end()) values.push_back(*bits);
-      if (values.size() > kMaxValues) return {};
-      continue;
-    }
-    const Instruction* value = definition(next);
-    if (!value || seen.size() > 8 * kMaxValues) return {};
-    if (value->op == spv::Op::OpSelect) {
-      open.push_back(value->at(1));
-      open.push_back(value->at(2));
-    } else if (value->op == spv::Op::OpPhi) {
-      for (std::size_t i = 0; i < value->operands.size(); i += 2) open.push_back(value->at(i));
-    } else {
-      return {};
-    }
-  }
-  std::ranges::sort(values);
-  return values;
 }
 
 Access Module::access(Id pointer) const {

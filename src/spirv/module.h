@@ -103,9 +103,6 @@ class Module {
   std::optional<std::uint32_t> constantBits(Id id) const;
   std::optional<double> constantFloat(Id id) const;
   bool isConstant(Id id) const;  // OpConstant…, including composites, and OpUndef
-  // Returns all values that an id can have, sorted, if they are constants: follows OpPhi and OpSelect, up to 16 values.
-  std::optional<std::vector<std::uint32_t>> possibleValues(Id id) const;
-
   // Returns an Access without base if the pointer is malformed.
   Access access(Id pointer) const;
 

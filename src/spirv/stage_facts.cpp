@@ -149,17 +149,13 @@ void StageFacts::markUsed() {
 
 ArgumentValues StageFacts::values(std::size_t index, Id id) const {
   ArgumentValues result;
-  if (auto found = module_.possibleValues(id)) {
-    result.values = std::move(*found);
-  } else {
-    const ValueRange range = ranges_.rangeAt(index, id);
-    if (range.empty()) return result;
-    for (const double value : range.values) result.values.push_back(static_cast<std::uint32_t>(std::int64_t(value)));
-    std::ranges::sort(result.values);
-    result.each = range.occurrence == Occurrence::each && !ranges_.guarded(index, id);
-    result.ones = range.ones, result.zeros = range.zeros;
-    if (range.min >= 0.0 && range.min <= 4294967295.0) result.min = static_cast<std::uint32_t>(range.min);
-  }
+  const ValueRange range = ranges_.rangeAt(index, id);
+  if (range.empty()) return result;
+  for (const double value : range.values) result.values.push_back(static_cast<std::uint32_t>(std::int64_t(value)));
+  std::ranges::sort(result.values);
+  result.each = range.occurrence == Occurrence::each && !ranges_.guarded(index, id);
+  result.ones = range.ones, result.zeros = range.zeros;
+  if (range.min >= 0.0 && range.min <= 4294967295.0) result.min = static_cast<std::uint32_t>(range.min);
   result.known = !result.values.empty();
   if (result.known) result.min = result.values.front();
   return result;

@@ -174,7 +174,7 @@ ValueRange fitted(const Type& type, ValueRange range) {
   if (range.min >= 0.0) {
     std::uint32_t above = 0xFFFFFFFFu;
     for (std::uint32_t high = bitsOf(range.max); high != 0; high >>= 1) above <<= 1;
-    range.zeros |= bitsOf(range.max) == 0xFFFFFFFFu ? 0u : above;
+    range.zeros |= above;
     const double least = range.ones, most = static_cast<double>(~range.zeros);
     if (range.min < least || range.max > most) range.occurrence = Occurrence::unknown;
     range.min = std::max(range.min, least), range.max = std::min(range.max, most);
@@ -202,11 +202,13 @@ ValueRange joined(const ValueRange& a, const ValueRange& b) {
 }
 
 ValueRange limited(ValueRange range, double min, double max) {
-  if (range.onlyNan()) return range;
+  if (range.onlyNan()) return never();
+  range.nan = false;
   if (range.min >= min && range.max <= max) return range;
   range.min = std::max(range.min, min), range.max = std::min(range.max, max);
+  const bool known = !range.values.empty();
   std::erase_if(range.values, [&](double v) { return v < min || v > max; });
-  if (range.min > range.max) return never();
+  if (range.min > range.max || (known && range.values.empty())) return never();
   if (!range.values.empty()) range.min = range.values.front(), range.max = range.values.back();
   if (range.occurrence == Occurrence::many && range.min < range.max && range.values.empty() && max < kInf)
     range.occurrence = Occurrence::unknown;
@@ -238,9 +240,14 @@ ValueRange binary(const Type& type, Op op, const ValueRange& a, const ValueRange
       };
       return combine(type, a, b, exact, productHull, Keeps::each);
     }
-    case Op::OpFMul: return combine(type, a, b, product, productHull, Keeps::nothing);
+    case Op::OpFMul:
+      return combine(
+          type, a, b, [](double x, double y) { return x * y; }, productHull, Keeps::nothing);
     case Op::OpFDiv: {
-      const auto exact = [](double x, double y) { return y != 0.0 ? std::optional(x / y) : std::nullopt; };
+      // Quotients that a float cannot hold have an error.
+      const auto exact = [&](double x, double y) {
+        return y != 0.0 && stored(type, x / y) * y == x ? std::optional(x / y) : std::nullopt;
+      };
       const auto hull = [](const ValueRange& l, const ValueRange& r) -> std::optional<Pair> {
         if (r.min <= 0.0 && r.max >= 0.0) return {};
         const double all[] = {l.min / r.min, l.min / r.max, l.max / r.min, l.max / r.max};
@@ -263,7 +270,8 @@ ValueRange binary(const Type& type, Op op, const ValueRange& a, const ValueRange
     case Op::OpSRem:
     case Op::OpSMod: {
       const std::optional<double> size = b.constant();
-      if (size && *size > 0.0 && a.min >= 0.0 && a.occurrence == Occurrence::many) {
+      if (size && *size > 0.0 && *size <= kLongRun && a.min >= 0.0 && a.max >= *size - 1.0 &&
+          a.occurrence == Occurrence::many) {
         ValueRange result = ValueRange::between(0.0, *size - 1.0, Occurrence::each);
         if (*size <= ValueRange::kMaxValues)
           for (double v = 0.0; v < *size; ++v) result.values.push_back(v);
@@ -283,12 +291,15 @@ ValueRange binary(const Type& type, Op op, const ValueRange& a, const ValueRange
       return combine(type, a, b, exact, hull, Keeps::nothing);
     }
     case Op::OpFMod: {
-      const auto exact = [](double x, double y) {
-        return y != 0.0 ? std::optional(x - y * std::floor(x / y)) : std::nullopt;
+      const auto exact = [&](double x, double y) {
+        const double rest = x - y * std::floor(x / y);
+        return y != 0.0 && stored(type, x / y) * y == x ? std::optional(rest) : std::nullopt;
       };
-      const auto hull = [](const ValueRange&, const ValueRange& r) -> std::optional<Pair> {
-        if (r.min <= 0.0) return {};
-        return Pair{0.0, r.max};
+      const auto hull = [](const ValueRange& l, const ValueRange& r) -> std::optional<Pair> {
+        const double largest = std::max(std::abs(l.min), std::abs(l.max));
+        if (r.min <= 0.0 || largest / r.min > std::numeric_limits<float>::max()) return {};
+        const double error = std::max(largest, r.max) * kRangeError;
+        return Pair{-error, r.max + error};
       };
       return combine(type, a, b, exact, hull, Keeps::nothing);
     }
@@ -320,7 +331,8 @@ ValueRange bitwise(const Type& type, Op op, const ValueRange& a, const ValueRang
   if (op == Op::OpBitwiseAnd && constant && *constant >= 0.0) {
     const ValueRange& other = b.constant() ? a : b;
     const std::uint32_t bits = bitsOf(*constant);
-    if (other.occurrence == Occurrence::many && other.min >= 0.0 && (bits & (bits + 1)) == 0) {
+    if (other.occurrence == Occurrence::many && other.min >= 0.0 && other.max >= *constant && *constant < kLongRun &&
+        (bits & (bits + 1)) == 0) {
       ValueRange result = ValueRange::between(0.0, *constant, Occurrence::each);
       if (*constant < ValueRange::kMaxValues)
         for (double v = 0.0; v <= *constant; ++v) result.values.push_back(v);
@@ -355,7 +367,7 @@ ValueRange bitwise(const Type& type, Op op, const ValueRange& a, const ValueRang
   if (!result.values.empty()) return result;
   if (op == Op::OpBitwiseAnd) result.ones |= a.ones & b.ones, result.zeros |= a.zeros | b.zeros;
   if (op == Op::OpBitwiseOr) result.ones |= a.ones | b.ones, result.zeros |= a.zeros & b.zeros;
-  if (op == Op::OpShiftLeftLogical)
+  if (op == Op::OpShiftLeftLogical && type.width == 32)
     if (const std::optional<int> shift = shiftOf(b))
       result.ones |= a.ones << *shift, result.zeros |= (a.zeros << *shift) | ((1u << *shift) - 1u);
   return fitted(type, std::move(result));
@@ -375,11 +387,18 @@ ValueRange compared(const Comparison& comparison, const ValueRange& a, const Val
 ValueRange mapped(const Type& type, const ValueRange& a, double (*f)(double)) {
   if (a.onlyNan()) return a;
   ValueRange result = a;
+  result.ones = result.zeros = 0;
   result.min = f(a.min), result.max = f(a.max);
   std::set<double> values;
   for (const double v : a.values) values.insert(f(v) + 0.0);
   result.values.assign(values.begin(), values.end());
   return fitted(type, std::move(result));
+}
+
+ValueRange signOf(const Type& type, const ValueRange& a) {
+  ValueRange result = mapped(type, a, [](double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; });
+  if (result.occurrence == Occurrence::many) result.occurrence = Occurrence::unknown;
+  return result;
 }
 
 ValueRange magnitude(const Type& type, const ValueRange& a) {

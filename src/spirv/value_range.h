@@ -20,8 +20,9 @@ namespace quintet::spirv {
 enum class Occurrence {
   unknown,
   each,  // each of ValueRange::values occurs, or min and max if there are none, wherever no branch depends on it
-  many,  // long runs of consecutive integers, such as the coordinates of pixels
+  many,  // runs of at least kLongRun consecutive integers, as far as the range allows, such as the coordinates of pixels
 };
+constexpr double kLongRun = 256;
 
 // Integers of up to 32 bits, booleans (0 or 1) and floats.
 struct ValueRange {
@@ -41,7 +42,7 @@ struct ValueRange {
   bool empty() const { return min > max && !nan; }  // the instruction never runs
   bool onlyNan() const { return min > max && nan; }
   std::optional<double> constant() const { return min == max && !nan ? std::optional(min) : std::nullopt; }
-  // A value of at least `count` that certainly occurs: min, or the largest value. Nullopt if there may be none.
+  // Min or max, if a value of at least `count` certainly occurs: some value does in the first case, max in the second.
   std::optional<double> atLeast(double count) const;
   bool contains(double value) const;
 };
@@ -65,13 +66,15 @@ double stored(const Type& type, double value);
 ValueRange fitted(const Type& type, ValueRange range);
 
 ValueRange joined(const ValueRange& a, const ValueRange& b);   // union
-ValueRange limited(ValueRange range, double min, double max);  // intersection; NaN remains
+ValueRange limited(ValueRange range, double min, double max);  // intersection; excludes NaN
 
 // `op` is an addition, subtraction, multiplication, division or remainder.
 ValueRange binary(const Type& type, spv::Op op, const ValueRange& a, const ValueRange& b);
 ValueRange bitwise(const Type& type, spv::Op op, const ValueRange& a, const ValueRange& b);  // or a shift
 ValueRange compared(const Comparison& comparison, const ValueRange& a, const ValueRange& b);
+// `monotone` maps consecutive integers to consecutive integers.
 ValueRange mapped(const Type& type, const ValueRange& a, double (*monotone)(double));
+ValueRange signOf(const Type& type, const ValueRange& a);  // -1, 0 or 1
 ValueRange magnitude(const Type& type, const ValueRange& a);
 // min(a, b), or max(a, b) if `larger`. A NaN can give either operand.
 ValueRange chosen(const Type& type, const ValueRange& a, const ValueRange& b, bool larger);

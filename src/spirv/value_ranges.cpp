@@ -4,6 +4,7 @@
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <set>
@@ -23,6 +24,8 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::size_t kNone = Module::kNone;
 constexpr int kMaxDepth = 100;             // nested evaluations; deeper values are unknown
 constexpr std::size_t kMaxElements = 256;  // of an array whose elements are joined
+constexpr double kMaxStep = 1 << 20;       // of a counted loop
+constexpr double kSineError = 1.0 / 2048;  // absolute, of sin and cos: Vulkan's precision requirements
 
 // Vulkan's limits of built-ins, for each component.
 ValueRange builtInRange(spv::BuiltIn builtIn, const Type& type, const Path& path) {
@@ -56,6 +59,15 @@ struct CountedLoop {
   bool complete = false;  // only the header ends the loop, so each value of `inside` occurs
 };
 
+// A variable that each round changes by the same operand, before anything is known about its values.
+struct LoopShape {
+  std::size_t function = 0, header = 0, latch = 0;
+  Id first = 0;      // the value before the loop
+  ValuePart next{};  // the value after a round
+  Id by = 0;         // what a round adds or subtracts
+  bool subtracts = false;
+};
+
 }  // namespace
 
 struct ValueRanges::Impl {
@@ -79,6 +91,7 @@ struct ValueRanges::Impl {
   ValueContext context;
   Evaluator base;
   std::map<std::pair<std::size_t, std::size_t>, Evaluator> byBlock;
+  std::map<std::array<std::size_t, 3>, Evaluator> byEdge;  // function, from, to
   std::map<std::size_t, ControlFlow> flows;
   std::map<Id, std::optional<CountedLoop>> loops;
   std::set<Id> openLoops;
@@ -112,10 +125,18 @@ struct ValueRanges::Impl {
                        const Path& path);
 
   const std::optional<CountedLoop>& countedLoop(Id phi);
-  std::optional<CountedLoop> findLoop(const Instruction& phi);
+  std::optional<LoopShape> loopShape(const Instruction& phi);
+  std::optional<CountedLoop> findLoop(Id phi, const LoopShape& shape);
   Evaluator& at(std::size_t function, std::size_t block);
+  const Evaluator& alongEdge(std::size_t function, std::size_t from, std::size_t to);
   void addConditions(Evaluator& in, std::size_t function, std::size_t block);
-  ValueRange chosenFrom(Evaluator& in, const Type& type, const std::vector<Id>& values, const Path& path,
+  // A value that a phi or select can have, and the conditions under which it has it.
+  struct Choice {
+    Id value;
+    const Evaluator* when;
+  };
+  ValueRange choice(Evaluator& in, const Choice& choice, const Path& path, const Type& type);
+  ValueRange chosenFrom(Evaluator& in, const Type& type, const std::vector<Choice>& choices, const Path& path,
                         const std::vector<Id>& conditions);
   void addCondition(Evaluator& in, Id condition, bool holds, int nesting = 0);
   void addLimit(Evaluator& in, Id value, const Path& path, double min, double max);
@@ -218,6 +239,10 @@ ValueRange ValueRanges::Impl::converted(const Instruction& value, const ValueRan
     case Op::OpUConvert:
     case Op::OpSConvert:
       if (!isInteger(type)) return rangeOf(type);
+      // The conversion decides the sign of the source.
+      if (value.op == Op::OpUConvert && from.min < 0.0) return rangeOf(type);
+      if (value.op == Op::OpSConvert && from.max >= std::ldexp(1.0, static_cast<int>(source.width) - 1))
+        return rangeOf(type);
       if (from.min >= lowest(type) && from.max <= highest(type)) return from;
       if (from.values.empty()) return rangeOf(type);
       for (double& v : result.values) v = stored(type, v);
@@ -309,7 +334,9 @@ ValueRange ValueRanges::Impl::operation(Evaluator& in, Op op, std::span<const st
       const bool vector = typeOf(operands[0]).kind == Kind::vector;
       const std::optional<double> chosenBy = evaluate(in, operands[0], vector ? path : Path{}).constant();
       if (chosenBy) return operand(*chosenBy != 0.0 ? 1 : 2);
-      return chosenFrom(in, type, {operands[1], operands[2]}, path, {operands[0]});
+      Evaluator ifTrue, ifFalse;
+      if (!vector) addCondition(ifTrue, operands[0], true), addCondition(ifFalse, operands[0], false);
+      return chosenFrom(in, type, {{operands[1], &ifTrue}, {operands[2], &ifFalse}}, path, {operands[0]});
     }
     case Op::OpVectorExtractDynamic: {
       if (operands.size() < 2) return rangeOf(type);
@@ -328,24 +355,24 @@ ValueRange ValueRanges::Impl::extendedRange(Evaluator& in, const Instruction& va
                                             const Path& path) {
   if (module.extendedSet(value.at(0)) != "GLSL.std.450") return rangeOf(type);
   const auto operand = [&](std::size_t i) { return evaluate(in, value.at(i + 2), path); };
-  const auto noNan = [&](double min, double max) {
+  const auto orNan = [](double min, double max, bool nan = true) {
     ValueRange result = ValueRange::between(min, max);
-    result.nan = operand(0).nan;
+    result.nan = nan;
     return result;
   };
   switch (value.at(1)) {
     case GLSLstd450FAbs:
     case GLSLstd450SAbs: return magnitude(type, operand(0));
     case GLSLstd450FSign:
-    case GLSLstd450SSign:
-      return mapped(type, operand(0), [](double v) { return v > 0.0 ? 1.0 : v < 0.0 ? -1.0 : 0.0; });
+    case GLSLstd450SSign: return signOf(type, operand(0));
     case GLSLstd450Floor: return mapped(type, operand(0), [](double v) { return std::floor(v); });
     case GLSLstd450Ceil: return mapped(type, operand(0), [](double v) { return std::ceil(v); });
     case GLSLstd450Trunc: return mapped(type, operand(0), [](double v) { return std::trunc(v); });
     case GLSLstd450RoundEven: return mapped(type, operand(0), [](double v) { return std::nearbyint(v); });
     case GLSLstd450Fract: {
-      const std::optional<double> constant = operand(0).constant();
-      return constant ? ValueRange::of(*constant - std::floor(*constant)) : noNan(0.0, 1.0);
+      const ValueRange a = operand(0);
+      if (const auto constant = a.constant()) return ValueRange::of(stored(type, *constant - std::floor(*constant)));
+      return orNan(0.0, 1.0, a.nan || std::isinf(a.min) || std::isinf(a.max));
     }
     case GLSLstd450FMin:
     case GLSLstd450UMin:
@@ -359,40 +386,21 @@ ValueRange ValueRanges::Impl::extendedRange(Evaluator& in, const Instruction& va
     case GLSLstd450UClamp:
     case GLSLstd450SClamp:
     case GLSLstd450NClamp: return clamped(type, operand(0), operand(1), operand(2));
-    case GLSLstd450Step: return noNan(0.0, 1.0);
-    case GLSLstd450SmoothStep: {
-      ValueRange result = ValueRange::between(0.0, 1.0);
-      result.nan = true;
-      return result;
-    }
+    case GLSLstd450Step: return orNan(0.0, 1.0, operand(0).nan || operand(1).nan);
+    case GLSLstd450SmoothStep: return orNan(0.0, 1.0);
     case GLSLstd450Sin:
-    case GLSLstd450Cos: {
-      const double slack = 1.0 + kRangeError;
-      ValueRange result = noNan(-slack, slack);
-      result.nan = true;  // of infinity
-      return result;
-    }
+    case GLSLstd450Cos: return orNan(-1.0 - kSineError, 1.0 + kSineError);  // NaN of infinity
     case GLSLstd450Sqrt: {
       const ValueRange a = operand(0);
       if (a.onlyNan() || a.max < 0.0) return onlyNan();
-      if (const auto constant = a.constant(); constant && *constant >= 0.0) return ValueRange::of(std::sqrt(*constant));
-      ValueRange result = ValueRange::between(0.0, a.max >= 0.0 ? std::sqrt(a.max) * (1.0 + kRangeError) : kInf);
-      result.nan = a.nan || a.min < 0.0;
-      return result;
+      return orNan(std::sqrt(std::max(a.min, 0.0)) * (1.0 - kRangeError), std::sqrt(a.max) * (1.0 + kRangeError),
+                   a.nan || a.min < 0.0);
     }
     case GLSLstd450Exp:
-    case GLSLstd450Exp2: return noNan(0.0, kInf);
+    case GLSLstd450Exp2: return orNan(0.0, kInf, operand(0).nan);
     case GLSLstd450Length:
-    case GLSLstd450Distance: {
-      ValueRange result = ValueRange::between(0.0, kInf);
-      result.nan = true;
-      return result;
-    }
-    case GLSLstd450Normalize: {
-      ValueRange result = ValueRange::between(-1.0 - kRangeError, 1.0 + kRangeError);
-      result.nan = true;
-      return result;
-    }
+    case GLSLstd450Distance: return orNan(0.0, kInf);
+    case GLSLstd450Normalize: return orNan(-1.0 - kRangeError, 1.0 + kRangeError);
     case GLSLstd450Fma: return binary(type, Op::OpFAdd, binary(type, Op::OpFMul, operand(0), operand(1)), operand(2));
     default: return rangeOf(type);
   }
@@ -411,41 +419,61 @@ ValueRange ValueRanges::Impl::phiRange(Evaluator& in, const Instruction& phi, co
       return result;
     }
   }
-  // The values come from other blocks, where the conditions of this one need not hold.
-  std::vector<Id> values;
-  for (std::size_t i = 0; i + 1 < phi.operands.size(); i += 2) values.push_back(phi.at(i));
   const auto position = module.position(module.definitionIndex(phi.result));
   if (!position) return rangeOf(type);
-  return chosenFrom(base, type, values, path, flow(position->function).phiConditions(position->block));
+  // The values come from other blocks, where the conditions of this one need not hold: they are evaluated in `base`.
+  const auto& blocks = module.functions()[position->function].blocks;
+  std::vector<Choice> choices;
+  for (std::size_t i = 0; i + 1 < phi.operands.size(); i += 2) {
+    const auto from = std::ranges::find(blocks, phi.at(i + 1), &Block::label);
+    if (from == blocks.end()) return rangeOf(type);
+    choices.push_back(
+        {phi.at(i), &alongEdge(position->function, static_cast<std::size_t>(from - blocks.begin()), position->block)});
+  }
+  return chosenFrom(base, type, choices, path, flow(position->function).phiConditions(position->block));
 }
 
 // One of several ranges. Values of a choice occur only if the conditions do not depend on the same inputs.
-ValueRange ValueRanges::Impl::chosenFrom(Evaluator& in, const Type& type, const std::vector<Id>& values,
+// The value is evaluated where the result is, and only then limited, so that each value is evaluated once.
+ValueRange ValueRanges::Impl::choice(Evaluator& in, const Choice& choice, const Path& path, const Type& type) {
+  if (choice.when->dead) return never();
+  ValueRange result = evaluate(in, choice.value, path);
+  const auto found = choice.when->limits.find(canonical(choice.value, path));
+  if (found == choice.when->limits.end()) return result;
+  return fitted(type, limited(std::move(result), found->second.min, found->second.max));
+}
+
+ValueRange ValueRanges::Impl::chosenFrom(Evaluator& in, const Type& type, const std::vector<Choice>& choices,
                                          const Path& path, const std::vector<Id>& conditions) {
   ValueRange result = never();
   bool constant = true, each = true, many = false;
-  for (const Id value : values) {
-    const ValueRange choice = evaluate(in, value, path);
-    if (choice.empty()) continue;
-    result = joined(result, choice);
-    constant = constant && choice.constant();
-    each = each && choice.occurrence == Occurrence::each;
-    many = many || choice.occurrence == Occurrence::many;
+  for (const Choice& one : choices) {
+    const ValueRange range = choice(in, one, path, type);
+    if (range.empty()) continue;
+    result = joined(result, range);
+    constant = constant && range.constant();
+    each = each && range.occurrence == Occurrence::each;
+    many = many || range.occurrence == Occurrence::many;
   }
   if (result.empty()) return rangeOf(type);
   const auto independent = [&] {
-    std::set<Id> sources;
-    for (const Id value : values) {
-      if (evaluate(in, value, path).occurrence == Occurrence::unknown) continue;
-      (void)dependsOn(module, value, [&](const Instruction& i) {
-        if (i.op == Op::OpLoad && !bufferMember(module, i)) sources.insert(module.access(i.at(0)).base);
+    // Variables, and members of buffers.
+    const auto sourceOf = [&](const Instruction& load) -> std::pair<Id, std::string> {
+      const auto member = bufferMember(module, load);
+      return member ? std::pair(Id{0}, member->structure + '.' + member->member)
+                    : std::pair(module.access(load.at(0)).base, std::string());
+    };
+    std::set<std::pair<Id, std::string>> sources;
+    for (const Choice& one : choices) {
+      if (choice(in, one, path, type).occurrence == Occurrence::unknown) continue;
+      (void)dependsOn(module, one.value, [&](const Instruction& i) {
+        if (i.op == Op::OpLoad) sources.insert(sourceOf(i));
         return false;
       });
     }
     return std::ranges::none_of(conditions, [&](Id condition) {
       return dependsOn(module, condition, [&](const Instruction& i) {
-        return i.op == Op::OpPhi || i.op == Op::OpFunctionCall ||
-               (i.op == Op::OpLoad && sources.contains(module.access(i.at(0)).base));
+        return i.op == Op::OpPhi || i.op == Op::OpFunctionCall || (i.op == Op::OpLoad && sources.contains(sourceOf(i)));
       });
     });
   };
@@ -640,6 +668,15 @@ ValueRanges::Impl::Evaluator& ValueRanges::Impl::at(std::size_t f, std::size_t b
   return in;
 }
 
+const ValueRanges::Impl::Evaluator& ValueRanges::Impl::alongEdge(std::size_t f, std::size_t from, std::size_t to) {
+  const auto [found, isNew] = byEdge.try_emplace({f, from, to});
+  Evaluator& in = found->second;
+  if (!isNew) return in;
+  addConditions(in, f, from);
+  addEdge(in, module.functions()[f], from, to);
+  return in;
+}
+
 // Adds the conditions of the branches that lead to a block.
 void ValueRanges::Impl::addConditions(Evaluator& in, std::size_t f, std::size_t block) {
   const Function& function = module.functions()[f];
@@ -655,47 +692,59 @@ const std::optional<CountedLoop>& ValueRanges::Impl::countedLoop(Id phi) {
   static const std::optional<CountedLoop> kNoLoop;
   if (const auto found = loops.find(phi); found != loops.end()) return found->second;
   const Instruction* value = module.definition(phi);
-  if (!value || value->op != Op::OpPhi || !openLoops.insert(phi).second) return kNoLoop;
+  const std::optional<LoopShape> shape = value && value->op == Op::OpPhi ? loopShape(*value) : std::nullopt;
+  if (!shape) return loops[phi] = std::nullopt;
+  if (!openLoops.insert(phi).second) return kNoLoop;
   // While the loop is searched, its variable counts as unknown. Values that were computed from it then are dropped.
   std::map<Key, ValueRange> memo = base.memo;
   const Key key{phi, {}};
   const bool opened = base.open.insert(key).second;
-  std::optional<CountedLoop> result = findLoop(*value);
+  std::optional<CountedLoop> result = findLoop(phi, *shape);
   if (opened) base.open.erase(key);
   base.memo = std::move(memo);
   openLoops.erase(phi);
   return loops[phi] = std::move(result);
 }
 
-std::optional<CountedLoop> ValueRanges::Impl::findLoop(const Instruction& phi) {
-  const Type type = typeOf(phi.result);
+std::optional<LoopShape> ValueRanges::Impl::loopShape(const Instruction& phi) {
   const auto position = module.position(module.definitionIndex(phi.result));
-  if (!position || !isInteger(type) || phi.operands.size() != 4) return {};
+  if (!position || !isInteger(typeOf(phi.result)) || phi.operands.size() != 4) return {};
   const Function& function = module.functions()[position->function];
   const ControlFlow& dominators = flow(position->function);
-  CountedLoop loop;
-  loop.function = position->function, loop.header = position->block;
-  const auto blockOf = [&](Id label) {
-    const auto found = std::ranges::find(function.blocks, label, &Block::label);
-    return found == function.blocks.end() ? kNone : static_cast<std::size_t>(found - function.blocks.begin());
-  };
+  LoopShape shape{position->function, position->block};
   std::size_t entry = kNone;
   for (std::size_t i = 0; i < 2; ++i) {
-    const std::size_t from = blockOf(phi.at(2 * i + 1));
-    if (from != kNone && dominators.dominates(loop.header, from)) loop.latch = from, entry = 1 - i;
+    const auto from = std::ranges::find(function.blocks, phi.at(2 * i + 1), &Block::label);
+    const auto block = static_cast<std::size_t>(from - function.blocks.begin());
+    if (from != function.blocks.end() && dominators.dominates(shape.header, block)) shape.latch = block, entry = 1 - i;
   }
-  if (entry == kNone || function.blocks[loop.header].predecessors.size() != 2) return {};
-  const Id next = phi.at(2 * (1 - entry));
-  const Key nextKey = canonical(next, {}), phiKey{phi.result, {}};
-  const Instruction* advance = module.definition(nextKey.id);
+  if (entry == kNone || function.blocks[shape.header].predecessors.size() != 2) return {};
+  shape.first = phi.at(2 * entry);
+  shape.next = canonical(phi.at(2 * (1 - entry)), {});
+  const Key phiKey{phi.result, {}};
+  const Instruction* advance = module.definition(shape.next.id);
   if (!advance || (advance->op != Op::OpIAdd && advance->op != Op::OpISub)) return {};
-  const bool swapped = advance->op == Op::OpIAdd && canonical(advance->at(1), {}) == phiKey;
+  shape.subtracts = advance->op == Op::OpISub;
+  const bool swapped = !shape.subtracts && canonical(advance->at(1), {}) == phiKey;
   if (!swapped && canonical(advance->at(0), {}) != phiKey) return {};
-  const std::optional<double> by = evaluate(base, swapped ? advance->at(0) : advance->at(1), {}).constant();
-  if (!by || *by == 0.0 || std::abs(*by) > 1048576.0) return {};
-  double step = advance->op == Op::OpISub ? -*by : *by;
-  if (!type.isSigned && step > 2147483647.0) step -= 4294967296.0;  // + 0xFFFFFFFF
-  const ValueRange first = evaluate(base, phi.at(2 * entry), {});
+  shape.by = advance->at(swapped ? 0 : 1);
+  return shape;
+}
+
+std::optional<CountedLoop> ValueRanges::Impl::findLoop(Id phi, const LoopShape& shape) {
+  const Type type = typeOf(phi);
+  const Function& function = module.functions()[shape.function];
+  const ControlFlow& dominators = flow(shape.function);
+  const Key phiKey{phi, {}};
+  CountedLoop loop;
+  loop.function = shape.function, loop.header = shape.header, loop.latch = shape.latch;
+  const std::optional<double> by = evaluate(base, shape.by, {}).constant();
+  if (!by || *by == 0.0) return {};
+  double step = shape.subtracts ? -*by : *by;
+  if (!type.isSigned && std::abs(step) > highest(type) / 2)  // + 0xFFFFFFFF
+    step -= std::copysign(highest(type) + 1.0, step);
+  if (std::abs(step) > kMaxStep) return {};
+  const ValueRange first = evaluate(base, shape.first, {});
   if (first.empty()) return {};
 
   // The conditions that hold when the loop continues.
@@ -706,15 +755,15 @@ std::optional<CountedLoop> ValueRanges::Impl::findLoop(const Instruction& phi) {
     const auto found = continues.limits.find(key);
     return found == continues.limits.end() ? Limits{} : found->second;
   };
-  const Limits ofPhi = limitsOf(phiKey), ofNext = limitsOf(nextKey);
+  const Limits ofPhi = limitsOf(phiKey), ofNext = limitsOf(shape.next);
   double end = 0.0;  // the farthest value of `next` that returns to the header
   if (step > 0.0) {
     end = std::min(ofPhi.max + step, ofNext.max);
-    if (!(end + step <= highest(type)) && !(ofPhi.max + step <= highest(type))) return {};
+    if (std::max(first.max, end) + step > highest(type) && ofPhi.max + step > highest(type)) return {};
     loop.values = ValueRange::between(first.min, std::max(first.max, end));
   } else {
     end = std::max(ofPhi.min + step, ofNext.min);
-    if (!(end + step >= lowest(type)) && !(ofPhi.min + step >= lowest(type))) return {};
+    if (std::min(first.min, end) + step < lowest(type) && ofPhi.min + step < lowest(type)) return {};
     loop.values = ValueRange::between(std::min(first.min, end), first.max);
   }
 
@@ -795,6 +844,7 @@ bool ValueRanges::guarded(std::size_t instruction, Id value) const {
     if (i.op == Op::OpPhi) sources.insert(i.result);
     return false;
   });
+  if (sources.empty()) return false;
   const auto isSource = [&](const Instruction& i) {
     if (i.op == Op::OpLoad) return sources.contains(variableOf(i)) || (memory && isMemory(variableOf(i)));
     return i.op == Op::OpPhi && sources.contains(i.result);

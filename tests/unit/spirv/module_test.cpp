@@ -73,7 +73,6 @@ TEST(Module, ReadsATrace) {
   EXPECT_EQ(module.constantBits(trace->at(1)), 1u | 4u);  // folded through the function's parameter
   EXPECT_EQ(module.constantBits(trace->at(2)), 0xFFu);
   EXPECT_EQ(module.constantBits(trace->at(5)), std::nullopt);
-  EXPECT_EQ(module.possibleValues(trace->at(5)), (std::vector<std::uint32_t>{1, 3}));
   EXPECT_EQ(module.constantFloat(trace->at(7)), 0.0);
   const Variable* payload = module.variable(trace->at(10));
   ASSERT_TRUE(payload);
@@ -222,7 +221,6 @@ void useAll(const Module& module) {
     for (const Id id : {instruction.result, instruction.type, instruction.at(0), instruction.at(5)}) {
       sum += module.types().nameOf(id).size() + module.types().describe(id).size() + module.name(id).size() +
              module.isConstant(id);
-      sum += module.possibleValues(id) ? 1 : 0;
       sum += module.constantFloat(id) ? 1 : 0;
       sum += differenceOf(module.types(), id, module.types(), instruction.at(1)) ? 1 : 0;
     }

@@ -79,13 +79,13 @@ testing::AssertionResult isBetween(const ValueRange& range, double min, double m
   return testing::AssertionFailure() << range.min << " to " << range.max << (range.nan ? " or NaN" : "");
 }
 
-TEST(ValueRange, FollowsConstantsAndComposites) {
+TEST(ValueRanges, FollowsConstantsAndComposites) {
   EXPECT_EQ(of("data.x = 2.5;").constant(), 2.5);
   EXPECT_EQ(of("vec3 v = vec3(1.0, data.x, 3.0); data.x = v.zyx.x;").constant(), 3.0);
   EXPECT_EQ(of("data.i = -7;").constant(), -7.0);
 }
 
-TEST(ValueRange, FollowsArithmetic) {
+TEST(ValueRanges, FollowsArithmetic) {
   EXPECT_TRUE(isBetween(of("data.i = gl_PrimitiveID % 5 + 2;"), 2.0, 6.0));
   EXPECT_TRUE(isBetween(of("data.u = (data.u & 7u) * 2u;"), 0.0, 14.0));
   EXPECT_TRUE(isBetween(of("data.u = data.u >> 28;"), 0.0, 15.0));
@@ -97,7 +97,7 @@ TEST(ValueRange, FollowsArithmetic) {
   EXPECT_EQ(of("data.u = data.u & ~1u;").zeros & 1u, 1u);
 }
 
-TEST(ValueRange, FollowsChoices) {
+TEST(ValueRanges, FollowsChoices) {
   const ValueRange range = of("data.i = data.x > 1.0 ? 4 : 9;");
   EXPECT_EQ(range.values, (std::vector<double>{4.0, 9.0}));
   EXPECT_EQ(range.occurrence, Occurrence::each);
@@ -105,12 +105,12 @@ TEST(ValueRange, FollowsChoices) {
   EXPECT_EQ(of("float y = gl_RayTminEXT < 0.0 ? 1.0 : 2.0; data.x = y;").constant(), 2.0);
 }
 
-TEST(ValueRange, KnowsElementsOfConstantArrays) {
+TEST(ValueRanges, KnowsElementsOfConstantArrays) {
   EXPECT_TRUE(isBetween(of("data.x = kTable[data.u & 3u];"), -2.0, 5.0));
   EXPECT_EQ(of("uint k = gl_RayTminEXT < 0.0 ? 0u : 1u; data.x = kTable[k];").constant(), 5.0);
 }
 
-TEST(ValueRange, KnowsBuiltIns) {
+TEST(ValueRanges, KnowsBuiltIns) {
   EXPECT_TRUE(isBetween(of("data.u = gl_HitKindEXT;"), 0.0, 255.0));
   ValueContext context;
   context.builtIns[spv::BuiltIn::InstanceCustomIndexKHR] = ValueRange::among({0.0, 1.0, 4.0}, Occurrence::each);
@@ -121,7 +121,7 @@ TEST(ValueRange, KnowsBuiltIns) {
   EXPECT_FALSE(range.atLeast(9.0));
 }
 
-TEST(ValueRange, KnowsParameters) {
+TEST(ValueRanges, KnowsParameters) {
   ValueContext context;
   context.members[{"Parameters", "bias"}] = {ValueRange::between(0.0, 0.5)};
   context.members[{"Parameters", "tint"}] = {ValueRange::of(1.0), ValueRange::of(2.0), ValueRange::of(3.0)};
@@ -130,7 +130,7 @@ TEST(ValueRange, KnowsParameters) {
   EXPECT_TRUE(of("data.u = parameters.mode;", context).max == 4294967295.0);
 }
 
-TEST(ValueRange, BoundsCountedLoops) {
+TEST(ValueRanges, BoundsCountedLoops) {
   const std::string loop = "int n = 0; for (int i = 0; i < 6; ++i) { data.i = i; n += i; } data.x = float(n);";
   const ValueRange inside = of(loop);
   EXPECT_TRUE(isBetween(inside, 0.0, 5.0));
@@ -146,7 +146,7 @@ TEST(ValueRange, BoundsCountedLoops) {
   EXPECT_EQ(multiplied.max, 4294967295.0);
 }
 
-TEST(ValueRange, RefinesByBranches) {
+TEST(ValueRanges, RefinesByBranches) {
   EXPECT_TRUE(isBetween(of("int k = gl_PrimitiveID; if (k < 10 && k > 2) data.i = k;"), 3.0, 9.0));
   EXPECT_TRUE(isBetween(of("int k = gl_PrimitiveID; if (k >= 10) return; data.i = k + 1;"), 1.0, 10.0));
   EXPECT_TRUE(isBetween(of("int k = data.i; if (uint(k) < 4u) data.i = k;"), 0.0, 3.0));
@@ -157,7 +157,29 @@ TEST(ValueRange, RefinesByBranches) {
   EXPECT_EQ(of("float k = data.x; if (k < 1.0) data.x = k;").max, 1.0);
 }
 
-TEST(ValueRange, FindsGuards) {
+TEST(ValueRanges, LimitsChoicesByTheirOwnBranches) {
+  ValueContext context;
+  context.members[{"Parameters", "mode"}] = {ValueRange::between(0.0, 2.0, Occurrence::each)};
+  EXPECT_EQ(of("int k = 1; if (parameters.mode == 3u) k = 9; data.i = k;", context).constant(), 1.0);
+  const ValueRange clamped = of("uint n = parameters.mode; if (n > 1u) n = 1u; data.u = n;", context);
+  EXPECT_TRUE(isBetween(clamped, 0.0, 1.0));
+  const ValueRange selected = of("data.u = parameters.mode < 2u ? parameters.mode : 7u;", context);
+  EXPECT_NE(selected.occurrence, Occurrence::each);  // 2 does not occur
+  const ValueRange guarded = of("uint i = data.x > 0.0 ? 9u : 0u; if (i < 2u) data.u = i;");
+  EXPECT_EQ(guarded.max, 0.0);
+}
+
+TEST(ValueRanges, KnowsLoopsThatCountDown) {
+  const ValueRange down = of("for (uint i = 7u; i > 2u; --i) data.u = i;");
+  EXPECT_TRUE(isBetween(down, 3.0, 7.0));
+  const ValueRange added = of("for (uint i = 7u; i > 2u; i += 0xFFFFFFFFu) data.u = i;");
+  EXPECT_TRUE(isBetween(added, 3.0, 7.0));
+  // 0 wraps around before the condition is tested.
+  const ValueRange wraps = of("uint i = data.u & 7u; do { --i; data.u = i; } while (i > 2u);");
+  EXPECT_EQ(wraps.max, 4294967295.0);
+}
+
+TEST(ValueRanges, FindsGuards) {
   const std::string table = "float a[4] = float[](data.x, 1.0, 2.0, 3.0); ";
   bool guarded = false;
   const ValueRange range = Ranges("void main() { " + table + "data.x = a[gl_PrimitiveID % 8]; }").index(&guarded);
@@ -171,7 +193,7 @@ TEST(ValueRange, FindsGuards) {
   EXPECT_TRUE(guarded);
 }
 
-TEST(ValueRange, AcceptsAnyModuleSafely) {
+TEST(ValueRanges, AcceptsAnyModuleSafely) {
   CompilerOptions options;
   options.debugInfo = true;
   Source source;
