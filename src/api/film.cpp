@@ -9,6 +9,7 @@
 #include "api/impl.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 #include "base/suggestion.h"
 #include "io/codec.h"
 #include "job/film_store.h"
@@ -145,7 +146,7 @@ void Film::write(const std::filesystem::path& file, const WriteOptions& options)
     throw UsageError(
         fmt::format("{}: the program averages its samples itself, so there is no film to store", file.string()));
   if (options.pngBits != 8 && options.pngBits != 16)
-    throw UsageError(fmt::format("{} bits per channel: PNG files have 8 or 16", options.pngBits));
+    throw UsageError(fmt::format("{} per channel: PNG files have 8 or 16", counted(options.pngBits, "bit")));
   plan.request.pngBits = options.pngBits;
   plan.request.exposure = options.exposure;
   if (!options.toneMap.empty()) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "api/impl.h"
+#include "base/plural.h"
 #include "io/codec.h"
 #include "job/scene_source.h"
 #include "scene/animation/keyframes.h"
@@ -82,7 +83,8 @@ std::vector<T> copyOf(std::span<const V> values) {
 // Of three vertices per triangle.
 std::vector<uvec3> consecutiveTriangles(std::size_t vertices) {
   if (vertices % 3 != 0)
-    throw UsageError(fmt::format("triangles without indices have {} vertices, which is not a multiple of 3", vertices));
+    throw UsageError(fmt::format("triangles without indices have {}, which is not a multiple of 3",
+                                 counted(vertices, "vertex", "vertices")));
   std::vector<uvec3> result(vertices / 3);
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = uvec3(3 * i, 3 * i + 1, 3 * i + 2);
   return result;
@@ -118,8 +120,9 @@ io::Image toIo(const Texture& texture) {
   std::visit(
       [&](const auto& pixels) {
         if (pixels.size() != image.sampleCount())
-          throw UsageError(fmt::format("texture '{}': {} values for {}x{} pixels of {} channels", texture.name,
-                                       pixels.size(), texture.width, texture.height, texture.channels));
+          throw UsageError(fmt::format("texture '{}': {} for {}x{} pixels of {}", texture.name,
+                                       counted(pixels.size(), "value"), texture.width, texture.height,
+                                       counted(texture.channels, "channel")));
         std::ranges::copy(std::as_bytes(pixels), image.data.begin());
       },
       texture.pixels);

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
+
 namespace quintet {
 namespace {
 
@@ -48,8 +50,7 @@ std::string bytesText(std::uint64_t bytes) {
   double value = static_cast<double>(bytes);
   std::size_t unit = 0;
   while (value >= 1024.0 && unit + 1 < kUnits.size()) value /= 1024.0, ++unit;
-  return unit == 0 ? fmt::format("{} byte{}", bytes, bytes == 1 ? "" : "s")
-                   : fmt::format("{:.1f} {}", value, kUnits[unit]);
+  return unit == 0 ? counted(bytes, "byte") : fmt::format("{:.1f} {}", value, kUnits[unit]);
 }
 
 std::string durationText(double seconds) {

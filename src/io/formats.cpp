@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/plural.h"
 #include "base/text.h"
 
 namespace quintet::io {
@@ -49,8 +50,9 @@ void Source::checkExpansion(std::uint64_t decoded, std::uint64_t bestRatio) cons
 void checkEncodable(const Image& image, std::string_view format) {
   if (image.pixelCount() == 0) throw UsageError(fmt::format("an image without pixels cannot be written as {}", format));
   if (image.channels < 1 || image.channels > 4 || image.data.size() != image.rowBytes() * image.height)
-    throw UsageError(fmt::format("the image to be written as {} has {} bytes for {} x {} pixels of {} channels", format,
-                                 image.data.size(), image.width, image.height, image.channels));
+    throw UsageError(fmt::format("the image to be written as {} has {} for {} x {} pixels of {}", format,
+                                 counted(image.data.size(), "byte"), image.width, image.height,
+                                 counted(image.channels, "channel")));
 }
 
 void checkMetadata(const Metadata& metadata) {

@@ -23,11 +23,11 @@ void checkSamples(const std::filesystem::path& file, const render::FilmState& fi
   const std::vector<SampleRange>& ranges = film.counts.ranges;
   if (ranges.empty()) return;
   if (ranges.size() > 1 || ranges.front().begin != start.begin)
-    throw FileError(
-        file, fmt::format("holds samples {}, but this render starts at sample {}", rangesText(ranges), start.begin));
+    throw FileError(file,
+                    fmt::format("holds {}, but this render starts at sample {}", rangesText(ranges), start.begin));
   if (limits.samples && ranges.front().end > *limits.samples)
-    throw FileError(file, fmt::format("holds samples {}, but this render ends at sample {}", rangesText(ranges),
-                                      *limits.samples - 1));
+    throw FileError(
+        file, fmt::format("holds {}, but this render ends at sample {}", rangesText(ranges), *limits.samples - 1));
 }
 
 }  // namespace

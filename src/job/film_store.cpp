@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 
 namespace quintet::job {
 namespace {
@@ -81,7 +82,7 @@ void rejectLoss(const std::filesystem::path& file, const FilmFacts& identity, co
   for (const SampleRange& held : found.film.counts.ranges)
     if (std::ranges::none_of(samples.ranges,
                              [&](const SampleRange& s) { return s.begin <= held.begin && held.end <= s.end; }))
-      throw FileError(file, fmt::format("holds samples {} of this render, which would be lost", rangesText({held})),
+      throw FileError(file, fmt::format("holds {} of this render, which would be lost", rangesText({held})),
                       Remedy::overwrite);
   const std::vector<std::uint32_t>& batches = found.film.counts.cellBatches;
   for (std::size_t c = 0; c < batches.size(); ++c)
@@ -91,14 +92,20 @@ void rejectLoss(const std::filesystem::path& file, const FilmFacts& identity, co
 }
 
 std::string rangesText(const std::vector<SampleRange>& ranges) {
+  if (ranges.empty()) return "no samples";
+  std::uint64_t count = 0;
   std::vector<std::string> texts;
-  for (const SampleRange& range : ranges) texts.push_back(fmt::format("{}–{}", range.begin, range.end - 1));
-  return texts.empty() ? "none" : fmt::format("{}", fmt::join(texts, " and "));
+  for (const SampleRange& range : ranges) {
+    count += range.end - range.begin;
+    texts.push_back(range.end - range.begin == 1 ? fmt::format("{}", range.begin)
+                                                 : fmt::format("{}–{}", range.begin, range.end - 1));
+  }
+  return fmt::format("{} {}", nounFor(count, "sample"), fmt::join(texts, " and "));
 }
 
 std::string samplesText(const render::FilmState& film) {
   const std::vector<std::uint32_t>& batches = film.counts.cellBatches;
-  if (batches.empty()) return "samples " + rangesText(film.counts.ranges);
+  if (batches.empty()) return rangesText(film.counts.ranges);
   std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max(), most = 0;
   const std::vector<std::uint32_t> pixels = render::cellPixels(film.region);
   for (std::size_t c = 0; c < batches.size(); ++c) {

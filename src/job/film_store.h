@@ -37,7 +37,7 @@ void requireSameIdentity(const render::FilmFacts& found, const render::FilmFacts
 void rejectLoss(const std::filesystem::path& file, const render::FilmFacts& identity,
                 const render::SampleCounts& samples);
 
-// "0–15", "0–15 and 32–63"; "none".
+// "samples 0–15", "samples 0–15 and 32", "sample 32"; "no samples".
 std::string rangesText(const std::vector<render::SampleRange>& ranges);
 // "samples 0–15"; for an adaptive film "20.5 samples per pixel on average (16–24)".
 std::string samplesText(const render::FilmState& film);

@@ -105,10 +105,10 @@ class Merger {
       for (const SampleRange& a : parts_[i].ranges)
         for (const SampleRange& b : parts_.back().ranges)
           if (a.begin < b.end && b.begin < a.end)
-            throw FileError(parts_.back().path,
-                            fmt::format("samples {} are also in {}",
-                                        rangesText({{std::max(a.begin, b.begin), std::min(a.end, b.end)}}),
-                                        parts_[i].path.string()));
+            throw FileError(
+                parts_.back().path,
+                fmt::format("shares {} with {}", rangesText({{std::max(a.begin, b.begin), std::min(a.end, b.end)}}),
+                            parts_[i].path.string()));
   }
 
   void join(const Provenance& part) {
@@ -209,7 +209,7 @@ std::string missingText(const RenderResult& merged) {
       return fmt::format("{:.1f} of {} per pixel are rendered", render::averageSamples(p.region, counts),
                          counted(*p.plannedSamples, "sample"));
   } else if (const std::vector<SampleRange> missing = missingSamples(counts, p.plannedSamples); !missing.empty()) {
-    return fmt::format("samples {} are missing", rangesText(missing));
+    return "missing: " + rangesText(missing);
   }
   if (!p.targetError || p.plannedSamples) return "";
   return fmt::format("the target error of {:.2g} % is not reached", 100.0 * *p.targetError);

@@ -19,7 +19,7 @@ namespace quintet::job {
 RenderResult merge(const std::vector<std::filesystem::path>& parts, Observer& observer,
                    const std::string& commandLine = {});
 
-// What the merged film lacks: "samples 16–31 are missing"; empty if it is complete.
+// What the merged film lacks: "missing: samples 16–31"; empty if it is complete.
 std::string missingText(const RenderResult& merged);
 
 }  // namespace quintet::job

@@ -47,8 +47,8 @@ void checkLimits(const RenderRequest& request, const program::Program& program) 
         "adaptive sampling");
   const std::uint64_t count = (*limits.samples + render::kBatchSamples - 1) / render::kBatchSamples;
   if (request.batches->last >= count)
-    throw UsageError(fmt::format("batches: batch {} does not exist; {} {} batches 0–{}", request.batches->last,
-                                 counted(*limits.samples, "sample"), *limits.samples == 1 ? "is" : "are", count - 1));
+    throw UsageError(fmt::format("batches: batch {} does not exist; the last batch of {} is {}", request.batches->last,
+                                 counted(*limits.samples, "sample"), count - 1));
 }
 
 // True if both name the same file, also through links or "..".

@@ -130,7 +130,7 @@ std::string comparisonText(const job::FilmComparison& c) {
                       test.blocks.size() / test.image.size(), c.options.block, c.options.block,
                       counted(test.image.size(), "channel"), test.blockLevel);
   text += fmt::format("   smallest p {:.3g} at {}: {}\n", smallest.p, regionText(smallest), meansText(smallest));
-  text += fmt::format("   |t| of {} noisy blocks: root mean square {:.2f}", test.noisy, test.rms);
+  text += fmt::format("   |t| of {}: root mean square {:.2f}", counted(test.noisy, "noisy block"), test.rms);
   constexpr std::array<double, 3> kExpected{5, 1, 0.1};
   for (std::size_t i = 0; i < kExpected.size(); ++i)
     text += fmt::format("{} {:.2f} in {:.2f} % (normal: {} %)", i == 0 ? "; above" : ",", ZTest::kZ[i],

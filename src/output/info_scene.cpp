@@ -50,7 +50,7 @@ std::string describe(const scene::Camera& camera) {
   const std::string lens = camera.orthographic
                                ? fmt::format("orthographic, {:.4g} x {:.4g} m", 2 * camera.orthographicHalfSize.x,
                                              2 * camera.orthographicHalfSize.y)
-                               : fmt::format("perspective, {:.4g} degrees", glm::degrees(camera.verticalFov));
+                               : fmt::format("perspective, {:.4g}°", glm::degrees(camera.verticalFov));
   const std::string aspect = camera.aspect > 0 ? fmt::format(", aspect {:.4g}", camera.aspect) : "";
   return fmt::format("'{}': {}{}, at {:.4g} {:.4g} {:.4g}", printable(camera.name), lens, aspect, eye.x, eye.y, eye.z);
 }

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 #include "base/suggestion.h"
 #include "output/file_names.h"
 
@@ -32,7 +33,7 @@ FileKind checkRequest(const OutputRequest& request) {
   if (request.pngBits && kind != FileKind::png)
     throw UsageError(fmt::format("{}: the number of bits applies to PNG only", request.file.string()));
   if (request.pngBits && *request.pngBits != 8 && *request.pngBits != 16)
-    throw UsageError(fmt::format("{} bits per channel: PNG files have 8 or 16", *request.pngBits));
+    throw UsageError(fmt::format("{} per channel: PNG files have 8 or 16", counted(*request.pngBits, "bit")));
   if (isStandardOutput(request.file)) {
     if (kind == FileKind::film) throw UsageError("standard output takes an image, not a film");
     if (request.allOutputs || request.everyFrame)

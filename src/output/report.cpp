@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/plural.h"
 #include "base/text.h"
 #include "check/diagnostic_text.h"
 
@@ -90,11 +91,10 @@ std::string resultSummary(const job::RenderResult& result, const std::vector<Wri
   const std::string file = files.empty() ? "" : files.back().path.string();
   const std::string rate = p.rays > 0 ? fmt::format(", {:.3g} Mrays/s", result.raysPerSecond() * 1e-6) : "";
   const std::string error = result.error.known() ? fmt::format(", error {:.2g} %", 100.0 * result.error.upper) : "";
-  const std::string unit = fmt::format("{}{}{}", result.accumulatesFrames ? "frame" : "sample",
-                                       p.samples == 1 ? "" : "s", result.accumulatesFrames ? "" : " per pixel");
-  return fmt::format("{}: {}x{}, {} {}{}, {}{}{}", file == "-" ? "standard output" : file, p.region.width,
-                     p.region.height, p.samples, unit, error, durationText(p.seconds), rate,
-                     result.interrupted ? ", interrupted" : "");
+  const std::string samples =
+      result.accumulatesFrames ? counted(p.samples, "frame") : counted(p.samples, "sample") + " per pixel";
+  return fmt::format("{}: {}x{}, {}{}, {}{}{}", file == "-" ? "standard output" : file, p.region.width, p.region.height,
+                     samples, error, durationText(p.seconds), rate, result.interrupted ? ", interrupted" : "");
 }
 
 }  // namespace quintet::output

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/plural.h"
 
 namespace quintet::rt {
 namespace {
@@ -23,9 +24,8 @@ std::uint64_t strideOf(std::span<const SbtRecord> records, const char* table, co
   for (const SbtRecord& record : records) largest = std::max<std::uint64_t>(largest, record.data.size());
   const std::uint64_t stride = alignUp(limits.handleSize + largest, limits.handleAlignment);
   if (stride > limits.maxRecordStride)
-    throw UsageError(
-        fmt::format("a {} record with {} bytes of data needs {} bytes with its handle; the device supports {}", table,
-                    largest, stride, limits.maxRecordStride));
+    throw UsageError(fmt::format("a {} record with {} of data needs {} bytes with its handle; the device supports {}",
+                                 table, counted(largest, "byte"), stride, limits.maxRecordStride));
   return stride;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/plural.h"
 #include "rt/acceleration_structure.h"
 #include "rt/spatial_order.h"
 
@@ -121,8 +122,8 @@ Tlas::~Tlas() { retireStructure(context_, handle_); }
 
 void Tlas::build(gpu::Commands& commands, std::span<const InstanceInput> instances) {
   if (instances.size() > capacity_)
-    throw UsageError(
-        fmt::format("'{}' has a capacity of {} instances; {} were given", name_, capacity_, instances.size()));
+    throw UsageError(fmt::format("'{}' cannot hold {}; its capacity is {}", name_,
+                                 counted(instances.size(), "instance"), capacity_));
   const InstanceOrder order = keepInputOrder_                              ? InstanceOrder::numbered
                               : context_.info().quirks.keepsPrimitiveOrder ? InstanceOrder::spatial
                                                                            : InstanceOrder::given;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "base/plural.h"
+
 namespace quintet::spirv {
 namespace {
 
@@ -61,7 +63,7 @@ struct Comparison {
       const bool more = a.members.size() > b.members.size();
       const std::string extra = more ? a.memberNames[common] : b.memberNames[common];
       return fmt::format(
-          "{} member{} vs {}{}", a.members.size(), a.members.size() == 1 ? "" : "s", b.members.size(),
+          "{} vs {}{}", counted(a.members.size(), "member"), b.members.size(),
           extra.empty() ? "" : fmt::format(" ('{}' exists only in the {})", extra, more ? "first" : "second"));
     }
     return differentOrder(a, b);

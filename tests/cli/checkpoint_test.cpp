@@ -504,7 +504,8 @@ TEST_F(Checkpoint, InvalidOptions) {
   expectRejected({"--batches", "0-1", "-o", "a.png"}, {"--batches", ".qfilm"});
   for (const char* range : {"1-0", "-1-2", "0-", "-", "a", "0-1-2", "1.5-2", "0 - 1", "99999999999999999999-1"})
     expectRejected({"--spp", "64", std::string("--batches=") + range, "-o", "a.qfilm"}, {"--batches", "A-B"});
-  expectRejected({"--spp", "30", "--batches", "4-8", "-o", "a.qfilm"}, {"batches", "batch 8", "30 samples", "0–7"});
+  expectRejected({"--spp", "30", "--batches", "4-8", "-o", "a.qfilm"},
+                 {"batches", "batch 8", "30 samples", "the last batch of 30 samples is 7"});
   expectRejected({"--time", "1", "--batches", "0-1", "-o", "a.qfilm"}, {"batches", "time"});
   EXPECT_EQ(fileNames(), std::vector<std::string>{"scene.gltf"});
 }

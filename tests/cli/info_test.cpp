@@ -56,8 +56,10 @@ TEST_F(Info, PluralsFollowTheNumber) {
   const std::vector<std::string> one = quick({"-o", "a.qfilm", "--spp", "1"});
   ASSERT_EQ(quintet(one).status, 0);
   ASSERT_EQ(quintet(quick({"--spp", "8", "-o", "b.png", "--checkpoint", "0", "--keep-checkpoint"})).status, 0);
-  expectError(quintet(quick({"--spp", "1", "--batches", "3", "-o", "c.qfilm"})), 2, {"1 sample is batches 0"});
+  expectError(quintet(quick({"--spp", "1", "--batches", "3", "-o", "c.qfilm"})), 2,
+              {"the last batch of 1 sample is 0"});
   expectError(quintet({"compare", "a.qfilm", "a.qfilm", "--z-test"}), 1, {"1 batch of 4 samples"});
+  EXPECT_THAT(quintet({"info", "a.qfilm"}).out, HasSubstr(", sample 0 of 1, "));
   EXPECT_THAT(quintet({"info", "scene.gltf"}).out, ::testing::Not(::testing::ContainsRegex("[^0-9]1 [a-z]+s[,\n]")));
 }
 

@@ -22,6 +22,7 @@
 #include <thread>
 
 #include "base/error.h"
+#include "base/plural.h"
 #include "io/codec.h"
 #include "io/exr/attributes.h"
 #include "io/exr/exr.h"
@@ -49,8 +50,8 @@ void checkChannel(const ExrChannel& channel, std::size_t pixels, const ExrImage&
     throw UsageError(fmt::format("the OpenEXR channel '{}' has integers, but its type is not u32", channel.name));
   const std::size_t count = channel.integers.empty() ? channel.samples.size() : channel.integers.size();
   if (count != pixels)
-    throw UsageError(fmt::format("the OpenEXR channel '{}' has {} samples for {} x {} pixels", channel.name, count,
-                                 image.width, image.height));
+    throw UsageError(fmt::format("the OpenEXR channel '{}' has {} for {} x {} pixels", channel.name,
+                                 counted(count, "sample"), image.width, image.height));
 }
 
 // Returns the window of the image, with the full size for an image that is its own display window.
@@ -74,7 +75,8 @@ void checkTiles(std::size_t channels, std::uint32_t size) {
   if (size > kMaxExrTile)
     throw UsageError(fmt::format("OpenEXR tiles of {} pixels are too large; at most {}", size, kMaxExrTile));
   if (std::uint64_t{size} * size * channels * sizeof(float) > std::numeric_limits<std::int32_t>::max())
-    throw UsageError(fmt::format("OpenEXR tiles of {} pixels and {} channels are too large together", size, channels));
+    throw UsageError(
+        fmt::format("OpenEXR tiles of {} pixels and {} are too large together", size, counted(channels, "channel")));
 }
 
 void checkImage(const ExrImage& image) {
@@ -318,8 +320,8 @@ void checkExrSize(std::uint32_t width, std::uint32_t height, std::size_t channel
     throw UsageError(
         fmt::format("{} channels are too many for an OpenEXR file; at most {}", channels, kMaxExrChannels));
   if (std::uint64_t{width} * height * channels * sizeof(float) > kMaxExrBytes)
-    throw UsageError(fmt::format("{} channels of {} x {} pixels are too large for one OpenEXR file ({} GiB at most)",
-                                 channels, width, height, kMaxExrBytes >> 30));
+    throw UsageError(fmt::format("one OpenEXR file cannot hold {} of {} x {} pixels; at most {} GiB",
+                                 counted(channels, "channel"), width, height, kMaxExrBytes >> 30));
   checkTiles(channels, tileSize);
 }
 

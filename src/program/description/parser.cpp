@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/plural.h"
 #include "base/suggestion.h"
 #include "base/toml_reader.h"
 #include "program/description/generated_glsl.h"
@@ -70,7 +71,7 @@ ParameterValue readValue(const TomlReader& reader, const TomlValue& node, const 
   const auto count = static_cast<std::size_t>(componentCount(parameter.type));
   const bool array = node.kind == TomlValue::Kind::array;
   if (array ? node.elements.size() != count : count != 1)
-    reader.fail(node, fmt::format("{} requires {} number{}", label, count, count > 1 ? "s" : ""));
+    reader.fail(node, fmt::format("{} requires {}", label, counted(count, "number")));
   for (std::size_t i = 0; i < count; ++i)
     value[i] = readNumber(reader, array ? node.elements[i] : node, parameter.type, label);
   if (isWhole(parameter.type) && value[0] != std::floor(value[0]))

@@ -346,7 +346,7 @@ class Payload {
         if (std::ranges::find(stored, name) != stored.end()) take(array, film.pixelCount() * group, group);
       });
     }
-    if (!bytes_.empty()) fail(fmt::format("{} excess bytes", bytes_.size()));
+    if (!bytes_.empty()) fail(counted(bytes_.size(), "excess byte"));
     return std::move(header.file);
   }
 
@@ -388,7 +388,8 @@ Parts checkedParts(Bytes bytes, const std::filesystem::path& file) {
   if (rest < expected || rest - expected < prefix.payloadBytes)
     throw FileError(file, fmt::format("is truncated after {}", counted(bytes.size(), "byte")));
   if (rest - expected > prefix.payloadBytes)
-    throw FileError(file, fmt::format("is damaged: it has {} excess bytes", rest - expected - prefix.payloadBytes));
+    throw FileError(
+        file, fmt::format("is damaged: it has {}", counted(rest - expected - prefix.payloadBytes, "excess byte")));
   const auto hash = hashOf(bytes.first(bytes.size() - kHashBytes));
   if (std::memcmp(hash.data(), bytes.last(kHashBytes).data(), kHashBytes) != 0)
     throw FileError(file, "is damaged: its checksum does not match its content");

@@ -93,8 +93,8 @@ std::string describe(const shared::InstrumentReport& report, const shared::Instr
                          problemOf(report), vectorText(report.origin), vectorText(report.direction), report.interval.x,
                          report.interval.y, where);
     case shared::kReportMiss:
-      return fmt::format("miss index {} is beyond the {} miss shaders of the table; the trace was not executed ({})",
-                         report.index, counts.missCount, where);
+      return fmt::format("miss index {} is beyond the {} of the table; the trace was not executed ({})", report.index,
+                         counted(counts.missCount, "miss shader"), where);
     case shared::kReportCall:
       return fmt::format("callable index {} is beyond the {} of the table; the call was not executed ({})",
                          report.index, counted(counts.callableCount, "callable shader"), where);
@@ -224,8 +224,8 @@ std::vector<Diagnostic> instrumentDiagnostics(const InstrumentData& data, const 
   if (counts.anyHitCount > 0)
     result.push_back(
         {Severity::note, program.path(sourceFile(program, program.rayGeneration)), 0, 0, "Q006",
-         fmt::format("{} any-hit shader calls for {} traces; {:.2f} per pixel, at most {} in one pixel",
-                     counts.anyHitCount, counts.traceCount,
+         fmt::format("{} for {}; {:.2f} per pixel, at most {} in one pixel",
+                     counted(counts.anyHitCount, "any-hit shader call"), counted(counts.traceCount, "trace"),
                      static_cast<double>(counts.anyHitCount) / std::max(1u, counts.pixelCount), counts.mostAnyHits)});
   return result;
 }

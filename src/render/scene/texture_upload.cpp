@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/plural.h"
 #include "quintet/shared/material.h"
 
 namespace quintet::render {
@@ -132,7 +133,8 @@ TextureSlots::TextureSlots(gpu::BindlessSet& set, std::uint32_t first, std::uint
 
 std::vector<std::uint32_t> TextureSlots::acquire(std::size_t count) {
   if (count > free_.size())
-    throw UsageError(fmt::format("{} image parameters, but only {} texture slots are free", count, free_.size()));
+    throw UsageError(
+        fmt::format("not enough texture slots for {}: {} free", counted(count, "image parameter"), free_.size()));
   const std::vector<std::uint32_t> slots(free_.rbegin(), free_.rbegin() + static_cast<std::ptrdiff_t>(count));
   free_.resize(free_.size() - count);
   return slots;

@@ -152,7 +152,8 @@ std::vector<Vec> DracoMesh::read(const std::string& name, const std::string& loc
   if (!attribute) state_->document.fail(idLocation, fmt::format("the Draco stream has no attribute {}", id));
   const int needed = static_cast<int>(Vec::length()), have = attribute->num_components();
   if (have != needed && !(name.starts_with("COLOR") && have == 3))
-    state_->document.fail(location, fmt::format("{} components in the Draco stream, expected {}", have, needed));
+    state_->document.fail(location,
+                          fmt::format("{} in the Draco stream, expected {}", counted(have, "component"), needed));
 
   std::vector<Vec> values(mesh.num_points(), Vec(1));
   for (draco::PointIndex p(0); p < mesh.num_points(); ++p) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "base/plural.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/extensions.h"
 
@@ -84,8 +85,9 @@ void InstanceBuilder::addNode(int index) {
   const tinygltf::Mesh& mesh = document_.model.meshes[static_cast<std::size_t>(node.mesh)];
   const std::size_t targetCount = mesh.primitives[0].targets.size();
   if (!node.weights.empty() && node.weights.size() != targetCount)
-    document_.fail(fmt::format("/nodes/{}/weights", index),
-                   fmt::format("{} weights for {} morph targets", node.weights.size(), targetCount));
+    document_.fail(
+        fmt::format("/nodes/{}/weights", index),
+        fmt::format("{} for {}", counted(node.weights.size(), "weight"), counted(targetCount, "morph target")));
   if (node.skin != kNone) {
     if (hasJoints(mesh)) return addSkinned(index);
     report_.ignored.push_back(fmt::format("/nodes/{}/skin: the mesh has no JOINTS_0 and WEIGHTS_0", index));
@@ -131,7 +133,8 @@ std::vector<mat4> InstanceBuilder::jointMatrices(int index) const {
     const std::string location = fmt::format("/skins/{}/inverseBindMatrices", skinIndex);
     const std::vector<mat4> inverseBind = readMat4(document_, skin.inverseBindMatrices, location);
     if (inverseBind.size() < matrices.size())
-      document_.fail(location, fmt::format("{} matrices for {} joints", inverseBind.size(), matrices.size()));
+      document_.fail(location, fmt::format("{} for {}", counted(inverseBind.size(), "matrix", "matrices"),
+                                           counted(matrices.size(), "joint")));
     std::copy_n(inverseBind.begin(), matrices.size(), matrices.begin());
   }
   for (std::size_t i = 0; i < matrices.size(); ++i)

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "base/parallel.h"
+#include "base/plural.h"
 #include "scene/animation/deform.h"
 #include "scene/geometry/repair.h"
 #include "scene/geometry/tangents.h"
@@ -67,8 +68,8 @@ void checkIndices(const Document& document, std::span<const std::uint32_t> indic
     }
   });
   if (wrong < indices.size())
-    document.fail(location, fmt::format("element {} is {}, but the primitive has {} vertices", wrong.load(),
-                                        indices[wrong], vertexCount));
+    document.fail(location, fmt::format("element {} is {}, but the primitive has {}", wrong.load(), indices[wrong],
+                                        counted(vertexCount, "vertex", "vertices")));
 }
 
 // Every index of the result is below vertexCount.
@@ -127,7 +128,7 @@ PrimitiveReader::PrimitiveReader(const Document& document, int mesh, int primiti
 
 void PrimitiveReader::checkCount(std::size_t count, std::size_t vertexCount, const std::string& location) const {
   if (count != vertexCount)
-    document_.fail(location, fmt::format("{} elements, but POSITION has {}", count, vertexCount));
+    document_.fail(location, fmt::format("{}, but POSITION has {}", counted(count, "element"), vertexCount));
 }
 
 Geometry PrimitiveReader::readAttributes() const {
@@ -322,10 +323,12 @@ void checkMorphTargets(const Document& document, int meshIndex) {
   const std::size_t count = mesh.primitives[0].targets.size();
   for (std::size_t i = 1; i < mesh.primitives.size(); ++i)
     if (mesh.primitives[i].targets.size() != count)
-      document.fail(fmt::format("{}/primitives/{}/targets", location, i),
-                    fmt::format("{} morph targets, but primitive 0 has {}", mesh.primitives[i].targets.size(), count));
+      document.fail(
+          fmt::format("{}/primitives/{}/targets", location, i),
+          fmt::format("{}, but primitive 0 has {}", counted(mesh.primitives[i].targets.size(), "morph target"), count));
   if (!mesh.weights.empty() && mesh.weights.size() != count)
-    document.fail(location + "/weights", fmt::format("{} weights for {} morph targets", mesh.weights.size(), count));
+    document.fail(location + "/weights",
+                  fmt::format("{} for {}", counted(mesh.weights.size(), "weight"), counted(count, "morph target")));
 }
 
 }  // namespace quintet::scene

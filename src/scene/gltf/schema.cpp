@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "base/error.h"
+#include "base/plural.h"
 #include "base/text.h"
 
 namespace quintet::scene {
@@ -391,7 +392,7 @@ class Checker {
   json numbers(const json& in, const Property& property, const Location& location) const {
     if (!in.is_array()) fail(location, "must be an array of numbers");
     if (in.size() < property.minCount || in.size() > property.maxCount)
-      fail(location, fmt::format("needs {} numbers, has {}", property.minCount, in.size()));
+      fail(location, fmt::format("needs {}, has {}", counted(property.minCount, "number"), in.size()));
     json out = json::array();
     for (std::size_t i = 0; i < in.size(); ++i) out.push_back(number(in[i], property, location[i]));
     return out;

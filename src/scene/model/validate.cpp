@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/plural.h"
 
 namespace quintet::scene {
 namespace {
@@ -28,7 +29,8 @@ bool isFinite(const mat4& m) {
 void checkGeometry(const Scene& scene, const Geometry& geometry, const std::string& name) {
   const std::size_t count = geometry.positions.size();
   const auto checkLength = [&](std::size_t length, const char* attribute) {
-    if (length != 0 && length != count) fail("{}.{}: {} elements for {} vertices", name, attribute, length, count);
+    if (length != 0 && length != count)
+      fail("{}.{}: {} for {}", name, attribute, counted(length, "element"), counted(count, "vertex", "vertices"));
   };
   checkLength(geometry.normals.size(), "normals");
   checkLength(geometry.tangents.size(), "tangents");
@@ -36,7 +38,8 @@ void checkGeometry(const Scene& scene, const Geometry& geometry, const std::stri
   for (const auto& set : geometry.uvs) checkLength(set.size(), "uvs");
   if (!geometry.tangents.empty() && geometry.normals.empty()) fail("{}.tangents: present without normals", name);
   if (!geometry.fileTriangles.empty() && geometry.fileTriangles.size() != geometry.triangles.size())
-    fail("{}.fileTriangles: {} for {} triangles", name, geometry.fileTriangles.size(), geometry.triangles.size());
+    fail("{}.fileTriangles: {} for {}", name, geometry.fileTriangles.size(),
+         counted(geometry.triangles.size(), "triangle"));
   if (geometry.material != kNone && !inRange(geometry.material, scene.materials.size()))
     fail("{}.material: {} of {}", name, geometry.material, scene.materials.size());
   for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
@@ -159,8 +162,8 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
 
 void checkImage(const io::Image& image, const std::string& name) {
   if (image.empty() || image.channels < 1 || image.channels > 4 || image.data.size() != image.height * image.rowBytes())
-    fail("{}: {} bytes for {} x {} pixels of {} channels", name, image.data.size(), image.width, image.height,
-         image.channels);
+    fail("{}: {} for {} x {} pixels of {}", name, counted(image.data.size(), "byte"), image.width, image.height,
+         counted(image.channels, "channel"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
 #include "scene/animation/deform.h"
 #include "scene/geometry/repair.h"
 #include "scene/geometry/shapes.h"
@@ -23,8 +24,8 @@ std::vector<T> readList(TomlReader& reader, const std::string& key, std::size_t 
   if (!value) return result;
   for (const TomlValue& element : reader.list(key)) result.push_back(convert(element));
   if (result.size() != count)
-    reader.fail(*value,
-                fmt::format("'{}' of {} has {} elements for {} positions", key, reader.what(), result.size(), count));
+    reader.fail(*value, fmt::format("'{}' of {} has {} for {}", key, reader.what(), counted(result.size(), "element"),
+                                    counted(count, "position")));
   return result;
 }
 
@@ -33,9 +34,8 @@ void readTriangles(TomlReader& reader, Geometry& geometry) {
   const TomlValue* indices = reader.find("indices");
   if (!indices) {
     if (count % 3 != 0)
-      reader.fail(reader.table(),
-                  fmt::format("{} has {} positions and no 'indices'; the number must be a multiple of 3", reader.what(),
-                              count));
+      reader.fail(reader.table(), fmt::format("{} has {} and no 'indices'; the number must be a multiple of 3",
+                                              reader.what(), counted(count, "position")));
     for (std::uint32_t i = 0; i < count; i += 3) geometry.triangles.push_back({i, i + 1, i + 2});
     return;
   }
@@ -51,8 +51,8 @@ void readTriangles(TomlReader& reader, Geometry& geometry) {
     for (const TomlValue& index : element.elements) flat.push_back(reader.toInteger(index, "indices", 0, count - 1));
   }
   if (flat.size() % 3 != 0)
-    reader.fail(*indices, fmt::format("'indices' of {} has {} numbers; the number must be a multiple of 3",
-                                      reader.what(), flat.size()));
+    reader.fail(*indices, fmt::format("'indices' of {} has {}; the number must be a multiple of 3", reader.what(),
+                                      counted(flat.size(), "number")));
   for (std::size_t i = 0; i < flat.size(); i += 3) geometry.triangles.push_back({flat[i], flat[i + 1], flat[i + 2]});
 }
 

@@ -133,6 +133,8 @@ TEST(Instrument, ReportsMissIndicesOutOfRange) {
   const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" +
                              rayGeneration(trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q004:3");
+  ASSERT_FALSE(notes.empty());
+  EXPECT_NE(notes[0].text.find("beyond the 1 miss shader of the table"), std::string::npos) << notes[0].text;
 }
 
 TEST(Instrument, ReportsCallableIndicesOutOfRange) {

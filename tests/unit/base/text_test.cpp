@@ -23,6 +23,7 @@ TEST(Text, ReplacesControlCharactersAndInvalidUtf8) {
 
 TEST(Text, FormatsBytes) {
   EXPECT_EQ(bytesText(0), "0 bytes");
+  EXPECT_EQ(bytesText(1), "1 byte");
   EXPECT_EQ(bytesText(1023), "1023 bytes");
   EXPECT_EQ(bytesText(1024), "1.0 KiB");
   EXPECT_EQ(bytesText(3355443), "3.2 MiB");

@@ -258,6 +258,7 @@ TEST(ExrLayersTest, RejectsInvalidImages) {
     EXPECT_THAT(with([&](ExrImage& p) { p.channels[0].name = name; }), HasSubstr("cannot be the name")) << name;
   EXPECT_THAT(with([](ExrImage& p) { p.channels[0].name = std::string(256, 'a'); }), HasSubstr("cannot be the name"));
   EXPECT_THAT(with([](ExrImage& p) { p.channels[0].integers.resize(16); }), HasSubstr("type is not u32"));
+  EXPECT_THAT(with([](ExrImage& p) { p.channels[0].samples.resize(1); }), HasSubstr("1 sample for 4 x 4 pixels"));
   EXPECT_THAT(with([](ExrImage& p) { p.window = {1, 0, 4, 4}; }), HasSubstr("exceed the image"));
   EXPECT_THAT(with([](ExrImage& p) { p.window = {0xffffffffu, 0, 70000, 4}; }), HasSubstr("at most 65536"));
   EXPECT_THAT(with([](ExrImage& p) { p.attributes = {{"compression", 1}}; }), HasSubstr("'compression'"));

@@ -75,8 +75,9 @@ TEST_F(RejectLoss, ADamagedFilm) {
 }
 
 TEST(FilmTexts, Samples) {
-  EXPECT_EQ(rangesText({}), "none");
-  EXPECT_EQ(rangesText({{0, 16}, {32, 33}}), "0–15 and 32–32");
+  EXPECT_EQ(rangesText({}), "no samples");
+  EXPECT_EQ(rangesText({{32, 33}}), "sample 32");
+  EXPECT_EQ(rangesText({{0, 16}, {32, 33}}), "samples 0–15 and 32");
   render::FilmState film;
   film.region = {0, 0, 32, 32};
   film.counts.ranges = {{0, 16}};

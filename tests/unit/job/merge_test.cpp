@@ -67,13 +67,12 @@ TEST_F(Merge, ReportsPixelsThatAreNotFinite) {
 }
 
 TEST_F(Merge, ReportsMissingSamples) {
-  EXPECT_EQ(missingText(merge({write("a.qfilm", provenance_, {{4, 8}})}, observer_)),
-            "samples 0–3 and 8–15 are missing");
+  EXPECT_EQ(missingText(merge({write("a.qfilm", provenance_, {{4, 8}})}, observer_)), "missing: samples 0–3 and 8–15");
 }
 
 TEST_F(Merge, RejectsSharedSamples) {
   const auto a = write("a.qfilm", provenance_, {{0, 8}}), b = write("b.qfilm", provenance_, {{4, 16}});
-  EXPECT_THAT(errorFor({a, b}), AllOf(HasSubstr("b.qfilm: samples 4–7"), HasSubstr("a.qfilm")));
+  EXPECT_THAT(errorFor({a, b}), AllOf(HasSubstr("b.qfilm: shares samples 4–7"), HasSubstr("a.qfilm")));
 }
 
 TEST_F(Merge, RejectsDifferentRenders) {

@@ -79,7 +79,7 @@ TEST(Resolve, Batches) {
     return "";
   };
   EXPECT_EQ(errorFor({0, 3}, [](RenderRequest&) {}), "");
-  EXPECT_THAT(errorFor({2, 4}, [](RenderRequest&) {}), HasSubstr("0–3"));
+  EXPECT_THAT(errorFor({2, 4}, [](RenderRequest&) {}), HasSubstr("the last batch of 16 samples is 3"));
   EXPECT_NE(errorFor({0, 1}, [](RenderRequest& r) { r.limits.seconds = 1; }), "");
   EXPECT_NE(errorFor({0, 1}, [](RenderRequest& r) { r.limits.adaptive = true; }), "");
   EXPECT_NE(errorFor({0, 1}, [](RenderRequest& r) { r.limits.samples.reset(); }), "");

@@ -105,6 +105,8 @@ TEST_F(PlanOutputs, BitsOfPngFiles) {
   EXPECT_EQ(errorFor(deep), "");
   deep.pngBits = 12;
   EXPECT_THAT(errorFor(deep), HasSubstr("8 or 16"));
+  deep.pngBits = 1;
+  EXPECT_THAT(errorFor(deep), HasSubstr("1 bit per channel"));
   deep = request("out.exr");
   deep.pngBits = 16;
   EXPECT_THAT(errorFor(deep), HasSubstr("PNG only"));

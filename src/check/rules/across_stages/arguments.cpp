@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/plural.h"
 #include "check/rules/rules.h"
 #include "check/value_context.h"
 
@@ -145,7 +146,7 @@ class ArgumentRule {
 
   std::string beyond(std::size_t record) const {
     const std::size_t count = input_.scene->geometries.size() * graph_.rayCount();
-    return record < count ? std::string() : fmt::format("; the table has {} records", count);
+    return record < count ? std::string() : fmt::format("; the table has {}", counted(count, "record"));
   }
 
   // ": instance 'ball' of scene.glb uses record 7; the table has 6 records"

@@ -177,6 +177,7 @@ const WrongCase kWrong[] = {
      {"'polynomial'", "bool, int, float, vec2, vec3, vec4, color, uint, choice, image"}},
     {"DefaultTooShort", "[0.5, 1, 0.25]", "[0.5, 1]", 36, {"'tint'", "3 numbers"}},
     {"DefaultNoList", "[0.5, 1, 0.25]", "0.5", 36, {"'tint'", "3 numbers"}},
+    {"DefaultNoScalar", "type = \"color\"", "type = \"float\"", 36, {"'tint'", "requires 1 number"}},
     {"DefaultOutside", "0.25]", "3]", 36, {"'tint'", "0 to 2"}},
     {"DefaultNoNumber", "0.25]", "\"x\"]", 36, {"'tint'", "a number"}},
     {"RecursionTooDeep", "max_recursion = 3", "max_recursion = 32", 4, {"'max_recursion'", "[program]", "1 to 31"}},

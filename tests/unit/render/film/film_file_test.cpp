@@ -153,6 +153,8 @@ TEST(FilmFile, DetectsTruncationAtEveryLength) {
     ASSERT_EQ(problemOf(std::span(bytes).first(size)),
               "part.qfilm: is truncated after " + std::to_string(size) + (size == 1 ? " byte" : " bytes"));
   std::vector<std::byte> longer = bytes;
+  longer.resize(bytes.size() + 1);
+  EXPECT_EQ(problemOf(longer), "part.qfilm: is damaged: it has 1 excess byte");
   longer.resize(bytes.size() + 3);
   EXPECT_EQ(problemOf(longer), "part.qfilm: is damaged: it has 3 excess bytes");
 }

@@ -186,13 +186,14 @@ TEST(GltfMorph, CreatesAMeshForTheWeightsOfANode) {
 TEST(GltfMorph, RejectsInconsistentTargets) {
   MorphBuilder builder;
   builder.root["meshes"][0]["weights"] = {1};
-  EXPECT_THAT(errorOf(builder), IsErrorAt("/meshes/0/weights", "1 weights"));
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/meshes/0/weights", "1 weight for 2 morph targets"));
   builder.root["meshes"][0].erase("weights");
   builder.root["nodes"][0]["weights"] = {1, 2, 3};
   EXPECT_THAT(errorOf(builder), IsErrorAt("/nodes/0/weights", "3 weights"));
   builder.root["nodes"][0].erase("weights");
   builder.primitive()["targets"][1]["POSITION"] = builder.addAccessor<float>({1, 2, 3}, "VEC3");
-  EXPECT_THAT(errorOf(builder), IsErrorAt("/meshes/0/primitives/0/targets/1/POSITION", "1 elements"));
+  EXPECT_THAT(errorOf(builder),
+              IsErrorAt("/meshes/0/primitives/0/targets/1/POSITION", "1 element, but POSITION has 3"));
   builder.primitive()["targets"][1]["POSITION"] = 77;
   EXPECT_THAT(errorOf(builder), IsErrorAt("/meshes/0/primitives/0/targets/1/POSITION", "accessor 77"));
 }

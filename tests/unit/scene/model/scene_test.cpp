@@ -70,6 +70,8 @@ TEST(Validate, ReportsTheFirstError) {
   const auto geometry = [](scene::Scene& s) -> scene::Geometry& { return s.meshes[0].geometries[0]; };
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).normals.pop_back(); }),
               IsErrorAt("scene: meshes[0].geometries[0].normals", "2 elements"));
+  EXPECT_THAT(faultOf([&](auto& s) { geometry(s).colors.resize(1); }),
+              IsErrorAt("scene: meshes[0].geometries[0].colors", "1 element for 3 vertices"));
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).uvs[1].resize(4); }),
               IsErrorAt("scene: meshes[0].geometries[0].uvs", "4 elements"));
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).triangles[0].y = 3; }),
