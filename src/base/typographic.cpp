@@ -12,9 +12,10 @@ std::string_view findTypographicQuote(std::string_view text) {
   return {};
 }
 
+char asciiQuote(std::string_view quote) { return quote.ends_with('\x98') || quote.ends_with('\x99') ? '\'' : '"'; }
+
 std::string typographicQuoteHint(std::string_view quote) {
-  const bool isSingle = quote.ends_with('\x98') || quote.ends_with('\x99');
-  return std::string(quote) + " is a typographic quote; type " + (isSingle ? "'" : "\"") + " instead";
+  return std::string(quote) + " is a typographic quote; type " + asciiQuote(quote) + " instead";
 }
 
 }  // namespace quintet

@@ -11,6 +11,9 @@ namespace quintet {
 // Returns the first of “ ” ‘ ’ in the text, as UTF-8; empty if there is none.
 std::string_view findTypographicQuote(std::string_view text);
 
+// Returns the ASCII quote, " or ', that the result of findTypographicQuote() stands for.
+char asciiQuote(std::string_view quote);
+
 // Returns "“ is a typographic quote; type \" instead" for the result of findTypographicQuote().
 std::string typographicQuoteHint(std::string_view quote);
 

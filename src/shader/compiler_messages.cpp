@@ -77,21 +77,49 @@ bool isNoise(const Diagnostic& d) {
   return d.text == "'' : compilation terminated" || d.text.ends_with("while in source code it is (460, none)");
 }
 
-// The compiler reports only one byte of a character that GLSL does not have. Restores the character.
+// Returns the line without the comment at its end, which can have any characters.
+std::string_view codeOf(std::string_view line) { return line.substr(0, line.find("//")); }
+
+// Returns `line`, or the last #define before it, if its code has the byte; else 0.
+int lineWithByte(std::string_view source, int line, char byte) {
+  int found = 0;
+  for (int i = 1; i <= line; ++i) {
+    const std::size_t end = std::min(source.find('\n'), source.size());
+    const std::string_view code = codeOf(source.substr(0, end));
+    if ((i == line || code.starts_with("#define")) && code.find(byte) != code.npos) found = i;
+    source.remove_prefix(std::min(end + 1, source.size()));
+  }
+  return found;
+}
+
+// The compiler reports only one byte of a character that GLSL does not have, and for a macro the line of its use.
+// Restores the character and its location.
 void restoreCharacter(Diagnostic& d, std::string_view source) {
   constexpr std::string_view kEnd = "' : unexpected token";
   if (d.line <= 0 || d.text.size() != kEnd.size() + 2 || !d.text.ends_with(kEnd) || (d.text[1] & 0x80) == 0) return;
-  const std::string_view line = spirv::lineOf(source, d.line);
+  const int number = lineWithByte(source, d.line, d.text[1]);
+  if (number == 0) return;
+  const std::string_view line = codeOf(spirv::lineOf(source, number));
   const std::string_view quote = findTypographicQuote(line);
   std::size_t at = quote.find(d.text[1]) != quote.npos ? line.find(quote) : line.find(d.text[1]);
-  if (at == line.npos) return;
   while (at > 0 && (line[at] & 0xC0) == 0x80) --at;
   std::size_t length = 1;
   while (at + length < line.size() && (line[at + length] & 0xC0) == 0x80) ++length;
   const std::string_view character = line.substr(at, length);
   d.text = "'" + std::string(character) + std::string(kEnd);
   if (!findTypographicQuote(character).empty()) d.text += "; " + typographicQuoteHint(character);
+  d.line = number;
   d.column = static_cast<int>(at) + 1;
+}
+
+// Adds a hint to the error for #include “file”.
+void explainInclude(Diagnostic& d, std::string_view source) {
+  if (!d.text.starts_with("'#include'")) return;
+  const std::string_view line = codeOf(spirv::lineOf(source, d.line));
+  const std::string_view quote = findTypographicQuote(line);
+  if (quote.empty()) return;
+  d.text += "; " + typographicQuoteHint(quote);
+  d.column = static_cast<int>(quote.data() - line.data()) + 1;
 }
 
 }  // namespace
@@ -123,6 +151,7 @@ std::vector<Diagnostic> parseMessages(std::string_view messages, const IncludeRe
     if (parseMessage(message, known, diagnostic)) {
       diagnostic.column = columnOfToken(files.textOf(diagnostic.file), diagnostic.line, diagnostic.text);
       restoreCharacter(diagnostic, files.textOf(diagnostic.file));
+      explainInclude(diagnostic, files.textOf(diagnostic.file));
       if (!isNoise(diagnostic)) diagnostics.push_back(std::move(diagnostic));
     } else if (diagnostics.empty()) {
       diagnostic.file = files.root().name;

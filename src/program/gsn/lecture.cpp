@@ -247,7 +247,7 @@ std::string descriptionOf(const std::string& text) {
     if (comment.find("gsnShaderOptions") != comment.npos) continue;
     if (comment.find("SPDX-License-Identifier") != comment.npos) continue;
     if (!comment.starts_with("//") || comment.find("scene:") != comment.npos) break;
-    comment.remove_prefix(std::min(comment.size(), std::size_t{3}));
+    comment.remove_prefix(std::min(comment.find_first_not_of("/ \t"), comment.size()));
     words.append(words.empty() ? "" : " ").append(comment);
   }
   std::size_t end = words.find(". ");

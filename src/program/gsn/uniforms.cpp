@@ -11,6 +11,8 @@
 #include <map>
 #include <tuple>
 
+#include "base/typographic.h"
+
 namespace quintet::program {
 namespace {
 
@@ -62,20 +64,40 @@ std::optional<std::vector<double>> numbersOf(std::string_view text) {
   }
 }
 
-// Returns the pairs key="value" of a comment; keys in lower case.
+// Returns the quote at the start of the text; empty if there is none.
+std::string_view quoteAtStart(std::string_view text) {
+  if (text.starts_with('"') || text.starts_with('\'')) return text.substr(0, 1);
+  return findTypographicQuote(text.substr(0, 3));
+}
+
+// Returns the offset of the quote that ends the value after `open`; npos if there is none.
+std::size_t closingQuote(std::string_view text, std::size_t from, std::string_view open) {
+  if (open.size() == 1) return text.find(open, from);
+  while (true) {
+    const std::string_view quote = findTypographicQuote(text.substr(from));
+    if (quote.empty()) return text.npos;
+    from = static_cast<std::size_t>(quote.data() - text.data());
+    if (asciiQuote(quote) == asciiQuote(open)) return from;
+    from += quote.size();
+  }
+}
+
+// Returns the pairs key="value" of a comment; keys in lower case. The quotes can be typographic.
 std::map<std::string, std::string> attributesOf(std::string_view comment) {
   std::map<std::string, std::string> result;
   for (std::size_t equals = comment.find('='); equals != comment.npos; equals = comment.find('=', equals + 1)) {
-    std::size_t first = comment.find_first_not_of(" \t", equals + 1);
-    if (first == comment.npos || (comment[first] != '"' && comment[first] != '\'')) continue;
-    const std::size_t close = comment.find(comment[first], first + 1);
+    const std::size_t first = std::min(comment.find_first_not_of(" \t", equals + 1), comment.size());
+    const std::string_view open = quoteAtStart(comment.substr(first));
+    if (open.empty()) continue;
+    const std::size_t value = first + open.size();
+    const std::size_t close = closingQuote(comment, value, open);
     if (close == comment.npos) break;
     std::size_t end = equals;
     while (end > 0 && (comment[end - 1] == ' ' || comment[end - 1] == '\t')) --end;
     std::size_t begin = end;
     while (begin > 0 && (std::isalnum(static_cast<unsigned char>(comment[begin - 1])) || comment[begin - 1] == '_'))
       --begin;
-    if (begin < end) result[lower(comment.substr(begin, end - begin))] = comment.substr(first + 1, close - first - 1);
+    if (begin < end) result[lower(comment.substr(begin, end - begin))] = comment.substr(value, close - value);
     equals = close;
   }
   return result;
@@ -112,6 +134,7 @@ class DeclarationReader {
     while (last < tokens_.size() && !(isMark(last, ';') && tokens_[last].braces == 0))
       last = source_.nextCode(last + 1);
     if (last == tokens_.size()) return last;  // the compiler reports it
+    if (!checkQuotes(first, last)) return last;
     std::size_t at = source_.nextCode(first + 1);
     while (at < last && (word(at) == "highp" || word(at) == "mediump" || word(at) == "lowp"))
       at = source_.nextCode(at + 1);
@@ -147,6 +170,14 @@ class DeclarationReader {
       if (tokens_[i].parens == 0) return i > 0 && word(i - 1) == "layout" ? i - 1 : first;  // token i is the '('
     }
     return first;
+  }
+
+  // Returns false after an error for the first typographic quote outside comments.
+  bool checkQuotes(std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; i = source_.nextCode(i + 1))
+      if (const std::string_view quote = findTypographicQuote(text_.substr(tokens_[i].begin, 3)); !quote.empty())
+        return fail(i, typographicQuoteHint(quote));
+    return true;
   }
 
   // Reads the comment after the declaration in the same line.

@@ -43,6 +43,8 @@ TEST(Typographic, FindsTheFirstQuote) {
   EXPECT_EQ(findTypographicQuote("plain \"text\" – …"), "");
   EXPECT_EQ(findTypographicQuote("a ’b” c"), "’");
   EXPECT_EQ(findTypographicQuote("\xE2\x80"), "");
+  EXPECT_EQ(asciiQuote("‘"), '\'');
+  EXPECT_EQ(asciiQuote("”"), '"');
   EXPECT_EQ(typographicQuoteHint("’"), "’ is a typographic quote; type ' instead");
   EXPECT_EQ(typographicQuoteHint("“"), "“ is a typographic quote; type \" instead");
 }

@@ -43,6 +43,24 @@ TEST(Compiler, ReportsFileLineAndColumn) {
   EXPECT_EQ(error.text, "'nowhere' : undeclared identifier");
 }
 
+TEST(Compiler, NamesTheWrongCharacter) {
+  const auto errorFor = [](const std::string& body) {
+    const Result result = Compiler({}).compile(computeSource(body));
+    return result.ok() ? "none" : result.diagnostics.at(0).format();
+  };
+  EXPECT_EQ(errorFor("float f() { return 1.0”; }"),
+            "test.comp:4:23: error: '”' : unexpected token; ” is a typographic quote; type \" instead [GLSL]");
+  EXPECT_EQ(errorFor("float f() { return 2.0 – 1.0; }  // the light’s power"),
+            "test.comp:4:24: error: '–' : unexpected token [GLSL]");
+  EXPECT_EQ(errorFor("#define kOne ‘1.0’  // one\n\nfloat f() { return kOne; }"),
+            "test.comp:4:14: error: '‘' : unexpected token; ‘ is a typographic quote; type ' instead [GLSL]");
+  EXPECT_EQ(errorFor("#include “a.glsl”"),
+            "test.comp:4:10: error: '#include' : must be followed by a header name; “ is a typographic quote; type \" "
+            "instead [GLSL]");
+  EXPECT_EQ(errorFor("#include <missing.glsl>  // the light’s power").find("typographic"), std::string::npos);
+  EXPECT_EQ(errorFor("float f() { return 1.0; }  // the light’s power"), "none");
+}
+
 TEST(Compiler, DropsFollowUpErrors) {
   const Result result =
       Compiler({}).compile(computeSource("int f() { return nowhere.x + nowhere.y * 2.0; }\nint g() { return gone; }"));

@@ -279,6 +279,26 @@ TEST(Lecture, TurnsUniformsIntoParameters) {
   EXPECT_EQ(p.parameters[5].name, "userParam2");
 }
 
+// Text processors replace the quotes, also in comments.
+TEST(Lecture, AcceptsTypographicQuotesInComments) {
+  const Program p = lecture(
+      "//“Glow” shows the sun’s light. It has parameters\n"
+      "uniform float a; // defaultval=“0.5” max = ”2“ unit='m' help=“The sun’s radius”\n"
+      "uniform float b; // the moon’s radius, defaultval=‘3’ help=\"The “new” moon\"\n"
+      "uniform float c; // defaultval=“1\n" +
+      std::string(kRayGeneration));
+  EXPECT_THAT(p.diagnostics, IsEmpty());
+  EXPECT_EQ(p.description, "“Glow” shows the sun’s light. It has parameters");
+  ASSERT_EQ(p.parameters.size(), 3u);
+  EXPECT_EQ(p.parameters[0].defaultValue[0], 0.5);
+  EXPECT_EQ(p.parameters[0].max, 2.0);
+  EXPECT_EQ(p.parameters[0].unit, "m");
+  EXPECT_EQ(p.parameters[0].help, "The sun’s radius");
+  EXPECT_EQ(p.parameters[1].defaultValue[0], 3.0);
+  EXPECT_EQ(p.parameters[1].help, "The “new” moon");
+  EXPECT_EQ(p.parameters[2].defaultValue[0], 0.0) << "the quote is not closed";
+}
+
 TEST(Lecture, RejectsInvalidUniforms) {
   struct Case {
     const char* line;
@@ -293,6 +313,8 @@ TEST(Lecture, RejectsInvalidUniforms) {
         Case{"uniform int a; // defaultval=\"0.5\"", "1:", "integer"},
         Case{"uniform float a; // min=\"1\" defaultval=\"0\"", "1:", "1 to"},
         Case{"uniform float frame;", "1:1", "'frame'"},
+        Case{"uniform float a = “0.5”; // help=“Size”", "1:19", "“ is a typographic quote; type \" instead"},
+        Case{"uniform ‘float’ a;", "1:9", "‘ is a typographic quote; type ' instead"},
         Case{"uniform float a; uniform int a;", "1:", "different types"},
         Case{"uniform sampler2D a; // defaultval=\"none.png\"", "1:1", "'none.png'"}})
     EXPECT_THAT(problems(line + std::string("\n") + kRayGeneration), Contains(isError(position, "Q015", word))) << line;
