@@ -20,6 +20,8 @@ struct DiagnosticInfo {
   std::string_view title;  // what is wrong, without names: a few words, no period
   std::string_view why;    // why it matters: one sentence
   std::string_view fix;    // how to fix it: one sentence
+  // Words that users search for and that the title does not have, separated by spaces: synonyms, symptoms, identifiers.
+  std::string_view keywords = {};
 };
 
 // Returns all rows, sorted by id.

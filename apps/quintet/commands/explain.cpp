@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,7 +13,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/parse.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "base/wrap.h"
@@ -31,24 +31,36 @@ std::string lowerCase(std::string_view text) {
   return result;
 }
 
-// The diagnostics that mention all words of the topic: first those with the words in the title.
-Infos search(const std::string& topic) {
-  Infos inTitle, inText;
-  const std::vector<std::string> words = splitText(lowerCase(topic), ' ');
-  for (const check::DiagnosticInfo& info : check::allDiagnostics()) {
-    const std::string title = lowerCase(fmt::format("{} {}", info.id, info.title));
-    const std::string text =
-        title + lowerCase(fmt::format(" {} {} {}", info.why, info.fix, check::explanation(info.id)));
-    const auto contains = [](const std::string& where) {
-      return [&where](const std::string& word) { return where.find(word) != where.npos; };
-    };
-    if (std::ranges::all_of(words, contains(title)))
-      inTitle.push_back(&info);
-    else if (std::ranges::all_of(words, contains(text)))
-      inText.push_back(&info);
+// Returns the words of a text in lower case and without a plural s: "any-hit shaders" has "any", "hit" and "shader".
+std::set<std::string> wordsOf(std::string_view text) {
+  const auto isPart = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+  std::set<std::string> words;
+  for (auto at = text.begin(); at != text.end();) {
+    const auto end = std::find_if_not(at, text.end(), isPart);
+    std::string word = lowerCase({at, end});
+    if (word.size() > 3 && word.ends_with('s')) word.pop_back();
+    if (!word.empty()) words.insert(word);
+    at = std::find_if(end, text.end(), isPart);
   }
-  inTitle.insert(inTitle.end(), inText.begin(), inText.end());
-  return inTitle;
+  return words;
+}
+
+// Returns the diagnostics about a topic: those that have all its words in the title or the keywords, or ids that start
+// with it. If there are none, those whose texts contain all words.
+Infos search(const std::string& topic) {
+  const std::set<std::string> words = wordsOf(topic);
+  if (words.empty()) return {};
+  Infos about, mentioning;
+  for (const check::DiagnosticInfo& info : check::allDiagnostics()) {
+    const std::string id = lowerCase(info.id);
+    const std::set<std::string> subjects = wordsOf(fmt::format("{} {}", info.title, info.keywords));
+    const std::string text = lowerCase(fmt::format("{} {} {}", info.why, info.fix, check::explanation(info.id)));
+    if (std::ranges::all_of(words, [&](const auto& word) { return subjects.contains(word) || id.starts_with(word); }))
+      about.push_back(&info);
+    if (std::ranges::all_of(words, [&](const auto& word) { return text.find(word) != text.npos; }))
+      mentioning.push_back(&info);
+  }
+  return about.empty() ? mentioning : about;
 }
 
 std::string listText(const Infos& infos) {
@@ -74,7 +86,7 @@ std::string listJson(const Infos& infos) {
 // An id or a topic. At least one diagnostic.
 Infos find(const std::string& text) {
   if (const check::DiagnosticInfo* info = check::findDiagnostic(text)) return {info};
-  if (Infos found = search(text); !found.empty() && text.find_first_not_of(' ') != text.npos) return found;
+  if (Infos found = search(text); !found.empty()) return found;
   std::vector<std::string> ids;
   for (const check::DiagnosticInfo& info : check::allDiagnostics()) ids.emplace_back(info.id);
   throw UsageError(

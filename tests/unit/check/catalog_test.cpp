@@ -52,6 +52,15 @@ TEST(DiagnosticCatalog, HasTitleReasonAndFixForEachId) {
   }
 }
 
+TEST(DiagnosticCatalog, KeywordsAreNotInTheTitle) {
+  for (const DiagnosticInfo& info : allDiagnostics()) {
+    const std::string title = " " + std::string(info.title) + " ";
+    std::istringstream keywords{std::string(info.keywords)};
+    for (std::string word; keywords >> word;)
+      EXPECT_EQ(title.find(" " + word + " "), std::string::npos) << info.id << ' ' << word;
+  }
+}
+
 TEST(DiagnosticCatalog, FindsIdsIgnoringCase) {
   for (const DiagnosticInfo& info : allDiagnostics()) EXPECT_EQ(findDiagnostic(info.id), &info);
   ASSERT_NE(findDiagnostic("q101"), nullptr);
