@@ -154,6 +154,17 @@ Image toFloat(const Image& image) {
   return result;
 }
 
+Image decodePower(const Image& image, float gamma) {
+  if (image.encoding == ColorEncoding::linear) return image;
+  Image encoded = image;
+  encoded.encoding = ColorEncoding::linear;  // so that toFloat() keeps the values
+  Image result = toFloat(encoded);
+  const std::span<float> samples = result.samples<float>();
+  for (std::size_t i = 0; i < samples.size(); i += result.channels)
+    for (std::uint32_t c = 0; c < result.colorChannels(); ++c) samples[i + c] = std::pow(samples[i + c], gamma);
+  return result;
+}
+
 Image toSrgb8(const Image& image) {
   if (image.type == PixelType::u8 && image.encoding == ColorEncoding::sRgb && !image.premultiplied) return image;
   const Image linear = toFloat(image);
@@ -230,6 +241,13 @@ Image resizeBox(const Image& image, std::uint32_t width, std::uint32_t height) {
       for (std::uint32_t c = 0; c < result.colorChannels(); ++c) samples[i + c] /= alpha;
   }
   return result;
+}
+
+void resizeToSmaller(Image& a, Image& b) {
+  if (a.width == b.width && a.height == b.height) return;
+  Image& larger = a.pixelCount() > b.pixelCount() ? a : b;
+  const Image& smaller = &larger == &a ? b : a;
+  larger = resizeBox(larger, smaller.width, smaller.height);
 }
 
 }  // namespace quintet::io

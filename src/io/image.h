@@ -96,6 +96,10 @@ Image makeImage(std::uint32_t width, std::uint32_t height, std::uint32_t channel
 // Converts to linear floats; sRGB-encoded samples are decoded. Alpha stays premultiplied or straight.
 Image toFloat(const Image& image);
 
+// The same for samples that are encoded by a power instead of the sRGB curve: color becomes sample^gamma. Images that are
+// linear already stay as they are.
+Image decodePower(const Image& image, float gamma);
+
 // Converts to sRGB-encoded bytes with straight alpha, without tone mapping. Values are clamped to [0,1]; NaN becomes 0.
 Image toSrgb8(const Image& image);
 
@@ -113,6 +117,9 @@ Image toPremultiplied(const Image& image);
 // Resizes with a box filter of exact pixel areas in linear light with premultiplied alpha, which preserves the mean.
 // The result has linear floats, and straight alpha if the input has. Throws UsageError if a size is 0.
 Image resizeBox(const Image& image, std::uint32_t width, std::uint32_t height);
+
+// Resizes the image with more pixels to the size of the other one. Images of the same size stay as they are.
+void resizeToSmaller(Image& a, Image& b);
 
 }  // namespace quintet::io
 #endif

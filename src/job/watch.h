@@ -10,11 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "base/stopwatch.h"
 #include "job/engine.h"
 #include "job/observer.h"
 #include "job/render_job.h"
-#include "shader/file_watcher.h"
+#include "job/source_watcher.h"
 
 namespace quintet::job {
 
@@ -23,40 +22,32 @@ class LiveJob {
   // Resolves the request as it is on disk now. Called again for each reload.
   using Resolve = std::function<ResolvedJob()>;
 
-  // `engine` outlives this object. `program`: name, file or folder, as the user gave it.
-  LiveJob(Engine& engine, std::string program, Resolve resolve)
-      : engine_(engine), program_(std::move(program)), resolve_(std::move(resolve)) {}
+  // `engine` outlives this object. `program`: name, file or folder, as the user gave it; it is watched from now on.
+  LiveJob(Engine& engine, std::string program, Resolve resolve);
 
-  // Builds the job again. False: the program does not compile, or a file or the request is wrong; the observer got the errors
-  // as diagnostics. The first call throws such errors of files and requests instead.
+  // Builds the job again, and watches every file that it has read, and the program's folder for new ones. False: the
+  // program does not compile, or a file or the request is wrong; the observer got the errors as diagnostics. The first
+  // call throws such errors of files and requests instead.
   bool reload(Observer& observer);
 
   // Of the last reload that succeeded; null if the program then stopped compiling.
   RenderJob* job() { return job_.get(); }
 
-  // Watches every file that the job has read, and the program's folder for new ones. Returns their number.
-  std::size_t watchFiles();
-  // True if a file was saved since the last waitForChange(). Does not block.
-  bool changePending() { return watcher_.pending(); }
-  // Waits up to `seconds` for a save. Empty: nothing was saved.
-  std::vector<std::filesystem::path> waitForChange(double seconds);
-
-  // Names of the files of the last change, and the time since they were written, seconds.
-  std::string changedNames() const;
-  double secondsSinceChange() const { return changeAge_ + sinceChange_.seconds(); }
+  SourceWatcher& watcher() { return watcher_; }
 
  private:
+  void build(Observer& observer);
+  void watchFiles();
+
   Engine& engine_;
   const std::string program_;
   const Resolve resolve_;
-  shader::FileWatcher watcher_;
+  SourceWatcher watcher_;
   std::unique_ptr<RenderJob> job_;
   std::shared_ptr<PreparedScene> scene_;
-  std::vector<std::filesystem::path> sceneFiles_, files_;  // of the last job
-  std::vector<std::filesystem::path> changed_;
-  double changeAge_ = 0;  // seconds between the save and its detection
-  Stopwatch sinceChange_;
-  bool hasRun_ = false;  // reload() has succeeded or failed once
+  std::vector<std::filesystem::path> sceneFiles_;  // of the last job
+  WatchList list_;                                 // of the last job, and of what failed since
+  bool hasRun_ = false;                            // reload() has succeeded or failed once
 };
 
 }  // namespace quintet::job

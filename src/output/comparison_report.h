@@ -17,6 +17,7 @@ struct Measure {
   std::string meaning;  // "mean absolute difference, in steps of 1/255"
   double value = 0;
   bool largerIsBetter = false;
+  bool meets(double limit) const { return largerIsBetter ? value >= limit : value <= limit; }
 };
 std::vector<Measure> measures(const io::Comparison& comparison);
 

@@ -71,4 +71,10 @@ std::filesystem::path fileName(const std::filesystem::path& file, const std::str
   return file.parent_path() / name;
 }
 
+std::filesystem::path defaultImage(const std::string& program) {
+  const std::string name = std::filesystem::path(program).filename().string();
+  const std::string stem = name.substr(0, name.find('.'));
+  return (stem.empty() ? "out" : stem) + ".png";
+}
+
 }  // namespace quintet::output

@@ -19,5 +19,8 @@ bool hasFramePattern(const std::filesystem::path& file);
 std::filesystem::path fileName(const std::filesystem::path& file, const std::string& output,
                                std::optional<std::uint64_t> frame);
 
+// The name of a program's image in the current folder: "ao.png", "sphere.png" for the program lessons/sphere.rt.glsl.
+std::filesystem::path defaultImage(const std::string& program);
+
 }  // namespace quintet::output
 #endif

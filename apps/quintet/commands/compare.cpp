@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // `quintet compare`: the difference between two images, or the statistical test of two films.
-#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -154,28 +153,6 @@ io::Image readInput(const std::string& file, const std::optional<std::string>& l
   return layer ? io::decodeExrLayer(bytes, file, *layer) : io::decodeImage(bytes, file);
 }
 
-// Display values encoded by a pure power, as linear light.
-io::Image decodeGamma(io::Image image, float gamma) {
-  if (image.encoding == io::ColorEncoding::linear) return image;
-  image.encoding = io::ColorEncoding::linear;  // so that toFloat() keeps the values
-  io::Image result = io::toFloat(image);
-  const auto samples = result.samples<float>();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const bool isAlpha = result.hasAlpha() && i % result.channels == result.channels - 1;
-    if (!isAlpha) samples[i] = std::pow(samples[i], gamma);
-  }
-  return result;
-}
-
-void reduceToSmaller(io::Image& a, io::Image& b) {
-  if (a.width == b.width && a.height == b.height) return;
-  const io::Image& smaller = a.pixelCount() <= b.pixelCount() ? a : b;
-  const std::uint32_t width = smaller.width;
-  const std::uint32_t height = smaller.height;
-  for (io::Image* image : {&a, &b})
-    if (image->width != width || image->height != height) *image = io::resizeBox(*image, width, height);
-}
-
 void writePng(const std::string& file, const io::Image& image) {
   if (file.empty()) return;
   const std::vector<std::byte> bytes = io::encodePng(image);
@@ -211,8 +188,8 @@ int compareImages(const Options& options) {
   io::Image a = readInput(options.a, options.layer);
   io::Image b = readInput(options.b, options.layer);
   if (const auto gamma = parseReal("--gamma-b", options.gammaB, 0.1, 10.0))
-    b = decodeGamma(std::move(b), static_cast<float>(*gamma));
-  if (options.resize) reduceToSmaller(a, b);
+    b = io::decodePower(b, static_cast<float>(*gamma));
+  if (options.resize) io::resizeToSmaller(a, b);
   const io::Comparison comparison = io::compareImages(a, b);
   const io::Image map = io::colorMap(comparison.flipMap);
   writePng(options.output, map);
@@ -222,7 +199,7 @@ int compareImages(const Options& options) {
 
   const std::vector<output::Measure> all = output::measures(comparison);
   const output::Measure& measure = findMeasure(all, options.metric);
-  if (!limit || (measure.largerIsBetter ? measure.value >= *limit : measure.value <= *limit)) return 0;
+  if (!limit || measure.meets(*limit)) return 0;
   return printFailure(fmt::format("{} and {}: {} {:.6g} is {} than {:.6g}", options.a, options.b, measure.name,
                                   measure.value, measure.largerIsBetter ? "less" : "more", *limit),
                       kRuntimeError);

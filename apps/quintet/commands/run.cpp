@@ -39,13 +39,6 @@ struct RunOptions : RenderOptions {
   bool namedByProgram = false;  // no output file was given
 };
 
-// In the current folder, named like the program: "ao.png", "sphere.png" for lessons/sphere.rt.glsl.
-std::filesystem::path defaultOutput(const program::Program& program) {
-  std::string stem = std::filesystem::path(program.name).filename().string();
-  stem = stem.substr(0, stem.find('.'));
-  return (stem.empty() ? "out" : stem) + ".png";
-}
-
 void convertFrames(const RenderTexts& texts, RunOptions& options) {
   job::FrameRequest& request = options.request.frames;
   const std::string& frames = options.frames;
@@ -168,7 +161,7 @@ class Watch {
                        if (level == LogLevel::warning) console_.warning(text);
                      }}),
         live_(engine_, options.program, [this] { return resolve(); }) {
-    console_.isObsolete = [this] { return live_.changePending(); };
+    console_.isObsolete = [this] { return live_.watcher().pending(); };
     console_.onPreview = console_.onFrame = [this](const job::RenderResult& result) { write(result); };
   }
 
@@ -176,17 +169,17 @@ class Watch {
     bool good = live_.reload(console_);
     stop_.emplace();
     console_.setGracefulStop(&*stop_);
-    console_.note(fmt::format("watching {}; press Ctrl-C to stop", counted(live_.watchFiles(), "file")));
+    console_.note(
+        fmt::format("watching {}; press Ctrl-C to stop", counted(live_.watcher().watched().files.size(), "file")));
     while (true) {
       if (good) render();
-      while (!stop_->requested() && live_.waitForChange(kSignalSeconds).empty()) {
+      while (!stop_->requested() && live_.watcher().wait(kSignalSeconds).empty()) {
       }
       if (stop_->requested()) break;
       changed_ = true;
       clock_ = Stopwatch();
       console_.clearWarnings();
       good = live_.reload(console_);
-      live_.watchFiles();
       if (stop_->requested()) break;
     }
     console_.clear();
@@ -217,8 +210,8 @@ class Watch {
     output::addWritten(files_, output::writeOutputs(plan_, result, console_));
     hasImage_ = true;
     if (!std::exchange(changed_, false)) return;
-    console_.note(fmt::format("{} saved: {} after {:.2f} s", live_.changedNames(),
-                              printable(files_.back().path.string()), live_.secondsSinceChange()));
+    console_.note(fmt::format("{} saved: {} after {:.2f} s", live_.watcher().changedNames(),
+                              printable(files_.back().path.string()), live_.watcher().secondsSinceChange()));
   }
 
   const RunOptions& options_;
@@ -261,7 +254,7 @@ int runCommand(Arguments arguments) {
     writeFile("-", output::layerList(program));
     return 0;
   }
-  if (options->namedByProgram) options->output.file = defaultOutput(program);
+  if (options->namedByProgram) options->output.file = output::defaultImage(program.name);
   return options->watch ? Watch(*options).run() : renderImages(*options, program, clock);
 }
 

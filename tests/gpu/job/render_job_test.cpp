@@ -292,10 +292,10 @@ TEST_F(RenderJobTest, WatchingReportsABrokenProgramAndRecovers) {
   EXPECT_FALSE(live.reload(observer_));
   EXPECT_FALSE(observer_.reported.empty());
   EXPECT_EQ(live.job(), nullptr);
-  EXPECT_GE(live.watchFiles(), 1u);
+  EXPECT_THAT(live.watcher().watched().files, testing::ElementsAre(program));
   write("0.5");
-  EXPECT_THAT(live.waitForChange(10.0), testing::Not(testing::IsEmpty()));
-  EXPECT_EQ(live.changedNames(), "a.rt.glsl");
+  EXPECT_THAT(live.watcher().wait(10.0), testing::Not(testing::IsEmpty()));
+  EXPECT_EQ(live.watcher().changedNames(), "a.rt.glsl");
   ASSERT_TRUE(live.reload(observer_));
   EXPECT_EQ(live.job()->run(request.limits, observer_).provenance.samples, 1u);
 }

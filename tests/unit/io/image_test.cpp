@@ -83,6 +83,14 @@ TEST(ImageTest, DecodesSrgbExceptAlpha) {
   EXPECT_NEAR(toFloat(wide).samples<float>()[0], linearFromSrgb(32768.0f / 65535.0f), 1e-6f);
 }
 
+TEST(ImageTest, DecodesAPowerExceptAlpha) {
+  Image image = makeImage(1, 1, 4, PixelType::u8, ColorEncoding::sRgb);
+  std::ranges::copy(std::array<std::uint8_t, 4>{0, 51, 255, 51}, image.samples<std::uint8_t>().begin());
+  EXPECT_THAT(decodePower(image, 2.0f).samples<float>(),
+              Pointwise(FloatNear(1e-6f), std::vector<float>{0.0f, 0.04f, 1.0f, 0.2f}));
+  EXPECT_THAT(decodePower(floats(1, 1, 1, {0.5f}), 2.0f).samples<float>(), ElementsAre(0.5f));
+}
+
 TEST(ImageTest, EncodesSrgbWithStraightAlpha) {
   EXPECT_THAT(toSrgb8(floats(1, 1, 3, {-1.0f, 0.21404114f, 7.0f})).samples<std::uint8_t>(), ElementsAre(0, 128, 255));
   Image premultiplied = floats(2, 1, 2, {0.25f, 0.25f, 0.5f, 0.0f});
@@ -133,6 +141,15 @@ TEST(ResizeTest, WorksInLinearLight) {
 }
 
 // Compares rows that are written in pieces with an independent loop.
+TEST(ResizeTest, ReducesTheImageWithMorePixels) {
+  for (const bool swapped : {false, true}) {
+    Image large = floats(4, 2, 1, {1, 2, 3, 4, 5, 6, 7, 8}), small = floats(2, 1, 1, {0, 9});
+    swapped ? resizeToSmaller(small, large) : resizeToSmaller(large, small);
+    EXPECT_THAT(large.samples<float>(), ElementsAre(3.5f, 5.5f));
+    EXPECT_THAT(small.samples<float>(), ElementsAre(0, 9));
+  }
+}
+
 TEST(WriteChannelsTest, WritesRanges) {
   constexpr std::uint32_t kWidth = 5, kHeight = 7;
   for (const std::uint32_t channels : {1u, 2u, 3u, 4u}) {

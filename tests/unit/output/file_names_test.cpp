@@ -55,5 +55,11 @@ TEST(FileNames, FramePattern) {
   EXPECT_THROW(hasFramePattern("%d_%d.png"), UsageError);
 }
 
+TEST(FileNames, OfProgramsWithoutAnOutputFile) {
+  EXPECT_EQ(defaultImage("ao"), "ao.png");
+  EXPECT_EQ(defaultImage("lessons/sphere.rt.glsl"), "sphere.png");
+  EXPECT_EQ(defaultImage(".hidden"), "out.png");
+}
+
 }  // namespace
 }  // namespace quintet::output
