@@ -36,6 +36,13 @@ Json artifactOf(const std::string& file) {
   return {{"uri", uriOf(file)}};
 }
 
+// SARIF 2.1.0, section 3.11.5: braces enclose placeholders, so those of a text are doubled.
+Json messageOf(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) escaped.append(c == '{' || c == '}' ? 2 : 1, c);
+  return {{"text", escaped}};
+}
+
 class SarifRun {
  public:
   explicit SarifRun(const SourceLookup& sources) : sources_(sources) {}
@@ -45,12 +52,12 @@ class SarifRun {
     if (!d.id.empty()) result["ruleId"] = d.id;
     if (const DiagnosticInfo* info = findDiagnostic(d.id)) result["ruleIndex"] = indexOf(*info);
     result["level"] = severityName(d.severity);
-    result["message"] = {{"text", d.text}};
+    result["message"] = messageOf(d.text);
     result["locations"] = Json::array();
     if (!d.file.empty()) result["locations"].push_back(locationOf(d.file, d.line, d.column));
     for (const RelatedLocation& r : d.related) {
       Json location = locationOf(r.file, r.line, r.column);
-      location["message"] = {{"text", r.text}};
+      location["message"] = messageOf(r.text);
       result["relatedLocations"].push_back(std::move(location));
     }
     if (suppressed) {
