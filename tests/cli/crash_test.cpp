@@ -73,6 +73,36 @@ TEST_F(Crash, OfTheCompilerIsOneError) {
   EXPECT_THAT(result.status, AnyOf(0, 1, 4)) << result.err;
 }
 
+// With --watch, each crash is reported, and the next save starts over. A lost device counts as a crash.
+TEST_F(Crash, IsNotTheEndOfWatching) {
+  PipeRun process({"run", "wild", "--watch", "--size", "16x16", "--spp", "1", "-o", "out.png"},
+                  {.folder = folder_.path()});
+  ASSERT_TRUE(process.waitForNext("quintet: "));
+  ASSERT_TRUE(process.waitForNext("watching 4 files; press Ctrl-C to stop\n"));
+  write(folder_ / "wild" / "sky.rgen", kWildStore);
+  ASSERT_TRUE(process.waitForNext("sky.rgen saved\n"));
+  ASSERT_TRUE(process.waitForNext("quintet: "));
+  ASSERT_TRUE(process.waitForNext("watching"));
+  write(folder_ / "wild" / "program.toml", "[program");
+  ASSERT_TRUE(process.waitForNext("quintet: wild/program.toml: "));
+  ASSERT_TRUE(process.waitForNext("watching"));
+  writeSkyProgram(folder_ / "good", "payload.color = vec3(0.5);");
+  std::filesystem::rename(folder_ / "good" / "sky.rgen", folder_ / "wild" / "sky.rgen");
+  std::filesystem::rename(folder_ / "good" / "program.toml", folder_ / "wild" / "program.toml");
+  ASSERT_TRUE(process.waitForNext("out.png: 16x16"));
+  process.signal(SIGINT);
+  EXPECT_EQ(process.finish().status, 0);
+}
+
+TEST_F(Crash, IsTheStatusOfAnInterruptedWatch) {
+  PipeRun process({"run", "wild", "--watch", "--size", "16x16", "--spp", "1", "-o", "out.png"},
+                  {.folder = folder_.path()});
+  ASSERT_TRUE(process.waitForNext("quintet: "));
+  ASSERT_TRUE(process.waitForNext("watching"));
+  process.signal(SIGINT);
+  EXPECT_EQ(process.finish().status, 4);
+}
+
 // The process that works is a child. A signal to the parent, to both, and the end of the parent reach it.
 TEST_F(Crash, KillingTheProcessEndsItsChild) {
   writeSkyProgram(folder_ / "good", "payload.color = vec3(0.5);");

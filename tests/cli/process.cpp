@@ -8,10 +8,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <stdexcept>
+#include <utility>
 
 extern char** environ;
 
@@ -28,7 +30,7 @@ struct Pipe {
     write = ends[1];
   }
   ~Pipe() {
-    ::close(read);
+    if (read >= 0) ::close(read);
     if (write >= 0) ::close(write);
   }
   Pipe(const Pipe&) = delete;
@@ -58,7 +60,7 @@ void readBoth(int out, std::string& outText, int err, std::string& errText) {
   }
 }
 
-constexpr int kSilence = 120'000;  // milliseconds without output after which a test gives up
+constexpr std::chrono::seconds kSilence{120};  // without output, after which a test gives up
 
 std::vector<std::string> environmentWith(const std::vector<std::pair<std::string, std::string>>& added) {
   std::vector<std::string> result;
@@ -88,11 +90,21 @@ std::vector<std::string> commandOf(const std::vector<std::string>& arguments, co
   return command;
 }
 
+// With the default actions for signals: tests that run in the background of a shell inherit SIGINT as ignored.
 pid_t spawn(std::vector<std::string> command, std::vector<std::string> environment,
             posix_spawn_file_actions_t& actions) {
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  sigset_t signals;
+  sigemptyset(&signals);
+  ::posix_spawnattr_setsigmask(&attributes, &signals);
+  for (const int signal : {SIGINT, SIGTERM}) sigaddset(&signals, signal);
+  ::posix_spawnattr_setsigdefault(&attributes, &signals);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
   pid_t process = -1;
   const int code =
-      ::posix_spawn(&process, "/bin/sh", &actions, nullptr, pointers(command).data(), pointers(environment).data());
+      ::posix_spawn(&process, "/bin/sh", &actions, &attributes, pointers(command).data(), pointers(environment).data());
+  ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&actions);
   if (code != 0) throw std::runtime_error("cannot start a process");
   return process;
@@ -129,67 +141,84 @@ RunResult run(const std::vector<std::string>& arguments, const RunOptions& optio
   return result;
 }
 
+LiveRun::~LiveRun() {
+  if (process_ > 0) {
+    ::kill(process_, SIGKILL);
+    waitStatus(process_);
+  }
+  ::close(output_);
+}
+
+bool LiveRun::readSome() {
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(std::min(Clock::now() + kSilence, deadline_) -
+                                                                          Clock::now());
+  pollfd waiting{output_, POLLIN, 0};
+  const int ready = left.count() > 0 ? ::poll(&waiting, 1, static_cast<int>(left.count())) : 0;
+  if (ready < 0 && errno == EINTR) return true;
+  if (ready <= 0) return false;
+  std::array<char, 4096> buffer{};
+  const ssize_t got = ::read(output_, buffer.data(), buffer.size());
+  if (got < 0 && errno == EINTR) return true;
+  closed_ = got <= 0;  // EIO: no process has the terminal open
+  if (closed_) return false;
+  text_.append(buffer.data(), static_cast<std::size_t>(got));
+  return true;
+}
+
+bool LiveRun::waitFor(const std::string& text) {
+  while (text_.find(text) == std::string::npos)
+    if (!readSome()) return false;
+  return true;
+}
+
+bool LiveRun::waitForNext(const std::string& text) {
+  std::size_t found = text_.find(text, seen_);
+  for (; found == std::string::npos; found = text_.find(text, seen_))
+    if (!readSome()) return false;
+  seen_ = found + text.size();
+  return true;
+}
+
+void LiveRun::signal(int number) { ::kill(process_, number); }
+
+RunResult LiveRun::finish() {
+  while (readSome()) {
+  }
+  if (!closed_) ::kill(process_, SIGKILL);  // it does not end
+  const int status = waitStatus(process_);
+  process_ = -1;
+  return {status, "", text_};
+}
+
 TerminalRun::TerminalRun(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                          unsigned short columns) {
   int child = -1;
   winsize size{};
   size.ws_col = columns;
   size.ws_row = 24;
-  if (::openpty(&terminal_, &child, nullptr, nullptr, &size) != 0) throw std::runtime_error("cannot open a terminal");
+  if (::openpty(&output_, &child, nullptr, nullptr, &size) != 0) throw std::runtime_error("cannot open a terminal");
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   ::posix_spawn_file_actions_adddup2(&actions, child, STDERR_FILENO);
   ::posix_spawn_file_actions_addclose(&actions, child);
-  ::posix_spawn_file_actions_addclose(&actions, terminal_);
+  ::posix_spawn_file_actions_addclose(&actions, output_);
   process_ = spawn(commandOf(arguments, folder, ""), environmentWith({{"TERM", "xterm"}}), actions);
   ::close(child);
 }
 
-TerminalRun::~TerminalRun() {
-  if (process_ > 0) {
-    ::kill(process_, SIGKILL);
-    waitStatus(process_);
-  }
-  ::close(terminal_);
-}
-
-bool TerminalRun::readSome(int timeoutMilliseconds) {
-  pollfd waiting{terminal_, POLLIN, 0};
-  const int ready = ::poll(&waiting, 1, timeoutMilliseconds);
-  if (ready < 0 && errno == EINTR) return true;
-  if (ready <= 0) return false;
-  std::array<char, 4096> buffer{};
-  const ssize_t got = ::read(terminal_, buffer.data(), buffer.size());
-  if (got < 0 && errno == EINTR) return true;
-  if (got <= 0) return false;  // EIO: no process has the terminal open
-  text_.append(buffer.data(), static_cast<std::size_t>(got));
-  return true;
-}
-
-bool TerminalRun::waitFor(const std::string& text) {
-  while (text_.find(text) == std::string::npos)
-    if (!readSome(kSilence)) return false;
-  return true;
-}
-
-bool TerminalRun::waitForNext(const std::string& text) {
-  std::size_t found = text_.find(text, seen_);
-  for (; found == std::string::npos; found = text_.find(text, seen_))
-    if (!readSome(kSilence)) return false;
-  seen_ = found + text.size();
-  return true;
-}
-
-void TerminalRun::signal(int number) { ::kill(process_, number); }
-
-RunResult TerminalRun::finish() {
-  while (readSome(-1)) {
-  }
-  const int status = waitStatus(process_);
-  process_ = -1;
-  return {status, "", text_};
+PipeRun::PipeRun(const std::vector<std::string>& arguments, const RunOptions& options, std::chrono::seconds limit) {
+  deadline_ = Clock::now() + limit;
+  Pipe err;
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  const std::filesystem::path out = options.out.empty() ? "/dev/null" : options.out;
+  ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  ::posix_spawn_file_actions_adddup2(&actions, err.write, STDERR_FILENO);
+  process_ = spawn(commandOf(arguments, options.folder, options.shell), environmentWith(options.environment), actions);
+  output_ = std::exchange(err.read, -1);
 }
 
 }  // namespace quintet::test

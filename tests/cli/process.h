@@ -5,6 +5,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -27,28 +28,48 @@ struct RunOptions {
 
 RunResult run(const std::vector<std::string>& arguments, const RunOptions& options = {});
 
-// A process whose standard error is a terminal.
-class TerminalRun {
+// A process whose standard error is read while it runs.
+class LiveRun {
  public:
-  TerminalRun(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-              unsigned short columns = 100);
-  ~TerminalRun();  // kills the process if it still runs
-  TerminalRun(const TerminalRun&) = delete;
-  TerminalRun& operator=(const TerminalRun&) = delete;
+  LiveRun(const LiveRun&) = delete;
+  LiveRun& operator=(const LiveRun&) = delete;
 
-  // Reads until `text` appears. False: the process ended before, or wrote nothing for two minutes.
+  // Reads until `text` appears. False: the process ended before, wrote nothing for two minutes, or the limit is over.
   bool waitFor(const std::string& text);
   // The same, in the output after the last match of this function.
   bool waitForNext(const std::string& text);
   void signal(int number);
-  RunResult finish();  // waits for the end; `err` is the output to the terminal
+  RunResult finish();  // waits for the end as waitFor() does, else kills the process; `err` is all that was read
+
+ protected:
+  using Clock = std::chrono::steady_clock;
+  LiveRun() = default;
+  ~LiveRun();  // kills the process if it still runs
+
+  pid_t process_ = -1;
+  int output_ = -1;
+  Clock::time_point deadline_ = Clock::time_point::max();
 
  private:
-  bool readSome(int timeoutMilliseconds);  // -1: no timeout. False: the terminal is closed, or the time is over
-  pid_t process_ = -1;
-  int terminal_ = -1;
+  bool readSome();  // false: the output is closed, or the time is over
+  bool closed_ = false;
   std::string text_;
   std::size_t seen_ = 0;  // end of the last match of waitForNext
+};
+
+// Its standard error is a terminal.
+class TerminalRun : public LiveRun {
+ public:
+  TerminalRun(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+              unsigned short columns = 100);
+};
+
+// Its standard error is a pipe, and nothing is a terminal. Standard output goes to a file, or nowhere. `limit`: for all
+// waits together.
+class PipeRun : public LiveRun {
+ public:
+  PipeRun(const std::vector<std::string>& arguments, const RunOptions& options,
+          std::chrono::seconds limit = std::chrono::seconds(60));
 };
 
 }  // namespace quintet::test

@@ -9,6 +9,9 @@
 
 namespace quintet::cli {
 
+// The longest wait for a saved file: a signal that arrives just before the wait is noticed after this time, seconds.
+inline constexpr double kSignalSeconds = 0.25;
+
 // Once, at the start of main.
 void installSignalHandlers();
 

@@ -12,35 +12,46 @@
 #include <cstdlib>
 #include <cstring>
 #include <initializer_list>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "base/diagnostic.h"
+#include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 #include "base/temporary_file.h"
 #include "base/text.h"
 #include "check/diagnostic_text.h"
+#include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/signals.h"
 #include "cli/work.h"
+#include "job/source_watcher.h"
 #include "output/report.h"
 
 namespace quintet::cli {
 namespace {
 
-volatile pid_t child = 0;  // for the signal handler
+volatile pid_t child = 0;                // for the signal handler
+volatile std::sig_atomic_t stopped = 0;  // a signal has arrived
+bool restarted = false;
 
 void forward(int signal, siginfo_t* info, void* /*context*/) {
   const int savedErrno = errno;
+  stopped = 1;
   // The terminal sends its signals to both processes.
   if (child > 0 && info->si_code != SI_KERNEL) ::kill(child, signal);
   errno = savedErrno;
 }
 
-void forwardSignals() {
+// `handled`: forward, or the default. Signals that are ignored stay so.
+void setSignalActions(bool handled) {
   struct sigaction action {};
-  action.sa_sigaction = forward;
-  action.sa_flags = SA_SIGINFO;
+  if (handled) {
+    action.sa_sigaction = forward;
+    action.sa_flags = SA_SIGINFO;
+  }
   sigemptyset(&action.sa_mask);
   for (const int signal : {SIGINT, SIGTERM}) {
     struct sigaction inherited {};
@@ -54,7 +65,7 @@ bool isCrash(int signal) {
   return std::ranges::find(kCrashes, signal) != kCrashes.end();
 }
 
-int reportCrash(int signal, std::span<const std::string> arguments) {
+void reportCrash(int signal, std::span<const std::string> arguments) {
   const std::string program(workProgram()), stage(workStage());
   const char* description = ::strsignal(signal);
   const std::string text =
@@ -70,26 +81,21 @@ int reportCrash(int signal, std::span<const std::string> arguments) {
     } catch (const Error&) {  // the reader has ended
     }
   }
-  return printFailure(message, kCrashed);
+  printFailure(message, kCrashed);
 }
 
-// Ends as the child ended.
-int relay(int status, std::span<const std::string> arguments) {
+// Ends as the child ended, without a crash.
+int relay(int status) {
   if (WIFEXITED(status)) return WEXITSTATUS(status);
   const int signal = WTERMSIG(status);
-  if (isCrash(signal)) return reportCrash(signal, arguments);
   if (signal == SIGKILL) return printFailure("the process was killed, possibly because memory ran out", 128 + signal);
   std::signal(signal, SIG_DFL);
   ::raise(signal);
   return 128 + signal;
 }
 
-}  // namespace
-
-std::optional<int> supervise(std::span<const std::string> arguments) {
-  const char* isolation = std::getenv("QUINTET_ISOLATION");
-  if (isolation && std::string_view(isolation) == "off") return {};
-  if (!shareWork()) return {};
+// Returns the child's process id; 0 in the child, negative if no process can be created.
+pid_t startChild() {
   sigset_t signals, before;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
@@ -102,17 +108,61 @@ std::optional<int> supervise(std::span<const std::string> arguments) {
     if (::getppid() != parent) ::_exit(kRuntimeError);  // the parent was killed before
     setSupervisor(parent);
   }
-  if (process > 0) {
-    child = process;
-    forwardSignals();
-  }
+  child = process;
+  setSignalActions(process > 0);
   ::sigprocmask(SIG_SETMASK, &before, nullptr);
-  if (process <= 0) return {};
+  return process;
+}
+
+// Returns the status of waitpid(); nullopt if it is unknown, such as after a parent that ignores SIGCHLD.
+std::optional<int> waitForEnd(pid_t process) {
   int status = 0;
   while (::waitpid(process, &status, 0) < 0)
-    if (errno != EINTR) return kRuntimeError;
+    if (errno != EINTR) return {};
   child = 0;
-  return relay(status, arguments);
+  return status;
 }
+
+// After a crash: waits until one of the files that the child watched is saved. Returns false if there are none, or if a
+// signal has arrived.
+bool waitForSave() {
+  job::WatchList list = watchedFiles();
+  if (list.files.empty() && list.folders.empty()) return false;
+  try {
+    job::SourceWatcher watcher;
+    watcher.watch(std::move(list));
+    printMessage(fmt::format("watching {}; press Ctrl-C to stop", counted(watcher.watched().files.size(), "file")));
+    while (!stopped && watcher.wait(kSignalSeconds).empty()) {
+    }
+    if (!stopped) printMessage(fmt::format("{} saved", watcher.changedNames()));
+  } catch (const Error& error) {  // the system's limit of watches
+    printFailure(error.what(), kRuntimeError);
+    return false;
+  }
+  return !stopped;
+}
+
+}  // namespace
+
+std::optional<int> supervise(std::span<const std::string> arguments) {
+  const char* isolation = std::getenv("QUINTET_ISOLATION");
+  if (isolation && std::string_view(isolation) == "off") return {};
+  if (!shareWork()) return {};
+  while (true) {
+    const pid_t process = startChild();
+    if (process <= 0) return {};
+    const std::optional<int> ended = waitForEnd(process);
+    if (!ended) return kRuntimeError;
+    const int status = *ended;
+    const bool crashed = WIFSIGNALED(status) && isCrash(WTERMSIG(status));
+    if (crashed) reportCrash(WTERMSIG(status), arguments);
+    // With --watch, a lost device ends the child as a crash does.
+    if (!crashed && !(WIFEXITED(status) && WEXITSTATUS(status) == kCrashed)) return relay(status);
+    if (stopped || !waitForSave()) return kCrashed;
+    restarted = true;
+  }
+}
+
+bool restartedAfterCrash() { return restarted; }
 
 }  // namespace quintet::cli

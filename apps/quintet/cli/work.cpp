@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstring>
 #include <new>
+#include <string>
 
 namespace quintet::cli {
 namespace {
@@ -16,6 +17,7 @@ struct Work {
   std::array<char, 128> stage{};
   std::array<char, 256> program{};
   std::array<char, 4096> file{};
+  std::array<char, 1 << 16> watched{};  // 'd' for a folder or 'f' for a file, path, '\0'; ends with '\0'
 };
 
 Work* work = nullptr;
@@ -42,6 +44,26 @@ void setWorkStage(std::string_view stage) {
 
 void setWorkProgram(std::string_view program) {
   if (work) assign(work->program, program);
+}
+
+void setWatchedFiles(const job::WatchList& list) {
+  if (!work) return;
+  std::string entries;
+  const auto add = [&](char kind, const std::filesystem::path& path) {
+    const std::string entry = kind + path.string() + '\0';
+    if (entries.size() + entry.size() < work->watched.size()) entries += entry;
+  };
+  for (const std::filesystem::path& folder : list.folders) add('d', folder);
+  for (const std::filesystem::path& file : list.files) add('f', file);
+  std::memcpy(work->watched.data(), entries.c_str(), entries.size() + 1);
+}
+
+job::WatchList watchedFiles() {
+  job::WatchList list;
+  if (!work) return list;
+  for (const char* entry = work->watched.data(); *entry; entry += std::strlen(entry) + 1)
+    (*entry == 'd' ? list.folders : list.files).emplace_back(entry + 1);
+  return list;
 }
 
 void setWorkFile(const std::filesystem::path& file) {

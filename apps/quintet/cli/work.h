@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command works on, in memory that it shares with its parent process: the message about a crash states it
-// (cli/supervisor.h).
+// What a command works on, in memory that it shares with its parent process: the message about a crash states it, and
+// the parent continues to watch its files (cli/supervisor.h).
 #ifndef QUINTET_CLI_WORK_H
 #define QUINTET_CLI_WORK_H
 
 #include <filesystem>
 #include <string_view>
+
+#include "job/source_watcher.h"
 
 namespace quintet::cli {
 
@@ -16,11 +18,13 @@ bool shareWork();
 void setWorkStage(std::string_view stage);            // "compiling shaders"
 void setWorkProgram(std::string_view program);        // name
 void setWorkFile(const std::filesystem::path& file);  // that is being written; empty for none
+void setWatchedFiles(const job::WatchList& list);     // as far as 64 KiB suffice, folders first
 
 // In the parent, after the child has ended. Empty if unknown.
 std::string_view workStage();
 std::string_view workProgram();
 std::string_view workFile();
+job::WatchList watchedFiles();
 
 }  // namespace quintet::cli
 #endif

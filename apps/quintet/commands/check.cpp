@@ -20,6 +20,7 @@
 #include "cli/failure.h"
 #include "cli/parser.h"
 #include "cli/signals.h"
+#include "cli/supervisor.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "cli/work.h"
@@ -29,8 +30,6 @@
 
 namespace quintet::cli {
 namespace {
-
-constexpr double kSignalSeconds = 0.25;  // a signal that arrives just before the wait is noticed after this time
 
 struct Options {
   job::CheckRequest request;
@@ -213,8 +212,8 @@ void writeGraph(const std::filesystem::path& graph, const std::optional<check::P
   const std::string extension = graphExtension(graph);
   const std::filesystem::path file = isStandardOutput(graph) ? "-" : graph;
   if (!model)
-    printMessage(fmt::format("quintet: {}: not written, because the program does not compile",
-                             printable(graph.string())));
+    printMessage(
+        fmt::format("quintet: {}: not written, because the program does not compile", printable(graph.string())));
   else if (extension == ".json")
     writeFile(file, check::pipelineJson(*model));
   else if (extension == ".dot")
@@ -235,9 +234,9 @@ int writeReport(const job::CheckReport& report, const job::ProgramChecks& checks
 }
 
 void checkGraph(const Options& options) {
+  if (options.graph.empty()) return;
   const std::size_t count = job::findPrograms(options.request.programs).size();
-  if (!options.graph.empty() && count != 1)
-    throw UsageError(fmt::format("--graph requires one program, but {} are given", count));
+  if (count != 1) throw UsageError(fmt::format("--graph requires one program, but {} are given", count));
 }
 
 // Checks, waits for a saved file, checks again, until Ctrl-C. Returns the last status.
@@ -245,20 +244,23 @@ int watchPrograms(const job::ProgramChecks& checks, const Options& options) {
   Printer printer(options);
   job::LiveCheck live(checks);
   const GracefulStop stop;
-  int status = writeReport(live.run(printer), checks, options);
-  while (true) {
+  int status = 0;
+  for (bool canFail = !restartedAfterCrash();; canFail = false) {
+    setWatchedFiles(live.watcher().watched());
+    try {
+      checkGraph(options);
+      status = writeReport(live.run(printer), checks, options);
+    } catch (const Error& error) {  // such as a program that was removed
+      if (canFail) throw;
+      status = reportFailure(error, false);
+    }
+    setWatchedFiles(live.watcher().watched());
     printMessage(
         fmt::format("watching {}; press Ctrl-C to stop", counted(live.watcher().watched().files.size(), "file")));
     while (!stop.requested() && live.watcher().wait(kSignalSeconds).empty()) {
     }
     if (stop.requested()) return status;
     printMessage(fmt::format("{} saved", live.watcher().changedNames()));
-    try {
-      checkGraph(options);
-      status = writeReport(live.run(printer), checks, options);
-    } catch (const Error& error) {  // such as a program that was removed
-      status = reportFailure(error, false);
-    }
   }
 }
 
@@ -272,9 +274,9 @@ OptionTable checkOptions() {
 int checkCommand(Arguments arguments) {
   const std::optional<Options> options = parseOptions(arguments);
   if (!options) return 0;
-  checkGraph(*options);
   const job::ProgramChecks checks(options->request);
   if (options->watch) return watchPrograms(checks, *options);
+  checkGraph(*options);
   Printer printer(*options);
   return writeReport(checks.run(printer), checks, *options);
 }

@@ -12,11 +12,15 @@
 #include "base/plural.h"
 #include "base/text.h"
 #include "cli/candidates.h"
+#include "cli/failure.h"
 #include "cli/help_text.h"
 #include "cli/parser.h"
+#include "cli/supervisor.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
+#include "cli/work.h"
 #include "commands/render.h"
+#include "gpu/error.h"
 #include "job/watch.h"
 #include "output/file_names.h"
 #include "output/layers.h"
@@ -30,7 +34,6 @@ namespace {
 
 constexpr double kTimeout = 30.0;  // seconds: a shader that takes longer probably does not end
 constexpr double kMaxFrames = 1e6;
-constexpr double kSignalSeconds = 0.25;  // a signal that arrives just before the wait is noticed after this time
 
 struct RunOptions : RenderOptions {
   bool list = false;  // print the built-in programs
@@ -166,7 +169,17 @@ class Watch {
   }
 
   int run() {
-    bool good = live_.reload(console_);
+    try {
+      return renderUntilStopped();
+    } catch (const gpu::DeviceLostError& error) {  // as if the driver had crashed
+      reportFailure(error, options_.console.json);
+      return kCrashed;
+    }
+  }
+
+ private:
+  int renderUntilStopped() {
+    bool good = firstReload();
     stop_.emplace();
     console_.setGracefulStop(&*stop_);
     console_.note(
@@ -179,18 +192,37 @@ class Watch {
       changed_ = true;
       clock_ = Stopwatch();
       console_.clearWarnings();
-      good = live_.reload(console_);
+      good = reload();
       if (stop_->requested()) break;
     }
     console_.clear();
     return hasImage_ ? (interrupted_ ? stop_->exitStatus() : 0) : 1;
   }
 
- private:
+  bool reload() {
+    setWatchedFiles(live_.watcher().watched());
+    const bool good = live_.reload(console_);
+    setWatchedFiles(live_.watcher().watched());
+    return good;
+  }
+
+  // After a crash, an error of a file or an option is not the end: the next save can fix it.
+  bool firstReload() {
+    try {
+      return reload();
+    } catch (const Error& error) {
+      if (!restartedAfterCrash()) throw;
+      reportFailure(error, options_.console.json);
+      return false;
+    }
+  }
+
   job::ResolvedJob resolve() {
     program_ = program::loadProgram(options_.program);
     console_.setProgram(&program_);
-    plan_ = output::planOutputs(options_.output, program_, options_.request.frames);
+    output::OutputRequest output = options_.output;
+    if (options_.namedByProgram) output.file = output::defaultImage(program_.name);
+    plan_ = output::planOutputs(output, program_, options_.request.frames);
     return job::resolve(requestFor(options_, plan_), program_);
   }
 
@@ -245,6 +277,7 @@ int runCommand(Arguments arguments) {
     writeFile("-", json ? program::listAsJson() + "\n" : program::listAsText(terminalWidth(STDOUT_FILENO).value_or(0)));
     return 0;
   }
+  if (options->watch && !options->programHelp && !options->layerList) return Watch(*options).run();
   const program::Program program = program::loadProgram(options->program);
   if (options->programHelp) {
     writeFile("-", json ? program::describeAsJson(program) + "\n" : programHelpText(program));
@@ -255,7 +288,7 @@ int runCommand(Arguments arguments) {
     return 0;
   }
   if (options->namedByProgram) options->output.file = output::defaultImage(program.name);
-  return options->watch ? Watch(*options).run() : renderImages(*options, program, clock);
+  return renderImages(*options, program, clock);
 }
 
 }  // namespace quintet::cli
