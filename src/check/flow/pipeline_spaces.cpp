@@ -255,6 +255,10 @@ void PipelineSpaces::visitExtended(const Open& open, const spirv::Instruction& i
       return;
     case GLSLstd450FMix: return follow(false);
     case GLSLstd450Fma: return follow(false);
+    case GLSLstd450Fract:
+    case GLSLstd450Floor:
+    case GLSLstd450Sin:
+    case GLSLstd450Cos: search.uses.pattern = true; return;
     default: return;
   }
 }
@@ -350,6 +354,7 @@ void PipelineSpaces::visit(const Open& open, std::size_t user, Search& search) c
       }
       return;
     }
+    case Op::OpFMod: search.uses.pattern = true; return;
     case Op::OpDot: return visitDot(open, i, search);
     case Op::OpTraceRayKHR:
       search.uses.traceOrigin = search.uses.traceOrigin || i.at(6) == open.id;

@@ -25,6 +25,7 @@ struct ValueUses {
   bool crossed = false;     // operand of a cross product
   bool moves = false;       // added to a point
   bool shown = false;       // 0.5 + 0.5 * v
+  bool pattern = false;     // coordinates of a pattern: fract(v), floor(v), mod(v, size), sin(v)
   bool translated = false;  // the translation of a matrix is added
   bool stored = false;      // somewhere where it cannot be followed
   bool radius = false;      // normalized directly

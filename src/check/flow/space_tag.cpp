@@ -178,13 +178,15 @@ SpaceTag productOf(const SpaceTag& vector, const SpaceTag& scalar) {
     const bool row = vector.kind == Kind::row;
     const Transform transform{vector.map, row, false};
     const SpaceMap map = row ? SpaceMap{vector.map.to, vector.map.from} : vector.map;
-    if (component && scalar.component == vector.index && scalar.space == map.from) {
+    const bool matches = component && scalar.component == vector.index && scalar.space == map.from;
+    // All three rows times unknown scalars are the product with an unknown vector.
+    if (matches || (row && !scalar.geometric())) {
       SpaceTag term;
       term.kind = Kind::term;
       term.map = map;
       term.covariant = transform.covariant;
       term.index = static_cast<std::uint8_t>(1u << vector.index);
-      term.operand = scalar.kind;
+      term.operand = matches ? scalar.kind : Kind::unknown;
       return term;
     }
     if (row) return unknownTag();

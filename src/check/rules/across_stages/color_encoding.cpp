@@ -14,6 +14,7 @@
 #include "check/flow/pipeline_spaces.h"
 #include "check/output_access.h"
 #include "check/rules/rules.h"
+#include "check/rules/user_location.h"
 #include "spirv/access.h"
 
 namespace quintet::check {
@@ -25,8 +26,6 @@ using spv::Op;
 constexpr double kSmallestExponent = 1.0 / 2.6, kLargestExponent = 1.0 / 1.8;
 constexpr double kSmallestDecoding = 2.0, kLargestDecoding = 2.6;
 constexpr std::size_t kMaxValues = 2000;
-
-bool isLibraryFile(const std::string& file) { return file.starts_with("<quintet/"); }
 
 class ColorEncoding {
  public:
@@ -188,7 +187,7 @@ class ColorEncoding {
     };
     if (!spirv::dependsOn(module, pow.at(2), samples, stops)) return;
     const SourceLocation location = module.location(pow, "pow");
-    if (isLibraryFile(location.file)) return;
+    if (isLibrary(location)) return;
     report_.addOncePerLine(
         "Q715", graph_.location(graph_.stages[stage], location),
         fmt::format("pow(color, {:.3g}) decodes the color of a texture, but Quintet has decoded it", *exponent));
@@ -249,7 +248,7 @@ class ColorEncoding {
              const program::Output& output) {
     const spirv::Module& module = graph_.stages[stage].facts->module();
     const SourceLocation location = module.location(i, token);
-    if (isLibraryFile(location.file)) return;
+    if (isLibrary(location)) return;
     report_.addOncePerLine("Q715", graph_.location(graph_.stages[stage], location),
                            fmt::format("{} encodes the color for a display, but Quintet encodes the output '{}' itself",
                                        what, output.name));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Q712: an output of the program that no shader stores. Q714: an output that is overwritten, although it is the sum over
-// samples.
+// samples, or that gets the mean of the samples.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include "check/output_access.h"
 #include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
+#include "check/rules/user_location.h"
 #include "spirv/access.h"
 #include "spirv/source_text.h"
 #include "spirv/value_flow.h"
@@ -42,7 +43,7 @@ class OutputRule {
       if (!stored)
         reportMissing(output);
       else if (program.accumulation == program::Accumulation::film && output.pixel == program::OutputPixel::mean)
-        checkSum(output, slot);
+        checkSum(output, slot), checkMean(output, slot);
     }
   }
 
@@ -96,6 +97,66 @@ class OutputRule {
                 fmt::format("output '{}' is overwritten: the stored value does not contain the sum so far "
                             "(loadOutput), so of the samples of a batch only the last one counts",
                             output.name));
+  }
+
+  // Q714: reported if a launch with several samples divides their sum by their number, as the film does.
+  void checkMean(const program::Output& output, std::uint32_t slot) {
+    if (graph_.program.samplesPerLaunch == 1) return;
+    for (const Store& store : stores_) {
+      const spirv::Module& module = store.stage->facts->module();
+      const spirv::Instruction& instruction = module.instructions()[store.instruction];
+      if (store.slot != slot || instruction.op != Op::OpStore) continue;
+      const spirv::Instruction* mean = spirv::findInSlice(
+          module, instruction.at(1), [&](const spirv::Instruction& i) { return dividesByCount(module, i); },
+          [](const spirv::Instruction& i) { return !isLinear(i.op); });
+      const auto location = mean ? userLocation(module, *mean) : std::nullopt;
+      if (location)
+        report_.addOncePerLine("Q714", graph_.location(*store.stage, *location),
+                               fmt::format("output '{}' gets the mean of the samples, but it is their sum: the film "
+                                           "divides it by their number again",
+                                           output.name));
+    }
+  }
+
+  // True for instructions that only add, scale and rearrange values.
+  static bool isLinear(Op op) {
+    switch (op) {
+      case Op::OpFAdd:
+      case Op::OpFSub:
+      case Op::OpFMul:
+      case Op::OpFDiv:
+      case Op::OpVectorTimesScalar:
+      case Op::OpPhi:
+      case Op::OpSelect:
+      case Op::OpCopyObject:
+      case Op::OpCompositeConstruct:
+      case Op::OpCompositeExtract:
+      case Op::OpCompositeInsert:
+      case Op::OpVectorShuffle: return true;
+      default: return false;
+    }
+  }
+
+  // True for x / launch.sampleCount, also as a product, if x comes from the payload of a ray.
+  static bool dividesByCount(const spirv::Module& module, const spirv::Instruction& i) {
+    if (i.op != Op::OpFDiv && i.op != Op::OpFMul && i.op != Op::OpVectorTimesScalar) return false;
+    const auto loadsCount = [&](const spirv::Instruction& load) {
+      return load.op == Op::OpLoad && memberOf(module, chainOf(module, load.at(0))).name == "sampleCount";
+    };
+    const auto isCount = [&](spirv::Id value) {
+      return spirv::dependsOn(module, value, loadsCount, [](const spirv::Instruction& operand) {
+        return operand.op != Op::OpConvertUToF && operand.op != Op::OpConvertSToF && operand.op != Op::OpBitcast &&
+               operand.op != Op::OpFDiv && operand.op != Op::OpCompositeConstruct;
+      });
+    };
+    const auto isSample = [&](spirv::Id value) {
+      return spirv::dependsOn(module, value, [&](const spirv::Instruction& load) {
+        if (load.op != Op::OpLoad) return false;
+        const spirv::Variable* variable = module.variable(module.access(load.at(0)).variable);
+        return variable && variable->storage == spv::StorageClass::RayPayloadKHR;
+      });
+    };
+    return (isCount(i.at(1)) && isSample(i.at(0))) || (i.op == Op::OpFMul && isCount(i.at(0)) && isSample(i.at(1)));
   }
 
   // True if a condition on the index of the sample decides whether the store runs.

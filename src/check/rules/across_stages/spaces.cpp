@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "check/flow/pipeline_spaces.h"
 #include "check/rules/rules.h"
+#include "check/rules/user_location.h"
 #include "spirv/source_text.h"
 
 namespace quintet::check {
@@ -20,34 +21,6 @@ using spirv::Id;
 using spv::Op;
 using Kind = SpaceTag::Kind;
 using W = SpaceTag::W;
-
-constexpr std::size_t kMaxCallerSteps = 64;
-
-bool isLibraryFile(const std::string& file) { return file.starts_with("<quintet/"); }
-
-// Returns the location of the instruction, at the token if its line has it.
-SourceLocation locationAt(const spirv::Module& module, const spirv::Instruction& instruction, std::string_view token) {
-  const SourceLocation plain = module.location(instruction);
-  const bool named = spirv::lineOf(module.source(plain.file), plain.line).find(token) != std::string_view::npos;
-  return named ? module.location(instruction, token) : plain;
-}
-
-// Returns the location of an instruction in a file of the user: its own, or that of the first user of its result there.
-std::optional<SourceLocation> userLocation(const spirv::Module& module, const spirv::Instruction& instruction,
-                                           std::string_view token = {}) {
-  std::vector<const spirv::Instruction*> open{&instruction};
-  for (std::size_t i = 0; i < open.size() && i < kMaxCallerSteps; ++i) {
-    const bool trace = open[i]->op == Op::OpTraceRayKHR;  // can begin some lines above
-    const SourceLocation location = trace    ? module.location(*open[i], token)
-                                    : i == 0 ? locationAt(module, *open[i], token)
-                                             : module.location(*open[i]);
-    if (location.line > 0 && !isLibraryFile(location.file)) return location;
-    for (const std::size_t user : module.users(open[i]->result))
-      if (const spirv::Instruction& next = module.instructions()[user]; std::ranges::find(open, &next) == open.end())
-        open.push_back(&next);
-  }
-  return {};
-}
 
 class SpaceRules {
  public:
@@ -150,14 +123,33 @@ class SpaceRules {
     if (use.translated || use.relative || use.asNormal || use.radius) return false;
     // vec4(position, 0.0) of vertices is not meant as a direction.
     const bool explicitly = product.vector.w == W::zero && product.vector.fromMesh && !use.measured;
-    if (!explicitly && !use.traceOrigin && !use.difference) return false;
-    add("Q708", i, tokenOf(product.transform),
+    if (!explicitly && !use.traceOrigin && !use.difference && !isPattern(product, use)) return false;
+    const std::string text =
         product.vector.w == W::zero
             ? fmt::format("{} is transformed with w = 0, like a direction, so it is not translated",
                           describe(product.vector))
             : fmt::format("{} is multiplied by the 3x3 part of {}, so it is not translated", describe(product.vector),
-                          matrixName(product.transform)));
+                          matrixName(product.transform));
+    const auto call = product.vector.w == W::zero ? callWithW(i, product.operand) : std::nullopt;
+    if (call)
+      report_.addOncePerLine("Q708", *call, text);
+    else
+      add("Q708", i, tokenOf(product.transform), text);
     return true;
+  }
+
+  // A hit position with w = 0 that is only used as coordinates of a pattern.
+  static bool isPattern(const SpaceTags::Product& product, const ValueUses& use) {
+    return product.vector.w == W::zero && product.vector.onRay && use.pattern && !use.normalized && !use.measured &&
+           !use.dot && !use.crossed && !use.shown && !use.traceDirection;
+  }
+
+  // The call that passes w to the function of the product; nullopt if the product has it as a number.
+  std::optional<SourceLocation> callWithW(const spirv::Instruction& i, Id vector) const {
+    const SourceLocation own = module_.location(i);
+    if (isLibrary(own) || spirv::findToken(spirv::lineOf(module_.source(own.file), own.line), "0") != std::string::npos)
+      return {};
+    return callLocation(module_, i, vector);
   }
 
   void checkVectorAsPoint(const spirv::Instruction& i, const SpaceTags::Product& product) {

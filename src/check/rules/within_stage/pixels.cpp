@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "check/rules/rules.h"
+#include "check/rules/user_location.h"
 #include "spirv/access.h"
 #include "spirv/source_text.h"
 #include "spirv/value_flow.h"
@@ -90,6 +91,42 @@ std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Pa
     }
     default: return {};
   }
+}
+
+// A value `coordinate * pixel + size * (extent of the image) + constant` along one axis.
+struct Linear {
+  double coordinate = 0.0, size = 0.0, constant = 0.0;
+};
+
+std::optional<Linear> linearOf(const spirv::Module& module, Id value, Path given, std::uint32_t axis, int depth = 0) {
+  const spirv::ValuePart part = spirv::originOf(module, {value, std::move(given)});
+  const spirv::Instruction* i = module.definition(part.id);
+  if (!i || depth > kMaxDepth) return {};
+  if (const auto number = spirv::constantNumber(module, part))  // 1u - 2u is a constant of the type uint
+    return Linear{0.0, 0.0, *number > 2147483647.0 ? *number - 4294967296.0 : *number};
+  if (i->op == Op::OpBitcast) return linearOf(module, i->at(0), part.path, axis, depth + 1);
+  if (isMember(module, *i, part.path, "Frame", axis == 0 ? "width" : "height")) return Linear{0.0, 1.0, 0.0};
+  if (i->op == Op::OpIAdd || i->op == Op::OpISub) {
+    const auto a = linearOf(module, i->at(0), part.path, axis, depth + 1);
+    const auto b = linearOf(module, i->at(1), part.path, axis, depth + 1);
+    const double sign = i->op == Op::OpIAdd ? 1.0 : -1.0;
+    if (a && b)
+      return Linear{a->coordinate + sign * b->coordinate, a->size + sign * b->size, a->constant + sign * b->constant};
+  }
+  const auto coordinate = coordinateOf(module, part.id, part.path);
+  return coordinate && coordinate->axis == axis ? std::optional(Linear{1.0, 0.0, 0.0}) : std::nullopt;
+}
+
+// Returns the text of a mirrored coordinate that is not `size - 1 - pixel`; empty for any other value.
+std::string mirroredOutside(const spirv::Module& module, const spirv::ValuePart& value, std::uint32_t axis) {
+  const auto linear = linearOf(module, value.id, value.path, axis);
+  if (!linear || linear->coordinate != -1.0 || linear->size != 1.0 || linear->constant == -1.0) return {};
+  const char* size = axis == 0 ? "width" : "height";
+  const char* name = axis == 0 ? "column" : "row";
+  return linear->constant > -1.0
+             ? fmt::format("the result of {} 0 is stored at {} frame.{}{}, but the last {} is frame.{} - 1", name, name,
+                           size, linear->constant == 0.0 ? "" : fmt::format(" + {}", linear->constant), name, size)
+             : fmt::format("the result of the last {} is stored at {} {}", name, name, linear->constant + 1.0);
 }
 
 // Which launch coordinates a value is made of by sums and differences, and by which factor they are scaled.
@@ -216,8 +253,6 @@ std::optional<Target> targetOf(const spirv::Module& module, const spirv::Instruc
   return Target{spirv::originOf(module, {i.at(1), {0}}), spirv::originOf(module, {i.at(1), {1}})};
 }
 
-bool isLibrary(const SourceLocation& location) { return location.file.starts_with("<quintet/"); }
-
 // The branch that the library's own test of the pixel starts with, or the store if there is none.
 std::size_t withoutLibraryTests(const spirv::Module& module, std::size_t store) {
   const auto position = module.position(store);
@@ -287,6 +322,9 @@ void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, 
                                  fmt::format("the result is stored at the pixel scaled to a fixed size of {}, but the "
                                              "image can have any size",
                                              x.x && x.normalized ? x.factor : y.factor));
+  for (const std::uint32_t axis : {0u, 1u})
+    if (const std::string text = mirroredOutside(module, axis == 0 ? target.x : target.y, axis); !text.empty())
+      return report.addOncePerLine("Q713", location, text);
   const auto coordinateX = coordinateOf(module, target.x.id, target.x.path);
   const auto coordinateY = coordinateOf(module, target.y.id, target.y.path);
   if (isOutput && coordinateX == Coordinate{0, false} && coordinateY == Coordinate{1, false})
@@ -337,7 +375,7 @@ void checkPixelDivision(const spirv::Module& module, Report& report) {
       const Path path = count > 0 ? Path{c} : Path{};
       const auto coordinate = coordinateOf(module, i.at(0), path);
       if (!coordinate || !isSizeOf(module, i.at(1), path, *coordinate)) continue;
-      report.addOncePerLine("Q716", module.location(i, "gl_LaunchIDEXT"),
+      report.addOncePerLine("Q716", locationAt(module, i, "gl_LaunchIDEXT"),
                             fmt::format("this integer division of gl_LaunchIDEXT.{} by the size is always 0; convert "
                                         "both to float first",
                                         coordinate->axis == 0 ? "x" : "y"));
