@@ -62,6 +62,9 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   checkHitKinds(input, report);
   checkResources(input, report);
   checkRayOrigins(input, report);
+  checkHitPositions(input, report);
+  checkMissDistances(input, report);
+  checkRandomSeeds(input, report);
   checkArrayIndices(input, report);
   checkSpaces(input, report);
   if (input.limits.defects.sharesAnyHit) checkSharedIntersections(input, report);

@@ -39,6 +39,9 @@ void checkArrayIndices(const CheckInput& input, Report& report);         // Q711
 void checkEndlessRecursion(const CheckInput& input, Report& report);     // Q403
 void checkGeometry(const CheckInput& input, Report& report);             // Q601 to Q604
 void checkHitKinds(const CheckInput& input, Report& report);             // Q607, Q608
+void checkHitPositions(const CheckInput& input, Report& report);         // Q717
+void checkMissDistances(const CheckInput& input, Report& report);        // Q719
+void checkRandomSeeds(const CheckInput& input, Report& report);          // Q718
 void checkRayArguments(const CheckInput& input, Report& report);         // Q507 to Q513
 void checkResources(const CheckInput& input, Report& report);            // Q651 to Q654
 void checkRayOrigins(const CheckInput& input, Report& report);           // Q705

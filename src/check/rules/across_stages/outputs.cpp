@@ -20,6 +20,13 @@ using spv::Op;
 
 constexpr std::uint32_t kBatchSamples = 4;  // shaders/quintet/shared/frame.h
 
+// True if the last member that a load selects has this name.
+bool loadsMember(const spirv::Module& module, const spirv::Instruction& load, std::string_view name) {
+  if (load.op != Op::OpLoad) return false;
+  const auto members = spirv::selectedMembers(module, module.access(load.at(0)));
+  return !members.empty() && members.back().name() == name;
+}
+
 struct Store {
   const PipelineStage* stage = nullptr;
   std::size_t instruction = 0;
@@ -141,7 +148,7 @@ class OutputRule {
   static bool dividesByCount(const spirv::Module& module, const spirv::Instruction& i) {
     if (i.op != Op::OpFDiv && i.op != Op::OpFMul && i.op != Op::OpVectorTimesScalar) return false;
     const auto loadsCount = [&](const spirv::Instruction& load) {
-      return load.op == Op::OpLoad && memberOf(module, chainOf(module, load.at(0))).name == "sampleCount";
+      return loadsMember(module, load, "sampleCount");
     };
     const auto isCount = [&](spirv::Id value) {
       return spirv::dependsOn(module, value, loadsCount, [](const spirv::Instruction& operand) {
@@ -165,9 +172,7 @@ class OutputRule {
     const auto position = module.position(store.instruction);
     const spirv::ControlFlow& flow = store.stage->facts->flow(position->function);
     const auto loadsIndex = [&](const spirv::Instruction& i) {
-      if (i.op != Op::OpLoad) return false;
-      const auto members = spirv::selectedMembers(module, module.access(i.at(0)));
-      return !members.empty() && members.back().name() == "firstSample";
+      return loadsMember(module, i, "firstSample");
     };
     for (std::size_t b = flow.dominator(position->block); b != spirv::Module::kNone; b = flow.dominator(b)) {
       const spirv::Id condition = flow.condition(b);

@@ -4,6 +4,7 @@
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include "check/rules/rules.h"
+#include "spirv/same_value.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -12,57 +13,16 @@ namespace {
 using spirv::Id;
 using spv::Op;
 
-constexpr int kMaxDepth = 12;
-
-// True for the results of pure instructions with equal operands. Loads of one address of a buffer are equal.
-bool sameValue(const spirv::Module& module, Id a, Id b, int depth = 0) {
-  if (a == b) return true;
-  const spirv::Instruction* left = module.definition(a);
-  const spirv::Instruction* right = module.definition(b);
-  if (!left || !right || depth > kMaxDepth || left->op != right->op || left->type != right->type) return false;
-  if (left->operands.size() != right->operands.size() || left->operands.empty()) return false;
-  const auto firstOperand = [&] { return sameValue(module, left->at(0), right->at(0), depth + 1); };
-  const auto sameFrom = [&](std::size_t first) {
-    for (std::size_t i = first; i < left->operands.size(); ++i)
-      if (left->at(i) != right->at(i)) return false;
-    return true;
-  };
-  switch (left->op) {
-    case Op::OpLoad: {
-      // A variable can be stored to between two loads.
-      const spirv::Variable* variable = module.variable(module.access(left->at(0)).variable);
-      const bool constant = variable ? variable->builtIn || variable->storage == spv::StorageClass::PushConstant
-                                     : !spirv::isLocal(module, module.access(left->at(0)).variable);
-      return constant && firstOperand();
-    }
-    case Op::OpFAdd:
-    case Op::OpFSub:
-    case Op::OpFMul:
-    case Op::OpFDiv:
-    case Op::OpFNegate:
-    case Op::OpVectorTimesScalar:
-    case Op::OpMatrixTimesVector:
-    case Op::OpCompositeConstruct:
-    case Op::OpConvertUToPtr:
-    case Op::OpAccessChain:
-      for (std::size_t i = 0; i < left->operands.size(); ++i)
-        if (!sameValue(module, left->at(i), right->at(i), depth + 1)) return false;
-      return true;
-    case Op::OpCompositeExtract: return firstOperand() && sameFrom(1);
-    default: return false;
-  }
-}
-
 // True if a = b or a = -b.
 bool sameLine(const spirv::Module& module, Id a, Id b) {
-  if (sameValue(module, a, b)) return true;
+  if (spirv::sameValue(module, a, b)) return true;
   const spirv::Instruction* left = module.definition(a);
   const spirv::Instruction* right = module.definition(b);
   if (!left || !right) return false;
-  if (left->op == Op::OpFNegate && sameValue(module, left->at(0), b)) return true;
-  if (right->op == Op::OpFNegate && sameValue(module, right->at(0), a)) return true;
-  return left->op == Op::OpFSub && right->op == Op::OpFSub && sameValue(module, left->at(0), right->at(1)) &&
-         sameValue(module, left->at(1), right->at(0));
+  if (left->op == Op::OpFNegate && spirv::sameValue(module, left->at(0), b)) return true;
+  if (right->op == Op::OpFNegate && spirv::sameValue(module, right->at(0), a)) return true;
+  return left->op == Op::OpFSub && right->op == Op::OpFSub && spirv::sameValue(module, left->at(0), right->at(1)) &&
+         spirv::sameValue(module, left->at(1), right->at(0));
 }
 
 // True if the instruction is the length of the direction, up to its sign: length(d), distance(a, b), sqrt(dot(d, d)).
@@ -77,7 +37,7 @@ bool isLengthOf(const spirv::Module& module, const spirv::Instruction& i, Id dir
   const spirv::Instruction* difference = module.definition(direction);
   if (!difference || difference->op != Op::OpFSub) return false;
   const auto matches = [&](Id a, Id b) {
-    return sameValue(module, difference->at(0), a) && sameValue(module, difference->at(1), b);
+    return spirv::sameValue(module, difference->at(0), a) && spirv::sameValue(module, difference->at(1), b);
   };
   return matches(i.at(2), i.at(3)) || matches(i.at(3), i.at(2));
 }
