@@ -147,9 +147,7 @@ class OutputRule {
   // True for x / launch.sampleCount, also as a product, if x comes from the payload of a ray.
   static bool dividesByCount(const spirv::Module& module, const spirv::Instruction& i) {
     if (i.op != Op::OpFDiv && i.op != Op::OpFMul && i.op != Op::OpVectorTimesScalar) return false;
-    const auto loadsCount = [&](const spirv::Instruction& load) {
-      return loadsMember(module, load, "sampleCount");
-    };
+    const auto loadsCount = [&](const spirv::Instruction& load) { return loadsMember(module, load, "sampleCount"); };
     const auto isCount = [&](spirv::Id value) {
       return spirv::dependsOn(module, value, loadsCount, [](const spirv::Instruction& operand) {
         return operand.op != Op::OpConvertUToF && operand.op != Op::OpConvertSToF && operand.op != Op::OpBitcast &&
@@ -171,9 +169,7 @@ class OutputRule {
     const spirv::Module& module = store.stage->facts->module();
     const auto position = module.position(store.instruction);
     const spirv::ControlFlow& flow = store.stage->facts->flow(position->function);
-    const auto loadsIndex = [&](const spirv::Instruction& i) {
-      return loadsMember(module, i, "firstSample");
-    };
+    const auto loadsIndex = [&](const spirv::Instruction& i) { return loadsMember(module, i, "firstSample"); };
     for (std::size_t b = flow.dominator(position->block); b != spirv::Module::kNone; b = flow.dominator(b)) {
       const spirv::Id condition = flow.condition(b);
       if (condition != 0 && spirv::dependsOn(module, condition, loadsIndex)) return true;

@@ -12,6 +12,7 @@
 
 #include "check/rules/rules.h"
 #include "check/rules/user_location.h"
+#include "spirv/access.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
