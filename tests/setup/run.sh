@@ -225,10 +225,10 @@ neededNotOffered() {
 
 optionalNotOffered() {
     noble 25.0.7
-    offer vulkan-validationlayers none
+    offer vulkan-tools none
     setup
     expectStatus 0
-    expectOutput "warning: vulkan-validationlayers (optional): apt does not offer it"
+    expectOutput "warning: vulkan-tools (optional): apt does not offer it"
     : >"$system/calls"
     setup
     expectStatus 0
