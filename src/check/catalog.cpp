@@ -316,14 +316,14 @@ constexpr DiagnosticInfo kCatalog[] = {
      "gl_LaunchIDEXT gl_LaunchSizeEXT black"},
     {"Q717", kWarning, "across_stages/hit_positions", "hit position is computed with a direction of a different length",
      "The unit of t is the length of the ray direction, so the position is before or behind the surface.",
-     "Compute origin + t * direction with the direction of the trace as it is.", "normalize world position"},
+     "Compute origin + t * direction with the direction of the trace as it is.", "normalize world"},
     {"Q718", kWarning, "across_stages/random_seeds", "random numbers are the same in each sample of a pixel",
      "The average of equal samples has the noise of one sample, however many there are.",
      "Make the seed from the pixel and the index of the sample: launch.firstSample, or frameID in the lecture form.",
-     "noise seed sample"},
+     "noise seed"},
     {"Q719", kWarning, "across_stages/miss_distances", "distance of a miss is used like that of a hit",
      "In a miss shader, gl_RayTmaxEXT is the tmax of the trace, a positive number without a surface.",
-     "Store a value that marks the miss, such as -1.0, and test it after the trace.", "gl_RayTmaxEXT miss distance"},
+     "Store a value that marks the miss, such as -1.0, and test it after the trace.", "gl_RayTmaxEXT"},
 
     // Unused parts.
     {"Q801", kWarning, "across_stages/unused", "stage is unreachable", "It costs compile time without any effect.",
