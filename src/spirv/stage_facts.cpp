@@ -2,6 +2,7 @@
 #include "spirv/stage_facts.h"
 
 #include <algorithm>
+#include <tuple>
 #include <unordered_set>
 
 #include "spirv/glsl_declaration.h"
@@ -127,6 +128,9 @@ StageFacts::StageFacts(Module module, ValueContext context)
     variables_.push_back(sharedVariable(module_, variable));
     leaves_.emplace(variable.id, Leaves(module_.types(), variable.type));
   }
+  std::ranges::stable_sort(variables_, {}, [](const SharedVariable& v) {
+    return std::tuple(v.location.value_or(0), v.declaration.line, v.declaration.column);
+  });
   if (const Function* entry = module_.entry()) loops_ = loops(module_, *entry);
   for (std::size_t i = 0; i < module_.instructions().size(); ++i)
     if (const auto position = module_.position(i); position && flows_[position->function].reachable(position->block))

@@ -168,7 +168,7 @@ class StageFacts {
   std::vector<ReportFacts> reports_;
   std::vector<AccessFacts> accesses_;
   std::vector<BuiltInRead> builtIns_;
-  std::vector<SharedVariable> variables_;
+  std::vector<SharedVariable> variables_;  // by location, then in the order of declaration
   bool ignores_ = false;
   bool terminates_ = false;
   std::map<Id, Leaves> leaves_;                                        // by variable

@@ -68,6 +68,16 @@ TEST(StageFacts, FindsArgumentsAndVariables) {
   EXPECT_EQ(inner->declaration.column, 44);
 }
 
+TEST(StageFacts, OrdersVariablesByLocation) {
+  const StageFacts facts = factsOf(Stage::callable,
+                                   "layout(location = 1) callableDataInEXT float result;\n"
+                                   "layout(location = 0) callableDataInEXT vec3 position;\n"
+                                   "void main() { result = position.x; }\n");
+  ASSERT_EQ(facts.variables().size(), 2u);
+  EXPECT_EQ(facts.variables()[0].name, "position");
+  EXPECT_EQ(facts.incoming(spv::StorageClass::IncomingCallableDataKHR), &facts.variables()[0]);
+}
+
 TEST(StageFacts, FindsAccessesByMember) {
   const StageFacts facts = factsOf(Stage::closestHit, kHit);
   const Id payload = facts.incoming(spv::StorageClass::IncomingRayPayloadKHR)->id;
