@@ -10,6 +10,7 @@
 #include <set>
 
 #include "base/suggestion.h"
+#include "shader/stage_builtins.h"
 
 namespace quintet::program {
 namespace {
@@ -355,6 +356,33 @@ Words closure(Words words, const std::multimap<std::string_view, const Function*
   return words;
 }
 
+// Returns false if the lecture form has the name only in other stages.
+bool exists(std::string_view name, Stage stage) {
+  const bool hit = stage == Stage::anyHit || stage == Stage::closestHit;
+  const bool traces = stage == Stage::rayGeneration || stage == Stage::closestHit || stage == Stage::miss;
+  if (name == "payload") return hit || traces;
+  if (name == "hit") return hit || stage == Stage::intersection;
+  if (name == "baryCoord") return hit;
+  if (name == "callableData") return traces || stage == Stage::callable;
+  if (name == "topLevelAS") return traces;
+  if (name == "gsnSetPixel" || name == "gsnGetPreviousPixel") return stage == Stage::rayGeneration;
+  const shader::StageBuiltIn* builtIn = shader::findStageBuiltIn(name);
+  return !builtIn || builtIn->availableIn(stage);
+}
+
+// Returns the stage that compiles a function that no stage uses, so that its errors are found: one in which all its
+// names exist, the ray generation shader if possible. Nullopt if there is none.
+std::optional<std::size_t> stageFor(const Words& words, const std::vector<LectureMain>& mains) {
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < mains.size(); ++i) {
+    const Stage stage = mains[i].stage;
+    if (!std::ranges::all_of(words, [&](std::string_view name) { return exists(name, stage); })) continue;
+    if (stage == Stage::rayGeneration) return i;
+    if (!found) found = i;
+  }
+  return found;
+}
+
 std::vector<std::vector<TextRange>> unusedFunctions(const LectureText& source, const LectureSplit& split) {
   const FunctionReader reader(source, split);
   const std::vector<Function> functions = reader.functions();
@@ -380,12 +408,16 @@ std::vector<std::vector<TextRange>> unusedFunctions(const LectureText& source, c
     everywhere.insert(words.begin(), words.end());
   }
 
-  std::vector<std::vector<TextRange>> unused(split.mains.size());
-  for (std::size_t i = 0; i < unused.size(); ++i) {
-    const bool first = split.mains[i].stage == shader::Stage::rayGeneration;
-    for (const Function& f : functions)
-      if (!own[i].count(f.name) && !(first && !everywhere.count(f.name))) unused[i].push_back(f.range);
+  for (const Function& f : functions) {
+    if (everywhere.count(f.name)) continue;
+    const Words words = closure({f.name}, byName);
+    if (const auto stage = stageFor(words, split.mains)) own[*stage].insert(words.begin(), words.end());
   }
+
+  std::vector<std::vector<TextRange>> unused(split.mains.size());
+  for (std::size_t i = 0; i < unused.size(); ++i)
+    for (const Function& f : functions)
+      if (!own[i].count(f.name)) unused[i].push_back(f.range);
   return unused;
 }
 

@@ -34,8 +34,8 @@ struct LectureSplit {
   std::vector<LectureMain> mains;
   std::vector<LectureRegion> regions;
   // By main: definitions of common functions that neither it nor anything it uses names, such as a function that traces
-  // rays for the intersection shader. A function that no stage uses stays in the ray generation shader, so that the
-  // compiler checks it.
+  // rays for the intersection shader. A function that no stage uses stays in one stage in which all its names exist, so
+  // that the compiler checks it.
   std::vector<std::vector<TextRange>> unusedFunctions;
 
   int ownerOf(std::size_t offset) const;

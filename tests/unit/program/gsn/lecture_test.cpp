@@ -214,6 +214,20 @@ TEST(Lecture, GivesCommonFunctionsToTheStagesThatUseThem) {
               Contains(HasSubstr("demo.rt.glsl:6:25: error: 'missing'")));
 }
 
+TEST(Lecture, CompilesUnusedFunctionsInAStageThatHasTheirNames) {
+  const std::string hit = "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = twice(payload.color); }\n";
+  const std::string twice = "vec3 twice(vec3 c) { return 2.0 * c; }\n";
+  const auto with = [&](const std::string& function) { return kCommon + twice + function + kRayGeneration + hit; };
+  EXPECT_THAT(problems(with("vec3 point() { return gl_HitTEXT * gl_WorldRayDirectionEXT; }\n")), IsEmpty());
+  EXPECT_THAT(problems(with("#define T gl_HitTEXT\nvec3 point() { return twice(vec3(T)); }\n")), IsEmpty());
+  EXPECT_THAT(problems(with("void both() { gsnSetPixel(vec4(twice(payload.color), 1.0)); }\n")), IsEmpty());
+  EXPECT_THAT(problems(with("float corner() { return 1.0 - baryCoord.x - baryCoord.y; }\n")), IsEmpty());
+  // No stage of this program has the name.
+  EXPECT_THAT(problems(with("void stop() { terminateRayEXT; }\n")), IsEmpty());
+  EXPECT_THAT(problems(with("float wrong() { return gl_HitTEXT + missing; }\n")),
+              Contains(HasSubstr("demo.rt.glsl:7:37: error: 'missing'")));
+}
+
 TEST(Lecture, AcceptsConditionalsAndExtensionsAnywhere) {
   EXPECT_THAT(problems("#version 460\n#extension GL_EXT_ray_tracing : require\n" + std::string(kCommon) +
                        "#define WITH_MISS\n" + kRayGeneration +
