@@ -22,6 +22,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Lig
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer LightNodeArray { LightNode at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer AliasArray { AliasEntry at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer UintArray { uint at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer PrimitiveIndexArray { uint at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FloatArray { float at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec2Array { vec2 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vec3Array { vec3 at[]; };

@@ -11,7 +11,8 @@ const uint kHitLeaving = 2u;
 
 // Index of the triangle (box, solid, CSG tree) in the scene's order.
 uint hitTriangle(GeometryData geometry) {
-  return geometry.primitiveMap != 0ul ? UintArray(geometry.primitiveMap).at[gl_PrimitiveID] : uint(gl_PrimitiveID);
+  return geometry.primitiveMap != 0ul ? PrimitiveIndexArray(geometry.primitiveMap).at[gl_PrimitiveID]
+                                      : uint(gl_PrimitiveID);
 }
 
 // The custom_index of the scene file; gl_InstanceCustomIndexEXT is the index of the instance in the scene.

@@ -20,7 +20,9 @@ using spirv::ValueRange;
 // The lecture form renames the structures of the library (quintet/gsn/names_begin.glsl).
 constexpr std::array<std::string_view, 2> kParameters{"Parameters", "gsnParameters_"};
 constexpr std::array<std::string_view, 2> kInstances{"InstanceData", "gsnInstanceData_"};
+constexpr std::array<std::string_view, 2> kPrimitiveIndices{"PrimitiveIndexArray", "gsnPrimitiveIndexArray_"};
 constexpr std::string_view kRecord = "Record";
+constexpr double kMaxPrimitive = 536870911.0;  // Vulkan's limit of gl_PrimitiveID
 
 ValueRange amongAll(const std::set<double>& values) {
   if (values.empty()) return {};
@@ -136,6 +138,8 @@ spirv::ValueContext valueContext(const program::Program& program, const std::str
         parameters == ParameterUse::defaults ? valuesOf(parameter, parameter.defaultValue) : allValues(parameter);
     for (const std::string_view name : kParameters) context.members[{std::string(name), parameter.name}] = ranges;
   }
+  for (const std::string_view name : kPrimitiveIndices)
+    context.members[{std::string(name), "at"}] = {ValueRange::between(0.0, kMaxPrimitive)};
   addRecords(program, file, context);
   addHits(program, file, scene, context);
   return context;

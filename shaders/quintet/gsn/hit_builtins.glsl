@@ -68,7 +68,7 @@ void gsnLoadHit_() {
   gsnWorldToObject_ = gl_WorldToObjectEXT;
   const GeometryData geometry = gsnHitGeometry_();
   gsnPrimitive_ = uint(gl_PrimitiveID);
-  if (geometry.primitiveMap != 0ul) gsnPrimitive_ = UintArray(geometry.primitiveMap).at[gl_PrimitiveID];
+  if (geometry.primitiveMap != 0ul) gsnPrimitive_ = PrimitiveIndexArray(geometry.primitiveMap).at[gl_PrimitiveID];
 #ifdef QUINTET_GSN_INTERSECTION
   gsnNearest_ = gl_RayTmaxEXT;
 #else

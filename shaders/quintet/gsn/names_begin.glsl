@@ -29,6 +29,7 @@
 #define ParametersReference gsnParametersReference_
 #define PrimitiveArray gsnPrimitiveArray_
 #define PrimitiveData gsnPrimitiveData_
+#define PrimitiveIndexArray gsnPrimitiveIndexArray_
 #define RayRecord gsnRayRecord_
 #define RayKinds gsnRayKinds_
 #define TextureData gsnTextureData_

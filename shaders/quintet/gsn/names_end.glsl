@@ -31,6 +31,7 @@
 #undef ParametersReference
 #undef PrimitiveArray
 #undef PrimitiveData
+#undef PrimitiveIndexArray
 #undef RayRecord
 #undef RayKinds
 #undef TextureData
