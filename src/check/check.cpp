@@ -16,8 +16,9 @@
 namespace quintet::check {
 namespace {
 
-// A wrong index leaves stages unreachable. Only the index is reported then.
-constexpr std::array<std::string_view, 8> kWrongIndex{"Q302", "Q501", "Q502", "Q503", "Q504", "Q506", "Q507", "Q513"};
+// A wrong argument of a trace or call leaves stages unreachable. Only the argument is reported then.
+constexpr std::array<std::string_view, 9> kWrongArgument{"Q302", "Q501", "Q502", "Q503", "Q504",
+                                                         "Q506", "Q507", "Q513", "Q605"};
 
 // Ids whose cause is code that is missing. More outputs can remove them.
 constexpr std::array<std::string_view, 1> kUnreachable{"Q801"};
@@ -68,7 +69,7 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
   checkArrayIndices(input, report);
   checkSpaces(input, report);
   if (input.limits.defects.sharesAnyHit) checkSharedIntersections(input, report);
-  if (input.graph.error.empty() && !input.featureDefines && !report.hasAny(kWrongIndex))
+  if (input.graph.error.empty() && !input.featureDefines && !report.hasAny(kWrongArgument))
     checkUnreachableStages(input, report);
   checkUnusedHitGroups(input, report);
   checkOutputs(input, report);

@@ -131,6 +131,12 @@ const std::string& PipelineGraph::nameOf(const std::string& file) const {
   return file.starts_with(program.descriptionFile + ".") ? program.descriptionFile : file;
 }
 
+bool PipelineGraph::areVariants(const PipelineStage& a, const PipelineStage& b) const {
+  const auto isPart = [&](const PipelineStage& stage) { return nameOf(stage.file) != stage.file; };
+  const bool hit = a.kind == shader::Stage::closestHit || a.kind == shader::Stage::anyHit;
+  return hit && a.kind == b.kind && isPart(a) && isPart(b);
+}
+
 std::string PipelineGraph::describe(const Edge& edge) const {
   const std::string& file = nameOf(stages[edge.stage].file);
   if (edge.role == Role::miss || edge.role == Role::callable)

@@ -84,6 +84,8 @@ struct PipelineGraph {
 
   // Name of a stage's file as the user knows it. The stages of the lecture form are parts of one file.
   const std::string& nameOf(const std::string& file) const;
+  // True if both are compiled from the same hit shader of the lecture form: for triangles, and for procedural geometry.
+  bool areVariants(const PipelineStage& a, const PipelineStage& b) const;
   // "closest-hit shader 'a.rchit' (hit group 'surface', ray type 'primary')"
   std::string describe(const Edge& edge) const;
   std::string describe(HitGroupRay hit) const;  // "hit group 'surface', ray type 'primary'"

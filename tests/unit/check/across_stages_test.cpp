@@ -187,6 +187,8 @@ TEST(CheckGeometry, Q603ReportsAnyHitShadersThatNeverRun) {
   const std::vector<std::string> anyHit{"any-hit shader 'cut.rahit' of hit group 'surface', ray type 'primary'"};
   EXPECT_TRUE(reports(traceWith("gl_RayFlagsNoneEXT", "gl_RayFlagsOpaqueEXT"), "Q603 program.toml:14:0 ",
                       {anyHit[0], "gl_RayFlagsOpaqueEXT"}));
+  EXPECT_TRUE(reports(traceWith("gl_RayFlagsNoneEXT", "gl_RayFlagsCullNoOpaqueEXT"), "Q603 program.toml:14:0 ",
+                      {anyHit[0], "gl_RayFlagsCullNoOpaqueEXT"}));
   const program::SceneFacts rock = sceneWith({kStone}), leaf = sceneWith({kStone, kLeaf});
   EXPECT_TRUE(reports(textOf(checkFiles(cleanFiles(), &rock)), "Q603 program.toml:14:0 ", {anyHit[0], "in scene.glb"}));
   EXPECT_EQ(textOf(checkFiles(cleanFiles(), &leaf)), "");

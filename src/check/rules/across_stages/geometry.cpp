@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "check/rules/across_stages/binding_names.h"
+#include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
 
 namespace quintet::check {
@@ -61,9 +62,12 @@ class GeometryRule {
     });
   }
 
+  // The line of the description. The lecture form has none: there it is the any-hit shader, or else the file.
   SourceLocation location(HitGroupRay hit) const {
     const program::HitShaders& shaders = graph_.shaders(hit);
-    return graph_.descriptionLocation(shaders.line > 0 ? shaders.line : groupOf(hit).line);
+    const int line = shaders.line > 0 ? shaders.line : groupOf(hit).line;
+    const PipelineStage* anyHit = graph_.stage(shaders.anyHit);
+    return line == 0 && anyHit ? mainLocation(graph_, *anyHit) : graph_.descriptionLocation(line);
   }
 
   // Q601, Q602: contradictions in the group itself.
@@ -216,19 +220,32 @@ class GeometryRule {
 
   void checkAnyHit(HitGroupRay hit) {
     const std::string& file = graph_.shaders(hit).anyHit;
-    const auto matches = [&](const TraceGeometryPair& p) { return p.hit.group == hit.group && p.hit.ray == hit.ray; };
-    if (std::ranges::none_of(pairs_, matches) ||
-        std::ranges::any_of(pairs_, [&](const TraceGeometryPair& p) { return matches(p) && !p.opaque; }))
+    const PipelineStage* stage = graph_.stage(file);
+    const auto matches = [&](const TraceGeometryPair& p) {
+      const PipelineStage* other = graph_.stage(graph_.shaders(p.hit).anyHit);
+      return p.hit.ray == hit.ray &&
+             (p.hit.group == hit.group || (stage && other && graph_.areVariants(*stage, *other)));
+    };
+    if (std::ranges::none_of(pairs_, matches) || std::ranges::any_of(pairs_, [&](const TraceGeometryPair& p) {
+          return matches(p) && !p.opaque && !skipsAnyHit(p);
+        }))
       return;
-    const bool byFlags = std::ranges::all_of(
-        pairs_, [&](const TraceGeometryPair& p) { return !matches(p) || p.site->trace->flags.mustHave(kFlagOpaque); });
+    const bool byFlags =
+        std::ranges::all_of(pairs_, [&](const TraceGeometryPair& p) { return !matches(p) || skipsAnyHit(p); });
     // The stages of the library are for all scenes, with or without alpha.
     if (input_.scene && !byFlags && program::isLibraryStage(file)) return;
-    report_.add("Q603", location(hit),
-                fmt::format("any-hit shader '{}' of {} never runs: {}", graph_.nameOf(file), graph_.describe(hit),
-                            byFlags        ? "all traces of this ray type have gl_RayFlagsOpaqueEXT"
-                            : input_.scene ? fmt::format("its geometry in {} is opaque", input_.scene->name)
-                                           : "the group is bound to opaque geometry"));
+    report_.addOncePerLine(
+        "Q603", location(hit),
+        fmt::format("any-hit shader '{}' of {} never runs: {}", graph_.nameOf(file), graph_.describe(hit),
+                    byFlags ? "all traces of this ray type have gl_RayFlagsOpaqueEXT or gl_RayFlagsCullNoOpaqueEXT"
+                    : input_.scene ? fmt::format("its geometry in {} is opaque", input_.scene->name)
+                                   : "the group is bound to opaque geometry"));
+  }
+
+  // True if the flags exclude all geometry that is not opaque.
+  static bool skipsAnyHit(const TraceGeometryPair& pair) {
+    const spirv::ArgumentValues& flags = pair.site->trace->flags;
+    return flags.mustHave(kFlagOpaque) || flags.mustHave(kFlagCullNoOpaque);
   }
 
   const CheckInput& input_;

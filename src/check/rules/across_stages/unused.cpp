@@ -74,9 +74,12 @@ void checkUnreachableStages(const CheckInput& input, Report& report) {
   const std::set<std::size_t> reachable = graph.reachableStages();
   for (std::size_t i = 0; i < graph.stages.size(); ++i) {
     const PipelineStage& stage = graph.stages[i];
-    if (reachable.contains(i) || stage.file.ends_with(program::kStubMissExtension)) continue;
+    const auto isReached = [&](std::size_t other) { return graph.areVariants(stage, graph.stages[other]); };
+    if (reachable.contains(i) || std::ranges::any_of(reachable, isReached) ||
+        stage.file.ends_with(program::kStubMissExtension))
+      continue;
     const int line = lineOfFile(graph.program, stage.file);
-    // The description has no lines in the lecture form, where a stage can have two variants.
+    // The description has no lines in the lecture form, where both variants of a stage can be unreachable.
     report.addOncePerLine("Q801", line > 0 ? graph.descriptionLocation(line) : mainLocation(graph, stage),
                           fmt::format("no trace or call can reach {} shader '{}'", shader::stageName(stage.kind),
                                       graph.nameOf(stage.file)));
