@@ -103,6 +103,7 @@ void addHits(const program::Program& program, const std::string& file, const pro
   const auto procedural = [&](std::size_t group) { return hasIntersection(program.hitGroups[group]); };
   if (std::ranges::all_of(groups, procedural))
     context.builtIns[spv::BuiltIn::HitKindKHR] = ValueRange::between(0.0, 255.0);
+  if (std::ranges::none_of(groups, procedural)) context.hitAttribute = ValueRange::between(0.0, 1.0);  // barycentrics
   if (!scene) return;
   std::set<double> instances, geometries, all;
   for (std::size_t i = 0; i < scene->instances.size(); ++i) {

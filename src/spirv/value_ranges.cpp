@@ -152,6 +152,7 @@ ValueRange ValueRanges::Impl::evaluate(Evaluator& in, Id id, const Path& given) 
   ValueRange result = compute(in, key.id, key.path);
   --depth;
   in.open.erase(key);
+  if (context.noNan && !result.onlyNan()) result.nan = false;
   if (const auto found = in.limits.find(key); found != in.limits.end())
     result = fitted(type, limited(std::move(result), found->second.min, found->second.max));
   return in.memo[key] = result;
@@ -581,6 +582,8 @@ ValueRange ValueRanges::Impl::loadRange(Evaluator& in, const Instruction& load, 
     return fitted(type,
                   known != context.builtIns.end() ? known->second : builtInRange(*shared->builtIn, type, component));
   }
+  if (shared && shared->storage == spv::StorageClass::HitAttributeKHR && context.hitAttribute)
+    return fitted(type, *context.hitAttribute);
   if (isLocal(module, access.base)) return localRange(in, access, type, path);
   if (const auto member = bufferMember(module, load, path)) {
     const auto known = context.members.find({member->structure, member->member});

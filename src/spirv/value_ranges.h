@@ -9,6 +9,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,8 @@ struct ValueContext {
   std::map<spv::BuiltIn, ValueRange> builtIns;  // of each component; replaces the limits of Vulkan
   // Members of structures in buffers, by the names of structure and member; one range per component, or one for all.
   std::map<std::pair<std::string, std::string>, std::vector<ValueRange>> members;
+  std::optional<ValueRange> hitAttribute;  // of each component
+  bool noNan = false;                      // leaves out NaN, except for a value that is always NaN
 };
 
 class ValueRanges {

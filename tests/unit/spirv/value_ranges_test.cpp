@@ -121,6 +121,22 @@ TEST(ValueRanges, KnowsBuiltIns) {
   EXPECT_FALSE(range.atLeast(9.0));
 }
 
+TEST(ValueRanges, KnowsHitAttributes) {
+  const std::string sum = "hitAttributeEXT vec2 b; void main() { data.x = b.x + b.y; }";
+  EXPECT_TRUE(Ranges(sum).stored().nan);
+  ValueContext context;
+  context.hitAttribute = ValueRange::between(0.0, 1.0);
+  EXPECT_TRUE(isBetween(Ranges(sum, context).stored(), 0.0, 2.0));
+}
+
+TEST(ValueRanges, LeavesOutNan) {
+  EXPECT_TRUE(of("data.x = sin(data.x);").nan);
+  ValueContext context;
+  context.noNan = true;
+  EXPECT_TRUE(isBetween(of("data.x = fract(data.x / data.x);", context), 0.0, 1.0));
+  EXPECT_TRUE(of("data.x = sqrt(-1.0 - abs(data.x));", context).onlyNan());
+}
+
 TEST(ValueRanges, KnowsParameters) {
   ValueContext context;
   context.members[{"Parameters", "bias"}] = {ValueRange::between(0.0, 0.5)};

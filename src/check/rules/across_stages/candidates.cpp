@@ -6,6 +6,7 @@
 
 #include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
+#include "check/value_context.h"
 #include "spirv/source_text.h"
 
 namespace quintet::check {
@@ -17,20 +18,44 @@ bool callsFunctions(const spirv::Module& module) {
   return std::ranges::any_of(module.instructions(), [](const auto& i) { return i.op == Op::OpFunctionCall; });
 }
 
-// True if each path through the stage ends with ignoreIntersectionEXT.
-bool ignoresAlways(const spirv::StageFacts& facts) {
-  const spirv::Module& module = facts.module();
+// Returns the first ignoreIntersectionEXT if each path through the stage ends with one; else null. A branch whose
+// condition always has the same value, other than for NaN, leads only there.
+const spirv::Instruction* ignoreOfEachPath(const CheckInput& input, const PipelineStage& stage) {
+  const spirv::Module& module = stage.facts->module();
   const spirv::Function* entry = module.entry();
-  if (!entry || !facts.ignores() || callsFunctions(module)) return false;
-  const auto position = module.position(entry->blocks.empty() ? 0 : entry->blocks[0].first);
-  if (!position) return false;
-  const spirv::ControlFlow& flow = facts.flow(position->function);
-  for (std::size_t b = 0; b < entry->blocks.size(); ++b) {
-    const Op end = module.instructions()[entry->blocks[b].end - 1].op;
-    const bool leaves = entry->blocks[b].successors.empty() && end != Op::OpUnreachable;
-    if (flow.reachable(b) && leaves && end != Op::OpIgnoreIntersectionKHR) return false;
+  if (!entry || entry->blocks.empty() || !stage.facts->ignores() || callsFunctions(module)) return nullptr;
+  spirv::ValueContext context = valueContext(input.graph.program, stage.file, input.scene);
+  context.noNan = true;
+  const spirv::ValueRanges ranges(module, std::move(context));
+  const auto& blocks = entry->blocks;
+  std::vector<bool> seen(blocks.size(), false);
+  std::vector<std::size_t> open{0};
+  std::size_t first = spirv::Module::kNone;
+  while (!open.empty()) {
+    const std::size_t block = open.back();
+    open.pop_back();
+    if (seen[block]) continue;
+    seen[block] = true;
+    const std::size_t last = blocks[block].end - 1;
+    const spirv::Instruction& end = module.instructions()[last];
+    if (end.op == Op::OpIgnoreIntersectionKHR)
+      first = std::min(first, last);
+    else if (blocks[block].successors.empty() && end.op != Op::OpUnreachable)
+      return nullptr;
+    const std::optional<double> condition =
+        end.op == Op::OpBranchConditional ? ranges.rangeAt(last, end.at(0)).constant() : std::nullopt;
+    for (const std::size_t next : blocks[block].successors)
+      if (!condition || blocks[next].label == end.at(*condition != 0.0 ? 1 : 2)) open.push_back(next);
   }
-  return true;
+  return first == spirv::Module::kNone ? nullptr : &module.instructions()[first];
+}
+
+// The lecture form compiles an any-hit shader for triangles and for procedural geometry. An attribute that only one of
+// them has is 0 in the other one.
+bool allVariantsIgnore(const CheckInput& input, const PipelineStage& stage) {
+  return std::ranges::all_of(input.graph.stages, [&](const PipelineStage& other) {
+    return !input.graph.areVariants(stage, other) || !other.facts || ignoreOfEachPath(input, other);
+  });
 }
 
 bool writesPayload(const spirv::StageFacts& facts) {
@@ -68,12 +93,13 @@ bool alwaysTested(const PipelineGraph& graph, HitGroupRay hit) {
   });
 }
 
-void checkAnyHit(const PipelineGraph& graph, const PipelineStage& stage, HitGroupRay hit, Report& report) {
-  if (!ignoresAlways(*stage.facts) || hasEffects(*stage.facts) || writesPayload(*stage.facts)) return;
+void checkAnyHit(const CheckInput& input, const PipelineStage& stage, HitGroupRay hit, Report& report) {
+  const PipelineGraph& graph = input.graph;
+  if (hasEffects(*stage.facts) || writesPayload(*stage.facts)) return;
+  const spirv::Instruction* ignore = ignoreOfEachPath(input, stage);
+  if (!ignore || !allVariantsIgnore(input, stage)) return;
   const bool shaded = !graph.shaders(hit).closestHit.empty();
   if (shaded ? !alwaysTested(graph, hit) : hasOnlyIgnore(stage)) return;
-  const auto& instructions = stage.facts->module().instructions();
-  const auto ignore = std::ranges::find(instructions, Op::OpIgnoreIntersectionKHR, &spirv::Instruction::op);
   const SourceLocation location = stage.facts->module().location(*ignore, "ignoreIntersectionEXT");
   report.addOncePerLine(
       "Q606", location.line > 0 ? location : mainLocation(graph, stage),
@@ -96,7 +122,7 @@ void checkCandidates(const CheckInput& input, Report& report) {
   for (std::size_t group = 0; group < graph.program.hitGroups.size(); ++group)
     for (std::size_t ray = 0; ray < graph.rayCount(); ++ray)
       if (const PipelineStage* stage = graph.stage(graph.shaders({group, ray}).anyHit); stage && stage->facts)
-        checkAnyHit(graph, *stage, {group, ray}, report);
+        checkAnyHit(input, *stage, {group, ray}, report);
 }
 
 }  // namespace quintet::check
