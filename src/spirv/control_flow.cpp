@@ -110,12 +110,42 @@ std::vector<Id> ControlFlow::phiConditions(std::size_t block) const {
   return conditions;
 }
 
+std::vector<std::size_t> ControlFlow::controllers(std::size_t block) const {
+  const auto& blocks = function().blocks;
+  std::vector<std::size_t> result, open{block};
+  while (!open.empty()) {
+    const std::size_t next = open.back();
+    open.pop_back();
+    // Blocks from which the function can end without `next`.
+    std::vector<bool> avoids(blocks.size(), false);
+    std::vector<std::size_t> ends;
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+      if (blocks[b].successors.empty()) ends.push_back(b);
+    while (!ends.empty()) {
+      const std::size_t b = ends.back();
+      ends.pop_back();
+      if (b == next || avoids[b]) continue;
+      avoids[b] = true;
+      ends.insert(ends.end(), blocks[b].predecessors.begin(), blocks[b].predecessors.end());
+    }
+    const auto isAvoided = [&](std::size_t successor) { return avoids[successor]; };
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      const auto& successors = blocks[b].successors;
+      if (b == next || !reachable(b) || std::ranges::find(result, b) != result.end()) continue;
+      if (std::ranges::all_of(successors, isAvoided) || std::ranges::none_of(successors, isAvoided)) continue;
+      result.push_back(b);
+      open.push_back(b);
+    }
+  }
+  return result;
+}
+
 bool dependsOnDataOrControl(const Module& module, const ControlFlow& flow, Id value, const InstructionTest& test,
                             bool throughLoops) {
   std::vector<Id> open{value}, phis;
-  std::unordered_set<Id> seen{value};
+  std::unordered_set<Id> seen{value}, seenPhis;
   const auto visit = [&](const Instruction& i) {
-    if (i.op == spv::Op::OpPhi && seen.insert(i.result).second) phis.push_back(i.result);
+    if (i.op == spv::Op::OpPhi && seenPhis.insert(i.result).second) phis.push_back(i.result);
     return test(i);
   };
   while (!open.empty()) {

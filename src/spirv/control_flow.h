@@ -21,6 +21,8 @@ class ControlFlow {
 
   // Conditions of the branches between a phi's block and its dominator. They decide which value the phi takes.
   std::vector<Id> phiConditions(std::size_t block) const;
+  // Blocks whose branches decide whether the block runs, directly or by deciding whether such a branch runs.
+  std::vector<std::size_t> controllers(std::size_t block) const;
   // Condition or selector of a block's branch; 0 if it has none.
   Id condition(std::size_t block) const;
 

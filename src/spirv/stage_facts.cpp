@@ -381,7 +381,7 @@ Indices StageFacts::inputReads(Id variable, std::uint32_t leaf) const {
         (runsAlwaysBefore(marks, a.instruction) || !runsInFirstIteration(a.instruction)))
       continue;
     const PathsAfter& paths = pathsAfter(entry->blocks[0].first);
-    if (!guarded(paths, a.instruction, variable) && usedUnguarded(paths, a, leaf)) result.push_back(i);
+    if (!guarded(paths, a.instruction, variable, {}) && usedUnguarded(paths, a, leaf, {})) result.push_back(i);
   }
   return result;
 }
@@ -511,12 +511,12 @@ Indices StageFacts::readsAfter(std::size_t site, Id variable, std::uint32_t leaf
   return result;
 }
 
-Indices StageFacts::unguardedReads(std::size_t site, Id variable, std::uint32_t leaf) const {
+Indices StageFacts::unguardedReads(std::size_t site, Id variable, std::uint32_t leaf, const GuardTest& test) const {
   Indices result = readsAfter(site, variable, leaf);
   if (result.empty()) return result;
   const PathsAfter& paths = pathsAfter(site);
   std::erase_if(result, [&](std::size_t i) {
-    return guarded(paths, accesses_[i].instruction, variable) || !usedUnguarded(paths, accesses_[i], leaf);
+    return guarded(paths, accesses_[i].instruction, variable, test) || !usedUnguarded(paths, accesses_[i], leaf, test);
   });
   return result;
 }
@@ -541,18 +541,53 @@ bool StageFacts::dependsOnLeaf(Id value, Id variable, std::uint32_t leaf) const 
   });
 }
 
-bool StageFacts::guarded(const PathsAfter& paths, std::size_t instruction, Id variable) const {
+// The branch of a block that decides whether the instruction runs.
+Guard StageFacts::guardOf(const PathsAfter& paths, std::size_t block, std::size_t instruction) const {
+  const auto position = module_.position(instruction);
+  const auto& blocks = flows_[position->function].function().blocks;
+  const Instruction& branch = module_.instructions()[blocks[block].end - 1];
+  Guard guard{flows_[position->function].condition(block), {}};
+  if (branch.op != Op::OpBranchConditional) return guard;
+  const auto leads = [&](Id label) {
+    const auto target = std::ranges::find(blocks, label, &Block::label);
+    return target != blocks.end() && paths.leadsTo(static_cast<std::size_t>(target - blocks.begin()), instruction);
+  };
+  const bool ifTrue = leads(branch.at(1)), ifFalse = leads(branch.at(2));
+  if (ifTrue != ifFalse) guard.holds = ifTrue;
+  return guard;
+}
+
+bool StageFacts::guarded(const PathsAfter& paths, std::size_t instruction, Id variable, const GuardTest& test) const {
   const auto position = module_.position(instruction);
   if (!position) return false;
   const ControlFlow& flow = flows_[position->function];
-  return std::ranges::any_of(paths.guards(instruction),
-                             [&](std::size_t block) { return dependsOnVariable(flow.condition(block), variable); });
+  return std::ranges::any_of(paths.guards(instruction), [&](std::size_t block) {
+    return dependsOnVariable(flow.condition(block), variable) && (!test || test(guardOf(paths, block, instruction)));
+  });
+}
+
+// True if a condition on the variable guards each edge on which the phi takes the value.
+bool StageFacts::arrivesGuarded(const PathsAfter& paths, const Instruction& phi, Id value, Id variable,
+                                const GuardTest& test) const {
+  const auto position = module_.position(module_.definitionIndex(phi.result));
+  const auto& blocks = flows_[position->function].function().blocks;
+  for (std::size_t i = 0; i + 1 < phi.operands.size(); i += 2) {
+    const auto from = std::ranges::find(blocks, phi.at(i + 1), &Block::label);
+    if (phi.at(i) != value || from == blocks.end()) continue;
+    const Instruction& end = module_.instructions()[from->end - 1];
+    if (guarded(paths, from->end - 1, variable, test)) continue;
+    if (end.op != Op::OpBranchConditional || !dependsOnVariable(end.at(0), variable)) return false;
+    const bool direct = end.at(1) != end.at(2);
+    const Guard guard{end.at(0), direct ? std::optional(end.at(1) == blocks[position->block].label) : std::nullopt};
+    if (!test(guard)) return false;
+  }
+  return true;
 }
 
 // True if the instruction chooses, by a condition on the variable, between the value and one that does not come from the
 // leaf.
-bool StageFacts::choosesByVariable(const Instruction& use, Id value, const AccessFacts& read,
-                                   std::uint32_t leaf) const {
+bool StageFacts::choosesByVariable(const PathsAfter& paths, const Instruction& use, Id value, const AccessFacts& read,
+                                   std::uint32_t leaf, const GuardTest& test) const {
   std::vector<Id> choices, conditions;
   if (use.op == Op::OpPhi) {
     const auto position = module_.position(module_.definitionIndex(use.result));
@@ -565,7 +600,11 @@ bool StageFacts::choosesByVariable(const Instruction& use, Id value, const Acces
   }
   const bool hasAlternative =
       std::ranges::any_of(choices, [&](Id id) { return id != use.result && !dependsOnLeaf(id, read.variable, leaf); });
-  return hasAlternative && std::ranges::any_of(conditions, [&](Id c) { return dependsOnVariable(c, read.variable); });
+  if (!hasAlternative || std::ranges::none_of(conditions, [&](Id c) { return dependsOnVariable(c, read.variable); }))
+    return false;
+  if (!test) return true;
+  if (use.op == Op::OpPhi) return arrivesGuarded(paths, use, value, read.variable, test);
+  return test({use.at(0), use.at(1) != use.at(2) ? std::optional(use.at(1) == value) : std::nullopt});
 }
 
 // True for a part of a loaded value that is an access of its own, and for a store that puts the leaf back.
@@ -576,7 +615,8 @@ bool StageFacts::isOwnAccess(const Instruction& use, Id value, const AccessFacts
 }
 
 // True if the value that was read has an effect on a path that no condition on the variable guards.
-bool StageFacts::usedUnguarded(const PathsAfter& paths, const AccessFacts& read, std::uint32_t leaf) const {
+bool StageFacts::usedUnguarded(const PathsAfter& paths, const AccessFacts& read, std::uint32_t leaf,
+                               const GuardTest& test) const {
   std::vector<Id> open{read.value};
   std::unordered_set<Id> seen{read.value};
   while (!open.empty()) {
@@ -584,8 +624,8 @@ bool StageFacts::usedUnguarded(const PathsAfter& paths, const AccessFacts& read,
     open.pop_back();
     for (const std::size_t user : module_.users(next)) {
       const Instruction& use = module_.instructions()[user];
-      if (isOwnAccess(use, next, read) || guarded(paths, user, read.variable) ||
-          choosesByVariable(use, next, read, leaf))
+      if (isOwnAccess(use, next, read) || guarded(paths, user, read.variable, test) ||
+          choosesByVariable(paths, use, next, read, leaf, test))
         continue;
       if (hasEffect(use.op)) return true;
       if (use.result != 0 && seen.insert(use.result).second) open.push_back(use.result);

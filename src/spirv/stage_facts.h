@@ -87,6 +87,14 @@ struct SharedVariable {
   bool used = false;            // read or written, or argument of a trace, call or report
 };
 
+// A condition on a variable that decides whether a value is used: `payload.hit` in `if (payload.hit) use(payload.color)`.
+struct Guard {
+  Id condition = 0;
+  std::optional<bool> holds;  // the value with which the value is used; nullopt if both are possible
+};
+// Returns false for a guard to ignore.
+using GuardTest = std::function<bool(const Guard&)>;
+
 // Not thread-safe: some results are cached.
 class StageFacts {
  public:
@@ -131,8 +139,10 @@ class StageFacts {
   ValuePart storedValue(const AccessFacts& write, std::uint32_t leaf) const;
 
   // Indices into accesses() of the reads of a leaf that see the result of a trace or call with the variable on a path
-  // that no condition on the variable guards. `if (payload.hit) use(payload.color)` is a guarded read of `color`.
-  std::vector<std::size_t> unguardedReads(std::size_t site, Id variable, std::uint32_t leaf) const;
+  // that no condition on the variable guards. `if (payload.hit) use(payload.color)` is a guarded read of `color`. With a
+  // test, conditions for which it fails do not guard.
+  std::vector<std::size_t> unguardedReads(std::size_t site, Id variable, std::uint32_t leaf,
+                                          const GuardTest& test = {}) const;
   // The same with guarded reads.
   std::vector<std::size_t> readsAfter(std::size_t site, Id variable, std::uint32_t leaf) const;
   const PathsAfter& pathsAfter(std::size_t instruction) const;  // of an instruction inside a function; cached
@@ -155,9 +165,13 @@ class StageFacts {
 
   bool runsAlwaysBefore(std::vector<std::size_t> marks, std::size_t instruction) const;
   bool runsInFirstIteration(std::size_t instruction) const;
-  bool guarded(const PathsAfter& paths, std::size_t instruction, Id variable) const;
-  bool usedUnguarded(const PathsAfter& paths, const AccessFacts& read, std::uint32_t leaf) const;
-  bool choosesByVariable(const Instruction& use, Id value, const AccessFacts& read, std::uint32_t leaf) const;
+  Guard guardOf(const PathsAfter& paths, std::size_t block, std::size_t instruction) const;
+  bool guarded(const PathsAfter& paths, std::size_t instruction, Id variable, const GuardTest& test) const;
+  bool arrivesGuarded(const PathsAfter& paths, const Instruction& phi, Id value, Id variable,
+                      const GuardTest& test) const;
+  bool usedUnguarded(const PathsAfter& paths, const AccessFacts& read, std::uint32_t leaf, const GuardTest& test) const;
+  bool choosesByVariable(const PathsAfter& paths, const Instruction& use, Id value, const AccessFacts& read,
+                         std::uint32_t leaf, const GuardTest& test) const;
   bool isOwnAccess(const Instruction& use, Id value, const AccessFacts& read) const;
 
   Module module_;

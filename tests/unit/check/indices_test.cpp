@@ -64,6 +64,15 @@ TEST(CheckDescriptorIndices, ReportsBuiltInsPayloadsAndBuffers) {
               ElementsAre("Q704:6"));
 }
 
+TEST(CheckDescriptorIndices, ReportsIndicesThatABranchChooses) {
+  EXPECT_THAT(closestHit("uint i = 1u; if (gl_HitTEXT > 2.0) { i = push.sky; payload.color = vec3(0); }\n"
+                         "payload.color = textureLod(textures[i], vec2(0), 0.0).rgb;"),
+              ElementsAre("Q704:14"));
+  EXPECT_THAT(closestHit("uint i = 1u; if (push.sky > 2u) { i = push.sky; payload.color = vec3(0); }\n"
+                         "payload.color = textureLod(textures[i], vec2(0), 0.0).rgb;"),
+              IsEmpty());
+}
+
 TEST(CheckDescriptorIndices, AcceptsMarkedAndUniformIndices) {
   EXPECT_THAT(
       closestHit("payload.color = textureLod(textures[nonuniformEXT(gl_InstanceCustomIndexEXT)], vec2(0), 0.0).rgb;"),

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "check/rules/across_stages/shared_data.h"
+#include "check/rules/across_stages/unwritten_paths.h"
 #include "check/rules/rules.h"
 #include "spirv/value_flow.h"
 
@@ -161,7 +162,7 @@ class MemberRule {
 
   void findUnwritten(std::uint32_t leaf, std::vector<LeafGroup>& groups) const {
     const std::vector<std::size_t> reads = exactReads(tracer_->unguardedReads(instruction(), payload_->id, leaf));
-    if (reads.empty()) return;
+    if (reads.empty()) return findUnwrittenBehindConditions(leaf, groups);
     const std::vector<std::string> missing = nonWriters(leaf);
     if (missing.empty()) return;
     addTo(groups,
@@ -169,6 +170,22 @@ class MemberRule {
            fmt::format(", but {} {} not write it, and it is not set before the trace", fmt::join(missing, " and "),
                        missing.size() == 1 ? "does" : "do")},
           leaf, reads.front());
+  }
+
+  // The same for reads behind conditions on the payload that hold although a shader does not write the leaf.
+  void findUnwrittenBehindConditions(std::uint32_t leaf, std::vector<LeafGroup>& groups) const {
+    for (const Edge& edge : site_->edges) {
+      const bool ends = edge.role == Role::miss || (edge.role == Role::closestHit && !anyHitWrites(edge.hit, leaf));
+      if (!ends || !edge.exact || !received(edge)) continue;
+      const std::vector<std::size_t> reads = exactReads(
+          readsOfUnwritten({*tracer_, payload_->id}, instruction(), {graph_.facts(edge), received(edge)->id}, leaf));
+      if (reads.empty()) continue;
+      addTo(groups,
+            {"", kReadAfter,
+             fmt::format(", but the {}{} does not write it, and it is not set before the trace", graph_.describe(edge),
+                         writes(edge, leaf, false) ? ", on some path," : "")},
+            leaf, reads.front());
+    }
   }
 
   // Drops reads with a dynamic index if some element is written: which one is read is unknown.

@@ -2,6 +2,7 @@
 // Q703: gl_InstanceID as an index or as the identity of an instance. Q704: descriptor arrays indexed by a value that
 // differs between invocations, without nonuniformEXT.
 #include "check/rules/rules.h"
+#include "spirv/control_flow.h"
 #include "spirv/value_flow.h"
 #include "spirv/value_ranges.h"
 
@@ -37,20 +38,30 @@ bool selects(const spirv::Module& module, const spirv::Instruction& i) {
   }
 }
 
-// True if the value can differ between the invocations of a launch. Constants, push constants and uniforms do not
-// differ, nor do values loaded from an address that does not. `cause` becomes a description of the source of the
-// value.
-bool varies(const spirv::Module& module, spirv::Id value, std::string* cause) {
-  const spirv::Instruction* found = spirv::findInSlice(module, value, [&](const spirv::Instruction& i) {
-    if (i.op != Op::OpLoad) return i.op == Op::OpImageRead || i.op == Op::OpAtomicIAdd;
-    const spirv::Variable* variable = module.variable(module.access(i.at(0)).variable);
-    if (!variable) return false;
-    using Storage = spv::StorageClass;
-    return variable->storage == Storage::Input || variable->storage == Storage::RayPayloadKHR ||
-           variable->storage == Storage::IncomingRayPayloadKHR || variable->storage == Storage::HitAttributeKHR ||
-           variable->storage == Storage::CallableDataKHR || variable->storage == Storage::IncomingCallableDataKHR;
-  });
-  if (!found) return false;
+// True if the instruction reads a value that can differ between the invocations of a launch. Constants, push constants
+// and uniforms do not differ, nor do values loaded from an address that does not.
+bool readsVarying(const spirv::Module& module, const spirv::Instruction& i) {
+  if (i.op != Op::OpLoad) return i.op == Op::OpImageRead || i.op == Op::OpAtomicIAdd;
+  const spirv::Variable* variable = module.variable(module.access(i.at(0)).variable);
+  if (!variable) return false;
+  using Storage = spv::StorageClass;
+  return variable->storage == Storage::Input || variable->storage == Storage::RayPayloadKHR ||
+         variable->storage == Storage::IncomingRayPayloadKHR || variable->storage == Storage::HitAttributeKHR ||
+         variable->storage == Storage::CallableDataKHR || variable->storage == Storage::IncomingCallableDataKHR;
+}
+
+// True if the value, or a condition that chooses it, can differ between the invocations that execute the instruction.
+// The invocations count the steps of a loop together. `cause` becomes a description of the source of the value.
+bool varies(const spirv::Module& module, std::size_t instruction, spirv::Id value, std::string* cause) {
+  const auto position = module.position(instruction);
+  if (!position) return false;
+  const spirv::Instruction* found = nullptr;
+  const spirv::ControlFlow flow(module, position->function);
+  const auto test = [&](const spirv::Instruction& i) {
+    if (readsVarying(module, i)) found = &i;
+    return found != nullptr;
+  };
+  if (!spirv::dependsOnDataOrControl(module, flow, value, test, false)) return false;
   const auto builtIn = spirv::loadedBuiltIn(module, *found);
   if (found->op != Op::OpLoad)
     *cause = "a value read from memory";
@@ -97,10 +108,11 @@ void checkInstanceIndices(const spirv::Module& module, Report& report) {
 }
 
 void checkDescriptorIndices(const spirv::Module& module, Report& report) {
-  for (const spirv::Instruction& chain : module.instructions()) {
+  for (std::size_t i = 0; i < module.instructions().size(); ++i) {
+    const spirv::Instruction& chain = module.instructions()[i];
     if (!isChain(chain.op) || !isDescriptorArray(module, chain.at(0)) || module.isConstant(chain.at(1))) continue;
     std::string cause;
-    if (isNonUniform(module, chain) || !varies(module, chain.at(1), &cause)) continue;
+    if (isNonUniform(module, chain) || !varies(module, i, chain.at(1), &cause)) continue;
     const std::string name = module.name(chain.at(0));
     report.addOncePerLine("Q704", module.location(chain, name),
                           "the index of '" + name + "' depends on " + cause +

@@ -1,0 +1,4 @@
+struct Hit {
+  bool found;
+  vec3 position, normal;
+};
