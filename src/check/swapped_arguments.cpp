@@ -57,6 +57,17 @@ bool isPosition(const spirv::Module& module, spirv::Id value) {
   return (isPosition(module, i->at(0)) && isStep(i->at(1))) || (isPosition(module, i->at(1)) && isStep(i->at(0)));
 }
 
+// True for the direction of a pinhole camera: normalize(vec3(x, y, -2.0)), with the distance of the image plane.
+bool isCameraDirection(const spirv::StageFacts& facts, spirv::Id value) {
+  const spirv::Module& module = facts.module();
+  const spirv::Instruction* i = original(module, value);
+  if (!i || !spirv::isExtended(module, *i, GLSLstd450Normalize)) return false;
+  for (std::uint32_t c = 0; c < 3; ++c)
+    if (const auto component = facts.ranges().range(i->at(2), {c}).constant(); component && *component != 0.0)
+      return true;
+  return false;
+}
+
 // True for a constant vector whose length is not 1.
 bool isConstantOfOtherLength(const spirv::StageFacts& facts, spirv::Id value) {
   double square = 0.0;
@@ -151,10 +162,8 @@ SwappedArguments findSwappedArguments(const spirv::StageFacts& facts, const spir
   }
 
   const spirv::Instruction& call = module.instructions()[trace.instruction];
-  const spirv::Instruction* origin = original(module, call.at(6));
-  const bool unitOrigin = origin && spirv::isExtended(module, *origin, GLSLstd450Normalize);
   if ((isPosition(module, call.at(8)) && isDirection(module, call.at(6))) ||
-      (unitOrigin && isConstantOfOtherLength(facts, call.at(8))))
+      (isCameraDirection(facts, call.at(6)) && isConstantOfOtherLength(facts, call.at(8))))
     result.texts.push_back(
         "origin and direction of this trace are swapped: the origin is a unit vector, and the direction is a position");
   return result;
