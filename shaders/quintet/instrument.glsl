@@ -42,7 +42,8 @@ void instrumentReport_(uint kind, uint line, uint depth, float distance, uint in
 // Checks the target before an output is stored. Returns false if it must not be stored.
 bool instrumentOutput_(uint slot, uvec2 pixel, uint line) {
   const uvec2 film = pixel - frame.filmOffset;
-  if (slot < kMaxOutputs && film.x < frame.filmWidth && film.y < frame.filmHeight) return frame.outputs[slot] != 0ul;
+  if (slot < instrument_.value.outputCount && film.x < frame.filmWidth && film.y < frame.filmHeight)
+    return frame.outputs[slot] != 0ul;
   instrumentReport_(kReportOutput, line, 0u, 0.0, slot, vec3(vec2(ivec2(film)), 0.0), vec3(0.0));
   return false;
 }

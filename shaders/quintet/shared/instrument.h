@@ -43,6 +43,7 @@ struct Instrument {
   uint pixelCount;
   uint missCount;      // in: number of miss shaders in the table
   uint callableCount;  // in: number of callable shaders in the table
+  uint outputCount;    // in: number of outputs of the program
   uint depthLimit;     // in: recursion depth of the pipeline
   uint rays[16];        // executed traces by offset (modulo 16): by ray type
   uint recordPairs[8];  // bit offset + 16 · stride: of a report Q004 (both taken modulo 16, as Vulkan does)
@@ -50,7 +51,7 @@ struct Instrument {
   // record beyond the table
   uint badRecords[64];
 };
-QT_SHARED_SIZE(Instrument, 388);
+QT_SHARED_SIZE(Instrument, 392);
 
 // The depth of the nested traces of each invocation follows.
 struct RecursionGuard {

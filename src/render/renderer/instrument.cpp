@@ -185,6 +185,7 @@ InstrumentBuffer::InstrumentBuffer(gpu::Context& context, std::uint64_t pixels, 
   header.depthLimit = depthLimit;
   header.missCount = static_cast<std::uint32_t>(program::missShaders(program).size());
   header.callableCount = static_cast<std::uint32_t>(program.callables.size());
+  header.outputCount = static_cast<std::uint32_t>(program.outputs.size());
   for (std::uint32_t pair = 0; pair < 256; ++pair)
     findBadRecord(pair, facts, program.rays.size(), [&](const program::InstanceFacts& instance) {
       header.badRecords[pair / 4] |= (instance.mask & 0xFFu) << (8 * (pair % 4));

@@ -168,6 +168,7 @@ TEST(Instrument, ReportsOutputsOutsideOfTheImage) {
   EXPECT_NE(notes.at(0).text.find("16, "), std::string::npos) << notes[0].text;
   EXPECT_NE(notes.at(0).text.find("16 such stores"), std::string::npos) << notes[0].text;
   EXPECT_EQ(idsOf(notesOf(storing("addOutput(77u, launchPixel(), vec4(1.0));"), scene)), "Q007:6");
+  EXPECT_EQ(idsOf(notesOf(storing("addOutput(1u, launchPixel(), vec4(1.0));"), scene)), "Q007:6");
   EXPECT_EQ(idsOf(notesOf(storing("addOutput(kOutput_color, launchPixel(), vec4(1.0));"), scene)), "");
 }
 

@@ -125,7 +125,7 @@ GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, o
 GPU_FIELDS(RecursionGuard, cutCount);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, callableCount,
-           depthLimit, rays, recordPairs, badRecords);
+           outputCount, depthLimit, rays, recordPairs, badRecords);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
 GPU_FIELDS(NotFinite, count, first);
