@@ -6,8 +6,21 @@
 #include <fmt/format.h>
 
 #include "check/check.h"
+#include "program/hit_checks.h"
 
 namespace quintet::job {
+namespace {
+
+// Replaces the stages of a program by those with `instrumentation`.
+void instrument(program::RunnableProgram& runnable, const shader::Compiler& compiler, const render::Defines& defines,
+                program::Instrumentation instrumentation) {
+  program::CompiledProgram compiled = program::compile(runnable.description, compiler, defines, instrumentation);
+  if (!compiled.ok) throw ProgramError(std::move(compiled.diagnostics));
+  compiled.seconds += runnable.compiled.seconds;
+  runnable.compiled = std::move(compiled);
+}
+
+}  // namespace
 
 CheckedProgram checkCompiled(program::Program description, program::CompiledProgram compiled,
                              const program::SceneFacts& scene, const check::DeviceLimits& limits) {
@@ -25,21 +38,20 @@ void countRecursion(CheckedProgram& checked, const shader::Compiler& compiler, c
   program::RunnableProgram& runnable = checked.runnable;
   render::Defines limited = defines;
   limited.emplace_back("QUINTET_RECURSION_DEPTH", fmt::format("{}u", runnable.recursionDepth));
-  program::CompiledProgram counting =
-      program::compile(runnable.description, compiler, limited, program::Instrumentation::recursion);
-  if (!counting.ok) throw ProgramError(std::move(counting.diagnostics));
-  counting.seconds += runnable.compiled.seconds;
-  runnable.compiled = std::move(counting);
+  instrument(runnable, compiler, limited, program::Instrumentation::recursion);
   runnable.countsRecursion = true;
 }
 
 CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,
                                const render::Defines& defines, const program::SceneFacts& scene,
-                               const check::DeviceLimits& limits, bool instrument) {
-  const auto instrumentation = instrument ? program::Instrumentation::checks : program::Instrumentation::none;
-  CheckedProgram checked =
-      checkCompiled(program, program::compile(program, compiler, defines, instrumentation), scene, limits);
-  if (!instrument) countRecursion(checked, compiler, defines);
+                               const check::DeviceLimits& limits, bool runtimeChecks) {
+  CheckedProgram checked = checkCompiled(program, program::compile(program, compiler, defines), scene, limits);
+  if (runtimeChecks) {
+    checked.runnable.description = program::withHitChecks(std::move(checked.runnable.description));
+    instrument(checked.runnable, compiler, defines, program::Instrumentation::checks);
+  } else {
+    countRecursion(checked, compiler, defines);
+  }
   return checked;
 }
 

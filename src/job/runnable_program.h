@@ -28,11 +28,11 @@ CheckedProgram checkCompiled(program::Program description, program::CompiledProg
 // `defines` are those of the first compilation. Throws ProgramError.
 void countRecursion(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines);
 
-// `defines` are those of render::renderDefines. `instrument` adds the runtime checks of program/instrument.h; otherwise
-// the program counts its recursion if necessary. Throws ProgramError.
+// `defines` are those of render::renderDefines. `runtimeChecks` adds those of program/instrument.h; otherwise the program
+// counts its recursion if necessary. Throws ProgramError.
 CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,
                                const render::Defines& defines, const program::SceneFacts& scene,
-                               const check::DeviceLimits& limits, bool instrument = false);
+                               const check::DeviceLimits& limits, bool runtimeChecks = false);
 
 // Returns what Observer::deviceHung() reports when a launch of the program did not end within `seconds`.
 Diagnostic hangDiagnostic(const program::Program& program, double seconds);

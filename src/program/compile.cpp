@@ -8,6 +8,7 @@
 #include "base/stopwatch.h"
 #include "program/description/generated_glsl.h"
 #include "program/gsn/lecture.h"
+#include "program/hit_checks.h"
 #include "spirv/module.h"
 
 namespace quintet::program {
@@ -40,7 +41,7 @@ shader::Source stageSource(const Program& program, const std::string& file, std:
   source.stage = *shader::stageOfFile(library ? file.substr(1, file.size() - 2) : file);
   source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + file + "\n"
                         : program.files.at(file);
-  source.text = instrumentStage(source.text, source.stage, index, instrumentation);
+  if (file != kHitCheckStage) source.text = instrumentStage(source.text, source.stage, index, instrumentation);
   source.name = program.path(file);
   return source;
 }

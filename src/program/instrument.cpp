@@ -13,7 +13,9 @@ int kindOf(shader::Stage stage) {
     case shader::Stage::rayGeneration: return 0;
     case shader::Stage::closestHit: return 1;
     case shader::Stage::anyHit: return 2;
-    default: return 3;
+    case shader::Stage::miss: return 3;
+    case shader::Stage::intersection: return 4;
+    default: return 5;
   }
 }
 
@@ -60,9 +62,7 @@ std::string instrumentStage(const std::string& source, shader::Stage stage, std:
   const bool checks = instrumentation == Instrumentation::checks;
   const bool traces =
       stage == shader::Stage::rayGeneration || stage == shader::Stage::closestHit || stage == shader::Stage::miss;
-  const bool wanted =
-      checks ? stage != shader::Stage::intersection : traces && instrumentation == Instrumentation::recursion;
-  if (!wanted) return source;
+  if (!checks && !(traces && instrumentation == Instrumentation::recursion)) return source;
   const Head head = findHead(source);
   const bool lecture = source.find("#include <quintet/gsn.glsl>") != source.npos;
   std::string result = source.substr(0, head.bytes);
@@ -78,7 +78,7 @@ std::string instrumentStage(const std::string& source, shader::Stage stage, std:
   result += fmt::format("#line {}\n", head.lines + 1);
   result += source.substr(head.bytes);
   if (!checks) return result;
-  return result + "\n#undef main\nvoid main() {\n  instrumentBegin_();\n  instrumentedMain_();\n}\n";
+  return result + "\n#undef main\nvoid main() {\n  if (instrumentBegin_()) instrumentedMain_();\n}\n";
 }
 
 }  // namespace quintet::program

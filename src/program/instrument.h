@@ -16,9 +16,9 @@ enum class Instrumentation {
   checks,     // all checks of quintet/instrument.glsl, which include that one
 };
 
-// Returns the source of stage number `index` with the checks. Intersection shaders have none; those of the recursion are
-// only in stages that can trace. Messages keep their line numbers. A lecture-form stage includes quintet/gsn.glsl, which
-// includes the checks itself; other sources get them after their leading #version and #extension lines.
+// Returns the source of stage number `index` with the checks. Those of the recursion are only in stages that can trace.
+// Messages keep their line numbers. A lecture-form stage includes quintet/gsn.glsl, which includes the checks itself;
+// other sources get them after their leading #version and #extension lines.
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
                             Instrumentation instrumentation = Instrumentation::checks);
 

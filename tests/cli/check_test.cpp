@@ -310,6 +310,33 @@ TEST_F(Check, InstrumentedRunsHaveASizeAndParameters) {
   expectError(quintet({"check", "wide.rt.glsl", "--size", "8x8"}), 2, {"--size requires --instrument"});
 }
 
+// The closest-hit shader does not run for the shadow ray.
+TEST_F(Check, InstrumentedRunsFindSelfIntersectionsOfShadowRays) {
+  write(folder_ / "acne.rt.glsl", R"(struct RayPayloadType { vec3 position; bool hit; };
+uniform float bias; // defaultval="0.001"
+void main() { /**** RAY GENERATION SHADER ****/
+  vec2 p = (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy) - 0.5;
+  payload.hit = false;
+  traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(0.1, 2.0, 6.0), 0.001, vec3(p, -1.0), 100.0, 0);
+  vec3 position = payload.position;
+  bool lit = payload.hit;
+  payload.hit = true;
+  if (lit) traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu,
+                       0u, 0u, 0u, position, bias, vec3(0.3, 0.9, 0.4), 100.0, 0);
+  gsnSetPixel(vec4(lit && !payload.hit ? 1.0 : 0.0));
+}
+void main() { /**** CLOSEST-HIT SHADER ****/
+  payload.position = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;
+  payload.hit = true;
+}
+void main() { /**** MISS SHADER ****/ payload.position = vec3(0.0); payload.hit = false; }
+)");
+  EXPECT_EQ(quintet({"check", "acne.rt.glsl", "--instrument"}).err, "acne.rt.glsl: clean\n");
+  const RunResult found = quintet({"check", "acne.rt.glsl", "--instrument", "--set", "bias=0"});
+  EXPECT_THAT(found.err, HasSubstr("acne.rt.glsl:10:12: warning: the ray hits the primitive that it starts on"));
+  EXPECT_THAT(found.err, HasSubstr("[Q005]"));
+}
+
 // The error is in code that only an optional output compiles.
 TEST_F(Check, CompilesTheCodeOfOptionalOutputs) {
   writeProgram("aov", "payload.color", "sky.rmiss");

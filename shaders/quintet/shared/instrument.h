@@ -65,8 +65,11 @@ struct InstrumentPixel {
   uint instance;   // of the previous closest hit, + 1; 0: none
   uint geometry;
   uint primitive;
+  uint flags;      // of the latest trace
+  uint stage;      // that called it
+  uint line;
 };
-QT_SHARED_SIZE(InstrumentPixel, 20);
+QT_SHARED_SIZE(InstrumentPixel, 32);
 
 QT_SHARED_END
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <span>
 
 #include "harness.h"
@@ -257,7 +258,116 @@ TEST(Instrument, ReportsSelfIntersections) {
               rayGeneration(trace("eye", "d") + " if (payload.level == 1) { vec3 o = payload.color - 1e-7 * d;\n" +
                             trace("o", "d") + " }") +
               hit + miss);
-  EXPECT_EQ(idsOf(notes), "Q005:0");
+  EXPECT_EQ(idsOf(notes), "Q005:3");
+}
+
+const std::string kPositionHit =
+    "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = gl_WorldRayOriginEXT + gl_HitTEXT * "
+    "gl_WorldRayDirectionEXT; payload.level = 1; ";
+const std::string kLevelMiss =
+    "void main() { /**** MISS SHADER ****/ payload.color = vec3(0.0); payload.level = 0; }\n";
+std::string shadowTrace(const std::string& origin, const std::string& tmin) {
+  return "traceRayEXT(topLevelAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT, 0xFFu, 0u, "
+         "0u, "
+         "0u, " +
+         origin + ", " + tmin + ", d, 100.0, 0);";
+}
+
+// No shader of the program runs at the hit of the shadow ray.
+TEST(Instrument, ReportsSelfIntersectionsOfRaysThatSkipClosestHitShaders) {
+  const auto idsFor = [](const std::string& tmin) {
+    return idsOf(
+        notesOf(kCommon +
+                rayGeneration(trace("eye", "d") + " if (payload.level == 1) { vec3 o = payload.color - 1e-7 * d;\n\n" +
+                              shadowTrace("o", tmin) + " }") +
+                kPositionHit + "}\n" + kLevelMiss));
+  };
+  EXPECT_EQ(idsFor("0.0"), "Q005:4");
+  EXPECT_EQ(idsFor("1e-3"), "");
+}
+
+// The nested ray ends elsewhere. The shadow ray starts on the hit of the shader that traces it.
+TEST(Instrument, ReportsSelfIntersectionsAfterANestedTrace) {
+  const auto idsFor = [](const std::string& tmin) {
+    return idsOf(
+        notesOf("// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: 2\"\n" + kCommon +
+                rayGeneration("payload.level = 0; " + trace("eye", "d")) + kPositionHit +
+                "vec3 d = gl_WorldRayDirectionEXT, o = payload.color - 1e-7 * d;\nif (gl_WorldRayOriginEXT.z == 6.0) { "
+                "traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, o, 1e-3, d, 100.0, 0);\nif (payload.level == 1) " +
+                shadowTrace("o", tmin) + " } }\n" + kLevelMiss));
+  };
+  EXPECT_EQ(idsFor("0.0"), "Q005:6");
+  EXPECT_EQ(idsFor("1e-3"), "");
+}
+
+// A shadow ray type without a closest-hit shader, and with a payload of its own.
+program::Program shadowRays(const std::string& flags, const std::string& tmin) {
+  const std::string head = "#version 460\n#extension GL_EXT_ray_tracing : require\n";
+  return program::parseProgram(
+      "[program]\nray_generation = \"main.rgen\"\n[[ray]]\nname = \"radiance\"\nmiss = \"sky.rmiss\"\n[[ray]]\nname = "
+      "\"shadow\"\nmiss = \"lit.rmiss\"\n[[hit_group]]\nname = \"all\"\nradiance = { closest_hit = "
+      "\"hit.rchit\" }\n[[output]]\nname = \"color\"\n",
+      "demo", "here",
+      {{"main.rgen", head + R"(
+#include <quintet/output.glsl>
+#include <quintet/generated/program.glsl>
+layout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT tlas;
+layout(location = 0) rayPayloadEXT vec4 radiance;
+layout(location = 1) rayPayloadEXT float light;
+void main() {
+  const uvec2 pixel = launchPixel();
+  const vec2 p = (vec2(pixel) + 0.5) / vec2(frame.width, frame.height);
+  const vec3 d = normalize(vec3(p - 0.5, -1.0));
+  traceRayEXT(tlas, 0u, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_radiance, vec3(0.0, 1.0, 6.0), 0.0, d, 100.0, 0);
+  light = 0.0;
+  if (radiance.w == 1.0)
+    traceRayEXT(tlas, )" +
+                         flags + R"(, 0xFFu, kRay_shadow, kRayTypeCount, kMiss_shadow, radiance.xyz - 1e-7 * d, )" +
+                         tmin +
+                         R"(, d, 100.0, 1);
+  storeOutput(kOutput_color, pixel, vec4(light));
+}
+)"},
+       {"hit.rchit", head + "layout(location = 0) rayPayloadInEXT vec4 radiance;\nvoid main() { radiance = "
+                            "vec4(gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT, 1.0); }\n"},
+       {"sky.rmiss",
+        head + "layout(location = 0) rayPayloadInEXT vec4 radiance;\nvoid main() { radiance = vec4(0.0); }\n"},
+       {"lit.rmiss", head + "layout(location = 1) rayPayloadInEXT float light;\nvoid main() { light = 1.0; }\n"}});
+}
+
+TEST(Instrument, ReportsSelfIntersectionsOfRayTypesWithoutClosestHitShaders) {
+  const scene::Scene scene = job::loadScene(job::chooseSceneSource({}, storing("")));
+  for (const char* flags : {"gl_RayFlagsSkipClosestHitShaderEXT", "gl_RayFlagsTerminateOnFirstHitEXT"}) {
+    EXPECT_EQ(idsOf(notesOf(shadowRays(flags, "0.0"), scene)), "Q005:16") << flags;
+    EXPECT_EQ(idsOf(notesOf(shadowRays(flags, "1e-3"), scene)), "") << flags;
+  }
+}
+
+// The shaders read the flags of the ray that the program traces.
+TEST(Instrument, KeepsTheImage) {
+  const std::string skips = "(gl_IncomingRayFlagsEXT & gl_RayFlagsSkipClosestHitShaderEXT) != 0u";
+  const program::Program program = program::parseLecture(
+      kCommon +
+          rayGeneration(trace("eye", "d") + " payload.level = 2; " + shadowTrace("eye", "0.0") +
+                        " payload.color.y = 0.1 * payload.level; payload.level = 2; " +
+                        shadowTrace("eye + vec3(0.0, 99.0, 0.0)", "0.0") + " payload.color.z = 0.1 * payload.level;") +
+          "void main() { /**** ANY-HIT SHADER ****/ if (" + skips + " && gl_HitTEXT < 5.5) ignoreIntersectionEXT; }\n" +
+          kHit + "void main() { /**** MISS SHADER ****/ payload.level = " + skips + " ? 5 : 7; }\n",
+      "demo.rt.glsl", "here");
+  const scene::Scene scene = job::loadScene(job::chooseSceneSource({}, program));
+  render::DeviceScene deviceScene(testContext(), scene::Scene(scene), scene::effectiveEnvironment(scene));
+  std::vector<io::Image> images;
+  for (const bool instrument : {false, true}) {
+    render::RenderSettings settings;
+    settings.width = settings.height = 24;
+    settings.instrument = instrument;
+    render::Renderer renderer = makeRenderer(deviceScene, program, settings);
+    renderer.renderBatch(1);
+    images.push_back(renderer.image());
+  }
+  const std::span<const float> plain = images[0].samples<float>(), checked = images[1].samples<float>();
+  EXPECT_TRUE(std::ranges::equal(plain, checked));
+  EXPECT_GT(std::set<float>(plain.begin(), plain.end()).size(), 3u);
 }
 
 TEST(Instrument, CountsAnyHitCalls) {

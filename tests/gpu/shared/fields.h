@@ -123,7 +123,7 @@ GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlo
            plannedSamples, lightNodes, previousInstances);
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction, interval);
 GPU_FIELDS(RecursionGuard, cutCount);
-GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive);
+GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive, flags, stage, line);
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, callableCount,
            outputCount, depthLimit, rays, recordPairs, badRecords);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
