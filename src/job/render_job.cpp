@@ -470,7 +470,6 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
   progress.secondLimit = limits.seconds;
   bool previewed = false;
   double lastPreview = 0;
-  RenderResult earlier;
   for (std::uint32_t frame = nextFrame_;; ++frame) {
     if (scene_->onDevice->animated()) scene_->onDevice->setFrame(static_cast<float>(frame));
     bool abandoned = false;
@@ -498,11 +497,7 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
     done.provenance.frame = frame;
     done.interrupted = done.provenance.interrupted = interrupted;
     if (frames.every) observer.frame(done);
-    if (isLast || interrupted) {
-      addFrame(done, earlier);
-      return done;
-    }
-    if (frames.every) addFrame(earlier, done);
+    if (isLast || interrupted) return done;
     if (preview) {
       observer.preview(done);
       previewed = true;

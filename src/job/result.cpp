@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
 #include "render/tone_map/tone_map.h"
 
 namespace quintet::job {
@@ -91,10 +92,12 @@ std::vector<std::string> resultWarnings(const RenderResult& result) {
                                    : fmt::format("{} samples were not finite and are omitted", count)) +
                        pixelText(count, result.provenance.firstDroppedSample));
   for (const render::NotFinitePixels& pixels : result.notFinite)
-    warnings.push_back(
-        (pixels.count == 1 ? fmt::format("1 pixel of the output '{}' is not finite", pixels.output)
-                           : fmt::format("{} pixels of the output '{}' are not finite", pixels.count, pixels.output)) +
-        pixelText(pixels.count, PixelPosition{pixels.first.x, pixels.first.y}) + "; see 'quintet explain Q002'");
+    warnings.push_back(fmt::format("{} of the output '{}' {}", counted(pixels.count, "pixel"), pixels.output,
+                                   result.accumulatesFrames
+                                       ? nounFor(pixels.count, "was", "were") + " not finite in at least one frame"
+                                       : nounFor(pixels.count, "is", "are") + " not finite") +
+                       pixelText(pixels.count, PixelPosition{pixels.first.x, pixels.first.y}) +
+                       "; see 'quintet explain Q002'");
   if (result.skippedTraces > 0)
     warnings.push_back(fmt::format(
         "{} deeper than the recursion depth {} of the pipeline and {} not executed; see 'quintet explain Q003'",
@@ -116,9 +119,7 @@ void setCounts(RenderResult& result, const render::RayCount& rays, std::vector<r
 void addFrame(RenderResult& result, const RenderResult& frame) {
   Provenance& p = result.provenance;
   p.droppedSamples += frame.provenance.droppedSamples;
-  // The frames of a program that accumulates are one render, whose count only increases.
-  result.skippedTraces = frame.accumulatesFrames ? std::max(result.skippedTraces, frame.skippedTraces)
-                                                 : result.skippedTraces + frame.skippedTraces;
+  result.skippedTraces += frame.skippedTraces;
   p.firstDroppedSample = firstOf(p.firstDroppedSample, frame.provenance.firstDroppedSample);
   for (const render::NotFinitePixels& pixels : frame.notFinite) {
     const auto known = std::ranges::find(result.notFinite, pixels.output, &render::NotFinitePixels::output);

@@ -65,6 +65,34 @@ TEST_F(Frames, WritesAllFrames) {
   EXPECT_NE(std::ranges::find(data, std::pair<std::string, std::string>("Frame", "1")), data.end());
 }
 
+// The frames 1 and 2 are not finite in two pixels. The image has the last frame, whose pixels are finite.
+TEST_F(Frames, ReportsPixelsThatWereNotFiniteInAnyFrame) {
+  write(folder_ / "bad.rt.glsl", R"(#include <quintet/output.glsl>
+void main() { /**** RAY GENERATION SHADER ****/
+  float t = float(gl_LaunchIDEXT.x) + 1.0;
+  bool bad = (frameID == 1 || frameID == 2) && gl_LaunchIDEXT.y < 2u && gl_LaunchIDEXT.x == 5u;
+  if (gl_LaunchIDEXT.xy == uvec2(3u, 4u)) countRays(uvec2(3u, 4u), 1u, frameID == 1 ? 1u : 0u);
+  gsnSetPixel(vec4(bad ? sqrt(-t) : 0.5));
+}
+)");
+  for (const bool all : {false, true}) {
+    std::vector<std::string> command{"run", "bad.rt.glsl", "--size",  "16x8",  "--frames",
+                                     "4",   "-o",          "out.png", "--json"};
+    if (all) command.emplace_back("--all-frames");
+    const RunResult result = quintet(command);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.err,
+                HasSubstr("warning: 2 pixels of the output 'image' were not finite in at least one frame; the first is "
+                          "at pixel (5, 6), counted from the top left corner"));
+    const auto json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json["notFinitePixels"], 2) << all;
+    EXPECT_EQ(json["droppedSamples"], 1) << all;
+  }
+  const RunResult check = quintet({"check", "bad.rt.glsl", "--instrument", "--spp", "4", "--size", "16x8"});
+  EXPECT_EQ(check.status, 1);
+  EXPECT_THAT(check.err, HasSubstr("output 'image' is not finite at pixel 5, 6; 2 such pixels"));
+}
+
 TEST_F(Frames, RenderCommandRendersSppFrames) {
   const RunResult result =
       quintet({"render", "scene.gltf", "--program", "count.rt.glsl", "--spp", "5", "--size", "8x8", "-q"});

@@ -172,12 +172,12 @@ TEST_F(Run, ReportsPixelsThatAreNotFinite) {
               "  if (pixel == uvec2(5u, 6u) || pixel == uvec2(5u, 7u)) storeOutput(kOutput_second, pixel, "
               "vec4(sqrt(-value - float(pixel.x))));\n");
   write(folder_ / "flat" / "flat.rgen", rgen);
-  for (const auto& [program, output] : {std::pair{"bad.rt.glsl", "image"}, {"flat", "second"}}) {
+  for (const auto& [program, pixels] : {std::pair{"bad.rt.glsl", "'image' were not finite in at least one frame"},
+                                        {"flat", "'second' are not finite"}}) {
     const RunResult result = quintet({"run", program, "--size", "16x8", "--spp", "3", "-o", "out.png", "--json"});
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.err,
-                HasSubstr("warning: 2 pixels of the output '" + std::string(output) +
-                          "' are not finite; the first is at pixel (5, 6), counted from the top left corner"));
+    EXPECT_THAT(result.err, HasSubstr("warning: 2 pixels of the output " + std::string(pixels) +
+                                      "; the first is at pixel (5, 6), counted from the top left corner"));
     const auto json = nlohmann::json::parse(result.out);
     EXPECT_EQ(json["notFinitePixels"], 2);
     EXPECT_EQ(json["firstNotFinitePixel"], nlohmann::json({5, 6}));

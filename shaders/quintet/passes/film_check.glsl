@@ -3,21 +3,22 @@
 // per pixel.
 #extension GL_EXT_scalar_block_layout : require
 #include <quintet/passes/fixed_sum.glsl>
+#include <quintet/passes/not_finite.glsl>
 
 layout(local_size_x = kFilmGroupSize) in;
 layout(push_constant, scalar) uniform FilmCheckBlock { FilmCheck pass; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ValueArray { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FixedSumArray { FixedSum at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MarkArray { uint at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer NotFiniteReference { NotFinite value; };
-
-// On the bits, because a compiler can assume that floats are finite.
-bool hasInfOrNan(uvec4 bits) { return any(equal(bits & 0x7F800000u, uvec4(0x7F800000u))); }
 
 void main() {
   const uint i = gl_GlobalInvocationID.y * (kFilmColumns * kFilmGroupSize) + gl_GlobalInvocationID.x;
   if (i >= pass.count) return;
   bool bad = false;
-  if (pass.sums == 0u)
+  if (pass.mark != 0u)
+    bad = (MarkArray(pass.values).at[i] & pass.mark) != 0u;
+  else if (pass.sums == 0u)
     bad = hasInfOrNan(ValueArray(pass.values).at[i]);
   else
     for (uint c = 0u; c < 4u; ++c) bad = bad || isNotFinite(FixedSumArray(pass.values).at[4u * i + c]);

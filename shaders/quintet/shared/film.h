@@ -47,6 +47,16 @@ struct FilmCoverage {
 };
 QT_SHARED_SIZE(FilmCoverage, 24);
 
+// Push constants of the pass that replaces the total by a frame, if the program accumulates.
+struct FilmFrame {
+  Address total;  // vec4[count]
+  Address batch;  // vec4[count]
+  Address marks;  // uint[count]: |= mark in the pixels that are not finite
+  uint count;     // pixels
+  uint mark;
+};
+QT_SHARED_SIZE(FilmFrame, 32);
+
 // Pixels of an output with a channel that is not finite.
 struct NotFinite {
   uint count;
@@ -56,12 +66,14 @@ QT_SHARED_SIZE(NotFinite, 8);
 
 // Push constants of the pass that finds them.
 struct FilmCheck {
-  Address values;  // FixedSum[4 · count] or vec4[count]
+  Address values;  // FixedSum[4 · count], vec4[count], or marks of FilmFrame
   Address result;  // NotFinite
   uint count;      // pixels
   uint sums;       // 1: `values` are sums
+  uint mark;       // not 0: `values` are marks, of which this one counts
+  uint padding;
 };
-QT_SHARED_SIZE(FilmCheck, 24);
+QT_SHARED_SIZE(FilmCheck, 32);
 
 QT_SHARED_END
 

@@ -57,7 +57,6 @@ Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Com
     : context_(context),
       region_(region),
       accumulation_(program.accumulation),
-      add_(makePass(context, set, compiler, "film_add")),
       check_(makePass(context, set, compiler, "film_check")) {
   const std::vector<std::string> names = program::outputNames(program);
   for (const std::string& name : wanted)
@@ -88,6 +87,12 @@ Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Com
       coverage_ = makePass(context, set, compiler, "film_coverage");
   }
   statistics_ = buffer(sizeof(uvec2), "film statistics");
+  if (accumulation_ == Accumulation::program) {
+    marks_ = buffer(sizeof(std::uint32_t), "film marks");
+    frame_ = makePass(context, set, compiler, "film_frame");
+  } else {
+    add_ = makePass(context, set, compiler, "film_add");
+  }
   clear();
 }
 
@@ -99,18 +104,19 @@ void Film::clear() {
       if (output.squares) commands.fill(output.squares, 0);
     }
     commands.fill(statistics_, 0);
+    if (marks_) commands.fill(marks_, 0);
   });
 }
 
 std::uint64_t Film::bytes() const {
-  std::uint64_t sum = statistics_.size();
+  std::uint64_t sum = statistics_.size() + (marks_ ? marks_.size() : 0);
   for (const Output& output : outputs_)
     if (output.total) sum += output.batch.size() + output.total.size() + (output.squares ? output.squares.size() : 0);
   return sum;
 }
 
 std::uint64_t Film::bytesPerPixel(const program::Program& program, const std::vector<std::string>& wanted) {
-  std::uint64_t sum = sizeof(uvec2);
+  std::uint64_t sum = sizeof(uvec2) + (program.accumulation == Accumulation::program ? sizeof(std::uint32_t) : 0);
   for (std::size_t i = 0; i < program.outputs.size(); ++i) {
     if (!isStored(program.outputs[i], wanted)) continue;
     sum += sizeof(vec4) + totalBytes(program.outputs[i].pixel, program.accumulation);
@@ -152,11 +158,13 @@ void Film::endAdaptiveBatch(gpu::Commands& commands, SampleRange samples,
 
 void Film::addBatch(gpu::Commands& commands, SampleRange samples) {
   commands.barrier(gpu::Stage::rayTracing, gpu::Stage::all);
-  for (const Output& output : outputs_) {
+  const std::uint32_t pixels = region_.width * region_.height;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    const Output& output = outputs_[i];
     if (!output.total) continue;
-    const std::uint32_t pixels = region_.width * region_.height;
     if (accumulation_ == Accumulation::program) {
-      commands.copy(output.batch, output.total, output.total.size());
+      const shared::FilmFrame pass{output.total.address(), output.batch.address(), marks_.address(), pixels, 1u << i};
+      dispatch(*frame_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
     } else if (output.facts.pixel == OutputPixel::center) {
       if (samples.begin == 0) commands.copy(output.batch, output.total, output.total.size());
     } else if (output.facts.pixel == OutputPixel::coverage) {
@@ -278,9 +286,13 @@ std::vector<NotFinitePixels> Film::notFinitePixels() const {
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
       const OutputPixel pixel = outputs_[i].facts.pixel;
       if (!outputs_[i].total || pixel == OutputPixel::coverage) continue;
-      const bool sums = accumulation_ == Accumulation::film && pixel == OutputPixel::mean;
-      const shared::FilmCheck pass{outputs_[i].total.address(), buffer.address() + i * sizeof(shared::NotFinite),
-                                   pixels, sums ? 1u : 0u};
+      const bool marks = accumulation_ == Accumulation::program;
+      const shared::FilmCheck pass{marks ? marks_.address() : outputs_[i].total.address(),
+                                   buffer.address() + i * sizeof(shared::NotFinite),
+                                   pixels,
+                                   !marks && pixel == OutputPixel::mean ? 1u : 0u,
+                                   marks ? 1u << i : 0u,
+                                   0};
       dispatch(*check_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
     }
   });

@@ -4,7 +4,7 @@
 // (shared::FixedSum), which is exact and independent of order. The bytes therefore depend neither on launch sizes, nor
 // on the order of batches, nor on how many processes rendered them. The first output also stores the squares of its
 // batch sums, for its variance. For a program that accumulates (program::Accumulation), a batch is one frame, which
-// replaces the total: the previous frame.
+// replaces the total: the previous frame. Its pixels that are not finite are marked.
 #ifndef QUINTET_RENDER_FILM_FILM_H
 #define QUINTET_RENDER_FILM_FILM_H
 
@@ -51,7 +51,8 @@ class Film {
   // Returns the sums of the latest batch, RGBA per pixel in row-major order from the top. Blocks.
   std::vector<vec4> downloadBatch(std::size_t output) const;
   RayCount countRays() const;  // blocks
-  // Returns findNotFinite() of the current contents, found on the device. Blocks.
+  // Returns findNotFinite() of the current contents, found on the device. For a program that accumulates, it counts the
+  // pixels that were not finite in any frame. Blocks.
   std::vector<NotFinitePixels> notFinitePixels() const;
 
   // Read the whole film, or its first output only. Block.
@@ -84,8 +85,10 @@ class Film {
   program::Accumulation accumulation_;
   std::vector<Output> outputs_;
   gpu::Buffer statistics_;
+  gpu::Buffer marks_;  // of shared::FilmFrame; empty unless the program accumulates
   SampleCounts counts_;
-  std::unique_ptr<gpu::ComputePipeline> add_;
+  std::unique_ptr<gpu::ComputePipeline> add_;    // null if the program accumulates
+  std::unique_ptr<gpu::ComputePipeline> frame_;  // null unless the program accumulates
   std::unique_ptr<gpu::ComputePipeline> coverage_;
   std::unique_ptr<gpu::ComputePipeline> check_;
 };

@@ -234,19 +234,11 @@ std::vector<Diagnostic> instrumentDiagnostics(const InstrumentData& data, const 
 std::vector<Diagnostic> outputDiagnostics(const program::Program& description, const Film& film) {
   std::vector<Diagnostic> result;
   const std::string file = description.path(sourceFile(description, description.rayGeneration));
-  for (std::size_t output = 0; output < description.outputs.size(); ++output) {
-    if (!film.stores(output) || description.outputs[output].pixel == program::OutputPixel::coverage) continue;
-    const io::Image image = film.download(output);
-    const std::span<const float> values = image.samples<float>();
-    const auto bad = std::ranges::find_if_not(values, [](float v) { return std::isfinite(v); });
-    if (bad == values.end()) continue;
-    const auto count = std::ranges::count_if(values, [](float v) { return !std::isfinite(v); });
-    const auto pixel = static_cast<std::uint64_t>(bad - values.begin()) / 4;
-    result.push_back({Severity::error, file, 0, 0, "Q002",
-                      fmt::format("output '{}' is {} at pixel {}, {}; {} not finite", description.outputs[output].name,
-                                  *bad, film.region().x + pixel % image.width, film.region().y + pixel / image.width,
-                                  count == 1 ? "1 value is" : fmt::format("{} values are", count))});
-  }
+  for (const NotFinitePixels& pixels : film.notFinitePixels())
+    result.push_back(
+        {Severity::error, file, 0, 0, "Q002",
+         fmt::format("output '{}' is not finite at pixel {}, {}", pixels.output, pixels.first.x, pixels.first.y) +
+             (pixels.count == 1 ? "" : fmt::format("; {} such pixels", pixels.count))});
   if (const RayCount count = film.countRays(); count.droppedSamples > 0)
     result.push_back(
         {Severity::error, file, 0, 0, "Q002",

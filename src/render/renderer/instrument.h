@@ -48,8 +48,8 @@ class RecursionBuffer {
 std::vector<Diagnostic> instrumentDiagnostics(const InstrumentData& data, const program::RunnableProgram& runnable,
                                               const program::SceneFacts& facts);
 
-// Returns diagnostics Q002: values of the film that are not finite, and samples that the program dropped for that
-// reason. Blocks.
+// Returns diagnostics Q002: pixels of the film that are not finite (Film::notFinitePixels), and samples that the program
+// dropped for that reason. Blocks.
 std::vector<Diagnostic> outputDiagnostics(const program::Program& program, const Film& film);
 
 }  // namespace quintet::render

@@ -70,7 +70,7 @@ class Renderer {
   // Blocks.
   io::Image image(std::size_t output = 0) const;
   RayCount rays() const;  // blocks
-  // Returns the outputs that have pixels that are not finite. Blocks.
+  // Returns Film::notFinitePixels. Blocks.
   std::vector<NotFinitePixels> notFinitePixels() const;
   const RenderStatistics& statistics() const { return statistics_; }
   // Returns the finished launches if RenderSettings::profile is set.

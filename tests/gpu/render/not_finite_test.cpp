@@ -107,6 +107,60 @@ TEST(NotFinite, AreCountedInTheLectureForm) {
   EXPECT_THAT(renderer.notFinitePixels(), ElementsAre(NotFinitePixels{"image", 9, {7, 7}}));
 }
 
+// Later frames overwrite the value. Each pixel counts once.
+TEST(NotFinite, AreCountedInAllFrames) {
+  const program::Program program = program::parseLecture(
+      "void main() { /**** RAY GENERATION SHADER ****/ float t = float(gl_LaunchIDEXT.x) + 1.0; bool bad = "
+      "(frameID == 1 || frameID == 2) && gl_LaunchIDEXT.y == 2u && gl_LaunchIDEXT.x > 6u; gsnSetPixel(vec4(bad ? "
+      "sqrt(-t) : t, t, t, 1.0)); }\n",
+      "demo.rt.glsl", "here");
+  const SceneBuilder scene = namedSquares({"a"});
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  ImageOptions options;
+  options.program = program;
+  options.width = 16;
+  options.height = 10;
+  render::Renderer renderer = makeRenderer(device, program, settingsFor(scene.scene.cameras[0], options));
+  renderer.renderBatch(1);
+  EXPECT_THAT(renderer.notFinitePixels(), IsEmpty());
+  renderer.renderBatch(3);
+  EXPECT_THAT(render::findNotFinite(renderer.saveFilm()), IsEmpty());
+  EXPECT_THAT(renderer.notFinitePixels(), ElementsAre(NotFinitePixels{"image", 9, {7, 7}}));
+  renderer.restart();
+  renderer.renderBatch(1);
+  EXPECT_THAT(renderer.notFinitePixels(), IsEmpty());
+}
+
+TEST(NotFinite, AreCountedInEachOutputThatAccumulates) {
+  const program::Program program = program::parseProgram(
+      "[program]\nray_generation = \"main.rgen\"\naccumulation = \"program\"\n[[ray]]\nname = \"r\"\nmiss = "
+      "\"m.rmiss\"\n[[output]]\nname = \"color\"\n[[output]]\nname = \"second\"\n[[output]]\nname = \"third\"\n",
+      "test", "<test>",
+      {{"m.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n"},
+       {"main.rgen", R"(#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/output.glsl>
+#include <quintet/generated/program.glsl>
+void main() {
+  const uvec2 pixel = launchPixel();
+  const float t = float(pixel.x) + 1.0, nan = sqrt(-t);
+  storeOutput(kOutput_color, pixel, vec4(launchFrame() == 0u && pixel == uvec2(4u, 2u) ? nan : t));
+  storeOutput(kOutput_second, pixel, vec4(t));
+  storeOutput(kOutput_third, pixel, vec4(launchFrame() == 0u && pixel.x == 4u ? nan : t));
+}
+)"}});
+  const SceneBuilder scene = namedSquares({"a"});
+  render::DeviceScene device(testContext(), scene::Scene(scene.scene), scene.environment);
+  ImageOptions options;
+  options.program = program;
+  options.width = 16;
+  options.height = 10;
+  render::Renderer renderer = makeRenderer(device, program, settingsFor(scene.scene.cameras[0], options));
+  renderer.renderBatch(2);
+  EXPECT_THAT(renderer.notFinitePixels(),
+              ElementsAre(NotFinitePixels{"color", 1, {4, 2}}, NotFinitePixels{"third", 10, {4, 0}}));
+}
+
 // Samples that a program discards are counted by the program; the first pixel is the first one row by row.
 TEST(NotFinite, DroppedSamplesHaveAFirstPixel) {
   const std::vector<uvec2> statistics{{5, 0}, {5, 0}, {5, 0}, {5, 2}, {5, 0}, {5, 1}};

@@ -129,7 +129,8 @@ GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepes
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
 GPU_FIELDS(NotFinite, count, first);
-GPU_FIELDS(FilmCheck, values, result, count, sums);
+GPU_FIELDS(FilmFrame, total, batch, marks, count, mark);
+GPU_FIELDS(FilmCheck, values, result, count, sums, mark, padding);
 GPU_FIELDS(FixedSum, word);
 GPU_FIELDS(CoverageSlot, id, samples);
 GPU_FIELDS(FilmTile, x, y, drawn);

@@ -52,8 +52,9 @@ using SharedStructs =
                    shared::EnvironmentData, shared::InstanceData, shared::GeometryData, shared::PrimitiveData,
                    shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord,
                    shared::RayKinds, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::NotFinite,
-                   shared::FilmCheck, shared::FilmTile, shared::FixedSum, shared::CoverageSlot, shared::Launch,
-                   shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel, shared::RecursionGuard>;
+                   shared::FilmFrame, shared::FilmCheck, shared::FilmTile, shared::FixedSum, shared::CoverageSlot,
+                   shared::Launch, shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel,
+                   shared::RecursionGuard>;
 
 struct StructNames {
   template <class T>

@@ -73,6 +73,10 @@ TEST(ResultWarnings, CountPixelsThatAreNotFinite) {
                   HasSubstr("1 pixel of the output 'depth' is not finite; it is at pixel (0, 7)")));
   EXPECT_EQ(result.provenance.notFinitePixels, 4u);
   EXPECT_EQ(result.provenance.firstNotFinitePixel, (PixelPosition{34, 120}));
+  result.accumulatesFrames = true;
+  EXPECT_THAT(resultWarnings(result),
+              ElementsAre(HasSubstr("3 pixels of the output 'color' were not finite in at least one frame; the first"),
+                          HasSubstr("1 pixel of the output 'depth' was not finite in at least one frame; it is")));
   setCounts(result, {}, {});
   EXPECT_THAT(resultWarnings(result), IsEmpty());
 }
