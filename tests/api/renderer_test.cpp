@@ -177,6 +177,28 @@ TEST_F(ApiRenderer, SetsFramesOfKeyframes) {
   EXPECT_THROW(renderer.setTransform(added, {}), UsageError);
 }
 
+TEST_F(ApiRenderer, MovedInstancesKeepTheMotionOfOthers) {
+  Scene animated = lampScene();
+  animated.addInstance(
+      {.mesh = 2, .keyframes = {{.frame = 0, .translation = {-1, 1, 0}}, {.frame = 10, .translation = {1, 2, 0}}}});
+  Settings settings = smallImage();
+  settings.outputs = {"motion"};
+  const Transform moved = Transform::translation({0, 0.5f, 1});
+  Renderer edited(device(), animated, pathTracer(), settings);
+  edited.setFrame(5);
+  edited.render(4);
+  edited.setTransform(2, moved);
+  edited.render(4);
+  animated.setTransform(2, moved);
+  Renderer expected(device(), animated, pathTracer(), settings);
+  expected.setFrame(5);
+  expected.render(4);
+  const std::vector<float> motion = expected.film().layer("motion").values;
+  EXPECT_THAT(motion, testing::Contains(testing::Gt(0.1f)));
+  EXPECT_EQ(edited.film().layer("motion").values, motion);
+  EXPECT_EQ(edited.image().pixels, expected.image().pixels);
+}
+
 TEST_F(ApiRenderer, KeepsTheFrameAcrossARebuild) {
   Scene animated = lampScene();
   animated.addInstance(

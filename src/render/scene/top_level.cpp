@@ -59,16 +59,9 @@ bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHi
 bool TopLevel::setFrame(float frame) {
   if (moving_.empty() || frame == frame_) return false;
   frame_ = frame;
-  std::vector<shared::InstanceData> before = data_;
-  for (std::size_t k = 0; k < moving_.size(); ++k) {
-    storeTransform(before[movingIndex_[k]], scene::worldFromObjectAt(moving_[k], std::max(0.0f, frame - 1.0f)));
-    const mat4 worldFromObject = scene::worldFromObjectAt(moving_[k], frame);
-    storeTransform(data_[movingIndex_[k]], worldFromObject);
-    inputs_[movingIndex_[k]].worldFromObject = worldFromObject;
-  }
-  table_.upload(std::as_bytes(std::span(data_)));
-  previousTable_.upload(std::as_bytes(std::span(before)));
-  if (tlas_) build();
+  for (std::size_t k = 0; k < moving_.size(); ++k)
+    setTransform(movingIndex_[k], scene::worldFromObjectAt(moving_[k], frame));
+  update();
   return true;
 }
 
@@ -79,7 +72,12 @@ void TopLevel::setTransform(std::size_t instance, const mat4& worldFromObject) {
 
 void TopLevel::update() {
   table_.upload(std::as_bytes(std::span(data_)));
-  if (animated()) previousTable_.upload(std::as_bytes(std::span(data_)));
+  if (animated()) {
+    std::vector<shared::InstanceData> before = data_;
+    for (std::size_t k = 0; k < moving_.size(); ++k)
+      storeTransform(before[movingIndex_[k]], scene::worldFromObjectAt(moving_[k], std::max(0.0f, frame_ - 1.0f)));
+    previousTable_.upload(std::as_bytes(std::span(before)));
+  }
   if (tlas_) build();
 }
 

@@ -37,9 +37,10 @@ class TopLevel {
   // gl_InstanceID the instance's index in the scene. With anyHitForAll only instances that are forced to be opaque are
   // opaque. Blocks. Returns false if the structure already fits.
   bool prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHitForAll);
-  // Moves an instance without keyframes to a transform, which must be affine and invertible; update() uploads it.
+  // Moves an instance to a transform, which must be affine and invertible; update() uploads it. One without keyframes was
+  // there in the previous frame, too.
   void setTransform(std::size_t instance, const mat4& worldFromObject);
-  // Uploads the instance table and rebuilds the structure. Blocks; the device must not be tracing.
+  // Uploads the instance tables and rebuilds the structure. Blocks; the device must not be tracing.
   void update();
   // Moves the instances with keyframes. Blocks; the device must not be tracing. Returns false if no transform changed.
   bool setFrame(float frame);
