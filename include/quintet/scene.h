@@ -161,10 +161,11 @@ struct Environment {
   float rotation = 0;                // radians about +y, counter-clockwise seen from above
 };
 
-// A scene in host memory: a value. Copies share their data until one of them changes. Functions that add objects throw
-// UsageError with the name of the object for indices out of range, attributes of the wrong length, values that are not
-// finite, and transforms that are not invertible; the scene is then unchanged. Use an object from one thread at a time;
-// copies can be used from different threads.
+// A scene in host memory: a value. Copies share their data until one of them changes. Functions that add or replace objects
+// throw UsageError with the name of the object for indices out of range, attributes of the wrong length, values that are not
+// finite, and transforms that are not invertible; the scene is then unchanged. Only normals, tangents, texture coordinates and
+// colors of vertices, and texels of files, are repaired instead. Use an object from one thread at a time; copies can be used
+// from different threads.
 class Scene {
  public:
   Scene();  // empty
@@ -191,7 +192,8 @@ class Scene {
   void setEnvironment(const Environment& environment);
   void setEnvironment(const std::filesystem::path& file);  // an equirectangular image; throws FileError
 
-  void setMaterial(int index, const Material& material);              // replaces a material
+  // Replaces a material. Its geometries get tangents for a normal map if they have none, and keep those that they have.
+  void setMaterial(int index, const Material& material);
   void setTransform(int instance, const Transform& worldFromObject);  // replaces a transform, and removes keyframes
 
   std::string name() const;                                      // of the file; empty for a scene from memory

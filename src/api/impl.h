@@ -31,13 +31,13 @@ struct Program::Impl {
 };
 
 struct Film::Impl {
-  job::RenderResult result;           // its film is in host memory
-  std::vector<output::Layer> layers;  // that the film stores
-  // Of the film on a device, or in a file.
+  job::RenderResult result;           // with a film in host memory
+  std::vector<output::Layer> layers;  // those that Film::layer() accepts
   static Film make(job::RenderResult result, std::vector<output::Layer> layers);
 };
 
-// Of a film view: film.cpp.
+// Reads an output (empty: the first) of a film on the device or in host memory. Throws UsageError. Defined in film.cpp, the
+// others in scene.cpp.
 Image toImage(const job::FilmView& film, const std::string& output);
 
 inline vec2 toGlm(const Float2& v) { return {v[0], v[1]}; }
@@ -46,9 +46,9 @@ inline vec4 toGlm(const Float4& v) { return {v[0], v[1], v[2], v[3]}; }
 inline Float2 fromGlm(const vec2& v) { return {v.x, v.y}; }
 inline Float3 fromGlm(const vec3& v) { return {v.x, v.y, v.z}; }
 inline Float4 fromGlm(const vec4& v) { return {v.x, v.y, v.z, v.w}; }
-mat4 toGlm(const Transform& transform);  // scene.cpp
+mat4 toGlm(const Transform& transform);
 scene::Material toScene(const Material& material);
-scene::Camera toScene(const Camera& camera);  // throws UsageError
+scene::Camera toScene(const Camera& camera, const std::string& name);  // throws UsageError; `name`: for messages
 
 }  // namespace quintet
 #endif

@@ -41,7 +41,7 @@ class ApiObserver : public job::Observer {
 };
 
 job::CameraRequest toRequest(const Camera& camera) {
-  static_cast<void>(toScene(camera));  // validates
+  static_cast<void>(toScene(camera, "camera"));  // validates
   job::CameraRequest request;
   request.lookFrom = toGlm(camera.lookFrom);
   request.lookAt = toGlm(camera.lookAt);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -80,21 +81,26 @@ std::vector<T> copyOf(std::span<const V> values) {
   return result;
 }
 
-// Of three vertices per triangle.
-std::vector<uvec3> consecutiveTriangles(std::size_t vertices) {
+// "light 'sun'", or "light" without a name.
+std::string objectName(const char* kind, const std::string& name) {
+  return name.empty() ? kind : fmt::format("{} '{}'", kind, name);
+}
+
+// Of three vertices per triangle. `mesh`: for messages.
+std::vector<uvec3> consecutiveTriangles(std::size_t vertices, const std::string& mesh) {
   if (vertices % 3 != 0)
-    throw UsageError(fmt::format("triangles without indices have {}, which is not a multiple of 3",
+    throw UsageError(fmt::format("{}: triangles without indices have {}, which is not a multiple of 3", mesh,
                                  counted(vertices, "vertex", "vertices")));
   std::vector<uvec3> result(vertices / 3);
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = uvec3(3 * i, 3 * i + 1, 3 * i + 2);
   return result;
 }
 
-scene::Geometry toGeometry(const Triangles& triangles) {
+scene::Geometry toGeometry(const Triangles& triangles, const std::string& mesh) {
   scene::Geometry geometry;
   geometry.positions = copyOf<vec3>(triangles.positions);
   if (triangles.indices.empty()) {
-    geometry.triangles = consecutiveTriangles(triangles.positions.size());
+    geometry.triangles = consecutiveTriangles(triangles.positions.size(), mesh);
   } else {
     geometry.triangles.reserve(triangles.indices.size());
     for (const UInt3& t : triangles.indices) geometry.triangles.push_back({t[0], t[1], t[2]});
@@ -107,12 +113,12 @@ scene::Geometry toGeometry(const Triangles& triangles) {
   return geometry;
 }
 
-io::Image toIo(const Texture& texture) {
+io::Image toIo(const Texture& texture, const std::string& name) {
   if (texture.channels < 1 || texture.channels > 4)
-    throw UsageError(fmt::format("texture '{}': {} channels, must be 1 to 4", texture.name, texture.channels));
+    throw UsageError(fmt::format("{}: {} channels, must be 1 to 4", name, texture.channels));
   if (texture.width == 0 || texture.height == 0 || std::max(texture.width, texture.height) > io::kMaxImageSide)
-    throw UsageError(fmt::format("texture '{}': {}x{} pixels, must be 1 to {} in each direction", texture.name,
-                                 texture.width, texture.height, io::kMaxImageSide));
+    throw UsageError(fmt::format("{}: {}x{} pixels, must be 1 to {} in each direction", name, texture.width,
+                                 texture.height, io::kMaxImageSide));
   constexpr io::PixelType kTypes[] = {io::PixelType::u8, io::PixelType::u16, io::PixelType::f32};
   const io::PixelType type = kTypes[texture.pixels.index()];
   io::Image image = io::makeImage(texture.width, texture.height, texture.channels, type,
@@ -120,12 +126,18 @@ io::Image toIo(const Texture& texture) {
   std::visit(
       [&](const auto& pixels) {
         if (pixels.size() != image.sampleCount())
-          throw UsageError(fmt::format("texture '{}': {} for {}x{} pixels of {}", texture.name,
-                                       counted(pixels.size(), "value"), texture.width, texture.height,
-                                       counted(texture.channels, "channel")));
+          throw UsageError(fmt::format("{}: {} for {}x{} pixels of {}", name, counted(pixels.size(), "value"),
+                                       texture.width, texture.height, counted(texture.channels, "channel")));
         std::ranges::copy(std::as_bytes(pixels), image.data.begin());
       },
       texture.pixels);
+  if (const auto* values = std::get_if<std::span<const float>>(&texture.pixels)) {
+    const auto wrong = std::ranges::find_if_not(*values, [](float value) { return std::isfinite(value); });
+    const auto pixel = static_cast<std::size_t>(wrong - values->begin()) / texture.channels;
+    if (wrong != values->end())
+      throw UsageError(
+          fmt::format("{}: pixel ({}, {}) is not finite", name, pixel % texture.width, pixel / texture.width));
+  }
   return image;
 }
 
@@ -168,8 +180,8 @@ std::optional<int> findByName(const std::vector<T>& list, std::string_view name)
   return found == list.end() ? std::nullopt : std::optional(static_cast<int>(found - list.begin()));
 }
 
-void requireFinite(const Float3& v, const char* what) {
-  if (!isFinite(toGlm(v))) throw UsageError(fmt::format("{} is not finite", what));
+void requireFinite(const Float3& v, const std::string& object, const char* what) {
+  if (!isFinite(toGlm(v))) throw UsageError(fmt::format("{}: {} is not finite", object, what));
 }
 
 }  // namespace
@@ -192,14 +204,14 @@ scene::Material toScene(const Material& material) {
   return result;
 }
 
-scene::Camera toScene(const Camera& camera) {
-  requireFinite(camera.lookFrom, "lookFrom");
-  requireFinite(camera.lookAt, "lookAt");
-  requireFinite(camera.up, "up");
+scene::Camera toScene(const Camera& camera, const std::string& name) {
+  requireFinite(camera.lookFrom, name, "lookFrom");
+  requireFinite(camera.lookAt, name, "lookAt");
+  requireFinite(camera.up, name, "up");
   if (!(camera.verticalFov > 0.0f && camera.verticalFov < kPi))
-    throw UsageError(fmt::format("verticalFov: {} is not between 0 and pi", camera.verticalFov));
+    throw UsageError(fmt::format("{}: verticalFov {} is not between 0 and pi", name, camera.verticalFov));
   if (!(camera.apertureRadius >= 0.0f && std::isfinite(camera.apertureRadius)))
-    throw UsageError(fmt::format("apertureRadius: {} is negative or not finite", camera.apertureRadius));
+    throw UsageError(fmt::format("{}: apertureRadius {} is negative or not finite", name, camera.apertureRadius));
   return scene::lookAtCamera(toGlm(camera.lookFrom), toGlm(camera.lookAt), toGlm(camera.up), camera.verticalFov,
                              camera.apertureRadius);
 }
@@ -210,6 +222,8 @@ Scene::Impl& Scene::change() {
   // Renderers and copies keep what they have.
   if (impl_.use_count() > 1 || impl_->scene.use_count() > 1)
     impl_ = std::make_shared<Impl>(Impl{std::make_shared<scene::Scene>(*impl_->scene)});
+  // use_count() is a relaxed load: what another thread read through the last other copy must precede the change.
+  std::atomic_thread_fence(std::memory_order_acquire);
   return *impl_;
 }
 
@@ -233,7 +247,7 @@ Scene Scene::of(const Program& program) {
 }
 
 int Scene::addTexture(const Texture& texture) {
-  io::Image image = toIo(texture);
+  io::Image image = toIo(texture, objectName("texture", texture.name));
   scene::Scene& scene = *change().scene;
   scene.images.push_back({texture.name, std::move(image)});
   scene.textures.push_back({texture.name,
@@ -264,7 +278,8 @@ int Scene::addMesh(std::span<const Triangles> geometries, const std::string& nam
   scene::Scene& scene = *change().scene;
   scene::Mesh mesh;
   mesh.name = name;
-  for (const Triangles& triangles : geometries) mesh.geometries.push_back(toGeometry(triangles));
+  for (const Triangles& triangles : geometries)
+    mesh.geometries.push_back(toGeometry(triangles, objectName("mesh", name)));
   const int index = append(scene, scene.meshes, std::move(mesh), scene::validateMesh);
   for (scene::Geometry& geometry : scene.meshes.back().geometries) {
     scene::repairNormals(geometry);
@@ -313,15 +328,16 @@ int Scene::addLight(const Light& light) {
   added.type = static_cast<scene::LightType>(light.type);
   added.intensity = toGlm(light.intensity);
   added.position = toGlm(light.position);
+  const std::string name = objectName("light", light.name);
   const float length = glm::length(toGlm(light.direction));
   if (light.type != LightType::point && !(length > 0.0f && std::isfinite(length)))
-    throw UsageError("a light's direction has length 0 or is not finite");
+    throw UsageError(name + ": the direction has length 0 or is not finite");
   if (light.type != LightType::point) added.direction = toGlm(light.direction) / length;
   if (light.type == LightType::spot && !(light.innerConeAngle >= 0.0f && light.innerConeAngle < light.outerConeAngle &&
                                          light.outerConeAngle <= 0.5f * kPi + 1e-6f))
-    throw UsageError(fmt::format("a spot light's cone angles are {} and {}, must be 0 <= inner < outer <= pi/2",
+    throw UsageError(fmt::format("{}: the cone angles are {} and {}, must be 0 <= inner < outer <= pi/2", name,
                                  light.innerConeAngle, light.outerConeAngle));
-  if (glm::any(glm::lessThan(added.intensity, vec3(0.0f)))) throw UsageError("a light's intensity is negative");
+  if (glm::any(glm::lessThan(added.intensity, vec3(0.0f)))) throw UsageError(name + ": the intensity is negative");
   added.innerConeAngle = light.innerConeAngle;
   added.outerConeAngle = light.outerConeAngle;
   scene::Scene& scene = *change().scene;
@@ -329,7 +345,7 @@ int Scene::addLight(const Light& light) {
 }
 
 int Scene::addCamera(const Camera& camera, const std::string& name) {
-  scene::Camera added = quintet::toScene(camera);
+  scene::Camera added = quintet::toScene(camera, objectName("camera", name));
   added.name = name;
   scene::Scene& scene = *change().scene;
   return append(scene, scene.cameras, std::move(added), scene::validateCamera);
@@ -346,7 +362,7 @@ void Scene::setEnvironment(const Environment& environment) {
     throw UsageError("environment: radiance and intensity must be finite and not negative, the rotation finite");
   if (!environment.pixels.empty()) {
     const std::span<const float> values(environment.pixels.front().data(), 3 * environment.pixels.size());
-    added.image = toIo({"environment", environment.width, environment.height, 3, values});
+    added.image = toIo({"", environment.width, environment.height, 3, values}, "environment");
   }
   change().scene->environment = std::move(added);
 }
@@ -363,6 +379,7 @@ void Scene::setMaterial(int index, const Material& material) {
   const std::size_t i = checkedIndex(index, impl_->scene->materials, "material");
   scene::Scene& scene = *change().scene;
   replace(scene, scene.materials[i], toScene(material), i, scene::validateMaterial);
+  scene::addTangents(scene, i);
 }
 
 void Scene::setTransform(int instance, const Transform& worldFromObject) {

@@ -11,6 +11,7 @@
 #include "check/scene_facts.h"
 #include "job/identity.h"
 #include "job/render_job.h"
+#include "scene/geometry/tangents.h"
 #include "scene/model/content_hash.h"
 #include "scene/model/validate.h"
 
@@ -112,7 +113,8 @@ void RenderJob::setMaterial(std::size_t index, const scene::Material& material) 
   }
   sceneEdited_ = true;
   restart();
-  sceneOutdated_ = sceneOutdated_ || emissionDiffers(before, material) || deviceForm(scene) != form ||
+  const bool newTangents = scene::addTangents(scene, index);
+  sceneOutdated_ = sceneOutdated_ || newTangents || emissionDiffers(before, material) || deviceForm(scene) != form ||
                    !scene_->onDevice->setMaterial(index, material);  // last, because it changes the device
 }
 

@@ -131,6 +131,34 @@ TEST_F(ApiRenderer, ChangesMaterialsWithARebuild) {
   EXPECT_EQ(image(), rendered(scene_));
 }
 
+// A square without normals and tangents, beside one whose normal map is on the device from the start.
+TEST_F(ApiRenderer, NormalMapsOfEditedMaterialsHaveTangents) {
+  const std::array<float, 12> texels{0.8f, 0.5f, 0.9f, 0.5f, 0.9f, 0.8f, 0.2f, 0.4f, 0.8f, 0.5f, 0.5f, 1};
+  const std::array<Float2, 4> uv{{{0, 1}, {1, 1}, {1, 0}, {0, 0}}};
+  const Material plain{.name = "edited"}, mapped{.name = "edited", .normalTexture = {.texture = 0}};
+  const auto sceneWith = [&](const Material& material) {
+    Scene scene;
+    scene.addTexture({.width = 2, .height = 2, .channels = 3, .pixels = std::span<const float>(texels)});
+    for (const Material& m : {material, mapped}) {
+      const int mesh =
+          scene.addMesh({.positions = kCorners, .indices = kSquare, .uv0 = uv, .material = scene.addMaterial(m)});
+      scene.addInstance({.mesh = mesh, .worldFromObject = Transform::translation({mesh == 0 ? -1.0f : 1.0f, 0, 0})});
+    }
+    scene.addLight({.intensity = {20, 20, 20}, .position = {1, 2, 1}});
+    return scene;
+  };
+  const std::vector<float> expected = rendered(sceneWith(mapped));
+  EXPECT_NE(rendered(sceneWith(plain)), expected);
+  Scene edited = sceneWith(plain);
+  edited.setMaterial(0, mapped);
+  EXPECT_EQ(rendered(edited), expected);
+  Renderer renderer(device(), sceneWith(plain), pathTracer(), smallImage());
+  renderer.render(4);
+  renderer.setMaterial(0, mapped);
+  renderer.render(4);
+  EXPECT_EQ(renderer.image().pixels, expected);
+}
+
 TEST_F(ApiRenderer, ChangesCameraAndParameters) {
   image();
   const Camera camera{.lookFrom = {3, 3, 3}, .verticalFov = 0.9f, .apertureRadius = 0.1f};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes from memory: what they hold, what they reject, and that they render like the same scene from a file.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +11,9 @@
 
 namespace quintet::test {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
@@ -95,6 +98,40 @@ TEST(ApiScene, RejectsInvalidObjectsAndStaysUnchanged) {
   EXPECT_EQ(scene.instanceCount(), 3u);
   EXPECT_EQ(scene.lightCount() + scene.cameraCount(), 0u);
   EXPECT_EQ(scene.material(0).metallic, 0.0f);
+}
+
+TEST(ApiScene, MessagesNameTheObject) {
+  Scene scene = lampScene();
+  const std::array<float, 6> values{1, 1, 1, 1, kNan, 1};
+  const std::array<Float3, 2> radiance{{{1, 1, 1}, {1, kNan, 1}}};
+  const std::span<const float> texels(values);
+  const auto material = [&](Material changed) {
+    changed.name = "steel";
+    return messageOf([&] { scene.addMaterial(changed); });
+  };
+  const int texture = scene.addTexture({.width = 1, .height = 1, .channels = 3, .pixels = texels.first(3)});
+  EXPECT_THAT(material({.roughness = 2}), HasSubstr("'steel'.roughness"));
+  EXPECT_THAT(material({.normalScale = kNan}), HasSubstr("'steel'.normalScale"));
+  EXPECT_THAT(material({.alphaCutoff = kNan}), HasSubstr("'steel'.alphaCutoff"));
+  EXPECT_THAT(material({.clearcoatNormalScale = kNan}), HasSubstr("'steel'.clearcoatNormalScale"));
+  for (const TextureUse& use :
+       {TextureUse{.texture = texture, .offset = {0, kNan}}, TextureUse{.texture = texture, .scale = {kNan, 1}},
+        TextureUse{.texture = texture, .rotation = kNan}})
+    EXPECT_THAT(material({.emissiveTexture = use}), HasSubstr("'steel': the transform of texture"));
+  EXPECT_THAT(messageOf([&] { scene.setMaterial(0, {.name = "tin", .metallic = 2}); }), HasSubstr("'tin'.metallic"));
+  EXPECT_THAT(messageOf([&] { scene.addInstance({.mesh = 9, .name = "chair"}); }), HasSubstr("'chair'.mesh"));
+  EXPECT_THAT(messageOf([&] { scene.setTransform(2, Transform::scaling({0, 1, 1})); }), HasSubstr("'panel'"));
+  EXPECT_THAT(messageOf([&] { scene.addMesh({.positions = kCorners}, "list"); }), HasSubstr("mesh 'list'"));
+  EXPECT_THAT(messageOf([&] { scene.addMesh({.positions = kCorners, .indices = kSquare, .material = 7}, "quad"); }),
+              HasSubstr("'quad'"));
+  EXPECT_THAT(messageOf([&] { scene.addLight({.intensity = {0, -1, 0}, .name = "sun"}); }), HasSubstr("light 'sun'"));
+  EXPECT_THAT(messageOf([&] { scene.addCamera({.verticalFov = 4}, "front"); }), HasSubstr("camera 'front'"));
+  EXPECT_THAT(messageOf([&] {
+                scene.addTexture({.name = "bricks", .width = 2, .height = 1, .channels = 3, .pixels = texels});
+              }),
+              AllOf(HasSubstr("texture 'bricks'"), HasSubstr("pixel (1, 0)")));
+  EXPECT_THAT(messageOf([&] { scene.setEnvironment({.width = 2, .height = 1, .pixels = radiance}); }),
+              AllOf(HasSubstr("environment"), HasSubstr("pixel (1, 0)")));
 }
 
 TEST(ApiScene, RendersLikeTheSameSceneInAFile) {

@@ -6,6 +6,7 @@
 #include <quintet/quintet.h>
 
 #include <array>
+#include <string>
 #include <vector>
 
 namespace quintet::test {
@@ -47,6 +48,49 @@ inline Settings smallImage() { return {.width = 48, .height = 32, .camera = kCam
 inline const Program& pathTracer() {
   static const Program program = Program::load("pathtracer");
   return program;
+}
+
+// A program whose samples all have this value, a GLSL expression. `declarations` come before main(), `parameters` are
+// [[parameter]] tables.
+inline Program constantProgram(const std::string& value, const std::string& declarations = {},
+                               const std::string& parameters = {}) {
+  const std::string description = R"([program]
+ray_generation = "main.rgen"
+[[ray]]
+name = "radiance"
+miss = "<quintet/stages/radiance.rmiss>"
+[[hit_group]]
+name = "all"
+radiance = { closest_hit = "<quintet/stages/surface.rchit>" }
+[[output]]
+name = "color"
+)";
+  const std::string rayGeneration = R"(#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/output.glsl>
+#include <quintet/texture.glsl>
+#include <quintet/trace.glsl>
+)" + declarations + R"(
+void main() {
+  const HitPayload hit = traceClosest(vec3(0.0, 9.0, 0.0), vec3(0.0, -1.0, 0.0), kInfinity, 0u);
+  const vec4 value = hit.t > 0.0 ? )" +
+                                    value + R"( : vec4(0.0);
+  const uvec2 pixel = launchPixel();
+  storeOutput(kOutput_color, pixel, loadOutput(kOutput_color, pixel) + float(launch.sampleCount) * value);
+}
+)";
+  return Program::fromFiles({{"program.toml", description + parameters}, {"main.rgen", rayGeneration}}, "constant");
+}
+
+// The message of the exception that `action` throws.
+template <class Action>
+std::string messageOf(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
 }
 
 // The image of a new renderer.

@@ -156,12 +156,22 @@ void generateTangents(Geometry& geometry, const TextureUse& use) {
   });
 }
 
-void addTangents(Geometry& geometry, const Material& material) {
+bool addTangents(Geometry& geometry, const Material& material) {
   const TextureUse& use = material.normalTexture.used() ? material.normalTexture : material.clearcoatNormalTexture;
-  if (!use.used() || !geometry.tangents.empty()) return;
-  if (geometry.uvs[static_cast<std::size_t>(use.uvSet)].empty()) return;
+  if (!use.used() || !geometry.tangents.empty()) return false;
+  if (geometry.uvs[static_cast<std::size_t>(use.uvSet)].empty()) return false;
   if (geometry.normals.empty()) splitIntoFlatTriangles(geometry);
   generateTangents(geometry, use);
+  return true;
+}
+
+bool addTangents(Scene& scene, std::size_t material) {
+  bool changed = false;
+  for (Mesh& mesh : scene.meshes)
+    for (Geometry& geometry : mesh.geometries)
+      if (geometry.material == static_cast<int>(material))
+        changed = addTangents(geometry, scene.materials[material]) || changed;
+  return changed;
 }
 
 }  // namespace quintet::scene

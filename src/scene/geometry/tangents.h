@@ -17,8 +17,10 @@ namespace quintet::scene {
 void generateTangents(Geometry&, const TextureUse& use);
 
 // Generates the tangents that the normal map of the material requires, if the geometry has none. The normal map of the
-// clear coat uses the same frame as that of the base.
-void addTangents(Geometry&, const Material&);
+// clear coat uses the same frame as that of the base. Returns whether the geometry has changed.
+bool addTangents(Geometry&, const Material&);
+// The same for all geometries with this material of the scene. Returns whether one has changed.
+bool addTangents(Scene&, std::size_t material);
 
 // Gives each triangle its own three vertices with the face normal, for a normal map on a flat-shaded geometry.
 void splitIntoFlatTriangles(Geometry&);

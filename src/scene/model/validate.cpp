@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "base/plural.h"
@@ -16,6 +17,11 @@ namespace {
 template <class... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
   throw Error("scene: " + fmt::format(format, std::forward<Args>(args)...));
+}
+
+// "materials[2] 'steel'", so that messages show the object to those who know only one of them.
+std::string objectName(const char* list, std::size_t index, const std::string& name) {
+  return name.empty() ? fmt::format("{}[{}]", list, index) : fmt::format("{}[{}] '{}'", list, index, name);
 }
 
 bool inRange(int index, std::size_t size) { return index >= 0 && static_cast<std::size_t>(index) < size; }
@@ -137,6 +143,8 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
     if (!inRange(use->texture, scene.textures.size()))
       fail("{}: texture {} of {}", name, use->texture, scene.textures.size());
     if (!inRange(use->uvSet, kMaxUvSets)) fail("{}: texture coordinate set {} of {}", name, use->uvSet, kMaxUvSets);
+    if (!quintet::isFinite(vec3(use->offset, use->rotation)) || !quintet::isFinite(vec3(use->scale, 0.0f)))
+      fail("{}: the transform of texture {} is not finite", name, use->texture);
   }
   const auto checkRange = [&](float value, float min, float max, const char* property) {
     if (!(value >= min && value <= max)) fail("{}.{}: {} is not in [{}, {}]", name, property, value, min, max);
@@ -156,6 +164,10 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
     checkUnit(material.attenuationColor[i], "attenuationColor");
   }
   checkRange(material.thickness, 0.0f, kLargest, "thickness");
+  for (const auto& [value, property] : {std::pair(material.normalScale, "normalScale"),
+                                        std::pair(material.clearcoatNormalScale, "clearcoatNormalScale"),
+                                        std::pair(material.alphaCutoff, "alphaCutoff")})
+    if (!std::isfinite(value)) fail("{}.{}: not finite", name, property);
   if (material.ior != 0.0f) checkRange(material.ior, 1.0f, kLargest, "ior");
   if (!(material.attenuationDistance > 0.0f)) fail("{}.attenuationDistance: {}", name, material.attenuationDistance);
 }
@@ -169,31 +181,34 @@ void checkImage(const io::Image& image, const std::string& name) {
 }  // namespace
 
 void validateMesh(const Scene& scene, std::size_t index) {
-  checkMesh(scene, scene.meshes[index], fmt::format("meshes[{}]", index));
+  checkMesh(scene, scene.meshes[index], objectName("meshes", index, scene.meshes[index].name));
 }
 
 void validateInstance(const Scene& scene, std::size_t index) {
-  checkInstance(scene, scene.instances[index], fmt::format("instances[{}]", index));
+  checkInstance(scene, scene.instances[index], objectName("instances", index, scene.instances[index].name));
 }
 
 void validateMaterial(const Scene& scene, std::size_t index) {
-  checkMaterial(scene, scene.materials[index], fmt::format("materials[{}]", index));
+  checkMaterial(scene, scene.materials[index], objectName("materials", index, scene.materials[index].name));
 }
 
 void validateTexture(const Scene& scene, std::size_t index) {
   const int image = scene.textures[index].image;
-  if (!inRange(image, scene.images.size())) fail("textures[{}].image: {} of {}", index, image, scene.images.size());
+  if (!inRange(image, scene.images.size()))
+    fail("{}.image: {} of {}", objectName("textures", index, scene.textures[index].name), image, scene.images.size());
   checkImage(scene.images[static_cast<std::size_t>(image)].image, fmt::format("images[{}]", image));
 }
 
 void validateCamera(const Scene& scene, std::size_t index) {
-  if (!isFinite(scene.cameras[index].worldFromCamera)) fail("cameras[{}].worldFromCamera: not finite", index);
+  const Camera& camera = scene.cameras[index];
+  if (!isFinite(camera.worldFromCamera))
+    fail("{}.worldFromCamera: not finite", objectName("cameras", index, camera.name));
 }
 
 void validateLight(const Scene& scene, std::size_t index) {
   const Light& light = scene.lights[index];
   if (!quintet::isFinite(light.intensity) || !quintet::isFinite(light.position) || !quintet::isFinite(light.direction))
-    fail("lights[{}]: not finite", index);
+    fail("{}: not finite", objectName("lights", index, light.name));
 }
 
 void validateEnvironment(const Scene& scene) {

@@ -69,45 +69,52 @@ TEST(Validate, ReportsTheFirstError) {
   };
   const auto geometry = [](scene::Scene& s) -> scene::Geometry& { return s.meshes[0].geometries[0]; };
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).normals.pop_back(); }),
-              IsErrorAt("scene: meshes[0].geometries[0].normals", "2 elements"));
+              IsErrorAt("scene: meshes[0] 'mesh'.geometries[0].normals", "2 elements"));
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).colors.resize(1); }),
-              IsErrorAt("scene: meshes[0].geometries[0].colors", "1 element for 3 vertices"));
+              IsErrorAt("scene: meshes[0] 'mesh'.geometries[0].colors", "1 element for 3 vertices"));
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).uvs[1].resize(4); }),
-              IsErrorAt("scene: meshes[0].geometries[0].uvs", "4 elements"));
+              IsErrorAt("scene: meshes[0] 'mesh'.geometries[0].uvs", "4 elements"));
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).triangles[0].y = 3; }),
-              IsErrorAt("scene: meshes[0].geometries[0].triangles[0]", "vertex 3"));
+              IsErrorAt("scene: meshes[0] 'mesh'.geometries[0].triangles[0]", "vertex 3"));
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).material = 1; }),
-              IsErrorAt("scene: meshes[0].geometries[0].material", "1 of 1"));
+              IsErrorAt("scene: meshes[0] 'mesh'.geometries[0].material", "1 of 1"));
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).material = -2; }),
-              IsErrorAt("scene: meshes[0].geometries[0].material", "-2 of 1"));
+              IsErrorAt("scene: meshes[0] 'mesh'.geometries[0].material", "-2 of 1"));
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).fileTriangles.resize(2); }),
-              IsErrorAt("scene: meshes[0].geometries[0].fileTriangles", "2 for 1"));
+              IsErrorAt("scene: meshes[0] 'mesh'.geometries[0].fileTriangles", "2 for 1"));
   EXPECT_THAT(faultOf([&](auto& s) { geometry(s).positions[1].y = NAN; }),
-              IsErrorAt("scene: meshes[0].geometries[0].positions[1]", "not finite"));
-  EXPECT_THAT(faultOf([](auto& s) { s.instances[1].mesh = 1; }), IsErrorAt("scene: instances[1].mesh", "1 of 1"));
+              IsErrorAt("scene: meshes[0] 'mesh'.geometries[0].positions[1]", "not finite"));
+  EXPECT_THAT(faultOf([](auto& s) { s.instances[1].mesh = 1; }), IsErrorAt("scene: instances[1] 'b'.mesh", "1 of 1"));
   EXPECT_THAT(faultOf([](auto& s) { s.instances[1].worldFromObject[3].x = INFINITY; }),
-              IsErrorAt("scene: instances[1].worldFromObject", "not finite"));
+              IsErrorAt("scene: instances[1] 'b'.worldFromObject", "not finite"));
   EXPECT_THAT(faultOf([](auto& s) { s.instances[1].worldFromObject = mat4(0.0f); }),
-              IsErrorAt("scene: instances[1].worldFromObject", "singular"));
-  EXPECT_THAT(faultOf([](auto& s) { s.instances[0].mask = 256; }), IsErrorAt("scene: instances[0].mask", "8 bits"));
-  EXPECT_THAT(faultOf([](auto& s) { s.instances[0].flags = 16; }), IsErrorAt("scene: instances[0].flags", "16"));
+              IsErrorAt("scene: instances[1] 'b'.worldFromObject", "singular"));
+  EXPECT_THAT(faultOf([](auto& s) { s.instances[0].mask = 256; }), IsErrorAt("scene: instances[0] 'a'.mask", "8 bits"));
+  EXPECT_THAT(faultOf([](auto& s) { s.instances[0].flags = 16; }), IsErrorAt("scene: instances[0] 'a'.flags", "16"));
   EXPECT_THAT(faultOf([](auto& s) { s.instances[0].customIndex = 1 << 24; }),
-              IsErrorAt("scene: instances[0].customIndex", "24 bits"));
+              IsErrorAt("scene: instances[0] 'a'.customIndex", "24 bits"));
   EXPECT_THAT(faultOf([](auto& s) { s.instances[0].keyframes.resize(2); }),
-              IsErrorAt("scene: instances[0].keyframes[1]", "frames"));
+              IsErrorAt("scene: instances[0] 'a'.keyframes[1]", "frames"));
   EXPECT_THAT(faultOf([](auto& s) {
                 s.instances[0].keyframes.resize(2);
                 s.instances[0].keyframes[1].frame = 1;
                 s.instances[0].keyframes[1].scale.y = -1;
               }),
-              IsErrorAt("scene: instances[0].keyframes[1]", "scale"));
+              IsErrorAt("scene: instances[0] 'a'.keyframes[1]", "scale"));
   EXPECT_THAT(faultOf([](auto& s) { s.meshes[0].primitiveSets.emplace_back(); }),
-              IsErrorAt("scene: meshes[0]", "primitive sets"));
+              IsErrorAt("scene: meshes[0] 'mesh'", "primitive sets"));
   EXPECT_THAT(faultOf([](auto& s) { s.materials[0].normalTexture.texture = 5; }),
               IsErrorAt("scene: materials[0]", "texture 5"));
   EXPECT_THAT(faultOf([](auto& s) { s.materials[0].baseColorTexture.uvSet = 2; }),
               IsErrorAt("scene: materials[0]", "texture coordinate set 2"));
-  EXPECT_THAT(faultOf([](auto& s) { s.textures[0].image = -1; }), IsErrorAt("scene: textures[0].image", "-1 of 1"));
+  EXPECT_THAT(faultOf([](auto& s) { s.materials[0].baseColorTexture.rotation = NAN; }),
+              IsErrorAt("scene: materials[0]", "texture 0 is not finite"));
+  EXPECT_THAT(faultOf([](auto& s) { s.materials[0].normalScale = INFINITY; }),
+              IsErrorAt("scene: materials[0].normalScale", "not finite"));
+  EXPECT_THAT(faultOf([](auto& s) { s.materials[0].alphaCutoff = NAN; }),
+              IsErrorAt("scene: materials[0].alphaCutoff", "not finite"));
+  EXPECT_THAT(faultOf([](auto& s) { s.textures[0].image = -1; }),
+              IsErrorAt("scene: textures[0] 'texture'.image", "-1 of 1"));
   EXPECT_THAT(faultOf([](auto& s) { s.images[0].image.width = 2; }), IsErrorAt("scene: images[0]", "3 bytes"));
 }
 
