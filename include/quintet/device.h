@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Vulkan devices of the machine, and the one that renders.
+// The Vulkan devices of the machine, the one that renders, and how it can fail.
 #ifndef QUINTET_DEVICE_H
 #define QUINTET_DEVICE_H
 
@@ -13,6 +13,23 @@
 #include <quintet/error.h>
 
 namespace quintet {
+
+// The driver has reset the device, for example because a shader hung.
+class DeviceLostError : public Error {
+ public:
+  using Error::Error;
+};
+
+// A launch did not end in time: 60 s, or 600 s on a CPU. The device still works on it and cannot be stopped, so the
+// destructors of Renderer and Device can block, and so can exit(). Report the error, and end the process with _exit().
+class TimeoutError : public DeviceLostError {
+ public:
+  explicit TimeoutError(double seconds);
+  double seconds() const { return seconds_; }  // the limit
+
+ private:
+  double seconds_;
+};
 
 // A device of the machine, whether Quintet can use it or not.
 struct DeviceInfo {

@@ -5,7 +5,12 @@
 
 #include <fmt/format.h>
 
-namespace quintet::gpu {
+namespace quintet {
+
+TimeoutError::TimeoutError(double seconds)
+    : DeviceLostError(fmt::format("the device did not finish within {:g} s", seconds)), seconds_(seconds) {}
+
+namespace gpu {
 namespace {
 
 std::string describe(VkResult result, std::string_view operation, std::string_view object) {
@@ -17,9 +22,6 @@ std::string describe(VkResult result, std::string_view operation, std::string_vi
 
 VulkanError::VulkanError(VkResult result, std::string_view operation, std::string_view object)
     : Error(describe(result, operation, object)), result_(result) {}
-
-TimeoutError::TimeoutError(double seconds)
-    : DeviceLostError(fmt::format("the device did not finish within {:g} s", seconds)), seconds_(seconds) {}
 
 std::string_view resultName(VkResult result) {
 #define QUINTET_NAME(name) \
@@ -76,4 +78,5 @@ void check(VkResult result, std::string_view operation, std::string_view object)
   }
 }
 
-}  // namespace quintet::gpu
+}  // namespace gpu
+}  // namespace quintet

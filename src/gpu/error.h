@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exceptions for failed Vulkan calls. Messages contain the operation, the object and the VkResult.
+// Exceptions for failed Vulkan calls, besides those of the public API. Messages contain the operation, the object and the VkResult.
 #ifndef QUINTET_GPU_ERROR_H
 #define QUINTET_GPU_ERROR_H
 
 #include <string_view>
+
+#include <quintet/device.h>
 
 #include "base/error.h"
 #include "gpu/vulkan.h"
@@ -24,22 +26,6 @@ class VulkanError : public Error {
 class NoDeviceError : public Error {
  public:
   using Error::Error;
-};
-
-// The device was lost or did not finish in time (a shader that hangs).
-class DeviceLostError : public Error {
- public:
-  using Error::Error;
-};
-
-// The device did not finish in time and is still working: objects that it uses must not be destroyed.
-class TimeoutError : public DeviceLostError {
- public:
-  explicit TimeoutError(double seconds);
-  double seconds() const { return seconds_; }
-
- private:
-  double seconds_;
 };
 
 std::string_view resultName(VkResult result);

@@ -87,7 +87,7 @@ void Checkpoint::save(const RenderResult& result, Observer& observer) {
     savedCounts_ = file.film.counts;
   } catch (const FileError& error) {
     failure = error.what();
-  } catch (const gpu::DeviceLostError&) {  // the film is lost
+  } catch (const DeviceLostError&) {  // the film is lost
     throw;
   } catch (const std::exception& error) {
     failure = fmt::format("{}: cannot be written: {}", name, error.what());

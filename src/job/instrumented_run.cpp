@@ -58,7 +58,7 @@ std::vector<Diagnostic> runInstrumented(Engine& engine, const program::Program& 
     const bool accumulates = program.accumulation == program::Accumulation::program;
     renderSamples(renderer, request.limits.samples.value_or(accumulates ? kFrames : render::kBatchSamples));
     return renderer.runtimeDiagnostics();
-  } catch (const gpu::TimeoutError& error) {
+  } catch (const TimeoutError& error) {
     observer.deviceHung(hangDiagnostic(program, error.seconds()));
     throw;
   }

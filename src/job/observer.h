@@ -72,7 +72,7 @@ class Observer {
   virtual void write(const std::filesystem::path& file, std::span<const std::byte> bytes);
 
   // A launch did not end in time. The device still works on it, so destroying GPU objects would block: a program
-  // should report this and exit without unwinding. If this function returns, gpu::TimeoutError propagates.
+  // should report this and exit without unwinding. If this function returns, TimeoutError propagates.
   virtual void deviceHung(const Diagnostic& /*diagnostic*/) {}
 };
 

@@ -330,7 +330,7 @@ RenderResult RenderJob::run(const RenderLimits& limits, Observer& observer) {
     if (frames.lastFrame() > 0) requireAnimation();
     if (frames.first || frames.lastFrame() > 0 || frames.every) return runAnimation(limits, observer);
     return runFilm(limits, observer);
-  } catch (const gpu::TimeoutError& error) {
+  } catch (const TimeoutError& error) {
     observer.deviceHung(hangDiagnostic(job_.program, error.seconds()));
     throw;
   }

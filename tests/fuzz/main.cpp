@@ -136,9 +136,9 @@ class Runner {
       return kRendered;
     } catch (const ProgramError&) {
       return kCompiler;
-    } catch (const gpu::TimeoutError&) {
+    } catch (const TimeoutError&) {
       return kHang;
-    } catch (const gpu::DeviceLostError& error) {
+    } catch (const DeviceLostError& error) {
       text = error.what();
       return kGpuError;
     } catch (const gpu::VulkanError& error) {

@@ -60,7 +60,7 @@ class LaunchQueue {
   };
   // Submits a launch, after waiting for the oldest one if too many are in flight.
   void submit(const Launch& launch);
-  // Waits for all launches. Throws gpu::TimeoutError.
+  // Waits for all launches. Throws TimeoutError.
   void finish();
 
   // Returns the finished launches of a profiled renderer.

@@ -40,7 +40,7 @@ struct RenderSettings {
   std::uint32_t frameCount = 0;
   bool instrument = false;  // the program is compiled with runtime checks, which are slow: Renderer::runtimeDiagnostics
   double launchSeconds = 0.25;  // approximate duration of a launch; launches are divided accordingly
-  // A launch that takes longer throws gpu::TimeoutError. 0 means the default: 60, or 600 on a CPU, whose first launch
+  // A launch that takes longer throws TimeoutError. 0 means the default: 60, or 600 on a CPU, whose first launch
   // compiles.
   double timeoutSeconds = 0;
   // Launches that can wait on the device, so that it is never idle between them. 0 means the default: 2, or 1 on a CPU.
