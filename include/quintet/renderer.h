@@ -107,7 +107,8 @@ class Renderer {
   // Edits. Each discards the samples so far; they take effect in the next render(). A change of camera, parameters or
   // transforms keeps the pipeline and the bottom-level acceleration structures. A change of a material also rebuilds the
   // scene on the device if it changes emission, alpha mode, textures, or which features the materials use.
-  // They throw UsageError for unknown names, indices out of range and invalid values, and then change nothing.
+  // They throw UsageError for unknown names, indices out of range and invalid values, and FileError for an image parameter
+  // whose file cannot be read, and then change nothing.
   void setCamera(const Camera& camera);  // replaces the camera of the settings or the scene
   void setParameter(const std::string& name, const std::string& value);  // as in Settings::parameters
   void setTransform(int instance, const Transform& worldFromObject);     // of an instance without keyframes

@@ -159,6 +159,27 @@ TEST_F(ApiRenderer, NormalMapsOfEditedMaterialsHaveTangents) {
   EXPECT_EQ(renderer.image().pixels, expected);
 }
 
+TEST_F(ApiRenderer, ChangesImageParameters) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "api_parameter.exr";
+  Image{1, 1, {0.25f, 0.5f, 1, 1}}.write(file);
+  std::string parameters;  // more than half of the slots for images
+  for (int i = 0; i < 40; ++i)
+    parameters += "[[parameter]]\nname = \"map" + std::to_string(i) + "\"\ntype = \"image\"\ndefault = \"\"\n";
+  const Program program = constantProgram("sampleParameter(parameters.map39, vec2(0.5))", "", parameters);
+  Renderer renderer(device(), scene_, program, smallImage());
+  renderer.render(4);
+  EXPECT_THROW(renderer.setParameter("map39", "missing.png"), FileError);
+  EXPECT_EQ(renderer.sampleCount(), 4);
+  EXPECT_EQ(renderer.image().at(3, 3)[0], 1);
+  renderer.render(4);
+  EXPECT_EQ(renderer.image().at(3, 3)[0], 1);
+  renderer.setParameter("map39", file.string());
+  EXPECT_EQ(renderer.sampleCount(), 0);
+  renderer.render(4);
+  EXPECT_EQ(renderer.image().at(3, 3)[0], 0.25f);
+  std::filesystem::remove(file);
+}
+
 TEST_F(ApiRenderer, ChangesCameraAndParameters) {
   image();
   const Camera camera{.lookFrom = {3, 3, 3}, .verticalFov = 0.9f, .apertureRadius = 0.1f};

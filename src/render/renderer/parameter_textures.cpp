@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/renderer/parameter_textures.h"
 
+#include <cassert>
+#include <utility>
+
 #include "gpu/uploader.h"
 #include "io/codec.h"
 
@@ -25,15 +28,33 @@ io::Image loadImage(const program::Program& program, const program::ImageValue& 
 
 ParameterTextures::ParameterTextures(gpu::Context& context, TextureSlots& slots, const program::Program& program,
                                      const program::ParameterValues& values)
-    : slots_(slots) {
-  const std::vector<program::ImageValue> images = values.images();
-  if (images.empty()) return;
-  gpu::Uploader uploader(context);
-  for (const program::ImageValue& value : images)
-    addTexture(images_, context, uploader, loadImage(program, value), value.sRgb, "parameter " + value.parameter);
-  uploader.flush();
+    : context_(context), slots_(slots), images_(upload(program, values)) {
+  if (images_.empty()) return;
   sampler_ = gpu::Sampler(context, {});
-  indices_ = slots_.acquire(images.size());
+  indices_ = slots_.acquire(images_.size());
+  setTextures();
+}
+
+void ParameterTextures::replace(const program::Program& program, const program::ParameterValues& values) {
+  std::deque<gpu::Image> images = upload(program, values);
+  assert(images.size() == images_.size());
+  images_ = std::move(images);
+  setTextures();
+}
+
+std::deque<gpu::Image> ParameterTextures::upload(const program::Program& program,
+                                                 const program::ParameterValues& values) const {
+  std::deque<gpu::Image> images;
+  const std::vector<program::ImageValue> wanted = values.images();
+  if (wanted.empty()) return images;
+  gpu::Uploader uploader(context_);
+  for (const program::ImageValue& value : wanted)
+    addTexture(images, context_, uploader, loadImage(program, value), value.sRgb, "parameter " + value.parameter);
+  uploader.flush();
+  return images;
+}
+
+void ParameterTextures::setTextures() {
   for (std::size_t i = 0; i < images_.size(); ++i) slots_.set().setTexture(indices_[i], images_[i], sampler_);
 }
 

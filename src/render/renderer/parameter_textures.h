@@ -20,6 +20,9 @@ class ParameterTextures {
   ParameterTextures(gpu::Context& context, TextureSlots& slots, const program::Program& program,
                     const program::ParameterValues& values);
   ~ParameterTextures();
+  // Replaces the images by those of other values of the same program, in the same slots. No launch may use them. Throws
+  // FileError for a missing or broken image, and then changes nothing.
+  void replace(const program::Program& program, const program::ParameterValues& values);
   ParameterTextures(const ParameterTextures&) = delete;
   ParameterTextures& operator=(const ParameterTextures&) = delete;
 
@@ -27,6 +30,10 @@ class ParameterTextures {
   std::span<const std::uint32_t> indices() const { return indices_; }
 
  private:
+  std::deque<gpu::Image> upload(const program::Program& program, const program::ParameterValues& values) const;
+  void setTextures();
+
+  gpu::Context& context_;
   TextureSlots& slots_;
   std::vector<std::uint32_t> indices_;
   std::deque<gpu::Image> images_;

@@ -31,8 +31,7 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
               settings_.profile),
       table_(linked_.makeTable(scene.facts().geometries)),
       film_(context_, scene.set(), compiler, settings_.region, runnable_.description, settings_.outputs),
-      parameterTextures_(std::make_unique<ParameterTextures>(context_, scene.parameterSlots(), runnable_.description,
-                                                             settings_.parameters)),
+      parameterTextures_(context_, scene.parameterSlots(), runnable_.description, settings_.parameters),
       queue_(context_, settings_, statistics_) {
   statistics_.compileSeconds = runnable_.compiled.seconds;
   statistics_.pipelineSeconds = linked_.pipelineSeconds();
@@ -45,7 +44,7 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
   if (runnable_.countsRecursion) recursion_.emplace(context_, settings_.region);
   uploadFrame();
   parameterBuffer_ =
-      gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_->indices()), 0, "parameters");
+      gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_.indices()), 0, "parameters");
 }
 
 void Renderer::uploadFrame() {
@@ -207,11 +206,12 @@ void Renderer::setCamera(const scene::Camera& camera) {
 }
 
 void Renderer::setParameters(const program::ParameterValues& values) {
-  restart();
-  parameterTextures_ =
-      std::make_unique<ParameterTextures>(context_, scene_.parameterSlots(), runnable_.description, values);
+  finish();
+  gpu::Buffer buffer = gpu::makeBuffer(context_, values.pack(parameterTextures_.indices()), 0, "parameters");
+  parameterTextures_.replace(runnable_.description, values);
+  parameterBuffer_ = std::move(buffer);
   settings_.parameters = values;
-  parameterBuffer_ = gpu::makeBuffer(context_, values.pack(parameterTextures_->indices()), 0, "parameters");
+  restart();
 }
 
 void Renderer::sceneChanged() {

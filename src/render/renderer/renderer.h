@@ -4,7 +4,6 @@
 #define QUINTET_RENDER_RENDERER_RENDERER_H
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -53,8 +52,8 @@ class Renderer {
   // Discards all samples or frames, for the next frame of an animation.
   void restart();
 
-  // Edits: each discards all samples. The scene's own changes (DeviceScene::setTransforms, setMaterial) require a call of
-  // sceneChanged() before the next batch, and finish() before the change.
+  // Edits: each discards all samples. Before a change of the scene itself, call finish() or restart(). After DeviceScene::setTransforms,
+  // which can change addresses, call sceneChanged(); after setFrame and setMaterial, restart() is enough.
   void setCamera(const scene::Camera& camera);
   // For the same program. Throws FileError for an image that cannot be read, and then changes nothing.
   void setParameters(const program::ParameterValues& values);
@@ -118,7 +117,7 @@ class Renderer {
   Film film_;
   gpu::Buffer frameBuffer_;
   gpu::Buffer tileBuffer_;  // tiles of the latest adaptive batch
-  std::unique_ptr<ParameterTextures> parameterTextures_;
+  ParameterTextures parameterTextures_;
   gpu::Buffer parameterBuffer_;
   std::optional<InstrumentBuffer> instrument_;
   std::optional<RecursionBuffer> recursion_;
