@@ -23,7 +23,8 @@ struct Image {
   std::vector<float> pixels{};  // 4 · width · height
   bool toneMap = true;          // .png: Khronos PBR Neutral before the sRGB curve; false if values are not radiance
   std::array<float, 4> at(std::uint32_t x, std::uint32_t y) const;  // (0, 0) is the top left; throws UsageError
-  // Writes .png (sRGB, 8 bits), .exr (half, linear) or .hdr in one step. Throws FileError, UsageError.
+  // Writes .png (sRGB, 8 bits), .exr (half, linear) or .hdr in one step. Throws FileError, UsageError. Like Film::write(), not
+  // to standard output.
   void write(const std::filesystem::path& file) const;
 };
 

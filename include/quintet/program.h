@@ -48,7 +48,8 @@ class Program {
   std::string name() const;                       // of the folder or file
   std::string description() const;                // one sentence; can be empty
   std::vector<ParameterInfo> parameters() const;  // in the order of their declaration
-  // The image is the first one. The names of all, and "variance" and "sample_count", are valid in Film::layer().
+  // The image is the first one. Film::layer() takes the names of the others that were rendered, and of "variance" and
+  // "sample_count".
   std::vector<OutputInfo> outputs() const;
 
  private:

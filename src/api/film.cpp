@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Images and films of the public API: pixels, layers, files.
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -31,6 +30,13 @@ io::Image toIoImage(const Image& image) {
   return result;
 }
 
+// The library writes files only.
+output::FileKind fileKind(const std::filesystem::path& file) {
+  if (output::isStandardOutput(file))
+    throw UsageError(fmt::format("{}: this name means standard output, which the library does not use", file.string()));
+  return output::fileKind(file);
+}
+
 // The layers of the film besides the image: those that it names, and what every film knows.
 std::vector<output::Layer> storedLayers(const job::RenderResult& result) {
   std::vector<output::Layer> layers = output::parseLayers(result.provenance.layers, *result.film);
@@ -51,15 +57,15 @@ std::array<float, 4> Image::at(std::uint32_t x, std::uint32_t y) const {
 }
 
 void Image::write(const std::filesystem::path& file) const {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const render::ToneMap operation = toneMap ? render::ToneMap::neutral : render::ToneMap::linear;
-  if (extension == ".png")
-    return writeFile(file, io::encodePng(render::toDisplay(toIoImage(*this), operation, 0.0f, true), {}));
-  if (extension == ".exr") return writeFile(file, io::encodeExr(toIoImage(*this), {}));
-  if (extension == ".hdr") return writeFile(file, io::encodeHdr(toIoImage(*this)));
-  throw UsageError(fmt::format("{}: the extension must be .png, .exr or .hdr", file.string()));
+  switch (fileKind(file)) {
+    case output::FileKind::png:
+      return writeFile(file, io::encodePng(render::toDisplay(toIoImage(*this), operation, 0.0f, true), {}));
+    case output::FileKind::exr: return writeFile(file, io::encodeExr(toIoImage(*this), {}));
+    case output::FileKind::hdr: return writeFile(file, io::encodeHdr(toIoImage(*this)));
+    case output::FileKind::film: break;
+  }
+  throw UsageError(fmt::format("{}: an image is not a film; use Film::write()", file.string()));
 }
 
 Image toImage(const job::FilmView& film, const std::string& output) {
@@ -138,16 +144,15 @@ std::vector<std::pair<std::string, std::string>> Film::metadata() const {
 
 void Film::write(const std::filesystem::path& file, const WriteOptions& options) const {
   output::OutputPlan plan;
+  plan.kind = fileKind(file);
   plan.request.file = file;
-  plan.kind = output::fileKind(file);
-  if (!options.layers.empty() && plan.kind != output::FileKind::exr)
-    throw UsageError(fmt::format("{}: only OpenEXR files have layers; use the extension .exr", file.string()));
+  plan.request.layers = options.layers;
+  if (plan.kind == output::FileKind::png) plan.request.pngBits = options.pngBits;
+  if (plan.kind == output::FileKind::exr && options.floats) plan.request.exr = output::ExrFormat{io::ExrType::f32, {}};
+  output::checkMergeRequest(plan.request);
   if (plan.kind == output::FileKind::film && impl_->result.accumulatesFrames)
     throw UsageError(
         fmt::format("{}: the program averages its samples itself, so there is no film to store", file.string()));
-  if (options.pngBits != 8 && options.pngBits != 16)
-    throw UsageError(fmt::format("{} per channel: PNG files have 8 or 16", counted(options.pngBits, "bit")));
-  plan.request.pngBits = options.pngBits;
   plan.request.exposure = options.exposure;
   if (!options.toneMap.empty()) {
     plan.request.toneMap = render::toneMapByName(options.toneMap);
@@ -155,7 +160,6 @@ void Film::write(const std::filesystem::path& file, const WriteOptions& options)
       throw UsageError(fmt::format("tone map '{}' not found{}", options.toneMap,
                                    suggestion(options.toneMap, render::toneMapNames())));
   }
-  if (options.floats) plan.request.exr = output::ExrFormat{io::ExrType::f32, {}};
   plan.outputs = {0};
   plan.layers = output::selectLayers(impl_->layers, options.layers, "the film");
   output::checkChannels(plan.layers);

@@ -147,6 +147,12 @@ TEST(ApiFilm, WritesLayersToOpenExr) {
   EXPECT_THROW(renderer.film().write(file, {.layers = {"albdo"}}), UsageError);
   EXPECT_THROW(renderer.film().write(temporary("image.txt")), UsageError);
   EXPECT_THROW(renderer.film().write("/nonexistent/image.png"), FileError);
+  for (const char* name : {"-", "-.png", "-.exr"}) {
+    EXPECT_THROW(renderer.film().write(name), UsageError) << name << " means standard output";
+    EXPECT_THROW(renderer.image().write(name), UsageError) << name;
+  }
+  EXPECT_THROW(renderer.image().write(temporary("image.qfilm")), UsageError);
+  EXPECT_THROW(renderer.image().write(temporary("image.txt")), UsageError);
   std::filesystem::remove(file);
 }
 
