@@ -23,6 +23,7 @@ const char* text(quintet::StopReason reason) {
     case quintet::StopReason::time: return "time limit";
     case quintet::StopReason::error: return "error target reached";
     case quintet::StopReason::canceled: return "canceled";
+    case quintet::StopReason::unknownError: return "error unknown";
   }
   return "";
 }

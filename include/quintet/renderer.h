@@ -25,7 +25,8 @@ struct Region {
   std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
-// Batches of 4 samples per pixel, both ends included, starting at 0.
+// Batches of 4 samples per pixel, both ends included, starting at 0. The renderer counts the samples of this part only: in
+// Limits, RenderReport, Progress, render() and sampleCount(). The end of the part is a limit, too.
 struct Batches {
   std::uint64_t first = 0, last = 0;
 };
@@ -48,7 +49,8 @@ struct Settings {
   std::uint32_t plannedSamples = 0;
 };
 
-// A render stops at the first limit that is reached. At least one must be set, unless the progress function stops it.
+// A render stops at the first limit that is reached. At least one must be set, unless Settings::batches limits the render or
+// the progress function stops it.
 struct Limits {
   std::optional<std::uint64_t>
       samples{};  // in total, per pixel; an average if adaptive. For a program that accumulates: frames
@@ -63,13 +65,19 @@ struct Progress {
   double fraction = 0;  // of the limit that is reached first, [0,1]; 0 if unknown
   double secondsLeft = std::numeric_limits<double>::infinity();  // infinity if unknown
   double raysPerSecond = 0;                                      // 0 if unknown
-  std::optional<double> error{};  // relative error, if it is estimated; infinity if it is unknown yet
+  std::optional<double> error{};  // relative error, if it is estimated; empty if it is unknown
 };
 // Called several times per second from the thread that calls render(). Returning false stops after the current batch.
 using ProgressFunction = std::function<bool(const Progress&)>;
 
 // Why a render stopped.
-enum class StopReason { samples, time, error, canceled };
+enum class StopReason {
+  samples,  // also the end of a part; also no pixel requires more samples (adaptive sampling without other limits)
+  time,
+  error,
+  canceled,
+  unknownError,  // an error is the only limit, and it can never be known, because samples exceed the range of the film
+};
 
 // What Renderer::render() did.
 struct RenderReport {
@@ -94,12 +102,14 @@ class Renderer {
   ~Renderer();
 
   // Renders until a limit is reached or `progress` returns false. Another call with higher limits continues. Throws
-  // UsageError, Error (device lost, launch hung).
+  // UsageError, DeviceLostError, and TimeoutError, after which this object must not be destroyed (device.h). Throws also what
+  // the constructor throws if the scene must be rebuilt after an edit. There is no image then; render() tries again, for
+  // example after another edit.
   RenderReport render(const Limits& limits, const ProgressFunction& progress = {});
   // Adds `count` samples per pixel, or frames for a program that accumulates; multiples of 4 are fastest.
   RenderReport render(std::uint32_t count);
 
-  std::uint64_t sampleCount() const;                  // per pixel, or frames, so far
+  double sampleCount() const;                         // per pixel, an average for adaptive sampling; or frames
   std::vector<Diagnostic> diagnostics() const;        // warnings of the check of the program
   Image image(const std::string& output = {}) const;  // film().image(output) without copying the rest
   Film film() const;                                  // everything so far, copied to host memory
@@ -112,14 +122,14 @@ class Renderer {
   void setCamera(const Camera& camera);  // replaces the camera of the settings or the scene
   void setParameter(const std::string& name, const std::string& value);  // as in Settings::parameters
   void setTransform(int instance, const Transform& worldFromObject);     // of an instance without keyframes
-  void setMaterial(int index, const Material& material);                 // index of Scene::addMaterial()
+  void setMaterial(int index, const Material& material);                 // as Scene::setMaterial()
   void setFrame(float frame);  // of the animation; instances with keyframes move. Not for programs that accumulate
   void restart();              // discards the samples so far
 
   // Writes the film to `file` (.qfilm) in one step. Throws FileError; UsageError for a program that accumulates.
   void saveCheckpoint(const std::filesystem::path& file) const;
-  // Continues from such a file. Returns false if it does not exist. Throws FileError if it belongs to a different render or
-  // is damaged; UsageError for a program that accumulates.
+  // Continues from such a file. Returns false if it does not exist or holds no samples. Throws FileError if it belongs to a
+  // different render or is damaged; UsageError for a program that accumulates. Keeps the samples so far unless it returns true.
   bool resume(const std::filesystem::path& file);
 
  private:

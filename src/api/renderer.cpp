@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The renderer of the public API: settings to a job, limits to a run, edits to the job's edits.
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -20,7 +23,8 @@ class ApiObserver : public job::Observer {
 
   void progress(const job::Progress& p) override {
     if (!function_ || !*function_ || stop_) return;
-    stop_ = !(*function_)({p.samples, p.seconds, p.fraction(), p.secondsLeft(), p.raysPerSecond, p.error});
+    const std::optional<double> error = p.error && std::isfinite(*p.error) ? p.error : std::nullopt;
+    stop_ = !(*function_)({p.samples, p.seconds, p.fraction(), p.secondsLeft(), p.raysPerSecond, error});
   }
   bool showsError() const override { return false; }
   job::StopRequest stopRequested() override { return stop_ ? job::StopRequest::finish : job::StopRequest::none; }
@@ -52,22 +56,18 @@ job::CameraRequest toRequest(const Camera& camera) {
 }
 
 std::vector<std::string> optionalOutputs(const Settings& settings, const program::Program& program) {
-  std::vector<std::string> names = program::outputNames(program);
-  if (std::ranges::find(settings.outputs, "all") != settings.outputs.end()) {
-    std::erase_if(names, [&](const std::string& name) {
-      return !std::ranges::find(program.outputs, name, &program::Output::name)->optional;
-    });
-    return names;
-  }
-  std::vector<std::string> result;
-  for (const std::string& name : settings.outputs) {
-    const auto output = std::ranges::find(program.outputs, name, &program::Output::name);
-    if (output == program.outputs.end())
+  std::vector<std::string> optional = program::optionalOutputs(program);
+  const auto isRequested = [&](const std::string& name) {
+    return std::ranges::find(settings.outputs, name) != settings.outputs.end();
+  };
+  if (isRequested("all")) return optional;
+  const std::vector<std::string> names = program::outputNames(program);
+  for (const std::string& name : settings.outputs)
+    if (std::ranges::find(names, name) == names.end())
       throw UsageError(
           fmt::format("output '{}' not found in the program '{}'{}", name, program.name, suggestion(name, names)));
-    if (output->optional && std::ranges::find(result, name) == result.end()) result.push_back(name);
-  }
-  return result;
+  std::erase_if(optional, [&](const std::string& name) { return !isRequested(name); });
+  return optional;
 }
 
 // The layers of a film that are outputs of the program.
@@ -115,13 +115,41 @@ job::RenderRequest toRequest(const Settings& settings, std::shared_ptr<const sce
   return request;
 }
 
+// Counted from the first sample of a part, which the job does not do.
+job::RenderLimits toJob(const Limits& limits, const job::RenderRequest& request) {
+  job::RenderLimits result;
+  result.samples = limits.samples;
+  if (result.samples && request.batches) {
+    const std::uint64_t first = request.batches->first * render::kBatchSamples;
+    result.samples = first + std::min(*limits.samples, std::numeric_limits<std::uint64_t>::max() - first);
+  }
+  result.seconds = limits.seconds;
+  result.error = limits.error;
+  result.adaptive = request.limits.adaptive;
+  return result;
+}
+
+StopReason reasonOf(const job::RenderResult& result) {
+  if (result.interrupted) return StopReason::canceled;
+  switch (result.reached) {
+    case job::ReachedLimit::samples: return StopReason::samples;
+    case job::ReachedLimit::seconds: return StopReason::time;
+    case job::ReachedLimit::error: return StopReason::error;
+    case job::ReachedLimit::unknownError: break;
+  }
+  return StopReason::unknownError;
+}
+
+void append(std::vector<std::string>& texts, std::vector<std::string> more) {
+  texts.insert(texts.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
 }  // namespace
 
 struct Renderer::Impl {
   Impl(job::Engine& engine, job::ResolvedJob resolved, job::Observer& observer)
       : layers(renderedLayers(resolved.program, resolved.request.outputs)),
         assignments(resolved.request.assignments),
-        batches(resolved.request.batches),
         job(engine, std::move(resolved), observer) {
     for (const output::Layer& layer : output::availableLayers(job.resolved().program))
       if (layer.source == output::Layer::Source::variance || layer.source == output::Layer::Source::sampleCount)
@@ -130,8 +158,7 @@ struct Renderer::Impl {
 
   std::vector<output::Layer> layers;
   std::vector<std::string> assignments;
-  std::optional<job::BatchRange> batches;
-  std::vector<std::string> warnings;  // of the preparation
+  std::vector<std::string> warnings;  // for the next report
   job::RenderJob job;
 };
 
@@ -147,49 +174,34 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
 RenderReport Renderer::render(const Limits& limits, const ProgressFunction& progress) {
-  if (!limits.samples && !limits.seconds && !limits.error && !progress)
+  job::RenderJob& job = impl_->job;
+  const job::RenderRequest& request = job.resolved().request;
+  if (!limits.samples && !limits.seconds && !limits.error && !request.batches && !progress)
     throw UsageError("a render without limits requires a progress function, which stops it");
   if ((limits.seconds && !(*limits.seconds > 0)) || (limits.error && !(*limits.error > 0)))
     throw UsageError("limits of time and error must be above 0");
-  job::RenderJob& job = impl_->job;
-  const bool accumulates = job.resolved().accumulatesFrames();
-  if (limits.error && accumulates)
+  if (limits.error && job.resolved().accumulatesFrames())
     throw UsageError("the program averages its samples itself, so the error of its image is unknown");
-  job::RenderLimits requested;
-  requested.samples = limits.samples;
-  requested.seconds = limits.seconds;
-  requested.error = limits.error;
-  requested.adaptive = job.resolved().request.limits.adaptive;
-  if (impl_->batches && !requested.samples) requested.samples = std::numeric_limits<std::uint64_t>::max();
-  RenderReport report;
-  report.warnings = std::exchange(impl_->warnings, {});
-  if (accumulates && limits.samples && sampleCount() >= *limits.samples) {
-    report.samples = static_cast<double>(sampleCount());
-    return report;
-  }
   ApiObserver observer(&progress);
-  const job::RenderResult result = job.run(requested, observer);
-  report.samples = result.film->counts().cellBatches.empty()
-                       ? static_cast<double>(result.provenance.samples)
-                       : render::averageSamples(result.provenance.region, result.film->counts());
+  const job::RenderResult result = job.run(toJob(limits, request), observer);
+  RenderReport report;
+  report.reason = reasonOf(result);
+  report.samples = job.sampleCount();
   report.seconds = result.provenance.seconds;
   report.rays = result.provenance.rays;
   report.droppedSamples = result.provenance.droppedSamples;
   report.error = result.provenance.error;
-  if (result.interrupted)
-    report.reason = StopReason::canceled;
-  else if (limits.error && !result.targetMissed)
-    report.reason = StopReason::error;
-  else if (!limits.samples || report.samples < static_cast<double>(*limits.samples))
-    report.reason = impl_->batches ? StopReason::samples : StopReason::time;
-  for (std::string& text : observer.takeWarnings()) report.warnings.push_back(std::move(text));
-  for (std::string& text : job::resultWarnings(result)) report.warnings.push_back(std::move(text));
+  report.warnings = std::exchange(impl_->warnings, {});
+  append(report.warnings, observer.takeWarnings());
+  append(report.warnings, job::resultWarnings(result));
   return report;
 }
 
-RenderReport Renderer::render(std::uint32_t count) { return render({.samples = sampleCount() + count}); }
+RenderReport Renderer::render(std::uint32_t count) {
+  return render({.samples = static_cast<std::uint64_t>(std::llround(sampleCount())) + count});
+}
 
-std::uint64_t Renderer::sampleCount() const { return impl_->job.renderer().statistics().samples; }
+double Renderer::sampleCount() const { return impl_->job.sampleCount(); }
 std::vector<Diagnostic> Renderer::diagnostics() const { return impl_->job.diagnostics(); }
 Image Renderer::image(const std::string& output) const { return toImage(*impl_->job.film(), output); }
 
@@ -226,7 +238,9 @@ void Renderer::saveCheckpoint(const std::filesystem::path& file) const { film().
 
 bool Renderer::resume(const std::filesystem::path& file) {
   ApiObserver observer;
-  return impl_->job.resume(file, observer);
+  const bool resumed = impl_->job.resume(file, observer);
+  append(impl_->warnings, observer.takeWarnings());
+  return resumed;
 }
 
 }  // namespace quintet

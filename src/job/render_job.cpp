@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <future>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -209,7 +208,8 @@ Provenance RenderJob::makeProvenance() const {
   Provenance p = identityOf(job_, *renderer_, scene_->camera, scene_->size);
   p.programHash = provenance_.programHash;
   // Frames of an animation are different scenes: the film of one does not continue another.
-  p.sceneHash = frame_ == 0 ? scene_->hash : fmt::format("{}, frame {}", scene_->hash, frame_);
+  const bool isStart = frame_ == 0 || !scene_->onDevice->animated();
+  p.sceneHash = isStart ? scene_->hash : fmt::format("{}, frame {}", scene_->hash, frame_);
   p.environmentHash = scene_->environmentHash;
   p.commandLine = request.commandLine;
   p.scene = job_.scene.path();
@@ -294,17 +294,31 @@ RenderResult RenderJob::makeResult(double seconds, const StartPoint& start, bool
   return result;
 }
 
-// Where run() begins. The first call resumes from the checkpoint and checks that a film to write loses no samples.
-StartPoint RenderJob::startPoint(RenderLimits& limits, Observer& observer) {
+void RenderJob::beginFilm() {
+  start_ = firstSample();
+  renderer_->startAt(start_.begin / render::kBatchSamples);
+}
+
+StartPoint RenderJob::firstSample() const {
+  StartPoint start;
+  if (job_.request.batches) start.begin = start.done = job_.request.batches->first * render::kBatchSamples;
+  return start;
+}
+
+RenderLimits RenderJob::withinPart(RenderLimits limits) const {
   const RenderRequest& request = job_.request;
-  if (request.batches) {
-    limits.samples = std::min(limits.samples.value_or(0), (request.batches->last + 1) * render::kBatchSamples);
-    if (!started_) {
-      start_.begin = start_.done = request.batches->first * render::kBatchSamples;
-      renderer_->startAt(request.batches->first);
-    }
-  }
+  if (!request.batches) return limits;
+  // resolve() requires the number of samples of the whole render.
+  const std::uint64_t end = std::min(*request.limits.samples, (request.batches->last + 1) * render::kBatchSamples);
+  limits.samples = std::min(limits.samples.value_or(end), end);
+  return limits;
+}
+
+// Where run() begins. The first call resumes from the checkpoint and checks that a film to write loses no samples.
+StartPoint RenderJob::startPoint(const RenderLimits& limits, Observer& observer) {
+  const RenderRequest& request = job_.request;
   if (std::exchange(started_, true)) return start_;
+  beginFilm();
   if (checkpoint_) {
     const render::FilmState empty = renderer_->saveFilm();
     if (const std::optional<StoredFilm> film = checkpoint_->load(provenance_, empty, start_, limits, observer)) {
@@ -350,7 +364,7 @@ void RenderJob::requireAnimation() const {
 }
 
 RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observer) {
-  RenderLimits limits = requested;
+  const RenderLimits limits = withinPart(requested);
   StartPoint start = startPoint(limits, observer);
   const bool wasEmpty = start.done == start.begin;
   const Stopwatch clock;
@@ -360,9 +374,10 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
     start.plan = schedule.plan();
     return makeResult(seconds, start, withError);
   };
-  const auto finish = [&](double seconds) {
+  const auto finish = [&](double seconds, ReachedLimit reached) {
     RenderResult done = resultNow(seconds, true);
     done.targetMissed = limits.error && !done.error.reaches(*limits.error);
+    done.reached = limits.error && !done.targetMissed ? ReachedLimit::error : reached;
     start_ = start;
     start_.seconds = seconds;
     return done;
@@ -370,13 +385,16 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
   const auto timeIsUp = [&](double seconds) {
     return limits.seconds && seconds + 0.5 * start.batchSeconds >= *limits.seconds;
   };
-  if (!wasEmpty && timeIsUp(start.seconds)) return finish(start.seconds);
+  const auto atTimeLimit = [&] {  // the number of samples may be reached, too
+    return limits.samples && start.done >= *limits.samples ? ReachedLimit::samples : ReachedLimit::seconds;
+  };
+  if (!wasEmpty && timeIsUp(start.seconds)) return finish(start.seconds, atTimeLimit());
 
   Progress progress;
   progress.sampleLimit = schedule.sampleLimit();
   progress.secondLimit = limits.seconds;
   double rateTaken = 0, estimated = 0, estimateSeconds = 0;
-  bool abandoned = false, interrupted = false, previewed = !wasEmpty;
+  bool abandoned = false, interrupted = false, outOfTime = false, previewed = !wasEmpty;
   while (schedule.next()) {
     const double begin = elapsed();
     const double before = schedule.samples();
@@ -403,7 +421,7 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
     if (checkpoint_ && checkpoint_->isDue()) checkpoint_->save(resultNow(now, false), observer);
     observer.batch({static_cast<std::uint64_t>(schedule.samples()), now,
                     checkpoint_ ? std::optional(checkpoint_->savedSamples()) : std::nullopt});
-    if (timeIsUp(now)) break;
+    if ((outOfTime = timeIsUp(now))) break;
     if (observer.stopRequested() == StopRequest::finish) {
       interrupted = schedule.next();  // otherwise everything is rendered
       break;
@@ -420,7 +438,7 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
     }
   }
   renderer_->finish();
-  RenderResult done = finish(elapsed());
+  RenderResult done = finish(elapsed(), outOfTime ? atTimeLimit() : schedule.reached());
   done.interrupted = done.provenance.interrupted = interrupted;
   if (checkpoint_ && checkpoint_->mustStay(done)) checkpoint_->saveIfChanged(done, observer);
   return done;
@@ -434,9 +452,10 @@ RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& obser
   RenderResult last, earlier;
   for (std::uint32_t frame = frames.every ? frames.firstFrame() : frames.lastFrame(); frame <= frames.lastFrame();
        ++frame) {
-    showFrame(static_cast<float>(frame));
+    frame_ = static_cast<float>(frame);
+    showFrame();
     renderer_->restart();
-    start_ = {};
+    beginFilm();
     last = runFilm(limits, observer);
     if (last.abandoned) return last;
     seconds += last.provenance.seconds;
@@ -464,6 +483,13 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
   std::optional<std::uint64_t> count = frames.accumulatedCount();
   if (!count) count = limits.samples;
   const Stopwatch clock;
+  const auto elapsed = [&, before = start_.seconds] { return before + clock.seconds(); };
+  const auto timeIsUp = [&] { return limits.seconds && elapsed() >= *limits.seconds; };
+  if ((count && nextFrame_ >= *count) || (nextFrame_ > 0 && timeIsUp())) {
+    RenderResult done = result();
+    done.reached = count && nextFrame_ >= *count ? ReachedLimit::samples : ReachedLimit::seconds;
+    return done;
+  }
   Progress progress;
   progress.countsFrames = true;
   progress.sampleLimit = count;
@@ -476,7 +502,7 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
     renderer_->renderFrame(frame, [&](double fraction) {
       if (firstPixelSeconds_ == 0) firstPixelSeconds_ = clock_.seconds();
       progress.samples = frame + fraction;
-      progress.seconds = clock.seconds();
+      progress.seconds = elapsed();
       observer.progress(progress);
       abandoned = observer.stopRequested() == StopRequest::abandon;
       return !abandoned;
@@ -487,21 +513,25 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
       return useless;
     }
     nextFrame_ = frame + 1;
-    observer.batch({nextFrame_, clock.seconds(), std::nullopt});
-    const bool isLast = (count && nextFrame_ >= *count) || (limits.seconds && clock.seconds() >= *limits.seconds);
+    start_.seconds = elapsed();
+    observer.batch({nextFrame_, start_.seconds, std::nullopt});
+    const bool isComplete = count && nextFrame_ >= *count;
+    const bool isLast = isComplete || timeIsUp();
     const bool interrupted = !isLast && observer.stopRequested() == StopRequest::finish;
     const bool preview = !isLast && !interrupted && !frames.every && observer.wantsPreviews() &&
-                         (!previewed || clock.seconds() - lastPreview >= kPreviewSeconds);
+                         (!previewed || elapsed() - lastPreview >= kPreviewSeconds);
     if (!isLast && !interrupted && !frames.every && !preview) continue;
-    RenderResult done = makeResult(clock.seconds(), {}, false);
-    done.provenance.frame = frame;
+    renderer_->finish();
+    start_.seconds = elapsed();
+    RenderResult done = result();
+    done.reached = isComplete ? ReachedLimit::samples : ReachedLimit::seconds;
     done.interrupted = done.provenance.interrupted = interrupted;
     if (frames.every) observer.frame(done);
     if (isLast || interrupted) return done;
     if (preview) {
       observer.preview(done);
       previewed = true;
-      lastPreview = clock.seconds();
+      lastPreview = elapsed();
     }
   }
 }
@@ -510,15 +540,29 @@ void RenderJob::requireRenderer() const {
   if (!renderer_) throw Error("a change of the scene failed; the next render repeats it");
 }
 
+render::Renderer& RenderJob::renderer() {
+  requireRenderer();
+  return *renderer_;
+}
+
+const render::Region& RenderJob::region() const {
+  requireRenderer();
+  return renderer_->film().region();
+}
+
 std::shared_ptr<FilmView> RenderJob::film() const {
   requireRenderer();
   return std::make_shared<DeviceFilm>(*renderer_);
 }
 
-void RenderJob::showFrame(float frame) {
-  if (!scene_->onDevice->animated()) return;
-  scene_->onDevice->setFrame(frame);
-  frame_ = frame;
+double RenderJob::sampleCount() const {
+  if (!renderer_) return 0;  // a failed edit has discarded all samples
+  if (job_.accumulatesFrames()) return static_cast<double>(renderer_->statistics().samples);
+  return render::averageSamples(renderer_->film().region(), renderer_->film().counts());
+}
+
+void RenderJob::showFrame() {
+  scene_->onDevice->setFrame(frame_);
   provenance_ = makeProvenance();
 }
 
@@ -534,19 +578,19 @@ bool RenderJob::resume(const std::filesystem::path& file, Observer& observer) {
     throw UsageError(fmt::format("the program '{}' averages its samples itself, so checkpoints are not available",
                                  job_.program.name));
   applyEdits(observer);
-  restart();
   CheckpointRequest request;
   request.file = file;
   request.resume = true;
   RenderLimits limits;
   limits.adaptive = job_.request.limits.adaptive;
-  if (job_.request.batches) limits.samples = std::numeric_limits<std::uint64_t>::max();  // startPoint() restricts it
-  start_ = startPoint(limits, observer);
+  const StartPoint first = firstSample();
   const std::optional<StoredFilm> film =
-      loadCheckpoint(request, provenance_, renderer_->saveFilm(), start_, limits, observer);
+      loadCheckpoint(request, provenance_, renderer_->saveFilm(), first, withinPart(limits), observer);
   if (!film) return false;
+  restart();
   renderer_->restoreFilm(film->file.film);
-  start_ = resumePoint(*film, provenance_, file, start_, observer);
+  start_ = resumePoint(*film, provenance_, file, first, observer);
+  started_ = true;
   return true;
 }
 

@@ -58,13 +58,15 @@ class RenderJob {
   RenderResult run(const RenderLimits& limits, Observer& observer);
 
   // The state between two calls of run(), as run() returned it. With the error estimate only on request, because it takes
-  // time.
+  // time. Throws Error if an edit failed.
   RenderResult result(bool withError = false) const;
   std::shared_ptr<FilmView> film() const;  // of result(), without its counts, which wait for the device
+  double sampleCount() const;              // per pixel, on average if adaptive; or frames
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }  // warnings of the check
 
   // Edits between two calls of run(), for jobs with RenderRequest::editable. Each discards the samples so far and takes effect
-  // in the next run(). They throw UsageError, and then change nothing.
+  // in the next run(). They throw UsageError, and FileError for an image parameter, and then change nothing. If the next run()
+  // throws because the scene cannot be rebuilt, there is no film until an edit corrects the cause and a run() succeeds.
   void setCamera(const CameraRequest& camera);
   void setParameters(const std::vector<std::string>& assignments);       // replaces RenderRequest::assignments
   void setTransform(std::size_t instance, const mat4& worldFromObject);  // of an instance without keyframes
@@ -73,8 +75,8 @@ class RenderJob {
   void setFrame(float frame);  // of an animated scene; not for programs that accumulate, which count their frames
   void restart();              // only discards the samples
 
-  // Replaces the film by the one in `file`, which belongs to this render. Returns false if the file does not exist. Throws
-  // FileError.
+  // Replaces the film by the one in `file`, which belongs to this render. Returns false if the file does not exist or holds
+  // no samples. Throws FileError. The film stays as it is unless the function returns true.
   bool resume(const std::filesystem::path& file, Observer& observer);
 
   // Call one of them after the outputs of run() were written, or could not be written: the checkpoint is removed unless
@@ -84,8 +86,8 @@ class RenderJob {
 
   const ResolvedJob& resolved() const { return job_; }
   const std::shared_ptr<PreparedScene>& scene() const { return scene_; }
-  render::Renderer& renderer() { return *renderer_; }
-  const render::Region& region() const { return renderer_->film().region(); }  // the rendered part of the image
+  render::Renderer& renderer();          // throws Error if an edit failed
+  const render::Region& region() const;  // the rendered part of the image; throws Error if an edit failed
 
   // Files on disk that the scene was made from, and all files that the job has read, for file watching.
   std::vector<std::filesystem::path> sceneFiles() const;
@@ -98,7 +100,7 @@ class RenderJob {
   Provenance makeProvenance() const;
 
   scene::Scene& editedScene();   // a copy of the loaded scene, for edits
-  void showFrame(float frame);   // moves the instances with keyframes
+  void showFrame();              // moves the instances with keyframes to frame_
   void requireRenderer() const;  // throws Error if an edit failed
   void applyEdits(Observer& observer);
 
@@ -106,7 +108,10 @@ class RenderJob {
   RenderResult runFilm(const RenderLimits& limits, Observer& observer);
   RenderResult runAnimation(const RenderLimits& limits, Observer& observer);
   RenderResult runFrames(const RenderLimits& limits, Observer& observer);
-  StartPoint startPoint(RenderLimits& limits, Observer& observer);
+  StartPoint firstSample() const;                      // of the render or part
+  RenderLimits withinPart(RenderLimits limits) const;  // the same limits, not beyond the end of the part
+  void beginFilm();                                    // continues from firstSample()
+  StartPoint startPoint(const RenderLimits& limits, Observer& observer);
   // The result after `seconds` of rendering; with the error estimate only where it is needed, because it takes time.
   RenderResult makeResult(double seconds, const StartPoint& start, bool withError) const;
 
@@ -126,7 +131,8 @@ class RenderJob {
   std::map<std::size_t, mat4> movedInstances_;  // edits that the device does not have yet
   bool sceneOutdated_ = false;                  // edits require a new scene on the device
   bool sceneEdited_ = false;                    // since the hash of the scene was computed
-  float frame_ = 0;                             // of an animated scene: the frame that the device has
+  float frame_ = 0;                             // of an animated scene
+  bool frameOutdated_ = false;                  // the device does not show frame_ yet
   double linkedSeconds_ = 0;                    // on clock_
   double firstPixelSeconds_ = 0;                // on clock_; 0: no launch has ended
 };

@@ -42,6 +42,14 @@ struct RenderLimits {
   bool adaptive = false;                 // distribute samples by the error of each tile
 };
 
+// Why a render stopped, unless it was interrupted.
+enum class ReachedLimit {
+  samples,  // or adaptive sampling found no pixel that requires more of them
+  seconds,
+  error,
+  unknownError,  // the target error is the only limit, and the error can never be known (targetUnreachable())
+};
+
 struct FrameRequest {
   std::optional<std::uint32_t> count;  // of an animated scene or of a program that accumulates its own frames
   // Number of the first frame, if only a part of an animation is rendered; unset means the whole animation, from frame 0.

@@ -12,6 +12,7 @@
 #include "base/diagnostic.h"
 #include "io/image.h"
 #include "job/provenance.h"
+#include "job/request.h"
 #include "render/film/film_error.h"
 #include "render/film/film_file.h"
 
@@ -70,13 +71,14 @@ struct Timings {
 struct RenderResult {
   Provenance provenance;
   std::shared_ptr<const FilmView> film;
-  std::vector<std::uint32_t> plan;   // of adaptive sampling: render::FilmFile::plan
-  bool accumulatesFrames = false;    // the program accumulates: `samples` counts frames
-  bool interrupted = false;          // stopped by the observer before a limit was reached
-  bool abandoned = false;            // StopRequest::abandon: the film is incomplete and must not be used
-  bool targetMissed = false;         // the target error is not reached
-  bool earlierTargetMissed = false;  // nor in an earlier frame, whose warnings the observer got
-  render::ErrorEstimate error;       // of output 0
+  std::vector<std::uint32_t> plan;               // of adaptive sampling: render::FilmFile::plan
+  bool accumulatesFrames = false;                // the program accumulates: `samples` counts frames
+  ReachedLimit reached = ReachedLimit::samples;  // unless `interrupted`
+  bool interrupted = false;                      // stopped by the observer before a limit was reached
+  bool abandoned = false;                        // StopRequest::abandon: the film is incomplete and must not be used
+  bool targetMissed = false;                     // the target error is not reached
+  bool earlierTargetMissed = false;              // nor in an earlier frame, whose warnings the observer got
+  render::ErrorEstimate error;                   // of output 0
   Timings seconds;
   MemoryUse memory;
   std::uint64_t filmBytes = 0;                     // on the device

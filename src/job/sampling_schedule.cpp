@@ -85,7 +85,7 @@ SamplingSchedule::SamplingSchedule(render::Renderer& renderer, const RenderLimit
       samples_(render::averageSamples(renderer.film().region(), renderer.film().counts())) {}
 
 std::optional<std::uint64_t> SamplingSchedule::sampleLimit() const {
-  return limits_.samples ? std::optional(*limits_.samples - start_.begin) : std::nullopt;
+  return limits_.samples ? std::optional(std::max(*limits_.samples, start_.begin) - start_.begin) : std::nullopt;
 }
 
 void SamplingSchedule::estimateError() {
@@ -104,14 +104,18 @@ bool SamplingSchedule::next() {
   return nextUniformBatch();
 }
 
+bool SamplingSchedule::stopsAtError() {
+  estimateError();
+  const bool isReached = limits_.error && estimate_->reaches(*limits_.error);
+  if (isReached) reached_ = ReachedLimit::error;
+  if (targetUnreachable(*estimate_, limits_)) reached_ = ReachedLimit::unknownError;
+  return isReached || reached_ == ReachedLimit::unknownError;
+}
+
 bool SamplingSchedule::nextUniformBatch() {
   const bool complete = limits_.samples && done_ >= *limits_.samples;
-  if (limits_.error && (complete || isErrorCheckpoint(done_ / render::kBatchSamples))) {
-    estimateError();
-    targetReached_ = estimate_->reaches(*limits_.error);
-    if (targetUnreachable(*estimate_, limits_)) return false;
-  }
-  if (complete || targetReached_) return false;
+  if (limits_.error && (complete || isErrorCheckpoint(done_ / render::kBatchSamples)) && stopsAtError()) return false;
+  if (complete) return false;
   count_ = render::kBatchSamples;
   if (limits_.samples) count_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(count_, *limits_.samples - done_));
   batchSamples_ = count_;
@@ -122,9 +126,7 @@ bool SamplingSchedule::nextAdaptiveBatch() {
   count_ = 0;
   batchSamples_ = 0;
   if (hasRemainingBatches(plan_, renderer_.film().counts())) return true;
-  estimateError();
-  targetReached_ = limits_.error && estimate_->reaches(*limits_.error);
-  if (targetUnreachable(*estimate_, limits_)) return false;
+  if (stopsAtError()) return false;
   std::vector<std::uint32_t> plan =
       planNextBatches(renderer_.film().region(), renderer_.film().counts(), *estimate_, limits_);
   if (plan.empty()) return false;

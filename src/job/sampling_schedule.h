@@ -30,15 +30,15 @@ class SamplingSchedule {
 
   // Chooses the next batch. False: a limit is reached, except the time limit, which is not checked here.
   bool next();
+  ReachedLimit reached() const { return reached_; }  // after next() returned false
   // Renders the chosen batch. False: `progress` abandoned it.
   bool render(const render::BatchProgress& progress);
 
   double samples() const { return samples_; }            // per pixel, on average, of this render or part
   std::uint64_t nextSample() const { return done_; }     // of all pixels
   double batchSamples() const { return batchSamples_; }  // that the chosen batch adds; 0 if adaptive
-  std::optional<std::uint64_t> sampleLimit() const;
+  std::optional<std::uint64_t> sampleLimit() const;      // of samples()
   const std::optional<render::ErrorEstimate>& estimate() const { return estimate_; }  // the latest one
-  bool targetReached() const { return targetReached_; }
   // expectedSamples() by the latest estimate; unset without target error.
   std::optional<double> targetSamples() const;
   // Batches per cell that adaptive sampling has decided on. Film and plan determine how the render continues.
@@ -46,6 +46,8 @@ class SamplingSchedule {
   void estimateError();  // waits for the device
 
  private:
+  // Estimates the error. Returns true if it decides that rendering stops.
+  bool stopsAtError();
   bool nextUniformBatch();
   bool nextAdaptiveBatch();
 
@@ -57,7 +59,7 @@ class SamplingSchedule {
   std::vector<std::uint32_t> plan_;
   double samples_ = 0;
   double batchSamples_ = 0;
-  bool targetReached_ = false;
+  ReachedLimit reached_ = ReachedLimit::samples;
   std::optional<render::ErrorEstimate> estimate_;
   double estimatedAt_ = 0;  // samples per pixel of estimate_
 };

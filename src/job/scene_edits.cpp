@@ -3,6 +3,7 @@
 // and, if possible, only the affected table on the device. Everything else of the scene is rebuilt from the copy.
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -121,12 +122,10 @@ void RenderJob::setMaterial(std::size_t index, const scene::Material& material) 
 void RenderJob::setFrame(float frame) {
   if (job_.accumulatesFrames())
     throw UsageError(fmt::format("the program '{}' counts its frames itself", job_.program.name));
-  Observer ignored;
-  applyEdits(ignored);
+  if (!std::isfinite(frame)) throw UsageError(fmt::format("frame {} is not finite", frame));
+  frame_ = frame;
+  frameOutdated_ = true;
   restart();
-  renderer_->finish();
-  showFrame(frame);
-  renderer_->sceneChanged();
 }
 
 void RenderJob::applyEdits(Observer& observer) {
@@ -135,22 +134,19 @@ void RenderJob::applyEdits(Observer& observer) {
     renderer_.reset();
     scene_.reset();
     prepare(observer);
-    if (frame_ != 0) {
-      showFrame(frame_);
-      renderer_->sceneChanged();
-    }
+    frameOutdated_ = true;  // a new scene shows frame 0
   } else if (!movedInstances_.empty()) {
     std::vector<render::InstanceTransform> transforms;
     for (const auto& [instance, worldFromObject] : movedInstances_) transforms.push_back({instance, worldFromObject});
-    renderer_->finish();
     scene_->onDevice->setTransforms(transforms);
     renderer_->sceneChanged();
   }
-  if (sceneEdited_) {
-    scene_->hash = scene::contentHash(*editedScene_).hex();
+  if (sceneEdited_) scene_->hash = scene::contentHash(*editedScene_).hex();
+  if (frameOutdated_)
+    showFrame();
+  else if (sceneEdited_)
     provenance_ = makeProvenance();
-  }
-  sceneOutdated_ = sceneEdited_ = false;
+  sceneOutdated_ = sceneEdited_ = frameOutdated_ = false;
   movedInstances_.clear();
 }
 

@@ -42,6 +42,31 @@ TEST(ApiProgram, FromSourceRenders) {
   EXPECT_THROW(renderer.render({.error = 0.1}), UsageError);
 }
 
+TEST(ApiProgram, FramesOfAllCallsCount) {
+  const Program program = Program::fromSource(kConstant, "constant");
+  Renderer renderer(device(), Scene::of(program), program, {.width = 8, .height = 4});
+  const double first = renderer.render(1).seconds;
+  const RenderReport second = renderer.render(1);
+  EXPECT_GT(first, 0);
+  EXPECT_GT(second.seconds, first);
+  // Limits that are reached already: nothing more is rendered.
+  const RenderReport samples = renderer.render({.samples = 2});
+  EXPECT_EQ(samples.reason, StopReason::samples);
+  EXPECT_EQ(samples.samples, 2);
+  EXPECT_EQ(samples.seconds, second.seconds);
+  const RenderReport time = renderer.render({.seconds = first});
+  EXPECT_EQ(time.reason, StopReason::time);
+  EXPECT_EQ(time.samples, 2);
+  const auto secondsOfFilm = [&] {
+    for (const auto& [name, text] : renderer.film().metadata())
+      if (name == "Seconds") return std::stod(text);
+    return -1.0;
+  };
+  EXPECT_GT(secondsOfFilm(), 0);
+  renderer.restart();
+  EXPECT_EQ(secondsOfFilm(), 0);
+}
+
 constexpr const char* kDescription = R"([program]
 ray_generation = "main.rgen"
 [[ray]]

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <limits>
 
 #include "scenes.h"
 
@@ -62,6 +63,68 @@ TEST_F(ApiRenderer, StopsAtAnErrorAndAtATime) {
   EXPECT_GE(time.samples, 4);
   EXPECT_THROW(renderer_.render(Limits{}), UsageError);
   EXPECT_THROW(renderer_.render({.error = -1.0}), UsageError);
+}
+
+TEST_F(ApiRenderer, ReportsWhyAdaptiveSamplingStops) {
+  Settings settings = smallImage();
+  settings.adaptive = true;
+  Renderer renderer(device(), scene_, pathTracer(), settings);
+  const RenderReport report = renderer.render({.samples = 41});
+  EXPECT_EQ(report.reason, StopReason::samples);
+  EXPECT_GT(report.samples, 32) << "16 samples are uniform, all others adaptive";
+  EXPECT_EQ(report.samples, renderer.film().sampleCount());
+  EXPECT_EQ(renderer.sampleCount(), renderer.film().sampleCount());
+  EXPECT_GT(renderer.render(16).samples, report.samples + 8);
+}
+
+// The squares exceed the range of the film, so the error of the image is never known.
+TEST_F(ApiRenderer, StopsIfTheErrorCannotBeKnown) {
+  Renderer renderer(device(), scene_, constantProgram("vec4(1e12)"), smallImage());
+  EXPECT_EQ(renderer.render({.error = 0.1}).reason, StopReason::unknownError);
+  int calls = 0;
+  const RenderReport report = renderer.render({.samples = 32, .error = 0.1}, [&](const Progress& progress) {
+    EXPECT_FALSE(progress.error);
+    return ++calls > 0;
+  });
+  EXPECT_GT(calls, 0);
+  EXPECT_EQ(report.reason, StopReason::samples);
+  EXPECT_FALSE(report.error);
+}
+
+TEST_F(ApiRenderer, CountsTheSamplesOfAPart) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "api_part.qfilm";
+  Settings settings = smallImage();
+  settings.plannedSamples = 30;
+  settings.batches = Batches{4, 7};
+  Renderer part(device(), scene_, pathTracer(), settings);
+  EXPECT_EQ(part.render(4).samples, 4);
+  EXPECT_EQ(part.sampleCount(), 4);
+  part.saveCheckpoint(file);
+  EXPECT_EQ(part.render({.samples = 8}).samples, 8);
+  const RenderReport report = part.render({.samples = 100}, [](const Progress& progress) {
+    EXPECT_LE(progress.samples, 14);
+    EXPECT_GT(progress.fraction, 0.5);
+    return true;
+  });
+  EXPECT_EQ(report.samples, 14) << "the end of the whole render";
+  EXPECT_EQ(report.reason, StopReason::samples);
+
+  Renderer second(device(), scene_, pathTracer(), settings);
+  EXPECT_TRUE(second.resume(file));
+  EXPECT_EQ(second.sampleCount(), 4);
+  EXPECT_EQ(second.render(Limits{}).samples, 14);
+  EXPECT_EQ(second.image().pixels, part.image().pixels);
+  std::filesystem::remove(file);
+}
+
+TEST_F(ApiRenderer, APartCanStopAtATime) {
+  Settings settings = smallImage();
+  settings.plannedSamples = 4'000'000;
+  settings.batches = Batches{500'000, 999'999};
+  Renderer part(device(), scene_, pathTracer(), settings);
+  const RenderReport report = part.render({.seconds = 0.01});
+  EXPECT_EQ(report.reason, StopReason::time);
+  EXPECT_GE(report.samples, 4);
 }
 
 TEST_F(ApiRenderer, WarnsOfAMissedTarget) {
@@ -159,6 +222,44 @@ TEST_F(ApiRenderer, NormalMapsOfEditedMaterialsHaveTangents) {
   EXPECT_EQ(renderer.image().pixels, expected);
 }
 
+// A program that does not compile for scenes with clear coat.
+TEST_F(ApiRenderer, RecoversFromAFailedRebuild) {
+  const Program program =
+      constantProgram("vec4(0.5)", "#ifndef QUINTET_NO_CLEARCOAT\n#error clear coat is not supported\n#endif");
+  Renderer renderer(device(), scene_, program, smallImage());
+  renderer.render(4);
+  Material coated = scene_.material(0);
+  coated.clearcoat = 1;
+  renderer.setMaterial(0, coated);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_THROW(renderer.render(4), ProgramError);
+    EXPECT_EQ(renderer.sampleCount(), 0);
+    EXPECT_THROW(renderer.image(), Error);
+    EXPECT_THROW(renderer.film(), Error);
+  }
+  renderer.setTransform(2, Transform::translation({0, 1, 1}));
+  renderer.setFrame(2);
+  renderer.setCamera(kCamera);
+  renderer.setMaterial(0, scene_.material(0));
+  EXPECT_EQ(renderer.render(4).samples, 4);
+  EXPECT_EQ(renderer.image().at(0, 0)[0], 0.5f);
+}
+
+TEST_F(ApiRenderer, ReportsWarningsOfARebuild) {
+  Scene empty;
+  empty.addMaterial({});
+  Renderer renderer(device(), empty, pathTracer(), smallImage());
+  const auto isReported = testing::Contains(HasSubstr("no surfaces"));
+  EXPECT_THAT(renderer.render(4).warnings, isReported);
+  renderer.setMaterial(0, {.emissive = {1, 1, 1}});
+  renderer.setFrame(1);
+  EXPECT_THAT(renderer.render(4).warnings, isReported);
+  renderer.setMaterial(0, {.clearcoat = 1});
+  EXPECT_FALSE(renderer.resume("missing.qfilm"));
+  EXPECT_THAT(renderer.render(4).warnings, isReported);
+  EXPECT_THAT(renderer.render(4).warnings, testing::Not(isReported));
+}
+
 TEST_F(ApiRenderer, ChangesImageParameters) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "api_parameter.exr";
   Image{1, 1, {0.25f, 0.5f, 1, 1}}.write(file);
@@ -201,6 +302,7 @@ TEST_F(ApiRenderer, RejectedEditsChangeNothing) {
   EXPECT_THROW(renderer_.setParameter("bouncs", "2"), UsageError);
   EXPECT_THROW(renderer_.setParameter("bounces", "many"), UsageError);
   EXPECT_THROW(renderer_.setCamera({.verticalFov = -1}), UsageError);
+  EXPECT_THROW(renderer_.setFrame(std::numeric_limits<float>::quiet_NaN()), UsageError);
   EXPECT_EQ(image(), rendered(scene_));
 }
 
@@ -286,8 +388,10 @@ TEST_F(ApiRenderer, ResumesOnlyTheSameFrame) {
 TEST_F(ApiRenderer, ResumesFromACheckpoint) {
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "api_checkpoint.qfilm";
   std::filesystem::remove(file);
+  renderer_.render(4);
   EXPECT_FALSE(renderer_.resume(file));
-  renderer_.render(8);
+  EXPECT_EQ(renderer_.sampleCount(), 4) << "there is nothing to resume from";
+  renderer_.render(4);
   renderer_.saveCheckpoint(file);
 
   Renderer second(device(), scene_, pathTracer(), smallImage());
@@ -297,7 +401,10 @@ TEST_F(ApiRenderer, ResumesFromACheckpoint) {
   EXPECT_EQ(second.image().pixels, rendered(scene_, smallImage(), 12));
 
   renderer_.setTransform(2, Transform::translation({0, 1, 0}));  // a different render
+  const std::vector<float> before = image(8);
   EXPECT_THROW(renderer_.resume(file), FileError);
+  EXPECT_EQ(renderer_.sampleCount(), 8);
+  EXPECT_EQ(renderer_.image().pixels, before);
   std::filesystem::remove(file);
 }
 
