@@ -171,7 +171,7 @@ class Watch {
   int run() {
     try {
       return renderUntilStopped();
-    } catch (const gpu::DeviceLostError& error) {  // as if the driver had crashed
+    } catch (const DeviceLostError& error) {  // as if the driver had crashed
       reportFailure(error, options_.console.json);
       return kCrashed;
     }
