@@ -164,7 +164,8 @@ ErrorEstimate ErrorEstimator::estimate() const {
   estimate.cells.resize(2 * std::size_t{tileCount(shape_.region)});
   for (std::size_t c = 0; c < estimate.cells.size(); ++c)
     estimate.cells[c].batches = shape_.counts.batchesOf(static_cast<std::uint32_t>(c));
-  if (!known_) return estimate;
+  const auto isNan = [](const Moments& pixel) { return std::isnan(pixel.luminance); };
+  if (!known_ || std::ranges::all_of(moments_, isNan)) return estimate;
   const std::array<double, 2> epsilon = epsilonSquared();
   std::atomic<bool> unknown{false};
   const std::size_t tileRows = tileCount(shape_.region) / tileColumns(shape_.region.width);

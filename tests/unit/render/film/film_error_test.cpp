@@ -114,6 +114,12 @@ TEST(FilmError, IsUnknownIfSquaresExceedTheRange) {
   EXPECT_TRUE(std::isnan(varianceImage(simulation.film).pixel<float>(17, 0)[0]));
 }
 
+TEST(FilmError, IsUnknownIfAllPixelsAreNaN) {
+  FilmSimulation simulation(40, 8);
+  simulation.render([](auto, auto) { return std::numeric_limits<double>::quiet_NaN(); }, 4);
+  EXPECT_FALSE(estimateError(simulation.film).known());
+}
+
 TEST(FilmError, IsZeroForConstantImages) {
   for (const double value : {0.0, 3.0}) {
     FilmSimulation simulation(40, 8);
