@@ -41,6 +41,8 @@ bool LiveJob::reload(Observer& observer) {
     list_.addFiles(filesOf(error.diagnostics()));
     observer.diagnostics(error.diagnostics());
   } catch (const FileError& error) {
+    list_.addFile(error.file());
+    watchFiles();
     if (isFirst) throw;
     observer.diagnostics({asDiagnostic(error)});
   } catch (const UsageError& error) {  // such as a value for a parameter that no longer exists

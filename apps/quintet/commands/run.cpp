@@ -227,6 +227,7 @@ class Watch {
   }
 
   void render() {
+    setWorkStage("rendering");
     files_.clear();
     job::RenderResult result = live_.job()->run(options_.request.limits, console_);
     if (result.abandoned) return;
