@@ -104,8 +104,11 @@ std::string programHash(const program::Program& program, const std::vector<Hash>
 
 std::vector<std::filesystem::path> programFiles(const ResolvedJob& job) {
   std::vector<std::filesystem::path> files;
-  for (const auto& [name, text] : job.program.files)
-    if (isProgramSource(name)) files.emplace_back(job.program.path(name));
+  std::error_code ignored;
+  for (const auto& [name, text] : job.program.files) {  // the stages of the lecture form are not files
+    const std::filesystem::path file = job.program.path(name);
+    if (isProgramSource(name) && std::filesystem::is_regular_file(file, ignored)) files.push_back(file);
+  }
   for (const program::ImageValue& image : job.parameters.images())
     if (!image.file.empty()) files.emplace_back(image.ofProgram ? job.program.path(image.file) : image.file);
   if (!job.request.parameterFile.empty()) files.push_back(job.request.parameterFile);

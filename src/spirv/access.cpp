@@ -7,11 +7,6 @@ namespace quintet::spirv {
 
 using spv::Op;
 
-bool isAccessChain(Op op) {
-  return op == Op::OpAccessChain || op == Op::OpInBoundsAccessChain || op == Op::OpPtrAccessChain ||
-         op == Op::OpInBoundsPtrAccessChain;
-}
-
 bool overlap(IndexPath a, IndexPath b) {
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
     if (a[i] && b[i] && *a[i] != *b[i]) return false;

@@ -12,8 +12,6 @@
 
 namespace quintet::spirv {
 
-bool isAccessChain(spv::Op op);  // OpAccessChain, OpPtrAccessChain and their InBounds forms
-
 using IndexPath = std::span<const std::optional<std::uint32_t>>;  // nullopt for dynamic indices
 
 // True if two lists of indices into the same type can select common parts.

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "spirv/access.h"
 #include "spirv/source_text.h"
 
 namespace quintet::spirv {
@@ -505,6 +504,11 @@ bool Module::isConstant(Id id) const {
   return value && (value->op == spv::Op::OpConstant || value->op == spv::Op::OpConstantTrue ||
                    value->op == spv::Op::OpConstantFalse || value->op == spv::Op::OpConstantNull ||
                    value->op == spv::Op::OpConstantComposite || value->op == spv::Op::OpUndef);
+}
+
+bool isAccessChain(spv::Op op) {
+  return op == spv::Op::OpAccessChain || op == spv::Op::OpInBoundsAccessChain || op == spv::Op::OpPtrAccessChain ||
+         op == spv::Op::OpInBoundsPtrAccessChain;
 }
 
 Access Module::access(Id pointer) const {

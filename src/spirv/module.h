@@ -68,6 +68,8 @@ struct Access {
   std::vector<Id> indexIds;
 };
 
+bool isAccessChain(spv::Op op);  // OpAccessChain, OpPtrAccessChain and their InBounds forms
+
 class Module {
  public:
   // Returns nullopt if the words cannot be analyzed, with the reason in `why` (which can be null).
