@@ -6,7 +6,8 @@
 //   quintet_fuzz --root FOLDER [--count N] [--seed S] [--first K] [--jobs J] [--only K] [--keep FOLDER] [--strict]
 //
 // --only runs one mutant in this process. --keep writes the files of mutants that crash. The exit status is 1 if a mutant
-// crashed in Quintet itself (before the pipeline is created), threw an unknown exception, or, with --strict, crashed at all.
+// crashed or did not end in Quintet itself (before the pipeline is created), threw an unknown exception, or, with --strict,
+// crashed at all; also if no mutant was rendered. It is 2 for a wrong command line, and without a usable device.
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -223,6 +224,9 @@ void keep(const Options& options, const std::vector<Source>& sources, std::uint6
   ::_exit(0);
 }
 
+// Crashes and endless loops before the driver gets the program are defects of Quintet.
+bool isOurs(std::uint8_t stage) { return stage < kLink; }
+
 struct Crash {
   std::uint64_t number;
   int signal;
@@ -256,6 +260,7 @@ int supervise(const Options& options, const std::vector<Source>& sources) {
   shared->next = options.first;
   std::vector<pid_t> workers(options.jobs, 0);
   std::vector<Crash> crashes;
+  bool failed = false;
   const long begin = nowSeconds();
   long lastProgress = begin;
   const std::uint64_t end = options.first + options.count;
@@ -289,20 +294,19 @@ int supervise(const Options& options, const std::vector<Source>& sources) {
       const bool stuck = WTERMSIG(status) == SIGKILL;
       // Without a mutant it crashed at its end, because of an earlier one.
       if (slot.busy) shared->outcomes[number - options.first] = stuck ? kStuck : kCrash;
+      if (stuck) failed = failed || isOurs(slot.stage);
       if (!stuck) crashes.push_back({number, WTERMSIG(status), slot.busy ? slot.stage : std::uint8_t{kRun}, false});
       fmt::print("mutant {}: {} in {} (signal {}); {}\n", number, stuck ? "stuck" : "crash", kStageNames[slot.stage],
                  WTERMSIG(status), makeMutant(sources, options.seed, number).changes);
       std::fflush(stdout);
     }
   }
-  bool failed = false;
   std::size_t confirmed = 0;
   for (Crash& crash : crashes) {
     const auto [status, stage] = runAlone(options, sources, crash.number, shared->slots[0]);
     crash.again = WIFSIGNALED(status) && WTERMSIG(status) != SIGALRM;
     if (crash.again) crash.stage = stage, ++confirmed;
-    const bool ours = crash.stage < kLink;
-    failed = failed || options.strict || (ours && crash.again);
+    failed = failed || options.strict || (isOurs(crash.stage) && crash.again);
     fmt::print("crash: mutant {} of {}, signal {} in {}{}\n", crash.number,
                makeMutant(sources, options.seed, crash.number).source->name, crash.signal, kStageNames[crash.stage],
                crash.again ? "" : ", not alone");
@@ -315,7 +319,26 @@ int supervise(const Options& options, const std::vector<Source>& sources) {
   for (std::size_t k = 0; k < kOutcomes; ++k)
     if (counts[k] > 0) fmt::print(" {} {},", counts[k], kNames[k]);
   fmt::print(" {} crashes of a worker, {} also alone\n", crashes.size(), confirmed);
-  return failed || counts[kUnexpected] > 0 ? 1 : 0;
+  if (counts[kRendered] == 0) fmt::print("no mutant was rendered\n");
+  return failed || counts[kUnexpected] > 0 || counts[kRendered] == 0 ? 1 : 0;
+}
+
+// In a process of its own, so that the workers start without the driver's threads.
+bool hasDevice() {
+  const pid_t process = ::fork();
+  if (process == 0) {
+    try {
+      const gpu::Context context;
+      ::_exit(0);
+    } catch (const Error& error) {
+      fmt::print(stderr, "quintet_fuzz: {}\n", error.what());
+      ::_exit(2);
+    }
+  }
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 int main(int argc, char** argv) {
@@ -345,12 +368,17 @@ int main(int argc, char** argv) {
     else
       return 2;
   }
+  if (options.jobs == 0 || options.count == 0) {
+    fmt::print(stderr, "quintet_fuzz: --jobs and --count must be at least 1\n");
+    return 2;
+  }
   gpu::prepareDriverEnvironment();
   const std::vector<Source> sources = findSources(options.root);
   if (sources.empty()) {
     fmt::print(stderr, "quintet_fuzz: {}: no programs found\n", options.root.string());
     return 2;
   }
+  if (!hasDevice()) return 2;
   if (!options.only) return supervise(options, sources);
   keep(options, sources, *options.only);
   Slot slot;

@@ -138,8 +138,8 @@ TEST_F(FileWatching, WakesUpFromWaiting) {
     write(file_, "x");
   });
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_EQ(watcher_.wait(kLong), Paths{file_});
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  EXPECT_EQ(watcher_.wait(10.0 * kLong), Paths{file_});
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), kLong);
   writer.join();
 }
 

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <random>
 
 #include "program/compile.h"
@@ -118,11 +117,10 @@ void expectSound(const std::string& text, const Program& program) {
 
 TEST(LectureFuzz, ReadsMutationsAsStagesOrDiagnostics) {
   std::mt19937 random(20240416);
-  const auto start = std::chrono::steady_clock::now();
   const shader::Compiler compiler{shader::CompilerOptions{}};
   int accepted = 0, rejected = 0, compiled = 0;
   std::string text;
-  for (int i = 0; i < 6000 && std::chrono::steady_clock::now() - start < std::chrono::seconds(3); ++i) {
+  for (int i = 0; i < 1000; ++i) {
     text = i % 4 == 0 || text.size() > 10000 ? kProgram : text;  // mutations accumulate
     text = mutated(text, random);
     const Program program = parseLecture(text, "demo.rt.glsl", "here");
