@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cstdint>
 #include <map>
+#include <utility>
 
 namespace quintet::demo {
 namespace {

@@ -15,6 +15,7 @@
 #include <spirv/unified1/spirv.hpp11>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostic.h"

@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 #include <set>
+#include <utility>
 
 namespace quintet::spirv {
 namespace {
