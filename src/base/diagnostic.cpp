@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
+
 namespace quintet {
 namespace {
 
@@ -50,13 +52,10 @@ std::string countText(const std::vector<Diagnostic>& diagnostics) {
   const auto count = [&](Severity severity) {
     return std::ranges::count(diagnostics, severity, &Diagnostic::severity);
   };
-  const auto plural = [](auto number, std::string_view noun) {
-    return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
-  };
   const auto errors = count(Severity::error), warnings = count(Severity::warning);
   std::string text;
-  if (errors > 0) text = plural(errors, "error");
-  if (warnings > 0) text += (text.empty() ? "" : ", ") + plural(warnings, "warning");
+  if (errors > 0) text = counted(errors, "error");
+  if (warnings > 0) text += (text.empty() ? "" : ", ") + counted(warnings, "warning");
   return text;
 }
 

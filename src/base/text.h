@@ -12,6 +12,9 @@ namespace quintet {
 // Returns `text` with '?' for control characters and for bytes that are not valid UTF-8.
 std::string printable(std::string_view text);
 
+// Returns the text with the letters A to Z in lower case.
+std::string lowerCase(std::string_view text);
+
 // Returns the text, in single quotes where a shell would need them.
 std::string shellQuoted(std::string_view text);
 

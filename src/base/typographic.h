@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Typographic quotes that text processors and web pages put into commands and programs.
+// Typographic quotes that word processors and web pages put into commands and programs.
 #ifndef QUINTET_BASE_TYPOGRAPHIC_H
 #define QUINTET_BASE_TYPOGRAPHIC_H
 

@@ -62,4 +62,10 @@ std::string wrapped(std::string_view text, std::size_t width, std::size_t indent
   return result;
 }
 
+std::string twoColumns(std::string_view left, std::string_view right, std::size_t column, std::size_t width) {
+  const bool fits = left.empty() || columnsOf(left) + 2 <= column;
+  return (fits ? padded(left, column) : std::string(left) + "\n" + std::string(column, ' ')) +
+         wrapped(right, width, column, column) + "\n";
+}
+
 }  // namespace quintet

@@ -24,5 +24,9 @@ std::vector<std::string> wrapText(std::string_view text, std::size_t width);
 // from column 0. No line break at the end.
 std::string wrapped(std::string_view text, std::size_t width, std::size_t indent, std::size_t first = 0);
 
+// Returns lines in two columns, with a line break at the end: `right` starts at `column`, in the next line if `left` leaves no
+// room for two spaces between them.
+std::string twoColumns(std::string_view left, std::string_view right, std::size_t column, std::size_t width);
+
 }  // namespace quintet
 #endif

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <limits>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "base/text.h"
 #include "gpu/error.h"
 
 namespace quintet::gpu {
@@ -18,12 +18,6 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kKindsByPreference = {"discrete GPU", "integrated GPU", "virtual GPU",
                                                                 "other", "CPU"};
-
-std::string lowerCase(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <new>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "io/formats.h"
 
 namespace quintet::io {
@@ -32,11 +32,7 @@ auto withFormat(const Source& source, Read&& read) {
   }
 }
 
-std::string lowerExtension(const std::filesystem::path& file) {
-  std::string text = file.extension().string();
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
+std::string lowerExtension(const std::filesystem::path& file) { return lowerCase(file.extension().string()); }
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/plural.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "job/film_store.h"
@@ -66,8 +67,8 @@ std::vector<std::string> notesOn(const FilmComparison& c) {
     std::uint64_t dropped = 0;
     for (const uvec2& pixel : c.films[i].film.statistics) dropped += pixel.y;
     if (dropped > 0)
-      notes.push_back(dropped == 1 ? fmt::format("1 sample of {} was not finite and is omitted", "AB"[i])
-                                   : fmt::format("{} samples of {} were not finite and are omitted", dropped, "AB"[i]));
+      notes.push_back(fmt::format("{} of {} {} not finite and {} omitted", counted(dropped, "sample"), "AB"[i],
+                                  nounFor(dropped, "was", "were"), nounFor(dropped, "is", "are")));
   }
   return notes;
 }

@@ -88,8 +88,8 @@ std::vector<std::string> resultWarnings(const RenderResult& result) {
   std::vector<std::string> warnings;
   if (result.targetMissed && !result.interrupted) warnings.push_back(targetMissedText(result));
   if (const std::uint64_t count = result.provenance.droppedSamples; count > 0)
-    warnings.push_back((count == 1 ? "1 sample was not finite and is omitted"
-                                   : fmt::format("{} samples were not finite and are omitted", count)) +
+    warnings.push_back(fmt::format("{} {} not finite and {} omitted", counted(count, "sample"),
+                                   nounFor(count, "was", "were"), nounFor(count, "is", "are")) +
                        pixelText(count, result.provenance.firstDroppedSample));
   for (const render::NotFinitePixels& pixels : result.notFinite)
     warnings.push_back(fmt::format("{} of the output '{}' {}", counted(pixels.count, "pixel"), pixels.output,
@@ -98,11 +98,12 @@ std::vector<std::string> resultWarnings(const RenderResult& result) {
                                        : nounFor(pixels.count, "is", "are") + " not finite") +
                        pixelText(pixels.count, PixelPosition{pixels.first.x, pixels.first.y}) +
                        "; see 'quintet explain Q002'");
-  if (result.skippedTraces > 0)
+  if (result.skippedTraces > 0) {
+    const std::string were = nounFor(result.skippedTraces, "was", "were");
     warnings.push_back(fmt::format(
-        "{} deeper than the recursion depth {} of the pipeline and {} not executed; see 'quintet explain Q003'",
-        result.skippedTraces == 1 ? "1 trace was" : fmt::format("{} traces were", result.skippedTraces),
-        result.recursionDepth, result.skippedTraces == 1 ? "was" : "were"));
+        "{} {} deeper than the recursion depth {} of the pipeline and {} not executed; see 'quintet explain Q003'",
+        counted(result.skippedTraces, "trace"), were, result.recursionDepth, were));
+  }
   return warnings;
 }
 

@@ -50,8 +50,8 @@ std::string meansText(const ZTestMeans& m) {
 }
 
 std::string nonFiniteText(const ZTest& test) {
-  return test.nonFinitePixels == 1 ? "1 pixel is not finite"
-                                   : fmt::format("{} pixels are not finite", test.nonFinitePixels);
+  return fmt::format("{} {} not finite", counted(test.nonFinitePixels, "pixel"),
+                     nounFor(test.nonFinitePixels, "is", "are"));
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "output/plan.h"
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "base/file.h"
 #include "base/plural.h"
 #include "base/suggestion.h"
+#include "base/text.h"
 #include "output/file_names.h"
 
 namespace quintet::output {
@@ -82,9 +82,7 @@ std::vector<std::size_t> selectOutputs(const OutputRequest& request, const progr
 
 FileKind fileKind(const std::filesystem::path& file) {
   if (file == "-") return FileKind::png;
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lowerCase(file.extension().string());
   if (extension == ".png") return FileKind::png;
   if (extension == ".exr") return FileKind::exr;
   if (extension == ".hdr") return FileKind::hdr;

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/load.h"
 
-#include <algorithm>
-#include <cctype>
 #include <string_view>
 #include <utility>
 
 #include "base/file.h"
+#include "base/text.h"
 #include "scene/gltf/gltf.h"
 #include "scene/toml/scene_toml.h"
 
 namespace quintet::scene {
 
 SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::byte> content) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lowerCase(file.extension().string());
   if (extension == ".gltf" || extension == ".glb") return SceneFormat::gltf;
   if (extension == ".toml") return SceneFormat::toml;
   const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());

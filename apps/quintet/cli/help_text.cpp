@@ -21,9 +21,7 @@ constexpr std::size_t kHelpColumn = 28;
 std::string optionText(const Option& option, std::size_t width) {
   std::string left = fmt::format("  {}", fmt::join(option.nameList(), ", "));
   if (!option.value.empty()) left += " " + option.value;
-  const std::string text = wrapped(option.help, width, kHelpColumn, kHelpColumn);
-  if (left.size() + 2 > kHelpColumn) return left + "\n" + std::string(kHelpColumn, ' ') + text + "\n";
-  return padded(left, kHelpColumn) + text + "\n";
+  return twoColumns(left, option.help, kHelpColumn, width);
 }
 
 }  // namespace

@@ -25,12 +25,6 @@ namespace {
 
 using Infos = std::vector<const check::DiagnosticInfo*>;
 
-std::string lowerCase(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 // Returns the words of a text in lower case and without a plural s: "any-hit shaders" has "any", "hit" and "shader".
 std::set<std::string> wordsOf(std::string_view text) {
   const auto isPart = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
@@ -67,7 +61,7 @@ std::string listText(const Infos& infos) {
   const std::size_t width = terminalWidth(STDOUT_FILENO).value_or(std::string::npos);
   std::string text;
   for (const check::DiagnosticInfo* info : infos)
-    text += fmt::format("{:<6}{:<9}{}\n", info->id, severityName(info->severity), wrapped(info->title, width, 15, 15));
+    text += twoColumns(fmt::format("{:<6}{}", info->id, severityName(info->severity)), info->title, 15, width);
   return text;
 }
 

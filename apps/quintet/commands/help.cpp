@@ -3,7 +3,6 @@
 #include "commands/help.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -88,7 +87,7 @@ std::string overviewText() {
       wrapped("Quintet: five shaders in, image out. A path tracer for glTF scenes on Vulkan ray tracing.", width, 0) +
       "\n\nUsage: quintet COMMAND [OPTIONS]\n\nCommands:\n";
   for (const Command& command : commands())
-    text += fmt::format("  {:<10}{}\n", command.name, wrapped(command.summary, width, 12, 12));
+    text += twoColumns(fmt::format("  {}", command.name), command.summary, 12, width);
   return text +
          "\n  quintet COMMAND --help      options and examples of a command\n"
          "  quintet --version           version of Quintet\n\nExamples:\n" +

@@ -11,6 +11,7 @@
 #include <map>
 #include <tuple>
 
+#include "base/text.h"
 #include "base/typographic.h"
 
 namespace quintet::program {
@@ -23,12 +24,6 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
   while (!text.empty() && blank(text.back())) text.remove_suffix(1);
   return text;
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
 }
 
 // Returns the number of "0.5", "1.0f" or "true"; empty for other texts.
@@ -97,7 +92,7 @@ std::map<std::string, std::string> attributesOf(std::string_view comment) {
     std::size_t begin = end;
     while (begin > 0 && (std::isalnum(static_cast<unsigned char>(comment[begin - 1])) || comment[begin - 1] == '_'))
       --begin;
-    if (begin < end) result[lower(comment.substr(begin, end - begin))] = comment.substr(value, close - value);
+    if (begin < end) result[lowerCase(comment.substr(begin, end - begin))] = comment.substr(value, close - value);
     equals = close;
   }
   return result;
@@ -228,8 +223,8 @@ class DeclarationReader {
 
   bool readRange(Parameter& parameter, std::size_t token) {
     if (parameter.type == ParameterType::vec3 &&
-        (lower(parameter.name).find("color") != std::string::npos ||
-         lower(parameter.name).find("colour") != std::string::npos || lower(attribute({"type"})) == "color"))
+        (lowerCase(parameter.name).find("color") != std::string::npos ||
+         lowerCase(parameter.name).find("colour") != std::string::npos || lowerCase(attribute({"type"})) == "color"))
       parameter.type = ParameterType::color;
     parameter.unit = attribute({"unit"});
     parameter.help = attribute({"help", "description", "label"});

@@ -242,9 +242,9 @@ std::vector<Diagnostic> outputDiagnostics(const program::Program& description, c
   if (const RayCount count = film.countRays(); count.droppedSamples > 0)
     result.push_back(
         {Severity::error, file, 0, 0, "Q002",
-         fmt::format("{} not finite; the program dropped {}; the first is at pixel {}, {}",
-                     count.droppedSamples == 1 ? "1 sample was" : fmt::format("{} samples were", count.droppedSamples),
-                     count.droppedSamples == 1 ? "it" : "them", count.firstDropped.x, count.firstDropped.y)});
+         fmt::format("{} {} not finite; the program dropped {}; the first is at pixel {}, {}",
+                     counted(count.droppedSamples, "sample"), nounFor(count.droppedSamples, "was", "were"),
+                     nounFor(count.droppedSamples, "it", "them"), count.firstDropped.x, count.firstDropped.y)});
   return result;
 }
 

@@ -31,6 +31,8 @@ TEST(Text, FormatsBytes) {
   EXPECT_EQ(bytesText(std::numeric_limits<std::uint64_t>::max()), "16.0 EiB");
 }
 
+TEST(Text, LowerCase) { EXPECT_EQ(lowerCase("Ab.GLB É"), "ab.glb É"); }
+
 TEST(Text, FormatsDurations) {
   EXPECT_EQ(durationText(-1.0), "0.0 s");
   EXPECT_EQ(durationText(2.46), "2.5 s");

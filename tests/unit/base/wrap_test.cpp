@@ -32,6 +32,13 @@ TEST(Wrap, Indents) {
   EXPECT_EQ(wrapped("one two", 3, 5, 5), "one\n     two");
 }
 
+TEST(Wrap, TwoColumns) {
+  EXPECT_EQ(twoColumns("name", "one two", 6, 20), "name  one two\n");
+  EXPECT_EQ(twoColumns("name", "one two", 6, 10), "name  one\n      two\n");
+  EXPECT_EQ(twoColumns("names", "one two", 6, 20), "names\n      one two\n");
+  EXPECT_EQ(twoColumns("", "one", 1, 20), " one\n");
+}
+
 TEST(Plural, FollowsTheNumber) {
   EXPECT_EQ(counted(1, "sample"), "1 sample");
   EXPECT_EQ(counted(0, "sample"), "0 samples");

@@ -64,8 +64,7 @@ class ArgumentRule {
   // "no miss shaders", "1 miss shader (index 0)", "3 miss shaders (index 0 to 2)"
   static std::string countText(std::size_t count, std::string_view noun) {
     if (count == 0) return fmt::format("no {}s", noun);
-    return count == 1 ? fmt::format("1 {} (index 0)", noun)
-                      : fmt::format("{} {}s (index 0 to {})", count, noun, count - 1);
+    return counted(count, noun) + (count == 1 ? " (index 0)" : fmt::format(" (index 0 to {})", count - 1));
   }
 
   // The values of at least `count` that occur; a lower bound if the values are not known.
@@ -107,7 +106,7 @@ class ArgumentRule {
     for (const std::uint32_t offset : wrongValues(trace.offset, static_cast<std::uint32_t>(rays))) {
       report_.add("Q501", location_,
                   fmt::format("the offset of this trace is {}{}, but each geometry has {} (one per ray type){}",
-                              boundText(trace.offset), offset, recordText(rays), sceneText(trace, offset)));
+                              boundText(trace.offset), offset, counted(rays, "record"), sceneText(trace, offset)));
       return;
     }
     if (!trace.stride.certain()) return;
@@ -118,8 +117,9 @@ class ArgumentRule {
   // With a stride other than the number of ray types, all but the first geometry of an instance use wrong records.
   void checkStride(const spirv::TraceFacts& trace, std::uint32_t stride) {
     const std::size_t rays = graph_.rayCount();
-    const std::string text = fmt::format(
-        "the stride of this trace is {}, but each geometry has {} (one per ray type): ", stride, recordText(rays));
+    const std::string text =
+        fmt::format("the stride of this trace is {}, but each geometry has {} (one per ray type): ", stride,
+                    counted(rays, "record"));
     if (!input_.scene) {
       report_.add("Q501", location_, text + "the second geometry of a mesh uses the records of a different geometry");
       return;
@@ -136,7 +136,6 @@ class ArgumentRule {
     }
   }
 
-  static std::string recordText(std::size_t count) { return fmt::format("{} record{}", count, count == 1 ? "" : "s"); }
   static bool seen(const spirv::TraceFacts& trace, const program::InstanceFacts& instance) {
     return trace.mask.mayHave(instance.mask & kMaskBits);
   }
