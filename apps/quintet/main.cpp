@@ -28,7 +28,7 @@ int dispatch(const std::vector<std::string>& arguments) {
   const std::string first = arguments.empty() ? "--help" : arguments.front();
   if (first == "--help" || first == "-h") {
     writeFile("-", overviewText());
-    return arguments.empty() ? 2 : 0;
+    return arguments.empty() ? kWrongCommandLine : 0;
   }
   if (first == "--version" || first == "version") {
     writeFile("-", "quintet " QUINTET_VERSION "\n");
@@ -80,8 +80,8 @@ int main(int argc, char** argv) {
     gpu::prepareDriverEnvironment();  // before other threads exist
     return cli::dispatch(arguments);
   } catch (const std::exception& error) {
-    return cli::reportFailure(error, cli::wantsJson(arguments), cli::quoteHint(arguments));
+    return cli::reportFailure(error, cli::failureJson(arguments), cli::quoteHint(arguments));
   } catch (...) {
-    return cli::reportFailure(Error("unknown error"), cli::wantsJson(arguments));
+    return cli::reportFailure(Error("unknown error"), cli::failureJson(arguments));
   }
 }

@@ -50,7 +50,7 @@ std::vector<DeviceInfo> devices();
 
 // Which device to open, and what it may keep on disk.
 struct DeviceOptions {
-  // Index, or part of the name ("h200", "lavapipe", "cpu"). Empty means $QUINTET_DEVICE, else the first usable device.
+  // Index, or part of the name, driver name or kind ("h200", "lavapipe", "cpu"). Empty means $QUINTET_DEVICE, else the first usable device.
   std::string choice{};
   std::filesystem::path cacheFolder{};                  // for compiled shaders and pipelines; empty disables the caches
   std::function<void(const std::string&)> onWarning{};  // of the driver; called from any thread; may be empty

@@ -18,7 +18,7 @@ struct RelatedLocation {
   std::string file{};  // as in Diagnostic
   int line = 0;        // 1-based; 0: unknown
   int column = 0;      // 1-based, in bytes; 0: unknown
-  std::string text{};  // what is there, without a period
+  std::string text{};  // what the location contains, without a period
 };
 
 // One problem of a program, with its location.

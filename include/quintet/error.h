@@ -13,12 +13,13 @@ namespace quintet {
 // What a caller can change in the request so that it succeeds. A front end adds the name of its option or control.
 enum class Remedy {
   none,
-  overwrite,          // allow to lose the samples of a film
+  overwrite,          // allow the samples of a film to be lost
   startOver,          // discard the checkpoint
   resumeOrStartOver,  // continue from the checkpoint, or discard it
   renderRegion,       // render a part of the image
   selectLayer,        // request the output as a layer
   allowDifference,    // name the facts of two films that may differ
+  measureLaunches,    // measure the launches of the program instead of its rays
 };
 
 // Base of all exceptions that the library throws on purpose; also thrown itself, for example if no device can be used.

@@ -22,7 +22,7 @@ class Commands;
 class PipelineStore;
 
 struct ContextOptions {
-  // An index ("1") or a part of the name, the driver's name or the kind, case-insensitive ("h200", "lavapipe", "cpu").
+  // Index, or part of the name, driver name or kind, case-insensitive: "1", "h200", "lavapipe", "cpu".
   // Empty means $QUINTET_DEVICE; if that is empty too, the first usable device, GPUs before CPUs.
   std::string device;
   // Enables the validation layer with synchronization validation. Its messages are counted and logged as warnings. The

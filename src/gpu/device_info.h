@@ -72,9 +72,9 @@ std::string deviceKindName(VkPhysicalDeviceType type);
 int devicePreference(std::string_view kind);
 
 // Returns the index of the device that ContextOptions::device = `request` selects. `devices` are in the order of
-// preference. A request of digits is an index and never a part of a name. Any other request is a part of the device's
-// name without version numbers, of the driver's name, or of the kind. Throws NoDeviceError with a list of all devices
-// if none matches.
+// preference. A request of digits is an index and never a part of a name. Any other request is the complete name, or a part
+// of the name without version numbers, of the driver name, or of the kind. Throws NoDeviceError with a list of all
+// devices if none matches.
 std::size_t chooseDevice(std::span<const DeviceInfo> devices, std::string_view request);
 
 }  // namespace quintet::gpu

@@ -110,9 +110,10 @@ Json rateRatio(const Setup& setup, render::DeviceScene& scene) {
   gpu::Context& context = scene.context();
   if (std::ranges::any_of(scene.facts().geometries, &program::GeometryFacts::procedural))
     throw UsageError(
-        fmt::format("{}: the comparison with minimal shaders works for triangles only, and the scene has procedural "
-                    "geometry; use 'quintet bench {} SCENE' to measure the launches of the program",
-                    setup.request.scene.string(), setup.request.program));
+        fmt::format(
+            "{}: the comparison with minimal shaders works for triangles only, and the scene has procedural geometry",
+            setup.request.scene.string()),
+        Remedy::measureLaunches);
   const program::Program program = program::loadProgram(setup.request.program);
   const program::Program replay = program::loadProgram("replay");
   gpu::BufferOptions recordOptions;
@@ -131,9 +132,8 @@ Json rateRatio(const Setup& setup, render::DeviceScene& scene) {
   const shared::RayKinds kinds = records.downloadAs<shared::RayKinds>(1)[0];
   if (kinds.camera == 0)
     throw UsageError(
-        fmt::format("the program '{}' traces no rays with traceClosest and traceVisible; use 'quintet bench {} "
-                    "SCENE' to measure its launches",
-                    setup.request.program, setup.request.program));
+        fmt::format("the program '{}' traces no rays with traceClosest and traceVisible", setup.request.program),
+        Remedy::measureLaunches);
 
   render::Renderer tracer = setup.renderer(scene, program, setup.settings(program, setup.size));
   render::RenderSettings replaying = setup.settings(replay, setup.size);

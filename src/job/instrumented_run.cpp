@@ -45,7 +45,8 @@ void renderSamples(render::Renderer& renderer, std::uint64_t count) {
 }  // namespace
 
 std::vector<Diagnostic> runInstrumented(Engine& engine, const program::Program& program, scene::Scene scene,
-                                        const RenderRequest& request, Observer& observer) {
+                                        const RenderRequest& request,
+                                        const std::function<void(const Diagnostic&)>& hung) {
   const render::RenderSettings settings = settingsFor(program, scene, request);
   const scene::Environment environment = chooseEnvironment(scene, request.environment).environment;
   gpu::Context& context = engine.context();
@@ -59,7 +60,7 @@ std::vector<Diagnostic> runInstrumented(Engine& engine, const program::Program& 
     renderSamples(renderer, request.limits.samples.value_or(accumulates ? kFrames : render::kBatchSamples));
     return renderer.runtimeDiagnostics();
   } catch (const TimeoutError& error) {
-    observer.deviceHung(hangDiagnostic(program, error.seconds()));
+    hung(hangDiagnostic(program, error.seconds()));
     throw;
   }
 }

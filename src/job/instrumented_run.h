@@ -3,11 +3,11 @@
 #ifndef QUINTET_JOB_INSTRUMENTED_RUN_H
 #define QUINTET_JOB_INSTRUMENTED_RUN_H
 
+#include <functional>
 #include <vector>
 
 #include "base/diagnostic.h"
 #include "job/engine.h"
-#include "job/observer.h"
 #include "job/request.h"
 #include "program/description/program.h"
 #include "scene/model/scene.h"
@@ -15,11 +15,12 @@
 namespace quintet::job {
 
 // Renders with the view, size, region, seed, parameters and number of samples (or frames) of the request, and returns
-// what the checks found (docs/diagnostics, Q001 to Q007). The defaults are 96x64 pixels, and one batch or two frames. A
-// launch that does not end within 20 s, or the request's timeout, is reported by Observer::deviceHung(). Throws
+// what the checks found (docs/diagnostics, Q001 to Q007). The defaults are 96x64 pixels, and one batch or two frames.
+// `hung` is called as Observer::deviceHung() if a launch does not end within 20 s, or the request's timeout. Throws
 // UsageError, FileError, ProgramError and gpu errors.
 std::vector<Diagnostic> runInstrumented(Engine& engine, const program::Program& program, scene::Scene scene,
-                                        const RenderRequest& request, Observer& observer);
+                                        const RenderRequest& request,
+                                        const std::function<void(const Diagnostic&)>& hung);
 
 }  // namespace quintet::job
 #endif

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "check/scene_facts.h"
+#include "gpu/error.h"
 #include "job/device_limits.h"
 #include "job/engine.h"
 #include "job/instrumented_run.h"
@@ -70,6 +71,8 @@ bool CheckReport::passes(bool strict) const {
   });
 }
 
+bool CheckReport::wrongRequest() const { return std::ranges::any_of(programs, &ProgramReport::wrongRequest); }
+
 std::vector<std::string> findPrograms(const std::vector<std::string>& names) {
   std::vector<std::string> programs;
   for (const std::string& name : names) {
@@ -91,31 +94,40 @@ ProgramChecks::ProgramChecks(CheckRequest request, const fs::path& caches)
 
 CheckReport ProgramChecks::run(CheckObserver& observer) const {
   CheckReport report;
-  for (const std::string& name : findPrograms(request_.programs))
-    report.programs.push_back(checkProgram(name, observer));
+  for (std::string& name : findPrograms(request_.programs)) {
+    report.programs.emplace_back().name = std::move(name);
+    checkProgram(report, observer);
+  }
   return report;
 }
 
-ProgramReport ProgramChecks::checkProgram(const std::string& name, CheckObserver& observer) const {
-  ProgramReport report;
-  report.name = name;
-  observer.started(name);
+void ProgramChecks::checkProgram(CheckReport& all, CheckObserver& observer) const {
+  ProgramReport& report = all.programs.back();
+  std::vector<Diagnostic>& diagnostics = report.result.diagnostics;
+  observer.started(report.name);
   try {
-    report.program = program::loadProgram(name);
-    checkLoaded(report, observer);
+    report.program = program::loadProgram(report.name);
+    checkLoaded(all, observer);
+  } catch (const TimeoutError&) {
+    throw;
+  } catch (const ProgramError& error) {
+    for (const Diagnostic& d : error.diagnostics()) addUnique(diagnostics, d);
   } catch (const FileError& error) {
-    report.result.diagnostics.push_back(asDiagnostic(error));
+    diagnostics.push_back(asDiagnostic(error));
+  } catch (const Error& error) {
+    report.wrongRequest = dynamic_cast<const UsageError*>(&error) != nullptr;
+    diagnostics.push_back({.file = report.name, .text = error.what()});
   }
   for (const fs::path& file : report.result.files) addFile(report, file);
-  for (const Diagnostic& d : report.result.diagnostics) addFile(report, d.file);
+  for (const Diagnostic& d : diagnostics) addFile(report, d.file);
   if (report.program)
     for (const auto& [file, text] : report.program->files) addFile(report, report.program->path(file));
   observer.finished(report);
-  return report;
 }
 
 // On the requested scene or the program's own; without either, what holds for every scene.
-void ProgramChecks::checkLoaded(ProgramReport& report, CheckObserver& observer) const {
+void ProgramChecks::checkLoaded(CheckReport& all, CheckObserver& observer) const {
+  ProgramReport& report = all.programs.back();
   const program::Program& program = *report.program;
   const SceneSource source = chooseSceneSource(request_.scene, program);
   const bool hasScene = !request_.scene.empty() || !program.scene.empty();
@@ -126,17 +138,22 @@ void ProgramChecks::checkLoaded(ProgramReport& report, CheckObserver& observer) 
     for (const fs::path& file : scene->report.files) addFile(report, file);
   if (hasScene) report.facts = check::sceneFacts(*scene);
   report.result = check::checkWithOptionalOutputs(program, compiler_, report.facts ? &*report.facts : nullptr, limits_);
-  if (request_.instrument && report.result.ok()) addRun(report, std::move(*scene), observer);
+  if (request_.instrument && report.result.ok()) addRun(all, std::move(*scene), observer);
 }
 
 // What only a run can show.
-void ProgramChecks::addRun(ProgramReport& report, scene::Scene scene, CheckObserver& observer) const {
+void ProgramChecks::addRun(CheckReport& all, scene::Scene scene, CheckObserver& observer) const {
+  ProgramReport& report = all.programs.back();
   const program::Program& program = *report.program;
   observer.rendering(program);
   for (const program::ImageValue& image : parameterValues(program, request_.run).images())
     if (!image.ofProgram) addFile(report, image.file);
   Engine engine({.device = request_.device, .caches = caches_});
-  std::vector<Diagnostic> found = runInstrumented(engine, program, std::move(scene), request_.run, observer);
+  std::vector<Diagnostic> found =
+      runInstrumented(engine, program, std::move(scene), request_.run, [&](const Diagnostic& hang) {
+        report.result.diagnostics.push_back(hang);
+        observer.hung(all);
+      });
   std::ranges::move(check::Suppressions(program).apply(found), std::back_inserter(report.result.suppressed));
   std::ranges::move(found, std::back_inserter(report.result.diagnostics));
 }

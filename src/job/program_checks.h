@@ -13,7 +13,6 @@
 #include "check/check.h"
 #include "check/diagram/pipeline_model.h"
 #include "check/sources.h"
-#include "job/observer.h"
 #include "job/request.h"
 #include "program/description/program.h"
 #include "program/scene_facts.h"
@@ -37,6 +36,7 @@ struct ProgramReport {
   std::optional<program::SceneFacts> facts;  // none if any scene was assumed
   check::CheckResult result;
   std::vector<std::filesystem::path> files;  // on disk, that the result depends on
+  bool wrongRequest = false;                 // the program is unknown, or a parameter is invalid
 };
 
 struct CheckReport {
@@ -49,14 +49,20 @@ struct CheckReport {
 
   // No program has an error, or with `strict` a warning.
   bool passes(bool strict) const;
+
+  bool wrongRequest() const;  // of any program
 };
 
-// The observer of an instrumented run also follows the check.
-class CheckObserver : public Observer {
+class CheckObserver {
  public:
+  virtual ~CheckObserver() = default;
+
   virtual void started(const std::string& /*name*/) {}            // the check of a program
   virtual void rendering(const program::Program& /*program*/) {}  // its instrumented run; valid until finished()
   virtual void finished(const ProgramReport& /*report*/) {}
+  // A launch did not end in time. The report contains all programs so far, and this as the last diagnostic. A front end
+  // should print it and exit without unwinding, as after Observer::deviceHung().
+  virtual void hung(const CheckReport& /*report*/) {}
 };
 
 // Returns the names with each folder replaced by the programs in it and its subfolders, sorted. Hidden folders and links to
@@ -70,17 +76,18 @@ class ProgramChecks {
 
   const CheckRequest& request() const { return request_; }
 
-  // Checks what is on disk now. Errors of files and programs are diagnostics. Throws UsageError for unknown programs and
-  // invalid parameters, and gpu errors.
+  // Checks what is on disk now. Errors are diagnostics; those without a location have the name of the program as their file
+  // and no id. Throws TimeoutError if CheckObserver::hung() returns.
   CheckReport run(CheckObserver& observer) const;
 
   // Describes how the shaders of a checked program connect. Returns nullopt if it does not compile.
   std::optional<check::PipelineModel> pipelineOf(const ProgramReport& report) const;
 
  private:
-  ProgramReport checkProgram(const std::string& name, CheckObserver& observer) const;
-  void checkLoaded(ProgramReport& report, CheckObserver& observer) const;
-  void addRun(ProgramReport& report, scene::Scene scene, CheckObserver& observer) const;
+  // The program is the last one of the report.
+  void checkProgram(CheckReport& all, CheckObserver& observer) const;
+  void checkLoaded(CheckReport& all, CheckObserver& observer) const;
+  void addRun(CheckReport& all, scene::Scene scene, CheckObserver& observer) const;
 
   const CheckRequest request_;
   const std::filesystem::path caches_;

@@ -38,8 +38,7 @@ scene::DefaultSceneOptions defaultSceneOptions(const program::Program& program) 
 }  // namespace
 
 bool isSceneFile(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
-  return extension == ".gltf" || extension == ".glb" || (extension == ".toml" && file.filename() != "program.toml");
+  return file.filename() != "program.toml" && scene::sceneFormat(file, {}) != scene::SceneFormat::none;
 }
 
 SceneSource chooseSceneSource(const std::filesystem::path& requested, const program::Program& program) {

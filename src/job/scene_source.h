@@ -25,7 +25,7 @@ struct SceneSource {
   std::string path() const { return file.empty() ? name : file.string(); }
 };
 
-// Returns whether the name is that of a scene file rather than a program: .gltf, .glb or .toml, except program.toml.
+// Returns whether the name is that of a scene file (scene::sceneFormat) rather than a program. program.toml is none.
 bool isSceneFile(const std::filesystem::path& file);
 
 // `requested` if it is not empty, else the scene that the program names, else the built-in one. Throws FileError if the

@@ -161,8 +161,8 @@ Json factsJson(const render::FilmFacts& facts) {
   return json;
 }
 
-// `other`: facts that are printed, too. A fact of the identity that has the name of a note says the same exactly: the hash of the
-// scene's contents next to its name.
+// `other`: facts that are printed, too. A fact of the identity that has the name of a note is its
+// exact form: the hash of the scene's contents next to its name.
 std::string factsText(const render::FilmFacts& facts, const render::FilmFacts& other) {
   std::string text;
   for (const auto& [name, value] : facts) {

@@ -46,11 +46,6 @@ Json parameterJson(const Parameter& parameter) {
 
 std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-// Lines in two columns: the first has `column` characters.
-std::string twoColumns(const std::string& left, const std::string& right, std::size_t column, std::size_t width) {
-  return padded(left, column) + wrapped(right, width == 0 ? std::string::npos : width, column, column) + "\n";
-}
-
 std::string parameterFacts(const Parameter& parameter) {
   const bool white = parameter.type == ParameterType::image && parameter.defaultImage.empty();
   const std::string value = white ? "white" : formatDefault(parameter);

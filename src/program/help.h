@@ -11,15 +11,14 @@
 namespace quintet::program {
 
 // Parameters with type, default, range, unit and help, and outputs: `quintet run PROGRAM --help`.
-// `width`: columns of the terminal; 0 means that lines are not broken.
-std::string describeAsText(const Program& program, std::size_t width = 0);
+// Lines have at most `width` columns.
+std::string describeAsText(const Program& program, std::size_t width = std::string::npos);
 
 // One object in one line without a line break (docs/programs.md, "The description as JSON").
 std::string describeAsJson(const Program& program);
 
 // The built-in programs with the first sentence of their descriptions, one line each.
-// With a `width`, longer lines are broken.
-std::string listAsText(std::size_t width = 0);
+std::string listAsText(std::size_t width = std::string::npos);
 
 // The built-in programs as an array of {"name", "description"}, in one line without a line break.
 std::string listAsJson();

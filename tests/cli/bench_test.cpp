@@ -105,6 +105,9 @@ TEST_F(Bench, PrintsTheErrorsOfAProgram) {
   const RunResult result = quintet({"bench", "bad", "scene.gltf"});
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("'tint' : no such field"), std::string::npos) << result.err;
+  const RunResult json = quintet({"bench", "bad", "scene.gltf", "--json"});
+  EXPECT_EQ(json.status, 1);
+  EXPECT_EQ(nlohmann::json::parse(json.out).at(0)["id"], "GLSL") << json.out;
 }
 
 TEST_F(Bench, ComparesTrianglesOnly) {
@@ -121,7 +124,7 @@ TEST_F(Bench, ExplainsWhichFormAnOptionRequires) {
   expectError(quintet({"bench", "scene.gltf", "--set", "a=1"}), 2, {"--set requires", "bench PROGRAM"});
   expectError(quintet({"bench", "mine", "--set", "a=1"}), 2, {"'a'"});
   expectError(quintet({"bench", "scene.gltf", "--program", "mine", "--size", "16x16"}), 2,
-              {"traceClosest", "quintet bench mine SCENE"});
+              {"'mine'", "traceClosest", "quintet bench PROGRAM SCENE"});
 }
 
 }  // namespace

@@ -222,7 +222,39 @@ TEST_F(CheckReports, Sarif) {
   EXPECT_EQ(log["runs"][0]["results"][0]["ruleId"], "Q505");
   const RunResult out = quintet({"check", "wide", "--sarif", "-"});
   EXPECT_EQ(nlohmann::json::parse(out.out)["version"], "2.1.0");
-  expectJsonError(quintet({"check", "wide", "--sarif", "-", "--json"}), 2, {"--sarif", "--json"});
+  EXPECT_EQ(quintet({"check", "wide", "--sarif", "-.sarif"}).out, out.out);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "-.sarif"));
+  expectError(quintet({"check", "wide", "--sarif", "-.sarif", "--graph", "-.svg"}), 2, {"--sarif", "--graph"});
+}
+
+// Each program is checked, and --json prints one array, whatever fails.
+TEST_F(CheckReports, ErrorsDoNotHideOtherResults) {
+  writeWideMask("wide", "");
+  const RunResult unknown = quintet({"check", "wide", "pathtracr", "good"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("[Q505]"));
+  EXPECT_THAT(unknown.err, HasSubstr("pathtracr: error: unknown program 'pathtracr' (did you mean 'pathtracer'?)"));
+  EXPECT_THAT(unknown.err, testing::EndsWith("pathtracr: 1 error\ngood: clean\n"));
+  const auto idsOf = [](const RunResult& result) {
+    std::string ids;
+    for (const auto& d : nlohmann::json::parse(result.out)) ids += d["id"].get<std::string>() + ";";
+    return ids;
+  };
+  EXPECT_EQ(idsOf(quintet({"check", "wide", "pathtracr", "--json"})), "Q505;;");
+  const RunResult parameter = quintet({"check", "wide", "good", "--instrument", "--set", "nothing=1", "--json"});
+  EXPECT_EQ(parameter.status, 2);
+  EXPECT_EQ(idsOf(parameter), "Q505;;;");
+  const RunResult noFile =
+      quintet({"check", "wide", "good", "--instrument", "--set-file", "none.json", "--json", "--sarif", "out.sarif"});
+  EXPECT_EQ(noFile.status, 1);
+  EXPECT_EQ(idsOf(noFile), "Q505;FILE;FILE;");
+  EXPECT_EQ(readJson("out.sarif")["runs"][0]["results"].size(), 3u);
+  const RunResult noFolder = quintet({"check", "wide", "--json", "--sarif", "none/out.sarif"});
+  EXPECT_EQ(noFolder.status, 1);
+  EXPECT_EQ(idsOf(noFolder), "Q505;FILE;");
+  const RunResult exclusive = quintet({"check", "wide", "--sarif", "-", "--json"});
+  EXPECT_EQ(exclusive.status, 2);
+  EXPECT_EQ(idsOf(exclusive), ";");
 }
 
 TEST_F(CheckReports, Graph) {
@@ -271,7 +303,6 @@ TEST_F(CheckReports, MatchTheProblemMatcher) {
 TEST_F(Check, InvalidCommandLines) {
   expectError(quintet({"check"}), 2, {"program", "--help"});
   expectError(quintet({"check", "scene.gltf"}), 2, {"program", "--help"});
-  expectError(quintet({"check", "pathtracr"}), 2, {"'pathtracr'", "'pathtracer'"});
   expectError(quintet({"check", "good", "--jsn"}), 2, {"'--jsn'", "'--json'"});
 }
 
@@ -308,6 +339,7 @@ TEST_F(Check, InstrumentedRunsHaveASizeAndParameters) {
   EXPECT_THAT(found.err, HasSubstr("at pixel 100, 0"));
   EXPECT_EQ(with({"--size", "128x8", "--set", "bad=1", "--region", "0,0,50,8", "--spp", "3"}).status, 0);
   expectError(quintet({"check", "wide.rt.glsl", "--size", "8x8"}), 2, {"--size requires --instrument"});
+  expectError(quintet({"check", "wide.rt.glsl", "--timeout", "8"}), 2, {"--timeout requires --instrument"});
 }
 
 // The closest-hit shader does not run for the shadow ray.

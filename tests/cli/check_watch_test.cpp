@@ -44,7 +44,7 @@ TEST_F(CheckWatch, ContinuesWithoutTheProgram) {
   PipeRun process({"check", "sky", "--watch", "--device", "none"}, {.folder = folder_.path()});
   ASSERT_TRUE(process.waitForNext("watching"));
   std::filesystem::remove_all(folder_ / "sky");
-  ASSERT_TRUE(process.waitForNext("quintet: unknown program 'sky'"));
+  ASSERT_TRUE(process.waitForNext("sky: error: unknown program 'sky'"));
   ASSERT_TRUE(process.waitForNext("watching"));
   writeSkyProgram(folder_ / "new", "payload.color = vec3(0.5);");
   std::filesystem::rename(folder_ / "new", folder_ / "sky");

@@ -17,7 +17,9 @@ namespace quintet::test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -150,6 +152,37 @@ TEST_F(Help, ManPagesHaveEveryOption) {
   for (const std::string& command : commandNames()) EXPECT_THAT(main, HasSubstr(".BR quintet\\-" + command + " (1)"));
 }
 
+// The first column of the first table in docs/cli.md after `heading`: "130, 143", "QUINTET_DEVICE".
+std::vector<std::string> rowsOfDocs(const std::string& heading) {
+  std::ifstream file(QUINTET_SOURCE_ROOT "/docs/cli.md");
+  std::vector<std::string> rows;
+  std::string line;
+  while (std::getline(file, line) && line != "## " + heading) {
+  }
+  while (std::getline(file, line) && !line.starts_with("| ---")) {
+  }
+  while (std::getline(file, line) && line.starts_with("| ")) {
+    std::string cell = line.substr(2, line.find(" |", 2) - 2);
+    std::erase(cell, '`');
+    rows.push_back(cell.substr(0, cell.find('=')));
+  }
+  return rows;
+}
+
+TEST_F(Help, TheManPageHasTheTablesOfTheDocumentation) {
+  const std::string page = quintet({"help", "--man"}).out;
+  const auto rowsOfPage = [&](const std::string& section) {
+    std::vector<std::string> rows;
+    const std::size_t begin = page.find(".SH " + section);
+    for (const std::string& line : splitText(page.substr(begin, page.find(".SH", begin + 1) - begin), '\n'))
+      if (line.starts_with(".B ")) rows.push_back(line.substr(3));
+    return rows;
+  };
+  EXPECT_THAT(rowsOfPage("EXIT STATUS"), ElementsAreArray(rowsOfDocs("Output, errors and exit status")));
+  EXPECT_THAT(rowsOfPage("EXIT STATUS"), Contains("137"));
+  EXPECT_THAT(rowsOfPage("ENVIRONMENT"), ElementsAreArray(rowsOfDocs("Environment variables")));
+}
+
 TEST_F(Help, ManPagesAreValid) {
   if (!has("groff")) GTEST_SKIP() << "groff is missing";
   std::vector<std::string> pages{quintet({"help", "--man"}).out};
@@ -182,15 +215,16 @@ TEST_F(Help, CompletionsHaveEveryOption) {
   }
 }
 
-TEST_F(Help, CompletionsAreValid) {
-  const std::array<const char*, 3> shells{"bash", "zsh", "fish"};
-  for (const char* name : shells) {
-    write(name, quintet({"help", "--completion", name}).out);
-    if (has(name)) {
-      EXPECT_EQ(shell(std::string(name) + " -n ./" + name), "");
-    }
-  }
+class Completion : public Help, public testing::WithParamInterface<const char*> {};
+
+TEST_P(Completion, IsValid) {
+  const std::string name = GetParam();
+  if (!has(name)) GTEST_SKIP() << name << " is missing";
+  write(name, quintet({"help", "--completion", name}).out);
+  EXPECT_EQ(shell(name + " -n ./" + name), "");
 }
+INSTANTIATE_TEST_SUITE_P(Shells, Completion, testing::Values("bash", "zsh", "fish"),
+                         [](const auto& shell) { return std::string(shell.param); });
 
 class BashCompletion : public Help {
  protected:

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Missing and broken scenes and images: status 1 and one line with the file and the location in it.
+#include <gmock/gmock.h>
+
 #include "fixtures.h"
 #include "io/codec.h"
 
@@ -158,7 +160,10 @@ TEST_F(Input, ErrorsAsJson) {
   EXPECT_EQ(expectJsonError(quintet({"merge", "none.qfilm", "-o", "a.png", "--json"}), 1, {"none.qfilm"})["file"],
             "none.qfilm");
   EXPECT_EQ(expectJsonError(quintet({"explain", "Q1O1", "--json"}), 2, {"'Q101'"})["file"], nullptr);
-  EXPECT_EQ(expectJsonError(quintet({"check", "--json"}), 2, {"program"})["file"], nullptr);
+  const RunResult check = quintet({"check", "--json"});
+  expectError({check.status, "", check.err}, 2, {"program"});
+  EXPECT_THAT(nlohmann::json::parse(check.out).at(0)["text"].get<std::string>(),
+              testing::HasSubstr("no program given"));
   EXPECT_EQ(expectJsonError(quintet({"render", "--json", "--sice", "3x3"}), 2, {"'--size'"})["file"], nullptr);
 }
 

@@ -199,6 +199,14 @@ TEST_F(Run, ReportsTheFirstDiscardedSample) {
   EXPECT_EQ(json["droppedSamples"], 8);
   EXPECT_EQ(json["firstDroppedSample"], nlohmann::json({7, 2}));
   EXPECT_TRUE(json["firstNotFinitePixel"].is_null());
+  // merge reports what the film stores.
+  ASSERT_EQ(
+      quintet({"render", "scene.gltf", "--program", "flat", "--size", "16x4", "--spp", "4", "-o", "out.qfilm", "-q"})
+          .status,
+      0);
+  const RunResult merged = quintet({"merge", "out.qfilm", "-o", "merged.png", "--json"});
+  EXPECT_THAT(merged.err, HasSubstr("8 samples were not finite and are omitted; the first is at pixel (7, 2)"));
+  EXPECT_EQ(nlohmann::json::parse(merged.out)["warnings"].size(), 1u);
 }
 
 }  // namespace

@@ -62,6 +62,19 @@ TEST_F(Timeout, IsADiagnosticInJson) {
   EXPECT_EQ(array[0]["file"], "loop/sky.rgen");
 }
 
+TEST_F(Timeout, OfTheInstrumentedRunKeepsTheResultsBefore) {
+  writeSkyProgram(folder_ / "bad", "payload.tint = vec3(0.5);");
+  const RunResult result = quintet(
+      {"check", "bad", "loop", "--instrument", "--timeout", "2", "--size", "8x8", "--json", "--sarif", "out.sarif"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, ::testing::ContainsRegex("quintet: loop: .* 2 s.*--timeout"));
+  const auto array = nlohmann::json::parse(result.out);
+  ASSERT_EQ(array.size(), 2u) << result.out;
+  EXPECT_EQ(array[0]["id"], "GLSL");
+  EXPECT_EQ(array[1]["id"], "HANG");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out.sarif"));
+}
+
 TEST_F(Timeout, EndsWatchAndKeepsTheLastImage) {
   TerminalRun process({"run", "good", "--watch", "--timeout", "2", "--size", "16x16", "--spp", "1", "-o", "out.png"},
                       folder_.path());

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wrong command lines: status 2 and one line that names the option, the value and the nearest name.
+#include <gmock/gmock.h>
+
 #include "fixtures.h"
 
 namespace quintet::test {
@@ -136,6 +138,28 @@ TEST_F(Usage, ProgramHelpListsTheParameters) {
   EXPECT_EQ(result.err, "");
   EXPECT_NE(result.out.find("bounces"), std::string::npos);
   EXPECT_NE(result.out.find("default"), std::string::npos);
+}
+
+// The text names only options of its command.
+TEST_F(Usage, ProgramHelpNamesTheOptionsOfTheCommand) {
+  const auto optionsIn = [](const std::string& text) {
+    std::vector<std::string> names;
+    const std::size_t begin = text.find("Options: ");
+    for (std::size_t at = text.find("--", begin); at != text.npos; at = text.find("--", at + 2))
+      names.push_back(text.substr(at, text.find_first_of(" ,;.'", at) - at));
+    return names;
+  };
+  for (const std::string program :
+       {"pathtracer", QUINTET_SOURCE_ROOT "/tests/check/idioms/program_averages_its_frames"}) {
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"render", "--program", program, "--help-program"}, {"run", program, "--help"}}) {
+      const std::string help = quintet({command[0], "--help"}).out;
+      const std::vector<std::string> names = optionsIn(quintet(command).out);
+      EXPECT_GE(names.size(), 4u);
+      for (const std::string& name : names)
+        EXPECT_THAT(help, testing::ContainsRegex(" " + name + "[ ,\n]")) << command[0];
+    }
+  }
 }
 
 TEST_F(Usage, SetMayBeRepeated) {

@@ -12,13 +12,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
 #include "base/file.h"
 #include "base/parse.h"
 #include "base/plural.h"
 #include "base/text.h"
 #include "base/wrap.h"
 #include "check/diagnostic_text.h"
+#include "cli/failure.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "cli/work.h"
@@ -95,6 +95,13 @@ void printDiagnostics(const std::vector<Diagnostic>& diagnostics, const program:
   if (json) return writeFile("-", check::diagnosticsJson(diagnostics));
   printError(check::diagnosticsText(diagnostics, program ? check::sourcesOf(*program) : check::sourcesOnDisk(),
                                     {.color = colorOnStandardError(), .width = terminalWidth(STDERR_FILENO)}));
+}
+
+void exitAfterHang(const program::Program* program, const Diagnostic& diagnostic) {
+  printError(fmt::format("quintet: {}{}; use --timeout to allow more time\n",
+                         program ? printable(program->name) + ": " : "", diagnostic.text));
+  std::fflush(nullptr);
+  ::_exit(kRuntimeError);
 }
 
 Console::Console(const ConsoleOptions& options)
@@ -198,17 +205,9 @@ void Console::write(const std::filesystem::path& file, std::span<const std::byte
 }
 
 void Console::deviceHung(const Diagnostic& diagnostic) {
-  if (options_.json) {
-    try {
-      writeFile("-", check::diagnosticsJson({diagnostic}));
-    } catch (const Error&) {  // the reader has gone
-    }
-  }
-  // No destructors: they would wait for the device.
-  printError(fmt::format("{}quintet: {}{}; use --timeout to allow more time\n", terminal_ ? kClearLine : "",
-                         program_ ? printable(program_->name) + ": " : "", diagnostic.text));
-  std::fflush(nullptr);
-  ::_exit(1);
+  clear();
+  if (options_.json) printFailureJson(check::diagnosticsJson({diagnostic}));
+  exitAfterHang(program_, diagnostic);
 }
 
 void Console::frame(const job::RenderResult& result) {

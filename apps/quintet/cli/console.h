@@ -38,6 +38,10 @@ std::string progressLine(const job::Progress& progress);
 // `program`: null if its description could not be read.
 void printDiagnostics(const std::vector<Diagnostic>& diagnostics, const program::Program* program, bool json);
 
+// After a launch that did not end in time: prints the diagnostic and exits without destructors, which would wait for the
+// device.
+[[noreturn]] void exitAfterHang(const program::Program* program, const Diagnostic& diagnostic);
+
 struct ConsoleOptions {
   bool quiet = false;         // neither progress nor notes
   bool json = false;          // errors of programs also as JSON on standard output

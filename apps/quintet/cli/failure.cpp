@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <new>
 
+#include "base/diagnostic.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "check/diagnostic_text.h"
 #include "cli/console.h"
 #include "output/report.h"
 
@@ -20,13 +22,22 @@ std::string optionHint(Remedy remedy) {
     case Remedy::renderRegion: return "; render a part of it with --region";
     case Remedy::selectLayer: return "; select it as a layer with --aov";
     case Remedy::allowDifference: return "; --may-differ NAME allows a difference";
+    case Remedy::measureLaunches: return "; use 'quintet bench PROGRAM SCENE' to measure the launches of the program";
   }
   return "";
 }
 
-bool wantsJson(std::span<const std::string> arguments) {
+FailureJson failureJson(std::span<const std::string> arguments) {
   const auto end = std::ranges::find(arguments, "--");
-  return std::find(arguments.begin(), end, "--json") != end;
+  if (std::find(arguments.begin(), end, "--json") == end) return FailureJson::none;
+  return arguments.front() == "check" ? FailureJson::diagnostics : FailureJson::object;
+}
+
+void printFailureJson(const std::string& text) {
+  try {
+    writeFile("-", text);
+  } catch (const FileError&) {  // standard output is closed
+  }
 }
 
 int printFailure(std::string message, int status) {
@@ -35,18 +46,17 @@ int printFailure(std::string message, int status) {
   return status;
 }
 
-int reportFailure(const std::exception& error, bool json, const std::string& hint) {
+int reportFailure(const std::exception& error, FailureJson json, const std::string& hint) {
   const int status = dynamic_cast<const UsageError*>(&error) ? kWrongCommandLine : kRuntimeError;
   const bool memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr;
   std::string message = memory ? "out of memory" : error.what();
   if (const auto* ours = dynamic_cast<const Error*>(&error)) message += optionHint(ours->remedy());
   if (!memory) message += hint;
-  if (json) {
-    try {
-      writeFile("-", output::errorJson(message, dynamic_cast<const FileError*>(&error), status));
-    } catch (const FileError&) {  // standard output is closed
-    }
-  }
+  const auto* file = dynamic_cast<const FileError*>(&error);
+  if (json == FailureJson::object)
+    printFailureJson(output::errorJson(message, file, status));
+  else if (json == FailureJson::diagnostics)
+    printFailureJson(check::diagnosticsJson({file ? asDiagnostic(*file) : Diagnostic{.text = message}}));
   return printFailure(message, status);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a command fails: its exit status, one line on standard error, and with --json one object on standard output.
+// How a command fails: its exit status, one line on standard error, and with --json the error on standard output.
 #ifndef QUINTET_CLI_FAILURE_H
 #define QUINTET_CLI_FAILURE_H
 
@@ -20,16 +20,22 @@ constexpr int kCrashed = 4;
 // The end of an error message that names the option: "; use --force to overwrite it". Empty for Remedy::none.
 std::string optionHint(Remedy remedy);
 
-// True if the arguments of the process contain --json, also if the command line cannot be parsed. After "--" it is the name
-// of a file.
-bool wantsJson(std::span<const std::string> arguments);
+// What a command that fails prints on standard output.
+enum class FailureJson { none, object, diagnostics };
+
+// By the arguments of the process, also if the command line cannot be parsed: with --json one object, `check` an array of
+// diagnostics. After "--", --json is the name of a file.
+FailureJson failureJson(std::span<const std::string> arguments);
 
 // Prints "quintet: MESSAGE"; line breaks in it become spaces. Returns `status`.
 int printFailure(std::string message, int status);
 
-// Prints the error with the option that helps, with `json` also as an object. `hint`: appended to the message, for example
-// "; write 'x'". Returns the exit status.
-int reportFailure(const std::exception& error, bool json, const std::string& hint = {});
+// Prints the error with the option that helps, also as JSON. `hint`: appended to the message, for example "; write 'x'".
+// Returns the exit status.
+int reportFailure(const std::exception& error, FailureJson json, const std::string& hint = {});
+
+// Writes to standard output, unless its reader has ended.
+void printFailureJson(const std::string& text);
 
 }  // namespace quintet::cli
 #endif

@@ -68,12 +68,16 @@ constexpr Row kStatuses[] = {
     {"1",
      "Runtime error: a file, a device, memory, or a shader that does not compile; or the limit of compare was "
      "exceeded."},
-    {"2", "Wrong command line: an unknown option, or a value out of range."},
+    {"2", "Wrong command line: an unknown option or program, or a value out of range."},
+    {"3", "render or run wrote the image, but --spp or --time ended the render before it reached --until-error."},
+    {"4", "The driver or Quintet crashed."},
     {"130, 143", "Ended by SIGINT (Ctrl-C) or SIGTERM."},
+    {"137", "The process was killed (SIGKILL), possibly because memory ran out."},
 };
 
 constexpr Row kVariables[] = {
     {"QUINTET_DEVICE", "Default of --device."},
+    {"QUINTET_ISOLATION", "off makes render, run, check and bench work in one process, for debuggers."},
     {"QUINTET_VALIDATE", "1 enables the validation layers of Vulkan; their messages appear as warnings."},
     {"QUINTET_CACHE_DIR", "Folder of compiled shaders and pipelines."},
     {"QUINTET_SHADER_PATH", "Folder that replaces the built-in shader library."},

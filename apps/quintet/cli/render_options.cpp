@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "cli/candidates.h"
 #include "cli/values.h"
 #include "render/film/film_file.h"
 
@@ -182,9 +183,9 @@ void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& optio
   table.add("Run",
             {{.names = "--device",
               .value = "NAME",
-              .help = "Index or part of the name: 0, h200, lavapipe, cpu, gpu",
+              .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu", kDeviceHelp),
               .target = &options.device,
-              .candidates = {.names = {"0", "cpu", "gpu", "lavapipe"}}},
+              .candidates = {.names = deviceNames()}},
              {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout},
              {.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet}});
 }

@@ -18,10 +18,8 @@
 
 #include "base/diagnostic.h"
 #include "base/error.h"
-#include "base/file.h"
 #include "base/plural.h"
 #include "base/temporary_file.h"
-#include "base/text.h"
 #include "check/diagnostic_text.h"
 #include "cli/console.h"
 #include "cli/failure.h"
@@ -73,14 +71,11 @@ void reportCrash(int signal, std::span<const std::string> arguments) {
                   stage.empty() ? "" : " while ", stage, signal, description ? description : "unknown");
   const std::string message = program.empty() ? text : fmt::format("{}: {}", program, text);
   if (!workFile().empty()) TemporaryFile::removeLeftovers(workFile());
-  if (wantsJson(arguments)) {
-    try {
-      const bool diagnostics = arguments.front() == "check";
-      writeFile("-", diagnostics ? check::diagnosticsJson({{Severity::error, program, 0, 0, "CRASH", text}})
-                                 : output::errorJson(message, nullptr, kCrashed));
-    } catch (const Error&) {  // the reader has ended
-    }
-  }
+  const FailureJson json = failureJson(arguments);
+  if (json == FailureJson::object)
+    printFailureJson(output::errorJson(message, nullptr, kCrashed));
+  else if (json == FailureJson::diagnostics)
+    printFailureJson(check::diagnosticsJson({{Severity::error, program, 0, 0, "CRASH", text}}));
   printFailure(message, kCrashed);
 }
 

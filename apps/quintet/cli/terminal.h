@@ -8,7 +8,7 @@
 
 namespace quintet::cli {
 
-// Columns of the terminal; nothing for a file or a pipe.
+// Columns of the terminal; empty for a file or a pipe.
 std::optional<std::size_t> terminalWidth(int descriptor);
 
 }  // namespace quintet::cli

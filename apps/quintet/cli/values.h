@@ -19,7 +19,7 @@
 
 namespace quintet::cli {
 
-// A number in [min, max]; nothing for an empty text.
+// A number in [min, max]; empty for an empty text.
 std::optional<double> parseReal(const std::string& option, const std::string& text, double min, double max);
 std::optional<std::uint64_t> parseInteger(const std::string& option, const std::string& text, double min, double max);
 

@@ -8,10 +8,13 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "cli/candidates.h"
 #include "cli/console.h"
+#include "cli/failure.h"
 #include "cli/parser.h"
 #include "cli/values.h"
+#include "cli/work.h"
 #include "job/scene_source.h"
 
 namespace quintet::cli {
@@ -48,15 +51,17 @@ OptionTable declare(Options& options) {
                     "Measures the rays per second of a scene with the path tracer, and the rate of minimal shaders for "
                     "the same rays; or the launches of any program.");
   job::BenchmarkRequest& request = options.request;
-  Candidates candidates = programCandidates();
-  candidates.extensions.insert(candidates.extensions.end(), kSceneExtensions.begin(), kSceneExtensions.end());
   table.add({{.names = "SCENE|PROGRAM",
               .help = "Scene of triangles without alpha (minimal shaders support nothing else); or a program, and its "
                       "scene: .gltf, .glb or .scene.toml (default: the program's own, or built in)",
               .target = &options.positional,
-              .candidates = candidates,
+              .candidates = programOrSceneCandidates(),
               .required = true},
-             {.names = "--device", .value = "NAME", .help = "Index or part of the name", .target = &request.device},
+             {.names = "--device",
+              .value = "NAME",
+              .help = std::string(kDeviceHelp),
+              .target = &request.device,
+              .candidates = {.names = deviceNames()}},
              {.names = "--env",
               .value = "WHAT",
               .help = "Environment, as in 'quintet render'",
@@ -128,7 +133,7 @@ int benchCommand(Arguments arguments) {
   const std::vector<std::string>& positional = options.positional;
   if (positional.empty()) throw UsageError("no scene or program given; see 'quintet bench --help'");
   if (positional.size() > 2)
-    throw UsageError(fmt::format("unexpected argument '{}'; see 'quintet bench --help'", positional[2]));
+    throw UsageError(fmt::format("unexpected argument '{}'; see 'quintet bench --help'", printable(positional[2])));
   const bool ofScene = positional.size() == 1 && job::isSceneFile(positional[0]);
   rejectOptions(options, ofScene);
   job::BenchmarkRequest& request = options.request;
@@ -141,12 +146,14 @@ int benchCommand(Arguments arguments) {
   own.repeat = request.repeat;
   own.render.size = request.size;
   own.render.environment.source = request.environment;
+  setWorkProgram(ofScene ? request.program : own.program);
+  setWorkStage("measuring");
   try {
     const Json result = ofScene ? job::runBenchmark(request) : job::runProgramBenchmark(own);
     writeFile("-", options.json ? result.dump() + "\n" : asTable(result));
   } catch (const ProgramError& error) {
-    printDiagnostics(error.diagnostics(), nullptr, false);
-    return 1;
+    printDiagnostics(error.diagnostics(), nullptr, options.json);
+    return kRuntimeError;
   }
   return 0;
 }

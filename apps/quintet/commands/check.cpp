@@ -4,10 +4,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "base/diagnostic.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/plural.h"
@@ -27,13 +29,14 @@
 #include "job/live_check.h"
 #include "job/program_checks.h"
 #include "job/scene_source.h"
+#include "output/plan.h"
 
 namespace quintet::cli {
 namespace {
 
 struct Options {
   job::CheckRequest request;
-  std::string size, region, samples;  // of --instrument
+  std::string size, region, samples, timeout;  // of --instrument
   std::filesystem::path sarif, graph;
   std::string colorName = "auto";
   check::TextOptions text;
@@ -46,15 +49,13 @@ struct Options {
 OptionTable declare(Options& options) {
   OptionTable table("check",
                     "Compiles programs and checks how their shaders fit together and to a scene, without rendering.");
-  Candidates candidates = programCandidates();
-  candidates.extensions.insert(candidates.extensions.end(), kSceneExtensions.begin(), kSceneExtensions.end());
   table.add(
       {{.names = "PROGRAM",
         .help =
             "One or more programs, folders of programs, or built-in names; the last argument can be a scene: .gltf, "
             ".glb or .scene.toml (default: each program's own)",
         .target = &options.request.programs,
-        .candidates = candidates,
+        .candidates = programOrSceneCandidates(),
         .required = true},
        {.names = "--json", .help = "Print an array of diagnostics on standard output", .target = &options.json},
        {.names = "--sarif",
@@ -89,12 +90,16 @@ OptionTable declare(Options& options) {
         .target = &options.size},
        {.names = "--region",
         .value = "X,Y,W,H",
-        .help = "Part of it to render, in pixels from the top left",
+        .help = "Part of the image of --instrument, in pixels from the top left",
         .target = &options.region},
        {.names = "--spp",
         .value = "N",
         .help = "Number of samples per pixel (default: 4), or of frames (default: 2)",
         .target = &options.samples},
+       {.names = "--timeout",
+        .value = "SECONDS",
+        .help = "Time limit of one launch of --instrument (default: 20)",
+        .target = &options.timeout},
        {.names = "--set",
         .value = "NAME=VALUE",
         .help = "Parameter of the program; may be repeated",
@@ -106,10 +111,12 @@ OptionTable declare(Options& options) {
         .candidates = {.extensions = {"json"}}},
        {.names = "--device",
         .value = "NAME",
-        .help = "Device whose limits and driver defects count, and on which --instrument runs: index or part of the "
-                "name; 'none' for limits that hold everywhere",
+        .help =
+            fmt::format("Device whose limits and driver defects count, and on which --instrument runs. {}; 'none' for "
+                        "limits that hold everywhere",
+                        kDeviceHelp),
         .target = &options.request.device,
-        .candidates = {.names = {"none", "0", "cpu", "gpu", "lavapipe"}}}});
+        .candidates = {.names = deviceNames({"none"})}}});
   table.addExamples({
       {"quintet check my_program/", "its shaders, and how they fit together"},
       {"quintet check my_program/ scene.glb", "and how they fit this scene"},
@@ -129,7 +136,10 @@ std::string graphExtension(const std::filesystem::path& graph) {
   return name.substr(std::min(name.rfind('.'), name.size()));
 }
 
-bool isStandardOutput(const std::filesystem::path& file) { return file == "-" || file.string().starts_with("-."); }
+// The name for writeFile().
+std::filesystem::path outputFile(const std::filesystem::path& file) {
+  return output::isStandardOutput(file) ? "-" : file;
+}
 
 // The files that the options name. Standard output has room for one of them.
 void checkFiles(const Options& options) {
@@ -139,8 +149,8 @@ void checkFiles(const Options& options) {
       throw UsageError(
           fmt::format("--graph: {}: the file must end in .svg, .dot or .json", printable(options.graph.string())));
   }
-  const int outputs =
-      (options.json ? 1 : 0) + (isStandardOutput(options.sarif) ? 1 : 0) + (isStandardOutput(options.graph) ? 1 : 0);
+  const int outputs = (options.json ? 1 : 0) + (output::isStandardOutput(options.sarif) ? 1 : 0) +
+                      (output::isStandardOutput(options.graph) ? 1 : 0);
   if (outputs > 1) throw UsageError("--json, --sarif - and --graph -.svg exclude each other");
 }
 
@@ -156,12 +166,15 @@ std::optional<Options> parseOptions(Arguments arguments) {
     reject(!options.size.empty(), "--size");
     reject(!options.region.empty(), "--region");
     reject(!options.samples.empty(), "--spp");
+    reject(!options.timeout.empty(), "--timeout");
     reject(!run.assignments.empty(), "--set");
     reject(!run.parameterFile.empty(), "--set-file");
   }
   if (!options.size.empty()) run.size = parseSize("--size", options.size);
   if (!options.region.empty()) run.region = parseRegion("--region", options.region);
   run.limits.samples = parseInteger("--spp", options.samples, 1, 1u << 24);
+  run.launchTimeout =
+      parseReal("--timeout", options.timeout, 0.001, std::numeric_limits<double>::infinity()).value_or(0.0);
   std::vector<std::string>& programs = request.programs;
   if (!programs.empty() && job::isSceneFile(programs.back())) {
     request.scene = programs.back();
@@ -174,20 +187,55 @@ std::optional<Options> parseOptions(Arguments arguments) {
   return options;
 }
 
+void writeGraph(const std::filesystem::path& graph, const std::optional<check::PipelineModel>& model) {
+  const std::string extension = graphExtension(graph);
+  const std::filesystem::path file = outputFile(graph);
+  if (!model)
+    printMessage(
+        fmt::format("quintet: {}: not written, because the program does not compile", printable(graph.string())));
+  else if (extension == ".json")
+    writeFile(file, check::pipelineJson(*model));
+  else if (extension == ".dot")
+    writeFile(file, check::dotText(check::diagramOf(*model)));
+  else
+    writeFile(file, check::svgText(check::diagramOf(*model)));
+}
+
+// Writes the files that the options request. Returns the exit status.
+int writeReport(const job::CheckReport& report, const job::ProgramChecks& checks, const Options& options) {
+  std::vector<Diagnostic> found = report.diagnostics();
+  const std::vector<check::SuppressedDiagnostic> suppressed = report.suppressed();
+  int status = report.wrongRequest() ? kWrongCommandLine : report.passes(options.strict) ? 0 : kRuntimeError;
+  try {
+    if (!options.sarif.empty())
+      writeFile(outputFile(options.sarif), check::sarifText(found, suppressed, report.sources(), QUINTET_VERSION));
+    if (!options.graph.empty()) writeGraph(options.graph, checks.pipelineOf(report.programs.front()));
+  } catch (const FileError& error) {
+    status = reportFailure(error, FailureJson::none);
+    found.push_back(asDiagnostic(error));
+  }
+  if (options.json) writeFile("-", check::diagnosticsJson(found, suppressed));
+  return status;
+}
+
 // Prints what the check of each program found.
 class Printer : public job::CheckObserver {
  public:
-  explicit Printer(const Options& options) : options_(options), console_({.json = options.json}) {}
+  Printer(const job::ProgramChecks& checks, const Options& options) : checks_(checks), options_(options) {}
 
   void started(const std::string& name) override {
     setWorkProgram(name);
     setWorkStage("checking the program");
   }
   void rendering(const program::Program& program) override {
-    console_.setProgram(&program);
+    setWorkProgram(program.name);
     setWorkStage("rendering with --instrument");
   }
-  void deviceHung(const Diagnostic& diagnostic) override { console_.deviceHung(diagnostic); }
+  void hung(const job::CheckReport& report) override {
+    finished(report.programs.back());
+    writeReport(report, checks_, options_);
+    exitAfterHang(&*report.programs.back().program, report.programs.back().result.diagnostics.back());
+  }
 
   // Diagnostics and the line "NAME: 1 error, 2 warnings (1 suppressed)".
   void finished(const job::ProgramReport& report) override {
@@ -204,34 +252,9 @@ class Printer : public job::CheckObserver {
   }
 
  private:
+  const job::ProgramChecks& checks_;
   const Options& options_;
-  Console console_;
 };
-
-void writeGraph(const std::filesystem::path& graph, const std::optional<check::PipelineModel>& model) {
-  const std::string extension = graphExtension(graph);
-  const std::filesystem::path file = isStandardOutput(graph) ? "-" : graph;
-  if (!model)
-    printMessage(
-        fmt::format("quintet: {}: not written, because the program does not compile", printable(graph.string())));
-  else if (extension == ".json")
-    writeFile(file, check::pipelineJson(*model));
-  else if (extension == ".dot")
-    writeFile(file, check::dotText(check::diagramOf(*model)));
-  else
-    writeFile(file, check::svgText(check::diagramOf(*model)));
-}
-
-// Writes the files that the options request. Returns the exit status.
-int writeReport(const job::CheckReport& report, const job::ProgramChecks& checks, const Options& options) {
-  const std::vector<Diagnostic> found = report.diagnostics();
-  const std::vector<check::SuppressedDiagnostic> suppressed = report.suppressed();
-  if (options.json) writeFile("-", check::diagnosticsJson(found, suppressed));
-  if (!options.sarif.empty())
-    writeFile(options.sarif, check::sarifText(found, suppressed, report.sources(), QUINTET_VERSION));
-  if (!options.graph.empty()) writeGraph(options.graph, checks.pipelineOf(report.programs.front()));
-  return report.passes(options.strict) ? 0 : kRuntimeError;
-}
 
 void checkGraph(const Options& options) {
   if (options.graph.empty()) return;
@@ -241,7 +264,7 @@ void checkGraph(const Options& options) {
 
 // Checks, waits for a saved file, checks again, until Ctrl-C. Returns the last status.
 int watchPrograms(const job::ProgramChecks& checks, const Options& options) {
-  Printer printer(options);
+  Printer printer(checks, options);
   job::LiveCheck live(checks);
   const GracefulStop stop;
   int status = 0;
@@ -250,10 +273,11 @@ int watchPrograms(const job::ProgramChecks& checks, const Options& options) {
     try {
       checkGraph(options);
       status = writeReport(live.run(printer), checks, options);
-    } catch (const Error& error) {  // such as a program that was removed
+    } catch (const Error& error) {  // such as a second program in the folder, with --graph
       if (canFail) throw;
-      status = reportFailure(error, false);
+      status = reportFailure(error, FailureJson::none);
     }
+    if (canFail && status == kWrongCommandLine) return status;
     setWatchedFiles(live.watcher().watched());
     printMessage(
         fmt::format("watching {}; press Ctrl-C to stop", counted(live.watcher().watched().files.size(), "file")));
@@ -277,7 +301,7 @@ int checkCommand(Arguments arguments) {
   const job::ProgramChecks checks(options->request);
   if (options->watch) return watchPrograms(checks, *options);
   checkGraph(*options);
-  Printer printer(*options);
+  Printer printer(checks, *options);
   return writeReport(checks.run(printer), checks, *options);
 }
 

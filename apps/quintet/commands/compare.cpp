@@ -4,7 +4,6 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -104,7 +103,7 @@ OptionTable declare(Options& options) {
         .target = &options.zTest},
        {.names = "--level",
         .value = "P",
-        .help = "Probability with which equal images are rejected, at most (default: 0.01)",
+        .help = "Largest probability of rejecting equal images (default: 0.01)",
         .target = &options.level},
        {.names = "--block",
         .value = "N",

@@ -12,6 +12,7 @@
 #include "cli/parser.h"
 #include "cli/render_options.h"
 #include "cli/values.h"
+#include "commands/render.h"
 #include "output/plan.h"
 #include "output/report.h"
 #include "output/write.h"
@@ -101,6 +102,7 @@ int mergeCommand(Arguments arguments) {
   if (!options->force) output::checkFilmLoss(plan, result);
   output::storeNotes(plan, result);
   const std::vector<output::WrittenFile> files = output::writeOutputs(plan, result, console);
+  addWarnings(result, console);
   console.clear();
   if (options->console.json) writeFile("-", output::resultJson(result, files, clock.seconds()));
   console.note(output::resultSummary(result, files));

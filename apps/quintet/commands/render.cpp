@@ -116,14 +116,15 @@ job::RenderRequest requestFor(const RenderOptions& options, const output::Output
   return request;
 }
 
-std::string programHelpText(const program::Program& program) {
-  const std::size_t width = terminalWidth(STDOUT_FILENO).value_or(0);
+std::string programHelpText(const program::Program& program, std::string_view command) {
+  const std::size_t width = terminalWidth(STDOUT_FILENO).value_or(std::string::npos);
+  const bool runs = command == "run";
   std::string options = "Options: ";
-  if (program.accumulation == program::Accumulation::program) options += "--frames N; ";
-  options += "--set NAME=VALUE for parameters; --output NAME, --all-outputs and --aov NAMES for outputs.";
-  return fmt::format("{}\n{}\nSee 'quintet run --help' for the options of all programs.\n",
-                     program::describeAsText(program, width),
-                     wrapped(options, width == 0 ? std::string::npos : width, 0));
+  if (runs && program.accumulation == program::Accumulation::program) options += "--frames N; ";
+  options += fmt::format("--set NAME=VALUE for parameters; {}--all-outputs and --aov NAMES for outputs.",
+                         runs ? "--output NAME, " : "");
+  return fmt::format("{}\n{}\nSee 'quintet {} --help' for the options of all programs.\n",
+                     program::describeAsText(program, width), wrapped(options, width, 0), command);
 }
 
 int renderImages(const RenderOptions& options, const program::Program& program, const Stopwatch& clock) {
@@ -166,7 +167,7 @@ int renderImages(const RenderOptions& options, const program::Program& program, 
     return result.targetMissed || result.earlierTargetMissed ? kTargetNotReached : 0;
   } catch (const ProgramError& error) {
     console.diagnostics(error.diagnostics());
-    return 1;
+    return kRuntimeError;
   }
 }
 
@@ -182,7 +183,7 @@ int renderCommand(Arguments arguments) {
   if (!options) return 0;
   const program::Program program = program::loadProgram(options->program);
   if (options->programHelp) {
-    writeFile("-", programHelpText(program));
+    writeFile("-", programHelpText(program, "render"));
   } else if (options->layerList) {
     writeFile("-", output::layerList(program));
   } else {

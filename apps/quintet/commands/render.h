@@ -16,8 +16,8 @@ namespace quintet::cli {
 // `clock`: started with the command. Returns the exit status.
 int renderImages(const RenderOptions& options, const program::Program& program, const Stopwatch& clock);
 
-// Parameters and outputs of the program, and the options that set and select them.
-std::string programHelpText(const program::Program& program);
+// Parameters and outputs of the program, and the options of `command` ("render", "run") that set and select them.
+std::string programHelpText(const program::Program& program, std::string_view command);
 
 // Prints warnings about the result, and adds all warnings of the render to it.
 void addWarnings(job::RenderResult& result, Console& console);

@@ -172,7 +172,7 @@ class Watch {
     try {
       return renderUntilStopped();
     } catch (const DeviceLostError& error) {  // as if the driver had crashed
-      reportFailure(error, options_.console.json);
+      reportFailure(error, options_.console.json ? FailureJson::object : FailureJson::none);
       return kCrashed;
     }
   }
@@ -196,7 +196,7 @@ class Watch {
       if (stop_->requested()) break;
     }
     console_.clear();
-    return hasImage_ ? (interrupted_ ? stop_->exitStatus() : 0) : 1;
+    return hasImage_ ? (interrupted_ ? stop_->exitStatus() : 0) : kRuntimeError;
   }
 
   bool reload() {
@@ -212,7 +212,7 @@ class Watch {
       return reload();
     } catch (const Error& error) {
       if (!restartedAfterCrash()) throw;
-      reportFailure(error, options_.console.json);
+      reportFailure(error, options_.console.json ? FailureJson::object : FailureJson::none);
       return false;
     }
   }
@@ -227,7 +227,6 @@ class Watch {
   }
 
   void render() {
-    setWorkStage("rendering");
     files_.clear();
     job::RenderResult result = live_.job()->run(options_.request.limits, console_);
     if (result.abandoned) return;
@@ -275,13 +274,14 @@ int runCommand(Arguments arguments) {
   if (!options) return 0;
   const bool json = options->console.json;
   if (options->list) {
-    writeFile("-", json ? program::listAsJson() + "\n" : program::listAsText(terminalWidth(STDOUT_FILENO).value_or(0)));
+    writeFile("-", json ? program::listAsJson() + "\n"
+                        : program::listAsText(terminalWidth(STDOUT_FILENO).value_or(std::string::npos)));
     return 0;
   }
   if (options->watch && !options->programHelp && !options->layerList) return Watch(*options).run();
   const program::Program program = program::loadProgram(options->program);
   if (options->programHelp) {
-    writeFile("-", json ? program::describeAsJson(program) + "\n" : programHelpText(program));
+    writeFile("-", json ? program::describeAsJson(program) + "\n" : programHelpText(program, "run"));
     return 0;
   }
   if (options->layerList) {

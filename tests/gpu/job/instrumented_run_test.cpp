@@ -27,10 +27,8 @@ program::Program programWithBadColumn() {
 std::string idsFor(const RenderRequest& request) {
   static Engine engine({.caches = {}});
   const program::Program program = programWithBadColumn();
-  Observer observer;
   std::string ids;
-  for (const Diagnostic& d :
-       runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, observer))
+  for (const Diagnostic& d : runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, {}))
     ids += d.id + ":" + std::to_string(d.line) + " ";
   return ids;
 }

@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include "base/error.h"
 #include "program_folder.h"
 
 namespace quintet::job {
@@ -75,8 +74,14 @@ TEST_F(ProgramChecksTest, UsesTheRequestedScene) {
   EXPECT_THAT(report.programs[0].files, Contains(request.scene));
 }
 
-TEST_F(ProgramChecksTest, ThrowsForUnknownPrograms) {
-  EXPECT_THROW(check(requestFor({program_, "nothing"})), UsageError);
+TEST_F(ProgramChecksTest, UnknownProgramsDoNotEndTheCheck) {
+  const CheckReport report = check(requestFor({"nothing", program_}));
+  ASSERT_EQ(report.programs.size(), 2u);
+  EXPECT_THAT(idsOf(report), ElementsAre(" nothing"));
+  EXPECT_TRUE(report.wrongRequest());
+  EXPECT_FALSE(report.passes(false));
+  EXPECT_TRUE(report.programs[1].program);
+  EXPECT_FALSE(check(requestFor({program_})).wrongRequest());
 }
 
 TEST_F(ProgramChecksTest, DescribesPipelinesThatCompile) {
