@@ -69,9 +69,9 @@ TEST_F(Timeout, OfTheInstrumentedRunKeepsTheResultsBefore) {
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.err, ::testing::ContainsRegex("quintet: loop: .* 2 s.*--timeout"));
   const auto array = nlohmann::json::parse(result.out);
-  ASSERT_EQ(array.size(), 2u) << result.out;
-  EXPECT_EQ(array[0]["id"], "GLSL");
-  EXPECT_EQ(array[1]["id"], "HANG");
+  ASSERT_GE(array.size(), 2u) << result.out;
+  EXPECT_EQ(array.front()["id"], "GLSL");
+  EXPECT_EQ(array.back()["id"], "HANG");
   EXPECT_TRUE(std::filesystem::exists(folder_ / "out.sarif"));
 }
 

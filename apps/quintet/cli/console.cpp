@@ -18,7 +18,7 @@
 #include "base/text.h"
 #include "base/wrap.h"
 #include "check/diagnostic_text.h"
-#include "cli/failure.h"
+#include "cli/exit_status.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "cli/work.h"
@@ -62,6 +62,13 @@ std::string figures(const job::Progress& p, std::string_view separator) {
 void printError(const std::string& text) {
   [[maybe_unused]] const std::size_t written = std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
+}
+
+void printFailureJson(const std::string& text) {
+  try {
+    writeFile("-", text);
+  } catch (const FileError&) {  // standard output is closed
+  }
 }
 
 void printMessage(const std::string& text) {

@@ -33,13 +33,6 @@ FailureJson failureJson(std::span<const std::string> arguments) {
   return arguments.front() == "check" ? FailureJson::diagnostics : FailureJson::object;
 }
 
-void printFailureJson(const std::string& text) {
-  try {
-    writeFile("-", text);
-  } catch (const FileError&) {  // standard output is closed
-  }
-}
-
 int printFailure(std::string message, int status) {
   std::ranges::replace(message, '\n', ' ');
   printMessage("quintet: " + printable(message));

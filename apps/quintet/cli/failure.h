@@ -8,14 +8,9 @@
 #include <string>
 
 #include "base/error.h"
+#include "cli/exit_status.h"
 
 namespace quintet::cli {
-
-// docs/cli.md, "Output, errors and exit status".
-constexpr int kRuntimeError = 1;
-constexpr int kWrongCommandLine = 2;
-constexpr int kTargetNotReached = 3;
-constexpr int kCrashed = 4;
 
 // The end of an error message that names the option: "; use --force to overwrite it". Empty for Remedy::none.
 std::string optionHint(Remedy remedy);
@@ -33,9 +28,6 @@ int printFailure(std::string message, int status);
 // Prints the error with the option that helps, also as JSON. `hint`: appended to the message, for example "; write 'x'".
 // Returns the exit status.
 int reportFailure(const std::exception& error, FailureJson json, const std::string& hint = {});
-
-// Writes to standard output, unless its reader has ended.
-void printFailureJson(const std::string& text);
 
 }  // namespace quintet::cli
 #endif
