@@ -17,7 +17,7 @@ class TraceChains {
       : graph_(graph),
         state_(graph.stages.size(), 0),
         depth_(graph.stages.size(), 0),
-        next_(graph.stages.size(), nullptr),
+        steps_(graph.stages.size()),
         bytes_(graph.stages.size(), 0) {
     for (std::size_t i = 0; i < graph.stages.size(); ++i)
       if (graph.stages[i].kind == shader::Stage::rayGeneration) visit(i);
@@ -35,44 +35,46 @@ class TraceChains {
 
   // "a.rgen:12 -> b.rchit:20 -> sky.rmiss"
   std::string chain(std::size_t stage) const {
-    std::string text;
-    for (std::size_t steps = 0; next_[stage] && steps < graph_.stages.size(); ++steps) {
-      const TraceSite& site = *next_[stage];
-      text += fmt::format("{}:{} -> ", graph_.nameOf(graph_.stages[stage].file), site.trace->location.line);
-      stage = deepest(site);
+    std::vector<std::string> names;
+    std::size_t last = stage;
+    for (const Step& step : longestChain(stage)) {
+      names.push_back(
+          fmt::format("{}:{}", graph_.nameOf(graph_.stages[step.site->stage].file), step.site->trace->location.line));
+      last = step.next;
     }
-    return text + graph_.nameOf(graph_.stages[stage].file);
+    names.push_back(graph_.nameOf(graph_.stages[last].file));
+    return fmt::format("{}", fmt::join(names, " -> "));
   }
 
   // The outer traces of the longest chain, without the innermost one.
   std::vector<RelatedLocation> outerTraces(std::size_t stage) const {
     std::vector<RelatedLocation> result;
-    for (std::size_t steps = 0; next_[stage] && steps < graph_.stages.size(); ++steps) {
-      result.push_back(relatedTo(graph_.location(*next_[stage]), fmt::format("trace at depth {}", steps + 1)));
-      stage = deepest(*next_[stage]);
-    }
+    for (const Step& step : longestChain(stage))
+      result.push_back(relatedTo(graph_.location(*step.site), fmt::format("trace at depth {}", result.size() + 1)));
     if (!result.empty()) result.pop_back();
     return result;
   }
 
   // Location of the innermost trace of the longest chain.
   SourceLocation lastTrace(std::size_t stage) const {
-    SourceLocation location = graph_.location(graph_.stages[stage], {});
-    for (; next_[stage]; stage = deepest(*next_[stage])) {
-      location = graph_.location(graph_.stages[stage], next_[stage]->trace->location);
-      if (deepest(*next_[stage]) == stage) break;
-    }
-    return location;
+    const std::vector<Step> steps = longestChain(stage);
+    return steps.empty() ? graph_.location(graph_.stages[stage], {}) : graph_.location(*steps.back().site);
   }
 
  private:
+  struct Step {
+    const TraceSite* site = nullptr;
+    std::size_t next = 0;  // the deepest stage that the trace runs
+  };
+
   static bool traces(Role role) { return role == Role::miss || role == Role::closestHit; }
 
-  std::size_t deepest(const TraceSite& site) const {
-    const Edge* best = nullptr;
-    for (const Edge& edge : site.edges)
-      if (traces(edge.role) && (!best || depth_[edge.stage] > depth_[best->stage])) best = &edge;
-    return best ? best->stage : site.stage;
+  // A trace that closes a cycle ends the chain, which has depth(stage) traces.
+  std::vector<Step> longestChain(std::size_t stage) const {
+    std::vector<Step> steps;
+    for (std::size_t at = stage; steps.size() < depth_[stage] && steps_[at].site; at = steps.back().next)
+      steps.push_back(steps_[at]);
+    return steps;
   }
 
   // Depth-first search; its recursion is limited by the number of stages.
@@ -83,19 +85,22 @@ class TraceChains {
     for (const TraceSite& site : graph_.traces) {
       if (site.stage != stage) continue;
       std::uint32_t depth = 1;
+      Step step{site.edges.empty() ? nullptr : &site, stage};
       for (const Edge& edge : site.edges) {
         below = std::max(below, bytesOf(edge));
         if (!traces(edge.role)) continue;
         if (state_[edge.stage] == 1) {
           const auto start = std::ranges::find(path_, edge.stage);
           cycles_.push_back({&site, {start, path_.end()}, &edge});
+          if (step.next == stage) step.next = edge.stage;
           continue;
         }
         if (state_[edge.stage] == 0) visit(edge.stage);
         below = std::max(below, bytes_[edge.stage]);
+        if (step.next == stage || 1 + depth_[edge.stage] > depth) step.next = edge.stage;
         depth = std::max(depth, 1 + depth_[edge.stage]);
       }
-      if (depth > depth_[stage]) depth_[stage] = depth, next_[stage] = site.edges.empty() ? nullptr : &site;
+      if (depth > depth_[stage]) depth_[stage] = depth, steps_[stage] = step;
     }
     for (const CallSite& site : graph_.calls)
       for (const Edge& edge : site.edges)
@@ -110,7 +115,7 @@ class TraceChains {
   const PipelineGraph& graph_;
   std::vector<int> state_;  // 0 new, 1 on the current path, 2 done
   std::vector<std::uint32_t> depth_;
-  std::vector<const TraceSite*> next_;  // first trace of the longest chain
+  std::vector<Step> steps_;  // first trace of the longest chain
   std::vector<std::uint64_t> bytes_;
   std::vector<std::size_t> path_;
   std::vector<Cycle> cycles_;

@@ -1,0 +1,19 @@
+#version 460
+#extension GL_EXT_ray_tracing : require
+#include <quintet/frame.glsl>
+#include <quintet/generated/program.glsl>
+#include "payload.glsl"
+
+layout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT topLevelAS;
+layout(location = 0) rayPayloadInEXT Payload payload;
+
+void main() {
+  const vec3 position = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;
+  payload.color = vec3(0.2);
+  payload.t = gl_HitTEXT;
+  payload.depth++;
+  if (payload.depth < 8)
+    // EXPECT+1 Q402
+    traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, kRay_primary, kRayTypeCount, kMiss_primary, position, 0.001,
+                gl_WorldRayDirectionEXT, kInfinity, 0);
+}

@@ -1,0 +1,5 @@
+struct Payload {
+  vec3 color;
+  float t;  // negative if the ray hit nothing
+  int depth;
+};
