@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "check/rules/across_stages/shared_data.h"
@@ -53,36 +54,35 @@ class InputRule {
 
   void checkReceived(const PipelineStage& stage, const spirv::SharedVariable& payload) {
     const spirv::StageFacts& facts = *stage.facts;
-    std::vector<LeafGroup> groups;
-    std::vector<const TraceSite*> origins;
+    std::map<const TraceSite*, std::vector<LeafGroup>> groups;  // by the trace before which nothing sets the leaves
     for (std::uint32_t leaf = 0; leaf < facts.leaves(payload.id).count(); ++leaf) {
       const std::vector<std::size_t> reads = facts.inputReads(payload.id, leaf);
       if (reads.empty()) continue;
       std::set<std::size_t> seen;
       std::vector<const TraceSite*> unset;
       if (isSet(indexOf(stage), leaf, seen, unset) || unset.empty()) continue;
-      origins = unset;
-      addTo(groups, {"", "", locationText(graph_.location(*unset.front()))}, leaf, reads.front());
+      addTo(groups[unset.front()], {}, leaf, reads.front());
     }
-    for (const LeafGroup& group : groups) {
-      for (const std::string& part : facts.leaves(payload.id).names(group.leaves)) {
-        const std::string name = nameOf(payload, part);
-        if (program::isLibraryStage(stage.file))
-          report_.add("Q107", graph_.location(*origins.front()),
-                      fmt::format("the {} shader '{}' reads {}, but nothing sets it before this trace",
-                                  shader::stageName(stage.kind), stage.file, name));
-        else
-          report_.add("Q107", graph_.location(stage, locationOf(facts, facts.accesses()[group.read])),
-                      fmt::format("{} is read here, but nothing sets it before the trace at {}", name, group.text.end));
+    for (const auto& [trace, leaves] : groups) {
+      const SourceLocation origin = graph_.location(*trace);
+      for (const LeafGroup& group : leaves) {
+        for (const std::string& part : facts.leaves(payload.id).names(group.leaves)) {
+          const std::string name = nameOf(payload, part);
+          if (program::isLibraryStage(stage.file))
+            report_.add("Q107", origin,
+                        fmt::format("the {} shader '{}' reads {}, but nothing sets it before this trace",
+                                    shader::stageName(stage.kind), stage.file, name));
+          else
+            report_.add("Q107", graph_.location(stage, locationOf(facts, facts.accesses()[group.read])),
+                        fmt::format("{} is read here, but nothing sets it before the trace at {}:{}", name, origin.file,
+                                    origin.line));
+        }
       }
     }
   }
 
   std::size_t indexOf(const PipelineStage& stage) const {
     return static_cast<std::size_t>(&stage - graph_.stages.data());
-  }
-  static std::string locationText(const SourceLocation& location) {
-    return fmt::format("{}:{}", location.file, location.line);
   }
 
   // True if something can set the leaf of the payload that the stage receives. Adds the traces of stages that declare
