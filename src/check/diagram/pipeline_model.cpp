@@ -202,7 +202,7 @@ class Builder {
     trace.skipsAnyHit = facts.flags.mustHave(kFlagOpaque);
     describeVariable(site.stage, facts.payload, trace.payload, trace.payloadType, trace.payloadBytes);
     for (const HitGroupRay hit : site.hits)
-      trace.targets.push_back({Role::closestHit, hit.group * graph_.rayCount() + hit.ray, facts.offset.known, {}});
+      trace.targets.push_back({Role::closestHit, hit.group * graph_.rayCount() + hit.ray, facts.offset.certain(), {}});
     for (const Edge& edge : site.edges)
       if (edge.role == Role::miss) trace.targets.push_back({Role::miss, edge.index, edge.exact, {}});
     addDiagnostics(trace);
