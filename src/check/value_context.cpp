@@ -2,9 +2,9 @@
 #include "check/value_context.h"
 
 #include <algorithm>
-#include <array>
 #include <set>
 
+#include "check/library_names.h"
 #include "program/hit_group_binding.h"
 #include "spirv/access.h"
 #include "spirv/value_flow.h"
@@ -17,12 +17,17 @@ using program::ParameterType;
 using spirv::Occurrence;
 using spirv::ValueRange;
 
-// The lecture form renames the structures of the library (quintet/gsn/names_begin.glsl).
-constexpr std::array<std::string_view, 2> kParameters{"Parameters", "gsnParameters_"};
-constexpr std::array<std::string_view, 2> kInstances{"InstanceData", "gsnInstanceData_"};
-constexpr std::array<std::string_view, 2> kPrimitiveIndices{"PrimitiveIndexArray", "gsnPrimitiveIndexArray_"};
+constexpr std::string_view kParameters = "Parameters", kInstances = "InstanceData",
+                           kPrimitiveIndices = "PrimitiveIndexArray";
 constexpr std::string_view kRecord = "Record";
 constexpr double kMaxPrimitive = 536870911.0;  // Vulkan's limit of gl_PrimitiveID
+
+// Sets the values of a member of a structure of the library, in both forms of programs.
+void setMember(spirv::ValueContext& context, std::string_view structure, const std::string& member,
+               const std::vector<ValueRange>& ranges) {
+  context.members[{std::string(structure), member}] = ranges;
+  context.members[{lectureName(structure), member}] = ranges;
+}
 
 ValueRange amongAll(const std::set<double>& values) {
   if (values.empty()) return {};
@@ -121,12 +126,8 @@ void addHits(const program::Program& program, const std::string& file, const pro
   context.builtIns[spv::BuiltIn::InstanceId] = ids;
   std::set<double> custom;
   for (const double i : instances) custom.insert(scene->instances[static_cast<std::size_t>(i)].customIndex);
-  for (const std::string_view name : kInstances) {
-    // Shaders can also read the data of other instances.
-    ValueRange range = amongAll(custom);
-    if (instances != all) range = {};
-    context.members[{std::string(name), "customIndex"}] = {range};
-  }
+  // Shaders can also read the data of other instances.
+  setMember(context, kInstances, "customIndex", {instances == all ? amongAll(custom) : ValueRange{}});
 }
 
 }  // namespace
@@ -135,12 +136,11 @@ spirv::ValueContext valueContext(const program::Program& program, const std::str
                                  const program::SceneFacts* scene, ParameterUse parameters) {
   spirv::ValueContext context;
   for (const Parameter& parameter : program.parameters) {
-    const std::vector<ValueRange> ranges =
-        parameters == ParameterUse::defaults ? valuesOf(parameter, parameter.defaultValue) : allValues(parameter);
-    for (const std::string_view name : kParameters) context.members[{std::string(name), parameter.name}] = ranges;
+    const bool defaults = parameters == ParameterUse::defaults;
+    setMember(context, kParameters, parameter.name,
+              defaults ? valuesOf(parameter, parameter.defaultValue) : allValues(parameter));
   }
-  for (const std::string_view name : kPrimitiveIndices)
-    context.members[{std::string(name), "at"}] = {ValueRange::between(0.0, kMaxPrimitive)};
+  setMember(context, kPrimitiveIndices, "at", {ValueRange::between(0.0, kMaxPrimitive)});
   addRecords(program, file, context);
   addHits(program, file, scene, context);
   return context;
@@ -163,7 +163,7 @@ std::string DefaultRanges::parameters(std::initializer_list<spirv::Id> values) c
 
 std::string parameterOf(const spirv::Module& module, const spirv::Instruction& load) {
   const auto member = spirv::bufferMember(module, load);
-  return member && std::ranges::find(kParameters, member->structure) != kParameters.end() ? member->member : "";
+  return member && libraryName(member->structure) == kParameters ? member->member : "";
 }
 
 }  // namespace quintet::check

@@ -8,6 +8,7 @@
 #include <bit>
 #include <utility>
 
+#include "check/library_names.h"
 #include "spirv/access.h"
 
 namespace quintet::check {
@@ -24,12 +25,6 @@ constexpr std::uint8_t kMaxVisits = 24;    // of an instruction
 
 bool isLeaf(const spirv::Type& type) {
   return type.kind != TypeKind::structure && type.kind != TypeKind::array && type.kind != TypeKind::runtimeArray;
-}
-
-// The name of a type of the library, which the lecture form renames: gsnInstanceData_.
-std::string_view libraryName(std::string_view name) {
-  if (!name.starts_with("gsn") || !name.ends_with('_')) return name;
-  return name.substr(3, name.size() - 4);
 }
 
 SpaceTag rowTag(Space from, Space to, std::uint8_t index) {

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "check/flow/pipeline_spaces.h"
+#include "check/library_names.h"
 #include "check/output_access.h"
 #include "check/rules/rules.h"
 #include "check/rules/user_location.h"
@@ -26,6 +27,9 @@ using spv::Op;
 constexpr double kSmallestExponent = 1.0 / 2.6, kLargestExponent = 1.0 / 1.8;
 constexpr double kSmallestDecoding = 2.0, kLargestDecoding = 2.6;
 constexpr std::size_t kMaxValues = 2000;
+
+// The arrays of textures of the library, in both forms of programs.
+bool isTextures(const std::string& name) { return name == "textures" || name == lectureName("Textures"); }
 
 class ColorEncoding {
  public:
@@ -199,7 +203,7 @@ class ColorEncoding {
     while (load && load->op == Op::OpImage) load = module.definition(load->at(0));
     if (!load || load->op != Op::OpLoad) return false;
     const spirv::Access texture = module.access(load->at(0));
-    if (texture.indexIds.size() != 1 || module.name(texture.base).find("extures") == std::string::npos) return false;
+    if (texture.indexIds.size() != 1 || !isTextures(module.name(texture.base))) return false;
     const spirv::Instruction* index = module.definition(texture.indexIds[0]);
     while (index && index->op == Op::OpCopyObject) index = module.definition(index->at(0));
     if (!index) return false;
@@ -213,11 +217,12 @@ class ColorEncoding {
     spirv::Access from = module.access(index->at(0));
     from.indices.insert(from.indices.end(), path.begin(), path.end());
     for (const spirv::SelectedMember& selected : spirv::selectedMembers(module, from)) {
-      if (selected.structure.name == "Parameters")
+      const std::string_view structure = libraryName(selected.structure.name);
+      if (structure == "Parameters")
         return std::ranges::any_of(graph_.program.parameters, [&](const program::Parameter& p) {
           return p.name == selected.name() && p.type == program::ParameterType::image && p.sRgb;
         });
-      if (selected.structure.name == "MaterialData")
+      if (structure == "MaterialData")
         return selected.name() == "baseColorTexture" || selected.name() == "emissiveTexture";
     }
     return false;
@@ -238,7 +243,7 @@ class ColorEncoding {
 
   std::optional<double> defaultOf(const spirv::Module& module, Id pointer) const {
     for (const spirv::SelectedMember& selected : spirv::selectedMembers(module, module.access(pointer)))
-      if (selected.structure.name == "Parameters" || selected.structure.name == "gsnParameters_")
+      if (libraryName(selected.structure.name) == "Parameters")
         for (const program::Parameter& p : graph_.program.parameters)
           if (p.name == selected.name()) return p.defaultValue[0];
     return {};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "check/library_names.h"
 #include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
 #include "spirv/source_text.h"
@@ -63,8 +64,7 @@ void checkSize(const CheckInput& input, const PipelineStage& stage, Report& repo
                          input.limits.name.empty() ? "Vulkan" : input.limits.name, input.limits.maxHitAttributeBytes));
 }
 
-// In the lecture form, `hit` becomes this attribute with the report (program/gsn/stage.cpp). It starts with zeros.
-constexpr std::string_view kLectureAttribute = "gsnHitAttribute_", kLectureName = "hit";
+constexpr std::string_view kLectureName = "hit";  // starts with zeros and becomes kLectureAttribute
 
 enum class Written { before, after, never };  // the report
 

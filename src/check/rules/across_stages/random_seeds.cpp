@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 
+#include "check/library_names.h"
 #include "check/rules/rules.h"
 #include "check/rules/user_location.h"
 #include "spirv/access.h"
@@ -23,12 +24,6 @@ using spv::Op;
 
 constexpr std::uint32_t kLargeFactor = 1u << 10;  // of an integer hash
 constexpr double kLargeScale = 100.0;             // of fract(sin(x) * scale)
-
-// The name of a structure of the library, which the lecture form renames: gsnLaunch_.
-std::string_view libraryName(std::string_view name) {
-  if (!name.starts_with("gsn") || !name.ends_with('_')) return name;
-  return name.substr(3, name.size() - 4);
-}
 
 bool loadsSampleIndex(const spirv::Module& module, const spirv::Instruction& i) {
   const auto member = spirv::bufferMember(module, i);

@@ -2,6 +2,7 @@
 // Q901, Q902, Q904, Q905: valid code that drivers or the optimizer execute incorrectly (docs/design/quirks.md).
 #include <algorithm>
 
+#include "check/library_names.h"
 #include "check/rules/rules.h"
 #include "spirv/control_flow.h"
 #include "spirv/copy_builtins.h"
@@ -11,9 +12,6 @@ namespace quintet::check {
 namespace {
 
 using spv::Op;
-
-// The reportIntersectionEXT of the lecture form writes it and works around the defect.
-constexpr std::string_view kLectureAttribute = "gsnHitAttribute_";
 
 std::vector<std::size_t> all(const spirv::Module& module, Op op) {
   std::vector<std::size_t> result;
@@ -94,7 +92,7 @@ void checkAttributeWrites(const spirv::Module& module, Report& report) {
     const spirv::Instruction& instruction = module.instructions()[store];
     const spirv::Variable* variable = module.variable(module.access(instruction.at(0)).variable);
     if (!variable || variable->storage != spv::StorageClass::HitAttributeKHR) continue;
-    if (variable->name == kLectureAttribute) continue;
+    if (variable->name == kLectureAttribute) continue;  // reportIntersectionEXT works around the defect
     const bool reported =
         std::ranges::any_of(reports, [&](std::size_t r) { return spirv::canRunAfter(module, r, store); });
     if (!reported || guardedByTmax(module, store)) continue;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "check/library_names.h"
 #include "check/rules/rules.h"
 #include "check/rules/user_location.h"
 #include "spirv/access.h"
@@ -26,9 +27,7 @@ constexpr int kMaxDepth = 24;
 bool isMember(const spirv::Module& module, const spirv::Instruction& access, const Path& path,
               std::string_view structure, std::string_view member) {
   const auto found = spirv::bufferMember(module, access, path);
-  // The lecture form renames the structures of the library.
-  return found && found->member == member &&
-         (found->structure == structure || found->structure == "gsn" + std::string(structure) + "_");
+  return found && found->member == member && libraryName(found->structure) == structure;
 }
 
 // The component of a vector built-in that is read; nullopt for any other value.
@@ -231,7 +230,7 @@ std::optional<Target> outputTarget(const spirv::Module& module, const spirv::Ins
       chain->operands.size() < 3)
     return {};
   const auto member = spirv::bufferMember(module, store);
-  if (!member || (member->structure != "OutputArray" && member->structure != "gsnOutputArray_")) return {};
+  if (!member || libraryName(member->structure) != "OutputArray") return {};
   const spirv::Instruction* sum = module.definition(spirv::originOf(module, {chain->at(2)}).id);
   if (!sum || sum->op != Op::OpIAdd) return {};
   for (const std::size_t k : {0u, 1u}) {
