@@ -22,6 +22,7 @@ struct DiagnosticInfo {
   std::string_view fix;    // how to fix it: one sentence
   // Words that users search for and that the title does not have, separated by spaces: synonyms, symptoms, identifiers.
   std::string_view keywords = {};
+  bool ofScene = false;  // can also depend on the scene of the check
 };
 
 // Returns all rows, sorted by id.

@@ -82,10 +82,11 @@ CheckResult runRules(const program::Program& program, const program::CompiledPro
 
 // Moves the diagnostics that comments accept to CheckResult::suppressed. `complete`: the check saw all code, so it knows
 // which suppressions are unused.
-void suppress(CheckResult& result, const program::Program& program, bool complete) {
+void suppress(CheckResult& result, const program::Program& program, const program::SceneFacts* scene, bool complete) {
   Suppressions suppressions(program);
   result.suppressed = suppressions.apply(result.diagnostics);
-  if (complete && result.ok()) std::ranges::move(suppressions.problems(), std::back_inserter(result.diagnostics));
+  if (complete && result.ok())
+    std::ranges::move(suppressions.problems(scene != nullptr), std::back_inserter(result.diagnostics));
 }
 
 CheckResult checkWithOutputs(const program::Program& program, const shader::Compiler& compiler,
@@ -195,7 +196,7 @@ CheckResult runRules(const program::Program& program, const program::CompiledPro
 CheckResult check(const program::Program& program, const program::CompiledProgram& compiled,
                   const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
   CheckResult result = runRules(program, compiled, scene, limits, featureDefines);
-  suppress(result, program, !featureDefines);
+  suppress(result, program, scene, !featureDefines);
   return result;
 }
 
@@ -243,7 +244,7 @@ CheckResult checkWithOptionalOutputs(const program::Program& program, const shad
                                      const program::SceneFacts* scene, const DeviceLimits& limits) {
   CheckResult result = checkWithOutputs(program, compiler, scene, limits, {});
   addOptionalOutputs(result, program, compiler, scene, limits);
-  suppress(result, program, true);
+  suppress(result, program, scene, true);
   return result;
 }
 

@@ -92,8 +92,11 @@ std::optional<Suppression> parse(std::string_view text) {
   return result;
 }
 
-// Only a run gives Q001 to Q009, and only some devices give Q901 and later: another check may use the suppression.
-bool canStayUnused(std::string_view id) { return id < "Q010" || id.starts_with("Q9"); }
+// Only a run gives Q001 to Q009, only some devices give Q901 and later, and a check with a scene finds more: it can use
+// the suppression.
+bool canStayUnused(std::string_view id, bool hasScene) {
+  return id < "Q010" || id.starts_with("Q9") || (!hasScene && findDiagnostic(id)->ofScene);
+}
 
 bool isSource(const std::string& name) {
   constexpr std::string_view kExtensions[] = {".glsl", ".rgen", ".rmiss", ".rchit", ".rahit", ".rint", ".rcall"};
@@ -172,7 +175,7 @@ std::vector<SuppressedDiagnostic> Suppressions::apply(std::vector<Diagnostic>& d
   return result;
 }
 
-std::vector<Diagnostic> Suppressions::problems() const {
+std::vector<Diagnostic> Suppressions::problems(bool hasScene) const {
   std::vector<Diagnostic> result;
   const auto add = [&](std::string_view id, const SourceLocation& location, std::string text) {
     result.push_back({findDiagnostic(id)->severity, location.file, location.line, location.column, std::string(id),
@@ -186,7 +189,7 @@ std::vector<Diagnostic> Suppressions::problems() const {
         continue;
       }
       for (std::size_t i = 0; i < s.ids.size(); ++i)
-        if (!known.used[i] && !canStayUnused(s.ids[i]))
+        if (!known.used[i] && !canStayUnused(s.ids[i], hasScene))
           add("Q803", s.location,
               fmt::format("this comment allows {} in line {}, where it is not reported", s.ids[i], s.line));
     }

@@ -38,9 +38,9 @@ class Suppressions {
   // Moves the accepted diagnostics from the list to the result.
   std::vector<SuppressedDiagnostic> apply(std::vector<Diagnostic>& diagnostics);
 
-  // Q803 for each id that apply() has not met, except those that only a run or a device can give. Q804 for each invalid
-  // comment.
-  std::vector<Diagnostic> problems() const;
+  // Q803 for each id that apply() has not met, except those that only a run or a device can give and, without a scene,
+  // those that depend on it. Q804 for each invalid comment.
+  std::vector<Diagnostic> problems(bool hasScene) const;
 
  private:
   struct Known {

@@ -92,6 +92,11 @@ TEST(CheckSuppression, Q803ReportsUnusedSuppressions) {
   EXPECT_TRUE(
       reportsOnly(checkEdited(cleanFiles(), "main.rgen", "  traceRayEXT", "  // quintet: allow Q505\n  traceRayEXT"),
                   "Q803 main.rgen:10:3 ", {"Q505", "line 11"}));
+  // A check with a scene can give this one.
+  const Files files = edited(cleanFiles(), "main.rgen", "  traceRayEXT", "  // quintet: allow Q507\n  traceRayEXT");
+  const program::SceneFacts scene = sceneWith({{program::GeometryKind::triangles, true, "tree", "leaf"}});
+  EXPECT_EQ(textOf(checkFiles(files)), "");
+  EXPECT_TRUE(reportsOnly(textOf(checkFiles(files, &scene)), "Q803 main.rgen:10:3 ", {"Q507"}));
   // Only a run or a device can give these.
   EXPECT_EQ(checkEdited(cleanFiles(), "main.rgen", "  traceRayEXT", "  // quintet: allow Q005, Q901\n  traceRayEXT"),
             "");
