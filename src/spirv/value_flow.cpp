@@ -2,6 +2,7 @@
 #include "spirv/value_flow.h"
 
 #include <algorithm>
+#include <set>
 #include <unordered_set>
 
 #include "spirv/access.h"
@@ -121,6 +122,27 @@ const Instruction* findInSlice(const Module& module, Id value, const Instruction
       if (seen.insert(i).second) open.push_back(i);
   }
   return nullptr;
+}
+
+InstructionTest sourcesOf(const Module& module, Id value) {
+  constexpr Id kBuffers = 0;
+  const auto sourceOf = [&module](const Instruction& i) -> std::optional<Id> {
+    if (i.op == spv::Op::OpPhi) return i.result;
+    if (i.op != spv::Op::OpLoad) return {};
+    const Id base = module.access(i.at(0)).base;
+    const Instruction* definition = module.definition(base);
+    return definition && definition->op == spv::Op::OpVariable ? base : kBuffers;
+  };
+  std::set<Id> sources;
+  (void)dependsOn(module, value, [&](const Instruction& i) {
+    if (const auto source = sourceOf(i)) sources.insert(*source);
+    return false;
+  });
+  if (sources.empty()) return {};
+  return [sourceOf, sources = std::move(sources)](const Instruction& i) {
+    const auto source = sourceOf(i);
+    return source && sources.contains(*source);
+  };
 }
 
 const Instruction* findInUses(const Module& module, Id value, const InstructionTest& test,

@@ -24,6 +24,10 @@ inline bool dependsOn(const Module& module, Id value, const InstructionTest& tes
   return findInSlice(module, value, test, stop) != nullptr;
 }
 
+// Returns a test for reads of what `value` is computed from: the variables that are loaded (all buffers count as one) and
+// the phis. Null if it is computed from constants alone.
+InstructionTest sourcesOf(const Module& module, Id value);
+
 // Returns the first instruction for which `test` holds among those that use `value`, directly or through other values
 // and local variables. The search does not follow the users of an instruction for which `stop` holds. Null if not
 // found.

@@ -834,24 +834,8 @@ bool ValueRanges::guarded(std::size_t instruction, Id value) const {
   const Module& module = impl_->module;
   const auto position = module.position(instruction);
   if (!position) return true;
-  // What the value is computed from: variables that are loaded, and phis.
-  std::set<Id> sources;
-  bool memory = false;
-  const auto variableOf = [&](const Instruction& load) { return module.access(load.at(0)).base; };
-  const auto isMemory = [&](Id id) {
-    const Instruction* definition = module.definition(id);
-    return !definition || definition->op != Op::OpVariable;
-  };
-  (void)dependsOn(module, value, [&](const Instruction& i) {
-    if (i.op == Op::OpLoad) sources.insert(variableOf(i)), memory = memory || isMemory(variableOf(i));
-    if (i.op == Op::OpPhi) sources.insert(i.result);
-    return false;
-  });
-  if (sources.empty()) return false;
-  const auto isSource = [&](const Instruction& i) {
-    if (i.op == Op::OpLoad) return sources.contains(variableOf(i)) || (memory && isMemory(variableOf(i)));
-    return i.op == Op::OpPhi && sources.contains(i.result);
-  };
+  const InstructionTest isSource = sourcesOf(module, value);
+  if (!isSource) return false;
   const ControlFlow& flow = impl_->flow(position->function);
   const auto& blocks = flow.function().blocks;
   const auto from = [&](std::size_t start, std::size_t without) {
@@ -867,8 +851,8 @@ bool ValueRanges::guarded(std::size_t instruction, Id value) const {
     return seen;
   };
   const auto isCountedHeader = [&](std::size_t block) {
-    return std::ranges::any_of(sources, [&](Id id) {
-      const auto& loop = impl_->countedLoop(id);
+    return dependsOn(module, value, [&](const Instruction& i) {
+      const auto& loop = impl_->countedLoop(i.op == Op::OpPhi ? i.result : 0);
       return loop && loop->function == position->function && loop->header == block && loop->complete;
     });
   };

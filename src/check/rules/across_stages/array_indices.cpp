@@ -82,11 +82,17 @@ class IndexRule {
     }
   }
 
-  // True if a condition that the index decides selects the loaded value: the optimizer replaces branches by selects.
-  bool isSelected(const spirv::Instruction& use, spirv::Id) const {
-    return use.op == Op::OpLoad &&
-           spirv::findInUses(
-               module_, use.result, [](const spirv::Instruction& i) { return i.op == Op::OpSelect; },
+  // True if a condition that depends on what the index is computed from selects the loaded value: the optimizer replaces
+  // branches by selects.
+  bool isSelected(const spirv::Instruction& load, spirv::Id index) const {
+    const spirv::InstructionTest isSource = spirv::sourcesOf(module_, index);
+    if (load.op != Op::OpLoad || !isSource) return false;
+    const auto isLoad = [&](const spirv::Instruction& i) { return &i == &load; };
+    return spirv::findInUses(
+               module_, load.result,
+               [&](const spirv::Instruction& i) {
+                 return i.op == Op::OpSelect && spirv::dependsOn(module_, i.at(0), isSource, isLoad);
+               },
                [](const spirv::Instruction& i) { return i.op == Op::OpStore; }) != nullptr;
   }
 
