@@ -15,7 +15,7 @@ using spirv::Id;
 using spv::Op;
 using Kind = SpaceTag::Kind;
 
-constexpr int kMaxRounds = 12;
+constexpr int kMaxRounds = 12;           // of propagate()
 constexpr int kMaxDepth = 48;            // of uses()
 constexpr std::size_t kMaxValues = 400;  // that uses() follows
 
@@ -58,8 +58,11 @@ struct PipelineSpaces::Search {
   std::set<std::tuple<std::size_t, Id, spirv::Path>> seen;
 
   void push(Open next) {
-    if (next.depth > kMaxDepth || seen.size() > kMaxValues) return;
-    if (seen.emplace(next.stage, next.id, next.inner).second) open.push_back(std::move(next));
+    if (!seen.emplace(next.stage, next.id, next.inner).second) return;
+    if (next.depth > kMaxDepth || seen.size() > kMaxValues)
+      uses.truncated = true;
+    else
+      open.push_back(std::move(next));
   }
 };
 
@@ -145,9 +148,9 @@ void PipelineSpaces::link(const Shared& a, const Shared& b) {
   parent_[right] = left;
 }
 
-// Exchanges the tags of linked variables until they do not change.
+// Exchanges the tags of linked variables until they do not change. Tags that change in later rounds become unknown.
 void PipelineSpaces::propagate() {
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 0;; ++round) {
     std::vector<SpaceLeaves> sets(shared_.size());
     for (std::size_t i = 0; i < shared_.size(); ++i) {
       const SpaceLeaves own = stages_[shared_[i].first]->contents(shared_[i].second);
@@ -161,8 +164,13 @@ void PipelineSpaces::propagate() {
       }
     }
     std::vector<bool> changed(stages_.size(), false);
-    for (std::size_t i = 0; i < shared_.size(); ++i)
-      if (stages_[shared_[i].first]->add(shared_[i].second, sets[find(i)])) changed[shared_[i].first] = true;
+    for (std::size_t i = 0; i < shared_.size(); ++i) {
+      const auto& [stage, variable] = shared_[i];
+      const SpaceLeaves& tags = sets[find(i)];
+      if (!stages_[stage]->add(variable, tags)) continue;
+      if (round >= kMaxRounds) stages_[stage]->add(variable, SpaceLeaves(tags.size(), unknownTag()));
+      changed[stage] = true;
+    }
     if (std::ranges::none_of(changed, [](bool c) { return c; })) return;
     parallelFor(stages_.size(), [&](std::size_t i) {
       if (changed[i]) stages_[i]->run();
@@ -192,7 +200,7 @@ bool PipelineSpaces::transforms() const {
 ValueUses PipelineSpaces::uses(std::size_t stage, Id value) const {
   Search search;
   search.push({stage, value, {}});
-  while (!search.open.empty()) {
+  while (!search.open.empty() && !search.uses.truncated) {
     const Open next = search.open.back();
     search.open.pop_back();
     for (const std::size_t user : stages_[next.stage]->module().users(next.id)) visit(next, user, search);
@@ -240,7 +248,7 @@ void PipelineSpaces::visitExtended(const Open& open, const spirv::Instruction& i
   switch (module.extendedSet(i.at(0)) == "GLSL.std.450" ? i.at(1) : 0u) {
     case GLSLstd450Normalize:
       search.uses.normalized = true;
-      search.uses.radius = search.uses.radius || open.direct;
+      search.uses.normalizedDirectly = search.uses.normalizedDirectly || open.direct;
       return follow(true);
     case GLSLstd450Length: search.uses.measured = true; return;
     case GLSLstd450Cross: search.uses.crossed = true; return;

@@ -28,7 +28,8 @@ struct ValueUses {
   bool pattern = false;     // coordinates of a pattern: fract(v), floor(v), mod(v, size), sin(v)
   bool translated = false;  // the translation of a matrix is added
   bool stored = false;      // somewhere where it cannot be followed
-  bool radius = false;      // normalized directly
+  bool normalizedDirectly = false;
+  bool truncated = false;  // not all uses are known
 };
 
 class PipelineSpaces {
@@ -38,7 +39,6 @@ class PipelineSpaces {
 
   // Null if the stage cannot be analyzed.
   const SpaceTags* stage(std::size_t index) const { return stages_[index].get(); }
-  std::size_t stageCount() const { return stages_.size(); }
   // True if a stage transforms a value from object to world space or back, so the program distinguishes them.
   bool transforms() const;
   ValueUses uses(std::size_t stage, spirv::Id value) const;

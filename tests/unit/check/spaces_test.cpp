@@ -50,6 +50,17 @@ TEST(CheckSpaces, ReportsNormalsByMatrices) {
         << v;
 }
 
+// Uses that the search does not reach can show that the position is meant without translation.
+TEST(CheckSpaces, AcceptsValuesWithTooManyUses) {
+  const auto body = [](int steps) {
+    std::string text = "vec3 p = mat3(gl_ObjectToWorldEXT) * P(0); trace(p, kLight);";
+    for (int i = 0; i < steps; ++i) text += "p *= 1.0 + b[" + std::to_string(i % 2) + "];";
+    return text + "payload.color = p;";
+  };
+  EXPECT_THAT(closestHit(body(2)), ElementsAre(found("Q708")));
+  EXPECT_THAT(closestHit(body(60)), IsEmpty());
+}
+
 TEST(CheckSpaces, AcceptsNormalsByTheInverseTranspose) {
   for (const char* v : {"vec3(N(0) * gl_WorldToObjectEXT)", "transpose(mat3(gl_WorldToObjectEXT)) * N(0)",
                         "(gl_WorldToObject3x4EXT * N(0)).xyz", "transpose(inverse(mat3(gl_ObjectToWorldEXT))) * N(0)",

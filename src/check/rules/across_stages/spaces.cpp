@@ -72,12 +72,11 @@ class SpaceRules {
     if (!product.transform.covariant && asVector && toWorld && isTransformedNormal(i, product)) {
       add("Q702", i, "gl_ObjectToWorldEXT",
           "a normal is multiplied by gl_ObjectToWorldEXT; with non-uniform scale the result is not perpendicular to "
-          "the "
-          "surface");
+          "the surface");
     }
   }
 
-  // A matrix from the one space that is applied to a value of a different space.
+  // A matrix of one space that is applied to a value of a different space.
   void checkDirectionOfMatrix(const spirv::Instruction& i, const SpaceTags::Product& product) {
     add("Q709", i, tokenOf(product.transform),
         fmt::format("{} is multiplied by {}, which here maps {} to {}", describe(product.vector),
@@ -88,6 +87,7 @@ class SpaceRules {
 
   bool isTransformedNormal(const spirv::Instruction& i, const SpaceTags::Product& product) const {
     const ValueUses use = uses(i);
+    if (use.truncated) return false;
     switch (product.vector.kind) {
       case Kind::normal:
         // An offset along a normal does not have to be perpendicular to the surface.
@@ -96,7 +96,7 @@ class SpaceRules {
       case Kind::point:
         // The normal of a sphere at the origin of object space.
         if (use.translated || use.traceOrigin || use.difference) return false;
-        return use.asNormal || (product.vector.onRay && use.radius);
+        return use.asNormal || (product.vector.onRay && use.normalizedDirectly);
       case Kind::radial: return use.asNormal || use.shown;
       case Kind::direction: return false;
       case Kind::neutral:
@@ -120,7 +120,7 @@ class SpaceRules {
   bool checkPointAsVector(const spirv::Instruction& i, const SpaceTags::Product& product) {
     if (product.vector.kind != Kind::point) return false;
     const ValueUses use = uses(i);
-    if (use.translated || use.relative || use.asNormal || use.radius) return false;
+    if (use.truncated || use.translated || use.relative || use.asNormal || use.normalizedDirectly) return false;
     // vec4(position, 0.0) of vertices is not meant as a direction.
     const bool explicitly = product.vector.w == W::zero && product.vector.fromMesh && !use.measured;
     if (!explicitly && !use.traceOrigin && !use.difference && !isPattern(product, use)) return false;
@@ -158,8 +158,8 @@ class SpaceRules {
         (vector.kind == Kind::normal && !vector.scaled) || (vector.kind == Kind::direction && vector.onRay);
     if (vector.kind == Kind::point || vector.kind == Kind::neutral || vector.kind == Kind::undefined) return;
     const ValueUses use = uses(i);
-    if (use.difference || use.traceOrigin) return;
-    const bool directed = use.asNormal || use.traceDirection || use.crossed || (use.radius && use.dot);
+    if (use.truncated || use.difference || use.traceOrigin) return;
+    const bool directed = use.asNormal || use.traceDirection || use.crossed || (use.normalizedDirectly && use.dot);
     if (!certain && (!directed || vector.kind == Kind::radial)) return;
     add("Q708", i, tokenOf(product.transform),
         fmt::format("{} is transformed with w = 1, like a position, so it is translated",
