@@ -16,6 +16,8 @@ namespace {
 
 using spv::Op;
 
+constexpr int kMaxDepth = 8;
+
 // The bits of which Vulkan allows at most one: VUID-RuntimeSpirv-OpTraceRayKHR-06892 to 06894.
 bool contradicts(std::uint32_t flags) {
   constexpr std::uint32_t kOpacity = 1 | 2 | 64 | 128, kTriangles = 256 | 16 | 32, kGeometry = 256 | 512;
@@ -31,7 +33,7 @@ bool mentions(const std::string& argument, std::string_view prefix) {
 
 const spirv::Instruction* original(const spirv::Module& module, spirv::Id value) {
   const spirv::Instruction* definition = module.definition(value);
-  for (int i = 0; definition && definition->op == Op::OpCopyObject && i < 8; ++i)
+  for (int i = 0; definition && definition->op == Op::OpCopyObject && i < kMaxDepth; ++i)
     definition = module.definition(definition->at(0));
   return definition;
 }
@@ -39,22 +41,25 @@ const spirv::Instruction* original(const spirv::Module& module, spirv::Id value)
 // True for a unit vector: normalize(…) or reflect(…) of a ray direction.
 bool isDirection(const spirv::Module& module, spirv::Id value) {
   const spirv::Instruction* i = original(module, value);
+  for (int depth = 0; i && depth < kMaxDepth && spirv::isExtended(module, *i, GLSLstd450Reflect); ++depth)
+    i = original(module, i->at(2));
   return i && (spirv::isExtended(module, *i, GLSLstd450Normalize) ||
-               spirv::loadsBuiltIn(module, *i, spv::BuiltIn::WorldRayDirectionKHR) ||
-               (spirv::isExtended(module, *i, GLSLstd450Reflect) && isDirection(module, i->at(2))));
+               spirv::loadsBuiltIn(module, *i, spv::BuiltIn::WorldRayDirectionKHR));
 }
 
 // True for gl_WorldRayOriginEXT, alone or plus t * gl_WorldRayDirectionEXT.
 bool isPosition(const spirv::Module& module, spirv::Id value) {
-  const spirv::Instruction* i = original(module, value);
-  if (!i) return false;
-  if (spirv::loadsBuiltIn(module, *i, spv::BuiltIn::WorldRayOriginKHR)) return true;
-  if (i->op != Op::OpFAdd) return false;
   const auto isStep = [&](spirv::Id part) {
     const spirv::Instruction* step = original(module, part);
     return step && step->op == Op::OpVectorTimesScalar && isDirection(module, step->at(0));
   };
-  return (isPosition(module, i->at(0)) && isStep(i->at(1))) || (isPosition(module, i->at(1)) && isStep(i->at(0)));
+  const spirv::Instruction* i = original(module, value);
+  for (int depth = 0; i && depth < kMaxDepth && i->op == Op::OpFAdd; ++depth) {
+    const std::size_t step = isStep(i->at(1)) ? 1 : 0;
+    if (!isStep(i->at(step))) return false;
+    i = original(module, i->at(1 - step));
+  }
+  return i && spirv::loadsBuiltIn(module, *i, spv::BuiltIn::WorldRayOriginKHR);
 }
 
 // True for the direction of a pinhole camera: normalize(vec3(x, y, -2.0)), with the distance of the image plane.
@@ -69,7 +74,7 @@ bool isCameraDirection(const spirv::StageFacts& facts, spirv::Id value) {
 }
 
 // True for a constant vector whose length is not 1.
-bool isConstantOfOtherLength(const spirv::StageFacts& facts, spirv::Id value) {
+bool isConstantNotUnit(const spirv::StageFacts& facts, spirv::Id value) {
   double square = 0.0;
   for (std::uint32_t c = 0; c < 3; ++c) {
     const std::optional<double> component = facts.ranges().range(value, {c}).constant();
@@ -163,7 +168,7 @@ SwappedArguments findSwappedArguments(const spirv::StageFacts& facts, const spir
 
   const spirv::Instruction& call = module.instructions()[trace.instruction];
   if ((isPosition(module, call.at(8)) && isDirection(module, call.at(6))) ||
-      (isCameraDirection(facts, call.at(6)) && isConstantOfOtherLength(facts, call.at(8))))
+      (isCameraDirection(facts, call.at(6)) && isConstantNotUnit(facts, call.at(8))))
     result.texts.push_back(
         "origin and direction of this trace are swapped: the origin is a unit vector, and the direction is a position");
   return result;

@@ -23,6 +23,7 @@ using spirv::Path;
 using spv::Op;
 
 constexpr int kMaxDepth = 24;
+constexpr int kMaxValues = 500;  // that a search follows; it finds nothing if there are more
 
 bool isMember(const spirv::Module& module, const spirv::Instruction& access, const Path& path,
               std::string_view structure, std::string_view member) {
@@ -39,6 +40,17 @@ std::optional<std::uint32_t> componentOf(const spirv::Module& module, const spir
   return path.empty() ? access.indices[0] : std::optional(path[0]);
 }
 
+// The value before conversions to float and between signed and unsigned.
+spirv::ValuePart withoutConversions(const spirv::Module& module, spirv::ValuePart value) {
+  for (int depth = 0; depth < kMaxDepth; ++depth) {
+    value = spirv::originOf(module, std::move(value));
+    const spirv::Instruction* i = module.definition(value.id);
+    if (!i || (i->op != Op::OpConvertUToF && i->op != Op::OpConvertSToF && i->op != Op::OpBitcast)) break;
+    value.id = i->at(0);
+  }
+  return value;
+}
+
 // A value that is a coordinate of the pixel: that of the launch, or of the image.
 struct Coordinate {
   std::uint32_t axis = 0;  // 0 x, 1 y
@@ -46,12 +58,13 @@ struct Coordinate {
   bool operator==(const Coordinate&) const = default;
 };
 
-std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Path given, int depth = 0) {
+// `budget` is the number of values that the search still follows.
+std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Path given, int& budget, int depth = 0) {
   const spirv::ValuePart origin = spirv::originOf(module, {value, std::move(given)});
   const Id id = origin.id;
   const Path& path = origin.path;
   const spirv::Instruction* i = module.definition(id);
-  if (!i || depth > kMaxDepth) return {};
+  if (!i || depth > kMaxDepth || --budget < 0) return {};
   const auto operand = [&](std::size_t k) { return module.definition(spirv::originOf(module, {i->at(k), path}).id); };
   const auto partOf = [&](std::size_t k) { return spirv::originOf(module, {i->at(k), path}).path; };
   switch (i->op) {
@@ -61,17 +74,17 @@ std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Pa
     }
     case Op::OpBitcast:
     case Op::OpUConvert:
-    case Op::OpSConvert: return coordinateOf(module, i->at(0), path, depth + 1);
+    case Op::OpSConvert: return coordinateOf(module, i->at(0), path, budget, depth + 1);
     case Op::OpIAdd:
       for (const std::size_t k : {0u, 1u}) {
-        const auto found = coordinateOf(module, i->at(k), path, depth + 1);
         const spirv::Instruction* other = operand(1 - k);
-        if (found && other && isMember(module, *other, partOf(1 - k), "Launch", "offset"))
+        if (!other || !isMember(module, *other, partOf(1 - k), "Launch", "offset")) continue;
+        if (const auto found = coordinateOf(module, i->at(k), path, budget, depth + 1))
           return Coordinate{found->axis, true};
       }
       return {};
     case Op::OpISub: {  // height - 1 - y
-      const auto found = coordinateOf(module, i->at(1), path, depth + 1);
+      const auto found = coordinateOf(module, i->at(1), path, budget, depth + 1);
       const spirv::Instruction* top = operand(0);
       if (!found || found->axis != 1 || !top || (top->op != Op::OpISub && top->op != Op::OpIAdd)) return {};
       const spirv::Instruction* height = module.definition(spirv::originOf(module, {top->at(0), partOf(0)}).id);
@@ -82,7 +95,7 @@ std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Pa
       std::optional<Coordinate> result;
       const bool phi = i->op == Op::OpPhi;
       for (std::size_t k = phi ? 0 : 1; k < i->operands.size(); k += phi ? 2 : 1) {
-        const auto found = coordinateOf(module, i->at(k), path, depth + 4);
+        const auto found = coordinateOf(module, i->at(k), path, budget, depth + 4);
         if (found && result && *found != *result) return {};
         if (found) result = found;
       }
@@ -92,34 +105,42 @@ std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, Pa
   }
 }
 
+std::optional<Coordinate> coordinateOf(const spirv::Module& module, Id value, const Path& path) {
+  int budget = kMaxValues;
+  const auto found = coordinateOf(module, value, path, budget);
+  return budget >= 0 ? found : std::nullopt;
+}
+
 // A value `coordinate * pixel + size * (extent of the image) + constant` along one axis.
 struct Linear {
   double coordinate = 0.0, size = 0.0, constant = 0.0;
 };
 
-std::optional<Linear> linearOf(const spirv::Module& module, Id value, Path given, std::uint32_t axis, int depth = 0) {
+std::optional<Linear> linearOf(const spirv::Module& module, Id value, Path given, std::uint32_t axis, int& budget,
+                               int depth = 0) {
   const spirv::ValuePart part = spirv::originOf(module, {value, std::move(given)});
   const spirv::Instruction* i = module.definition(part.id);
-  if (!i || depth > kMaxDepth) return {};
+  if (!i || depth > kMaxDepth || --budget < 0) return {};
   if (const auto number = spirv::constantNumber(module, part))  // 1u - 2u is a constant of the type uint
     return Linear{0.0, 0.0, *number > 2147483647.0 ? *number - 4294967296.0 : *number};
-  if (i->op == Op::OpBitcast) return linearOf(module, i->at(0), part.path, axis, depth + 1);
+  if (i->op == Op::OpBitcast) return linearOf(module, i->at(0), part.path, axis, budget, depth + 1);
   if (isMember(module, *i, part.path, "Frame", axis == 0 ? "width" : "height")) return Linear{0.0, 1.0, 0.0};
   if (i->op == Op::OpIAdd || i->op == Op::OpISub) {
-    const auto a = linearOf(module, i->at(0), part.path, axis, depth + 1);
-    const auto b = linearOf(module, i->at(1), part.path, axis, depth + 1);
+    const auto a = linearOf(module, i->at(0), part.path, axis, budget, depth + 1);
+    const auto b = linearOf(module, i->at(1), part.path, axis, budget, depth + 1);
     const double sign = i->op == Op::OpIAdd ? 1.0 : -1.0;
     if (a && b)
       return Linear{a->coordinate + sign * b->coordinate, a->size + sign * b->size, a->constant + sign * b->constant};
   }
-  const auto coordinate = coordinateOf(module, part.id, part.path);
+  const auto coordinate = coordinateOf(module, part.id, part.path, budget);
   return coordinate && coordinate->axis == axis ? std::optional(Linear{1.0, 0.0, 0.0}) : std::nullopt;
 }
 
 // Returns the text of a mirrored coordinate that is not `size - 1 - pixel`; empty for any other value.
 std::string mirroredOutside(const spirv::Module& module, const spirv::ValuePart& value, std::uint32_t axis) {
-  const auto linear = linearOf(module, value.id, value.path, axis);
-  if (!linear || linear->coordinate != -1.0 || linear->size != 1.0 || linear->constant == -1.0) return {};
+  int budget = kMaxValues;
+  const auto linear = linearOf(module, value.id, value.path, axis, budget);
+  if (budget < 0 || !linear || linear->coordinate != -1.0 || linear->size != 1.0 || linear->constant == -1.0) return {};
   const char* size = axis == 0 ? "width" : "height";
   const char* name = axis == 0 ? "column" : "row";
   return linear->constant > -1.0
@@ -133,20 +154,16 @@ struct Parts {
   bool x = false, y = false;
   double factor = 1.0;
   bool normalized = false;  // divided by the size of the image
+  int budget = kMaxValues;  // number of values that the search still follows
 };
 
 // True for frame.width, frame.height and components of gl_LaunchSizeEXT, also as float.
-bool isSize(const spirv::Module& module, Id value, Path given) {
-  const spirv::ValuePart origin = spirv::originOf(module, {value, std::move(given)});
-  const Id id = origin.id;
-  const Path& path = origin.path;
-  const spirv::Instruction* i = module.definition(id);
-  if (!i) return false;
-  if (i->op == Op::OpConvertUToF || i->op == Op::OpConvertSToF || i->op == Op::OpBitcast)
-    return isSize(module, i->at(0), path);
-  return i->op == Op::OpLoad &&
+bool isSize(const spirv::Module& module, Id value, Path path) {
+  const spirv::ValuePart size = withoutConversions(module, {value, std::move(path)});
+  const spirv::Instruction* i = module.definition(size.id);
+  return i && i->op == Op::OpLoad &&
          (spirv::loadsBuiltIn(module, *i, spv::BuiltIn::LaunchSizeKHR) ||
-          isMember(module, *i, path, "Frame", "width") || isMember(module, *i, path, "Frame", "height"));
+          isMember(module, *i, size.path, "Frame", "width") || isMember(module, *i, size.path, "Frame", "height"));
 }
 
 void addParts(const spirv::Module& module, const spirv::ValueRanges& ranges, Id value, Path given, Parts& parts,
@@ -155,7 +172,7 @@ void addParts(const spirv::Module& module, const spirv::ValueRanges& ranges, Id 
   const Id id = origin.id;
   const Path& path = origin.path;
   const spirv::Instruction* i = module.definition(id);
-  if (!i || depth > kMaxDepth) return;
+  if (!i || depth > kMaxDepth || --parts.budget < 0) return;
   const auto follow = [&](std::size_t k, double by = 1.0, int deeper = 1) {
     addParts(module, ranges, i->at(k), path, parts, factor * by, depth + deeper);
   };
@@ -304,6 +321,7 @@ void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, 
   Parts x, y;
   addParts(module, ranges, target.x.id, target.x.path, x);
   addParts(module, ranges, target.y.id, target.y.path, y);
+  if (x.budget < 0 || y.budget < 0) return;
   const SourceLocation location = locationOf(module, module.instructions()[instruction]);
   if (!x.x && x.y && y.x && !y.y)
     return report.addOncePerLine(
@@ -346,15 +364,13 @@ void checkTarget(const spirv::Module& module, const spirv::ValueRanges& ranges, 
 }
 
 // True if the divisor is the size along the axis of the coordinate, which is larger.
-bool isSizeOf(const spirv::Module& module, Id value, const Path& given, const Coordinate& coordinate) {
-  const spirv::ValuePart origin = spirv::originOf(module, {value, given});
-  const Id id = origin.id;
-  const Path& path = origin.path;
-  const spirv::Instruction* i = module.definition(id);
-  if (!i) return false;
-  if (i->op == Op::OpBitcast) return isSizeOf(module, i->at(0), path, coordinate);
-  if (!coordinate.ofImage && componentOf(module, *i, path, spv::BuiltIn::LaunchSizeKHR) == coordinate.axis) return true;
-  return i->op == Op::OpLoad && isMember(module, *i, path, "Frame", coordinate.axis == 0 ? "width" : "height");
+bool isSizeOf(const spirv::Module& module, Id value, const Path& path, const Coordinate& coordinate) {
+  const spirv::ValuePart size = withoutConversions(module, {value, path});
+  const spirv::Instruction* i = module.definition(size.id);
+  if (!i || i->op != Op::OpLoad) return false;
+  if (!coordinate.ofImage && componentOf(module, *i, size.path, spv::BuiltIn::LaunchSizeKHR) == coordinate.axis)
+    return true;
+  return isMember(module, *i, size.path, "Frame", coordinate.axis == 0 ? "width" : "height");
 }
 
 }  // namespace
