@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "check/swapped_arguments.h"
-#include "check/value_context.h"
 #include "spirv/glsl_declaration.h"
 #include "spirv/source_text.h"
 
@@ -30,6 +29,7 @@ std::string_view roleName(Role role) {
 PipelineGraph::PipelineGraph(const program::Program& given, const program::CompiledProgram& compiled)
     : program(given), misses(program::missShaders(given)) {
   stages.resize(compiled.stages.size());
+  defaults_.resize(stages.size());
   std::vector<std::string> errors(stages.size());
   parallelFor(stages.size(), [&](std::size_t i) {
     stages[i].file = compiled.stages[i].file;
@@ -61,6 +61,12 @@ const program::HitShaders& PipelineGraph::shaders(HitGroupRay hit) const {
 bool PipelineGraph::hasIntersection(std::size_t group) const {
   return std::ranges::any_of(program.hitGroups[group].shaders,
                              [](const auto& entry) { return !entry.second.intersection.empty(); });
+}
+
+const DefaultRanges& PipelineGraph::defaults(std::size_t stage) const {
+  if (!defaults_[stage])
+    defaults_[stage] = std::make_unique<DefaultRanges>(program, stages[stage].file, stages[stage].facts->module());
+  return *defaults_[stage];
 }
 
 std::vector<std::size_t> PipelineGraph::rayTypes(const spirv::TraceFacts& trace) const {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <set>
 
+#include "check/value_context.h"
 #include "program/compile.h"
 #include "program/hit_group_binding.h"
 #include "spirv/stage_facts.h"
@@ -77,6 +78,9 @@ struct PipelineGraph {
   const spirv::StageFacts& facts(const Edge& edge) const { return *stages[edge.stage].facts; }
   const program::HitShaders& shaders(HitGroupRay hit) const;  // empty if the group has none for that ray type
   bool hasIntersection(std::size_t group) const;
+  // Ranges of a stage, which has facts, if all parameters have their defaults. Cached; threads must ask for different
+  // stages.
+  const DefaultRanges& defaults(std::size_t stage) const;
   // Ray types whose hit shaders the trace can use.
   std::vector<std::size_t> rayTypes(const spirv::TraceFacts& trace) const;
   // Stages reachable from ray generation. An any-hit shader counts as reachable even if opacity prevents it.
@@ -99,7 +103,8 @@ struct PipelineGraph {
   SourceLocation location(const CallSite& site) const;
 
  private:
-  std::deque<spirv::TraceFacts> intended_;  // of traces with swapped arguments
+  std::deque<spirv::TraceFacts> intended_;                        // of traces with swapped arguments
+  mutable std::vector<std::unique_ptr<DefaultRanges>> defaults_;  // by stage
 
   void addTraces(std::size_t stage);
   void addCalls(std::size_t stage);

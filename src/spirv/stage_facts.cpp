@@ -138,6 +138,8 @@ StageFacts::StageFacts(Module module, ValueContext context)
   for (BuiltInRead& read : builtIns_)
     read.afterTrace = std::ranges::any_of(
         traces_, [&](const TraceFacts& trace) { return canRunAfter(module_, read.instruction, trace.instruction); });
+  for (std::size_t i = 0; i < accesses_.size(); ++i)
+    if (accesses_[i].reads && accesses_[i].value != 0) reads_[accesses_[i].value].push_back(i);
   markUsed();
 }
 
@@ -182,7 +184,6 @@ void StageFacts::readInstruction(std::size_t index) {
       reports_.push_back({index, module_.location(i, "reportIntersectionEXT"), values(index, i.at(1))});
       return;
     case Op::OpIgnoreIntersectionKHR: ignores_ = true; return;
-    case Op::OpTerminateRayKHR: terminates_ = true; return;
     case Op::OpLoad: return addAccess(index, i.at(0), true, false);
     case Op::OpStore: return addAccess(index, i.at(0), false, true);
     case Op::OpAccessChain:
@@ -535,8 +536,9 @@ bool StageFacts::dependsOnVariable(Id value, Id variable) const {
 
 bool StageFacts::dependsOnLeaf(Id value, Id variable, std::uint32_t leaf) const {
   return dependsOn(module_, value, [&](const Instruction& i) {
-    return i.result != 0 && std::ranges::any_of(accesses_, [&](const AccessFacts& a) {
-             return a.reads && a.value == i.result && a.variable == variable && a.leaves.covers(leaf);
+    const auto found = reads_.find(i.result);
+    return found != reads_.end() && std::ranges::any_of(found->second, [&](std::size_t read) {
+             return accesses_[read].variable == variable && accesses_[read].leaves.covers(leaf);
            });
   });
 }
@@ -598,10 +600,10 @@ bool StageFacts::choosesByVariable(const PathsAfter& paths, const Instruction& u
     choices = {use.at(1), use.at(2)};
     conditions = {use.at(0)};
   }
+  if (std::ranges::none_of(conditions, [&](Id c) { return dependsOnVariable(c, read.variable); })) return false;
   const bool hasAlternative =
       std::ranges::any_of(choices, [&](Id id) { return id != use.result && !dependsOnLeaf(id, read.variable, leaf); });
-  if (!hasAlternative || std::ranges::none_of(conditions, [&](Id c) { return dependsOnVariable(c, read.variable); }))
-    return false;
+  if (!hasAlternative) return false;
   if (!test) return true;
   if (use.op == Op::OpPhi) return arrivesGuarded(paths, use, value, read.variable, test);
   return test({use.at(0), use.at(1) != use.at(2) ? std::optional(use.at(1) == value) : std::nullopt});

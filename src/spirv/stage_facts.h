@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <memory>
+#include <unordered_map>
 
 #include "spirv/control_flow.h"
 #include "spirv/leaves.h"
@@ -100,7 +101,7 @@ class StageFacts {
  public:
   // `context`: what is known about values in any scene.
   explicit StageFacts(Module module, ValueContext context = {});
-  StageFacts(StageFacts&&) noexcept = default;
+  StageFacts(const StageFacts&) = delete;  // the members refer to the module
 
   const Module& module() const { return module_; }
   const ValueRanges& ranges() const { return ranges_; }
@@ -110,8 +111,7 @@ class StageFacts {
   const std::vector<AccessFacts>& accesses() const { return accesses_; }
   const std::vector<BuiltInRead>& builtIns() const { return builtIns_; }
   const std::vector<SharedVariable>& variables() const { return variables_; }
-  bool ignores() const { return ignores_; }        // has ignoreIntersectionEXT
-  bool terminates() const { return terminates_; }  // has terminateRayEXT
+  bool ignores() const { return ignores_; }  // has ignoreIntersectionEXT
 
   // The used variable of a storage class that a stage has at most once (incoming payload, hit attribute, incoming
   // callable data); null if the stage uses none.
@@ -127,8 +127,8 @@ class StageFacts {
   bool reads(Id variable, std::uint32_t leaf) const;
   // True if the stage reads the leaf on a path where it has not written it: the caller's value is an input.
   bool readsBeforeWriting(Id variable, std::uint32_t leaf) const;
-  // Indices into accesses() of the reads that have an effect although no write of the stage has run before them. Reads on
-  // which a condition decides that is unknown in the first iteration of a loop are left out.
+  // Indices into accesses() of the reads that have an effect although no write of the stage has run before them. Skips reads
+  // whose condition cannot be evaluated for the first iteration of a loop.
   std::vector<std::size_t> inputReads(Id variable, std::uint32_t leaf) const;
   // True if the leaf is written on each path from the stage's start to the instruction. Another trace or call with the
   // variable counts as a write.
@@ -184,7 +184,7 @@ class StageFacts {
   std::vector<BuiltInRead> builtIns_;
   std::vector<SharedVariable> variables_;  // by location, then in the order of declaration
   bool ignores_ = false;
-  bool terminates_ = false;
+  std::unordered_map<Id, std::vector<std::size_t>> reads_;             // indices into accesses_, by value
   std::map<Id, Leaves> leaves_;                                        // by variable
   std::vector<std::pair<std::size_t, std::size_t>> loops_;             // header and merge block, of the entry function
   mutable std::map<std::pair<Id, Id>, bool> dependsOnVariable_;        // cache, by value and variable

@@ -8,7 +8,6 @@
 
 #include "base/parallel.h"
 #include "check/rules/rules.h"
-#include "check/value_context.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -84,7 +83,7 @@ class RayRule {
     const spirv::Id tmin = call.at(7), tmax = call.at(9);
     std::string text = invalid(facts.ranges().rangeAt(at, tmin), facts.ranges().rangeAt(at, tmax));
     if (text.empty()) {
-      const DefaultRanges& defaults = defaultsOf(site.stage);
+      const DefaultRanges& defaults = graph_.defaults(site.stage);
       const std::string names = defaults.parameters({tmin, tmax});
       if (names.empty()) return;
       text = invalid(defaults.at(at, tmin), defaults.at(at, tmax));
@@ -107,7 +106,7 @@ class RayRule {
       report_.add("Q510", location_, "the direction of this trace is (0, 0, 0)");
       return;
     }
-    const DefaultRanges& defaults = defaultsOf(site.stage);
+    const DefaultRanges& defaults = graph_.defaults(site.stage);
     const std::string names = defaults.parameters({direction});
     if (!names.empty() && isZero([&](std::uint32_t c) { return defaults.at(at, direction, {c}); }))
       report_.add("Q510", location_,
@@ -266,19 +265,10 @@ class RayRule {
         fmt::format("this trace skips {}, but {} has nothing else, so it hits nothing", text, input_.scene->name));
   }
 
-  const DefaultRanges& defaultsOf(std::size_t stage) {
-    auto& found = defaults_[stage];
-    if (!found)
-      found = std::make_unique<DefaultRanges>(graph_.program, graph_.stages[stage].file,
-                                              graph_.stages[stage].facts->module());
-    return *found;
-  }
-
   const CheckInput& input_;
   const PipelineGraph& graph_;
   Report& report_;
-  SourceLocation location_;                                         // of the trace
-  std::map<std::size_t, std::unique_ptr<DefaultRanges>> defaults_;  // by stage
+  SourceLocation location_;  // of the trace
 };
 
 }  // namespace

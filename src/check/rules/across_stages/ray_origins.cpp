@@ -13,7 +13,6 @@
 
 #include "base/parallel.h"
 #include "check/rules/rules.h"
-#include "check/value_context.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -211,11 +210,14 @@ void dropZeroAttributes(const PipelineGraph& graph, std::vector<std::vector<Diag
   }
 }
 
+bool isOutgoing(const spirv::SharedVariable& variable) { return variable.storage == spv::StorageClass::RayPayloadKHR; }
+
 // Reports the origins that a trace gets from its payload, where a closest-hit shader stored its hit position.
 void checkPayloadOrigins(const PipelineGraph& graph, std::size_t stage, Report& report) {
-  const spirv::Module& module = graph.stages[stage].facts->module();
-  const DefaultRanges defaults(graph.program, graph.stages[stage].file, module);
-  for (const PayloadOrigin& origin : payloadOrigins(*graph.stages[stage].facts, defaults)) {
+  const spirv::StageFacts& facts = *graph.stages[stage].facts;
+  const spirv::Module& module = facts.module();
+  if (std::ranges::none_of(facts.variables(), isOutgoing)) return;
+  for (const PayloadOrigin& origin : payloadOrigins(facts, graph.defaults(stage))) {
     for (const TraceSite& site : graph.traces) {
       if (site.stage != stage || site.trace->payload != origin.payload) continue;
       for (const Edge& edge : site.edges) {
@@ -258,8 +260,7 @@ void checkRayOrigins(const CheckInput& input, Report& report) {
     Report ofStage;
     const spirv::StageFacts& facts = *graph.stages[i].facts;
     if (facts.traces().empty()) return;
-    const DefaultRanges defaults(graph.program, graph.stages[i].file, facts.module());
-    checkOrigins(facts.module(), facts.ranges(), &defaults, ofStage);
+    checkOrigins(facts.module(), facts.ranges(), &graph.defaults(i), ofStage);
     found[i] = ofStage.take();
   });
   dropZeroAttributes(graph, found);

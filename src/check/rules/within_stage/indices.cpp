@@ -14,7 +14,7 @@ using spv::Op;
 bool isChain(Op op) { return op == Op::OpAccessChain || op == Op::OpInBoundsAccessChain || op == Op::OpPtrAccessChain; }
 
 // True if a value selects something there: an element, an address, a case.
-bool selects(const spirv::Module& module, const spirv::Instruction& i) {
+bool selects(const spirv::Module& module, const spirv::ValueRanges& ranges, const spirv::Instruction& i) {
   switch (i.op) {
     case Op::OpAccessChain:
     case Op::OpInBoundsAccessChain:
@@ -32,8 +32,7 @@ bool selects(const spirv::Module& module, const spirv::Instruction& i) {
     case Op::OpUGreaterThan:
     case Op::OpSGreaterThanEqual:
     case Op::OpUGreaterThanEqual:  // a bounds check, such as index < frame.instanceCount, is not a choice
-      return (module.isConstant(i.at(0)) || module.isConstant(i.at(1))) &&
-             !spirv::ValueRanges(module).range(i.result).constant();
+      return (module.isConstant(i.at(0)) || module.isConstant(i.at(1))) && !ranges.range(i.result).constant();
     default: return false;
   }
 }
@@ -95,10 +94,11 @@ bool isNonUniform(const spirv::Module& module, const spirv::Instruction& chain) 
 }  // namespace
 
 void checkInstanceIndices(const spirv::Module& module, Report& report) {
+  const spirv::ValueRanges ranges(module);
   for (const spirv::Instruction& load : module.instructions()) {
     if (!spirv::loadsBuiltIn(module, load, spv::BuiltIn::InstanceId)) continue;
     const spirv::Instruction* use =
-        spirv::findInUses(module, load.result, [&](const spirv::Instruction& i) { return selects(module, i); });
+        spirv::findInUses(module, load.result, [&](const spirv::Instruction& i) { return selects(module, ranges, i); });
     if (!use) continue;
     report.addOncePerLine(
         "Q703", module.location(load, "gl_InstanceID"),
