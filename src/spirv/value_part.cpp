@@ -103,6 +103,18 @@ std::optional<double> constantNumber(const Module& module, const ValuePart& valu
   return type.isSigned ? static_cast<double>(static_cast<std::int32_t>(*bits)) : static_cast<double>(*bits);
 }
 
+bool isSplat(const Module& module, Id value) {
+  const Instruction* i = module.definition(value);
+  if (!i || (i->op != Op::OpCompositeConstruct && i->op != Op::OpConstantComposite) || i->operands.empty())
+    return false;
+  return std::ranges::all_of(i->operands, [&](Id id) { return id == i->operands.front(); });
+}
+
+std::optional<double> splatConstant(const Module& module, Id value) {
+  if (const auto scalar = module.constantFloat(value)) return scalar;
+  return isSplat(module, value) ? module.constantFloat(module.definition(value)->at(0)) : std::nullopt;
+}
+
 std::optional<double> evaluate(const Module& module, Id value, const std::function<std::optional<double>(Id)>& known,
                                int depth) {
   if (const auto number = known(value)) return number;

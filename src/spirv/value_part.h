@@ -25,6 +25,11 @@ ValuePart originOf(const Module& module, ValuePart part);
 // The value of a scalar constant: booleans are 0 or 1. Nullopt if it is not one.
 std::optional<double> constantNumber(const Module& module, const ValuePart& value);
 
+// True for a vector of equal components.
+bool isSplat(const Module& module, Id value);
+// The value of a scalar constant, or of the equal components of a constant vector. Nullopt if it is neither.
+std::optional<double> splatConstant(const Module& module, Id value);
+
 // Evaluates comparisons and logical operations of constants and of the values that `known` returns. Nullopt if the value
 // depends on anything else.
 std::optional<double> evaluate(const Module& module, Id value, const std::function<std::optional<double>(Id)>& known,

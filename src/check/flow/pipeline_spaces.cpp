@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "spirv/value_part.h"
 
 namespace quintet::check {
 namespace {
@@ -21,13 +22,6 @@ constexpr std::size_t kMaxValues = 400;  // that uses() follows
 
 bool isExtended(const spirv::Module& module, const spirv::Instruction& i, std::initializer_list<unsigned> numbers) {
   return std::ranges::any_of(numbers, [&](unsigned number) { return spirv::isExtended(module, i, number); });
-}
-
-// True for a constant, or a vector of equal constants.
-std::optional<double> splatConstant(const spirv::Module& module, Id value) {
-  if (const auto scalar = module.constantFloat(value)) return scalar;
-  if (!isSplat(module, value)) return {};
-  return module.constantFloat(module.definition(value)->at(0));
 }
 
 // True for max(x, 0), clamp(x, 0, 1) and abs(x) of the value.
@@ -325,7 +319,7 @@ void PipelineSpaces::visit(const Open& open, std::size_t user, Search& search) c
     }
     case Op::OpFMul:
     case Op::OpFDiv: {
-      if (!isSplat(module, other) || (i.op == Op::OpFDiv && i.at(1) == open.id)) return;
+      if (!spirv::isSplat(module, other) || (i.op == Op::OpFDiv && i.at(1) == open.id)) return;
       const spirv::Instruction* length = module.definition(module.definition(other)->at(0));
       if (length && isExtended(module, *length, {GLSLstd450Length, GLSLstd450InverseSqrt, GLSLstd450Sqrt}))
         search.uses.normalized = true;
@@ -337,7 +331,7 @@ void PipelineSpaces::visit(const Open& open, std::size_t user, Search& search) c
         search.uses.translated = true;
         return;
       }
-      if (open.scaled && splatConstant(module, other) == 0.5) search.uses.shown = true;
+      if (open.scaled && spirv::splatConstant(module, other) == 0.5) search.uses.shown = true;
       if (tag.kind == Kind::point) search.uses.moves = true;
       return follow(false, false);
     }
@@ -354,7 +348,7 @@ void PipelineSpaces::visit(const Open& open, std::size_t user, Search& search) c
                                      (d.op == Op::OpTraceRayKHR && d.at(8) == difference.result);
                             });
       if (directed) search.uses.difference = true;
-      if (splatConstant(module, other) == 1.0 && open.scaled) search.uses.shown = true;
+      if (spirv::splatConstant(module, other) == 1.0 && open.scaled) search.uses.shown = true;
       // A point minus a step along the value.
       if (i.at(1) == open.id && tags.of(i.at(0)).kind == Kind::point) {
         search.uses.moves = true;

@@ -35,7 +35,6 @@ SpaceTag plain(SpaceTag tag) {
 SpaceTag like(const SpaceTag& tag, Kind kind) {
   SpaceTag result = geometricTag(tag.space, kind);
   result.component = tag.component;
-  result.varies = tag.varies;
   return result;
 }
 
@@ -116,7 +115,6 @@ SpaceTag joined(const SpaceTag& a, const SpaceTag& b) {
   result.w = joinedW(a.w, b.w);
   result.scaled = a.scaled || b.scaled;
   result.onRay = a.onRay && b.onRay && a.kind == b.kind;
-  result.varies = a.varies || b.varies;
   result.untranslated = a.untranslated && b.untranslated;
   result.fromMesh = a.fromMesh || b.fromMesh;
   return result;
@@ -251,7 +249,6 @@ SpaceTag transformed(const Transform& transform, const SpaceTag& vector) {
   result.fromMesh = true;
   if (transform.affine && vector.w == W::one) result.kind = Kind::point;
   if (transform.affine && vector.w != W::zero) return result;
-  result.varies = vector.kind != Kind::neutral;
   if (!vector.geometric()) return result;
   switch (vector.kind) {
     case Kind::point: result.untranslated = true; break;

@@ -48,7 +48,6 @@ struct SpaceTag {
   bool scaled = false;    // times a factor
   bool onRay = false;     // point: origin + t * direction. direction: of the ray
   bool fromMesh = false;  // depends on vertices of a mesh or was transformed, so the space is more than a convention
-  bool varies = false;    // any: not a constant
   bool untranslated = false;       // any: a point times a matrix without its translation
   bool translation = false;        // point: the translation of a matrix
   bool column = false;             // direction: column `index` of a matrix

@@ -10,6 +10,7 @@
 
 #include "check/library_names.h"
 #include "spirv/access.h"
+#include "spirv/value_part.h"
 
 namespace quintet::check {
 namespace {
@@ -106,13 +107,6 @@ bool overlaps(const spirv::Access& access, const spirv::Path& path) {
   std::vector<std::optional<std::uint32_t>> indices;
   for (const std::uint32_t index : path) indices.push_back(index == kAnyIndex ? std::nullopt : std::optional(index));
   return spirv::overlap(access.indices, indices);
-}
-
-bool isSplat(const spirv::Module& module, Id value) {
-  const spirv::Instruction* i = module.definition(value);
-  if (!i || (i->op != Op::OpCompositeConstruct && i->op != Op::OpConstantComposite) || i->operands.empty())
-    return false;
-  return std::ranges::all_of(i->operands, [&](Id id) { return id == i->operands.front(); });
 }
 
 SpaceTags::SpaceTags(const spirv::Module& module) : module_(module) {
@@ -617,8 +611,10 @@ SpaceTag SpaceTags::evaluateExtended(const spirv::Instruction& i) const {
     case GLSLstd450Fma: {
       const SpaceTag a = operand(0), b = operand(1);
       const bool vector = module_.types().get(i.type).kind == TypeKind::vector;
-      if (vector && !isSplat(module_, i.at(2)) && !isSplat(module_, i.at(3))) break;
-      const SpaceTag scaled = isSplat(module_, i.at(2)) ? scaledTag(b) : a.geometric() ? scaledTag(a) : scaledTag(b);
+      if (vector && !spirv::isSplat(module_, i.at(2)) && !spirv::isSplat(module_, i.at(3))) break;
+      const SpaceTag scaled = spirv::isSplat(module_, i.at(2)) ? scaledTag(b)
+                              : a.geometric()                  ? scaledTag(a)
+                                                               : scaledTag(b);
       if (!vector && a.geometric() && b.geometric()) return unknownTag();
       return sumOf(scaled, operand(2));
     }
@@ -647,8 +643,8 @@ SpaceTag SpaceTags::evaluateProduct(const spirv::Instruction& i) const {
   if (a.kind == Kind::neutral && b.kind == Kind::neutral) return neutralTag();
   const bool division = i.op == Op::OpFDiv;
   if (module_.types().get(i.type).kind == TypeKind::vector) {
-    if (isSplat(module_, i.at(1))) return scaledTag(a);
-    if (!division && isSplat(module_, i.at(0))) return scaledTag(b);
+    if (spirv::isSplat(module_, i.at(1))) return scaledTag(a);
+    if (!division && spirv::isSplat(module_, i.at(0))) return scaledTag(b);
     return unknownTag();
   }
   if (a.geometric() && !b.geometric()) return scaledTag(a);

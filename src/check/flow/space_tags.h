@@ -23,9 +23,6 @@ constexpr std::uint32_t kAnyIndex = ~0u;  // in a path: the index is unknown
 // True if an access and a path, which can have kAnyIndex, can select common parts.
 bool overlaps(const spirv::Access& access, const spirv::Path& path);
 
-// True for a vector of equal components.
-bool isSplat(const spirv::Module& module, spirv::Id value);
-
 class SpaceTags {
  public:
   explicit SpaceTags(const spirv::Module& module);

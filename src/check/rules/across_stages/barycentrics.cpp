@@ -12,6 +12,8 @@
 
 #include "check/flow/pipeline_spaces.h"
 #include "check/rules/rules.h"
+#include "check/rules/user_location.h"
+#include "spirv/value_part.h"
 
 namespace quintet::check {
 namespace {
@@ -102,7 +104,7 @@ class Interpolations {
       if (form.kind != FormKind::sum || isPartOfSum(i.result)) continue;
       if (const std::string text = mistake(form); !text.empty()) {
         const SourceLocation location = module_.location(i);
-        if (!location.file.starts_with("<quintet/")) report.addOncePerLine("Q710", location, text);
+        if (!isLibrary(location)) report.addOncePerLine("Q710", location, text);
       }
     }
   }
@@ -154,7 +156,7 @@ class Interpolations {
   Form evaluate(Id value) {
     const spirv::Instruction* i = module_.definition(value);
     if (!i) return {};
-    if (const auto constant = constantOf(value)) return ofWeight({*constant, 0, 0});
+    if (const auto constant = spirv::splatConstant(module_, value)) return ofWeight({*constant, 0, 0});
     if (module_.isConstant(value)) return {};
     const SpaceTag tag = tags_.of(value);
     if (tag.kind == SpaceTag::Kind::barycentric && tag.component < 2)
@@ -167,7 +169,7 @@ class Interpolations {
       case Op::OpVectorTimesScalar:
       case Op::OpFMul: return scaled(of(i->at(0)), of(i->at(1)));
       case Op::OpCompositeConstruct:
-        if (isSplat(module_, value)) return of(i->at(0));
+        if (spirv::isSplat(module_, value)) return of(i->at(0));
         return common(*i);
       case Op::OpCompositeExtract: return evaluateExtract(*i);
       case Op::OpPhi: return choice(*i);
@@ -181,11 +183,6 @@ class Interpolations {
       return sum(scaled(of(i->at(2)), ofWeight(Weight{1, 0, 0} + t.weight * -1.0)), scaled(of(i->at(3)), t), 1.0);
     }
     return common(*i);
-  }
-
-  std::optional<double> constantOf(Id value) const {
-    if (const auto scalar = module_.constantFloat(value)) return scalar;
-    return isSplat(module_, value) ? module_.constantFloat(module_.definition(value)->at(0)) : std::nullopt;
   }
 
   // A value of one vertex, or something else, such as a default or the normal of the face.
@@ -220,7 +217,7 @@ class Interpolations {
   Form evaluateDot(const spirv::Instruction& i) {
     for (const std::size_t k : {0u, 1u}) {
       const SpaceTag tag = tags_.of(i.at(k));
-      const auto factor = constantOf(i.at(1 - k));
+      const auto factor = spirv::splatConstant(module_, i.at(1 - k));
       if (tag.kind == SpaceTag::Kind::barycentric && tag.whole() && factor) return ofWeight({0, *factor, *factor});
     }
     return common(i);

@@ -17,6 +17,7 @@
 #include "check/rules/rules.h"
 #include "check/rules/user_location.h"
 #include "spirv/access.h"
+#include "spirv/value_part.h"
 
 namespace quintet::check {
 namespace {
@@ -92,7 +93,7 @@ class ColorEncoding {
       case Op::OpVectorTimesScalar: return push(open, i->at(0));
       case Op::OpFMul:
       case Op::OpFDiv: {
-        const auto isFactor = [&](Id id) { return module.isConstant(id) || isSplat(module, id); };
+        const auto isFactor = [&](Id id) { return module.isConstant(id) || spirv::isSplat(module, id); };
         if (isFactor(i->at(1))) push(open, i->at(0));
         if (i->op == Op::OpFMul && isFactor(i->at(0))) push(open, i->at(1));
         return;
@@ -168,8 +169,8 @@ class ColorEncoding {
       case GLSLstd450FClamp:
       case GLSLstd450NClamp: return push(open, i.at(2));
       case GLSLstd450Fma:
-        if (module.isConstant(i.at(2)) || isSplat(module, i.at(2))) push(open, i.at(3));
-        if (module.isConstant(i.at(3)) || isSplat(module, i.at(3))) push(open, i.at(2));
+        if (module.isConstant(i.at(2)) || spirv::isSplat(module, i.at(2))) push(open, i.at(3));
+        if (module.isConstant(i.at(3)) || spirv::isSplat(module, i.at(3))) push(open, i.at(2));
         return push(open, i.at(4));
       default: return;
     }
@@ -233,7 +234,7 @@ class ColorEncoding {
     const spirv::Instruction* i = module.definition(value);
     if (!i || depth > 8) return {};
     if (const auto scalar = module.constantFloat(value)) return scalar;
-    if (isSplat(module, value)) return constantOf(module, i->at(0), depth + 1);
+    if (spirv::isSplat(module, value)) return constantOf(module, i->at(0), depth + 1);
     if (i->op == Op::OpFDiv) {
       const auto a = constantOf(module, i->at(0), depth + 1), b = constantOf(module, i->at(1), depth + 1);
       return a && b && *b != 0.0 ? std::optional(*a / *b) : std::nullopt;
