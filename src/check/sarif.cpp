@@ -10,6 +10,7 @@
 
 #include "base/wrap.h"
 #include "check/catalog.h"
+#include "check/sources.h"
 #include "spirv/source_text.h"
 
 namespace quintet::check {
@@ -29,10 +30,9 @@ std::string uriOf(std::string_view path) {
   return uri;
 }
 
-// Files of the shader library are "<quintet/hit.glsl>".
 Json artifactOf(const std::string& file) {
-  const bool library = file.size() > 2 && file.front() == '<' && file.back() == '>';
-  if (library) return {{"uri", uriOf(file.substr(1, file.size() - 2))}, {"uriBaseId", "SHADER_LIBRARY"}};
+  const std::string path = withoutBrackets(file);
+  if (path != file) return {{"uri", uriOf(path)}, {"uriBaseId", "SHADER_LIBRARY"}};
   return {{"uri", uriOf(file)}};
 }
 

@@ -11,11 +11,6 @@
 namespace quintet::check {
 namespace {
 
-// Files in memory have names in brackets: "<quintet/hit.glsl>".
-std::string withoutBrackets(const std::string& file) {
-  return file.size() > 2 && file.front() == '<' && file.back() == '>' ? file.substr(1, file.size() - 2) : file;
-}
-
 std::optional<std::string> inLibrary(const std::string& path) {
   const auto library = embeddedShaderLibrary();
   const auto found = std::ranges::find(library, std::string_view(path), &EmbeddedFile::path);
@@ -33,6 +28,10 @@ std::optional<std::string> onDisk(const std::string& path) {
 }
 
 }  // namespace
+
+std::string withoutBrackets(const std::string& file) {
+  return program::isLibraryStage(file) ? file.substr(1, file.size() - 2) : file;
+}
 
 SourceLookup sourcesOf(const program::Program& program) {
   return [&program](const std::string& file) -> std::optional<std::string> {

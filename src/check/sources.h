@@ -11,6 +11,9 @@
 
 namespace quintet::check {
 
+// Files of the shader library have names in brackets: "<quintet/hit.glsl>". Other names are returned as they are.
+std::string withoutBrackets(const std::string& file);
+
 // Returns the text of a file by its name in diagnostics; nullopt if unknown.
 using SourceLookup = std::function<std::optional<std::string>(const std::string& file)>;
 

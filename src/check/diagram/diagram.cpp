@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "base/plural.h"
+#include "check/sources.h"
 
 namespace quintet::check {
 namespace {
@@ -72,18 +73,13 @@ class Builder {
     return nodes;
   }
 
-  // Files of the shader library are "<quintet/hit.glsl>".
-  static std::string withoutBrackets(std::string file) {
-    std::erase_if(file, [](char c) { return c == '<' || c == '>'; });
-    return file;
-  }
-
   std::string fileOf(std::optional<std::size_t> stage) const {
     return stage ? withoutBrackets(model_.stages[*stage].file) : "";
   }
 
   static std::string lineText(const std::string& file, const SourceLocation& location) {
-    const std::string name = withoutBrackets(location.file.substr(location.file.rfind('/') + 1));
+    const std::string path = withoutBrackets(location.file);
+    const std::string name = path.substr(path.rfind('/') + 1);
     return location.line > 0 ? fmt::format("{}:{}", name, location.line) : file;
   }
 
@@ -256,7 +252,9 @@ std::string dotString(std::string_view text) {
   return result + "\"";
 }
 
-std::string_view dotColor(NodeKind kind) {
+}  // namespace
+
+std::string_view fillColor(NodeKind kind) {
   switch (kind) {
     case NodeKind::rayGeneration: return "#d6e6f7";
     case NodeKind::trace:
@@ -267,8 +265,6 @@ std::string_view dotColor(NodeKind kind) {
   }
   return "#ffffff";
 }
-
-}  // namespace
 
 Diagram diagramOf(const PipelineModel& model) { return Builder(model).build(); }
 
@@ -295,7 +291,7 @@ std::string dotText(const Diagram& diagram) {
     for (const DiagramNode::Row& row : node.rows)
       rows.push_back(row.label.empty() ? row.text : row.label + ": " + row.text);
     if (!node.ids.empty()) rows.push_back(node.ids);
-    text += fmt::format("  n{} [label=\"{}\", fillcolor=\"{}\"{}{}];\n", i, lines(rows), dotColor(node.kind),
+    text += fmt::format("  n{} [label=\"{}\", fillcolor=\"{}\"{}{}];\n", i, lines(rows), fillColor(node.kind),
                         node.ids.empty() ? "" : ", ", node.ids.empty() ? "" : kHighlight);
   }
   for (const DiagramEdge& edge : diagram.edges) {

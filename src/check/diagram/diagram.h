@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "check/diagram/pipeline_model.h"
@@ -24,6 +25,9 @@ struct DiagramNode {
   std::vector<Row> rows;
   std::string ids;  // of diagnostics, "Q101, Q104"; empty if there are none
 };
+
+// Color of the boxes of a kind of nodes.
+std::string_view fillColor(NodeKind kind);
 
 struct DiagramEdge {
   std::size_t from = 0, to = 0;    // nodes

@@ -26,18 +26,6 @@ constexpr const char* kHighlight = "#c8102e";
 constexpr std::array kRayColors{"#0067a3", "#b35900", "#00795a", "#7a4b94", "#5c6b00", "#3d4f9f"};
 constexpr const char* kNeutral = "#57606a";
 
-const char* fillOf(NodeKind kind) {
-  switch (kind) {
-    case NodeKind::rayGeneration: return "#d6e6f7";
-    case NodeKind::trace:
-    case NodeKind::call: break;
-    case NodeKind::miss: return "#ececec";
-    case NodeKind::hit: return "#dcefdc";
-    case NodeKind::callable: return "#eadff2";
-  }
-  return "#ffffff";
-}
-
 const char* rayColor(std::optional<std::size_t> ray) { return ray ? kRayColors[*ray % kRayColors.size()] : kNeutral; }
 
 std::string escaped(std::string_view text) {
@@ -198,7 +186,7 @@ class Drawing {
     body_ += fmt::format(
         "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" rx=\"{}\" fill=\"{}\" stroke=\"{}\" "
         "stroke-width=\"{}\"/>\n",
-        at.x, at.y, box.size.width, box.size.height, site ? 10 : 3, fillOf(node.kind), marked ? kHighlight : kFaint,
+        at.x, at.y, box.size.width, box.size.height, site ? 10 : 3, fillColor(node.kind), marked ? kHighlight : kFaint,
         marked ? 3 : 1);
     double y = at.y + kPadding - 4;
     for (const std::string& line : box.title) body_ += textAt(at.x + kPadding, y += kLine, line, kInk, true);

@@ -4,6 +4,7 @@
 #include <spirv/unified1/GLSL.std.450.h>
 
 #include "check/rules/rules.h"
+#include "check/rules/user_location.h"
 #include "spirv/same_value.h"
 #include "spirv/value_flow.h"
 
@@ -70,7 +71,7 @@ void checkRayLengths(const spirv::Module& module, Report& report) {
         [&](const spirv::Instruction& i) { return !keepsUnit(module, i); });
     if (!length) continue;
     SourceLocation location = module.location(trace, "traceRayEXT");
-    if (location.file.starts_with("<quintet/")) location = module.location(*length);
+    if (isLibrary(location)) location = module.location(*length);
     report.addOncePerLine("Q514", location,
                           "tmax is the length of the direction, but t is in units of that length, so the ray ends at "
                           "the square of the length");
