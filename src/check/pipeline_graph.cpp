@@ -59,8 +59,7 @@ const program::HitShaders& PipelineGraph::shaders(HitGroupRay hit) const {
 }
 
 bool PipelineGraph::hasIntersection(std::size_t group) const {
-  return std::ranges::any_of(program.hitGroups[group].shaders,
-                             [](const auto& entry) { return !entry.second.intersection.empty(); });
+  return program::hasIntersection(program.hitGroups[group]);
 }
 
 const DefaultRanges& PipelineGraph::defaults(std::size_t stage) const {

@@ -62,10 +62,6 @@ bool uses(const program::HitShaders& shaders, const std::string& file) {
   return shaders.closestHit == file || shaders.anyHit == file || shaders.intersection == file;
 }
 
-bool hasIntersection(const program::HitGroup& group) {
-  return std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
-}
-
 // The record data of a stage, one entry for each record that it runs with.
 std::vector<const program::RecordValues*> recordsOf(const program::Program& program, const std::string& file) {
   std::vector<const program::RecordValues*> records;
@@ -105,7 +101,7 @@ void addHits(const program::Program& program, const std::string& file, const pro
     for (const auto& [ray, shaders] : program.hitGroups[i].shaders)
       if (uses(shaders, file)) groups.insert(i);
   if (groups.empty()) return;
-  const auto procedural = [&](std::size_t group) { return hasIntersection(program.hitGroups[group]); };
+  const auto procedural = [&](std::size_t group) { return program::hasIntersection(program.hitGroups[group]); };
   if (std::ranges::all_of(groups, procedural))
     context.builtIns[spv::BuiltIn::HitKindKHR] = ValueRange::between(0.0, 255.0);
   if (std::ranges::none_of(groups, procedural)) context.hitAttribute = ValueRange::between(0.0, 1.0);  // barycentrics
@@ -128,6 +124,12 @@ void addHits(const program::Program& program, const std::string& file, const pro
   for (const double i : instances) custom.insert(scene->instances[static_cast<std::size_t>(i)].customIndex);
   // Shaders can also read the data of other instances.
   setMember(context, kInstances, "customIndex", {instances == all ? amongAll(custom) : ValueRange{}});
+}
+
+// Returns the name of the parameter that the load reads; empty if it reads none.
+std::string parameterOf(const spirv::Module& module, const spirv::Instruction& load) {
+  const auto member = spirv::bufferMember(module, load);
+  return member && libraryName(member->structure) == kParameters ? member->member : "";
 }
 
 }  // namespace
@@ -159,11 +161,6 @@ std::string DefaultRanges::parameters(std::initializer_list<spirv::Id> values) c
   std::string text;
   for (const std::string& name : found) text += (text.empty() ? "" : name == *found.rbegin() ? " and " : ", ") + name;
   return found.empty() ? "" : (found.size() > 1 ? "parameters " : "parameter ") + text;
-}
-
-std::string parameterOf(const spirv::Module& module, const spirv::Instruction& load) {
-  const auto member = spirv::bufferMember(module, load);
-  return member && libraryName(member->structure) == kParameters ? member->member : "";
 }
 
 }  // namespace quintet::check

@@ -22,9 +22,6 @@ enum class ParameterUse {
 spirv::ValueContext valueContext(const program::Program& program, const std::string& file,
                                  const program::SceneFacts* scene, ParameterUse parameters = ParameterUse::any);
 
-// Returns the name of the parameter that the load reads; empty if it reads none.
-std::string parameterOf(const spirv::Module& module, const spirv::Instruction& load);
-
 // Ranges in a stage if all parameters have their defaults.
 class DefaultRanges {
  public:

@@ -9,10 +9,6 @@
 namespace quintet::program {
 namespace {
 
-bool hasIntersection(const HitGroup& group) {
-  return std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
-}
-
 bool isBound(const HitGroup& group) {
   return !group.geometry.empty() || !group.material.empty() || !group.primitives.empty();
 }
@@ -27,6 +23,10 @@ std::string_view kindName(GeometryKind kind) {
 }
 
 }  // namespace
+
+bool hasIntersection(const HitGroup& group) {
+  return std::ranges::any_of(group.shaders, [](const auto& entry) { return !entry.second.intersection.empty(); });
+}
 
 std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry) {
   const auto first = [&](auto matches) -> std::optional<std::size_t> {

@@ -10,6 +10,9 @@
 
 namespace quintet::program {
 
+// True if a shader of the group intersects boxes.
+bool hasIntersection(const HitGroup& group);
+
 // Returns the index in program.hitGroups of the group that serves a geometry. In order of precedence: the first group
 // bound to
 //   1. its name (HitGroup::primitives);
