@@ -78,7 +78,34 @@ RecursionNeeds runRulesAcrossStages(const CheckInput& input, Report& report) {
 
 // Without the suppressions.
 CheckResult runRules(const program::Program& program, const program::CompiledProgram& compiled,
-                     const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines);
+                     const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
+  const Stopwatch clock;
+  CheckResult result;
+  result.diagnostics = compiled.diagnostics;
+  result.files = compiled.files;
+  result.recursionDepth = program.declaredRecursion.value_or(1);
+  if (compiled.ok) {
+    const PipelineGraph graph(program, compiled);
+    const std::optional<program::SceneFacts> facts =
+        scene ? std::optional(program::factsFor(program, *scene)) : std::nullopt;
+    const CheckInput input{graph, facts ? &*facts : nullptr, limits, featureDefines, compiled.outputs};
+    Report report;
+    runRulesWithinStages(input, report);
+    const RecursionNeeds needs = runRulesAcrossStages(input, report);
+    result.recursionDepth = needs.depth;
+    result.stackBytes = needs.stackBytes;
+    result.cyclic = needs.cyclic;
+    if (graph.error.empty())
+      for (const std::size_t stage : graph.reachableStages()) result.reached.push_back(graph.stages[stage].file);
+    for (Diagnostic& d : report.take()) {
+      d.file = program::userFile(program, d.file);
+      for (RelatedLocation& r : d.related) r.file = program::userFile(program, r.file);
+      result.diagnostics.push_back(std::move(d));
+    }
+  }
+  result.seconds = compiled.seconds + clock.seconds();
+  return result;
+}
 
 // Moves the diagnostics that comments accept to CheckResult::suppressed. `complete`: the check saw all code, so it knows
 // which suppressions are unused.
@@ -135,80 +162,6 @@ void addVariant(CheckResult& result, const CheckResult& variant) {
   });
 }
 
-}  // namespace
-
-std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageContext& context) {
-  using Model = spv::ExecutionModel;
-  Report report;
-  const auto stage = module.stage();
-  if (!stage) return {};
-  const bool intersection = stage == Model::IntersectionKHR;
-  const bool hit = intersection || stage == Model::AnyHitKHR || stage == Model::ClosestHitKHR;
-  if (intersection) checkDistance(module, report);
-  if (hit && !context.keepsInstanceOrder) checkInstanceIndices(module, report);
-  checkDescriptorIndices(module, report);
-  checkDebugPrintf(module, report);
-  if (stage == Model::RayGenerationKHR) checkPixels(module, report);
-  checkPixelDivision(module, report);
-  checkRayLengths(module, report);
-  if (intersection) checkRayTmaxReads(module, report);
-  const DriverDefects& defects = context.defects;
-  if (defects.changesNestedBuiltIns && stage == Model::ClosestHitKHR) checkNestedBuiltIns(module, report);
-  if (defects.corruptsHitAttributes && intersection) checkAttributeWrites(module, report);
-  if (defects.sharesLocalArrays && intersection && context.hasAnyHit) checkLocalArrays(module, report);
-  return report.take();
-}
-
-namespace {
-
-CheckResult runRules(const program::Program& program, const program::CompiledProgram& compiled,
-                     const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
-  const Stopwatch clock;
-  CheckResult result;
-  result.diagnostics = compiled.diagnostics;
-  result.files = compiled.files;
-  result.recursionDepth = program.declaredRecursion.value_or(1);
-  if (compiled.ok) {
-    const PipelineGraph graph(program, compiled);
-    const std::optional<program::SceneFacts> facts =
-        scene ? std::optional(program::factsFor(program, *scene)) : std::nullopt;
-    const CheckInput input{graph, facts ? &*facts : nullptr, limits, featureDefines, compiled.outputs};
-    Report report;
-    runRulesWithinStages(input, report);
-    const RecursionNeeds needs = runRulesAcrossStages(input, report);
-    result.recursionDepth = needs.depth;
-    result.stackBytes = needs.stackBytes;
-    result.cyclic = needs.cyclic;
-    if (graph.error.empty())
-      for (const std::size_t stage : graph.reachableStages()) result.reached.push_back(graph.stages[stage].file);
-    for (Diagnostic& d : report.take()) {
-      d.file = program::userFile(program, d.file);
-      for (RelatedLocation& r : d.related) r.file = program::userFile(program, r.file);
-      result.diagnostics.push_back(std::move(d));
-    }
-  }
-  result.seconds = compiled.seconds + clock.seconds();
-  return result;
-}
-
-}  // namespace
-
-CheckResult check(const program::Program& program, const program::CompiledProgram& compiled,
-                  const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
-  CheckResult result = runRules(program, compiled, scene, limits, featureDefines);
-  suppress(result, program, scene, !featureDefines);
-  return result;
-}
-
-CheckResult check(const program::Program& program, const shader::Compiler& compiler, const program::SceneFacts* scene,
-                  const DeviceLimits& limits, const std::vector<std::pair<std::string, std::string>>& defines) {
-  const bool features =
-      std::ranges::any_of(defines, [](const auto& define) { return define.first.starts_with("QUINTET_NO_"); });
-  return check(program, compile(program, compiler, defines), scene, limits, features);
-}
-
-namespace {
-
 // Adds what a check with the optional outputs finds. Diagnostics name the output that causes them.
 void addOptionalOutputs(CheckResult& result, const program::Program& program, const shader::Compiler& compiler,
                         const program::SceneFacts* scene, const DeviceLimits& limits) {
@@ -239,6 +192,42 @@ void addOptionalOutputs(CheckResult& result, const program::Program& program, co
 }
 
 }  // namespace
+
+std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageContext& context) {
+  using Model = spv::ExecutionModel;
+  Report report;
+  const auto stage = module.stage();
+  if (!stage) return {};
+  const bool intersection = stage == Model::IntersectionKHR;
+  const bool hit = intersection || stage == Model::AnyHitKHR || stage == Model::ClosestHitKHR;
+  if (intersection) checkDistance(module, report);
+  if (hit && !context.keepsInstanceOrder) checkInstanceIndices(module, report);
+  checkDescriptorIndices(module, report);
+  checkDebugPrintf(module, report);
+  if (stage == Model::RayGenerationKHR) checkPixels(module, report);
+  checkPixelDivision(module, report);
+  checkRayLengths(module, report);
+  if (intersection) checkRayTmaxReads(module, report);
+  const DriverDefects& defects = context.defects;
+  if (defects.changesNestedBuiltIns && stage == Model::ClosestHitKHR) checkNestedBuiltIns(module, report);
+  if (defects.corruptsHitAttributes && intersection) checkAttributeWrites(module, report);
+  if (defects.sharesLocalArrays && intersection && context.hasAnyHit) checkLocalArrays(module, report);
+  return report.take();
+}
+
+CheckResult check(const program::Program& program, const program::CompiledProgram& compiled,
+                  const program::SceneFacts* scene, const DeviceLimits& limits, bool featureDefines) {
+  CheckResult result = runRules(program, compiled, scene, limits, featureDefines);
+  suppress(result, program, scene, !featureDefines);
+  return result;
+}
+
+CheckResult check(const program::Program& program, const shader::Compiler& compiler, const program::SceneFacts* scene,
+                  const DeviceLimits& limits, const std::vector<std::pair<std::string, std::string>>& defines) {
+  const bool features =
+      std::ranges::any_of(defines, [](const auto& define) { return define.first.starts_with("QUINTET_NO_"); });
+  return check(program, compile(program, compiler, defines), scene, limits, features);
+}
 
 CheckResult checkWithOptionalOutputs(const program::Program& program, const shader::Compiler& compiler,
                                      const program::SceneFacts* scene, const DeviceLimits& limits) {

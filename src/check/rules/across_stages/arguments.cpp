@@ -83,14 +83,13 @@ class ArgumentRule {
   }
 
   bool inRange(const spirv::ArgumentValues& argument, std::string_view name, std::string_view id, std::uint32_t limit) {
-    for (const std::uint32_t value : wrongValues(argument, limit + 1)) {
-      report_.add(id, location_,
-                  fmt::format("the {} of this trace is {}{}, but the maximum is {}; the device would use {}", name,
-                              boundText(argument), value, limit,
-                              argument.certain() ? std::to_string(value & limit) : "its low bits"));
-      return false;
-    }
-    return true;
+    const std::vector<std::uint32_t> wrong = wrongValues(argument, limit + 1);
+    if (wrong.empty()) return true;
+    report_.add(id, location_,
+                fmt::format("the {} of this trace is {}{}, but the maximum is {}; the device would use {}", name,
+                            boundText(argument), wrong.front(), limit,
+                            argument.certain() ? std::to_string(wrong.front() & limit) : "its low bits"));
+    return false;
   }
 
   void checkMiss(const spirv::TraceFacts& trace) {

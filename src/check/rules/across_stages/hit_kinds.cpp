@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "check/rules/rules.h"
-#include "spirv/source_text.h"
+#include "spirv/glsl_declaration.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::check {
@@ -64,9 +64,8 @@ SourceLocation locationOf(const PipelineGraph& graph, const PipelineStage& stage
   if (isOwnFile(graph, location.file)) return location;
   const std::string file = graph.program.path(graph.program.descriptionFile);
   const std::string_view text = stage.facts->module().source(file);
-  const std::size_t at = spirv::findToken(text, "reportIntersectionEXT");
-  if (at == std::string_view::npos) return graph.location(stage, location);
-  return {file, static_cast<int>(std::ranges::count(text.substr(0, at), '\n')) + 1, 0};
+  const auto found = spirv::findWord(text, "reportIntersectionEXT");
+  return found ? SourceLocation{file, found->line, found->column} : graph.location(stage, location);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "check/rules/across_stages/shared_data.h"
 #include "check/rules/rules.h"
 #include "check/rules/user_location.h"
+#include "quintet/shared/frame.h"
 #include "spirv/access.h"
 #include "spirv/source_text.h"
 #include "spirv/value_flow.h"
@@ -17,8 +18,6 @@ namespace quintet::check {
 namespace {
 
 using spv::Op;
-
-constexpr std::uint32_t kBatchSamples = 4;  // shaders/quintet/shared/frame.h
 
 // True if the last member that a load selects has this name.
 bool loadsMember(const spirv::Module& module, const spirv::Instruction& load, std::string_view name) {
@@ -96,7 +95,7 @@ class OutputRule {
       if (instruction.op != Op::OpStore) return;
       const auto loads = [&](const spirv::Instruction& i) { return loadsOutput(module, i, slot); };
       if (spirv::dependsOn(module, instruction.at(1), loads) || dependsOnSample(store)) return;
-      if (graph_.program.samplesPerLaunch >= kBatchSamples && !isStoredPerSample(store)) return;
+      if (graph_.program.samplesPerLaunch >= shared::kBatchSamples && !isStoredPerSample(store)) return;
       if (!first) first = &store;
     }
     if (!first) return;

@@ -394,7 +394,8 @@ class MemberRule {
       if (readsInput(edge, leaf)) return;  // input of the inner ray
       if (!writer && writes(edge, leaf, false)) writer = &edge;
     }
-    // A value that some end of the trace keeps is a default, except if a shadow ray tells by another member what it hit.
+    // A value that a shader at the end of the trace keeps is a default, unless a condition on another member decides
+    // whether it is read.
     if (!writer || (!nonWriters(leaf).empty() && !isTestedByOtherMember(leaf))) return;
     const spirv::Module& module = tracer_->module();
     const std::vector<std::size_t> kills = tracer_->writers(payload_->id, leaf);
@@ -402,7 +403,7 @@ class MemberRule {
       const bool overwritten = a.writes && a.variable == payload_->id && a.leaves.covers(leaf) &&
                                !module.isConstant(tracer_->storedValue(a, leaf).id) &&
                                spirv::canRunAfter(module, instruction(), a.instruction);
-      // So is a value that is also read if the trace does not run.
+      // A value that is also read if the trace does not run is a default, too.
       const auto keeps = [&](std::size_t read) {
         return tracer_->pathsAfter(a.instruction).reaches(tracer_->accesses()[read].instruction, kills);
       };

@@ -179,7 +179,7 @@ class RayRule {
     return 0;
   }
 
-  // True if the value is only compared: it tells whether there is a hit.
+  // True if the value is only compared: it shows whether there is a hit.
   static bool onlyCompared(const spirv::Module& module, spirv::Id value) {
     const auto compares = [&](std::size_t user) {
       const spirv::Instruction& use = module.instructions()[user];
