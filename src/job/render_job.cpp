@@ -336,6 +336,12 @@ StartPoint RenderJob::startPoint(const RenderLimits& limits, Observer& observer)
   return start_;
 }
 
+void RenderJob::showImage(Observer& observer) const {
+  if (!observer.wantsImage()) return;
+  renderer_->finish();  // the observer can measure how long the film takes
+  observer.image(DeviceFilm(*renderer_));
+}
+
 RenderResult RenderJob::run(const RenderLimits& limits, Observer& observer) {
   try {
     applyEdits(observer);
@@ -421,6 +427,7 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
     if (checkpoint_ && checkpoint_->isDue()) checkpoint_->save(resultNow(now, false), observer);
     observer.batch({static_cast<std::uint64_t>(schedule.samples()), now,
                     checkpoint_ ? std::optional(checkpoint_->savedSamples()) : std::nullopt});
+    showImage(observer);
     if ((outOfTime = timeIsUp(now))) break;
     if (observer.stopRequested() == StopRequest::finish) {
       interrupted = schedule.next();  // otherwise everything is rendered
@@ -515,6 +522,7 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
     nextFrame_ = frame + 1;
     start_.seconds = elapsed();
     observer.batch({nextFrame_, start_.seconds, std::nullopt});
+    showImage(observer);
     const bool isComplete = count && nextFrame_ >= *count;
     const bool isLast = isComplete || timeIsUp();
     const bool interrupted = !isLast && observer.stopRequested() == StopRequest::finish;

@@ -112,6 +112,7 @@ class RenderJob {
   RenderLimits withinPart(RenderLimits limits) const;  // the same limits, not beyond the end of the part
   void beginFilm();                                    // continues from firstSample()
   StartPoint startPoint(const RenderLimits& limits, Observer& observer);
+  void showImage(Observer& observer) const;  // if the observer wants it
   // The result after `seconds` of rendering; with the error estimate only where it is needed, because it takes time.
   RenderResult makeResult(double seconds, const StartPoint& start, bool withError) const;
 

@@ -88,6 +88,12 @@ std::vector<WrittenFile> writeOutputs(const OutputPlan& plan, const job::RenderR
   return written;
 }
 
+io::Image displayImage(const OutputPlan& plan, const job::FilmView& film) {
+  const std::size_t output = plan.outputs.front();
+  return render::toDisplay(film.image(output), toneMapOf(plan, film.planes()[output]),
+                           static_cast<float>(plan.request.exposure.value_or(0.0)), true);
+}
+
 void addWritten(std::vector<WrittenFile>& files, const std::vector<WrittenFile>& more) {
   for (const WrittenFile& file : more) {
     std::erase_if(files, [&](const WrittenFile& known) { return known.path == file.path; });

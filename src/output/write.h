@@ -22,6 +22,9 @@ struct WrittenFile {
 // frame; a result that is not a frame has number 0 if the name has a pattern, and no number otherwise. Throws FileError.
 std::vector<WrittenFile> writeOutputs(const OutputPlan& plan, const job::RenderResult& result, job::Observer& observer);
 
+// The plan's first image as a PNG file shows it, with exposure and tone map, but with 8 bits and without alpha.
+io::Image displayImage(const OutputPlan& plan, const job::FilmView& film);
+
 // Adds the files of one more frame. A file that was written again is listed once.
 void addWritten(std::vector<WrittenFile>& files, const std::vector<WrittenFile>& more);
 

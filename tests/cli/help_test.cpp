@@ -38,8 +38,8 @@ class Help : public CliTest {
       for (std::string part : splitText(line.substr(2), ',')) {
         part.erase(0, part.find_first_not_of(' '));
         if (!part.starts_with('-')) break;
-        names.push_back(part.substr(0, part.find(' ')));
-        if (part.find(' ') != part.npos) break;
+        names.push_back(part.substr(0, part.find_first_of(" [")));
+        if (part.find_first_of(" [") != part.npos) break;
       }
     }
     return names;

@@ -191,7 +191,7 @@ RunResult LiveRun::finish() {
 }
 
 TerminalRun::TerminalRun(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                         unsigned short columns) {
+                         unsigned short columns, const Environment& environment) {
   int child = -1;
   winsize size{};
   size.ws_col = columns;
@@ -204,8 +204,16 @@ TerminalRun::TerminalRun(const std::vector<std::string>& arguments, const std::f
   ::posix_spawn_file_actions_adddup2(&actions, child, STDERR_FILENO);
   ::posix_spawn_file_actions_addclose(&actions, child);
   ::posix_spawn_file_actions_addclose(&actions, output_);
-  process_ = spawn(commandOf(arguments, folder, ""), environmentWith({{"TERM", "xterm"}}), actions);
+  Environment all{{"TERM", "xterm"}, {"TERM_PROGRAM", ""}, {"COLORTERM", ""},
+                  {"TMUX", ""},      {"WEZTERM_PANE", ""}, {"KITTY_WINDOW_ID", ""}};
+  all.insert(all.end(), environment.begin(), environment.end());
+  process_ = spawn(commandOf(arguments, folder, ""), environmentWith(all), actions);
   ::close(child);
+}
+
+void TerminalRun::type(const std::string& text) {
+  if (::write(output_, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
+    throw std::runtime_error("cannot write to the terminal");
 }
 
 PipeRun::PipeRun(const std::vector<std::string>& arguments, const RunOptions& options, std::chrono::seconds limit) {

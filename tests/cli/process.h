@@ -57,11 +57,14 @@ class LiveRun {
   std::size_t seen_ = 0;  // end of the last match of waitForNext
 };
 
-// Its standard error is a terminal.
+// Its standard error is a terminal. TERM is "xterm", and the other variables that describe terminals are empty, unless
+// `environment` has them.
 class TerminalRun : public LiveRun {
  public:
+  using Environment = std::vector<std::pair<std::string, std::string>>;
   TerminalRun(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-              unsigned short columns = 100);
+              unsigned short columns = 100, const Environment& environment = {});
+  void type(const std::string& text);  // input of the terminal
 };
 
 // Its standard error is a pipe, and nothing is a terminal. Standard output goes to a file, or nowhere. `limit`: for all

@@ -60,14 +60,14 @@ _quintet_files() {
 }
 
 _quintet() {
-  local current=${COMP_WORDS[COMP_CWORD]} previous='' command='' options='' end='' i
+  local current=${COMP_WORDS[COMP_CWORD]} previous='' command='' options='' assigned='' end='' i
   ((COMP_CWORD > 0)) && previous=${COMP_WORDS[COMP_CWORD - 1]}
   COMPREPLY=()
   # bash splits "--name=value" at the sign.
   if [[ $current == = ]]; then
-    current=''
+    current='' assigned=yes
   elif [[ $previous == = ]] && ((COMP_CWORD > 1)); then
-    previous=${COMP_WORDS[COMP_CWORD - 2]}
+    previous=${COMP_WORDS[COMP_CWORD - 2]} assigned=yes
   fi
   ((COMP_CWORD > 1)) && command=${COMP_WORDS[1]}
   for ((i = 2; i < COMP_CWORD; ++i)); do
@@ -94,9 +94,10 @@ std::string bashCase(const OptionTable& table) {
   for (const Option& option : table.options()) {
     std::ranges::move(option.nameList(), std::back_inserter(names));
     if (option.isFlag()) continue;
-    const std::string action = bashCandidates(option.candidates);
-    values += fmt::format("          {}) {}return ;;\n", fmt::join(option.nameList(), " | "),
-                          action.empty() ? "" : action + "; ");
+    std::string action = bashCandidates(option.candidates);
+    action += action.empty() ? "return" : "; return";
+    if (!option.withoutValue.empty()) action = "if [[ -n $assigned ]]; then " + action + "; fi";
+    values += fmt::format("          {}) {} ;;\n", fmt::join(option.nameList(), " | "), action);
   }
   if (!values.empty())
     text += "      if [[ -z $end ]]; then\n        case $previous in\n" + values + "        esac\n      fi\n";
@@ -123,15 +124,17 @@ std::string zshAction(const Candidates& candidates) {
 
 std::string zshOption(const Option& option) {
   const std::string help = escaped(brief(option.help), "[]:\\");
-  const std::string value =
-      option.isFlag() ? "" : fmt::format(":{}:{}", escaped(option.value, ":\\"), zshAction(option.candidates));
+  const std::string value = option.isFlag() ? ""
+                                            : fmt::format("{}:{}:{}", option.withoutValue.empty() ? "" : ":",
+                                                          escaped(option.value, ":\\"), zshAction(option.candidates));
   const std::vector<std::string> names = option.nameList();
   std::string text;
   for (const std::string& name : names) {
     const std::string exclusive = option.isList()    ? "*"
                                   : names.size() > 1 ? fmt::format("({})", fmt::join(names, " "))
                                                      : "";
-    const char* sign = option.isFlag() ? "" : name.starts_with("--") ? "=" : "+";
+    // "=-": the value, if there is one, follows the sign.
+    const char* sign = option.isFlag() ? "" : !option.withoutValue.empty() ? "=-" : name.starts_with("--") ? "=" : "+";
     text += fmt::format("    '{}' \\\n", inQuotes(fmt::format("{}{}{}[{}]{}", exclusive, name, sign, help, value)));
   }
   return text;
@@ -169,7 +172,7 @@ std::string fishOption(const OptionTable& table, const Option& option) {
     for (const std::string& name : option.nameList())
       text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
   const std::string candidates = fishCandidates(option.candidates);
-  if (!option.isArgument() && !option.isFlag()) text += " -x";
+  if (!option.isArgument() && !option.isFlag() && option.withoutValue.empty()) text += " -x";
   if (!candidates.empty()) text += " -a " + fishText(candidates);
   if (!option.isArgument()) text += " -d " + fishText(brief(option.help));
   return option.isArgument() && candidates.empty() ? "" : text + "\n";

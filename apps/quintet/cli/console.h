@@ -5,12 +5,14 @@
 
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "base/stopwatch.h"
+#include "cli/preview.h"
 #include "cli/signals.h"
 #include "job/observer.h"
 #include "program/description/program.h"
@@ -46,9 +48,10 @@ void printDiagnostics(const std::vector<Diagnostic>& diagnostics, const program:
 [[noreturn]] void exitAfterHang(const program::Program* program, const Diagnostic& diagnostic);
 
 struct ConsoleOptions {
-  bool quiet = false;         // neither progress nor notes
-  bool json = false;          // errors of programs also as JSON on standard output
-  bool jsonProgress = false;  // a line of JSON for each batch and warning, instead of progress
+  bool quiet = false;           // neither progress nor notes
+  bool json = false;            // errors of programs also as JSON on standard output
+  bool jsonProgress = false;    // a line of JSON for each batch and warning, instead of progress
+  std::string preview = "off";  // previewNames()
 };
 
 // The observer of a command: a bar on a terminal, a line every ten seconds elsewhere.
@@ -73,31 +76,42 @@ class Console : public job::Observer {
   void write(const std::filesystem::path& file, std::span<const std::byte> bytes) override;
   void deviceHung(const Diagnostic& diagnostic) override;
   void frame(const job::RenderResult& result) override;
+  bool wantsImage() const override;
+  void image(const job::FilmView& film) override;
   bool wantsPreviews() const override { return static_cast<bool>(onPreview); }
   void preview(const job::RenderResult& result) override;
 
   std::function<void(const job::RenderResult&)> onFrame, onPreview;
   std::function<bool()> isObsolete;  // the render is obsolete
+  // With a preview: makes the image of a film, sRGB bytes with 3 channels.
+  std::function<io::Image(const job::FilmView&)> displayImage;
 
-  void clear();                               // removes the bar
+  // Shows the image of a finished render, with a preview. It stays on the terminal.
+  void finalImage(const job::FilmView& film);
+
+  void clear();                               // removes the bar, and the image of an unfinished render
   std::vector<std::string> warnings() const;  // so far
   void clearWarnings();                       // for the next render of --watch
 
  private:
   void show(const std::string& line);
   void clearLocked();
+  void drawImage(const job::FilmView& film);
 
   const ConsoleOptions options_;
   const bool terminal_;
   const bool color_;
   mutable std::mutex mutex_;  // warnings come from the driver's threads
   bool barVisible_ = false;
+  std::string bar_;                 // as shown
+  std::optional<Preview> preview_;  // if there is one
   std::vector<std::string> warnings_;
   const program::Program* program_ = nullptr;
   const GracefulStop* stop_ = nullptr;
   bool stopNoted_ = false;
   Stopwatch clock_;
   double lastProgress_ = 0;  // on clock_
+  double nextImage_ = 0;     // the same
 };
 
 }  // namespace quintet::cli

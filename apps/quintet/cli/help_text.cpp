@@ -19,8 +19,7 @@ constexpr std::size_t kHelpColumn = 28;
 
 // "  -o, --output FILE         Output file: …". A long name has a line of its own.
 std::string optionText(const Option& option, std::size_t width) {
-  std::string left = fmt::format("  {}", fmt::join(option.nameList(), ", "));
-  if (!option.value.empty()) left += " " + option.value;
+  const std::string left = fmt::format("  {}{}", fmt::join(option.nameList(), ", "), option.valueForm());
   return twoColumns(left, option.help, kHelpColumn, width);
 }
 

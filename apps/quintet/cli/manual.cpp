@@ -44,7 +44,7 @@ std::string optionPart(const Option& option) {
   if (option.isArgument()) return fmt::format(".TP\n\\fI{}\\fR\n{}\n", roff(option.names), roff(option.help));
   std::vector<std::string> names;
   for (const std::string& name : option.nameList()) names.push_back("\\fB" + roff(name) + "\\fR");
-  const std::string value = option.value.empty() ? "" : " \\fI" + roff(option.value) + "\\fR";
+  const std::string value = option.value.empty() ? "" : "\\fI" + roff(option.valueForm()) + "\\fR";
   return fmt::format(".TP\n{}{}\n{}\n", fmt::join(names, ", "), value, roff(option.help));
 }
 

@@ -23,6 +23,11 @@ std::vector<std::string> Option::nameList() const { return splitText(names, ',')
 
 std::string Option::longName() const { return nameList().back(); }
 
+std::string Option::valueForm() const {
+  if (value.empty()) return "";
+  return withoutValue.empty() ? " " + value : "[=" + value + "]";
+}
+
 OptionTable::OptionTable(std::string command, std::string description)
     : command_(std::move(command)), description_(std::move(description)) {
   add({{.names = "-h,--help", .help = "Print this help and exit"}});

@@ -30,6 +30,8 @@ struct Option {
   std::string value = {};  // form of the value, for example "FILE"; empty for a flag (bool*) and for arguments
   std::string help = {};   // without line breaks
   Target target = {};
+  std::string withoutValue =
+      {};  // what `--name` means if the value is optional, as in `--name=VALUE`; empty if it is not
   Candidates candidates = {};
   bool required = false;  // of an argument: only for the line "Usage"; the command reports that it is missing
   char delimiter = 0;     // separates the values of a list, besides repeating the option; 0 disables it
@@ -40,6 +42,7 @@ struct Option {
   bool isList() const;
   std::vector<std::string> nameList() const;  // "-o", "--output"
   std::string longName() const;               // "--output"; the last name if none is long
+  std::string valueForm() const;              // after the name: "", " FILE", or "[=FILE]" if the value is optional
 };
 
 struct OptionGroup {

@@ -41,6 +41,9 @@ struct Parsed {
 // Values are collected as text. The table reports what is wrong with them.
 CLI::Option* declare(CLI::App& app, const Option& option) {
   if (option.isFlag()) return app.add_flag(option.names)->disable_flag_override();
+  if (!option.withoutValue.empty())
+    return app.add_flag(fmt::format("{}{{{}}}", option.names, option.withoutValue))
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   CLI::Option* result = app.add_option(option.names);
   result->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   if (option.isArgument() && option.isList())

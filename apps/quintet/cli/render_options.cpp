@@ -187,7 +187,14 @@ void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& optio
               .target = &options.device,
               .candidates = {.names = deviceNames()}},
              {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout},
-             {.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet}});
+             {.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet},
+             {.names = "--preview",
+              .value = "PROTOCOL",
+              .help = "Show the image on the terminal while it is rendered: auto, kitty, sixel, blocks (characters) or "
+                      "off (default: off; without a value: auto)",
+              .target = &options.console.preview,
+              .withoutValue = "auto",
+              .candidates = {.names = previewNames()}}});
 }
 
 void declareCheckpoints(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
@@ -282,7 +289,9 @@ void convert(const RenderTexts& texts, RenderOptions& options) {
   request.overwriteFilm = request.checkpoint.force;
 }
 
-void checkStandardOutput(const RenderOptions& options) {
+void checkStandardStreams(const RenderOptions& options) {
+  if (options.console.jsonProgress && options.console.preview != "off")
+    throw UsageError("--json-progress and --preview both write to standard error");
   const std::filesystem::path& file = options.output.file;
   if (!output::isStandardOutput(file)) return;
   if (options.console.json)

@@ -48,8 +48,9 @@ void convert(const RenderTexts& texts, RenderOptions& options);
 // The part of it that `merge` needs.
 void convertOutput(const RenderTexts& texts, output::OutputRequest& output);
 
-// Throws UsageError if --json and `-o -` both claim standard output, or if that is a terminal.
-void checkStandardOutput(const RenderOptions& options);
+// Throws UsageError if --json and `-o -` both claim standard output, or if that is a terminal; and if --json-progress and
+// --preview both claim standard error.
+void checkStandardStreams(const RenderOptions& options);
 
 }  // namespace quintet::cli
 #endif

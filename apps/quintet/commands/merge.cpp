@@ -73,7 +73,7 @@ std::optional<Options> parseOptions(Arguments arguments) {
   RenderOptions standardOutput;
   standardOutput.output.file = options.output.file;
   standardOutput.console = options.console;
-  checkStandardOutput(standardOutput);
+  checkStandardStreams(standardOutput);
   output::checkMergeRequest(options.output);
   return options;
 }

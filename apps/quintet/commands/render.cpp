@@ -68,6 +68,7 @@ OptionTable declare(RenderOptions& options, RenderTexts& texts) {
       {"quintet render scene.glb --program ao --set distance=0.5", "another program with a parameter"},
       {"quintet render --program pathtracer --help-program", "the program's parameters"},
       {"quintet render scene.glb -o - --quiet | display", "PNG on standard output"},
+      {"quintet render scene.glb --preview", "shows the image on the terminal meanwhile"},
       {"quintet render scene.glb --spp 4096 --checkpoint 60 --resume", "continue after an interruption"},
       {"quintet render scene.glb --spp 64 --batches 0-7 -o a.qfilm",
        "the first half of a render; 8-15 is the second half"},
@@ -91,7 +92,7 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
                               output::fileKind(options.output.file) != output::FileKind::film;
   options.request.commandLine = commandLine("render", arguments);
   convert(texts, options);
-  checkStandardOutput(options);
+  checkStandardStreams(options);
   if (options.request.limits.samples)
     options.request.frames.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
   return options;
@@ -131,6 +132,7 @@ int renderImages(const RenderOptions& options, const program::Program& program, 
   const output::OutputPlan plan = output::planOutputs(options.output, program, options.request.frames);
   Console console(options.console);
   console.setProgram(&program);
+  console.displayImage = [&](const job::FilmView& film) { return output::displayImage(plan, film); };
   try {
     job::ResolvedJob resolved = job::resolve(requestFor(options, plan), program);
     if (const std::string text = output::ignoredDisplayText(options.output); !text.empty()) console.note(text);
@@ -150,6 +152,7 @@ int renderImages(const RenderOptions& options, const program::Program& program, 
     };
     console.onFrame = write;
     job::RenderResult result = job.run(options.request.limits, console);
+    console.finalImage(*result.film);
     try {
       if (!options.request.overwriteFilm) output::checkFilmLoss(plan, result);  // the render can have stopped early
       if (!options.request.frames.every) write(result);

@@ -146,7 +146,7 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   convert(texts, options);
   convertFrames(texts, options);
   if (texts.timeout.empty()) options.request.launchTimeout = kTimeout;
-  checkStandardOutput(options);
+  checkStandardStreams(options);
   if (options.watch && output::isStandardOutput(options.output.file))
     throw UsageError("--watch writes the same file repeatedly: it cannot be standard output");
   return options;
@@ -165,6 +165,7 @@ class Watch {
                      }}),
         live_(engine_, options.program, [this] { return resolve(); }) {
     console_.isObsolete = [this] { return live_.watcher().pending(); };
+    console_.displayImage = [this](const job::FilmView& film) { return output::displayImage(plan_, film); };
     console_.onPreview = console_.onFrame = [this](const job::RenderResult& result) { write(result); };
   }
 
@@ -230,6 +231,7 @@ class Watch {
     files_.clear();
     job::RenderResult result = live_.job()->run(options_.request.limits, console_);
     if (result.abandoned) return;
+    console_.finalImage(*result.film);
     interrupted_ = result.interrupted;
     if (!options_.output.everyFrame) write(result);
     addWarnings(result, console_);

@@ -65,6 +65,19 @@ TEST_F(WriteOutputs, PngWith16Bits) {
                   std::min(linear.pixel<float>(x, 0)[c] / linear.pixel<float>(x, 0)[3], 1.0f), 4e-5f);
 }
 
+// The preview shows the same bytes as the file.
+TEST_F(WriteOutputs, DisplayImageIsThatOfThePng) {
+  OutputRequest request{.file = folder_ / "a.png", .exposure = -1.5, .toneMap = render::ToneMap::aces};
+  const OutputPlan plan = planOutputs(request, program::loadProgram("normals"));
+  const job::RenderResult result = makeResult();
+  writeOutputs(plan, result, observer_);
+  const io::Image display = displayImage(plan, *result.film);
+  EXPECT_EQ(display.channels, 3u);
+  EXPECT_EQ(display.data, io::readImage(folder_ / "a.png").data);
+  request.exposure = 0.0;
+  EXPECT_NE(display.data, displayImage(planOutputs(request, program::loadProgram("normals")), *result.film).data);
+}
+
 TEST(AddWritten, ListsEachFileOnce) {
   std::vector<WrittenFile> files;
   addWritten(files, {{"a.0.png", ""}, {"b.0.png", ""}});
