@@ -37,12 +37,6 @@ constexpr const char* kClearLine = "\r\x1b[K";
 
 bool isTerminal() { return ::isatty(STDERR_FILENO) == 1; }
 
-bool wantsColor() {
-  const char* noColor = std::getenv("NO_COLOR");
-  const char* term = std::getenv("TERM");
-  return !(noColor && *noColor) && !(term && std::string_view(term) == "dumb");
-}
-
 int barWidth() { return static_cast<int>(terminalWidth(STDERR_FILENO).value_or(80)); }
 
 std::string jsonLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
@@ -62,11 +56,6 @@ std::string figures(const job::Progress& p, std::string_view separator) {
 
 }  // namespace
 
-void printError(const std::string& text) {
-  [[maybe_unused]] const std::size_t written = std::fwrite(text.data(), 1, text.size(), stderr);
-  std::fflush(stderr);
-}
-
 void printFailureJson(const std::string& text) {
   try {
     writeFile("-", text);
@@ -78,8 +67,6 @@ void printMessage(const std::string& text) {
   const std::optional<std::size_t> width = terminalWidth(STDERR_FILENO);
   printError((width ? wrapped(text, *width, 2) : text) + "\n");
 }
-
-bool colorOnStandardError() { return isTerminal() && wantsColor(); }
 
 bool parseColor(const std::string& name) {
   const std::size_t choice = parseChoice("--color", name, {"auto", "always", "never"});

@@ -19,18 +19,12 @@
 
 namespace quintet::cli {
 
-// Prints to standard error. A job continues when its terminal is closed or the reader of a pipe has ended, where fmt::print
-// would throw.
-void printError(const std::string& text);
-
 // Prints one line to standard error. A terminal gets lines that break between words.
 void printMessage(const std::string& text);
 
 // Writes to standard output, unless its reader has ended.
 void printFailureJson(const std::string& text);
 
-// A terminal, and neither NO_COLOR (no-color.org) nor TERM=dumb is set.
-bool colorOnStandardError();
 // The value of --color: "always", "never", or "auto" for colorOnStandardError(). Throws UsageError.
 bool parseColor(const std::string& name);
 

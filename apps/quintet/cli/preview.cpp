@@ -17,7 +17,6 @@
 
 #include "base/error.h"
 #include "base/parse.h"
-#include "cli/console.h"
 #include "cli/signals.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
