@@ -180,21 +180,22 @@ void declareProgram(OptionTable& table, RenderOptions& options) {
 }
 
 void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
-  table.add("Run",
-            {{.names = "--device",
-              .value = "NAME",
-              .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu", kDeviceHelp),
-              .target = &options.device,
-              .candidates = {.names = deviceNames()}},
-             {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout},
-             {.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet},
-             {.names = "--preview",
-              .value = "PROTOCOL",
-              .help = "Show the image on the terminal while it is rendered: auto, kitty, sixel, blocks (characters) or "
-                      "off (default: off; without a value: auto)",
-              .target = &options.console.preview,
-              .withoutValue = "auto",
-              .candidates = {.names = previewNames()}}});
+  table.add(
+      "Run",
+      {{.names = "--device",
+        .value = "NAME",
+        .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu", kDeviceHelp),
+        .target = &options.device,
+        .candidates = {.names = deviceNames()}},
+       {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout},
+       {.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet},
+       {.names = "--preview",
+        .value = "PROTOCOL",
+        .help = "Show the image on the terminal during the render: kitty, sixel, blocks, off or auto (default: off; "
+                "without a value: auto)",
+        .target = &options.console.preview,
+        .withoutValue = "auto",
+        .candidates = {.names = previewNames()}}});
 }
 
 void declareCheckpoints(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
