@@ -201,22 +201,28 @@ std::vector<bool> PathsAfter::from(std::size_t start, std::size_t without) const
 
 bool PathsAfter::reaches(std::size_t i, const std::vector<std::size_t>& kills) const {
   const std::size_t goal = nodeOf(i);
-  if (goal == kNone) return false;
-  std::vector<std::size_t> first(blockCount_ + 1, kNone);  // first kill of each node
+  if (goal == kNone || !after_[goal]) return false;
+  const auto [found, isNew] = unkilled_.try_emplace(kills);
+  if (isNew) found->second = findUnkilled(kills);
+  const Unkilled& nodes = found->second;
+  return nodes.entered[goal] && i <= nodes.firstKill[goal];
+}
+
+PathsAfter::Unkilled PathsAfter::findUnkilled(const std::vector<std::size_t>& kills) const {
+  Unkilled result{std::vector<bool>(blockCount_ + 1, false), std::vector<std::size_t>(blockCount_ + 1, kNone)};
   for (const std::size_t kill : kills)
-    if (const std::size_t node = nodeOf(kill); node != kNone) first[node] = std::min(first[node], kill);
-  std::vector<bool> seen(blockCount_ + 1, false);
+    if (const std::size_t node = nodeOf(kill); node != kNone)
+      result.firstKill[node] = std::min(result.firstKill[node], kill);
   std::vector<std::size_t> open{blockCount_};
   while (!open.empty()) {
     const std::size_t node = open.back();
     open.pop_back();
-    if (seen[node]) continue;
-    seen[node] = true;
-    if (node == goal && i <= first[node]) return true;
-    if (first[node] != kNone) continue;
+    if (result.entered[node]) continue;
+    result.entered[node] = true;
+    if (result.firstKill[node] != kNone) continue;
     for (const std::size_t next : successors(node)) open.push_back(next);
   }
-  return false;
+  return result;
 }
 
 bool PathsAfter::leadsTo(std::size_t block, std::size_t instruction) const {

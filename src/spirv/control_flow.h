@@ -56,6 +56,12 @@ class PathsAfter {
       std::size_t instruction) const;  // block index; blockCount_ is the part of the start block after the start
   const std::vector<std::size_t>& successors(std::size_t node) const;
   std::vector<std::size_t> findGuards(std::size_t goal) const;
+  // What paths reach before one of a set of instructions, by node.
+  struct Unkilled {
+    std::vector<bool> entered;
+    std::vector<std::size_t> firstKill;
+  };
+  Unkilled findUnkilled(const std::vector<std::size_t>& kills) const;
   std::vector<bool> from(std::size_t node, std::size_t without) const;
   std::size_t blockOf(std::size_t node) const { return node == blockCount_ ? block_ : node; }
 
@@ -64,6 +70,7 @@ class PathsAfter {
   std::size_t instruction_, block_ = 0, function_ = 0, blockCount_ = 0;  // of the start
   std::vector<bool> after_;                                              // nodes that can run after the start
   mutable std::map<std::size_t, std::vector<std::size_t>> guards_;       // cache, by node
+  mutable std::map<std::vector<std::size_t>, Unkilled> unkilled_;        // cache, by instructions
   mutable std::map<std::size_t, std::vector<bool>> around_;              // cache, by node: nodes reached without it
 };
 
