@@ -31,7 +31,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Uve
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer OutputArray { vec4 at[]; };
 
 // Accesses members of the frame without a copy: frame.lightCount, frame.camera.halfSize, …
-#define frame FrameReference(launch.frame).value
+#define frame FrameReference(launch.frameAddress).value
 
 const float kPi = 3.14159265358979323846;
 const float kInfinity = 3.402823466e38;  // the largest float: a ray without limit

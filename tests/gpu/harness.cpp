@@ -141,7 +141,7 @@ uint64_t testAddress(uint index);
 constexpr const char* kAfter = R"(
 #line 1
 #ifndef QUINTET_SHARED_FRAME_H
-struct Launch { uint64_t frame; uint64_t parameters; uvec2 offset; uint firstSample; uint sampleCount; };
+struct Launch { uint64_t frameAddress; uint64_t parameterAddress; uvec2 offset; uint firstSample; uint sampleCount; };
 #endif
 #ifndef QUINTET_FRAME_GLSL
 layout(push_constant, scalar) uniform LaunchBlock { Launch launch; };
@@ -160,9 +160,9 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Tes
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer TestInputs2 { In at[2]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer TestInputs3 { In at[3]; };
 #endif
-uint64_t testAddress(uint index) { return TestBlock(launch.parameters).addresses[index]; }
+uint64_t testAddress(uint index) { return TestBlock(launch.parameterAddress).addresses[index]; }
 void main() {
-  TestBlock test = TestBlock(launch.parameters);
+  TestBlock test = TestBlock(launch.parameterAddress);
   uint index = gl_GlobalInvocationID.y * (gl_NumWorkGroups.x * 64u) + gl_GlobalInvocationID.x;
   if (index == 0u)
     TestSizes(test.sizes).at[0] = uint(uint64_t(TestOutputs3(0ul) + 1) - uint64_t(TestOutputs2(0ul) + 1));

@@ -54,7 +54,7 @@ void dispatchCompute(const std::string& glsl, std::span<const std::byte> constan
 struct ComputeOptions {
   Defines defines = {};
   const gpu::BindlessSet* set = nullptr;       // for textures; at least 32 bytes of push constants
-  VkDeviceAddress frame = 0;                   // launch.frame of <quintet/frame.glsl>
+  VkDeviceAddress frame = 0;                   // launch.frameAddress of <quintet/frame.glsl>
   std::array<VkDeviceAddress, 8> addresses{};  // values of testAddress(0) … testAddress(7) in GLSL
 };
 

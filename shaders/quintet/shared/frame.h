@@ -142,14 +142,15 @@ struct FilmTile {
 };
 QT_SHARED_SIZE(FilmTile, 16);
 
-// Push constants of every ray tracing program.
+// Push constants of every ray tracing program. No member has the name of a macro (`frame`, `parameters`): glslang would
+// expand it again in an argument of a macro.
 struct Launch {
-  Address frame;        // Frame
-  Address parameters;   // the program's parameter block (generated struct Parameters)
-  uvec2 offset;         // pixel of launch invocation (0,0)
-  uint firstSample;     // index of the first sample of this launch; index of the frame, if the program accumulates
-  uint sampleCount;     // samples to take per pixel in this launch
-  Address tiles;        // FilmTile[]: the launch covers these, one per row; 0: a rectangle of pixels
+  Address frameAddress;      // Frame
+  Address parameterAddress;  // the program's parameter block (generated struct Parameters)
+  uvec2 offset;              // pixel of launch invocation (0,0)
+  uint firstSample;  // index of the first sample of this launch; index of the frame, if the program accumulates
+  uint sampleCount;  // samples to take per pixel in this launch
+  Address tiles;     // FilmTile[]: the launch covers these, one per row; 0: a rectangle of pixels
 };
 QT_SHARED_SIZE(Launch, 40);
 

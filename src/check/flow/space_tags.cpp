@@ -65,7 +65,7 @@ SpaceLeaves memberTags(const spirv::Type& structure, std::size_t member) {
   if (type == "GeometryData" && name == "normals") return {addressTag(SpaceTag::Array::normals)};
   if (type == "GeometryData" && name == "tangents") return {addressTag(SpaceTag::Array::tangents)};
   if (type == "BoxData" && (name == "min" || name == "max")) return {geometricTag(Space::object, Kind::point)};
-  if (type == "Launch" && name == "parameters") return {addressTag(SpaceTag::Array::parameters)};
+  if (type == "Launch" && name == "parameterAddress") return {addressTag(SpaceTag::Array::parameters)};
   return {};
 }
 

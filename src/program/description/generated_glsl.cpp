@@ -79,7 +79,7 @@ std::string generatedConstants(const Program& program) {
   text +=
       "layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ParametersReference { Parameters "
       "value; };\n"
-      "#define parameters ParametersReference(launch.parameters).value\n#endif\n";
+      "#define parameters ParametersReference(launch.parameterAddress).value\n#endif\n";
   return text;
 }
 

@@ -79,8 +79,8 @@ void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t row
   const Record trace = [&](gpu::Commands& commands) {
     for (std::uint32_t done = 0; done < count;) {
       shared::Launch constants{};
-      constants.frame = frameBuffer_.address();
-      constants.parameters = parameterBuffer_.address();
+      constants.frameAddress = frameBuffer_.address();
+      constants.parameterAddress = parameterBuffer_.address();
       constants.offset = target.offset + uvec2(0, row);
       constants.firstSample = samples.begin + done;
       constants.sampleCount = std::min(count - done, program().samplesPerLaunch);

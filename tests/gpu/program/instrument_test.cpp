@@ -237,6 +237,41 @@ TEST(Recursion, EndsAtTheDepthOfThePipeline) {
   }
 }
 
+// `frame` and `parameters` are macros, as are the calls whose arguments they are.
+TEST(Recursion, IsCountedIfArgumentsAreParameters) {
+  const std::string head =
+      "#version 460\n#extension GL_EXT_ray_tracing : require\n#include <quintet/output.glsl>\n#include "
+      "<quintet/generated/program.glsl>\nlayout(set = 0, binding = kBindingTlas) uniform accelerationStructureEXT "
+      "tlas;\n";
+  const std::string payload = "layout(location = 0) rayPayloadInEXT float level;\nvoid main() { ";
+  const std::string trace = "traceRayEXT(tlas, 0u, 0xFFu, kRay_r, kRayTypeCount, kMiss_r, ";
+  const program::Program program = program::parseProgram(
+      "[program]\nray_generation = \"main.rgen\"\nmax_recursion = 2\n[[ray]]\nname = \"r\"\nmiss = "
+      "\"sky.rmiss\"\n[[hit_group]]\nname = \"all\"\nr = { closest_hit = \"hit.rchit\" }\n[[parameter]]\nname = "
+      "\"bias\"\ntype = \"float\"\ndefault = 0.001\n[[output]]\nname = \"color\"\n",
+      "demo", "here",
+      {{"main.rgen", head + "layout(location = 0) rayPayloadEXT float level;\nvoid main() { level = 0.0; " + trace +
+                         "vec3(0.0, 1.0, 6.0), parameters.bias, frame.width * vec3(0.0, -1.0, -6.0), 100.0, 0); "
+                         "storeOutput(kOutput_color, uvec2(launchPixel().x, frame.height - 1u), "
+                         "vec4(level + parameters.bias)); }\n"},
+       {"hit.rchit",
+        head + payload + "level += 1.0; if (level < 2.0) " + trace +
+            "gl_WorldRayOriginEXT, parameters.bias, gl_WorldRayDirectionEXT * frame.width, 100.0, 0); }\n"},
+       {"sky.rmiss", head + payload + "}\n"}});
+  const scene::Scene scene = job::loadScene(job::chooseSceneSource({}, program));
+  render::DeviceScene deviceScene(testContext(), scene::Scene(scene), scene::effectiveEnvironment(scene));
+  for (const bool instrument : {false, true}) {
+    render::RenderSettings settings;
+    settings.width = settings.height = 8;
+    settings.instrument = instrument;
+    settings.parameters = program::ParameterValues(program.parameters);
+    render::Renderer renderer = makeRenderer(deviceScene, program, settings);
+    renderer.renderBatch(1);
+    EXPECT_NEAR(renderer.image().samples<float>().back(), 2.001f, 1e-5f) << instrument;
+    EXPECT_EQ(renderer.skippedTraces(), 0u);
+  }
+}
+
 TEST(Recursion, IsNotCountedWithoutACycle) {
   const program::Program program = program::loadProgram("pathtracer");
   const scene::Scene scene = job::loadScene(job::chooseSceneSource({}, program));

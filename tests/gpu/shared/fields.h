@@ -134,7 +134,7 @@ GPU_FIELDS(FilmCheck, values, result, count, sums, mark, padding);
 GPU_FIELDS(FixedSum, word);
 GPU_FIELDS(CoverageSlot, id, samples);
 GPU_FIELDS(FilmTile, x, y, drawn);
-GPU_FIELDS(Launch, frame, parameters, offset, firstSample, sampleCount, tiles);
+GPU_FIELDS(Launch, frameAddress, parameterAddress, offset, firstSample, sampleCount, tiles);
 
 #undef GPU_FIELDS
 

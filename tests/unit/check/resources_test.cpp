@@ -29,7 +29,7 @@ std::string idsWith(const std::string& declarations, const std::string& statemen
 TEST(Resources, OfTheLibraryAreProvided) {
   EXPECT_EQ(idsWith("#include <quintet/texture.glsl>",
                     "color += textureLod(textures[launch.firstSample], vec2(0.5), 0.0).rgb + vec3(launch.offset, "
-                    "launch.sampleCount) + vec3(frame.width, launch.parameters != 0ul, launch.tiles != 0ul);"),
+                    "launch.sampleCount) + vec3(frame.width, launch.parameterAddress != 0ul, launch.tiles != 0ul);"),
             "");
 }
 

@@ -58,9 +58,9 @@ Leaf leafOf<shared::uvec2>(const char* name, std::size_t offset) {
 // The members of shared::Launch. A new member does not compile until it is listed here.
 #define LAUNCH_MEMBER(name) leafOf<decltype(shared::Launch::name)>(#name, offsetof(shared::Launch, name))
 const std::vector<Leaf>& launchMembers() {
-  static const std::vector<Leaf> kMembers = {LAUNCH_MEMBER(frame),       LAUNCH_MEMBER(parameters),
-                                             LAUNCH_MEMBER(offset),      LAUNCH_MEMBER(firstSample),
-                                             LAUNCH_MEMBER(sampleCount), LAUNCH_MEMBER(tiles)};
+  static const std::vector<Leaf> kMembers = {LAUNCH_MEMBER(frameAddress), LAUNCH_MEMBER(parameterAddress),
+                                             LAUNCH_MEMBER(offset),       LAUNCH_MEMBER(firstSample),
+                                             LAUNCH_MEMBER(sampleCount),  LAUNCH_MEMBER(tiles)};
   static_assert(
       sizeof(shared::Launch) == 3 * sizeof(shared::Address) + sizeof(shared::uvec2) + 2 * sizeof(shared::uint),
       "list all members of Launch");
