@@ -344,7 +344,7 @@ class MemberRule {
 
   // Nullopt if the leaf can have different values; else whether a shader that the trace can run writes it.
   std::optional<bool> isConstant(std::uint32_t leaf) const {
-    if (payload_->storage != StorageClass::RayPayloadKHR) return {};
+    if (payload_->storage != StorageClass::RayPayloadKHR || canHaveResultOfOther(leaf)) return {};
     std::set<std::string> constants;
     bool known = addConstants(*tracer_, payload_->id, leaf, constants);
     std::size_t callees = 0, writers = 0;
@@ -358,6 +358,23 @@ class MemberRule {
     }
     if (!known || callees == 0 || constants.size() != 1) return {};
     return writers > 0;
+  }
+
+  // True if the leaf can have a value from a different trace with the payload when the trace starts.
+  bool canHaveResultOfOther(std::uint32_t leaf) const {
+    std::vector<std::size_t> stores;
+    for (const spirv::AccessFacts& a : tracer_->accesses())
+      if (a.writes && a.variable == payload_->id && a.leaves.exact && a.leaves.covers(leaf))
+        stores.push_back(a.instruction);
+    return std::ranges::any_of(graph_.traces, [&](const TraceSite& other) {
+      return &other != site_ && other.stage == site_->stage && other.trace->payload == payload_->id &&
+             tracer_->pathsAfter(other.trace->instruction).reaches(instruction(), stores) &&
+             std::ranges::any_of(other.edges, [&](const Edge& edge) {
+               const spirv::StageFacts& facts = graph_.facts(edge);
+               const spirv::SharedVariable* payload = facts.incoming(StorageClass::IncomingRayPayloadKHR);
+               return edge.role != Role::intersection && payload && facts.writes(payload->id, leaf);
+             });
+    });
   }
 
   // Adds the values that the stage writes to the leaf. Returns false if one of them is not constant.

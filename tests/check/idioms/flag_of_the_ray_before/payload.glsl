@@ -1,0 +1,5 @@
+struct Payload {
+  vec3 color;
+  vec3 position;
+  bool hit;
+};
