@@ -467,8 +467,8 @@ Json runBenchmark(const BenchmarkRequest& request) {
   if (request.profile) return result;
   watch.lap();
   {
-    render::DeviceScene scene = setup.onDevice(context);
     const program::Program program = program::loadProgram(request.program);
+    render::DeviceScene scene = setup.onDevice(context, {.singleAnyHit = program::requiredSingleAnyHit(program)});
     render::Renderer renderer = setup.renderer(scene, program, setup.settings(program, setup.size));
     renderer.renderBatch(1);
     renderer.finish();

@@ -112,6 +112,7 @@ void RenderJob::prepare(Observer& observer) {
   const RenderRequest& request = job_.request;
   if (!request.checkpoint.file.empty())
     checkpoint_.emplace(request.checkpoint);  // its lock fails before anything is loaded
+  if (scene_ && scene_->singleAnyHit < program::requiredSingleAnyHit(job_.program)) scene_ = nullptr;
   std::optional<SceneLoading> loading;
   if (!scene_) loading.emplace(job_.scene, request);  // continues while the driver starts
   gpu::Context& context = engine_.context();
@@ -153,10 +154,11 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   prepared->instanceNames = scene::instanceNames(loaded.scene);
   prepared->materialNames = scene::materialNames(loaded.scene);
   prepared->seconds.load = loaded.seconds;
+  prepared->singleAnyHit = program::requiredSingleAnyHit(job_.program);
   const scene::ImportSeconds import = loaded.scene.seconds;
-  prepared->onDevice =
-      std::make_unique<render::DeviceScene>(engine_.context(), std::move(loaded.scene), loaded.environment.environment,
-                                            render::DeviceSceneOptions{.editable = job_.request.editable});
+  prepared->onDevice = std::make_unique<render::DeviceScene>(
+      engine_.context(), std::move(loaded.scene), loaded.environment.environment,
+      render::DeviceSceneOptions{.singleAnyHit = prepared->singleAnyHit, .editable = job_.request.editable});
   prepared->seconds.build = building.seconds();
   const render::DeviceSceneStatistics& built = prepared->onDevice->statistics();
   prepared->seconds.stages = {{"document", import.document},

@@ -31,10 +31,11 @@ struct PreparedScene {
   std::string cameraDescription;
   std::string environment;  // description
   std::string hash, environmentHash;
-  uvec2 size{0};                                          // of the whole image, pixels
-  std::vector<std::filesystem::path> files;               // that the scene file names
-  std::vector<std::string> instanceNames, materialNames;  // scene/model/names.h
-  std::size_t ignoredAnimations = 0;                      // of glTF files
+  uvec2 size{0};                                                        // of the whole image, pixels
+  std::vector<std::filesystem::path> files;                             // that the scene file names
+  std::vector<std::string> instanceNames, materialNames;                // scene/model/names.h
+  std::size_t ignoredAnimations = 0;                                    // of glTF files
+  program::SingleAnyHit singleAnyHit = program::SingleAnyHit::tinting;  // of the acceleration structures
   Timings seconds;
   std::unique_ptr<render::DeviceScene> onDevice;
 };
@@ -46,7 +47,7 @@ class RenderJob {
   // gpu::VulkanError.
   RenderJob(Engine& engine, ResolvedJob job, Observer& observer);
   // The same with a scene that outlasts the job: used if it is not null (of an earlier job with the same request and
-  // unchanged scene files), else set as soon as the scene is on the device, even if the program then does not compile.
+  // unchanged scene files) and built as the program's any-hit shaders need it, else set as soon as the scene is on the device, even if the program then does not compile.
   RenderJob(Engine& engine, ResolvedJob job, Observer& observer, std::shared_ptr<PreparedScene>& scene);
   RenderJob(const RenderJob&) = delete;
   RenderJob& operator=(const RenderJob&) = delete;

@@ -49,6 +49,16 @@ std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry) {
   return 0;
 }
 
+SingleAnyHit requiredSingleAnyHit(const Program& program) {
+  const auto isOwn = [](const auto& shaders) {
+    return !shaders.second.anyHit.empty() && !isLibraryStage(shaders.second.anyHit);
+  };
+  const bool own =
+      std::ranges::any_of(program.hitGroups, [&](const HitGroup& g) { return std::ranges::any_of(g.shaders, isOwn); });
+  if (!own) return SingleAnyHit::tinting;
+  return program.anyHitForAll ? SingleAnyHit::all : SingleAnyHit::notOpaque;
+}
+
 SceneFacts factsFor(const Program& program, SceneFacts facts) {
   if (!program.anyHitForAll) return facts;
   for (InstanceFacts& instance : facts.instances) instance.forceNoOpaque = !instance.forceOpaque;

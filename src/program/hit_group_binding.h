@@ -25,6 +25,17 @@ bool hasIntersection(const HitGroup& group);
 // else 0.
 std::size_t hitGroupFor(const Program& program, const GeometryFacts& geometry);
 
+// For which geometry a device must call any-hit shaders at most once per intersection, because they can count or multiply
+// in the payload. Each value includes the ones before it.
+enum class SingleAnyHit {
+  tinting,    // geometry that tints light, for the any-hit shaders of the library
+  notOpaque,  // all for which any-hit shaders run by default
+  all,
+};
+
+// Shaders of the program's own need `notOpaque`, or `all` with Program::anyHitForAll.
+SingleAnyHit requiredSingleAnyHit(const Program& program);
+
 // Returns the scene as this program sees it: with Program::anyHitForAll, no instance is opaque unless it is forced to be.
 SceneFacts factsFor(const Program& program, SceneFacts facts);
 

@@ -127,6 +127,15 @@ void DeviceScene::uploadMaterials(scene::Scene& scene, const scene::Environment&
   textures_->bind(*set_);
 }
 
+bool DeviceScene::needsSingleAnyHit(const program::GeometryFacts& geometry) const {
+  switch (options_.singleAnyHit) {
+    case program::SingleAnyHit::tinting: return geometry.tints;
+    case program::SingleAnyHit::notOpaque: return geometry.tints || !geometry.opaque();
+    case program::SingleAnyHit::all: return true;
+  }
+  return true;
+}
+
 rt::BlasInput DeviceScene::blasInput(const scene::Scene& scene, std::size_t mesh,
                                      std::deque<std::vector<Bounds3>>& boxes) const {
   rt::BlasInput input;
@@ -140,14 +149,14 @@ rt::BlasInput DeviceScene::blasInput(const scene::Scene& scene, std::size_t mesh
     part.positionsAddress = geometry_.geometries[k].positions;
     part.trianglesAddress = geometry_.geometries[k].triangles;
     part.opaque = facts_.geometries[k].opaque();
-    part.singleAnyHit = facts_.geometries[k].tints;
+    part.singleAnyHit = needsSingleAnyHit(facts_.geometries[k]);
   }
   for (const scene::PrimitiveSet& primitives : scene.meshes[mesh].primitiveSets) {
     rt::GeometryInput& part = input.geometries.emplace_back();
     part.kind = rt::GeometryKind::boxes;
     part.boxes = boxes.emplace_back(boxesForBuild(primitives));
     part.opaque = facts_.geometries[k].opaque();
-    part.singleAnyHit = facts_.geometries[k++].tints;
+    part.singleAnyHit = needsSingleAnyHit(facts_.geometries[k++]);
   }
   return input;
 }

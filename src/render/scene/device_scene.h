@@ -12,6 +12,7 @@
 
 #include "gpu/descriptors.h"
 #include "gpu/uploader.h"
+#include "program/hit_group_binding.h"
 #include "program/scene_facts.h"
 #include "quintet/shared/frame.h"
 #include "render/lights/light_table.h"
@@ -26,7 +27,9 @@ namespace quintet::render {
 
 struct DeviceSceneOptions {
   bool keepInputOrder = false;  // for benchmarks: do not sort primitives and instances spatially
-  bool editable = false;        // keep what DeviceScene::setTransforms requires: the emissive geometry in host memory
+  // Geometry that is built with NO_DUPLICATE_ANY_HIT_INVOCATION.
+  program::SingleAnyHit singleAnyHit = program::SingleAnyHit::tinting;
+  bool editable = false;  // keep what DeviceScene::setTransforms requires: the emissive geometry in host memory
 };
 
 struct InstanceTransform {
@@ -91,6 +94,7 @@ class DeviceScene {
   void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
   // Returns the geometries of a mesh. The boxes of primitive sets are stored in `boxes`, which must live until the
   // build ends.
+  bool needsSingleAnyHit(const program::GeometryFacts& geometry) const;
   rt::BlasInput blasInput(const scene::Scene& scene, std::size_t mesh, std::deque<std::vector<Bounds3>>& boxes) const;
   void buildBottomLevel(const scene::Scene& scene);
   void uploadTables(const scene::Scene& scene);

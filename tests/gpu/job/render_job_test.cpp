@@ -293,6 +293,29 @@ TEST_F(RenderJobTest, ScenesOutliveJobs) {
   EXPECT_EQ(job.run(request.limits, observer_).provenance.samples, 4u);
 }
 
+// A program whose any-hit shader could count needs acceleration structures that call it once per intersection.
+TEST_F(RenderJobTest, ScenesAreRebuiltForAnyHitShaders) {
+  const quintet::test::TempFolder folder;
+  const auto write = [&](const std::string& anyHit) {
+    writeFile(folder / "a.rt.glsl",
+              "struct RayPayloadType { vec3 color; };\n"
+              "void main() { /**** RAY GENERATION SHADER ****/ gsnSetPixel(vec4(0.5)); }\n" +
+                  anyHit);
+    return program::loadProgram((folder / "a.rt.glsl").string());
+  };
+  const RenderRequest request = makeRequest(1);
+  std::shared_ptr<PreparedScene> scene;
+  const RenderJob first(engine(), resolve(request, write("")), observer_, scene);
+  const std::shared_ptr<PreparedScene> plain = scene;
+  const program::Program counting = write("void main() { /**** ANY-HIT SHADER ****/ payload.color += 0.1; }\n");
+  const RenderJob second(engine(), resolve(request, counting), observer_, scene);
+  EXPECT_NE(scene, plain);
+  EXPECT_EQ(scene->singleAnyHit, program::SingleAnyHit::all);
+  const std::shared_ptr<PreparedScene> single = scene;
+  const RenderJob third(engine(), resolve(request, write("")), observer_, scene);
+  EXPECT_EQ(scene, single);
+}
+
 TEST_F(RenderJobTest, WatchingReportsABrokenProgramAndRecovers) {
   const quintet::test::TempFolder folder;
   const std::string program = (folder / "a.rt.glsl").string();

@@ -115,6 +115,19 @@ TEST(HitGroupBinding, AcceptsListsOfKinds) {
   EXPECT_EQ(serving(p, triangles()), "mesh");
 }
 
+TEST(HitGroupBinding, OwnAnyHitShadersRunOncePerIntersection) {
+  Program p;
+  HitGroup& all = p.hitGroups.emplace_back(group("all", false));
+  EXPECT_EQ(requiredSingleAnyHit(p), SingleAnyHit::tinting);
+  all.shaders["shadow"].anyHit = "<quintet/stages/alpha_shadow.rahit>";
+  p.anyHitForAll = true;
+  EXPECT_EQ(requiredSingleAnyHit(p), SingleAnyHit::tinting);
+  all.shaders["radiance"].anyHit = "layers.rahit";
+  EXPECT_EQ(requiredSingleAnyHit(p), SingleAnyHit::all);
+  p.anyHitForAll = false;
+  EXPECT_EQ(requiredSingleAnyHit(p), SingleAnyHit::notOpaque);
+}
+
 TEST(HitGroupBinding, OpensInstancesToAnyHitShaders) {
   SceneFacts facts;
   facts.instances.resize(2);
