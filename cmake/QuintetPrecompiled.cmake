@@ -3,7 +3,7 @@
 # include what they use, and CI compiles every header alone (tests/headers/run).
 #
 # quintet_precompile(TARGET)        the standard library, fmt and glm
-# quintet_precompile(TARGET TESTS)  also GoogleTest and nlohmann-json
+# quintet_precompile(TARGET TESTS)  also GoogleTest and nlohmann-json, in the target QUINTET_TEST_PRECOMPILED
 option(QUINTET_PRECOMPILED "Precompile frequent headers" ON)
 
 set(QUINTET_PRECOMPILED_HEADERS
@@ -30,13 +30,13 @@ function(quintet_precompile TARGET)
     return()
   endif()
   if(ARGN STREQUAL TESTS)
-    if(NOT TARGET quintet_test_precompiled)
-      quintet_add_precompiled(quintet_test_precompiled LINK fmt::fmt glm::glm GTest::gmock nlohmann_json::nlohmann_json
+    if(NOT TARGET ${QUINTET_TEST_PRECOMPILED})
+      quintet_add_precompiled(${QUINTET_TEST_PRECOMPILED} LINK fmt::fmt glm::glm GTest::gmock nlohmann_json::nlohmann_json
         HEADERS <gmock/gmock.h> <gtest/gtest.h> <nlohmann/json.hpp>)
     endif()
-    target_precompile_headers(${TARGET} REUSE_FROM quintet_test_precompiled)
+    target_precompile_headers(${TARGET} REUSE_FROM ${QUINTET_TEST_PRECOMPILED})
     # A precompiled header requires the same code model in all its users, executables and libraries.
-    set_target_properties(${TARGET} quintet_test_precompiled PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    set_target_properties(${TARGET} ${QUINTET_TEST_PRECOMPILED} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   else()
     if(NOT TARGET quintet_precompiled)
       quintet_add_precompiled(quintet_precompiled LINK fmt::fmt glm::glm)
