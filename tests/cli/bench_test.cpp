@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `bench`: the measurements are consistent, also those of any program.
+#include <gmock/gmock.h>
+
 #include "sky_program.h"
 
 namespace quintet::test {

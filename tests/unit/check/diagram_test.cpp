@@ -75,7 +75,7 @@ TEST(PipelineModel, MarksTheEdgeOfADiagnostic) {
   ASSERT_EQ(json["diagnostics"].size(), 1u) << json["diagnostics"];
   const nlohmann::json& targets = json["traces"][0]["targets"];
   EXPECT_EQ(targets[0]["diagnostics"], nlohmann::json::array());
-  EXPECT_EQ(targets[1]["diagnostics"], nlohmann::json({0}));
+  EXPECT_EQ(targets[1]["diagnostics"], nlohmann::json::array({0}));
   EXPECT_EQ(json["traces"][1]["diagnostics"], nlohmann::json::array());
 }
 

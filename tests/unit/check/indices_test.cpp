@@ -21,7 +21,6 @@ layout(buffer_reference, scalar) buffer Indices { uint at[]; };
 layout(push_constant, scalar) uniform P { Colors colors; Indices indices; uint sky; } push;
 layout(set = 0, binding = 1) uniform sampler2D textures[];
 )";
-constexpr int kFirst = 13;
 
 std::vector<std::string> closestHit(const std::string& body, const StageContext& context = {}) {
   return checkText(Stage::closestHit, kHead + ("void main() {\n" + body + "\n}\n"), context);
