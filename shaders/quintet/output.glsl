@@ -6,25 +6,9 @@
 #define QUINTET_OUTPUT_GLSL
 
 #include "frame.glsl"
+#include "launch_pixel.glsl"
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer StatisticsArray { uvec2 at[]; };
-
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TileArray { FilmTile at[]; };
-
-// Extracts bits 0, 2, 4, … into adjacent bits.
-uint evenBits(uint x) {
-  x &= 0x55555555u;
-  x = (x | x >> 1) & 0x33333333u;
-  x = (x | x >> 2) & 0x0F0F0F0Fu;
-  return (x | x >> 4) & 0x00FF00FFu;
-}
-
-// The pixel of this invocation. If the launch covers tiles, each row is one tile, with its pixels in Morton order.
-uvec2 launchPixel() {
-  if (launch.tiles == 0ul) return gl_LaunchIDEXT.xy + launch.offset;
-  const FilmTile tile = TileArray(launch.tiles).at[gl_LaunchIDEXT.y + launch.offset.y];
-  return frame.filmOffset + uvec2(tile.x, tile.y) + uvec2(evenBits(gl_LaunchIDEXT.x), evenBits(gl_LaunchIDEXT.x >> 1));
-}
 
 // For programs with adaptive = true: true if this pixel is sampled in this batch. If false, write nothing.
 bool launchActive(uvec2 pixel) {

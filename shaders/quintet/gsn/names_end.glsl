@@ -2,6 +2,7 @@
 // Ends the renaming of names_begin.glsl, and replaces built-ins that depend on the driver, the launch strip or the order of
 // primitives: from here on gl_PrimitiveID is the index in the scene, and so on.
 #ifndef QUINTET_GSN_OPEN
+#undef Address
 #undef AliasArray
 #undef AliasEntry
 #undef BoxArray
@@ -24,6 +25,8 @@
 #undef LaunchBlock
 #undef LightArray
 #undef LightData
+#undef LogHeader
+#undef LogRecord
 #undef MaterialArray
 #undef MaterialData
 #undef OutputArray
@@ -32,23 +35,25 @@
 #undef PrimitiveArray
 #undef PrimitiveData
 #undef PrimitiveIndexArray
-#undef RayRecord
 #undef RayKinds
+#undef RayRecord
 #undef TextureData
+#undef TileArray
 #undef UintArray
 #undef Uvec3Array
 #undef Vec2Array
 #undef Vec3Array
 #undef Vec4Array
+#undef evenBits
+#undef frame
 #undef kInfinity
 #undef kPi
 #undef launch
+#undef launchPixel
 #undef luminance
 #undef maxComponent
-#undef textures
-#undef Address
-#undef frame
 #undef parameters
+#undef textures
 #endif
 
 #define gl_LaunchIDEXT gsnLaunchID()

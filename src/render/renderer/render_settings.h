@@ -16,6 +16,8 @@
 
 namespace quintet::render {
 
+class ShaderLog;
+
 // Largest value of RenderSettings::launchesInFlight.
 inline constexpr std::uint32_t kMaxLaunchesInFlight = 2;
 
@@ -36,6 +38,9 @@ struct RenderSettings {
   // For benchmarks: a buffer of shared::RayKinds, then rayRecordCapacity RayRecords per pixel. Null disables recording.
   const gpu::Buffer* rayRecords = nullptr;
   std::uint32_t rayRecordCapacity = 0;
+  // What the shaders of an instrumented variant of the program append to. It must outlive the renderer. Launches then take
+  // one sample each. Null means no log.
+  const ShaderLog* log = nullptr;
   // Number of frames of this run, for programs that accumulate (frameSize); 0 if unlimited.
   std::uint32_t frameCount = 0;
   bool instrument = false;  // the program is compiled with runtime checks, which are slow: Renderer::runtimeDiagnostics

@@ -8,6 +8,7 @@
 
 #include "base/stopwatch.h"
 #include "render/film/adaptive_plan.h"
+#include "render/renderer/shader_log.h"
 #include "render/scene/camera.h"
 #include "render/tone_map/tone_map.h"
 
@@ -58,6 +59,7 @@ void Renderer::uploadFrame() {
   frame.flags = settings_.transparent ? shared::kFrameTransparent : 0;
   frame.rayRecords = settings_.rayRecords ? settings_.rayRecords->address() : 0;
   frame.rayRecordCapacity = settings_.rayRecords ? settings_.rayRecordCapacity : 0;
+  frame.log = settings_.log ? settings_.log->address() : 0;
   if (instrument_) frame.instrument = instrument_->address();
   if (recursion_) frame.instrument = recursion_->address();
   film_.describe(frame);
@@ -76,6 +78,7 @@ Renderer::Record Renderer::recordBegin() {
 void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t rows, SampleRange samples,
                       const Record& before, const Record& after) {
   const std::uint32_t count = samples.end - samples.begin;
+  const std::uint32_t perLaunch = settings_.log ? 1 : program().samplesPerLaunch;
   const Record trace = [&](gpu::Commands& commands) {
     for (std::uint32_t done = 0; done < count;) {
       shared::Launch constants{};
@@ -83,7 +86,7 @@ void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t row
       constants.parameterAddress = parameterBuffer_.address();
       constants.offset = target.offset + uvec2(0, row);
       constants.firstSample = samples.begin + done;
-      constants.sampleCount = std::min(count - done, program().samplesPerLaunch);
+      constants.sampleCount = std::min(count - done, perLaunch);
       constants.tiles = target.tiles;
       if (done > 0) commands.barrier(gpu::Stage::rayTracing, gpu::Stage::rayTracing);
       rt::trace(commands, linked_.pipeline(), table_, std::as_bytes(std::span(&constants, 1)), target.width, rows);

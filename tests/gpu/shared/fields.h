@@ -12,6 +12,7 @@
 
 #include "quintet/shared/film.h"
 #include "quintet/shared/instrument.h"
+#include "quintet/shared/log.h"
 
 namespace quintet::test {
 
@@ -120,12 +121,14 @@ GPU_FIELDS(RayKinds, camera, cameraHits, continuation, continuationHits, shadow,
 GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics,
            rayRecords, instrument, outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth,
            filmHeight, lightCount, environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount,
-           plannedSamples, lightNodes, previousInstances);
+           plannedSamples, lightNodes, previousInstances, log);
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction, interval);
 GPU_FIELDS(RecursionGuard, cutCount);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive, flags, stage, line);
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, callableCount,
            outputCount, depthLimit, rays, recordPairs, badRecords);
+GPU_FIELDS(LogHeader, capacity, used, dropped, padding, firstPixel, endPixel);
+GPU_FIELDS(LogRecord, kind, wordCount, pixel, sampleIndex);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
 GPU_FIELDS(NotFinite, count, first);

@@ -34,6 +34,7 @@ const std::map<std::string, std::vector<Stage>> kSupported{
     {"quintet/generated/record.glsl", kRayTracingStages},
     {"quintet/hit.glsl", kHitStages},
     {"quintet/hit_geometry.glsl", kCandidateStages},
+    {"quintet/launch_pixel.glsl", kRayTracingStages},
     {"quintet/output.glsl", kRayTracingStages},
     {"quintet/procedural/alpha.glsl", kHitStages},
     {"quintet/procedural/hit.glsl", kHitStages},
@@ -42,8 +43,8 @@ const std::map<std::string, std::vector<Stage>> kSupported{
 
 // Not for programs: parts that the front end of the lecture form and the instrumentation insert, and whole shaders.
 bool isInternal(const std::string& path) {
-  return path.starts_with("quintet/gsn") || path == "quintet/instrument.glsl" || path == "quintet/recursion.glsl" ||
-         path.starts_with("quintet/stages/") || path.starts_with("quintet/passes/film_");
+  return path.starts_with("quintet/gsn") || path == "quintet/instrument.glsl" || path == "quintet/log.glsl" ||
+         path == "quintet/recursion.glsl" || path.starts_with("quintet/stages/") || path.starts_with("quintet/passes/film_");
 }
 
 std::vector<std::string> headers() {

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pixel of an invocation, in every ray tracing stage.
+#ifndef QUINTET_LAUNCH_PIXEL_GLSL
+#define QUINTET_LAUNCH_PIXEL_GLSL
+
+#include "frame.glsl"
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TileArray { FilmTile at[]; };
+
+// Extracts bits 0, 2, 4, … into adjacent bits.
+uint evenBits(uint x) {
+  x &= 0x55555555u;
+  x = (x | x >> 1) & 0x33333333u;
+  x = (x | x >> 2) & 0x0F0F0F0Fu;
+  return (x | x >> 4) & 0x00FF00FFu;
+}
+
+// The pixel of this invocation. If the launch covers tiles, each row is one tile, with its pixels in Morton order.
+uvec2 launchPixel() {
+  if (launch.tiles == 0ul) return gl_LaunchIDEXT.xy + launch.offset;
+  const FilmTile tile = TileArray(launch.tiles).at[gl_LaunchIDEXT.y + launch.offset.y];
+  return frame.filmOffset + uvec2(tile.x, tile.y) + uvec2(evenBits(gl_LaunchIDEXT.x), evenBits(gl_LaunchIDEXT.x >> 1));
+}
+
+#endif
