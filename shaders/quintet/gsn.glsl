@@ -16,6 +16,9 @@
 #ifdef QUINTET_RECURSION
 #include "recursion.glsl"
 #endif
+#ifdef QUINTET_PRINT
+#include "print.glsl"
+#endif
 #ifdef QUINTET_GSN_OPEN
 #include "output.glsl"
 #include "payload.glsl"

@@ -203,7 +203,7 @@ std::vector<Diagnostic> checkStage(const spirv::Module& module, const StageConte
   if (intersection) checkDistance(module, report);
   if (hit && !context.keepsInstanceOrder) checkInstanceIndices(module, report);
   checkDescriptorIndices(module, report);
-  checkDebugPrintf(module, report);
+  checkPrintFormats(module, report);
   if (stage == Model::RayGenerationKHR) checkPixels(module, report);
   checkPixelDivision(module, report);
   checkRayLengths(module, report);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "base/math.h"
 
 namespace quintet::job {
 
@@ -40,6 +41,24 @@ struct BatchReport {
   std::optional<std::uint64_t> checkpointSamples;  // in the checkpoint on disk; unset without checkpoints
 };
 
+// What an invocation printed.
+struct PrintedLine {
+  uvec2 pixel{0};                       // of the whole image
+  std::optional<std::uint32_t> frame;   // of an animation, or of a program that accumulates
+  std::optional<std::uint32_t> sample;  // of the pixel, unless the program accumulates
+  SourceLocation location;              // of the debugPrintfEXT: in the stage's file or an included one
+  std::string stage;                    // file of the stage
+  std::string text;                     // without the end of the line; can contain others
+};
+
+// Lines by pixel (row by row), then by sample, then in the order of the calls.
+struct Printed {
+  std::vector<PrintedLine> lines;
+  // Further ones, because of the limit or because the device could not store them. If the device could not store all,
+  // which ones it stored can differ in each run.
+  std::uint64_t omitted = 0;
+};
+
 enum class StopRequest {
   none,
   finish,   // complete the current batch and return what there is
@@ -56,6 +75,10 @@ class Observer {
   virtual void warning(const std::string& /*text*/) {}
   // Warnings of the compiler and of the check. Errors are thrown as ProgramError.
   virtual void diagnostics(const std::vector<Diagnostic>& /*found*/) {}
+  // With RenderRequest::print: what the program printed since the last call. After each batch or frame that printed.
+  virtual void printed(const Printed& /*prints*/) {}
+  // The program has calls of debugPrintfEXT, and the request does not ask for their text.
+  virtual void printsDisabled() {}
   virtual void progress(const Progress& /*state*/) {}
   virtual void batch(const BatchReport& /*report*/) {}
   // True asks for Progress::error also without a target error. The estimate takes up to 2 % of the time.

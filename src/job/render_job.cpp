@@ -182,7 +182,8 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   const std::vector<Hash> includedHashes = compiled.fileHashes;
   CheckedProgram checked =
       checkCompiled(job_.program, std::move(compiled), scene.facts(), deviceLimits(engine_.context().info()));
-  countRecursion(checked, engine_.compiler(), render::renderDefines(scene.defines(), request.outputs));
+  const render::Defines defines = render::renderDefines(scene.defines(), request.outputs);
+  countRecursion(checked, engine_.compiler(), defines);
   diagnostics_ = std::move(checked.diagnostics);
   std::erase_if(diagnostics_, [](const Diagnostic& d) { return d.severity == Severity::note; });
   if (!diagnostics_.empty()) observer.diagnostics(diagnostics_);
@@ -200,8 +201,19 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   settings.outputs = request.outputs;
   settings.frameCount = request.frames.accumulatedCount().value_or(0);
   settings.timeoutSeconds = request.launchTimeout;
+  std::unique_ptr<PrintLog> prints;
+  if (!request.print) {
+    if (program::prints(checked.runnable.compiled)) observer.printsDisabled();
+  } else if (program::PrintTable table = enablePrints(checked, engine_.compiler(), defines); table.empty()) {
+    observer.note(fmt::format("{}: no shader calls debugPrintfEXT", job_.program.name));
+  } else {
+    const render::Region rendered = render::decideSettings(settings, job_.program, false).region;
+    prints = std::make_unique<PrintLog>(engine_.context(), *request.print, rendered, std::move(table));
+    settings.log = &prints->log();
+  }
   renderer_ = std::make_unique<render::Renderer>(scene, std::move(checked.runnable), engine_.compiler(),
                                                  &engine_.pipelineCache(), settings);
+  prints_ = std::move(prints);
   provenance_.programHash = programHash(job_.program, includedHashes);
 }
 
@@ -338,6 +350,15 @@ StartPoint RenderJob::startPoint(const RenderLimits& limits, Observer& observer)
   return start_;
 }
 
+void RenderJob::flushPrints(Observer& observer) {
+  if (!prints_) return;
+  renderer_->finish();
+  PrintNumbers numbers;
+  numbers.accumulates = job_.accumulatesFrames();
+  if (scene_->onDevice->animated()) numbers.frame = static_cast<std::uint32_t>(frame_);
+  prints_->flush(observer, numbers);
+}
+
 void RenderJob::showImage(Observer& observer) const {
   if (!observer.wantsImage()) return;
   renderer_->finish();  // the observer can measure how long the film takes
@@ -429,6 +450,7 @@ RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observe
     if (checkpoint_ && checkpoint_->isDue()) checkpoint_->save(resultNow(now, false), observer);
     observer.batch({static_cast<std::uint64_t>(schedule.samples()), now,
                     checkpoint_ ? std::optional(checkpoint_->savedSamples()) : std::nullopt});
+    flushPrints(observer);
     showImage(observer);
     if ((outOfTime = timeIsUp(now))) break;
     if (observer.stopRequested() == StopRequest::finish) {
@@ -524,6 +546,7 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
     nextFrame_ = frame + 1;
     start_.seconds = elapsed();
     observer.batch({nextFrame_, start_.seconds, std::nullopt});
+    flushPrints(observer);
     showImage(observer);
     const bool isComplete = count && nextFrame_ >= *count;
     const bool isLast = isComplete || timeIsUp();

@@ -15,6 +15,7 @@
 #include "job/checkpoint.h"
 #include "job/engine.h"
 #include "job/observer.h"
+#include "job/print_log.h"
 #include "job/resolve.h"
 #include "job/result.h"
 #include "job/sampling_schedule.h"
@@ -113,6 +114,7 @@ class RenderJob {
   RenderLimits withinPart(RenderLimits limits) const;  // the same limits, not beyond the end of the part
   void beginFilm();                                    // continues from firstSample()
   StartPoint startPoint(const RenderLimits& limits, Observer& observer);
+  void flushPrints(Observer& observer);      // passes on what the last batch printed
   void showImage(Observer& observer) const;  // if the observer wants it
   // The result after `seconds` of rendering; with the error estimate only where it is needed, because it takes time.
   RenderResult makeResult(double seconds, const StartPoint& start, bool withError) const;
@@ -123,6 +125,7 @@ class RenderJob {
   std::shared_ptr<PreparedScene> scene_;
   std::vector<std::filesystem::path> includedFiles_;
   std::vector<Diagnostic> diagnostics_;
+  std::unique_ptr<PrintLog> prints_;  // null unless the request asks for them
   std::unique_ptr<render::Renderer> renderer_;
   Provenance provenance_;  // without the facts that a result adds
   std::optional<Checkpoint> checkpoint_;

@@ -78,6 +78,15 @@ struct CheckpointRequest {
   bool force = false;          // start over, and overwrite a checkpoint of a different render
 };
 
+// What the program prints (debugPrintfEXT) goes to Observer::printed(). Without a request it is discarded, at no cost.
+struct PrintRequest {
+  // Pixels of the whole image whose invocations print. Width 0 means the pixel at the center of the rendered part, or
+  // all pixels.
+  render::Region pixels;
+  bool all = false;           // all pixels of the rendered part; excludes `pixels`
+  std::uint64_t limit = 200;  // lines of a job; further ones are only counted
+};
+
 // How the images of this render are to be written. Stored in films, so that merging them writes the same images.
 struct OutputNotes {
   double exposure = 0;      // stops
@@ -107,6 +116,7 @@ struct RenderRequest {
   std::filesystem::path film;  // the film file (.qfilm) that will be written; empty if none
   bool overwriteFilm = false;  // allow to lose the samples that `film` holds
   double launchTimeout = 0;    // seconds after which a launch counts as hung; 0 means the default of the device
+  std::optional<PrintRequest> print;
   OutputNotes outputNotes;
   std::string commandLine;  // for metadata; may be empty
 };

@@ -5,12 +5,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/diagnostic.h"
 #include "io/image.h"
+#include "job/observer.h"
 #include "job/provenance.h"
 #include "job/request.h"
 #include "render/film/film_error.h"
@@ -85,6 +87,7 @@ struct RenderResult {
   std::vector<render::NotFinitePixels> notFinite;  // outputs with pixels that are not finite
   std::uint32_t recursionDepth = 1;                // of the pipeline
   std::uint64_t skippedTraces = 0;                 // beyond this depth (Q003), of a program whose traces form a cycle
+  std::optional<Printed> printed;                  // what an observer collected; unset: not requested
   std::vector<std::string> warnings;
   std::vector<Diagnostic> diagnostics;  // warnings about the program
 

@@ -20,6 +20,12 @@ void instrument(program::RunnableProgram& runnable, const shader::Compiler& comp
   runnable.compiled = std::move(compiled);
 }
 
+// With the definitions of quintet/recursion.glsl.
+render::Defines recursionDefines(const program::RunnableProgram& runnable, render::Defines defines) {
+  defines.emplace_back("QUINTET_RECURSION_DEPTH", fmt::format("{}u", runnable.recursionDepth));
+  return defines;
+}
+
 }  // namespace
 
 CheckedProgram checkCompiled(program::Program description, program::CompiledProgram compiled,
@@ -36,10 +42,17 @@ CheckedProgram checkCompiled(program::Program description, program::CompiledProg
 void countRecursion(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines) {
   if (!checked.cyclic) return;
   program::RunnableProgram& runnable = checked.runnable;
-  render::Defines limited = defines;
-  limited.emplace_back("QUINTET_RECURSION_DEPTH", fmt::format("{}u", runnable.recursionDepth));
-  instrument(runnable, compiler, limited, program::Instrumentation::recursion);
+  instrument(runnable, compiler, recursionDefines(runnable, defines), program::Instrumentation::recursion);
   runnable.countsRecursion = true;
+}
+
+program::PrintTable enablePrints(CheckedProgram& checked, const shader::Compiler& compiler,
+                                 const render::Defines& defines) {
+  program::RunnableProgram& runnable = checked.runnable;
+  const bool counts = runnable.countsRecursion;
+  return program::enablePrints(runnable.compiled, runnable.description, compiler,
+                               counts ? recursionDefines(runnable, defines) : defines,
+                               counts ? program::Instrumentation::recursion : program::Instrumentation::none);
 }
 
 CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "output/report.h"
 
+#include <string_view>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
+#include "base/diagnostic.h"
 #include "base/plural.h"
 #include "base/text.h"
 #include "check/diagnostic_text.h"
@@ -42,7 +46,36 @@ Json secondsJson(const job::Timings& t, double total) {
           {"render", t.render},   {"device", t.device},     {"total", total}};
 }
 
+Json toJson(const job::PrintedLine& line) {
+  Json json{{"pixel", {line.pixel.x, line.pixel.y}}};
+  if (line.frame) json["frame"] = *line.frame;
+  if (line.sample) json["sample"] = *line.sample;
+  json["stage"] = line.stage;
+  json["file"] = line.location.file;
+  json["line"] = line.location.line;
+  json["text"] = line.text;
+  return json;
+}
+
+std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
 }  // namespace
+
+std::string printedText(const job::PrintedLine& line) {
+  std::string text = fmt::format("{}: pixel {},{}",
+                                 printable(locationText(line.location.file, line.location.line, 0)), line.pixel.x, line.pixel.y);
+  if (line.frame) text += fmt::format(", frame {}", *line.frame);
+  if (line.sample) text += fmt::format(", sample {}", *line.sample);
+  std::string_view rest = line.text;
+  for (std::string_view separator = ": ";; separator = "\n  ") {
+    const std::size_t end = rest.find('\n');
+    text.append(separator).append(printable(rest.substr(0, end)));
+    if (end == rest.npos) return text;
+    rest.remove_prefix(end + 1);
+  }
+}
+
+std::string printedJson(const job::PrintedLine& line) { return oneLine({{"print", toJson(line)}}); }
 
 std::string resultJson(const job::RenderResult& result, const std::vector<WrittenFile>& files, double totalSeconds) {
   const job::MemoryUse& m = result.memory;
@@ -71,9 +104,14 @@ std::string resultJson(const job::RenderResult& result, const std::vector<Writte
                     {"ratio", m.ratio()}};
   json["devicePeak"] = Json::object();
   for (const auto& [purpose, bytes] : m.devicePeak) json["devicePeak"][purpose + "Bytes"] = bytes;
+  if (result.printed) {
+    Json lines = Json::array();
+    for (const job::PrintedLine& line : result.printed->lines) lines.push_back(toJson(line));
+    json["printed"] = {{"lines", std::move(lines)}, {"omitted", result.printed->omitted}};
+  }
   json["warnings"] = result.warnings;
   json["diagnostics"] = Json::parse(check::diagnosticsJson(result.diagnostics));
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return oneLine(json);
 }
 
 std::string errorJson(const std::string& message, const FileError* file, int exitStatus) {
@@ -83,7 +121,7 @@ std::string errorJson(const std::string& message, const FileError* file, int exi
                     {"file", file ? known(file->file().string()) : Json()},
                     {"location", file ? known(file->location()) : Json()},
                     {"exitStatus", exitStatus}}}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return oneLine(json);
 }
 
 std::string resultSummary(const job::RenderResult& result, const std::vector<WrittenFile>& files) {

@@ -19,6 +19,11 @@ std::string resultJson(const job::RenderResult& result, const std::vector<Writte
 // it is about a file, else null; then the file and its location are null, as is a location that is unknown.
 std::string errorJson(const std::string& message, const FileError* file, int exitStatus);
 
+// A line that a program printed: "hit.rchit:12: pixel 3,4, sample 0: t = 1.5". Further lines of its text are indented.
+std::string printedText(const job::PrintedLine& line);
+// The same as an object on one line, as in the array of resultJson().
+std::string printedJson(const job::PrintedLine& line);
+
 // "out.png: 1280x720, 64 samples per pixel, error 1.2 %, 12.3 s, 4.56 Mrays/s"
 std::string resultSummary(const job::RenderResult& result, const std::vector<WrittenFile>& files);
 

@@ -32,20 +32,6 @@ std::vector<std::string> usedFiles(const Program& program) {
   return files;
 }
 
-// Returns the source of one stage. A stage of the library becomes a file that includes it. `index` is the position in
-// CompiledProgram::stages.
-shader::Source stageSource(const Program& program, const std::string& file, std::size_t index,
-                           Instrumentation instrumentation) {
-  shader::Source source;
-  const bool library = isLibraryStage(file);
-  source.stage = *shader::stageOfFile(library ? file.substr(1, file.size() - 2) : file);
-  source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + file + "\n"
-                        : program.files.at(file);
-  if (file != kHitCheckStage) source.text = instrumentStage(source.text, source.stage, index, instrumentation);
-  source.name = program.path(file);
-  return source;
-}
-
 // Adds the messages and files of one stage. Code that stages share (common text, an included file) gives the same message
 // in each of them, which is kept once.
 void addResult(CompiledProgram& compiled, shader::Result& result) {
@@ -56,6 +42,22 @@ void addResult(CompiledProgram& compiled, shader::Result& result) {
 }
 
 }  // namespace
+
+shader::Source stageSource(const Program& program, const std::string& file, std::size_t index,
+                           const std::vector<std::pair<std::string, std::string>>& defines,
+                           Instrumentation instrumentation) {
+  shader::Source source;
+  const bool library = isLibraryStage(file);
+  source.stage = *shader::stageOfFile(library ? file.substr(1, file.size() - 2) : file);
+  source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + file + "\n"
+                        : program.files.at(file);
+  if (file != kHitCheckStage) source.text = instrumentStage(source.text, source.stage, index, instrumentation);
+  source.name = program.path(file);
+  source.defines = defines;
+  source.virtualFiles = generatedFiles(program);
+  for (const auto& [name, text] : program.files) source.virtualFiles[program.path(name)] = text;
+  return source;
+}
 
 std::string userFile(const Program& program, const std::string& file) {
   if (!isLibraryStage(file)) return file;
@@ -77,16 +79,11 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
   const Stopwatch clock;
   if (hasErrors(program.diagnostics)) return {.stages = {}, .diagnostics = program.diagnostics};
   const std::vector<std::string> files = usedFiles(program);
-  std::map<std::string, std::string> virtualFiles = generatedFiles(program);
-  for (const auto& [name, text] : program.files) virtualFiles[program.path(name)] = text;
-
   std::vector<shader::Result> results(files.size());
   CompiledProgram compiled;
   compiled.stages.resize(files.size());
   parallelFor(files.size(), [&](std::size_t i) {
-    shader::Source source = stageSource(program, files[i], i, instrumentation);
-    source.defines = defines;
-    source.virtualFiles = virtualFiles;
+    const shader::Source source = stageSource(program, files[i], i, defines, instrumentation);
     results[i] = compiler.compile(source);
     if (program.descriptionFile.ends_with(kLectureExtension)) explainLectureNames(results[i].diagnostics, source.stage);
     compiled.stages[i] = {files[i], source.stage, std::move(results[i].spirv)};

@@ -38,6 +38,12 @@ struct CompiledProgram {
 // "<folder/file>".
 std::string userFile(const Program& program, const std::string& file);
 
+// Returns the source of one stage. A stage of the library becomes a file that includes it. `index` is its position in
+// CompiledProgram::stages.
+shader::Source stageSource(const Program& program, const std::string& file, std::size_t index,
+                           const std::vector<std::pair<std::string, std::string>>& defines,
+                           Instrumentation instrumentation);
+
 // Compiles all stages in parallel. `defines` apply to every stage (features of the scene and the device).
 CompiledProgram compile(const Program& program, const shader::Compiler& compiler,
                         const std::vector<std::pair<std::string, std::string>>& defines,

@@ -55,7 +55,23 @@ Head findHead(std::string_view source) {
   return head;
 }
 
+bool isLecture(const std::string& source) { return source.find("#include <quintet/gsn.glsl>") != source.npos; }
+
+// Inserts text after the head. Messages keep their line numbers.
+std::string insertAfterHead(const std::string& source, const std::string& text) {
+  const Head head = findHead(source);
+  std::string result = source.substr(0, head.bytes);
+  if (!result.empty() && result.back() != '\n') result += '\n';
+  return result + text + fmt::format("#line {}\n", head.lines + 1) + source.substr(head.bytes);
+}
+
 }  // namespace
+
+std::string printingStage(const std::string& source) {
+  const std::string inserted =
+      std::string("#define QUINTET_PRINT 1\n") + (isLecture(source) ? "" : "#include <quintet/print.glsl>\n");
+  return insertAfterHead(source, inserted) + "\n#undef main\nvoid main() {\n  printKeep_();\n  printingMain_();\n}\n";
+}
 
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
                             Instrumentation instrumentation) {
@@ -63,20 +79,16 @@ std::string instrumentStage(const std::string& source, shader::Stage stage, std:
   const bool traces =
       stage == shader::Stage::rayGeneration || stage == shader::Stage::closestHit || stage == shader::Stage::miss;
   if (!checks && !(traces && instrumentation == Instrumentation::recursion)) return source;
-  const Head head = findHead(source);
-  const bool lecture = source.find("#include <quintet/gsn.glsl>") != source.npos;
-  std::string result = source.substr(0, head.bytes);
-  if (!result.empty() && result.back() != '\n') result += '\n';
+  std::string inserted;
   if (checks)
-    result += fmt::format(
-        "#define QUINTET_INSTRUMENT 1\n#define QUINTET_INSTRUMENT_STAGE {}u\n#define QUINTET_INSTRUMENT_KIND {}\n",
-        index, kindOf(stage));
+    inserted = fmt::format(
+        "#define QUINTET_INSTRUMENT 1\n#define QUINTET_INSTRUMENT_STAGE {}u\n#define QUINTET_INSTRUMENT_KIND {}\n", index,
+        kindOf(stage));
   else
-    result += "#define QUINTET_RECURSION 1\n";
-  if (!checks && stage == shader::Stage::rayGeneration) result += "#define QUINTET_RECURSION_START 1\n";
-  if (!lecture) result += fmt::format("#include <quintet/{}.glsl>\n", checks ? "instrument" : "recursion");
-  result += fmt::format("#line {}\n", head.lines + 1);
-  result += source.substr(head.bytes);
+    inserted = "#define QUINTET_RECURSION 1\n";
+  if (!checks && stage == shader::Stage::rayGeneration) inserted += "#define QUINTET_RECURSION_START 1\n";
+  if (!isLecture(source)) inserted += fmt::format("#include <quintet/{}.glsl>\n", checks ? "instrument" : "recursion");
+  const std::string result = insertAfterHead(source, inserted);
   if (!checks) return result;
   return result + "\n#undef main\nvoid main() {\n  if (instrumentBegin_()) instrumentedMain_();\n}\n";
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instruments shaders with checks at run time: wraps quintet/instrument.glsl or quintet/recursion.glsl around the source of
-// a stage. The renderer reads what the shaders wrote (render/renderer/instrument.h).
+// Instruments shaders: wraps quintet/instrument.glsl or quintet/recursion.glsl, which check at run time, or
+// quintet/print.glsl around the source of a stage. The renderer reads what the shaders wrote (render/renderer/instrument.h,
+// render/renderer/shader_log.h).
 #ifndef QUINTET_PROGRAM_INSTRUMENT_H
 #define QUINTET_PROGRAM_INSTRUMENT_H
 
@@ -21,6 +22,10 @@ enum class Instrumentation {
 // other sources get them after their leading #version and #extension lines.
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
                             Instrumentation instrumentation = Instrumentation::checks);
+
+// Returns the source of a stage with the functions of quintet/print.glsl, for spirv::replacePrintCalls. `source` can have the
+// checks of the recursion, but not all checks.
+std::string printingStage(const std::string& source);
 
 }  // namespace quintet::program
 #endif

@@ -26,7 +26,7 @@ function(quintet_link_shaderc TARGET)
       if(NOT QUINTET_SHADERC_SHARED)
         message(FATAL_ERROR "shaderc does not link: install libshaderc-dev, glslang-dev and spirv-tools")
       endif()
-      set(libraries PkgConfig::shaderc)
+      set(libraries PkgConfig::shaderc SPIRV-Tools-opt SPIRV-Tools)  # shader/optimizer.cpp calls SPIRV-Tools itself
     endif()
   endif()
   message(STATUS "shaderc: ${libraries}")

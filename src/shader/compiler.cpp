@@ -3,12 +3,9 @@
 // glslang and spirv-opt only if that fails.
 #include "shader/compiler.h"
 
-#include <pthread.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <deque>
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -16,6 +13,7 @@
 #include <shaderc/shaderc.hpp>
 
 #include "shader/compiler_messages.h"
+#include "shader/deep_stack.h"
 #include "shader/include_resolver.h"
 #include "shader/library.h"
 #include "shader/spirv_cache.h"
@@ -42,7 +40,7 @@ void addOptions(Hasher& hasher, const Source& source, const CompilerOptions& opt
   unsigned spirvVersion = 0, spirvRevision = 0;
   shaderc_get_spv_version(&spirvVersion, &spirvRevision);
   hasher.add(kCacheFormat).add(QUINTET_SHADERC_VERSION).add(spirvVersion).add(spirvRevision);
-  hasher.add(static_cast<std::uint64_t>(source.stage)).add(options.optimize).add(options.debugInfo);
+  hasher.add(static_cast<std::uint64_t>(source.stage)).add(options.optimize && source.optimize).add(options.debugInfo);
   hasher.add(source.defines.size());
   for (const auto& [name, value] : source.defines) hasher.add(name).add(value);
 }
@@ -98,35 +96,6 @@ std::optional<Diagnostic> validate(const Source& source, const SourceFile& root)
     return d;
   }
   return {};
-}
-
-// Returns a stack size that is sufficient for any source of that size: one nesting level of an expression takes at
-// least 2 characters ("+a") and about 2 KiB of stack. Untouched pages cost no memory.
-std::size_t stackBytesFor(std::size_t textBytes) {
-  return std::min((std::size_t{64} << 20) + textBytes * 1024, std::size_t{1} << 30);
-}
-
-// Calls `body` on a thread with a stack of `bytes`, or the largest that the system grants: glslang recurses as deep as
-// the expressions of the source. `body` must not throw.
-void runOnDeepStack(std::size_t bytes, const std::function<void()>& body) {
-  const auto entry = [](void* argument) -> void* {
-    (*static_cast<const std::function<void()>*>(argument))();
-    return nullptr;
-  };
-  constexpr std::size_t kSmallest = std::size_t{8} << 20;
-  for (; bytes >= kSmallest; bytes /= 2) {
-    pthread_attr_t attributes;
-    pthread_attr_init(&attributes);
-    pthread_t thread{};
-    const bool started = pthread_attr_setstacksize(&attributes, bytes) == 0 &&
-                         pthread_create(&thread, &attributes, entry, const_cast<std::function<void()>*>(&body)) == 0;
-    pthread_attr_destroy(&attributes);
-    if (started) {
-      pthread_join(thread, nullptr);
-      return;
-    }
-  }
-  body();
 }
 
 // The result of one run of glslang and spirv-opt.
@@ -239,8 +208,8 @@ shaderc::CompileOptions optionsFor(const Source& source, const CompilerOptions& 
   result.SetTargetSpirv(shaderc_spirv_version_1_6);
   // With any other version, or without one, glslang 12 prints its own built-ins to standard output.
   result.SetForcedVersionProfile(460, shaderc_profile_core);
-  result.SetOptimizationLevel(options.optimize ? shaderc_optimization_level_performance
-                                               : shaderc_optimization_level_zero);
+  result.SetOptimizationLevel(options.optimize && source.optimize ? shaderc_optimization_level_performance
+                                                                  : shaderc_optimization_level_zero);
   if (options.debugInfo) result.SetGenerateDebugInfo();
   for (const auto& [name, value] : source.defines) result.AddMacroDefinition(name, value);
   return result;

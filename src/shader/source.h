@@ -23,6 +23,7 @@ struct Source {
   // take precedence over all folders. A quoted include among them is first resolved relative to the including file.
   // Diagnostics name them <quintet/generated/program.glsl>.
   std::map<std::string, std::string> virtualFiles;
+  bool optimize = true;  // false: without spirv-opt, whatever the options of the compiler are
 };
 
 struct CompilerOptions {

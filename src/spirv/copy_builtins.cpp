@@ -5,16 +5,13 @@
 #include <map>
 #include <utility>
 
+#include "spirv/module_writer.h"
 #include "spirv/value_flow.h"
 
 namespace quintet::spirv {
 namespace {
 
 using spv::Op;
-
-std::uint32_t opWord(Op op, std::size_t words) {
-  return static_cast<std::uint32_t>(words) << 16 | static_cast<std::uint32_t>(op);
-}
 
 // Returns the variable of an overwritten built-in if the instruction loads it or a part of it.
 const Variable* overwrittenVariable(const Module& module, const Instruction& instruction) {
@@ -43,36 +40,8 @@ Loads findLoads(const Module& module) {
   return loads;
 }
 
-// Copies a module instruction by instruction, with changes.
-class Writer {
- public:
-  explicit Writer(const std::vector<std::uint32_t>& words)
-      : words_(words), result_(words.begin(), words.begin() + 5), at_(5) {}
-  Id newId() { return result_[3]++; }
-  void copy() {
-    const std::size_t count = words_[at_] >> 16;
-    result_.insert(result_.end(), words_.begin() + static_cast<std::ptrdiff_t>(at_),
-                   words_.begin() + static_cast<std::ptrdiff_t>(at_ + count));
-    at_ += count;
-  }
-  void skip() { at_ += words_[at_] >> 16; }
-  void emit(Op op, const std::vector<std::uint32_t>& operands) {
-    result_.push_back(opWord(op, operands.size() + 1));
-    result_.insert(result_.end(), operands.begin(), operands.end());
-  }
-  bool atEnd() const { return at_ >= words_.size(); }
-  Op next() const { return static_cast<Op>(words_[at_] & 0xFFFFu); }
-  std::uint32_t word(std::size_t i) const { return words_[at_ + i]; }
-  std::vector<std::uint32_t> take() { return std::move(result_); }
-
- private:
-  const std::vector<std::uint32_t>& words_;
-  std::vector<std::uint32_t> result_;
-  std::size_t at_;
-};
-
 // Replaces the load by the copied value or a part of it. The result id stays, so users do not change.
-void replaceLoad(Writer& out, const Module& module, const Instruction& load, Id value) {
+void replaceLoad(ModuleWriter& out, const Module& module, const Instruction& load, Id value) {
   std::vector<std::uint32_t> operands{load.type, load.result, value};
   for (const auto& index : module.access(load.at(0)).indices) operands.push_back(*index);
   out.emit(operands.size() == 3 ? Op::OpCopyObject : Op::OpCompositeExtract, operands);
@@ -103,7 +72,7 @@ std::vector<std::uint32_t> copyBuiltIns(std::vector<std::uint32_t> words) {
 
   std::map<Id, const Instruction*> loadByResult;
   for (const auto& [i, variable] : loads) loadByResult[module->instructions()[i].result] = &module->instructions()[i];
-  Writer out(words);
+  ModuleWriter out(words);
   std::map<Id, Id> copies;  // variable -> id of its copy
   for (const auto& [i, variable] : loads)
     if (!copies.contains(variable->id)) copies[variable->id] = out.newId();

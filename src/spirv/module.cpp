@@ -396,8 +396,25 @@ std::vector<std::uint32_t> withoutDebugInfo(std::span<const std::uint32_t> words
   using spv::Op;
   std::vector<std::uint32_t> result(words.begin(),
                                     words.begin() + static_cast<std::ptrdiff_t>(std::min(words.size(), kHeaderWords)));
+  std::vector<Id> nonSemanticSets;
+  const auto isNonSemantic = [&](std::size_t at, std::size_t count) {
+    const std::span<const std::uint32_t> operands = words.subspan(at + 1, count - 1);
+    switch (static_cast<Op>(words[at] & 0xFFFFu)) {
+      case Op::OpExtension: return literalString(operands, 0) == "SPV_KHR_non_semantic_info";
+      case Op::OpExtInstImport:
+        if (!literalString(operands, 1).starts_with("NonSemantic.")) return false;
+        nonSemanticSets.push_back(operands[0]);
+        return true;
+      case Op::OpExtInst: return count > 3 && std::ranges::find(nonSemanticSets, operands[2]) != nonSemanticSets.end();
+      default: return false;
+    }
+  };
   for (std::size_t at = kHeaderWords; at < words.size();) {
     const std::size_t count = std::clamp<std::size_t>(words[at] >> 16, 1, words.size() - at);
+    if (isNonSemantic(at, count)) {
+      at += count;
+      continue;
+    }
     switch (static_cast<Op>(words[at] & 0xFFFFu)) {
       case Op::OpSourceContinued:
       case Op::OpSource:
@@ -454,6 +471,11 @@ std::optional<Module::Position> Module::position(std::size_t instruction) const 
 std::string Module::name(Id id) const {
   const auto found = names_.find(id);
   return found == names_.end() ? std::string() : found->second;
+}
+
+const std::string* Module::string(Id id) const {
+  const auto found = strings_.find(id);
+  return found == strings_.end() ? nullptr : &found->second;
 }
 
 std::optional<std::uint32_t> Module::decoration(Id id, spv::Decoration decoration) const {

@@ -96,6 +96,7 @@ class Module {
 
   const Types& types() const { return types_; }
   std::string name(Id id) const;  // OpName; empty if unknown
+  const std::string* string(Id id) const;  // OpString; null if unknown
   // Returns the first operand of a decoration, or 0 if it has none; nullopt if the id is not decorated with it.
   std::optional<std::uint32_t> decoration(Id id, spv::Decoration decoration) const;
   const std::vector<Variable>& variables() const { return variables_; }
@@ -147,7 +148,8 @@ std::string_view glslName(spv::BuiltIn builtIn);
 // Returns the operands of an instruction that are ids of values (neither types nor literals), in order.
 std::vector<Id> valueOperands(const Instruction& instruction);
 
-// Returns a copy without sources, lines and names: the module that the driver gets.
+// Returns a copy without sources, lines, names and non-semantic instructions (debugPrintfEXT): the module that the driver
+// gets.
 std::vector<std::uint32_t> withoutDebugInfo(std::span<const std::uint32_t> words);
 
 }  // namespace quintet::spirv

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -22,6 +23,7 @@
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "cli/work.h"
+#include "output/report.h"
 
 namespace quintet::cli {
 namespace {
@@ -193,6 +195,28 @@ void Console::diagnostics(const std::vector<Diagnostic>& found) {
   printDiagnostics(found, program_, failed && options_.json);
   if (failed)
     printError(fmt::format("quintet: {}{}\n", program_ ? printable(program_->name) + ": " : "", countText(found)));
+}
+
+void Console::printed(const job::Printed& prints) {
+  const std::lock_guard lock(mutex_);
+  prints_.omitted += prints.omitted;
+  prints_.lines.insert(prints_.lines.end(), prints.lines.begin(), prints.lines.end());
+  if (options_.json && !options_.jsonProgress) return;  // at the end
+  clearLocked();
+  std::string text;
+  for (const job::PrintedLine& line : prints.lines)
+    text += options_.jsonProgress ? output::printedJson(line) : output::printedText(line) + "\n";
+  printError(text);
+}
+
+void Console::printsDisabled() { note("the program prints (debugPrintfEXT); --print shows it"); }
+
+std::optional<job::Printed> Console::takePrints() {
+  if (!options_.collectPrints) return std::nullopt;
+  if (prints_.omitted > 0)
+    note(fmt::format("{} {} omitted; --print-limit allows more, and --print=X,Y selects a pixel",
+                     counted(prints_.omitted, "printed line"), nounFor(prints_.omitted, "was", "were")));
+  return std::exchange(prints_, {});
 }
 
 void Console::progress(const job::Progress& state) {

@@ -46,6 +46,7 @@ struct ConsoleOptions {
   bool json = false;            // errors of programs also as JSON on standard output
   bool jsonProgress = false;    // a line of JSON for each batch and warning, instead of progress
   std::string preview = "off";  // previewNames()
+  bool collectPrints = false;   // the request asks for what the program prints
 };
 
 // The observer of a command: a bar on a terminal, a line every ten seconds elsewhere.
@@ -63,6 +64,8 @@ class Console : public job::Observer {
   void note(const std::string& text) override;
   void warning(const std::string& text) override;
   void diagnostics(const std::vector<Diagnostic>& found) override;
+  void printed(const job::Printed& prints) override;
+  void printsDisabled() override;
   void progress(const job::Progress& state) override;
   void batch(const job::BatchReport& report) override;
   bool showsError() const override { return !options_.quiet; }
@@ -86,6 +89,8 @@ class Console : public job::Observer {
   void clear();                               // removes the bar, and the image of an unfinished render
   std::vector<std::string> warnings() const;  // so far
   void clearWarnings();                       // for the next render of --watch
+  // What the program printed since the last call, with a note about omitted lines. Unset unless collectPrints is set.
+  std::optional<job::Printed> takePrints();
 
  private:
   void show(const std::string& line);
@@ -100,6 +105,7 @@ class Console : public job::Observer {
   std::string bar_;                 // as shown
   std::optional<Preview> preview_;  // if there is one
   std::vector<std::string> warnings_;
+  job::Printed prints_;  // since takePrints()
   const program::Program* program_ = nullptr;
   const GracefulStop* stop_ = nullptr;
   bool stopNoted_ = false;

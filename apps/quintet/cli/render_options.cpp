@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kMaxSamples = 1u << 24;
 constexpr std::uint64_t kDefaultSamples = 64;
+constexpr double kMaxPrints = 1e6;
 constexpr double kMinError = 1e-6;
 constexpr double kMaxReal = 1e30;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
@@ -198,6 +199,21 @@ void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& optio
         .candidates = {.names = previewNames()}}});
 }
 
+void declarePrint(OptionTable& table, RenderTexts& texts) {
+  table.add("Program",
+            {{.names = "--print",
+              .value = "PIXELS",
+              .help = "Show what the program prints (debugPrintfEXT) for the pixels X,Y or X,Y,W,H, or for all "
+                      "(default: nothing; without a value: center, the pixel at the center)",
+              .target = &texts.print,
+              .withoutValue = "center",
+              .candidates = {.names = {"center", "all"}}},
+             {.names = "--print-limit",
+              .value = "N",
+              .help = "Number of lines that --print shows (default: 200)",
+              .target = &texts.printLimit}});
+}
+
 void declareCheckpoints(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
   job::CheckpointRequest& checkpoint = options.request.checkpoint;
   table.add(
@@ -285,6 +301,12 @@ void convert(const RenderTexts& texts, RenderOptions& options) {
   convertView(texts, request);
   if (!texts.bounces.empty()) request.assignments.push_back("bounces=" + texts.bounces);
   if (!texts.clamp.empty()) request.assignments.push_back("clamp=" + texts.clamp);
+  request.print = parsePrint("--print", texts.print);
+  options.console.collectPrints = request.print.has_value();
+  if (const auto limit = parseInteger("--print-limit", texts.printLimit, 1, kMaxPrints)) {
+    if (!request.print) throw UsageError("--print-limit requires --print");
+    request.print->limit = *limit;
+  }
   convertCheckpoints(texts, options);
   if (output::fileKind(options.output.file) == output::FileKind::film) request.film = options.output.file;
   request.overwriteFilm = request.checkpoint.force;

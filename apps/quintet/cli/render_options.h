@@ -30,7 +30,7 @@ struct RenderTexts {
   std::string spp, time, untilError, seed, bounces, clamp;
   std::string lookFrom, lookAt, up, fov, aperture, focus, envIntensity, envRotation;
   std::string exrType, exrCompression, exrTiles;
-  std::string checkpoint, batches, timeout;
+  std::string checkpoint, batches, timeout, print, printLimit;
   std::vector<std::string> layers;
 };
 
@@ -40,6 +40,7 @@ void declareQuality(OptionTable& table, RenderTexts& texts, RenderOptions& optio
 void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 void declareProgram(OptionTable& table, RenderOptions& options);
 void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
+void declarePrint(OptionTable& table, RenderTexts& texts);  // what the program prints
 void declareCheckpoints(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 void declareExr(OptionTable& table, RenderTexts& texts, bool ofFilms = false);
 

@@ -67,6 +67,25 @@ render::Region parseRegion(const std::string& option, const std::string& text) {
   return {values[0], values[1], values[2], values[3]};
 }
 
+std::optional<job::PrintRequest> parsePrint(const std::string& option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  job::PrintRequest request;
+  if (text == "center") return request;
+  request.all = text == "all";
+  if (request.all) return request;
+  const std::vector<std::string> parts = splitText(text, ',');
+  std::vector<std::uint32_t> values;
+  for (const std::string& part : parts)
+    if (const auto value = parseNumber<std::uint32_t>(part); value && *value <= io::kMaxImageSide)
+      values.push_back(*value);
+  const bool isPixel = parts.size() == 2 && values.size() == 2;
+  const bool isRegion = parts.size() == 4 && values.size() == 4 && values[2] > 0 && values[3] > 0;
+  if (!isPixel && !isRegion)
+    fail(option, text, "is neither a pixel like 100,50, a part of the image like 100,50,3,2, center, nor all");
+  request.pixels = {values[0], values[1], isRegion ? values[2] : 1, isRegion ? values[3] : 1};
+  return request;
+}
+
 std::optional<vec3> parsePoint(const std::string& option, const std::string& text) {
   if (text.empty()) return std::nullopt;
   const std::optional<vec3> value = parseVec3(text);

@@ -25,6 +25,8 @@ std::optional<std::uint64_t> parseInteger(const std::string& option, const std::
 
 uvec2 parseSize(const std::string& option, const std::string& text);             // "800x600"; "800" leaves the height 0
 render::Region parseRegion(const std::string& option, const std::string& text);  // "x,y,width,height", pixels
+// "center", "all", "x,y" or "x,y,width,height", pixels; empty for an empty text.
+std::optional<job::PrintRequest> parsePrint(const std::string& option, const std::string& text);
 std::optional<vec3> parsePoint(const std::string& option, const std::string& text);  // "1,2.5,-3"
 job::BatchRange parseBatches(const std::string& option, const std::string& text);    // "3" or "0-7"
 // "0-7": first frame and number of frames, the last one below `limit`.

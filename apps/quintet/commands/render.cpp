@@ -54,6 +54,7 @@ OptionTable declare(RenderOptions& options, RenderTexts& texts) {
   table.add(
       "Program",
       {{.names = "--help-program", .help = "Print the program's parameters and exit", .target = &options.programHelp}});
+  declarePrint(table, texts);
   declareProcess(table, texts, options, "Time limit of one launch (default: 60; on a CPU 600)");
   table.add("Run", {{.names = "--json",
                      .help = "Print one JSON object on standard output at the end",
@@ -107,6 +108,7 @@ uvec2 requestedSize(const job::RenderRequest& request) {
 
 void addWarnings(job::RenderResult& result, Console& console) {
   for (const std::string& text : job::resultWarnings(result)) console.warning(text);
+  result.printed = console.takePrints();
   result.warnings = console.warnings();
 }
 

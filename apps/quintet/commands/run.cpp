@@ -106,6 +106,7 @@ OptionTable declare(RunOptions& options, RenderTexts& texts) {
   table.add(
       "Run",
       {{.names = "--watch", .help = "Keep running: render again whenever a file is saved", .target = &options.watch}});
+  declarePrint(table, texts);
   declareProcess(table, texts, options, "Time limit of one launch (default: 30)");
   table.add("Run", {{.names = "--json",
                      .help = "Print JSON on standard output at the end (or with --help, --list)",

@@ -31,6 +31,7 @@ using glm::vec4;
 #extension GL_EXT_buffer_reference2 : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_nonuniform_qualifier : require
+#extension GL_EXT_debug_printf : enable
 #define Address uint64_t
 #define QT_SHARED_BEGIN
 #define QT_SHARED_END

@@ -72,7 +72,7 @@ struct StageContext {
 void checkDistance(const spirv::Module& module, Report& report);           // Q701
 void checkInstanceIndices(const spirv::Module& module, Report& report);    // Q703
 void checkDescriptorIndices(const spirv::Module& module, Report& report);  // Q704
-void checkDebugPrintf(const spirv::Module& module, Report& report);        // Q707
+void checkPrintFormats(const spirv::Module& module, Report& report);       // Q707
 void checkPixels(const spirv::Module& module, Report& report);             // Q713
 void checkPixelDivision(const spirv::Module& module, Report& report);      // Q716
 void checkNestedBuiltIns(const spirv::Module& module, Report& report);     // Q901

@@ -62,7 +62,7 @@ const Mutation kMutations[] = {
     {"Q706", ".*\\.rgen", "void main\\(\\) \\{", "void main() {\n  const float qMutant = gl_HitTEXT;\n"},
     {"Q706", ".*\\.rmiss", "void main\\(\\) \\{", "void main() {\n  const int qMutant = gl_PrimitiveID;\n"},
     {"Q707", ".*\\.(rgen|rmiss|rchit)", "void main\\(\\) \\{",
-     "#extension GL_EXT_debug_printf : require\nvoid main() { debugPrintfEXT(\"here\");\n"},
+     "#extension GL_EXT_debug_printf : require\nvoid main() { debugPrintfEXT(\"here: %d\");\n"},
     {"Q801", ".*\\.toml", "(description = \"Lesson[\\s\\S]*?)\n\\[\\[ray\\]\\]",
      "$1\n[[miss]]\nname = \"mutant\"\nfile = \"<quintet/stages/shadow.rmiss>\"\n\n[[ray]]"},
     {"Q802", ".*\\.toml", "\n\\[\\[output\\]\\]",

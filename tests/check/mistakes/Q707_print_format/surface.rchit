@@ -9,5 +9,5 @@ hitAttributeEXT vec2 baryCoord;
 void main() {
   payload.color = vec3(baryCoord, 1.0);
   payload.t = gl_HitTEXT;
-  debugPrintfEXT("t = %f", gl_HitTEXT);  // EXPECT Q707
+  debugPrintfEXT("t = %d", gl_HitTEXT);  // EXPECT Q707
 }

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_EXT_ray_tracing : require
+#extension GL_EXT_debug_printf : require
 #include "payload.glsl"
 
 layout(location = 0) rayPayloadInEXT Payload payload;
@@ -8,4 +9,5 @@ hitAttributeEXT vec2 baryCoord;
 void main() {
   payload.color = vec3(baryCoord, 1.0);
   payload.t = gl_HitTEXT;
+  debugPrintfEXT("t = %f", gl_HitTEXT);
 }

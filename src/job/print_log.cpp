@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/print_log.h"
+
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+
+namespace quintet::job {
+namespace {
+
+constexpr std::uint32_t kLogWords = 1u << 20;  // 4 MiB: more than 100,000 prints in a batch
+
+render::Region printedPixels(const PrintRequest& request, const render::Region& rendered) {
+  if (request.all) return rendered;
+  const render::Region& p = request.pixels;
+  if (p.width == 0) return {rendered.x + rendered.width / 2, rendered.y + rendered.height / 2, 1, 1};
+  const bool isInside = p.x >= rendered.x && p.y >= rendered.y && p.x + p.width <= rendered.x + rendered.width &&
+                        p.y + p.height <= rendered.y + rendered.height;
+  if (isInside) return p;
+  throw UsageError(fmt::format("the pixels that print, {},{},{},{}, are not in the rendered part of the image, {},{},{},{}",
+                               p.x, p.y, p.width, p.height, rendered.x, rendered.y, rendered.width, rendered.height));
+}
+
+}  // namespace
+
+Printed printedLines(const render::LogContents& log, const program::PrintTable& table, const PrintNumbers& numbers,
+                     std::uint64_t limit) {
+  Printed result;
+  result.omitted = log.dropped;
+  for (const render::LogRecord& record : log.records) {
+    const std::span<const std::uint32_t> words = log.wordsOf(record);
+    if (record.kind != shared::kLogPrint || words.empty() || words[0] >= table.size()) continue;
+    if (result.lines.size() >= limit) {
+      ++result.omitted;
+      continue;
+    }
+    const program::PrintSite& site = table[words[0]];
+    std::string text = site.format.text(words.subspan(1));
+    while (text.ends_with('\n')) text.pop_back();
+    const std::optional<std::uint32_t> index = record.sampleIndex;
+    result.lines.push_back({record.pixel, numbers.accumulates ? index : numbers.frame,
+                            numbers.accumulates ? std::nullopt : index, site.location, site.stage, std::move(text)});
+  }
+  return result;
+}
+
+PrintLog::PrintLog(gpu::Context& context, const PrintRequest& request, const render::Region& rendered,
+                   program::PrintTable table)
+    : log_(context, printedPixels(request, rendered), kLogWords),
+      table_(std::move(table)),
+      remaining_(request.limit) {}
+
+void PrintLog::flush(Observer& observer, const PrintNumbers& numbers) {
+  const Printed printed = printedLines(log_.take(), table_, numbers, remaining_);
+  if (printed.lines.empty() && printed.omitted == 0) return;
+  remaining_ -= printed.lines.size();
+  observer.printed(printed);
+}
+
+}  // namespace quintet::job
