@@ -41,9 +41,13 @@ struct Settings {
   std::string cameraName{};        // or a camera of the scene, by name or index
   bool transparent = false;        // alpha 0 where a camera ray leaves the scene, instead of the environment
   std::vector<std::pair<std::string, std::string>> parameters{};  // name, value as on the command line ("1,0.5,0")
-  std::vector<std::string> outputs{};  // optional outputs (AOVs) to render, by name; "all" renders every one
+  std::vector<std::string> outputs{};  // optional outputs (AOVs) and heat maps to render, by name; "all": every AOV
   bool adaptive = false;             // distribute samples by the error of each tile; only for programs that support it
   std::optional<Batches> batches{};  // render this part of a render; Film::merge() joins parts
+  // Pixels of the image for which RenderReport::printed gets what shaders print (debugPrintfEXT). Without it, prints cost
+  // nothing.
+  std::optional<Region> print{};
+  std::uint64_t printLimit = 200;  // lines until the next edit; further ones are only counted
   // Number of samples for which the sampler distributes its points best; 0 means after each power of two. It decides the
   // values of samples. `quintet render --spp N` uses N.
   std::uint32_t plannedSamples = 0;
@@ -79,6 +83,16 @@ enum class StopReason {
   unknownError,  // an error is the only limit, and it can never be known, because samples exceed the range of the film
 };
 
+// What a shader printed for a pixel.
+struct PrintedLine {
+  std::uint32_t x = 0, y = 0;           // pixel of the whole image
+  std::optional<std::uint32_t> frame;   // of an animation, or of a program that accumulates
+  std::optional<std::uint32_t> sample;  // of the pixel, unless the program accumulates
+  std::string file;                     // of the debugPrintfEXT
+  int line = 0;
+  std::string text;
+};
+
 // What Renderer::render() did.
 struct RenderReport {
   StopReason reason = StopReason::samples;
@@ -88,6 +102,8 @@ struct RenderReport {
   std::uint64_t droppedSamples = 0;  // not finite and therefore not in the image
   std::optional<double> error{};     // relative error of the image; empty if it is unknown
   std::vector<std::string> warnings{};
+  std::vector<PrintedLine> printed{};  // with Settings::print: by pixel and sample, for each batch
+  std::uint64_t omittedPrints = 0;     // beyond the limit, or more than the device could store
 };
 
 // Renders a scene with a program. Use an object from one thread at a time; renderers of different devices can run in

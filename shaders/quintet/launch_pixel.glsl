@@ -22,4 +22,13 @@ uvec2 launchPixel() {
   return frame.filmOffset + uvec2(tile.x, tile.y) + uvec2(evenBits(gl_LaunchIDEXT.x), evenBits(gl_LaunchIDEXT.x >> 1));
 }
 
+// For programs with adaptive = true: true if this pixel is sampled in this batch. If false, write nothing.
+bool launchActive(uvec2 pixel) {
+  if (launch.tiles == 0ul) return true;
+  const uvec2 film = pixel - frame.filmOffset;
+  if (film.x >= frame.filmWidth || film.y >= frame.filmHeight) return false;
+  const uint cell = (film.x + film.y) & 1u;
+  return TileArray(launch.tiles).at[gl_LaunchIDEXT.y + launch.offset.y].drawn[cell] != 0u;
+}
+
 #endif

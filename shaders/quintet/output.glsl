@@ -10,15 +10,6 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer StatisticsArray { uvec2 at[]; };
 
-// For programs with adaptive = true: true if this pixel is sampled in this batch. If false, write nothing.
-bool launchActive(uvec2 pixel) {
-  if (launch.tiles == 0ul) return true;
-  const uvec2 film = pixel - frame.filmOffset;
-  if (film.x >= frame.filmWidth || film.y >= frame.filmHeight) return false;
-  const uint cell = (film.x + film.y) & 1u;
-  return TileArray(launch.tiles).at[gl_LaunchIDEXT.y + launch.offset.y].drawn[cell] != 0u;
-}
-
 uint pixelIndex(uvec2 pixel) {
   const uvec2 film = pixel - frame.filmOffset;
   return film.y * frame.filmWidth + film.x;

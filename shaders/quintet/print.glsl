@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// debugPrintfEXT: stores the number of a call and the words of its arguments in the shader log. program::enablePrints
-// inserts this file before a stage that prints and a new main() after it; spirv::replacePrintCalls then replaces the calls
-// of debugPrintfEXT by calls of these functions.
+// debugPrintfEXT: stores the number of a call and the words of its arguments in the shader log. program::addProbes inserts
+// this file before a stage that prints and a new main() after it; spirv::replacePrintCalls then replaces the calls of
+// debugPrintfEXT by calls of these functions.
 #ifndef QUINTET_PRINT_GLSL
 #define QUINTET_PRINT_GLSL
 
@@ -21,7 +21,5 @@ uint printWord_(const uint at, const uint word) {
 
 // The new main() calls this function, so that the compiler keeps the others. The call is removed, too.
 void printKeep_() { printWord_(printBegin_(0u, 0u), 0u); }
-
-#define main printingMain_
 
 #endif

@@ -12,6 +12,7 @@
 #include "api/impl.h"
 #include "base/error.h"
 #include "base/suggestion.h"
+#include "program/heat.h"
 
 namespace quintet {
 namespace {
@@ -26,6 +27,11 @@ class ApiObserver : public job::Observer {
     const std::optional<double> error = p.error && std::isfinite(*p.error) ? p.error : std::nullopt;
     stop_ = !(*function_)({p.samples, p.seconds, p.fraction(), p.secondsLeft(), p.raysPerSecond, error});
   }
+  void printed(const job::Printed& prints) override {
+    prints_.lines.insert(prints_.lines.end(), prints.lines.begin(), prints.lines.end());
+    prints_.omitted += prints.omitted;
+  }
+  const job::Printed& prints() const { return prints_; }
   bool showsError() const override { return false; }
   job::StopRequest stopRequested() override { return stop_ ? job::StopRequest::finish : job::StopRequest::none; }
   void warning(const std::string& text) override {  // from any thread
@@ -40,6 +46,7 @@ class ApiObserver : public job::Observer {
  private:
   const ProgressFunction* function_;
   bool stop_ = false;
+  job::Printed prints_;
   std::mutex mutex_;
   std::vector<std::string> warnings_;
 };
@@ -101,6 +108,13 @@ job::RenderRequest toRequest(const Settings& settings, std::shared_ptr<const sce
   if (settings.camera && !settings.cameraName.empty()) throw UsageError("camera and cameraName exclude each other");
   if (settings.camera) request.camera = toRequest(*settings.camera);
   request.limits.adaptive = settings.adaptive;
+  if (settings.print) {
+    const Region& pixels = *settings.print;
+    if (pixels.width == 0 || pixels.height == 0) throw UsageError("the pixels that print are at least one");
+    request.print.emplace();
+    request.print->pixels = {pixels.x, pixels.y, pixels.width, pixels.height};
+    request.print->limit = settings.printLimit;
+  }
   if (settings.plannedSamples > 0) request.limits.samples = settings.plannedSamples;
   if (settings.batches) {
     if (settings.plannedSamples == 0)
@@ -164,9 +178,9 @@ struct Renderer::Impl {
 
 Renderer::Renderer(Device& device, const Scene& scene, const Program& program, const Settings& settings) {
   ApiObserver observer;
-  impl_ = std::make_unique<Impl>(
-      device.impl_->engine,
-      job::resolve(toRequest(settings, scene.impl_->scene, program.impl_->program), program.impl_->program), observer);
+  program::Program withHeat = program::withHeatMaps(program.impl_->program, settings.outputs);
+  const job::RenderRequest request = toRequest(settings, scene.impl_->scene, withHeat);
+  impl_ = std::make_unique<Impl>(device.impl_->engine, job::resolve(request, std::move(withHeat)), observer);
   impl_->warnings = observer.takeWarnings();
 }
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -191,6 +205,10 @@ RenderReport Renderer::render(const Limits& limits, const ProgressFunction& prog
   report.rays = result.provenance.rays;
   report.droppedSamples = result.provenance.droppedSamples;
   report.error = result.provenance.error;
+  for (const job::PrintedLine& line : observer.prints().lines)
+    report.printed.push_back(
+        {line.pixel.x, line.pixel.y, line.frame, line.sample, line.location.file, line.location.line, line.text});
+  report.omittedPrints = observer.prints().omitted;
   report.warnings = std::exchange(impl_->warnings, {});
   append(report.warnings, observer.takeWarnings());
   append(report.warnings, job::resultWarnings(result));

@@ -57,6 +57,7 @@ struct DeviceInfo {
   RayTracingLimits limits;
   bool rayQuery = false;
   bool positionFetch = false;
+  bool shaderClock = false;         // shaders can read a clock (clock2x32ARB)
   bool pipelineStatistics = false;  // rt::pipelineStatistics returns values
   float timestampPeriod = 0.0f;     // nanoseconds per tick; 0 without timestamps
   std::uint32_t timestampBits = 0;  // valid low bits of a timestamp

@@ -22,6 +22,7 @@ constexpr const char* kOptionalExtensions[] = {
     VK_KHR_PIPELINE_LIBRARY_EXTENSION_NAME,                // hit groups that are compiled separately
     VK_EXT_MEMORY_BUDGET_EXTENSION_NAME,                   // errors instead of the system's OOM killer
     VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME,  // registers and stack sizes of a pipeline
+    VK_KHR_SHADER_CLOCK_EXTENSION_NAME,                    // heat maps of the time
 };
 
 // A member of DeviceFeatures with its name for messages.
@@ -54,6 +55,7 @@ const Feature kOptionalFeatures[] = {
     QUINTET_FEATURE(rayTracingPipeline, rayTracingPipelineTraceRaysIndirect),  // launch sizes in device memory
     QUINTET_FEATURE(rayTracingMaintenance1, rayTracingMaintenance1),
     QUINTET_FEATURE(pipelineExecutables, pipelineExecutableInfo),
+    QUINTET_FEATURE(shaderClock, shaderSubgroupClock),
 };
 #undef QUINTET_FEATURE
 
@@ -178,6 +180,7 @@ DeviceInfo describe(VkPhysicalDevice device, const Capabilities& capabilities, s
   info.limits = properties.rayTracingLimits();
   info.rayQuery = capabilities.has(VK_KHR_RAY_QUERY_EXTENSION_NAME);
   info.pipelineStatistics = capabilities.features.pipelineExecutables.pipelineExecutableInfo == VK_TRUE;
+  info.shaderClock = capabilities.features.shaderClock.shaderSubgroupClock == VK_TRUE;
   info.positionFetch = capabilities.has("VK_KHR_ray_tracing_position_fetch");
   info.timestampPeriod = timestampBits ? core.limits.timestampPeriod : 0.0f;
   info.timestampBits = timestampBits;
@@ -223,6 +226,7 @@ VkPhysicalDeviceFeatures2* DeviceFeatures::chain(const std::vector<std::string>&
   if (contains(extensions, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME)) append(rayTracingPipeline);
   if (contains(extensions, VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME)) append(rayTracingMaintenance1);
   if (contains(extensions, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)) append(pipelineExecutables);
+  if (contains(extensions, VK_KHR_SHADER_CLOCK_EXTENSION_NAME)) append(shaderClock);
   return &core;
 }
 

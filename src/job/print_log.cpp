@@ -20,8 +20,9 @@ render::Region printedPixels(const PrintRequest& request, const render::Region& 
   const bool isInside = p.x >= rendered.x && p.y >= rendered.y && p.x + p.width <= rendered.x + rendered.width &&
                         p.y + p.height <= rendered.y + rendered.height;
   if (isInside) return p;
-  throw UsageError(fmt::format("the pixels that print, {},{},{},{}, are not in the rendered part of the image, {},{},{},{}",
-                               p.x, p.y, p.width, p.height, rendered.x, rendered.y, rendered.width, rendered.height));
+  throw UsageError(
+      fmt::format("the pixels that print, {},{},{},{}, are not in the rendered part of the image, {},{},{},{}", p.x,
+                  p.y, p.width, p.height, rendered.x, rendered.y, rendered.width, rendered.height));
 }
 
 }  // namespace
@@ -51,6 +52,7 @@ PrintLog::PrintLog(gpu::Context& context, const PrintRequest& request, const ren
                    program::PrintTable table)
     : log_(context, printedPixels(request, rendered), kLogWords),
       table_(std::move(table)),
+      limit_(request.limit),
       remaining_(request.limit) {}
 
 void PrintLog::flush(Observer& observer, const PrintNumbers& numbers) {
@@ -58,6 +60,11 @@ void PrintLog::flush(Observer& observer, const PrintNumbers& numbers) {
   if (printed.lines.empty() && printed.omitted == 0) return;
   remaining_ -= printed.lines.size();
   observer.printed(printed);
+}
+
+void PrintLog::restart() {
+  log_.take();
+  remaining_ = limit_;
 }
 
 }  // namespace quintet::job

@@ -8,7 +8,7 @@
 
 #include "job/observer.h"
 #include "job/request.h"
-#include "program/print.h"
+#include "program/probes.h"
 #include "render/renderer/shader_log.h"
 
 namespace quintet::job {
@@ -32,10 +32,13 @@ class PrintLog {
   const render::ShaderLog& log() const { return log_; }
   // Passes what was printed since the last call to the observer. The launches must have ended (Renderer::finish()).
   void flush(Observer& observer, const PrintNumbers& numbers);
+  // Discards what was printed since then, of a batch that was canceled, and counts from 0 to the limit again.
+  void restart();
 
  private:
   render::ShaderLog log_;
   program::PrintTable table_;
+  std::uint64_t limit_;
   std::uint64_t remaining_;  // lines until the limit
 };
 

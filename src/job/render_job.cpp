@@ -18,6 +18,7 @@
 #include "job/identity.h"
 #include "job/runnable_program.h"
 #include "job/scene_loading.h"
+#include "program/heat.h"
 #include "render/scene/camera.h"
 #include "scene/model/names.h"
 
@@ -201,12 +202,12 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   settings.outputs = request.outputs;
   settings.frameCount = request.frames.accumulatedCount().value_or(0);
   settings.timeoutSeconds = request.launchTimeout;
+  if (!request.print && program::prints(checked.runnable.compiled)) observer.printsDisabled();
+  program::PrintTable table = addProbes(checked, engine_.compiler(), defines, requestedProbes());
   std::unique_ptr<PrintLog> prints;
-  if (!request.print) {
-    if (program::prints(checked.runnable.compiled)) observer.printsDisabled();
-  } else if (program::PrintTable table = enablePrints(checked, engine_.compiler(), defines); table.empty()) {
+  if (request.print && table.empty()) {
     observer.note(fmt::format("{}: no shader calls debugPrintfEXT", job_.program.name));
-  } else {
+  } else if (request.print) {
     const render::Region rendered = render::decideSettings(settings, job_.program, false).region;
     prints = std::make_unique<PrintLog>(engine_.context(), *request.print, rendered, std::move(table));
     settings.log = &prints->log();
@@ -215,6 +216,19 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
                                                  &engine_.pipelineCache(), settings);
   prints_ = std::move(prints);
   provenance_.programHash = programHash(job_.program, includedHashes);
+}
+
+program::Probes RenderJob::requestedProbes() const {
+  const RenderRequest& request = job_.request;
+  const gpu::DeviceInfo& device = engine_.context().info();
+  program::Probes probes;
+  probes.prints = request.print.has_value();
+  probes.heat = program::hasHeatMap(job_.program, request.outputs);
+  if (!device.shaderClock && program::hasHeatMap(job_.program, {std::string(program::kHeatTime)}) &&
+      std::ranges::find(request.outputs, program::kHeatTime) != request.outputs.end())
+    throw UsageError(
+        fmt::format("output '{}': {} has no clock for shaders (VK_KHR_shader_clock)", program::kHeatTime, device.name));
+  return probes;
 }
 
 Provenance RenderJob::makeProvenance() const {

@@ -84,7 +84,7 @@ struct PrintRequest {
   // all pixels.
   render::Region pixels;
   bool all = false;           // all pixels of the rendered part; excludes `pixels`
-  std::uint64_t limit = 200;  // lines of a job; further ones are only counted
+  std::uint64_t limit = 200;  // lines until the next edit of the job; further ones are only counted
 };
 
 // How the images of this render are to be written. Stored in films, so that merging them writes the same images.

@@ -46,13 +46,14 @@ void countRecursion(CheckedProgram& checked, const shader::Compiler& compiler, c
   runnable.countsRecursion = true;
 }
 
-program::PrintTable enablePrints(CheckedProgram& checked, const shader::Compiler& compiler,
-                                 const render::Defines& defines) {
+program::PrintTable addProbes(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines,
+                              program::Probes probes) {
   program::RunnableProgram& runnable = checked.runnable;
   const bool counts = runnable.countsRecursion;
-  return program::enablePrints(runnable.compiled, runnable.description, compiler,
-                               counts ? recursionDefines(runnable, defines) : defines,
-                               counts ? program::Instrumentation::recursion : program::Instrumentation::none);
+  runnable.countsHeat = probes.heat;
+  return program::addProbes(runnable.compiled, runnable.description, compiler,
+                            counts ? recursionDefines(runnable, defines) : defines,
+                            counts ? program::Instrumentation::recursion : program::Instrumentation::none, probes);
 }
 
 CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,

@@ -7,7 +7,7 @@
 
 #include "base/diagnostic.h"
 #include "check/device_limits.h"
-#include "program/print.h"
+#include "program/probes.h"
 #include "program/runnable_program.h"
 #include "program/scene_facts.h"
 #include "render/scene/scene_features.h"
@@ -29,10 +29,10 @@ CheckedProgram checkCompiled(program::Program description, program::CompiledProg
 // `defines` are those of the first compilation. Throws ProgramError.
 void countRecursion(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines);
 
-// Compiles the stages that print again, so that they store their prints in the shader log (program/print.h). After
-// countRecursion(), with the same `defines`. Throws ProgramError.
-program::PrintTable enablePrints(CheckedProgram& checked, const shader::Compiler& compiler,
-                                 const render::Defines& defines);
+// Replaces stages by variants with these probes (program/probes.h). After countRecursion(), with the same `defines`. Throws
+// ProgramError.
+program::PrintTable addProbes(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines,
+                              program::Probes probes);
 
 // `defines` are those of render::renderDefines. `runtimeChecks` adds those of program/instrument.h; otherwise the program
 // counts its recursion if necessary. Throws ProgramError.

@@ -51,6 +51,7 @@ scene::Scene& RenderJob::editedScene() {
 void RenderJob::restart() {
   if (!renderer_) return;  // applyEdits() failed and is repeated by the next run()
   renderer_->restart();
+  if (prints_) prints_->restart();
   start_ = {};
   started_ = false;
   nextFrame_ = 0;

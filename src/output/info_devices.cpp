@@ -35,6 +35,7 @@ Json toJson(const gpu::DeviceInfo& device) {
           {"unusableReason", device.unusableReason},
           {"rayQuery", device.rayQuery},
           {"positionFetch", device.positionFetch},
+          {"shaderClock", device.shaderClock},
           {"subgroupSize", device.subgroupSize},
           {"limits",
            {{"handleSize", limits.handleSize},

@@ -15,6 +15,7 @@
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "output/cryptomatte_layer.h"
+#include "program/heat.h"
 
 namespace quintet::output {
 namespace {
@@ -126,10 +127,12 @@ std::vector<Layer> selectLayers(const std::vector<Layer>& available, const std::
     known.push_back(layer.name);
     if (std::ranges::find(names, layer.name) != names.end()) selected.push_back(layer);
   }
+  std::vector<std::string> similar = known;
+  for (const program::HeatMap& map : program::heatMaps()) similar.emplace_back(map.name);
   for (const std::string& name : names)
     if (std::ranges::find(known, name) == known.end())
       throw UsageError(fmt::format("layer '{}' not found in {}{}; available: {}", printable(name), owner,
-                                   suggestion(name, known),
+                                   suggestion(name, similar),
                                    known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
   return selected;
 }
@@ -146,7 +149,9 @@ void checkChannels(const std::vector<Layer>& layers) {
 
 std::string layerList(const program::Program& program) {
   std::string text;
-  for (const Layer& layer : availableLayers(program))
+  std::vector<std::string> heatMaps;
+  for (const program::HeatMap& map : program::heatMaps()) heatMaps.emplace_back(map.name);
+  for (const Layer& layer : availableLayers(program::withHeatMaps(program, heatMaps)))
     text +=
         fmt::format("{:<22} {:<26} {}\n", layer.name, fmt::format("{}", fmt::join(layer.channels, " ")), layer.help);
   return text;

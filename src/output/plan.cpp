@@ -13,6 +13,7 @@
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "output/file_names.h"
+#include "program/heat.h"
 
 namespace quintet::output {
 namespace {
@@ -69,9 +70,12 @@ std::vector<std::size_t> selectOutputs(const OutputRequest& request, const progr
   }
   if (request.output.empty()) return {0};
   const auto found = std::ranges::find(names, request.output);
-  if (found == names.end())
+  if (found == names.end()) {
+    std::vector<std::string> known = names;
+    for (const program::HeatMap& map : program::heatMaps()) known.emplace_back(map.name);
     throw UsageError(fmt::format("output '{}' not found in the program '{}'{}; available: {}", request.output,
-                                 program.name, suggestion(request.output, names), fmt::join(names, ", ")));
+                                 program.name, suggestion(request.output, known), fmt::join(names, ", ")));
+  }
   const auto index = static_cast<std::size_t>(found - names.begin());
   if (counts(index))
     throw UsageError(fmt::format("output '{}' counts ids and is not an image", request.output), Remedy::selectLayer);
@@ -107,6 +111,12 @@ job::OutputNotes OutputPlan::notes() const {
   notes.layers = layersText(layers);
   notes.names = std::ranges::find(layers, Layer::Source::coverage, &Layer::source) != layers.end();
   return notes;
+}
+
+program::Program withRequestedHeatMaps(program::Program program, const OutputRequest& request) {
+  std::vector<std::string> names = request.layers;
+  names.push_back(request.output);
+  return program::withHeatMaps(std::move(program), names);
 }
 
 OutputPlan planOutputs(const OutputRequest& request, const program::Program& program, const job::FrameRequest& frames) {

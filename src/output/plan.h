@@ -56,6 +56,9 @@ struct OutputPlan {
   job::OutputNotes notes() const;
 };
 
+// Returns the program with the heat maps that the request names (program/heat.h). Plans and jobs use the result.
+program::Program withRequestedHeatMaps(program::Program program, const OutputRequest& request);
+
 // For a program. Throws UsageError for unknown names and for options that exclude each other, FileError if one of the files
 // cannot be written: of each output and, with `everyFrame`, of each frame.
 OutputPlan planOutputs(const OutputRequest& request, const program::Program& program,

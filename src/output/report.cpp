@@ -62,8 +62,8 @@ std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::e
 }  // namespace
 
 std::string printedText(const job::PrintedLine& line) {
-  std::string text = fmt::format("{}: pixel {},{}",
-                                 printable(locationText(line.location.file, line.location.line, 0)), line.pixel.x, line.pixel.y);
+  std::string text = fmt::format("{}: pixel {},{}", printable(locationText(line.location.file, line.location.line, 0)),
+                                 line.pixel.x, line.pixel.y);
   if (line.frame) text += fmt::format(", frame {}", *line.frame);
   if (line.sample) text += fmt::format(", sample {}", *line.sample);
   std::string_view rest = line.text;

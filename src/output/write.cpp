@@ -2,10 +2,12 @@
 #include "output/write.h"
 
 #include <optional>
+#include <string>
 
 #include "io/codec.h"
 #include "job/film_store.h"
 #include "output/file_names.h"
+#include "render/tone_map/false_color.h"
 
 namespace quintet::output {
 namespace {
@@ -24,15 +26,32 @@ render::ToneMap toneMapOf(const OutputPlan& plan, const render::FilmPlane& plane
   return plan.request.toneMap.value_or(isColor ? render::ToneMap::neutral : render::ToneMap::linear);
 }
 
+// Unless a tone map was requested.
+bool hasFalseColors(const OutputPlan& plan, const render::FilmPlane& plane) {
+  return plane.kind == program::OutputKind::heat && !plan.request.toneMap;
+}
+
+std::string toneMapName(const OutputPlan& plan, const render::FilmPlane& plane) {
+  if (hasFalseColors(plan, plane)) return "viridis";
+  return render::toneMapNames()[static_cast<std::size_t>(toneMapOf(plan, plane))];
+}
+
+io::Image falseColors(const io::Image& image, float exposure, bool legend, unsigned bits) {
+  return render::falseColor(image, {.scale = render::falseColorScale(image, exposure), .legend = legend, .bits = bits});
+}
+
 std::vector<std::byte> encodePng(const OutputPlan& plan, const job::RenderResult& result, std::size_t output) {
   const render::FilmPlane& plane = result.film->planes()[output];
-  const render::ToneMap toneMap = toneMapOf(plan, plane);
   const double exposure = plan.request.exposure.value_or(0.0);
   job::Provenance provenance = provenanceOf(result, plane.name);
-  provenance.toneMap = render::toneMapNames()[static_cast<std::size_t>(toneMap)];
+  provenance.toneMap = toneMapName(plan, plane);
   provenance.exposure = exposure;
-  return io::encodePng(render::toDisplay(result.film->image(output), toneMap, static_cast<float>(exposure),
-                                         !result.provenance.transparent, plan.request.pngBits.value_or(8)),
+  const io::Image image = result.film->image(output);
+  const auto stops = static_cast<float>(exposure);
+  const unsigned bits = plan.request.pngBits.value_or(8);
+  return io::encodePng(hasFalseColors(plan, plane) ? falseColors(image, stops, true, bits)
+                                                   : render::toDisplay(image, toneMapOf(plan, plane), stops,
+                                                                       !result.provenance.transparent, bits),
                        job::metadataOf(provenance));
 }
 
@@ -77,7 +96,7 @@ std::vector<WrittenFile> writeOutputs(const OutputPlan& plan, const job::RenderR
     WrittenFile& entry = written.emplace_back();
     entry.path = toStandardOutput ? "-" : fileName(file, plan.request.allOutputs ? plane.name : "", frame);
     if (plan.kind == FileKind::png) {
-      entry.toneMap = render::toneMapNames()[static_cast<std::size_t>(toneMapOf(plan, plane))];
+      entry.toneMap = toneMapName(plan, plane);
       observer.write(entry.path, encodePng(plan, result, output));
     } else if (plan.kind == FileKind::exr) {
       observer.write(entry.path, encodeExr(plan, result, output));
@@ -90,8 +109,10 @@ std::vector<WrittenFile> writeOutputs(const OutputPlan& plan, const job::RenderR
 
 io::Image displayImage(const OutputPlan& plan, const job::FilmView& film) {
   const std::size_t output = plan.outputs.front();
-  return render::toDisplay(film.image(output), toneMapOf(plan, film.planes()[output]),
-                           static_cast<float>(plan.request.exposure.value_or(0.0)), true);
+  const render::FilmPlane& plane = film.planes()[output];
+  const auto exposure = static_cast<float>(plan.request.exposure.value_or(0.0));
+  if (hasFalseColors(plan, plane)) return falseColors(film.image(output), exposure, false, 8);
+  return render::toDisplay(film.image(output), toneMapOf(plan, plane), exposure, true);
 }
 
 void addWritten(std::vector<WrittenFile>& files, const std::vector<WrittenFile>& more) {

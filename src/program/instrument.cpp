@@ -19,6 +19,16 @@ int kindOf(shader::Stage stage) {
   }
 }
 
+// QUINTET_HEAT_KIND
+int heatKindOf(shader::Stage stage) {
+  switch (stage) {
+    case shader::Stage::rayGeneration: return 0;
+    case shader::Stage::anyHit: return 1;
+    case shader::Stage::intersection: return 2;
+    default: return 3;
+  }
+}
+
 std::string_view trimmed(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t\r");
   return first == line.npos ? std::string_view() : line.substr(first);
@@ -67,10 +77,23 @@ std::string insertAfterHead(const std::string& source, const std::string& text) 
 
 }  // namespace
 
-std::string printingStage(const std::string& source) {
-  const std::string inserted =
-      std::string("#define QUINTET_PRINT 1\n") + (isLecture(source) ? "" : "#include <quintet/print.glsl>\n");
-  return insertAfterHead(source, inserted) + "\n#undef main\nvoid main() {\n  printKeep_();\n  printingMain_();\n}\n";
+std::string probedStage(const std::string& source, shader::Stage stage, Probes probes, bool accumulates) {
+  std::string defines, includes, before, after;
+  if (probes.prints) {
+    defines += "#define QUINTET_PRINT 1\n";
+    includes += "#include <quintet/print.glsl>\n";
+    before += "  printKeep_();\n";
+  }
+  if (probes.heat) {
+    defines += fmt::format("#define QUINTET_HEAT 1\n#define QUINTET_HEAT_KIND {}\n", heatKindOf(stage));
+    if (accumulates) defines += "#define QUINTET_HEAT_STORES 1\n";
+    includes += "#include <quintet/heat.glsl>\n";
+    before += "  heatKeep_();\n  heatBegin_();\n";
+    after = "  heatEnd_();\n";
+  }
+  // The front end of the lecture form includes the files itself.
+  return insertAfterHead(source, defines + (isLecture(source) ? "" : includes) + "#define main probedMain_\n") +
+         "\n#undef main\nvoid main() {\n" + before + "  probedMain_();\n" + after + "}\n";
 }
 
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
@@ -82,8 +105,8 @@ std::string instrumentStage(const std::string& source, shader::Stage stage, std:
   std::string inserted;
   if (checks)
     inserted = fmt::format(
-        "#define QUINTET_INSTRUMENT 1\n#define QUINTET_INSTRUMENT_STAGE {}u\n#define QUINTET_INSTRUMENT_KIND {}\n", index,
-        kindOf(stage));
+        "#define QUINTET_INSTRUMENT 1\n#define QUINTET_INSTRUMENT_STAGE {}u\n#define QUINTET_INSTRUMENT_KIND {}\n",
+        index, kindOf(stage));
   else
     inserted = "#define QUINTET_RECURSION 1\n";
   if (!checks && stage == shader::Stage::rayGeneration) inserted += "#define QUINTET_RECURSION_START 1\n";

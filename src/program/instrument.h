@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Instruments shaders: wraps quintet/instrument.glsl or quintet/recursion.glsl, which check at run time, or
-// quintet/print.glsl around the source of a stage. The renderer reads what the shaders wrote (render/renderer/instrument.h,
-// render/renderer/shader_log.h).
+// quintet/print.glsl and quintet/heat.glsl, around the source of a stage. The renderer reads what the shaders wrote
+// (render/renderer/instrument.h, render/renderer/shader_log.h).
 #ifndef QUINTET_PROGRAM_INSTRUMENT_H
 #define QUINTET_PROGRAM_INSTRUMENT_H
 
@@ -23,9 +23,16 @@ enum class Instrumentation {
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
                             Instrumentation instrumentation = Instrumentation::checks);
 
-// Returns the source of a stage with the functions of quintet/print.glsl, for spirv::replacePrintCalls. `source` can have the
-// checks of the recursion, but not all checks.
-std::string printingStage(const std::string& source);
+// What an instrumented variant of a stage records (program/probes.h).
+struct Probes {
+  bool prints = false;
+  bool heat = false;  // counts for heat maps
+};
+
+// Returns the source of a stage with the functions of quintet/print.glsl and quintet/heat.glsl, for
+// spirv::replacePrintCalls and spirv::addTraceCalls. `source` can have the checks of the recursion, but not all checks.
+// `accumulates`: the program averages its own frames.
+std::string probedStage(const std::string& source, shader::Stage stage, Probes probes, bool accumulates);
 
 }  // namespace quintet::program
 #endif

@@ -15,6 +15,7 @@ struct RunnableProgram {
   CompiledProgram compiled;          // SPIR-V of every stage
   std::uint32_t recursionDepth = 1;  // nesting of traceRayEXT calls; 1 if only ray generation traces
   bool countsRecursion = false;      // the stages are compiled with Instrumentation::recursion
+  bool countsHeat = false;           // the stages have Probes::heat
 };
 
 }  // namespace quintet::program

@@ -473,6 +473,15 @@ std::string Module::name(Id id) const {
   return found == names_.end() ? std::string() : found->second;
 }
 
+Id Module::functionNamed(std::string_view name) const {
+  // glslang adds the types of the parameters: "hit(vf3;".
+  const auto found = std::ranges::find_if(functions_, [&](const Function& function) {
+    const std::string mangled = this->name(function.id);
+    return mangled.starts_with(name) && mangled.substr(name.size()).starts_with("(");
+  });
+  return found == functions_.end() ? 0 : found->id;
+}
+
 const std::string* Module::string(Id id) const {
   const auto found = strings_.find(id);
   return found == strings_.end() ? nullptr : &found->second;

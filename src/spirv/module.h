@@ -82,7 +82,8 @@ class Module {
   const Function* entry() const;                                       // null if the module has no entry point
   const std::vector<Instruction>& instructions() const { return instructions_; }
   const std::vector<Function>& functions() const { return functions_; }
-  const Function* function(Id id) const;  // null if unknown
+  const Function* function(Id id) const;          // null if unknown
+  Id functionNamed(std::string_view name) const;  // by its name in GLSL, with OpName; 0 if unknown
 
   const Instruction* definition(Id id) const;          // the instruction with this result; null if unknown
   std::size_t definitionIndex(Id id) const;            // its index; kNone if unknown
@@ -95,7 +96,7 @@ class Module {
   static constexpr std::size_t kNone = ~std::size_t{0};
 
   const Types& types() const { return types_; }
-  std::string name(Id id) const;  // OpName; empty if unknown
+  std::string name(Id id) const;           // OpName; empty if unknown
   const std::string* string(Id id) const;  // OpString; null if unknown
   // Returns the first operand of a decoration, or 0 if it has none; nullopt if the id is not decorated with it.
   std::optional<std::uint32_t> decoration(Id id, spv::Decoration decoration) const;

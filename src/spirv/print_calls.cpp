@@ -50,20 +50,13 @@ PrintArgument argumentOf(const Module& module, Id value) {
   return argument;
 }
 
-// The function of the module with this name in GLSL; 0 if it is missing.
-Id functionNamed(const Module& module, std::string_view name) {
-  for (const Function& function : module.functions())
-    if (module.name(function.id).starts_with(fmt::format("{}(", name))) return function.id;
-  return 0;
-}
-
 class Replacement {
  public:
   Replacement(const Module& module, const std::vector<std::uint32_t>& words, std::uint32_t firstNumber)
       : module_(module), out_(words), number_(firstNumber), calls_(findPrintCalls(module)) {
-    begin_ = functionNamed(module, "printBegin_");
-    word_ = functionNamed(module, "printWord_");
-    keep_ = functionNamed(module, "printKeep_");
+    begin_ = module.functionNamed("printBegin_");
+    word_ = module.functionNamed("printWord_");
+    keep_ = module.functionNamed("printKeep_");
     if (begin_ == 0 || word_ == 0 || keep_ == 0) throw Error("a module that prints has no functions for it");
     uintType_ = module.definition(begin_)->type;
   }
@@ -157,8 +150,7 @@ class Replacement {
 
   std::vector<Id> wordsOf(Id scalar, const PrintArgument& argument) {
     using Kind = PrintArgument::Kind;
-    if (argument.kind == Kind::boolean)
-      return {emitNew(Op::OpSelect, uintType_, {scalar, constant(1), constant(0)})};
+    if (argument.kind == Kind::boolean) return {emitNew(Op::OpSelect, uintType_, {scalar, constant(1), constant(0)})};
     if (argument.bits == 64) {
       const Id both = emitNew(Op::OpBitcast, uvec2Type_, {scalar});
       return {emitNew(Op::OpCompositeExtract, uintType_, {both, 0}),
@@ -168,8 +160,7 @@ class Replacement {
       if (argument.bits == 16) scalar = emitNew(Op::OpFConvert, floatType_, {scalar});
       return {emitNew(Op::OpBitcast, uintType_, {scalar})};
     }
-    if (argument.bits < 32)
-      return {emitNew(argument.isSigned ? Op::OpSConvert : Op::OpUConvert, uintType_, {scalar})};
+    if (argument.bits < 32) return {emitNew(argument.isSigned ? Op::OpSConvert : Op::OpUConvert, uintType_, {scalar})};
     return {argument.isSigned ? emitNew(Op::OpBitcast, uintType_, {scalar}) : scalar};
   }
 

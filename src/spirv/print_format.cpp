@@ -4,7 +4,7 @@
 #include <fmt/printf.h>
 
 #include <bit>
-#include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "base/plural.h"
@@ -21,11 +21,11 @@ constexpr std::size_t kMaxNumber = 100;  // of width and precision: a line is no
 
 // A specifier as it is written, before it is known whether it fits to its argument.
 struct Parsed {
-  std::string text;            // "%5.2v3f"
-  std::string flags;           // "5.2", with width and precision
-  std::uint32_t count = 1;     // of components
-  bool isLong = false;         // with l
-  bool canBeLong = false;      // an l follows the conversion, which belongs to it if the argument has 64 bits
+  std::string text;         // "%5.2v3f"
+  std::string flags;        // "5.2", with width and precision
+  std::uint32_t count = 1;  // of components
+  bool isLong = false;      // with l
+  bool canBeLong = false;   // an l follows the conversion, which belongs to it if the argument has 64 bits
   char conversion = 0;
 };
 
@@ -97,9 +97,10 @@ Parsed Reader::specifier() {
   ++at_;
   parsed.text = format_.substr(begin, at_ - begin);
   if (kIntegers.find(parsed.conversion) == kIntegers.npos && kFloats.find(parsed.conversion) == kFloats.npos)
-    throw Error(fmt::format("the specifier {} is unknown; debugPrintfEXT supports %d %i %u %o %x %X %c %f %e %g %a, with "
-                            "l for 64 bits and v2 to v4 for vectors",
-                            parsed.text));
+    throw Error(
+        fmt::format("the specifier {} is unknown; debugPrintfEXT supports %d %i %u %o %x %X %c %f %e %g %a, with "
+                    "l for 64 bits and v2 to v4 for vectors",
+                    parsed.text));
   parsed.canBeLong = !parsed.isLong && peek() == 'l';
   return parsed;
 }
@@ -108,9 +109,9 @@ Parsed Reader::specifier() {
 std::string specifierFor(const PrintArgument& argument) {
   return fmt::format("%{}{}{}", argument.count > 1 ? fmt::format("v{}", argument.count) : "",
                      argument.kind == Kind::integer && argument.bits == 64 ? "l" : "",
-                     argument.kind == Kind::floating                          ? "f"
+                     argument.kind == Kind::floating                        ? "f"
                      : argument.kind == Kind::boolean || !argument.isSigned ? "u"
-                                                                              : "d");
+                                                                            : "d");
 }
 
 // True if the specifier prints the argument. It sets isLong for "%ul".
@@ -129,7 +130,8 @@ std::uint64_t rawComponent(std::span<const std::uint32_t> words, std::size_t at,
   return isLong ? word(at) | word(at + 1) << 32 : word(at);
 }
 
-std::string componentText(const std::string& format, char conversion, const PrintArgument& argument, std::uint64_t raw) {
+std::string componentText(const std::string& format, char conversion, const PrintArgument& argument,
+                          std::uint64_t raw) {
   if (argument.kind == Kind::floating)
     return fmt::sprintf(format, argument.bits == 64 ? std::bit_cast<double>(raw)
                                                     : double{std::bit_cast<float>(static_cast<std::uint32_t>(raw))});

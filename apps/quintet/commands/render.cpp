@@ -130,7 +130,8 @@ std::string programHelpText(const program::Program& program, std::string_view co
                      program::describeAsText(program, width), wrapped(options, width, 0), command);
 }
 
-int renderImages(const RenderOptions& options, const program::Program& program, const Stopwatch& clock) {
+int renderImages(const RenderOptions& options, const program::Program& named, const Stopwatch& clock) {
+  const program::Program program = output::withRequestedHeatMaps(named, options.output);
   const output::OutputPlan plan = output::planOutputs(options.output, program, options.request.frames);
   Console console(options.console);
   console.setProgram(&program);

@@ -14,7 +14,7 @@
 namespace quintet::cli {
 
 // `clock`: started with the command. Returns the exit status.
-int renderImages(const RenderOptions& options, const program::Program& program, const Stopwatch& clock);
+int renderImages(const RenderOptions& options, const program::Program& named, const Stopwatch& clock);
 
 // Parameters and outputs of the program, and the options of `command` ("render", "run") that set and select them.
 std::string programHelpText(const program::Program& program, std::string_view command);

@@ -220,7 +220,7 @@ class Watch {
   }
 
   job::ResolvedJob resolve() {
-    program_ = program::loadProgram(options_.program);
+    program_ = output::withRequestedHeatMaps(program::loadProgram(options_.program), options_.output);
     console_.setProgram(&program_);
     output::OutputRequest output = options_.output;
     if (options_.namedByProgram) output.file = output::defaultImage(program_.name);

@@ -16,6 +16,7 @@
 #define FrameReference gsnFrameReference_
 #define GeometryArray gsnGeometryArray_
 #define GeometryData gsnGeometryData_
+#define HeatPixel gsnHeatPixel_
 #define InstanceArray gsnInstanceArray_
 #define InstanceData gsnInstanceData_
 #define Launch gsnLaunch_
@@ -45,6 +46,7 @@
 #define kInfinity gsnInfinity_
 #define kPi gsnPi_
 #define launch gsnPush_
+#define launchActive gsnLaunchActive_
 #define launchPixel gsnLaunchPixel_
 #define luminance gsnLuminance_
 #define maxComponent gsnMaxComponent_

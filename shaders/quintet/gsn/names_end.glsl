@@ -19,6 +19,7 @@
 #undef FrameReference
 #undef GeometryArray
 #undef GeometryData
+#undef HeatPixel
 #undef InstanceArray
 #undef InstanceData
 #undef Launch
@@ -49,6 +50,7 @@
 #undef kInfinity
 #undef kPi
 #undef launch
+#undef launchActive
 #undef launchPixel
 #undef luminance
 #undef maxComponent

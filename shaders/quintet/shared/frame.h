@@ -130,8 +130,9 @@ struct Frame {
   Address lightNodes;   // LightNode[]: the tree for sampling lights
   Address previousInstances;  // InstanceData[] of the previous frame of an animation; 0: no motion
   Address log;          // LogHeader and its words (shared/log.h); 0: no log
+  Address heat;         // HeatPixel[filmWidth · filmHeight] (shared/heat.h); 0: no heat maps
 };
-QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 24);
+QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 32);
 
 // Adaptive sampling divides the image into squares of kTileSize pixels, starting at the film's first pixel. Each has
 // two cells, the pixels with even and with odd x + y. Each cell has its own number of samples.

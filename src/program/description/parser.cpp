@@ -325,7 +325,7 @@ class Parser {
     output.line = reader.line();
     output.name = parseName(reader, namesOf(program_.outputs));
     std::vector<std::string> kinds;
-    for (int i = 0; i <= static_cast<int>(OutputKind::display); ++i)
+    for (int i = 0; i <= static_cast<int>(OutputKind::heat); ++i)
       kinds.emplace_back(outputKindName(static_cast<OutputKind>(i)));
     const OutputKind usual = output.name == "color" ? OutputKind::color : OutputKind::linear;
     output.kind = static_cast<OutputKind>(reader.choice("kind", kinds, static_cast<std::size_t>(usual)));

@@ -15,7 +15,7 @@ const std::vector<std::string>& geometryClasses() {
 }
 
 std::string_view outputKindName(OutputKind kind) {
-  constexpr std::array<std::string_view, 6> kNames{"color", "linear", "normal", "depth", "id", "display"};
+  constexpr std::array<std::string_view, 7> kNames{"color", "linear", "normal", "depth", "id", "display", "heat"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
@@ -32,7 +32,8 @@ std::vector<std::string> outputChannels(const Output& output) {
     case OutputKind::linear:
     case OutputKind::normal: return {"X", "Y", "Z"};
     case OutputKind::depth: return {"Z"};
-    case OutputKind::id: return {"X"};
+    case OutputKind::id:
+    case OutputKind::heat: return {"X"};
   }
   return {};
 }

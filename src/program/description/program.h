@@ -72,8 +72,8 @@ struct Callable {
 };
 
 // Meaning of an output's numbers, which decides how an image shows them. `display` values are sRGB-encoded, all others are
-// linear.
-enum class OutputKind { color, linear, normal, depth, id, display };
+// linear. `heat` is one quantity, which PNG files show in false colors.
+enum class OutputKind { color, linear, normal, depth, id, display, heat };
 std::string_view outputKindName(OutputKind);  // as in program.toml
 
 // How the film combines the samples of a pixel.
@@ -92,10 +92,11 @@ struct Output {
   bool optional = false;  // rendered only on request; QUINTET_OUTPUT_name is then defined
   int line = 0;
   std::vector<std::string> channels;  // names of the components in an EXR layer; outputChannels() if empty
+  bool isHeatMap = false;             // an instrumented variant of the program writes it (program/heat.h)
 };
 
 // Returns the channel names: those in program.toml, else R, G, B for colors; X, Y, Z for normals and linear quantities;
-// Z for depth; X for ids.
+// Z for depth; X for ids and heat.
 std::vector<std::string> outputChannels(const Output& output);
 // Returns whether channels R, G and B hold a color, which can be stored with reduced precision; all else is data.
 bool holdsColor(const Output& output);

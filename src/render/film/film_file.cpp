@@ -273,8 +273,8 @@ class HeaderReader {
   void readPlane(FilmHeader& header, const Json& json) const {
     using program::OutputKind, program::OutputPixel;
     constexpr std::array kPixels{OutputPixel::mean, OutputPixel::center, OutputPixel::coverage};
-    constexpr std::array kKinds{OutputKind::color, OutputKind::linear, OutputKind::normal,
-                                OutputKind::depth, OutputKind::id,     OutputKind::display};
+    constexpr std::array kKinds{OutputKind::color, OutputKind::linear,  OutputKind::normal, OutputKind::depth,
+                                OutputKind::id,    OutputKind::display, OutputKind::heat};
     FilmState& film = header.file.film;
     const std::string location = fmt::format("/planes/{}", film.planes.size());
     const auto text = [&](const char* name) {

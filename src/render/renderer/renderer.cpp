@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/stopwatch.h"
+#include "quintet/shared/heat.h"
 #include "render/film/adaptive_plan.h"
 #include "render/renderer/shader_log.h"
 #include "render/scene/camera.h"
@@ -43,6 +44,10 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
     instrument_.emplace(context_, std::uint64_t{settings_.region.width} * settings_.region.height,
                         linked_.recursionDepth(), description, scene.facts());
   if (runnable_.countsRecursion) recursion_.emplace(context_, settings_.region);
+  if (runnable_.countsHeat)
+    heat_ = gpu::Buffer(
+        context_, {.size = std::uint64_t{settings_.region.width} * settings_.region.height * sizeof(shared::HeatPixel),
+                   .name = "heat maps"});
   uploadFrame();
   parameterBuffer_ =
       gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_.indices()), 0, "parameters");
@@ -60,6 +65,7 @@ void Renderer::uploadFrame() {
   frame.rayRecords = settings_.rayRecords ? settings_.rayRecords->address() : 0;
   frame.rayRecordCapacity = settings_.rayRecords ? settings_.rayRecordCapacity : 0;
   frame.log = settings_.log ? settings_.log->address() : 0;
+  frame.heat = heat_ ? heat_.address() : 0;
   if (instrument_) frame.instrument = instrument_->address();
   if (recursion_) frame.instrument = recursion_->address();
   film_.describe(frame);
@@ -78,7 +84,7 @@ Renderer::Record Renderer::recordBegin() {
 void Renderer::launch(const Target& target, std::uint32_t row, std::uint32_t rows, SampleRange samples,
                       const Record& before, const Record& after) {
   const std::uint32_t count = samples.end - samples.begin;
-  const std::uint32_t perLaunch = settings_.log ? 1 : program().samplesPerLaunch;
+  const std::uint32_t perLaunch = settings_.log || runnable_.countsHeat ? 1 : program().samplesPerLaunch;
   const Record trace = [&](gpu::Commands& commands) {
     for (std::uint32_t done = 0; done < count;) {
       shared::Launch constants{};

@@ -121,6 +121,7 @@ class Renderer {
   gpu::Buffer parameterBuffer_;
   std::optional<InstrumentBuffer> instrument_;
   std::optional<RecursionBuffer> recursion_;
+  gpu::Buffer heat_;                       // counters of heat maps: HeatPixel[]; empty unless the program counts them
   std::uint32_t tracesSkippedBefore_ = 0;  // the last restart()
   // Mutable so that const functions can wait for launches, which changes no result.
   mutable RenderStatistics statistics_;

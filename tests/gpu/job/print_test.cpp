@@ -168,9 +168,8 @@ TEST_F(PrintTest, EveryStagePrints) {
   RenderRequest request = makeRequest({2, 1}, 1);
   request.print = pixels(0, 0);
   renderBox(request);
-  EXPECT_THAT(textsOf(observer_.lines),
-              ElementsAre("begin 0, 0", "candidate 5b", "accepted 1", "hit 4.0, primitive 0", "callable 0.5, 0.5, 0.5",
-                          "payload 4.0, 4.0, 4.0, 4.0"));
+  EXPECT_THAT(textsOf(observer_.lines), ElementsAre("begin 0, 0", "candidate 5b", "accepted 1", "hit 4.0, primitive 0",
+                                                    "callable 0.5, 0.5, 0.5", "payload 4.0, 4.0, 4.0, 4.0"));
   const auto& lines = observer_.lines;
   ASSERT_EQ(lines.size(), 6u);
   EXPECT_EQ(lines[0].stage, "main.rgen");
@@ -185,21 +184,21 @@ TEST_F(PrintTest, EveryStagePrints) {
   observer_.lines.clear();
   request.print = pixels(1, 0);
   renderBox(request);
-  EXPECT_THAT(textsOf(observer_.lines), ElementsAre("begin 1, 0", "miss 5.0", "callable 0.5, 0.5, 0.5",
-                                                    "payload 1.0, 2.0, 3.0, 4.0"));
+  EXPECT_THAT(textsOf(observer_.lines),
+              ElementsAre("begin 1, 0", "miss 5.0", "callable 0.5, 0.5, 0.5", "payload 1.0, 2.0, 3.0, 4.0"));
   EXPECT_EQ(observer_.disabled, 0);
 }
 
 TEST_F(PrintTest, LinesAreSortedByPixelAndSample) {
   RenderRequest request = makeRequest({24, 16}, 3);
-  request.print = pixels(22, 14, 2, 2);
+  request.print = pixels(20, 12, 2, 2);
   renderBox(request);
   std::vector<std::array<std::uint32_t, 3>> begins;
   for (const PrintedLine& line : observer_.lines)
     if (line.text.starts_with("begin")) begins.push_back({line.pixel.x, line.pixel.y, line.sample.value()});
   using A = std::array<std::uint32_t, 3>;
-  EXPECT_THAT(begins, ElementsAre(A{22, 14, 0}, A{22, 14, 1}, A{22, 14, 2}, A{23, 14, 0}, A{23, 14, 1}, A{23, 14, 2},
-                                  A{22, 15, 0}, A{22, 15, 1}, A{22, 15, 2}, A{23, 15, 0}, A{23, 15, 1}, A{23, 15, 2}));
+  EXPECT_THAT(begins, ElementsAre(A{20, 12, 0}, A{20, 12, 1}, A{20, 12, 2}, A{21, 12, 0}, A{21, 12, 1}, A{21, 12, 2},
+                                  A{20, 13, 0}, A{20, 13, 1}, A{20, 13, 2}, A{21, 13, 0}, A{21, 13, 1}, A{21, 13, 2}));
   EXPECT_EQ(observer_.lines.size(), 4u * 12);
 }
 
@@ -268,8 +267,9 @@ TEST_F(PrintTest, AProgramWithoutPrintsGivesANote) {
 
 TEST_F(PrintTest, AWrongFormatIsAnErrorOfTheProgram) {
   Files wrong = files();
-  wrong["box.rahit"] = "#version 460\n#extension GL_EXT_ray_tracing : require\n#extension GL_EXT_debug_printf : require\n"
-                       "void main() { debugPrintfEXT(\"%f\", gl_HitKindEXT); }\n";
+  wrong["box.rahit"] =
+      "#version 460\n#extension GL_EXT_ray_tracing : require\n#extension GL_EXT_debug_printf : require\n"
+      "void main() { debugPrintfEXT(\"%f\", gl_HitKindEXT); }\n";
   for (const bool print : {false, true}) {
     RenderRequest request = makeRequest({2, 1}, 1);
     if (print) request.print.emplace();
@@ -324,7 +324,8 @@ TEST_F(PrintTest, LectureFormAndRecursion) {
     EXPECT_EQ(line.location.line, 8);
     EXPECT_THAT(line.location.file, HasSubstr("mirror.rt.glsl"));
   }
-  EXPECT_THAT(frames, ElementsAre("frame 1: 1.000000, 1.000000, 1.000000/1", "frame 2: 1.000000, 1.000000, 1.000000/2"));
+  EXPECT_THAT(frames,
+              ElementsAre("frame 1: 1.000000, 1.000000, 1.000000/1", "frame 2: 1.000000, 1.000000, 1.000000/2"));
   EXPECT_THAT(textsOf(observer_.lines), Contains("level 1"));
 }
 

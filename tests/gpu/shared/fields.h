@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "quintet/shared/film.h"
+#include "quintet/shared/heat.h"
 #include "quintet/shared/instrument.h"
 #include "quintet/shared/log.h"
 
@@ -121,12 +122,13 @@ GPU_FIELDS(RayKinds, camera, cameraHits, continuation, continuationHits, shadow,
 GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics,
            rayRecords, instrument, outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth,
            filmHeight, lightCount, environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount,
-           plannedSamples, lightNodes, previousInstances, log);
+           plannedSamples, lightNodes, previousInstances, log, heat);
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction, interval);
 GPU_FIELDS(RecursionGuard, cutCount);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive, flags, stage, line);
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, callableCount,
            outputCount, depthLimit, rays, recordPairs, badRecords);
+GPU_FIELDS(HeatPixel, rays, bounces, depth, deepest, anyHits, intersections);
 GPU_FIELDS(LogHeader, capacity, used, dropped, padding, firstPixel, endPixel);
 GPU_FIELDS(LogRecord, kind, wordCount, pixel, sampleIndex);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);

@@ -35,10 +35,10 @@ struct AllWords {
 // The start of the shader: all structs, and put and take for T and the structs in it.
 template <class T>
 std::string glslFor() {
-  return std::string("#include <quintet/shared/film.h>\n#include <quintet/shared/instrument.h>\n"
-                     "#include <quintet/shared/log.h>\n") +
-         kGlslWords +
-         Fields<shared::TextureData>::glsl() + Fields<shared::EnvironmentData>::glsl() +
+  return std::string(
+             "#include <quintet/shared/film.h>\n#include <quintet/shared/instrument.h>\n"
+             "#include <quintet/shared/log.h>\n#include <quintet/shared/heat.h>\n") +
+         kGlslWords + Fields<shared::TextureData>::glsl() + Fields<shared::EnvironmentData>::glsl() +
          Fields<shared::CameraData>::glsl() +
          (std::set<std::string>{"TextureData", "EnvironmentData", "CameraData"}.contains(Fields<T>::kName)
               ? ""
@@ -56,7 +56,7 @@ using SharedStructs =
                    shared::RayKinds, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::NotFinite,
                    shared::FilmFrame, shared::FilmCheck, shared::FilmTile, shared::FixedSum, shared::CoverageSlot,
                    shared::Launch, shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel,
-                   shared::RecursionGuard, shared::LogHeader, shared::LogRecord>;
+                   shared::RecursionGuard, shared::LogHeader, shared::LogRecord, shared::HeatPixel>;
 
 struct StructNames {
   template <class T>

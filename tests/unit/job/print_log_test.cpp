@@ -28,7 +28,8 @@ render::LogContents logOf(const std::vector<std::pair<std::uint32_t, std::vector
 }
 
 TEST(PrintLog, RecordsBecomeLines) {
-  const Printed printed = printedLines(logOf({{shared::kLogPrint, {0, 42}}, {shared::kLogPrint, {1}}}), table(), {}, 10);
+  const Printed printed =
+      printedLines(logOf({{shared::kLogPrint, {0, 42}}, {shared::kLogPrint, {1}}}), table(), {}, 10);
   ASSERT_EQ(printed.lines.size(), 2u);
   EXPECT_EQ(printed.omitted, 0u);
   const PrintedLine& line = printed.lines[0];
@@ -54,8 +55,8 @@ TEST(PrintLog, LinesBeyondTheLimitAreCounted) {
 TEST(PrintLog, OtherRecordsAreNoLines) {
   const std::uint32_t unknownSite = 2;
   const Printed printed = printedLines(
-      logOf({{shared::kLogPrint + 1, {0, 1}}, {shared::kLogPrint, {unknownSite}}, {shared::kLogPrint, {}}}), table(), {},
-      10);
+      logOf({{shared::kLogPrint + 1, {0, 1}}, {shared::kLogPrint, {unknownSite}}, {shared::kLogPrint, {}}}), table(),
+      {}, 10);
   EXPECT_TRUE(printed.lines.empty());
   EXPECT_EQ(printed.omitted, 0u);
 }

@@ -32,7 +32,8 @@ Source sourceOf(const std::string& text, bool printing) {
   Source source;
   source.stage = Stage::miss;
   source.name = "test.rmiss";
-  source.text = printing ? program::printingStage(kHead + text) : kHead + text;
+  source.text =
+      printing ? program::probedStage(kHead + text, Stage::miss, {.prints = true, .heat = false}, false) : kHead + text;
   source.optimize = !printing;
   return source;
 }

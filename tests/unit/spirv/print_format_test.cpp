@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <bit>
+#include <utility>
 
 #include "base/error.h"
 
@@ -97,8 +98,7 @@ TEST(PrintFormat, PrintsVectors) {
 TEST(PrintFormat, KeepsTheOrderOfArguments) {
   const PrintFormat format("%d %% %v3f %lu end", {kInt, kVec3, kUnsignedLong});
   EXPECT_EQ(format.wordCount(), 6u);
-  EXPECT_EQ(format.text(Words{7, word(1.0f), word(2.0f), word(3.0f), 9, 0}),
-            "7 % 1.000000, 2.000000, 3.000000 9 end");
+  EXPECT_EQ(format.text(Words{7, word(1.0f), word(2.0f), word(3.0f), 9, 0}), "7 % 1.000000, 2.000000, 3.000000 9 end");
 }
 
 TEST(PrintFormat, HasWidthAndFlags) {
@@ -113,7 +113,9 @@ TEST(PrintFormat, NeedsNoArguments) {
   EXPECT_EQ(PrintFormat("", {}).text({}), "");
 }
 
-TEST(PrintFormat, MissingWordsAreZero) { EXPECT_EQ(textOf("%v3f", kVec3, {word(1.0f)}), "1.000000, 0.000000, 0.000000"); }
+TEST(PrintFormat, MissingWordsAreZero) {
+  EXPECT_EQ(textOf("%v3f", kVec3, {word(1.0f)}), "1.000000, 0.000000, 0.000000");
+}
 
 TEST(PrintFormat, RejectsOtherTypes) {
   EXPECT_EQ(errorOf("%d", {kFloat}),

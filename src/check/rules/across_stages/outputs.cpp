@@ -44,6 +44,7 @@ class OutputRule {
     const program::Program& program = graph_.program;
     for (std::uint32_t slot = 0; slot < program.outputs.size(); ++slot) {
       const program::Output& output = program.outputs[slot];
+      if (output.isHeatMap) continue;  // a variant of the program stores it
       if (output.optional && std::ranges::find(input_.outputs, output.name) == input_.outputs.end()) continue;
       const bool stored = std::ranges::any_of(stores_, [&](const Store& store) { return store.slot == slot; });
       if (!stored)
