@@ -18,7 +18,6 @@
 #include "job/identity.h"
 #include "job/runnable_program.h"
 #include "job/scene_loading.h"
-#include "program/heat.h"
 #include "render/scene/camera.h"
 #include "scene/model/names.h"
 
@@ -203,7 +202,8 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   settings.frameCount = request.frames.accumulatedCount().value_or(0);
   settings.timeoutSeconds = request.launchTimeout;
   if (!request.print && program::prints(checked.runnable.compiled)) observer.printsDisabled();
-  program::PrintTable table = addProbes(checked, engine_.compiler(), defines, requestedProbes());
+  program::PrintTable table =
+      addProbes(checked, engine_.compiler(), defines, requestedProbes(request, job_.program, engine_.context().info()));
   std::unique_ptr<PrintLog> prints;
   if (request.print && table.empty()) {
     observer.note(fmt::format("{}: no shader calls debugPrintfEXT", job_.program.name));
@@ -216,19 +216,6 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
                                                  &engine_.pipelineCache(), settings);
   prints_ = std::move(prints);
   provenance_.programHash = programHash(job_.program, includedHashes);
-}
-
-program::Probes RenderJob::requestedProbes() const {
-  const RenderRequest& request = job_.request;
-  const gpu::DeviceInfo& device = engine_.context().info();
-  program::Probes probes;
-  probes.prints = request.print.has_value();
-  probes.heat = program::hasHeatMap(job_.program, request.outputs);
-  if (!device.shaderClock && program::hasHeatMap(job_.program, {std::string(program::kHeatTime)}) &&
-      std::ranges::find(request.outputs, program::kHeatTime) != request.outputs.end())
-    throw UsageError(
-        fmt::format("output '{}': {} has no clock for shaders (VK_KHR_shader_clock)", program::kHeatTime, device.name));
-  return probes;
 }
 
 Provenance RenderJob::makeProvenance() const {

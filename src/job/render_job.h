@@ -99,7 +99,6 @@ class RenderJob {
   void prepare(Observer& observer);
   void prepareScene(LoadedScene loaded, Observer& observer);
   void link(program::CompiledProgram compiled, Observer& observer);
-  program::Probes requestedProbes() const;  // throws UsageError
   Provenance makeProvenance() const;
 
   scene::Scene& editedScene();   // a copy of the loaded scene, for edits

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/runnable_program.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/error.h"
 #include "check/check.h"
+#include "program/heat.h"
 #include "program/hit_checks.h"
 
 namespace quintet::job {
@@ -44,6 +47,21 @@ void countRecursion(CheckedProgram& checked, const shader::Compiler& compiler, c
   program::RunnableProgram& runnable = checked.runnable;
   instrument(runnable, compiler, recursionDefines(runnable, defines), program::Instrumentation::recursion);
   runnable.countsRecursion = true;
+}
+
+program::Probes requestedProbes(const RenderRequest& request, const program::Program& program,
+                                const gpu::DeviceInfo& device) {
+  program::Probes probes;
+  probes.prints = request.print.has_value();
+  probes.heat = program::hasHeatMap(program, request.outputs);
+  const bool isTimed = std::ranges::any_of(program.outputs, [&](const program::Output& output) {
+    return output.isHeatMap && output.name == program::kHeatTime &&
+           std::ranges::find(request.outputs, output.name) != request.outputs.end();
+  });
+  if (isTimed && !device.shaderClock)
+    throw UsageError(
+        fmt::format("output '{}': {} has no clock for shaders (VK_KHR_shader_clock)", program::kHeatTime, device.name));
+  return probes;
 }
 
 program::PrintTable addProbes(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines,

@@ -7,6 +7,8 @@
 
 #include "base/diagnostic.h"
 #include "check/device_limits.h"
+#include "gpu/device_info.h"
+#include "job/request.h"
 #include "program/probes.h"
 #include "program/runnable_program.h"
 #include "program/scene_facts.h"
@@ -28,6 +30,11 @@ CheckedProgram checkCompiled(program::Program description, program::CompiledProg
 // the stages again so that they count it and skip deeper traces, whose number Renderer::skippedTraces() returns.
 // `defines` are those of the first compilation. Throws ProgramError.
 void countRecursion(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines);
+
+// Returns the probes that the request requires of the program. Throws UsageError if the device cannot measure time for a heat
+// map.
+program::Probes requestedProbes(const RenderRequest& request, const program::Program& program,
+                                const gpu::DeviceInfo& device);
 
 // Replaces stages by variants with these probes (program/probes.h). After countRecursion(), with the same `defines`. Throws
 // ProgramError.
