@@ -20,7 +20,7 @@
 #define AOV_LIGHT
 #endif
 
-// How a path found its light.
+// How a path found its light: kExplainFrom… (quintet/shared/explain.h).
 const uint kFromBackground = 0u;
 const uint kFromSurface = 1u;    // the path hit the emitter
 const uint kFromShadowRay = 2u;  // from the path's last surface to a light

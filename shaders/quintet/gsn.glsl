@@ -22,6 +22,9 @@
 #ifdef QUINTET_HEAT
 #include "heat.glsl"
 #endif
+#ifdef QUINTET_EXPLAIN
+#include "explain.glsl"
+#endif
 #ifdef QUINTET_GSN_OPEN
 #include "output.glsl"
 #include "payload.glsl"
@@ -58,6 +61,13 @@ void gsnSetPixel(vec4 value) { OutputArray(frame.outputs[0]).at[gsnPixelIndex_()
 vec4 gsnGetPreviousPixel() {
   return frame.previousOutputs[0] != 0ul ? OutputArray(frame.previousOutputs[0]).at[gsnPixelIndex_()] : vec4(0.0);
 }
+#ifdef QUINTET_EXPLAIN
+void gsnSetPixelAt_(vec4 value, uint line) {
+  explainStore_(0u, launchPixel(), value, kExplainStored, line);
+  gsnSetPixel(value);
+}
+#define gsnSetPixel(value_) gsnSetPixelAt_(value_, uint(__LINE__))
+#endif
 #endif
 
 void gsnLoadBuiltIns_() {

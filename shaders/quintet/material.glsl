@@ -107,6 +107,7 @@ Shading shadeSurface(Surface s, vec3 wo) {
   r.bitangent = cross(r.normal, r.tangent);
   r.bsdf.clearcoatNormal = vec3(0.0, 0.0, 1.0);
   if (kHasNormalMaps) r.bsdf.clearcoatNormal = toLocal(r, consistentNormal(side * fromTangentSpace(s, front, coatMapped), s.geometricNormal, wo));
+  explainShading(r.normal, r.emission, r.bsdf.baseColor, r.bsdf.metallic, r.bsdf.alpha, r.bsdf.transmission, r.bsdf.ior, r.bsdf.clearcoat, r.unlit);
   return r;
 }
 

@@ -50,6 +50,25 @@ void addOutputAt_(uint slot, uvec2 pixel, vec4 sample_, uint line) {
 #define addOutput(slot_, pixel_, sample_) addOutputAt_(slot_, pixel_, sample_, uint(__LINE__))
 #endif
 
+#ifdef QUINTET_EXPLAIN_GLSL
+// Logged, with the line of the call (quintet/explain.glsl).
+void storeOutputAt_(uint slot, uvec2 pixel, vec4 sum, uint line) {
+  explainStore_(slot, pixel, sum, kExplainStored, line);
+  storeOutput(slot, pixel, sum);
+}
+void addOutputAt_(uint slot, uvec2 pixel, vec4 sample_, uint line) {
+  explainStore_(slot, pixel, sample_, kExplainAdded, line);
+  addOutput(slot, pixel, sample_);
+}
+void storeCoverageAt_(uint slot, uvec2 pixel, uint index, uint id, uint line) {
+  explainStore_(slot, pixel, vec4(uintBitsToFloat(id), 0.0, 0.0, 0.0), kExplainCoverage, line);
+  storeCoverage(slot, pixel, index, id);
+}
+#define storeOutput(slot_, pixel_, sum_) storeOutputAt_(slot_, pixel_, sum_, uint(__LINE__))
+#define addOutput(slot_, pixel_, sample_) addOutputAt_(slot_, pixel_, sample_, uint(__LINE__))
+#define storeCoverage(slot_, pixel_, index_, id_) storeCoverageAt_(slot_, pixel_, index_, id_, uint(__LINE__))
+#endif
+
 // For a program that averages by itself (accumulation = "program"): the index of the frame, and the value that the
 // previous frame stored. That value is 0 in the first frame, and always 0 if the film averages.
 uint launchFrame() { return launch.firstSample; }

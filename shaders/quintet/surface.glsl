@@ -3,6 +3,7 @@
 #ifndef QUINTET_SURFACE_GLSL
 #define QUINTET_SURFACE_GLSL
 
+#include "explain_hooks.glsl"
 #include "payload.glsl"
 #include "texture.glsl"
 
@@ -123,6 +124,7 @@ Surface fetchSurface(HitPayload hit, vec3 wo) {
   }
   s.uvs[0] = interpolateUv(geometry, v, b, 0u);
   s.uvs[1] = interpolateUv(geometry, v, b, 1u);
+  explainSurface(s.position, s.geometricNormal, s.shadingNormal, s.uvs[0], s.material, s.frontFace);
   return s;
 }
 

@@ -5,6 +5,7 @@
 #ifndef QUINTET_TRACE_GLSL
 #define QUINTET_TRACE_GLSL
 
+#include "explain_hooks.glsl"
 #include "frame.glsl"
 #include "payload.glsl"
 #include <quintet/generated/program.glsl>
@@ -72,6 +73,11 @@ bool traceVisible(vec3 origin, vec3 direction, float tmax, uint seed) {
 // program uses the any-hit shader quintet/stages/transmittance.rahit; all other surfaces block it.
 vec3 traceTransmittance(vec3 origin, vec3 direction, float tmax, uint seed) {
   const bool visible = traceVisible(origin, direction, tmax, seed);
+#ifdef QUINTET_NO_TRANSMITTANCE
+  explainVisibility(vec3(visible ? 1.0 : 0.0));
+#else
+  explainVisibility(visible ? shadowPayload.transmittance : vec3(0.0));
+#endif
 #ifndef QUINTET_NO_TRANSMITTANCE
   if (visible) return shadowPayload.transmittance;
 #endif

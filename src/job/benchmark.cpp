@@ -379,8 +379,9 @@ class ProgramBenchmark {
     settings.timeoutSeconds = 300;
     settings.profile = !instrument;
     settings.instrument = instrument;
-    CheckedProgram checked = compileAndCheck(program_, compiler_, render::renderDefines(scene_->defines(), {}),
-                                             scene_->facts(), deviceLimits(context_.info()), instrument);
+    CheckedProgram checked = compileAndCheck(
+        program_, compiler_, render::renderDefines(scene_->defines(), {}), scene_->facts(),
+        deviceLimits(context_.info()), instrument ? program::Instrumentation::checks : program::Instrumentation::none);
     return render::Renderer(*scene_, std::move(checked.runnable), compiler_, nullptr, settings);
   }
 

@@ -53,7 +53,7 @@ std::vector<Diagnostic> runInstrumented(Engine& engine, const program::Program& 
   render::DeviceScene deviceScene(context, std::move(scene), environment);
   CheckedProgram checked =
       compileAndCheck(program, engine.compiler(), render::renderDefines(deviceScene.defines(), request.outputs),
-                      deviceScene.facts(), deviceLimits(context.info()), true);
+                      deviceScene.facts(), deviceLimits(context.info()), program::Instrumentation::checks);
   render::Renderer renderer(deviceScene, std::move(checked.runnable), engine.compiler(), nullptr, settings);
   try {
     const bool accumulates = program.accumulation == program::Accumulation::program;

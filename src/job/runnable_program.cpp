@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "check/check.h"
 #include "program/heat.h"
-#include "program/hit_checks.h"
+#include "program/hit_shaders.h"
 
 namespace quintet::job {
 namespace {
@@ -76,14 +76,17 @@ program::PrintTable addProbes(CheckedProgram& checked, const shader::Compiler& c
 
 CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,
                                const render::Defines& defines, const program::SceneFacts& scene,
-                               const check::DeviceLimits& limits, bool runtimeChecks) {
+                               const check::DeviceLimits& limits, program::Instrumentation instrumentation) {
+  using program::Instrumentation;
   CheckedProgram checked = checkCompiled(program, program::compile(program, compiler, defines), scene, limits);
-  if (runtimeChecks) {
-    checked.runnable.description = program::withHitChecks(std::move(checked.runnable.description));
-    instrument(checked.runnable, compiler, defines, program::Instrumentation::checks);
-  } else {
+  program::RunnableProgram& runnable = checked.runnable;
+  if (instrumentation != Instrumentation::checks && instrumentation != Instrumentation::explain) {
     countRecursion(checked, compiler, defines);
+    return checked;
   }
+  runnable.description = program::withHitShaders(std::move(runnable.description), instrumentation);
+  runnable.countsRecursion = checked.cyclic && instrumentation == Instrumentation::explain;
+  instrument(runnable, compiler, runnable.countsRecursion ? recursionDefines(runnable, defines) : defines, instrumentation);
   return checked;
 }
 

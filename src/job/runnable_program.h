@@ -41,11 +41,12 @@ program::Probes requestedProbes(const RenderRequest& request, const program::Pro
 program::PrintTable addProbes(CheckedProgram& checked, const shader::Compiler& compiler, const render::Defines& defines,
                               program::Probes probes);
 
-// `defines` are those of render::renderDefines. `runtimeChecks` adds those of program/instrument.h; otherwise the program
-// counts its recursion if necessary. Throws ProgramError.
+// `defines` are those of render::renderDefines. The result has Instrumentation::checks or explain on request; without
+// checks, the program counts its recursion if necessary. Throws ProgramError.
 CheckedProgram compileAndCheck(const program::Program& program, const shader::Compiler& compiler,
                                const render::Defines& defines, const program::SceneFacts& scene,
-                               const check::DeviceLimits& limits, bool runtimeChecks = false);
+                               const check::DeviceLimits& limits,
+                               program::Instrumentation instrumentation = program::Instrumentation::none);
 
 // Returns what Observer::deviceHung() reports when a launch of the program did not end within `seconds`.
 Diagnostic hangDiagnostic(const program::Program& program, double seconds);

@@ -8,7 +8,8 @@
 #include "base/stopwatch.h"
 #include "program/description/generated_glsl.h"
 #include "program/gsn/lecture.h"
-#include "program/hit_checks.h"
+#include "program/hit_shaders.h"
+#include "quintet/shared/explain.h"
 #include "spirv/module.h"
 
 namespace quintet::program {
@@ -41,6 +42,17 @@ void addResult(CompiledProgram& compiled, shader::Result& result) {
   compiled.fileHashes.insert(compiled.fileHashes.end(), result.fileHashes.begin(), result.fileHashes.end());
 }
 
+// Adds the stores of payloads and callable data to an instrumented stage.
+void logCalls(const Program& program, CompiledProgram::Stage& stage, std::size_t index) {
+  if (stage.spirv.empty()) return;
+  spirv::LoggedCalls logged = spirv::logCallData(
+      stage.spirv, {shared::kExplainDataBefore, shared::kExplainDataAfter, shared::kExplainDataWords},
+      static_cast<std::uint32_t>(index) * kCallsPerStage);
+  stage.spirv = std::move(logged.spirv);
+  stage.calls = std::move(logged.sites);
+  for (spirv::CallSite& call : stage.calls) call.location.file = userFile(program, call.location.file);
+}
+
 }  // namespace
 
 shader::Source stageSource(const Program& program, const std::string& file, std::size_t index,
@@ -51,7 +63,7 @@ shader::Source stageSource(const Program& program, const std::string& file, std:
   source.stage = *shader::stageOfFile(library ? file.substr(1, file.size() - 2) : file);
   source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + file + "\n"
                         : program.files.at(file);
-  if (file != kHitCheckStage) source.text = instrumentStage(source.text, source.stage, index, instrumentation);
+  if (!isHitStage(file)) source.text = instrumentStage(source.text, source.stage, index, instrumentation);
   source.name = program.path(file);
   source.defines = defines;
   source.virtualFiles = generatedFiles(program);
@@ -87,6 +99,7 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
     results[i] = compiler.compile(source);
     if (program.descriptionFile.ends_with(kLectureExtension)) explainLectureNames(results[i].diagnostics, source.stage);
     compiled.stages[i] = {files[i], source.stage, std::move(results[i].spirv)};
+    if (instrumentation == Instrumentation::explain) logCalls(program, compiled.stages[i], i);
   });
   compiled.ok = std::ranges::none_of(compiled.stages, [](const auto& stage) { return stage.spirv.empty(); });
   compiled.diagnostics = program.diagnostics;

@@ -13,8 +13,11 @@
 #include "program/description/program.h"
 #include "program/instrument.h"
 #include "shader/compiler.h"
+#include "spirv/log_call_data.h"
 
 namespace quintet::program {
+
+inline constexpr std::uint32_t kCallsPerStage = 1u << 16;
 
 // SPIR-V of every stage, or the diagnostics that explain why it is missing.
 struct CompiledProgram {
@@ -22,6 +25,9 @@ struct CompiledProgram {
     std::string file;
     shader::Stage kind = shader::Stage::rayGeneration;
     std::vector<std::uint32_t> spirv;  // empty if the stage did not compile
+    // With Instrumentation::explain: the calls whose data are logged. Call k of stage number i has the number
+    // i · kCallsPerStage + k in the log.
+    std::vector<spirv::CallSite> calls = {};
   };
   std::vector<Stage> stages;  // one per file that the program uses
   std::vector<Diagnostic> diagnostics;

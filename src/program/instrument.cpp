@@ -98,22 +98,26 @@ std::string probedStage(const std::string& source, shader::Stage stage, Probes p
 
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
                             Instrumentation instrumentation) {
-  const bool checks = instrumentation == Instrumentation::checks;
+  const bool wraps = instrumentation == Instrumentation::checks || instrumentation == Instrumentation::explain;
   const bool traces =
       stage == shader::Stage::rayGeneration || stage == shader::Stage::closestHit || stage == shader::Stage::miss;
-  if (!checks && !(traces && instrumentation == Instrumentation::recursion)) return source;
+  if (!wraps && !(traces && instrumentation == Instrumentation::recursion)) return source;
+  const bool explain = instrumentation == Instrumentation::explain;
   std::string inserted;
-  if (checks)
-    inserted = fmt::format(
-        "#define QUINTET_INSTRUMENT 1\n#define QUINTET_INSTRUMENT_STAGE {}u\n#define QUINTET_INSTRUMENT_KIND {}\n",
-        index, kindOf(stage));
+  if (wraps)
+    inserted = fmt::format("#define QUINTET_{0} 1\n#define QUINTET_{0}_STAGE {1}u\n#define QUINTET_{0}_KIND {2}\n",
+                           explain ? "EXPLAIN" : "INSTRUMENT", index, kindOf(stage));
   else
     inserted = "#define QUINTET_RECURSION 1\n";
-  if (!checks && stage == shader::Stage::rayGeneration) inserted += "#define QUINTET_RECURSION_START 1\n";
-  if (!isLecture(source)) inserted += fmt::format("#include <quintet/{}.glsl>\n", checks ? "instrument" : "recursion");
-  const std::string result = insertAfterHead(source, inserted);
-  if (!checks) return result;
-  return result + "\n#undef main\nvoid main() {\n  if (instrumentBegin_()) instrumentedMain_();\n}\n";
+  if (!wraps && stage == shader::Stage::rayGeneration) inserted += "#define QUINTET_RECURSION_START 1\n";
+  if (!isLecture(source))
+    inserted += fmt::format("#include <quintet/{}.glsl>\n", explain ? "explain" : wraps ? "instrument" : "recursion");
+  std::string result = insertAfterHead(source, inserted);
+  if (!wraps) return result;
+  result += "\n#undef main\nvoid main() {\n";
+  result += explain ? "  if (explainBegin_()) {\n    explainedMain_();\n    explainEnd_(0u);\n  }\n"
+                    : "  if (instrumentBegin_()) instrumentedMain_();\n";
+  return result + "}\n";
 }
 
 }  // namespace quintet::program

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Instruments shaders: wraps quintet/instrument.glsl or quintet/recursion.glsl, which check at run time, or
-// quintet/print.glsl and quintet/heat.glsl, around the source of a stage. The renderer reads what the shaders wrote
-// (render/renderer/instrument.h, render/renderer/shader_log.h).
+// quintet/explain.glsl, quintet/print.glsl and quintet/heat.glsl, around the source of a stage. The renderer reads what the
+// shaders wrote (render/renderer/instrument.h, render/renderer/shader_log.h).
 #ifndef QUINTET_PROGRAM_INSTRUMENT_H
 #define QUINTET_PROGRAM_INSTRUMENT_H
 
@@ -15,10 +15,12 @@ enum class Instrumentation {
   none,
   recursion,  // traces beyond the recursion depth of the pipeline are skipped and counted
   checks,     // all checks of quintet/instrument.glsl, which include that one
+  // Logs what each stage does (quintet/explain.glsl), and counts the recursion if QUINTET_RECURSION_DEPTH is defined.
+  explain,
 };
 
-// Returns the source of stage number `index` with the checks. Those of the recursion are only in stages that can trace.
-// Messages keep their line numbers. A lecture-form stage includes quintet/gsn.glsl, which includes the checks itself;
+// Returns the source of stage number `index` with the instrumentation. Those of the recursion are only in stages that can trace.
+// Messages keep their line numbers. A lecture-form stage includes quintet/gsn.glsl, which includes it itself;
 // other sources get them after their leading #version and #extension lines.
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
                             Instrumentation instrumentation = Instrumentation::checks);

@@ -14,6 +14,7 @@
 #ifndef QUINTET_BSDF_BSDF_GLSL
 #define QUINTET_BSDF_BSDF_GLSL
 
+#include "../explain_hooks.glsl"
 #include "lobes.glsl"
 #include "local_frame.glsl"
 
@@ -80,6 +81,7 @@ LobeChoice chooseLobe(Bsdf b, float u) {
 // it once. Returns false if the direction contributes nothing.
 bool bsdfSampleDirection(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s) {
   LobeChoice choice = chooseLobe(b, uLobe);
+  explainLobe(choice.lobe, choice.probability);
   s.delta = lobeIsDelta(b, choice.lobe);
 
   Microfacets facets = lobeMicrofacets(b, choice.lobe);

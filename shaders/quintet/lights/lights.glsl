@@ -4,6 +4,7 @@
 #ifndef QUINTET_LIGHTS_LIGHTS_GLSL
 #define QUINTET_LIGHTS_LIGHTS_GLSL
 
+#include "../explain_hooks.glsl"
 #include "../features.glsl"
 #include "directional.glsl"
 #include "environment.glsl"
@@ -20,6 +21,7 @@ bool sampleLight(LightSampleContext context, float uLight, vec2 u, out LightSamp
   const uint bits = hashCombine(hashCombine(floatBitsToUint(uLight), floatBitsToUint(u.x)), floatBitsToUint(u.y));
   float probability;
   const uint index = chooseLight(context, uLight, bits, probability);
+  explainLightChoice(index, probability);
   if (index == kNoLight) return false;
   const LightData light = LightArray(frame.lights).at[index];
   const vec3 position = context.position;

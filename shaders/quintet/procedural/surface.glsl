@@ -5,6 +5,7 @@
 #ifndef QUINTET_PROCEDURAL_SURFACE_GLSL
 #define QUINTET_PROCEDURAL_SURFACE_GLSL
 
+#include "../explain_hooks.glsl"
 #include "point.glsl"
 
 // As surfaceError, of a point of a solid: p in the canonical space, which adds a transform each way; `largest`: the
@@ -54,6 +55,7 @@ Surface fetchSolid(HitPayload hit, InstanceData instance, GeometryData geometry,
   s.color = vec4(1.0);
   s.uvs[0] = point.uv;
   s.uvs[1] = point.uv;
+  explainSurface(s.position, s.geometricNormal, s.shadingNormal, s.uvs[0], s.material, s.frontFace);
   return s;
 }
 

@@ -16,7 +16,7 @@ struct LogHeader {
   uint capacity;     // in: words after this header
   uint used;         // words of the records so far; larger than the capacity if a record did not fit
   uint dropped;      // records that did not fit
-  uint padding;
+  uint state;        // for the shaders that write records, if the log takes those of one invocation only
   uvec2 firstPixel;  // in: only invocations for the pixels [firstPixel, endPixel) of the image write records
   uvec2 endPixel;
 };

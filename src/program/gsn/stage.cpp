@@ -63,7 +63,7 @@ class StageWriter {
     for (const LectureUniform& uniform : s_.uniforms) patch_.blank(uniform.begin, uniform.end);
     declareTypes();
     if (main_.stage == Stage::intersection && hasHitAttribute_)
-      macros_ = "#define reportIntersectionEXT(t, kind) gsnReport_(t, kind)\n";
+      macros_ = "#undef reportIntersectionEXT\n#define reportIntersectionEXT(t, kind) gsnReport_(t, kind)\n";
     patch_.insert(main_.body, " gsnBegin_();");
     return prelude() + fmt::format("#line 1 \"{}\"\n", s_.file) + patch_.finish() + "\n";
   }

@@ -38,7 +38,7 @@ ShaderLog::ShaderLog(gpu::Context& context, const Region& pixels, std::uint32_t 
     : empty_{.capacity = capacity,
              .used = 0,
              .dropped = 0,
-             .padding = 0,
+             .state = 0,
              .firstPixel = {pixels.x, pixels.y},
              .endPixel = {pixels.x + pixels.width, pixels.y + pixels.height}},
       buffer_(context, {.size = sizeof(shared::LogHeader) + std::uint64_t{capacity} * sizeof(std::uint32_t),

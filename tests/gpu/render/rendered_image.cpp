@@ -91,7 +91,8 @@ render::Renderer makeRenderer(render::DeviceScene& scene, const program::Program
                               const render::RenderSettings& settings, const render::Defines& defines) {
   job::CheckedProgram checked =
       job::compileAndCheck(program, testCompiler(), render::renderDefines(scene.defines(), settings.outputs, defines),
-                           scene.facts(), job::deviceLimits(scene.context().info()), settings.instrument);
+                           scene.facts(), job::deviceLimits(scene.context().info()),
+                           settings.instrument ? program::Instrumentation::checks : program::Instrumentation::none);
   return render::Renderer(scene, std::move(checked.runnable), testCompiler(), nullptr, settings);
 }
 

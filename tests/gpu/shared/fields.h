@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "quintet/shared/explain.h"
 #include "quintet/shared/film.h"
 #include "quintet/shared/heat.h"
 #include "quintet/shared/instrument.h"
@@ -129,8 +130,29 @@ GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive, flags
 GPU_FIELDS(Instrument, reportCount, traceCount, anyHitCount, mostAnyHits, deepest, pixelCount, missCount, callableCount,
            outputCount, depthLimit, rays, recordPairs, badRecords);
 GPU_FIELDS(HeatPixel, rays, bounces, depth, deepest, anyHits, intersections);
-GPU_FIELDS(LogHeader, capacity, used, dropped, padding, firstPixel, endPixel);
+GPU_FIELDS(LogHeader, capacity, used, dropped, state, firstPixel, endPixel);
 GPU_FIELDS(LogRecord, kind, wordCount, pixel, sampleIndex);
+GPU_FIELDS(ExplainRay, stage, line, flags, mask, recordOffset, recordStride, missIndex, origin, tmin, direction, tmax);
+GPU_FIELDS(ExplainRayEnd, traced);
+GPU_FIELDS(ExplainCall, stage, line, index);
+GPU_FIELDS(ExplainStage, stage);
+GPU_FIELDS(ExplainHit, stage, instance, geometry, primitive, material, geometryKind, hitKind, t, barycentric, uv,
+           geometricNormal, shadingNormal, runsProgram);
+GPU_FIELDS(ExplainBox, stage, instance, geometry, primitive, tmin, tmax);
+GPU_FIELDS(ExplainStageEnd, result);
+GPU_FIELDS(ExplainReport, t, hitKind, accepted);
+GPU_FIELDS(ExplainStore, stage, line, slot, mode, pixel, value);
+GPU_FIELDS(ExplainCamera, film, lens);
+GPU_FIELDS(ExplainSurface, position, geometricNormal, shadingNormal, uv, material, frontFace);
+GPU_FIELDS(ExplainShading, normal, emission, baseColor, metallic, alpha, transmission, ior, clearcoat, unlit);
+GPU_FIELDS(ExplainLobe, lobe, probability);
+GPU_FIELDS(ExplainLightChoice, light, type, instance, geometry, primitive, probability);
+GPU_FIELDS(ExplainLightSample, delta, direction, distance, radiance, pdf, bsdf, bsdfPdf, misWeight, throughput);
+GPU_FIELDS(ExplainVisibility, transmittance);
+GPU_FIELDS(ExplainBsdfSample, useful, delta, transmitted, straight, direction, pdf, weight);
+GPU_FIELDS(ExplainRoulette, survival, u, throughput);
+GPU_FIELDS(ExplainEmission, source, radiance, throughput, bsdfPdf, lightPdf, misWeight);
+GPU_FIELDS(ExplainContribution, source, scatterings, value, unclamped);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
 GPU_FIELDS(NotFinite, count, first);

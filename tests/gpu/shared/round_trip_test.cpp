@@ -37,7 +37,7 @@ template <class T>
 std::string glslFor() {
   return std::string(
              "#include <quintet/shared/film.h>\n#include <quintet/shared/instrument.h>\n"
-             "#include <quintet/shared/log.h>\n#include <quintet/shared/heat.h>\n") +
+             "#include <quintet/shared/explain.h>\n#include <quintet/shared/heat.h>\n") +
          kGlslWords + Fields<shared::TextureData>::glsl() + Fields<shared::EnvironmentData>::glsl() +
          Fields<shared::CameraData>::glsl() +
          (std::set<std::string>{"TextureData", "EnvironmentData", "CameraData"}.contains(Fields<T>::kName)
@@ -49,14 +49,18 @@ std::string glslFor() {
 template <class T>
 class SharedStruct : public testing::Test {};
 
-using SharedStructs =
-    testing::Types<shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::LightNode,
-                   shared::EnvironmentData, shared::InstanceData, shared::GeometryData, shared::PrimitiveData,
-                   shared::CsgNodeData, shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord,
-                   shared::RayKinds, shared::Frame, shared::FilmAdd, shared::FilmCoverage, shared::NotFinite,
-                   shared::FilmFrame, shared::FilmCheck, shared::FilmTile, shared::FixedSum, shared::CoverageSlot,
-                   shared::Launch, shared::Instrument, shared::InstrumentReport, shared::InstrumentPixel,
-                   shared::RecursionGuard, shared::LogHeader, shared::LogRecord, shared::HeatPixel>;
+using SharedStructs = testing::Types<
+    shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::LightNode,
+    shared::EnvironmentData, shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData,
+    shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::RayKinds, shared::Frame,
+    shared::FilmAdd, shared::FilmCoverage, shared::NotFinite, shared::FilmFrame, shared::FilmCheck, shared::FilmTile,
+    shared::FixedSum, shared::CoverageSlot, shared::Launch, shared::Instrument, shared::InstrumentReport,
+    shared::InstrumentPixel, shared::RecursionGuard, shared::LogHeader, shared::LogRecord, shared::HeatPixel, shared::ExplainRay,
+    shared::ExplainRayEnd, shared::ExplainCall, shared::ExplainStage, shared::ExplainHit, shared::ExplainBox,
+    shared::ExplainStageEnd, shared::ExplainReport, shared::ExplainStore, shared::ExplainCamera, shared::ExplainSurface,
+    shared::ExplainShading, shared::ExplainLobe, shared::ExplainLightChoice, shared::ExplainLightSample,
+    shared::ExplainVisibility, shared::ExplainBsdfSample, shared::ExplainRoulette, shared::ExplainEmission,
+    shared::ExplainContribution>;
 
 struct StructNames {
   template <class T>

@@ -11,7 +11,7 @@ using Words = std::vector<std::uint32_t>;
 
 LogContents parse(const Words& words, std::uint32_t dropped = 0) {
   const auto size = static_cast<std::uint32_t>(words.size());
-  return parseLog({.capacity = size, .used = size, .dropped = dropped, .padding = 0, .firstPixel = {}, .endPixel = {}},
+  return parseLog({.capacity = size, .used = size, .dropped = dropped, .state = 0, .firstPixel = {}, .endPixel = {}},
                   words);
 }
 
