@@ -153,6 +153,7 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   prepared->ignoredAnimations = loaded.scene.report.ignoredAnimations;
   prepared->instanceNames = scene::instanceNames(loaded.scene);
   prepared->materialNames = scene::materialNames(loaded.scene);
+  for (const scene::Light& light : loaded.scene.lights) prepared->lightNames.push_back(light.name);
   prepared->seconds.load = loaded.seconds;
   prepared->singleAnyHit = program::requiredSingleAnyHit(job_.program);
   const scene::ImportSeconds import = loaded.scene.seconds;

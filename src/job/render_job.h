@@ -35,6 +35,7 @@ struct PreparedScene {
   uvec2 size{0};                                                        // of the whole image, pixels
   std::vector<std::filesystem::path> files;                             // that the scene file names
   std::vector<std::string> instanceNames, materialNames;                // scene/model/names.h
+  std::vector<std::string> lightNames;                                  // of scene::Scene::lights
   std::size_t ignoredAnimations = 0;                                    // of glTF files
   program::SingleAnyHit singleAnyHit = program::SingleAnyHit::tinting;  // of the acceleration structures
   Timings seconds;

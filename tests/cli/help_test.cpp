@@ -251,7 +251,7 @@ TEST_F(BashCompletion, Names) {
   EXPECT_THAT(complete("quintet --v"), ElementsAre("--version"));
   EXPECT_THAT(complete("quintet render --ou"), ElementsAre("--output"));
   EXPECT_THAT(complete("quintet render scene.gltf --until"), ElementsAre("--until-error"));
-  EXPECT_THAT(complete("quintet help exp"), ElementsAre("explain"));
+  EXPECT_THAT(complete("quintet help exp"), ElementsAre("explain", "explain-pixel"));
 }
 
 TEST_F(BashCompletion, ValuesAndFiles) {

@@ -15,6 +15,8 @@ std::span<const Command> commands() {
       Command{"new", "create a program that renders at once", newCommand, newOptions},
       Command{"check", "compile and check programs, without rendering", checkCommand, checkOptions, true},
       Command{"explain", "explain a diagnostic and how to fix it", explainCommand, explainOptions},
+      Command{"explain-pixel", "explain one sample of a pixel: its rays and what they contribute", explainPixelCommand,
+              explainPixelOptions, true},
       Command{"info", "describe the devices, or a scene, image or film", infoCommand, infoOptions},
       Command{"compare", "measure the difference between two images", compareCommand, compareOptions},
       Command{"bench", "measure rays per second, and compare with minimal shaders", benchCommand, benchOptions, true},

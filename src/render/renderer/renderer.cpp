@@ -141,6 +141,11 @@ bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) {
   return true;
 }
 
+void Renderer::renderPixel(uvec2 pixel, std::uint32_t index) {
+  launch({1, 1, pixel, 0}, 0, 1, {index, index + 1}, recordBegin(), {});
+  finishLaunches();
+}
+
 bool Renderer::renderSamples(const Target& target, SampleRange samples, const Record& end,
                              const BatchProgress& progress) {
   const Stopwatch clock;

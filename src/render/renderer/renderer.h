@@ -38,6 +38,9 @@ class Renderer {
   // Renders the frame with this index, which is the program's frameID; for programs that accumulate. Returns false if
   // the frame was canceled; the image is then still that of the previous frame.
   bool renderFrame(std::uint32_t index, const BatchProgress& progress = {});
+  // Renders one sample, or frame, of one pixel of the region into the sums of the latest batch (Film::downloadBatch), and
+  // does not add it to the film. Blocks.
+  void renderPixel(uvec2 pixel, std::uint32_t index);
   // Adaptive sampling, for programs that support it (Program::adaptive): renders the next batch of the cells
   // (SampleCounts::cellBatches) that have the fewest batches among those below `limits`. Asserts that one is below its
   // limit. Returns false if the batch was canceled.
@@ -64,6 +67,7 @@ class Renderer {
   void finish() { finishLaunches(); }
 
   const Film& film() const { return film_; }
+  const RenderSettings& settings() const { return settings_; }  // with defaults resolved (decideSettings)
   // Returns the mean of all samples, or the last frame, as linear premultiplied RGBA. An output with display values
   // (program::OutputKind::display) is decoded, so that an 8-bit image file holds the values that the program wrote.
   // Blocks.

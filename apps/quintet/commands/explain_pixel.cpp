@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// `quintet explain-pixel`: the rays of one sample of a pixel, and what they contribute; or where two samples separate.
+#include <unistd.h>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "cli/candidates.h"
+#include "cli/exit_status.h"
+#include "cli/parser.h"
+#include "cli/render_options.h"
+#include "cli/terminal.h"
+#include "cli/values.h"
+#include "cli/work.h"
+#include "job/explanation_json.h"
+#include "job/pixel_explainer.h"
+#include "output/explanation_text.h"
+#include "program/load.h"
+
+namespace quintet::cli {
+namespace {
+
+constexpr double kMaxPixel = 65535;
+constexpr double kMaxSample = (1u << 24) - 1;
+constexpr double kMaxFrames = 1e6;
+constexpr std::size_t kMinWidth = 60, kMaxWidth = 100;  // columns
+
+struct Options : RenderOptions {
+  uvec2 pixel{0};
+  std::uint32_t sample = 0;
+  bool payloads = false;
+  std::filesystem::path against;  // an explanation to compare with; may be empty
+  job::DiffTolerance tolerance;
+};
+
+struct Texts : RenderTexts {
+  std::string pixel, sample, frame, tolerance;
+};
+
+OptionTable declare(Options& options, Texts& texts) {
+  OptionTable table(
+      "explain-pixel",
+      "Explains one sample of a pixel: prints its rays, what they hit and what they contribute. The other "
+      "options are those of the render.");
+  table.add({{.names = "SCENE",
+              .help = "Scene file: .gltf, .glb or .scene.toml (default: the program's own)",
+              .target = &texts.scene,
+              .candidates = {.extensions = kSceneExtensions}}});
+  table.add(
+      "Sample",
+      {{.names = "--pixel",
+        .value = "X,Y",
+        .help = "Pixel of the image, from the top left corner; the first one is 0,0",
+        .target = &texts.pixel},
+       {.names = "--sample",
+        .value = "N",
+        .help = "Number of the sample, or of the frame of a program that accumulates; the first one is 0 (default: 0)",
+        .target = &texts.sample}});
+  table.add(
+      "Result",
+      {{.names = "--json", .help = "Print one JSON object on standard output", .target = &options.console.json},
+       {.names = "--payloads",
+        .help = "Print payloads and details of hits also for programs that state their contributions",
+        .target = &options.payloads},
+       {.names = "--against",
+        .value = "FILE.json",
+        .help =
+            "Print only the first difference from an explanation that --json wrote; the status is 1 if there is one",
+        .target = &options.against,
+        .candidates = {.extensions = {"json"}}},
+       {.names = "--tolerance",
+        .value = "X",
+        .help = "Relative difference of numbers that counts as rounding in --against (default: 1e-4)",
+        .target = &texts.tolerance}});
+  table.add(
+      "Image",
+      {{.names = "--size",
+        .value = "WxH",
+        .help =
+            "Size in pixels, or the width alone (default: 1280x720, or 1280 on the longer side of the camera's image)",
+        .target = &texts.size},
+       {.names = "--transparent",
+        .help = "Alpha 0 in the background instead of the environment",
+        .target = &options.request.transparent},
+       {.names = "--frame",
+        .value = "N",
+        .help = "Frame of an animated scene; the first one is 0",
+        .target = &texts.frame}});
+  declareQuality(table, texts, options);
+  declareView(table, texts, options);
+  table.add("Program", {{.names = "--program",
+                         .value = "NAME",
+                         .help = "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)",
+                         .target = &options.program,
+                         .candidates = programCandidates()},
+                        {.names = "--set",
+                         .value = "NAME=VALUE",
+                         .help = "Parameter of the program; may be repeated",
+                         .target = &options.request.assignments},
+                        {.names = "--set-file",
+                         .value = "FILE.json",
+                         .help = "Parameters as a JSON object; --set overrides them",
+                         .target = &options.request.parameterFile,
+                         .candidates = {.extensions = {"json"}}}});
+  table.add("Run", {{.names = "--device",
+                     .value = "NAME",
+                     .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu", kDeviceHelp),
+                     .target = &options.device,
+                     .candidates = {.names = deviceNames()}},
+                    {.names = "--timeout",
+                     .value = "SECONDS",
+                     .help = "Time limit of one launch (default: 60; on a CPU 600)",
+                     .target = &texts.timeout},
+                    {.names = "-q,--quiet", .help = "Print no notes", .target = &options.console.quiet}});
+  table.addExamples({
+      {"quintet explain-pixel scene.glb --pixel 640,360", "sample 0 of the pixel, as the path tracer renders it"},
+      {"quintet explain-pixel scene.glb --pixel 640,360 --sample 17 --spp 256", "sample 17 of a render with --spp 256"},
+      {"quintet explain-pixel --program my_program/ --pixel 12,40", "each trace with its payload"},
+      {"quintet explain-pixel scene.glb --pixel 640,360 --json > a.json", "for scripts, and for --against"},
+      {"quintet explain-pixel scene.glb --pixel 640,360 --bounces 2 --against a.json", "where the two separate"},
+  });
+  return table;
+}
+
+uvec2 parsePixel(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  const auto x = parseInteger("--pixel", text.substr(0, comma), 0, kMaxPixel);
+  const auto y = comma == text.npos ? std::nullopt : parseInteger("--pixel", text.substr(comma + 1), 0, kMaxPixel);
+  if (!x || !y) throw UsageError(fmt::format("--pixel: '{}' must be X,Y, for example 640,360", text));
+  return {static_cast<std::uint32_t>(*x), static_cast<std::uint32_t>(*y)};
+}
+
+void convertSample(const Texts& texts, Options& options) {
+  if (texts.pixel.empty()) throw UsageError("no pixel given; use --pixel X,Y");
+  options.pixel = parsePixel(texts.pixel);
+  options.sample = static_cast<std::uint32_t>(parseInteger("--sample", texts.sample, 0, kMaxSample).value_or(0));
+  const job::RenderLimits& limits = options.request.limits;
+  if (limits.samples && !limits.adaptive && options.sample >= *limits.samples)
+    throw UsageError(fmt::format("--sample {}: a render with --spp {} has the samples 0 to {}", options.sample,
+                                 *limits.samples, *limits.samples - 1));
+  if (const auto tolerance = parseReal("--tolerance", texts.tolerance, 0.0, 1.0)) {
+    if (options.against.empty()) throw UsageError("--tolerance requires --against");
+    options.tolerance.relative = static_cast<float>(*tolerance);
+  }
+  if (const auto frame = parseInteger("--frame", texts.frame, 0, kMaxFrames)) {
+    options.request.frames.first = static_cast<std::uint32_t>(*frame);
+    options.request.frames.count = 1;
+  }
+}
+
+std::optional<Options> parseOptions(Arguments arguments) {
+  Options options;
+  Texts texts;
+  if (!parse(declare(options, texts), arguments)) return std::nullopt;
+  options.request.scene = texts.scene;
+  options.request.commandLine = commandLine("explain-pixel", arguments);
+  options.output.file = "image.png";  // of the render that is explained; it is not written
+  convert(texts, options);
+  if (options.request.limits.samples)
+    options.request.frames.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
+  convertSample(texts, options);
+  return options;
+}
+
+std::size_t textWidth() { return std::clamp(terminalWidth(STDOUT_FILENO).value_or(kMaxWidth), kMinWidth, kMaxWidth); }
+
+// Returns the exit status.
+int print(const job::PixelExplanation& explanation, const Options& options) {
+  const bool json = options.console.json;
+  if (options.against.empty()) {
+    writeFile("-", json ? job::explanationJson(explanation, options.request.commandLine)
+                        : output::explanationText(explanation, textWidth(), options.payloads));
+    return 0;
+  }
+  const job::ExplanationDiff diff =
+      job::diffExplanations(explanation, job::readExplanation(options.against), options.tolerance);
+  const std::string other = options.against.string();
+  writeFile("-", json ? output::explanationDiffJson(diff, options.request.commandLine, other)
+                      : output::explanationDiffText(diff, options.request.commandLine, other, textWidth()));
+  return diff.equal() ? 0 : kRuntimeError;
+}
+
+}  // namespace
+
+OptionTable explainPixelOptions() {
+  Options options;
+  Texts texts;
+  return declare(options, texts).withoutTargets();
+}
+
+int explainPixelCommand(Arguments arguments) {
+  const std::optional<Options> options = parseOptions(arguments);
+  if (!options) return 0;
+  if (!options->against.empty()) job::readExplanation(options->against);  // fails before the work starts
+  const program::Program program = program::loadProgram(options->program);
+  Console console(options->console);
+  console.setProgram(&program);
+  try {
+    job::Engine engine({.device = options->device, .log = [&](LogLevel level, const std::string& text) {
+                          if (level == LogLevel::warning) console.warning(text);
+                        }});
+    job::RenderJob job(engine, job::resolve(job::requestForPixel(options->request, program, options->pixel), program),
+                       console);
+    setWorkStage("explaining a pixel");
+    job::PixelExplainer explainer(engine, job);
+    const job::PixelExplanation explanation = explainer.explain(options->pixel, options->sample, console);
+    console.clear();
+    return print(explanation, *options);
+  } catch (const ProgramError& error) {
+    console.diagnostics(error.diagnostics());
+    return kRuntimeError;
+  }
+}
+
+}  // namespace quintet::cli

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where two explanations of a sample separate: of two builds, devices, parameters or programs.
+#ifndef QUINTET_JOB_EXPLANATION_DIFF_H
+#define QUINTET_JOB_EXPLANATION_DIFF_H
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "job/pixel_explanation.h"
+
+namespace quintet::job {
+
+struct DiffTolerance {
+  float relative = 1e-4f;  // of the larger magnitude; of vectors, of the longer one
+  float absolute = 1e-6f;
+};
+
+// A difference between two explanations A and B.
+struct ExplanationDifference {
+  std::string location;        // "ray 2, closest-hit, payload after: payload.color"
+  std::string a, b;            // the values; "missing" if there is none
+  std::optional<float> error;  // the absolute difference of numbers; unset for other values
+};
+
+struct ExplanationDiff {
+  std::vector<ExplanationDifference> facts;    // scene, program, device, …: what was explained
+  std::optional<ExplanationDifference> first;  // the first event that differs; unset if none does
+  std::vector<std::string> before;             // what A and B have in common just before it: the enclosing events
+  std::size_t equalEvents = 0;                 // up to the first difference
+  std::vector<ExplanationDifference> outputs;  // values of the sample that differ
+  bool equal() const { return !first && outputs.empty(); }
+};
+
+// Numbers within the tolerance are equal. Source lines and files are not compared.
+ExplanationDiff diffExplanations(const PixelExplanation& a, const PixelExplanation& b,
+                                 const DiffTolerance& tolerance = {});
+
+// A value as text: floats with up to 6 digits.
+std::string valueText(const EventValue& value);
+
+// The name of an event in its list: "ray 2", "light", "closest-hit surface.rchit".
+std::string eventName(const std::vector<ExplainedEvent>& events, std::size_t index);
+
+}  // namespace quintet::job
+#endif

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `quintet explain-pixel` prints: an explanation as a tree, or where two of them separate.
+#ifndef QUINTET_OUTPUT_EXPLANATION_TEXT_H
+#define QUINTET_OUTPUT_EXPLANATION_TEXT_H
+
+#include <cstddef>
+#include <string>
+
+#include "job/explanation_diff.h"
+#include "job/pixel_explanation.h"
+
+namespace quintet::output {
+
+// `width`: columns of the terminal, at least 40. `payloads`: show the payloads also of programs that state their
+// contributions; other programs always show them.
+std::string explanationText(const job::PixelExplanation& explanation, std::size_t width, bool payloads = false);
+
+// `a`, `b`: names of the explanations.
+std::string explanationDiffText(const job::ExplanationDiff& diff, const std::string& a, const std::string& b,
+                                std::size_t width);
+std::string explanationDiffJson(const job::ExplanationDiff& diff, const std::string& a, const std::string& b);
+
+}  // namespace quintet::output
+#endif

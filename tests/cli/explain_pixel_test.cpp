@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// `explain-pixel`: text, JSON, differences, and errors.
+#include <gmock/gmock.h>
+
+#include "fixtures.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class ExplainPixel : public CliTest {
+ protected:
+  RunResult explain(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"explain-pixel", "scene.gltf", "--pixel", "16,12", "--size",
+                                       "32x24",         "--env",      "1,1,1",   "--spp", "4"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return quintet(arguments);
+  }
+};
+
+TEST_F(ExplainPixel, PrintsTheTreeAsText) {
+  const RunResult result = explain({"--sample", "2"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("scene.gltf: pixel 16,12 of 32x24, sample 2 of 4, seed 0\n"));
+  EXPECT_THAT(result.out, HasSubstr("\nContributions\n"));
+  EXPECT_THAT(result.out, HasSubstr("\nRay 1: radiance, "));
+  EXPECT_THAT(result.out, ::testing::Not(HasSubstr("The sum is not")));
+}
+
+TEST_F(ExplainPixel, PrintsJsonAndComparesWithIt) {
+  const RunResult first = explain({"--json"});
+  ASSERT_EQ(first.status, 0) << first.err;
+  const auto json = nlohmann::json::parse(first.out);
+  EXPECT_EQ(json["pixel"], nlohmann::json({16, 12}));
+  EXPECT_EQ(json["program"], "pathtracer");
+  EXPECT_THAT(json["command"].get<std::string>(), HasSubstr("quintet explain-pixel scene.gltf --pixel 16,12"));
+  EXPECT_EQ(json["events"][1]["type"], "ray");
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(json["contributionSum"][i].get<double>(), json["outputs"][0]["value"][i].get<double>(), 1e-5);
+
+  write(folder_ / "a.json", first.out);
+  const RunResult same = explain({"--against", "a.json"});
+  EXPECT_EQ(same.status, 0) << same.out << same.err;
+  EXPECT_THAT(same.out, HasSubstr("events are equal"));
+  const RunResult other = explain({"--against", "a.json", "--seed", "1", "--json"});
+  EXPECT_EQ(other.status, 1);
+  const auto difference = nlohmann::json::parse(other.out);
+  EXPECT_EQ(difference["equal"], false);
+  EXPECT_EQ(difference["facts"][0]["location"], "seed");
+  EXPECT_EQ(difference["first"]["location"], "camera: film");
+}
+
+TEST_F(ExplainPixel, RejectsWrongRequests) {
+  expectError(quintet({"explain-pixel", "scene.gltf"}), 2, {"no pixel given; use --pixel X,Y"});
+  expectError(quintet({"explain-pixel", "scene.gltf", "--pixel", "5"}), 2, {"--pixel: '5' must be X,Y"});
+  expectError(explain({"--sample", "4"}), 2, {"--sample 4", "samples 0 to 3"});
+  expectError(explain({"--tolerance", "0.1"}), 2, {"--tolerance requires --against"});
+  expectError(explain({"--against", "missing.json"}), 1, {"missing.json"});
+  write(folder_ / "wrong.json", "{}");
+  expectError(explain({"--against", "wrong.json"}), 1, {"wrong.json", "not an explanation"});
+  expectError(quintet({"explain-pixel", "scene.gltf", "--pixel", "400,2", "--size", "32x24"}), 2, {"400"});
+}
+
+}  // namespace
+}  // namespace quintet::test
