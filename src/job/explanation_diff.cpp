@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kMissing = "missing";
 
-std::string floatText(float value) { return fmt::format("{:.6g}", value); }
+std::string floatText(float value) { return std::isnan(value) ? "nan" : fmt::format("{:.6g}", value); }
 
 struct ToText {
   std::string operator()(bool value) const { return value ? "true" : "false"; }
@@ -87,7 +87,8 @@ class Walk {
         return false;
       }
       path_.push_back(nameA);
-      const bool equal = compareEvents(a[i], b[i], at.empty() ? nameA : at + ", " + nameA);
+      const bool equal =
+          compareEvents(a[i], b[i], at.empty() ? nameA : at + ", " + nameA, {findBefore(a, a[i]), findBefore(b, b[i])});
       path_.pop_back();
       if (!equal) return false;
     }
@@ -95,9 +96,35 @@ class Walk {
   }
 
  private:
-  bool compareEvents(const ExplainedEvent& a, const ExplainedEvent& b, const std::string& at) {
+  // The values before the call, for the data after it; null for other events.
+  struct Before {
+    const ExplainedEvent* a;
+    const ExplainedEvent* b;
+  };
+  static const ExplainedEvent* findBefore(const std::vector<ExplainedEvent>& events, const ExplainedEvent& after) {
+    if (after.text("when") != "after") return nullptr;
+    for (const ExplainedEvent& event : events)
+      if (event.type == after.type && event.text("when") == "before") return &event;
+    return nullptr;
+  }
+
+  // What a program does not write is undefined. So the data before a call are not compared, nor what it left unchanged.
+  static bool isUndefined(const ExplainedEvent& a, const ExplainedEvent& b, const Before& before,
+                          const std::string& name) {
+    if (name == "when" || name == "variable" || name == "dataType") return false;
+    if (a.text("when") == "before") return true;
+    if (!before.a || !before.b) return false;
+    const auto unchanged = [&](const ExplainedEvent& event, const ExplainedEvent& earlier) {
+      const EventValue* value = event.find(name);
+      const EventValue* old = earlier.find(name);
+      return value && old && *value == *old;
+    };
+    return unchanged(a, *before.a) && unchanged(b, *before.b);
+  }
+
+  bool compareEvents(const ExplainedEvent& a, const ExplainedEvent& b, const std::string& at, const Before& before) {
     for (const auto& [name, value] : a.fields) {
-      if (isLocation(name)) continue;
+      if (isLocation(name) || isUndefined(a, b, before, name)) continue;
       const EventValue* other = b.find(name);
       if (!other) return stop({at + ": " + name, valueText(value), kMissing, {}});
       if (auto difference = compare(at + ": " + name, value, *other, tolerance_)) return stop(std::move(*difference));

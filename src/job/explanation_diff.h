@@ -33,7 +33,8 @@ struct ExplanationDiff {
   bool equal() const { return !first && outputs.empty(); }
 };
 
-// Numbers within the tolerance are equal. Source lines and files are not compared.
+// Numbers within the tolerance are equal. Source lines and files are not compared, nor are payloads and callable data before
+// a call, and what the call does not change: members that a program has not written are undefined.
 ExplanationDiff diffExplanations(const PixelExplanation& a, const PixelExplanation& b,
                                  const DiffTolerance& tolerance = {});
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "gpu/error.h"
 #include "job/device_limits.h"
@@ -44,6 +46,9 @@ vec4 batchValue(const render::Renderer& renderer, std::size_t output, uvec2 pixe
 RenderRequest requestForPixel(RenderRequest request, const program::Program& program, uvec2 pixel) {
   if (request.region.width > 0) throw UsageError("region: a pixel is explained in the whole image");
   if (request.batches) throw UsageError("batches: a sample is explained in the whole render");
+  if (request.size.x > 0 && request.size.y > 0 && (pixel.x >= request.size.x || pixel.y >= request.size.y))
+    throw UsageError(
+        fmt::format("pixel {},{} is not inside the image of {}x{}", pixel.x, pixel.y, request.size.x, request.size.y));
   const bool accumulates = program.accumulation == program::Accumulation::program;
   if (!accumulates || !readsOtherPixels(program)) request.region = {pixel.x, pixel.y, 1, 1};
   return request;

@@ -17,8 +17,8 @@
 namespace quintet::job {
 
 // Returns the request of a render of which only this pixel is explained. Its region is the pixel, unless the program
-// accumulates frames and can read those of other pixels. Throws UsageError for a region or a part of a render, which
-// cannot be explained.
+// accumulates frames and can read those of other pixels. Throws UsageError for a pixel outside of the image, and for a region
+// or a part of a render, which cannot be explained.
 RenderRequest requestForPixel(RenderRequest request, const program::Program& program, uvec2 pixel);
 
 class PixelExplainer {

@@ -24,7 +24,8 @@ constexpr std::size_t kLabelColumns = 15;
 constexpr float kInfinity = 3.402823466e38f;  // as in the shader library: a ray without limit
 
 std::string numberText(float value) {
-  if (value == 0.0f) return "0";  // not "-0"
+  if (value == 0.0f) return "0";        // not "-0"
+  if (std::isnan(value)) return "nan";  // not "-nan"
   return value >= kInfinity ? "infinity" : fmt::format("{:.5g}", value);
 }
 

@@ -59,7 +59,8 @@ TEST_F(ExplainPixel, RejectsWrongRequests) {
   expectError(explain({"--against", "missing.json"}), 1, {"missing.json"});
   write(folder_ / "wrong.json", "{}");
   expectError(explain({"--against", "wrong.json"}), 1, {"wrong.json", "not an explanation"});
-  expectError(quintet({"explain-pixel", "scene.gltf", "--pixel", "400,2", "--size", "32x24"}), 2, {"400"});
+  expectError(quintet({"explain-pixel", "scene.gltf", "--pixel", "400,2", "--size", "32x24"}), 2,
+              {"pixel 400,2 is not inside the image of 32x24"});
 }
 
 }  // namespace

@@ -47,6 +47,24 @@ TEST(ExplanationDiff, IgnoresRoundingAndSourceLines) {
   EXPECT_EQ(strict.outputs.size(), 1u);
 }
 
+// Members that a program has not written are undefined.
+TEST(ExplanationDiff, IgnoresPayloadsThatTheCallDoesNotChange) {
+  const auto withBefore = [](float before, float after) {
+    PixelExplanation e = somePath();
+    std::vector<ExplainedEvent>& children = e.events[0].children;
+    children[1].set("payload.t", after);
+    children.insert(children.begin(), children[1]);
+    children[0].set("when", std::string("before"));
+    children[0].set("payload.t", before);
+    return e;
+  };
+  EXPECT_TRUE(diffExplanations(withBefore(1, 1), withBefore(2, 2)).equal());
+  EXPECT_TRUE(diffExplanations(withBefore(1, 3), withBefore(2, 3)).equal());
+  const ExplanationDiff changed = diffExplanations(withBefore(1, 1), withBefore(2, 3));
+  ASSERT_TRUE(changed.first);
+  EXPECT_EQ(changed.first->location, "ray 1, payload after: payload.t");
+}
+
 // The tolerance of a vector follows from its largest component: a direction may have a component near 0.
 TEST(ExplanationDiff, ComparesVectorsByTheirLength) {
   PixelExplanation a = somePath(), b = somePath();
