@@ -17,6 +17,7 @@ std::span<const Command> commands() {
       Command{"explain", "explain a diagnostic and how to fix it", explainCommand, explainOptions},
       Command{"explain-pixel", "explain one sample of a pixel: its rays and what they contribute", explainPixelCommand,
               explainPixelOptions, true},
+      Command{"find", "find samples that are not finite, and fireflies", findCommand, findOptions, true},
       Command{"info", "describe the devices, or a scene, image or film", infoCommand, infoOptions},
       Command{"compare", "measure the difference between two images", compareCommand, compareOptions},
       Command{"bench", "measure rays per second, and compare with minimal shaders", benchCommand, benchOptions, true},

@@ -224,7 +224,7 @@ void Film::forStrips(const Output& output, bool squares, const Use& use) const {
 }
 
 FilmState Film::save() const {
-  FilmState state{region_, counts_, {}, statistics_.downloadAs<uvec2>(std::size_t{region_.width} * region_.height)};
+  FilmState state{region_, counts_, {}, downloadStatistics()};
   for (const Output& output : outputs_) state.planes.push_back(plane(output));
   return state;
 }
@@ -273,8 +273,10 @@ std::vector<vec4> Film::downloadBatch(std::size_t output) const {
   return outputs_.at(output).batch.downloadAs<vec4>(std::size_t{region_.width} * region_.height);
 }
 
-RayCount Film::countRays() const {
-  return render::countRays(statistics_.downloadAs<uvec2>(std::size_t{region_.width} * region_.height), region_);
+RayCount Film::countRays() const { return render::countRays(downloadStatistics(), region_); }
+
+std::vector<uvec2> Film::downloadStatistics() const {
+  return statistics_.downloadAs<uvec2>(std::size_t{region_.width} * region_.height);
 }
 
 std::vector<NotFinitePixels> Film::notFinitePixels() const {

@@ -51,6 +51,8 @@ class Film {
   // Returns the sums of the latest batch, RGBA per pixel in row-major order from the top. Blocks.
   std::vector<vec4> downloadBatch(std::size_t output) const;
   RayCount countRays() const;  // blocks
+  // Reads FilmState::statistics. Blocks.
+  std::vector<uvec2> downloadStatistics() const;
   // Returns findNotFinite() of the current contents, found on the device. For a program that accumulates, it counts the
   // pixels that were not finite in any frame. Blocks.
   std::vector<NotFinitePixels> notFinitePixels() const;

@@ -146,6 +146,12 @@ void Renderer::renderPixel(uvec2 pixel, std::uint32_t index) {
   finishLaunches();
 }
 
+void Renderer::renderSample(std::uint32_t index) {
+  assert(!accumulates());
+  renderSamples(wholeRegion(), {index, index + 1}, {}, {});
+  finishLaunches();
+}
+
 bool Renderer::renderSamples(const Target& target, SampleRange samples, const Record& end,
                              const BatchProgress& progress) {
   const Stopwatch clock;

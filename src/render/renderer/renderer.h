@@ -41,6 +41,8 @@ class Renderer {
   // Renders one sample, or frame, of one pixel of the region into the sums of the latest batch (Film::downloadBatch), and
   // does not add it to the film. Blocks.
   void renderPixel(uvec2 pixel, std::uint32_t index);
+  // The same for all pixels; for programs whose samples the film averages.
+  void renderSample(std::uint32_t index);
   // Adaptive sampling, for programs that support it (Program::adaptive): renders the next batch of the cells
   // (SampleCounts::cellBatches) that have the fewest batches among those below `limits`. Asserts that one is below its
   // limit. Returns false if the batch was canceled.

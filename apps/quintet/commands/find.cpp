@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// `quintet find`: samples that are not finite, and fireflies, with the command that explains each of them.
+#include <unistd.h>
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "cli/candidates.h"
+#include "cli/exit_status.h"
+#include "cli/parser.h"
+#include "cli/render_options.h"
+#include "cli/terminal.h"
+#include "cli/values.h"
+#include "cli/work.h"
+#include "job/sample_search.h"
+#include "output/search_report.h"
+#include "program/load.h"
+
+namespace quintet::cli {
+namespace {
+
+constexpr double kMaxThreshold = 1e6;
+constexpr double kMaxLimit = 1000;
+
+struct Options : RenderOptions {
+  job::SearchOptions search{.notFinite = false, .fireflies = false};
+  std::string command;  // that explains a sample, without pixel and sample
+};
+
+struct Texts : RenderTexts {
+  std::string threshold, limit, frame;
+};
+
+OptionTable declare(Options& options, Texts& texts) {
+  OptionTable table("find",
+                    "Finds samples that are not finite (NaN or infinite), and fireflies, and prints the command that "
+                    "explains each of them. No image is written. The status is 1 if a sample is found.");
+  table.add({{.names = "SCENE",
+              .help = "Scene file: .gltf, .glb or .scene.toml (default: the program's own)",
+              .target = &texts.scene,
+              .candidates = {.extensions = kSceneExtensions}}});
+  table.add(
+      "Search",
+      {{.names = "--nan",
+        .help = "Find samples that are not finite (default: both kinds)",
+        .target = &options.search.notFinite},
+       {.names = "--fireflies",
+        .help = "Find samples that alone make their pixel much brighter than its surroundings",
+        .target = &options.search.fireflies},
+       {.names = "--threshold",
+        .value = "X",
+        .help = "Firefly: one sample makes the pixel more than X times as bright as its surroundings (default: 2)",
+        .target = &texts.threshold},
+       {.names = "--limit",
+        .value = "N",
+        .help = "Number of samples of each kind to explain; the others are only counted (default: 10)",
+        .target = &texts.limit},
+       {.names = "--json", .help = "Print one JSON object on standard output", .target = &options.console.json}});
+  table.add(
+      "Image",
+      {{.names = "--size",
+        .value = "WxH",
+        .help = "Size in pixels, or the width alone (default: 1280x720, or 1280 on the longer side of the camera's "
+                "image)",
+        .target = &texts.size},
+       {.names = "--region",
+        .value = "X,Y,W,H",
+        .help = "Search only this part, in pixels from the top left",
+        .target = &texts.region},
+       {.names = "--transparent",
+        .help = "Alpha 0 in the background instead of the environment",
+        .target = &options.request.transparent},
+       {.names = "--frame",
+        .value = "N",
+        .help = "Frame of an animated scene; the first one is 0",
+        .target = &texts.frame}});
+  declareQuality(table, texts, options);
+  declareView(table, texts, options);
+  table.add("Program", {{.names = "--program",
+                         .value = "NAME",
+                         .help = "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)",
+                         .target = &options.program,
+                         .candidates = programCandidates()},
+                        {.names = "--set",
+                         .value = "NAME=VALUE",
+                         .help = "Parameter of the program; may be repeated",
+                         .target = &options.request.assignments},
+                        {.names = "--set-file",
+                         .value = "FILE.json",
+                         .help = "Parameters as a JSON object; --set overrides them",
+                         .target = &options.request.parameterFile,
+                         .candidates = {.extensions = {"json"}}}});
+  table.add("Run",
+            {{.names = "--device",
+              .value = "NAME",
+              .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu", kDeviceHelp),
+              .target = &options.device,
+              .candidates = {.names = deviceNames()}},
+             {.names = "--timeout",
+              .value = "SECONDS",
+              .help = "Time limit of one launch (default: 60; on a CPU 600)",
+              .target = &texts.timeout},
+             {.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet}});
+  table.addExamples({
+      {"quintet find scene.glb", "both kinds, in a render of 64 samples per pixel"},
+      {"quintet find scene.glb --nan --spp 256 --size 640x360", "only NaN and infinite samples"},
+      {"quintet find scene.glb --fireflies --threshold 5 --json", "for scripts"},
+  });
+  return table;
+}
+
+// The arguments that `explain-pixel` has, too.
+std::vector<std::string> sharedArguments(Arguments arguments) {
+  const std::vector<std::string> flags{"--nan", "--fireflies", "--json", "-q", "--quiet"};
+  const std::vector<std::string> values{"--threshold", "--limit", "--region"};
+  std::vector<std::string> shared;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string name = arguments[i].substr(0, arguments[i].find('='));
+    if (std::ranges::find(flags, arguments[i]) != flags.end()) continue;
+    if (std::ranges::find(values, name) == values.end())
+      shared.push_back(arguments[i]);
+    else if (name == arguments[i])
+      ++i;  // its value follows
+  }
+  return shared;
+}
+
+std::optional<Options> parseOptions(Arguments arguments) {
+  Options options;
+  Texts texts;
+  if (!parse(declare(options, texts), arguments)) return std::nullopt;
+  options.request.scene = texts.scene;
+  options.command = commandLine("explain-pixel", sharedArguments(arguments));
+  options.output.file = "image.png";  // of the render that is searched; it is not written
+  convert(texts, options);
+  if (options.request.limits.samples)
+    options.request.frames.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
+  job::SearchOptions& search = options.search;
+  if (!search.notFinite && !search.fireflies) search.notFinite = search.fireflies = true;
+  if (const auto threshold = parseReal("--threshold", texts.threshold, 1e-3, kMaxThreshold))
+    search.threshold = static_cast<float>(*threshold);
+  if (const auto limit = parseInteger("--limit", texts.limit, 0, kMaxLimit)) search.limit = *limit;
+  if (const auto frame = parseInteger("--frame", texts.frame, 0, 1e6)) {
+    options.request.frames.first = static_cast<std::uint32_t>(*frame);
+    options.request.frames.count = 1;
+  }
+  return options;
+}
+
+}  // namespace
+
+OptionTable findOptions() {
+  Options options;
+  Texts texts;
+  return declare(options, texts).withoutTargets();
+}
+
+int findCommand(Arguments arguments) {
+  const std::optional<Options> options = parseOptions(arguments);
+  if (!options) return 0;
+  const program::Program program = program::loadProgram(options->program);
+  Console console(options->console);
+  console.setProgram(&program);
+  try {
+    job::Engine engine({.device = options->device, .log = [&](LogLevel level, const std::string& text) {
+                          if (level == LogLevel::warning) console.warning(text);
+                        }});
+    job::RenderJob job(engine, job::resolve(options->request, program), console);
+    const GracefulStop stop;  // from here on, Ctrl-C ends the search and explains what was found
+    console.setGracefulStop(&stop);
+    setWorkStage("searching samples");
+    const job::SearchResult result = job::searchSamples(engine, job, options->search, console);
+    console.clear();
+    writeFile("-", options->console.json
+                       ? output::searchJson(result, options->command)
+                       : output::searchText(result, options->command, terminalWidth(STDOUT_FILENO).value_or(100)));
+    if (result.interrupted) return stop.exitStatus();
+    return result.notFiniteCount + result.fireflyCount > 0 ? kRuntimeError : 0;
+  } catch (const ProgramError& error) {
+    console.diagnostics(error.diagnostics());
+    return kRuntimeError;
+  }
+}
+
+}  // namespace quintet::cli

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds samples that are not finite and fireflies, by rendering each sample of all pixels alone, and explains them.
+#ifndef QUINTET_JOB_SAMPLE_SEARCH_H
+#define QUINTET_JOB_SAMPLE_SEARCH_H
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "job/engine.h"
+#include "job/observer.h"
+#include "job/pixel_explanation.h"
+#include "job/render_job.h"
+
+namespace quintet::job {
+
+struct SearchOptions {
+  bool notFinite = true;
+  bool fireflies = true;
+  // Fireflies: how much brighter than its surroundings one sample makes a pixel (BrightestSamples::find); above 0.
+  float threshold = 2.0f;
+  std::size_t limit = 10;  // of explained samples of each kind; the others are only counted
+};
+
+// The event of a sample that explains its value. Empty texts and -1 mean unknown: only programs that use the GLSL library
+// state them.
+struct SampleCause {
+  std::int64_t bounce = -1;  // scattering events before it
+  std::string lobe;          // of the latest sample of the BSDF
+  std::string material;      // of the latest surface
+  std::string instance;      // of the latest hit
+  std::string event;         // "contribution", "bsdf", …
+  std::string field;         // of the event, that is not finite; empty for fireflies
+};
+
+struct FoundSample {
+  uvec2 pixel{0};            // of the whole image
+  std::uint32_t sample = 0;  // or frame
+  vec3 value{0.0f};          // the sum of the contributions
+  float luminance = 0;       // fireflies: of the sample
+  float level = 0;           // fireflies: typical luminance of the surroundings
+  SampleCause cause;
+};
+
+struct SearchResult {
+  std::vector<FoundSample> notFinite;                  // by sample, then row by row; at most SearchOptions::limit
+  std::vector<FoundSample> fireflies;                  // brightest first, one per pixel; at most SearchOptions::limit
+  std::uint64_t notFiniteCount = 0, fireflyCount = 0;  // all
+  std::uint64_t samples = 0;                           // searched, per pixel; or frames
+  bool interrupted = false;                            // the observer stopped before the last sample
+};
+
+// Of the first event that is not finite, or of the brightest contribution.
+SampleCause causeOf(const PixelExplanation& explanation, bool notFinite);
+
+// Searches all samples of the request (RenderLimits::samples), or all frames. `job` is for the search alone. In programs
+// that accumulate, a pixel that is not finite is found in its first frame, and there are no fireflies. Throws UsageError if
+// the number of samples is unknown or too small, ProgramError and gpu errors.
+SearchResult searchSamples(Engine& engine, RenderJob& job, const SearchOptions& options, Observer& observer);
+
+}  // namespace quintet::job
+#endif

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "output/search_report.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/plural.h"
+#include "base/text.h"
+#include "base/wrap.h"
+
+namespace quintet::output {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string vectorText(const vec3& v) {
+  std::string text;
+  for (std::size_t i = 0; i < 3; ++i)
+    text += (i > 0 ? " " : "") + (std::isnan(v[i]) ? std::string("nan") : fmt::format("{:.5g}", v[i]));
+  return text;
+}
+
+std::string explaining(const job::FoundSample& found, const std::string& command) {
+  return fmt::format("{} --pixel {},{} --sample {}", command, found.pixel.x, found.pixel.y, found.sample);
+}
+
+std::string causeText(const job::SampleCause& cause) {
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (cause.bounce >= 0) add(counted(cause.bounce, "bounce"));
+  if (!cause.lobe.empty()) add(cause.lobe + " lobe");
+  if (!cause.material.empty()) add("material \"" + printable(cause.material) + "\"");
+  if (!cause.instance.empty()) add("instance \"" + printable(cause.instance) + "\"");
+  if (!cause.field.empty()) add(fmt::format("{} of {} is not finite", printable(cause.field), cause.event));
+  return text;
+}
+
+std::string sampleText(const job::FoundSample& found, const std::string& value, const std::string& command,
+                       std::size_t width) {
+  std::string text = fmt::format("  pixel {},{}, sample {}: {}\n", found.pixel.x, found.pixel.y, found.sample, value);
+  const std::string cause = causeText(found.cause);
+  if (!cause.empty()) text += "    " + wrapped(cause, width, 4, 4) + "\n";
+  return text + "    " + explaining(found, command) + "\n";  // one line, so that it can be copied
+}
+
+// "23 fireflies, of which 10 are listed" if some were only counted.
+std::string countText(std::uint64_t all, std::size_t listed, std::string_view noun, std::string_view plural) {
+  if (all == listed) return counted(all, noun, plural);
+  return fmt::format("{}, of which {} {} listed", counted(all, noun, plural), listed, nounFor(listed, "is", "are"));
+}
+
+Json numbers(const vec3& v) {
+  Json json = Json::array();
+  for (std::size_t i = 0; i < 3; ++i)
+    json.push_back(std::isnan(v[i]) ? Json("nan") : std::isinf(v[i]) ? Json(v[i] > 0 ? "inf" : "-inf") : Json(v[i]));
+  return json;
+}
+
+Json sampleJson(const job::FoundSample& found, const std::string& command) {
+  Json json{{"pixel", {found.pixel.x, found.pixel.y}}, {"sample", found.sample}, {"value", numbers(found.value)}};
+  const job::SampleCause& cause = found.cause;
+  json["bounce"] = cause.bounce >= 0 ? Json(cause.bounce) : Json();
+  for (const auto& [name, text] : {std::pair{"lobe", cause.lobe},
+                                   {"material", cause.material},
+                                   {"instance", cause.instance},
+                                   {"event", cause.event},
+                                   {"field", cause.field}})
+    json[name] = text.empty() ? Json() : Json(text);
+  json["command"] = explaining(found, command);
+  return json;
+}
+
+}  // namespace
+
+std::string searchText(const job::SearchResult& result, const std::string& command, std::size_t width) {
+  std::string text;
+  if (result.notFiniteCount > 0) {
+    text += countText(result.notFiniteCount, result.notFinite.size(), "sample that is not finite",
+                      "samples that are not finite") +
+            "\n";
+    for (const job::FoundSample& found : result.notFinite)
+      text += sampleText(found, vectorText(found.value), command, width);
+  }
+  if (result.fireflyCount > 0) {
+    text += fmt::format("{}{}\n", text.empty() ? "" : "\n",
+                        countText(result.fireflyCount, result.fireflies.size(), "firefly", "fireflies"));
+    for (const job::FoundSample& found : result.fireflies)
+      text += sampleText(found,
+                         fmt::format("luminance {:.4g}, {:.4g} times that of its surroundings", found.luminance,
+                                     found.luminance / found.level),
+                         command, width);
+  }
+  if (text.empty()) text = fmt::format("nothing found in {} per pixel\n", counted(result.samples, "sample"));
+  return text;
+}
+
+std::string searchJson(const job::SearchResult& result, const std::string& command) {
+  Json json{{"samples", result.samples},
+            {"interrupted", result.interrupted},
+            {"notFiniteCount", result.notFiniteCount},
+            {"fireflyCount", result.fireflyCount},
+            {"notFinite", Json::array()},
+            {"fireflies", Json::array()}};
+  for (const job::FoundSample& found : result.notFinite) json["notFinite"].push_back(sampleJson(found, command));
+  for (const job::FoundSample& found : result.fireflies) {
+    Json entry = sampleJson(found, command);
+    entry["luminance"] = found.luminance;
+    entry["level"] = found.level;
+    json["fireflies"].push_back(std::move(entry));
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace quintet::output

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// `find`: report, status and the command that explains a sample.
+#include <gmock/gmock.h>
+
+#include "fixtures.h"
+#include "sky_program.h"
+
+namespace quintet::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Find : public CliTest {
+ protected:
+  RunResult find(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"find", "scene.gltf", "--size", "16x12", "--spp", "4", "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return quintet(arguments);
+  }
+};
+
+TEST_F(Find, ReportsNothing) {
+  const RunResult result = find({"--program", "normals", "--env", "none"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, "nothing found in 4 samples per pixel\n");
+}
+
+// Left of the quad, the image is not finite: 4 pixels of the row.
+TEST_F(Find, PrintsACommandThatExplainsTheSample) {
+  writeSkyProgram(folder_ / "sky", "payload.color = vec3(sqrt(gl_WorldRayDirectionEXT.x));");
+  const std::vector<std::string> arguments{"--program", "sky", "--nan", "--limit=2", "--region", "0,4,16,1"};
+  const RunResult text = find(arguments);
+  EXPECT_EQ(text.status, 1) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("16 samples that are not finite, of which 2 are listed\n  pixel 0,4, sample 0: nan"));
+  EXPECT_THAT(text.out, HasSubstr("value of store is not finite\n"));
+  const std::string command = "explain-pixel scene.gltf --size 16x12 --spp 4 --program sky --pixel 0,4 --sample 0";
+  EXPECT_THAT(text.out, HasSubstr("    quintet " + command + "\n"));
+  const RunResult explained = quintet({"explain-pixel", "scene.gltf", "--size", "16x12", "--spp", "4", "--program",
+                                       "sky", "--pixel", "0,4", "--sample", "0"});
+  EXPECT_EQ(explained.status, 0) << explained.err;
+  EXPECT_THAT(explained.out, HasSubstr("nan nan nan"));
+  std::vector<std::string> withJson = arguments;
+  withJson.push_back("--json");
+  const auto json = nlohmann::json::parse(find(withJson).out);
+  EXPECT_EQ(json["notFiniteCount"], 16);
+  EXPECT_EQ(json["notFinite"][0]["pixel"], nlohmann::json({0, 4}));
+  EXPECT_THAT(json["notFinite"][0]["command"].get<std::string>(), HasSubstr(command));
+}
+
+TEST_F(Find, RejectsWrongRequests) {
+  expectError(find({"--threshold", "0"}), 2, {"--threshold"});
+  expectError(quintet({"find", "scene.gltf", "--time", "1", "--env", "none", "--size", "8x8", "-q"}), 2,
+              {"a search requires a number of samples"});
+}
+
+}  // namespace
+}  // namespace quintet::test

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The report of a search: counts, causes, and the command that explains a sample.
+#include "output/search_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace quintet::output {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kCommand = "quintet explain-pixel room.glb --spp 64";
+
+job::SearchResult someResult() {
+  job::SearchResult result;
+  result.samples = 64;
+  result.notFiniteCount = 3;
+  result.fireflyCount = 1;
+  job::FoundSample bad;
+  bad.pixel = {12, 40};
+  bad.sample = 17;
+  bad.value = {NAN, INFINITY, 1.0f};
+  bad.cause = {3, "transmission", "glass", "vase", "bsdf", "weight"};
+  result.notFinite = {bad};
+  job::FoundSample firefly;
+  firefly.pixel = {1, 2};
+  firefly.sample = 5;
+  firefly.luminance = 300;
+  firefly.level = 1.5f;
+  firefly.cause = {2, "diffuse", "wall", "room", "contribution", ""};
+  result.fireflies = {firefly};
+  return result;
+}
+
+TEST(SearchReport, NamesTheCauseAndTheCommand) {
+  EXPECT_EQ(searchText(someResult(), kCommand, 100),
+            "3 samples that are not finite, of which 1 is listed\n"
+            "  pixel 12,40, sample 17: nan inf 1\n"
+            "    3 bounces, transmission lobe, material \"glass\", instance \"vase\", weight of bsdf is not finite\n"
+            "    quintet explain-pixel room.glb --spp 64 --pixel 12,40 --sample 17\n"
+            "\n"
+            "1 firefly\n"
+            "  pixel 1,2, sample 5: luminance 300, 200 times that of its surroundings\n"
+            "    2 bounces, diffuse lobe, material \"wall\", instance \"room\"\n"
+            "    quintet explain-pixel room.glb --spp 64 --pixel 1,2 --sample 5\n");
+  job::SearchResult nothing;
+  nothing.samples = 64;
+  EXPECT_EQ(searchText(nothing, kCommand, 100), "nothing found in 64 samples per pixel\n");
+}
+
+TEST(SearchReport, HasTheSameAsJson) {
+  const auto json = nlohmann::json::parse(searchJson(someResult(), kCommand));
+  EXPECT_EQ(json["notFiniteCount"], 3);
+  EXPECT_EQ(json["notFinite"][0]["value"], (nlohmann::json{"nan", "inf", 1.0}));
+  EXPECT_EQ(json["notFinite"][0]["lobe"], "transmission");
+  EXPECT_EQ(json["notFinite"][0]["field"], "weight");
+  EXPECT_EQ(json["fireflies"][0]["bounce"], 2);
+  EXPECT_EQ(json["fireflies"][0]["field"], nullptr);
+  EXPECT_THAT(json["fireflies"][0]["command"].get<std::string>(), HasSubstr("--pixel 1,2 --sample 5"));
+}
+
+}  // namespace
+}  // namespace quintet::output
