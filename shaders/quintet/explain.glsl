@@ -51,6 +51,7 @@ EXPLAIN_RECORD(ExplainBsdfSample, kLogBsdfSample, 11u)
 EXPLAIN_RECORD(ExplainRoulette, kLogRoulette, 5u)
 EXPLAIN_RECORD(ExplainEmission, kLogEmission, 10u)
 EXPLAIN_RECORD(ExplainContribution, kLogContribution, 8u)
+EXPLAIN_RECORD(ExplainPathEnd, kLogPathEnd, 1u)
 
 // Makes room for the payload or callable data of a call. spirv/log_call_data.h replaces the store.
 #define EXPLAIN_DATA(marker)                                         \
@@ -189,6 +190,7 @@ void explainHit_(bool runsProgram) {
   hit.geometricNormal = hit.shadingNormal = vec3(0.0);
   hit.runsProgram = runsProgram ? 1u : 0u;
   if (geometry.kind == kGeometryTriangles) explainTriangle_(geometry, hit);
+  if (geometry.kind == kGeometrySolids) hit.material = PrimitiveArray(geometry.primitives).at[hit.primitive].material;
   explain_(hit);
 }
 #endif

@@ -8,7 +8,7 @@
 #ifdef QUINTET_EXPLAIN_GLSL
 #include "frame.glsl"
 
-void explainCamera(vec2 film, vec2 lens) { explain_(ExplainCamera(film, lens)); }
+void explainCamera(vec2 lens, vec2 film) { explain_(ExplainCamera(film, lens)); }
 
 void explainSurface(vec3 position, vec3 geometricNormal, vec3 shadingNormal, vec2 uv, uint material, bool frontFace) {
   explain_(ExplainSurface(position, geometricNormal, shadingNormal, uv, material, frontFace ? 1u : 0u));
@@ -63,6 +63,11 @@ void explainContribution(uint source, uint scatterings, vec3 value) {
   explain_(ExplainContribution(source, scatterings, value, explainUnclamped_));
 }
 
+// The path ends here if `ends` is true. `reason`: kExplainUnlit, kExplainBounces or kExplainInconsistent.
+void explainEnd(bool ends, uint reason) {
+  if (ends) explain_(ExplainPathEnd(reason));
+}
+
 // For estimators without MIS and clamping: an emitter that the path has found, and its contribution.
 void explainFound(uint source, vec3 radiance, vec3 throughput, uint scatterings) {
   if (radiance == vec3(0.0)) return;
@@ -71,7 +76,7 @@ void explainFound(uint source, vec3 radiance, vec3 throughput, uint scatterings)
   explainContribution(source, scatterings, throughput * radiance);
 }
 #else
-#define explainCamera(film, lens)
+#define explainCamera(lens, film)
 #define explainSurface(position, geometricNormal, shadingNormal, uv, material, frontFace)
 #define explainShading(normal, emission, baseColor, metallic, alpha, transmission, ior, clearcoat, unlit)
 #define explainLobe(lobe, probability)
@@ -84,6 +89,7 @@ void explainFound(uint source, vec3 radiance, vec3 throughput, uint scatterings)
 #define explainEmission(source, radiance, throughput, bsdfPdf, weight)
 #define explainUnclamped(contribution)
 #define explainContribution(source, scatterings, value)
+#define explainEnd(ends, reason)
 #define explainFound(source, radiance, throughput, scatterings)
 #endif
 

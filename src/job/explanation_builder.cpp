@@ -31,6 +31,8 @@ constexpr std::pair<std::uint32_t, const char*> kRayFlags[] = {
 constexpr const char* kLobes[] = {"clearcoat", "specular", "diffuse", "transmission"};
 constexpr const char* kLightTypes[] = {"point", "spot", "directional", "triangle", "environment", "solid"};
 constexpr const char* kSources[] = {"background", "surface", "light sample"};
+constexpr const char* kReasons[] = {"unlit surface", "largest number of bounces",
+                                    "the direction is on different sides of shading and geometric normal"};
 constexpr std::string_view kRay[] = {"ray"};
 constexpr std::string_view kCall[] = {"call"};
 constexpr std::string_view kStages[] = {"closest-hit", "hit", "any-hit", "intersection", "miss", "callable"};
@@ -175,6 +177,10 @@ class Builder {
                   {}});
         });
       case kLogContribution: return read<ExplainContribution>(words, [&](const auto& r) { append(contribution(r)); });
+      case kLogPathEnd:
+        return read<ExplainPathEnd>(words, [&](const auto& r) {
+          append({"end", {{"reason", nameIn(kReasons, r.reason)}}, {}});
+        });
       default: return;  // not of an explanation
     }
   }
@@ -283,9 +289,7 @@ class Builder {
     event.set("geometry", integer(r.geometry));
     event.set("primitive", integer(r.primitive));
     const bool triangle = r.geometryKind == shared::kGeometryTriangles;
-    // Solids have materials of their own.
-    if (triangle || r.geometryKind == shared::kGeometryCustom)
-      event.set("material", nameOf(names_.materials, r.material));
+    if (r.geometryKind != shared::kGeometryCsg) event.set("material", nameOf(names_.materials, r.material));
     event.set("hitKind", hitKind(r.hitKind));
     event.set("t", r.t);
     if (!triangle) return event;

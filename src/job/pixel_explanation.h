@@ -38,6 +38,7 @@ using EventValue = std::variant<bool, std::int64_t, float, std::string, std::vec
 //   bsdf           lobe, probability; if the path can continue: direction, pdf, weight, delta, transmitted, straight
 //   roulette       survival, u, survived, throughput
 //   emission       source, radiance, throughput, bsdfPdf, lightPdf, misWeight
+//   end            reason why the path ends
 //   contribution   source, scatterings, value; unclamped if it was clamped
 struct ExplainedEvent {
   std::string type;

@@ -182,6 +182,8 @@ class TreeText {
       emission(e, indent);
     else if (type == "contribution")
       contribution(e, indent);
+    else if (type == "end")
+      line(indent, "path ends", e.text("reason"));
     list(e.children, indent + 2);
   }
 

@@ -20,6 +20,7 @@
 #define ExplainLightChoice gsnExplainLightChoice_
 #define ExplainLightSample gsnExplainLightSample_
 #define ExplainLobe gsnExplainLobe_
+#define ExplainPathEnd gsnExplainPathEnd_
 #define ExplainRay gsnExplainRay_
 #define ExplainRayEnd gsnExplainRayEnd_
 #define ExplainReport gsnExplainReport_

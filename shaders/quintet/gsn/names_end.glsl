@@ -23,6 +23,7 @@
 #undef ExplainLightChoice
 #undef ExplainLightSample
 #undef ExplainLobe
+#undef ExplainPathEnd
 #undef ExplainRay
 #undef ExplainRayEnd
 #undef ExplainReport

@@ -31,7 +31,8 @@ QT_CONSTANT kLogVisibility = 33u;   // ExplainVisibility
 QT_CONSTANT kLogBsdfSample = 34u;   // ExplainBsdfSample
 QT_CONSTANT kLogRoulette = 35u;     // ExplainRoulette
 QT_CONSTANT kLogEmission = 36u;     // ExplainEmission
-QT_CONSTANT kLogContribution = 37u; // ExplainContribution
+QT_CONSTANT kLogContribution = 37u;  // ExplainContribution
+QT_CONSTANT kLogPathEnd = 38u;       // ExplainPathEnd
 
 // A store of this word, or of the next one, to the log marks where the data before or after a call belong. It is replaced
 // by stores of the number of the call site and of the data (spirv/log_call_data.h).
@@ -83,7 +84,7 @@ struct ExplainHit {
   uint instance;
   uint geometry;
   uint primitive;
-  uint material;      // of the geometry; solids have materials of their own
+  uint material;      // unknown for CSG trees, whose solids have materials of their own
   uint geometryKind;  // kGeometry…
   uint hitKind;
   float t;
@@ -244,6 +245,16 @@ struct ExplainContribution {
   vec3 unclamped;
 };
 QT_SHARED_SIZE(ExplainContribution, 32);
+
+// ExplainPathEnd::reason
+QT_CONSTANT kExplainUnlit = 0u;         // the surface does not scatter
+QT_CONSTANT kExplainBounces = 1u;       // the largest number of scattering events
+QT_CONSTANT kExplainInconsistent = 2u;  // the direction is on different sides of the shading and the geometric normal
+
+struct ExplainPathEnd {
+  uint reason;
+};
+QT_SHARED_SIZE(ExplainPathEnd, 4);
 
 QT_SHARED_END
 

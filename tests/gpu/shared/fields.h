@@ -153,6 +153,7 @@ GPU_FIELDS(ExplainBsdfSample, useful, delta, transmitted, straight, direction, p
 GPU_FIELDS(ExplainRoulette, survival, u, throughput);
 GPU_FIELDS(ExplainEmission, source, radiance, throughput, bsdfPdf, lightPdf, misWeight);
 GPU_FIELDS(ExplainContribution, source, scatterings, value, unclamped);
+GPU_FIELDS(ExplainPathEnd, reason);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
 GPU_FIELDS(NotFinite, count, first);

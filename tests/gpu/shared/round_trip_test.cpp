@@ -60,7 +60,7 @@ using SharedStructs = testing::Types<
     shared::ExplainStageEnd, shared::ExplainReport, shared::ExplainStore, shared::ExplainCamera, shared::ExplainSurface,
     shared::ExplainShading, shared::ExplainLobe, shared::ExplainLightChoice, shared::ExplainLightSample,
     shared::ExplainVisibility, shared::ExplainBsdfSample, shared::ExplainRoulette, shared::ExplainEmission,
-    shared::ExplainContribution>;
+    shared::ExplainContribution, shared::ExplainPathEnd>;
 
 struct StructNames {
   template <class T>
