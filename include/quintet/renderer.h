@@ -131,8 +131,9 @@ class Renderer {
   Film film() const;                                  // everything so far, copied to host memory
 
   // Edits. Each discards the samples so far; they take effect in the next render(). A change of camera, parameters or
-  // transforms keeps the pipeline and the bottom-level acceleration structures. A change of a material also rebuilds the
-  // scene on the device if it changes emission, alpha mode, textures, or which features the materials use.
+  // transforms keeps the pipeline and the bottom-level acceleration structures. A change of a material compiles the
+  // program if it changes which features the materials use. It rebuilds the scene on the device if it changes alpha tests
+  // or textures.
   // They throw UsageError for unknown names, indices out of range and invalid values, and FileError for an image parameter
   // whose file cannot be read, and then change nothing.
   void setCamera(const Camera& camera);  // replaces the camera of the settings or the scene

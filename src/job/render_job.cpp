@@ -2,6 +2,7 @@
 #include "job/render_job.h"
 
 #include <algorithm>
+#include <cassert>
 #include <future>
 #include <utility>
 
@@ -146,6 +147,7 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   prepared->camera = loaded.camera.camera;
   prepared->cameraDescription = loaded.camera.description;
   prepared->environment = loaded.environment.description;
+  prepared->environmentSource = job_.request.environment.source;
   prepared->hash = loaded.hash;
   prepared->environmentHash = loaded.environmentHash;
   prepared->size = loaded.size;
@@ -160,6 +162,8 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   prepared->onDevice = std::make_unique<render::DeviceScene>(
       engine_.context(), std::move(loaded.scene), loaded.environment.environment,
       render::DeviceSceneOptions{.singleAnyHit = prepared->singleAnyHit, .editable = job_.request.editable});
+  if (!job_.request.editable) loaded.environment.environment.image = {};
+  prepared->environmentInUse = std::move(loaded.environment);
   prepared->seconds.build = building.seconds();
   const render::DeviceSceneStatistics& built = prepared->onDevice->statistics();
   prepared->seconds.stages = {{"document", import.document},
@@ -179,15 +183,15 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
 void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   const RenderRequest& request = job_.request;
   render::DeviceScene& scene = *scene_->onDevice;
-  includedFiles_ = compiled.files;
+  std::vector<std::filesystem::path> includedFiles = compiled.files;
   const std::vector<Hash> includedHashes = compiled.fileHashes;
   CheckedProgram checked =
       checkCompiled(job_.program, std::move(compiled), scene.facts(), deviceLimits(engine_.context().info()));
   const render::Defines defines = render::renderDefines(scene.defines(), request.outputs);
   countRecursion(checked, engine_.compiler(), defines);
-  diagnostics_ = std::move(checked.diagnostics);
-  std::erase_if(diagnostics_, [](const Diagnostic& d) { return d.severity == Severity::note; });
-  if (!diagnostics_.empty()) observer.diagnostics(diagnostics_);
+  std::vector<Diagnostic> warnings = std::move(checked.diagnostics);
+  std::erase_if(warnings, [](const Diagnostic& d) { return d.severity == Severity::note; });
+  if (!warnings.empty()) observer.diagnostics(warnings);
 
   render::RenderSettings settings;
   settings.width = scene_->size.x;
@@ -201,6 +205,7 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   settings.parameters = job_.parameters;
   settings.outputs = request.outputs;
   settings.frameCount = request.frames.accumulatedCount().value_or(0);
+  if (request.launchSeconds > 0) settings.launchSeconds = request.launchSeconds;
   settings.timeoutSeconds = request.launchTimeout;
   if (!request.print && program::prints(checked.runnable.compiled)) observer.printsDisabled();
   program::PrintTable table =
@@ -216,7 +221,48 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   renderer_ = std::make_unique<render::Renderer>(scene, std::move(checked.runnable), engine_.compiler(),
                                                  &engine_.pipelineCache(), settings);
   prints_ = std::move(prints);
+  includedFiles_ = std::move(includedFiles);
+  diagnostics_ = std::move(warnings);
   provenance_.programHash = programHash(job_.program, includedHashes);
+}
+
+void RenderJob::setSize(uvec2 size) {
+  checkMemory(engine_.context().info(), size, render::Film::bytesPerPixel(job_.program, job_.request.outputs));
+  if (renderer_) renderer_->setSize(size);
+  job_.request.size = size;
+  job_.request.region = {};
+  if (!renderer_) return;  // update() failed and is repeated by the next run()
+  scene_->size = size;
+  restart();
+  provenanceOutdated_ = true;
+}
+
+void RenderJob::setProgram(program::Program program, const ProgramRequest& with, Observer& observer) {
+  RenderRequest request = job_.request;
+  request.outputs = with.outputs;
+  request.parameterFile = with.parameterFile;
+  request.assignments = with.assignments;
+  ResolvedJob changed = resolve(std::move(request), std::move(program));
+  changed.scene = job_.scene;
+  if (!renderer_) {  // update() failed and is repeated by the next run()
+    job_ = std::move(changed);
+    return;
+  }
+  observer.stage("compiling shaders");
+  program::CompiledProgram compiled = program::compile(
+      changed.program, engine_.compiler(), render::renderDefines(scene_->onDevice->defines(), with.outputs));
+  std::swap(job_, changed);
+  try {
+    renderer_->finish();
+    link(std::move(compiled), observer);
+  } catch (...) {
+    std::swap(job_, changed);
+    throw;
+  }
+  // Its any-hit shaders may need other acceleration structures.
+  sceneOutdated_ = sceneOutdated_ || scene_->singleAnyHit < program::requiredSingleAnyHit(job_.program);
+  restart();
+  provenanceOutdated_ = true;
 }
 
 Provenance RenderJob::makeProvenance() const {
@@ -367,18 +413,65 @@ void RenderJob::showImage(Observer& observer) const {
   observer.image(DeviceFilm(*renderer_));
 }
 
-RenderResult RenderJob::run(const RenderLimits& limits, Observer& observer) {
+template <class Function>
+auto RenderJob::reportingHang(Observer& observer, const Function& function) {
   try {
-    applyEdits(observer);
+    return function();
+  } catch (const TimeoutError& error) {
+    observer.deviceHung(hangDiagnostic(job_.program, error.seconds()));
+    throw;
+  }
+}
+
+RenderResult RenderJob::run(const RenderLimits& limits, Observer& observer) {
+  return reportingHang(observer, [&] {
+    update(observer);
+    describeEdits();
     if (job_.accumulatesFrames()) return runFrames(limits, observer);
     const FrameRequest& frames = job_.request.frames;
     if (frames.lastFrame() > 0) requireAnimation();
     if (frames.first || frames.lastFrame() > 0 || frames.every) return runAnimation(limits, observer);
     return runFilm(limits, observer);
-  } catch (const TimeoutError& error) {
-    observer.deviceHung(hangDiagnostic(job_.program, error.seconds()));
-    throw;
-  }
+  });
+}
+
+std::optional<double> RenderJob::renderBatch(std::uint64_t samples, Observer& observer) {
+  return reportingHang(observer, [&] {
+    update(observer);
+    return job_.accumulatesFrames() ? renderNextFrame(samples, observer) : renderFilmBatch(samples, observer);
+  });
+}
+
+std::optional<double> RenderJob::renderFilmBatch(std::uint64_t samples, Observer& observer) {
+  assert(!job_.request.batches && !job_.request.limits.adaptive);
+  RenderLimits limits;
+  limits.samples = samples;
+  StartPoint start = startPoint(limits, observer);
+  SamplingSchedule schedule(*renderer_, limits, start);
+  if (!schedule.next()) return 0.0;
+  const Stopwatch clock;
+  const bool complete =
+      schedule.render([&](double /*fraction*/) { return observer.stopRequested() != StopRequest::abandon; });
+  renderer_->finish();
+  if (!complete) return std::nullopt;
+  start.done = schedule.nextSample();
+  start.batchSeconds = clock.seconds();
+  start.seconds += start.batchSeconds;
+  start_ = start;
+  return start.batchSeconds;
+}
+
+std::optional<double> RenderJob::renderNextFrame(std::uint64_t count, Observer& observer) {
+  if (nextFrame_ >= count) return 0.0;
+  const Stopwatch clock;
+  if (scene_->onDevice->animated()) scene_->onDevice->setFrame(static_cast<float>(nextFrame_));
+  const bool complete = renderer_->renderFrame(
+      nextFrame_, [&](double /*fraction*/) { return observer.stopRequested() != StopRequest::abandon; });
+  renderer_->finish();
+  if (!complete) return std::nullopt;
+  ++nextFrame_;
+  start_.seconds += clock.seconds();
+  return clock.seconds();
 }
 
 void RenderJob::requireAnimation() const {
@@ -603,6 +696,7 @@ void RenderJob::showFrame() {
 
 RenderResult RenderJob::result(bool withError) const {
   requireRenderer();
+  describeEdits();
   RenderResult result = makeResult(start_.seconds, start_, withError);
   if (job_.accumulatesFrames() && nextFrame_ > 0) result.provenance.frame = nextFrame_ - 1;
   return result;
@@ -612,7 +706,8 @@ bool RenderJob::resume(const std::filesystem::path& file, Observer& observer) {
   if (job_.accumulatesFrames())
     throw UsageError(fmt::format("the program '{}' averages its samples itself, so checkpoints are not available",
                                  job_.program.name));
-  applyEdits(observer);
+  update(observer);
+  describeEdits();
   CheckpointRequest request;
   request.file = file;
   request.resume = true;
@@ -647,10 +742,15 @@ std::vector<std::filesystem::path> RenderJob::sceneFiles() const {
   return files;
 }
 
+std::vector<std::filesystem::path> RenderJob::programFiles() const {
+  std::vector<std::filesystem::path> files = job::programFiles(job_);
+  files.insert(files.end(), includedFiles_.begin(), includedFiles_.end());
+  return files;
+}
+
 std::vector<std::filesystem::path> RenderJob::files() const {
   std::vector<std::filesystem::path> files = sceneFiles();
-  for (const std::filesystem::path& file : programFiles(job_)) files.push_back(file);
-  files.insert(files.end(), includedFiles_.begin(), includedFiles_.end());
+  for (const std::filesystem::path& file : programFiles()) files.push_back(file);
   return files;
 }
 

@@ -20,6 +20,7 @@
 #include "job/result.h"
 #include "job/sampling_schedule.h"
 #include "job/scene_loading.h"
+#include "job/view.h"
 #include "render/renderer/renderer.h"
 #include "render/scene/device_scene.h"
 
@@ -31,6 +32,9 @@ struct PreparedScene {
   scene::Camera camera;
   std::string cameraDescription;
   std::string environment;  // description
+  // With its image only for editable jobs. `environmentSource`: EnvironmentRequest::source for which it was chosen.
+  EnvironmentChoice environmentInUse;
+  std::string environmentSource;
   std::string hash, environmentHash;
   uvec2 size{0};                                                        // of the whole image, pixels
   std::vector<std::filesystem::path> files;                             // that the scene file names
@@ -42,11 +46,18 @@ struct PreparedScene {
   std::unique_ptr<render::DeviceScene> onDevice;
 };
 
+// Members of RenderRequest that belong to a program.
+struct ProgramRequest {
+  std::vector<std::string> outputs;
+  std::filesystem::path parameterFile;
+  std::vector<std::string> assignments;
+};
+
 class RenderJob {
  public:
-  // Loads the scene, opens the device and compiles the program side by side; then builds acceleration structures, checks
-  // and links. `engine` outlives the job. Throws ProgramError, FileError, UsageError, MemoryError, gpu::NoDeviceError,
-  // gpu::VulkanError.
+  // Loads the scene, opens the device and compiles the program side by side; then builds acceleration structures,
+  // checks and links. `engine` outlives the job. Throws ProgramError, FileError, UsageError, MemoryError,
+  // gpu::NoDeviceError, gpu::VulkanError.
   RenderJob(Engine& engine, ResolvedJob job, Observer& observer);
   // The same with a scene that outlasts the job: used if it is not null (of an earlier job with the same request and
   // unchanged scene files) and built as the program's any-hit shaders need it, else set as soon as the scene is on the device, even if the program then does not compile.
@@ -56,30 +67,53 @@ class RenderJob {
 
   // Renders until a limit is reached or the observer stops. A second call continues with the film of the first.
   // With FrameRequest::every, Observer::frame() gets the result of each frame; the last one is returned, too. With a
-  // checkpoint request, the first call resumes, and the checkpoint is saved between batches. The result's film is valid as
-  // long as the job. Throws FileError (checkpoint, film to overwrite), UsageError, gpu errors.
+  // checkpoint request, the first call resumes, and the checkpoint is saved between batches. The result's film is valid
+  // as long as the job. Throws FileError (checkpoint, film to overwrite), UsageError, gpu errors.
   RenderResult run(const RenderLimits& limits, Observer& observer);
 
-  // The state between two calls of run(), as run() returned it. With the error estimate only on request, because it takes
-  // time. Throws Error if an edit failed.
+  // For front ends that show the film while it is rendered: renders the next batch or frame, to at most `samples` per
+  // pixel, and waits for it. Returns the seconds that this took, or nothing if the observer abandoned it: then it adds
+  // no samples. Not for adaptive renders and parts.
+  std::optional<double> renderBatch(std::uint64_t samples, Observer& observer);
+
+  // The state between two calls of run(), as run() returned it. With the error estimate only on request, because it
+  // takes time. Throws Error if an edit failed.
   RenderResult result(bool withError = false) const;
   std::shared_ptr<FilmView> film() const;  // of result(), without its counts, which wait for the device
   double sampleCount() const;              // per pixel, on average if adaptive; or frames
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }  // warnings of the check
 
-  // Edits between two calls of run(), for jobs with RenderRequest::editable. Each discards the samples so far and takes effect
-  // in the next run(). They throw UsageError, and FileError for an image parameter, and then change nothing. If the next run()
-  // throws because the scene cannot be rebuilt, there is no film until an edit corrects the cause and a run() succeeds.
+  // Edits between two renders, for jobs with RenderRequest::editable. Each discards the samples so far and takes effect
+  // in the next run(), renderBatch() or update(). They throw UsageError, and FileError for an image, and then change
+  // nothing. If the next render throws because the scene cannot be rebuilt, there is no film until an edit corrects the
+  // cause and a render succeeds. Most edits change tables on the device. If shader definitions depend on the change,
+  // the program is compiled again; if alpha tests, textures or tangents do, the scene is built again.
   void setCamera(const CameraRequest& camera);
   void setParameters(const std::vector<std::string>& assignments);       // replaces RenderRequest::assignments
   void setTransform(std::size_t instance, const mat4& worldFromObject);  // of an instance without keyframes
-  // Rebuilds the scene on the device if lights, alpha tests, textures or shader definitions depend on the change.
   void setMaterial(std::size_t index, const scene::Material& material);
+  void setLight(std::size_t index, const scene::Light& light);  // in scene.lights
+  void setEnvironment(const EnvironmentRequest& environment);   // replaces RenderRequest::environment
+  // An environment that was chosen because of the lights of the scene stays, also if edits add or remove lights.
+  // Returns the request that states it.
+  const EnvironmentRequest& keepEnvironment();
   void setFrame(float frame);  // of an animated scene; not for programs that accumulate, which count their frames
-  void restart();              // only discards the samples
+  void setSize(uvec2 size);    // of the whole image; the camera stays
+  // RenderRequest::limits.samples and frames.accumulated, for which the samples are distributed.
+  void setPlannedSamples(std::uint32_t count);
+  // Compiles the program, which can be the same with changed shaders. Throws ProgramError, too, and then the old one
+  // stays.
+  void setProgram(program::Program program, const ProgramRequest& with, Observer& observer);
+  void restart();  // only discards the samples
+  // Applies the edits to the device now. Throws as run() does.
+  void update(Observer& observer);
 
-  // Replaces the film by the one in `file`, which belongs to this render. Returns false if the file does not exist or holds
-  // no samples. Throws FileError. The film stays as it is unless the function returns true.
+  const scene::Camera& camera() const { return scene_->camera; }
+  // The scene in host memory, with all edits but those of the environment. For editable jobs.
+  const scene::Scene& hostScene() const { return editedScene_ ? *editedScene_ : *job_.scene.loaded; }
+
+  // Replaces the film by the one in `file`, which belongs to this render. Returns false if the file does not exist or
+  // holds no samples. Throws FileError. The film stays as it is unless the function returns true.
   bool resume(const std::filesystem::path& file, Observer& observer);
 
   // Call one of them after the outputs of run() were written, or could not be written: the checkpoint is removed unless
@@ -92,9 +126,10 @@ class RenderJob {
   render::Renderer& renderer();          // throws Error if an edit failed
   const render::Region& region() const;  // the rendered part of the image; throws Error if an edit failed
 
-  // Files on disk that the scene was made from, and all files that the job has read, for file watching.
+  // Files on disk from which the scene and the program were made, for file watching.
   std::vector<std::filesystem::path> sceneFiles() const;
-  std::vector<std::filesystem::path> files() const;
+  std::vector<std::filesystem::path> programFiles() const;  // with included files
+  std::vector<std::filesystem::path> files() const;         // of scene and program
 
  private:
   void prepare(Observer& observer);
@@ -102,11 +137,18 @@ class RenderJob {
   void link(program::CompiledProgram compiled, Observer& observer);
   Provenance makeProvenance() const;
 
-  scene::Scene& editedScene();   // a copy of the loaded scene, for edits
+  scene::Scene& editedScene();  // a copy of the loaded scene, for edits
+  const scene::Environment& environmentInUse() const;
   void showFrame();              // moves the instances with keyframes to frame_
   void requireRenderer() const;  // throws Error if an edit failed
-  void applyEdits(Observer& observer);
+  void rebuildScene(Observer& observer);
+  void relink(Observer& observer);
+  void describeEdits() const;  // updates hashes and provenance_
 
+  template <class Function>
+  auto reportingHang(Observer& observer, const Function& function);
+  std::optional<double> renderFilmBatch(std::uint64_t samples, Observer& observer);
+  std::optional<double> renderNextFrame(std::uint64_t count, Observer& observer);
   void requireAnimation() const;  // throws UsageError if nothing in the scene moves
   RenderResult runFilm(const RenderLimits& limits, Observer& observer);
   RenderResult runAnimation(const RenderLimits& limits, Observer& observer);
@@ -128,19 +170,26 @@ class RenderJob {
   std::vector<Diagnostic> diagnostics_;
   std::unique_ptr<PrintLog> prints_;  // null unless the request asks for them
   std::unique_ptr<render::Renderer> renderer_;
-  Provenance provenance_;  // without the facts that a result adds
+  mutable Provenance provenance_;  // without the facts that a result adds; see describeEdits()
   std::optional<Checkpoint> checkpoint_;
-  StartPoint start_;                            // of the next run()
-  bool started_ = false;                        // run() was called
-  std::uint32_t nextFrame_ = 0;                 // of a program that accumulates
-  std::shared_ptr<scene::Scene> editedScene_;   // with all edits; null before the first one
-  std::map<std::size_t, mat4> movedInstances_;  // edits that the device does not have yet
-  bool sceneOutdated_ = false;                  // edits require a new scene on the device
-  bool sceneEdited_ = false;                    // since the hash of the scene was computed
-  float frame_ = 0;                             // of an animated scene
-  bool frameOutdated_ = false;                  // the device does not show frame_ yet
-  double linkedSeconds_ = 0;                    // on clock_
-  double firstPixelSeconds_ = 0;                // on clock_; 0: no launch has ended
+  StartPoint start_;                                   // of the next run()
+  bool started_ = false;                               // run() was called
+  std::uint32_t nextFrame_ = 0;                        // of a program that accumulates
+  std::shared_ptr<scene::Scene> editedScene_;          // with all edits; null before the first one
+  std::map<std::size_t, mat4> movedInstances_;         // edits that the device does not have yet
+  std::optional<EnvironmentChoice> plainEnvironment_;  // in use instead of the scene's; without an image
+  bool sceneOutdated_ = false;                         // edits require a new scene on the device
+  bool programOutdated_ = false;                       // edits require other shader definitions
+  bool emissionOutdated_ = false;                      // edits that the device does not have yet
+  bool lightsOutdated_ = false;
+  bool environmentOutdated_ = false;
+  mutable bool provenanceOutdated_ = false;
+  mutable bool sceneEdited_ = false;        // since the hash of the scene was computed
+  mutable bool environmentEdited_ = false;  // since the hash of the environment was computed
+  float frame_ = 0;                         // of an animated scene
+  bool frameOutdated_ = false;              // the device does not show frame_ yet
+  double linkedSeconds_ = 0;                // on clock_
+  double firstPixelSeconds_ = 0;            // on clock_; 0: no launch has ended
 };
 
 }  // namespace quintet::job

@@ -24,6 +24,7 @@ struct CameraRequest {
   std::optional<float> verticalFov;     // degrees, (0, 180); default: the camera's, or 45
   std::optional<float> apertureRadius;  // meters; default: the camera's, or 0 (pinhole)
   std::optional<float> focusDistance;   // meters along the optical axis
+  bool operator==(const CameraRequest&) const = default;
 };
 
 struct EnvironmentRequest {
@@ -32,6 +33,7 @@ struct EnvironmentRequest {
   std::string source;
   std::optional<float> intensity;  // factor
   std::optional<float> rotation;   // degrees about +y, counter-clockwise seen from above
+  bool operator==(const EnvironmentRequest&) const = default;
 };
 
 // Rendering stops at the first limit that is reached. At least one is set.
@@ -52,7 +54,8 @@ enum class ReachedLimit {
 
 struct FrameRequest {
   std::optional<std::uint32_t> count;  // of an animated scene or of a program that accumulates its own frames
-  // Number of the first frame, if only a part of an animation is rendered; unset means the whole animation, from frame 0.
+  // Number of the first frame, if only a part of an animation is rendered; unset means the whole animation, from frame
+  // 0.
   std::optional<std::uint32_t> first;
   // Number of frames for a program that accumulates, if `count` is unset; if both are, it runs until the time limit.
   std::optional<std::uint32_t> accumulated;
@@ -102,10 +105,11 @@ struct RenderRequest {
   bool editable = false;                            // keep what the edits of RenderJob require; needs `loadedScene`
   CameraRequest camera;
   EnvironmentRequest environment;
-  uvec2 size{0};                         // pixels; a 0 is chosen by the camera's aspect ratio
-  render::Region region;                 // pixels from the top left; width 0 means the whole image
-  bool transparent = false;              // alpha 0 where a camera ray leaves the scene, instead of the environment
-  std::uint32_t seed = 0;                // of the random number generator
+  std::optional<Bounds3> bounds;  // that the automatic camera shows, also after edits; default: those of the scene
+  uvec2 size{0};                  // pixels; a 0 is chosen by the camera's aspect ratio
+  render::Region region;          // pixels from the top left; width 0 means the whole image
+  bool transparent = false;       // alpha 0 where a camera ray leaves the scene, instead of the environment
+  std::uint32_t seed = 0;         // of the random number generator
   std::vector<std::string> assignments;  // "name=value": parameters of the program, in this order
   std::filesystem::path parameterFile;   // JSON object of parameters, applied before `assignments`; may be empty
   std::vector<std::string> outputs;      // names of the program's optional outputs to render
@@ -115,6 +119,7 @@ struct RenderRequest {
   CheckpointRequest checkpoint;
   std::filesystem::path film;  // the film file (.qfilm) that will be written; empty if none
   bool overwriteFilm = false;  // allow to lose the samples that `film` holds
+  double launchSeconds = 0;    // approximate duration of a launch; 0 means render::RenderSettings::launchSeconds
   double launchTimeout = 0;    // seconds after which a launch counts as hung; 0 means the default of the device
   std::optional<PrintRequest> print;
   OutputNotes outputNotes;

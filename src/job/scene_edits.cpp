@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits of a job between two renders (RenderJob::setCamera and others). An edit changes the copy of the scene in host memory
-// and, if possible, only the affected table on the device. Everything else of the scene is rebuilt from the copy.
+// Edits of a job between two renders (RenderJob::setCamera and others). An edit changes the copy of the scene in host
+// memory and, if possible, only the affected table on the device. Everything else of the scene is rebuilt from the
+// copy.
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -49,7 +50,7 @@ scene::Scene& RenderJob::editedScene() {
 }
 
 void RenderJob::restart() {
-  if (!renderer_) return;  // applyEdits() failed and is repeated by the next run()
+  if (!renderer_) return;  // update() failed and is repeated by the next run()
   renderer_->restart();
   if (prints_) prints_->restart();
   start_ = {};
@@ -60,14 +61,14 @@ void RenderJob::restart() {
 void RenderJob::setCamera(const CameraRequest& camera) {
   const uvec2 size = scene_ ? scene_->size : job_.request.size;
   const float aspect = size.y > 0 ? static_cast<float>(size.x) / static_cast<float>(size.y) : 0.0f;
-  CameraChoice chosen = chooseCamera(editedScene(), camera, aspect);
+  CameraChoice chosen = chooseCamera(hostScene(), camera, aspect, job_.request.bounds);
   job_.request.camera = camera;
-  if (!renderer_) return;  // applyEdits() failed and is repeated by the next run()
+  if (!renderer_) return;  // update() failed and is repeated by the next run()
   scene_->camera = chosen.camera;
   scene_->cameraDescription = std::move(chosen.description);
   restart();
   renderer_->setCamera(scene_->camera);
-  provenance_ = makeProvenance();
+  provenanceOutdated_ = true;
 }
 
 void RenderJob::setParameters(const std::vector<std::string>& assignments) {
@@ -79,7 +80,7 @@ void RenderJob::setParameters(const std::vector<std::string>& assignments) {
   job_.parameters = std::move(values);
   job_.request.assignments = assignments;
   restart();
-  if (renderer_) provenance_ = makeProvenance();
+  provenanceOutdated_ = true;
 }
 
 void RenderJob::setTransform(std::size_t instance, const mat4& worldFromObject) {
@@ -115,9 +116,21 @@ void RenderJob::setMaterial(std::size_t index, const scene::Material& material) 
   }
   sceneEdited_ = true;
   restart();
+  const DeviceForm edited = deviceForm(scene);
   const bool newTangents = scene::addTangents(scene, index);
-  sceneOutdated_ = sceneOutdated_ || newTangents || emissionDiffers(before, material) || deviceForm(scene) != form ||
+  sceneOutdated_ = sceneOutdated_ || newTangents || edited.facts != form.facts ||
                    !scene_->onDevice->setMaterial(index, material);  // last, because it changes the device
+  emissionOutdated_ = emissionOutdated_ || emissionDiffers(before, material);
+  programOutdated_ = programOutdated_ || edited.features != form.features;
+}
+
+void RenderJob::setPlannedSamples(std::uint32_t count) {
+  job_.request.limits.samples = count;
+  job_.request.frames.accumulated = count;
+  if (!renderer_) return;  // update() failed and is repeated by the next run()
+  renderer_->setPlannedSamples(count);
+  restart();
+  provenanceOutdated_ = true;
 }
 
 void RenderJob::setFrame(float frame) {
@@ -129,26 +142,113 @@ void RenderJob::setFrame(float frame) {
   restart();
 }
 
-void RenderJob::applyEdits(Observer& observer) {
-  if (sceneOutdated_) {
-    job_.scene.loaded = editedScene_;
-    renderer_.reset();
-    scene_.reset();
-    prepare(observer);
-    frameOutdated_ = true;  // a new scene shows frame 0
-  } else if (!movedInstances_.empty()) {
-    std::vector<render::InstanceTransform> transforms;
-    for (const auto& [instance, worldFromObject] : movedInstances_) transforms.push_back({instance, worldFromObject});
-    scene_->onDevice->setTransforms(transforms);
-    renderer_->sceneChanged();
+const scene::Environment& RenderJob::environmentInUse() const {
+  return plainEnvironment_ ? plainEnvironment_->environment : scene_->environmentInUse.environment;
+}
+
+void RenderJob::setLight(std::size_t index, const scene::Light& light) {
+  scene::Scene& scene = editedScene();
+  if (index >= scene.lights.size())
+    throw UsageError(fmt::format("light {} does not exist; the scene has {}", index, scene.lights.size()));
+  const scene::Light before = std::exchange(scene.lights[index], light);
+  try {
+    scene::validateLight(scene, index);
+  } catch (const Error& error) {
+    scene.lights[index] = before;
+    throw UsageError(error.what());
   }
-  if (sceneEdited_) scene_->hash = scene::contentHash(*editedScene_).hex();
-  if (frameOutdated_)
-    showFrame();
-  else if (sceneEdited_)
-    provenance_ = makeProvenance();
-  sceneOutdated_ = sceneEdited_ = frameOutdated_ = false;
+  sceneEdited_ = lightsOutdated_ = true;
+  restart();
+}
+
+void RenderJob::setEnvironment(const EnvironmentRequest& environment) {
+  std::optional<EnvironmentChoice> plain;
+  bool rebuild = !scene_;
+  if (!rebuild && environment.source != scene_->environmentSource) {
+    plain = chooseEnvironment(hostScene(), environment);
+    rebuild = !plain->environment.image.empty();
+  }
+  job_.request.environment = environment;
+  restart();
+  sceneOutdated_ = sceneOutdated_ || rebuild;
+  if (sceneOutdated_) return;
+  const auto isBlack = [&] {
+    const scene::Environment& e = environmentInUse();
+    return !(e.intensity > 0.0f) || (e.image.empty() && e.constant == vec3(0.0f));
+  };
+  const bool wasBlack = isBlack();
+  plainEnvironment_ = std::move(plain);
+  if (!plainEnvironment_) adjust(scene_->environmentInUse, environment);
+  scene_->environment = plainEnvironment_ ? plainEnvironment_->description : scene_->environmentInUse.description;
+  environmentOutdated_ = environmentEdited_ = true;
+  programOutdated_ = programOutdated_ || isBlack() != wasBlack;
+}
+
+const EnvironmentRequest& RenderJob::keepEnvironment() {
+  std::string& source = job_.request.environment.source;
+  if (source.empty() && !hostScene().environment.present)
+    source = scene_->environmentSource = scene_->environmentInUse.isFallback ? "default" : "none";
+  return job_.request.environment;
+}
+
+void RenderJob::update(Observer& observer) {
+  const bool lightsChanged = emissionOutdated_ || lightsOutdated_ || environmentOutdated_;
+  if (!sceneOutdated_ && environmentOutdated_ && !scene_->onDevice->setEnvironment(environmentInUse()))
+    sceneOutdated_ = true;
+  if (sceneOutdated_) {
+    rebuildScene(observer);
+  } else {
+    if (!movedInstances_.empty()) {
+      std::vector<render::InstanceTransform> transforms;
+      for (const auto& [instance, worldFromObject] : movedInstances_) transforms.push_back({instance, worldFromObject});
+      scene_->onDevice->setTransforms(transforms);
+    }
+    if (emissionOutdated_) scene_->onDevice->setEmission(*editedScene_);
+    if (lightsOutdated_) scene_->onDevice->setLights(editedScene_->lights);
+    if (programOutdated_)
+      relink(observer);
+    else if (lightsChanged || !movedInstances_.empty())
+      renderer_->sceneChanged();
+  }
+  sceneOutdated_ = programOutdated_ = emissionOutdated_ = lightsOutdated_ = environmentOutdated_ = false;
   movedInstances_.clear();
+  if (!std::exchange(frameOutdated_, false)) return;
+  scene_->onDevice->setFrame(frame_);
+  provenanceOutdated_ = true;
+}
+
+void RenderJob::rebuildScene(Observer& observer) {
+  if (editedScene_) job_.scene.loaded = editedScene_;
+  renderer_.reset();
+  scene_.reset();
+  plainEnvironment_.reset();
+  prepare(observer);
+  sceneEdited_ = environmentEdited_ = false;  // prepare() has computed the hashes
+  frameOutdated_ = true;                      // a new scene shows frame 0
+}
+
+// Compiles the program for the features of the edited scene.
+void RenderJob::relink(Observer& observer) {
+  scene_->onDevice->setFeatures(render::sceneFeatures(hostScene(), environmentInUse()));
+  observer.stage("compiling shaders");
+  try {
+    link(program::compile(job_.program, engine_.compiler(),
+                          render::renderDefines(scene_->onDevice->defines(), job_.request.outputs)),
+         observer);
+  } catch (...) {  // the old program does not fit the scene
+    renderer_.reset();
+    sceneOutdated_ = true;
+    throw;
+  }
+  provenanceOutdated_ = true;
+}
+
+void RenderJob::describeEdits() const {
+  if (!provenanceOutdated_ && !sceneEdited_ && !environmentEdited_) return;
+  if (sceneEdited_) scene_->hash = scene::contentHash(*editedScene_).hex();
+  if (environmentEdited_) scene_->environmentHash = scene::contentHash(environmentInUse()).hex();
+  provenanceOutdated_ = sceneEdited_ = environmentEdited_ = false;
+  provenance_ = makeProvenance();
 }
 
 }  // namespace quintet::job

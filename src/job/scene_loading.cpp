@@ -33,7 +33,7 @@ LoadedScene load(const SceneSource& source, const RenderRequest& request,
 
   const uvec2 requested = request.size;
   const float aspect = requested.y > 0 ? static_cast<float>(requested.x) / static_cast<float>(requested.y) : 0.0f;
-  loaded.camera = chooseCamera(loaded.scene, request.camera, aspect);
+  loaded.camera = chooseCamera(loaded.scene, request.camera, aspect, request.bounds);
   loaded.environmentHash = scene::contentHash(loaded.environment.environment).hex();
   loaded.size = chooseImageSize(requested, loaded.camera.camera);
   loaded.viewSeconds += watch.lap();

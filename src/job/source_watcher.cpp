@@ -40,6 +40,12 @@ void WatchList::addFiles(const Files& added) {
   for (const fs::path& file : added) addFile(file);
 }
 
+void WatchList::addDiagnosed(const std::vector<Diagnostic>& diagnostics) {
+  std::error_code ignored;
+  for (const Diagnostic& d : diagnostics)
+    if (fs::is_regular_file(d.file, ignored)) addFile(d.file);
+}
+
 void WatchList::addProgram(const fs::path& name) {
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) addMissing(folders, name);

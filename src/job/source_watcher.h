@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/diagnostic.h"
 #include "base/stopwatch.h"
 #include "shader/file_watcher.h"
 
@@ -18,6 +19,8 @@ struct WatchList {
 
   void addFile(const std::filesystem::path& file);  // unless the list has it
   void addFiles(const std::vector<std::filesystem::path>& added);
+  // Files that diagnostics name: a file from outside the program that does not compile.
+  void addDiagnosed(const std::vector<Diagnostic>& diagnostics);
   // The folder or file to which the name of a program refers; nothing for a built-in program.
   void addProgram(const std::filesystem::path& name);
 };

@@ -45,18 +45,30 @@ std::size_t findCamera(const scene::Scene& scene, const std::string& wanted) {
                                names.size() == 1 ? "0" : fmt::format("0–{}", names.size() - 1)));
 }
 
-scene::Camera lookAtCamera(const scene::Scene& scene, const CameraRequest& request) {
-  const Bounds3 bounds = scene::worldBounds(scene);
+// Computing them takes a while for a large scene.
+class LazyBounds {
+ public:
+  LazyBounds(const scene::Scene& scene, const std::optional<Bounds3>& known) : scene_(scene), bounds_(known) {}
+  const Bounds3& operator()() {
+    if (!bounds_) bounds_ = scene::worldBounds(scene_);
+    return *bounds_;
+  }
+
+ private:
+  const scene::Scene& scene_;
+  std::optional<Bounds3> bounds_;
+};
+
+scene::Camera lookAtCamera(const CameraRequest& request, LazyBounds& bounds) {
   const vec3 eye = *request.lookFrom;
-  const vec3 target = request.lookAt ? *request.lookAt : bounds.empty() ? vec3(0.0f) : bounds.center();
+  const vec3 target = request.lookAt ? *request.lookAt : bounds().empty() ? vec3(0.0f) : bounds().center();
   if (!(glm::length(target - eye) > 0.0f)) throw UsageError("look-from and look-at are the same point");
   if (!(glm::length(request.up) > 0.0f)) throw UsageError("the up vector has length 0");
   return scene::lookAtCamera(eye, target, request.up, scene::Camera().verticalFov, 0.0f);
 }
 
 // Distance of the scene's center along the optical axis.
-float distanceToScene(const scene::Scene& scene, const scene::Camera& camera) {
-  const Bounds3 bounds = scene::worldBounds(scene);
+float distanceTo(const Bounds3& bounds, const scene::Camera& camera) {
   if (bounds.empty()) return camera.focusDistance;
   const vec3 eye(camera.worldFromCamera[3]);
   const float distance = glm::dot(bounds.center() - eye, -vec3(camera.worldFromCamera[2]));
@@ -82,17 +94,19 @@ scene::Environment readEnvironment(const std::string& source) {
 
 }  // namespace
 
-CameraChoice chooseCamera(const scene::Scene& scene, const CameraRequest& request, float aspect) {
+CameraChoice chooseCamera(const scene::Scene& scene, const CameraRequest& request, float aspect,
+                          const std::optional<Bounds3>& known) {
   if (request.lookAt && !request.lookFrom) throw UsageError("look-at requires look-from");
   if (request.lookFrom && !request.name.empty()) throw UsageError("camera and look-from exclude each other");
+  LazyBounds bounds(scene, known);
   CameraChoice chosen;
   if (request.lookFrom) {
-    chosen = {lookAtCamera(scene, request), "look-from"};
+    chosen = {lookAtCamera(request, bounds), "look-from"};
   } else if (!request.name.empty() || !scene.cameras.empty()) {
     const std::size_t index = request.name.empty() ? 0 : findCamera(scene, request.name);
     chosen = {scene.cameras[index], describe(scene, index)};
   } else {
-    chosen = {scene::frameScene(scene::worldBounds(scene), aspect > 0.0f ? aspect : kDefaultAspect), "automatic"};
+    chosen = {scene::frameScene(bounds(), aspect > 0.0f ? aspect : kDefaultAspect), "automatic"};
   }
   scene::Camera& camera = chosen.camera;
   if (request.verticalFov) {
@@ -104,7 +118,7 @@ CameraChoice chooseCamera(const scene::Scene& scene, const CameraRequest& reques
   if (request.focusDistance) {
     camera.focusDistance = *request.focusDistance;
   } else if (request.apertureRadius && !request.lookFrom) {
-    camera.focusDistance = distanceToScene(scene, camera);
+    camera.focusDistance = distanceTo(bounds(), camera);
   }
   return chosen;
 }
@@ -136,9 +150,18 @@ EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const Environment
   } else {
     chosen.description = "none";
   }
-  if (request.intensity) chosen.environment.intensity *= *request.intensity;
-  if (request.rotation) chosen.environment.rotation += glm::radians(*request.rotation);
+  chosen.sourceIntensity = chosen.environment.intensity;
+  chosen.sourceRotation = chosen.environment.rotation;
+  adjust(chosen, request);
   return chosen;
+}
+
+void adjust(EnvironmentChoice& choice, const EnvironmentRequest& request) {
+  scene::Environment& environment = choice.environment;
+  environment.intensity = choice.sourceIntensity;
+  environment.rotation = choice.sourceRotation;
+  if (request.intensity) environment.intensity *= *request.intensity;
+  if (request.rotation) environment.rotation += glm::radians(*request.rotation);
 }
 
 }  // namespace quintet::job

@@ -3,8 +3,10 @@
 #ifndef QUINTET_JOB_VIEW_H
 #define QUINTET_JOB_VIEW_H
 
+#include <optional>
 #include <string>
 
+#include "base/math.h"
 #include "job/request.h"
 #include "scene/model/scene.h"
 
@@ -16,8 +18,9 @@ struct CameraChoice {
 };
 
 // lookFrom, else the named camera, else the scene's first, else an automatic one that shows the whole scene. `aspect`:
-// width / height of the image; 0 if it is not known yet. Throws UsageError.
-CameraChoice chooseCamera(const scene::Scene& scene, const CameraRequest& request, float aspect);
+// width / height of the image; 0 if it is not known yet. `bounds`: those of the scene if they are known. Throws UsageError.
+CameraChoice chooseCamera(const scene::Scene& scene, const CameraRequest& request, float aspect,
+                          const std::optional<Bounds3>& bounds = {});
 
 // 1280 pixels for the longer side if the camera states an aspect ratio, else 1280x720. A width without a height keeps
 // the same aspect ratio.
@@ -27,11 +30,17 @@ struct EnvironmentChoice {
   scene::Environment environment;
   std::string description;  // for metadata: "sky.hdr", "default", "none", "of the scene"
   bool isFallback = false;  // the default environment, used because the scene has no lights
+  // Before adjust().
+  float sourceIntensity = 1;
+  float sourceRotation = 0;  // radians
 };
 
 // The requested one, else the scene's, else the default one if the scene has no lights, else none. Throws FileError,
 // UsageError.
 EnvironmentChoice chooseEnvironment(const scene::Scene& scene, const EnvironmentRequest& request);
+
+// Sets intensity and rotation for a request with the same source.
+void adjust(EnvironmentChoice& choice, const EnvironmentRequest& request);
 
 }  // namespace quintet::job
 #endif

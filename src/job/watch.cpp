@@ -8,18 +8,6 @@
 #include "job/identity.h"
 
 namespace quintet::job {
-namespace {
-
-// Files that diagnostics name: a file from outside the program that does not compile.
-std::vector<std::filesystem::path> filesOf(const std::vector<Diagnostic>& diagnostics) {
-  std::vector<std::filesystem::path> files;
-  std::error_code ignored;
-  for (const Diagnostic& d : diagnostics)
-    if (std::filesystem::is_regular_file(d.file, ignored)) files.emplace_back(d.file);
-  return files;
-}
-
-}  // namespace
 
 LiveJob::LiveJob(Engine& engine, std::string program, Resolve resolve)
     : engine_(engine), program_(std::move(program)), resolve_(std::move(resolve)) {
@@ -38,7 +26,7 @@ bool LiveJob::reload(Observer& observer) {
     watchFiles();
     return true;
   } catch (const ProgramError& error) {
-    list_.addFiles(filesOf(error.diagnostics()));
+    list_.addDiagnosed(error.diagnostics());
     observer.diagnostics(error.diagnostics());
   } catch (const FileError& error) {
     list_.addFile(error.file());

@@ -22,8 +22,7 @@ job::Provenance provenanceOf(const job::RenderResult& result, const std::string&
 }
 
 render::ToneMap toneMapOf(const OutputPlan& plan, const render::FilmPlane& plane) {
-  const bool isColor = plane.kind == program::OutputKind::color;
-  return plan.request.toneMap.value_or(isColor ? render::ToneMap::neutral : render::ToneMap::linear);
+  return plan.request.toneMap.value_or(render::defaultToneMap(plane.kind));
 }
 
 // Unless a tone map was requested.

@@ -174,7 +174,7 @@ TEST_F(ApiRenderer, ChangesMaterialsInPlace) {
   EXPECT_EQ(image(), rendered(scene_));
 }
 
-TEST_F(ApiRenderer, ChangesMaterialsWithARebuild) {
+TEST_F(ApiRenderer, ChangesMaterialsBeyondTheirTable) {
   image();
   Material coated = scene_.material(0);  // a feature that no material had
   coated.clearcoat = 1;
@@ -246,15 +246,17 @@ TEST_F(ApiRenderer, RecoversFromAFailedRebuild) {
 }
 
 TEST_F(ApiRenderer, ReportsWarningsOfARebuild) {
+  const std::array<float, 3> texel{1, 1, 1};
   Scene empty;
   empty.addMaterial({});
+  empty.addTexture({.width = 1, .height = 1, .channels = 3, .pixels = std::span<const float>(texel)});
   Renderer renderer(device(), empty, pathTracer(), smallImage());
   const auto isReported = testing::Contains(HasSubstr("no surfaces"));
   EXPECT_THAT(renderer.render(4).warnings, isReported);
-  renderer.setMaterial(0, {.emissive = {1, 1, 1}});
+  renderer.setMaterial(0, {.emissiveTexture = {.texture = 0}});  // a texture that is not on the device
   renderer.setFrame(1);
   EXPECT_THAT(renderer.render(4).warnings, isReported);
-  renderer.setMaterial(0, {.clearcoat = 1});
+  renderer.setMaterial(0, {.normalTexture = {.texture = 0}});  // not with this encoding
   EXPECT_FALSE(renderer.resume("missing.qfilm"));
   EXPECT_THAT(renderer.render(4).warnings, isReported);
   EXPECT_THAT(renderer.render(4).warnings, testing::Not(isReported));

@@ -35,6 +35,7 @@ int findCommand(Arguments);
 int infoCommand(Arguments);
 int compareCommand(Arguments);
 int benchCommand(Arguments);
+int viewCommand(Arguments);
 int helpCommand(Arguments);
 
 OptionTable renderOptions();
@@ -48,6 +49,7 @@ OptionTable findOptions();
 OptionTable infoOptions();
 OptionTable compareOptions();
 OptionTable benchOptions();
+OptionTable viewOptions();
 OptionTable helpOptions();
 
 }  // namespace quintet::cli

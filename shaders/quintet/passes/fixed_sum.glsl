@@ -57,4 +57,17 @@ FixedSum addFixed(FixedSum a, FixedSum b) {
   return a;
 }
 
+// With a relative error below 2^-21; NaN if a term was not finite.
+float floatFromFixed(FixedSum sum) {
+  if (isNotFinite(sum)) return uintBitsToFloat(0x7FC00000u);
+  const bool negative = (sum.word[3] >> 31) != 0u;
+  uint carry = 1u;
+  if (negative)
+    for (uint i = 0u; i < 4u; ++i) sum.word[i] = uaddCarry(~sum.word[i], carry, carry);
+  const float word = 4294967296.0;  // 2^32
+  float value = 0.0;
+  for (uint i = 0u; i < 4u; ++i) value = float(sum.word[i]) + value / word;
+  return (negative ? -word : word) * value;
+}
+
 #endif

@@ -30,6 +30,15 @@ struct FilmAdd {
 };
 QT_SHARED_SIZE(FilmAdd, 32);
 
+// Push constants of the pass that divides the totals by the number of samples.
+struct FilmMean {
+  Address total;         // FixedSum[4 · count]
+  Address mean;          // vec4[count]
+  uint count;            // pixels
+  float inverseSamples;  // 1 / samples of a pixel
+};
+QT_SHARED_SIZE(FilmMean, 24);
+
 // An id and the number of samples that hit it. 0 samples: an empty slot.
 struct CoverageSlot {
   uint id;

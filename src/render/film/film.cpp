@@ -63,36 +63,52 @@ Film::Film(gpu::Context& context, const gpu::BindlessSet& set, const shader::Com
     if (std::ranges::find(names, name) == names.end())
       throw UsageError(fmt::format("the program '{}' has no output '{}'; available: {}", program.name, name,
                                    fmt::join(names, ", ")));
-  const VkDeviceSize pixels = VkDeviceSize{region.width} * region.height;
-  const auto buffer = [&](std::uint64_t bytesPerPixel, const std::string& name) {
-    gpu::BufferOptions options;
-    options.size = pixels * bytesPerPixel;
-    options.name = name;
-    options.purpose = gpu::Purpose::film;
-    return gpu::Buffer(context, options);
-  };
-  for (std::size_t i = 0; i < program.outputs.size(); ++i) {
-    const program::Output& output = program.outputs[i];
+  for (const program::Output& output : program.outputs) {
     Output& entry = outputs_.emplace_back();
     entry.facts.name = output.name;
     entry.facts.pixel = output.pixel;
     entry.facts.kind = output.kind;
     entry.facts.color = program::holdsColor(output);
-    if (!isStored(output, wanted)) continue;
-    entry.batch = buffer(sizeof(vec4), "film batch " + output.name);
-    entry.total = buffer(totalBytes(output.pixel, accumulation_), "film total " + output.name);
-    if (storesSquares(i, accumulation_))
-      entry.squares = buffer(4 * sizeof(shared::FixedSum), "film squares " + output.name);
-    if (output.pixel == OutputPixel::coverage && !coverage_)
+    entry.stored = isStored(output, wanted);
+    if (entry.stored && output.pixel == OutputPixel::coverage && !coverage_)
       coverage_ = makePass(context, set, compiler, "film_coverage");
   }
-  statistics_ = buffer(sizeof(uvec2), "film statistics");
   if (accumulation_ == Accumulation::program) {
-    marks_ = buffer(sizeof(std::uint32_t), "film marks");
     frame_ = makePass(context, set, compiler, "film_frame");
   } else {
     add_ = makePass(context, set, compiler, "film_add");
+    mean_ = makePass(context, set, compiler, "film_mean");
   }
+  resize(region);
+}
+
+void Film::resize(Region region) {
+  const auto buffer = [&](std::uint64_t bytesPerPixel, const std::string& name) {
+    gpu::BufferOptions options;
+    options.size = VkDeviceSize{region.width} * region.height * bytesPerPixel;
+    options.name = name;
+    options.purpose = gpu::Purpose::film;
+    return gpu::Buffer(context_, options);
+  };
+  std::vector<Output> outputs;
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    Output& entry = outputs.emplace_back();
+    entry.facts = outputs_[i].facts;
+    entry.stored = outputs_[i].stored;
+    if (!entry.stored) continue;
+    entry.batch = buffer(sizeof(vec4), "film batch " + entry.facts.name);
+    entry.total = buffer(totalBytes(entry.facts.pixel, accumulation_), "film total " + entry.facts.name);
+    if (storesSquares(i, accumulation_))
+      entry.squares = buffer(4 * sizeof(shared::FixedSum), "film squares " + entry.facts.name);
+  }
+  gpu::Buffer statistics = buffer(sizeof(uvec2), "film statistics"), marks;
+  if (accumulation_ == Accumulation::program) marks = buffer(sizeof(std::uint32_t), "film marks");
+  outputs_ = std::move(outputs);
+  statistics_ = std::move(statistics);
+  marks_ = std::move(marks);
+  means_ = {};
+  staging_ = {};
+  region_ = region;
   clear();
 }
 
@@ -266,6 +282,30 @@ io::Image Film::download(std::size_t output) const {
     std::ranges::copy(part.samples<float>(),
                       image.samples<float>().begin() + std::ptrdiff_t{4} * first * region_.width);
   });
+  return image;
+}
+
+io::Image Film::downloadMean(std::size_t output) const {
+  const Output& source = outputs_.at(output);
+  assert(source.total && source.facts.pixel != OutputPixel::coverage && counts_.cellBatches.empty());
+  const std::uint32_t pixels = region_.width * region_.height;
+  const VkDeviceSize bytes = VkDeviceSize{pixels} * sizeof(vec4);
+  const gpu::Buffer* values = &source.total;
+  if (!staging_) staging_ = gpu::Buffer::makeReadback(context_, bytes);
+  if (mean_ && source.facts.pixel == OutputPixel::mean) {
+    if (!means_) means_ = gpu::Buffer(context_, {.size = bytes, .name = "film means", .purpose = gpu::Purpose::film});
+    const auto samples = static_cast<float>(std::max<std::uint64_t>(1, counts_.samples()));
+    const shared::FilmMean pass{source.total.address(), means_.address(), pixels, 1.0f / samples};
+    context_.submitAndWait([&](gpu::Commands& commands) {
+      commands.barrier(gpu::Stage::all, gpu::Stage::all);
+      dispatch(*mean_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+      commands.barrier(gpu::Stage::all, gpu::Stage::all);
+    });
+    values = &means_;
+  }
+  io::Image image = io::makeImage(region_.width, region_.height, 4, io::PixelType::f32, io::ColorEncoding::linear);
+  image.premultiplied = true;
+  values->download(std::as_writable_bytes(image.samples<float>()), 0, staging_);
   return image;
 }
 

@@ -28,7 +28,7 @@ class Film {
 
   const Region& region() const { return region_; }
   const SampleCounts& counts() const { return counts_; }
-  bool stores(std::size_t output) const { return static_cast<bool>(outputs_[output].total); }
+  bool stores(std::size_t output) const { return outputs_[output].stored; }
   std::uint64_t bytes() const;  // device memory
   // Returns the device memory per pixel of a film for this program and these optional outputs.
   static std::uint64_t bytesPerPixel(const program::Program& program, const std::vector<std::string>& wanted);
@@ -37,6 +37,8 @@ class Film {
 
   // Discards all samples and ray counts.
   void clear();
+  // The same, and changes the size. Throws MemoryError, and then changes nothing.
+  void resize(Region region);
 
   // Record commands around the launches of a batch or frame: beginBatch clears the batch sums; endBatch adds them to
   // the totals, or replaces the totals by them. `cellBatches` is SampleCounts::cellBatches after an adaptive batch.
@@ -48,6 +50,9 @@ class Film {
   FilmPlane plane(std::size_t output) const { return plane(outputs_.at(output)); }
   // Returns planeImage of the current contents. Blocks.
   io::Image download(std::size_t output) const;
+  // The same for display, and faster: the device divides, in single precision. Relative error below 1e-6. Not for
+  // adaptive films and outputs that count ids. Blocks.
+  io::Image downloadMean(std::size_t output) const;
   // Returns the sums of the latest batch, RGBA per pixel in row-major order from the top. Blocks.
   std::vector<vec4> downloadBatch(std::size_t output) const;
   RayCount countRays() const;  // blocks
@@ -67,7 +72,8 @@ class Film {
 
  private:
   struct Output {
-    FilmPlane facts;                    // name, pixel, kind and color; the arrays are empty
+    FilmPlane facts;  // name, pixel, kind and color; the arrays are empty
+    bool stored = false;
     gpu::Buffer batch, total, squares;  // `total` is empty for an output that is not stored
   };
   void addBatch(gpu::Commands& commands, SampleRange samples);
@@ -93,6 +99,8 @@ class Film {
   std::unique_ptr<gpu::ComputePipeline> frame_;  // null unless the program accumulates
   std::unique_ptr<gpu::ComputePipeline> coverage_;
   std::unique_ptr<gpu::ComputePipeline> check_;
+  std::unique_ptr<gpu::ComputePipeline> mean_;  // null if the program accumulates
+  mutable gpu::Buffer means_, staging_;         // of downloadMean(), which creates them; for one output
 };
 
 }  // namespace quintet::render

@@ -109,6 +109,7 @@ EnvironmentTable buildEnvironmentTable(const scene::Environment& environment) {
     }
     table.integral += angle * sum;
   }
+  table.unscaledIntegral = table.integral;
   table.integral *= environment.intensity;
   if (!(environment.intensity > 0.0f)) return {};
   table.entries = buildAliasTable(weights);

@@ -19,6 +19,7 @@ struct EnvironmentTable {
   std::uint32_t height = 0;
   std::vector<shared::AliasEntry> entries;  // in row-major order from the top
   double integral = 0.0;  // ∫ luminance dω over the sphere, including the intensity; W/m² on a unit cross section
+  double unscaledIntegral = 0.0;  // without the intensity
 };
 
 // Builds the table of the environment in use; `environment.present` is ignored. A constant environment has one cell.

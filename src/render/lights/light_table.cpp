@@ -131,14 +131,23 @@ LightTableBuilder::LightTableBuilder(const scene::Scene& scene, const scene::Env
     : punctual_(scene.lights),
       emitters_(makeEmitters(scene)),
       environment_(buildEnvironmentTable(environment)),
+      maxTriangleLights_(maxTriangleLights),
       environmentIntegral_(environment_.width > 0 ? environment_.integral : 0.0) {
   const Bounds3 bounds = scene::worldBounds(scene);
   const double radius = bounds.empty() ? 0.0 : 0.5 * glm::length(glm::dvec3(bounds.max) - glm::dvec3(bounds.min));
   crossSection_ = kPiDouble * (radius > 0.0 && std::isfinite(radius) ? radius * radius : 1.0);
-  addParts(scene, maxTriangleLights);
+  addParts(scene);
 }
 
-void LightTableBuilder::addParts(const scene::Scene& scene, std::size_t maxCount) {
+void LightTableBuilder::setEmission(const scene::Scene& scene) {
+  emitters_ = makeEmitters(scene);
+  parts_.clear();
+  slots_.clear();
+  firstSlots_.clear();
+  addParts(scene);
+}
+
+void LightTableBuilder::addParts(const scene::Scene& scene) {
   std::size_t total = 0;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const int mesh = scene.instances[i].mesh;
@@ -153,13 +162,15 @@ void LightTableBuilder::addParts(const scene::Scene& scene, std::size_t maxCount
     }
   }
   for (const Part& part : parts_) total += part.count;
-  if (total > maxCount) {
+  if (total > maxTriangleLights_) {
     std::ranges::stable_sort(parts_, {}, &Part::count);
     std::size_t kept = 0;
     total = 0;
-    while (total + parts_[kept].count <= maxCount) total += parts_[kept++].count;
+    while (total + parts_[kept].count <= maxTriangleLights_) total += parts_[kept++].count;
     parts_.resize(kept);
   }
+  lit_.assign(scene.instances.size(), false);
+  for (const Part& part : parts_) lit_[part.instance] = true;
   hasMovingLights_ =
       std::ranges::any_of(parts_, [&](const Part& part) { return !scene.instances[part.instance].keyframes.empty(); });
 }

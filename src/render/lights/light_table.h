@@ -57,7 +57,15 @@ class LightTableBuilder {
   LightTable build(std::span<const mat4> worldFromObject) const;
   EnvironmentTable& environment() { return environment_; }
 
-  bool hasMovingLights() const { return hasMovingLights_; }  // an instance with keyframes has lights
+  // Edits for the next build(). The scene has the same meshes and instances as that of the constructor.
+  void setPunctualLights(const std::vector<scene::Light>& lights) { punctual_ = lights; }
+  void setEmission(const scene::Scene& scene);  // of its materials
+  // `integral`: EnvironmentTable::integral; 0 means that the environment is black.
+  void setEnvironment(double integral) { environmentIntegral_ = integral; }
+  double environmentIntegral() const { return environmentIntegral_; }
+
+  bool hasMovingLights() const { return hasMovingLights_; }              // an instance with keyframes has lights
+  bool hasLights(std::size_t instance) const { return lit_[instance]; }  // so that its transform matters
   void copyGeometry();  // makes the builder independent of the scene, which can then be destroyed
 
  private:
@@ -69,13 +77,15 @@ class LightTableBuilder {
     std::size_t count;
   };
   struct Collector;
-  void addParts(const scene::Scene& scene, std::size_t maxCount);
+  void addParts(const scene::Scene& scene);
 
   std::vector<scene::Light> punctual_;
   std::vector<std::vector<Emitter>> emitters_;  // by mesh and geometry
   std::vector<Part> parts_;
+  std::vector<bool> lit_;  // by instance: it has a part
   std::vector<std::uint32_t> slots_, firstSlots_;
   EnvironmentTable environment_;
+  std::size_t maxTriangleLights_;
   double environmentIntegral_ = 0.0;
   double crossSection_ = 0.0;  // π·R², m²
   bool hasMovingLights_ = false;

@@ -21,6 +21,10 @@ SampleRange batchSamples(std::uint64_t batch, std::uint32_t count) {
   return {first, first + count};
 }
 
+gpu::Buffer makeHeatBuffer(gpu::Context& context, const Region& film) {
+  return {context, {.size = std::uint64_t{film.width} * film.height * sizeof(shared::HeatPixel), .name = "heat maps"}};
+}
+
 }  // namespace
 
 Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const shader::Compiler& compiler,
@@ -44,10 +48,7 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
     instrument_.emplace(context_, std::uint64_t{settings_.region.width} * settings_.region.height,
                         linked_.recursionDepth(), description, scene.facts());
   if (runnable_.countsRecursion) recursion_.emplace(context_, settings_.region);
-  if (runnable_.countsHeat)
-    heat_ = gpu::Buffer(
-        context_, {.size = std::uint64_t{settings_.region.width} * settings_.region.height * sizeof(shared::HeatPixel),
-                   .name = "heat maps"});
+  if (runnable_.countsHeat) heat_ = makeHeatBuffer(context_, settings_.region);
   uploadFrame();
   parameterBuffer_ =
       gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_.indices()), 0, "parameters");
@@ -239,9 +240,39 @@ void Renderer::sceneChanged() {
   uploadFrame();
 }
 
+void Renderer::setSize(uvec2 size) {
+  assert(!settings_.instrument && !settings_.rayRecords && !settings_.log);
+  RenderSettings settings = settings_;
+  settings.width = size.x;
+  settings.height = size.y;
+  settings.region = {};
+  settings = decideSettings(std::move(settings), program(), context_.info().software);
+  finish();
+  std::optional<RecursionBuffer> recursion;
+  if (recursion_) recursion.emplace(context_, settings.region);
+  gpu::Buffer heat = runnable_.countsHeat ? makeHeatBuffer(context_, settings.region) : gpu::Buffer();
+  film_.resize(settings.region);
+  recursion_ = std::move(recursion);
+  heat_ = std::move(heat);
+  settings_ = std::move(settings);
+  sceneChanged();
+}
+
+void Renderer::setPlannedSamples(std::uint32_t count) {
+  (accumulates() ? settings_.frameCount : settings_.plannedSamples) = count;
+  sceneChanged();
+}
+
 io::Image Renderer::image(std::size_t output) const {
   finishLaunches();
   io::Image result = film_.download(output);
+  if (program().outputs[output].kind == program::OutputKind::display) decodeDisplay(result, settings_.transparent);
+  return result;
+}
+
+io::Image Renderer::displayImage(std::size_t output) const {
+  finishLaunches();
+  io::Image result = film_.downloadMean(output);
   if (program().outputs[output].kind == program::OutputKind::display) decodeDisplay(result, settings_.transparent);
   return result;
 }

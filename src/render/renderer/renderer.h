@@ -63,6 +63,11 @@ class Renderer {
   // For the same program. Throws FileError for an image that cannot be read, and then changes nothing.
   void setParameters(const program::ParameterValues& values);
   void sceneChanged();
+  // The whole image has this size from now on, without a region. Not for renderers with RenderSettings::instrument or
+  // ray records. Throws UsageError and MemoryError, and then changes nothing.
+  void setSize(uvec2 size);
+  // RenderSettings::plannedSamples, or frameCount for a program that accumulates.
+  void setPlannedSamples(std::uint32_t count);
 
   // Waits for the launches in flight; statistics() and launches() then cover all of them. The functions that read the
   // film or its counters wait by themselves.
@@ -74,6 +79,8 @@ class Renderer {
   // (program::OutputKind::display) is decoded, so that an 8-bit image file holds the values that the program wrote.
   // Blocks.
   io::Image image(std::size_t output = 0) const;
+  // The same for display, with Film::downloadMean().
+  io::Image displayImage(std::size_t output = 0) const;
   RayCount rays() const;  // blocks
   // Returns Film::notFinitePixels. Blocks.
   std::vector<NotFinitePixels> notFinitePixels() const;

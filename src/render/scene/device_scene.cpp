@@ -64,19 +64,19 @@ void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environme
   for (const scene::Instance& instance : scene.instances)
     worldFromObject.push_back(scene::worldFromObjectAt(instance, 0.0f));
   LightTable table = builder.build(worldFromObject);
-  const EnvironmentTable environmentTable = std::move(builder.environment());
+  EnvironmentTable environmentTable = std::move(builder.environment());
   firstLightSlots_ = table.firstSlots;
   if (builder.hasMovingLights() || options_.editable) {
     builder.copyGeometry();
     lightBuilder_ = std::move(builder);
   }
   uploadLightTable(std::move(table));
-  if (environmentTable.width > 0) {
-    environmentTable_ = gpu::makeBufferOf(context_, environmentTable.entries, 0, "environment table");
-    frame_.environment.table = environmentTable_.address();
-    frame_.environment.width = environmentTable.width;
-    frame_.environment.height = environmentTable.height;
+  if (environmentTable.width > 0 && !environment.image.empty()) {
+    environmentImage_.entries = gpu::makeBufferOf(context_, environmentTable.entries, 0, "environment table");
+    environmentTable.entries = {};
+    environmentImage_.table = environmentTable;
   }
+  showEnvironment(environment, environmentTable);
   statistics_.lightCount = frame_.lightCount;
 
   albedoTable_ = gpu::makeBufferOf(context_, albedoTables(), 0, "albedo tables");
@@ -100,6 +100,22 @@ void DeviceScene::uploadLightTable(LightTable table) {
   frame_.environmentLight = table.environmentLight;
 }
 
+void DeviceScene::showEnvironment(const scene::Environment& environment, const EnvironmentTable& table) {
+  shared::EnvironmentData& data = frame_.environment;
+  data.table = 0;
+  data.width = table.width;
+  data.height = table.height;
+  if (table.width > 0) {
+    if (environment.image.empty())
+      constantEnvironment_ = gpu::makeBufferOf(context_, table.entries, 0, "environment table");
+    data.table = environment.image.empty() ? constantEnvironment_.address() : environmentImage_.entries.address();
+  }
+  data.texture = environment.image.empty() ? shared::kNoTexture : environmentImage_.texture;
+  data.scale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
+  data.cosRotation = std::cos(environment.rotation);
+  data.sinRotation = std::sin(environment.rotation);
+}
+
 void DeviceScene::uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader) {
   textures_.emplace(context_, uploader, scene);
   const TextureIndex expect = [&](int texture, bool sRgb) { return textures_->expect(texture, sRgb), 0u; };
@@ -111,12 +127,9 @@ void DeviceScene::uploadMaterials(scene::Scene& scene, const scene::Environment&
   materialTable_ = gpu::makeBufferOf(context_, materials, 0, "materials");
   frame_.materials = materialTable_.address();
 
-  shared::EnvironmentData& data = frame_.environment;
-  data.scale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
-  data.texture =
-      environment.image.empty() ? shared::kNoTexture : textures_->addEnvironment(cleanEnvironment(environment.image));
-  data.cosRotation = std::cos(environment.rotation);
-  data.sinRotation = std::sin(environment.rotation);
+  if (!environment.image.empty())
+    environmentImage_.texture = textures_->addEnvironment(cleanEnvironment(environment.image));
+  frame_.environment.texture = environmentImage_.texture;
 
   textures_->addUnused();
   const std::uint32_t slots = textures_->count() + TextureSlots::kCount;
@@ -219,7 +232,39 @@ void DeviceScene::setTransforms(std::span<const InstanceTransform> transforms) {
   for (const InstanceTransform& transform : transforms)
     topLevel_->setTransform(transform.instance, transform.worldFromObject);
   topLevel_->update();
-  uploadLightTable(lightBuilder_->build(topLevel_->worldFromObject()));
+  if (std::ranges::any_of(transforms, [&](const InstanceTransform& t) { return lightBuilder_->hasLights(t.instance); }))
+    updateLights();
+}
+
+void DeviceScene::setLights(const std::vector<scene::Light>& lights) {
+  assert(options_.editable);
+  lightBuilder_->setPunctualLights(lights);
+  updateLights();
+}
+
+void DeviceScene::setEmission(const scene::Scene& scene) {
+  assert(options_.editable);
+  lightBuilder_->setEmission(scene);
+  lightBuilder_->copyGeometry();
+  updateLights();
+}
+
+bool DeviceScene::setEnvironment(const scene::Environment& environment) {
+  assert(options_.editable);
+  EnvironmentTable table;
+  if (environment.image.empty()) {
+    table = buildEnvironmentTable(environment);
+  } else if (environment.intensity > 0.0f) {
+    if (environmentImage_.table.width == 0) return false;
+    table = environmentImage_.table;
+    table.integral = table.unscaledIntegral * environment.intensity;
+  }
+  showEnvironment(environment, table);
+  const double integral = table.width > 0 ? table.integral : 0.0;
+  if (integral == lightBuilder_->environmentIntegral()) return true;  // it has only turned
+  lightBuilder_->setEnvironment(integral);
+  updateLights();
+  return true;
 }
 
 bool DeviceScene::setMaterial(std::size_t index, const scene::Material& material) {

@@ -82,14 +82,31 @@ class DeviceScene {
   // Moves instances without keyframes: updates the instance table, the TLAS and the light tables. frameTemplate() can
   // change. Requires DeviceSceneOptions::editable. Blocks; no launch can be under way.
   void setTransforms(std::span<const InstanceTransform> transforms);
-  // Replaces a row of the material table. Returns false, and changes nothing, if the material uses a texture that is not
-  // on the device. The caller makes sure that everything else that depends on materials stays the same: features, facts and
-  // lights. Blocks; no launch can be under way.
+  // Replaces a row of the material table. Returns false, and changes nothing, if the material uses a texture that is
+  // not on the device. The caller makes sure that everything else that depends on materials stays the same: features,
+  // facts and lights. Blocks; no launch can be under way.
   bool setMaterial(std::size_t index, const scene::Material& material);
+  // Edits of lights, which update the light tables; frameTemplate() changes. `scene`: with the meshes and instances of
+  // the constructor's. Require DeviceSceneOptions::editable. Block; no launch can be under way.
+  void setLights(const std::vector<scene::Light>& lights);  // all punctual lights
+  void setEmission(const scene::Scene& scene);              // of the materials
+  // If `environment` has an image, it must be the one of the constructor's environment. Returns false, and changes
+  // nothing, if that image is not on the device, because its intensity was 0.
+  bool setEnvironment(const scene::Environment& environment);
+  // What defines() is made of, after edits.
+  void setFeatures(const SceneFeatures& features) { defines_ = shaderDefines(features, context_.info().quirks); }
   bool animated() const { return topLevel_->animated(); }  // an instance has keyframes
 
  private:
+  struct EnvironmentImage {
+    std::uint32_t texture = shared::kNoTexture;
+    EnvironmentTable table;  // without entries
+    gpu::Buffer entries;
+  };
+
   void uploadLights(const scene::Scene& scene, const scene::Environment& environment);
+  void showEnvironment(const scene::Environment& environment, const EnvironmentTable& table);
+  void updateLights() { uploadLightTable(lightBuilder_->build(topLevel_->worldFromObject())); }
   void uploadLightTable(LightTable table);
   void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
   // Returns the geometries of a mesh. The boxes of primitive sets are stored in `boxes`, which must live until the
@@ -106,7 +123,9 @@ class DeviceScene {
   std::optional<TextureUpload> textures_;
   std::unique_ptr<gpu::BindlessSet> set_;
   std::optional<TextureSlots> parameterSlots_;
-  gpu::Buffer geometryTable_, materialTable_, environmentTable_, albedoTable_;
+  gpu::Buffer geometryTable_, materialTable_, albedoTable_;
+  EnvironmentImage environmentImage_;  // of the constructor's environment
+  gpu::Buffer constantEnvironment_;    // table of an environment without an image
   gpu::Buffer lights_, lightTable_, lightNodes_, lightSlots_;
   std::vector<std::uint32_t> firstLightSlots_;     // per instance
   std::optional<LightTableBuilder> lightBuilder_;  // only if an instance with keyframes has lights, or for edits

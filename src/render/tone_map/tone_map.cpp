@@ -113,6 +113,10 @@ std::vector<std::string> toneMapNames() {
   return names;
 }
 
+ToneMap defaultToneMap(program::OutputKind kind) {
+  return kind == program::OutputKind::color ? ToneMap::neutral : ToneMap::linear;
+}
+
 vec3 toneMap(ToneMap operation, vec3 color) {
   color = clean(color);
   switch (operation) {
@@ -131,11 +135,13 @@ io::Image toDisplay(const io::Image& image, ToneMap operation, float exposure, b
 
 void decodeDisplay(io::Image& image, bool transparent) {
   const std::span<float> values = image.samples<float>();
-  for (std::size_t i = 0; i + 3 < values.size(); i += 4) {
-    const float alpha = transparent ? std::clamp(values[i + 3], 0.0f, 1.0f) : 1.0f;
-    for (std::size_t c = i; c < i + 3; ++c) values[c] = alpha * io::linearFromSrgb(values[c]);
-    values[i + 3] = alpha;
-  }
+  parallelRanges(values.size() / 4, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = 4 * first; i < 4 * end; i += 4) {
+      const float alpha = transparent ? std::clamp(values[i + 3], 0.0f, 1.0f) : 1.0f;
+      for (std::size_t c = i; c < i + 3; ++c) values[c] = alpha * io::linearFromSrgb(values[c]);
+      values[i + 3] = alpha;
+    }
+  });
 }
 
 }  // namespace quintet::render

@@ -9,6 +9,7 @@
 
 #include "base/math.h"
 #include "io/image.h"
+#include "program/description/program.h"
 
 namespace quintet::render {
 
@@ -16,6 +17,8 @@ enum class ToneMap { linear, aces, agx, neutral };
 
 std::optional<ToneMap> toneMapByName(const std::string& name);  // "linear", "aces", "agx", "neutral"
 std::vector<std::string> toneMapNames();
+// The default for an output of this kind: neutral for colors, else linear.
+ToneMap defaultToneMap(program::OutputKind kind);
 
 // Converts one color from linear Rec. 709 radiance, with exposure applied, to linear display light in [0, 1].
 vec3 toneMap(ToneMap operation, vec3 color);

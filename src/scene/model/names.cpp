@@ -47,4 +47,11 @@ std::vector<std::string> materialNames(const Scene& scene) {
   return names;
 }
 
+std::vector<std::string> lightNames(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const Light& light : scene.lights) names.push_back(light.name.empty() ? "light" : light.name);
+  makeUnique(names);
+  return names;
+}
+
 }  // namespace quintet::scene

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unique names of instances and materials, for Cryptomatte and tables. They depend only on the scene: an instance
-// without a name takes that of its mesh, else "instance"; a material without a name is called "material". A name that
-// an earlier object has becomes the first of "name#2", "name#3", ... that no object has.
+// Unique names of instances, materials and lights, for Cryptomatte and tables. They depend only on the scene: an instance
+// without a name takes that of its mesh, else "instance"; a material without a name is called "material", a light "light".
+// A name that an earlier object has becomes the first of "name#2", "name#3", ... that no object has.
 #ifndef QUINTET_SCENE_MODEL_NAMES_H
 #define QUINTET_SCENE_MODEL_NAMES_H
 
@@ -17,6 +17,9 @@ std::vector<std::string> instanceNames(const Scene&);
 
 // By index in Scene::materials, followed by the default material, "default", as on the device.
 std::vector<std::string> materialNames(const Scene&);
+
+// By index in Scene::lights.
+std::vector<std::string> lightNames(const Scene&);
 
 }  // namespace quintet::scene
 #endif

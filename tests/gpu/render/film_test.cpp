@@ -6,7 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
+#include <span>
 
 #include "../program/run_program.h"
 #include "harness.h"
@@ -47,6 +49,39 @@ TEST(FilmPasses, MatchesHostFixedPointSums) {
         render::addFixed(render::fixedFromFloat(inputs[i].a), render::fixedFromFloat(inputs[i].b));
     ASSERT_EQ(std::memcmp(&expected, seen[i].data(), 16), 0) << inputs[i].a << " + " << inputs[i].b;
   }
+}
+
+TEST(FilmPasses, ConvertsFixedPointSumsToFloats) {
+  std::vector<shared::FixedSum> inputs;
+  std::mt19937 random(7);
+  for (int i = 0; i < 4000; ++i) {  // the highest words are small, so that all magnitudes occur
+    shared::FixedSum sum{};
+    const auto words = static_cast<std::size_t>(i % 4 + 1);
+    for (std::size_t w = 0; w < words; ++w) sum.word[w] = static_cast<std::uint32_t>(random());
+    sum.word[words - 1] >>= random() % 32;
+    inputs.push_back(sum);
+    shared::FixedSum negative = sum;
+    std::uint64_t carry = 1;
+    for (std::uint32_t& word : negative.word) {
+      carry += static_cast<std::uint32_t>(~word);
+      word = static_cast<std::uint32_t>(carry);
+      carry >>= 32;
+    }
+    inputs.push_back(negative);
+  }
+  inputs.push_back(render::fixedFromFloat(std::numeric_limits<float>::infinity()));
+  const auto seen = runCompute<float>(R"(
+    #include <quintet/passes/fixed_sum.glsl>
+    struct In { FixedSum sum; };
+    struct Out { float value; };
+    Out run(uint index, In value) { return Out(floatFromFixed(value.sum)); }
+  )",
+                                      inputs, inputs.size());
+  for (std::size_t i = 0; i + 1 < inputs.size(); ++i) {
+    const double expected = render::fixedToDouble(inputs[i]);
+    ASSERT_LE(std::abs(seen[i] - expected), 5e-7 * std::abs(expected)) << i;
+  }
+  EXPECT_TRUE(std::isnan(seen.back()));
 }
 
 // A program whose samples store known values: a term of the mean, the center value, and an id.
@@ -167,6 +202,39 @@ TEST_F(FilmTest, StoresMeansCentersAndIds) {
     EXPECT_EQ(slots[i].samples, counts[i]);
   }
   EXPECT_EQ(slots[3].samples, 0u);
+}
+
+TEST_F(FilmTest, ReadsImagesForDisplay) {
+  render::Renderer r = renderer({"depth"});
+  for (const std::uint32_t count : {4u, 3u}) r.renderBatch(count);
+  for (const std::size_t output : {0u, 1u}) {
+    const io::Image exact = r.image(output), fast = r.displayImage(output);
+    ASSERT_EQ(fast.data.size(), exact.data.size());
+    EXPECT_EQ(fast.premultiplied, exact.premultiplied);
+    const std::span<const float> a = exact.samples<float>(), b = fast.samples<float>();
+    for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(b[i], a[i], 1e-6f * std::abs(a[i])) << output << " " << i;
+  }
+}
+
+TEST_F(FilmTest, ChangesItsSize) {
+  render::Renderer r = renderer({"depth", "ids"});
+  r.renderBatch();
+  r.displayImage(0);
+  for (const uvec2 size : {uvec2(64, 31), uvec2(3, 2)}) {
+    r.setSize(size);
+    EXPECT_EQ(r.film().counts().samples(), 0u);
+    r.renderBatch(3);
+    options.width = size.x;
+    options.height = size.y;
+    render::Renderer fresh = renderer({"depth", "ids"});
+    fresh.renderBatch(3);
+    EXPECT_EQ(r.film().bytes(), fresh.film().bytes());
+    EXPECT_EQ(r.displayImage(0).data, fresh.displayImage(0).data);
+    for (const std::size_t output : {0u, 1u}) EXPECT_EQ(r.image(output).data, fresh.image(output).data);
+    EXPECT_EQ(r.rays().rays, std::uint64_t{3} * size.x * size.y);
+  }
+  EXPECT_THROW(r.setSize({0, 4}), UsageError);
+  EXPECT_EQ(r.film().counts().samples(), 3u);
 }
 
 TEST_F(FilmTest, ComputesVarianceFromBatches) {

@@ -155,6 +155,7 @@ GPU_FIELDS(ExplainEmission, source, radiance, throughput, bsdfPdf, lightPdf, mis
 GPU_FIELDS(ExplainContribution, source, scatterings, value, unclamped);
 GPU_FIELDS(ExplainPathEnd, reason);
 GPU_FIELDS(FilmAdd, total, squares, batch, count, inverseSamples);
+GPU_FIELDS(FilmMean, total, mean, count, inverseSamples);
 GPU_FIELDS(FilmCoverage, total, batch, count, padding);
 GPU_FIELDS(NotFinite, count, first);
 GPU_FIELDS(FilmFrame, total, batch, marks, count, mark);

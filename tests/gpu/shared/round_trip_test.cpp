@@ -53,7 +53,7 @@ using SharedStructs = testing::Types<
     shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::LightNode,
     shared::EnvironmentData, shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData,
     shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::RayKinds, shared::Frame,
-    shared::FilmAdd, shared::FilmCoverage, shared::NotFinite, shared::FilmFrame, shared::FilmCheck, shared::FilmTile,
+    shared::FilmAdd, shared::FilmMean, shared::FilmCoverage, shared::NotFinite, shared::FilmFrame, shared::FilmCheck, shared::FilmTile,
     shared::FixedSum, shared::CoverageSlot, shared::Launch, shared::Instrument, shared::InstrumentReport,
     shared::InstrumentPixel, shared::RecursionGuard, shared::LogHeader, shared::LogRecord, shared::HeatPixel, shared::ExplainRay,
     shared::ExplainRayEnd, shared::ExplainCall, shared::ExplainStage, shared::ExplainHit, shared::ExplainBox,

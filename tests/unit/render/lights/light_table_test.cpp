@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include <gtest/gtest.h>
 
@@ -164,6 +165,43 @@ TEST(LightTable, AssignsSlotsAndIndices) {
   EXPECT_EQ(last.instance, 2u);
   EXPECT_EQ(last.geometry, 3u);
   EXPECT_EQ(last.primitive, 1u);
+}
+
+bool equal(const LightTable& a, const LightTable& b) {
+  const auto bytes = [](const auto& values) {
+    const auto view = std::as_bytes(std::span(values));
+    return std::vector<std::byte>(view.begin(), view.end());
+  };
+  return bytes(a.lights) == bytes(b.lights) && bytes(a.nodes) == bytes(b.nodes) &&
+         bytes(a.entries) == bytes(b.entries) && a.slots == b.slots && a.firstSlots == b.firstSlots &&
+         a.environmentLight == b.environmentLight;
+}
+
+TEST(LightTable, EditsGiveTheTableOfTheEditedScene) {
+  scene::Scene scene = squares();
+  scene.instances = {instanceOf(0), instanceOf(1)};
+  scene.lights.resize(2);
+  scene::Environment environment;
+  environment.constant = vec3(0.5f);
+  LightTableBuilder builder(scene, environment);
+  const auto expectTableOfScene = [&](const char* edit) {
+    const LightTable expected = buildLightTable(scene, environment);
+    EXPECT_TRUE(equal(builder.build(std::vector<mat4>(2, mat4(1.0f))), expected)) << edit;
+  };
+  expectTableOfScene("none");
+  scene.lights[1].intensity = {3, 2, 1};
+  builder.setPunctualLights(scene.lights);
+  expectTableOfScene("light");
+  scene.materials[0].emissive = vec3(1.0f);
+  scene.materials[1].emissive = vec3(0.0f);
+  builder.setEmission(scene);
+  expectTableOfScene("emission");
+  environment.intensity = 0.3f;
+  builder.setEnvironment(buildEnvironmentTable(environment).integral);
+  expectTableOfScene("intensity");
+  environment.intensity = 0.0f;
+  builder.setEnvironment(0.0);
+  expectTableOfScene("no environment");
 }
 
 // Instances that no ray hits are not lights.

@@ -38,6 +38,13 @@ TEST(Names, NumbersRepeatedNames) {
               ElementsAre("a", "a#3", "a#2", "a#2#2"));
 }
 
+TEST(Names, NamesLights) {
+  Scene scene;
+  scene.lights.resize(3);
+  scene.lights[1].name = "sun";
+  EXPECT_THAT(lightNames(scene), ElementsAre("light", "sun", "light#2"));
+}
+
 TEST(Names, AppendsTheDefaultMaterial) {
   Scene scene;
   for (const char* name : {"red", "", "red", "", "default"}) scene.materials.emplace_back().name = name;

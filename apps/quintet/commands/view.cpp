@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// `quintet view`: starts the window, which is the program quintet-view. With --script: an interactive session without a
+// window, which reads commands as lines of JSON and prints events as lines of JSON.
+#include <algorithm>
+#include <iostream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/stopwatch.h"
+#include "cli/candidates.h"
+#include "cli/companion.h"
+#include "cli/failure.h"
+#include "cli/parser.h"
+#include "cli/render_options.h"
+#include "cli/values.h"
+#include "gpu/error.h"
+#include "job/interactive/command_json.h"
+#include "job/interactive/event_json.h"
+#include "job/interactive/session.h"
+#include "output/write.h"
+
+namespace quintet::cli {
+namespace {
+
+using job::interactive::JsonFields;
+using job::interactive::Session;
+
+struct ViewOptions : RenderOptions {
+  std::string script;
+  bool keepGoing = false;
+};
+
+OptionTable declare(ViewOptions& options, RenderTexts& texts) {
+  OptionTable table(
+      "view",
+      "Opens a scene in a window: the program quintet-view, which gets all arguments. With --script, runs an "
+      "interactive session without a window.");
+  table.add({{.names = "SCENE",
+              .help = "Scene file: .gltf, .glb or .scene.toml (default: the program's own, or built in)",
+              .target = &texts.scene,
+              .candidates = {.extensions = kSceneExtensions}}});
+  table.add(
+      "Session",
+      {{.names = "--script",
+        .value = "FILE",
+        .help =
+            "Without a window: read commands from this file, one JSON object per line; - is standard input. Events are "
+            "lines of JSON on standard output",
+        .target = &options.script,
+        .candidates = {.extensions = {"*"}}},
+       {.names = "--keep-going",
+        .help = "Continue after a command of the script that fails; the exit status is still not 0",
+        .target = &options.keepGoing}});
+  table.add("Image", {{.names = "--size",
+                       .value = "WxH",
+                       .help = "Size in pixels, or the width alone, as in 'quintet render'",
+                       .target = &texts.size},
+                      {.names = "--transparent",
+                       .help = "Alpha 0 in the background instead of the environment",
+                       .target = &options.request.transparent},
+                      {.names = "--spp",
+                       .value = "N",
+                       .help = "Number of samples per pixel that the image reaches (default: 64)",
+                       .target = &texts.spp},
+                      {.names = "--seed",
+                       .value = "N",
+                       .help = "Seed of the random number generator (default: 0)",
+                       .target = &texts.seed}});
+  declareView(table, texts, options);
+  table.add("Program", {{.names = "--program",
+                         .value = "NAME",
+                         .help = "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)",
+                         .target = &options.program,
+                         .candidates = programCandidates()},
+                        {.names = "--set",
+                         .value = "NAME=VALUE",
+                         .help = "Parameter of the program; may be repeated",
+                         .target = &options.request.assignments},
+                        {.names = "--set-file",
+                         .value = "FILE.json",
+                         .help = "Parameters as a JSON object; --set overrides them",
+                         .target = &options.request.parameterFile,
+                         .candidates = {.extensions = {"json"}}}});
+  table.add("Run", {{.names = "--device",
+                     .value = "NAME",
+                     .help = "Index or part of the name: 0, h200, lavapipe, cpu, gpu",
+                     .target = &options.device,
+                     .candidates = {.names = {"0", "cpu", "gpu", "lavapipe"}}},
+                    {.names = "--timeout",
+                     .value = "SECONDS",
+                     .help = "Time limit of one launch (default: 60; on a CPU 600)",
+                     .target = &texts.timeout}});
+  table.addExamples({
+      {"quintet view scene.glb"},
+      {"quintet view scene.glb --script tour.jsonl", "docs/viewer.md lists the commands"},
+      {"echo '{\"do\":\"save\",\"file\":\"a.png\"}' | quintet view scene.glb --script -"},
+  });
+  return table;
+}
+
+void printLine(const std::string& json) { writeFile("-", json + "\n"); }
+
+// The commands of a script that a session does not have.
+const std::vector<std::string> kScriptCommands{"refine", "step", "pick", "save", "quit"};
+
+class Script {
+ public:
+  Script(Session& session, Console& console) : session_(session), console_(console) {}
+
+  // Returns false if the line ends the script.
+  bool execute(const std::string& line) {
+    JsonFields fields(line);
+    const std::string name = fields.text("do");
+    if (name == "refine") {
+      const bool hasSamples = fields.has("samples");
+      const std::uint32_t samples = hasSamples ? fields.count("samples") : 0;
+      fields.rejectOthers();
+      if (hasSamples && samples != session_.state().samples) session_.apply(job::interactive::SetSamples{samples});
+      report(session_.refine());
+    } else if (name == "step") {
+      const double seconds = fields.number("seconds");
+      fields.rejectOthers();
+      report(session_.step(seconds));
+    } else if (name == "pick") {
+      const uvec2 pixel(fields.index("x"), fields.index("y"));
+      fields.rejectOthers();
+      const std::optional<job::interactive::Pick> picked = session_.pick(pixel);
+      printLine(job::interactive::pickedJson(pixel, picked, session_.instanceNames(), session_.materialNames()));
+    } else if (name == "save") {
+      const std::string file = fields.text("file");
+      fields.rejectOthers();
+      save(file);
+    } else if (name == "quit") {
+      fields.rejectOthers();
+      return false;
+    } else {
+      session_.apply(job::interactive::parseCommand(name, fields, kScriptCommands));
+    }
+    return true;
+  }
+
+ private:
+  void report(const std::vector<job::interactive::Event>& events) {
+    const job::interactive::Failed* failed = nullptr;
+    for (const job::interactive::Event& event : events) {
+      const auto* failure = std::get_if<job::interactive::Failed>(&event);
+      if (failure)
+        failed = failure;  // becomes the error of the line
+      else
+        printLine(job::interactive::eventJson(event));
+    }
+    if (failed) throw Error(failed->message);
+  }
+
+  void save(const std::string& file) {
+    const job::interactive::SessionState& state = session_.state();
+    output::OutputRequest request;
+    request.file = file;
+    request.output = state.output;
+    request.exposure = state.exposure;
+    request.toneMap = state.toneMap;
+    if (output::isStandardOutput(file)) throw UsageError("standard output has the events; save to a file");
+    if (output::fileKind(file) == output::FileKind::film)
+      throw UsageError(fmt::format("{}: a session writes images; use 'quintet render' for films", file));
+    const output::OutputPlan plan = output::planOutputs(request, session_.program());
+    report(session_.refine());
+    output::writeOutputs(plan, session_.result(), console_);
+    printLine(job::interactive::savedJson(file));
+  }
+
+  Session& session_;
+  Console& console_;
+};
+
+// Returns the exit status.
+int runScript(const ViewOptions& options, std::istream& lines, const std::string& name) {
+  Console console({.quiet = true});
+  job::Engine engine({.device = options.device, .log = [&](LogLevel level, const std::string& text) {
+                        if (level == LogLevel::warning) console.warning(text);
+                      }});
+  const Stopwatch clock;
+  Session session(
+      engine, {options.program, options.request}, [&] { return clock.seconds(); }, console);
+  Script script(session, console);
+  int status = 0;
+  std::string line;
+  for (std::uint64_t number = 1; std::getline(lines, line); ++number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const auto fail = [&](const Error& error) {
+      const std::string where = fmt::format("line {}", number);
+      printLine(job::interactive::failedJson(number, error.what()));
+      status = printFailure(FileError(name, where, error.what()).what(), kRuntimeError);
+    };
+    try {
+      if (!script.execute(line)) break;
+    } catch (const ProgramError& error) {
+      printLine(job::interactive::eventJson(job::interactive::DiagnosticsFound{error.diagnostics()}));
+      fail(error);
+    } catch (const DeviceLostError&) {
+      throw;  // no later line can succeed
+    } catch (const Error& error) {
+      fail(error);
+    }
+    if (status != 0 && !options.keepGoing) break;
+  }
+  return status;
+}
+
+}  // namespace
+
+OptionTable viewOptions() {
+  ViewOptions options;
+  RenderTexts texts;
+  return declare(options, texts).withoutTargets();
+}
+
+// Only a session without a window is parsed here.
+bool hasScript(Arguments arguments) {
+  return std::ranges::any_of(arguments, [](const std::string& argument) {
+    return argument == "--script" || argument.starts_with("--script=") || argument == "--help" || argument == "-h";
+  });
+}
+
+[[noreturn]] void openWindow(Arguments arguments) {
+  const std::filesystem::path viewer = findCompanion("quintet-view");
+  if (viewer.empty())
+    throw Error(
+        "quintet-view, the program with the window, not found beside quintet or in PATH; build it with "
+        "-DQUINTET_VIEWER=ON, or use --script FILE for a session without a window (docs/viewer.md)");
+  startCompanion(viewer, arguments);
+}
+
+int viewCommand(Arguments arguments) {
+  if (!hasScript(arguments)) openWindow(arguments);
+  ViewOptions options;
+  RenderTexts texts;
+  if (!parse(declare(options, texts), arguments)) return 0;
+  options.request.scene = texts.scene;
+  options.request.commandLine = commandLine("view", arguments);
+  options.output.file = "view.png";  // the files are chosen by the script
+  convert(texts, options);
+  if (options.script == "-") return runScript(options, std::cin, "standard input");
+  std::istringstream lines(readTextFile(options.script));
+  return runScript(options, lines, options.script);
+}
+
+}  // namespace quintet::cli

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What happened in a session since the last step, as plain data.
+#ifndef QUINTET_JOB_INTERACTIVE_EVENT_H
+#define QUINTET_JOB_INTERACTIVE_EVENT_H
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "base/math.h"
+
+namespace quintet::job::interactive {
+
+struct Restarted {};  // a change has discarded the samples
+struct ImageUpdated {
+  std::uint64_t samples = 0;  // per pixel, or frames
+  uvec2 size{0};              // pixels of this image
+  unsigned factor = 1;        // by which its sides are smaller than those of the session
+  bool complete = false;      // all samples at full resolution
+  double seconds = 0;         // in which these samples were rendered, wall clock
+};
+struct ProgramReloaded {
+  std::string files;  // that were saved: "a.rgen, b.rchit"
+};
+// Of the program that is shown, or of its changed files. If one is an error, the session continues with the last
+// program that compiled.
+struct DiagnosticsFound {
+  std::vector<Diagnostic> diagnostics;
+};
+struct Note {
+  std::string text;
+};
+struct Warning {
+  std::string text;
+};
+// The render stopped until the next command or save.
+struct Failed {
+  std::string message;
+};
+
+using Event = std::variant<Restarted, ImageUpdated, ProgramReloaded, DiagnosticsFound, Note, Warning, Failed>;
+
+}  // namespace quintet::job::interactive
+#endif

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Events of sessions as lines of JSON: {"event":"image","samples":4,...}. docs/viewer.md lists them.
+#ifndef QUINTET_JOB_INTERACTIVE_EVENT_JSON_H
+#define QUINTET_JOB_INTERACTIVE_EVENT_JSON_H
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "job/interactive/event.h"
+#include "job/interactive/picking.h"
+
+namespace quintet::job::interactive {
+
+// All without a line break.
+std::string eventJson(const Event& event);
+std::string savedJson(const std::string& file);  // a script wrote an image
+// A script picked a pixel. `names`: that the indices of `pick` refer to.
+std::string pickedJson(uvec2 pixel, const std::optional<Pick>& pick, const std::vector<std::string>& instanceNames,
+                       const std::vector<std::string>& materialNames);
+std::string failedJson(std::uint64_t line, const std::string& message);  // a line of a script failed
+
+}  // namespace quintet::job::interactive
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Undo and redo of a value: each step stores a copy of the value before it. A step of the same group as the step before
+// it extends that step.
+#ifndef QUINTET_JOB_INTERACTIVE_HISTORY_H
+#define QUINTET_JOB_INTERACTIVE_HISTORY_H
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace quintet::job::interactive {
+
+template <class Value>
+class History {
+ public:
+  // `before`: the value before the step. An empty group extends nothing.
+  void add(Value before, const std::string& group) {
+    redo_.clear();
+    const bool extends = !group.empty() && group == group_;
+    group_ = group;
+    if (!extends) undo_.push_back(std::move(before));
+  }
+  // The next step is a new one.
+  void endGroup() { group_.clear(); }
+
+  bool canUndo() const { return !undo_.empty(); }
+  bool canRedo() const { return !redo_.empty(); }
+  // The value to which undo() or redo() leads.
+  const Value& undone() const { return undo_.back(); }
+  const Value& redone() const { return redo_.back(); }
+  // `current`: the value until now.
+  void undo(Value current) { move(undo_, redo_, std::move(current)); }
+  void redo(Value current) { move(redo_, undo_, std::move(current)); }
+
+ private:
+  void move(std::vector<Value>& from, std::vector<Value>& to, Value current) {
+    to.push_back(std::move(current));
+    from.pop_back();
+    endGroup();
+  }
+
+  std::vector<Value> undo_, redo_;  // the next one is last
+  std::string group_;
+};
+
+}  // namespace quintet::job::interactive
+#endif

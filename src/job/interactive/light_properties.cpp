@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/interactive/light_properties.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/suggestion.h"
+
+namespace quintet::job::interactive {
+namespace {
+
+using scene::Light;
+using scene::LightType;
+
+bool all(LightType) { return true; }
+bool hasPosition(LightType type) { return type != LightType::directional; }
+bool hasDirection(LightType type) { return type != LightType::point; }
+bool isSpot(LightType type) { return type == LightType::spot; }
+
+[[noreturn]] void fail(std::string_view name, const char* rule) {
+  throw UsageError(fmt::format("the property '{}' of a light is {}", name, rule));
+}
+
+vec3 toVec3(std::span<const double> v) { return {v[0], v[1], v[2]}; }
+
+void setIntensity(Light& light, std::span<const double> values) {
+  const double intensity = values[0];
+  if (!(intensity >= 0.0) || !std::isfinite(static_cast<float>(intensity))) fail("intensity", "a number of at least 0");
+  light.intensity = static_cast<float>(intensity) * lightColor(light);
+}
+
+void setColor(Light& light, std::span<const double> values) {
+  const vec3 color = toVec3(values);
+  const float largest = std::max({color.r, color.g, color.b});
+  if (!isFinite(color) || glm::any(glm::lessThan(color, vec3(0.0f))) || !(largest > 0.0f))
+    fail("color", "three numbers of at least 0, not all 0");
+  light.intensity = lightIntensity(light) * (color / largest);
+}
+
+void setPosition(Light& light, std::span<const double> values) {
+  const vec3 position = toVec3(values);
+  if (!isFinite(position)) fail("position", "three numbers");
+  light.position = position;
+}
+
+void setDirection(Light& light, std::span<const double> values) {
+  const vec3 direction = toVec3(values);
+  const float length = glm::length(direction);
+  if (!(length > 0.0f) || !std::isfinite(length)) fail("direction", "a vector with a length above 0");
+  light.direction = direction / length;
+}
+
+void setInnerConeAngle(Light& light, std::span<const double> values) {
+  const float angle = glm::radians(static_cast<float>(values[0]));
+  if (!(angle >= 0.0f && angle <= light.outerConeAngle)) fail("innerConeAngle", "from 0 to outerConeAngle, degrees");
+  light.innerConeAngle = angle;
+}
+
+void setOuterConeAngle(Light& light, std::span<const double> values) {
+  const float angle = glm::radians(static_cast<float>(values[0]));
+  if (!(angle >= light.innerConeAngle && values[0] <= 90.0))
+    fail("outerConeAngle", "from innerConeAngle to 90 degrees");
+  light.outerConeAngle = angle;
+}
+
+struct Property {
+  std::string_view name;
+  std::size_t count;  // of values
+  bool (*isOf)(LightType);
+  void (*set)(Light&, std::span<const double>);
+};
+
+constexpr std::array<Property, 6> kProperties{{{"intensity", 1, all, setIntensity},
+                                               {"color", 3, all, setColor},
+                                               {"position", 3, hasPosition, setPosition},
+                                               {"direction", 3, hasDirection, setDirection},
+                                               {"innerConeAngle", 1, isSpot, setInnerConeAngle},
+                                               {"outerConeAngle", 1, isSpot, setOuterConeAngle}}};
+
+const char* nameOf(LightType type) {
+  constexpr const char* kNames[] = {"point", "spot", "directional"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+}  // namespace
+
+std::vector<std::string> lightProperties() {
+  std::vector<std::string> names;
+  for (const Property& property : kProperties) names.emplace_back(property.name);
+  return names;
+}
+
+std::vector<std::string> lightProperties(LightType type) {
+  std::vector<std::string> names;
+  for (const Property& property : kProperties)
+    if (property.isOf(type)) names.emplace_back(property.name);
+  return names;
+}
+
+void setLightProperty(Light& light, const std::string& name, std::span<const double> values) {
+  const auto found = std::ranges::find(kProperties, name, &Property::name);
+  if (found == kProperties.end())
+    throw UsageError(
+        fmt::format("lights have no property '{}'{}", name, suggestionOrList(name, lightProperties(light.type))));
+  if (!found->isOf(light.type))
+    throw UsageError(fmt::format("{} lights have no property '{}'", nameOf(light.type), name));
+  if (values.size() != found->count) fail(name, found->count == 1 ? "a number" : "three numbers");
+  found->set(light, values);
+}
+
+float lightIntensity(const Light& light) {
+  return std::max({light.intensity.r, light.intensity.g, light.intensity.b, 0.0f});
+}
+
+vec3 lightColor(const Light& light) {
+  const float intensity = lightIntensity(light);
+  return intensity > 0.0f ? light.intensity / intensity : vec3(1.0f);
+}
+
+}  // namespace quintet::job::interactive

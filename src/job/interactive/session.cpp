@@ -1,0 +1,642 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/interactive/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "base/suggestion.h"
+#include "job/interactive/light_properties.h"
+#include "job/interactive/material_properties.h"
+#include "job/view.h"
+#include "program/heat.h"
+#include "program/load.h"
+#include "render/tone_map/false_color.h"
+#include "scene/animation/keyframes.h"
+#include "scene/model/mesh_bounds.h"
+#include "scene/model/names.h"
+
+namespace quintet::job::interactive {
+namespace {
+
+constexpr std::uint32_t kDefaultSamples = 64;
+constexpr double kQuietSeconds = 0.2;  // after the last command, the image becomes sharper
+
+// By the kind of device.
+struct Pace {
+  double updatesPerSecond;  // while something moves
+  double launchSeconds;     // an interruption waits for a launch
+};
+constexpr Pace kPaceOfCpu{12, 0.05}, kPaceOfGpu{90, 0.01};
+
+const Pace& paceOf(Engine& engine) { return engine.context().info().software ? kPaceOfCpu : kPaceOfGpu; }
+
+ResolvedJob resolveSession(const SessionRequest& session, const std::shared_ptr<const scene::Scene>& scene,
+                           const Bounds3& bounds, SceneSource source, program::Program program, double launchSeconds) {
+  RenderRequest request = session.render;
+  request.bounds = bounds;
+  request.loadedScene = scene;
+  request.editable = true;
+  request.launchSeconds = launchSeconds;
+  const auto samples = static_cast<std::uint32_t>(request.limits.samples.value_or(kDefaultSamples));
+  request.limits = {};
+  request.limits.samples = samples;
+  request.frames = {};
+  request.frames.accumulated = samples;
+  ResolvedJob job = resolve(std::move(request), std::move(program));
+  source.loaded = scene;
+  job.scene = std::move(source);
+  return job;
+}
+
+// With the heat maps, so that they can be selected.
+program::Program loadForSession(const std::string& name) {
+  std::vector<std::string> heatMaps;
+  for (const program::HeatMap& map : program::heatMaps()) heatMaps.emplace_back(map.name);
+  return program::withHeatMaps(program::loadProgram(name), heatMaps);
+}
+
+std::size_t indexOf(const std::string& name, const std::vector<std::string>& names, const char* kind) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end())
+    throw UsageError(fmt::format("{} '{}' not found{}", kind, name, suggestionOrList(name, names)));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+// The optional outputs that must be rendered to show this one. Throws UsageError if it does not exist.
+std::vector<std::string> outputsFor(const program::Program& program, const std::string& output) {
+  const std::size_t index = indexOf(output, program::outputNames(program), "output");
+  return program.outputs[index].optional ? std::vector<std::string>{output} : std::vector<std::string>{};
+}
+
+void requirePositive(double value, const char* name) {
+  if (!(value > 0.0) || !std::isfinite(value)) throw UsageError(fmt::format("{} {} must be above 0", name, value));
+}
+
+// What a command changes. Commands of the same group, one after the other, are one step of undo; an empty group is a
+// step of its own.
+struct UndoGroup {
+  static std::string with(const char* kind, const std::string& name, const std::vector<Property>& properties) {
+    std::string group = fmt::format("{}:{}", kind, name);
+    for (const Property& property : properties) group += ":" + property.name;
+    return group;
+  }
+
+  std::string operator()(const Orbit&) const { return "orbit"; }
+  std::string operator()(const Pan&) const { return "pan"; }
+  std::string operator()(const Zoom&) const { return "zoom"; }
+  std::string operator()(const Fly&) const { return "fly"; }
+  std::string operator()(const SetLens& c) const {
+    return fmt::format("lens:{}{}{}", c.verticalFov.has_value(), c.apertureRadius.has_value(),
+                       c.focusDistance.has_value());
+  }
+  std::string operator()(const SetParameter& c) const { return "parameter:" + c.name; }
+  std::string operator()(const EditMaterial& c) const { return with("material", c.material, c.properties); }
+  std::string operator()(const EditLight& c) const { return with("light", c.light, c.properties); }
+  std::string operator()(const SetEnvironment& c) const {
+    return fmt::format("environment:{}{}{}{}", c.source.has_value(), c.intensity.has_value(), c.rotation.has_value(),
+                       c.on.has_value());
+  }
+  std::string operator()(const SetTransform& c) const { return "transform:" + c.instance; }
+  std::string operator()(const Move& c) const { return "move:" + c.instance; }
+  std::string operator()(const SetFrame&) const { return "frame"; }
+  std::string operator()(const SetExposure&) const { return "exposure"; }
+  std::string operator()(const SetSize&) const { return "size"; }
+  template <class T>
+  std::string operator()(const T&) const {
+    return {};
+  }
+};
+
+}  // namespace
+
+// Turns the reports of the job into events, and stops it.
+class Session::Recorder : public Observer {
+ public:
+  explicit Recorder(Observer& host) : host_(host) {}
+  void stage(const std::string& text) override { host_.stage(text); }
+  void deviceHung(const Diagnostic& diagnostic) override { host_.deviceHung(diagnostic); }
+  void note(const std::string& text) override { add(Note{text}); }
+  void warning(const std::string& text) override { add(Warning{text}); }
+  void diagnostics(const std::vector<Diagnostic>& found) override { add(DiagnosticsFound{found}); }
+  StopRequest stopRequested() override {
+    return interrupted && interrupted() ? StopRequest::abandon : StopRequest::none;
+  }
+
+  void add(Event event) {
+    const std::lock_guard lock(mutex_);  // warnings come from any thread
+    events_.push_back(std::move(event));
+  }
+  std::vector<Event> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(events_, {});
+  }
+
+  std::function<bool()> interrupted;
+
+ private:
+  Observer& host_;
+  std::mutex mutex_;
+  std::vector<Event> events_;
+};
+
+Session::Session(Engine& engine, SessionRequest request, Clock clock, Observer& host)
+    : engine_(engine),
+      clock_(std::move(clock)),
+      recorder_(std::make_unique<Recorder>(host)),
+      resolution_(request.updatesPerSecond > 0 ? request.updatesPerSecond : paceOf(engine).updatesPerSecond) {
+  program::Program program = loadForSession(request.program);
+  SceneSource source = chooseSceneSource(request.render.scene, program);
+  host.stage("loading " + source.name);
+  scene_ = std::make_shared<const scene::Scene>(loadScene(source));
+  instanceNames_ = scene::instanceNames(*scene_);
+  materialNames_ = scene::materialNames(*scene_);
+  lightNames_ = scene::lightNames(*scene_);
+  sceneBounds_ = scene::worldBounds(*scene_);
+  job_ = std::make_unique<RenderJob>(engine,
+                                     resolveSession(request, scene_, sceneBounds_, std::move(source),
+                                                    std::move(program), paceOf(engine).launchSeconds),
+                                     *recorder_);
+  const RenderRequest& resolved = job_->resolved().request;
+  state_.program = request.program;
+  state_.parameterFile = resolved.parameterFile;
+  state_.assignments = resolved.assignments;
+  state_.camera = resolved.camera;
+  state_.environment = job_->keepEnvironment();
+  state_.output = this->program().outputs.front().name;
+  state_.size = filmSize_ = job_->scene()->size;
+  state_.samples = static_cast<std::uint32_t>(*resolved.limits.samples);
+  lastRestart_ = clock_();
+  watched_.addFiles(job_->programFiles());
+  watchFiles({});
+}
+
+Session::~Session() = default;
+
+void Session::apply(const Command& command) {
+  if (std::holds_alternative<EndDrag>(command)) {
+    history_.endGroup();
+    return;
+  }
+  const bool isUndo = std::holds_alternative<Undo>(command), isRedo = std::holds_alternative<Redo>(command);
+  if (isUndo && !canUndo()) throw UsageError("there is no step to undo");
+  if (isRedo && !canRedo()) throw UsageError("there is no step to redo");
+  SessionState before = state_;
+  show(isUndo ? SessionState(history_.undone()) : isRedo ? SessionState(history_.redone()) : changed(command));
+  if (isUndo)
+    history_.undo(std::move(before));
+  else if (isRedo)
+    history_.redo(std::move(before));
+  else
+    history_.add(std::move(before), std::visit(UndoGroup{}, command));
+}
+
+// The state after a command. It is checked when it is shown.
+SessionState Session::changed(const Command& command) const {
+  struct Change {
+    const Session& session;
+    SessionState next;
+
+    void navigate(const OrbitCamera& camera) {
+      next.camera = camera.request();
+      if (!isFinite(camera.center) || !isFinite(camera.eye()) || camera.eye() == camera.center)
+        throw UsageError("the camera would be too near or too far");
+    }
+    uvec2 size() const { return next.size; }
+
+    void operator()(const Orbit& c) {
+      const OrbitCamera camera = session.navigation();
+      navigate(orbit(camera, c.right, c.up, next.orbitCenter.value_or(camera.center)));
+    }
+    void operator()(const Pan& c) { navigate(pan(session.navigation(), c.pixels, size())); }
+    void operator()(const Zoom& c) {
+      requirePositive(c.factor, "the zoom factor");
+      navigate(zoom(session.navigation(), c.factor, c.pixel.value_or(0.5f * vec2(size())), size()));
+    }
+    void operator()(const Fly& c) { navigate(fly(session.navigation(), c.meters, c.yaw, c.pitch)); }
+    void operator()(const Frame& c) {
+      navigate(frame(session.navigation(), session.bounds(c.instance), size()));
+      next.orbitCenter.reset();
+    }
+    void operator()(const SetOrbitCenter& c) {
+      const float depth = session.navigation().depthOf(c.point);
+      if (!isFinite(c.point) || !(depth > 0.0f)) throw UsageError("the orbit center must be in front of the camera");
+      next.orbitCenter = c.point;
+      next.camera.focusDistance = depth;
+    }
+    void operator()(const SetCamera& c) {
+      next.camera = c.camera;
+      next.orbitCenter.reset();
+    }
+    void operator()(const SetLens& c) {
+      if (c.verticalFov && !(*c.verticalFov > 0.0f && *c.verticalFov < 180.0f))
+        throw UsageError(fmt::format("the field of view {} must be between 0 and 180 degrees", *c.verticalFov));
+      if (c.apertureRadius && !(*c.apertureRadius >= 0.0f)) throw UsageError("the aperture is negative");
+      if (c.focusDistance) requirePositive(*c.focusDistance, "the focus distance");
+      if (c.verticalFov) next.camera.verticalFov = c.verticalFov;
+      if (c.apertureRadius) next.camera.apertureRadius = c.apertureRadius;
+      if (c.focusDistance) next.camera.focusDistance = c.focusDistance;
+    }
+    void operator()(const SetProgram& c) {
+      next.program = c.name;
+      next.parameterFile.clear();
+      next.assignments.clear();
+      next.output.clear();  // the first one of the program
+    }
+    void operator()(const SetParameter& c) {
+      std::erase_if(next.assignments, [&](const std::string& text) { return text.starts_with(c.name + "="); });
+      next.assignments.push_back(c.name + "=" + c.value);
+    }
+    void operator()(const EditMaterial& c) {
+      std::vector<std::string> names = session.materialNames_;
+      names.pop_back();  // the default material is not part of the scene
+      const std::size_t index = indexOf(c.material, names, "material");
+      scene::Material material = session.material(index);
+      for (const Property& property : c.properties) setMaterialProperty(material, property.name, property.numbers);
+      next.materials[index] = std::make_shared<const scene::Material>(std::move(material));
+    }
+    void operator()(const EditLight& c) {
+      const std::size_t index = indexOf(c.light, session.lightNames_, "light");
+      LightState light = session.light(index);
+      for (const Property& property : c.properties) {
+        const bool isSwitch = property.name == "on";
+        if (isSwitch && (property.numbers.size() != 1 || (property.numbers[0] != 0 && property.numbers[0] != 1)))
+          throw UsageError("the property 'on' of a light is true or false");
+        if (isSwitch)
+          light.on = property.numbers[0] == 1;
+        else
+          setLightProperty(light.light, property.name, property.numbers);
+      }
+      next.lights[index] = std::make_shared<const LightState>(light);
+    }
+    void operator()(const SetEnvironment& c) {
+      if (c.intensity && !(*c.intensity >= 0.0f && std::isfinite(*c.intensity)))
+        throw UsageError(fmt::format("the intensity {} of the environment must be at least 0", *c.intensity));
+      if (c.rotation && !std::isfinite(*c.rotation)) throw UsageError("the rotation of the environment is not finite");
+      if (c.source) next.environment.source = *c.source;
+      if (c.intensity) next.environment.intensity = c.intensity;
+      if (c.rotation) next.environment.rotation = c.rotation;
+      if (c.on) next.environmentOn = *c.on;
+    }
+    void operator()(const SetTransform& c) {
+      next.transforms[indexOf(c.instance, session.instanceNames_, "instance")] = c.worldFromObject;
+    }
+    void operator()(const Move& c) {
+      const std::size_t index = indexOf(c.instance, session.instanceNames_, "instance");
+      mat4 moved = session.transform(index);
+      moved[3] += vec4(c.meters, 0.0f);
+      next.transforms[index] = moved;
+    }
+    void operator()(const SetFrame& c) {
+      if (!session.isAnimated()) throw UsageError("no instance has keyframes, so all frames are the same");
+      next.frame = c.frame;
+    }
+    void operator()(const SelectOutput& c) {
+      const program::Program& program = session.program();
+      const std::size_t index = indexOf(c.name, program::outputNames(program), "output");
+      if (program.outputs[index].pixel == program::OutputPixel::coverage)
+        throw UsageError(fmt::format("output '{}' counts ids and is not an image", c.name));
+      next.output = c.name;
+    }
+    void operator()(const SetExposure& c) {
+      if (!(std::abs(c.stops) <= kMaxExposure))
+        throw UsageError(
+            fmt::format("the exposure {} must be between {} and {} stops", c.stops, -kMaxExposure, kMaxExposure));
+      next.exposure = c.stops;
+    }
+    void operator()(const SetToneMap& c) { next.toneMap = c.toneMap; }
+    void operator()(const SetSize& c) { next.size = c.size; }
+    void operator()(const SetSamples& c) {
+      if (c.samples == 0) throw UsageError("the number of samples must be at least 1");
+      next.samples = c.samples;
+    }
+    void operator()(const EndDrag&) {}
+    void operator()(const Undo&) {}
+    void operator()(const Redo&) {}
+  };
+  Change change{*this, state_};
+  std::visit(change, command);
+  return std::move(change.next);
+}
+
+const scene::Material& Session::materialIn(const SessionState& state, std::size_t index) const {
+  const auto edited = state.materials.find(index);
+  return edited != state.materials.end() ? *edited->second : scene_->materials.at(index);
+}
+
+LightState Session::lightIn(const SessionState& state, std::size_t index) const {
+  const auto edited = state.lights.find(index);
+  return edited != state.lights.end() ? *edited->second : LightState{scene_->lights.at(index), true};
+}
+
+const scene::Material& Session::material(std::size_t index) const { return materialIn(state_, index); }
+
+LightState Session::light(std::size_t index) const { return lightIn(state_, index); }
+
+mat4 Session::transform(std::size_t instance) const {
+  const auto edited = state_.transforms.find(instance);
+  return edited != state_.transforms.end() ? edited->second
+                                           : scene::worldFromObjectAt(scene_->instances.at(instance), state_.frame);
+}
+
+Bounds3 Session::bounds(const std::string& instance) const {
+  std::size_t first = 0, end = scene_->instances.size();
+  if (!instance.empty()) {
+    first = indexOf(instance, instanceNames_, "instance");
+    end = first + 1;
+  }
+  Bounds3 bounds;
+  for (std::size_t i = first; i < end; ++i) {
+    const auto mesh = static_cast<std::size_t>(scene_->instances[i].mesh);
+    bounds.extend(scene::meshBounds(scene_->meshes[mesh], transform(i)));
+  }
+  return bounds;
+}
+
+scene::Camera Session::camera() const {
+  const float aspect = static_cast<float>(state_.size.x) / static_cast<float>(state_.size.y);
+  return chooseCamera(*scene_, state_.camera, aspect, sceneBounds_).camera;
+}
+
+OrbitCamera Session::navigation() const {
+  const vec3 sceneCenter = sceneBounds_.empty() ? vec3(0.0f) : sceneBounds_.center();
+  return orbitCamera(camera(), state_.orbitCenter.value_or(state_.camera.lookAt.value_or(sceneCenter)));
+}
+
+bool Session::isAnimated() const {
+  return std::ranges::any_of(scene_->instances, [](const scene::Instance& i) { return !i.keyframes.empty(); });
+}
+
+float Session::lastFrame() const {
+  float last = 0;
+  for (const scene::Instance& instance : scene_->instances)
+    if (!instance.keyframes.empty()) last = std::max(last, instance.keyframes.back().frame);
+  return last;
+}
+
+// Passes the difference to the job. A command changes one thing, so an error leaves the rest as it is.
+void Session::show(const SessionState& next) {
+  const auto differs = [&](auto member) { return !(next.*member == state_.*member); };
+  bool restart = false;
+  const auto edit = [&](bool needed, const auto& function) {
+    if (!needed) return;
+    function();
+    restart = true;
+  };
+  SessionState shown = next;
+  if (differs(&SessionState::program)) {
+    program::Program loaded = loadForSession(next.program);
+    if (shown.output.empty() && !loaded.outputs.empty()) shown.output = loaded.outputs.front().name;
+    edit(true, [&] { showProgram(std::move(loaded), shown); });
+  } else {
+    edit(differs(&SessionState::output) && outputsFor(program(), next.output) != job_->resolved().request.outputs,
+         [&] { showProgram(program(), next); });
+    edit(differs(&SessionState::assignments), [&] { job_->setParameters(next.assignments); });
+  }
+  edit(differs(&SessionState::camera), [&] { job_->setCamera(next.camera); });
+  edit(differs(&SessionState::frame), [&] { job_->setFrame(next.frame); });
+  edit(differs(&SessionState::samples), [&] { job_->setPlannedSamples(next.samples); });
+  edit(differs(&SessionState::size), [&] {
+    job_->setSize(next.size);
+    filmSize_ = next.size;
+    if (hasAutomaticCamera()) job_->setCamera(next.camera);  // it depends on the aspect ratio
+  });
+  edit(differs(&SessionState::environment) || differs(&SessionState::environmentOn), [&] {
+    EnvironmentRequest environment = next.environment;
+    if (!next.environmentOn) environment.source = "none";
+    job_->setEnvironment(environment);
+  });
+  for (std::size_t i = 0; i < scene_->materials.size(); ++i) {
+    const scene::Material& material = materialIn(next, i);
+    edit(&materialIn(state_, i) != &material, [&] { job_->setMaterial(i, material); });
+  }
+  for (std::size_t i = 0; i < scene_->lights.size(); ++i) {
+    const auto editedIn = [&](const SessionState& state) {
+      const auto found = state.lights.find(i);
+      return found != state.lights.end() ? found->second.get() : nullptr;
+    };
+    edit(editedIn(state_) != editedIn(next), [&] {
+      LightState light = lightIn(next, i);
+      if (!light.on) light.light.intensity = vec3(0.0f);
+      job_->setLight(i, light.light);
+    });
+  }
+  const auto transformIn = [&](const SessionState& state, std::size_t i) {
+    const auto edited = state.transforms.find(i);
+    return edited != state.transforms.end() ? edited->second : scene_->instances[i].worldFromObject;
+  };
+  for (std::size_t i = 0; i < scene_->instances.size(); ++i) {
+    const mat4 transform = transformIn(next, i);
+    edit(transformIn(state_, i) != transform, [&] { job_->setTransform(i, transform); });
+  }
+  const bool otherProgram = shown.program != state_.program;
+  state_ = std::move(shown);
+  if (otherProgram) {
+    watched_ = {};
+    watched_.addFiles(job_->programFiles());
+    watchFiles({});
+  }
+  imageChanged_ = true;
+  if (restart) restarted();
+}
+
+void Session::showProgram(program::Program program, const SessionState& next) {
+  const ProgramRequest with{outputsFor(program, next.output), next.parameterFile, next.assignments};
+  job_->setProgram(std::move(program), with, *recorder_);  // keeps the old one if it throws
+}
+
+void Session::restarted() {
+  recorder_->add(Restarted{});
+  samples_ = 0;
+  seconds_ = 0;
+  kept_.reset();
+  preview_ = refining_ = failed_ = false;
+  lastRestart_ = clock_();
+}
+
+bool Session::hasAutomaticCamera() const {
+  return !state_.camera.lookFrom && state_.camera.name.empty() && scene_->cameras.empty();
+}
+
+std::size_t Session::outputIndex() const { return indexOf(state_.output, program::outputNames(program()), "output"); }
+
+void Session::watchFiles(const std::vector<Diagnostic>& diagnostics) {
+  watched_.addProgram(state_.program);
+  watched_.addDiagnosed(diagnostics);
+  watcher_.watch(watched_);
+}
+
+void Session::reloadIfSaved() {
+  if (!watcher_.pending()) return;
+  watcher_.wait(0);
+  const auto reject = [&](const std::vector<Diagnostic>& diagnostics) {
+    recorder_->diagnostics(diagnostics);
+    watchFiles(diagnostics);
+  };
+  try {
+    showProgram(loadForSession(state_.program), state_);
+    recorder_->add(ProgramReloaded{watcher_.changedNames()});
+    watched_.addFiles(job_->programFiles());
+    watchFiles({});
+    restarted();
+  } catch (const ProgramError& error) {
+    reject(error.diagnostics());
+  } catch (const FileError& error) {
+    reject({asDiagnostic(error)});
+  } catch (const UsageError& error) {  // such as a value for a parameter that no longer exists
+    reject({{Severity::error, "", 0, 0, "", error.what()}});
+  }
+}
+
+bool Session::isMoving() const { return clock_() - lastRestart_ < kQuietSeconds; }
+
+bool Session::hasWork() const {
+  if (failed_) return false;
+  if (preview_) return direct_ || !isMoving();
+  return samples_ < state_.samples;
+}
+
+double Session::secondsUntilWork() const {
+  if (imageChanged_ || hasWork()) return 0;
+  if (failed_ || !preview_) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, lastRestart_ + kQuietSeconds - clock_());
+}
+
+std::vector<Event> Session::refine(const std::function<bool()>& interrupted) {
+  direct_ = true;
+  try {
+    std::vector<Event> events = step(std::numeric_limits<double>::infinity(), interrupted);
+    direct_ = false;
+    return events;
+  } catch (...) {
+    direct_ = false;
+    throw;
+  }
+}
+
+std::vector<Event> Session::step(double seconds, const std::function<bool()>& interrupted) {
+  recorder_->interrupted = interrupted;
+  const double end = clock_() + seconds;
+  reloadIfSaved();
+  const auto fail = [&](const Error& error) {
+    failed_ = true;
+    recorder_->add(Failed{error.what()});
+  };
+  // A batch can take seconds, and a changed exposure must not wait for it.
+  const bool displayChanged = imageChanged_ && (samples_ > 0 || kept_);
+  try {
+    if (!displayChanged || direct_) work(end);
+  } catch (const ProgramError& error) {
+    recorder_->diagnostics(error.diagnostics());
+    watchFiles(error.diagnostics());
+    fail(error);
+  } catch (const FileError& error) {
+    fail(error);
+  } catch (const UsageError& error) {
+    fail(error);
+  } catch (const MemoryError& error) {
+    fail(error);
+  }
+  if (imageChanged_ && (samples_ > 0 || kept_) && !failed_) {
+    ImageUpdated image;
+    image.samples = std::max<std::uint64_t>(samples_, 1);
+    image.size = filmSize_;
+    image.factor = preview_ ? previewFactor_ : 1;
+    image.seconds = seconds_;
+    image.complete = !preview_ && samples_ >= state_.samples;
+    recorder_->add(image);
+  }
+  imageChanged_ = false;
+  return recorder_->take();
+}
+
+void Session::work(double end) {
+  while (hasWork() && renderNext() && clock_() < end && recorder_->stopRequested() == StopRequest::none) {
+  }
+}
+
+// Previews of increasing resolution, then batches at full resolution.
+bool Session::renderNext() {
+  if (!direct_ && !refining_) {
+    if (!preview_) return renderPreview(resolution_.factor());
+    if (previewFactor_ > 1) return renderPreview(finerFactor(previewFactor_));
+  }
+  if (!refining_) beginRefinement();
+  return renderBatch();
+}
+
+bool Session::renderPreview(unsigned factor) {
+  const uvec2 size = reducedSize(state_.size, factor);
+  if (filmSize_ != size) job_->setSize(size);
+  job_->restart();
+  filmSize_ = size;
+  samples_ = 0;
+  seconds_ = 0;
+  previewFactor_ = factor;
+  preview_ = added(job_->renderBatch(1, *recorder_), 1, factor);
+  return preview_;
+}
+
+void Session::beginRefinement() {
+  if (preview_ && previewFactor_ == 1) kept_ = linearImage();
+  if (filmSize_ != state_.size) job_->setSize(state_.size);
+  filmSize_ = state_.size;
+  job_->restart();
+  // An automatic camera depends on the aspect ratio, and a preview can have built the scene again, for its own.
+  if (hasAutomaticCamera()) job_->setCamera(state_.camera);
+  preview_ = false;
+  refining_ = true;
+  samples_ = 0;
+  seconds_ = 0;
+}
+
+bool Session::renderBatch() {
+  const std::uint64_t count = job_->resolved().accumulatesFrames() ? 1 : render::kBatchSamples;
+  const std::uint64_t end = std::min<std::uint64_t>(state_.samples, samples_ + count);
+  return added(job_->renderBatch(end, *recorder_), end - samples_, 1);
+}
+
+// `seconds`: of new samples per pixel, or nothing if they were interrupted.
+bool Session::added(std::optional<double> seconds, std::uint64_t samples, unsigned factor) {
+  if (!seconds) return false;
+  samples_ += samples;
+  seconds_ += *seconds;
+  imageChanged_ = true;
+  kept_.reset();
+  const void* renderer = &job_->renderer();
+  if (renderer == measured_) resolution_.measured(factor, *seconds / static_cast<double>(samples));
+  measured_ = renderer;
+  return true;
+}
+
+io::Image Session::linearImage() const {
+  return kept_ && samples_ == 0 ? *kept_ : job_->renderer().displayImage(outputIndex());
+}
+
+io::Image Session::image() const {
+  const program::OutputKind kind = program().outputs[outputIndex()].kind;
+  const auto exposure = static_cast<float>(state_.exposure);
+  const io::Image linear = linearImage();
+  if (kind == program::OutputKind::heat && !state_.toneMap)
+    return render::falseColor(linear, {.scale = render::falseColorScale(linear, exposure), .legend = false});
+  return render::toDisplay(linear, state_.toneMap.value_or(render::defaultToneMap(kind)), exposure,
+                           !job_->resolved().request.transparent);
+}
+
+RenderResult Session::result() const { return job_->result(true); }
+
+render::RayCount Session::rays() const { return job_->renderer().rays(); }
+
+std::optional<Pick> Session::pick(uvec2 pixel) {
+  if (pixel.x >= state_.size.x || pixel.y >= state_.size.y)
+    throw UsageError(
+        fmt::format("pixel {},{} is outside of the image of {}x{}", pixel.x, pixel.y, state_.size.x, state_.size.y));
+  job_->update(*recorder_);
+  return interactive::pick(engine_, *job_->scene()->onDevice, camera(), state_.size, pixel, program());
+}
+
+}  // namespace quintet::job::interactive

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// An interactive render without a user interface: commands change what is shown, steps refine the image, and events
+// report what happened. While commands arrive, images have a reduced resolution that holds a target rate. Afterwards
+// the image becomes sharper in steps, and the film then becomes that of a render with the same request, byte by byte.
+//
+// A session is used by one thread at a time. A front end that must not wait runs it in a thread of its own, and
+// interrupts step() when it has a command.
+#ifndef QUINTET_JOB_INTERACTIVE_SESSION_H
+#define QUINTET_JOB_INTERACTIVE_SESSION_H
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/image.h"
+#include "job/engine.h"
+#include "job/interactive/command.h"
+#include "job/interactive/event.h"
+#include "job/interactive/history.h"
+#include "job/interactive/orbit_camera.h"
+#include "job/interactive/picking.h"
+#include "job/interactive/resolution_control.h"
+#include "job/render_job.h"
+#include "job/source_watcher.h"
+
+namespace quintet::job::interactive {
+
+struct LightState {
+  scene::Light light;
+  bool on = true;
+};
+
+// Everything that undo restores.
+struct SessionState {
+  std::string program;                   // SessionRequest::program
+  std::filesystem::path parameterFile;   // RenderRequest::parameterFile
+  std::vector<std::string> assignments;  // RenderRequest::assignments
+  CameraRequest camera;
+  std::optional<vec3> orbitCenter;  // world space; unset means the point that the camera looks at
+  EnvironmentRequest environment;
+  bool environmentOn = true;
+  // Those that were changed, by index in the scene.
+  std::map<std::size_t, std::shared_ptr<const scene::Material>> materials;
+  std::map<std::size_t, std::shared_ptr<const LightState>> lights;
+  std::map<std::size_t, mat4> transforms;  // of instances
+  float frame = 0;
+  std::string output;                      // name
+  double exposure = 0;                     // stops
+  std::optional<render::ToneMap> toneMap;  // unset means by the kind of output
+  uvec2 size{0};                           // pixels, of the image at full resolution
+  std::uint32_t samples = 64;
+};
+
+struct SessionRequest {
+  std::string program = "pathtracer";  // name, folder or file
+  // Scene, camera, environment, size, seed, parameters, and limits.samples (default: 64).
+  RenderRequest render;
+  double updatesPerSecond = 0;  // while something moves; 0 means 12 on a CPU, else 90
+};
+
+class Session {
+ public:
+  // Seconds since any moment.
+  using Clock = std::function<double()>;
+
+  // Loads scene and program. `engine` and `host` outlive the session; `host` gets the stages of the work and a hung
+  // device, everything else becomes events. Throws as RenderJob and program::loadProgram() do.
+  Session(Engine& engine, SessionRequest request, Clock clock, Observer& host);
+  ~Session();
+
+  // Throws UsageError and FileError, and ProgramError for a program or an output whose code does not compile, and then
+  // changes nothing. Undo and redo without a step are errors, too.
+  void apply(const Command& command);
+  bool canUndo() const { return history_.canUndo(); }
+  bool canRedo() const { return history_.canRedo(); }
+
+  // Renders for about this time, at least one image if there is work, and returns what happened since the last step.
+  // Returns at once if a command has only changed how the image is displayed.
+  // Reloads the program if one of its files was saved. `interrupted` is asked between launches, which take about 0.05 s
+  // on a CPU and 0.01 s on a GPU: true abandons the batch in progress, whose samples are lost. Throws gpu errors and
+  // TimeoutError.
+  std::vector<Event> step(double seconds, const std::function<bool()>& interrupted = {});
+  // Refines to all samples, without images of reduced resolution.
+  std::vector<Event> refine(const std::function<bool()>& interrupted = {});
+  // Until step() has something to render: 0 if it has now, infinity if the image is complete. Saves of files are not
+  // included.
+  double secondsUntilWork() const;
+
+  // The image of the latest ImageUpdated, with the current output, exposure and tone map. Valid until the next command
+  // that discards samples. For display: the last bits can differ from result(). They throw Error if the last change
+  // failed.
+  io::Image image() const;        // 8-bit sRGB, RGB; RGBA if RenderRequest::transparent
+  io::Image linearImage() const;  // float RGBA, linear, premultiplied; without exposure
+  // With the film, for output::writeOutputs(). Its size is reduced until refinement starts. Throws Error if the last
+  // change failed.
+  RenderResult result() const;
+  render::RayCount rays() const;  // since the last restart; waits for the device, so not for each image
+
+  // What is visible at a pixel of the image at full resolution; nothing if no surface is. For programs that use the
+  // camera of the scene. Throws UsageError for a pixel outside, and as step() does.
+  std::optional<Pick> pick(uvec2 pixel);
+
+  const SessionState& state() const { return state_; }
+  const program::Program& program() const { return job_->resolved().program; }
+  const program::ParameterValues& parameters() const { return job_->resolved().parameters; }
+  const std::vector<Diagnostic>& diagnostics() const { return job_->diagnostics(); }  // warnings of the program
+
+  // The scene as it was loaded, and its objects as they are shown.
+  const scene::Scene& scene() const { return *scene_; }
+  const std::vector<std::string>& instanceNames() const { return instanceNames_; }
+  const std::vector<std::string>& materialNames() const { return materialNames_; }
+  const std::vector<std::string>& lightNames() const { return lightNames_; }
+  const scene::Material& material(std::size_t index) const;
+  LightState light(std::size_t index) const;
+  mat4 transform(std::size_t instance) const;
+  Bounds3 bounds(const std::string& instance) const;  // world space; empty name: the whole scene. Throws UsageError
+  scene::Camera camera() const;                       // for the full resolution
+  // Throws UsageError for an orthographic camera.
+  OrbitCamera navigation() const;
+  bool isAnimated() const;  // an instance has keyframes
+  float lastFrame() const;  // that has a keyframe; 0 if none
+
+ private:
+  class Recorder;
+
+  SessionState changed(const Command& command) const;
+  const scene::Material& materialIn(const SessionState& state, std::size_t index) const;
+  LightState lightIn(const SessionState& state, std::size_t index) const;
+  void show(const SessionState& next);
+  void showProgram(program::Program program, const SessionState& next);
+  void restarted();
+  bool hasAutomaticCamera() const;
+  std::size_t outputIndex() const;  // in the program
+
+  void watchFiles(const std::vector<Diagnostic>& diagnostics);
+  void reloadIfSaved();
+  bool isMoving() const;
+  bool hasWork() const;
+  void work(double end);
+  bool renderNext();  // false: interrupted
+  bool added(std::optional<double> seconds, std::uint64_t samples, unsigned factor);
+  bool renderPreview(unsigned factor);
+  bool renderBatch();
+  void beginRefinement();
+
+  Engine& engine_;
+  const Clock clock_;
+  std::shared_ptr<const scene::Scene> scene_;
+  std::vector<std::string> instanceNames_, materialNames_, lightNames_;
+  Bounds3 sceneBounds_;
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<RenderJob> job_;
+  SourceWatcher watcher_;
+  SessionState state_;
+  History<SessionState> history_;
+  ResolutionControl resolution_;
+  WatchList watched_;
+  uvec2 filmSize_{0};               // of the job
+  std::uint64_t samples_ = 0;       // in the film
+  double seconds_ = 0;              // in which they were rendered
+  double lastRestart_ = 0;          // on clock_
+  unsigned previewFactor_ = 1;      // of the latest preview
+  bool preview_ = false;            // the film is that of a preview, which is not refined
+  bool refining_ = false;           // since the last restart, the film has its full size
+  bool direct_ = false;             // no previews: during refine()
+  std::optional<io::Image> kept_;   // linear image of the last preview, until refinement has samples
+  bool imageChanged_ = false;       // since the last event
+  const void* measured_ = nullptr;  // renderer that has run: its times do not include compilation by the driver
+  bool failed_ = false;             // until the next command or save
+};
+
+}  // namespace quintet::job::interactive
+#endif

@@ -1,0 +1,596 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sessions on a device, with a clock that the test sets: previews, refinement to the film of a render, edits, undo,
+// picking, reload.
+#include "job/interactive/session.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "io/codec.h"
+#include "job/films.h"
+#include "program/load.h"
+#include "temp_folder.h"
+
+namespace quintet::job::interactive {
+namespace {
+
+constexpr const char* kScene =
+    "[[material]]\nname = \"red\"\nbase_color = [0.8, 0.1, 0.1]\nmetallic = 0.0\n"
+    "[[mesh]]\nname = \"box\"\nshape = \"cube\"\nmaterial = \"red\"\n"
+    "[[instance]]\nof = \"box\"\nname = \"left\"\n"
+    "[[instance]]\nof = \"box\"\nname = \"right\"\ntranslate = [3.0, 0.0, 0.0]\n"
+    "[[camera]]\nname = \"front\"\nlook_from = [1, 2, 8]\nlook_at = [1, 0, 0]\n";
+
+// With lights and an environment of one color.
+std::string litScene() {
+  return std::string(kScene) +
+         "[[material]]\nname = \"glow\"\nemissive = [1.0, 0.5, 0.25]\n"
+         "[[mesh]]\nname = \"bulb\"\nshape = \"cube\"\nmaterial = \"glow\"\n"
+         "[[instance]]\nof = \"bulb\"\nname = \"bulb\"\ntranslate = [-3.0, 0.0, 0.0]\n"
+         "[[light]]\nname = \"lamp\"\ntype = \"point\"\nposition = [0, 4, 4]\nintensity = 20.0\n"
+         "[[light]]\nname = \"spot\"\ntype = \"spot\"\nposition = [3, 5, 0]\ndirection = [0, -1, 0]\n"
+         "outer_angle = 30.0\nintensity = 50.0\n"
+         "[environment]\ncolor = [0.1, 0.2, 0.3]\n";
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+// Counts the expensive steps of the work.
+struct StageObserver : Observer {
+  void stage(const std::string& text) override {
+    compilations += text.starts_with("compiling") ? 1 : 0;
+    builds += text.starts_with("building") ? 1 : 0;
+  }
+  int compilations = 0, builds = 0;
+};
+
+class SessionTest : public testing::Test {
+ protected:
+  SessionTest() { writeFile(folder_ / "a.scene.toml", kScene); }
+
+  // With a cache, because most sessions compile the same shaders.
+  static Engine& engine() {
+    static const quintet::test::TempFolder caches;
+    static Engine instance({.caches = caches / "cache"});
+    return instance;
+  }
+  RenderRequest request(std::uint32_t samples = 6) const {
+    RenderRequest request;
+    request.scene = folder_ / "a.scene.toml";
+    request.size = {40, 24};
+    request.seed = 7;
+    request.limits.samples = samples;
+    return request;
+  }
+  std::unique_ptr<Session> makeSession(const RenderRequest& request, const std::string& program = "pathtracer") {
+    return std::make_unique<Session>(
+        engine(), SessionRequest{program, request}, [this] { return now_; }, observer_);
+  }
+  // The sums of output 0 of an ordinary render.
+  std::vector<shared::FixedSum> reference(const RenderRequest& request, const std::string& program = "pathtracer") {
+    RenderJob job(engine(), resolve(request, program::loadProgram(program)), observer_);
+    return job.run(request.limits, observer_).film->plane(0).sums;
+  }
+  static std::vector<shared::FixedSum> sums(const Session& session) { return session.result().film->plane(0).sums; }
+
+  template <class T>
+  static const T* find(const std::vector<Event>& events) {
+    for (const Event& event : events)
+      if (const T* found = std::get_if<T>(&event)) return found;
+    return nullptr;
+  }
+
+  const quintet::test::TempFolder folder_;
+  double now_ = 100;
+  StageObserver observer_;
+};
+
+TEST_F(SessionTest, RefinesToTheFilmOfARender) {
+  const auto session = makeSession(request());
+  const std::vector<Event> events = session->refine();
+  const auto* image = find<ImageUpdated>(events);
+  ASSERT_NE(image, nullptr);
+  EXPECT_EQ(image->samples, 6u);
+  EXPECT_EQ(image->size, uvec2(40, 24));
+  EXPECT_EQ(image->factor, 1u);
+  EXPECT_TRUE(image->complete);
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(request())));
+  EXPECT_EQ(session->image().width, 40u);
+  EXPECT_EQ(session->image().type, io::PixelType::u8);
+  EXPECT_EQ(session->secondsUntilWork(), std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(session->step(1).empty());
+}
+
+TEST_F(SessionTest, PreviewsWhileCommandsArrive) {
+  const auto session = makeSession(request());
+  session->refine();
+  session->apply(Orbit{20, 0});
+  EXPECT_EQ(session->secondsUntilWork(), 0);
+  std::vector<Event> events = session->step(0.01);
+  EXPECT_NE(find<Restarted>(events), nullptr);
+  const auto* preview = find<ImageUpdated>(events);
+  ASSERT_NE(preview, nullptr);
+  EXPECT_EQ(preview->samples, 1u);
+  EXPECT_FALSE(preview->complete);
+  EXPECT_EQ(preview->size, reducedSize({40, 24}, preview->factor));
+  EXPECT_EQ(session->image().width, preview->size.x);
+  EXPECT_TRUE(session->step(0.01).empty()) << "it waits for the next command";
+  EXPECT_NEAR(session->secondsUntilWork(), 0.2, 1e-6);
+  now_ += 0.25;
+  EXPECT_EQ(session->secondsUntilWork(), 0);
+  events = session->step(1000);
+  const auto* image = find<ImageUpdated>(events);
+  ASSERT_NE(image, nullptr);
+  EXPECT_TRUE(image->complete);
+  RenderRequest same = request();
+  same.camera = session->state().camera;
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(same))) << "the preview leaves no trace";
+}
+
+// The first samples depend on the planned number; sizes change the automatic camera.
+TEST_F(SessionTest, SamplesAndSizesAreThoseOfTheRequest) {
+  RenderRequest other = request(9);
+  other.size = {30, 50};
+  const auto session = makeSession(request());
+  session->refine();
+  session->apply(SetSamples{9});
+  session->apply(SetSize{{30, 50}});
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(other)));
+  EXPECT_THROW(session->apply(SetSize{{30, 0}}), UsageError);
+  EXPECT_EQ(session->state().size, uvec2(30, 50));
+}
+
+TEST_F(SessionTest, AnAutomaticCameraFollowsTheSize) {
+  std::string scene = std::string(kScene).substr(0, std::string(kScene).find("[[camera]]"));
+  writeFile(folder_ / "a.scene.toml", scene);
+  const auto session = makeSession(request());
+  session->step(1000);
+  session->apply(SetSize{{21, 61}});
+  EXPECT_NE(find<ImageUpdated>(session->step(0)), nullptr);
+  // The scene is built again while the film is reduced, to another aspect ratio.
+  const int builds = observer_.builds;
+  session->apply(EditMaterial{"red", {{"transmission", {1}}, {"roughness", {0}}, {"emissive", {1, 0.5, 0.25}}}});
+  EXPECT_NE(find<ImageUpdated>(session->step(0)), nullptr);
+  EXPECT_EQ(observer_.builds, builds + 1);
+  session->refine();
+  scene.insert(scene.find("metallic"), "transmission = 1.0\nroughness = 0.0\nemissive = [1.0, 0.5, 0.25]\n");
+  writeFile(folder_ / "a.scene.toml", scene);
+  RenderRequest other = request();
+  other.size = {21, 61};
+  other.environment.source = "default";  // the session had it before the scene emitted light
+  EXPECT_EQ(session->state().environment.source, "default");
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(other)));
+}
+
+TEST_F(SessionTest, AnAutomaticCameraStaysWhenInstancesMove) {
+  writeFile(folder_ / "a.scene.toml", std::string(kScene).substr(0, std::string(kScene).find("[[camera]]")));
+  const auto session = makeSession(request());
+  session->apply(Move{"left", {0, 5, 0}});
+  session->refine();
+  const std::vector<shared::FixedSum> moved = sums(*session);
+  for (const uvec2 size : {uvec2(21, 61), uvec2(40, 24)}) {
+    session->apply(SetSize{size});
+    session->refine();
+  }
+  EXPECT_TRUE(test::equalSums(sums(*session), moved));
+  session->apply(EditMaterial{"red", {{"transmission", {1}}, {"roughness", {0}}}});  // builds the scene again
+  session->refine();
+  session->apply(Undo{});
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), moved));
+}
+
+// Each edit gives the film of a scene file that states it. `compilations` and `builds`: how often the program is
+// compiled and the scene is built.
+struct SceneEdit {
+  const char* name;
+  Command command;
+  std::string from, to;
+  int compilations = 0, builds = 0;
+};
+
+TEST_F(SessionTest, EditsGiveTheFilmOfTheEditedScene) {
+  const std::vector<SceneEdit> edits{
+      {"base color", EditMaterial{"red", {{"baseColor", {0.25, 0.5, 1}}}}, "[0.8, 0.1, 0.1]", "[0.25, 0.5, 1.0]"},
+      {"emission", EditMaterial{"glow", {{"emissive", {0.5, 2, 1}}}}, "[1.0, 0.5, 0.25]", "[0.5, 2.0, 1.0]"},
+      {"first emission", EditMaterial{"red", {{"emissive", {1, 1, 0.5}}}}, "metallic = 0.0",
+       "metallic = 0.0\nemissive = [1.0, 1.0, 0.5]"},
+      {"intensity", EditLight{"lamp", {{"intensity", {8}}}}, "intensity = 20.0", "intensity = 8.0"},
+      {"color", EditLight{"lamp", {{"color", {1, 0.5, 0.25}}}}, "intensity = 20.0",
+       "intensity = 20.0\ncolor = [1.0, 0.5, 0.25]"},
+      {"position", EditLight{"lamp", {{"position", {2, 3, 4}}}}, "[0, 4, 4]", "[2, 3, 4]"},
+      {"direction", EditLight{"spot", {{"direction", {0, 0, -3}}}}, "[0, -1, 0]", "[0, 0, -1]"},
+      {"light off", EditLight{"spot", {{"on", {0}}}}, "intensity = 50.0", "intensity = 0.0"},
+      {"environment", SetEnvironment{.source = "0.5,0.25,0.125", .intensity = {}, .rotation = {}, .on = {}},
+       "[0.1, 0.2, 0.3]", "[0.5, 0.25, 0.125]"},
+      {"environment off", SetEnvironment{.source = {}, .intensity = {}, .rotation = {}, .on = false},
+       "color = [0.1, 0.2, 0.3]", "none = true", 1},
+      {"move", Move{"bulb", {0, 0, 2}}, "[-3.0, 0.0, 0.0]", "[-3.0, 0.0, 2.0]"},
+      {"clear coat", EditMaterial{"red", {{"clearcoat", {1}}}}, "metallic = 0.0", "metallic = 0.0\nclearcoat = 1.0", 1},
+      {"clear pane", EditMaterial{"red", {{"transmission", {1}}, {"roughness", {0}}}}, "metallic = 0.0",
+       "metallic = 0.0\ntransmission = 1.0\nroughness = 0.0", 1, 1}};
+  writeFile(folder_ / "a.scene.toml", litScene());
+  const auto session = makeSession(request(4));
+  session->refine();
+  const std::vector<shared::FixedSum> before = sums(*session);
+  for (const SceneEdit& edit : edits) {
+    writeFile(folder_ / "a.scene.toml", replaced(litScene(), edit.from, edit.to));
+    const std::vector<shared::FixedSum> expected = reference(request(4));
+    EXPECT_FALSE(test::equalSums(before, expected)) << edit.name;
+    const StageObserver start = observer_;
+    session->apply(edit.command);
+    session->refine();
+    EXPECT_EQ(observer_.compilations - start.compilations, edit.compilations) << edit.name;
+    EXPECT_EQ(observer_.builds - start.builds, edit.builds) << edit.name;
+    EXPECT_TRUE(test::equalSums(sums(*session), expected)) << edit.name;
+    session->apply(Undo{});
+    session->refine();
+    EXPECT_TRUE(test::equalSums(sums(*session), before)) << edit.name;
+  }
+}
+
+TEST_F(SessionTest, TheEnvironmentTurnsInPlace) {
+  const auto session = makeSession(request());  // the default environment, an image
+  const auto film = [&](const SetEnvironment& command) {
+    session->apply(command);
+    session->refine();
+    return sums(*session);
+  };
+  RenderRequest other = request();
+  other.environment = {.source = "default", .intensity = 0.5f, .rotation = 90.0f};
+  const StageObserver start = observer_;
+  EXPECT_TRUE(test::equalSums(film({.source = {}, .intensity = 0.5f, .rotation = 90.0f, .on = {}}), reference(other)));
+  other.environment.source = "0.5,1,2";
+  EXPECT_TRUE(
+      test::equalSums(film({.source = "0.5,1,2", .intensity = {}, .rotation = {}, .on = {}}), reference(other)));
+  other.environment.source = "none";
+  film({.source = {}, .intensity = {}, .rotation = {}, .on = false});
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(other)));
+  other.environment.source = "default";
+  EXPECT_TRUE(
+      test::equalSums(film({.source = "default", .intensity = {}, .rotation = {}, .on = true}), reference(other)));
+  EXPECT_EQ(observer_.builds - start.builds, 4) << "only the references build scenes";
+  EXPECT_THROW(session->apply(SetEnvironment{.source = "missing.hdr", .intensity = {}, .rotation = {}, .on = {}}),
+               FileError);
+  EXPECT_THROW(session->apply(SetEnvironment{.source = {}, .intensity = -1.0f, .rotation = {}, .on = {}}), UsageError);
+}
+
+TEST_F(SessionTest, ShowsAnotherEnvironmentImage) {
+  io::Image sky = io::makeImage(4, 2, 3, io::PixelType::f32, io::ColorEncoding::linear);
+  std::ranges::fill(sky.samples<float>(), 0.5f);
+  sky.samples<float>()[3] = 4.0f;
+  io::writeImage(folder_ / "sky.hdr", sky);
+  RenderRequest other = request();
+  other.environment.source = (folder_ / "sky.hdr").string();
+  const auto session = makeSession(request());
+  session->refine();
+  session->apply(SetEnvironment{.source = other.environment.source, .intensity = {}, .rotation = {}, .on = {}});
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(other)));
+}
+
+TEST_F(SessionTest, ShowsAnotherProgram) {
+  const auto session = makeSession(request());
+  session->apply(SetParameter{"bounces", "1"});
+  session->refine();
+  const std::vector<shared::FixedSum> before = sums(*session);
+  session->apply(SetProgram{"normals"});
+  EXPECT_EQ(session->program().name, "normals");
+  EXPECT_EQ(session->state().output, "color");
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(request(), "normals")));
+  EXPECT_THROW(session->apply(SetProgram{"nromals"}), UsageError);
+  EXPECT_EQ(session->program().name, "normals");
+  session->apply(Undo{});
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), before));
+}
+
+TEST_F(SessionTest, PicksWhatIsVisible) {
+  const auto session = makeSession(request());
+  session->apply(SetCamera{{.lookFrom = vec3(3, 0, 8), .lookAt = vec3(3, 0, 0)}});
+  session->refine();
+  const std::vector<shared::FixedSum> before = sums(*session);
+  const std::optional<Pick> picked = session->pick({20, 12});
+  ASSERT_TRUE(picked);
+  EXPECT_EQ(session->instanceNames().at(picked->instance), "right");
+  EXPECT_EQ(session->materialNames().at(picked->material), "red");
+  EXPECT_EQ(picked->geometry, 0u);
+  const Bounds3 bounds = session->bounds("right");
+  EXPECT_NEAR(picked->position.z, bounds.max.z, 1e-5f);
+  EXPECT_NEAR(picked->position.x, 3, 0.2f);
+  EXPECT_NEAR(picked->distance, glm::length(picked->position - vec3(3, 0, 8)), 1e-4f);
+  for (const vec3& normal : {picked->normal, picked->geometricNormal})
+    EXPECT_LT(glm::length(normal - vec3(0, 0, 1)), 1e-5f);
+  EXPECT_TRUE(picked->front);
+  EXPECT_FALSE(session->pick({0, 0})) << "the background";
+  EXPECT_THROW(session->pick({40, 0}), UsageError);
+  EXPECT_TRUE(test::equalSums(sums(*session), before)) << "picking keeps the film";
+  session->apply(Move{"right", {0, 0, 1}});
+  EXPECT_NEAR(session->pick({20, 12})->distance, picked->distance - 1, 1e-3f) << "edits are picked at once";
+  session->apply(Undo{});
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), before));
+}
+
+// The path tracer has two ray types and the lesson one, of a program that intersects the boxes itself.
+TEST_F(SessionTest, PicksSolidsAndBoxes) {
+  writeFile(folder_ / "a.scene.toml",
+            "[[material]]\nname = \"clay\"\n"
+            "[[spheres]]\nname = \"ball\"\nmaterial = \"clay\"\nitems = [{ center = [0, 0, 0], radius = 1.5 }]\n");
+  const auto session = makeSession(request());
+  session->apply(SetCamera{{.lookFrom = vec3(0, 0, 8), .lookAt = vec3(0, 0, 0)}});
+  const std::optional<Pick> ball = session->pick({20, 12});
+  ASSERT_TRUE(ball);
+  EXPECT_EQ(session->materialNames().at(ball->material), "clay");
+  EXPECT_NEAR(glm::length(ball->position), 1.5f, 1e-4f);
+  EXPECT_LT(glm::length(ball->normal - ball->position / 1.5f), 1e-4f);
+
+  writeFile(folder_ / "a.scene.toml",
+            "[[custom]]\nname = \"boxes\"\nboxes = [{ min = [-9, -9, -9], max = [-8, -8, -8] }, "
+            "{ min = [-1, -1, -1], max = [1, 1, 1] }]\n");
+  const auto lesson = makeSession(request(1), "lessons/12_box");
+  lesson->apply(SetCamera{{.lookFrom = vec3(0, 0, 9), .lookAt = vec3(0, 0, 0)}});
+  lesson->refine();
+  const std::optional<Pick> picked = lesson->pick({20, 12});
+  ASSERT_TRUE(picked);
+  EXPECT_NEAR(picked->position.z, 1, 1e-4f);
+  EXPECT_EQ(picked->primitive, 1u);
+  const std::vector<std::byte> image = lesson->result().film->image(0).data;
+  lesson->pick({20, 12});
+  lesson->apply(SetSamples{2});
+  lesson->apply(SetSamples{1});
+  lesson->refine();
+  EXPECT_EQ(lesson->result().film->image(0).data, image) << "the program still finds its hit groups";
+}
+
+TEST_F(SessionTest, OrbitsAroundAPickedPoint) {
+  const auto session = makeSession(request());
+  session->apply(SetOrbitCenter{{3, 1, 0}});
+  const float distance = glm::length(session->navigation().eye() - vec3(3, 1, 0));
+  EXPECT_NEAR(session->camera().focusDistance, session->navigation().depthOf({3, 1, 0}), 1e-4f);
+  EXPECT_LT(glm::length(session->navigation().eye() - vec3(1, 2, 8)), 1e-4f) << "the camera does not move";
+  session->apply(Orbit{40, 10});
+  EXPECT_NEAR(glm::length(session->navigation().eye() - vec3(3, 1, 0)), distance, 1e-3f);
+  EXPECT_THROW(session->apply(SetOrbitCenter{{1, 2, 20}}), UsageError) << "behind the camera";
+}
+
+TEST_F(SessionTest, BecomesSharperInSteps) {
+  RenderRequest large = request();
+  large.size = {256, 256};  // more than one launch
+  const auto session = makeSession(large);
+  std::vector<unsigned> factors;
+  for (int i = 0; i < 4; ++i) {
+    const std::vector<Event> events = session->step(0);
+    const auto* image = find<ImageUpdated>(events);
+    ASSERT_NE(image, nullptr);
+    EXPECT_EQ(image->size, reducedSize(large.size, image->factor));
+    EXPECT_EQ(session->image().width, image->size.x);
+    EXPECT_EQ(image->samples, 1u);
+    factors.push_back(image->factor);
+    now_ += 0.25;
+  }
+  EXPECT_EQ(factors, (std::vector<unsigned>{8, 4, 2, 1}));
+  // Until the refinement has samples, the last preview is shown.
+  const std::vector<std::byte> preview = session->image().data;
+  EXPECT_EQ(find<ImageUpdated>(session->step(1, [] { return true; })), nullptr);
+  EXPECT_EQ(session->image().data, preview);
+  session->apply(SetExposure{3});
+  EXPECT_NE(find<ImageUpdated>(session->step(0, [] { return true; })), nullptr);
+  EXPECT_NE(session->image().data, preview);
+  session->apply(Undo{});
+  EXPECT_EQ(session->image().data, preview);
+  const std::vector<Event> shown = session->step(1000);
+  ASSERT_NE(find<ImageUpdated>(shown), nullptr);
+  EXPECT_EQ(find<ImageUpdated>(shown)->samples, 1u) << "the changed exposure does not wait for the refinement";
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(large)));
+}
+
+TEST_F(SessionTest, UndoRestoresTheFilm) {
+  const auto session = makeSession(request());
+  session->refine();
+  const std::vector<shared::FixedSum> before = sums(*session);
+  const std::vector<Command> commands{Orbit{30, 10},
+                                      Zoom{2, vec2(3, 4)},
+                                      Frame{"right"},
+                                      SetLens{.verticalFov = 20.0f},
+                                      SetParameter{"bounces", "1"},
+                                      EditMaterial{"red", {{"baseColor", {0, 1, 0}}, {"roughness", {0.1}}}},
+                                      EditMaterial{"red", {{"emissive", {1, 1, 1}}}},
+                                      Move{"left", {0, 1, 0}},
+                                      SetSamples{4},
+                                      SetSize{{20, 20}}};
+  for (const Command& command : commands) {
+    session->apply(command);
+    session->refine();
+    const std::vector<shared::FixedSum> edited = sums(*session);
+    EXPECT_FALSE(test::equalSums(edited, before)) << command.index();
+    session->apply(Undo{});
+    session->refine();
+    EXPECT_TRUE(test::equalSums(sums(*session), before)) << command.index();
+    session->apply(Redo{});
+    session->refine();
+    EXPECT_TRUE(test::equalSums(sums(*session), edited)) << command.index();
+    session->apply(Undo{});
+  }
+  EXPECT_THROW(session->apply(Undo{}), UsageError);
+}
+
+TEST_F(SessionTest, ADragIsOneStep) {
+  const auto session = makeSession(request());
+  const CameraRequest before = session->state().camera;
+  session->apply(Orbit{10, 0});
+  session->apply(Orbit{10, 0});
+  session->apply(Undo{});
+  EXPECT_EQ(session->state().camera, before);
+  // Sliders, too.
+  const auto roughness = [](double value) { return EditMaterial{"red", {{"roughness", {value}}}}; };
+  session->apply(roughness(0.5));
+  session->apply(roughness(0.6));
+  session->apply(EditMaterial{"red", {{"metallic", {1}}}});
+  session->apply(roughness(0.7));
+  session->apply(EndDrag{});
+  session->apply(roughness(0.8));
+  for (const float expected : {0.7f, 0.6f, 0.6f}) {
+    session->apply(Undo{});
+    EXPECT_EQ(session->material(0).roughness, expected);
+  }
+  session->apply(Undo{});
+  EXPECT_EQ(session->material(0).roughness, session->scene().materials[0].roughness);
+  EXPECT_FALSE(session->canUndo());
+  EXPECT_TRUE(session->canRedo());
+}
+
+TEST_F(SessionTest, DisplaySettingsKeepTheSamples) {
+  const auto session = makeSession(request());
+  session->refine();
+  const io::Image before = session->image();
+  session->apply(SetExposure{2});
+  std::vector<Event> events = session->step(0);
+  EXPECT_EQ(find<Restarted>(events), nullptr);
+  const auto* image = find<ImageUpdated>(events);
+  ASSERT_NE(image, nullptr);
+  EXPECT_EQ(image->samples, 6u);
+  EXPECT_NE(session->image().data, before.data);
+  session->apply(Undo{});
+  EXPECT_EQ(session->image().data, before.data);
+  session->apply(SetToneMap{render::ToneMap::linear});
+  EXPECT_NE(session->image().data, before.data);
+}
+
+TEST_F(SessionTest, SelectsOptionalOutputs) {
+  const auto session = makeSession(request());
+  session->apply(SelectOutput{"normal"});
+  session->refine();
+  RenderRequest same = request();
+  same.outputs = {"normal"};
+  RenderJob job(engine(), resolve(same, program::loadProgram("pathtracer")), observer_);
+  const RenderResult expected = job.run(same.limits, observer_), result = session->result();
+  const std::vector<std::string> names = program::outputNames(session->program());
+  const auto normal = static_cast<std::size_t>(std::ranges::find(names, "normal") - names.begin());
+  EXPECT_TRUE(test::equalSums(result.film->plane(normal).sums, expected.film->plane(normal).sums));
+  EXPECT_THAT([&] { session->apply(SelectOutput{"nromal"}); },
+              testing::ThrowsMessage<UsageError>(testing::HasSubstr("'normal'")));
+}
+
+TEST_F(SessionTest, AFailedCommandChangesNothing) {
+  const auto session = makeSession(request());
+  session->refine();
+  const std::vector<Command> wrong{SetParameter{"bonces", "1"},
+                                   SetParameter{"bounces", "many"},
+                                   EditMaterial{"red", {{"roughness", {7}}}},
+                                   EditMaterial{"blue", {{"roughness", {0}}}},
+                                   Move{"middle", {}},
+                                   SetTransform{"left", mat4(0.0f)},
+                                   SetCamera{{.name = "back"}},
+                                   SetFrame{2},
+                                   EditLight{"lamp", {{"intensity", {1}}}},
+                                   EditMaterial{"default", {{"roughness", {0}}}},
+                                   Zoom{0, {}},
+                                   Zoom{1e38f, {}},
+                                   SetLens{.verticalFov = 180.0f},
+                                   SetSamples{0}};
+  for (const Command& command : wrong) EXPECT_THROW(session->apply(command), UsageError) << command.index();
+  EXPECT_THROW(session->apply(Undo{}), UsageError);
+  EXPECT_TRUE(session->step(1).empty());
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(request())));
+}
+
+TEST_F(SessionTest, AnInterruptedBatchAddsNoSamples) {
+  RenderRequest large = request();
+  large.size = {256, 256};  // more than one launch
+  const auto session = makeSession(large);
+  EXPECT_EQ(find<ImageUpdated>(session->refine([] { return true; })), nullptr);
+  EXPECT_EQ(session->secondsUntilWork(), 0);
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(large)));
+}
+
+TEST_F(SessionTest, RendersFramesOfProgramsThatAccumulate) {
+  RenderRequest frames = request(3);
+  frames.scene.clear();
+  const auto session = makeSession(frames, "lessons/01_first_ray");
+  session->apply(SetExposure{0});
+  const std::vector<Event> events = session->refine();
+  ASSERT_NE(find<ImageUpdated>(events), nullptr);
+  EXPECT_EQ(find<ImageUpdated>(events)->samples, 3u);
+  EXPECT_TRUE(find<ImageUpdated>(events)->complete);
+  frames.frames.accumulated = 3;
+  RenderJob job(engine(), resolve(frames, program::loadProgram("lessons/01_first_ray")), observer_);
+  EXPECT_EQ(session->result().film->image(0).data, job.run(frames.limits, observer_).film->image(0).data);
+}
+
+// Its frames depend on the frames before.
+TEST_F(SessionTest, FramesStartOverAfterEdits) {
+  const auto film = [&](std::uint32_t count, uvec2 size) {
+    RenderRequest frames = request(count);
+    frames.scene.clear();
+    frames.size = size;
+    frames.frames.accumulated = count;
+    RenderJob job(engine(), resolve(frames, program::loadProgram("lessons/09_progressive")), observer_);
+    return job.run(frames.limits, observer_).film->image(0).data;
+  };
+  RenderRequest frames = request(3);
+  frames.scene.clear();
+  const auto session = makeSession(frames, "lessons/09_progressive");
+  session->step(0);
+  now_ += 1;
+  session->step(1000);
+  const auto shown = [&] { return session->result().film->image(0).data; };
+  EXPECT_EQ(shown(), film(3, {40, 24}));
+  session->apply(SetSize{{30, 20}});
+  session->step(0);  // a preview
+  session->refine();
+  EXPECT_EQ(shown(), film(3, {30, 20}));
+  session->apply(SetSamples{5});
+  session->refine();
+  EXPECT_EQ(shown(), film(5, {30, 20}));
+  session->apply(Undo{});
+  session->apply(Undo{});
+  session->refine();
+  EXPECT_EQ(shown(), film(3, {40, 24}));
+}
+
+// A program on disk that writes one color.
+class SessionReload : public SessionTest {
+ protected:
+  void save(const std::string& color) {
+    writeFile(folder_ / "p.rt.glsl",
+              "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(" + color + "));\n}\n");
+  }
+  std::uint8_t red(const Session& session) { return session.image().pixel<std::uint8_t>(0, 0)[0]; }
+};
+
+TEST_F(SessionReload, KeepsTheLastGoodProgram) {
+  save("1.0, 0.0, 0.0, 1.0");
+  const auto session = makeSession(request(1), (folder_ / "p.rt.glsl").string());
+  session->refine();
+  EXPECT_EQ(red(*session), 255);
+  save("1.0, 0.0, 0.0, nothing");
+  std::vector<Event> events = session->refine();
+  const auto* found = find<DiagnosticsFound>(events);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(found->diagnostics.front().line, 2);
+  EXPECT_EQ(find<Restarted>(events), nullptr);
+  EXPECT_EQ(red(*session), 255);
+  save("0.0, 1.0, 0.0, 1.0");
+  events = session->refine();
+  ASSERT_NE(find<ProgramReloaded>(events), nullptr);
+  EXPECT_EQ(find<ProgramReloaded>(events)->files, "p.rt.glsl");
+  EXPECT_EQ(red(*session), 0);
+}
+
+}  // namespace
+}  // namespace quintet::job::interactive
