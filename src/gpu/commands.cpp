@@ -20,11 +20,13 @@ VkBufferImageCopy wholeImage(const Image& image, VkDeviceSize bufferOffset) {
 }  // namespace
 
 // Defined here and not in context.cpp: the Context does not depend on Commands.
-std::uint64_t Context::submit(const std::function<void(Commands&)>& record) {
-  return submitRaw([&](VkCommandBuffer handle) {
-    Commands commands(*this, handle);
-    record(commands);
-  });
+std::uint64_t Context::submit(const std::function<void(Commands&)>& record, const FrameSemaphores& semaphores) {
+  return submitRaw(
+      [&](VkCommandBuffer handle) {
+        Commands commands(*this, handle);
+        record(commands);
+      },
+      semaphores);
 }
 
 void Commands::transition(const Image& image, VkImageLayout from, VkImageLayout to) {

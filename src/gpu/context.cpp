@@ -2,12 +2,17 @@
 #include "gpu/context.h"
 
 #include <cstdlib>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "gpu/device_query.h"
 #include "gpu/error.h"
 #include "gpu/instance.h"
 #include "gpu/pipeline_store.h"
+#include "gpu/presentation.h"
 #include "gpu/submissions.h"
 
 namespace quintet::gpu {
@@ -18,8 +23,23 @@ std::string environment(const char* name) {
   return value ? value : "";
 }
 
-FoundDevice findDevice(VkInstance instance, const std::string& request) {
-  std::vector<FoundDevice> devices = findDevices(instance);
+// The surface of a window, or none.
+struct Surface {
+  Surface(VkInstance owner, const std::optional<SurfaceSource>& source)
+      : instance(owner), handle(source ? source->create(owner) : VK_NULL_HANDLE) {}
+  ~Surface() {
+    if (handle) instanceFunction<PFN_vkDestroySurfaceKHR>(instance, "vkDestroySurfaceKHR")(instance, handle, nullptr);
+  }
+  Surface(const Surface&) = delete;
+  Surface& operator=(const Surface&) = delete;
+
+  VkInstance instance;
+  VkSurfaceKHR handle;
+};
+
+// `surface`: null selects among the devices with ray tracing.
+FoundDevice findDevice(VkInstance instance, VkSurfaceKHR surface, const std::string& request) {
+  std::vector<FoundDevice> devices = surface ? findPresentingDevices(instance, surface) : findDevices(instance);
   std::vector<DeviceInfo> infos;
   for (const FoundDevice& device : devices) infos.push_back(device.info);
   return devices[chooseDevice(infos, request.empty() ? environment("QUINTET_DEVICE") : request)];
@@ -27,15 +47,16 @@ FoundDevice findDevice(VkInstance instance, const std::string& request) {
 
 // The logical device with one queue.
 struct Device {
-  explicit Device(FoundDevice& found) {
+  Device(FoundDevice& found, bool presents) {
     const float priority = 1.0f;
     VkDeviceQueueCreateInfo queueInfo{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
     queueInfo.queueFamilyIndex = found.queueFamily;
     queueInfo.queueCount = 1;
     queueInfo.pQueuePriorities = &priority;
 
-    const std::vector<const char*> extensions = extensionsToEnable(found.capabilities);
-    DeviceFeatures features = featuresToEnable(found.capabilities);
+    const std::vector<const char*> extensions =
+        presents ? presentationExtensions(found.capabilities) : extensionsToEnable(found.capabilities);
+    DeviceFeatures features = presents ? presentationFeatures() : featuresToEnable(found.capabilities);
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
     info.pNext = features.chain({extensions.begin(), extensions.end()});
     info.queueCreateInfoCount = 1;
@@ -62,16 +83,23 @@ struct Context::Impl {
   explicit Impl(const ContextOptions& options)
       : log(options.log),
         sink(options.log),
-        instance(options.validate ? &sink : nullptr),
-        found(findDevice(instance.handle(), options.device)),
-        device(found),
+        instance(options.validate ? &sink : nullptr, instanceExtensions(options)),
+        surface(instance.handle(), options.surface),
+        found(findDevice(instance.handle(), surface.handle, options.device)),
+        device(found, options.surface.has_value()),
         allocator(instance.handle(), found, device.handle),
         submissions(device.vk, device.handle, device.queue, found.queueFamily),
         pipelines(device.vk, device.handle, [this](auto destroy) { submissions.retire(std::move(destroy)); }) {}
 
+  static std::span<const std::string> instanceExtensions(const ContextOptions& options) {
+    return options.surface ? std::span<const std::string>(options.surface->instanceExtensions)
+                           : std::span<const std::string>();
+  }
+
   LogSink log;
   ValidationSink sink;
   Instance instance;
+  Surface surface;
   FoundDevice found;
   Device device;
   Allocator allocator;
@@ -110,6 +138,7 @@ VkDevice Context::device() const { return impl_->device.handle; }
 Allocator& Context::allocator() const { return impl_->allocator; }
 VkQueue Context::queue() const { return impl_->device.queue; }
 std::uint32_t Context::queueFamily() const { return impl_->found.queueFamily; }
+VkSurfaceKHR Context::surface() const { return impl_->surface.handle; }
 const LogSink& Context::log() const { return impl_->log; }
 DeviceMemory Context::memory() const { return impl_->allocator.account().memory(); }
 PipelineStore& Context::pipelines() { return impl_->pipelines; }
@@ -117,8 +146,9 @@ PipelineStore& Context::pipelines() { return impl_->pipelines; }
 std::uint32_t Context::validationMessageCount() const { return impl_->sink.count(); }
 std::vector<std::string> Context::validationMessages() const { return impl_->sink.messages(); }
 
-std::uint64_t Context::submitRaw(const std::function<void(VkCommandBuffer)>& record) {
-  return impl_->submissions.submit(record);
+std::uint64_t Context::submitRaw(const std::function<void(VkCommandBuffer)>& record,
+                                 const FrameSemaphores& semaphores) {
+  return impl_->submissions.submit(record, semaphores);
 }
 void Context::wait(std::uint64_t value, double timeoutSeconds) { impl_->submissions.wait(value, timeoutSeconds); }
 std::uint64_t Context::completed() const { return impl_->submissions.completed(); }

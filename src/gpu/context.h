@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,18 @@ namespace quintet::gpu {
 class Commands;
 class PipelineStore;
 
+// A window as the target of a device that presents, independent of the window system.
+struct SurfaceSource {
+  std::vector<std::string> instanceExtensions;
+  std::function<VkSurfaceKHR(VkInstance)> create;  // throws Error if it fails
+};
+
+// Binary semaphores of a submission; null means none.
+struct FrameSemaphores {
+  VkSemaphore wait = VK_NULL_HANDLE;    // before all of its work
+  VkSemaphore signal = VK_NULL_HANDLE;  // after all of its work
+};
+
 struct ContextOptions {
   // Index, or part of the name, driver name or kind, case-insensitive: "1", "h200", "lavapipe", "cpu".
   // Empty means $QUINTET_DEVICE; if that is empty too, the first usable device, GPUs before CPUs.
@@ -29,6 +42,8 @@ struct ContextOptions {
   // default is true if $QUINTET_VALIDATE is set and not "0". A missing layer is an Error.
   bool validate = validationRequested();
   LogSink log;
+  // Opens a device that can present to this surface instead of one with ray tracing (gpu/presentation.h).
+  std::optional<SurfaceSource> surface = {};
 
   static bool validationRequested();
 };
@@ -53,6 +68,7 @@ class Context {
   Allocator& allocator() const;
   VkQueue queue() const;
   std::uint32_t queueFamily() const;
+  VkSurfaceKHR surface() const;  // of ContextOptions::surface, else null
   const LogSink& log() const;
   DeviceMemory memory() const;  // memory that the driver has allocated
   PipelineStore& pipelines();
@@ -63,8 +79,8 @@ class Context {
 
   // Records and submits commands. Returns the timeline value that the device reaches at the end of this work.
   // Submissions execute in order, and each one sees the memory that earlier ones wrote.
-  std::uint64_t submit(const std::function<void(Commands&)>& record);
-  std::uint64_t submitRaw(const std::function<void(VkCommandBuffer)>& record);
+  std::uint64_t submit(const std::function<void(Commands&)>& record, const FrameSemaphores& semaphores = {});
+  std::uint64_t submitRaw(const std::function<void(VkCommandBuffer)>& record, const FrameSemaphores& semaphores = {});
   // Blocks until `value` is reached. Throws TimeoutError after timeoutSeconds; values ≤ 0 disable the limit.
   void wait(std::uint64_t value, double timeoutSeconds = 0.0);
   void submitAndWait(const std::function<void(Commands&)>& record) { wait(submit(record)); }

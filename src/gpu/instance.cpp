@@ -70,11 +70,6 @@ bool hasLayer(const char* name) {
                      [&](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
 }
 
-template <class Function>
-Function instanceFunction(VkInstance instance, const char* name) {
-  return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
-}
-
 }  // namespace
 
 unsigned lavapipeThreads(unsigned cores) {
@@ -143,7 +138,7 @@ std::vector<std::string> ValidationSink::messages() const {
   return messages_;
 }
 
-Instance::Instance(ValidationSink* sink) {
+Instance::Instance(ValidationSink* sink, std::span<const std::string> extensions) {
   prepareDriverEnvironment();
   loadLoader();
   const std::uint32_t version = volkGetInstanceVersion();
@@ -163,7 +158,9 @@ Instance::Instance(ValidationSink* sink) {
   VkValidationFeaturesEXT features{VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT};
   features.enabledValidationFeatureCount = 1;
   features.pEnabledValidationFeatures = enabled;
-  const char* const extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+  std::vector<const char*> names;
+  for (const std::string& name : extensions) names.push_back(name.c_str());
+  if (sink) names.insert(names.end(), {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME});
 
   VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
   info.pApplicationInfo = &application;
@@ -171,9 +168,9 @@ Instance::Instance(ValidationSink* sink) {
     info.pNext = &features;
     info.enabledLayerCount = 1;
     info.ppEnabledLayerNames = &kValidationLayer;
-    info.enabledExtensionCount = 2;
-    info.ppEnabledExtensionNames = extensions;
   }
+  info.enabledExtensionCount = static_cast<std::uint32_t>(names.size());
+  info.ppEnabledExtensionNames = names.data();
   const VkResult result = vkCreateInstance(&info, nullptr, &handle_);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER) throwNoDriver("the Vulkan loader found no working driver");
   check(result, "create the Vulkan instance");

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -47,11 +48,17 @@ class ValidationSink {
   std::vector<std::string> messages_;
 };
 
+// A function of an instance extension; null if the extension is not enabled.
+template <class Function>
+Function instanceFunction(VkInstance instance, const char* name) {
+  return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
+}
+
 class Instance {
  public:
-  // A null `sink` disables validation. Throws NoDeviceError without a loader or driver, and Error if the validation
-  // layer is required but missing.
-  explicit Instance(ValidationSink* sink);
+  // A null `sink` disables validation. `extensions`: names of instance extensions to enable. Throws NoDeviceError without
+  // a loader or driver, and Error if the validation layer is required but missing.
+  explicit Instance(ValidationSink* sink, std::span<const std::string> extensions = {});
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gpu/barrier.h"
+#include "gpu/context.h"
 #include "gpu/error.h"
 
 namespace quintet::gpu {
@@ -36,7 +37,8 @@ Submissions::~Submissions() {
   vk_.vkDestroySemaphore(device_, timeline_, nullptr);
 }
 
-std::uint64_t Submissions::submit(const std::function<void(VkCommandBuffer)>& record) {
+std::uint64_t Submissions::submit(const std::function<void(VkCommandBuffer)>& record,
+                                  const FrameSemaphores& semaphores) {
   collect();
   Slot& slot = acquireSlot();
   try {
@@ -48,7 +50,7 @@ std::uint64_t Submissions::submit(const std::function<void(VkCommandBuffer)>& re
     record(slot.commands);
     check(vk_.vkEndCommandBuffer(slot.commands), "end a command buffer");
     const std::lock_guard lock(mutex_);
-    enqueue(slot);
+    enqueue(slot, semaphores);
     closeRecording(slot);
     return slot.value;
   } catch (...) {
@@ -58,19 +60,24 @@ std::uint64_t Submissions::submit(const std::function<void(VkCommandBuffer)>& re
   }
 }
 
-void Submissions::enqueue(Slot& slot) {
+void Submissions::enqueue(Slot& slot, const FrameSemaphores& semaphores) {
   const std::uint64_t value = submitted_.load() + 1;
   VkCommandBufferSubmitInfo commands{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
   commands.commandBuffer = slot.commands;
-  VkSemaphoreSubmitInfo signal{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
-  signal.semaphore = timeline_;
-  signal.value = value;
-  signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  VkSemaphoreSubmitInfo wait{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
+  wait.semaphore = semaphores.wait;
+  wait.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  VkSemaphoreSubmitInfo signals[2] = {wait, wait};
+  signals[0].semaphore = timeline_;
+  signals[0].value = value;
+  signals[1].semaphore = semaphores.signal;
   VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+  info.waitSemaphoreInfoCount = semaphores.wait ? 1 : 0;
+  info.pWaitSemaphoreInfos = &wait;
   info.commandBufferInfoCount = 1;
   info.pCommandBufferInfos = &commands;
-  info.signalSemaphoreInfoCount = 1;
-  info.pSignalSemaphoreInfos = &signal;
+  info.signalSemaphoreInfoCount = semaphores.signal ? 2 : 1;
+  info.pSignalSemaphoreInfos = signals;
   check(vk_.vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE), "submit work to the device");
   submitted_.store(value);
   slot.value = value;

@@ -16,6 +16,8 @@
 
 namespace quintet::gpu {
 
+struct FrameSemaphores;
+
 // Thread-safe. `record` is called without the lock, so it can use the context in any way.
 class Submissions {
  public:
@@ -25,7 +27,7 @@ class Submissions {
   Submissions& operator=(const Submissions&) = delete;
 
   // These functions are documented in Context.
-  std::uint64_t submit(const std::function<void(VkCommandBuffer)>& record);
+  std::uint64_t submit(const std::function<void(VkCommandBuffer)>& record, const FrameSemaphores& semaphores);
   void wait(std::uint64_t value, double timeoutSeconds);
   std::uint64_t completed() const;
   std::uint64_t submitted() const { return submitted_.load(); }
@@ -51,7 +53,7 @@ class Submissions {
 
   Slot& acquireSlot();
   Slot& addSlot();
-  void enqueue(Slot& slot);
+  void enqueue(Slot& slot, const FrameSemaphores& semaphores);
   void closeRecording(Slot& slot);  // requires the lock
   void collect();
   bool reached(std::uint64_t value, double timeoutSeconds) const;

@@ -115,6 +115,8 @@ shaderc_shader_kind kindOf(Stage stage) {
     case Stage::closestHit: return shaderc_closesthit_shader;
     case Stage::miss: return shaderc_miss_shader;
     case Stage::callable: return shaderc_callable_shader;
+    case Stage::vertex: return shaderc_vertex_shader;
+    case Stage::fragment: return shaderc_fragment_shader;
     case Stage::compute: break;
   }
   return shaderc_compute_shader;

@@ -21,6 +21,8 @@ constexpr std::array kStages{
     StageNames{Stage::miss, "miss", ".rmiss"},
     StageNames{Stage::callable, "callable", ".rcall"},
     StageNames{Stage::compute, "compute", ".comp"},
+    StageNames{Stage::vertex, "vertex", ".vert"},
+    StageNames{Stage::fragment, "fragment", ".frag"},
 };
 
 constexpr const StageNames& namesOf(Stage stage) { return kStages[static_cast<std::size_t>(stage)]; }

@@ -101,7 +101,8 @@ void explainMissingBuiltIns(std::vector<Diagnostic>& diagnostics, Stage stage) {
       continue;
     }
     const StageBuiltIn* builtIn = findStageBuiltIn(name);
-    if (builtIn == nullptr || stage == Stage::compute || builtIn->availableIn(stage)) continue;
+    if (builtIn == nullptr || std::ranges::find(kStages, stage) == kStages.end() || builtIn->availableIn(stage))
+      continue;
     d.id = "Q706";
     d.text = name + (builtIn->function ? " cannot be used in " : " does not exist in ") + withArticle(stage) +
              "; available in " + stagesWith(*builtIn) + " shaders";

@@ -196,7 +196,9 @@ class Builder {
         case Stage::callable:
           program_.callables.push_back({"", add(fmt::format(".{}", callables++), false), {}, 0});
           break;
-        case Stage::compute: break;
+        case Stage::compute:
+        case Stage::vertex:
+        case Stage::fragment: break;
       }
     }
     if (ray.miss.empty())

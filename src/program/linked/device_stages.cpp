@@ -13,6 +13,8 @@ VkShaderStageFlagBits vulkanStage(shader::Stage stage) {
     case shader::Stage::closestHit: return VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR;
     case shader::Stage::miss: return VK_SHADER_STAGE_MISS_BIT_KHR;
     case shader::Stage::callable: return VK_SHADER_STAGE_CALLABLE_BIT_KHR;
+    case shader::Stage::vertex: return VK_SHADER_STAGE_VERTEX_BIT;
+    case shader::Stage::fragment: return VK_SHADER_STAGE_FRAGMENT_BIT;
     case shader::Stage::compute: break;
   }
   return VK_SHADER_STAGE_COMPUTE_BIT;

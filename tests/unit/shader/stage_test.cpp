@@ -9,7 +9,7 @@ namespace quintet::shader {
 
 TEST(Stage, HasANameAndAnExtension) {
   for (const Stage stage : {Stage::rayGeneration, Stage::intersection, Stage::anyHit, Stage::closestHit, Stage::miss,
-                            Stage::callable, Stage::compute}) {
+                            Stage::callable, Stage::compute, Stage::vertex, Stage::fragment}) {
     EXPECT_EQ(stageOfFile("folder.rgen/main" + std::string(stageExtension(stage))), stage);
     EXPECT_FALSE(stageName(stage).empty());
   }

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which devices can present to a surface, and what is enabled on them. Presenting requires no ray tracing, so an image
+// that one device renders can be shown by a different one.
+#ifndef QUINTET_GPU_PRESENTATION_H
+#define QUINTET_GPU_PRESENTATION_H
+
+#include <string>
+#include <vector>
+
+#include "gpu/device_query.h"
+#include "gpu/vulkan.h"
+
+namespace quintet::gpu {
+
+// Returns why the device cannot present: "no VK_KHR_swapchain", "Vulkan 1.2 (1.3 is required)", or several reasons
+// joined by ", "; empty if it can. `presentingQueue`: it has a graphics queue that can present to the surface.
+std::string cannotPresentReason(const Capabilities& capabilities, bool presentingQueue);
+
+// Return the extensions and features to enable: all required ones, and the supported optional ones.
+std::vector<const char*> presentationExtensions(const Capabilities& capabilities);
+DeviceFeatures presentationFeatures();
+
+// All devices in the order of preference. FoundDevice::queueFamily and DeviceInfo::unusableReason are those for presenting
+// to this surface.
+std::vector<FoundDevice> findPresentingDevices(VkInstance instance, VkSurfaceKHR surface);
+
+}  // namespace quintet::gpu
+#endif
