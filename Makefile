@@ -48,7 +48,7 @@ configure: setup
 	@cmake --preset $(PRESET) -DQUINTET_TESTS=ON $(CMAKE_FLAGS)
 
 setup: ## Install missing packages (scripts/setup.sh --plan only lists them)
-	@bash scripts/setup.sh build test
+	@bash scripts/setup.sh build viewer test
 
 bench: build ## Measure rays per second relative to the limit of the device (BENCH_FLAGS)
 	@$(BUILD)/bin/quintet_make_scenes $(SCENES)

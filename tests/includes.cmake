@@ -6,7 +6,7 @@
 #   cmake -DSELF_TEST=ON -P includes.cmake   checks that violations in small generated trees are found
 cmake_minimum_required(VERSION 3.25)
 
-set(layers base io gpu spirv shader rt program program_linked scene check render job output api)
+set(layers base io gpu spirv shader rt program program_linked scene check render job output viewer api)
 set(mayInclude_base base)
 set(mayInclude_io io base)
 set(mayInclude_gpu gpu base)
@@ -20,8 +20,9 @@ set(mayInclude_check check scene io ${mayInclude_program})
 set(mayInclude_render render check scene io ${mayInclude_program_linked})
 set(mayInclude_job job check ${mayInclude_render})
 set(mayInclude_output output ${mayInclude_job})
+set(mayInclude_viewer viewer ${mayInclude_output})
 set(mayInclude_api api ${mayInclude_output})
-set(mayInclude_apps ${mayInclude_output})
+set(mayInclude_apps ${mayInclude_viewer})
 
 # The layer of a path below src/: the folder, but program/linked/ is a layer of its own.
 function(layer_of PATH OUT)
@@ -57,6 +58,8 @@ function(check_file ROOT FILE LAYER OUT EDGES)
       get_filename_component(folder ${FILE} DIRECTORY)
       if(EXISTS ${ROOT}/${folder}/${header})
         list(APPEND edges ${folder}/${header})
+      elseif(FILE MATCHES "^apps/viewer/" AND EXISTS ${ROOT}/apps/viewer/${header})
+        list(APPEND edges apps/viewer/${header})
       elseif(EXISTS ${ROOT}/apps/quintet/${header})
         list(APPEND edges apps/quintet/${header})
       endif()

@@ -10,12 +10,9 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/stopwatch.h"
-#include "cli/candidates.h"
 #include "cli/companion.h"
 #include "cli/failure.h"
-#include "cli/parser.h"
-#include "cli/render_options.h"
-#include "cli/values.h"
+#include "cli/view_options.h"
 #include "gpu/error.h"
 #include "job/interactive/command_json.h"
 #include "job/interactive/event_json.h"
@@ -27,79 +24,6 @@ namespace {
 
 using job::interactive::JsonFields;
 using job::interactive::Session;
-
-struct ViewOptions : RenderOptions {
-  std::string script;
-  bool keepGoing = false;
-};
-
-OptionTable declare(ViewOptions& options, RenderTexts& texts) {
-  OptionTable table(
-      "view",
-      "Opens a scene in a window: the program quintet-view, which gets all arguments. With --script, runs an "
-      "interactive session without a window.");
-  table.add({{.names = "SCENE",
-              .help = "Scene file: .gltf, .glb or .scene.toml (default: the program's own, or built in)",
-              .target = &texts.scene,
-              .candidates = {.extensions = kSceneExtensions}}});
-  table.add(
-      "Session",
-      {{.names = "--script",
-        .value = "FILE",
-        .help =
-            "Without a window: read commands from this file, one JSON object per line; - is standard input. Events are "
-            "lines of JSON on standard output",
-        .target = &options.script,
-        .candidates = {.extensions = {"*"}}},
-       {.names = "--keep-going",
-        .help = "Continue after a command of the script that fails; the exit status is still not 0",
-        .target = &options.keepGoing}});
-  table.add("Image", {{.names = "--size",
-                       .value = "WxH",
-                       .help = "Size in pixels, or the width alone, as in 'quintet render'",
-                       .target = &texts.size},
-                      {.names = "--transparent",
-                       .help = "Alpha 0 in the background instead of the environment",
-                       .target = &options.request.transparent},
-                      {.names = "--spp",
-                       .value = "N",
-                       .help = "Number of samples per pixel that the image reaches (default: 64)",
-                       .target = &texts.spp},
-                      {.names = "--seed",
-                       .value = "N",
-                       .help = "Seed of the random number generator (default: 0)",
-                       .target = &texts.seed}});
-  declareView(table, texts, options);
-  table.add("Program", {{.names = "--program",
-                         .value = "NAME",
-                         .help = "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)",
-                         .target = &options.program,
-                         .candidates = programCandidates()},
-                        {.names = "--set",
-                         .value = "NAME=VALUE",
-                         .help = "Parameter of the program; may be repeated",
-                         .target = &options.request.assignments},
-                        {.names = "--set-file",
-                         .value = "FILE.json",
-                         .help = "Parameters as a JSON object; --set overrides them",
-                         .target = &options.request.parameterFile,
-                         .candidates = {.extensions = {"json"}}}});
-  table.add("Run", {{.names = "--device",
-                     .value = "NAME",
-                     .help = "Index or part of the name: 0, h200, lavapipe, cpu, gpu",
-                     .target = &options.device,
-                     .candidates = {.names = {"0", "cpu", "gpu", "lavapipe"}}},
-                    {.names = "--timeout",
-                     .value = "SECONDS",
-                     .help = "Time limit of one launch (default: 60; on a CPU 600)",
-                     .target = &texts.timeout}});
-  table.addExamples({
-      {"quintet view scene.glb"},
-      {"quintet view scene.glb --script tour.jsonl", "docs/viewer.md lists the commands"},
-      {"echo '{\"do\":\"save\",\"file\":\"a.png\"}' | quintet view scene.glb --script -"},
-  });
-  return table;
-}
 
 void printLine(const std::string& json) { writeFile("-", json + "\n"); }
 
@@ -214,7 +138,7 @@ int runScript(const ViewOptions& options, std::istream& lines, const std::string
 OptionTable viewOptions() {
   ViewOptions options;
   RenderTexts texts;
-  return declare(options, texts).withoutTargets();
+  return viewOptionTable(options, texts).withoutTargets();
 }
 
 // Only a session without a window is parsed here.
@@ -235,16 +159,11 @@ bool hasScript(Arguments arguments) {
 
 int viewCommand(Arguments arguments) {
   if (!hasScript(arguments)) openWindow(arguments);
-  ViewOptions options;
-  RenderTexts texts;
-  if (!parse(declare(options, texts), arguments)) return 0;
-  options.request.scene = texts.scene;
-  options.request.commandLine = commandLine("view", arguments);
-  options.output.file = "view.png";  // the files are chosen by the script
-  convert(texts, options);
-  if (options.script == "-") return runScript(options, std::cin, "standard input");
-  std::istringstream lines(readTextFile(options.script));
-  return runScript(options, lines, options.script);
+  const std::optional<ViewOptions> options = parseViewOptions(arguments);
+  if (!options) return 0;
+  if (options->script == "-") return runScript(*options, std::cin, "standard input");
+  std::istringstream lines(readTextFile(options->script));
+  return runScript(*options, lines, options->script);
 }
 
 }  // namespace quintet::cli

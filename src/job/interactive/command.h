@@ -99,6 +99,7 @@ struct SetToneMap {
 };
 struct SetSize {
   uvec2 size{0};
+  bool ofWindow = false;  // no step of undo, and from now on undo keeps the size
 };
 struct SetSamples {
   std::uint32_t samples = 64;  // per pixel, which refinement reaches; or frames

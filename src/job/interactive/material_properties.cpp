@@ -67,6 +67,21 @@ struct Assign {
   }
 };
 
+struct Read {
+  const Material& material;
+
+  std::vector<double> operator()(float Material::*member) const { return {material.*member}; }
+  std::vector<double> operator()(bool Material::*member) const { return {material.*member ? 1.0 : 0.0}; }
+  std::vector<double> operator()(vec3 Material::*member) const {
+    const vec3& v = material.*member;
+    return {v.x, v.y, v.z};
+  }
+  std::vector<double> operator()(vec4 Material::*member) const {
+    const vec4& v = material.*member;
+    return {v.x, v.y, v.z, v.w};
+  }
+};
+
 // Of the values that Assign takes.
 const char* formOf(const Member& member) {
   constexpr const char* kForms[] = {"a number", "three numbers", "three or four numbers", "true or false"};
@@ -81,13 +96,26 @@ std::vector<std::string> materialProperties() {
   return names;
 }
 
-void setMaterialProperty(Material& material, const std::string& name, std::span<const double> values) {
+namespace {
+
+const Member& findMember(const std::string& name) {
   const auto found = std::ranges::find(kProperties, name, &std::pair<std::string_view, Member>::first);
   if (found == kProperties.end())
     throw UsageError(
         fmt::format("materials have no property '{}'{}", name, suggestionOrList(name, materialProperties())));
-  if (!std::visit(Assign{material, values}, found->second))
-    throw UsageError(fmt::format("the property '{}' of a material is {}", name, formOf(found->second)));
+  return found->second;
+}
+
+}  // namespace
+
+void setMaterialProperty(Material& material, const std::string& name, std::span<const double> values) {
+  const Member& member = findMember(name);
+  if (!std::visit(Assign{material, values}, member))
+    throw UsageError(fmt::format("the property '{}' of a material is {}", name, formOf(member)));
+}
+
+std::vector<double> materialPropertyValue(const Material& material, const std::string& name) {
+  return std::visit(Read{material}, findMember(name));
 }
 
 }  // namespace quintet::job::interactive

@@ -18,5 +18,8 @@ std::vector<std::string> materialProperties();
 // Ranges are those of scene::validateMaterial().
 void setMaterialProperty(scene::Material& material, const std::string& name, std::span<const double> values);
 
+// The values that setMaterialProperty() sets; a base color has four. Throws UsageError for an unknown name.
+std::vector<double> materialPropertyValue(const scene::Material& material, const std::string& name);
+
 }  // namespace quintet::job::interactive
 #endif

@@ -182,11 +182,18 @@ void Session::apply(const Command& command) {
     history_.endGroup();
     return;
   }
+  if (const auto* size = std::get_if<SetSize>(&command); size && size->ofWindow) {
+    show(changed(command));
+    sizeOfWindow_ = true;
+    return;
+  }
   const bool isUndo = std::holds_alternative<Undo>(command), isRedo = std::holds_alternative<Redo>(command);
   if (isUndo && !canUndo()) throw UsageError("there is no step to undo");
   if (isRedo && !canRedo()) throw UsageError("there is no step to redo");
   SessionState before = state_;
-  show(isUndo ? SessionState(history_.undone()) : isRedo ? SessionState(history_.redone()) : changed(command));
+  SessionState next = isUndo ? history_.undone() : isRedo ? history_.redone() : changed(command);
+  if (sizeOfWindow_ && (isUndo || isRedo)) next.size = state_.size;
+  show(next);
   if (isUndo)
     history_.undo(std::move(before));
   else if (isRedo)

@@ -170,6 +170,7 @@ class Session {
   bool refining_ = false;           // since the last restart, the film has its full size
   bool direct_ = false;             // no previews: during refine()
   std::optional<io::Image> kept_;   // linear image of the last preview, until refinement has samples
+  bool sizeOfWindow_ = false;       // SetSize::ofWindow was applied
   bool imageChanged_ = false;       // since the last event
   const void* measured_ = nullptr;  // renderer that has run: its times do not include compilation by the driver
   bool failed_ = false;             // until the next command or save

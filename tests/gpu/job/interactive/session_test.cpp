@@ -151,6 +151,21 @@ TEST_F(SessionTest, SamplesAndSizesAreThoseOfTheRequest) {
   EXPECT_EQ(session->state().size, uvec2(30, 50));
 }
 
+TEST_F(SessionTest, TheSizeOfAWindowIsNoStepOfUndo) {
+  const auto session = makeSession(request());
+  session->apply(SetExposure{1});
+  session->apply(SetSize{{30, 50}, /*ofWindow=*/true});
+  EXPECT_TRUE(session->canUndo());
+  session->apply(Undo{});
+  EXPECT_EQ(session->state().exposure, 0.0) << "the exposure was the last step";
+  EXPECT_EQ(session->state().size, uvec2(30, 50)) << "the window has not changed";
+  session->apply(SetSize{{20, 10}, /*ofWindow=*/true});
+  EXPECT_TRUE(session->canRedo());
+  session->apply(Redo{});
+  EXPECT_EQ(session->state().exposure, 1.0);
+  EXPECT_EQ(session->state().size, uvec2(20, 10));
+}
+
 TEST_F(SessionTest, AnAutomaticCameraFollowsTheSize) {
   std::string scene = std::string(kScene).substr(0, std::string(kScene).find("[[camera]]"));
   writeFile(folder_ / "a.scene.toml", scene);

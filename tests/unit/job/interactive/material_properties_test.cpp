@@ -27,6 +27,20 @@ TEST(MaterialProperties, AreSetByName) {
   EXPECT_EQ(material.baseColor.a, 0.75f);
 }
 
+TEST(MaterialProperties, AreReadByName) {
+  scene::Material material;
+  material.baseColor = {0.25f, 0.5f, 0.75f, 1.0f};
+  EXPECT_EQ(materialPropertyValue(material, "baseColor"), (std::vector<double>{0.25, 0.5, 0.75, 1.0}));
+  EXPECT_EQ(materialPropertyValue(material, "unlit"), std::vector<double>{0});
+  EXPECT_THROW(materialPropertyValue(material, "color"), UsageError);
+  scene::Material copy;
+  copy.roughness = 0.125f;
+  copy.doubleSided = true;
+  for (const std::string& name : materialProperties()) set(material, name, materialPropertyValue(copy, name));
+  for (const std::string& name : materialProperties())
+    EXPECT_EQ(materialPropertyValue(material, name), materialPropertyValue(copy, name)) << name;
+}
+
 TEST(MaterialProperties, RejectsWrongNamesAndForms) {
   scene::Material material;
   EXPECT_THAT([&] { set(material, "rougness", {1}); },

@@ -1,0 +1,539 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "application.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "gpu/error.h"
+#include "gui/style.h"
+#include "gui/widgets.h"
+#include "panels/panels.h"
+#include "render/renderer/renderer.h"
+#include "reproduce.h"
+#include "view_files.h"
+#include "viewer/window_shaders.h"
+
+namespace quintet::viewer {
+namespace {
+
+constexpr double kFrameSeconds = 1.0 / 60.0;
+constexpr double kIdleSeconds = 0.5;
+constexpr double kResizeSeconds = 0.15;  // the size of the image follows that of the window after this time
+constexpr int kStableFrames = 3;
+constexpr int kMaxLosses = 3;
+constexpr float kMinImageSide = 4.0f;  // pixels; smaller areas keep the last size
+constexpr float kExposureStep = 1.0f / 3.0f;
+
+// Settings that cannot be read are a message, and the defaults are used.
+ViewState initialState(const ApplicationOptions& options) {
+  ViewState state;
+  if (options.storesSettings) state.settingsFolder = settingsFolder();
+  try {
+    if (!state.settingsFolder.empty()) {
+      state.settings = readSettings(state.settingsFolder / "viewer.json");
+      state.bookmarks = Bookmarks::read(state.settingsFolder / "bookmarks.json");
+    }
+  } catch (const Error& error) {
+    state.addMessage({Message::Kind::warning, error.what()});
+  }
+  if (options.theme) state.settings.theme = *options.theme;
+  if (options.windowSize) state.settings.windowSize = *options.windowSize;
+  if (options.session && options.session->render.size.x > 0) state.fixedSize = options.session->render.size;
+  return state;
+}
+
+std::filesystem::path baseName(const Snapshot& snapshot) {
+  const std::filesystem::path& scene = snapshot.request->render.scene;
+  const std::filesystem::path name = scene.empty() ? std::filesystem::path(snapshot.state.program) : scene;
+  return name.stem().empty() ? "image" : name.stem();
+}
+
+}  // namespace
+
+Application::Presentation::Presentation(const Window& window, const ApplicationOptions& options)
+    : context({.device = options.presentDevice, .log = options.engine.log, .surface = window.surfaceSource()}),
+      swapchain(context),
+      renderer([&] {
+        const WindowShaders shaders = compileWindowShaders(options.engine.caches);
+        return gpu::DrawListRenderer(context, swapchain.format(), shaders.vertex, shaders.fragment);
+      }()) {}
+
+Application::Application(ApplicationOptions options)
+    : options_(std::move(options)), state_(initialState(options_)), window_("Quintet", state_.settings.windowSize) {
+  displayScale_ = window_.contentScale();
+  state_.scale = options_.scale > 0          ? options_.scale
+                 : state_.settings.scale > 0 ? state_.settings.scale
+                                             : displayScale_;
+  gui_ = std::make_unique<Gui>(window_, state_.settings.theme, state_.scale);
+  presentation_ = std::make_unique<Presentation>(window_, options_);
+  displays_ = std::make_unique<DisplayThread>([] { Window::wake(); });
+  session_ = std::make_unique<SessionThread>(
+      SessionThread::Options{options_.engine, [] { Window::wake(); }, options_.onEvent});
+  state_.session = session_.get();
+  state_.snapshot = session_->snapshot();
+  pendingSession_ = options_.session;
+  if (options_.logsWidgets)
+    setWidgetLog([this](const std::string& name, vec2 least, vec2 most) { logWidget(name, least, most); });
+}
+
+Application::~Application() {
+  setWidgetLog({});
+  if (options_.storesSettings) {
+    const uvec2 size = window_.size();
+    if (size.x > 1 && size.y > 1) state_.settings.windowSize = size;
+    storeSettings(state_);
+  }
+}
+
+void Application::run() {
+  while (!quit_ && !window_.shouldClose()) frame(waitTime());
+}
+
+double Application::waitTime() const {
+  if (framesToDraw_ > 0) return 0;
+  if (state_.playing || navigator_.flying() || state_.snapshot->phase == Snapshot::Phase::loading) return kFrameSeconds;
+  if (wantedSize_ != imageSize_) return kResizeSeconds / 3;
+  return kIdleSeconds;
+}
+
+void Application::frame(double wait) {
+  events_ = window_.waitForEvents(wait);
+  const double now = clock_.seconds();
+  const double elapsed = now - std::exchange(lastFrame_, now);
+  state_.time = now;
+  framesToDraw_ = events_.empty() ? std::max(framesToDraw_ - 1, 0) : kStableFrames;
+  receive();
+  for (const InputEvent& event : events_)
+    if (const auto* drop = std::get_if<DropEvent>(&event))
+      for (const std::string& path : drop->paths) openFile(state_, path);
+  const uvec2 size = window_.size();
+  if (size.x == 0 || size.y == 0 || window_.minimized()) {
+    framesToDraw_ = 0;
+    return;
+  }
+  gui_->setTheme(state_.settings.theme);
+  gui_->setScale(state_.scale);
+  gui_->beginFrame();
+  const Area area = layOut();
+  performAll(navigator_.handle(state_, events_, area));
+  navigator_.fly(state_, std::min(elapsed, 0.1));
+  if (state_.playing) play();
+  buildInterface();
+  const gpu::DrawList list = gui_->endFrame();
+  if (takeEditEnd()) state_.apply(job::interactive::EndDrag{});
+  chooseImageSize(area);
+  requestDisplay();
+  draw(list);
+}
+
+// ---- Between the threads
+
+void Application::receive() {
+  const std::shared_ptr<const Snapshot> last = std::exchange(state_.snapshot, session_->snapshot());
+  if (last != state_.snapshot) framesToDraw_ = std::max(framesToDraw_, 1);
+  for (Message& message : session_->takeMessages()) {
+    state_.addMessage(std::move(message));
+    framesToDraw_ = kStableFrames;
+  }
+  for (const std::optional<job::interactive::Pick>& pick : session_->takePicks())
+    state_.selection = pick ? Selection{Selection::Kind::instance, pick->instance} : Selection{};
+  if (last->session != state_.snapshot->session || last->phase != state_.snapshot->phase) {
+    forgetPendingValues();
+    if (state_.ready()) window_.setTitle(fmt::format("{} - Quintet", baseName(*state_.snapshot).string()));
+  }
+  if (last->diagnostics.size() != state_.snapshot->diagnostics.size()) state_.showDiagnostics = true;
+  if (state_.ready() && last->imageNumber != state_.snapshot->imageNumber) {
+    if (state_.snapshot->secondsPerImage > 0)
+      state_.imageRates.add(static_cast<float>(1.0 / state_.snapshot->secondsPerImage));
+    state_.rayRates.add(static_cast<float>(1e-6 * state_.snapshot->raysPerSecond));
+  }
+  state_.display = displays_->latest();
+}
+
+// The image has the pixels of its area, unless its size is fixed.
+void Application::chooseImageSize(const Area& area) {
+  if (state_.fixedSize) {
+    wantedSize_ = imageSize_ = *state_.fixedSize;
+  } else if (area.size.x >= kMinImageSide && area.size.y >= kMinImageSide) {
+    const uvec2 size = glm::max(uvec2(glm::round(area.size * state_.settings.resolution)), uvec2(1));
+    if (size != wantedSize_) wantedSince_ = state_.time;
+    wantedSize_ = size;
+  }
+  state_.viewSize = wantedSize_;
+  if (pendingSession_ && wantedSize_.x > 0) {
+    job::interactive::SessionRequest request = *std::exchange(pendingSession_, std::nullopt);
+    imageSize_ = wantedSize_;
+    request.render.size = wantedSize_;
+    if (!request.render.scene.empty()) addRecentFile(state_.settings, request.render.scene.string());
+    session_->open(std::move(request));
+    return;
+  }
+  if (!state_.ready() || state_.fixedSize) return;
+  if (wantedSize_ == state_.snapshot->state.size) {
+    imageSize_ = wantedSize_;
+  } else if (wantedSize_ != imageSize_ && state_.time - wantedSince_ >= kResizeSeconds) {
+    imageSize_ = wantedSize_;
+    state_.apply(job::interactive::SetSize{wantedSize_, /*ofWindow=*/true});
+  }
+}
+
+void Application::requestDisplay() {
+  const Snapshot& snapshot = *state_.snapshot;
+  if (!state_.ready() || !snapshot.image) return;
+  DisplaySettings settings;
+  settings.exposure = snapshot.state.exposure;
+  settings.toneMap = snapshot.state.toneMap.value_or(render::defaultToneMap(snapshot.outputKind));
+  settings.falseColor = state_.controls.falseColor;
+  settings.channel = state_.controls.channel;
+  settings.range = state_.controls.range;
+  settings.compare = state_.controls.compare;
+  if (snapshot.imageNumber == displayedImage_ && snapshot.session == displayedSession_ &&
+      settings == displayedSettings_ && state_.reference == displayedReference_)
+    return;
+  displayedImage_ = snapshot.imageNumber;
+  displayedSession_ = snapshot.session;
+  displayedSettings_ = settings;
+  displayedReference_ = state_.reference;
+  displays_->request({snapshot.image, state_.reference, settings});
+}
+
+void Application::updateTextures() {
+  const FontPixels font = gui_->takeFont();
+  gpu::DrawListRenderer& renderer = presentation_->renderer;
+  if (font.rgba) renderer.setTexture(kFontTexture, {font.size.x, font.size.y}, font.rgba);
+  if (!state_.display || (state_.display == textured_ && state_.placement.scale == textureScale_)) return;
+  textured_ = state_.display;
+  textureScale_ = state_.placement.scale;
+  const auto set = [&](std::size_t texture, const DisplayPixels& pixels) {
+    if (!pixels.bytes || pixels.bytes->empty()) return;
+    // Pixels stay visible if they are large; reduced images are smooth.
+    const bool full = pixels.size == state_.placement.size;
+    const VkFilter filter = full && textureScale_ >= 2.0f ? VK_FILTER_NEAREST : VK_FILTER_LINEAR;
+    renderer.setTexture(texture, {pixels.size.x, pixels.size.y}, pixels.bytes, filter);
+  };
+  set(kImageTexture, textured_->image);
+  set(kReferenceTexture, textured_->reference);
+}
+
+void Application::draw(const gpu::DrawList& list) {
+  const uvec2 size = window_.size();
+  try {
+    updateTextures();
+    presentation_->swapchain.draw({size.x, size.y}, [&](gpu::Commands& commands, const gpu::RenderTarget& target) {
+      presentation_->renderer.draw(commands, target, list, gui_->background());
+    });
+  } catch (const DeviceLostError&) {
+    replacePresentation();
+  } catch (const gpu::VulkanError& error) {
+    if (error.result() != VK_ERROR_SURFACE_LOST_KHR) throw;
+    replacePresentation();
+  }
+}
+
+// After the device or the surface was lost.
+void Application::replacePresentation() {
+  if (++presentationLosses_ > kMaxLosses) throw;
+  presentation_.reset();
+  presentation_ = std::make_unique<Presentation>(window_, options_);
+  gui_->sendFontAgain();
+  textured_ = nullptr;
+  framesToDraw_ = kStableFrames;
+}
+
+// ---- Interface
+
+Area Application::layOut() {
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  const float top = ImGui::GetFrameHeight();
+  float bottom = statusBarHeight();
+  if (state_.ready() && state_.snapshot->animated) bottom += animationBarHeight();
+  float right = 0.0f;
+  if (state_.settings.panels && state_.ready()) {
+    right = std::min(state_.settings.panelWidth * state_.scale, 0.6f * display.x);
+    if (display.x < 200.0f * state_.scale) right = 0.0f;  // too narrow for both
+  }
+  const Area area{{0.0f, top}, glm::max(vec2(display.x - right, display.y - top - bottom), vec2(1.0f))};
+  if (state_.ready())
+    state_.placement = fitImage(state_.snapshot->state.size, area.origin, area.size, state_.fixedSize ? 1.0f : 1000.0f);
+  return area;
+}
+
+void Application::buildInterface() {
+  nextWidgets_.clear();
+  const Area area = layOut();
+  menuBar();
+  switch (state_.snapshot->phase) {
+    case Snapshot::Phase::empty: startScreen(state_, area, lessonList()); break;
+    case Snapshot::Phase::loading: loadingScreen(state_, area); break;
+    case Snapshot::Phase::failed: failureScreen(state_, area); break;
+    case Snapshot::Phase::ready: imageArea(area); break;
+  }
+  diagnosticsDrawer(state_, area);
+  toasts(state_, area);
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  const float height = statusBarHeight();
+  statusBar(state_, {{0.0f, display.y - height}, {display.x, height}});
+  helpWindow(state_);
+  finishDialog();
+  if (options_.logsWidgets) emitWidgets();
+}
+
+void Application::imageArea(const Area& area) {
+  drawImage();
+  selectionOutline(state_, area);
+  splitLine(state_, area);
+  legend(state_, area);
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  if (state_.snapshot->animated)
+    animationBar(state_, {{0.0f, area.origin.y + area.size.y}, {area.size.x, animationBarHeight()}});
+  const float left = area.origin.x + area.size.x;
+  if (left < display.x)
+    sidePanel({{left, area.origin.y}, {display.x - left, display.y - area.origin.y - statusBarHeight()}});
+}
+
+void Application::drawImage() {
+  if (!state_.display || !state_.display->image.bytes) return;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ImagePlacement& at = state_.placement;
+  const vec2 end = at.origin + at.scale * vec2(at.size);
+  list.AddImage(textureId(kImageTexture), {at.origin.x, at.origin.y}, {end.x, end.y});
+  if (!state_.display->reference.bytes || state_.controls.compare != CompareMode::split) return;
+  const float split = state_.controls.split;
+  const float x = std::round(glm::mix(at.origin.x, end.x, split));
+  list.AddImage(textureId(kReferenceTexture), {x, at.origin.y}, {end.x, end.y}, {split, 0.0f}, {1.0f, 1.0f});
+}
+
+void Application::sidePanel(const Area& area) {
+  ImGui::SetNextWindowPos({area.origin.x, area.origin.y});
+  ImGui::SetNextWindowSize({area.size.x, std::max(area.size.y, 1.0f)});
+  ImGui::Begin("panels", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+  // The left edge changes the width.
+  const ImVec2 cursor = ImGui::GetCursorPos();
+  ImGui::SetCursorPos({0.0f, ImGui::GetScrollY()});
+  ImGui::InvisibleButton("width", {4.0f * state_.scale, std::max(area.size.y, 1.0f)});
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  if (ImGui::IsItemActive()) {
+    const float width = ImGui::GetIO().DisplaySize.x - ImGui::GetIO().MousePos.x;
+    state_.settings.panelWidth = std::clamp(width / state_.scale, 200.0f, 1000.0f);
+  }
+  ImGui::SetCursorPos(cursor);
+  struct Panel {
+    const char* name;
+    void (*draw)(ViewState&);
+  };
+  constexpr std::array kPanels{
+      Panel{"Scene", scenePanel},           Panel{"Selection", selectionPanel},  Panel{"Environment", environmentPanel},
+      Panel{"Parameters", parametersPanel}, Panel{"Display", displayPanel},      Panel{"Camera", cameraPanel},
+      Panel{"Compare", comparePanel},       Panel{"Statistics", statisticsPanel}};
+  for (const Panel& panel : kPanels) {
+    bool open = state_.settings.openPanels.count(panel.name) > 0;
+    ImGui::PushID(panel.name);
+    if (section(panel.name, open)) {
+      panel.draw(state_);
+      ImGui::Spacing();
+    }
+    ImGui::PopID();
+    if (open)
+      state_.settings.openPanels.insert(panel.name);
+    else
+      state_.settings.openPanels.erase(panel.name);
+  }
+  endSections();
+  ImGui::End();
+}
+
+void Application::menuBar() {
+  const BindingSet& set = bindingSet(state_.settings.bindings);
+  const auto item = [&](const char* label, Action action, bool enabled = true) {
+    if (ImGui::MenuItem(label, keysOf(set, action).c_str(), false, enabled)) perform(action);
+    logControl(label);
+  };
+  const auto menu = [](const char* label) {
+    const bool open = ImGui::BeginMenu(label);
+    logControl(label);
+    return open;
+  };
+  if (!ImGui::BeginMainMenuBar()) return;
+  const bool ready = state_.ready();
+  if (menu("File")) {
+    item("Open…", Action::open);
+    if (ImGui::BeginMenu("Open recent", !state_.settings.recentFiles.empty())) {
+      for (const std::string& file : std::vector<std::string>(state_.settings.recentFiles))
+        if (ImGui::MenuItem(file.c_str())) openRecent(state_, file);
+      ImGui::EndMenu();
+    }
+    item("Save image…", Action::save, ready);
+    item("Copy command", Action::copyCommand, ready);
+    ImGui::Separator();
+    item("Quit", Action::quit);
+    ImGui::EndMenu();
+  }
+  if (menu("Edit")) {
+    item("Undo", Action::undo, ready && state_.snapshot->canUndo);
+    item("Redo", Action::redo, ready && state_.snapshot->canRedo);
+    ImGui::EndMenu();
+  }
+  if (menu("Camera")) {
+    item("Show the scene", Action::frameAll, ready);
+    item("Show the selection", Action::frameSelected, ready);
+    item("First view", Action::resetCamera, ready);
+    item("Add bookmark", Action::addBookmark, ready);
+    ImGui::EndMenu();
+  }
+  if (menu("View")) {
+    if (ImGui::MenuItem("Panels", keysOf(set, Action::togglePanels).c_str(), state_.settings.panels))
+      perform(Action::togglePanels);
+    ImGui::MenuItem("Diagnostics", nullptr, &state_.showDiagnostics, !state_.snapshot->diagnostics.empty());
+    item("Full screen", Action::toggleFullScreen);
+    item("Dark or light", Action::toggleTheme);
+    if (ImGui::BeginMenu("Size of text")) {
+      for (const float scale : {0.75f, 1.0f, 1.25f, 1.5f, 2.0f, 2.5f, 3.0f})
+        if (ImGui::MenuItem(fmt::format("{:.0f} %", 100.0f * scale).c_str(), nullptr, state_.scale == scale))
+          state_.settings.scale = state_.scale = scale;
+      if (ImGui::MenuItem("As the display", nullptr, state_.settings.scale == 0.0f)) {
+        state_.settings.scale = 0.0f;
+        state_.scale = displayScale_;
+      }
+      ImGui::EndMenu();
+    }
+    ImGui::EndMenu();
+  }
+  if (menu("Help")) {
+    item("Mouse and keyboard", Action::help);
+    ImGui::EndMenu();
+  }
+  ImGui::EndMainMenuBar();
+}
+
+const std::vector<Lesson>& Application::lessonList() {
+  if (lessons_.empty()) lessons_ = lessons();
+  return lessons_;
+}
+
+void Application::finishDialog() {
+  const FileDialog::Purpose purpose = dialog_.purpose();
+  const std::optional<std::filesystem::path> chosen = dialog_.draw(state_.scale);
+  if (!chosen) return;
+  if (purpose == FileDialog::Purpose::open)
+    openFile(state_, chosen->string());
+  else
+    session_->save(*chosen);
+}
+
+// ---- Actions
+
+void Application::performAll(const std::vector<Action>& actions) {
+  for (const Action action : actions) perform(action);
+}
+
+void Application::perform(Action action) {
+  namespace interactive = job::interactive;
+  framesToDraw_ = kStableFrames;
+  const bool ready = state_.ready();
+  switch (action) {
+    case Action::open: return dialog_.open();
+    case Action::help: state_.showHelp = !state_.showHelp; return;
+    case Action::quit: quit_ = true; return;
+    case Action::togglePanels: state_.settings.panels = !state_.settings.panels; return;
+    case Action::toggleFullScreen: return window_.toggleFullScreen();
+    case Action::toggleTheme:
+      state_.settings.theme = state_.settings.theme == Theme::dark ? Theme::light : Theme::dark;
+      return;
+    case Action::close:
+      if (dialog_.visible())
+        dialog_.close();
+      else if (state_.showHelp)
+        state_.showHelp = false;
+      else
+        state_.selection = {};
+      return;
+    default: break;
+  }
+  if (!ready) return;
+  const Snapshot& snapshot = *state_.snapshot;
+  switch (action) {
+    case Action::frameSelected: {
+      const bool selected = state_.selection.kind == Selection::Kind::instance &&
+                            state_.selection.index < snapshot.scene->instances.size();
+      state_.apply(interactive::Frame{selected ? snapshot.scene->instances[state_.selection.index].name : ""});
+      break;
+    }
+    case Action::frameAll: state_.apply(interactive::Frame{}); break;
+    case Action::resetCamera: state_.apply(interactive::SetCamera{snapshot.request->render.camera}); break;
+    case Action::undo:
+    case Action::redo:
+      forgetPendingValues();
+      if (action == Action::undo && snapshot.canUndo) state_.apply(interactive::Undo{});
+      if (action == Action::redo && snapshot.canRedo) state_.apply(interactive::Redo{});
+      break;
+    case Action::save: dialog_.save(baseName(snapshot).string() + ".png"); break;
+    case Action::copyCommand:
+      window_.setClipboard(reproducingCommand(snapshot));
+      state_.addMessage({Message::Kind::note, "copied the command that renders this image"});
+      break;
+    case Action::addBookmark: addBookmark(state_); break;
+    case Action::playPause:
+      if (!snapshot.animated) break;
+      state_.playing = !state_.playing;
+      state_.playStart = state_.time - snapshot.state.frame / kFramesPerSecond;
+      break;
+    case Action::previousOutput: changeOutput(-1); break;
+    case Action::nextOutput: changeOutput(1); break;
+    case Action::lessExposure: state_.apply(interactive::SetExposure{snapshot.state.exposure - kExposureStep}); break;
+    case Action::moreExposure: state_.apply(interactive::SetExposure{snapshot.state.exposure + kExposureStep}); break;
+    case Action::compare:
+      if (state_.reference)
+        state_.controls.compare = state_.controls.compare == CompareMode::off ? CompareMode::split : CompareMode::off;
+      break;
+    default: break;
+  }
+}
+
+void Application::changeOutput(int direction) {
+  std::vector<std::string> names;
+  std::ptrdiff_t index = 0;
+  for (const program::Output& output : state_.snapshot->program->outputs) {
+    if (output.pixel == program::OutputPixel::coverage) continue;
+    if (output.name == state_.snapshot->state.output) index = std::ssize(names);
+    names.push_back(output.name);
+  }
+  const std::ptrdiff_t count = std::ssize(names);
+  if (count < 2) return;
+  state_.apply(job::interactive::SelectOutput{names[static_cast<std::size_t>((index + direction + count) % count)]});
+}
+
+void Application::play() {
+  if (!state_.ready() || !state_.snapshot->animated) return;
+  const double last = std::max(1.0f, state_.snapshot->scene->lastFrame);
+  const double frame = std::fmod((state_.time - state_.playStart) * kFramesPerSecond, last + 1.0);
+  state_.apply(job::interactive::SetFrame{static_cast<float>(std::min(frame, last))});
+}
+
+// ---- For tests
+
+void Application::logWidget(const std::string& name, vec2 least, vec2 most) {
+  nextWidgets_ += nlohmann::json{{"name", name}, {"rect", {least.x, least.y, most.x, most.y}}}.dump();
+  nextWidgets_ += ',';
+}
+
+void Application::emitWidgets() {
+  if (nextWidgets_ == widgets_) return;
+  widgets_ = nextWidgets_;
+  const std::string list = widgets_.empty() ? "" : widgets_.substr(0, widgets_.size() - 1);
+  const Area area = layOut();
+  if (options_.onEvent)
+    options_.onEvent(fmt::format(R"({{"event":"controls","image":[{},{},{},{}],"controls":[{}]}})", area.origin.x,
+                                 area.origin.y, area.origin.x + area.size.x, area.origin.y + area.size.y, list));
+}
+
+}  // namespace quintet::viewer

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The user interface library (Dear ImGui): its context, font and style, and its triangles as a gpu::DrawList.
+#ifndef QUINTET_APPS_VIEWER_GUI_GUI_H
+#define QUINTET_APPS_VIEWER_GUI_GUI_H
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "base/math.h"
+#include "gpu/draw_list.h"
+#include "viewer/settings.h"
+#include "window/window.h"
+
+namespace quintet::viewer {
+
+// Indices of textures: gpu::DrawListRenderer::setTexture.
+inline constexpr std::size_t kFontTexture = 0, kImageTexture = 1, kReferenceTexture = 2;
+
+struct FontPixels {
+  uvec2 size{0};
+  std::shared_ptr<const std::vector<std::byte>> rgba;
+};
+
+// One per process.
+class Gui {
+ public:
+  // `scale`: size of text and controls.
+  Gui(Window& window, Theme theme, float scale);
+  ~Gui();
+  Gui(const Gui&) = delete;
+  Gui& operator=(const Gui&) = delete;
+
+  // Both take effect in the next frame.
+  void setTheme(Theme theme);
+  void setScale(float scale);
+
+  void sendFontAgain() { fontChanged_ = true; }
+  // Pixels of kFontTexture if they have changed since the last call, else null.
+  FontPixels takeFont();
+
+  void beginFrame();
+  gpu::DrawList endFrame();
+
+  static bool wantsMouse();     // the pointer is over a panel, or a panel is being dragged
+  static bool wantsKeyboard();  // a text is being edited
+  std::array<float, 4> background() const;
+
+ private:
+  void loadFont();
+  void applyStyle();
+
+  Theme theme_;
+  float scale_;
+  FontPixels font_;
+  bool fontChanged_ = false, styleChanged_ = true;
+};
+
+}  // namespace quintet::viewer
+#endif

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bars below the image: progress and values of a pixel, and the animation.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "gui/style.h"
+#include "gui/widgets.h"
+#include "overlays/overlays.h"
+
+namespace quintet::viewer {
+namespace {
+
+constexpr ImGuiWindowFlags kBar = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                  ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
+
+void beginBar(const char* name, const Area& area) {
+  ImGui::SetNextWindowPos({area.origin.x, area.origin.y});
+  ImGui::SetNextWindowSize({area.size.x, area.size.y});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {ImGui::GetStyle().WindowPadding.x, 0.0f});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0f, 1.0f});
+  ImGui::Begin(name, nullptr, kBar);
+}
+
+void endBar() {
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+}
+
+std::string progressText(const Snapshot& snapshot) {
+  const job::interactive::ImageUpdated& progress = snapshot.progress;
+  std::string text = fmt::format("{} / {} samples", progress.samples, snapshot.state.samples);
+  text += fmt::format("   {} × {}", progress.size.x, progress.size.y);
+  if (progress.factor > 1) text += fmt::format(" (1/{} resolution)", progress.factor);
+  text += fmt::format("   {:.1f} s", progress.seconds);
+  if (snapshot.raysPerSecond > 0) text += fmt::format("   {:.2f} Mrays/s", 1e-6 * snapshot.raysPerSecond);
+  return text;
+}
+
+// The values of the pixel below the pointer.
+std::string pixelText(const ViewState& state) {
+  const io::Image* image = state.snapshot->image.get();
+  if (!image || !state.hoveredPixel || state.snapshot->state.size.x == 0) return {};
+  const uvec2 size = state.snapshot->state.size;
+  const uvec2 at = *state.hoveredPixel * uvec2(image->width, image->height) / size;
+  if (at.x >= image->width || at.y >= image->height) return {};
+  const auto values = image->pixel<float>(at.x, at.y);
+  return fmt::format("({}, {})   {:.4g}  {:.4g}  {:.4g}", state.hoveredPixel->x, state.hoveredPixel->y, values[0],
+                     values[1], values[2]);
+}
+
+}  // namespace
+
+float statusBarHeight() { return std::round(1.6f * ImGui::GetTextLineHeight()); }
+float animationBarHeight() { return std::round(ImGui::GetFrameHeight() + 0.5f * ImGui::GetTextLineHeight()); }
+
+void statusBar(const ViewState& state, const Area& area) {
+  if (area.size.x < 2.0f || area.size.y < 2.0f) return;
+  beginBar("status", area);
+  const Snapshot& snapshot = *state.snapshot;
+  ImGui::SetCursorPosY(0.5f * (area.size.y - ImGui::GetTextLineHeight()));
+  if (state.ready()) {
+    // Progress along the upper edge.
+    const double share = snapshot.progress.factor > 1 || snapshot.state.samples == 0
+                             ? 0.0
+                             : static_cast<double>(snapshot.progress.samples) / snapshot.state.samples;
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        {area.origin.x, area.origin.y},
+        {area.origin.x + static_cast<float>(std::min(share, 1.0)) * area.size.x, area.origin.y + 2.0f * state.scale},
+        ImGui::GetColorU32(ImGuiCol_CheckMark));
+    if (!snapshot.renderError.empty())
+      ImGui::TextColored(palette(state.settings.theme).error, "%s", snapshot.renderError.c_str());
+    else
+      ImGui::TextUnformatted(progressText(snapshot).c_str());
+    const std::string right = pixelText(state);
+    const float width = ImGui::CalcTextSize(right.c_str()).x;
+    ImGui::SameLine(std::max(area.size.x - width - ImGui::GetStyle().WindowPadding.x, ImGui::GetCursorPosX()));
+    ImGui::TextDisabled("%s", right.c_str());
+  } else {
+    ImGui::TextDisabled("%s", "Press ? for help");
+  }
+  endBar();
+}
+
+void animationBar(ViewState& state, const Area& area) {
+  if (area.size.x < 2.0f || area.size.y < 2.0f) return;
+  beginBar("animation", area);
+  ImGui::SetCursorPosY(0.5f * (area.size.y - ImGui::GetFrameHeight()));
+  if (button(state.playing ? "Pause" : "Play", "Space")) {
+    state.playing = !state.playing;
+    state.playStart = state.time - state.snapshot->state.frame / kFramesPerSecond;
+  }
+  ImGui::SameLine();
+  double frame = state.snapshot->state.frame;
+  const double last = std::max(1.0f, state.snapshot->scene->lastFrame);
+  if (numberField("Frame", frame, {.least = 0.0, .most = last})) {
+    state.playing = false;
+    state.apply(job::interactive::SetFrame{static_cast<float>(frame)});
+  }
+  endBar();
+}
+
+}  // namespace quintet::viewer

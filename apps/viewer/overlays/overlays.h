@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is drawn over the image or instead of it.
+#ifndef QUINTET_APPS_VIEWER_OVERLAYS_OVERLAYS_H
+#define QUINTET_APPS_VIEWER_OVERLAYS_OVERLAYS_H
+
+#include <string>
+#include <vector>
+
+#include "view_state.h"
+
+namespace quintet::viewer {
+
+// A rectangle of the window, pixels.
+struct Area {
+  vec2 origin{0.0f};
+  vec2 size{0.0f};
+};
+
+// Without a scene: recent files and lessons.
+struct Lesson {
+  std::string program;  // "lessons/05_shadow"
+  std::string title;    // "05 · shadow"
+  std::string text;
+};
+std::vector<Lesson> lessons();  // of the built-in programs
+void startScreen(ViewState& state, const Area& area, const std::vector<Lesson>& lessons);
+
+void loadingScreen(const ViewState& state, const Area& area);
+void failureScreen(ViewState& state, const Area& area);
+
+void selectionOutline(const ViewState& state, const Area& area);  // a box around the selected object
+void legend(const ViewState& state, const Area& area);            // of false color
+void splitLine(ViewState& state, const Area& area);               // of the comparison; can be dragged
+void diagnosticsDrawer(ViewState& state, const Area& area);       // problems of the program, with file and line
+void toasts(ViewState& state, const Area& area);
+void helpWindow(ViewState& state);
+void statusBar(const ViewState& state, const Area& area);
+void animationBar(ViewState& state, const Area& area);
+
+// Heights of the bars, pixels.
+float statusBarHeight();
+float animationBarHeight();
+
+}  // namespace quintet::viewer
+#endif

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <vector>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "base/text.h"
+#include "gui/widgets.h"
+#include "panels/panels.h"
+
+namespace quintet::viewer {
+namespace {
+
+constexpr float kRows = 8.0f;  // of the tree
+
+// Rows whose names contain `filter`, and those alone if there are many.
+template <class Name>
+void list(ViewState& state, Selection::Kind kind, std::size_t count, const std::string& filter, const Name& nameOf) {
+  const std::string wanted = lowerCase(filter);
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < count; ++i)
+    if (wanted.empty() || lowerCase(nameOf(i)).find(wanted) != std::string::npos) rows.push_back(i);
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(rows.size()));
+  while (clipper.Step()) {
+    for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
+      const std::size_t index = rows[static_cast<std::size_t>(row)];
+      const bool selected = state.selection.kind == kind && state.selection.index == index;
+      const std::string& name = nameOf(index);
+      if (ImGui::Selectable(fmt::format("{}##{}", name, index).c_str(), selected)) state.selection = {kind, index};
+      if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0) && kind == Selection::Kind::instance)
+        state.apply(job::interactive::Frame{name});
+    }
+  }
+}
+
+bool treeGroup(const char* name, std::size_t count, bool open) {
+  if (count == 0) return false;
+  const ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_SpanAvailWidth | (open ? int{ImGuiTreeNodeFlags_DefaultOpen} : 0);
+  return ImGui::TreeNodeEx(name, flags, "%s (%zu)", name, count);
+}
+
+}  // namespace
+
+void scenePanel(ViewState& state) {
+  const SceneOutline& scene = *state.snapshot->scene;
+  static std::string filter;
+  textRow("Scene", scene.name.empty() ? "built-in scene" : scene.name);
+  if (scene.triangles.stored > 0)
+    textRow("Triangles", fmt::format("{} ({} instanced)", scene.triangles.stored, scene.triangles.instanced));
+  if (scene.instances.size() + scene.materials.size() > 20)
+    textField("Filter", filter, "Show only names that contain this text");
+  else
+    filter.clear();
+  ImGui::BeginChild("tree", {0, kRows * ImGui::GetTextLineHeightWithSpacing()}, true);
+  if (treeGroup("Objects", scene.instances.size(), true)) {
+    list(state, Selection::Kind::instance, scene.instances.size(), filter,
+         [&](std::size_t i) -> const std::string& { return scene.instances[i].name; });
+    ImGui::TreePop();
+  }
+  if (treeGroup("Materials", scene.materials.size(), true)) {
+    list(state, Selection::Kind::material, scene.materials.size(), filter,
+         [&](std::size_t i) -> const std::string& { return scene.materialNames[i]; });
+    ImGui::TreePop();
+  }
+  if (treeGroup("Lights", scene.lights.size(), true)) {
+    list(state, Selection::Kind::light, scene.lights.size(), filter,
+         [&](std::size_t i) -> const std::string& { return scene.lightNames[i]; });
+    ImGui::TreePop();
+  }
+  ImGui::EndChild();
+}
+
+void selectionPanel(ViewState& state) {
+  const SceneOutline& scene = *state.snapshot->scene;
+  switch (state.selection.kind) {
+    case Selection::Kind::none: ImGui::TextDisabled("Click an object in the image or in the list."); break;
+    case Selection::Kind::instance:
+      if (state.selection.index < scene.instances.size()) instanceProperties(state, state.selection.index);
+      break;
+    case Selection::Kind::material:
+      if (state.selection.index < scene.materials.size()) materialProperties(state, state.selection.index);
+      break;
+    case Selection::Kind::light:
+      if (state.selection.index < scene.lights.size()) lightProperties(state, state.selection.index);
+      break;
+  }
+}
+
+}  // namespace quintet::viewer

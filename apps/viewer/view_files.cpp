@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view_files.h"
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "io/codec.h"
+#include "viewer/dropped_file.h"
+
+namespace quintet::viewer {
+namespace {
+
+std::string absolutePath(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::path result = std::filesystem::absolute(path, error);
+  return error ? path.string() : result.lexically_normal().string();
+}
+
+// The current request with its camera and parameters removed, or the default.
+job::interactive::SessionRequest currentRequest(const ViewState& state) {
+  job::interactive::SessionRequest request;
+  if (state.snapshot->request) request = *state.snapshot->request;
+  request.render.camera = {};
+  request.render.assignments.clear();
+  request.render.parameterFile.clear();
+  if (state.ready()) request.program = state.snapshot->state.program;
+  request.render.size = state.fixedSize.value_or(state.viewSize);
+  return request;
+}
+
+void openSession(ViewState& state, job::interactive::SessionRequest request, const std::string& recent) {
+  addRecentFile(state.settings, recent);
+  storeSettings(state);
+  state.selection = {};
+  state.playing = false;
+  state.session->open(std::move(request));
+}
+
+void useReference(ViewState& state, const std::string& path) {
+  try {
+    state.reference = std::make_shared<const io::Image>(io::readImage(path));
+    state.referenceFile = std::filesystem::path(path).filename().string();
+    if (state.controls.compare == CompareMode::off) state.controls.compare = CompareMode::split;
+  } catch (const Error& error) {
+    state.addMessage({Message::Kind::error, error.what()});
+  }
+}
+
+template <class Write>
+void reportingErrors(ViewState& state, const Write& write) {
+  if (state.settingsFolder.empty()) return;
+  try {
+    write();
+  } catch (const Error& error) {
+    state.addMessage({Message::Kind::warning, error.what()});
+  }
+}
+
+}  // namespace
+
+std::string sceneKey(const Snapshot& snapshot) {
+  if (!snapshot.request) return {};
+  const std::filesystem::path& file = snapshot.request->render.scene;
+  return file.empty() ? "program " + snapshot.state.program : absolutePath(file);
+}
+
+void openFile(ViewState& state, const std::string& path) {
+  switch (useOfFile(path)) {
+    case FileUse::scene: {
+      job::interactive::SessionRequest request = currentRequest(state);
+      request.render.scene = path;
+      return openSession(state, std::move(request), path);
+    }
+    case FileUse::program: {
+      job::interactive::SessionRequest request = currentRequest(state);
+      request.program = path;
+      return openSession(state, std::move(request), path);
+    }
+    case FileUse::environment:
+      if (state.ready())
+        state.apply(job::interactive::SetEnvironment{.source = absolutePath(path)});
+      else
+        state.addMessage({Message::Kind::warning, fmt::format("{}: open a scene first", path)});
+      return;
+    case FileUse::reference: return useReference(state, path);
+    case FileUse::unknown:
+      state.addMessage(
+          {Message::Kind::error,
+           fmt::format(
+               "{}: neither a scene (.glb, .gltf, .scene.toml), a program (.rt.glsl, a folder with program.toml) "
+               "nor an image",
+               path)});
+  }
+}
+
+void openRecent(ViewState& state, const std::string& file) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error))
+    openFile(state, file);
+  else
+    openLesson(state, file);
+}
+
+void openLesson(ViewState& state, const std::string& program) {
+  job::interactive::SessionRequest request;
+  request.program = program;
+  request.render.size = state.fixedSize.value_or(state.viewSize);
+  openSession(state, std::move(request), program);
+}
+
+void addBookmark(ViewState& state) {
+  if (!state.ready()) return;
+  const std::string name = state.bookmarks.add(sceneKey(*state.snapshot), state.snapshot->state.camera);
+  storeBookmarks(state);
+  state.addMessage({Message::Kind::note, fmt::format("added {}", name)});
+}
+
+void storeBookmarks(ViewState& state) {
+  reportingErrors(state, [&] { state.bookmarks.write(state.settingsFolder / "bookmarks.json"); });
+}
+
+void storeSettings(ViewState& state) {
+  reportingErrors(state, [&] { writeSettings(state.settingsFolder / "viewer.json", state.settings); });
+}
+
+}  // namespace quintet::viewer

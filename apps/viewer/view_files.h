@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens what the user chose or dropped, and stores settings and bookmarks.
+#ifndef QUINTET_APPS_VIEWER_VIEW_FILES_H
+#define QUINTET_APPS_VIEWER_VIEW_FILES_H
+
+#include <string>
+
+#include "view_state.h"
+
+namespace quintet::viewer {
+
+// The key of the bookmarks of the session's scene: an absolute path, or the name of the program whose own scene it is.
+std::string sceneKey(const Snapshot& snapshot);
+
+// A scene or program replaces the current one; the program stays with a new scene, and the scene with a new program. An
+// environment or a reference image is used for the current scene. Other files cause a message.
+void openFile(ViewState& state, const std::string& path);
+// One of Settings::recentFiles.
+void openRecent(ViewState& state, const std::string& file);
+// A built-in program on its own scene.
+void openLesson(ViewState& state, const std::string& program);
+
+void addBookmark(ViewState& state);
+// Errors become messages.
+void storeBookmarks(ViewState& state);
+void storeSettings(ViewState& state);
+
+}  // namespace quintet::viewer
+#endif

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the panels show and change: the session, the settings, and what the user has selected.
+#ifndef QUINTET_APPS_VIEWER_VIEW_STATE_H
+#define QUINTET_APPS_VIEWER_VIEW_STATE_H
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+#include "io/image.h"
+#include "viewer/bookmarks.h"
+#include "viewer/display.h"
+#include "viewer/navigation.h"
+#include "viewer/rate_history.h"
+#include "viewer/session_thread.h"
+#include "viewer/settings.h"
+
+namespace quintet::viewer {
+
+inline constexpr double kFramesPerSecond = 24.0;  // of a playing animation
+
+struct Selection {
+  enum class Kind { none, instance, material, light };
+  Kind kind = Kind::none;
+  std::size_t index = 0;
+};
+
+// A message above the image, which disappears.
+struct Toast {
+  Message message;
+  double shownUntil = 0;  // ViewState::time
+};
+
+// How false color shows the image, and how it is compared.
+struct DisplayControls {
+  bool falseColor = false;
+  Channel channel = Channel::luminance;
+  FalseColorRange range;
+  CompareMode compare = CompareMode::off;
+  float split = 0.5f;  // position of the line, as a fraction of the width
+};
+
+struct ViewState {
+  Settings settings;
+  std::filesystem::path settingsFolder;  // empty: nothing is stored
+  Bookmarks bookmarks;
+  SessionThread* session = nullptr;
+  std::shared_ptr<const Snapshot> snapshot;
+  std::shared_ptr<const Display> display;  // null before the first image
+
+  Selection selection;
+  DisplayControls controls;
+  std::string referenceFile;
+  std::shared_ptr<const io::Image> reference;  // null if there is none
+
+  double time = 0;  // seconds since the start
+  float scale = 1;  // size of text and controls
+  std::vector<Toast> toasts;
+  std::vector<Message> log;
+  bool showHelp = false, showDiagnostics = true;
+  bool playing = false;
+  double playStart = 0;  // `time` at which frame 0 was shown
+  std::optional<uvec2> hoveredPixel;
+  RateHistory imageRates, rayRates;  // images per second, million rays per second
+  ImagePlacement placement;          // of the image, in the current frame
+  uvec2 viewSize{0};                 // for which the window has room
+  std::optional<uvec2> fixedSize;    // of the image; unset: that of the window
+
+  bool ready() const { return snapshot->phase == Snapshot::Phase::ready; }
+  void apply(job::interactive::Command command) { session->apply(std::move(command)); }
+  void addMessage(Message message);
+};
+
+}  // namespace quintet::viewer
+#endif

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "window/window.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "gpu/error.h"
+
+// After gpu/vulkan.h, so that GLFW declares its functions for Vulkan.
+#include <GLFW/glfw3.h>
+
+namespace quintet::viewer {
+namespace {
+
+std::string lastGlfwError() {
+  const char* text = nullptr;
+  return ::glfwGetError(&text) == GLFW_NO_ERROR || !text ? "unknown reason" : text;
+}
+
+Modifiers modifiersOf(int bits) {
+  return {(bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_CONTROL) != 0, (bits & GLFW_MOD_ALT) != 0};
+}
+
+// Keys without a character.
+std::string keyName(int key) {
+  switch (key) {
+    case GLFW_KEY_SPACE: return "Space";
+    case GLFW_KEY_ESCAPE: return "Escape";
+    case GLFW_KEY_TAB: return "Tab";
+    case GLFW_KEY_HOME: return "Home";
+    case GLFW_KEY_PAGE_UP: return "PageUp";
+    case GLFW_KEY_PAGE_DOWN: return "PageDown";
+    case GLFW_KEY_DELETE: return "Delete";
+    case GLFW_KEY_KP_DECIMAL: return "Keypad .";
+    default: break;
+  }
+  if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F25) return fmt::format("F{}", key - GLFW_KEY_F1 + 1);
+  return {};
+}
+
+bool isLetter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+
+// The letter that the key types, in the current layout of the keyboard.
+std::string letterName(int key, int scancode) {
+  const char* name = ::glfwGetKeyName(key, scancode);
+  if (!name || name[0] == '\0' || name[1] != '\0' || !isLetter(name[0])) return {};
+  return {static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])))};
+}
+
+}  // namespace
+
+struct Window::Callbacks {
+  static Window& of(GLFWwindow* handle) { return *static_cast<Window*>(::glfwGetWindowUserPointer(handle)); }
+
+  static void key(GLFWwindow* handle, int key, int scancode, int action, int mods) {
+    KeyEvent event;
+    event.key = keyName(key);
+    if (event.key.empty()) event.key = letterName(key, scancode);
+    if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) event.position = std::string(1, static_cast<char>(key));
+    event.modifiers = modifiersOf(mods);
+    event.pressed = action != GLFW_RELEASE;
+    event.repeated = action == GLFW_REPEAT;
+    if (!event.key.empty() || !event.position.empty()) of(handle).events_.emplace_back(std::move(event));
+  }
+
+  // Characters that are neither letters nor the space, which key() reports.
+  static void character(GLFWwindow* handle, unsigned codepoint) {
+    if (codepoint <= ' ' || codepoint > '~' || isLetter(static_cast<char>(codepoint))) return;
+    of(handle).events_.emplace_back(KeyEvent{.key = {static_cast<char>(codepoint)}, .pressed = true});
+  }
+
+  static void button(GLFWwindow* handle, int button, int action, int mods) {
+    if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
+    double x = 0, y = 0;
+    ::glfwGetCursorPos(handle, &x, &y);
+    Window& window = of(handle);
+    window.events_.emplace_back(ButtonEvent{.button = button == GLFW_MOUSE_BUTTON_LEFT    ? MouseButton::left
+                                                      : button == GLFW_MOUSE_BUTTON_RIGHT ? MouseButton::right
+                                                                                          : MouseButton::middle,
+                                            .modifiers = modifiersOf(mods),
+                                            .position = window.toPixels(x, y),
+                                            .pressed = action == GLFW_PRESS});
+  }
+
+  static void cursor(GLFWwindow* handle, double x, double y) {
+    Window& window = of(handle);
+    window.events_.emplace_back(MoveEvent{window.toPixels(x, y)});
+  }
+
+  static void scroll(GLFWwindow* handle, double, double steps) {
+    double x = 0, y = 0;
+    ::glfwGetCursorPos(handle, &x, &y);
+    Window& window = of(handle);
+    window.events_.emplace_back(WheelEvent{static_cast<float>(steps), window.toPixels(x, y)});
+  }
+
+  static void drop(GLFWwindow* handle, int count, const char** paths) {
+    of(handle).events_.emplace_back(DropEvent{{paths, paths + count}});
+  }
+
+  static void focus(GLFWwindow* handle, int focused) {
+    of(handle).events_.emplace_back(FocusEvent{focused == GLFW_TRUE});
+  }
+};
+
+Window::Window(const std::string& title, uvec2 size) {
+  if (!::glfwInit()) throw Error(fmt::format("cannot open a window: {}", lastGlfwError()));
+  if (!::glfwVulkanSupported()) {
+    ::glfwTerminate();
+    throw Error("cannot open a window: the Vulkan loader supports no windows");
+  }
+  ::glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+  ::glfwWindowHintString(GLFW_X11_CLASS_NAME, "quintet-view");  // GLFW uses the class only with an instance name
+  ::glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "quintet-view");
+  handle_ = ::glfwCreateWindow(static_cast<int>(size.x), static_cast<int>(size.y), title.c_str(), nullptr, nullptr);
+  if (!handle_) {
+    const std::string reason = lastGlfwError();
+    ::glfwTerminate();
+    throw Error(fmt::format("cannot open a window: {}", reason));
+  }
+  ::glfwSetWindowUserPointer(handle_, this);
+  ::glfwSetKeyCallback(handle_, Callbacks::key);
+  ::glfwSetCharCallback(handle_, Callbacks::character);
+  ::glfwSetMouseButtonCallback(handle_, Callbacks::button);
+  ::glfwSetCursorPosCallback(handle_, Callbacks::cursor);
+  ::glfwSetScrollCallback(handle_, Callbacks::scroll);
+  ::glfwSetDropCallback(handle_, Callbacks::drop);
+  ::glfwSetWindowFocusCallback(handle_, Callbacks::focus);
+}
+
+Window::~Window() {
+  ::glfwDestroyWindow(handle_);
+  ::glfwTerminate();
+}
+
+gpu::SurfaceSource Window::surfaceSource() const {
+  gpu::SurfaceSource source;
+  std::uint32_t count = 0;
+  const char** names = ::glfwGetRequiredInstanceExtensions(&count);
+  if (names) source.instanceExtensions.assign(names, names + count);
+  source.create = [handle = handle_](VkInstance instance) {
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    gpu::check(::glfwCreateWindowSurface(instance, handle, nullptr, &surface), "create the surface of the window");
+    return surface;
+  };
+  return source;
+}
+
+uvec2 Window::size() const {
+  int width = 0, height = 0;
+  ::glfwGetFramebufferSize(handle_, &width, &height);
+  return {static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0))};
+}
+
+float Window::contentScale() const {
+  float x = 1.0f, y = 1.0f;
+  ::glfwGetWindowContentScale(handle_, &x, &y);
+  return std::max(x, y);
+}
+
+// Positions of the cursor are in screen coordinates, which differ from pixels on some systems.
+vec2 Window::toPixels(double x, double y) const {
+  int width = 0, height = 0;
+  ::glfwGetWindowSize(handle_, &width, &height);
+  if (width <= 0 || height <= 0) return vec2(0.0f);
+  return vec2(x, y) * vec2(size()) / vec2(width, height);
+}
+
+bool Window::shouldClose() const { return ::glfwWindowShouldClose(handle_) == GLFW_TRUE; }
+bool Window::minimized() const { return ::glfwGetWindowAttrib(handle_, GLFW_ICONIFIED) == GLFW_TRUE; }
+
+std::vector<InputEvent> Window::waitForEvents(double seconds) {
+  if (seconds > 0)
+    ::glfwWaitEventsTimeout(seconds);
+  else
+    ::glfwPollEvents();
+  return std::exchange(events_, {});
+}
+
+void Window::wake() { ::glfwPostEmptyEvent(); }
+
+void Window::setTitle(const std::string& title) { ::glfwSetWindowTitle(handle_, title.c_str()); }
+
+void Window::toggleFullScreen() {
+  if (::glfwGetWindowMonitor(handle_)) {
+    ::glfwSetWindowMonitor(handle_, nullptr, windowedX_, windowedY_, windowedWidth_, windowedHeight_, GLFW_DONT_CARE);
+    return;
+  }
+  GLFWmonitor* monitor = ::glfwGetPrimaryMonitor();
+  const GLFWvidmode* mode = monitor ? ::glfwGetVideoMode(monitor) : nullptr;
+  if (!mode) return;
+  ::glfwGetWindowPos(handle_, &windowedX_, &windowedY_);
+  ::glfwGetWindowSize(handle_, &windowedWidth_, &windowedHeight_);
+  ::glfwSetWindowMonitor(handle_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+}
+
+void Window::setClipboard(const std::string& text) { ::glfwSetClipboardString(handle_, text.c_str()); }
+
+}  // namespace quintet::viewer

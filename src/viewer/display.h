@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// From linear values to the bytes that the window shows: tone mapping, false color, and the comparison with a reference
+// image.
+#ifndef QUINTET_VIEWER_DISPLAY_H
+#define QUINTET_VIEWER_DISPLAY_H
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "base/math.h"
+#include "io/image.h"
+#include "render/tone_map/tone_map.h"
+#include "viewer/false_color.h"
+#include "viewer/histogram.h"
+
+namespace quintet::viewer {
+
+// Which number of a pixel false color shows.
+enum class Channel { luminance, red, green, blue, alpha };
+std::string_view channelName(Channel channel);
+
+enum class CompareMode {
+  off,
+  split,       // the reference image to the right of a line
+  difference,  // largest difference of a channel, linear values, as false color from 0 to DisplaySettings::range.most
+  flip,        // FLIP error, as false color from 0 to 1
+};
+
+struct DisplaySettings {
+  double exposure = 0;  // stops
+  render::ToneMap toneMap = render::ToneMap::linear;
+  bool falseColor = false;
+  Channel channel = Channel::luminance;
+  FalseColorRange range;
+  CompareMode compare = CompareMode::off;
+  bool operator==(const DisplaySettings& other) const;
+};
+
+// RGBA bytes, rows from the top.
+struct DisplayPixels {
+  uvec2 size{0};
+  std::shared_ptr<const std::vector<std::byte>> bytes;
+};
+
+struct Display {
+  DisplayPixels image;
+  DisplayPixels reference;      // with CompareMode::split, of the same size
+  Histogram histogram;          // of the linear image
+  std::optional<double> error;  // mean of the difference or of FLIP; with CompareMode::difference and flip
+};
+
+// `image`: linear premultiplied RGBA floats. `reference`: any image; resized to that of `image` if necessary; null if there
+// is none, and CompareMode is then ignored.
+Display makeDisplay(const io::Image& image, const io::Image* reference, const DisplaySettings& settings);
+
+}  // namespace quintet::viewer
+#endif

@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/session_thread.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <type_traits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "gpu/error.h"
+#include "job/interactive/event_json.h"
+#include "output/plan.h"
+#include "output/write.h"
+
+namespace quintet::viewer {
+namespace {
+
+namespace interactive = job::interactive;
+
+constexpr double kStepSeconds = 0.05;
+constexpr double kIdleSeconds = 0.1;    // between checks for saved files of the program
+constexpr double kMovingSeconds = 0.3;  // after a command, images of reduced resolution are not interrupted
+constexpr double kRateSeconds = 0.25;   // between measurements of the rate of rays, which wait for the device
+
+// The names of the properties of an edit.
+bool sameNames(const std::vector<interactive::Property>& a, const std::vector<interactive::Property>& b) {
+  return std::ranges::equal(a, b, {}, &interactive::Property::name, &interactive::Property::name);
+}
+
+// The request keeps the samples, so it does not interrupt a batch.
+template <class Request>
+bool onlyDisplays(const Request& request) {
+  const auto* command = std::get_if<interactive::Command>(&request);
+  return command && (std::holds_alternative<interactive::SetExposure>(*command) ||
+                     std::holds_alternative<interactive::SetToneMap>(*command) ||
+                     std::holds_alternative<interactive::EndDrag>(*command));
+}
+
+template <class T>
+const T* as(const interactive::Command& command) {
+  return std::get_if<T>(&command);
+}
+
+}  // namespace
+
+bool overwrites(const interactive::Command& next, const interactive::Command& last) {
+  if (next.index() != last.index()) return false;
+  if (const auto* command = as<interactive::SetParameter>(next))
+    return command->name == as<interactive::SetParameter>(last)->name;
+  if (const auto* command = as<interactive::EditMaterial>(next)) {
+    const auto* before = as<interactive::EditMaterial>(last);
+    return command->material == before->material && sameNames(command->properties, before->properties);
+  }
+  if (const auto* command = as<interactive::EditLight>(next)) {
+    const auto* before = as<interactive::EditLight>(last);
+    return command->light == before->light && sameNames(command->properties, before->properties);
+  }
+  if (const auto* command = as<interactive::SetTransform>(next))
+    return command->instance == as<interactive::SetTransform>(last)->instance;
+  if (const auto* command = as<interactive::SetLens>(next)) {
+    const auto* before = as<interactive::SetLens>(last);
+    return command->verticalFov.has_value() == before->verticalFov.has_value() &&
+           command->apertureRadius.has_value() == before->apertureRadius.has_value() &&
+           command->focusDistance.has_value() == before->focusDistance.has_value();
+  }
+  if (const auto* command = as<interactive::SetEnvironment>(next)) {
+    const auto* before = as<interactive::SetEnvironment>(last);
+    return command->source.has_value() == before->source.has_value() &&
+           command->intensity.has_value() == before->intensity.has_value() &&
+           command->rotation.has_value() == before->rotation.has_value() &&
+           command->on.has_value() == before->on.has_value();
+  }
+  return as<interactive::SetFrame>(next) || as<interactive::SetExposure>(next) || as<interactive::SetSize>(next) ||
+         as<interactive::SetSamples>(next) || as<interactive::SetToneMap>(next);
+}
+
+// Forwards the stages of the work, and remembers that the device hangs.
+class SessionThread::Host : public job::Observer {
+ public:
+  explicit Host(SessionThread& thread) : thread_(thread) {}
+  void stage(const std::string& text) override {
+    if (thread_.next_.phase != Snapshot::Phase::loading) return;
+    thread_.next_.stage = text;
+    thread_.publish();
+  }
+  void warning(const std::string& text) override { thread_.addMessage(Message::Kind::warning, text); }
+  void deviceHung(const Diagnostic& diagnostic) override {
+    thread_.hung_ = true;
+    thread_.next_.diagnostics = {diagnostic};
+  }
+
+ private:
+  SessionThread& thread_;
+};
+
+SessionThread::SessionThread(Options options)
+    : options_(std::move(options)), host_(std::make_unique<Host>(*this)), thread_([this] { run(); }) {}
+
+SessionThread::~SessionThread() {
+  stop_ = true;
+  {
+    const std::lock_guard lock(mutex_);
+    hasRequests_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void SessionThread::post(Request request) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto* command = std::get_if<interactive::Command>(&request);
+    auto* last = requests_.empty() ? nullptr : std::get_if<interactive::Command>(&requests_.back());
+    if (command && last && overwrites(*command, *last))
+      *last = *command;
+    else
+      requests_.push_back(std::move(request));
+    hasRequests_ = true;
+    urgent_ = urgent_ || !onlyDisplays(requests_.back());
+  }
+  changed_.notify_one();
+}
+
+void SessionThread::open(interactive::SessionRequest request) { post(std::move(request)); }
+void SessionThread::apply(interactive::Command command) { post(std::move(command)); }
+void SessionThread::pick(uvec2 pixel, PickUse use) { post(PickRequest{pixel, use}); }
+void SessionThread::save(const std::filesystem::path& file) { post(SaveRequest{file}); }
+
+std::shared_ptr<const Snapshot> SessionThread::snapshot() const {
+  const std::lock_guard lock(mutex_);
+  return snapshot_;
+}
+
+std::vector<Message> SessionThread::takeMessages() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(messages_, {});
+}
+
+std::vector<std::optional<interactive::Pick>> SessionThread::takePicks() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(picks_, {});
+}
+
+void SessionThread::addMessage(Message::Kind kind, std::string text) {
+  {
+    const std::lock_guard lock(mutex_);
+    messages_.push_back({kind, std::move(text)});
+  }
+  if (options_.onChange) options_.onChange();
+}
+
+void SessionThread::publish() {
+  auto snapshot = std::make_shared<const Snapshot>(next_);
+  {
+    const std::lock_guard lock(mutex_);
+    snapshot_ = std::move(snapshot);
+  }
+  if (options_.onChange) options_.onChange();
+}
+
+// ---- The thread
+
+void SessionThread::run() {
+  while (waitForWork()) {
+    for (Request& request : takeRequests()) {
+      if (stop_) break;
+      guarded([&] { handle(request); });
+    }
+    if (session_ && !stop_) guarded([&] { step(); });
+  }
+  closeSession();
+}
+
+// Returns false if the thread must end.
+bool SessionThread::waitForWork() {
+  std::unique_lock lock(mutex_);
+  double seconds = kIdleSeconds;
+  if (session_) seconds = std::min(seconds, session_->secondsUntilWork());
+  changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return hasRequests_.load(); });
+  return !stop_;
+}
+
+std::vector<SessionThread::Request> SessionThread::takeRequests() {
+  const std::lock_guard lock(mutex_);
+  hasRequests_ = false;
+  urgent_ = false;
+  return std::exchange(requests_, {});
+}
+
+void SessionThread::handle(Request& request) {
+  std::visit(
+      [&](auto& value) {
+        using T = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<T, interactive::SessionRequest>)
+          openSession(std::move(value));
+        else if constexpr (std::is_same_v<T, interactive::Command>)
+          applyCommand(value);
+        else if constexpr (std::is_same_v<T, PickRequest>)
+          pickPixel(value);
+        else
+          saves_.push_back(value);
+      },
+      request);
+}
+
+// Errors end the session if it cannot continue; all others become messages.
+void SessionThread::guarded(const std::function<void()>& function) {
+  try {
+    function();
+  } catch (const ProgramError& error) {
+    next_.diagnostics = error.diagnostics();
+    if (!session_) return fail(error.what());
+    addMessage(Message::Kind::error, error.what());
+    publish();
+  } catch (const TimeoutError& error) {
+    fail(error.what());
+  } catch (const DeviceLostError& error) {
+    fail(fmt::format("{}; open the scene again to continue", error.what()));
+  } catch (const gpu::VulkanError& error) {
+    fail(error.what());
+  } catch (const std::exception& error) {  // UsageError, FileError, MemoryError, std::bad_alloc
+    if (!session_) return fail(error.what());
+    addMessage(Message::Kind::error, error.what());
+  }
+}
+
+void SessionThread::fail(const std::string& error) {
+  closeSession();
+  saves_.clear();
+  next_.phase = Snapshot::Phase::failed;
+  next_.error = error;
+  next_.image = nullptr;
+  addMessage(Message::Kind::error, error);
+  publish();
+}
+
+void SessionThread::closeSession() {
+  if (hung_) {
+    // Their destructors would wait for the device.
+    static_cast<void>(session_.release());
+    static_cast<void>(engine_.release());
+    hung_ = false;
+  }
+  session_.reset();
+}
+
+void SessionThread::openSession(interactive::SessionRequest request) {
+  closeSession();
+  saves_.clear();
+  next_ = Snapshot{};
+  next_.session = ++sessions_;
+  next_.phase = Snapshot::Phase::loading;
+  next_.stage = "opening the device";
+  publish();
+  next_.request = std::make_shared<const interactive::SessionRequest>(request);
+  try {
+    if (!engine_) engine_ = std::make_unique<job::Engine>(options_.engine);
+    session_ = std::make_unique<interactive::Session>(
+        *engine_, std::move(request), [this] { return clock_.seconds(); }, *host_);
+  } catch (const DeviceLostError&) {
+    engine_.reset();
+    throw;
+  } catch (const gpu::NoDeviceError&) {
+    engine_.reset();
+    throw;
+  }
+  next_.phase = Snapshot::Phase::ready;
+  next_.stage.clear();
+  next_.device = engine_->context().info().name;
+  next_.scene = std::make_shared<const SceneOutline>(outlineOf(*session_));
+  next_.animated = session_->isAnimated();
+  next_.diagnostics = session_->diagnostics();
+  lastImage_ = clock_.seconds();
+  publishState();
+}
+
+void SessionThread::applyCommand(const interactive::Command& command) {
+  if (!session_) return;
+  lastCommand_ = clock_.seconds();
+  session_->apply(command);
+  next_.renderError.clear();
+  publishState();
+}
+
+void SessionThread::publishState() {
+  if (!next_.program || next_.state.program != session_->state().program) {
+    next_.program = std::make_shared<const program::Program>(session_->program());
+    next_.diagnostics = session_->diagnostics();
+    next_.outdatedProgram = false;
+  }
+  next_.state = session_->state();
+  next_.parameters = std::make_shared<const program::ParameterValues>(session_->parameters());
+  next_.canUndo = session_->canUndo();
+  next_.canRedo = session_->canRedo();
+  next_.camera = session_->camera();
+  next_.navigation.reset();
+  if (!next_.camera.orthographic) next_.navigation = session_->navigation();
+  publish();
+}
+
+void SessionThread::pickPixel(const PickRequest& request) {
+  if (!session_) return;
+  const std::optional<interactive::Pick> found = session_->pick(request.pixel);
+  if (request.use == PickUse::select) {
+    {
+      const std::lock_guard lock(mutex_);
+      picks_.push_back(found);
+    }
+    if (options_.onChange) options_.onChange();
+  } else if (found) {
+    applyCommand(interactive::SetOrbitCenter{found->position});
+  }
+}
+
+void SessionThread::step() {
+  // While something moves, each image is shown. Afterwards a batch can take long, and commands interrupt it.
+  const bool moving = clock_.seconds() - lastCommand_ < kMovingSeconds;
+  const auto interrupted = [&] { return stop_ || (!moving && urgent_); };
+  const std::vector<interactive::Event> events = session_->step(kStepSeconds, interrupted);
+  if (!events.empty()) report(events);
+  if (!saves_.empty()) writeSaves();
+}
+
+void SessionThread::report(const std::vector<interactive::Event>& events) {
+  bool image = false;
+  for (const interactive::Event& event : events) {
+    if (options_.onEvent) options_.onEvent(interactive::eventJson(event));
+    if (const auto* updated = std::get_if<interactive::ImageUpdated>(&event)) {
+      next_.progress = *updated;
+      image = true;
+    } else if (const auto* found = std::get_if<interactive::DiagnosticsFound>(&event)) {
+      next_.diagnostics = found->diagnostics;
+      next_.outdatedProgram = hasErrors(found->diagnostics);
+    } else if (const auto* reloaded = std::get_if<interactive::ProgramReloaded>(&event)) {
+      next_.diagnostics = session_->diagnostics();
+      next_.outdatedProgram = false;
+      next_.program = nullptr;
+      addMessage(Message::Kind::note, fmt::format("reloaded {}", reloaded->files));
+    } else if (const auto* note = std::get_if<interactive::Note>(&event)) {
+      addMessage(Message::Kind::note, note->text);
+    } else if (const auto* warning = std::get_if<interactive::Warning>(&event)) {
+      addMessage(Message::Kind::warning, warning->text);
+    } else if (const auto* failed = std::get_if<interactive::Failed>(&event)) {
+      next_.renderError = failed->message;
+      addMessage(Message::Kind::error, failed->message);
+    }
+  }
+  if (image) {
+    next_.image = std::make_shared<const io::Image>(session_->linearImage());
+    ++next_.imageNumber;
+    const double now = clock_.seconds();
+    next_.secondsPerImage = now - std::exchange(lastImage_, now);
+    measureRays();
+    for (const program::Output& output : session_->program().outputs)
+      if (output.name == session_->state().output) next_.outputKind = output.kind;
+  }
+  publishState();
+}
+
+void SessionThread::measureRays() {
+  const double now = clock_.seconds();
+  if (now - lastRates_ < kRateSeconds || !(next_.progress.seconds > 0)) return;
+  lastRates_ = now;
+  next_.raysPerSecond = static_cast<double>(session_->rays().rays) / next_.progress.seconds;
+}
+
+// A save waits until the image has its full size.
+void SessionThread::writeSaves() {
+  if (!next_.image || (next_.progress.factor != 1 && next_.renderError.empty())) return;
+  for (const SaveRequest& save : std::exchange(saves_, {})) {
+    output::OutputRequest request;
+    request.file = save.file;
+    request.output = session_->state().output;
+    if (output::fileKind(save.file) == output::FileKind::png) {
+      request.exposure = session_->state().exposure;
+      request.toneMap = session_->state().toneMap;
+    }
+    const output::OutputPlan plan = output::planOutputs(request, session_->program());
+    output::writeOutputs(plan, session_->result(), *host_);
+    if (options_.onEvent) options_.onEvent(interactive::savedJson(save.file.string()));
+    addMessage(Message::Kind::note, fmt::format("saved {}", save.file.string()));
+  }
+}
+
+}  // namespace quintet::viewer

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs a session in a thread, so that rendering never blocks the window: commands go in, immutable snapshots come out.
+#ifndef QUINTET_VIEWER_SESSION_THREAD_H
+#define QUINTET_VIEWER_SESSION_THREAD_H
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "base/diagnostic.h"
+#include "base/stopwatch.h"
+#include "io/image.h"
+#include "job/engine.h"
+#include "job/interactive/session.h"
+#include "program/description/program.h"
+#include "viewer/scene_outline.h"
+
+namespace quintet::viewer {
+
+struct Message {
+  enum class Kind { note, warning, error };
+  Kind kind = Kind::note;
+  std::string text;
+};
+
+// The state of the session at one moment. Objects behind pointers do not change.
+struct Snapshot {
+  enum class Phase {
+    empty,    // nothing was opened
+    loading,  // `stage` says what it does
+    ready,
+    failed,  // `error` says why; open() starts over
+  };
+  Phase phase = Phase::empty;
+  std::string stage, error;
+
+  // With Phase::ready.
+  std::uint64_t session = 0;  // number of open() calls
+  std::shared_ptr<const SceneOutline> scene;
+  std::shared_ptr<const program::Program> program;
+  std::shared_ptr<const program::ParameterValues> parameters;
+  job::interactive::SessionState state;
+  std::shared_ptr<const job::interactive::SessionRequest> request;
+  std::string device;  // name
+  scene::Camera camera;
+  std::optional<job::interactive::OrbitCamera> navigation;  // unset for an orthographic camera
+  bool canUndo = false, canRedo = false;
+  bool animated = false;
+  std::vector<Diagnostic> diagnostics;  // of the program, or of its last version that did not compile
+  bool outdatedProgram = false;         // the files of the program have errors: the version before them is shown
+
+  std::shared_ptr<const io::Image> image;  // linear premultiplied RGBA floats; null before the first one
+  std::uint64_t imageNumber = 0;           // changes with the image
+  program::OutputKind outputKind = program::OutputKind::color;
+  job::interactive::ImageUpdated progress;  // of the image
+  double raysPerSecond = 0;                 // 0 if unknown
+  double secondsPerImage = 0;               // between the last two images
+  std::string renderError;                  // the render stopped until the next command; else empty
+};
+
+// What to do with the surface at a pixel.
+enum class PickUse {
+  select,
+  focus,  // SetOrbitCenter
+};
+
+class SessionThread {
+ public:
+  struct Options {
+    job::EngineOptions engine;
+    std::function<void()> onChange;                        // called from the thread after each new snapshot
+    std::function<void(const std::string& json)> onEvent;  // gets the events as lines of JSON; may be empty
+  };
+  explicit SessionThread(Options options);
+  // Interrupts the work. If the device hangs, its objects are leaked.
+  ~SessionThread();
+  SessionThread(const SessionThread&) = delete;
+  SessionThread& operator=(const SessionThread&) = delete;
+
+  // Each of these returns at once. Errors become messages.
+  void open(job::interactive::SessionRequest request);  // replaces the session
+  void apply(job::interactive::Command command);        // without a session it has no effect
+  void pick(uvec2 pixel, PickUse use);
+  void save(const std::filesystem::path& file);  // the shown output, as soon as it has its full size
+
+  std::shared_ptr<const Snapshot> snapshot() const;
+  std::vector<Message> takeMessages();
+  // The instances that PickUse::select found since the last call; unset for a pixel without a surface.
+  std::vector<std::optional<job::interactive::Pick>> takePicks();
+
+ private:
+  struct PickRequest {
+    uvec2 pixel{0};
+    PickUse use = PickUse::select;
+  };
+  struct SaveRequest {
+    std::filesystem::path file;
+  };
+  using Request = std::variant<job::interactive::SessionRequest, job::interactive::Command, PickRequest, SaveRequest>;
+  class Host;
+
+  void run();
+  void post(Request request);
+  bool waitForWork();
+  std::vector<Request> takeRequests();
+  void handle(Request& request);
+  void openSession(job::interactive::SessionRequest request);
+  void closeSession();
+  void applyCommand(const job::interactive::Command& command);
+  void pickPixel(const PickRequest& request);
+  void writeSaves();
+  void step();
+  void measureRays();
+  void report(const std::vector<job::interactive::Event>& events);
+  void guarded(const std::function<void()>& function);
+  void fail(const std::string& error);
+  void addMessage(Message::Kind kind, std::string text);
+  void publishState();  // copies the session's state to next_, and publishes
+  void publish();       // makes next_ the snapshot
+
+  const Options options_;
+  const Stopwatch clock_;
+
+  // Used by the thread only.
+  std::unique_ptr<Host> host_;
+  std::unique_ptr<job::Engine> engine_;
+  std::unique_ptr<job::interactive::Session> session_;
+  Snapshot next_;
+  std::vector<SaveRequest> saves_;
+  double lastCommand_ = -1e9;  // on clock_
+  double lastImage_ = 0;       // on clock_
+  double lastRates_ = 0;       // on clock_
+  std::uint64_t sessions_ = 0;
+
+  std::atomic<bool> stop_ = false;
+  std::atomic<bool> hasRequests_ = false;
+  std::atomic<bool> urgent_ = false;  // a request changes the samples
+  std::atomic<bool> hung_ = false;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Request> requests_;
+  std::vector<Message> messages_;
+  std::vector<std::optional<job::interactive::Pick>> picks_;
+  std::shared_ptr<const Snapshot> snapshot_ = std::make_shared<const Snapshot>();
+  std::thread thread_;  // last: it uses the members above
+};
+
+// Returns whether `next` only overwrites what `last` sets.
+bool overwrites(const job::interactive::Command& next, const job::interactive::Command& last);
+
+}  // namespace quintet::viewer
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Settings of the viewer that outlast the process, as a JSON file in the user's configuration folder.
+#ifndef QUINTET_VIEWER_SETTINGS_H
+#define QUINTET_VIEWER_SETTINGS_H
+
+#include <cstddef>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+
+namespace quintet::viewer {
+
+enum class Theme { dark, light };
+
+inline constexpr std::size_t kMaxRecentFiles = 12;
+inline constexpr float kMaxScale = 4.0f;
+
+struct Settings {
+  Theme theme = Theme::dark;
+  std::string bindings;         // name of a BindingSet; empty means the first
+  float resolution = 1.0f;      // pixels of the image per pixel of the window, [0.125, 1]
+  float scale = 0.0f;           // size of text and controls, [0.5, kMaxScale]; 0 means that of the display
+  uvec2 windowSize{1280, 800};  // pixels
+  bool panels = true;           // the panels beside the image are visible
+  float panelWidth = 320.0f;    // pixels at scale 1, [200, 1000]
+  std::set<std::string> openPanels{"Scene", "Selection", "Display", "Parameters"};
+  std::vector<std::string> recentFiles;  // absolute paths of scenes and programs, the latest first
+  bool operator==(const Settings&) const = default;
+};
+
+// $XDG_CONFIG_HOME/quintet or ~/.config/quintet; empty if no home folder is known. The folder may not exist.
+std::filesystem::path settingsFolder();
+
+std::string settingsJson(const Settings& settings);
+// Values out of range are clamped, and unknown members ignored, so that versions can share the file. `file` is the name in
+// messages. Throws FileError if the text is no JSON object, or if a member has the wrong type.
+Settings parseSettings(const std::string& json, const std::string& file);
+
+// The defaults if the file does not exist. Throws FileError.
+Settings readSettings(const std::filesystem::path& file);
+// Creates the folder if necessary. Throws FileError.
+void writeSettings(const std::filesystem::path& file, const Settings& settings);
+
+// Makes the file the latest one. Names of built-in programs stay as they are; paths become absolute.
+void addRecentFile(Settings& settings, const std::string& file);
+
+}  // namespace quintet::viewer
+#endif

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/session_thread.h"
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/file.h"
+#include "harness.h"
+#include "io/codec.h"
+#include "temp_folder.h"
+#include "viewer/window_shaders.h"
+
+namespace quintet::viewer {
+namespace {
+
+using namespace job::interactive;
+using testing::HasSubstr;
+
+constexpr uvec2 kSize{48, 32};
+
+constexpr const char* kScene = R"(
+[[material]]
+name = "paint"
+[[mesh]]
+name = "wall"
+positions = [[-3, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]]
+indices = [[0, 1, 2], [0, 2, 3]]
+material = "paint"
+[[instance]]
+of = "wall"
+[[camera]]
+look_from = [0, 0, 4]
+look_at = [0, 0, 0]
+fov = 40
+)";
+
+class SessionThreadTest : public testing::Test {
+ protected:
+  SessionThreadTest() {
+    writeFile(folder_ / "wall.scene.toml", kScene);
+    SessionThread::Options options;
+    options.engine.device = test::testContext().info().name;
+    options.onEvent = [this](const std::string& json) {
+      const std::lock_guard lock(mutex_);
+      events_.push_back(json);
+    };
+    thread_ = std::make_unique<SessionThread>(std::move(options));
+  }
+
+  SessionRequest request() {
+    SessionRequest result;
+    result.program = "normals";
+    result.render.scene = folder_ / "wall.scene.toml";
+    result.render.size = kSize;
+    result.render.limits.samples = 8;
+    return result;
+  }
+
+  // Waits for a snapshot with this property.
+  std::shared_ptr<const Snapshot> waitFor(const std::function<bool(const Snapshot&)>& matches) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+    for (;;) {
+      std::shared_ptr<const Snapshot> snapshot = thread_->snapshot();
+      if (matches(*snapshot)) return snapshot;
+      if (std::chrono::steady_clock::now() > end) {
+        ADD_FAILURE() << "no such snapshot: phase " << static_cast<int>(snapshot->phase) << " " << snapshot->error;
+        return snapshot;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+  std::shared_ptr<const Snapshot> waitForImage() {
+    return waitFor([](const Snapshot& snapshot) { return snapshot.image && snapshot.progress.complete; });
+  }
+  // Waits for a message that contains `part`.
+  bool hasMessage(Message::Kind kind, const std::string& part) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+    while (std::chrono::steady_clock::now() < end) {
+      for (const Message& message : thread_->takeMessages())
+        if (message.kind == kind && message.text.find(part) != std::string::npos) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+  }
+  static vec3 middle(const Snapshot& snapshot) {
+    const auto pixel = snapshot.image->pixel<float>(snapshot.image->width / 2, snapshot.image->height / 2);
+    return {pixel[0], pixel[1], pixel[2]};
+  }
+
+  test::TempFolder folder_;
+  std::mutex mutex_;
+  std::vector<std::string> events_;
+  std::unique_ptr<SessionThread> thread_;
+};
+
+TEST_F(SessionThreadTest, RendersAndAppliesCommands) {
+  EXPECT_EQ(thread_->snapshot()->phase, Snapshot::Phase::empty);
+  thread_->apply(Orbit{1, 0});  // without a session it has no effect
+  thread_->open(request());
+  const auto first = waitForImage();
+  EXPECT_EQ(first->image->width, kSize.x);
+  EXPECT_EQ(first->progress.samples, 8u);
+  EXPECT_NEAR(middle(*first).b, 1.0f, 0.02f) << "the normal is +z";
+  EXPECT_EQ(first->scene->instances.size(), 1u);
+  EXPECT_EQ(first->scene->materialNames.front(), "paint");
+  EXPECT_FALSE(first->canUndo);
+  EXPECT_GT(first->scene->size, 8.0f);
+
+  thread_->apply(Orbit{30, 0});
+  const auto turned = waitFor(
+      [&](const Snapshot& s) { return s.canUndo && s.progress.complete && s.imageNumber > first->imageNumber; });
+  EXPECT_NE(turned->state.camera.lookFrom, first->state.camera.lookFrom);
+  thread_->apply(Undo{});
+  const auto undone = waitFor(
+      [&](const Snapshot& s) { return s.canRedo && s.progress.complete && s.imageNumber > turned->imageNumber; });
+  EXPECT_EQ(undone->image->data, first->image->data) << "the same image";
+  const std::lock_guard lock(mutex_);
+  EXPECT_THAT(events_, testing::Contains(HasSubstr("\"restarted\"")));
+  EXPECT_THAT(events_, testing::Contains(HasSubstr("\"complete\":true")));
+}
+
+TEST_F(SessionThreadTest, PicksWithoutMovingTheCamera) {
+  thread_->open(request());
+  waitForImage();
+  thread_->pick(kSize / 2u, PickUse::select);
+  std::vector<std::optional<Pick>> picks;
+  for (int i = 0; i < 10000 && picks.empty(); ++i) {
+    picks = thread_->takePicks();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_EQ(picks.size(), 1u);
+  ASSERT_TRUE(picks[0]);
+  EXPECT_EQ(picks[0]->instance, 0u);
+  EXPECT_NEAR(picks[0]->distance, 4.0f, 0.05f);
+  thread_->pick({0, 0}, PickUse::focus);
+  const auto focused = waitFor([](const Snapshot& s) { return s.state.orbitCenter.has_value(); });
+  EXPECT_NEAR(focused->state.orbitCenter->z, 0.0f, 1e-3f);
+}
+
+TEST_F(SessionThreadTest, SavesTheCompleteSize) {
+  thread_->open(request());
+  thread_->apply(SetExposure{1.0});
+  thread_->save(folder_ / "out.png");
+  EXPECT_TRUE(hasMessage(Message::Kind::note, "out.png"));
+  thread_->save(folder_ / "out.exr");
+  EXPECT_TRUE(hasMessage(Message::Kind::note, "out.exr"));
+  EXPECT_EQ(io::readImage(folder_ / "out.png").width, kSize.x);
+  EXPECT_EQ(io::readImage(folder_ / "out.exr").height, kSize.y);
+}
+
+TEST_F(SessionThreadTest, ReportsErrorsAndContinues) {
+  thread_->open(request());
+  waitForImage();
+  thread_->apply(SetParameter{"missing", "1"});
+  EXPECT_TRUE(hasMessage(Message::Kind::error, "missing"));
+  thread_->save(folder_ / "no/folder.png");
+  EXPECT_TRUE(hasMessage(Message::Kind::error, "folder"));
+  EXPECT_EQ(thread_->snapshot()->phase, Snapshot::Phase::ready);
+
+  SessionRequest wrong = request();
+  wrong.render.scene = folder_ / "missing.glb";
+  thread_->open(wrong);
+  const auto failed = waitFor([](const Snapshot& s) { return s.phase == Snapshot::Phase::failed; });
+  EXPECT_THAT(failed->error, HasSubstr("missing.glb"));
+  thread_->apply(Orbit{1, 0});
+  thread_->open(request());
+  EXPECT_EQ(waitForImage()->session, 3u);
+}
+
+TEST_F(SessionThreadTest, KeepsTheLastProgramThatCompiles) {
+  const auto program = [](const std::string& color) {
+    return "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(" + color + ", 1.0));\n}\n";
+  };
+  writeFile(folder_ / "flat.rt.glsl", program("vec3(1, 0, 0)"));
+  SessionRequest flat = request();
+  flat.program = (folder_ / "flat.rt.glsl").string();
+  thread_->open(flat);
+  const auto first = waitForImage();
+  EXPECT_EQ(middle(*first), vec3(1, 0, 0));
+  writeFile(folder_ / "flat.rt.glsl", program("missing"));
+  const auto broken = waitFor([](const Snapshot& s) { return s.outdatedProgram; });
+  EXPECT_EQ(middle(*broken), vec3(1, 0, 0));
+  EXPECT_THAT(broken->diagnostics.front().file, HasSubstr("flat.rt.glsl"));
+  EXPECT_EQ(broken->diagnostics.front().line, 2);
+  writeFile(folder_ / "flat.rt.glsl", program("vec3(0, 1, 0)"));
+  const auto fixed = waitFor([&](const Snapshot& s) {
+    return !s.outdatedProgram && s.progress.complete && s.imageNumber > broken->imageNumber;
+  });
+  EXPECT_EQ(middle(*fixed), vec3(0, 1, 0));
+  EXPECT_FALSE(hasErrors(fixed->diagnostics));
+}
+
+TEST(WindowShaders, Compile) {
+  const WindowShaders shaders = compileWindowShaders({});
+  EXPECT_FALSE(shaders.vertex.empty());
+  EXPECT_FALSE(shaders.fragment.empty());
+}
+
+}  // namespace
+}  // namespace quintet::viewer

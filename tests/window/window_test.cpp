@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+// The real window on an X server without a screen, with synthetic input. Each test fails for validation messages, and if
+// the viewer does not end with status 0.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/file.h"
+#include "io/codec.h"
+#include "io/image.h"
+#include "temp_folder.h"
+#include "viewer_process.h"
+#include "x_server.h"
+
+namespace quintet::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+using Rgb = std::array<int, 3>;
+
+constexpr const char* kScene = R"(
+[[material]]
+name = "paint"
+base_color = [0.1, 0.6, 0.2]
+metallic = 0
+roughness = 1
+
+[[mesh]]
+name = "wall"
+positions = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
+indices = [[0, 1, 2], [0, 2, 3]]
+material = "paint"
+
+[[instance]]
+of = "wall"
+
+[[camera]]
+look_from = [0, 0, 4]
+look_at = [0, 0, 0]
+fov = 40
+)";
+
+// One color for all pixels.
+std::string flatProgram(const std::string& expression) {
+  return "/**** COMMON START ****/\n"
+         "uniform vec3 tint;  // defaultval=\"1.0, 0.0, 0.0\" type=\"color\"\n"
+         "uniform bool swapped;  // defaultval=\"false\"\n"
+         "/**** COMMON END ****/\n"
+         "void main() { /**** RAY GENERATION SHADER ****/\n"
+         "  vec3 color = swapped ? tint.bgr : tint;\n"
+         "  gsnSetPixel(vec4(" +
+         expression + ", 1.0));\n}\n";
+}
+
+class WindowTest : public testing::Test {
+ protected:
+  WindowTest() {
+    writeFile(folder_ / "wall.scene.toml", kScene);
+    writeFile(folder_ / "flat.rt.glsl", flatProgram("color"));
+  }
+
+  ViewerProcess& start(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"--window-size", windowSize_});
+    viewer_ = std::make_unique<ViewerProcess>(server_, folder_.path(), arguments);
+    return *viewer_;
+  }
+  // Only these panels are open, so that their controls are visible.
+  void openPanels(const std::string& names) {
+    std::filesystem::create_directories(folder_ / "config/quintet");
+    writeFile(folder_ / "config/quintet/viewer.json", R"({"openPanels": [)" + names + "]}");
+  }
+  ViewerProcess& startScene(const std::string& program, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments{"wall.scene.toml", "--program", program, "--spp", "4"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    ViewerProcess& viewer = start(arguments);
+    viewer.waitForImage();
+    viewer.settle();
+    return viewer;
+  }
+
+  // Mean color of a square of 9 x 9 pixels.
+  static Rgb colorAt(const io::Image& shot, int x, int y) {
+    Rgb sum{};
+    for (int v = y - 4; v <= y + 4; ++v)
+      for (int u = x - 4; u <= x + 4; ++u)
+        for (std::size_t c = 0; c < 3; ++c)
+          sum[c] += shot.pixel<std::uint8_t>(static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v))[c];
+    for (int& value : sum) value = (value + 40) / 81;
+    return sum;
+  }
+  // In the middle of the image. With QUINTET_SCREENSHOTS=FOLDER, screenshots are also stored there.
+  Rgb imageColor() {
+    const io::Image shot = viewer_->window().screenshot();
+    if (const char* folder = std::getenv("QUINTET_SCREENSHOTS"))
+      io::writeImage(
+          std::filesystem::path(folder) / (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
+                                           "-" + std::to_string(shots_++) + ".png"),
+          shot);
+    const auto [left, top, right, bottom] = viewer_->imageArea();
+    return colorAt(shot, (left + right) / 2, (top + bottom) / 2);
+  }
+  static bool isClose(const Rgb& a, const Rgb& b, int tolerance = 3) {
+    for (std::size_t c = 0; c < 3; ++c)
+      if (std::abs(a[c] - b[c]) > tolerance) return false;
+    return true;
+  }
+  void expectColor(const Rgb& expected, const std::string& what) {
+    viewer_->settle();
+    const Rgb color = imageColor();
+    EXPECT_TRUE(isClose(color, expected))
+        << what << ": " << testing::PrintToString(color) << " instead of " << testing::PrintToString(expected);
+  }
+  // In the lower half of the image, where there are no messages.
+  int differentPixels(const io::Image& a, const io::Image& b) {
+    const auto [left, top, right, bottom] = viewer_->imageArea();
+    int count = 0;
+    for (int y = (top + bottom) / 2; y < bottom; ++y)
+      for (int x = left; x < right; ++x) {
+        const auto u = static_cast<std::uint32_t>(x), v = static_cast<std::uint32_t>(y);
+        count += !std::ranges::equal(a.pixel<std::uint8_t>(u, v), b.pixel<std::uint8_t>(u, v));
+      }
+    return count;
+  }
+  std::pair<int, int> imageCenter() {
+    const auto [left, top, right, bottom] = viewer_->imageArea();
+    return {(left + right) / 2, (top + bottom) / 2};
+  }
+
+  // Runs a command that writes image.png. Returns the largest difference from the window, in the lower half of the image, where
+  // there are no messages.
+  int largestDifference(const std::string& command) {
+    const std::string line = "cd '" + folder_.path().string() + "' && PATH='" + QUINTET_BINARY_FOLDER +
+                             "':\"$PATH\" && " + command + " > output.txt 2>&1";
+    EXPECT_EQ(std::system(line.c_str()), 0) << command << readTextFile(folder_ / "output.txt");
+    const io::Image rendered = io::readImage(folder_ / "image.png");
+    const io::Image shot = viewer_->window().screenshot();
+    const auto [left, top, right, bottom] = viewer_->imageArea();
+    EXPECT_EQ(rendered.width, static_cast<std::uint32_t>(right - left));
+    EXPECT_EQ(rendered.height, static_cast<std::uint32_t>(bottom - top));
+    int largest = 0;
+    for (int y = (top + bottom) / 2; y < bottom; ++y)
+      for (int x = left; x < right; ++x)
+        for (std::size_t c = 0; c < 3; ++c) {
+          const int a = rendered.pixel<std::uint8_t>(static_cast<std::uint32_t>(x - left),
+                                                     static_cast<std::uint32_t>(y - top))[c];
+          const int b = shot.pixel<std::uint8_t>(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y))[c];
+          largest = std::max(largest, std::abs(a - b));
+        }
+    return largest;
+  }
+
+  void TearDown() override {
+    if (!viewer_) return;
+    if (viewer_->running()) viewer_->window().close();
+    const ViewerProcess::End end = viewer_->finish();
+    EXPECT_EQ(end.status, 0) << end.errors;
+    EXPECT_THAT(end.errors, Not(HasSubstr("Vulkan validation")));
+    EXPECT_THAT(end.errors, Not(HasSubstr("Sanitizer")));
+  }
+
+  TempFolder folder_;
+  XServer server_;
+  std::unique_ptr<ViewerProcess> viewer_;
+  std::string windowSize_ = "720x480";
+  int shots_ = 0;
+};
+
+constexpr Rgb kRed{255, 0, 0}, kGreen{0, 255, 0}, kBlue{0, 0, 255};
+constexpr Rgb kFacing{174, 174, 240};  // of the program `normals`, tone mapped, for a surface that faces +z
+
+TEST_F(WindowTest, StartsEmptyAndQuits) {
+  ViewerProcess& viewer = start({});
+  viewer.control("Help");
+  viewer.window().key("question", {"Shift_L"});
+  viewer.settle();
+  EXPECT_TRUE(viewer.running());
+  viewer.window().key("q", {"Control_L"});
+  EXPECT_EQ(viewer.finish().status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "config/quintet/viewer.json")) << "the settings are stored";
+}
+
+TEST_F(WindowTest, OrbitsAndUndoes) {
+  ViewerProcess& viewer = startScene("normals");
+  expectColor(kFacing, "the wall from the front");
+  const io::Image front = viewer.window().screenshot();
+  const auto [x, y] = imageCenter();
+  viewer.window().drag(x, y, x + 60, y);
+  viewer.waitFor("restarted");
+  viewer.waitForImage();
+  expectColor(kFacing, "the color depends on the world, not on the camera");
+  const io::Image turned = viewer.window().screenshot();
+  EXPECT_GT(differentPixels(front, turned), 1000) << "the outline moves";
+  viewer.window().key("z", {"Control_L"});
+  viewer.waitForImage();
+  viewer.settle();
+  EXPECT_EQ(differentPixels(front, viewer.window().screenshot()), 0) << "undo leads to the same pixels";
+  viewer.window().key("Z", {"Control_L", "Shift_L"});
+  viewer.waitForImage();
+  viewer.settle();
+  EXPECT_EQ(differentPixels(turned, viewer.window().screenshot()), 0) << "so does redo";
+}
+
+TEST_F(WindowTest, ZoomsWithTheWheelAndFramesTheScene) {
+  ViewerProcess& viewer = startScene("normals");
+  const auto [x, y] = imageCenter();
+  const auto corner = [&] {
+    viewer.settle();
+    const auto [left, top, right, bottom] = viewer.imageArea();
+    return colorAt(viewer.window().screenshot(), left + 8, bottom - 8);
+  };
+  EXPECT_FALSE(isClose(corner(), kFacing)) << "the corner shows the background";
+  viewer.window().move(x, y);
+  for (int i = 0; i < 8; ++i) {
+    viewer.window().press(4);
+    viewer.window().release(4);
+  }
+  viewer.waitForImage();
+  EXPECT_TRUE(isClose(corner(), kFacing)) << "closer, the wall fills the image";
+  viewer.window().key("Home");
+  viewer.waitForImage();
+  EXPECT_FALSE(isClose(corner(), kFacing)) << "Home shows the scene";
+  expectColor(kFacing, "with the wall in its middle");
+}
+
+TEST_F(WindowTest, ChangesAParameter) {
+  openPanels(R"("Parameters")");
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  expectColor(kRed, "the default");
+  viewer.clickControl("Parameters/swapped");
+  viewer.waitForImage();
+  expectColor(kBlue, "the parameter is set");
+  viewer.window().key("z", {"Control_L"});
+  viewer.waitForImage();
+  expectColor(kRed, "undone");
+}
+
+TEST_F(WindowTest, SelectsAnObjectAndEditsItsMaterial) {
+  openPanels(R"("Selection")");
+  windowSize_ = "720x900";  // for all properties
+  ViewerProcess& viewer = startScene("pathtracer", {"--env", "none", "--set", "bounces=0"});
+  expectColor({0, 0, 0}, "no light");
+  const auto [x, y] = imageCenter();
+  viewer.window().click(x, y);
+  viewer.clickControl("Selection/Unlit");
+  viewer.waitForImage();
+  viewer.settle();
+  const Rgb color = imageColor();
+  EXPECT_GT(color[1], 120) << "the base color is the radiance";
+  EXPECT_GT(color[1], color[0] + 40);
+  EXPECT_GT(color[1], color[2] + 40);
+  viewer.window().key("c", {"Control_L"});
+  viewer.settle();
+  const std::string command = viewer.window().clipboard();
+  EXPECT_THAT(command, HasSubstr("\"do\":\"material\""));
+  viewer.window().key("Escape");  // removes the box around the object
+  viewer.settle();
+  EXPECT_LE(largestDifference(command), 1) << "the script repeats the edit";
+}
+
+TEST_F(WindowTest, ReportsABrokenShaderAndContinues) {
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  expectColor(kRed, "the first version");
+  writeFile(folder_ / "flat.rt.glsl", flatProgram("missing"));
+  const Json found = viewer.waitFor("diagnostics");
+  EXPECT_THAT(found.dump(), HasSubstr("flat.rt.glsl"));
+  EXPECT_THAT(found.dump(), HasSubstr("missing"));
+  viewer.control("×");  // of the panel with the diagnostics
+  viewer.settle();
+  const io::Image shot = viewer.window().screenshot();
+  const auto [left, top, right, bottom] = viewer.imageArea();
+  EXPECT_TRUE(isClose(colorAt(shot, (left + right) / 2, top + 20), kRed)) << "the last version that compiles";
+  EXPECT_FALSE(isClose(colorAt(shot, (left + right) / 2, bottom - 20), kRed)) << "the panel with the diagnostics";
+  writeFile(folder_ / "flat.rt.glsl", flatProgram("color.grb"));
+  viewer.waitFor("reloaded");
+  viewer.waitForImage();
+  expectColor(kGreen, "the corrected version");
+  EXPECT_FALSE(viewer.hasControl("×")) << "no diagnostics any more";
+}
+
+TEST_F(WindowTest, SurvivesSizesAndMinimizing) {
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  for (const auto& [width, height] :
+       {std::pair{1u, 1u}, std::pair{2u, 300u}, std::pair{300u, 1u}, std::pair{40u, 40u}}) {
+    viewer.window().resize(width, height);
+    viewer.settle();
+    ASSERT_TRUE(viewer.running()) << width << "x" << height;
+  }
+  viewer.window().hide();
+  viewer.settle();
+  ASSERT_TRUE(viewer.running());
+  viewer.window().show();
+  viewer.window().resize(800, 500);
+  viewer.waitFor([](const Json& event) { return event["event"] == "image" && event["height"] > 300; });
+  expectColor(kRed, "large again");
+  viewer.window().resize(720, 480);
+  for (unsigned size = 200; size < 700; size += 13) viewer.window().resize(size, 700 - size / 2);
+  viewer.window().resize(720, 480);
+  viewer.waitForImage();
+  expectColor(kRed, "after many changes");
+}
+
+TEST_F(WindowTest, OpensDroppedFiles) {
+  ViewerProcess& viewer = start({});
+  viewer.control("Help");
+  const auto drop = [&](const char* name) { return viewer.window().drop((folder_ / name).string(), 300, 200); };
+  EXPECT_TRUE(drop("flat.rt.glsl"));
+  viewer.waitForImage();
+  expectColor(kRed, "the program");
+  EXPECT_TRUE(drop("wall.scene.toml"));
+  viewer.waitForImage();
+  expectColor(kRed, "the program stays with the scene");
+  writeFile(folder_ / "notes.txt", "no scene");
+  EXPECT_TRUE(drop("notes.txt"));
+  viewer.settle();
+  EXPECT_TRUE(viewer.running());
+  io::Image sky = io::makeImage(4, 2, 3, io::PixelType::f32, io::ColorEncoding::linear);
+  io::writeImage(folder_ / "sky.hdr", sky);
+  EXPECT_TRUE(drop("sky.hdr"));
+  viewer.waitForImage();
+  expectColor(kRed, "still running");
+}
+
+TEST_F(WindowTest, CopiesTheCommandThatRendersTheImage) {
+  ViewerProcess& viewer = startScene("normals");
+  const auto [x, y] = imageCenter();
+  viewer.window().drag(x, y, x + 40, y - 30);
+  viewer.waitForImage();
+  viewer.settle();
+  viewer.window().key("c", {"Control_L"});
+  viewer.settle();
+  const std::string command = viewer.window().clipboard();
+  EXPECT_THAT(command, testing::StartsWith("quintet render wall.scene.toml -o image.png --program normals"));
+  EXPECT_LE(largestDifference(command), 1) << "the window shows what the command renders";
+}
+
+TEST_F(WindowTest, ShowsFailuresOfLoading) {
+  ViewerProcess& viewer = start({"missing.glb"});
+  viewer.control("Try again");
+  writeFile(folder_ / "missing.scene.toml", kScene);
+  EXPECT_TRUE(viewer.window().drop((folder_ / "missing.scene.toml").string(), 100, 100));
+  viewer.waitFor("image");
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Try again"));
+}
+
+}  // namespace
+}  // namespace quintet::test
