@@ -86,7 +86,8 @@ CheckedProgram compileAndCheck(const program::Program& program, const shader::Co
   }
   runnable.description = program::withHitShaders(std::move(runnable.description), instrumentation);
   runnable.countsRecursion = checked.cyclic && instrumentation == Instrumentation::explain;
-  instrument(runnable, compiler, runnable.countsRecursion ? recursionDefines(runnable, defines) : defines, instrumentation);
+  instrument(runnable, compiler, runnable.countsRecursion ? recursionDefines(runnable, defines) : defines,
+             instrumentation);
   return checked;
 }
 

@@ -53,14 +53,14 @@ using SharedStructs = testing::Types<
     shared::TextureData, shared::MaterialData, shared::AliasEntry, shared::LightData, shared::LightNode,
     shared::EnvironmentData, shared::InstanceData, shared::GeometryData, shared::PrimitiveData, shared::CsgNodeData,
     shared::CsgTreeData, shared::BoxData, shared::CameraData, shared::RayRecord, shared::RayKinds, shared::Frame,
-    shared::FilmAdd, shared::FilmMean, shared::FilmCoverage, shared::NotFinite, shared::FilmFrame, shared::FilmCheck, shared::FilmTile,
-    shared::FixedSum, shared::CoverageSlot, shared::Launch, shared::Instrument, shared::InstrumentReport,
-    shared::InstrumentPixel, shared::RecursionGuard, shared::LogHeader, shared::LogRecord, shared::HeatPixel, shared::ExplainRay,
-    shared::ExplainRayEnd, shared::ExplainCall, shared::ExplainStage, shared::ExplainHit, shared::ExplainBox,
-    shared::ExplainStageEnd, shared::ExplainReport, shared::ExplainStore, shared::ExplainCamera, shared::ExplainSurface,
-    shared::ExplainShading, shared::ExplainLobe, shared::ExplainLightChoice, shared::ExplainLightSample,
-    shared::ExplainVisibility, shared::ExplainBsdfSample, shared::ExplainRoulette, shared::ExplainEmission,
-    shared::ExplainContribution, shared::ExplainPathEnd>;
+    shared::FilmAdd, shared::FilmMean, shared::FilmCoverage, shared::NotFinite, shared::FilmFrame, shared::FilmCheck,
+    shared::FilmTile, shared::FixedSum, shared::CoverageSlot, shared::Launch, shared::Instrument,
+    shared::InstrumentReport, shared::InstrumentPixel, shared::RecursionGuard, shared::LogHeader, shared::LogRecord,
+    shared::HeatPixel, shared::ExplainRay, shared::ExplainRayEnd, shared::ExplainCall, shared::ExplainStage,
+    shared::ExplainHit, shared::ExplainBox, shared::ExplainStageEnd, shared::ExplainReport, shared::ExplainStore,
+    shared::ExplainCamera, shared::ExplainSurface, shared::ExplainShading, shared::ExplainLobe,
+    shared::ExplainLightChoice, shared::ExplainLightSample, shared::ExplainVisibility, shared::ExplainBsdfSample,
+    shared::ExplainRoulette, shared::ExplainEmission, shared::ExplainContribution, shared::ExplainPathEnd>;
 
 struct StructNames {
   template <class T>
