@@ -16,8 +16,9 @@ constexpr std::size_t kMaxLog = 500;
 void ViewState::addMessage(Message message) {
   if (log.size() >= kMaxLog) log.erase(log.begin());
   log.push_back(message);
-  if (toasts.size() >= kMaxToasts) toasts.erase(toasts.begin());
   const double seconds = message.kind == Message::Kind::note ? kNoteSeconds : kErrorSeconds;
+  std::erase_if(toasts, [&](const Toast& toast) { return toast.message.text == message.text; });  // shown once
+  if (toasts.size() >= kMaxToasts) toasts.erase(toasts.begin());
   toasts.push_back({std::move(message), time + seconds});
 }
 

@@ -271,7 +271,6 @@ void SessionThread::openSession(interactive::SessionRequest request) {
   next_.stage.clear();
   next_.device = engine_->context().info().name;
   next_.scene = std::make_shared<const SceneOutline>(outlineOf(*session_));
-  next_.animated = session_->isAnimated();
   next_.diagnostics = session_->diagnostics();
   lastImage_ = clock_.seconds();
   publishState();
@@ -288,6 +287,8 @@ void SessionThread::applyCommand(const interactive::Command& command) {
 void SessionThread::publishState() {
   if (!next_.program || next_.state.program != session_->state().program) {
     next_.program = std::make_shared<const program::Program>(session_->program());
+    next_.countsFrames = next_.program->accumulation == program::Accumulation::program;
+    next_.animated = session_->isAnimated() && !next_.countsFrames;
     next_.diagnostics = session_->diagnostics();
     next_.outdatedProgram = false;
   }

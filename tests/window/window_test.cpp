@@ -345,6 +345,67 @@ TEST_F(WindowTest, CopiesTheCommandThatRendersTheImage) {
   EXPECT_LE(largestDifference(command), 1) << "the window shows what the command renders";
 }
 
+TEST_F(WindowTest, ShowsFalseColorWithALegend) {
+  openPanels(R"("Display")");
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  expectColor(kRed, "the color");
+  viewer.clickControl("Display/False color");
+  viewer.settle();
+  const Rgb color = imageColor();  // of luminance 0.2126 in [0,1]
+  EXPECT_TRUE(isClose(color, {51, 48, 119}, 4)) << testing::PrintToString(color);
+  const auto [left, top, right, bottom] = viewer.imageArea();
+  EXPECT_FALSE(isClose(colorAt(viewer.window().screenshot(), left + 30, bottom - 60), color)) << "the legend";
+}
+
+TEST_F(WindowTest, ComparesWithADroppedImage) {
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  io::Image reference = io::makeImage(8, 8, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
+  for (std::size_t i = 1; i < reference.sampleCount(); i += 3) reference.samples<std::uint8_t>()[i] = 255;
+  io::writeImage(folder_ / "reference.png", reference);
+  EXPECT_TRUE(viewer.window().drop((folder_ / "reference.png").string(), 200, 200));
+  viewer.settle();
+  const io::Image shot = viewer.window().screenshot();
+  const auto [left, top, right, bottom] = viewer.imageArea();
+  const int y = (top + 2 * bottom) / 3;
+  EXPECT_TRUE(isClose(colorAt(shot, left + 20, y), kRed)) << "the image to the left of the line";
+  EXPECT_TRUE(isClose(colorAt(shot, right - 20, y), kGreen)) << "the reference to the right";
+  // The line is dragged to the left.
+  viewer.window().drag((left + right) / 2, y, left + 60, y);
+  viewer.settle();
+  EXPECT_TRUE(isClose(colorAt(viewer.window().screenshot(), left + 90, y), kGreen));
+  viewer.window().key("x");
+  expectColor(kRed, "no comparison");
+}
+
+TEST_F(WindowTest, PlaysAnAnimation) {
+  std::string scene = kScene;
+  scene.insert(scene.find("[[camera]]"),
+               "keyframes = [{ frame = 0, translate = [0, 0, 0] }, { frame = 1000, translate = [0, 0, 0] }]\n");
+  writeFile(folder_ / "wall.scene.toml", scene);
+  ViewerProcess& viewer = startScene("normals");
+  viewer.control("Play");
+  viewer.window().key("space");
+  viewer.control("Pause");
+  for (int i = 0; i < 3; ++i) viewer.waitFor("image");
+  viewer.window().key("space");
+  viewer.control("Play");
+  viewer.waitForImage();
+  expectColor(kFacing, "the animation has stopped");
+}
+
+TEST_F(WindowTest, KeepsBookmarksAndSettings) {
+  ViewerProcess& viewer = startScene("normals");
+  viewer.window().key("b");
+  viewer.window().key("l");
+  viewer.settle();
+  viewer.window().close();
+  EXPECT_EQ(viewer.finish().status, 0);
+  EXPECT_THAT(readTextFile(folder_ / "config/quintet/bookmarks.json"), HasSubstr("Bookmark 1"));
+  const std::string settings = readTextFile(folder_ / "config/quintet/viewer.json");
+  EXPECT_THAT(settings, HasSubstr("\"theme\": \"light\""));
+  EXPECT_THAT(settings, HasSubstr("wall.scene.toml")) << "a recent file";
+}
+
 TEST_F(WindowTest, ShowsFailuresOfLoading) {
   ViewerProcess& viewer = start({"missing.glb"});
   viewer.control("Try again");

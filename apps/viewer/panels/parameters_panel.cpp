@@ -85,8 +85,9 @@ void parametersPanel(ViewState& state) {
     if (!text.empty()) state.apply(job::interactive::SetParameter{parameter.name, text});
   }
   double samples = snapshot.state.samples;
-  if (numberField("Samples", samples, {.least = 1, .most = 65536, .whole = true},
-                  "Number of samples per pixel that the image reaches"))
+  if (numberField(snapshot.countsFrames ? "Frames" : "Samples", samples, {.least = 1, .most = 65536, .whole = true},
+                  snapshot.countsFrames ? "Number of frames that the program draws"
+                                        : "Number of samples per pixel that the image reaches"))
     state.apply(job::interactive::SetSamples{static_cast<std::uint32_t>(samples)});
 }
 
