@@ -90,8 +90,8 @@ template <class T>
 struct Fields;
 
 #define GPU_FIELDS(Type, ...)                                                                \
-  inline void appendWords(Words& words, const shared::Type& value) {                         \
-    const auto& [__VA_ARGS__] = value;                                                       \
+  inline void appendWords(Words& words, const shared::Type& object) {                        \
+    const auto& [__VA_ARGS__] = object;                                                      \
     const auto append = [&](const auto&... members) { (appendWords(words, members), ...); }; \
     append(__VA_ARGS__);                                                                     \
   }                                                                                          \
