@@ -77,7 +77,7 @@ class Observer {
   virtual void diagnostics(const std::vector<Diagnostic>& /*found*/) {}
   // With RenderRequest::print: what the program printed since the last call. After each batch or frame that printed.
   virtual void printed(const Printed& /*prints*/) {}
-  // The program has calls of debugPrintfEXT, and the request does not ask for their text.
+  // The program has calls of debugPrintfEXT, and the request does not ask for their text. Once per job.
   virtual void printsDisabled() {}
   virtual void progress(const Progress& /*state*/) {}
   virtual void batch(const BatchReport& /*report*/) {}

@@ -17,9 +17,11 @@ render::Region printedPixels(const PrintRequest& request, const render::Region& 
   if (request.all) return rendered;
   const render::Region& p = request.pixels;
   if (p.width == 0) return {rendered.x + rendered.width / 2, rendered.y + rendered.height / 2, 1, 1};
-  const bool isInside = p.x >= rendered.x && p.y >= rendered.y && p.x + p.width <= rendered.x + rendered.width &&
-                        p.y + p.height <= rendered.y + rendered.height;
-  if (isInside) return p;
+  const auto isInside = [](std::uint64_t begin, std::uint64_t size, std::uint64_t from, std::uint64_t length) {
+    return begin >= from && begin + size <= from + length;
+  };
+  if (isInside(p.x, p.width, rendered.x, rendered.width) && isInside(p.y, p.height, rendered.y, rendered.height))
+    return p;
   throw UsageError(
       fmt::format("the pixels that print, {},{},{},{}, are not in the rendered part of the image, {},{},{},{}", p.x,
                   p.y, p.width, p.height, rendered.x, rendered.y, rendered.width, rendered.height));

@@ -207,7 +207,10 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   settings.frameCount = request.frames.accumulatedCount().value_or(0);
   if (request.launchSeconds > 0) settings.launchSeconds = request.launchSeconds;
   settings.timeoutSeconds = request.launchTimeout;
-  if (!request.print && program::prints(checked.runnable.compiled)) observer.printsDisabled();
+  if (!request.print && !printsNoted_ && program::prints(checked.runnable.compiled)) {
+    printsNoted_ = true;
+    observer.printsDisabled();
+  }
   program::PrintTable table =
       addProbes(checked, engine_.compiler(), defines, requestedProbes(request, job_.program, engine_.context().info()));
   std::unique_ptr<PrintLog> prints;

@@ -169,6 +169,7 @@ class RenderJob {
   std::vector<std::filesystem::path> includedFiles_;
   std::vector<Diagnostic> diagnostics_;
   std::unique_ptr<PrintLog> prints_;  // null unless the request asks for them
+  bool printsNoted_ = false;          // Observer::printsDisabled() was called
   std::unique_ptr<render::Renderer> renderer_;
   mutable Provenance provenance_;  // without the facts that a result adds; see describeEdits()
   std::optional<Checkpoint> checkpoint_;

@@ -83,10 +83,10 @@ struct CheckpointRequest {
 
 // What the program prints (debugPrintfEXT) goes to Observer::printed(). Without a request it is discarded, at no cost.
 struct PrintRequest {
-  // Pixels of the whole image whose invocations print. Width 0 means the pixel at the center of the rendered part, or
-  // all pixels.
+  // Pixels of the whole image whose invocations print. Width 0 means the pixel at the center of the rendered part, unless
+  // `all` is set.
   render::Region pixels;
-  bool all = false;           // all pixels of the rendered part; excludes `pixels`
+  bool all = false;           // all pixels of the rendered part, instead of `pixels`
   std::uint64_t limit = 200;  // lines until the next edit of the job; further ones are only counted
 };
 

@@ -61,6 +61,7 @@ TEST_F(Heat, LayersKeepTheImage) {
 
 TEST_F(Heat, NamesAreListedAndSuggested) {
   EXPECT_THAT(quintet({"render", "scene.gltf", "--aov", "list"}).out, HasSubstr("heat_intersection"));
+  EXPECT_THAT(quintet({"run", "normals", "--help"}).out, HasSubstr("heat maps heat_time, heat_rays"));
   expectError(quintet({"run", "normals", "--output", "heat_ray", "-o", "a.png"}), 2, {"'heat_ray'", "heat_rays"});
   expectError(quintet({"render", "scene.gltf", "-o", "a.exr", "--aov", "heat_tim"}), 2, {"'heat_tim'", "heat_time"});
 }

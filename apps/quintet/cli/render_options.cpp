@@ -250,8 +250,7 @@ void declareCheckpoints(OptionTable& table, RenderTexts& texts, RenderOptions& o
 }
 
 void declareExr(OptionTable& table, RenderTexts& texts, bool ofFilms) {
-  const std::vector<std::string> layers =
-      ofFilms ? std::vector<std::string>{"all"} : std::vector<std::string>{"all", "list"};
+  const std::vector<std::string> layers = ofFilms ? std::vector<std::string>{"all"} : heatMapNames({"all", "list"});
   table.add(
       "OpenEXR",
       {{.names = "--aov",

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -126,6 +127,7 @@ std::string programHelpText(const program::Program& program, std::string_view co
   if (runs && program.accumulation == program::Accumulation::program) options += "--frames N; ";
   options += fmt::format("--set NAME=VALUE for parameters; {}--all-outputs and --aov NAMES for outputs.",
                          runs ? "--output NAME, " : "");
+  options += fmt::format(" Every program also has the heat maps {}.", fmt::join(heatMapNames(), ", "));
   return fmt::format("{}\n{}\nSee 'quintet {} --help' for the options of all programs.\n",
                      program::describeAsText(program, width), wrapped(options, width, 0), command);
 }

@@ -101,7 +101,8 @@ OptionTable declare(RunOptions& options, RenderTexts& texts) {
   table.add("Program", {{.names = "--output",
                          .value = "NAME",
                          .help = "Output of the program to write (default: the first)",
-                         .target = &options.output.output},
+                         .target = &options.output.output,
+                         .candidates = {.names = heatMapNames()}},
                         {.names = "--list", .help = "List the built-in programs and exit", .target = &options.list}});
   table.add(
       "Run",
