@@ -46,6 +46,12 @@ std::string sampleText(const job::FoundSample& found, const std::string& value, 
   return text + "    " + explaining(found, command) + "\n";  // one line, so that it can be copied
 }
 
+std::string brightnessText(const job::FoundSample& firefly) {
+  if (firefly.level == 0.0f) return fmt::format("luminance {:.4g} in black surroundings", firefly.luminance);
+  return fmt::format("luminance {:.4g}, {:.4g} times that of its surroundings", firefly.luminance,
+                     firefly.luminance / firefly.level);
+}
+
 // "23 fireflies, of which 10 are listed" if some were only counted.
 std::string countText(std::uint64_t all, std::size_t listed, std::string_view noun, std::string_view plural) {
   if (all == listed) return counted(all, noun, plural);
@@ -88,10 +94,7 @@ std::string searchText(const job::SearchResult& result, const std::string& comma
     text += fmt::format("{}{}\n", text.empty() ? "" : "\n",
                         countText(result.fireflyCount, result.fireflies.size(), "firefly", "fireflies"));
     for (const job::FoundSample& found : result.fireflies)
-      text += sampleText(found,
-                         fmt::format("luminance {:.4g}, {:.4g} times that of its surroundings", found.luminance,
-                                     found.luminance / found.level),
-                         command, width);
+      text += sampleText(found, brightnessText(found), command, width);
   }
   if (text.empty()) text = fmt::format("nothing found in {} per pixel\n", counted(result.samples, "sample"));
   return text;

@@ -48,6 +48,9 @@ TEST(SearchReport, NamesTheCauseAndTheCommand) {
             "  pixel 1,2, sample 5: luminance 300, 200 times that of its surroundings\n"
             "    2 bounces, diffuse lobe, material \"wall\", instance \"room\"\n"
             "    quintet explain-pixel room.glb --spp 64 --pixel 1,2 --sample 5\n");
+  job::SearchResult dark = someResult();
+  dark.fireflies[0].level = 0;
+  EXPECT_THAT(searchText(dark, kCommand, 100), HasSubstr("sample 5: luminance 300 in black surroundings\n"));
   job::SearchResult nothing;
   nothing.samples = 64;
   EXPECT_EQ(searchText(nothing, kCommand, 100), "nothing found in 64 samples per pixel\n");
