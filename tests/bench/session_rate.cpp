@@ -139,6 +139,22 @@ class Measurement {
                   {"compilations", host_.compilations - compilations}};
   }
 
+  // The material with emission, else the one of the fewest triangles: lamps are small.
+  std::size_t lampMaterial() const {
+    const scene::Scene& scene = session_->scene();
+    std::vector<std::size_t> triangles(scene.materials.size(), 0);
+    for (const scene::Instance& instance : scene.instances)
+      for (const scene::Geometry& geometry : scene.meshes[static_cast<std::size_t>(instance.mesh)].geometries)
+        if (geometry.material != scene::kNone)
+          triangles[static_cast<std::size_t>(geometry.material)] += geometry.triangles.size();
+    std::size_t best = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      if (scene.materials[i].emissive != vec3(0.0f)) return i;
+      if (triangles[i] > 0 && (triangles[best] == 0 || triangles[i] < triangles[best])) best = i;
+    }
+    return best;
+  }
+
   Json edits() {
     Json json = Json::object();
     const scene::Scene& scene = session_->scene();
@@ -149,8 +165,8 @@ class Measurement {
       addEdit(json, "material", [=](int i) {
         return Command(EditMaterial{material, {{"baseColor", {between(i), 0.5, 0.4}}, {"roughness", {between(i)}}}});
       });
-      addEdit(json, "emission", [=](int i) {
-        return Command(EditMaterial{material, {{"emissive", {between(i), 0.1, 0.1}}}});
+      addEdit(json, "emission", [=, lamp = session_->materialNames()[lampMaterial()]](int i) {
+        return Command(EditMaterial{lamp, {{"emissive", {between(i), 0.1, 0.1}}}});
       });
     }
     if (!scene.lights.empty())
