@@ -54,8 +54,8 @@ struct Snapshot {
   scene::Camera camera;
   std::optional<job::interactive::OrbitCamera> navigation;  // unset for an orthographic camera
   bool canUndo = false, canRedo = false;
-  bool animated = false;       // SetFrame has an effect
-  bool countsFrames = false;   // `progress` and the limit of samples count frames
+  bool animated = false;                // SetFrame has an effect
+  bool countsFrames = false;            // `progress` and the limit of samples count frames
   std::vector<Diagnostic> diagnostics;  // of the program, or of its last version that did not compile
   bool outdatedProgram = false;         // the files of the program have errors: the version before them is shown
 

@@ -32,8 +32,8 @@ void endBar() {
 
 std::string progressText(const Snapshot& snapshot) {
   const job::interactive::ImageUpdated& progress = snapshot.progress;
-  std::string text = fmt::format("{} / {} {}", progress.samples, snapshot.state.samples,
-                                 snapshot.countsFrames ? "frames" : "samples");
+  std::string text =
+      fmt::format("{} / {} {}", progress.samples, snapshot.state.samples, snapshot.countsFrames ? "frames" : "samples");
   text += fmt::format("   {} × {}", progress.size.x, progress.size.y);
   if (progress.factor > 1) text += fmt::format(" (1/{} resolution)", progress.factor);
   text += fmt::format("   {:.1f} s", progress.seconds);

@@ -24,7 +24,8 @@ void statisticsPanel(ViewState& state) {
   const Snapshot& snapshot = *state.snapshot;
   textRow("Device", snapshot.device);
   textRow("Image", fmt::format("{} × {}", snapshot.state.size.x, snapshot.state.size.y));
-  textRow(snapshot.countsFrames ? "Frames" : "Samples", fmt::format("{} of {}", snapshot.progress.samples, snapshot.state.samples));
+  textRow(snapshot.countsFrames ? "Frames" : "Samples",
+          fmt::format("{} of {}", snapshot.progress.samples, snapshot.state.samples));
   textRow("Time", fmt::format("{:.2f} s", snapshot.progress.seconds));
   if (!state.imageRates.empty())
     graph("##images", state.imageRates, fmt::format("{:.1f} images/s", state.imageRates.latest()));
