@@ -313,6 +313,7 @@ TEST_F(SessionTest, ShowsAnotherProgram) {
 }
 
 TEST_F(SessionTest, PicksWhatIsVisible) {
+  writeFile(folder_ / "a.scene.toml", litScene());  // several geometries, whose hit records depend on the ray types
   const auto session = makeSession(request());
   session->apply(SetCamera{{.lookFrom = vec3(3, 0, 8), .lookAt = vec3(3, 0, 0)}});
   session->refine();
