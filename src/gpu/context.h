@@ -14,6 +14,7 @@
 
 #include "base/log.h"
 #include "gpu/device_info.h"
+#include "gpu/frame_semaphores.h"
 #include "gpu/memory.h"
 #include "gpu/vulkan.h"
 
@@ -26,12 +27,6 @@ class PipelineStore;
 struct SurfaceSource {
   std::vector<std::string> instanceExtensions;
   std::function<VkSurfaceKHR(VkInstance)> create;  // throws Error if it fails
-};
-
-// Binary semaphores of a submission; null means none.
-struct FrameSemaphores {
-  VkSemaphore wait = VK_NULL_HANDLE;    // before all of its work
-  VkSemaphore signal = VK_NULL_HANDLE;  // after all of its work
 };
 
 struct ContextOptions {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "gpu/barrier.h"
-#include "gpu/context.h"
 #include "gpu/error.h"
 
 namespace quintet::gpu {

@@ -12,11 +12,10 @@
 #include <mutex>
 #include <vector>
 
+#include "gpu/frame_semaphores.h"
 #include "gpu/vulkan.h"
 
 namespace quintet::gpu {
-
-struct FrameSemaphores;
 
 // Thread-safe. `record` is called without the lock, so it can use the context in any way.
 class Submissions {
