@@ -206,7 +206,7 @@ std::string explanationJson(const PixelExplanation& e, const std::string& comman
     if (contribution.scatterings >= 0) entry["scatterings"] = contribution.scatterings;
     entry["ray"] = contribution.ray;
   }
-  const vec3 sum = sumContributions(e).value;
+  const vec3 sum = sumContributions(e);
   json["contributionSum"] = numbersJson(&sum[0], 3);
   json["events"] = Json::array();
   for (const ExplainedEvent& event : e.events) json["events"].push_back(eventJson(event));

@@ -67,12 +67,9 @@ std::vector<Contribution> contributionsOf(const PixelExplanation& explanation) {
   return stated.empty() ? stores : stated;
 }
 
-ContributionSum sumContributions(const PixelExplanation& explanation) {
-  ContributionSum sum;
-  for (const Contribution& contribution : contributionsOf(explanation)) {
-    sum.value += contribution.value;
-    sum.stated = sum.stated || contribution.source != "store";
-  }
+vec3 sumContributions(const PixelExplanation& explanation) {
+  vec3 sum(0.0f);
+  for (const Contribution& contribution : contributionsOf(explanation)) sum += contribution.value;
   return sum;
 }
 

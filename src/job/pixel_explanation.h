@@ -95,13 +95,8 @@ struct Contribution {
 // In the order of the program.
 std::vector<Contribution> contributionsOf(const PixelExplanation& explanation);
 
-// The sum of the contributions, in float32 and in the order of the program, as it sums them. `statesContributions`: false
-// if they are stores.
-struct ContributionSum {
-  vec3 value{0.0f};
-  bool stated = false;
-};
-ContributionSum sumContributions(const PixelExplanation& explanation);
+// The sum of the contributions, in float32 and in the order of the program, as it sums them.
+vec3 sumContributions(const PixelExplanation& explanation);
 
 // Calls visit(event, depth) for each event, parents first.
 template <class Visit>

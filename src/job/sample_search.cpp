@@ -167,7 +167,7 @@ class Search {
     for (const bool notFinite : {true, false}) {
       for (FoundSample& found : notFinite ? result_.notFinite : result_.fireflies) {
         const PixelExplanation explanation = explainer.explain(found.pixel, found.sample, observer_);
-        found.value = sumContributions(explanation).value;
+        found.value = sumContributions(explanation);
         found.cause = causeOf(explanation, notFinite);
       }
     }

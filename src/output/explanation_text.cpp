@@ -382,9 +382,9 @@ std::string contributions(const PixelExplanation& e) {
   };
   std::string text = "\nContributions\n";
   for (const job::Contribution& part : parts) text += row(contributionName(part), part.value);
-  const job::ContributionSum sum = job::sumContributions(e);
-  text += row("sum", sum.value);
-  if (!e.discarded && !e.outputs.empty() && !isRounding(sum.value, e.outputs.front().value))
+  const vec3 sum = job::sumContributions(e);
+  text += row("sum", sum);
+  if (!e.discarded && !e.outputs.empty() && !isRounding(sum, e.outputs.front().value))
     text += fmt::format("  The sum is not the value of '{}'.\n", printable(e.outputs.front().name));
   return text;
 }
@@ -392,7 +392,10 @@ std::string contributions(const PixelExplanation& e) {
 }  // namespace
 
 std::string explanationText(const PixelExplanation& e, std::size_t width, bool payloads) {
-  const bool stated = job::sumContributions(e).stated;
+  bool stated = false;  // a black sample has no contributions, but samples of lights or lobes
+  job::forEachEvent(e.events, [&](const ExplainedEvent& event, int) {
+    stated = stated || event.type == "contribution" || event.type == "light" || event.type == "bsdf";
+  });
   std::string text = wrapped(heading(e), width, 2, 0) + "\n";
   std::string program = fmt::format("program {} on {}", printable(e.program), printable(e.device));
   if (!e.parameters.empty()) program += "; " + printable(e.parameters);
