@@ -28,8 +28,8 @@ class DrawListRenderer {
   DrawListRenderer(const DrawListRenderer&) = delete;
   DrawListRenderer& operator=(const DrawListRenderer&) = delete;
 
-  // Sets the pixels of a texture: RGBA bytes, rows from the top. The next draw() copies them. A texture is created on its
-  // first use. Throws MemoryError if a side is 0 or larger than the device supports.
+  // Sets the pixels of a texture: RGBA bytes, rows from the top. The next draw() copies them. A texture is created on
+  // its first use. Throws MemoryError if a side is 0 or larger than the device supports.
   void setTexture(std::size_t texture, VkExtent2D size, std::shared_ptr<const std::vector<std::byte>> pixels,
                   VkFilter filter = VK_FILTER_LINEAR);
 

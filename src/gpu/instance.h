@@ -56,8 +56,8 @@ Function instanceFunction(VkInstance instance, const char* name) {
 
 class Instance {
  public:
-  // A null `sink` disables validation. `extensions`: names of instance extensions to enable. Throws NoDeviceError without
-  // a loader or driver, and Error if the validation layer is required but missing.
+  // A null `sink` disables validation. `extensions`: names of instance extensions to enable. Throws NoDeviceError
+  // without a loader or driver, and Error if the validation layer is required but missing.
   explicit Instance(ValidationSink* sink, std::span<const std::string> extensions = {});
   ~Instance();
   Instance(const Instance&) = delete;

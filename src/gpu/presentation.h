@@ -20,8 +20,8 @@ std::string cannotPresentReason(const Capabilities& capabilities, bool presentin
 std::vector<const char*> presentationExtensions(const Capabilities& capabilities);
 DeviceFeatures presentationFeatures();
 
-// All devices in the order of preference. FoundDevice::queueFamily and DeviceInfo::unusableReason are those for presenting
-// to this surface.
+// All devices in the order of preference. FoundDevice::queueFamily and DeviceInfo::unusableReason are those for
+// presenting to this surface.
 std::vector<FoundDevice> findPresentingDevices(VkInstance instance, VkSurfaceKHR surface);
 
 }  // namespace quintet::gpu

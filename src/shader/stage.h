@@ -14,7 +14,7 @@ enum class Stage { rayGeneration, intersection, anyHit, closestHit, miss, callab
 std::string_view stageName(Stage);       // "ray generation"
 std::string_view stageExtension(Stage);  // ".rgen"
 
-// Returns the stage of a file by its extension (.rgen .rint .rahit .rchit .rmiss .rcall .comp .vert .frag, in lower case).
+// Returns the stage of a file by its extension (.rgen .rint .rahit .rchit .rmiss .rcall .comp .vert .frag; lower case).
 std::optional<Stage> stageOfFile(const std::filesystem::path& file);
 
 }  // namespace quintet::shader

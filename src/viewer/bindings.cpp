@@ -61,8 +61,8 @@ BindingSet gltfRenderer() {
   return set;
 }
 
-// Blender's viewport, with its emulation of the middle button (Alt and the left button). 'A' is free because keys move the
-// camera only while it looks around.
+// Blender's viewport, with its emulation of the middle button (Alt and the left button). 'A' is free because keys move
+// the camera only while it looks around.
 BindingSet blender() {
   BindingSet set;
   set.name = "Blender";

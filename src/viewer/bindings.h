@@ -49,8 +49,8 @@ enum class Action {
 // Effect of holding a key: movement of the camera.
 enum class Fly { forward, backward, left, right, up, down };
 
-// Letters and keys without a character have names: "A", "F11", "Home", "Space". Other keys are named by the character that
-// they type, "?" or "+", so that they do not depend on the layout of the keyboard. Then Shift is no modifier.
+// Letters and keys without a character have names: "A", "F11", "Home", "Space". Other keys are named by the character
+// that they type, "?" or "+", so that they do not depend on the layout of the keyboard. Then Shift is no modifier.
 struct DragBinding {
   MouseButton button = MouseButton::left;
   Modifiers modifiers;

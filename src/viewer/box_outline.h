@@ -14,8 +14,8 @@ namespace quintet::viewer {
 // Pixels, from the top left corner; can be outside of the image.
 using ImageLine = std::pair<vec2, vec2>;
 
-// The visible parts of the 12 edges of `bounds` after the transform `worldFromObject`; those behind the camera are omitted.
-// `size`: of the image, pixels. Empty for empty bounds.
+// The visible parts of the 12 edges of `bounds` after the transform `worldFromObject`; those behind the camera are
+// omitted. `size`: of the image, pixels. Empty for empty bounds.
 std::vector<ImageLine> boxOutline(const scene::Camera& camera, uvec2 size, const Bounds3& bounds,
                                   const mat4& worldFromObject);
 

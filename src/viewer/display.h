@@ -52,8 +52,8 @@ struct Display {
   std::optional<double> error;  // mean of the difference or of FLIP; with CompareMode::difference and flip
 };
 
-// `image`: linear premultiplied RGBA floats. `reference`: any image; resized to that of `image` if necessary; null if there
-// is none, and CompareMode is then ignored.
+// `image`: linear premultiplied RGBA floats. `reference`: any image; resized to that of `image` if necessary; null if
+// there is none, and CompareMode is then ignored.
 Display makeDisplay(const io::Image& image, const io::Image* reference, const DisplaySettings& settings);
 
 }  // namespace quintet::viewer

@@ -14,8 +14,8 @@ namespace quintet::viewer {
 inline constexpr std::size_t kHistogramBins = 128;
 
 // Bins are equally wide in stops: bin i holds the values whose log2 is in
-// [kFirstStop + i · kStopsPerBin, kFirstStop + (i + 1) · kStopsPerBin). Values below and above are in the first and the last
-// bin.
+// [kFirstStop + i · kStopsPerBin, kFirstStop + (i + 1) · kStopsPerBin). Values below and above are in the first and the
+// last bin.
 struct Histogram {
   static constexpr double kFirstStop = -10.0, kLastStop = 6.0;
   static constexpr double kStopsPerBin = (kLastStop - kFirstStop) / kHistogramBins;

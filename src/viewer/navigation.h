@@ -23,8 +23,8 @@ struct ImagePlacement {
   std::optional<uvec2> pixelAt(vec2 screen) const;
 };
 
-// The largest placement of an image in a rectangle of the screen, in its middle. At most `maxScale`; whole pixels if the
-// scale is 1.
+// The largest placement of an image in a rectangle of the screen, in its middle. At most `maxScale`; whole pixels if
+// the scale is 1.
 ImagePlacement fitImage(uvec2 image, vec2 origin, vec2 area, float maxScale);
 
 // The command of a drag by `moved` screen pixels that began at `start`.

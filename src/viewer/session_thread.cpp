@@ -233,7 +233,6 @@ void SessionThread::fail(const std::string& error) {
   next_.phase = Snapshot::Phase::failed;
   next_.error = error;
   next_.image = nullptr;
-  addMessage(Message::Kind::error, error);
   publish();
 }
 
@@ -284,8 +283,8 @@ void SessionThread::applyCommand(const interactive::Command& command) {
   publishState();
 }
 
-void SessionThread::publishState() {
-  if (!next_.program || next_.state.program != session_->state().program) {
+void SessionThread::publishState(bool reloaded) {
+  if (reloaded || !next_.program || next_.state.program != session_->state().program) {
     next_.program = std::make_shared<const program::Program>(session_->program());
     next_.countsFrames = next_.program->accumulation == program::Accumulation::program;
     next_.animated = session_->isAnimated() && !next_.countsFrames;
@@ -326,7 +325,7 @@ void SessionThread::step() {
 }
 
 void SessionThread::report(const std::vector<interactive::Event>& events) {
-  bool image = false;
+  bool image = false, programReloaded = false;
   for (const interactive::Event& event : events) {
     if (options_.onEvent) options_.onEvent(interactive::eventJson(event));
     if (const auto* updated = std::get_if<interactive::ImageUpdated>(&event)) {
@@ -336,9 +335,7 @@ void SessionThread::report(const std::vector<interactive::Event>& events) {
       next_.diagnostics = found->diagnostics;
       next_.outdatedProgram = hasErrors(found->diagnostics);
     } else if (const auto* reloaded = std::get_if<interactive::ProgramReloaded>(&event)) {
-      next_.diagnostics = session_->diagnostics();
-      next_.outdatedProgram = false;
-      next_.program = nullptr;
+      programReloaded = true;
       addMessage(Message::Kind::note, fmt::format("reloaded {}", reloaded->files));
     } else if (const auto* note = std::get_if<interactive::Note>(&event)) {
       addMessage(Message::Kind::note, note->text);
@@ -358,7 +355,7 @@ void SessionThread::report(const std::vector<interactive::Event>& events) {
     for (const program::Output& output : session_->program().outputs)
       if (output.name == session_->state().output) next_.outputKind = output.kind;
   }
-  publishState();
+  publishState(programReloaded);
 }
 
 void SessionThread::measureRays() {

@@ -125,7 +125,8 @@ class SessionThread {
   void guarded(const std::function<void()>& function);
   void fail(const std::string& error);
   void addMessage(Message::Kind kind, std::string text);
-  void publishState();  // copies the session's state to next_, and publishes
+  // Copies the session's state to next_, and publishes. `reloaded`: the files of the program have changed.
+  void publishState(bool reloaded = false);
   void publish();       // makes next_ the snapshot
 
   const Options options_;

@@ -35,8 +35,8 @@ struct Settings {
 std::filesystem::path settingsFolder();
 
 std::string settingsJson(const Settings& settings);
-// Values out of range are clamped, and unknown members ignored, so that versions can share the file. `file` is the name in
-// messages. Throws FileError if the text is no JSON object, or if a member has the wrong type.
+// Values out of range are clamped, and unknown members ignored, so that versions can share the file. `file` is the name
+// in messages. Throws FileError if the text is no JSON object, or if a member has the wrong type.
 Settings parseSettings(const std::string& json, const std::string& file);
 
 // The defaults if the file does not exist. Throws FileError.

@@ -32,7 +32,8 @@ class ViewerProcess {
 
   XWindow& window() { return *window_; }
 
-  // Waits for an event after the last one that this function returned. Throws std::runtime_error after two minutes, or if the process ends.
+  // Waits for an event after the last one that this function returned. Throws std::runtime_error after two minutes, or
+  // if the process ends.
   Json waitFor(const std::function<bool(const Json&)>& matches);
   Json waitFor(const std::string& event);  // by the name
   Json waitForImage();                     // that has all samples

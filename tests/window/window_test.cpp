@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The real window on an X server without a screen, with synthetic input. Each test fails for validation messages, and if
-// the viewer does not end with status 0.
+// The real window on an X server without a screen, with synthetic input. Each test fails for validation messages, and
+// if the viewer does not end with status 0.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -138,8 +138,8 @@ class WindowTest : public testing::Test {
     return {(left + right) / 2, (top + bottom) / 2};
   }
 
-  // Runs a command that writes image.png. Returns the largest difference from the window, in the lower half of the image, where
-  // there are no messages.
+  // Runs a command that writes image.png. Returns the largest difference from the window, in the lower half of the
+  // image, where there are no messages.
   int largestDifference(const std::string& command) {
     const std::string line = "cd '" + folder_.path().string() + "' && PATH='" + QUINTET_BINARY_FOLDER +
                              "':\"$PATH\" && " + command + " > output.txt 2>&1";
@@ -370,7 +370,13 @@ TEST_F(WindowTest, ComparesWithADroppedImage) {
   EXPECT_TRUE(isClose(colorAt(shot, left + 20, y), kRed)) << "the image to the left of the line";
   EXPECT_TRUE(isClose(colorAt(shot, right - 20, y), kGreen)) << "the reference to the right";
   // The line is dragged to the left.
-  viewer.window().drag((left + right) / 2, y, left + 60, y);
+  viewer.window().move((left + right) / 2, y);
+  viewer.settle();
+  viewer.window().press(1);
+  viewer.settle();  // a frame of the window sees the press here
+  viewer.window().move(left + 60, y);
+  viewer.settle();
+  viewer.window().release(1);
   viewer.settle();
   EXPECT_TRUE(isClose(colorAt(viewer.window().screenshot(), left + 90, y), kGreen));
   viewer.window().key("x");

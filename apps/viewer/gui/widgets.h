@@ -44,8 +44,8 @@ bool takeEditEnd();
 // Forgets values that the session has not confirmed, for example after undo.
 void forgetPendingValues();
 
-// Called with the name ("Parameters/geometric") and the rectangle of each control, in pixels, in every frame; null disables
-// it. For tests, which must know where to click.
+// Called with the name ("Parameters/geometric") and the rectangle of each control, in pixels, in every frame; null
+// disables it. For tests, which must know where to click.
 using WidgetLog = std::function<void(const std::string& name, vec2 least, vec2 most)>;
 void setWidgetLog(WidgetLog log);
 void logControl(const char* label);  // for a control that none of the functions above makes: the last one

@@ -23,8 +23,8 @@ class FileDialog {
   bool visible() const { return visible_; }
   Purpose purpose() const { return purpose_; }
 
-  // Draws the dialog. Returns the path when the user has chosen one; the dialog is then closed. `scale`: size of text and
-  // controls.
+  // Draws the dialog. Returns the path when the user has chosen one; the dialog is then closed. `scale`: size of text
+  // and controls.
   std::optional<std::filesystem::path> draw(float scale);
 
  private:

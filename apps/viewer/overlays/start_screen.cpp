@@ -68,6 +68,9 @@ std::vector<Lesson> lessons() {
     lesson.title = title;
     try {
       lesson.text = program::loadProgram(name).description;
+      // "Lesson 05: shadow. …" repeats the title.
+      if (const std::size_t colon = lesson.text.find(": "); lesson.text.starts_with("Lesson ") && colon < 12)
+        lesson.text.erase(0, colon + 2);
     } catch (const Error&) {
       continue;  // a program that cannot be read is no lesson
     }
