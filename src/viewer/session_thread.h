@@ -127,7 +127,7 @@ class SessionThread {
   void addMessage(Message::Kind kind, std::string text);
   // Copies the session's state to next_, and publishes. `reloaded`: the files of the program have changed.
   void publishState(bool reloaded = false);
-  void publish();       // makes next_ the snapshot
+  void publish();  // makes next_ the snapshot
 
   const Options options_;
   const Stopwatch clock_;
