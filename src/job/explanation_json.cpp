@@ -59,7 +59,7 @@ class Reader {
 
   PixelExplanation read(const Json& json) const {
     if (!json.is_object() || json.value("format", Json()) != kFormat)
-      throw FileError(file_, "not an explanation; quintet explain-pixel --json writes one");
+      throw FileError(file_, "not an explanation, which quintet explain-pixel writes as JSON");
     if (json.value("formatVersion", Json()) != kFormatVersion)
       throw FileError(file_, "/formatVersion",
                       fmt::format("not supported; this Quintet reads version {}", kFormatVersion));

@@ -23,10 +23,6 @@ std::string vectorText(const vec3& v) {
   return text;
 }
 
-std::string explaining(const job::FoundSample& found, const std::string& command) {
-  return fmt::format("{} --pixel {},{} --sample {}", command, found.pixel.x, found.pixel.y, found.sample);
-}
-
 std::string causeText(const job::SampleCause& cause) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
@@ -38,12 +34,12 @@ std::string causeText(const job::SampleCause& cause) {
   return text;
 }
 
-std::string sampleText(const job::FoundSample& found, const std::string& value, const std::string& command,
+std::string sampleText(const job::FoundSample& found, const std::string& value, const CommandFor& commandFor,
                        std::size_t width) {
   std::string text = fmt::format("  pixel {},{}, sample {}: {}\n", found.pixel.x, found.pixel.y, found.sample, value);
   const std::string cause = causeText(found.cause);
   if (!cause.empty()) text += "    " + wrapped(cause, width, 4, 4) + "\n";
-  return text + "    " + explaining(found, command) + "\n";  // one line, so that it can be copied
+  return text + "    " + commandFor(found) + "\n";  // one line, so that it can be copied
 }
 
 std::string brightnessText(const job::FoundSample& firefly) {
@@ -65,7 +61,7 @@ Json numbers(const vec3& v) {
   return json;
 }
 
-Json sampleJson(const job::FoundSample& found, const std::string& command) {
+Json sampleJson(const job::FoundSample& found, const CommandFor& commandFor) {
   Json json{{"pixel", {found.pixel.x, found.pixel.y}}, {"sample", found.sample}, {"value", numbers(found.value)}};
   const job::SampleCause& cause = found.cause;
   json["bounce"] = cause.bounce >= 0 ? Json(cause.bounce) : Json();
@@ -75,41 +71,41 @@ Json sampleJson(const job::FoundSample& found, const std::string& command) {
                                    {"event", cause.event},
                                    {"field", cause.field}})
     json[name] = text.empty() ? Json() : Json(text);
-  json["command"] = explaining(found, command);
+  json["command"] = commandFor(found);
   return json;
 }
 
 }  // namespace
 
-std::string searchText(const job::SearchResult& result, const std::string& command, std::size_t width) {
+std::string searchText(const job::SearchResult& result, const CommandFor& commandFor, std::size_t width) {
   std::string text;
   if (result.notFiniteCount > 0) {
     text += countText(result.notFiniteCount, result.notFinite.size(), "sample that is not finite",
                       "samples that are not finite") +
             "\n";
     for (const job::FoundSample& found : result.notFinite)
-      text += sampleText(found, vectorText(found.value), command, width);
+      text += sampleText(found, vectorText(found.value), commandFor, width);
   }
   if (result.fireflyCount > 0) {
     text += fmt::format("{}{}\n", text.empty() ? "" : "\n",
                         countText(result.fireflyCount, result.fireflies.size(), "firefly", "fireflies"));
     for (const job::FoundSample& found : result.fireflies)
-      text += sampleText(found, brightnessText(found), command, width);
+      text += sampleText(found, brightnessText(found), commandFor, width);
   }
   if (text.empty()) text = fmt::format("nothing found in {} per pixel\n", counted(result.samples, "sample"));
   return text;
 }
 
-std::string searchJson(const job::SearchResult& result, const std::string& command) {
+std::string searchJson(const job::SearchResult& result, const CommandFor& commandFor) {
   Json json{{"samples", result.samples},
             {"interrupted", result.interrupted},
             {"notFiniteCount", result.notFiniteCount},
             {"fireflyCount", result.fireflyCount},
             {"notFinite", Json::array()},
             {"fireflies", Json::array()}};
-  for (const job::FoundSample& found : result.notFinite) json["notFinite"].push_back(sampleJson(found, command));
+  for (const job::FoundSample& found : result.notFinite) json["notFinite"].push_back(sampleJson(found, commandFor));
   for (const job::FoundSample& found : result.fireflies) {
-    Json entry = sampleJson(found, command);
+    Json entry = sampleJson(found, commandFor);
     entry["luminance"] = found.luminance;
     entry["level"] = found.level;
     json["fireflies"].push_back(std::move(entry));

@@ -175,9 +175,12 @@ int findCommand(Arguments arguments) {
     setWorkStage("searching samples");
     const job::SearchResult result = job::searchSamples(engine, job, options->search, console);
     console.clear();
+    const auto commandFor = [&](const job::FoundSample& found) {
+      return fmt::format("{} --pixel {},{} --sample {}", options->command, found.pixel.x, found.pixel.y, found.sample);
+    };
     writeFile("-", options->console.json
-                       ? output::searchJson(result, options->command)
-                       : output::searchText(result, options->command, terminalWidth(STDOUT_FILENO).value_or(100)));
+                       ? output::searchJson(result, commandFor)
+                       : output::searchText(result, commandFor, terminalWidth(STDOUT_FILENO).value_or(100)));
     if (result.interrupted) return stop.exitStatus();
     return result.notFiniteCount + result.fireflyCount > 0 ? kRuntimeError : 0;
   } catch (const ProgramError& error) {

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 namespace quintet::output {
@@ -14,7 +16,10 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kCommand = "quintet explain-pixel room.glb --spp 64";
+std::string commandFor(const job::FoundSample& found) {
+  return fmt::format("quintet explain-pixel room.glb --spp 64 --pixel {},{} --sample {}", found.pixel.x, found.pixel.y,
+                     found.sample);
+}
 
 job::SearchResult someResult() {
   job::SearchResult result;
@@ -38,7 +43,7 @@ job::SearchResult someResult() {
 }
 
 TEST(SearchReport, NamesTheCauseAndTheCommand) {
-  EXPECT_EQ(searchText(someResult(), kCommand, 100),
+  EXPECT_EQ(searchText(someResult(), commandFor, 100),
             "3 samples that are not finite, of which 1 is listed\n"
             "  pixel 12,40, sample 17: nan inf 1\n"
             "    3 bounces, transmission lobe, material \"glass\", instance \"vase\", weight of bsdf is not finite\n"
@@ -50,14 +55,14 @@ TEST(SearchReport, NamesTheCauseAndTheCommand) {
             "    quintet explain-pixel room.glb --spp 64 --pixel 1,2 --sample 5\n");
   job::SearchResult dark = someResult();
   dark.fireflies[0].level = 0;
-  EXPECT_THAT(searchText(dark, kCommand, 100), HasSubstr("sample 5: luminance 300 in black surroundings\n"));
+  EXPECT_THAT(searchText(dark, commandFor, 100), HasSubstr("sample 5: luminance 300 in black surroundings\n"));
   job::SearchResult nothing;
   nothing.samples = 64;
-  EXPECT_EQ(searchText(nothing, kCommand, 100), "nothing found in 64 samples per pixel\n");
+  EXPECT_EQ(searchText(nothing, commandFor, 100), "nothing found in 64 samples per pixel\n");
 }
 
 TEST(SearchReport, HasTheSameAsJson) {
-  const auto json = nlohmann::json::parse(searchJson(someResult(), kCommand));
+  const auto json = nlohmann::json::parse(searchJson(someResult(), commandFor));
   EXPECT_EQ(json["notFiniteCount"], 3);
   EXPECT_EQ(json["notFinite"][0]["value"], (nlohmann::json{"nan", "inf", 1.0}));
   EXPECT_EQ(json["notFinite"][0]["lobe"], "transmission");
