@@ -61,21 +61,30 @@ void convertCheckpoints(const RenderTexts& texts, RenderOptions& options) {
 
 }  // namespace
 
-void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+void declareSize(OptionTable& table, RenderTexts& texts, RenderOptions& options, const char* regionHelp) {
   table.add(
       "Image",
       {{.names = "--size",
         .value = "WxH",
         .help =
             "Size in pixels, or the width alone (default: 1280x720, or 1280 on the longer side of the camera's image)",
-        .target = &texts.size},
-       {.names = "--region",
-        .value = "X,Y,W,H",
-        .help = "Render and write only this part, in pixels from the top left",
-        .target = &texts.region},
-       {.names = "--transparent",
-        .help = "Alpha 0 in the background instead of the environment",
-        .target = &options.request.transparent}});
+        .target = &texts.size}});
+  if (regionHelp)
+    table.add("Image", {{.names = "--region", .value = "X,Y,W,H", .help = regionHelp, .target = &texts.region}});
+  table.add("Image", {{.names = "--transparent",
+                       .help = "Alpha 0 in the background instead of the environment",
+                       .target = &options.request.transparent}});
+}
+
+void declareFrame(OptionTable& table, RenderTexts& texts, const char* verb) {
+  table.add("Image", {{.names = "--frame",
+                       .value = "N",
+                       .help = fmt::format("{} only this frame of an animated scene; the first one is 0", verb),
+                       .target = &texts.frame}});
+}
+
+void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+  declareSize(table, texts, options, "Render and write only this part, in pixels from the top left");
   declareDisplay(table, texts, "Image", "default: 0, and neutral for colors");
 }
 
@@ -165,7 +174,15 @@ void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options)
         .target = &texts.envRotation}});
 }
 
-void declareProgram(OptionTable& table, RenderOptions& options) {
+void declareProgramName(OptionTable& table, RenderOptions& options) {
+  table.add("Program", {{.names = "--program",
+                         .value = "NAME",
+                         .help = "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)",
+                         .target = &options.program,
+                         .candidates = programCandidates()}});
+}
+
+void declareParameters(OptionTable& table, RenderOptions& options) {
   table.add("Program", {{.names = "--set",
                          .value = "NAME=VALUE",
                          .help = "Parameter of the program; may be repeated",
@@ -174,22 +191,30 @@ void declareProgram(OptionTable& table, RenderOptions& options) {
                          .value = "FILE.json",
                          .help = "Parameters as a JSON object; --set overrides them",
                          .target = &options.request.parameterFile,
-                         .candidates = {.extensions = {"json"}}},
-                        {.names = "--all-outputs",
+                         .candidates = {.extensions = {"json"}}}});
+}
+
+void declareProgram(OptionTable& table, RenderOptions& options) {
+  declareParameters(table, options);
+  table.add("Program", {{.names = "--all-outputs",
                          .help = "Write every output of the program: out.NAME.png",
                          .target = &options.output.allOutputs}});
 }
 
+void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
+  table.add("Run", {{.names = "--device",
+                     .value = "NAME",
+                     .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu", kDeviceHelp),
+                     .target = &options.device,
+                     .candidates = {.names = deviceNames()}},
+                    {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout}});
+}
+
 void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp) {
+  declareDevice(table, texts, options, timeoutHelp);
   table.add(
       "Run",
-      {{.names = "--device",
-        .value = "NAME",
-        .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu", kDeviceHelp),
-        .target = &options.device,
-        .candidates = {.names = deviceNames()}},
-       {.names = "--timeout", .value = "SECONDS", .help = timeoutHelp, .target = &texts.timeout},
-       {.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet},
+      {{.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet},
        {.names = "--preview",
         .value = "PROTOCOL",
         .help = "Show the image on the terminal during the render: kitty, sixel, blocks, off or auto (default: off; "
@@ -275,6 +300,13 @@ void declareExr(OptionTable& table, RenderTexts& texts, bool ofFilms) {
         .value = "N",
         .help = "Write tiles of N x N pixels (default: scan lines)",
         .target = &texts.exrTiles}});
+}
+
+void convertFrame(const RenderTexts& texts, job::FrameRequest& frames) {
+  const auto frame = parseInteger("--frame", texts.frame, 0, kMaxFrames);
+  if (!frame) return;
+  frames.first = static_cast<std::uint32_t>(*frame);
+  frames.count = 1;
 }
 
 void convertOutput(const RenderTexts& texts, output::OutputRequest& output) {

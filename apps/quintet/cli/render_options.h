@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options that `render`, `run` and `merge` share: declared in groups, parsed as text, then converted to requests.
+// The options that several commands share: declared in groups, parsed as text, then converted to requests.
 #ifndef QUINTET_CLI_RENDER_OPTIONS_H
 #define QUINTET_CLI_RENDER_OPTIONS_H
 
@@ -14,6 +14,8 @@
 
 namespace quintet::cli {
 
+inline constexpr double kMaxFrames = 1e6;  // of --frame and --frames
+
 struct RenderOptions {
   std::string program = "pathtracer";
   std::string device;
@@ -26,7 +28,7 @@ struct RenderOptions {
 
 // Option values as text.
 struct RenderTexts {
-  std::string scene, output, size, region, exposure, toneMap, pngBits;
+  std::string scene, output, size, region, frame, exposure, toneMap, pngBits;
   std::string spp, time, untilError, seed, bounces, clamp;
   std::string lookFrom, lookAt, up, fov, aperture, focus, envIntensity, envRotation;
   std::string exrType, exrCompression, exrTiles;
@@ -35,10 +37,19 @@ struct RenderTexts {
 };
 
 void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options);  // except the output file
+// The part of it that decides what is rendered. `regionHelp`: of --region; null means that there is none.
+void declareSize(OptionTable& table, RenderTexts& texts, RenderOptions& options, const char* regionHelp = nullptr);
+void declareFrame(OptionTable& table, RenderTexts& texts, const char* verb);  // "Render only this frame of …"
 void declareDisplay(OptionTable& table, RenderTexts& texts, const char* group, const char* otherwise);
 void declareQuality(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options);
-void declareProgram(OptionTable& table, RenderOptions& options);
+void declareProgramName(OptionTable& table, RenderOptions& options);
+void declareParameters(OptionTable& table, RenderOptions& options);  // of the program
+void declareProgram(OptionTable& table, RenderOptions& options);     // parameters and outputs
+inline constexpr const char* kLaunchLimitHelp = "Time limit of one launch (default: 60; on a CPU 600)";
+void declareDevice(OptionTable& table, RenderTexts& texts, RenderOptions& options,
+                   const std::string& timeoutHelp = kLaunchLimitHelp);
+// Device, messages and preview.
 void declareProcess(OptionTable& table, RenderTexts& texts, RenderOptions& options, const std::string& timeoutHelp);
 void declarePrint(OptionTable& table, RenderTexts& texts);  // what the program prints
 void declareCheckpoints(OptionTable& table, RenderTexts& texts, RenderOptions& options);
@@ -46,7 +57,9 @@ void declareExr(OptionTable& table, RenderTexts& texts, bool ofFilms = false);
 
 // Fills in requests from the texts, except `output.file` and `request.scene`. Throws UsageError.
 void convert(const RenderTexts& texts, RenderOptions& options);
-// The part of it that `merge` needs.
+// --frame: the request is then for this frame alone. Throws UsageError.
+void convertFrame(const RenderTexts& texts, job::FrameRequest& frames);
+// The part of convert() that `merge` needs.
 void convertOutput(const RenderTexts& texts, output::OutputRequest& output);
 
 // Throws UsageError if --json and `-o -` both claim standard output, or if that is a terminal; and if --json-progress and

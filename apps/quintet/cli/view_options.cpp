@@ -29,14 +29,8 @@ OptionTable viewOptionTable(ViewOptions& options, RenderTexts& texts) {
        {.names = "--keep-going",
         .help = "Continue after a command of the script that fails; the exit status is still not 0",
         .target = &options.keepGoing}});
-  table.add("Image", {{.names = "--size",
-                       .value = "WxH",
-                       .help = "Size in pixels, or the width alone, as in 'quintet render'",
-                       .target = &texts.size},
-                      {.names = "--transparent",
-                       .help = "Alpha 0 in the background instead of the environment",
-                       .target = &options.request.transparent},
-                      {.names = "--spp",
+  declareSize(table, texts, options);
+  table.add("Image", {{.names = "--spp",
                        .value = "N",
                        .help = "Number of samples per pixel that the image reaches (default: 64)",
                        .target = &texts.spp},
@@ -72,29 +66,9 @@ OptionTable viewOptionTable(ViewOptions& options, RenderTexts& texts) {
               .help = "Write events as lines of JSON to this file",
               .target = &options.events,
               .candidates = {.extensions = {"*"}}}});
-  table.add("Program", {{.names = "--program",
-                         .value = "NAME",
-                         .help = "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)",
-                         .target = &options.program,
-                         .candidates = programCandidates()},
-                        {.names = "--set",
-                         .value = "NAME=VALUE",
-                         .help = "Parameter of the program; may be repeated",
-                         .target = &options.request.assignments},
-                        {.names = "--set-file",
-                         .value = "FILE.json",
-                         .help = "Parameters as a JSON object; --set overrides them",
-                         .target = &options.request.parameterFile,
-                         .candidates = {.extensions = {"json"}}}});
-  table.add("Run", {{.names = "--device",
-                     .value = "NAME",
-                     .help = "Index or part of the name: 0, h200, lavapipe, cpu, gpu",
-                     .target = &options.device,
-                     .candidates = {.names = {"0", "cpu", "gpu", "lavapipe"}}},
-                    {.names = "--timeout",
-                     .value = "SECONDS",
-                     .help = "Time limit of one launch (default: 60; on a CPU 600)",
-                     .target = &texts.timeout}});
+  declareProgramName(table, options);
+  declareParameters(table, options);
+  declareDevice(table, texts, options);
   table.addExamples({
       {"quintet view scene.glb"},
       {"quintet view scene.glb --script tour.jsonl", "docs/viewer.md lists the commands"},

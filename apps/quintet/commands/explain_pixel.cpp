@@ -25,7 +25,6 @@ namespace {
 
 constexpr double kMaxPixel = 65535;
 constexpr double kMaxSample = (1u << 24) - 1;
-constexpr double kMaxFrames = 1e6;
 constexpr std::size_t kMinWidth = 60, kMaxWidth = 100;  // columns
 
 struct Options : RenderOptions {
@@ -37,7 +36,7 @@ struct Options : RenderOptions {
 };
 
 struct Texts : RenderTexts {
-  std::string pixel, sample, frame, tolerance;
+  std::string pixel, sample, tolerance;
 };
 
 OptionTable declare(Options& options, Texts& texts) {
@@ -75,46 +74,14 @@ OptionTable declare(Options& options, Texts& texts) {
         .value = "X",
         .help = "Relative difference of numbers that counts as rounding in --against (default: 1e-4)",
         .target = &texts.tolerance}});
-  table.add(
-      "Image",
-      {{.names = "--size",
-        .value = "WxH",
-        .help =
-            "Size in pixels, or the width alone (default: 1280x720, or 1280 on the longer side of the camera's image)",
-        .target = &texts.size},
-       {.names = "--transparent",
-        .help = "Alpha 0 in the background instead of the environment",
-        .target = &options.request.transparent},
-       {.names = "--frame",
-        .value = "N",
-        .help = "Frame of an animated scene; the first one is 0",
-        .target = &texts.frame}});
+  declareSize(table, texts, options);
+  declareFrame(table, texts, "Explain");
   declareQuality(table, texts, options);
   declareView(table, texts, options);
-  table.add("Program", {{.names = "--program",
-                         .value = "NAME",
-                         .help = "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)",
-                         .target = &options.program,
-                         .candidates = programCandidates()},
-                        {.names = "--set",
-                         .value = "NAME=VALUE",
-                         .help = "Parameter of the program; may be repeated",
-                         .target = &options.request.assignments},
-                        {.names = "--set-file",
-                         .value = "FILE.json",
-                         .help = "Parameters as a JSON object; --set overrides them",
-                         .target = &options.request.parameterFile,
-                         .candidates = {.extensions = {"json"}}}});
-  table.add("Run", {{.names = "--device",
-                     .value = "NAME",
-                     .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu", kDeviceHelp),
-                     .target = &options.device,
-                     .candidates = {.names = deviceNames()}},
-                    {.names = "--timeout",
-                     .value = "SECONDS",
-                     .help = "Time limit of one launch (default: 60; on a CPU 600)",
-                     .target = &texts.timeout},
-                    {.names = "-q,--quiet", .help = "Print no notes", .target = &options.console.quiet}});
+  declareProgramName(table, options);
+  declareParameters(table, options);
+  declareDevice(table, texts, options);
+  table.add("Run", {{.names = "-q,--quiet", .help = "Print no notes", .target = &options.console.quiet}});
   table.addExamples({
       {"quintet explain-pixel scene.glb --pixel 640,360", "sample 0 of the pixel, as the path tracer renders it"},
       {"quintet explain-pixel scene.glb --pixel 640,360 --sample 17 --spp 256", "sample 17 of a render with --spp 256"},
@@ -145,10 +112,7 @@ void convertSample(const Texts& texts, Options& options) {
     if (options.against.empty()) throw UsageError("--tolerance requires --against");
     options.tolerance.relative = static_cast<float>(*tolerance);
   }
-  if (const auto frame = parseInteger("--frame", texts.frame, 0, kMaxFrames)) {
-    options.request.frames.first = static_cast<std::uint32_t>(*frame);
-    options.request.frames.count = 1;
-  }
+  convertFrame(texts, options.request.frames);
 }
 
 std::optional<Options> parseOptions(Arguments arguments) {

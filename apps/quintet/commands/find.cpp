@@ -32,7 +32,7 @@ struct Options : RenderOptions {
 };
 
 struct Texts : RenderTexts {
-  std::string threshold, limit, frame;
+  std::string threshold, limit;
 };
 
 OptionTable declare(Options& options, Texts& texts) {
@@ -60,51 +60,15 @@ OptionTable declare(Options& options, Texts& texts) {
         .help = "Number of samples of each kind to explain; the others are only counted (default: 10)",
         .target = &texts.limit},
        {.names = "--json", .help = "Print one JSON object on standard output", .target = &options.console.json}});
-  table.add(
-      "Image",
-      {{.names = "--size",
-        .value = "WxH",
-        .help = "Size in pixels, or the width alone (default: 1280x720, or 1280 on the longer side of the camera's "
-                "image)",
-        .target = &texts.size},
-       {.names = "--region",
-        .value = "X,Y,W,H",
-        .help = "Search only this part, in pixels from the top left",
-        .target = &texts.region},
-       {.names = "--transparent",
-        .help = "Alpha 0 in the background instead of the environment",
-        .target = &options.request.transparent},
-       {.names = "--frame",
-        .value = "N",
-        .help = "Frame of an animated scene; the first one is 0",
-        .target = &texts.frame}});
+  declareSize(table, texts, options, "Search only this part, in pixels from the top left");
+  declareFrame(table, texts, "Search");
   declareQuality(table, texts, options);
   declareView(table, texts, options);
-  table.add("Program", {{.names = "--program",
-                         .value = "NAME",
-                         .help = "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)",
-                         .target = &options.program,
-                         .candidates = programCandidates()},
-                        {.names = "--set",
-                         .value = "NAME=VALUE",
-                         .help = "Parameter of the program; may be repeated",
-                         .target = &options.request.assignments},
-                        {.names = "--set-file",
-                         .value = "FILE.json",
-                         .help = "Parameters as a JSON object; --set overrides them",
-                         .target = &options.request.parameterFile,
-                         .candidates = {.extensions = {"json"}}}});
+  declareProgramName(table, options);
+  declareParameters(table, options);
+  declareDevice(table, texts, options);
   table.add("Run",
-            {{.names = "--device",
-              .value = "NAME",
-              .help = fmt::format("{}: 0, h200, lavapipe, cpu, gpu", kDeviceHelp),
-              .target = &options.device,
-              .candidates = {.names = deviceNames()}},
-             {.names = "--timeout",
-              .value = "SECONDS",
-              .help = "Time limit of one launch (default: 60; on a CPU 600)",
-              .target = &texts.timeout},
-             {.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet}});
+            {{.names = "-q,--quiet", .help = "Print neither progress nor notes", .target = &options.console.quiet}});
   table.addExamples({
       {"quintet find scene.glb", "both kinds, in a render of 64 samples per pixel"},
       {"quintet find scene.glb --nan --spp 256 --size 640x360", "only NaN and infinite samples"},
@@ -144,10 +108,7 @@ std::optional<Options> parseOptions(Arguments arguments) {
   if (const auto threshold = parseReal("--threshold", texts.threshold, 1e-3, kMaxThreshold))
     search.threshold = static_cast<float>(*threshold);
   if (const auto limit = parseInteger("--limit", texts.limit, 0, kMaxLimit)) search.limit = *limit;
-  if (const auto frame = parseInteger("--frame", texts.frame, 0, 1e6)) {
-    options.request.frames.first = static_cast<std::uint32_t>(*frame);
-    options.request.frames.count = 1;
-  }
+  convertFrame(texts, options.request.frames);
   return options;
 }
 

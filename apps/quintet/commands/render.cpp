@@ -46,17 +46,13 @@ OptionTable declare(RenderOptions& options, RenderTexts& texts) {
   declareExr(table, texts);
   declareQuality(table, texts, options);
   declareView(table, texts, options);
-  table.add("Program", {{.names = "--program",
-                         .value = "NAME",
-                         .help = "Built-in program, folder with program.toml, or .rt.glsl file (default: pathtracer)",
-                         .target = &options.program,
-                         .candidates = programCandidates()}});
+  declareProgramName(table, options);
   declareProgram(table, options);
   table.add(
       "Program",
       {{.names = "--help-program", .help = "Print the program's parameters and exit", .target = &options.programHelp}});
   declarePrint(table, texts);
-  declareProcess(table, texts, options, "Time limit of one launch (default: 60; on a CPU 600)");
+  declareProcess(table, texts, options, kLaunchLimitHelp);
   table.add("Run", {{.names = "--json",
                      .help = "Print one JSON object on standard output at the end",
                      .target = &options.console.json}});

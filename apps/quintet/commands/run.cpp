@@ -33,28 +33,24 @@ namespace quintet::cli {
 namespace {
 
 constexpr double kTimeout = 30.0;  // seconds: a shader that takes longer probably does not end
-constexpr double kMaxFrames = 1e6;
 
 struct RunOptions : RenderOptions {
   bool list = false;  // print the built-in programs
   bool watch = false;
-  std::string frames, frame;    // number or range; a single one
+  std::string frames;           // number or range
   bool namedByProgram = false;  // no output file was given
 };
 
 void convertFrames(const RenderTexts& texts, RunOptions& options) {
   job::FrameRequest& request = options.request.frames;
   const std::string& frames = options.frames;
-  if (!frames.empty() && !options.frame.empty()) throw UsageError("--frame and --frames exclude each other");
+  if (!frames.empty() && !texts.frame.empty()) throw UsageError("--frame and --frames exclude each other");
   if (frames.find('-', 1) != std::string::npos) {
     std::tie(request.first, request.count) = parseFrames("--frames", frames, kMaxFrames);
   } else if (const auto count = parseInteger("--frames", frames, 1, kMaxFrames)) {
     request.count = static_cast<std::uint32_t>(*count);
   }
-  if (const auto number = parseInteger("--frame", options.frame, 0, kMaxFrames)) {
-    request.first = static_cast<std::uint32_t>(*number);
-    request.count = 1;
-  }
+  convertFrame(texts, request);
   if (!texts.spp.empty()) request.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
   if (!request.accumulated && !options.request.limits.seconds) request.accumulated = 1;
   request.every = options.output.everyFrame = options.output.everyFrame || output::hasFramePattern(options.output.file);
@@ -86,14 +82,11 @@ OptionTable declare(RunOptions& options, RenderTexts& texts) {
               .value = "N|A-B",
               .help = "Number of frames, for an animated scene or a program that draws frame after frame (default: 1); "
                       "A-B renders only frames A to B of an animated scene",
-              .target = &options.frames},
-             {.names = "--frame",
-              .value = "N",
-              .help = "Render only this frame of an animated scene; the first one is 0",
-              .target = &options.frame},
-             {.names = "--all-frames",
-              .help = "Write each frame: out.0000.png (also with #### or %04d in the name)",
-              .target = &options.output.everyFrame}});
+              .target = &options.frames}});
+  declareFrame(table, texts, "Render");
+  table.add("Image", {{.names = "--all-frames",
+                       .help = "Write each frame: out.0000.png (also with #### or %04d in the name)",
+                       .target = &options.output.everyFrame}});
   declareExr(table, texts);
   declareQuality(table, texts, options);
   declareView(table, texts, options);

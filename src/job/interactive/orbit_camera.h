@@ -26,7 +26,7 @@ struct OrbitCamera {
 // focus. Throws UsageError for an orthographic camera.
 OrbitCamera orbitCamera(const scene::Camera& camera, const vec3& center);
 
-// Turns around `pivot` by angles in degrees: `right` about the world's y axis, so that the camera moves to the right,
+// Orbits `pivot` by angles in degrees: `right` about the y axis of world space, so that the camera moves to the right,
 // `up` about the horizontal axis of the image. The pivot keeps its pixel.
 OrbitCamera orbit(OrbitCamera camera, float right, float up, const vec3& pivot);
 
@@ -36,8 +36,8 @@ OrbitCamera pan(OrbitCamera camera, vec2 pixels, uvec2 size);
 // Divides the distance by `factor` (> 0). What is at the center's depth in this pixel stays there (x right, y down).
 OrbitCamera zoom(OrbitCamera camera, float factor, vec2 pixel, uvec2 size);
 
-// Moves by meters along the camera's axes: right, up, forward. Then turns by degrees around the camera: `yaw` to the
-// left about the world's y axis, `pitch` upward.
+// Moves by meters along the camera's axes: right, up, forward. Then turns the camera in place by degrees: `yaw` to the
+// left, about the y axis of world space, and `pitch` upward.
 OrbitCamera fly(OrbitCamera camera, vec3 meters, float yaw, float pitch);
 
 // Shows all of the bounds from the same direction. Empty bounds change nothing.
