@@ -18,7 +18,7 @@ namespace quintet::job {
 
 struct EngineOptions {
   std::string device;                            // gpu::ContextOptions::device
-  std::filesystem::path caches = cacheFolder();  // compiled shaders and pipelines; empty disables them
+  std::filesystem::path caches = cacheFolder();  // compiled shaders and pipelines; empty: in memory
   LogSink log = {};                              // driver messages; called from any thread
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compiles GLSL to SPIR-V at run time, with includes from the embedded shader library, diagnostics that point into
-// the user's files, and a content-addressed disk cache. A shader that does not compile is a normal result, not an
+// the user's files, and a content-addressed cache. A shader that does not compile is a normal result, not an
 // exception.
 #ifndef QUINTET_SHADER_COMPILER_H
 #define QUINTET_SHADER_COMPILER_H

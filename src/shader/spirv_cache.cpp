@@ -102,10 +102,48 @@ std::optional<SpirvEntry> parsePayload(std::span<const std::byte> payload) {
   return entry;
 }
 
+std::uintmax_t sizeOf(const SpirvEntry& entry) {
+  std::uintmax_t bytes = entry.spirv.size() * sizeof(std::uint32_t);
+  for (const Diagnostic& d : entry.diagnostics) bytes += sizeof d + d.file.size() + d.id.size() + d.text.size();
+  return bytes;
+}
+
 }  // namespace
 
 std::optional<SpirvEntry> SpirvCache::load(const Hash& key) const {
-  if (folder_.empty()) return {};
+  return folder_.empty() ? loadFromMemory(key) : loadFile(key);
+}
+
+void SpirvCache::store(const Hash& key, const SpirvEntry& entry) const {
+  if (entry.spirv.empty() || entry.diagnostics.size() > kMaxDiagnostics) return;
+  if (folder_.empty())
+    storeInMemory(key, entry);
+  else
+    storeFile(key, entry);
+}
+
+std::optional<SpirvEntry> SpirvCache::loadFromMemory(const Hash& key) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = byKey_.find(key);
+  if (found == byKey_.end()) return {};
+  entries_.splice(entries_.begin(), entries_, found->second);
+  return found->second->second;
+}
+
+void SpirvCache::storeInMemory(const Hash& key, const SpirvEntry& entry) const {
+  const std::lock_guard lock(mutex_);
+  if (byKey_.contains(key)) return;  // another thread compiled the same source
+  entries_.emplace_front(key, entry);
+  byKey_[key] = entries_.begin();
+  bytes_ += sizeOf(entry);
+  while (bytes_ > kMaxBytesInMemory) {
+    bytes_ -= sizeOf(entries_.back().second);
+    byKey_.erase(entries_.back().first);
+    entries_.pop_back();
+  }
+}
+
+std::optional<SpirvEntry> SpirvCache::loadFile(const Hash& key) const {
   const fs::path file = fileOf(key);
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return {};
@@ -124,8 +162,7 @@ std::optional<SpirvEntry> SpirvCache::load(const Hash& key) const {
   return parsePayload(in.rest());
 }
 
-void SpirvCache::store(const Hash& key, const SpirvEntry& entry) const {
-  if (folder_.empty() || entry.spirv.empty() || entry.diagnostics.size() > kMaxDiagnostics) return;
+void SpirvCache::storeFile(const Hash& key, const SpirvEntry& entry) const {
   const std::vector<std::byte> payload = payloadOf(entry);
   Writer out;
   out.value(kMagic);

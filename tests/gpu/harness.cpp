@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "base/file.h"
 #include "shader/compiler.h"
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -188,8 +189,10 @@ gpu::Context& testContext() { return testDevice().context; }
 
 const gpu::BindlessSet& testSet() { return testDevice().set; }
 
+std::filesystem::path shaderCache() { return cacheFolder() / "shaders"; }
+
 std::vector<std::uint32_t> compileCompute(const std::string& glsl, const Defines& defines) {
-  static const shader::Compiler compiler{shader::CompilerOptions{}};
+  static const shader::Compiler compiler{shader::CompilerOptions{.cacheFolder = shaderCache()}};
   shader::Source source;
   source.text = glsl;
   source.name = "test.comp";

@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -40,6 +41,10 @@ int runDeviceTests();
 
 // The default descriptor set of shaders: no TLAS, no textures, 128 bytes of push constants.
 const gpu::BindlessSet& testSet();
+
+// Folder of compiled shaders, in cacheFolder(). The entries depend on the contents of all sources, so the processes of a test
+// run share it ($QUINTET_CACHE_DIR in CMakePresets.json).
+std::filesystem::path shaderCache();
 
 using Defines = std::vector<std::pair<std::string, std::string>>;
 

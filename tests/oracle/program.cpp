@@ -70,7 +70,8 @@ std::uint32_t countOf(std::size_t n) { return static_cast<std::uint32_t>(n); }
 std::vector<std::uint32_t> compileStage(shader::Stage stage, const std::string& common, const std::string& text) {
   // Without optimization, because the optimizer merges reads of a built-in before and after a trace or a report
   // (SPIRV-Tools 2023.2).
-  static const shader::Compiler compiler{shader::CompilerOptions{.optimize = false}};
+  static const shader::Compiler compiler{
+      shader::CompilerOptions{.cacheFolder = test::shaderCache(), .optimize = false}};
   shader::Source source;
   source.stage = stage;
   source.text = kHeader + common + kAfterCommon + text;

@@ -101,7 +101,7 @@ struct PrintCounter : Observer {
 class HeatTest : public testing::Test {
  protected:
   static Engine& engine() {
-    static Engine instance({.caches = {}});
+    static Engine instance({});
     return instance;
   }
   static RenderRequest makeRequest(uvec2 size, std::uint64_t samples, const std::vector<std::string>& outputs) {

@@ -25,7 +25,7 @@ program::Program programWithBadColumn() {
 }
 
 std::string idsFor(const RenderRequest& request) {
-  static Engine engine({.caches = {}});
+  static Engine engine({});
   const program::Program program = programWithBadColumn();
   std::string ids;
   for (const Diagnostic& d : runInstrumented(engine, program, loadScene(chooseSceneSource({}, program)), request, {}))

@@ -128,7 +128,7 @@ std::shared_ptr<const scene::Scene> boxScene() {
 class PrintTest : public testing::Test {
  protected:
   static Engine& engine() {
-    static Engine instance({.caches = {}});
+    static Engine instance({});
     return instance;
   }
   static RenderRequest makeRequest(uvec2 size, std::uint64_t samples) {

@@ -52,7 +52,7 @@ RenderRequest makeRequest(std::uint64_t samples) {
 class RenderJobTest : public testing::Test {
  protected:
   static Engine& engine() {
-    static Engine instance({.caches = {}});
+    static Engine instance({});
     return instance;
   }
   std::unique_ptr<RenderJob> makeJob(const RenderRequest& request, const char* program = "normals") {

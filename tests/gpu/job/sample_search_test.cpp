@@ -15,7 +15,7 @@ namespace quintet::job {
 namespace {
 
 Engine& engine() {
-  static Engine engine({.caches = {}});
+  static Engine engine({});
   return engine;
 }
 

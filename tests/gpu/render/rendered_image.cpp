@@ -2,10 +2,8 @@
 #include "rendered_image.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include "harness.h"
@@ -16,21 +14,6 @@ namespace quintet::test {
 namespace {
 
 constexpr double kAlpha = 0.01;
-
-class CacheFolder {
- public:
-  CacheFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "quintet-test-XXXXXX").string();
-    if (mkdtemp(pattern.data())) path = pattern;
-  }
-  ~CacheFolder() {
-    std::error_code ignored;
-    if (!path.empty()) std::filesystem::remove_all(path, ignored);
-  }
-  CacheFolder(const CacheFolder&) = delete;
-  CacheFolder& operator=(const CacheFolder&) = delete;
-  std::filesystem::path path;
-};
 
 // Expects a mean; the message says where and by how much it is wrong.
 void expectMean(const std::string& where, const Moments& m, double exact, double level, double rounding) {
@@ -59,12 +42,7 @@ std::string pixelName(std::uint32_t x, std::uint32_t y, std::size_t c) {
 }  // namespace
 
 const shader::Compiler& testCompiler() {
-  static const CacheFolder folder;
-  static const shader::Compiler compiler = [&] {
-    shader::CompilerOptions options;
-    options.cacheFolder = folder.path;
-    return shader::Compiler(options);
-  }();
+  static const shader::Compiler compiler{shader::CompilerOptions{.cacheFolder = shaderCache()}};
   return compiler;
 }
 

@@ -16,7 +16,7 @@
 
 namespace quintet::test {
 
-// Returns the compiler of this process, which caches its results in a folder that is removed at exit.
+// The compiler of this process, with shaderCache().
 const shader::Compiler& testCompiler();
 
 struct ImageOptions {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rt_test_support.h"
 
+#include "harness.h"
 #include "program/linked/device_stages.h"
 
 namespace quintet::rt::test {
@@ -128,7 +129,7 @@ Objects& testObjects() {
 }  // namespace
 
 std::vector<std::uint32_t> compileStage(shader::Stage stage, const std::string& text) {
-  static const shader::Compiler compiler{shader::CompilerOptions{}};
+  static const shader::Compiler compiler{shader::CompilerOptions{.cacheFolder = quintet::test::shaderCache()}};
   shader::Source source;
   source.stage = stage;
   source.text = kCommon + text;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "base/file.h"
 #include "check/check.h"
 #include "program/description/parser.h"
 #include "program/hit_group_binding.h"
@@ -130,7 +131,7 @@ inline Files callFiles() {
 inline const shader::Compiler& checkCompiler() {
   static const shader::Compiler compiler([] {
     shader::CompilerOptions options;
-    options.debugInfo = true;
+    options.cacheFolder = cacheFolder() / "shaders";
     return options;
   }());
   return compiler;

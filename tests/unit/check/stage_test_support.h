@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/file.h"
 #include "check/check.h"
 #include "check/rules/rules.h"
 
@@ -13,7 +14,7 @@ namespace quintet::check {
 // Two lines precede the source, so its first line is line 3.
 inline std::optional<spirv::Module> compileStage(shader::Stage stage, const std::string& text) {
   shader::CompilerOptions options;
-  options.debugInfo = true;
+  options.cacheFolder = cacheFolder() / "shaders";
   static const shader::Compiler compiler(options);
   shader::Source source;
   source.stage = stage;

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/file.h"
 #include "program/description/generated_glsl.h"
 #include "shader/compiler.h"
 #include "shader/library.h"
@@ -78,6 +79,7 @@ std::string errorsWith(const std::vector<std::string>& includes, Stage stage) {
   static const shader::Compiler kCompiler = [] {
     shader::CompilerOptions options;
     options.optimize = options.debugInfo = false;
+    options.cacheFolder = cacheFolder() / "shaders";
     return shader::Compiler(options);
   }();
   shader::Source source;

@@ -143,6 +143,29 @@ TEST_F(ShaderCache, IgnoresAFolderThatCannotBeWritten) {
   EXPECT_TRUE(compile(computeSource("")).ok());
 }
 
+TEST_F(ShaderCache, IsInMemoryWithoutAFolder) {
+  const Source source = computeSource("", "b.x = 1;");
+  const Compiler compiler({.cacheFolder = {}});
+  const Result first = compiler.compile(source), second = compiler.compile(source);
+  EXPECT_FALSE(first.fromCache);
+  EXPECT_TRUE(second.fromCache);
+  EXPECT_EQ(first.spirv, second.spirv);
+  EXPECT_EQ(all(first), all(second));
+  EXPECT_FALSE(Compiler({.cacheFolder = {}}).compile(source).fromCache) << "each compiler has its own";
+}
+
+TEST_F(ShaderCache, KeepsTheMostRecentlyUsedEntriesInMemory) {
+  const SpirvCache memory({});
+  SpirvEntry entry;
+  entry.spirv.assign(SpirvCache::kMaxBytesInMemory / 10 / sizeof(std::uint32_t), 0x0723'0203);
+  for (std::uint64_t k = 0; k < 10; ++k) memory.store({0, k}, entry);
+  ASSERT_TRUE(memory.load({0, 0}));  // now the most recently used
+  for (std::uint64_t k = 10; k < 15; ++k) memory.store({0, k}, entry);
+  for (std::uint64_t k = 0; k < 15; ++k) EXPECT_EQ(memory.load({0, k}).has_value(), k == 0 || k > 5) << k;
+  memory.store({0, 99}, {});  // a failed compilation
+  EXPECT_FALSE(memory.load({0, 99}));
+}
+
 TEST_F(ShaderCache, PrunesTheLeastRecentlyUsedEntries) {
   const SpirvCache store(cache.path());
   SpirvEntry entry;

@@ -58,10 +58,8 @@ class SessionTest : public testing::Test {
  protected:
   SessionTest() { writeFile(folder_ / "a.scene.toml", kScene); }
 
-  // With a cache, because most sessions compile the same shaders.
   static Engine& engine() {
-    static const quintet::test::TempFolder caches;
-    static Engine instance({.caches = caches / "cache"});
+    static Engine instance({});
     return instance;
   }
   RenderRequest request(std::uint32_t samples = 6) const {
