@@ -23,7 +23,8 @@ class Commands {
   // Makes writes of `before` readable by the host after the end of the submission.
   void toHost(Stage before) { barrier(before, Stage::host); }
   // Changes the layout of an image. The content is kept unless `from` is VK_IMAGE_LAYOUT_UNDEFINED.
-  void transition(const Image& image, VkImageLayout from, VkImageLayout to);
+  void transition(const Image& image, VkImageLayout from, VkImageLayout to) { transition(image.handle(), from, to); }
+  void transition(VkImage image, VkImageLayout from, VkImageLayout to);  // of a color image with one level and layer
 
   void copy(const Buffer& source, const Buffer& destination, VkDeviceSize size, VkDeviceSize sourceOffset = 0,
             VkDeviceSize destinationOffset = 0);

@@ -154,9 +154,9 @@ bool Swapchain::draw(VkExtent2D windowSize, const std::function<void(Commands&, 
     const RenderTarget target{image.view, size_, slot_};
     busyUntil_[slot_] = context_.submit(
         [&](Commands& commands) {
-          transition(commands, image.handle, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+          commands.transition(image.handle, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
           record(commands, target);
-          transition(commands, image.handle, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
+          commands.transition(image.handle, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_PRESENT_SRC_KHR);
         },
         {.wait = acquired_[slot_], .signal = image.drawn});
     slot_ = (slot_ + 1) % kFramesInFlight;
@@ -164,24 +164,6 @@ bool Swapchain::draw(VkExtent2D windowSize, const std::function<void(Commands&, 
     return true;
   }
   return false;
-}
-
-void Swapchain::transition(Commands& commands, VkImage image, VkImageLayout from, VkImageLayout to) {
-  VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-  barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-  barrier.oldLayout = from;
-  barrier.newLayout = to;
-  barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-  barrier.image = image;
-  barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-  VkDependencyInfo info{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-  info.imageMemoryBarrierCount = 1;
-  info.pImageMemoryBarriers = &barrier;
-  context_.vk().vkCmdPipelineBarrier2(commands.handle(), &info);
 }
 
 // Returns false if the images no longer fit the window.

@@ -49,7 +49,6 @@ class Swapchain {
   void createImages();
   void destroyImages();
   VkSemaphore makeSemaphore();
-  void transition(Commands& commands, VkImage image, VkImageLayout from, VkImageLayout to);
   bool present(std::uint32_t index);
 
   Context& context_;

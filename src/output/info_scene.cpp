@@ -11,20 +11,12 @@
 #include "output/info.h"
 #include "scene/load.h"
 #include "scene/model/content_hash.h"
+#include "scene/model/names.h"
 
 namespace quintet::output {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-const char* typeName(scene::LightType type) {
-  switch (type) {
-    case scene::LightType::point: return "point";
-    case scene::LightType::spot: return "spot";
-    case scene::LightType::directional: return "directional";
-  }
-  return "";
-}
 
 std::size_t geometryCount(const scene::Scene& scene) {
   std::size_t count = 0;
@@ -56,8 +48,8 @@ std::string describe(const scene::Camera& camera) {
 }
 
 std::string describe(const scene::Light& light) {
-  return fmt::format("'{}': {}, {:.4g} {:.4g} {:.4g} {}", printable(light.name), typeName(light.type),
-                     light.intensity.x, light.intensity.y, light.intensity.z,
+  return fmt::format("'{}': {}, {:.4g} {:.4g} {:.4g} {}", printable(light.name), nameOf(light.type), light.intensity.x,
+                     light.intensity.y, light.intensity.z,
                      light.type == scene::LightType::directional ? "W/m2" : "W/sr");
 }
 
@@ -124,8 +116,7 @@ Json namedObjects(const scene::Scene& scene, const char* kind) {
                       {"position", vectorJson(vec3(camera.worldFromCamera[3]))}});
   if (kind == std::string_view("lights"))
     for (const scene::Light& light : scene.lights)
-      list.push_back(
-          {{"name", light.name}, {"type", typeName(light.type)}, {"intensity", vectorJson(light.intensity)}});
+      list.push_back({{"name", light.name}, {"type", nameOf(light.type)}, {"intensity", vectorJson(light.intensity)}});
   return list;
 }
 

@@ -6,20 +6,9 @@
 #include "gui/widgets.h"
 #include "job/interactive/light_properties.h"
 #include "panels/panels.h"
+#include "scene/model/names.h"
 
 namespace quintet::viewer {
-namespace {
-
-const char* typeName(scene::LightType type) {
-  switch (type) {
-    case scene::LightType::point: return "point";
-    case scene::LightType::spot: return "spot";
-    case scene::LightType::directional: return "directional";
-  }
-  return "";
-}
-
-}  // namespace
 
 void lightProperties(ViewState& state, std::size_t index) {
   namespace interactive = job::interactive;
@@ -33,7 +22,7 @@ void lightProperties(ViewState& state, std::size_t index) {
   ImGui::PushID("light");
   ImGui::PushID(static_cast<int>(index));
   textRow("Light", name);
-  textRow("Type", typeName(type));
+  textRow("Type", nameOf(type));
   bool on = light.on;
   if (checkBox("On", on)) set("on", {on ? 1.0 : 0.0});
   vec3 color = interactive::lightColor(light.light);

@@ -54,4 +54,13 @@ std::vector<std::string> lightNames(const Scene& scene) {
   return names;
 }
 
+const char* nameOf(LightType type) {
+  switch (type) {
+    case LightType::point: return "point";
+    case LightType::spot: return "spot";
+    case LightType::directional: return "directional";
+  }
+  return "";
+}
+
 }  // namespace quintet::scene

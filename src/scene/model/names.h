@@ -21,5 +21,7 @@ std::vector<std::string> materialNames(const Scene&);
 // By index in Scene::lights.
 std::vector<std::string> lightNames(const Scene&);
 
+const char* nameOf(LightType);  // as in KHR_lights_punctual: "point", "spot", "directional"
+
 }  // namespace quintet::scene
 #endif

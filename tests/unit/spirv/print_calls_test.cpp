@@ -4,10 +4,10 @@
 #include "spirv/print_calls.h"
 
 #include <gmock/gmock.h>
-#include <spirv-tools/libspirv.hpp>
 
 #include "base/error.h"
 #include "program/instrument.h"
+#include "rewrite_test_support.h"
 #include "shader/optimizer.h"
 #include "shader/shader_test_support.h"
 
@@ -19,7 +19,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::Field;
 using Kind = PrintArgument::Kind;
-using Words = std::vector<std::uint32_t>;
 
 constexpr const char* kHead = R"(#version 460
 #extension GL_EXT_ray_tracing : require
@@ -52,23 +51,6 @@ std::vector<PrintCall> callsOf(const Words& words) {
   const auto module = Module::read(words, &why);
   EXPECT_TRUE(module) << why;
   return module ? findPrintCalls(*module) : std::vector<PrintCall>();
-}
-
-std::string errorsOf(const Words& words) {
-  std::string errors;
-  spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
-  tools.SetMessageConsumer(
-      [&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { errors += text; });
-  spvtools::ValidatorOptions options;
-  options.SetScalarBlockLayout(true);
-  if (!tools.Validate(words.data(), words.size(), options) && errors.empty()) errors = "invalid";
-  return errors;
-}
-
-std::size_t count(const Words& words, spv::Op op) {
-  const auto module = Module::read(words);
-  return static_cast<std::size_t>(
-      std::ranges::count_if(module->instructions(), [&](const Instruction& i) { return i.op == op; }));
 }
 
 // One argument of every type that can be printed.

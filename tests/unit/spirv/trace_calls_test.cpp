@@ -2,10 +2,9 @@
 // Calls around traces: the module stays valid, and each trace gets them. tests/gpu/job/heat_test.cpp shows what they count.
 #include "spirv/trace_calls.h"
 
-#include <spirv-tools/libspirv.hpp>
-
 #include "base/error.h"
 #include "program/instrument.h"
+#include "rewrite_test_support.h"
 #include "shader/optimizer.h"
 #include "shader/shader_test_support.h"
 #include "spirv/module.h"
@@ -14,8 +13,6 @@ namespace quintet::spirv {
 using namespace shader;
 
 namespace {
-
-using Words = std::vector<std::uint32_t>;
 
 Words compileStage(Stage stage, const std::string& text, bool heat) {
   Source source;
@@ -40,22 +37,6 @@ void main() {
     traceRayEXT(topLevelAS, 8u, 255u, 0u, 1u, 0u, vec3(0), 0.1, vec3(0, 1, 0), 1e30, 1);
 }
 )";
-
-std::string errorsOf(const Words& words) {
-  std::string errors;
-  spvtools::SpirvTools tools(SPV_ENV_VULKAN_1_3);
-  tools.SetMessageConsumer(
-      [&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { errors += text; });
-  spvtools::ValidatorOptions options;
-  options.SetScalarBlockLayout(true);
-  if (!tools.Validate(words.data(), words.size(), options) && errors.empty()) errors = "invalid";
-  return errors;
-}
-
-std::size_t count(const Words& words, spv::Op op) {
-  const auto module = Module::read(words);
-  return static_cast<std::size_t>(std::ranges::count(module->instructions(), op, &Instruction::op));
-}
 
 TEST(TraceCalls, AreAroundEachTrace) {
   const Words words = compileStage(Stage::closestHit, kTraces, true);
