@@ -219,6 +219,8 @@ void RenderJob::update(Observer& observer) {
 
 void RenderJob::rebuildScene(Observer& observer) {
   if (editedScene_) job_.scene.loaded = editedScene_;
+  // The image keeps the size that was chosen for the first camera.
+  if (scene_) job_.request.size = scene_->size;
   renderer_.reset();
   scene_.reset();
   plainEnvironment_.reset();

@@ -186,6 +186,23 @@ TEST_F(SessionTest, AnAutomaticCameraFollowsTheSize) {
   EXPECT_TRUE(test::equalSums(sums(*session), reference(other)));
 }
 
+// Without --size, the first camera decides it.
+TEST_F(SessionTest, TheSizeStaysWhenTheSceneIsBuiltAgain) {
+  writeFile(folder_ / "a.scene.toml", std::string(kScene) + "aspect = 2.0\n");
+  RenderRequest noHeight = request(1);
+  noHeight.size = {40, 0};
+  const auto session = makeSession(noHeight);
+  session->refine();
+  EXPECT_EQ(session->image().height, 20u);
+  session->apply(Orbit{10, 0});  // this camera states no aspect ratio
+  session->apply(EditMaterial{"red", {{"transmission", {1}}, {"roughness", {0}}}});  // builds the scene again
+  const int builds = observer_.builds;
+  session->refine();
+  EXPECT_EQ(observer_.builds, builds + 1);
+  EXPECT_EQ(session->image().width, 40u);
+  EXPECT_EQ(session->image().height, 20u);
+}
+
 TEST_F(SessionTest, AnAutomaticCameraStaysWhenInstancesMove) {
   writeFile(folder_ / "a.scene.toml", std::string(kScene).substr(0, std::string(kScene).find("[[camera]]")));
   const auto session = makeSession(request());
