@@ -327,6 +327,17 @@ TEST_F(SessionTest, ShowsAnotherProgram) {
   EXPECT_TRUE(test::equalSums(sums(*session), before));
 }
 
+TEST_F(SessionTest, AProgramThatAccumulatesLeavesTheFrame) {
+  writeFile(folder_ / "a.scene.toml",
+            replaced(kScene, "translate = [3.0, 0.0, 0.0]",
+                     "keyframes = [{ frame = 0 }, { frame = 8, translate = [4.0, 2.0, 0.5] }]"));
+  const auto session = makeSession(request(), "lessons/09_progressive");
+  session->refine();
+  session->apply(SetProgram{"pathtracer"});
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(request())));
+}
+
 TEST_F(SessionTest, PicksWhatIsVisible) {
   writeFile(folder_ / "a.scene.toml", litScene());  // several geometries, whose hit records depend on the ray types
   const auto session = makeSession(request());
