@@ -55,17 +55,17 @@ void setDirection(Light& light, std::span<const double> values) {
   light.direction = direction / length;
 }
 
+float coneAngle(std::string_view name, double degrees) {
+  if (!(degrees >= 0.0 && degrees <= 90.0)) fail(name, "from 0 to 90 degrees");
+  return glm::radians(static_cast<float>(degrees));
+}
+
 void setInnerConeAngle(Light& light, std::span<const double> values) {
-  const float angle = glm::radians(static_cast<float>(values[0]));
-  if (!(angle >= 0.0f && angle <= light.outerConeAngle)) fail("innerConeAngle", "from 0 to outerConeAngle, degrees");
-  light.innerConeAngle = angle;
+  light.innerConeAngle = coneAngle("innerConeAngle", values[0]);
 }
 
 void setOuterConeAngle(Light& light, std::span<const double> values) {
-  const float angle = glm::radians(static_cast<float>(values[0]));
-  if (!(angle >= light.innerConeAngle && values[0] <= 90.0))
-    fail("outerConeAngle", "from innerConeAngle to 90 degrees");
-  light.outerConeAngle = angle;
+  light.outerConeAngle = coneAngle("outerConeAngle", values[0]);
 }
 
 struct Property {

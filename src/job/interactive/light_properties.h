@@ -15,7 +15,8 @@ namespace quintet::job::interactive {
 // "color": the ratio of the components, ≥ 0 and not all 0; the intensity stays.
 // "position": world space, meters; of point and spot lights.
 // "direction": world space, any length but 0; of spot and directional lights.
-// "innerConeAngle", "outerConeAngle": degrees, 0 ≤ inner ≤ outer ≤ 90; of spot lights.
+// "innerConeAngle", "outerConeAngle": degrees, 0 to 90; of spot lights. scene::validateLight() checks that the inner one
+// is not larger, so that an edit can set both in any order.
 std::vector<std::string> lightProperties();
 // Those that lights of this type have.
 std::vector<std::string> lightProperties(scene::LightType type);

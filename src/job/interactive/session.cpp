@@ -269,7 +269,10 @@ SessionState Session::changed(const Command& command) const {
     void operator()(const EditLight& c) {
       const std::size_t index = indexOf(c.light, session.lightNames_, "light");
       LightState light = session.light(index);
-      for (const Property& property : c.properties) {
+      std::vector<Property> properties = c.properties;
+      // JSON objects have no order, and a light of intensity 0 has no color to set.
+      std::ranges::stable_partition(properties, [](const Property& p) { return p.name == "intensity"; });
+      for (const Property& property : properties) {
         const bool isSwitch = property.name == "on";
         if (isSwitch && (property.numbers.size() != 1 || (property.numbers[0] != 0 && property.numbers[0] != 1)))
           throw UsageError("the property 'on' of a light is true or false");

@@ -157,8 +157,8 @@ struct Light {
   vec3 intensity{1.0f};               // with the color; point, spot: W/sr (glTF candela); directional: W/m² (glTF lux)
   vec3 position{0.0f};                // world space
   vec3 direction{0, 0, -1};           // world space, unit, in which the light travels
-  float innerConeAngle = 0.0f;        // radians, from the axis
-  float outerConeAngle = kPi / 4.0f;  // radians
+  float innerConeAngle = 0.0f;        // radians from the axis, 0 to outerConeAngle; of spot lights
+  float outerConeAngle = kPi / 4.0f;  // radians, at most π/2
   float range = std::numeric_limits<float>::infinity();  // meters; not used by a path tracer
 };
 

@@ -11,7 +11,7 @@ namespace quintet::scene {
 
 // Throws Error with the name of the object ("meshes[2] 'chair'.geometries[0].normals: 3 elements for 4 vertices") for the first
 // index out of range, attribute of the wrong length, position or transform that is not finite, singular transform,
-// invalid CSG tree (procedural.h), material property out of its range (scene.h), value that does not fit its bits, scale of a normal map, alpha cutoff or
+// invalid CSG tree (procedural.h), material property or cone angle out of its range (scene.h), value that does not fit its bits, scale of a normal map, alpha cutoff or
 // texture transform that is not finite, keyframes that do not ascend or whose scale
 // changes its sign, texture without an image.
 void validate(const Scene&);

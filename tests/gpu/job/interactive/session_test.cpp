@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "io/codec.h"
+#include "job/interactive/command_json.h"
 #include "job/films.h"
 #include "program/load.h"
 #include "temp_folder.h"
@@ -268,6 +269,25 @@ TEST_F(SessionTest, EditsGiveTheFilmOfTheEditedScene) {
     session->refine();
     EXPECT_TRUE(test::equalSums(sums(*session), before)) << edit.name;
   }
+}
+
+// The members of a JSON object are read in alphabetical order.
+TEST_F(SessionTest, LightPropertiesDoNotDependOnTheirOrder) {
+  writeFile(folder_ / "a.scene.toml", replaced(litScene(), "intensity = 20.0", "intensity = 0.0"));
+  const auto session = makeSession(request(1));
+  const auto apply = [&](const std::string& json) {
+    JsonFields fields(json);
+    session->apply(parseCommand(fields.text("do"), fields));
+  };
+  apply(R"({"do":"light","name":"lamp","color":[1,0,0],"intensity":5})");
+  EXPECT_EQ(session->light(0).light.intensity, vec3(5, 0, 0));
+  apply(R"({"do":"light","name":"spot","innerConeAngle":40,"outerConeAngle":60})");
+  EXPECT_NEAR(session->light(1).light.innerConeAngle, glm::radians(40.0f), 1e-6f);
+  apply(R"({"do":"light","name":"spot","innerConeAngle":10,"outerConeAngle":20})");
+  EXPECT_NEAR(session->light(1).light.outerConeAngle, glm::radians(20.0f), 1e-6f);
+  EXPECT_THAT([&] { apply(R"({"do":"light","name":"spot","innerConeAngle":21})"); },
+              testing::ThrowsMessage<UsageError>(testing::HasSubstr("lights[1] 'spot': the cone angles")));
+  EXPECT_NEAR(session->light(1).light.innerConeAngle, glm::radians(10.0f), 1e-6f);
 }
 
 TEST_F(SessionTest, TheEnvironmentTurnsInPlace) {

@@ -113,6 +113,18 @@ TEST(Validate, ReportsTheFirstError) {
               IsErrorAt("scene: materials[0].normalScale", "not finite"));
   EXPECT_THAT(faultOf([](auto& s) { s.materials[0].alphaCutoff = NAN; }),
               IsErrorAt("scene: materials[0].alphaCutoff", "not finite"));
+  const auto spot = [](float inner, float outer) {
+    return [=](scene::Scene& s) {
+      s.lights[0].type = scene::LightType::spot;
+      s.lights[0].innerConeAngle = glm::radians(inner);
+      s.lights[0].outerConeAngle = glm::radians(outer);
+    };
+  };
+  EXPECT_EQ(faultOf(spot(90, 90)), "none");
+  EXPECT_THAT(faultOf(spot(50, 45)), IsErrorAt("scene: lights[0]", "not 50 and 45"));
+  EXPECT_THAT(faultOf(spot(-1, 45)), IsErrorAt("scene: lights[0]", "not -1 and 45"));
+  EXPECT_THAT(faultOf(spot(0, 91)), IsErrorAt("scene: lights[0]", "not 0 and 91"));
+  EXPECT_THAT(faultOf(spot(NAN, 45)), IsErrorAt("scene: lights[0]", "not nan and 45"));
   EXPECT_THAT(faultOf([](auto& s) { s.textures[0].image = -1; }),
               IsErrorAt("scene: textures[0] 'texture'.image", "-1 of 1"));
   EXPECT_THAT(faultOf([](auto& s) { s.images[0].image.width = 2; }), IsErrorAt("scene: images[0]", "3 bytes"));
