@@ -35,7 +35,7 @@ struct Note {
 struct Warning {
   std::string text;
 };
-// The render stopped until the next command or save.
+// The render stopped until a command discards the samples, a file of the program is saved, or Session::refine().
 struct Failed {
   std::string message;
 };

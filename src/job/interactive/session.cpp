@@ -518,6 +518,7 @@ double Session::secondsUntilWork() const {
 
 std::vector<Event> Session::refine(const std::function<bool()>& interrupted) {
   direct_ = true;
+  failed_ = false;  // the caller requires an image, so it gets that or the error again
   try {
     std::vector<Event> events = step(std::numeric_limits<double>::infinity(), interrupted);
     direct_ = false;

@@ -86,7 +86,7 @@ class Session {
   // on a CPU and 0.01 s on a GPU: true abandons the batch in progress, whose samples are lost. Throws gpu errors and
   // TimeoutError.
   std::vector<Event> step(double seconds, const std::function<bool()>& interrupted = {});
-  // Refines to all samples, without images of reduced resolution.
+  // Refines to all samples, without images of reduced resolution. After Failed, it tries again.
   std::vector<Event> refine(const std::function<bool()>& interrupted = {});
   // Until step() has something to render: 0 if it has now, infinity if the image is complete. Saves of files are not
   // included.
@@ -173,7 +173,7 @@ class Session {
   bool sizeOfWindow_ = false;       // SetSize::ofWindow was applied
   bool imageChanged_ = false;       // since the last event
   const void* measured_ = nullptr;  // renderer that has run: its times do not include compilation by the driver
-  bool failed_ = false;             // until the next command or save
+  bool failed_ = false;             // as of Failed
 };
 
 }  // namespace quintet::job::interactive

@@ -635,6 +635,26 @@ class SessionReload : public SessionTest {
   std::uint8_t red(const Session& session) { return session.image().pixel<std::uint8_t>(0, 0)[0]; }
 };
 
+// The program compiles only for scenes without clear coat.
+TEST_F(SessionReload, ReportsAFailureUntilItIsCorrected) {
+  writeFile(folder_ / "p.rt.glsl",
+            "#ifndef QUINTET_NO_CLEARCOAT\n#error no clear coat\n#endif\n"
+            "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(1.0, 0.0, 0.0, 1.0));\n}\n");
+  const auto session = makeSession(request(1), (folder_ / "p.rt.glsl").string());
+  EXPECT_EQ(find<Failed>(session->refine()), nullptr);
+  session->apply(EditMaterial{"red", {{"clearcoat", {1}}}});
+  EXPECT_NE(find<Failed>(session->step(0)), nullptr);
+  EXPECT_TRUE(session->step(0).empty());
+  EXPECT_EQ(session->secondsUntilWork(), std::numeric_limits<double>::infinity());
+  EXPECT_NE(find<Failed>(session->refine()), nullptr);
+  session->apply(Undo{});
+  const std::vector<Event> events = session->refine();
+  EXPECT_EQ(find<Failed>(events), nullptr);
+  ASSERT_NE(find<ImageUpdated>(events), nullptr);
+  EXPECT_TRUE(find<ImageUpdated>(events)->complete);
+  EXPECT_EQ(red(*session), 255);
+}
+
 TEST_F(SessionReload, KeepsTheLastGoodProgram) {
   save("1.0, 0.0, 0.0, 1.0");
   const auto session = makeSession(request(1), (folder_ / "p.rt.glsl").string());
