@@ -444,6 +444,10 @@ void Session::show(const SessionState& next) {
     edit(transformIn(state_, i) != transform, [&] { job_->setTransform(i, transform); });
   }
   const bool otherProgram = shown.program != state_.program;
+  if (kept_ && shown.output != state_.output) {  // it shows the output before, and the film has no samples
+    kept_.reset();
+    preview_ = refining_ = false;
+  }
   state_ = std::move(shown);
   if (otherProgram) {
     watched_ = {};

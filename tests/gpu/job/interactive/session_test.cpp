@@ -460,6 +460,35 @@ TEST_F(SessionTest, BecomesSharperInSteps) {
   EXPECT_TRUE(test::equalSums(sums(*session), reference(large)));
 }
 
+// The program has two outputs, a red and a green one.
+TEST_F(SessionTest, APreviewShowsTheSelectedOutput) {
+  writeFile(folder_ / "program.toml",
+            "[program]\nray_generation = \"main.rgen\"\n"
+            "[[ray]]\nname = \"radiance\"\nmiss = \"<quintet/stages/radiance.rmiss>\"\n[[output]]\nname = \"a\"\nkind = \"linear\"\n"
+            "[[output]]\nname = \"b\"\nkind = \"linear\"\n");
+  writeFile(folder_ / "main.rgen",
+            "#version 460\n#extension GL_EXT_ray_tracing : require\n#include <quintet/output.glsl>\n"
+            "void main() {\n  const uvec2 pixel = launchPixel();\n  const float n = float(launch.sampleCount);\n"
+            "  storeOutput(kOutput_a, pixel, loadOutput(kOutput_a, pixel) + n * vec4(1, 0, 0, 1));\n"
+            "  storeOutput(kOutput_b, pixel, loadOutput(kOutput_b, pixel) + n * vec4(0, 1, 0, 1));\n}\n");
+  RenderRequest large = request();
+  large.size = {256, 256};  // more than one launch
+  const auto session = makeSession(large, folder_.path().string());
+  for (int i = 0; i < 4; ++i) {
+    session->step(0);
+    now_ += 0.25;
+  }
+  EXPECT_EQ(find<ImageUpdated>(session->step(1, [] { return true; })), nullptr) << "the refinement has no samples";
+  EXPECT_EQ(session->image().pixel<std::uint8_t>(0, 0)[0], 255);
+  session->apply(SelectOutput{"b"});
+  const std::vector<Event> events = session->step(0);
+  EXPECT_EQ(find<Restarted>(events), nullptr);
+  ASSERT_NE(find<ImageUpdated>(events), nullptr);
+  EXPECT_EQ(session->image().pixel<std::uint8_t>(0, 0)[0], 0);
+  EXPECT_EQ(session->image().pixel<std::uint8_t>(0, 0)[1], 255);
+  EXPECT_EQ(session->image().width, find<ImageUpdated>(events)->size.x);
+}
+
 TEST_F(SessionTest, UndoRestoresTheFilm) {
   const auto session = makeSession(request());
   session->refine();
