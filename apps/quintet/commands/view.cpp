@@ -89,8 +89,9 @@ class Script {
     if (output::isStandardOutput(file)) throw UsageError("standard output has the events; save to a file");
     if (output::fileKind(file) == output::FileKind::film)
       throw UsageError(fmt::format("{}: a session writes images; use 'quintet render' for films", file));
+    static_cast<void>(output::planOutputs(request, session_.program()));  // reports mistakes before the render
+    report(session_.refine());                                            // can reload the program
     const output::OutputPlan plan = output::planOutputs(request, session_.program());
-    report(session_.refine());
     output::writeOutputs(plan, session_.result(), console_);
     printLine(job::interactive::savedJson(file));
   }
