@@ -41,7 +41,7 @@ ResolvedJob resolveSession(const SessionRequest& session, const std::shared_ptr<
   request.bounds = bounds;
   request.loadedScene = scene;
   request.editable = true;
-  request.launchSeconds = launchSeconds;
+  if (!(request.launchSeconds > 0)) request.launchSeconds = launchSeconds;
   const auto samples = static_cast<std::uint32_t>(request.limits.samples.value_or(kDefaultSamples));
   request.limits = {};
   request.limits.samples = samples;
@@ -557,10 +557,11 @@ std::vector<Event> Session::step(double seconds, const std::function<bool()>& in
     fail(error);
   }
   if (imageChanged_ && (samples_ > 0 || kept_) && !failed_) {
+    const bool showsKept = kept_ && samples_ == 0;
     ImageUpdated image;
     image.samples = std::max<std::uint64_t>(samples_, 1);
-    image.size = filmSize_;
-    image.factor = preview_ ? previewFactor_ : 1;
+    image.size = showsKept ? uvec2(kept_->width, kept_->height) : filmSize_;
+    image.factor = preview_ || showsKept ? previewFactor_ : 1;
     image.seconds = seconds_;
     image.complete = !preview_ && samples_ >= state_.samples;
     recorder_->add(image);
@@ -584,20 +585,27 @@ bool Session::renderNext() {
   return renderBatch();
 }
 
+// The image stays that of the last preview until the next batch is complete.
+void Session::keepPreview() {
+  if (preview_) kept_ = linearImage();
+}
+
 bool Session::renderPreview(unsigned factor) {
+  keepPreview();
   const uvec2 size = reducedSize(state_.size, factor);
   if (filmSize_ != size) job_->setSize(size);
   job_->restart();
   filmSize_ = size;
   samples_ = 0;
   seconds_ = 0;
+  if (!added(job_->renderBatch(1, *recorder_), 1, factor)) return false;
   previewFactor_ = factor;
-  preview_ = added(job_->renderBatch(1, *recorder_), 1, factor);
-  return preview_;
+  preview_ = true;
+  return true;
 }
 
 void Session::beginRefinement() {
-  if (preview_ && previewFactor_ == 1) kept_ = linearImage();
+  keepPreview();
   if (filmSize_ != state_.size) job_->setSize(state_.size);
   filmSize_ = state_.size;
   job_->restart();

@@ -59,7 +59,8 @@ struct SessionState {
 
 struct SessionRequest {
   std::string program = "pathtracer";  // name, folder or file
-  // Scene, camera, environment, size, seed, parameters, and limits.samples (default: 64).
+  // Scene, camera, environment, size, seed, parameters, limits.samples (default: 64), and launchSeconds (default: 0.05
+  // on a CPU, 0.01 on a GPU).
   RenderRequest render;
   double updatesPerSecond = 0;  // while something moves; 0 means 12 on a CPU, else 90
 };
@@ -82,8 +83,8 @@ class Session {
 
   // Renders for about this time, at least one image if there is work, and returns what happened since the last step.
   // Returns at once if a command has only changed how the image is displayed.
-  // Reloads the program if one of its files was saved. `interrupted` is asked between launches, which take about 0.05 s
-  // on a CPU and 0.01 s on a GPU: true abandons the batch in progress, whose samples are lost. Throws gpu errors and
+  // Reloads the program if one of its files was saved. `interrupted` is asked between launches, which take about
+  // RenderRequest::launchSeconds: true abandons the batch in progress, whose samples are lost. Throws gpu errors and
   // TimeoutError.
   std::vector<Event> step(double seconds, const std::function<bool()>& interrupted = {});
   // Refines to all samples, without images of reduced resolution. After Failed, it tries again.
@@ -145,6 +146,7 @@ class Session {
   void work(double end);
   bool renderNext();  // false: interrupted
   bool added(std::optional<double> seconds, std::uint64_t samples, unsigned factor);
+  void keepPreview();
   bool renderPreview(unsigned factor);
   bool renderBatch();
   void beginRefinement();
@@ -166,10 +168,10 @@ class Session {
   double seconds_ = 0;              // in which they were rendered
   double lastRestart_ = 0;          // on clock_
   unsigned previewFactor_ = 1;      // of the latest preview
-  bool preview_ = false;            // the film is that of a preview, which is not refined
+  bool preview_ = false;            // the image is a preview, which is not refined
   bool refining_ = false;           // since the last restart, the film has its full size
   bool direct_ = false;             // no previews: during refine()
-  std::optional<io::Image> kept_;   // linear image of the last preview, until refinement has samples
+  std::optional<io::Image> kept_;   // linear image of the last preview, while the film has no samples
   bool sizeOfWindow_ = false;       // SetSize::ofWindow was applied
   bool imageChanged_ = false;       // since the last event
   const void* measured_ = nullptr;  // renderer that has run: its times do not include compilation by the driver

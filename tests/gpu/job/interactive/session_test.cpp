@@ -460,6 +460,33 @@ TEST_F(SessionTest, BecomesSharperInSteps) {
   EXPECT_TRUE(test::equalSums(sums(*session), reference(large)));
 }
 
+TEST_F(SessionTest, AnInterruptedPreviewKeepsTheImage) {
+  RenderRequest large = request();
+  large.size = {256, 256};
+  large.launchSeconds = 1e-6;  // each row is a launch, so that the interruption is seen
+  const auto session = makeSession(large);
+  unsigned factor = 0;
+  while (factor != 2) {
+    const std::vector<Event> events = session->step(0);
+    ASSERT_NE(find<ImageUpdated>(events), nullptr);
+    factor = find<ImageUpdated>(events)->factor;
+    now_ += 0.25;
+  }
+  const std::vector<std::byte> image = session->image().data;
+  EXPECT_TRUE(session->step(1, [] { return true; }).empty());
+  EXPECT_EQ(session->image().data, image);
+  session->apply(SetExposure{3});
+  std::vector<Event> events = session->step(1, [] { return true; });
+  ASSERT_NE(find<ImageUpdated>(events), nullptr);
+  EXPECT_EQ(find<ImageUpdated>(events)->size, uvec2(128));
+  EXPECT_EQ(find<ImageUpdated>(events)->factor, 2u);
+  EXPECT_NE(session->image().data, image);
+  EXPECT_EQ(session->image().width, 128u);
+  events = session->step(0);
+  ASSERT_NE(find<ImageUpdated>(events), nullptr);
+  EXPECT_EQ(find<ImageUpdated>(events)->factor, 1u) << "it does not start over";
+}
+
 // The program has two outputs, a red and a green one.
 TEST_F(SessionTest, APreviewShowsTheSelectedOutput) {
   writeFile(folder_ / "program.toml",
@@ -468,11 +495,13 @@ TEST_F(SessionTest, APreviewShowsTheSelectedOutput) {
             "[[output]]\nname = \"b\"\nkind = \"linear\"\n");
   writeFile(folder_ / "main.rgen",
             "#version 460\n#extension GL_EXT_ray_tracing : require\n#include <quintet/output.glsl>\n"
+            "#include <quintet/generated/program.glsl>\n"
             "void main() {\n  const uvec2 pixel = launchPixel();\n  const float n = float(launch.sampleCount);\n"
             "  storeOutput(kOutput_a, pixel, loadOutput(kOutput_a, pixel) + n * vec4(1, 0, 0, 1));\n"
             "  storeOutput(kOutput_b, pixel, loadOutput(kOutput_b, pixel) + n * vec4(0, 1, 0, 1));\n}\n");
   RenderRequest large = request();
-  large.size = {256, 256};  // more than one launch
+  large.size = {256, 256};
+  large.launchSeconds = 1e-6;  // each row is a launch
   const auto session = makeSession(large, folder_.path().string());
   for (int i = 0; i < 4; ++i) {
     session->step(0);
