@@ -28,6 +28,9 @@ class History {
   // The value to which undo() or redo() leads.
   const Value& undone() const { return undo_.back(); }
   const Value& redone() const { return redo_.back(); }
+  // Removes the step of undone() or redone(), which cannot be shown.
+  void dropUndo() { drop(undo_); }
+  void dropRedo() { drop(redo_); }
   // `current`: the value until now.
   void undo(Value current) { move(undo_, redo_, std::move(current)); }
   void redo(Value current) { move(redo_, undo_, std::move(current)); }
@@ -35,7 +38,10 @@ class History {
  private:
   void move(std::vector<Value>& from, std::vector<Value>& to, Value current) {
     to.push_back(std::move(current));
-    from.pop_back();
+    drop(from);
+  }
+  void drop(std::vector<Value>& steps) {
+    steps.pop_back();
     endGroup();
   }
 

@@ -193,7 +193,13 @@ void Session::apply(const Command& command) {
   SessionState before = state_;
   SessionState next = isUndo ? history_.undone() : isRedo ? history_.redone() : changed(command);
   if (sizeOfWindow_ && (isUndo || isRedo)) next.size = state_.size;
-  show(next);
+  try {
+    show(next);
+  } catch (const Error&) {  // such as a program whose file no longer exists
+    if (isUndo) history_.dropUndo();
+    if (isRedo) history_.dropRedo();
+    throw;
+  }
   if (isUndo)
     history_.undo(std::move(before));
   else if (isRedo)

@@ -76,7 +76,8 @@ class Session {
   ~Session();
 
   // Throws UsageError and FileError, and ProgramError for a program or an output whose code does not compile, and then
-  // changes nothing. Undo and redo without a step are errors, too.
+  // changes nothing. Undo and redo without a step are errors, too. A step that cannot be shown, because a file has
+  // changed since, is removed, so that the next undo or redo reaches the step after it.
   void apply(const Command& command);
   bool canUndo() const { return history_.canUndo(); }
   bool canRedo() const { return history_.canRedo(); }

@@ -4,6 +4,7 @@
 #include "job/interactive/session.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
@@ -711,6 +712,22 @@ TEST_F(SessionReload, ReportsAFailureUntilItIsCorrected) {
   ASSERT_NE(find<ImageUpdated>(events), nullptr);
   EXPECT_TRUE(find<ImageUpdated>(events)->complete);
   EXPECT_EQ(red(*session), 255);
+}
+
+TEST_F(SessionReload, UndoSkipsWhatNoLongerExists) {
+  save("1.0, 0.0, 0.0, 1.0");
+  const auto session = makeSession(request(1), "normals");
+  session->apply(SetExposure{1});
+  session->apply(SetProgram{(folder_ / "p.rt.glsl").string()});
+  session->apply(SetProgram{"ao"});
+  std::filesystem::remove(folder_ / "p.rt.glsl");
+  EXPECT_THROW(session->apply(Undo{}), Error);
+  EXPECT_EQ(session->state().program, "ao");
+  session->apply(Undo{});
+  EXPECT_EQ(session->state().program, "normals");
+  EXPECT_EQ(session->state().exposure, 1.0);
+  session->apply(Redo{});
+  EXPECT_EQ(session->state().program, "ao");
 }
 
 TEST_F(SessionReload, KeepsTheLastGoodProgram) {

@@ -51,6 +51,19 @@ TEST(SessionHistory, ANewStepEndsRedo) {
   EXPECT_EQ(edited.value, 0);
 }
 
+TEST(SessionHistory, DropsAStep) {
+  Edited edited;
+  edited.set(1);
+  edited.set(2, "orbit");
+  edited.history.dropUndo();
+  EXPECT_EQ(edited.history.undone(), 0);
+  edited.set(3, "orbit");
+  edited.undo();
+  EXPECT_EQ(edited.value, 2) << "the next step is a new one";
+  edited.history.dropRedo();
+  EXPECT_FALSE(edited.history.canRedo());
+}
+
 TEST(SessionHistory, AGroupIsOneStep) {
   Edited edited;
   edited.set(1, "orbit");
