@@ -25,11 +25,6 @@ constexpr double kIdleSeconds = 0.1;    // between checks for saved files of the
 constexpr double kMovingSeconds = 0.3;  // after a command, images of reduced resolution are not interrupted
 constexpr double kRateSeconds = 0.25;   // between measurements of the rate of rays, which wait for the device
 
-// The names of the properties of an edit.
-bool sameNames(const std::vector<interactive::Property>& a, const std::vector<interactive::Property>& b) {
-  return std::ranges::equal(a, b, {}, &interactive::Property::name, &interactive::Property::name);
-}
-
 // The request keeps the samples, so it does not interrupt a batch.
 template <class Request>
 bool onlyDisplays(const Request& request) {
@@ -39,42 +34,20 @@ bool onlyDisplays(const Request& request) {
                      std::holds_alternative<interactive::EndDrag>(*command));
 }
 
-template <class T>
-const T* as(const interactive::Command& command) {
-  return std::get_if<T>(&command);
+template <class... Kinds>
+bool isAny(const interactive::Command& command) {
+  return (std::holds_alternative<Kinds>(command) || ...);
 }
 
 }  // namespace
 
 bool overwrites(const interactive::Command& next, const interactive::Command& last) {
+  using namespace interactive;
   if (next.index() != last.index()) return false;
-  if (const auto* command = as<interactive::SetParameter>(next))
-    return command->name == as<interactive::SetParameter>(last)->name;
-  if (const auto* command = as<interactive::EditMaterial>(next)) {
-    const auto* before = as<interactive::EditMaterial>(last);
-    return command->material == before->material && sameNames(command->properties, before->properties);
-  }
-  if (const auto* command = as<interactive::EditLight>(next)) {
-    const auto* before = as<interactive::EditLight>(last);
-    return command->light == before->light && sameNames(command->properties, before->properties);
-  }
-  if (const auto* command = as<interactive::SetTransform>(next))
-    return command->instance == as<interactive::SetTransform>(last)->instance;
-  if (const auto* command = as<interactive::SetLens>(next)) {
-    const auto* before = as<interactive::SetLens>(last);
-    return command->verticalFov.has_value() == before->verticalFov.has_value() &&
-           command->apertureRadius.has_value() == before->apertureRadius.has_value() &&
-           command->focusDistance.has_value() == before->focusDistance.has_value();
-  }
-  if (const auto* command = as<interactive::SetEnvironment>(next)) {
-    const auto* before = as<interactive::SetEnvironment>(last);
-    return command->source.has_value() == before->source.has_value() &&
-           command->intensity.has_value() == before->intensity.has_value() &&
-           command->rotation.has_value() == before->rotation.has_value() &&
-           command->on.has_value() == before->on.has_value();
-  }
-  return as<interactive::SetFrame>(next) || as<interactive::SetExposure>(next) || as<interactive::SetSize>(next) ||
-         as<interactive::SetSamples>(next) || as<interactive::SetToneMap>(next);
+  if (isAny<SetSamples, SetToneMap>(next)) return true;
+  if (isAny<Orbit, Pan, Zoom, Fly, Move>(next)) return false;  // they add up
+  const std::string group = undoGroup(next);
+  return !group.empty() && group == undoGroup(last);
 }
 
 // Forwards the stages of the work, and remembers that the device hangs.

@@ -114,5 +114,9 @@ using Command = std::variant<Orbit, Pan, Zoom, Fly, Frame, SetOrbitCenter, SetCa
                              EditMaterial, EditLight, SetEnvironment, SetTransform, Move, SetFrame, SelectOutput,
                              SetExposure, SetToneMap, SetSize, SetSamples, EndDrag, Undo, Redo>;
 
+// What a command changes: the kind of the command and its target. Commands of the same group, one after the other, are
+// one step of undo; an empty group is a step of its own.
+std::string undoGroup(const Command& command);
+
 }  // namespace quintet::job::interactive
 #endif

@@ -77,41 +77,6 @@ void requirePositive(double value, const char* name) {
   if (!(value > 0.0) || !std::isfinite(value)) throw UsageError(fmt::format("{} {} must be above 0", name, value));
 }
 
-// What a command changes. Commands of the same group, one after the other, are one step of undo; an empty group is a
-// step of its own.
-struct UndoGroup {
-  static std::string with(const char* kind, const std::string& name, const std::vector<Property>& properties) {
-    std::string group = fmt::format("{}:{}", kind, name);
-    for (const Property& property : properties) group += ":" + property.name;
-    return group;
-  }
-
-  std::string operator()(const Orbit&) const { return "orbit"; }
-  std::string operator()(const Pan&) const { return "pan"; }
-  std::string operator()(const Zoom&) const { return "zoom"; }
-  std::string operator()(const Fly&) const { return "fly"; }
-  std::string operator()(const SetLens& c) const {
-    return fmt::format("lens:{}{}{}", c.verticalFov.has_value(), c.apertureRadius.has_value(),
-                       c.focusDistance.has_value());
-  }
-  std::string operator()(const SetParameter& c) const { return "parameter:" + c.name; }
-  std::string operator()(const EditMaterial& c) const { return with("material", c.material, c.properties); }
-  std::string operator()(const EditLight& c) const { return with("light", c.light, c.properties); }
-  std::string operator()(const SetEnvironment& c) const {
-    return fmt::format("environment:{}{}{}{}", c.source.has_value(), c.intensity.has_value(), c.rotation.has_value(),
-                       c.on.has_value());
-  }
-  std::string operator()(const SetTransform& c) const { return "transform:" + c.instance; }
-  std::string operator()(const Move& c) const { return "move:" + c.instance; }
-  std::string operator()(const SetFrame&) const { return "frame"; }
-  std::string operator()(const SetExposure&) const { return "exposure"; }
-  std::string operator()(const SetSize&) const { return "size"; }
-  template <class T>
-  std::string operator()(const T&) const {
-    return {};
-  }
-};
-
 }  // namespace
 
 // Turns the reports of the job into events, and stops it.
@@ -205,7 +170,7 @@ void Session::apply(const Command& command) {
   else if (isRedo)
     history_.redo(std::move(before));
   else
-    history_.add(std::move(before), std::visit(UndoGroup{}, command));
+    history_.add(std::move(before), undoGroup(command));
 }
 
 // The state after a command. It is checked when it is shown.

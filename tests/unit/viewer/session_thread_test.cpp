@@ -21,11 +21,16 @@ TEST(CommandQueue, KeepsOnlyTheLatestValue) {
   EXPECT_TRUE(overwrites(SetTransform{"i", mat4(1)}, SetTransform{"i", mat4(2)}));
   EXPECT_TRUE(overwrites(SetLens{.verticalFov = 1.0f}, SetLens{.verticalFov = 2.0f}));
   EXPECT_TRUE(overwrites(SetEnvironment{.rotation = 1.0f}, SetEnvironment{.rotation = 2.0f}));
+  EXPECT_TRUE(overwrites(SetSamples{1}, SetSamples{2}));
+  EXPECT_TRUE(overwrites(SetToneMap{}, SetToneMap{render::ToneMap::linear}));
 }
 
 TEST(CommandQueue, KeepsCommandsThatAddUp) {
   EXPECT_FALSE(overwrites(Orbit{1, 0}, Orbit{1, 0}));
+  EXPECT_FALSE(overwrites(Pan{{1, 0}}, Pan{{1, 0}}));
   EXPECT_FALSE(overwrites(Zoom{2}, Zoom{2}));
+  EXPECT_FALSE(overwrites(Fly{{1, 0, 0}}, Fly{{1, 0, 0}}));
+  EXPECT_FALSE(overwrites(Move{"i", {1, 0, 0}}, Move{"i", {1, 0, 0}}));
   EXPECT_FALSE(overwrites(Undo{}, Undo{}));
   EXPECT_FALSE(overwrites(EndDrag{}, EndDrag{}));
 }

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/interactive/command.h"
+
+#include <fmt/format.h>
+
+namespace quintet::job::interactive {
+namespace {
+
+// Line breaks separate names, because names of a scene can have any other character.
+struct GroupOf {
+  static std::string ofProperties(const char* kind, const std::string& name, const std::vector<Property>& properties) {
+    std::string group = fmt::format("{}\n{}", kind, name);
+    for (const Property& property : properties) group += "\n" + property.name;
+    return group;
+  }
+
+  std::string operator()(const Orbit&) const { return "orbit"; }
+  std::string operator()(const Pan&) const { return "pan"; }
+  std::string operator()(const Zoom&) const { return "zoom"; }
+  std::string operator()(const Fly&) const { return "fly"; }
+  std::string operator()(const SetLens& c) const {
+    return fmt::format("lens {} {} {}", c.verticalFov.has_value(), c.apertureRadius.has_value(),
+                       c.focusDistance.has_value());
+  }
+  std::string operator()(const SetParameter& c) const { return "parameter\n" + c.name; }
+  std::string operator()(const EditMaterial& c) const { return ofProperties("material", c.material, c.properties); }
+  std::string operator()(const EditLight& c) const { return ofProperties("light", c.light, c.properties); }
+  std::string operator()(const SetEnvironment& c) const {
+    return fmt::format("environment {} {} {} {}", c.source.has_value(), c.intensity.has_value(), c.rotation.has_value(),
+                       c.on.has_value());
+  }
+  std::string operator()(const SetTransform& c) const { return "transform\n" + c.instance; }
+  std::string operator()(const Move& c) const { return "move\n" + c.instance; }
+  std::string operator()(const SetFrame&) const { return "frame"; }
+  std::string operator()(const SetExposure&) const { return "exposure"; }
+  std::string operator()(const SetSize&) const { return "size"; }
+  template <class T>
+  std::string operator()(const T&) const {
+    return {};
+  }
+};
+
+}  // namespace
+
+std::string undoGroup(const Command& command) { return std::visit(GroupOf{}, command); }
+
+}  // namespace quintet::job::interactive

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/interactive/command.h"
+
+#include <gtest/gtest.h>
+
+namespace quintet::job::interactive {
+namespace {
+
+TEST(UndoGroup, IsTheKindAndTheTarget) {
+  EXPECT_EQ(undoGroup(Orbit{1, 0}), undoGroup(Orbit{2, 3}));
+  EXPECT_NE(undoGroup(Orbit{}), undoGroup(Pan{}));
+  EXPECT_EQ(undoGroup(SetParameter{"a", "1"}), undoGroup(SetParameter{"a", "2"}));
+  EXPECT_NE(undoGroup(SetParameter{"a", "1"}), undoGroup(SetParameter{"b", "1"}));
+  EXPECT_NE(undoGroup(SetTransform{"i"}), undoGroup(Move{"i"}));
+  EXPECT_NE(undoGroup(Move{"i"}), undoGroup(Move{"j"}));
+  EXPECT_NE(undoGroup(SetLens{.verticalFov = 1.0f}), undoGroup(SetLens{.focusDistance = 1.0f}));
+  EXPECT_NE(undoGroup(SetEnvironment{.on = true}), undoGroup(SetEnvironment{.rotation = 1.0f}));
+}
+
+TEST(UndoGroup, HasTheNamesOfProperties) {
+  EXPECT_EQ(undoGroup(EditMaterial{"m", {{"roughness", {1}}}}), undoGroup(EditMaterial{"m", {{"roughness", {0}}}}));
+  EXPECT_NE(undoGroup(EditMaterial{"m", {{"roughness", {1}}}}), undoGroup(EditMaterial{"n", {{"roughness", {1}}}}));
+  EXPECT_NE(undoGroup(EditMaterial{"m", {{"roughness", {1}}}}), undoGroup(EditMaterial{"m", {{"metallic", {1}}}}));
+  EXPECT_NE(undoGroup(EditMaterial{"m", {{"a", {1}}, {"b", {1}}}}), undoGroup(EditMaterial{"m:a", {{"b", {1}}}}));
+  EXPECT_NE(undoGroup(EditMaterial{"m", {{"on", {1}}}}), undoGroup(EditLight{"m", {{"on", {1}}}}));
+}
+
+TEST(UndoGroup, IsEmptyForStepsOfTheirOwn) {
+  EXPECT_EQ(undoGroup(SetProgram{"ao"}), "");
+  EXPECT_EQ(undoGroup(SelectOutput{"color"}), "");
+  EXPECT_EQ(undoGroup(SetCamera{}), "");
+}
+
+}  // namespace
+}  // namespace quintet::job::interactive
