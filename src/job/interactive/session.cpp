@@ -73,6 +73,17 @@ std::vector<std::string> outputsFor(const program::Program& program, const std::
   return program.outputs[index].optional ? std::vector<std::string>{output} : std::vector<std::string>{};
 }
 
+// Those whose values differ, or that only one of the maps has. A scene can have 10⁶ objects, of which few are edited.
+template <class Value>
+std::vector<std::size_t> changedKeys(const std::map<std::size_t, Value>& a, const std::map<std::size_t, Value>& b) {
+  std::vector<std::size_t> keys;
+  for (const auto& [key, value] : a)
+    if (const auto found = b.find(key); found == b.end() || !(found->second == value)) keys.push_back(key);
+  for (const auto& [key, value] : b)
+    if (!a.contains(key)) keys.push_back(key);
+  return keys;
+}
+
 void requirePositive(double value, const char* name) {
   if (!(value > 0.0) || !std::isfinite(value)) throw UsageError(fmt::format("{} {} must be above 0", name, value));
 }
@@ -391,29 +402,19 @@ void Session::show(const SessionState& next) {
     if (!next.environmentOn) environment.source = "none";
     job_->setEnvironment(environment);
   });
-  for (std::size_t i = 0; i < scene_->materials.size(); ++i) {
-    const scene::Material& material = materialIn(next, i);
-    edit(&materialIn(state_, i) != &material, [&] { job_->setMaterial(i, material); });
-  }
-  for (std::size_t i = 0; i < scene_->lights.size(); ++i) {
-    const auto editedIn = [&](const SessionState& state) {
-      const auto found = state.lights.find(i);
-      return found != state.lights.end() ? found->second.get() : nullptr;
-    };
-    edit(editedIn(state_) != editedIn(next), [&] {
+  for (const std::size_t i : changedKeys(state_.materials, next.materials))
+    edit(true, [&] { job_->setMaterial(i, materialIn(next, i)); });
+  for (const std::size_t i : changedKeys(state_.lights, next.lights))
+    edit(true, [&] {
       LightState light = lightIn(next, i);
       if (!light.on) light.light.intensity = vec3(0.0f);
       job_->setLight(i, light.light);
     });
-  }
-  const auto transformIn = [&](const SessionState& state, std::size_t i) {
-    const auto edited = state.transforms.find(i);
-    return edited != state.transforms.end() ? edited->second : scene_->instances[i].worldFromObject;
-  };
-  for (std::size_t i = 0; i < scene_->instances.size(); ++i) {
-    const mat4 transform = transformIn(next, i);
-    edit(transformIn(state_, i) != transform, [&] { job_->setTransform(i, transform); });
-  }
+  for (const std::size_t i : changedKeys(state_.transforms, next.transforms))
+    edit(true, [&] {
+      const auto edited = next.transforms.find(i);
+      job_->setTransform(i, edited != next.transforms.end() ? edited->second : scene_->instances[i].worldFromObject);
+    });
   const bool otherProgram = shown.program != state_.program;
   if (kept_ && shown.output != state_.output) {  // it shows the output before, and the film has no samples
     kept_.reset();
