@@ -227,6 +227,7 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   includedFiles_ = std::move(includedFiles);
   diagnostics_ = std::move(warnings);
   provenance_.programHash = programHash(job_.program, includedHashes);
+  ++linkCount_;
 }
 
 void RenderJob::setSize(uvec2 size) {

@@ -602,9 +602,8 @@ bool Session::added(std::optional<double> seconds, std::uint64_t samples, unsign
   seconds_ += *seconds;
   imageChanged_ = true;
   kept_.reset();
-  const void* renderer = &job_->renderer();
-  if (renderer == measured_) resolution_.measured(factor, *seconds / static_cast<double>(samples));
-  measured_ = renderer;
+  if (measuredLink_ == job_->linkCount()) resolution_.measured(factor, *seconds / static_cast<double>(samples));
+  measuredLink_ = job_->linkCount();
   return true;
 }
 

@@ -175,7 +175,7 @@ class Session {
   std::optional<io::Image> kept_;   // linear image of the last preview, while the film has no samples
   bool sizeOfWindow_ = false;       // SetSize::ofWindow was applied
   bool imageChanged_ = false;       // since the last event
-  const void* measured_ = nullptr;  // renderer that has run: its times do not include compilation by the driver
+  std::uint64_t measuredLink_ = 0;  // RenderJob::linkCount() of the last image; its time can include compilation
   bool failed_ = false;             // as of Failed
 };
 
