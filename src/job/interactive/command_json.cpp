@@ -41,6 +41,10 @@ Command parseLens(JsonFields& fields) {
   lens.verticalFov = findReal(fields, "fov");
   lens.apertureRadius = findReal(fields, "aperture");
   lens.focusDistance = findReal(fields, "focus");
+  if (!lens.verticalFov && !lens.apertureRadius && !lens.focusDistance) {
+    fields.rejectOthers();  // a misspelled name explains more
+    throw UsageError("no value of the lens is given");
+  }
   return lens;
 }
 
@@ -70,6 +74,10 @@ Command parseEnvironment(JsonFields& fields) {
   environment.intensity = findReal(fields, "intensity");
   environment.rotation = findReal(fields, "rotation");
   environment.on = fields.findFlag("on");
+  if (!environment.source && !environment.intensity && !environment.rotation && !environment.on) {
+    fields.rejectOthers();
+    throw UsageError("no value of the environment is given");
+  }
   return environment;
 }
 

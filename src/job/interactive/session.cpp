@@ -168,6 +168,7 @@ void Session::apply(const Command& command) {
   if (isRedo && !canRedo()) throw UsageError("there is no step to redo");
   SessionState before = state_;
   SessionState next = isUndo ? history_.undone() : isRedo ? history_.redone() : changed(command);
+  if (!isUndo && !isRedo && next == before) return;
   if (sizeOfWindow_ && (isUndo || isRedo)) next.size = state_.size;
   try {
     show(next);
@@ -234,7 +235,8 @@ SessionState Session::changed(const Command& command) const {
       next.program = c.name;
       next.parameterFile.clear();
       next.assignments.clear();
-      next.output.clear();  // the first one of the program
+      const bool isShown = c.name == session.state_.program;
+      next.output = isShown ? session.program().outputs.front().name : "";  // the first one of the program
     }
     void operator()(const SetParameter& c) {
       std::erase_if(next.assignments, [&](const std::string& text) { return text.starts_with(c.name + "="); });
@@ -380,7 +382,7 @@ void Session::show(const SessionState& next) {
     restart = true;
   };
   SessionState shown = next;
-  if (differs(&SessionState::program)) {
+  if (differs(&SessionState::program) || differs(&SessionState::parameterFile)) {
     program::Program loaded = loadForSession(next.program);
     if (shown.output.empty() && !loaded.outputs.empty()) shown.output = loaded.outputs.front().name;
     edit(true, [&] { showProgram(std::move(loaded), shown); });

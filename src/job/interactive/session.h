@@ -55,6 +55,7 @@ struct SessionState {
   std::optional<render::ToneMap> toneMap;  // unset means by the kind of output
   uvec2 size{0};                           // pixels, of the image at full resolution
   std::uint32_t samples = 64;
+  bool operator==(const SessionState&) const = default;
 };
 
 struct SessionRequest {
@@ -76,7 +77,7 @@ class Session {
   ~Session();
 
   // Throws UsageError and FileError, and ProgramError for a program or an output whose code does not compile, and then
-  // changes nothing. Undo and redo without a step are errors, too. A step that cannot be shown, because a file has
+  // changes nothing. A command that sets what is set adds no step. Undo and redo without a step are errors, too. A step that cannot be shown, because a file has
   // changed since, is removed, so that the next undo or redo reaches the step after it.
   void apply(const Command& command);
   bool canUndo() const { return history_.canUndo(); }

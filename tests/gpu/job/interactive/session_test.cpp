@@ -574,6 +574,35 @@ TEST_F(SessionTest, ADragIsOneStep) {
   EXPECT_TRUE(session->canRedo());
 }
 
+TEST_F(SessionTest, CommandsThatChangeNothingAddNoStep) {
+  const auto session = makeSession(request());
+  session->refine();
+  const std::vector<Command> commands{SelectOutput{"color"},   SetToneMap{},      SetSamples{6}, SetExposure{0},
+                                      SetProgram{"pathtracer"}, SetSize{{40, 24}}, SetLens{},     SetEnvironment{}};
+  for (const Command& command : commands) {
+    session->apply(command);
+    EXPECT_FALSE(session->canUndo()) << command.index();
+  }
+  EXPECT_TRUE(session->step(1).empty()) << "the image stays";
+}
+
+TEST_F(SessionTest, TheSameProgramGetsItsDefaults) {
+  writeFile(folder_ / "values.json", "{\"bounces\": 2}");
+  RenderRequest few = request();
+  few.parameterFile = folder_ / "values.json";
+  few.assignments = {"roulette_start=1"};
+  const auto session = makeSession(few);
+  session->apply(SelectOutput{"normal"});
+  session->apply(SetProgram{"pathtracer"});
+  EXPECT_EQ(session->state().output, "color");
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(request())));
+  session->apply(Undo{});
+  EXPECT_EQ(session->state().output, "normal");
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(few)));
+}
+
 TEST_F(SessionTest, DisplaySettingsKeepTheSamples) {
   const auto session = makeSession(request());
   session->refine();

@@ -91,6 +91,10 @@ TEST(CommandJson, RejectsMistakes) {
   EXPECT_EQ(errorOf(R"({"do":"orbit")"), "byte 14: invalid JSON");
   EXPECT_EQ(errorOf(R"({"do":"environment","on":1})"), "'on' must be true or false");
   EXPECT_EQ(errorOf(R"({"do":"light","name":"sun"})"), "no property of the light is given");
+  EXPECT_EQ(errorOf(R"({"do":"lens"})"), "no value of the lens is given");
+  EXPECT_EQ(errorOf(R"({"do":"lens","fob":40})"), "unknown key 'fob' (did you mean 'fov'?)");
+  EXPECT_EQ(errorOf(R"({"do":"environment"})"), "no value of the environment is given");
+  EXPECT_EQ(errorOf(R"({"do":"environment","of":true})"), "unknown key 'of' (did you mean 'on'?)");
   EXPECT_EQ(errorOf("[]"), "a command must be a JSON object");
   EXPECT_EQ(errorOf("{}"), "'do' is missing");
 }
