@@ -22,12 +22,12 @@ OptionTable viewOptionTable(ViewOptions& options, RenderTexts& texts) {
       {{.names = "--script",
         .value = "FILE",
         .help =
-            "Without a window: read commands from this file, one JSON object per line; - is standard input. Events are "
-            "lines of JSON on standard output",
+            "Read commands from this file without a window, one JSON object per line; - is standard input. Events are "
+            "printed as lines of JSON",
         .target = &options.script,
         .candidates = {.extensions = {"*"}}},
        {.names = "--keep-going",
-        .help = "Continue after a command of the script that fails; the exit status is still not 0",
+        .help = "Continue after a command of the script that fails; the exit status is then 1",
         .target = &options.keepGoing}});
   declareSize(table, texts, options);
   table.add("Image", {{.names = "--spp",
@@ -50,16 +50,16 @@ OptionTable viewOptionTable(ViewOptions& options, RenderTexts& texts) {
               .target = &options.scaleText},
              {.names = "--theme",
               .value = "dark|light",
-              .help = "Colors of the window (default: that of the settings, or dark)",
+              .help = "Colors of the window (default: those of the settings, or dark)",
               .target = &options.theme,
               .candidates = {.names = {"dark", "light"}}},
              {.names = "--present-device",
               .value = "NAME",
-              .help = "Device that draws the window, as for --device (default: the first that can)",
+              .help = "Device that draws the window, as for --device (default: the first one that can present)",
               .target = &options.presentDevice,
               .candidates = {.names = deviceNames()}},
              {.names = "--no-settings",
-              .help = "Neither read nor write the settings of the user",
+              .help = "Neither read nor write the user settings",
               .target = &options.noSettings},
              {.names = "--events",
               .value = "FILE",

@@ -16,7 +16,7 @@ struct ViewOptions : RenderOptions {
   std::string script;      // empty: a window
   bool keepGoing = false;  // with a script
   // Of the window.
-  std::string presentDevice;  // of the window; empty means the first that can present
+  std::string presentDevice;  // empty means the first one that can
   std::string scaleText;
   std::optional<float> scale;  // size of text and controls; parsed from scaleText
   std::string theme;           // "dark", "light" or empty
