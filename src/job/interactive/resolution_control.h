@@ -23,7 +23,8 @@ class ResolutionControl {
   unsigned factor_ = 8;
 };
 
-// The next factor of an image that becomes sharper in steps, which take four times as long each; `factor` is above 1.
+// The next factor of an image that becomes sharper in steps: about half of `factor`, which is above 1. Each step takes
+// four to nine times as long.
 unsigned finerFactor(unsigned factor);
 
 // Rounded up, so that no side is 0.

@@ -109,9 +109,9 @@ class DeviceScene {
   void updateLights() { uploadLightTable(lightBuilder_->build(topLevel_->worldFromObject())); }
   void uploadLightTable(LightTable table);
   void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
+  bool needsSingleAnyHit(const program::GeometryFacts& geometry) const;
   // Returns the geometries of a mesh. The boxes of primitive sets are stored in `boxes`, which must live until the
   // build ends.
-  bool needsSingleAnyHit(const program::GeometryFacts& geometry) const;
   rt::BlasInput blasInput(const scene::Scene& scene, std::size_t mesh, std::deque<std::vector<Bounds3>>& boxes) const;
   void buildBottomLevel(const scene::Scene& scene);
   void uploadTables(const scene::Scene& scene);

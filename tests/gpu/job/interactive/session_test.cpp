@@ -137,7 +137,7 @@ TEST_F(SessionTest, PreviewsWhileCommandsArrive) {
   EXPECT_TRUE(test::equalSums(sums(*session), reference(same))) << "the preview leaves no trace";
 }
 
-// The first samples depend on the planned number; sizes change the automatic camera.
+// The first samples depend on the planned number.
 TEST_F(SessionTest, SamplesAndSizesAreThoseOfTheRequest) {
   RenderRequest other = request(9);
   other.size = {30, 50};
