@@ -338,22 +338,27 @@ void SessionThread::measureRays() {
   next_.raysPerSecond = static_cast<double>(session_->rays().rays) / next_.progress.seconds;
 }
 
-// A save waits until the image has its full size.
+// A save waits until the film has its full size, unless the render has failed.
 void SessionThread::writeSaves() {
-  if (!next_.image || (next_.progress.factor != 1 && next_.renderError.empty())) return;
-  for (const SaveRequest& save : std::exchange(saves_, {})) {
-    output::OutputRequest request;
-    request.file = save.file;
-    request.output = session_->state().output;
-    if (output::fileKind(save.file) == output::FileKind::png) {
-      request.exposure = session_->state().exposure;
-      request.toneMap = session_->state().toneMap;
-    }
-    const output::OutputPlan plan = output::planOutputs(request, session_->program());
-    output::writeOutputs(plan, session_->result(), *host_);
-    if (options_.onEvent) options_.onEvent(interactive::savedJson(save.file.string()));
-    addMessage(Message::Kind::note, fmt::format("saved {}", save.file.string()));
+  if (!session_->hasFullSize() && next_.renderError.empty()) return;
+  for (const SaveRequest& save : std::exchange(saves_, {}))
+    if (session_) guarded([&] { writeSave(save); });
+}
+
+void SessionThread::writeSave(const SaveRequest& save) {
+  if (!session_->hasFullSize())
+    throw FileError(save.file, fmt::format("not saved, because the render failed: {}", next_.renderError));
+  output::OutputRequest request;
+  request.file = save.file;
+  request.output = session_->state().output;
+  if (output::fileKind(save.file) == output::FileKind::png) {
+    request.exposure = session_->state().exposure;
+    request.toneMap = session_->state().toneMap;
   }
+  const output::OutputPlan plan = output::planOutputs(request, session_->program());
+  output::writeOutputs(plan, session_->result(), *host_);
+  if (options_.onEvent) options_.onEvent(interactive::savedJson(save.file.string()));
+  addMessage(Message::Kind::note, fmt::format("saved {}", save.file.string()));
 }
 
 }  // namespace quintet::viewer

@@ -119,6 +119,7 @@ class SessionThread {
   void applyCommand(const job::interactive::Command& command);
   void pickPixel(const PickRequest& request);
   void writeSaves();
+  void writeSave(const SaveRequest& save);
   void step();
   void measureRays();
   void report(const std::vector<job::interactive::Event>& events);

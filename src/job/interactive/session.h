@@ -103,6 +103,7 @@ class Session {
   // With the film, for output::writeOutputs(). Its size is reduced until refinement starts. Throws Error if the last
   // change failed.
   RenderResult result() const;
+  bool hasFullSize() const { return samples_ > 0 && filmSize_ == state_.size; }  // result() has samples at that size
   render::RayCount rays() const;  // since the last restart; waits for the device, so not for each image
 
   // What is visible at a pixel of the image at full resolution; nothing if no surface is. For programs that use the

@@ -158,6 +158,14 @@ TEST_F(SessionThreadTest, SavesTheCompleteSize) {
   EXPECT_EQ(io::readImage(folder_ / "out.exr").height, kSize.y);
 }
 
+TEST_F(SessionThreadTest, AFailedSaveDoesNotDiscardTheNextOne) {
+  thread_->open(request());
+  thread_->save(folder_ / "no/folder.png");
+  thread_->save(folder_ / "out.png");
+  EXPECT_TRUE(hasMessage(Message::Kind::note, "out.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out.png"));
+}
+
 TEST_F(SessionThreadTest, ReportsErrorsAndContinues) {
   thread_->open(request());
   waitForImage();

@@ -113,8 +113,11 @@ TEST_F(SessionTest, RefinesToTheFilmOfARender) {
 
 TEST_F(SessionTest, PreviewsWhileCommandsArrive) {
   const auto session = makeSession(request());
+  EXPECT_FALSE(session->hasFullSize());
   session->refine();
+  EXPECT_TRUE(session->hasFullSize());
   session->apply(Orbit{20, 0});
+  EXPECT_FALSE(session->hasFullSize());
   EXPECT_EQ(session->secondsUntilWork(), 0);
   std::vector<Event> events = session->step(0.01);
   EXPECT_NE(find<Restarted>(events), nullptr);
@@ -452,6 +455,7 @@ TEST_F(SessionTest, BecomesSharperInSteps) {
   session->apply(SetExposure{3});
   EXPECT_NE(find<ImageUpdated>(session->step(0, [] { return true; })), nullptr);
   EXPECT_NE(session->image().data, preview);
+  EXPECT_FALSE(session->hasFullSize()) << "the film has no samples, although the image is complete";
   session->apply(Undo{});
   EXPECT_EQ(session->image().data, preview);
   const std::vector<Event> shown = session->step(1000);
