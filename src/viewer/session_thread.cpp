@@ -252,7 +252,6 @@ void SessionThread::applyCommand(const interactive::Command& command) {
   if (!session_) return;
   lastCommand_ = clock_.seconds();
   session_->apply(command);
-  next_.renderError.clear();
   publishState();
 }
 
@@ -310,6 +309,8 @@ void SessionThread::report(const std::vector<interactive::Event>& events) {
     } else if (const auto* reloaded = std::get_if<interactive::ProgramReloaded>(&event)) {
       programReloaded = true;
       addMessage(Message::Kind::note, fmt::format("reloaded {}", reloaded->files));
+    } else if (std::holds_alternative<interactive::Restarted>(event)) {
+      next_.renderError.clear();
     } else if (const auto* note = std::get_if<interactive::Note>(&event)) {
       addMessage(Message::Kind::note, note->text);
     } else if (const auto* warning = std::get_if<interactive::Warning>(&event)) {

@@ -65,7 +65,7 @@ struct Snapshot {
   job::interactive::ImageUpdated progress;  // of the image
   double raysPerSecond = 0;                 // 0 if unknown
   double secondsPerImage = 0;               // between the last two images
-  std::string renderError;                  // the render stopped until the next command; else empty
+  std::string renderError;                  // of the last Failed event, until the session restarts; else empty
 };
 
 // What to do with the surface at a pixel.

@@ -208,6 +208,29 @@ TEST_F(SessionThreadTest, KeepsTheLastProgramThatCompiles) {
   EXPECT_FALSE(hasErrors(fixed->diagnostics));
 }
 
+// The program compiles only for scenes without clear coat.
+TEST_F(SessionThreadTest, AFailureStaysUntilTheSessionRestarts) {
+  const std::string program =
+      "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(1.0, 0.0, 0.0, 1.0));\n}\n";
+  writeFile(folder_ / "flat.rt.glsl", "#ifndef QUINTET_NO_CLEARCOAT\n#error no clear coat\n#endif\n" + program);
+  SessionRequest flat = request();
+  flat.program = (folder_ / "flat.rt.glsl").string();
+  thread_->open(flat);
+  const auto first = waitForImage();
+  thread_->apply(EditMaterial{"paint", {{"clearcoat", {1}}}});
+  waitFor([](const Snapshot& s) { return !s.renderError.empty(); });
+  thread_->apply(EndDrag{});
+  thread_->apply(SetExposure{1});
+  const auto failed = waitFor([](const Snapshot& s) { return s.state.exposure == 1; });
+  EXPECT_NE(failed->renderError, "") << "these commands do not restart the render";
+  thread_->save(folder_ / "out.png");
+  EXPECT_TRUE(hasMessage(Message::Kind::error, "out.png: not saved, because the render failed"));
+  writeFile(folder_ / "flat.rt.glsl", program);
+  const auto corrected = waitFor(
+      [&](const Snapshot& s) { return s.progress.complete && s.imageNumber > first->imageNumber; });
+  EXPECT_EQ(corrected->renderError, "");
+}
+
 TEST(WindowShaders, Compile) {
   const WindowShaders shaders = compileWindowShaders({});
   EXPECT_FALSE(shaders.vertex.empty());
