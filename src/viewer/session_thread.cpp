@@ -192,6 +192,10 @@ void SessionThread::guarded(const std::function<void()>& function) {
     fail(error.what());
   } catch (const DeviceLostError& error) {
     fail(fmt::format("{}; open the scene again to continue", error.what()));
+    engine_.reset();  // its device stays lost
+  } catch (const gpu::NoDeviceError& error) {
+    fail(error.what());
+    engine_.reset();  // the devices can change
   } catch (const gpu::VulkanError& error) {
     fail(error.what());
   } catch (const std::exception& error) {  // UsageError, FileError, MemoryError, std::bad_alloc
@@ -228,17 +232,9 @@ void SessionThread::openSession(interactive::SessionRequest request) {
   next_.stage = "opening the device";
   publish();
   next_.request = std::make_shared<const interactive::SessionRequest>(request);
-  try {
-    if (!engine_) engine_ = std::make_unique<job::Engine>(options_.engine);
-    session_ = std::make_unique<interactive::Session>(
-        *engine_, std::move(request), [this] { return clock_.seconds(); }, *host_);
-  } catch (const DeviceLostError&) {
-    engine_.reset();
-    throw;
-  } catch (const gpu::NoDeviceError&) {
-    engine_.reset();
-    throw;
-  }
+  if (!engine_) engine_ = std::make_unique<job::Engine>(options_.engine);
+  session_ = std::make_unique<interactive::Session>(
+      *engine_, std::move(request), [this] { return clock_.seconds(); }, *host_);
   next_.phase = Snapshot::Phase::ready;
   next_.stage.clear();
   next_.device = engine_->context().info().name;
