@@ -32,18 +32,10 @@ constexpr int kMaxLosses = 3;
 constexpr float kMinImageSide = 4.0f;  // pixels; smaller areas keep the last size
 constexpr float kExposureStep = 1.0f / 3.0f;
 
-// Settings that cannot be read are a message, and the defaults are used.
 ViewState initialState(const ApplicationOptions& options) {
   ViewState state;
   if (options.storesSettings) state.settingsFolder = settingsFolder();
-  try {
-    if (!state.settingsFolder.empty()) {
-      state.settings = readSettings(state.settingsFolder / "viewer.json");
-      state.bookmarks = Bookmarks::read(state.settingsFolder / "bookmarks.json");
-    }
-  } catch (const Error& error) {
-    state.addMessage({Message::Kind::warning, error.what()});
-  }
+  readStoredFiles(state);
   if (options.theme) state.settings.theme = *options.theme;
   if (options.windowSize) state.settings.windowSize = *options.windowSize;
   if (options.session && options.session->render.size.x > 0) state.fixedSize = options.session->render.size;

@@ -60,6 +60,40 @@ void reportingErrors(ViewState& state, const Write& write) {
   }
 }
 
+// If the invalid file cannot be renamed, nothing is stored.
+template <class Read>
+void readOrSetAside(ViewState& state, const char* name, const Read& read) {
+  if (state.settingsFolder.empty()) return;
+  const std::filesystem::path file = state.settingsFolder / name;
+  std::string text;
+  try {
+    return read(file);
+  } catch (const Error& error) {
+    text = error.what();
+  }
+  try {
+    text += fmt::format("; the file was renamed to {}", setAside(file).filename().string());
+  } catch (const Error& error) {
+    text += fmt::format("; {}", error.what());
+    state.settingsFolder.clear();
+  }
+  state.addMessage({Message::Kind::warning, text});
+}
+
+constexpr const char* kSettingsFile = "viewer.json";
+constexpr const char* kBookmarksFile = "bookmarks.json";
+
+void readBookmarks(ViewState& state) {
+  readOrSetAside(state, kBookmarksFile, [&](const auto& file) { state.bookmarks = Bookmarks::read(file); });
+}
+
+template <class Change>
+void changeBookmarks(ViewState& state, const Change& change) {
+  readBookmarks(state);
+  change();
+  reportingErrors(state, [&] { state.bookmarks.write(state.settingsFolder / kBookmarksFile); });
+}
+
 }  // namespace
 
 std::string sceneKey(const Snapshot& snapshot) {
@@ -112,19 +146,26 @@ void openLesson(ViewState& state, const std::string& program) {
   openSession(state, std::move(request), program);
 }
 
-void addBookmark(ViewState& state) {
-  if (!state.ready()) return;
-  const std::string name = state.bookmarks.add(sceneKey(*state.snapshot), state.snapshot->state.camera);
-  storeBookmarks(state);
-  state.addMessage({Message::Kind::note, fmt::format("added {}", name)});
+void readStoredFiles(ViewState& state) {
+  readOrSetAside(state, kSettingsFile, [&](const auto& file) { state.settings = readSettings(file); });
+  readBookmarks(state);
 }
 
-void storeBookmarks(ViewState& state) {
-  reportingErrors(state, [&] { state.bookmarks.write(state.settingsFolder / "bookmarks.json"); });
+void addBookmark(ViewState& state) {
+  if (!state.ready()) return;
+  changeBookmarks(state, [&] {
+    const std::string name = state.bookmarks.add(sceneKey(*state.snapshot), state.snapshot->state.camera);
+    state.addMessage({Message::Kind::note, fmt::format("added {}", name)});
+  });
+}
+
+void removeBookmark(ViewState& state, const Bookmark& bookmark) {
+  if (!state.ready()) return;
+  changeBookmarks(state, [&] { state.bookmarks.remove(sceneKey(*state.snapshot), bookmark); });
 }
 
 void storeSettings(ViewState& state) {
-  reportingErrors(state, [&] { writeSettings(state.settingsFolder / "viewer.json", state.settings); });
+  reportingErrors(state, [&] { writeSettings(state.settingsFolder / kSettingsFile, state.settings); });
 }
 
 }  // namespace quintet::viewer

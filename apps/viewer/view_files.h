@@ -20,9 +20,11 @@ void openRecent(ViewState& state, const std::string& file);
 // A built-in program on its own scene.
 void openLesson(ViewState& state, const std::string& program);
 
+// Settings and bookmarks. A file that cannot be read is renamed and causes a message, and the defaults are used.
+void readStoredFiles(ViewState& state);
+// These read the file of the bookmarks again, because another window can have changed it. Errors become messages.
 void addBookmark(ViewState& state);
-// Errors become messages.
-void storeBookmarks(ViewState& state);
+void removeBookmark(ViewState& state, const Bookmark& bookmark);
 void storeSettings(ViewState& state);
 
 }  // namespace quintet::viewer

@@ -103,10 +103,12 @@ void Bookmarks::rename(const std::string& scene, std::size_t index, const std::s
   byScene_.at(scene).at(index).name = name;
 }
 
-void Bookmarks::remove(const std::string& scene, std::size_t index) {
-  std::vector<Bookmark>& list = byScene_.at(scene);
-  list.erase(list.begin() + static_cast<std::ptrdiff_t>(index));
-  if (list.empty()) byScene_.erase(scene);
+void Bookmarks::remove(const std::string& scene, const Bookmark& bookmark) {
+  const auto list = byScene_.find(scene);
+  if (list == byScene_.end()) return;
+  const auto found = std::ranges::find(list->second, bookmark);
+  if (found != list->second.end()) list->second.erase(found);
+  if (list->second.empty()) byScene_.erase(list);
 }
 
 }  // namespace quintet::viewer

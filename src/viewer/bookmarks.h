@@ -15,6 +15,7 @@ namespace quintet::viewer {
 struct Bookmark {
   std::string name;
   job::CameraRequest camera;
+  bool operator==(const Bookmark&) const = default;
 };
 
 class Bookmarks {
@@ -30,7 +31,8 @@ class Bookmarks {
   std::string add(const std::string& scene, const job::CameraRequest& camera);
   // `index` is that in of(scene).
   void rename(const std::string& scene, std::size_t index, const std::string& name);
-  void remove(const std::string& scene, std::size_t index);
+  // The first one that is equal, if there is one.
+  void remove(const std::string& scene, const Bookmark& bookmark);
 
  private:
   std::map<std::string, std::vector<Bookmark>> byScene_;

@@ -99,6 +99,14 @@ void writeSettings(const std::filesystem::path& file, const Settings& settings) 
   writeFile(file, settingsJson(settings));
 }
 
+std::filesystem::path setAside(const std::filesystem::path& file) {
+  const std::filesystem::path aside = file.string() + ".invalid";
+  std::error_code error;
+  std::filesystem::rename(file, aside, error);
+  if (error) throw FileError(file, fmt::format("cannot rename the file to {}: {}", aside.string(), error.message()));
+  return aside;
+}
+
 void addRecentFile(Settings& settings, const std::string& file) {
   std::error_code error;
   std::string name = file;

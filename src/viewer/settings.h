@@ -36,13 +36,17 @@ std::filesystem::path settingsFolder();
 
 std::string settingsJson(const Settings& settings);
 // Values out of range are clamped, and unknown members ignored, so that versions can share the file. `file` is the name
-// in messages. Throws FileError if the text is no JSON object, or if a member has the wrong type.
+// in messages. Throws FileError if the text is not a JSON object, or if a member has the wrong type.
 Settings parseSettings(const std::string& json, const std::string& file);
 
 // The defaults if the file does not exist. Throws FileError.
 Settings readSettings(const std::filesystem::path& file);
 // Creates the folder if necessary. Throws FileError.
 void writeSettings(const std::filesystem::path& file, const Settings& settings);
+
+// Renames a file that cannot be read to FILE.invalid, so that writing does not replace it. Returns the new name. Throws
+// FileError.
+std::filesystem::path setAside(const std::filesystem::path& file);
 
 // Makes the file the latest one. Names of built-in programs stay as they are; paths become absolute.
 void addRecentFile(Settings& settings, const std::string& file);

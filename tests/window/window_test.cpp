@@ -191,6 +191,30 @@ TEST_F(WindowTest, StartsEmptyAndQuits) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "config/quintet/viewer.json")) << "the settings are stored";
 }
 
+TEST_F(WindowTest, KeepsFilesThatItCannotRead) {
+  const std::filesystem::path folder = folder_ / "config/quintet";
+  const std::string bookmarks = R"({"/a.glb": [{"name": "Side", "up": [0, 1, 0]}]})";
+  std::filesystem::create_directories(folder);
+  writeFile(folder / "viewer.json", "{");
+  writeFile(folder / "bookmarks.json", bookmarks);
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  EXPECT_EQ(readTextFile(folder / "viewer.json.invalid"), "{");
+  viewer.window().key("b");
+  viewer.settle();
+  const Json stored = Json::parse(readTextFile(folder / "bookmarks.json"));
+  EXPECT_EQ(stored.at("/a.glb").at(0).at("name"), "Side");
+  EXPECT_EQ(stored.at((folder_ / "wall.scene.toml").string()).size(), 1u);
+  // Another window adds one.
+  Json other = stored;
+  other["/b.glb"] = other["/a.glb"];
+  writeFile(folder / "bookmarks.json", other.dump());
+  viewer.window().key("b");
+  viewer.settle();
+  const Json both = Json::parse(readTextFile(folder / "bookmarks.json"));
+  EXPECT_EQ(both.at((folder_ / "wall.scene.toml").string()).size(), 2u);
+  EXPECT_EQ(both.count("/b.glb"), 1u);
+}
+
 TEST_F(WindowTest, OrbitsAndUndoes) {
   ViewerProcess& viewer = startScene("normals");
   expectColor(kFacing, "the wall from the front");

@@ -45,10 +45,7 @@ void bookmarks(ViewState& state) {
                           {ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetFrameHeight(), 0}))
       state.apply(interactive::SetCamera{list[i].camera});
     ImGui::SameLine();
-    if (ImGui::SmallButton("×")) {
-      state.bookmarks.remove(scene, i);
-      storeBookmarks(state);
-    }
+    if (ImGui::SmallButton("×")) removeBookmark(state, list[i]);
     tooltip("Remove this bookmark");
     ImGui::PopID();
   }

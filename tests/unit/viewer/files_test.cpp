@@ -90,7 +90,9 @@ TEST(Bookmarks, AreRenamedAndRemoved) {
   Bookmarks bookmarks;
   for (int i = 0; i < 3; ++i) bookmarks.add("s", {});
   bookmarks.rename("s", 1, "Side");
-  bookmarks.remove("s", 0);
+  bookmarks.remove("s", Bookmark(bookmarks.of("s")[0]));
+  bookmarks.remove("s", {"Bookmark 1", {.name = "other camera"}});
+  bookmarks.remove("t", {"Bookmark 2", {}});
   EXPECT_EQ(bookmarks.add("s", {}), "Bookmark 1") << "the first free number";
   std::vector<std::string> names;
   for (const Bookmark& bookmark : bookmarks.of("s")) names.push_back(bookmark.name);

@@ -123,5 +123,16 @@ TEST(ViewerSettings, KeepRecentFilesOnce) {
   EXPECT_EQ(settings.recentFiles.front(), std::to_string(2 * kMaxRecentFiles - 1));
 }
 
+TEST(Settings, AnInvalidFileIsSetAside) {
+  const test::TempFolder folder;
+  const std::filesystem::path file = folder / "viewer.json";
+  writeFile(file, "{");
+  EXPECT_THROW(readSettings(file), FileError);
+  EXPECT_EQ(setAside(file), folder / "viewer.json.invalid");
+  EXPECT_EQ(readTextFile(folder / "viewer.json.invalid"), "{");
+  EXPECT_EQ(readSettings(file), Settings{});
+  EXPECT_THROW(setAside(folder / "missing.json"), FileError);
+}
+
 }  // namespace
 }  // namespace quintet::viewer
