@@ -356,6 +356,20 @@ TEST_F(WindowTest, OpensDroppedFiles) {
   expectColor(kRed, "still running");
 }
 
+TEST_F(WindowTest, AsksBeforeItReplacesAFile) {
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  writeFile(folder_ / "wall.scene.png", "a texture");
+  viewer.window().key("s", {"Control_L"});
+  viewer.control("Save");
+  viewer.window().key("Return");
+  viewer.settle();
+  EXPECT_TRUE(viewer.hasControl("Save")) << "the dialog stays open";
+  EXPECT_EQ(readTextFile(folder_ / "wall.scene.png"), "a texture");
+  viewer.clickControl("Save");
+  viewer.waitFor("saved");
+  EXPECT_GT(io::readImage(folder_ / "wall.scene.png").width, 100u);
+}
+
 TEST_F(WindowTest, CopiesTheCommandThatRendersTheImage) {
   ViewerProcess& viewer = startScene("normals");
   const auto [x, y] = imageCenter();

@@ -51,6 +51,7 @@ void FileDialog::enter(const std::filesystem::path& folder) {
   try {
     entries_ = listFolder(target);
     folder_ = target;
+    confirmed_.clear();
     error_.clear();
   } catch (const Error& failure) {
     error_ = failure.what();
@@ -92,6 +93,13 @@ std::optional<std::filesystem::path> FileDialog::choose(const std::filesystem::p
       error_ = "the name must end with .png, .exr or .hdr";
       return std::nullopt;
     }
+  }
+  std::error_code error;
+  if (purpose_ != Purpose::open && path != confirmed_ && std::filesystem::exists(path, error)) {
+    error_ = fmt::format("{}: the file exists; save again to replace it", path.filename().string());
+    confirmed_ = path;
+    focus_ = true;  // so that Enter saves again
+    return std::nullopt;
   }
   visible_ = false;
   return path;

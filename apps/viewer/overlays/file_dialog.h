@@ -37,6 +37,7 @@ class FileDialog {
   std::filesystem::path folder_;
   std::string name_;
   std::string error_;
+  std::filesystem::path confirmed_;  // the existing file that a second save replaces
   std::vector<FolderEntry> entries_;
   std::optional<std::filesystem::path> chosen_;  // by a double click in the list
 };
