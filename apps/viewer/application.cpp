@@ -92,7 +92,7 @@ void Application::run() {
 double Application::waitTime() const {
   if (framesToDraw_ > 0) return 0;
   if (state_.playing || navigator_.flying() || state_.snapshot->phase == Snapshot::Phase::loading) return kFrameSeconds;
-  if (wantedSize_ != imageSize_) return kResizeSeconds / 3;
+  if (state_.ready() && !state_.fixedSize && wantedSize_ != imageSize_) return kResizeSeconds / 3;
   return kIdleSeconds;
 }
 
@@ -139,7 +139,10 @@ void Application::receive() {
     state_.selection = pick ? Selection{Selection::Kind::instance, pick->instance} : Selection{};
   if (last->session != state_.snapshot->session || last->phase != state_.snapshot->phase) {
     forgetPendingValues();
-    if (state_.ready()) window_.setTitle(fmt::format("{} - Quintet", baseName(*state_.snapshot).string()));
+    if (state_.ready()) {
+      imageSize_ = state_.snapshot->state.size;
+      window_.setTitle(fmt::format("{} - Quintet", baseName(*state_.snapshot).string()));
+    }
   }
   if (last->diagnostics.size() != state_.snapshot->diagnostics.size()) state_.showDiagnostics = true;
   if (state_.ready() && last->imageNumber != state_.snapshot->imageNumber) {

@@ -103,7 +103,7 @@ class Application {
   std::shared_ptr<const io::Image> displayedReference_;
   std::shared_ptr<const Display> textured_;  // in the textures
   float textureScale_ = 0;                   // of the placement when they were made
-  uvec2 imageSize_{0};                       // that the session was asked for
+  uvec2 imageSize_{0};                       // of the session, or that it was asked for since
   uvec2 wantedSize_{0};                      // that the window has room for
   double wantedSince_ = 0;                   // on clock_
   bool quit_ = false;

@@ -349,6 +349,17 @@ TEST_F(WindowTest, OpensDroppedFiles) {
   EXPECT_TRUE(drop("notes.txt"));
   viewer.settle();
   EXPECT_TRUE(viewer.running());
+  // The failure is shown without panels, so the window has room for a larger image.
+  writeFile(folder_ / "broken.scene.toml", "[[mesh");
+  EXPECT_TRUE(drop("broken.scene.toml"));
+  viewer.control("Try again");
+  viewer.settle();
+  EXPECT_TRUE(drop("wall.scene.toml"));
+  viewer.waitFor([&](const Json& event) {
+    const auto [left, top, right, bottom] = viewer.imageArea();
+    return event["event"] == "image" && event["complete"] == true && event["width"] == right - left &&
+           event["height"] == bottom - top && right < 700;
+  });
   io::Image sky = io::makeImage(4, 2, 3, io::PixelType::f32, io::ColorEncoding::linear);
   io::writeImage(folder_ / "sky.hdr", sky);
   EXPECT_TRUE(drop("sky.hdr"));
