@@ -186,6 +186,7 @@ void Application::requestDisplay() {
   DisplaySettings settings;
   settings.exposure = snapshot.state.exposure;
   settings.toneMap = snapshot.state.toneMap.value_or(render::defaultToneMap(snapshot.outputKind));
+  settings.heat = snapshot.outputKind == program::OutputKind::heat && !snapshot.state.toneMap;
   settings.falseColor = state_.controls.falseColor;
   settings.channel = state_.controls.channel;
   settings.range = state_.controls.range;

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "io/color.h"
 #include "io/compare.h"
+#include "render/tone_map/false_color.h"
 
 namespace quintet::viewer {
 namespace {
@@ -98,7 +99,7 @@ std::string_view channelName(Channel channel) {
 }
 
 bool DisplaySettings::operator==(const DisplaySettings& other) const {
-  return exposure == other.exposure && toneMap == other.toneMap && falseColor == other.falseColor &&
+  return exposure == other.exposure && toneMap == other.toneMap && heat == other.heat && falseColor == other.falseColor &&
          channel == other.channel && range.least == other.range.least && range.most == other.range.most &&
          range.logarithmic == other.range.logarithmic && compare == other.compare;
 }
@@ -107,7 +108,12 @@ Display makeDisplay(const io::Image& image, const io::Image* reference, const Di
   Display result;
   result.histogram = makeHistogram(image);
   const CompareMode compare = reference ? settings.compare : CompareMode::off;
+  const bool showsHeat = settings.heat && !settings.falseColor && compare <= CompareMode::split;
+  const render::FalseColorScale scale =
+      showsHeat ? render::falseColorScale(image, static_cast<float>(settings.exposure)) : render::FalseColorScale{};
+  if (showsHeat) result.heatRange = FalseColorRange{0.0, scale.maximum, false};
   const auto shown = [&](const io::Image& shownImage) {
+    if (showsHeat) return pixelsOf(io::toChannels(render::falseColor(shownImage, {scale, /*legend=*/false}), 4));
     if (!settings.falseColor) return toneMapped(shownImage, settings);
     return colored(shownImage, [&](const float* rgba, std::size_t) {
       return settings.range.position(valueOf(rgba, settings.channel));

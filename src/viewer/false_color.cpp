@@ -2,25 +2,15 @@
 #include "viewer/false_color.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
 
+#include "render/tone_map/false_color.h"
+
 namespace quintet::viewer {
 namespace {
-
-// Equally spaced colors of the map, sRGB-encoded bytes. L* is 4, 16, 28, 39, 49, 60, 70, 82 and 95.
-constexpr std::array<std::array<int, 3>, 9> kColors{{{{28, 4, 40}},
-                                                     {{52, 25, 92}},
-                                                     {{50, 58, 130}},
-                                                     {{30, 95, 142}},
-                                                     {{20, 129, 139}},
-                                                     {{38, 162, 120}},
-                                                     {{98, 193, 84}},
-                                                     {{184, 216, 60}},
-                                                     {{253, 243, 160}}}};
 
 // 1, 2 or 5 times a power of ten: the smallest that is at least `value`.
 double roundUp(double value) {
@@ -50,14 +40,7 @@ double FalseColorRange::valueAt(double position) const {
 
 vec3 falseColor(double position) {
   if (std::isnan(position)) return {1.0f, 0.0f, 1.0f};
-  const double scaled = std::clamp(position, 0.0, 1.0) * (kColors.size() - 1);
-  const auto index = std::min(static_cast<std::size_t>(scaled), kColors.size() - 2);
-  const auto t = static_cast<float>(scaled - static_cast<double>(index));
-  vec3 color;
-  for (std::size_t i = 0; i < 3; ++i)
-    color[static_cast<glm::length_t>(i)] =
-        glm::mix(static_cast<float>(kColors[index][i]), static_cast<float>(kColors[index + 1][i]), t) / 255.0f;
-  return color;
+  return render::viridis(static_cast<float>(position));
 }
 
 std::vector<LegendTick> legendTicks(const FalseColorRange& range, int count) {

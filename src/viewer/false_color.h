@@ -20,9 +20,7 @@ struct FalseColorRange {
   double valueAt(double position) const;  // the inverse for positions in [0,1]
 };
 
-// The color map at a position in [0,1]: from dark violet over blue and green to light yellow. The lightness increases
-// (CIELAB L* is close to linear), so that it can be read in gray and with color blindness. NaN is magenta.
-// sRGB-encoded, [0,1].
+// render::viridis() at a position in [0,1]; NaN is magenta. sRGB-encoded, [0,1].
 vec3 falseColor(double position);
 
 struct LegendTick {

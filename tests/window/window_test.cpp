@@ -401,9 +401,16 @@ TEST_F(WindowTest, ShowsFalseColorWithALegend) {
   viewer.clickControl("Display/False color");
   viewer.settle();
   const Rgb color = imageColor();  // of luminance 0.2126 in [0,1]
-  EXPECT_TRUE(isClose(color, {51, 48, 119}, 4)) << testing::PrintToString(color);
+  EXPECT_TRUE(isClose(color, {63, 71, 136}, 4)) << testing::PrintToString(color);
   const auto [left, top, right, bottom] = viewer.imageArea();
   EXPECT_FALSE(isClose(colorAt(viewer.window().screenshot(), left + 30, bottom - 60), color)) << "the legend";
+}
+
+TEST_F(WindowTest, ShowsHeatInFalseColors) {
+  ViewerProcess& viewer = startScene("normals");
+  viewer.window().key("Prior");  // the last output: the number of intersection shader calls, which is 0
+  viewer.waitForImage();
+  expectColor({68, 1, 84}, "the color of 0");
 }
 
 TEST_F(WindowTest, ComparesWithADroppedImage) {

@@ -43,6 +43,7 @@ std::optional<FalseColorRange> shownRange(const ViewState& state) {
   if (compare == CompareMode::difference) return FalseColorRange{0.0, state.controls.range.most, false};
   if (compare == CompareMode::flip) return FalseColorRange{0.0, 1.0, false};
   if (state.controls.falseColor) return state.controls.range;
+  if (state.display) return state.display->heatRange;
   return std::nullopt;
 }
 

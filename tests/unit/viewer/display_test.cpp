@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "io/color.h"
+#include "render/tone_map/false_color.h"
 #include "viewer/display_thread.h"
 #include "viewer/histogram.h"
 
@@ -60,6 +61,25 @@ TEST(ViewerDisplay, ShowsAChannelInFalseColor) {
   const Display display = makeDisplay(image, nullptr, settings);
   EXPECT_EQ(pixelOf(display.image, 0), bytesOf(falseColor((0.2126 * 0.5 + 0.7152 * 2.0) / 4.0)));
   EXPECT_EQ(pixelOf(display.image, 1), (std::vector<int>{255, 0, 255, 255})) << "NaN";
+}
+
+TEST(ViewerDisplay, ShowsHeatAsAPngDoes) {
+  const io::Image image = makeImage(3, 1, {{40, 0, 0, 1}, {20, 0, 0, 1}, {INFINITY, 0, 0, 1}});
+  DisplaySettings settings;
+  settings.heat = true;
+  const Display display = makeDisplay(image, nullptr, settings);
+  const io::Image expected = render::falseColor(image, {render::falseColorScale(image, 0.0f), /*legend=*/false});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto* rgb = expected.samples<std::uint8_t>().data() + 3 * i;
+    EXPECT_EQ(pixelOf(display.image, i), (std::vector<int>{rgb[0], rgb[1], rgb[2], 255})) << i;
+  }
+  EXPECT_EQ(pixelOf(display.image, 1), bytesOf(falseColor(0.5)));
+  ASSERT_TRUE(display.heatRange);
+  EXPECT_EQ(display.heatRange->most, 40.0);
+  settings.exposure = 1;
+  EXPECT_EQ(makeDisplay(image, nullptr, settings).heatRange->most, 20.0);
+  settings.falseColor = true;
+  EXPECT_FALSE(makeDisplay(image, nullptr, settings).heatRange) << "the user has chosen a range";
 }
 
 TEST(ViewerDisplay, ComparesWithAReference) {

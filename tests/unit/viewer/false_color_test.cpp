@@ -36,7 +36,7 @@ TEST(FalseColor, BecomesLighterAtAnEvenRate) {
     const double position = i / 256.0;
     const double value = lightness(falseColor(position));
     EXPECT_GT(value, last) << position;
-    EXPECT_NEAR(value, 4.0 + 90.0 * position, 6.0) << position;
+    EXPECT_NEAR(value, 15.0 + 76.0 * position, 3.0) << position;
     last = value;
   }
 }
