@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 #include <variant>
 
@@ -15,6 +16,7 @@
 #include "gpu/error.h"
 #include "gui/style.h"
 #include "gui/widgets.h"
+#include "job/provenance.h"
 #include "panels/panels.h"
 #include "render/renderer/renderer.h"
 #include "reproduce.h"
@@ -30,7 +32,7 @@ constexpr double kResizeSeconds = 0.15;  // the size of the image follows that o
 constexpr int kStableFrames = 3;
 constexpr int kMaxLosses = 3;
 constexpr float kMinImageSide = 4.0f;  // pixels; smaller areas keep the last size
-constexpr float kExposureStep = 1.0f / 3.0f;
+constexpr double kExposureStep = 1.0 / 3.0;  // stops
 
 ViewState initialState(const ApplicationOptions& options) {
   ViewState state;
@@ -139,11 +141,14 @@ void Application::receive() {
     state_.selection = pick ? Selection{Selection::Kind::instance, pick->instance} : Selection{};
   if (last->session != state_.snapshot->session || last->phase != state_.snapshot->phase) {
     forgetPendingValues();
+    requestedExposures_.clear();
     if (state_.ready()) {
       imageSize_ = state_.snapshot->state.size;
       window_.setTitle(fmt::format("{} - Quintet", baseName(*state_.snapshot).string()));
     }
   }
+  if (state_.ready() && last->state.exposure != state_.snapshot->state.exposure)
+    confirmExposure(state_.snapshot->state.exposure);
   if (last->diagnostics.size() != state_.snapshot->diagnostics.size()) state_.showDiagnostics = true;
   if (state_.ready() && last->imageNumber != state_.snapshot->imageNumber) {
     if (state_.snapshot->secondsPerImage > 0)
@@ -469,6 +474,7 @@ void Application::perform(Action action) {
     case Action::undo:
     case Action::redo:
       forgetPendingValues();
+      requestedExposures_.clear();
       if (action == Action::undo && snapshot.canUndo) state_.apply(interactive::Undo{});
       if (action == Action::redo && snapshot.canRedo) state_.apply(interactive::Redo{});
       break;
@@ -485,8 +491,8 @@ void Application::perform(Action action) {
       break;
     case Action::previousOutput: changeOutput(-1); break;
     case Action::nextOutput: changeOutput(1); break;
-    case Action::lessExposure: state_.apply(interactive::SetExposure{snapshot.state.exposure - kExposureStep}); break;
-    case Action::moreExposure: state_.apply(interactive::SetExposure{snapshot.state.exposure + kExposureStep}); break;
+    case Action::lessExposure: changeExposure(-kExposureStep); break;
+    case Action::moreExposure: changeExposure(kExposureStep); break;
     case Action::compare:
       if (state_.reference)
         state_.controls.compare = state_.controls.compare == CompareMode::off ? CompareMode::split : CompareMode::off;
@@ -506,6 +512,19 @@ void Application::changeOutput(int direction) {
   const std::ptrdiff_t count = std::ssize(names);
   if (count < 2) return;
   state_.apply(job::interactive::SelectOutput{names[static_cast<std::size_t>((index + direction + count) % count)]});
+}
+
+// Adds to the last value, which the session has not shown yet if a batch takes long.
+void Application::changeExposure(double stops) {
+  const double last = requestedExposures_.empty() ? state_.snapshot->state.exposure : requestedExposures_.back();
+  requestedExposures_.push_back(std::clamp(last + stops, -job::kMaxExposure, job::kMaxExposure));
+  state_.apply(job::interactive::SetExposure{requestedExposures_.back()});
+}
+
+void Application::confirmExposure(double exposure) {
+  const auto found = std::ranges::find(requestedExposures_, exposure);
+  requestedExposures_.erase(requestedExposures_.begin(),
+                            found == requestedExposures_.end() ? found : std::next(found));
 }
 
 void Application::play() {

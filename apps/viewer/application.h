@@ -73,6 +73,8 @@ class Application {
   void perform(Action action);
   void performAll(const std::vector<Action>& actions);
   void changeOutput(int direction);
+  void changeExposure(double stops);
+  void confirmExposure(double exposure);  // the session shows this value now
   void play();
   void finishDialog();
   void draw(const gpu::DrawList& list);
@@ -106,6 +108,7 @@ class Application {
   uvec2 imageSize_{0};                       // of the session, or that it was asked for since
   uvec2 wantedSize_{0};                      // that the window has room for
   double wantedSince_ = 0;                   // on clock_
+  std::vector<double> requestedExposures_;   // by changeExposure(), which the session has not confirmed
   bool quit_ = false;
   std::string widgets_, nextWidgets_;  // last output of emitWidgets(), and the one of this frame
   std::optional<job::interactive::SessionRequest> pendingSession_;  // opened when the size of the image is known

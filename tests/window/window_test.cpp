@@ -270,6 +270,15 @@ TEST_F(WindowTest, ChangesAParameter) {
   expectColor(kRed, "undone");
 }
 
+TEST_F(WindowTest, AddsUpStepsOfExposure) {
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  for (int i = 0; i < 6; ++i) viewer.window().key("minus");
+  viewer.settle();
+  viewer.window().key("c", {"Control_L"});
+  viewer.settle();
+  EXPECT_THAT(viewer.window().clipboard(), HasSubstr("--exposure -2"));
+}
+
 TEST_F(WindowTest, SelectsAnObjectAndEditsItsMaterial) {
   openPanels(R"("Selection")");
   windowSize_ = "720x900";  // for all properties
