@@ -10,7 +10,7 @@ namespace {
 
 namespace interactive = job::interactive;
 
-constexpr float kClickPixels = 4.0f;  // a longer way is a drag
+constexpr float kClickPixels = 4.0f;  // a longer movement is a drag
 constexpr double kDoubleClickSeconds = 0.4;
 
 bool contains(const Area& area, vec2 position) {
@@ -52,7 +52,7 @@ void Navigator::onButton(ViewState& state, const ButtonEvent& event, const Area&
   if (!press_ || press_->button != event.button) return;
   const Press press = *press_;
   press_.reset();
-  held_.clear();
+  if (press.drag == Drag::look && bindingSet(state.settings.bindings).flyNeedsButton) held_.clear();
   if (press.moved)
     state.apply(interactive::EndDrag{});
   else if (press.button == MouseButton::left)
@@ -99,7 +99,8 @@ std::optional<Action> Navigator::onKey(ViewState& state, const KeyEvent& event) 
     }
   }
   if (!event.pressed || event.key.empty()) return std::nullopt;
-  return actionOf(set, event.key, event.modifiers);
+  const std::optional<Action> action = actionOf(set, event.key, event.modifiers);
+  return action && (!event.repeated || repeats(*action)) ? action : std::nullopt;
 }
 
 void Navigator::fly(ViewState& state, double seconds) {

@@ -121,6 +121,11 @@ std::optional<Action> actionOf(const BindingSet& set, std::string_view key, cons
   return std::nullopt;
 }
 
+bool repeats(Action action) {
+  return action == Action::undo || action == Action::redo || action == Action::lessExposure ||
+         action == Action::moreExposure;
+}
+
 std::optional<Fly> flyOf(const BindingSet& set, std::string_view key) {
   for (const FlyBinding& binding : set.flies)
     if (binding.key == key) return binding.fly;

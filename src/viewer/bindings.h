@@ -81,6 +81,8 @@ const BindingSet& bindingSet(std::string_view name);
 
 std::optional<Drag> dragOf(const BindingSet& set, MouseButton button, const Modifiers& modifiers);
 std::optional<Action> actionOf(const BindingSet& set, std::string_view key, const Modifiers& modifiers);
+// Holding the key performs the action again and again.
+bool repeats(Action action);
 std::optional<Fly> flyOf(const BindingSet& set, std::string_view key);
 
 std::string_view description(Drag drag);      // "Turn around the orbit center"

@@ -63,14 +63,16 @@ struct Window::Callbacks {
     if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) event.position = std::string(1, static_cast<char>(key));
     event.modifiers = modifiersOf(mods);
     event.pressed = action != GLFW_RELEASE;
-    event.repeated = action == GLFW_REPEAT;
+    of(handle).keyRepeats_ = event.repeated = action == GLFW_REPEAT;
     if (!event.key.empty() || !event.position.empty()) of(handle).events_.emplace_back(std::move(event));
   }
 
   // Characters that are neither letters nor the space, which key() reports.
   static void character(GLFWwindow* handle, unsigned codepoint) {
     if (codepoint <= ' ' || codepoint > '~' || isLetter(static_cast<char>(codepoint))) return;
-    of(handle).events_.emplace_back(KeyEvent{.key = {static_cast<char>(codepoint)}, .pressed = true});
+    Window& window = of(handle);
+    window.events_.emplace_back(
+        KeyEvent{.key = {static_cast<char>(codepoint)}, .pressed = true, .repeated = window.keyRepeats_});
   }
 
   static void button(GLFWwindow* handle, int button, int action, int mods) {

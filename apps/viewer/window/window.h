@@ -45,6 +45,7 @@ class Window {
 
   GLFWwindow* handle_ = nullptr;
   std::vector<InputEvent> events_;
+  bool keyRepeats_ = false;  // the last event of a key, which a character follows
   int windowedX_ = 0, windowedY_ = 0, windowedWidth_ = 0, windowedHeight_ = 0;  // before full screen
 };
 

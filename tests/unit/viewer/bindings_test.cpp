@@ -77,6 +77,14 @@ TEST(Bindings, ReachEveryActionAndDescribeIt) {
   for (int i = 0; i <= static_cast<int>(Fly::down); ++i) EXPECT_FALSE(description(static_cast<Fly>(i)).empty());
 }
 
+TEST(Bindings, RepeatOnlyActionsThatStep) {
+  for (const Action action : {Action::undo, Action::redo, Action::lessExposure, Action::moreExposure})
+    EXPECT_TRUE(repeats(action)) << description(action);
+  for (const Action action : {Action::addBookmark, Action::playPause, Action::togglePanels, Action::toggleFullScreen,
+                              Action::help, Action::compare})
+    EXPECT_FALSE(repeats(action)) << description(action);
+}
+
 TEST(Bindings, AreShownAsText) {
   const BindingSet& set = bindingSets().front();
   EXPECT_EQ(keysOf(set, Action::redo), "Ctrl+Shift+Z or Ctrl+Y");
