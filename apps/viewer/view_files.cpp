@@ -135,6 +135,8 @@ void openRecent(ViewState& state, const std::string& file) {
   std::error_code error;
   if (std::filesystem::exists(file, error))
     openFile(state, file);
+  else if (std::filesystem::path(file).is_absolute())
+    state.addMessage({Message::Kind::error, fmt::format("{}: file not found", file)});
   else
     openLesson(state, file);
 }

@@ -15,7 +15,7 @@ std::string sceneKey(const Snapshot& snapshot);
 // A scene or program replaces the current one; the program stays with a new scene, and the scene with a new program. An
 // environment or a reference image is used for the current scene. Other files cause a message.
 void openFile(ViewState& state, const std::string& path);
-// One of Settings::recentFiles.
+// One of Settings::recentFiles. If it no longer exists, this is a message, and the session continues.
 void openRecent(ViewState& state, const std::string& file);
 // A built-in program on its own scene.
 void openLesson(ViewState& state, const std::string& program);
