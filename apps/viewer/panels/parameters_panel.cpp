@@ -31,10 +31,12 @@ NumberRange rangeOf(const Parameter& parameter) {
   return range;
 }
 
-std::string assignedText(const ParameterValue& value, int count) {
+std::string assignedText(const ParameterValue& value, int count, bool whole) {
   std::string text;
-  for (int i = 0; i < count; ++i)
-    text += fmt::format("{}{:.9g}", i == 0 ? "" : ",", value[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < count; ++i) {
+    const double number = value[static_cast<std::size_t>(i)];
+    text += (i == 0 ? "" : ",") + (whole ? fmt::format("{:.0f}", number) : fmt::format("{:.9g}", number));
+  }
   return text;
 }
 
@@ -53,7 +55,7 @@ std::string edited(const Parameter& parameter, const ParameterValue& value, cons
     case ParameterType::color: {
       vec3 color(value[0], value[1], value[2]);
       if (!colorField(label, color, parameter.help)) return "";
-      return assignedText({color.r, color.g, color.b}, 3);
+      return assignedText({color.r, color.g, color.b}, 3, /*whole=*/false);
     }
     case ParameterType::image: {
       std::string file = imageFile;
@@ -63,8 +65,8 @@ std::string edited(const Parameter& parameter, const ParameterValue& value, cons
   }
   ParameterValue numbers = value;
   const int count = program::componentCount(parameter.type);
-  return vectorField(label, numbers.data(), count, rangeOf(parameter), parameter.help) ? assignedText(numbers, count)
-                                                                                       : "";
+  if (!vectorField(label, numbers.data(), count, rangeOf(parameter), parameter.help)) return "";
+  return assignedText(numbers, count, program::isWhole(parameter.type));
 }
 
 }  // namespace
