@@ -391,7 +391,7 @@ void Application::menuBar() {
   if (menu("Camera")) {
     item("Show the scene", Action::frameAll, ready);
     item("Show the selection", Action::frameSelected, ready);
-    item("First view", Action::resetCamera, ready);
+    item("Initial view", Action::resetCamera, ready);
     item("Add bookmark", Action::addBookmark, ready);
     ImGui::EndMenu();
   }
@@ -400,12 +400,12 @@ void Application::menuBar() {
       perform(Action::togglePanels);
     ImGui::MenuItem("Diagnostics", nullptr, &state_.showDiagnostics, !state_.snapshot->diagnostics.empty());
     item("Full screen", Action::toggleFullScreen);
-    item("Dark or light", Action::toggleTheme);
-    if (ImGui::BeginMenu("Size of text")) {
+    item("Switch theme", Action::toggleTheme);
+    if (ImGui::BeginMenu("Text size")) {
       for (const float scale : {0.75f, 1.0f, 1.25f, 1.5f, 2.0f, 2.5f, 3.0f})
         if (ImGui::MenuItem(fmt::format("{:.0f} %", 100.0f * scale).c_str(), nullptr, state_.scale == scale))
           state_.settings.scale = state_.scale = scale;
-      if (ImGui::MenuItem("As the display", nullptr, state_.settings.scale == 0.0f)) {
+      if (ImGui::MenuItem("Same as the display", nullptr, state_.settings.scale == 0.0f)) {
         state_.settings.scale = 0.0f;
         state_.scale = displayScale_;
       }

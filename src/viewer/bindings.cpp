@@ -146,7 +146,7 @@ std::string_view description(Action action) {
   switch (action) {
     case Action::frameSelected: return "Show the selected object";
     case Action::frameAll: return "Show the whole scene";
-    case Action::resetCamera: return "Go back to the first view";
+    case Action::resetCamera: return "Go back to the initial view";
     case Action::undo: return "Undo";
     case Action::redo: return "Redo";
     case Action::open: return "Open a file";

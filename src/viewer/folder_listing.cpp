@@ -20,7 +20,7 @@ std::vector<FolderEntry> listFolder(const std::filesystem::path& folder) {
   while (!error && entry != std::filesystem::directory_iterator()) {
     FolderEntry item;
     item.name = entry->path().filename().string();
-    std::error_code ignored;  // a link to a missing file is no folder
+    std::error_code ignored;  // a link to a missing file is not a folder
     item.folder = entry->is_directory(ignored);
     item.use = useOfFile(entry->path());
     if (!item.name.starts_with('.') && (item.folder || item.use != FileUse::unknown))

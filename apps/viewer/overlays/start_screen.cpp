@@ -49,7 +49,7 @@ void recentFiles(ViewState& state) {
       openRecent(state, files[i]);
     }
     ImGui::EndDisabled();
-    tooltip(exists || isBuiltIn ? files[i] : files[i] + " does not exist any more");
+    tooltip(exists || isBuiltIn ? files[i] : files[i] + " no longer exists");
   }
 }
 

@@ -40,7 +40,7 @@ void lightProperties(ViewState& state, std::size_t index) {
   if (type != scene::LightType::point) {
     const vec3 d = light.light.direction;
     double direction[3] = {d.x, d.y, d.z};
-    if (vectorField("Direction", direction, 3, {.least = -1.0, .most = 1.0}, "In which the light travels") &&
+    if (vectorField("Direction", direction, 3, {.least = -1.0, .most = 1.0}, "Direction in which the light travels") &&
         glm::length(vec3(direction[0], direction[1], direction[2])) > 1e-4f)
       set("direction", {direction[0], direction[1], direction[2]});
   }
