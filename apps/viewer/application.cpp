@@ -62,7 +62,7 @@ Application::Presentation::Presentation(const Window& window, const ApplicationO
 
 Application::Application(ApplicationOptions options)
     : options_(std::move(options)), state_(initialState(options_)), window_("Quintet", state_.settings.windowSize) {
-  displayScale_ = window_.contentScale();
+  displayScale_ = window_.contentScale() / window_.pixelScale();
   state_.scale = options_.scale > 0          ? options_.scale
                  : state_.settings.scale > 0 ? state_.settings.scale
                                              : displayScale_;
@@ -81,7 +81,7 @@ Application::Application(ApplicationOptions options)
 Application::~Application() {
   setWidgetLog({});
   if (options_.storesSettings) {
-    const uvec2 size = window_.size();
+    const uvec2 size = window_.windowedSize();
     if (size.x > 1 && size.y > 1) state_.settings.windowSize = size;
     storeSettings(state_);
   }
@@ -167,7 +167,8 @@ void Application::chooseImageSize(const Area& area) {
   if (state_.fixedSize) {
     wantedSize_ = imageSize_ = *state_.fixedSize;
   } else if (area.size.x >= kMinImageSide && area.size.y >= kMinImageSide) {
-    const uvec2 size = glm::max(uvec2(glm::round(area.size * state_.settings.resolution)), uvec2(1));
+    const float pixels = state_.settings.resolution * window_.pixelScale();
+    const uvec2 size = glm::max(uvec2(glm::round(area.size * pixels)), uvec2(1));
     if (size != wantedSize_) wantedSince_ = state_.time;
     wantedSize_ = size;
   }
@@ -267,7 +268,8 @@ Area Application::layOut() {
   }
   const Area area{{0.0f, top}, glm::max(vec2(display.x - right, display.y - top - bottom), vec2(1.0f))};
   if (state_.ready())
-    state_.placement = fitImage(state_.snapshot->state.size, area.origin, area.size, state_.fixedSize ? 1.0f : 1000.0f);
+    state_.placement = fitImage(state_.snapshot->state.size, area.origin, area.size,
+                                state_.fixedSize ? 1.0f / window_.pixelScale() : 1000.0f);
   return area;
 }
 

@@ -34,7 +34,7 @@ struct ApplicationOptions {
   std::string presentDevice;                             // gpu::ContextOptions::device of the window
   float scale = 0;                                       // size of text and controls; 0 means that of the settings
   std::optional<Theme> theme;                            // unset: that of the settings
-  std::optional<uvec2> windowSize;                       // pixels; unset: that of the settings
+  std::optional<uvec2> windowSize;                       // Settings::windowSize; unset: that of the settings
   bool storesSettings = true;                            // in the user's folder
   std::function<void(const std::string& json)> onEvent;  // lines of JSON; may be empty
   bool logsWidgets = false;                              // onEvent also gets the rectangles of all controls
@@ -96,7 +96,7 @@ class Application {
   std::vector<Lesson> lessons_;
   std::vector<InputEvent> events_;
 
-  float displayScale_ = 1;  // that the display asks for
+  float displayScale_ = 1;  // that the display asks for, in screen coordinates
   int framesToDraw_ = 3;    // after input, until the interface is stable
   double lastFrame_ = 0;    // on clock_
   int presentationLosses_ = 0;

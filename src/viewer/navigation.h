@@ -14,8 +14,8 @@ namespace quintet::viewer {
 
 // Where the image is on the screen. Both have their origin in the top left corner.
 struct ImagePlacement {
-  vec2 origin{0.0f};   // of the image on the screen, screen pixels
-  float scale = 1.0f;  // screen pixels per pixel of the image, > 0
+  vec2 origin{0.0f};   // of the image, screen coordinates
+  float scale = 1.0f;  // screen coordinates per pixel of the image, > 0
   uvec2 size{0};       // of the image, pixels
 
   vec2 toImage(vec2 screen) const { return (screen - origin) / scale; }
@@ -27,7 +27,7 @@ struct ImagePlacement {
 // the scale is 1.
 ImagePlacement fitImage(uvec2 image, vec2 origin, vec2 area, float maxScale);
 
-// The command of a drag by `moved` screen pixels that began at `start`.
+// The command of a drag by `moved` screen coordinates that began at `start`.
 job::interactive::Command dragCommand(Drag drag, vec2 moved, vec2 start, const ImagePlacement& placement);
 
 // The command of the wheel: `steps` > 0 moves closer, and the point below `position` stays.

@@ -23,7 +23,7 @@ struct Settings {
   std::string bindings;         // name of a BindingSet; empty means the first
   float resolution = 1.0f;      // pixels of the image per pixel of the window, [0.125, 1]
   float scale = 0.0f;           // size of text and controls, [0.5, kMaxScale]; 0 means that of the display
-  uvec2 windowSize{1280, 800};  // pixels
+  uvec2 windowSize{1280, 800};  // screen coordinates, which are pixels unless the window system scales the window
   bool panels = true;           // the panels beside the image are visible
   float panelWidth = 320.0f;    // pixels at scale 1, [200, 1000]
   std::set<std::string> openPanels{"Scene", "Selection", "Display", "Parameters"};

@@ -21,7 +21,7 @@
 namespace quintet::viewer {
 namespace {
 
-constexpr float kFontSize = 15.0f;  // pixels at scale 1
+constexpr float kFontSize = 15.0f;  // screen coordinates at scale 1
 constexpr float kTitleSize = 2.0f;  // relative to the text
 
 // Fonts of common systems, in the order of preference. The library's own font has only ASCII.
@@ -49,7 +49,7 @@ constexpr ImWchar kGlyphs[] = {0x0020, 0x024F, 0x0370, 0x03FF, 0x2010, 0x2044, 0
 
 }  // namespace
 
-Gui::Gui(Window& window, Theme theme, float scale) : theme_(theme), scale_(scale) {
+Gui::Gui(Window& window, Theme theme, float scale) : theme_(theme), scale_(scale), pixelScale_(window.pixelScale()) {
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // the settings are in viewer/settings.h
@@ -81,7 +81,8 @@ void Gui::setScale(float scale) {
 void Gui::loadFont() {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
-  const float size = std::round(kFontSize * scale_);
+  const float size = std::round(kFontSize * scale_ * pixelScale_);
+  ImGui::GetIO().FontGlobalScale = 1.0f / pixelScale_;
   const std::string file = findFont();
   ImFontConfig config;
   config.OversampleH = 2;

@@ -26,7 +26,7 @@ struct FontPixels {
 // One per process.
 class Gui {
  public:
-  // `scale`: size of text and controls.
+  // `scale`: size of text and controls, in screen coordinates.
   Gui(Window& window, Theme theme, float scale);
   ~Gui();
   Gui(const Gui&) = delete;
@@ -53,6 +53,7 @@ class Gui {
 
   Theme theme_;
   float scale_;
+  float pixelScale_;  // of the window when it was opened
   FontPixels font_;
   bool fontChanged_ = false, styleChanged_ = true;
 };

@@ -12,7 +12,7 @@
 
 namespace quintet::viewer {
 
-// Positions are pixels of the framebuffer, from the top left corner.
+// Positions are screen coordinates from the top left corner of the window, as those of Dear ImGui.
 struct KeyEvent {
   std::string key;       // as in bindings.h
   std::string position;  // the letter on a US keyboard, for keys that are held; empty for other keys

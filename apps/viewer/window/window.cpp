@@ -79,25 +79,22 @@ struct Window::Callbacks {
     if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
     double x = 0, y = 0;
     ::glfwGetCursorPos(handle, &x, &y);
-    Window& window = of(handle);
-    window.events_.emplace_back(ButtonEvent{.button = button == GLFW_MOUSE_BUTTON_LEFT    ? MouseButton::left
+    of(handle).events_.emplace_back(ButtonEvent{.button = button == GLFW_MOUSE_BUTTON_LEFT    ? MouseButton::left
                                                       : button == GLFW_MOUSE_BUTTON_RIGHT ? MouseButton::right
                                                                                           : MouseButton::middle,
                                             .modifiers = modifiersOf(mods),
-                                            .position = window.toPixels(x, y),
+                                            .position = {x, y},
                                             .pressed = action == GLFW_PRESS});
   }
 
   static void cursor(GLFWwindow* handle, double x, double y) {
-    Window& window = of(handle);
-    window.events_.emplace_back(MoveEvent{window.toPixels(x, y)});
+    of(handle).events_.emplace_back(MoveEvent{{x, y}});
   }
 
   static void scroll(GLFWwindow* handle, double, double steps) {
     double x = 0, y = 0;
     ::glfwGetCursorPos(handle, &x, &y);
-    Window& window = of(handle);
-    window.events_.emplace_back(WheelEvent{static_cast<float>(steps), window.toPixels(x, y)});
+    of(handle).events_.emplace_back(WheelEvent{static_cast<float>(steps), {x, y}});
   }
 
   static void drop(GLFWwindow* handle, int count, const char** paths) {
@@ -164,12 +161,17 @@ float Window::contentScale() const {
   return std::max(x, y);
 }
 
-// Positions of the cursor are in screen coordinates, which differ from pixels on some systems.
-vec2 Window::toPixels(double x, double y) const {
+float Window::pixelScale() const {
   int width = 0, height = 0;
   ::glfwGetWindowSize(handle_, &width, &height);
-  if (width <= 0 || height <= 0) return vec2(0.0f);
-  return vec2(x, y) * vec2(size()) / vec2(width, height);
+  const uvec2 pixels = size();
+  return width > 0 && pixels.x > 0 ? static_cast<float>(pixels.x) / static_cast<float>(width) : 1.0f;
+}
+
+uvec2 Window::windowedSize() const {
+  int width = windowedWidth_, height = windowedHeight_;
+  if (!::glfwGetWindowMonitor(handle_)) ::glfwGetWindowSize(handle_, &width, &height);
+  return {static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0))};
 }
 
 bool Window::shouldClose() const { return ::glfwWindowShouldClose(handle_) == GLFW_TRUE; }

@@ -14,10 +14,12 @@ struct GLFWwindow;
 
 namespace quintet::viewer {
 
+// Sizes and positions are in the screen coordinates of the window system, unless they are stated to be pixels. A
+// coordinate is one or several pixels of the framebuffer: 2 on Wayland and macOS if the display is scaled by 2, 1 on X11.
 // One window per process. All functions are called from the main thread, except wake().
 class Window {
  public:
-  // `size`: pixels. Throws Error if there is no display.
+  // Throws Error if there is no display.
   Window(const std::string& title, uvec2 size);
   ~Window();
   Window(const Window&) = delete;
@@ -27,7 +29,9 @@ class Window {
   gpu::SurfaceSource surfaceSource() const;  // valid as long as the window
 
   uvec2 size() const;          // pixels of the framebuffer; 0 if the window is minimized
-  float contentScale() const;  // size of text and controls that the display asks for; 1 at 96 DPI
+  float pixelScale() const;    // pixels per screen coordinate
+  uvec2 windowedSize() const;  // of the window; in full screen, the size before
+  float contentScale() const;  // size of text and controls in pixels that the display asks for; 1 at 96 DPI
   bool shouldClose() const;
   bool minimized() const;
 
@@ -41,7 +45,6 @@ class Window {
 
  private:
   struct Callbacks;
-  vec2 toPixels(double x, double y) const;
 
   GLFWwindow* handle_ = nullptr;
   std::vector<InputEvent> events_;
