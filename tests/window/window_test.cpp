@@ -348,16 +348,23 @@ TEST_F(WindowTest, OpensDroppedFiles) {
   ViewerProcess& viewer = start({});
   viewer.control("Help");
   const auto drop = [&](const char* name) { return viewer.window().drop((folder_ / name).string(), 300, 200); };
+  const auto copiedCommand = [&] {
+    viewer.window().key("c", {"Control_L"});
+    viewer.settle();
+    return viewer.window().clipboard();
+  };
   EXPECT_TRUE(drop("flat.rt.glsl"));
   viewer.waitForImage();
   expectColor(kRed, "the program");
   EXPECT_TRUE(drop("wall.scene.toml"));
   viewer.waitForImage();
   expectColor(kRed, "the program stays with the scene");
+  EXPECT_THAT(copiedCommand(), HasSubstr("wall.scene.toml"));
   writeFile(folder_ / "notes.txt", "no scene");
   EXPECT_TRUE(drop("notes.txt"));
-  viewer.settle();
-  EXPECT_TRUE(viewer.running());
+  viewer.control((folder_ / "notes.txt").string() +
+                 ": neither a scene (.glb, .gltf, .scene.toml), a program (.rt.glsl, a folder with program.toml) nor an "
+                 "image");
   // The failure is shown without panels, so the window has room for a larger image.
   writeFile(folder_ / "broken.scene.toml", "[[mesh");
   EXPECT_TRUE(drop("broken.scene.toml"));
@@ -373,7 +380,8 @@ TEST_F(WindowTest, OpensDroppedFiles) {
   io::writeImage(folder_ / "sky.hdr", sky);
   EXPECT_TRUE(drop("sky.hdr"));
   viewer.waitForImage();
-  expectColor(kRed, "still running");
+  expectColor(kRed, "the program does not show the environment");
+  EXPECT_THAT(copiedCommand(), HasSubstr("sky.hdr"));
 }
 
 TEST_F(WindowTest, AsksBeforeItReplacesAFile) {

@@ -185,6 +185,7 @@ void toasts(ViewState& state, const Area& area) {
     ImGui::PushStyleColor(ImGuiCol_Text, messageColor(toast.message.kind, state.settings.theme));
     ImGui::TextUnformatted(toast.message.text.c_str());
     ImGui::PopStyleColor();
+    logControl(toast.message.text.c_str());
   }
   ImGui::PopTextWrapPos();
   ImGui::End();
