@@ -31,7 +31,7 @@ constexpr double kIdleSeconds = 0.5;
 constexpr double kResizeSeconds = 0.15;  // the size of the image follows that of the window after this time
 constexpr int kStableFrames = 3;
 constexpr int kMaxLosses = 3;
-constexpr float kMinImageSide = 4.0f;  // pixels; smaller areas keep the last size
+constexpr float kMinImageSide = 4.0f;        // pixels; smaller areas keep the last size
 constexpr double kExposureStep = 1.0 / 3.0;  // stops
 
 ViewState initialState(const ApplicationOptions& options) {
@@ -529,8 +529,7 @@ void Application::changeExposure(double stops) {
 
 void Application::confirmExposure(double exposure) {
   const auto found = std::ranges::find(requestedExposures_, exposure);
-  requestedExposures_.erase(requestedExposures_.begin(),
-                            found == requestedExposures_.end() ? found : std::next(found));
+  requestedExposures_.erase(requestedExposures_.begin(), found == requestedExposures_.end() ? found : std::next(found));
 }
 
 void Application::play() {

@@ -109,7 +109,7 @@ class Application {
   uvec2 wantedSize_{0};                      // that the window has room for
   double wantedSince_ = 0;                   // on clock_
   std::vector<double> requestedExposures_;   // by changeExposure(), which the session has not confirmed
-  std::string displayError_;  // of displays_, as the last message shows it
+  std::string displayError_;                 // of displays_, as the last message shows it
   bool quit_ = false;
   std::string widgets_, nextWidgets_;  // last output of emitWidgets(), and the one of this frame
   std::optional<job::interactive::SessionRequest> pendingSession_;  // opened when the size of the image is known

@@ -249,7 +249,7 @@ void RenderJob::setProgram(program::Program program, const ProgramRequest& with,
   ResolvedJob changed = resolve(std::move(request), std::move(program));
   changed.scene = job_.scene;
   frameOutdated_ = true;  // a program that accumulates has moved the scene to a frame of its own
-  if (!renderer_) {  // update() failed and is repeated by the next run()
+  if (!renderer_) {       // update() failed and is repeated by the next run()
     job_ = std::move(changed);
     return;
   }

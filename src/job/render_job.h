@@ -123,7 +123,7 @@ class RenderJob {
 
   const ResolvedJob& resolved() const { return job_; }
   const std::shared_ptr<PreparedScene>& scene() const { return scene_; }
-  render::Renderer& renderer();          // throws Error if an edit failed
+  render::Renderer& renderer();                           // throws Error if an edit failed
   std::uint64_t linkCount() const { return linkCount_; }  // of programs so far, each with a new renderer
   const render::Region& region() const;  // the rendered part of the image; throws Error if an edit failed
 
@@ -191,8 +191,8 @@ class RenderJob {
   float frame_ = 0;                         // of an animated scene
   bool frameOutdated_ = false;              // the device does not show frame_ yet
   std::uint64_t linkCount_ = 0;
-  double linkedSeconds_ = 0;                // on clock_
-  double firstPixelSeconds_ = 0;            // on clock_; 0: no launch has ended
+  double linkedSeconds_ = 0;      // on clock_
+  double firstPixelSeconds_ = 0;  // on clock_; 0: no launch has ended
 };
 
 }  // namespace quintet::job

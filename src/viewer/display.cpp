@@ -99,9 +99,9 @@ std::string_view channelName(Channel channel) {
 }
 
 bool DisplaySettings::operator==(const DisplaySettings& other) const {
-  return exposure == other.exposure && toneMap == other.toneMap && heat == other.heat && falseColor == other.falseColor &&
-         channel == other.channel && range.least == other.range.least && range.most == other.range.most &&
-         range.logarithmic == other.range.logarithmic && compare == other.compare;
+  return exposure == other.exposure && toneMap == other.toneMap && heat == other.heat &&
+         falseColor == other.falseColor && channel == other.channel && range.least == other.range.least &&
+         range.most == other.range.most && range.logarithmic == other.range.logarithmic && compare == other.compare;
 }
 
 Display makeDisplay(const io::Image& image, const io::Image* reference, const DisplaySettings& settings) {

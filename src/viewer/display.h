@@ -32,7 +32,7 @@ enum class CompareMode {
 struct DisplaySettings {
   double exposure = 0;  // stops
   render::ToneMap toneMap = render::ToneMap::linear;
-  bool heat = false;  // first channel in false colors, as render::falseColor() and a PNG show it; without toneMap
+  bool heat = false;        // first channel in false colors, as render::falseColor() and a PNG show it; without toneMap
   bool falseColor = false;  // instead of `heat`
   Channel channel = Channel::luminance;
   FalseColorRange range;
@@ -48,10 +48,10 @@ struct DisplayPixels {
 
 struct Display {
   DisplayPixels image;
-  DisplayPixels reference;      // with CompareMode::split, of the same size
-  Histogram histogram;          // of the linear image
+  DisplayPixels reference;                   // with CompareMode::split, of the same size
+  Histogram histogram;                       // of the linear image
   std::optional<FalseColorRange> heatRange;  // of the colors, with DisplaySettings::heat
-  std::optional<double> error;  // mean of the difference or of FLIP; with CompareMode::difference and flip
+  std::optional<double> error;               // mean of the difference or of FLIP; with CompareMode::difference and flip
 };
 
 // `image`: linear premultiplied RGBA floats. `reference`: any image; resized to that of `image` if necessary; null if

@@ -362,9 +362,10 @@ TEST_F(WindowTest, OpensDroppedFiles) {
   EXPECT_THAT(copiedCommand(), HasSubstr("wall.scene.toml"));
   writeFile(folder_ / "notes.txt", "no scene");
   EXPECT_TRUE(drop("notes.txt"));
-  viewer.control((folder_ / "notes.txt").string() +
-                 ": neither a scene (.glb, .gltf, .scene.toml), a program (.rt.glsl, a folder with program.toml) nor an "
-                 "image");
+  viewer.control(
+      (folder_ / "notes.txt").string() +
+      ": neither a scene (.glb, .gltf, .scene.toml), a program (.rt.glsl, a folder with program.toml) nor an "
+      "image");
   // The failure is shown without panels, so the window has room for a larger image.
   writeFile(folder_ / "broken.scene.toml", "[[mesh");
   EXPECT_TRUE(drop("broken.scene.toml"));

@@ -126,7 +126,8 @@ std::optional<std::filesystem::path> FileDialog::draw(float scale) {
     if (!error_.empty())
       ImGui::TextWrapped("%s", error_.c_str());
     else
-      ImGui::TextDisabled("%s", opens ? "You can also type a path." : "PNG as displayed. OpenEXR and HDR have linear values.");
+      ImGui::TextDisabled(
+          "%s", opens ? "You can also type a path." : "PNG as displayed. OpenEXR and HDR have linear values.");
     if (focus_) ImGui::SetKeyboardFocusHere();
     focus_ = false;
     const char* action = opens ? "Open" : "Save";

@@ -53,7 +53,8 @@ void materialProperties(ViewState& state, std::size_t index) {
   edit.number("Metallic", "metallic", material.metallic, kUnit, "0: dielectric, 1: metal");
   edit.number("Roughness", "roughness", material.roughness, kUnit, "Perceptual; alpha is its square");
   edit.color("Emission", "emissive", material.emissive, "Radiance, W/(sr·m²)");
-  edit.number("Index of refraction", "ior", material.ior, {.least = 1.0, .most = 3.0}, "Index of refraction of dielectrics");
+  edit.number("Index of refraction", "ior", material.ior, {.least = 1.0, .most = 3.0},
+              "Index of refraction of dielectrics");
   edit.number("Transmission", "transmission", material.transmission, kUnit,
               "Fraction of light that enters the surface");
   if (material.transmission > 0.0f || material.thickness > 0.0f) {

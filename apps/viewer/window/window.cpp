@@ -80,16 +80,14 @@ struct Window::Callbacks {
     double x = 0, y = 0;
     ::glfwGetCursorPos(handle, &x, &y);
     of(handle).events_.emplace_back(ButtonEvent{.button = button == GLFW_MOUSE_BUTTON_LEFT    ? MouseButton::left
-                                                      : button == GLFW_MOUSE_BUTTON_RIGHT ? MouseButton::right
-                                                                                          : MouseButton::middle,
-                                            .modifiers = modifiersOf(mods),
-                                            .position = {x, y},
-                                            .pressed = action == GLFW_PRESS});
+                                                          : button == GLFW_MOUSE_BUTTON_RIGHT ? MouseButton::right
+                                                                                              : MouseButton::middle,
+                                                .modifiers = modifiersOf(mods),
+                                                .position = {x, y},
+                                                .pressed = action == GLFW_PRESS});
   }
 
-  static void cursor(GLFWwindow* handle, double x, double y) {
-    of(handle).events_.emplace_back(MoveEvent{{x, y}});
-  }
+  static void cursor(GLFWwindow* handle, double x, double y) { of(handle).events_.emplace_back(MoveEvent{{x, y}}); }
 
   static void scroll(GLFWwindow* handle, double, double steps) {
     double x = 0, y = 0;

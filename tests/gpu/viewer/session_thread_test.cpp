@@ -226,8 +226,8 @@ TEST_F(SessionThreadTest, AFailureStaysUntilTheSessionRestarts) {
   thread_->save(folder_ / "out.png");
   EXPECT_TRUE(hasMessage(Message::Kind::error, "out.png: not saved, because the render failed"));
   writeFile(folder_ / "flat.rt.glsl", program);
-  const auto corrected = waitFor(
-      [&](const Snapshot& s) { return s.progress.complete && s.imageNumber > first->imageNumber; });
+  const auto corrected =
+      waitFor([&](const Snapshot& s) { return s.progress.complete && s.imageNumber > first->imageNumber; });
   EXPECT_EQ(corrected->renderError, "");
 }
 

@@ -14,8 +14,8 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "io/codec.h"
-#include "job/interactive/command_json.h"
 #include "job/films.h"
+#include "job/interactive/command_json.h"
 #include "program/load.h"
 #include "temp_folder.h"
 
@@ -496,7 +496,8 @@ TEST_F(SessionTest, AnInterruptedPreviewKeepsTheImage) {
 TEST_F(SessionTest, APreviewShowsTheSelectedOutput) {
   writeFile(folder_ / "program.toml",
             "[program]\nray_generation = \"main.rgen\"\n"
-            "[[ray]]\nname = \"radiance\"\nmiss = \"<quintet/stages/radiance.rmiss>\"\n[[output]]\nname = \"a\"\nkind = \"linear\"\n"
+            "[[ray]]\nname = \"radiance\"\nmiss = \"<quintet/stages/radiance.rmiss>\"\n[[output]]\nname = \"a\"\nkind "
+            "= \"linear\"\n"
             "[[output]]\nname = \"b\"\nkind = \"linear\"\n");
   writeFile(folder_ / "main.rgen",
             "#version 460\n#extension GL_EXT_ray_tracing : require\n#include <quintet/output.glsl>\n"
@@ -581,7 +582,7 @@ TEST_F(SessionTest, ADragIsOneStep) {
 TEST_F(SessionTest, CommandsThatChangeNothingAddNoStep) {
   const auto session = makeSession(request());
   session->refine();
-  const std::vector<Command> commands{SelectOutput{"color"},   SetToneMap{},      SetSamples{6}, SetExposure{0},
+  const std::vector<Command> commands{SelectOutput{"color"},    SetToneMap{},      SetSamples{6}, SetExposure{0},
                                       SetProgram{"pathtracer"}, SetSize{{40, 24}}, SetLens{},     SetEnvironment{}};
   for (const Command& command : commands) {
     session->apply(command);
