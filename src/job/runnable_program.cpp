@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/runnable_program.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -54,11 +53,7 @@ program::Probes requestedProbes(const RenderRequest& request, const program::Pro
   program::Probes probes;
   probes.prints = request.print.has_value();
   probes.heat = program::hasHeatMap(program, request.outputs);
-  const bool isTimed = std::ranges::any_of(program.outputs, [&](const program::Output& output) {
-    return output.isHeatMap && output.name == program::kHeatTime &&
-           std::ranges::find(request.outputs, output.name) != request.outputs.end();
-  });
-  if (isTimed && !device.shaderClock)
+  if (program::hasHeatMap(program, request.outputs, program::kHeatTime) && !device.shaderClock)
     throw UsageError(
         fmt::format("output '{}': {} has no clock for shaders (VK_KHR_shader_clock)", program::kHeatTime, device.name));
   return probes;

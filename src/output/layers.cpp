@@ -119,7 +119,7 @@ std::vector<Layer> availableLayers(const program::Program& program) {
 }
 
 std::vector<Layer> selectLayers(const std::vector<Layer>& available, const std::vector<std::string>& names,
-                                const std::string& owner) {
+                                const std::string& owner, const std::vector<std::string>& alsoSuggested) {
   if (std::ranges::find(names, "all") != names.end()) return available;
   std::vector<std::string> known;
   std::vector<Layer> selected;
@@ -128,7 +128,7 @@ std::vector<Layer> selectLayers(const std::vector<Layer>& available, const std::
     if (std::ranges::find(names, layer.name) != names.end()) selected.push_back(layer);
   }
   std::vector<std::string> similar = known;
-  for (const program::HeatMap& map : program::heatMaps()) similar.emplace_back(map.name);
+  similar.insert(similar.end(), alsoSuggested.begin(), alsoSuggested.end());
   for (const std::string& name : names)
     if (std::ranges::find(known, name) == known.end())
       throw UsageError(fmt::format("layer '{}' not found in {}{}; available: {}", printable(name), owner,
@@ -149,9 +149,7 @@ void checkChannels(const std::vector<Layer>& layers) {
 
 std::string layerList(const program::Program& program) {
   std::string text;
-  std::vector<std::string> heatMaps;
-  for (const program::HeatMap& map : program::heatMaps()) heatMaps.emplace_back(map.name);
-  for (const Layer& layer : availableLayers(program::withHeatMaps(program, heatMaps)))
+  for (const Layer& layer : availableLayers(program::withAllHeatMaps(program)))
     text +=
         fmt::format("{:<22} {:<26} {}\n", layer.name, fmt::format("{}", fmt::join(layer.channels, " ")), layer.help);
   return text;

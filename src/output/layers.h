@@ -28,10 +28,11 @@ struct Layer {
 // All outputs of the program except the first, and what the film knows about the first.
 std::vector<Layer> availableLayers(const program::Program& program);
 
-// Those with these names, in the order of `available`; "all" selects every one. `owner` starts the error message: "the
-// program 'ao'". Throws UsageError with the nearest name.
+// Returns those with these names, in the order of `available`; "all" selects every one. `owner` starts the error message:
+// "the program 'ao'". Throws UsageError with the nearest name, of these and of `alsoSuggested`: what the owner has only on
+// request.
 std::vector<Layer> selectLayers(const std::vector<Layer>& available, const std::vector<std::string>& names,
-                                const std::string& owner);
+                                const std::string& owner, const std::vector<std::string>& alsoSuggested = {});
 
 // Throws UsageError if two layers would have a channel of the same name (`object` and `cryptomatte_object`), or if readers
 // of Cryptomatte could not distinguish them (`object` and `object2`).

@@ -2,6 +2,7 @@
 #include "output/plan.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -72,7 +73,7 @@ std::vector<std::size_t> selectOutputs(const OutputRequest& request, const progr
   const auto found = std::ranges::find(names, request.output);
   if (found == names.end()) {
     std::vector<std::string> known = names;
-    for (const program::HeatMap& map : program::heatMaps()) known.emplace_back(map.name);
+    std::ranges::move(program::heatMapNames(), std::back_inserter(known));
     throw UsageError(fmt::format("output '{}' not found in the program '{}'{}; available: {}", request.output,
                                  program.name, suggestion(request.output, known), fmt::join(names, ", ")));
   }
@@ -124,7 +125,8 @@ OutputPlan planOutputs(const OutputRequest& request, const program::Program& pro
   plan.request = request;
   plan.kind = checkRequest(request);
   plan.outputs = selectOutputs(request, program);
-  plan.layers = selectLayers(availableLayers(program), request.layers, fmt::format("the program '{}'", program.name));
+  plan.layers = selectLayers(availableLayers(program), request.layers, fmt::format("the program '{}'", program.name),
+                             program::heatMapNames());
   checkChannels(plan.layers);
   std::vector<std::size_t> required = plan.outputs;
   for (const Layer& layer : plan.layers) required.push_back(layer.output);

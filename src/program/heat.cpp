@@ -4,6 +4,11 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "program/description/limits.h"
+
 namespace quintet::program {
 namespace {
 
@@ -15,29 +20,50 @@ constexpr std::array kHeatMaps{
     HeatMap{"heat_any_hit", "Number of any-hit shader calls per sample"},
     HeatMap{"heat_intersection", "Number of intersection shader calls per sample"},
 };
-constexpr std::size_t kMaxProgramOutputs = 32;  // shared::kMaxOutputs
+
+void addHeatMap(Program& program, const HeatMap& map) {
+  Output& output = program.outputs.emplace_back();
+  output.name = map.name;
+  output.kind = OutputKind::heat;
+  output.help = map.help;
+  output.optional = output.isHeatMap = true;
+}
+
+bool hasOutput(const Program& program, std::string_view name) {
+  return std::ranges::find(program.outputs, name, &Output::name) != program.outputs.end();
+}
 
 }  // namespace
 
 std::span<const HeatMap> heatMaps() { return kHeatMaps; }
 
+std::vector<std::string> heatMapNames() {
+  std::vector<std::string> names;
+  for (const HeatMap& map : kHeatMaps) names.emplace_back(map.name);
+  return names;
+}
+
 Program withHeatMaps(Program program, const std::vector<std::string>& names) {
   for (const HeatMap& map : kHeatMaps) {
-    const bool requested = std::ranges::find(names, map.name) != names.end();
-    const bool exists = std::ranges::find(program.outputs, map.name, &Output::name) != program.outputs.end();
-    if (!requested || exists || program.outputs.size() >= kMaxProgramOutputs) continue;
-    Output& output = program.outputs.emplace_back();
-    output.name = map.name;
-    output.kind = OutputKind::heat;
-    output.help = map.help;
-    output.optional = output.isHeatMap = true;
+    if (std::ranges::find(names, map.name) == names.end() || hasOutput(program, map.name)) continue;
+    if (program.outputs.size() >= kMaxOutputs)
+      throw UsageError(fmt::format("heat map '{}': the program '{}' would have more than {} outputs", map.name,
+                                   program.name, kMaxOutputs));
+    addHeatMap(program, map);
   }
   return program;
 }
 
-bool hasHeatMap(const Program& program, const std::vector<std::string>& outputs) {
+Program withAllHeatMaps(Program program) {
+  for (const HeatMap& map : kHeatMaps)
+    if (!hasOutput(program, map.name) && program.outputs.size() < kMaxOutputs) addHeatMap(program, map);
+  return program;
+}
+
+bool hasHeatMap(const Program& program, const std::vector<std::string>& outputs, std::string_view name) {
   return std::ranges::any_of(program.outputs, [&](const Output& output) {
-    return output.isHeatMap && std::ranges::find(outputs, output.name) != outputs.end();
+    return output.isHeatMap && (name.empty() || output.name == name) &&
+           std::ranges::find(outputs, output.name) != outputs.end();
   });
 }
 

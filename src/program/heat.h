@@ -21,13 +21,16 @@ struct HeatMap {
 inline constexpr std::string_view kHeatTime = "heat_time";
 
 std::span<const HeatMap> heatMaps();
+std::vector<std::string> heatMapNames();
 
 // Returns the program with an optional output for each name of a heat map, unless it has an output of this name itself.
-// Other names are ignored. A program has at most shared::kMaxOutputs outputs; further heat maps are not added.
+// Other names are ignored. Throws UsageError if the program then has more than kMaxOutputs outputs.
 Program withHeatMaps(Program program, const std::vector<std::string>& names);
+// The same with as many heat maps as the program can have.
+Program withAllHeatMaps(Program program);
 
-// True if one of the outputs is a heat map of the program.
-bool hasHeatMap(const Program& program, const std::vector<std::string>& outputs);
+// True if one of the outputs is a heat map of the program; with a name, if it is this one.
+bool hasHeatMap(const Program& program, const std::vector<std::string>& outputs, std::string_view name = {});
 
 }  // namespace quintet::program
 #endif

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cli/option_table.h"
-#include "program/heat.h"
 #include "program/load.h"
 
 namespace quintet::cli {
@@ -24,12 +23,6 @@ inline Candidates programOrSceneCandidates() {
   Candidates candidates = programCandidates();
   candidates.extensions.insert(candidates.extensions.end(), kSceneExtensions.begin(), kSceneExtensions.end());
   return candidates;
-}
-
-// Names of the heat maps, after `first`.
-inline std::vector<std::string> heatMapNames(std::vector<std::string> first = {}) {
-  for (const program::HeatMap& map : program::heatMaps()) first.emplace_back(map.name);
-  return first;
 }
 
 // Of --device.

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "cli/candidates.h"
 #include "cli/values.h"
+#include "program/heat.h"
 #include "render/film/film_file.h"
 
 namespace quintet::cli {
@@ -275,7 +276,11 @@ void declareCheckpoints(OptionTable& table, RenderTexts& texts, RenderOptions& o
 }
 
 void declareExr(OptionTable& table, RenderTexts& texts, bool ofFilms) {
-  const std::vector<std::string> layers = ofFilms ? std::vector<std::string>{"all"} : heatMapNames({"all", "list"});
+  std::vector<std::string> layers{"all"};
+  if (!ofFilms) {
+    layers = program::heatMapNames();
+    layers.insert(layers.begin(), {"all", "list"});
+  }
   table.add(
       "OpenEXR",
       {{.names = "--aov",

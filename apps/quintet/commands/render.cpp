@@ -21,6 +21,7 @@
 #include "output/layers.h"
 #include "output/report.h"
 #include "output/write.h"
+#include "program/heat.h"
 #include "program/help.h"
 #include "program/load.h"
 
@@ -123,7 +124,7 @@ std::string programHelpText(const program::Program& program, std::string_view co
   if (runs && program.accumulation == program::Accumulation::program) options += "--frames N; ";
   options += fmt::format("--set NAME=VALUE for parameters; {}--all-outputs and --aov NAMES for outputs.",
                          runs ? "--output NAME, " : "");
-  options += fmt::format(" Every program also has the heat maps {}.", fmt::join(heatMapNames(), ", "));
+  options += fmt::format(" Every program also has the heat maps {}.", fmt::join(program::heatMapNames(), ", "));
   return fmt::format("{}\n{}\nSee 'quintet {} --help' for the options of all programs.\n",
                      program::describeAsText(program, width), wrapped(options, width, 0), command);
 }

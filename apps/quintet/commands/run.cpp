@@ -26,6 +26,7 @@
 #include "output/layers.h"
 #include "output/report.h"
 #include "output/write.h"
+#include "program/heat.h"
 #include "program/help.h"
 #include "program/load.h"
 
@@ -95,7 +96,7 @@ OptionTable declare(RunOptions& options, RenderTexts& texts) {
                          .value = "NAME",
                          .help = "Output of the program to write (default: the first)",
                          .target = &options.output.output,
-                         .candidates = {.names = heatMapNames()}},
+                         .candidates = {.names = program::heatMapNames()}},
                         {.names = "--list", .help = "List the built-in programs and exit", .target = &options.list}});
   table.add(
       "Run",

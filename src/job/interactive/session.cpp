@@ -55,9 +55,7 @@ ResolvedJob resolveSession(const SessionRequest& session, const std::shared_ptr<
 
 // With the heat maps, so that they can be selected.
 program::Program loadForSession(const std::string& name) {
-  std::vector<std::string> heatMaps;
-  for (const program::HeatMap& map : program::heatMaps()) heatMaps.emplace_back(map.name);
-  return program::withHeatMaps(program::loadProgram(name), heatMaps);
+  return program::withAllHeatMaps(program::loadProgram(name));
 }
 
 std::size_t indexOf(const std::string& name, const std::vector<std::string>& names, const char* kind) {

@@ -13,13 +13,13 @@
 #include "base/suggestion.h"
 #include "base/toml_reader.h"
 #include "program/description/generated_glsl.h"
+#include "program/description/limits.h"
 
 namespace quintet::program {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxOutputs = 32;    // shared::kMaxOutputs; render/film/film.cpp asserts that they are equal
 constexpr std::size_t kMaxRayTypes = 15;   // sbtRecordStride of traceRayEXT has 4 bits
 constexpr std::size_t kMaxMisses = 65536;  // missIndex of traceRayEXT has 16 bits
 constexpr const char* kStagesExample = "{ closest_hit = \"a.rchit\" }";

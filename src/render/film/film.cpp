@@ -8,11 +8,12 @@
 #include <cassert>
 
 #include "base/error.h"
+#include "program/description/limits.h"
 
 namespace quintet::render {
 namespace {
 
-static_assert(shared::kMaxOutputs == 32, "program/description/parser.cpp rejects programs with more outputs");
+static_assert(shared::kMaxOutputs == program::kMaxOutputs);
 
 using program::Accumulation;
 using program::OutputPixel;

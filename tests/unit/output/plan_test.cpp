@@ -86,6 +86,19 @@ TEST_F(PlanOutputs, RejectsWhatCannotBeWritten) {
   EXPECT_THAT(errorFor(standardOutput), HasSubstr("standard output"));
 }
 
+// Programs have heat maps only on request, films only if they were rendered.
+TEST_F(PlanOutputs, SuggestsHeatMapsOfProgramsOnly) {
+  OutputRequest wrong = request("out.exr");
+  wrong.layers = {"heat_ray"};
+  EXPECT_THAT(errorFor(wrong), HasSubstr("did you mean 'heat_rays'?"));
+  try {
+    selectLayers(availableLayers(program_), {"heat_rays"}, "these films");
+    ADD_FAILURE();
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), testing::StartsWith("layer 'heat_rays' not found in these films; available: "));
+  }
+}
+
 TEST_F(PlanOutputs, StandardOutput) {
   EXPECT_EQ(planOutputs({.file = "-"}, program_).kind, FileKind::png);
   EXPECT_EQ(planOutputs({.file = "-.exr"}, program_).kind, FileKind::exr);

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 
+#include "base/error.h"
+#include "program/description/limits.h"
+
 namespace quintet::program {
 namespace {
 
@@ -38,8 +41,24 @@ TEST(HeatMaps, MustBeRequestedToBeCounted) {
 }
 
 TEST(HeatMaps, DoNotExceedTheNumberOfOutputs) {
-  const Program program = withHeatMaps(programWith(std::vector<std::string>(31, "a")), {"heat_time", "heat_rays"});
-  EXPECT_EQ(program.outputs.size(), 32u);
+  const Program almost = programWith(std::vector<std::string>(kMaxOutputs - 1, "a"));
+  EXPECT_EQ(withHeatMaps(almost, {"heat_rays"}).outputs.back().name, "heat_rays");
+  EXPECT_EQ(withAllHeatMaps(almost).outputs.size(), kMaxOutputs);
+  try {
+    withHeatMaps(almost, {"heat_rays", "heat_depth"});
+    ADD_FAILURE();
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "heat map 'heat_depth': the program '' would have more than 32 outputs");
+  }
+}
+
+TEST(HeatMaps, AreFoundByName) {
+  const Program program = withAllHeatMaps(programWith({"color", "heat_depth"}));
+  EXPECT_EQ(program.outputs.size(), 1 + heatMaps().size());
+  EXPECT_TRUE(hasHeatMap(program, {"heat_rays", "heat_time"}, kHeatTime));
+  EXPECT_FALSE(hasHeatMap(program, {"heat_rays"}, kHeatTime));
+  EXPECT_FALSE(hasHeatMap(program, {"heat_depth"}, "heat_depth")) << "it is an output of the program";
+  EXPECT_EQ(heatMapNames().front(), kHeatTime);
 }
 
 TEST(HeatMaps, HaveUniqueNames) {
