@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,10 +67,11 @@ std::uint32_t textWidth(std::string_view text) { return static_cast<std::uint32_
 
 void drawText(Canvas& canvas, std::uint32_t x, std::uint32_t y, std::string_view text) {
   for (const char c : text) {
-    const auto& rows = kGlyphs[kGlyphNames.find(c)];
-    for (std::uint32_t row = 0; row < kGlyphRows; ++row)
+    const std::size_t glyph = kGlyphNames.find(c);
+    for (std::uint32_t row = 0; row < kGlyphRows && glyph != kGlyphNames.npos; ++row)
       for (std::uint32_t column = 0; column < kGlyphColumns; ++column)
-        if ((rows[row] >> (kGlyphColumns - 1 - column) & 1) != 0) canvas.at(x + column, y + row) = kForeground;
+        if ((kGlyphs[glyph][row] >> (kGlyphColumns - 1 - column) & 1) != 0)
+          canvas.at(x + column, y + row) = kForeground;
     x += kGlyphStep;
   }
 }
@@ -131,7 +133,7 @@ FalseColorScale falseColorScale(const io::Image& image, float exposure) {
   const auto percentile = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
   std::ranges::nth_element(values, percentile);
   const float chosen = *percentile > 0.0f && *percentile < 0.5f * largest ? *percentile : largest;
-  const float maximum = chosen * std::exp2(-exposure);
+  const float maximum = std::min(chosen * std::exp2(-exposure), std::numeric_limits<float>::max());
   return {maximum, maximum < largest};
 }
 

@@ -20,10 +20,10 @@ struct FalseColorScale {
 };
 
 // The scale for the first channel: its largest finite value, or its 99th percentile if that is less than half of it, so that a
-// few outliers do not darken all other pixels. Times 2^-exposure.
+// few outliers do not darken all other pixels. Times 2^-exposure, but finite.
 FalseColorScale falseColorScale(const io::Image& image, float exposure);
 
-// Rows that withLegend() adds below an image.
+// Rows that FalseColorOptions::legend adds below an image.
 inline constexpr std::uint32_t kLegendRows = 24;
 
 struct FalseColorOptions {

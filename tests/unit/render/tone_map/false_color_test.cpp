@@ -62,6 +62,13 @@ TEST(FalseColor, ExposureDividesTheScale) {
   EXPECT_FALSE(falseColorScale(imageOf(2, {2.0f, 3.0f}), -1.0f).exceeded);
 }
 
+TEST(FalseColor, TheScaleIsFinite) {
+  const io::Image image = imageOf(80, std::vector<float>(80, 1e30f));
+  const FalseColorScale scale = falseColorScale(image, -100.0f);
+  EXPECT_EQ(scale.maximum, std::numeric_limits<float>::max());
+  EXPECT_EQ(falseColor(image, {.scale = scale}).height, 1 + kLegendRows);
+}
+
 TEST(FalseColor, OutliersDoNotDecideTheScale) {
   std::vector<float> values(1000);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i);
@@ -118,6 +125,11 @@ TEST(FalseColor, LegendHasTheColorsAndTheValues) {
   EXPECT_EQ(rows[13], ".....###.............................#####.........................#......#.....");
   EXPECT_EQ(legendOf(80, 14.0f, true)[13],
             ".....###.............................#####..................#......#......#.....");
+}
+
+TEST(FalseColor, LegendSkipsCharactersWithoutGlyph) {
+  // "inf" has none.
+  EXPECT_EQ(legendOf(80, std::numeric_limits<float>::infinity())[13], ".....###" + std::string(72, '.'));
 }
 
 TEST(FalseColor, LegendOfANarrowImageHasFewerLabels) {
