@@ -54,9 +54,10 @@ struct PrintedLine {
 // Lines by pixel (row by row), then by sample, then in the order of the calls.
 struct Printed {
   std::vector<PrintedLine> lines;
-  // Further ones, because of the limit or because the device could not store them. If the device could not store all,
-  // which ones it stored can differ in each run.
+  // Further ones, because of the limit or because the device could not store them.
   std::uint64_t omitted = 0;
+  // Of these, those that the device could not store. Which ones it stored can then differ in each run.
+  std::uint64_t notStored = 0;
 };
 
 enum class StopRequest {

@@ -32,7 +32,7 @@ render::Region printedPixels(const PrintRequest& request, const render::Region& 
 Printed printedLines(const render::LogContents& log, const program::PrintTable& table, const PrintNumbers& numbers,
                      std::uint64_t limit) {
   Printed result;
-  result.omitted = log.dropped;
+  result.omitted = result.notStored = log.dropped;
   for (const render::LogRecord& record : log.records) {
     const std::span<const std::uint32_t> words = log.wordsOf(record);
     if (record.kind != shared::kLogPrint || words.empty() || words[0] >= table.size()) continue;

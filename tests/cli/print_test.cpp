@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // --print: what shaders print appears on standard error, or in the JSON report.
+#include <csignal>
+#include <string>
+
 #include <gmock/gmock.h>
 
 #include "fixtures.h"
@@ -70,6 +73,24 @@ TEST_F(Print, LinesCanBeObjects) {
       quintet({"render", "scene.gltf", "--program", "demo.rt.glsl", "--size", "8x4", "--print=3,2", "--json-progress"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr(R"({"print":{"pixel":[3,2],"frame":0,)"));
+}
+
+// A save ends a render. What it printed does not count for the next one.
+TEST_F(Print, AnAbandonedRenderIsForgotten) {
+  TerminalRun process({"run", "demo.rt.glsl", "--watch", "--print", "--print-limit", "2", "--size", "8x4", "--time",
+                       "100000", "-o", "out.png"},
+                      folder_.path());
+  ASSERT_TRUE(process.waitForNext("frame 1: x = 4"));
+  ASSERT_TRUE(process.waitForNext(" left"));
+  std::string silent = kProgram;
+  silent.erase(silent.find("  debugPrintfEXT"), silent.find("  gsnSetPixel") - silent.find("  debugPrintfEXT"));
+  write(folder_ / "demo.rt.glsl", silent);
+  ASSERT_TRUE(process.waitForNext("no shader calls debugPrintfEXT"));
+  ASSERT_TRUE(process.waitForNext("demo.rt.glsl saved: "));
+  process.signal(SIGINT);
+  const RunResult result = process.finish();
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_THAT(result.err, Not(HasSubstr("omitted")));
 }
 
 TEST_F(Print, WrongValuesAreUsageErrors) {

@@ -131,21 +131,23 @@ bool Console::wantsImage() const { return preview_ && clock_.seconds() >= nextIm
 
 void Console::image(const job::FilmView& film) {
   const double begin = clock_.seconds();
+  const io::Image image = displayImage(film);  // without the lock, because the device's warnings take it
   const std::lock_guard lock(mutex_);
-  drawImage(film);
+  drawImage(image);
   const double end = clock_.seconds();
   nextImage_ = end + std::max(kImageSeconds, kImageShare * (end - begin));
 }
 
 void Console::finalImage(const job::FilmView& film) {
   if (!preview_) return;
+  const io::Image image = displayImage(film);  // see image()
   const std::lock_guard lock(mutex_);
-  drawImage(film);
+  drawImage(image);
   preview_->keep();
 }
 
-void Console::drawImage(const job::FilmView& film) {
-  std::string text = kClearLine + preview_->draw(displayImage(film));
+void Console::drawImage(const io::Image& image) {
+  std::string text = kClearLine + preview_->draw(image);
   if (barVisible_) text += bar_;
   const ProtectedWrite protect;  // half an image would disturb what follows
   printError(text);
@@ -179,9 +181,10 @@ void Console::warning(const std::string& text) {
     printMessage("quintet: warning: " + printable(text));
 }
 
-void Console::clearWarnings() {
+void Console::clearReport() {
   const std::lock_guard lock(mutex_);
   warnings_.clear();
+  prints_ = {};
 }
 
 std::vector<std::string> Console::warnings() const {
@@ -200,6 +203,7 @@ void Console::diagnostics(const std::vector<Diagnostic>& found) {
 void Console::printed(const job::Printed& prints) {
   const std::lock_guard lock(mutex_);
   prints_.omitted += prints.omitted;
+  prints_.notStored += prints.notStored;
   prints_.lines.insert(prints_.lines.end(), prints.lines.begin(), prints.lines.end());
   if (options_.json && !options_.jsonProgress) return;  // at the end
   clearLocked();
@@ -213,9 +217,12 @@ void Console::printsDisabled() { note("the program prints (debugPrintfEXT); --pr
 
 std::optional<job::Printed> Console::takePrints() {
   if (!options_.collectPrints) return std::nullopt;
-  if (prints_.omitted > 0)
+  if (const std::uint64_t beyond = prints_.omitted - prints_.notStored; beyond > 0)
     note(fmt::format("{} {} omitted; --print-limit allows more, and --print=X,Y selects a pixel",
-                     counted(prints_.omitted, "printed line"), nounFor(prints_.omitted, "was", "were")));
+                     counted(beyond, "printed line"), nounFor(beyond, "was", "were")));
+  if (const std::uint64_t lost = prints_.notStored; lost > 0)
+    note(fmt::format("{} did not fit into the log on the device; --print=X,Y selects a pixel",
+                     counted(lost, "printed line")));
   return std::exchange(prints_, {});
 }
 
@@ -242,8 +249,7 @@ void Console::batch(const job::BatchReport& report) {
 job::StopRequest Console::stopRequested() {
   if (isObsolete && isObsolete()) return job::StopRequest::abandon;
   if (!stop_ || !stop_->requested()) return job::StopRequest::none;
-  if (!std::exchange(stopNoted_, true))
-    note("interrupted: finishing the current batch; press Ctrl-C again to quit without an image");
+  if (!std::exchange(stopNoted_, true)) note("interrupted: " + options_.stopNote);
   return job::StopRequest::finish;
 }
 

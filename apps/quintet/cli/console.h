@@ -47,6 +47,8 @@ struct ConsoleOptions {
   bool jsonProgress = false;    // a line of JSON for each batch and warning, instead of progress
   std::string preview = "off";  // previewNames()
   bool collectPrints = false;   // the request asks for what the program prints
+  // What the first Ctrl-C does, and the second one.
+  std::string stopNote = "finishing the current batch; press Ctrl-C again to quit without an image";
 };
 
 // The observer of a command: a bar on a terminal, a line every ten seconds elsewhere.
@@ -57,7 +59,7 @@ class Console : public job::Observer {
 
   // For source lines of diagnostics; null: the files on disk. Must stay valid.
   void setProgram(const program::Program* program);
-  // While set, Ctrl-C ends the job after the current batch. Must stay valid.
+  // While set, Ctrl-C ends the job at the next opportunity. Must stay valid.
   void setGracefulStop(const GracefulStop* stop) { stop_ = stop; }
 
   void stage(const std::string& text) override;
@@ -80,7 +82,7 @@ class Console : public job::Observer {
 
   std::function<void(const job::RenderResult&)> onFrame, onPreview;
   std::function<bool()> isObsolete;  // the render is obsolete
-  // With a preview: makes the image of a film, sRGB bytes with 3 channels.
+  // With a preview: makes the image of a film, sRGB bytes with 3 channels. It may call warning().
   std::function<io::Image(const job::FilmView&)> displayImage;
 
   // Shows the image of a finished render, with a preview. It stays on the terminal.
@@ -88,14 +90,14 @@ class Console : public job::Observer {
 
   void clear();                               // removes the bar, and the image of an unfinished render
   std::vector<std::string> warnings() const;  // so far
-  void clearWarnings();                       // for the next render of --watch
+  void clearReport();                         // discards warnings and prints; before the next render of --watch
   // What the program printed since the last call, with a note about omitted lines. Unset unless collectPrints is set.
   std::optional<job::Printed> takePrints();
 
  private:
   void show(const std::string& line);
   void clearLocked();
-  void drawImage(const job::FilmView& film);
+  void drawImage(const io::Image& image);
 
   const ConsoleOptions options_;
   const bool terminal_;

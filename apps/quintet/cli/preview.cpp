@@ -51,7 +51,7 @@ std::optional<TerminalProtocol> protocolByEnvironment() {
   return {};
 }
 
-// The terminal of standard error, with input that is neither shown nor collected to lines. Ctrl-C stays a signal.
+// The terminal of standard error, with input without echo and line buffering. Ctrl-C stays a signal.
 class RawInput {
  public:
   RawInput() : valid_(::tcgetattr(STDERR_FILENO, &before_) == 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The preview of a render on the terminal of standard error: which protocol can show an image (--preview), and the place of
-// the image above the progress line.
+// The preview of a render on the terminal of standard error: which protocol can show an image (--preview), and the position
+// of the image above the progress line.
 #ifndef QUINTET_CLI_PREVIEW_H
 #define QUINTET_CLI_PREVIEW_H
 
@@ -23,7 +23,7 @@ struct PreviewChoice {
 std::vector<std::string> previewNames();
 
 // "auto" is decided by the environment. If that is not enough, the terminal is asked for its attributes, which takes up to a
-// second. Throws UsageError for an unknown name, and for a protocol if standard error is no terminal.
+// second. Throws UsageError for an unknown name, and for a protocol if standard error is not a terminal.
 PreviewChoice choosePreview(const std::string& name);
 
 // The image on the screen. Its functions return text for the terminal. The cursor is at the start of the line below the

@@ -188,7 +188,7 @@ class Watch {
       if (stop_->requested()) break;
       changed_ = true;
       clock_ = Stopwatch();
-      console_.clearWarnings();
+      console_.clearReport();
       good = reload();
       if (stop_->requested()) break;
     }

@@ -50,6 +50,7 @@ TEST(PrintLog, LinesBeyondTheLimitAreCounted) {
   const Printed printed = printedLines(log, table(), {}, 1);
   EXPECT_EQ(printed.lines.size(), 1u);
   EXPECT_EQ(printed.omitted, 7u);
+  EXPECT_EQ(printed.notStored, 5u);
 }
 
 TEST(PrintLog, OtherRecordsAreNoLines) {
