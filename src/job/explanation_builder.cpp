@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -343,7 +344,8 @@ class Builder {
     if (!site.complete) event.set("complete", false);
     for (const spirv::DataField& field : site.fields) {
       if (1 + field.firstWord + field.wordCount() > words.size()) break;
-      event.set(field.name, fieldValue(field, words.subspan(1)));
+      // The name of a variable without members could be that of a field.
+      event.set(field.name == site.variable ? "value" : field.name, fieldValue(field, words.subspan(1)));
     }
     append(std::move(event));
   }

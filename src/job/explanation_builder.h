@@ -21,7 +21,7 @@ struct SceneNames {
 };
 
 // `program` is the instrumented program that wrote the log (Instrumentation::explain), and `pixel` the pixel of the log.
-// Records that are incomplete or out of order, because others did not fit, are left out.
+// Records that are incomplete or out of order, because others did not fit, are skipped.
 std::vector<ExplainedEvent> buildEvents(const render::LogContents& log, const program::RunnableProgram& program,
                                         const SceneNames& names, uvec2 pixel);
 

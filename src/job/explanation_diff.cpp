@@ -130,7 +130,8 @@ class Walk {
       if (auto difference = compare(at + ": " + name, value, *other, tolerance_)) return stop(std::move(*difference));
     }
     for (const auto& [name, value] : b.fields)
-      if (!isLocation(name) && !a.find(name)) return stop({at + ": " + name, kMissing, valueText(value), {}});
+      if (!isLocation(name) && !a.find(name) && !isUndefined(a, b, before, name))
+        return stop({at + ": " + name, kMissing, valueText(value), {}});
     diff_.equalEvents++;
     return compareLists(a.children, b.children, at);
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/explanation_json.h"
 
-#include <cmath>
-#include <cstdlib>
+#include <algorithm>
+#include <iterator>
 #include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "job/float_json.h"
 
 namespace quintet::job {
 namespace {
@@ -21,25 +23,16 @@ constexpr const char* kFormat = "quintet-explanation";
 constexpr int kFormatVersion = 1;
 constexpr std::size_t kMaxDepth = 256;  // of nested events
 
-// The double with the shortest text that gives the same float.
-Json numberJson(float value) {
-  if (std::isnan(value)) return "nan";
-  if (std::isinf(value)) return value > 0.0f ? "inf" : "-inf";
-  return std::strtod(fmt::format("{}", value).c_str(), nullptr);
-}
-
-Json numbersJson(const float* values, std::size_t count) {
-  Json json = Json::array();
-  for (std::size_t i = 0; i < count; ++i) json.push_back(numberJson(values[i]));
-  return json;
-}
+// Fields that are always texts: the user can name an instance "nan".
+constexpr std::string_view kTexts[] = {"stage",        "file",     "rayType", "missShader", "variable", "dataType",
+                                       "instanceName", "material", "light",   "callable",   "output"};
 
 struct ToJson {
   Json operator()(bool value) const { return value; }
   Json operator()(std::int64_t value) const { return value; }
-  Json operator()(float value) const { return numberJson(value); }
+  Json operator()(float value) const { return floatJson(value); }
   Json operator()(const std::string& value) const { return value; }
-  Json operator()(const std::vector<float>& values) const { return numbersJson(values.data(), values.size()); }
+  Json operator()(const std::vector<float>& values) const { return floatsJson(values); }
   Json operator()(const std::vector<std::int64_t>& values) const { return values; }
 };
 
@@ -123,31 +116,28 @@ class Reader {
     const Json& value = array(json, at, name);
     vec4 result(0.0f);
     for (std::size_t i = 0; i < 4; ++i) {
-      const std::optional<float> number = i < value.size() ? asFloat(value[i]) : std::nullopt;
+      const std::optional<float> number = i < value.size() ? floatFromJson(value[i]) : std::nullopt;
       if (!number || value.size() != 4) fail(at + "/" + name, "must be four numbers");
       result[i] = *number;
     }
     return result;
   }
 
-  static std::optional<float> asFloat(const Json& json) {
-    if (json.is_number()) return json.get<float>();
-    if (json == "nan") return std::numeric_limits<float>::quiet_NaN();
-    if (json == "inf") return std::numeric_limits<float>::infinity();
-    if (json == "-inf") return -std::numeric_limits<float>::infinity();
-    return std::nullopt;
-  }
-
-  EventValue value(const Json& json, const std::string& at) const {
+  EventValue value(const std::string& name, const Json& json, const std::string& event) const {
+    const std::string at = event + "/" + name;
+    if (std::ranges::find(kTexts, name) != std::end(kTexts)) {
+      if (!json.is_string()) fail(at, "must be a text");
+      return json.get<std::string>();
+    }
     if (json.is_boolean()) return json.get<bool>();
     if (json.is_number_integer()) return json.get<std::int64_t>();
-    if (const std::optional<float> number = asFloat(json)) return *number;
+    if (const std::optional<float> number = floatFromJson(json)) return *number;
     if (json.is_string()) return json.get<std::string>();
     if (!json.is_array()) fail(at, "must be a text, a number, a boolean or an array of numbers");
     std::vector<float> floats;
     std::vector<std::int64_t> integers;
     for (const Json& element : json) {
-      const std::optional<float> number = asFloat(element);
+      const std::optional<float> number = floatFromJson(element);
       if (!number) fail(at, "must be an array of numbers");
       floats.push_back(*number);
       if (element.is_number_integer()) integers.push_back(element.get<std::int64_t>());
@@ -163,7 +153,7 @@ class Reader {
       const std::string here = fmt::format("{}/events/{}", at, i);
       ExplainedEvent event{text(array[i], here, "type"), {}, {}};
       for (const auto& [name, field] : array[i].items())
-        if (name != "type" && name != "events") event.fields.emplace_back(name, value(field, here + "/" + name));
+        if (name != "type" && name != "events") event.fields.emplace_back(name, value(name, field, here));
       if (array[i].contains("events")) event.children = events(array[i], here, depth + 1);
       result.push_back(std::move(event));
     }
@@ -196,18 +186,18 @@ std::string explanationJson(const PixelExplanation& e, const std::string& comman
   json["outputs"] = Json::array();
   for (const ExplainedOutput& output : e.outputs)
     json["outputs"].push_back({{"name", output.name},
-                               {"value", numbersJson(&output.value[0], 4)},
-                               {"recorded", numbersJson(&output.recorded[0], 4)}});
+                               {"value", floatsJson({&output.value[0], 4})},
+                               {"recorded", floatsJson({&output.recorded[0], 4})}});
   Json& contributions = json["contributions"] = Json::array();
   for (const Contribution& contribution : contributionsOf(e)) {
     Json& entry = contributions.emplace_back();
     entry["source"] = contribution.source;
-    entry["value"] = numbersJson(&contribution.value[0], 3);
+    entry["value"] = floatsJson({&contribution.value[0], 3});
     if (contribution.scatterings >= 0) entry["scatterings"] = contribution.scatterings;
     entry["ray"] = contribution.ray;
   }
   const vec3 sum = sumContributions(e);
-  json["contributionSum"] = numbersJson(&sum[0], 3);
+  json["contributionSum"] = floatsJson({&sum[0], 3});
   json["events"] = Json::array();
   for (const ExplainedEvent& event : e.events) json["events"].push_back(eventJson(event));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

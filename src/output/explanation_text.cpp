@@ -12,6 +12,8 @@
 #include "base/plural.h"
 #include "base/text.h"
 #include "base/wrap.h"
+#include "job/float_json.h"
+#include "output/float_text.h"
 
 namespace quintet::output {
 namespace {
@@ -21,28 +23,13 @@ using job::ExplainedEvent;
 using job::PixelExplanation;
 
 constexpr std::size_t kLabelColumns = 15;
-constexpr float kInfinity = 3.402823466e38f;  // as in the shader library: a ray without limit
-
-std::string numberText(float value) {
-  if (value == 0.0f) return "0";        // not "-0"
-  if (std::isnan(value)) return "nan";  // not "-nan"
-  return value >= kInfinity ? "infinity" : fmt::format("{:.5g}", value);
-}
-
-std::string numbersText(const float* values, std::size_t count) {
-  std::string text;
-  for (std::size_t i = 0; i < count; ++i) text += (i > 0 ? " " : "") + numberText(values[i]);
-  return text;
-}
-std::string vectorText(const vec3& v) { return numbersText(&v[0], 3); }
 
 // A field as it is shown: vectors without parentheses.
 std::string fieldText(const ExplainedEvent& event, std::string_view name) {
   const EventValue* value = event.find(name);
   if (!value) return {};
-  if (const auto* number = std::get_if<float>(value)) return numberText(*number);
-  if (const auto* numbers = std::get_if<std::vector<float>>(value))
-    return numbersText(numbers->data(), numbers->size());
+  if (const auto* number = std::get_if<float>(value)) return floatText(*number);
+  if (const auto* numbers = std::get_if<std::vector<float>>(value)) return floatsText(*numbers);
   std::string text = job::valueText(*value);
   if (std::holds_alternative<std::vector<std::int64_t>>(*value)) {
     text = text.substr(1, text.size() - 2);
@@ -121,7 +108,7 @@ class TreeText {
     for (const ExplainedEvent& child : ray.children)
       if (child.type != "payload") event(child, inner);
     if (ray.text("result") == "not traced")
-      line(inner, "not traced", "the recursion depth of the pipeline does not suffice");
+      line(inner, "not traced", "the trace exceeds the recursion depth of the pipeline");
     line(inner, "transmittance", fieldText(ray, "transmittance"));
   }
 
@@ -146,8 +133,9 @@ class TreeText {
     line(indent, type, parts.text());
   }
 
-  // "payload.color" → "color"
+  // "payload.color" → "color"; "value" → the variable
   static std::string memberName(const std::string& name, const std::string& variable) {
+    if (name == "value") return variable;
     const bool isMember = name.starts_with(variable + ".");
     return isMember ? name.substr(variable.size() + 1) : name;
   }
@@ -358,7 +346,7 @@ std::string values(const PixelExplanation& e, std::size_t width) {
     text += twoColumns(label, value, 2 + kLabelColumns, width);
   };
   for (const job::ExplainedOutput& output : e.outputs) {
-    add(printable(output.name), fmt::format("{}, alpha {}", vectorText(output.value), numberText(output.value.a)));
+    add(printable(output.name), fmt::format("{}, alpha {}", vectorText(output.value), floatText(output.value.a)));
     if (!isRounding(output.value, output.recorded))
       add("", fmt::format("The instrumented program computed {}, which differs by more than rounding.",
                           vectorText(output.recorded)));
@@ -377,8 +365,8 @@ std::string contributions(const PixelExplanation& e) {
   const std::vector<job::Contribution> parts = job::contributionsOf(e);
   if (parts.empty()) return {};
   const auto row = [](const std::string& name, const vec3& value) {
-    return fmt::format("  {:<38} {:>11} {:>11} {:>11}\n", name, numberText(value.x), numberText(value.y),
-                       numberText(value.z));
+    return fmt::format("  {:<38} {:>11} {:>11} {:>11}\n", name, floatText(value.x), floatText(value.y),
+                       floatText(value.z));
   };
   std::string text = "\nContributions\n";
   for (const job::Contribution& part : parts) text += row(contributionName(part), part.value);
@@ -435,7 +423,7 @@ std::string explanationDiffJson(const job::ExplanationDiff& diff, const std::str
   using Json = nlohmann::ordered_json;
   const auto entry = [](const job::ExplanationDifference& d) {
     Json json{{"location", d.location}, {"a", d.a}, {"b", d.b}};
-    if (d.error) json["difference"] = *d.error;
+    if (d.error) json["difference"] = job::floatJson(*d.error);
     return json;
   };
   Json json{{"a", a}, {"b", b}, {"equal", diff.equal()}, {"equalEvents", diff.equalEvents}};

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -131,19 +132,19 @@ std::optional<Options> parseOptions(Arguments arguments) {
 
 std::size_t textWidth() { return std::clamp(terminalWidth(STDOUT_FILENO).value_or(kMaxWidth), kMinWidth, kMaxWidth); }
 
-// Returns the exit status.
-int print(const job::PixelExplanation& explanation, const Options& options) {
+// `other`: of Options::against. Returns the exit status.
+int print(const job::PixelExplanation& explanation, const std::optional<job::PixelExplanation>& other,
+          const Options& options) {
   const bool json = options.console.json;
-  if (options.against.empty()) {
+  if (!other) {
     writeFile("-", json ? job::explanationJson(explanation, options.request.commandLine)
                         : output::explanationText(explanation, textWidth(), options.payloads));
     return 0;
   }
-  const job::ExplanationDiff diff =
-      job::diffExplanations(explanation, job::readExplanation(options.against), options.tolerance);
-  const std::string other = options.against.string();
-  writeFile("-", json ? output::explanationDiffJson(diff, options.request.commandLine, other)
-                      : output::explanationDiffText(diff, options.request.commandLine, other, textWidth()));
+  const job::ExplanationDiff diff = job::diffExplanations(explanation, *other, options.tolerance);
+  const std::string file = options.against.string();
+  writeFile("-", json ? output::explanationDiffJson(diff, options.request.commandLine, file)
+                      : output::explanationDiffText(diff, options.request.commandLine, file, textWidth()));
   return diff.equal() ? 0 : kRuntimeError;
 }
 
@@ -158,7 +159,8 @@ OptionTable explainPixelOptions() {
 int explainPixelCommand(Arguments arguments) {
   const std::optional<Options> options = parseOptions(arguments);
   if (!options) return 0;
-  if (!options->against.empty()) job::readExplanation(options->against);  // fails before the work starts
+  std::optional<job::PixelExplanation> other;
+  if (!options->against.empty()) other = job::readExplanation(options->against);  // fails before the work starts
   const program::Program program = program::loadProgram(options->program);
   Console console(options->console);
   console.setProgram(&program);
@@ -172,7 +174,7 @@ int explainPixelCommand(Arguments arguments) {
     job::PixelExplainer explainer(engine, job);
     const job::PixelExplanation explanation = explainer.explain(options->pixel, options->sample, console);
     console.clear();
-    return print(explanation, *options);
+    return print(explanation, other, *options);
   } catch (const ProgramError& error) {
     console.diagnostics(error.diagnostics());
     return kRuntimeError;

@@ -133,6 +133,28 @@ TEST(ExplanationBuilder, DecodesPayloads) {
   EXPECT_EQ(events[0].children[1].text("when"), "after");
 }
 
+// A payload can be a variable without members, with any name.
+TEST(ExplanationBuilder, KeepsTheFieldsOfPayloadsApart) {
+  for (const char* name : {"when", "variable", "dataType", "type", "events", ""}) {
+    program::RunnableProgram program = someProgram();
+    program.compiled.stages[1].calls = {
+        {name, "float", {{name, "float", spirv::DataField::Kind::floating, 32, 1, 0}}, true, {}}};
+    LogWriter log;
+    for (int i = 0; i < 2; ++i) {
+      if (i == 0) log.add(kLogRay, rayTo(0));
+      log.addWords(kLogData, {program::kCallsPerStage, std::bit_cast<std::uint32_t>(1.5f)});
+    }
+    log.add(kLogRayEnd, ExplainRayEnd{1});
+    const std::vector<ExplainedEvent> events = build(log, program);
+    ASSERT_THAT(typesOf(events[0].children), ElementsAre("payload", "payload")) << name;
+    const ExplainedEvent& after = events[0].children[1];
+    EXPECT_EQ(after.text("when"), "after") << name;
+    EXPECT_EQ(after.text("variable"), name);
+    EXPECT_EQ(after.text("dataType"), "float");
+    EXPECT_EQ(after.number("value"), 1.5f) << name;
+  }
+}
+
 TEST(ExplanationBuilder, JoinsChoicesAndSamples) {
   LogWriter log;
   log.add(kLogRay, rayTo(0)).add(kLogHit, hitBy(1)).add(kLogStageEnd, ExplainStageEnd{0});

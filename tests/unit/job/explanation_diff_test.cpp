@@ -65,6 +65,17 @@ TEST(ExplanationDiff, IgnoresPayloadsThatTheCallDoesNotChange) {
   EXPECT_EQ(changed.first->location, "ray 1, payload after: payload.t");
 }
 
+TEST(ExplanationDiff, IgnoresPayloadsBeforeTheCall) {
+  PixelExplanation a = somePath();
+  std::vector<ExplainedEvent>& children = a.events[0].children;
+  children.insert(children.begin(), children[1]);
+  children[0].set("when", std::string("before"));
+  PixelExplanation b = a;
+  b.events[0].children[0].set("payload.more", 1.0f);
+  EXPECT_TRUE(diffExplanations(a, b).equal());
+  EXPECT_TRUE(diffExplanations(b, a).equal());
+}
+
 // The tolerance of a vector follows from its largest component: a direction may have a component near 0.
 TEST(ExplanationDiff, ComparesVectorsByTheirLength) {
   PixelExplanation a = somePath(), b = somePath();

@@ -53,6 +53,19 @@ TEST(ExplanationJson, KeepsNan) {
   EXPECT_TRUE(std::isnan(after.events[0].number("n")));
 }
 
+// Users can choose names that are also texts of numbers.
+TEST(ExplanationJson, KeepsNames) {
+  PixelExplanation e = somePath();
+  e.events[0].children[0].set("instanceName", std::string("inf"));
+  e.events[0].children[0].set("material", std::string("-inf"));
+  e.events[0].children[0].set("stage", std::string("nan"));
+  e.events[1] = {"light", {{"light", std::string("nan")}}, {}};
+  EXPECT_EQ(parseExplanation(explanationJson(e), "a.json").events, e.events);
+  auto json = nlohmann::json::parse(explanationJson(e));
+  json["events"][1]["light"] = 1;
+  EXPECT_THAT(problemOf(json.dump()), testing::StartsWith("a.json: /events/1/light: must be a text"));
+}
+
 TEST(ExplanationJson, HasContributionsAndTheirSum) {
   const auto json = nlohmann::json::parse(explanationJson(somePath(), "quintet explain-pixel …"));
   EXPECT_EQ(json["command"], "quintet explain-pixel …");

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -63,6 +64,24 @@ TEST(ExplanationText, ShowsPayloadsOnRequestAndForProgramsWithoutContributions) 
   EXPECT_THAT(explanationText(e, kWidth, true), HasSubstr(line));
   std::erase_if(e.events, [](const job::ExplainedEvent& event) { return event.type == "contribution"; });
   EXPECT_THAT(explanationText(e, kWidth), HasSubstr(line));
+}
+
+TEST(ExplanationText, ShowsPayloadsWithoutMembers) {
+  job::PixelExplanation e = job::somePath();
+  e.events[0].children[1] = {"payload",
+                             {{"when", std::string("before")},
+                              {"variable", std::string("visible")},
+                              {"dataType", std::string("float")},
+                              {"value", 0.5f}},
+                             {}};
+  EXPECT_THAT(explanationText(e, kWidth, true), HasSubstr("  payload        visible 0.5\n"));
+}
+
+TEST(ExplanationText, WritesInfinityAsJsonText) {
+  job::PixelExplanation b = job::somePath();
+  b.events[0].children[0].set("t", INFINITY);
+  const std::string json = explanationDiffJson(job::diffExplanations(job::somePath(), b), "left", "right.json");
+  EXPECT_THAT(json, HasSubstr("\"difference\":\"inf\""));
 }
 
 TEST(ExplanationText, ReportsWhatDoesNotAddUp) {

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/float_json.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace quintet::job {
+
+using Json = nlohmann::ordered_json;
+
+Json floatJson(float value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0.0f ? "inf" : "-inf";
+  return std::strtod(fmt::format("{}", value).c_str(), nullptr);  // the double with this text
+}
+
+Json floatsJson(std::span<const float> values) {
+  Json json = Json::array();
+  for (const float value : values) json.push_back(floatJson(value));
+  return json;
+}
+
+std::optional<float> floatFromJson(const Json& json) {
+  if (json.is_number()) return json.get<float>();
+  if (json == "nan") return std::numeric_limits<float>::quiet_NaN();
+  if (json == "inf") return std::numeric_limits<float>::infinity();
+  if (json == "-inf") return -std::numeric_limits<float>::infinity();
+  return std::nullopt;
+}
+
+}  // namespace quintet::job

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "output/float_text.h"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace quintet::output {
+
+std::string floatText(float value) {
+  if (value == 0.0f) return "0";
+  if (std::isnan(value)) return "nan";  // not "-nan"
+  if (std::abs(value) >= std::numeric_limits<float>::max()) return value > 0.0f ? "infinity" : "-infinity";
+  return fmt::format("{:.5g}", value);
+}
+
+std::string floatsText(std::span<const float> values) {
+  std::string text;
+  for (const float value : values) text += (text.empty() ? "" : " ") + floatText(value);
+  return text;
+}
+
+}  // namespace quintet::output
