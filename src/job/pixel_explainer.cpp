@@ -35,6 +35,11 @@ program::RunnableProgram instrumentedProgram(Engine& engine, const RenderJob& jo
       .runnable;
 }
 
+void requireInside(uvec2 size, uvec2 pixel) {
+  if (pixel.x < size.x && pixel.y < size.y) return;
+  throw UsageError(fmt::format("pixel {},{} is not inside the image of {}x{}", pixel.x, pixel.y, size.x, size.y));
+}
+
 vec4 batchValue(const render::Renderer& renderer, std::size_t output, uvec2 pixel) {
   const render::Region& region = renderer.film().region();
   const std::vector<vec4> pixels = renderer.film().downloadBatch(output);
@@ -44,11 +49,9 @@ vec4 batchValue(const render::Renderer& renderer, std::size_t output, uvec2 pixe
 }  // namespace
 
 RenderRequest requestForPixel(RenderRequest request, const program::Program& program, uvec2 pixel) {
-  if (request.region.width > 0) throw UsageError("region: a pixel is explained in the whole image");
-  if (request.batches) throw UsageError("batches: a sample is explained in the whole render");
-  if (request.size.x > 0 && request.size.y > 0 && (pixel.x >= request.size.x || pixel.y >= request.size.y))
-    throw UsageError(
-        fmt::format("pixel {},{} is not inside the image of {}x{}", pixel.x, pixel.y, request.size.x, request.size.y));
+  if (request.region.width > 0) throw UsageError("region: not supported when a pixel is explained; remove it");
+  if (request.batches) throw UsageError("batches: not supported when a pixel is explained; remove them");
+  if (request.size.x > 0 && request.size.y > 0) requireInside(request.size, pixel);
   const bool accumulates = program.accumulation == program::Accumulation::program;
   if (!accumulates || !readsOtherPixels(program)) request.region = {pixel.x, pixel.y, 1, 1};
   return request;
@@ -59,9 +62,7 @@ PixelExplainer::PixelExplainer(Engine& engine, RenderJob& job)
       job_(job),
       log_(engine.context(), job.region(), kLogWords),
       program_(instrumentedProgram(engine, job)) {
-  // The frame of an animation; of programs that accumulate, renderEarlierFrames() moves the scene.
-  if (job.scene()->onDevice->animated())
-    job.scene()->onDevice->setFrame(static_cast<float>(job.resolved().request.frames.firstFrame()));
+  job.showRequestedFrame();  // for programs that accumulate, renderEarlierFrames() sets the frame
   render::RenderSettings settings = job.renderer().settings();
   settings.log = &log_;
   instrumented_ = std::make_unique<render::Renderer>(*job.scene()->onDevice, program_, engine.compiler(),
@@ -69,6 +70,7 @@ PixelExplainer::PixelExplainer(Engine& engine, RenderJob& job)
 }
 
 PixelExplanation PixelExplainer::explain(uvec2 pixel, std::uint32_t sample, Observer& observer) {
+  requireInside(job_.scene()->size, pixel);
   try {
     if (job_.resolved().accumulatesFrames()) renderEarlierFrames(sample);
     return record(pixel, sample);

@@ -16,22 +16,24 @@
 
 namespace quintet::job {
 
-// Returns the request of a render of which only this pixel is explained. Its region is the pixel, unless the program
-// accumulates frames and can read those of other pixels. Throws UsageError for a pixel outside of the image, and for a region
-// or a part of a render, which cannot be explained.
+// Returns the request of a render for explaining this pixel. Its region is the pixel, unless the program accumulates frames
+// and can read those of other pixels. Throws UsageError for a region or a part of a render, which cannot be explained, and
+// for a pixel outside of the image if its size is known; if it is not, RenderJob or PixelExplainer::explain() throws.
 RenderRequest requestForPixel(RenderRequest request, const program::Program& program, uvec2 pixel);
 
 class PixelExplainer {
  public:
-  // `job` is for the explainer alone, which discards its samples, and outlives it, as does `engine`. Compiles the variant.
-  // Throws ProgramError and gpu errors.
+  // The explainer needs exclusive use of `job` and discards its samples. `job` and `engine` must outlive it. Moves the scene
+  // to the requested frame. Compiles the variant. Throws ProgramError, UsageError (RenderJob::showRequestedFrame) and gpu
+  // errors.
   PixelExplainer(Engine& engine, RenderJob& job);
   PixelExplainer(const PixelExplainer&) = delete;
   PixelExplainer& operator=(const PixelExplainer&) = delete;
 
   // Explains sample number `sample` (from 0) of a pixel in the region of the job, or frame number `sample` of a program that
-  // accumulates, whose earlier frames are rendered first. The pixel has the same random numbers as in the job's render. A
-  // launch that does not end calls Observer::deviceHung() and throws TimeoutError.
+  // accumulates, whose earlier frames are rendered first. The pixel has the same random numbers as in the job's render.
+  // Throws UsageError for a pixel outside of the image. A launch that does not end calls Observer::deviceHung() and throws
+  // TimeoutError.
   PixelExplanation explain(uvec2 pixel, std::uint32_t sample, Observer& observer);
 
  private:

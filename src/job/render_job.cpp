@@ -683,6 +683,15 @@ const render::Region& RenderJob::region() const {
   return renderer_->film().region();
 }
 
+void RenderJob::showRequestedFrame() {
+  if (job_.accumulatesFrames()) return;
+  const FrameRequest& frames = job_.request.frames;
+  if (frames.lastFrame() > 0) requireAnimation();
+  if (!scene_->onDevice->animated()) return;
+  if (frames.first || frames.count) frame_ = static_cast<float>(frames.lastFrame());  // otherwise that of setFrame()
+  showFrame();
+}
+
 std::shared_ptr<FilmView> RenderJob::film() const {
   requireRenderer();
   return std::make_shared<DeviceFilm>(*renderer_);

@@ -126,6 +126,9 @@ class RenderJob {
   render::Renderer& renderer();                           // throws Error if an edit failed
   std::uint64_t linkCount() const { return linkCount_; }  // of programs so far, each with a new renderer
   const render::Region& region() const;  // the rendered part of the image; throws Error if an edit failed
+  // For users of renderer(): moves the instances with keyframes to the frame that run() shows last. Programs that accumulate
+  // count their frames, so nothing moves. Throws UsageError for a frame after the first one if nothing in the scene moves.
+  void showRequestedFrame();
 
   // Files on disk from which the scene and the program were made, for file watching.
   std::vector<std::filesystem::path> sceneFiles() const;

@@ -19,9 +19,12 @@ Region validRegion(const RenderSettings& settings) {
   const Region& r = settings.region;
   if (r.width == 0 && r.height == 0) return {0, 0, settings.width, settings.height};
   if (r.width == 0 || r.height == 0 || r.x >= settings.width || r.y >= settings.height ||
-      r.width > settings.width - r.x || r.height > settings.height - r.y)
-    throw UsageError(fmt::format("region {},{},{},{} is not inside the image of {}x{}", r.x, r.y, r.width, r.height,
-                                 settings.width, settings.height));
+      r.width > settings.width - r.x || r.height > settings.height - r.y) {
+    const std::string part = r.width == 1 && r.height == 1
+                                 ? fmt::format("pixel {},{}", r.x, r.y)
+                                 : fmt::format("region {},{},{},{}", r.x, r.y, r.width, r.height);
+    throw UsageError(fmt::format("{} is not inside the image of {}x{}", part, settings.width, settings.height));
+  }
   return r;
 }
 

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
+#include "../render/scene_builder.h"
 #include "base/error.h"
 #include "program/gsn/lecture.h"
 #include "program/load.h"
@@ -142,45 +144,93 @@ TEST(PixelExplainer, ExplainsFramesAfterTheEarlierOnes) {
   EXPECT_TRUE(differs) << "the frames of all pixels are equal";
 }
 
-// Next-event estimation: the value of each contribution follows from the numbers of the events before it.
-TEST(PixelExplainer, StatesTheNumbersOfThePathTracer) {
-  const PixelExplanation e = explain(program::loadProgram("pathtracer"), {32, 30}, 1);
+// Returns the contributions of light samples whose radiance the medium reduces.
+int checkNumbers(const PixelExplanation& e, const vec3& emitted) {
   const ExplainedEvent* light = nullptr;
   const ExplainedEvent* shadow = nullptr;
   const ExplainedEvent* emission = nullptr;
-  int checked = 0;
+  int absorbed = 0;
   for (const ExplainedEvent& event : e.events) {
     if (event.type == "light" && event.find("pdf")) light = &event;
     if (event.type == "ray" && event.text("rayType") == "shadow") shadow = &event;
     if (event.type == "emission") emission = &event;
     if (event.type != "contribution") continue;
-    ++checked;
     vec3 expected(0.0f);
     if (event.text("source") == "light sample") {
-      ASSERT_TRUE(light && shadow);
+      EXPECT_TRUE(light && shadow);
+      if (!light || !shadow) continue;
       expected = light->vector("throughput") * light->vector("bsdf") * light->vector("radiance") *
                  (light->number("misWeight") / light->number("pdf")) * shadow->vector("transmittance");
       const float a = light->number("pdf"), b = light->number("bsdfPdf");
       EXPECT_NEAR(light->number("misWeight"), light->flag("delta") ? 1.0f : a / (a + b), 1e-5f);
+      if (light->vector("radiance").r < 0.99f * emitted.r) ++absorbed;
     } else {
-      ASSERT_TRUE(emission);
+      EXPECT_TRUE(emission);
+      if (!emission) continue;
       expected = emission->number("misWeight") * emission->vector("throughput") * emission->vector("radiance");
     }
     expectNear(event.vector("value"), expected, 1e-5f, event.text("source"));
   }
-  EXPECT_GT(checked, 0);
+  return absorbed;
 }
 
-// A ray that skips the closest-hit shader, or a hit group without one, still reports its hit.
-TEST(PixelExplainer, ReportsHitsWithoutShader) {
-  const PixelExplanation e = explain(program::loadProgram("ao"), {32, 40}, 0);
-  const std::vector<const ExplainedEvent*> rays = eventsOf(e, "ray");
+// Next-event estimation: the value of each contribution follows from the numbers of the events before it.
+TEST(PixelExplainer, StatesTheNumbersOfThePathTracer) {
+  const PixelExplanation e = explain(program::loadProgram("pathtracer"), {32, 30}, 1);
+  EXPECT_FALSE(eventsOf(e, "contribution").empty());
+  checkNumbers(e, vec3(0.0f));
+}
+
+// A lamp in a block of rough absorbing glass: the light of samples at its surface passes the glass.
+TEST(PixelExplainer, StatesTheNumbersInAbsorbingMedia) {
+  test::SceneBuilder builder;
+  scene::Material glass = test::clearGlass(1.3f, 1.0f);
+  glass.roughness = 0.6f;
+  glass.attenuationColor = {0.2f, 0.5f, 0.8f};
+  glass.attenuationDistance = 0.5f;
+  const vec3 emitted(9.0f, 7.0f, 5.0f);
+  builder.add(test::box({-0.8f, -0.6f, -0.6f}, {0.8f, 0.6f, 0.8f}), glass);
+  builder.add(test::quad({-0.4f, -0.3f, 0.0f}, {0.8f, 0, 0}, {0, 0.6f, 0}), test::emitter(emitted));
+  builder.camera(test::perspective({0, 0, 4}, {0, 0, 0}, 40.0f));
+  RenderRequest request = smallRequest();
+  request.loadedScene = std::make_shared<scene::Scene>(std::move(builder.scene));
+  request.environment.source = "none";
+  const program::Program program = program::loadProgram("pathtracer");
+  Observer observer;
+  RenderJob job(engine(), resolve(requestForPixel(std::move(request), program, {32, 24}), program), observer);
+  PixelExplainer explainer(engine(), job);
+  int absorbed = 0;
+  for (std::uint32_t sample = 0; sample < 8; ++sample)
+    absorbed += checkNumbers(explainer.explain({32, 24}, sample, observer), emitted);
+  EXPECT_GT(absorbed, 0) << "no light sample passes the glass";
+}
+
+// A ray that skips the closest-hit shader still reports its hit.
+TEST(PixelExplainer, ReportsHitsOfShadowRays) {
+  const program::Program program = program::loadProgram("ao");
+  Observer observer;
+  RenderRequest request = smallRequest();
+  request.region = {24, 16, 16, 24};
+  RenderJob job(engine(), resolve(std::move(request), program), observer);
+  PixelExplainer explainer(engine(), job);
+  PixelExplanation e;
+  std::vector<const ExplainedEvent*> rays;
+  for (std::uint32_t i = 0; i < 32 && !(rays.size() == 2 && rays[1]->text("result") == "hit"); ++i) {
+    e = explainer.explain({24 + i % 4 * 5, 16 + i / 4 * 3}, i, observer);
+    rays = eventsOf(e, "ray");
+  }
   ASSERT_EQ(rays.size(), 2u);
   EXPECT_EQ(rays[0]->text("rayType"), "radiance");
   EXPECT_EQ(rays[0]->text("result"), "hit");
   EXPECT_EQ(rays[0]->children[1].type, "closest-hit");
   EXPECT_EQ(rays[1]->text("flags"), "TerminateOnFirstHit SkipClosestHitShader");
-  ASSERT_TRUE(rays[1]->find("transmittance") == nullptr || rays[1]->text("rayType") == "shadow");
+  ASSERT_EQ(rays[1]->text("result"), "hit") << "no occluded sample";
+  const std::vector<const ExplainedEvent*> hits = eventsOf(e, "hit");
+  ASSERT_EQ(hits.size(), 1u);
+  EXPECT_EQ(hits[0], &rays[1]->children[1]);
+  EXPECT_EQ(hits[0]->find("stage"), nullptr);
+  EXPECT_GT(hits[0]->number("t"), 0.0f);
+  EXPECT_NE(hits[0]->text("instanceName"), "");
 }
 
 const char* kTracer = R"(
@@ -233,6 +283,20 @@ TEST(PixelExplainer, RecordsPayloadsAndCallsOfUserPrograms) {
   EXPECT_EQ(vec3(e.outputs[0].value), after.vector("payload.color"));
 }
 
+// A hit group without closest-hit shader.
+TEST(PixelExplainer, ReportsHitsWithoutShader) {
+  program::Program program = program::parseLecture(kTracer, "demo.rt.glsl", "here");
+  for (program::HitGroup& group : program.hitGroups)
+    for (auto& [ray, shaders] : group.shaders) shaders.closestHit.clear();
+  const PixelExplanation e = explain(program, {5, 6}, 0);
+  const std::vector<const ExplainedEvent*> hits = eventsOf(e, "hit");
+  ASSERT_EQ(hits.size(), 1u);
+  EXPECT_EQ(hits[0]->find("stage"), nullptr);
+  EXPECT_EQ(eventsOf(e, "ray")[0]->text("result"), "hit");
+  EXPECT_TRUE(eventsOf(e, "closest-hit").empty());
+  EXPECT_EQ(vec3(e.outputs[0].value), vec3(0.25f)) << "no shader changed the payload";
+}
+
 TEST(PixelExplainer, RecordsCandidates) {
   const PixelExplanation any = explain(program::loadProgram("15_any_hit"), {32, 24}, 0);
   const PixelExplanation box = explain(program::loadProgram("10_sphere"), {32, 24}, 0);
@@ -280,6 +344,26 @@ TEST(PixelExplainer, RejectsRequestsWithoutASinglePixel) {
   EXPECT_THROW(requestForPixel(request, program, {0, 0}), UsageError);
   request.batches.reset();
   EXPECT_EQ(requestForPixel(request, program, {3, 4}).region, (render::Region{3, 4, 1, 1}));
+}
+
+// Without a size in the request, the size of the image follows from the camera.
+TEST(PixelExplainer, RejectsPixelsOutsideOfTheImage) {
+  const auto problem = [](const program::Program& program) -> std::string {
+    RenderRequest request = smallRequest();
+    request.size = {64, 0};
+    try {
+      explain(program, {5, 5000}, 0, request);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(problem(program::loadProgram("ao")), testing::StartsWith("pixel 5,5000 is not inside the image of 64x"));
+  // A program that can read other pixels renders all of them.
+  const std::string text = std::string("// loadPrevious\n") + kTracer;
+  const program::Program whole = program::parseLecture(text, "demo.rt.glsl", "here");
+  ASSERT_EQ(requestForPixel(smallRequest(), whole, {5, 6}).region.width, 0u);
+  EXPECT_THAT(problem(whole), testing::StartsWith("pixel 5,5000 is not inside the image of 64x"));
 }
 
 }  // namespace
