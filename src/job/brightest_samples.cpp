@@ -7,14 +7,14 @@
 #include <cmath>
 #include <functional>
 
+#include "base/luminance.h"
+
 namespace quintet::job {
 namespace {
 
 constexpr std::int64_t kRadius = 3;
 constexpr float kDarkest = 0.01f;  // of the mean of the region
 constexpr double kQuantile = 0.9;  // of the surroundings
-
-float luminance(const vec4& color) { return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b; }
 
 }  // namespace
 
@@ -24,7 +24,7 @@ BrightestSamples::BrightestSamples(uvec2 size)
 void BrightestSamples::add(std::uint32_t sample, std::span<const vec4> values) {
   assert(values.size() == sums_.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const float light = luminance(values[i]);
+    const float light = luminance(vec3(values[i]));
     if (!std::isfinite(light)) continue;
     if (light > largest_[i]) {
       sums_[i] += largest_[i];

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/luminance.h"
 #include "base/stopwatch.h"
 #include "gpu/error.h"
 #include "job/brightest_samples.h"
@@ -17,16 +18,16 @@
 namespace quintet::job {
 namespace {
 
-bool isFinite(const vec4& value) { return std::isfinite(value.x + value.y + value.z + value.w); }
+bool isFinite(const vec4& value) { return !glm::any(glm::isnan(value)) && !glm::any(glm::isinf(value)); }
 
-bool isFinite(const EventValue& value) {
-  if (const auto* number = std::get_if<float>(&value)) return std::isfinite(*number);
+bool isFinite(const std::string& name, const EventValue& value) {
+  // A ray may be infinitely long.
+  if (const auto* number = std::get_if<float>(&value))
+    return name == "tmax" ? !std::isnan(*number) : std::isfinite(*number);
   if (const auto* numbers = std::get_if<std::vector<float>>(&value))
     return std::ranges::all_of(*numbers, [](float number) { return std::isfinite(number); });
   return true;
 }
-
-float luminance(const vec3& color) { return 0.2126f * color.r + 0.7152f * color.g + 0.0722f * color.b; }
 
 // Follows the events of a sample in their order.
 class CauseFinder {
@@ -36,13 +37,16 @@ class CauseFinder {
   void visit(const ExplainedEvent& event) {
     // Members of payloads that the program has not written are undefined.
     if (done_ || event.type == "payload" || event.type == "data") return;
-    if (const std::string instance = event.text("instanceName"); !instance.empty() && event.type != "intersection")
-      now_.instance = instance;
-    if (event.type == "surface") now_.material = event.text("material");
+    // Other hits are those of shadow rays, or candidates.
+    if (event.type == "closest-hit") now_.instance = event.text("instanceName");
+    if (event.type == "surface") {
+      now_.material = event.text("material");
+      arrivingLobe_ = now_.lobe;
+    }
     if (event.type == "bsdf") now_.lobe = event.text("lobe");
     if (notFinite_) {
       for (const auto& [name, value] : event.fields)
-        if (!isFinite(value)) return found(event, name);
+        if (!isFinite(name, value)) return found(event, name);
     } else if (event.type == "contribution" && luminance(event.vector("value")) > largest_) {
       largest_ = luminance(event.vector("value"));
       found(event, {});
@@ -55,6 +59,8 @@ class CauseFinder {
  private:
   void found(const ExplainedEvent& event, const std::string& field) {
     cause_ = now_;
+    // The light at a surface is added after the lobe of the next direction was sampled.
+    if (event.type == "contribution" && event.text("source") == "light sample") cause_.lobe = arrivingLobe_;
     cause_.event = event.type;
     cause_.field = field;
     cause_.bounce = event.find("scatterings") ? event.integer("scatterings") : now_.lobe.empty() ? -1 : bounces_;
@@ -63,6 +69,7 @@ class CauseFinder {
 
   const bool notFinite_;
   SampleCause now_, cause_;
+  std::string arrivingLobe_;  // by which the path reached the latest surface
   std::int64_t bounces_ = 0;
   float largest_ = 0;
   bool done_ = false;
@@ -74,13 +81,11 @@ class Search {
       : engine_(engine), job_(job), options_(options), observer_(observer), region_(job.region()) {}
 
   SearchResult run() {
-    const bool frames = job_.resolved().accumulatesFrames();
+    result_.frames = job_.resolved().accumulatesFrames();
     const std::uint64_t count = sampleCount();
-    if (options_.fireflies && !frames && count < BrightestSamples::kMinSamples)
-      throw UsageError(fmt::format("fireflies: at least {} samples per pixel are required, not {}",
-                                   BrightestSamples::kMinSamples, count));
+    const bool fireflies = searchesFireflies(count);
     BrightestSamples brightest({region_.width, region_.height});
-    const bool fireflies = options_.fireflies && !frames;
+    job_.showRequestedFrame();
     bad_.assign(std::size_t{region_.width} * region_.height, false);
     const Stopwatch clock;
     for (std::uint32_t sample = 0; sample < count; ++sample) {
@@ -104,27 +109,47 @@ class Search {
     return *request.limits.samples;
   }
 
+  bool searchesFireflies(std::uint64_t count) {
+    if (!options_.fireflies.value_or(true)) return false;
+    std::string problem;
+    if (result_.frames)
+      problem = fmt::format(
+          "the program '{}' accumulates its frames, so its samples are unknown; only values that are not finite can be "
+          "found",
+          job_.resolved().program.name);
+    else if (count < BrightestSamples::kMinSamples)
+      problem = fmt::format("at least {} samples per pixel are required, not {}", BrightestSamples::kMinSamples, count);
+    if (problem.empty()) return true;
+    if (options_.fireflies) throw UsageError("fireflies: " + problem);
+    observer_.note("fireflies are not searched: " + problem);
+    return false;
+  }
+
   // Renders one sample, or frame, of all pixels.
   std::vector<vec4> render(std::uint32_t sample) {
     render::Renderer& renderer = job_.renderer();
-    if (job_.resolved().accumulatesFrames()) {
-      renderer.finish();
-      if (job_.scene()->onDevice->animated()) job_.scene()->onDevice->setFrame(static_cast<float>(sample));
-      renderer.renderFrame(sample);
-      renderer.finish();
-    } else {
-      renderer.renderSample(sample);
+    try {
+      if (result_.frames) {
+        renderer.finish();
+        if (job_.scene()->onDevice->animated()) job_.scene()->onDevice->setFrame(static_cast<float>(sample));
+        renderer.renderFrame(sample);
+        renderer.finish();
+      } else {
+        renderer.renderSample(sample);
+      }
+      return renderer.film().downloadBatch(0);
+    } catch (const TimeoutError& error) {
+      observer_.deviceHung(hangDiagnostic(job_.resolved().program, error.seconds()));
+      throw;
     }
-    return renderer.film().downloadBatch(0);
   }
 
   // The program adds nothing for a sample that it discards; its counter shows the pixel.
   void findNotFinite(std::uint32_t sample, const std::vector<vec4>& values) {
     const std::vector<uvec2> statistics = job_.renderer().film().downloadStatistics();
-    const bool frames = job_.resolved().accumulatesFrames();
     for (std::size_t i = 0; i < values.size(); ++i) {
       const bool discarded = !discarded_.empty() ? statistics[i].y > discarded_[i].y : statistics[i].y > 0;
-      if ((isFinite(values[i]) && !discarded) || (frames && bad_[i])) continue;
+      if ((isFinite(values[i]) && !discarded) || (result_.frames && bad_[i])) continue;
       bad_[i] = true;
       if (result_.notFiniteCount++ < options_.limit) {
         FoundSample found;
@@ -153,22 +178,38 @@ class Search {
     Progress progress;
     progress.samples = static_cast<double>(result_.samples);
     progress.seconds = clock.seconds();
-    progress.countsFrames = job_.resolved().accumulatesFrames();
+    progress.countsFrames = result_.frames;
     progress.sampleLimit = count;
     observer_.progress(progress);
     result_.interrupted = result_.samples < count && observer_.stopRequested() != StopRequest::none;
     return result_.interrupted;
   }
 
+  // Removes the samples that remain if the observer stops; a request that ended the search does not end the explanations.
   void explainAll() {
-    if (result_.notFinite.empty() && result_.fireflies.empty()) return;
+    Progress progress;
+    progress.countsFrames = result_.frames;
+    progress.sampleLimit = result_.notFinite.size() + result_.fireflies.size();
+    if (progress.sampleLimit == 0) return;
     observer_.stage("explaining the samples");
     PixelExplainer explainer(engine_, job_);
+    const Stopwatch clock;
+    const bool mayStop = !result_.interrupted;
     for (const bool notFinite : {true, false}) {
-      for (FoundSample& found : notFinite ? result_.notFinite : result_.fireflies) {
-        const PixelExplanation explanation = explainer.explain(found.pixel, found.sample, observer_);
-        found.value = sumContributions(explanation);
-        found.cause = causeOf(explanation, notFinite);
+      std::vector<FoundSample>& samples = notFinite ? result_.notFinite : result_.fireflies;
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        const StopRequest stop = observer_.stopRequested();
+        if (stop == StopRequest::abandon || (mayStop && stop != StopRequest::none)) {
+          result_.interrupted = true;
+          samples.resize(i);
+          break;
+        }
+        const PixelExplanation explanation = explainer.explain(samples[i].pixel, samples[i].sample, observer_);
+        samples[i].value = sumContributions(explanation);
+        samples[i].cause = causeOf(explanation, notFinite);
+        progress.samples += 1;
+        progress.seconds = clock.seconds();
+        observer_.progress(progress);
       }
     }
   }
@@ -192,12 +233,7 @@ SampleCause causeOf(const PixelExplanation& explanation, bool notFinite) {
 }
 
 SearchResult searchSamples(Engine& engine, RenderJob& job, const SearchOptions& options, Observer& observer) {
-  try {
-    return Search(engine, job, options, observer).run();
-  } catch (const TimeoutError& error) {
-    observer.deviceHung(hangDiagnostic(job.resolved().program, error.seconds()));
-    throw;
-  }
+  return Search(engine, job, options, observer).run();
 }
 
 }  // namespace quintet::job

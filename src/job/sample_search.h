@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace quintet::job {
 
 struct SearchOptions {
   bool notFinite = true;
-  bool fireflies = true;
+  // Unset means if they can be found: not in programs that accumulate, and not with fewer than 4 samples per pixel.
+  std::optional<bool> fireflies;
   // Fireflies: how much brighter than its surroundings one sample makes a pixel (BrightestSamples::find); above 0.
   float threshold = 2.0f;
   std::size_t limit = 10;  // of explained samples of each kind; the others are only counted
@@ -27,9 +29,9 @@ struct SearchOptions {
 // state them.
 struct SampleCause {
   std::int64_t bounce = -1;  // scattering events before it
-  std::string lobe;          // of the latest sample of the BSDF
+  std::string lobe;          // of the latest sample of the BSDF; for light samples, of that before their surface
   std::string material;      // of the latest surface
-  std::string instance;      // of the latest hit
+  std::string instance;      // of the latest closest hit with a shader
   std::string event;         // "contribution", "bsdf", …
   std::string field;         // of the event, that is not finite; empty for fireflies
 };
@@ -48,15 +50,19 @@ struct SearchResult {
   std::vector<FoundSample> fireflies;                  // brightest first, one per pixel; at most SearchOptions::limit
   std::uint64_t notFiniteCount = 0, fireflyCount = 0;  // all
   std::uint64_t samples = 0;                           // searched, per pixel; or frames
-  bool interrupted = false;                            // the observer stopped before the last sample
+  bool frames = false;                                 // the program accumulates: samples are frames
+  bool interrupted = false;                            // the observer stopped; not all is searched or explained
 };
 
-// Of the first event that is not finite, or of the brightest contribution.
+// Returns the cause: the first event with a value that is not finite, or the brightest contribution. An infinite tmax of a
+// ray is no cause.
 SampleCause causeOf(const PixelExplanation& explanation, bool notFinite);
 
-// Searches all samples of the request (RenderLimits::samples), or all frames. `job` is for the search alone. In programs
-// that accumulate, a pixel that is not finite is found in its first frame, and there are no fireflies. Throws UsageError if
-// the number of samples is unknown or too small, ProgramError and gpu errors.
+// Searches all samples of the request (RenderLimits::samples), or all frames, and explains those that it lists. The search
+// needs exclusive use of `job`. In programs that accumulate, a pixel that is not finite is found in its first frame. If the
+// observer stops during the search, what was found is explained; if it stops later, the rest is not listed. Throws
+// UsageError if the number of samples is unknown, or if the fireflies that SearchOptions requests cannot be found, and for
+// the frame (RenderJob::showRequestedFrame); ProgramError and gpu errors.
 SearchResult searchSamples(Engine& engine, RenderJob& job, const SearchOptions& options, Observer& observer);
 
 }  // namespace quintet::job

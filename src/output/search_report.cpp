@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "output/search_report.h"
 
-#include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -10,18 +10,13 @@
 #include "base/plural.h"
 #include "base/text.h"
 #include "base/wrap.h"
+#include "job/float_json.h"
+#include "output/float_text.h"
 
 namespace quintet::output {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string vectorText(const vec3& v) {
-  std::string text;
-  for (std::size_t i = 0; i < 3; ++i)
-    text += (i > 0 ? " " : "") + (std::isnan(v[i]) ? std::string("nan") : fmt::format("{:.5g}", v[i]));
-  return text;
-}
 
 std::string causeText(const job::SampleCause& cause) {
   std::string text;
@@ -34,9 +29,10 @@ std::string causeText(const job::SampleCause& cause) {
   return text;
 }
 
-std::string sampleText(const job::FoundSample& found, const std::string& value, const CommandFor& commandFor,
-                       std::size_t width) {
-  std::string text = fmt::format("  pixel {},{}, sample {}: {}\n", found.pixel.x, found.pixel.y, found.sample, value);
+std::string sampleText(const job::FoundSample& found, bool frames, const std::string& value,
+                       const CommandFor& commandFor, std::size_t width) {
+  std::string text = fmt::format("  pixel {},{}, {} {}: {}\n", found.pixel.x, found.pixel.y,
+                                 frames ? "frame" : "sample", found.sample, value);
   const std::string cause = causeText(found.cause);
   if (!cause.empty()) text += "    " + wrapped(cause, width, 4, 4) + "\n";
   return text + "    " + commandFor(found) + "\n";  // one line, so that it can be copied
@@ -54,15 +50,10 @@ std::string countText(std::uint64_t all, std::size_t listed, std::string_view no
   return fmt::format("{}, of which {} {} listed", counted(all, noun, plural), listed, nounFor(listed, "is", "are"));
 }
 
-Json numbers(const vec3& v) {
-  Json json = Json::array();
-  for (std::size_t i = 0; i < 3; ++i)
-    json.push_back(std::isnan(v[i]) ? Json("nan") : std::isinf(v[i]) ? Json(v[i] > 0 ? "inf" : "-inf") : Json(v[i]));
-  return json;
-}
-
 Json sampleJson(const job::FoundSample& found, const CommandFor& commandFor) {
-  Json json{{"pixel", {found.pixel.x, found.pixel.y}}, {"sample", found.sample}, {"value", numbers(found.value)}};
+  Json json{{"pixel", {found.pixel.x, found.pixel.y}},
+            {"sample", found.sample},
+            {"value", job::floatsJson({&found.value[0], 3})}};
   const job::SampleCause& cause = found.cause;
   json["bounce"] = cause.bounce >= 0 ? Json(cause.bounce) : Json();
   for (const auto& [name, text] : {std::pair{"lobe", cause.lobe},
@@ -80,34 +71,34 @@ Json sampleJson(const job::FoundSample& found, const CommandFor& commandFor) {
 std::string searchText(const job::SearchResult& result, const CommandFor& commandFor, std::size_t width) {
   std::string text;
   if (result.notFiniteCount > 0) {
-    text += countText(result.notFiniteCount, result.notFinite.size(), "sample that is not finite",
-                      "samples that are not finite") +
-            "\n";
+    const auto& [noun, plural] = result.frames ? std::pair("pixel that is not finite", "pixels that are not finite")
+                                               : std::pair("sample that is not finite", "samples that are not finite");
+    text += countText(result.notFiniteCount, result.notFinite.size(), noun, plural) + "\n";
     for (const job::FoundSample& found : result.notFinite)
-      text += sampleText(found, vectorText(found.value), commandFor, width);
+      text += sampleText(found, result.frames, vectorText(found.value), commandFor, width);
   }
   if (result.fireflyCount > 0) {
     text += fmt::format("{}{}\n", text.empty() ? "" : "\n",
                         countText(result.fireflyCount, result.fireflies.size(), "firefly", "fireflies"));
     for (const job::FoundSample& found : result.fireflies)
-      text += sampleText(found, brightnessText(found), commandFor, width);
+      text += sampleText(found, result.frames, brightnessText(found), commandFor, width);
   }
-  if (text.empty()) text = fmt::format("nothing found in {} per pixel\n", counted(result.samples, "sample"));
+  if (text.empty())
+    text = fmt::format("nothing found in {}\n", result.frames ? counted(result.samples, "frame")
+                                                              : counted(result.samples, "sample") + " per pixel");
   return text;
 }
 
 std::string searchJson(const job::SearchResult& result, const CommandFor& commandFor) {
-  Json json{{"samples", result.samples},
-            {"interrupted", result.interrupted},
-            {"notFiniteCount", result.notFiniteCount},
-            {"fireflyCount", result.fireflyCount},
-            {"notFinite", Json::array()},
+  Json json{{"samples", result.samples},           {"frames", result.frames},
+            {"interrupted", result.interrupted},   {"notFiniteCount", result.notFiniteCount},
+            {"fireflyCount", result.fireflyCount}, {"notFinite", Json::array()},
             {"fireflies", Json::array()}};
   for (const job::FoundSample& found : result.notFinite) json["notFinite"].push_back(sampleJson(found, commandFor));
   for (const job::FoundSample& found : result.fireflies) {
     Json entry = sampleJson(found, commandFor);
-    entry["luminance"] = found.luminance;
-    entry["level"] = found.level;
+    entry["luminance"] = job::floatJson(found.luminance);
+    entry["level"] = job::floatJson(found.level);
     json["fireflies"].push_back(std::move(entry));
   }
   return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";

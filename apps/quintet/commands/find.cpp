@@ -27,7 +27,8 @@ constexpr double kMaxThreshold = 1e6;
 constexpr double kMaxLimit = 1000;
 
 struct Options : RenderOptions {
-  job::SearchOptions search{.notFinite = false, .fireflies = false};
+  bool notFinite = false, fireflies = false;  // neither means both
+  job::SearchOptions search;
   std::string command;  // that explains a sample, without pixel and sample
 };
 
@@ -47,10 +48,10 @@ OptionTable declare(Options& options, Texts& texts) {
       "Search",
       {{.names = "--nan",
         .help = "Find samples that are not finite (default: both kinds)",
-        .target = &options.search.notFinite},
+        .target = &options.notFinite},
        {.names = "--fireflies",
         .help = "Find samples that alone make their pixel much brighter than its surroundings",
-        .target = &options.search.fireflies},
+        .target = &options.fireflies},
        {.names = "--threshold",
         .value = "X",
         .help = "Firefly: one sample makes the pixel more than X times as bright as its surroundings (default: 2)",
@@ -98,13 +99,17 @@ std::optional<Options> parseOptions(Arguments arguments) {
   Texts texts;
   if (!parse(declare(options, texts), arguments)) return std::nullopt;
   options.request.scene = texts.scene;
+  options.console.stopNote = "reporting what was found; press Ctrl-C again to quit without a report";
   options.command = commandLine("explain-pixel", sharedArguments(arguments));
   options.output.file = "image.png";  // of the render that is searched; it is not written
   convert(texts, options);
   if (options.request.limits.samples)
     options.request.frames.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
   job::SearchOptions& search = options.search;
-  if (!search.notFinite && !search.fireflies) search.notFinite = search.fireflies = true;
+  if (options.notFinite || options.fireflies) {
+    search.notFinite = options.notFinite;
+    search.fireflies = options.fireflies;
+  }
   if (const auto threshold = parseReal("--threshold", texts.threshold, 1e-3, kMaxThreshold))
     search.threshold = static_cast<float>(*threshold);
   if (const auto limit = parseInteger("--limit", texts.limit, 0, kMaxLimit)) search.limit = *limit;

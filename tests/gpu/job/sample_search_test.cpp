@@ -2,13 +2,18 @@
 // quintet find: samples that are not finite, and fireflies, each explained.
 #include "job/sample_search.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "../render/scene_builder.h"
 #include "base/error.h"
+#include "base/luminance.h"
 #include "program/load.h"
 
 namespace quintet::job {
@@ -50,8 +55,7 @@ TEST(SampleSearch, FindsFirefliesAndTheirCauses) {
   ASSERT_EQ(found.fireflies.size(), 3u);
   for (const FoundSample& firefly : found.fireflies) {
     // The explained sample is the one that was found.
-    EXPECT_NEAR(0.2126f * firefly.value.r + 0.7152f * firefly.value.g + 0.0722f * firefly.value.b, firefly.luminance,
-                1e-4f * firefly.luminance);
+    EXPECT_NEAR(luminance(firefly.value), firefly.luminance, 1e-4f * firefly.luminance);
     EXPECT_EQ(firefly.cause.bounce, 1);
     EXPECT_EQ(firefly.cause.lobe, "diffuse");
     EXPECT_EQ(firefly.cause.event, "contribution");
@@ -75,16 +79,100 @@ TEST(SampleSearch, FindsSamplesThatAreNotFinite) {
   EXPECT_EQ(found.notFinite[0].cause.field, "radiance");
 }
 
+// A wall hides the sky, which is infinite, in the first frame only.
+TEST(SampleSearch, SearchesTheRequestedFrame) {
+  test::SceneBuilder builder;
+  builder.add(test::quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}), test::lambert(vec3(0.5f)));
+  builder.scene.instances[0].keyframes = {{.frame = 0}, {.frame = 2, .translation = {0, 100, 0}}};
+  builder.camera(test::perspective({0, 0, 5}, {0, 0, 0}, 40.0f));
+  RenderRequest request = lampRequest();
+  request.loadedScene = std::make_shared<scene::Scene>(std::move(builder.scene));
+  request.environment.source = "2,2,2";
+  request.environment.intensity = 3e38f;
+  request.limits.samples = 1;
+  request.assignments = {"bounces=0"};
+  const SearchOptions options{.notFinite = true, .fireflies = false, .limit = 1};
+  EXPECT_EQ(search("naive", request, options).notFiniteCount, 0u);
+  request.frames = {.count = 1, .first = 2};
+  const SearchResult found = search("naive", request, options);
+  EXPECT_EQ(found.notFiniteCount, 24u * 16u);
+  ASSERT_EQ(found.notFinite.size(), 1u);
+  EXPECT_EQ(found.notFinite[0].cause.event, "emission") << "the explained frame is a different one";
+}
+
 TEST(SampleSearch, RequiresANumberOfSamples) {
   RenderRequest request = lampRequest();
   request.limits.samples.reset();
   request.limits.seconds = 1.0;
   request.assignments.clear();
   EXPECT_THROW(search("normals", request, {}), UsageError);
-  request = lampRequest();
-  request.limits.samples = 3;
-  request.assignments.clear();
-  EXPECT_THROW(search("normals", request, {}), UsageError);
+}
+
+struct Recorder : Observer {
+  void note(const std::string& text) override { notes.push_back(text); }
+  void progress(const Progress& state) override { samples.push_back(state.samples); }
+  StopRequest stopRequested() override { return samples.size() >= stopAfter ? StopRequest::finish : StopRequest::none; }
+  std::vector<std::string> notes;
+  std::vector<double> samples;  // of Progress
+  std::size_t stopAfter = 1000;
+};
+
+// Fireflies that are requested but cannot be found are an error; otherwise they are not searched.
+TEST(SampleSearch, FirefliesRequireSamples) {
+  const auto problem = [](const char* program, const RenderRequest& request) -> std::string {
+    try {
+      search(program, request, {.fireflies = true});
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  RenderRequest few = lampRequest(), frames = lampRequest();
+  few.limits.samples = 3;
+  few.assignments.clear();
+  frames.frames.accumulated = 2;
+  frames.assignments.clear();
+  EXPECT_EQ(problem("normals", few), "fireflies: at least 4 samples per pixel are required, not 3");
+  EXPECT_THAT(problem("09_progressive", frames),
+              testing::StartsWith("fireflies: the program 'lessons/09_progressive' accumulates its frames"));
+  for (const auto& [program, request] : {std::pair("normals", few), {"09_progressive", frames}}) {
+    Recorder observer;
+    RenderJob job(engine(), resolve(request, program::loadProgram(program)), observer);
+    const SearchResult found = searchSamples(engine(), job, {}, observer);
+    EXPECT_EQ(found.samples, program == std::string("normals") ? 3u : 2u);
+    EXPECT_EQ(found.frames, program != std::string("normals"));
+    EXPECT_THAT(observer.notes, testing::Contains(testing::StartsWith("fireflies are not searched: ")));
+  }
+}
+
+// What is found is reported one by one; a stop leaves out the rest.
+TEST(SampleSearch, StopsBetweenExplanations) {
+  RenderRequest request = lampRequest();
+  request.environment.source = "2,2,2";
+  request.environment.intensity = 3e38f;
+  request.limits.samples = 2;
+  const auto searched = [&](std::size_t stopAfter, std::vector<double>& samples) {
+    Recorder observer;
+    observer.stopAfter = stopAfter;
+    RenderJob job(engine(), resolve(request, program::loadProgram("naive")), observer);
+    const SearchResult found = searchSamples(engine(), job, {.fireflies = false, .limit = 3}, observer);
+    samples = observer.samples;
+    return found;
+  };
+  std::vector<double> samples;
+  const SearchResult all = searched(1000, samples);
+  EXPECT_THAT(samples, testing::ElementsAre(1, 2, 1, 2, 3)) << "of the search, then of the explanations";
+  EXPECT_FALSE(all.interrupted);
+  const SearchResult part = searched(4, samples);
+  EXPECT_TRUE(part.interrupted);
+  ASSERT_EQ(part.notFinite.size(), 2u) << "the third one is not explained";
+  EXPECT_EQ(part.notFinite[1].cause.event, "emission");
+  EXPECT_EQ(part.notFiniteCount, all.notFiniteCount);
+  // A stop during the search does not prevent the explanations.
+  const SearchResult first = searched(1, samples);
+  EXPECT_TRUE(first.interrupted);
+  EXPECT_EQ(first.samples, 1u);
+  EXPECT_EQ(first.notFinite.size(), 3u);
 }
 
 }  // namespace

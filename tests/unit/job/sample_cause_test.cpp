@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "explanations.h"
 #include "job/sample_search.h"
@@ -56,6 +57,68 @@ TEST(SampleCause, IsTheBrightestContributionOfAFirefly) {
   EXPECT_EQ(first.bounce, 0);
   EXPECT_EQ(first.material, "wood");
   EXPECT_EQ(first.lobe, "");
+}
+
+// A path over two surfaces: at each, a light is sampled, then the direction in which the path continues, and then the
+// shadow ray is traced.
+PixelExplanation twoLightSamples(float firstLight, float secondLight) {
+  const auto hit = [](const char* type, const char* instance) {
+    return event(type, {{"instanceName", std::string(instance)}});
+  };
+  const auto ray = [](const char* type, ExplainedEvent child) {
+    return ExplainedEvent{
+        "ray",
+        {{"rayType", std::string(type)}, {"tmin", 0.0f}, {"tmax", std::numeric_limits<float>::infinity()}},
+        {std::move(child)}};
+  };
+  const auto surface = [](const char* name) { return event("surface", {{"material", std::string(name)}}); };
+  const auto bsdf = [](const char* lobe) { return event("bsdf", {{"lobe", std::string(lobe)}, {"useful", true}}); };
+  const auto light = [](std::int64_t scatterings, float value) {
+    return event("contribution", {{"source", std::string("light sample")},
+                                  {"scatterings", scatterings},
+                                  {"value", std::vector<float>{value, value, value}}});
+  };
+  PixelExplanation e = somePath();
+  e.events = {ray("radiance", hit("closest-hit", "floor")),
+              surface("wood"),
+              bsdf("diffuse"),
+              ray("shadow", hit("any-hit", "leaf")),
+              light(1, firstLight),
+              ray("radiance", hit("closest-hit", "ball")),
+              surface("chrome"),
+              bsdf("specular"),
+              ray("shadow", hit("hit", "wall")),
+              light(2, secondLight)};
+  return e;
+}
+
+TEST(SampleCause, IsTheSurfaceWhoseLightWasSampled) {
+  for (const bool notFinite : {false, true}) {
+    const float bright = notFinite ? INFINITY : 100.0f;
+    const SampleCause first = causeOf(twoLightSamples(bright, 1.0f), notFinite);
+    EXPECT_EQ(first.event, "contribution");
+    EXPECT_EQ(first.instance, "floor");
+    EXPECT_EQ(first.material, "wood");
+    EXPECT_EQ(first.lobe, "") << "the path comes from the camera";
+    EXPECT_EQ(first.bounce, 1);
+    const SampleCause second = causeOf(twoLightSamples(1.0f, bright), notFinite);
+    EXPECT_EQ(second.instance, "ball");
+    EXPECT_EQ(second.material, "chrome");
+    EXPECT_EQ(second.lobe, "diffuse");
+    EXPECT_EQ(second.bounce, 2);
+  }
+}
+
+// A ray may be infinitely long, but NaN is an error.
+TEST(SampleCause, IsNotAnInfiniteRay) {
+  PixelExplanation e = twoLightSamples(1.0f, 1.0f);
+  EXPECT_EQ(causeOf(e, true).event, "");
+  e.events[3].set("tmax", NAN);
+  EXPECT_EQ(causeOf(e, true).event, "ray");
+  EXPECT_EQ(causeOf(e, true).field, "tmax");
+  e.events[3].set("tmax", 1.0f);
+  e.events[3].set("tmin", std::numeric_limits<float>::infinity());
+  EXPECT_EQ(causeOf(e, true).field, "tmin");
 }
 
 TEST(SampleCause, IsEmptyIfNothingIsStated) {

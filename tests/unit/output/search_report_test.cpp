@@ -45,7 +45,7 @@ job::SearchResult someResult() {
 TEST(SearchReport, NamesTheCauseAndTheCommand) {
   EXPECT_EQ(searchText(someResult(), commandFor, 100),
             "3 samples that are not finite, of which 1 is listed\n"
-            "  pixel 12,40, sample 17: nan inf 1\n"
+            "  pixel 12,40, sample 17: nan infinity 1\n"
             "    3 bounces, transmission lobe, material \"glass\", instance \"vase\", weight of bsdf is not finite\n"
             "    quintet explain-pixel room.glb --spp 64 --pixel 12,40 --sample 17\n"
             "\n"
@@ -59,10 +59,19 @@ TEST(SearchReport, NamesTheCauseAndTheCommand) {
   job::SearchResult nothing;
   nothing.samples = 64;
   EXPECT_EQ(searchText(nothing, commandFor, 100), "nothing found in 64 samples per pixel\n");
+  nothing.frames = true;
+  EXPECT_EQ(searchText(nothing, commandFor, 100), "nothing found in 64 frames\n");
+  job::SearchResult frames = someResult();
+  frames.frames = true;
+  EXPECT_THAT(searchText(frames, commandFor, 100), HasSubstr("3 pixels that are not finite, of which 1 is listed\n"
+                                                             "  pixel 12,40, frame 17: nan"));
 }
 
 TEST(SearchReport, HasTheSameAsJson) {
-  const auto json = nlohmann::json::parse(searchJson(someResult(), commandFor));
+  job::SearchResult result = someResult();
+  result.fireflies[0].value = vec3(0.1f);
+  EXPECT_THAT(searchJson(result, commandFor), HasSubstr("\"value\":[0.1,0.1,0.1]")) << "not the digits of a double";
+  const auto json = nlohmann::json::parse(searchJson(result, commandFor));
   EXPECT_EQ(json["notFiniteCount"], 3);
   EXPECT_EQ(json["notFinite"][0]["value"], (nlohmann::json{"nan", "inf", 1.0}));
   EXPECT_EQ(json["notFinite"][0]["lobe"], "transmission");
