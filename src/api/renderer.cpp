@@ -110,7 +110,7 @@ job::RenderRequest toRequest(const Settings& settings, std::shared_ptr<const sce
   request.limits.adaptive = settings.adaptive;
   if (settings.print) {
     const Region& pixels = *settings.print;
-    if (pixels.width == 0 || pixels.height == 0) throw UsageError("the pixels that print are at least one");
+    if (pixels.width == 0 || pixels.height == 0) throw UsageError("Settings::print must contain at least one pixel");
     request.print.emplace();
     request.print->pixels = {pixels.x, pixels.y, pixels.width, pixels.height};
     request.print->limit = settings.printLimit;

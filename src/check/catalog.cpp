@@ -295,7 +295,7 @@ constexpr DiagnosticInfo kCatalog[] = {
     {"Q706", kError, "shader/stage_builtins", "built-in does not exist in this stage",
      "The value is unknown in this stage: for example, a miss shader has no hit.",
      "Pass the value through the payload from a stage that has it.", "variable miss"},
-    {"Q707", kError, "within_stage/print_formats", "format of debugPrintfEXT does not fit to its arguments",
+    {"Q707", kError, "within_stage/print_formats", "format of debugPrintfEXT does not match its arguments",
      "The text would show a wrong number, or none.",
      "Write one specifier for each argument, of its type: %d, %u, %f, %v3f for a vec3, %ld for 64 bits.",
      "printf print specifier"},

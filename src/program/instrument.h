@@ -19,7 +19,7 @@ enum class Instrumentation {
   explain,
 };
 
-// Returns the source of stage number `index` with the instrumentation. Those of the recursion are only in stages that can trace.
+// Returns the source of stage number `index` with the instrumentation. Only stages that can trace get the recursion check.
 // Messages keep their line numbers. A lecture-form stage includes quintet/gsn.glsl, which includes it itself;
 // other sources get them after their leading #version and #extension lines.
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instrumented variants of a compiled program that compute the same image and record something besides: what shaders print
+// Instrumented variants of a compiled program that compute the same image and also record data: what shaders print
 // (debugPrintfEXT), and heat maps. The stages are compiled without optimization, changed as SPIR-V, and then optimized.
 #ifndef QUINTET_PROGRAM_PROBES_H
 #define QUINTET_PROGRAM_PROBES_H

@@ -170,7 +170,7 @@ PrintFormat::PrintFormat(std::string_view format, const std::vector<PrintArgumen
       throw Error(fmt::format("argument {} is {}, which cannot be printed; print its scalars or vectors", i + 1,
                               argument.typeName));
     if (!fits(parsed, argument))
-      throw Error(fmt::format("the specifier {} does not fit to argument {}, which is {}; write for example {}",
+      throw Error(fmt::format("the specifier {} does not match argument {}, which is {}; write for example {}",
                               parsed.text, i + 1, argument.typeName, specifierFor(argument)));
     parts_.emplace_back(std::move(literals[i]));
     parts_.emplace_back(Specifier{fmt::format("%{}{}", parsed.flags, parsed.conversion), parsed.conversion, argument});

@@ -38,7 +38,7 @@ struct PrintArgument {
 // %ul), is required for integers of 64 bits.
 class PrintFormat {
  public:
-  // Throws Error if the format is invalid or does not fit to the arguments; the message has no location.
+  // Throws Error if the format is invalid or does not match the arguments; the message has no location.
   PrintFormat(std::string_view format, const std::vector<PrintArgument>& arguments);
 
   // Components of vectors are separated by ", ". `words` are those of the arguments, in order; missing words count as 0.

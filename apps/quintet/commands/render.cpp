@@ -67,7 +67,7 @@ OptionTable declare(RenderOptions& options, RenderTexts& texts) {
       {"quintet render scene.glb --program ao --set distance=0.5", "another program with a parameter"},
       {"quintet render --program pathtracer --help-program", "the program's parameters"},
       {"quintet render scene.glb -o - --quiet | display", "PNG on standard output"},
-      {"quintet render scene.glb --preview", "shows the image on the terminal meanwhile"},
+      {"quintet render scene.glb --preview", "show the image on the terminal while it renders"},
       {"quintet render scene.glb --spp 4096 --checkpoint 60 --resume", "continue after an interruption"},
       {"quintet render scene.glb --spp 64 --batches 0-7 -o a.qfilm",
        "the first half of a render; 8-15 is the second half"},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the instrumented variant of a program counts for its heat maps (quintet/heat.glsl): an array at Frame::heat, one
-// element per pixel of the film. The ray generation shader resets the element and adds it to the outputs.
+// element per pixel of the film. The ray generation shader resets the element and adds it to the outputs, or stores it there
+// if the program accumulates.
 #ifndef QUINTET_SHARED_HEAT_H
 #define QUINTET_SHARED_HEAT_H
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats of debugPrintfEXT: the text of every conversion, and errors for formats that do not fit to their arguments.
+// Formats of debugPrintfEXT: the text of every conversion, and errors for formats that do not match their arguments.
 #include "spirv/print_format.h"
 
 #include <gmock/gmock.h>
@@ -119,7 +119,7 @@ TEST(PrintFormat, MissingWordsAreZero) {
 
 TEST(PrintFormat, RejectsOtherTypes) {
   EXPECT_EQ(errorOf("%d", {kFloat}),
-            "the specifier %d does not fit to argument 1, which is float; write for example %f");
+            "the specifier %d does not match argument 1, which is float; write for example %f");
   EXPECT_THAT(errorOf("%f", {kInt}), HasSubstr("which is int; write for example %d"));
   EXPECT_THAT(errorOf("%f", {kVec3}), HasSubstr("which is vec3; write for example %v3f"));
   EXPECT_THAT(errorOf("%v2f", {kVec3}), HasSubstr("%v3f"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats of debugPrintfEXT that are invalid or do not fit to their arguments.
+// Formats of debugPrintfEXT that are invalid or do not match their arguments.
 #include "base/error.h"
 #include "check/rules/rules.h"
 #include "spirv/module.h"
