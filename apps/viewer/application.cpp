@@ -156,10 +156,12 @@ void Application::receive() {
     state_.rayRates.add(static_cast<float>(1e-6 * state_.snapshot->raysPerSecond));
   }
   state_.display = displays_->latest();
-  const std::string error = displays_->error();
-  if (error == std::exchange(displayError_, error) || error.empty()) return;
-  state_.addMessage({Message::Kind::error, fmt::format("the image cannot be displayed: {}", error)});
-  framesToDraw_ = kStableFrames;
+  if (std::string error = displays_->error(); error != displayError_) {
+    if (!error.empty())
+      state_.addMessage({Message::Kind::error, fmt::format("the image cannot be displayed: {}", error)});
+    displayError_ = std::move(error);
+    framesToDraw_ = kStableFrames;
+  }
 }
 
 // The image has the pixels of its area, unless its size is fixed.
