@@ -61,6 +61,9 @@ TEST_F(ExplainPixel, RejectsWrongRequests) {
   expectError(explain({"--against", "wrong.json"}), 1, {"wrong.json", "not an explanation"});
   expectError(quintet({"explain-pixel", "scene.gltf", "--pixel", "400,2", "--size", "32x24"}), 2,
               {"pixel 400,2 is not inside the image of 32x24"});
+  expectError(quintet({"explain-pixel", "scene.gltf", "--env", "none", "--pixel", "5000,2"}), 2,
+              {"pixel 5000,2 is not inside the image of"});
+  expectError(explain({"--frame", "3"}), 2, {"no instance has keyframes"});
 }
 
 }  // namespace

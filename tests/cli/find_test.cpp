@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `find`: report, status and the command that explains a sample.
+#include <csignal>
+
 #include <gmock/gmock.h>
 
 #include "fixtures.h"
@@ -47,10 +49,24 @@ TEST_F(Find, PrintsACommandThatExplainsTheSample) {
   EXPECT_THAT(json["notFinite"][0]["command"].get<std::string>(), HasSubstr(command));
 }
 
+TEST_F(Find, CtrlCEndsTheSearch) {
+  TerminalRun process(
+      {"find", "scene.gltf", "--program", "normals", "--env", "none", "--size", "64x48", "--spp", "16777216"},
+      folder_.path());
+  ASSERT_TRUE(process.waitFor(" left"));
+  process.signal(SIGINT);
+  const RunResult result = process.finish();
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("interrupted: reporting what was found; press Ctrl-C again"));
+  EXPECT_THAT(result.err, ::testing::Not(HasSubstr("without an image")));
+}
+
 TEST_F(Find, RejectsWrongRequests) {
   expectError(find({"--threshold", "0"}), 2, {"--threshold"});
   expectError(quintet({"find", "scene.gltf", "--time", "1", "--env", "none", "--size", "8x8", "-q"}), 2,
               {"a search requires a number of samples"});
+  expectError(find({"--fireflies", "--program", "lessons/09_progressive"}), 2,
+              {"fireflies: the program 'lessons/09_progressive' accumulates its frames"});
 }
 
 }  // namespace
