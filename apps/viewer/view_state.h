@@ -14,6 +14,7 @@
 
 #include "base/math.h"
 #include "io/image.h"
+#include "job/pixel_explanation.h"
 #include "viewer/bookmarks.h"
 #include "viewer/display.h"
 #include "viewer/navigation.h"
@@ -55,6 +56,10 @@ struct ViewState {
   std::shared_ptr<const Display> display;  // null before the first image
 
   Selection selection;
+  // Of the pixel that the user explains; null if there is none. The index counts the events `ray` in the order of
+  // job::forEachEvent(), from 0.
+  std::shared_ptr<const job::PixelExplanation> explanation;
+  std::optional<std::size_t> selectedRay;
   DisplayControls controls;
   std::string referenceFile;
   std::shared_ptr<const io::Image> reference;  // null if there is none
