@@ -123,6 +123,7 @@ void Application::frame(double wait) {
   buildInterface();
   const gpu::DrawList list = gui_->endFrame();
   if (takeEditEnd()) state_.apply(job::interactive::EndDrag{});
+  performAll(std::exchange(state_.requests, {}));
   chooseImageSize(area);
   requestDisplay();
   draw(list);
@@ -137,6 +138,7 @@ void Application::receive() {
     state_.addMessage(std::move(message));
     framesToDraw_ = kStableFrames;
   }
+  if (last->explanation != state_.snapshot->explanation) state_.setExplanation(state_.snapshot->explanation);
   for (const std::optional<job::interactive::Pick>& pick : session_->takePicks())
     state_.selection = pick ? Selection{Selection::Kind::instance, pick->instance} : Selection{};
   if (last->session != state_.snapshot->session || last->phase != state_.snapshot->phase) {
@@ -298,6 +300,7 @@ void Application::buildInterface() {
 void Application::imageArea(const Area& area) {
   drawImage();
   selectionOutline(state_, area);
+  explainedPixel(state_, area);
   splitLine(state_, area);
   legend(state_, area);
   const ImVec2 display = ImGui::GetIO().DisplaySize;
@@ -341,9 +344,10 @@ void Application::sidePanel(const Area& area) {
     void (*draw)(ViewState&);
   };
   constexpr std::array kPanels{
-      Panel{"Scene", scenePanel},           Panel{"Selection", selectionPanel},  Panel{"Environment", environmentPanel},
-      Panel{"Parameters", parametersPanel}, Panel{"Display", displayPanel},      Panel{"Camera", cameraPanel},
-      Panel{"Compare", comparePanel},       Panel{"Statistics", statisticsPanel}};
+      Panel{"Scene", scenePanel},          Panel{"Selection", selectionPanel},     Panel{"Explain", explainPanel},
+      Panel{"Printed", printedPanel},      Panel{"Environment", environmentPanel}, Panel{"Parameters", parametersPanel},
+      Panel{"Display", displayPanel},      Panel{"Camera", cameraPanel},           Panel{"Compare", comparePanel},
+      Panel{"Statistics", statisticsPanel}};
   for (const Panel& panel : kPanels) {
     bool open = state_.settings.openPanels.count(panel.name) > 0;
     ImGui::PushID(panel.name);
@@ -383,6 +387,7 @@ void Application::menuBar() {
     }
     item("Save image…", Action::save, ready);
     item("Copy command", Action::copyCommand, ready);
+    item("Save explanation…", Action::saveExplanation, state_.explanation != nullptr);
     ImGui::Separator();
     item("Quit", Action::quit);
     ImGui::EndMenu();
@@ -435,6 +440,8 @@ void Application::finishDialog() {
   if (!chosen) return;
   if (purpose == FileDialog::Purpose::open)
     openFile(state_, chosen->string());
+  else if (purpose == FileDialog::Purpose::saveExplanation)
+    saveExplanation(state_, *chosen);
   else
     session_->save(*chosen);
 }
@@ -463,6 +470,10 @@ void Application::perform(Action action) {
         dialog_.close();
       else if (state_.showHelp)
         state_.showHelp = false;
+      else if (state_.click != ClickUse::select)
+        state_.click = ClickUse::select;
+      else if (state_.explanation)
+        state_.setExplanation(nullptr);
       else
         state_.selection = {};
       return;
@@ -490,6 +501,22 @@ void Application::perform(Action action) {
     case Action::copyCommand:
       window_.setClipboard(reproducingCommand(snapshot));
       state_.addMessage({Message::Kind::note, "copied the command that renders this image"});
+      break;
+    case Action::explain:
+      if (state_.hoveredPixel) state_.explainPixel(*state_.hoveredPixel, state_.explain.sample);
+      break;
+    case Action::print:
+      if (state_.hoveredPixel) state_.printPixels({state_.hoveredPixel->x, state_.hoveredPixel->y, 1, 1});
+      break;
+    case Action::saveExplanation:
+      if (state_.explanation)
+        dialog_.saveExplanation(
+            fmt::format("pixel-{}-{}.json", state_.explanation->pixel.x, state_.explanation->pixel.y));
+      break;
+    case Action::copyExplainCommand:
+      if (!state_.explanation) break;
+      window_.setClipboard(explainingCommand(snapshot, state_.explanation->pixel, state_.explanation->sample));
+      state_.addMessage({Message::Kind::note, "copied the command that explains this pixel"});
       break;
     case Action::addBookmark: addBookmark(state_); break;
     case Action::playPause:

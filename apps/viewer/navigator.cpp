@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "navigator.h"
 
+#include <utility>
 #include <variant>
 
 #include "gui/gui.h"
@@ -46,7 +47,9 @@ void Navigator::onButton(ViewState& state, const ButtonEvent& event, const Area&
   if (event.pressed) {
     if (press_ || !state.ready() || !contains(area, event.position) || Gui::wantsMouse()) return;
     const std::optional<Drag> drag = dragOf(bindingSet(state.settings.bindings), event.button, event.modifiers);
-    press_ = Press{event.button, state.snapshot->navigation ? drag : std::nullopt, event.position, event.position};
+    press_ = Press{event.button,   state.snapshot->navigation ? drag : std::nullopt,
+                   event.position, event.position,
+                   false,          event.modifiers.control};
     return;
   }
   if (!press_ || press_->button != event.button) return;
@@ -56,7 +59,7 @@ void Navigator::onButton(ViewState& state, const ButtonEvent& event, const Area&
   if (press.moved)
     state.apply(interactive::EndDrag{});
   else if (press.button == MouseButton::left)
-    onClick(state, event.position);
+    onClick(state, event.position, press.control);
 }
 
 void Navigator::onMove(ViewState& state, vec2 position) {
@@ -69,8 +72,16 @@ void Navigator::onMove(ViewState& state, vec2 position) {
   press_->last = position;
 }
 
-void Navigator::onClick(ViewState& state, vec2 position) {
+void Navigator::onClick(ViewState& state, vec2 position, bool control) {
   const std::optional<uvec2> pixel = state.placement.pixelAt(position);
+  const ClickUse use = std::exchange(state.click, ClickUse::select);
+  if (control || use != ClickUse::select) {
+    if (pixel && use == ClickUse::print)
+      state.printPixels({pixel->x, pixel->y, 1, 1});
+    else if (pixel)
+      state.explainPixel(*pixel, state.explain.sample);
+    return;
+  }
   const bool twice = state.time - lastClick_ < kDoubleClickSeconds &&
                      glm::length(position - lastClickAt_) < kClickPixels * state.scale;
   lastClick_ = twice ? -1 : state.time;

@@ -30,11 +30,12 @@ class Navigator {
     std::optional<Drag> drag;
     vec2 start{0.0f}, last{0.0f};
     bool moved = false;
+    bool control = false;  // Ctrl is held
   };
 
   void onButton(ViewState& state, const ButtonEvent& event, const Area& area);
   void onMove(ViewState& state, vec2 position);
-  void onClick(ViewState& state, vec2 position);
+  void onClick(ViewState& state, vec2 position, bool control);
   std::optional<Action> onKey(ViewState& state, const KeyEvent& event);
 
   std::optional<Press> press_;

@@ -133,6 +133,19 @@ void append(std::vector<std::string>& list, const std::vector<std::string>& more
   list.insert(list.end(), more.begin(), more.end());
 }
 
+// A session that executes these lines.
+std::string sessionCommand(const Snapshot& snapshot, const std::vector<std::string>& lines) {
+  std::string command = "printf '%s\\n'";
+  for (const std::string& line : lines) command += " " + shellQuoted(line);
+  std::vector<std::string> arguments;
+  const std::string scene = snapshot.request->render.scene.string();
+  if (!scene.empty()) arguments.push_back(scene);
+  append(arguments, {"--program", snapshot.state.program});
+  append(arguments, commonOptions(snapshot));
+  append(arguments, {"--script", "-"});
+  return command + " | " + cli::commandLine("view", arguments);
+}
+
 std::string scriptCommand(const Snapshot& snapshot, std::vector<std::string> lines) {
   const interactive::SessionState& state = snapshot.state;
   if (state.output != snapshot.program->outputs.front().name)
@@ -141,15 +154,7 @@ std::string scriptCommand(const Snapshot& snapshot, std::vector<std::string> lin
   const std::vector<std::string> display = displayOptions(state);
   if (state.toneMap) lines.push_back(ordered_json{{"do", "tonemap"}, {"name", display.back()}}.dump());
   lines.push_back(R"({"do":"save","file":"image.png"})");
-  std::string command = "printf '%s\\n'";
-  for (const std::string& line : lines) command += " " + shellQuoted(line);
-  std::vector<std::string> arguments;
-  const std::string scene = snapshot.request->render.scene.string();
-  if (!scene.empty()) arguments.push_back(scene);
-  append(arguments, {"--program", state.program});
-  append(arguments, commonOptions(snapshot));
-  append(arguments, {"--script", "-"});
-  return command + " | " + cli::commandLine("view", arguments);
+  return sessionCommand(snapshot, lines);
 }
 
 }  // namespace
@@ -175,6 +180,25 @@ std::string reproducingCommand(const Snapshot& snapshot) {
   append(arguments, commonOptions(snapshot));
   append(arguments, displayOptions(state));
   return cli::commandLine(renders ? "render" : "run", arguments);
+}
+
+std::string explainingCommand(const Snapshot& snapshot, uvec2 pixel, std::uint32_t sample) {
+  if (std::vector<std::string> lines = scriptLines(snapshot); !lines.empty()) {
+    lines.push_back(
+        ordered_json{{"do", "explain"}, {"x", pixel.x}, {"y", pixel.y}, {"sample", sample}, {"file", "pixel.json"}}
+            .dump());
+    return sessionCommand(snapshot, lines);
+  }
+  const interactive::SessionState& state = snapshot.state;
+  const std::string scene = snapshot.request->render.scene.string();
+  std::vector<std::string> arguments;
+  if (!scene.empty()) arguments.push_back(scene);
+  append(arguments, {"--pixel", fmt::format("{},{}", pixel.x, pixel.y)});
+  if (sample != 0) append(arguments, {"--sample", std::to_string(sample)});
+  if (state.program != "pathtracer") append(arguments, {"--program", state.program});
+  if (state.frame != 0.0f) append(arguments, {"--frame", fmt::format("{:.0f}", state.frame)});
+  append(arguments, commonOptions(snapshot));
+  return cli::commandLine("explain-pixel", arguments);
 }
 
 }  // namespace quintet::viewer

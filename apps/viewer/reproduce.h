@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line that renders the image of a session again.
+// The command lines that render the image of a session again, or explain one of its pixels.
 #ifndef QUINTET_APPS_VIEWER_REPRODUCE_H
 #define QUINTET_APPS_VIEWER_REPRODUCE_H
 
+#include <cstdint>
 #include <string>
 
 #include "viewer/session_thread.h"
@@ -11,6 +12,8 @@ namespace quintet::viewer {
 
 // For a snapshot with Phase::ready. Edits of materials, lights and objects become a script for 'quintet view'.
 std::string reproducingCommand(const Snapshot& snapshot);
+// `sample`: or frame. A script writes the explanation to pixel.json.
+std::string explainingCommand(const Snapshot& snapshot, uvec2 pixel, std::uint32_t sample);
 
 }  // namespace quintet::viewer
 #endif

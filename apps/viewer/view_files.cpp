@@ -8,7 +8,10 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "io/codec.h"
+#include "job/explanation_json.h"
+#include "reproduce.h"
 #include "viewer/dropped_file.h"
 
 namespace quintet::viewer {
@@ -146,6 +149,17 @@ void openLesson(ViewState& state, const std::string& program) {
   request.program = program;
   request.render.size = state.fixedSize.value_or(state.viewSize);
   openSession(state, std::move(request), program);
+}
+
+void saveExplanation(ViewState& state, const std::filesystem::path& file) {
+  if (!state.explanation) return;
+  const std::string command = explainingCommand(*state.snapshot, state.explanation->pixel, state.explanation->sample);
+  try {
+    writeFile(file, job::explanationJson(*state.explanation, state.snapshot->explanationOutdated ? "" : command));
+    state.addMessage({Message::Kind::note, fmt::format("saved {}", file.string())});
+  } catch (const Error& error) {
+    state.addMessage({Message::Kind::error, error.what()});
+  }
 }
 
 void readStoredFiles(ViewState& state) {

@@ -3,6 +3,7 @@
 #ifndef QUINTET_APPS_VIEWER_VIEW_FILES_H
 #define QUINTET_APPS_VIEWER_VIEW_FILES_H
 
+#include <filesystem>
 #include <string>
 
 #include "view_state.h"
@@ -19,6 +20,9 @@ void openFile(ViewState& state, const std::string& path);
 void openRecent(ViewState& state, const std::string& file);
 // A built-in program on its own scene.
 void openLesson(ViewState& state, const std::string& program);
+
+// As JSON, with the command that explains the pixel unless the scene has changed since. Errors become messages.
+void saveExplanation(ViewState& state, const std::filesystem::path& file);
 
 // Settings and bookmarks. A file that cannot be read is renamed and causes a message, and the defaults are used.
 void readStoredFiles(ViewState& state);

@@ -22,4 +22,42 @@ void ViewState::addMessage(Message message) {
   toasts.push_back({std::move(message), time + seconds});
 }
 
+void ViewState::explainPixel(uvec2 pixel, std::uint32_t sample) {
+  explain.pixel = pixel;
+  explain.sample = sample;
+  explain.revealsPanel = settings.openPanels.insert("Explain").second || !explanation;
+  session->explain(pixel, sample);
+}
+
+void ViewState::printPixels(const render::Region& pixels) {
+  settings.openPanels.insert("Printed");
+  apply(job::interactive::SetPrint{job::PrintRequest{.pixels = pixels}});
+}
+
+void ViewState::setExplanation(std::shared_ptr<const job::PixelExplanation> next) {
+  explanation = std::move(next);
+  explain.tree = explanation ? std::make_shared<const ExplanationTree>(explanation) : nullptr;
+  explain.closed.clear();
+  explain.row.reset();
+  selectedRay.reset();
+  explain.comparison.reset();
+  if (explanation && explain.compares) compareExplanation(true);
+}
+
+void ViewState::selectRow(std::optional<std::size_t> row) {
+  explain.row = row;
+  selectedRay = row ? explain.tree->rows()[*row].ray : std::nullopt;
+}
+
+void ViewState::compareExplanation(bool on) {
+  explain.compares = on && explain.kept;
+  explain.comparison.reset();
+  if (!explain.compares || !explain.tree) return;
+  explain.comparison = compareExplanations(*explain.kept, *explain.tree);
+  if (!explain.comparison->first) return;
+  explain.closed.clear();
+  selectRow(explain.comparison->first);
+  explain.revealsRow = true;
+}
+
 }  // namespace quintet::viewer

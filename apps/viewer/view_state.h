@@ -9,14 +9,17 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "base/math.h"
 #include "io/image.h"
 #include "job/pixel_explanation.h"
+#include "viewer/bindings.h"
 #include "viewer/bookmarks.h"
 #include "viewer/display.h"
+#include "viewer/explanation_tree.h"
 #include "viewer/navigation.h"
 #include "viewer/rate_history.h"
 #include "viewer/session_thread.h"
@@ -47,6 +50,22 @@ struct DisplayControls {
   float split = 0.5f;  // position of the line, as a fraction of the width
 };
 
+// What the next click on the image does.
+enum class ClickUse { select, explain, print };
+
+// The explained pixel, and the tree of its explanation.
+struct ExplainControls {
+  std::optional<uvec2> pixel;                         // that was asked for last
+  std::uint32_t sample = 0;                           // or frame
+  std::shared_ptr<const ExplanationTree> tree;        // of ViewState::explanation; null if there is none
+  std::optional<std::size_t> row;                     // selected
+  std::set<std::size_t> closed;                       // rows that hide those below them
+  bool revealsPanel = false, revealsRow = false;      // by scrolling, in the next frame
+  std::shared_ptr<const job::PixelExplanation> kept;  // A of a comparison; null if there is none
+  bool compares = false;
+  std::optional<ExplanationComparison> comparison;  // if `compares`
+};
+
 struct ViewState {
   Settings settings;
   std::filesystem::path settingsFolder;  // empty: nothing is stored
@@ -60,6 +79,9 @@ struct ViewState {
   // job::forEachEvent(), from 0.
   std::shared_ptr<const job::PixelExplanation> explanation;
   std::optional<std::size_t> selectedRay;
+  ExplainControls explain;
+  ClickUse click = ClickUse::select;
+  std::vector<Action> requests;  // of panels, for the application
   DisplayControls controls;
   std::string referenceFile;
   std::shared_ptr<const io::Image> reference;  // null if there is none
@@ -80,6 +102,11 @@ struct ViewState {
   bool ready() const { return snapshot->phase == Snapshot::Phase::ready; }
   void apply(job::interactive::Command command) { session->apply(std::move(command)); }
   void addMessage(Message message);
+  void explainPixel(uvec2 pixel, std::uint32_t sample);
+  void printPixels(const render::Region& pixels);
+  void setExplanation(std::shared_ptr<const job::PixelExplanation> next);  // null hides it
+  void selectRow(std::optional<std::size_t> row);                          // of the tree
+  void compareExplanation(bool on);                                        // with ExplainControls::kept
 };
 
 }  // namespace quintet::viewer

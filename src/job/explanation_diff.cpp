@@ -71,6 +71,48 @@ std::optional<ExplanationDifference> compare(std::string location, const EventVa
 
 bool isLocation(const std::string& field) { return field == "line" || field == "file"; }
 
+// The values before the call, for the data after it; null for other events.
+struct Before {
+  const ExplainedEvent* a;
+  const ExplainedEvent* b;
+};
+
+const ExplainedEvent* findBefore(const std::vector<ExplainedEvent>& events, const ExplainedEvent& after) {
+  if (after.text("when") != "after") return nullptr;
+  for (const ExplainedEvent& event : events)
+    if (event.type == after.type && event.text("when") == "before") return &event;
+  return nullptr;
+}
+
+// What a program does not write is undefined. So the data before a call are not compared, nor what it left unchanged.
+bool isUndefined(const ExplainedEvent& a, const ExplainedEvent& b, const Before& before, const std::string& name) {
+  if (name == "when" || name == "variable" || name == "dataType") return false;
+  if (a.text("when") == "before") return true;
+  if (!before.a || !before.b) return false;
+  const auto unchanged = [&](const ExplainedEvent& event, const ExplainedEvent& earlier) {
+    const EventValue* value = event.find(name);
+    const EventValue* old = earlier.find(name);
+    return value && old && *value == *old;
+  };
+  return unchanged(a, *before.a) && unchanged(b, *before.b);
+}
+
+// The first field that differs between two events of the same type; its location is its name.
+std::optional<ExplanationDifference> compareFields(const ExplainedEvent& a, const ExplainedEvent& b,
+                                                   const Before& before, const DiffTolerance& tolerance) {
+  for (const auto& [name, value] : a.fields) {
+    if (isLocation(name) || isUndefined(a, b, before, name)) continue;
+    const EventValue* other = b.find(name);
+    if (!other) return ExplanationDifference{name, valueText(value), kMissing, {}};
+    if (auto difference = compare(name, value, *other, tolerance)) return difference;
+  }
+  for (const auto& [name, value] : b.fields)
+    if (!isLocation(name) && !a.find(name) && !isUndefined(a, b, before, name))
+      return ExplanationDifference{name, kMissing, valueText(value), {}};
+  return {};
+}
+
+// Finds the first difference.
 class Walk {
  public:
   Walk(ExplanationDiff& diff, const DiffTolerance& tolerance) : diff_(diff), tolerance_(tolerance) {}
@@ -96,55 +138,55 @@ class Walk {
   }
 
  private:
-  // The values before the call, for the data after it; null for other events.
-  struct Before {
-    const ExplainedEvent* a;
-    const ExplainedEvent* b;
-  };
-  static const ExplainedEvent* findBefore(const std::vector<ExplainedEvent>& events, const ExplainedEvent& after) {
-    if (after.text("when") != "after") return nullptr;
-    for (const ExplainedEvent& event : events)
-      if (event.type == after.type && event.text("when") == "before") return &event;
-    return nullptr;
-  }
-
-  // What a program does not write is undefined. So the data before a call are not compared, nor what it left unchanged.
-  static bool isUndefined(const ExplainedEvent& a, const ExplainedEvent& b, const Before& before,
-                          const std::string& name) {
-    if (name == "when" || name == "variable" || name == "dataType") return false;
-    if (a.text("when") == "before") return true;
-    if (!before.a || !before.b) return false;
-    const auto unchanged = [&](const ExplainedEvent& event, const ExplainedEvent& earlier) {
-      const EventValue* value = event.find(name);
-      const EventValue* old = earlier.find(name);
-      return value && old && *value == *old;
-    };
-    return unchanged(a, *before.a) && unchanged(b, *before.b);
-  }
-
   bool compareEvents(const ExplainedEvent& a, const ExplainedEvent& b, const std::string& at, const Before& before) {
-    for (const auto& [name, value] : a.fields) {
-      if (isLocation(name) || isUndefined(a, b, before, name)) continue;
-      const EventValue* other = b.find(name);
-      if (!other) return stop({at + ": " + name, valueText(value), kMissing, {}});
-      if (auto difference = compare(at + ": " + name, value, *other, tolerance_)) return stop(std::move(*difference));
+    if (auto difference = compareFields(a, b, before, tolerance_)) {
+      difference->location = at + ": " + difference->location;
+      diff_.before = path_;
+      diff_.first = std::move(*difference);
+      return false;
     }
-    for (const auto& [name, value] : b.fields)
-      if (!isLocation(name) && !a.find(name) && !isUndefined(a, b, before, name))
-        return stop({at + ": " + name, kMissing, valueText(value), {}});
     diff_.equalEvents++;
     return compareLists(a.children, b.children, at);
-  }
-
-  bool stop(ExplanationDifference difference) {
-    diff_.before = path_;
-    diff_.first = std::move(difference);
-    return false;
   }
 
   ExplanationDiff& diff_;
   const DiffTolerance& tolerance_;
   std::vector<std::string> path_;  // names of the enclosing events
+};
+
+// Finds all differences.
+class Marks {
+ public:
+  explicit Marks(const DiffTolerance& tolerance) : tolerance_(tolerance) {}
+
+  void compareLists(const std::vector<ExplainedEvent>& a, const std::vector<ExplainedEvent>& b) {
+    std::size_t i = 0;
+    for (; i < a.size() && i < b.size() && a[i].type == b[i].type; ++i) {
+      if (compareFields(a[i], b[i], {findBefore(a, a[i]), findBefore(b, b[i])}, tolerance_)) {
+        found_.a.push_back(numberA_);
+        found_.b.push_back(numberB_);
+      }
+      ++numberA_;
+      ++numberB_;
+      compareLists(a[i].children, b[i].children);
+    }
+    mark(a, i, found_.a, numberA_);
+    mark(b, i, found_.b, numberB_);
+  }
+  DifferentEvents take() { return std::move(found_); }
+
+ private:
+  static void mark(const std::vector<ExplainedEvent>& events, std::size_t first, std::vector<std::size_t>& found,
+                   std::size_t& number) {
+    for (std::size_t i = first; i < events.size(); ++i) {
+      found.push_back(number++);
+      mark(events[i].children, 0, found, number);
+    }
+  }
+
+  const DiffTolerance& tolerance_;
+  DifferentEvents found_;
+  std::size_t numberA_ = 0, numberB_ = 0;  // of the next event
 };
 
 void compareFacts(ExplanationDiff& diff, const PixelExplanation& a, const PixelExplanation& b) {
@@ -197,6 +239,12 @@ ExplanationDiff diffExplanations(const PixelExplanation& a, const PixelExplanati
     }
   }
   return diff;
+}
+
+DifferentEvents differentEvents(const PixelExplanation& a, const PixelExplanation& b, const DiffTolerance& tolerance) {
+  Marks marks(tolerance);
+  marks.compareLists(a.events, b.events);
+  return marks.take();
 }
 
 }  // namespace quintet::job

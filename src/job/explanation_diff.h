@@ -38,6 +38,17 @@ struct ExplanationDiff {
 ExplanationDiff diffExplanations(const PixelExplanation& a, const PixelExplanation& b,
                                  const DiffTolerance& tolerance = {});
 
+// The events that differ, by their numbers in the order of forEachEvent(), ascending. The first one of A or of B is that of
+// ExplanationDiff::first.
+struct DifferentEvents {
+  std::vector<std::size_t> a, b;
+};
+
+// All events that differ in a field. Two lists of events are compared one by one until the types differ; the events from
+// there on differ, with those in them.
+DifferentEvents differentEvents(const PixelExplanation& a, const PixelExplanation& b,
+                                const DiffTolerance& tolerance = {});
+
 // A value as text: floats with up to 6 digits.
 std::string valueText(const EventValue& value);
 

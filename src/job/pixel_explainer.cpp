@@ -27,17 +27,47 @@ bool readsOtherPixels(const program::Program& program) {
   });
 }
 
-program::RunnableProgram instrumentedProgram(Engine& engine, const RenderJob& job) {
+// Outputs that do not measure how long the variant takes.
+std::vector<std::string> explainedOutputs(const ResolvedJob& job) {
+  std::vector<std::string> names = job.request.outputs;
+  std::erase_if(names, [&](const std::string& name) {
+    const auto& outputs = job.program.outputs;
+    const auto found = std::ranges::find(outputs, name, &program::Output::name);
+    return found != outputs.end() && found->kind == program::OutputKind::heat;
+  });
+  return names;
+}
+
+program::RunnableProgram runnableProgram(Engine& engine, const RenderJob& job,
+                                         program::Instrumentation instrumentation) {
   const render::DeviceScene& scene = *job.scene()->onDevice;
   return compileAndCheck(job.resolved().program, engine.compiler(),
-                         render::renderDefines(scene.defines(), job.resolved().request.outputs), scene.facts(),
-                         deviceLimits(engine.context().info()), program::Instrumentation::explain)
+                         render::renderDefines(scene.defines(), explainedOutputs(job.resolved())), scene.facts(),
+                         deviceLimits(engine.context().info()), instrumentation)
       .runnable;
 }
 
 void requireInside(uvec2 size, uvec2 pixel) {
   if (pixel.x < size.x && pixel.y < size.y) return;
   throw UsageError(fmt::format("pixel {},{} is not inside the image of {}x{}", pixel.x, pixel.y, size.x, size.y));
+}
+
+// Of the job, for this image and region.
+render::RenderSettings settingsFor(RenderJob& job, const ExplainedImage& image, const render::Region& region) {
+  render::RenderSettings settings = job.renderer().settings();
+  settings.camera = image.camera.camera;
+  settings.width = image.size.x;
+  settings.height = image.size.y;
+  settings.region = region;
+  settings.outputs = explainedOutputs(job.resolved());
+  settings.log = nullptr;
+  return settings;
+}
+
+// Width 0 means the whole image.
+render::Region regionFor(const program::Program& program, uvec2 pixel) {
+  const bool accumulates = program.accumulation == program::Accumulation::program;
+  return accumulates && readsOtherPixels(program) ? render::Region{} : render::Region{pixel.x, pixel.y, 1, 1};
 }
 
 vec4 batchValue(const render::Renderer& renderer, std::size_t output, uvec2 pixel) {
@@ -52,25 +82,42 @@ RenderRequest requestForPixel(RenderRequest request, const program::Program& pro
   if (request.region.width > 0) throw UsageError("region: not supported when a pixel is explained; remove it");
   if (request.batches) throw UsageError("batches: not supported when a pixel is explained; remove them");
   if (request.size.x > 0 && request.size.y > 0) requireInside(request.size, pixel);
-  const bool accumulates = program.accumulation == program::Accumulation::program;
-  if (!accumulates || !readsOtherPixels(program)) request.region = {pixel.x, pixel.y, 1, 1};
+  request.region = regionFor(program, pixel);
   return request;
 }
 
 PixelExplainer::PixelExplainer(Engine& engine, RenderJob& job)
     : engine_(engine),
       job_(job),
+      image_{{job.scene()->camera, job.scene()->cameraDescription}, job.scene()->size},
       log_(engine.context(), job.region(), kLogWords),
-      program_(instrumentedProgram(engine, job)) {
+      program_(runnableProgram(engine, job, program::Instrumentation::explain)),
+      renderer_(job.renderer()) {
   job.showRequestedFrame();  // for programs that accumulate, renderEarlierFrames() sets the frame
-  render::RenderSettings settings = job.renderer().settings();
+  makeInstrumented(renderer_.settings());
+}
+
+PixelExplainer::PixelExplainer(Engine& engine, RenderJob& job, const ExplainedImage& image, uvec2 pixel)
+    : engine_(engine),
+      job_(job),
+      image_(image),
+      log_(engine.context(), {pixel.x, pixel.y, 1, 1}, kLogWords),
+      program_(runnableProgram(engine, job, program::Instrumentation::explain)),
+      own_(std::make_unique<render::Renderer>(
+          *job.scene()->onDevice, runnableProgram(engine, job, program::Instrumentation::none), engine.compiler(),
+          &engine.pipelineCache(), settingsFor(job, image, regionFor(job.resolved().program, pixel)))),
+      renderer_(*own_) {
+  makeInstrumented(renderer_.settings());
+}
+
+void PixelExplainer::makeInstrumented(render::RenderSettings settings) {
   settings.log = &log_;
-  instrumented_ = std::make_unique<render::Renderer>(*job.scene()->onDevice, program_, engine.compiler(),
-                                                     &engine.pipelineCache(), settings);
+  instrumented_ = std::make_unique<render::Renderer>(*job_.scene()->onDevice, program_, engine_.compiler(),
+                                                     &engine_.pipelineCache(), settings);
 }
 
 PixelExplanation PixelExplainer::explain(uvec2 pixel, std::uint32_t sample, Observer& observer) {
-  requireInside(job_.scene()->size, pixel);
+  requireInside(image_.size, pixel);
   try {
     if (job_.resolved().accumulatesFrames()) renderEarlierFrames(sample);
     return record(pixel, sample);
@@ -82,21 +129,19 @@ PixelExplanation PixelExplainer::explain(uvec2 pixel, std::uint32_t sample, Obse
 
 // Renders the frames before `count`, and moves the scene to that frame.
 void PixelExplainer::renderEarlierFrames(std::uint32_t count) {
-  render::Renderer& renderer = job_.renderer();
-  renderer.restart();
+  renderer_.restart();
   render::DeviceScene& scene = *job_.scene()->onDevice;
   for (std::uint32_t frame = 0; frame <= count; ++frame) {
-    renderer.finish();
+    renderer_.finish();
     if (scene.animated()) scene.setFrame(static_cast<float>(frame));
-    if (frame < count) renderer.renderFrame(frame);
+    if (frame < count) renderer_.renderFrame(frame);
   }
-  instrumented_->restoreFilm(renderer.saveFilm());
+  instrumented_->restoreFilm(renderer_.saveFilm());
 }
 
 PixelExplanation PixelExplainer::record(uvec2 pixel, std::uint32_t sample) {
-  render::Renderer& renderer = job_.renderer();
-  const std::uint64_t discarded = renderer.rays().droppedSamples;
-  renderer.renderPixel(pixel, sample);
+  const std::uint64_t discarded = renderer_.rays().droppedSamples;
+  renderer_.renderPixel(pixel, sample);
   log_.take();
   instrumented_->renderPixel(pixel, sample);
   const render::LogContents log = log_.take();
@@ -104,14 +149,14 @@ PixelExplanation PixelExplainer::record(uvec2 pixel, std::uint32_t sample) {
   PixelExplanation result = facts();
   result.pixel = pixel;
   result.sample = sample;
-  result.discarded = renderer.rays().droppedSamples > discarded;
+  result.discarded = renderer_.rays().droppedSamples > discarded;
   result.lostRecords = log.dropped;
   const std::vector<program::Output>& outputs = job_.resolved().program.outputs;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const bool written = outputs[i].pixel == program::OutputPixel::mean ||
                          (outputs[i].pixel == program::OutputPixel::center && sample == 0);
-    if (!written || !renderer.film().stores(i)) continue;
-    result.outputs.push_back({outputs[i].name, batchValue(renderer, i, pixel), batchValue(*instrumented_, i, pixel)});
+    if (!written || !renderer_.film().stores(i)) continue;
+    result.outputs.push_back({outputs[i].name, batchValue(renderer_, i, pixel), batchValue(*instrumented_, i, pixel)});
   }
   const PreparedScene& scene = *job_.scene();
   result.events = buildEvents(log, program_, {scene.instanceNames, scene.materialNames, scene.lightNames}, pixel);
@@ -124,11 +169,11 @@ PixelExplanation PixelExplainer::facts() const {
   result.scene = job.scene.path();
   result.program = job.program.name;
   result.parameters = job.parameters.describe();
-  result.camera = job_.scene()->cameraDescription;
+  result.camera = image_.camera.description;
   result.device = engine_.context().info().name;
   result.driver = engine_.context().info().driver;
   result.version = QUINTET_VERSION;
-  result.size = job_.scene()->size;
+  result.size = image_.size;
   result.frames = job.accumulatesFrames();
   result.plannedSamples =
       result.frames ? job.request.frames.accumulatedCount().value_or(0) : job.request.limits.samples.value_or(0);

@@ -11,6 +11,7 @@
 #include "job/observer.h"
 #include "job/pixel_explanation.h"
 #include "job/render_job.h"
+#include "job/view.h"
 #include "render/renderer/renderer.h"
 #include "render/renderer/shader_log.h"
 
@@ -21,12 +22,22 @@ namespace quintet::job {
 // for a pixel outside of the image if its size is known; if it is not, RenderJob or PixelExplainer::explain() throws.
 RenderRequest requestForPixel(RenderRequest request, const program::Program& program, uvec2 pixel);
 
+// The image of which a pixel is explained.
+struct ExplainedImage {
+  CameraChoice camera;
+  uvec2 size{0};  // pixels
+};
+
 class PixelExplainer {
  public:
   // The explainer needs exclusive use of `job` and discards its samples. `job` and `engine` must outlive it. Moves the scene
   // to the requested frame. Compiles the variant. Throws ProgramError, UsageError (RenderJob::showRequestedFrame) and gpu
   // errors.
   PixelExplainer(Engine& engine, RenderJob& job);
+  // For a job that keeps its samples, and whose edits are on the device (RenderJob::update()): explains only this pixel,
+  // of this image. Valid until the next edit of the job. Compiles the program, too. Programs that accumulate move the
+  // scene to the explained frame; RenderJob::showCurrentFrame() moves it back.
+  PixelExplainer(Engine& engine, RenderJob& job, const ExplainedImage& image, uvec2 pixel);
   PixelExplainer(const PixelExplainer&) = delete;
   PixelExplainer& operator=(const PixelExplainer&) = delete;
 
@@ -37,14 +48,18 @@ class PixelExplainer {
   PixelExplanation explain(uvec2 pixel, std::uint32_t sample, Observer& observer);
 
  private:
+  void makeInstrumented(render::RenderSettings settings);
   void renderEarlierFrames(std::uint32_t count);
   PixelExplanation record(uvec2 pixel, std::uint32_t sample);
   PixelExplanation facts() const;
 
   Engine& engine_;
   RenderJob& job_;
+  ExplainedImage image_;
   render::ShaderLog log_;
   program::RunnableProgram program_;                // instrumented
+  std::unique_ptr<render::Renderer> own_;           // of the program as it is; null if it is that of the job
+  render::Renderer& renderer_;                      // of the program as it is
   std::unique_ptr<render::Renderer> instrumented_;  // with program_ and log_
 };
 

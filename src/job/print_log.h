@@ -32,7 +32,9 @@ class PrintLog {
   const render::ShaderLog& log() const { return log_; }
   // Passes what was printed since the last call to the observer. The launches must have ended (Renderer::finish()).
   void flush(Observer& observer, const PrintNumbers& numbers);
-  // Discards what was printed since then, of a batch that was canceled, and counts from 0 to the limit again.
+  // Discards what was printed since then, of a batch that was canceled.
+  void discard() { log_.take(); }
+  // The same, and counts from 0 to the limit again.
   void restart();
 
  private:

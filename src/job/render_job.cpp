@@ -207,7 +207,8 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   settings.frameCount = request.frames.accumulatedCount().value_or(0);
   if (request.launchSeconds > 0) settings.launchSeconds = request.launchSeconds;
   settings.timeoutSeconds = request.launchTimeout;
-  if (!request.print && !printsNoted_ && program::prints(checked.runnable.compiled)) {
+  const bool callsPrint = program::prints(checked.runnable.compiled);
+  if (!request.print && !printsNoted_ && callsPrint) {
     printsNoted_ = true;
     observer.printsDisabled();
   }
@@ -217,13 +218,13 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   if (request.print && table.empty()) {
     observer.note(fmt::format("{}: no shader calls debugPrintfEXT", job_.program.name));
   } else if (request.print) {
-    const render::Region rendered = render::decideSettings(settings, job_.program, false).region;
-    prints = std::make_unique<PrintLog>(engine_.context(), *request.print, rendered, std::move(table));
+    prints = std::make_unique<PrintLog>(engine_.context(), *request.print, printableRegion(settings), std::move(table));
     settings.log = &prints->log();
   }
   renderer_ = std::make_unique<render::Renderer>(scene, std::move(checked.runnable), engine_.compiler(),
                                                  &engine_.pipelineCache(), settings);
   prints_ = std::move(prints);
+  callsPrint_ = callsPrint;
   includedFiles_ = std::move(includedFiles);
   diagnostics_ = std::move(warnings);
   provenance_.programHash = programHash(job_.program, includedHashes);
@@ -237,6 +238,31 @@ void RenderJob::setSize(uvec2 size) {
   job_.request.region = {};
   if (!renderer_) return;  // update() failed and is repeated by the next run()
   scene_->size = size;
+  restart();
+  provenanceOutdated_ = true;
+}
+
+// The pixels that a request for prints can have.
+render::Region RenderJob::printableRegion(const render::RenderSettings& settings) const {
+  constexpr std::uint32_t kAnySize = 1u << 20;
+  if (job_.request.editable) return {0, 0, kAnySize, kAnySize};
+  return render::decideSettings(settings, job_.program, false).region;
+}
+
+void RenderJob::setPrint(std::optional<PrintRequest> print, Observer& observer) {
+  assert(job_.request.editable && (!print || print->all || print->pixels.width > 0));
+  std::swap(job_.request.print, print);
+  if (!renderer_) return;  // update() failed and is repeated by the next run()
+  observer.stage("compiling shaders");
+  try {
+    renderer_->finish();
+    link(program::compile(job_.program, engine_.compiler(),
+                          render::renderDefines(scene_->onDevice->defines(), job_.request.outputs)),
+         observer);
+  } catch (...) {
+    std::swap(job_.request.print, print);
+    throw;
+  }
   restart();
   provenanceOutdated_ = true;
 }
@@ -443,7 +469,13 @@ RenderResult RenderJob::run(const RenderLimits& limits, Observer& observer) {
 std::optional<double> RenderJob::renderBatch(std::uint64_t samples, Observer& observer) {
   return reportingHang(observer, [&] {
     update(observer);
-    return job_.accumulatesFrames() ? renderNextFrame(samples, observer) : renderFilmBatch(samples, observer);
+    const std::optional<double> seconds =
+        job_.accumulatesFrames() ? renderNextFrame(samples, observer) : renderFilmBatch(samples, observer);
+    if (seconds)
+      flushPrints(observer);
+    else if (prints_)
+      prints_->discard();
+    return seconds;
   });
 }
 
@@ -706,6 +738,11 @@ double RenderJob::sampleCount() const {
 void RenderJob::showFrame() {
   scene_->onDevice->setFrame(frame_);
   provenance_ = makeProvenance();
+}
+
+void RenderJob::showCurrentFrame() {
+  if (!scene_ || !scene_->onDevice->animated()) return;
+  scene_->onDevice->setFrame(job_.accumulatesFrames() ? static_cast<float>(std::max(nextFrame_, 1u) - 1) : frame_);
 }
 
 RenderResult RenderJob::result(bool withError) const {

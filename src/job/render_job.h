@@ -104,9 +104,15 @@ class RenderJob {
   // Compiles the program, which can be the same with changed shaders. Throws ProgramError, too, and then the old one
   // stays.
   void setProgram(program::Program program, const ProgramRequest& with, Observer& observer);
+  // Replaces RenderRequest::print. Its pixels need not be inside the image, whose size can change. Compiles the program.
+  void setPrint(std::optional<PrintRequest> print, Observer& observer);
   void restart();  // only discards the samples
   // Applies the edits to the device now. Throws as run() does.
   void update(Observer& observer);
+
+  // Moves the instances with keyframes to the frame of the last render, after a PixelExplainer has moved them.
+  void showCurrentFrame();
+  bool callsPrint() const { return callsPrint_; }  // the program has calls of debugPrintfEXT
 
   const scene::Camera& camera() const { return scene_->camera; }
   // The scene in host memory, with all edits but those of the environment. For editable jobs.
@@ -161,7 +167,8 @@ class RenderJob {
   RenderLimits withinPart(RenderLimits limits) const;  // the same limits, not beyond the end of the part
   void beginFilm();                                    // continues from firstSample()
   StartPoint startPoint(const RenderLimits& limits, Observer& observer);
-  void flushPrints(Observer& observer);      // passes on what the last batch printed
+  void flushPrints(Observer& observer);  // passes on what the last batch printed
+  render::Region printableRegion(const render::RenderSettings& settings) const;
   void showImage(Observer& observer) const;  // if the observer wants it
   // The result after `seconds` of rendering; with the error estimate only where it is needed, because it takes time.
   RenderResult makeResult(double seconds, const StartPoint& start, bool withError) const;
@@ -174,6 +181,7 @@ class RenderJob {
   std::vector<Diagnostic> diagnostics_;
   std::unique_ptr<PrintLog> prints_;  // null unless the request asks for them
   bool printsNoted_ = false;          // Observer::printsDisabled() was called
+  bool callsPrint_ = false;
   std::unique_ptr<render::Renderer> renderer_;
   mutable Provenance provenance_;  // without the facts that a result adds; see describeEdits()
   std::optional<Checkpoint> checkpoint_;

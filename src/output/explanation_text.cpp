@@ -24,20 +24,6 @@ using job::PixelExplanation;
 
 constexpr std::size_t kLabelColumns = 15;
 
-// A field as it is shown: vectors without parentheses.
-std::string fieldText(const ExplainedEvent& event, std::string_view name) {
-  const EventValue* value = event.find(name);
-  if (!value) return {};
-  if (const auto* number = std::get_if<float>(value)) return floatText(*number);
-  if (const auto* numbers = std::get_if<std::vector<float>>(value)) return floatsText(*numbers);
-  std::string text = job::valueText(*value);
-  if (std::holds_alternative<std::vector<std::int64_t>>(*value)) {
-    text = text.substr(1, text.size() - 2);
-    std::erase(text, ',');
-  }
-  return text;
-}
-
 // "12 bounces", joined by ", ".
 class Parts {
  public:
@@ -324,15 +310,6 @@ std::string heading(const PixelExplanation& e) {
   return text + fmt::format(", seed {}", e.seed);
 }
 
-// Differences that rounding explains.
-bool isRounding(const vec3& a, const vec3& b) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (std::isnan(a[i]) && std::isnan(b[i])) continue;
-    if (!(std::abs(a[i] - b[i]) <= 1e-6f + 1e-4f * std::max(std::abs(a[i]), std::abs(b[i])))) return false;
-  }
-  return true;
-}
-
 std::string contributionName(const job::Contribution& contribution) {
   std::string text =
       contribution.ray > 0 ? fmt::format("ray {}: {}", contribution.ray, contribution.source) : contribution.source;
@@ -378,6 +355,27 @@ std::string contributions(const PixelExplanation& e) {
 }
 
 }  // namespace
+
+bool isRounding(const vec3& a, const vec3& b) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (std::isnan(a[i]) && std::isnan(b[i])) continue;
+    if (!(std::abs(a[i] - b[i]) <= 1e-6f + 1e-4f * std::max(std::abs(a[i]), std::abs(b[i])))) return false;
+  }
+  return true;
+}
+
+std::string fieldText(const ExplainedEvent& event, std::string_view name, int digits) {
+  const EventValue* value = event.find(name);
+  if (!value) return {};
+  if (const auto* number = std::get_if<float>(value)) return floatText(*number, digits);
+  if (const auto* numbers = std::get_if<std::vector<float>>(value)) return floatsText(*numbers, digits);
+  std::string text = job::valueText(*value);
+  if (std::holds_alternative<std::vector<std::int64_t>>(*value)) {
+    text = text.substr(1, text.size() - 2);
+    std::erase(text, ',');
+  }
+  return text;
+}
 
 std::string explanationText(const PixelExplanation& e, std::size_t width, bool payloads) {
   bool stated = false;  // a black sample has no contributions, but samples of lights or lobes

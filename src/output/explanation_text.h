@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "job/explanation_diff.h"
 #include "job/pixel_explanation.h"
@@ -14,6 +15,12 @@ namespace quintet::output {
 // `width`: columns of the terminal, at least 40. `payloads`: show the payloads also of programs that state their
 // contributions; other programs always show them.
 std::string explanationText(const job::PixelExplanation& explanation, std::size_t width, bool payloads = false);
+
+// A field as the text shows it: numbers with `digits` digits, vectors without parentheses. Empty if there is no such field.
+std::string fieldText(const job::ExplainedEvent& event, std::string_view name, int digits = 5);
+
+// Whether rounding explains the difference of two values.
+bool isRounding(const vec3& a, const vec3& b);
 
 // `a`, `b`: names of the explanations.
 std::string explanationDiffText(const job::ExplanationDiff& diff, const std::string& a, const std::string& b,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Floats for people, with up to 5 digits.
+// Floats for people.
 #ifndef QUINTET_OUTPUT_FLOAT_TEXT_H
 #define QUINTET_OUTPUT_FLOAT_TEXT_H
 
@@ -10,10 +10,10 @@
 
 namespace quintet::output {
 
-// "0" also for -0, "nan", "infinity" also for the largest float: a ray without limit in the shader library.
-std::string floatText(float value);
+// With up to `digits` digits. "0" also for -0, "nan", "infinity" also for the largest float: a ray without limit in the shader library.
+std::string floatText(float value, int digits = 5);
 // Separated by spaces.
-std::string floatsText(std::span<const float> values);
+std::string floatsText(std::span<const float> values, int digits = 5);
 inline std::string vectorText(const vec3& v) { return floatsText({&v[0], 3}); }
 
 }  // namespace quintet::output

@@ -12,6 +12,7 @@
 #include "base/plural.h"
 #include "base/text.h"
 #include "check/diagnostic_text.h"
+#include "job/printed_line_json.h"
 
 namespace quintet::output {
 namespace {
@@ -46,17 +47,6 @@ Json secondsJson(const job::Timings& t, double total) {
           {"render", t.render},   {"device", t.device},     {"total", total}};
 }
 
-Json toJson(const job::PrintedLine& line) {
-  Json json{{"pixel", {line.pixel.x, line.pixel.y}}};
-  if (line.frame) json["frame"] = *line.frame;
-  if (line.sample) json["sample"] = *line.sample;
-  json["stage"] = line.stage;
-  json["file"] = line.location.file;
-  json["line"] = line.location.line;
-  json["text"] = line.text;
-  return json;
-}
-
 std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 }  // namespace
@@ -75,7 +65,7 @@ std::string printedText(const job::PrintedLine& line) {
   }
 }
 
-std::string printedJson(const job::PrintedLine& line) { return oneLine({{"print", toJson(line)}}); }
+std::string printedJson(const job::PrintedLine& line) { return oneLine({{"print", job::printedLineJson(line)}}); }
 
 std::string resultJson(const job::RenderResult& result, const std::vector<WrittenFile>& files, double totalSeconds) {
   const job::MemoryUse& m = result.memory;
@@ -106,7 +96,7 @@ std::string resultJson(const job::RenderResult& result, const std::vector<Writte
   for (const auto& [purpose, bytes] : m.devicePeak) json["devicePeak"][purpose + "Bytes"] = bytes;
   if (result.printed) {
     Json lines = Json::array();
-    for (const job::PrintedLine& line : result.printed->lines) lines.push_back(toJson(line));
+    for (const job::PrintedLine& line : result.printed->lines) lines.push_back(job::printedLineJson(line));
     json["printed"] = {{"lines", std::move(lines)}, {"omitted", result.printed->omitted}};
   }
   json["warnings"] = result.warnings;

@@ -32,6 +32,10 @@ std::vector<KeyBinding> commonKeys() {
       {"+", kNone, Action::moreExposure},
       {"=", kNone, Action::moreExposure},
       {"X", kNone, Action::compare},
+      {"I", kNone, Action::explain},
+      {"P", kNone, Action::print},
+      {"E", kControl, Action::saveExplanation},
+      {"I", kControl, Action::copyExplainCommand},
       {"Tab", kNone, Action::togglePanels},
       {"N", kNone, Action::togglePanels},
       {"F11", kNone, Action::toggleFullScreen},
@@ -159,11 +163,15 @@ std::string_view description(Action action) {
     case Action::lessExposure: return "Reduce the exposure by a third of a stop";
     case Action::moreExposure: return "Increase the exposure by a third of a stop";
     case Action::compare: return "Compare with the reference image";
+    case Action::explain: return "Explain the pixel at the pointer";
+    case Action::print: return "Show what the program prints for the pixel at the pointer";
+    case Action::saveExplanation: return "Save the explanation as JSON";
+    case Action::copyExplainCommand: return "Copy the command that explains this pixel";
     case Action::togglePanels: return "Show or hide the panels";
     case Action::toggleFullScreen: return "Use the full screen";
     case Action::toggleTheme: return "Switch between the dark and the light theme";
     case Action::help: return "Show this help";
-    case Action::close: return "Close a dialog, or clear the selection";
+    case Action::close: return "Close a dialog, hide the explanation, or clear the selection";
     case Action::quit: return "Quit";
   }
   return "";

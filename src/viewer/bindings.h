@@ -38,6 +38,10 @@ enum class Action {
   lessExposure,
   moreExposure,
   compare,
+  explain,
+  print,
+  saveExplanation,
+  copyExplainCommand,
   togglePanels,
   toggleFullScreen,
   toggleTheme,
@@ -66,6 +70,7 @@ struct FlyBinding {
   Fly fly = Fly::forward;
 };
 
+// Pressing the left button with Ctrl, without moving the mouse, is Action::explain in all sets.
 struct BindingSet {
   std::string_view name;
   std::vector<DragBinding> drags;

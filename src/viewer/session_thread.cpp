@@ -44,7 +44,7 @@ bool isAny(const interactive::Command& command) {
 bool overwrites(const interactive::Command& next, const interactive::Command& last) {
   using namespace interactive;
   if (next.index() != last.index()) return false;
-  if (isAny<SetSamples, SetToneMap>(next)) return true;
+  if (isAny<SetSamples, SetToneMap, SetPrint>(next)) return true;
   if (isAny<Orbit, Pan, Zoom, Fly, Move>(next)) return false;  // they add up
   const std::string group = undoGroup(next);
   return !group.empty() && group == undoGroup(last);
@@ -87,8 +87,12 @@ void SessionThread::post(Request request) {
     const std::lock_guard lock(mutex_);
     const auto* command = std::get_if<interactive::Command>(&request);
     auto* last = requests_.empty() ? nullptr : std::get_if<interactive::Command>(&requests_.back());
+    const auto* explain = std::get_if<ExplainRequest>(&request);
+    auto* lastExplain = requests_.empty() ? nullptr : std::get_if<ExplainRequest>(&requests_.back());
     if (command && last && overwrites(*command, *last))
       *last = *command;
+    else if (explain && lastExplain)
+      *lastExplain = *explain;
     else
       requests_.push_back(std::move(request));
     hasRequests_ = true;
@@ -101,6 +105,8 @@ void SessionThread::open(interactive::SessionRequest request) { post(std::move(r
 void SessionThread::apply(interactive::Command command) { post(std::move(command)); }
 void SessionThread::pick(uvec2 pixel, PickUse use) { post(PickRequest{pixel, use}); }
 void SessionThread::save(const std::filesystem::path& file) { post(SaveRequest{file}); }
+
+void SessionThread::explain(uvec2 pixel, std::uint32_t sample) { post(ExplainRequest{pixel, sample}); }
 
 std::shared_ptr<const Snapshot> SessionThread::snapshot() const {
   const std::lock_guard lock(mutex_);
@@ -173,6 +179,8 @@ void SessionThread::handle(Request& request) {
           applyCommand(value);
         else if constexpr (std::is_same_v<T, PickRequest>)
           pickPixel(value);
+        else if constexpr (std::is_same_v<T, ExplainRequest>)
+          explainPixel(value);
         else
           saves_.push_back(value);
       },
@@ -259,6 +267,9 @@ void SessionThread::publishState(bool reloaded) {
     next_.diagnostics = session_->diagnostics();
     next_.outdatedProgram = false;
   }
+  next_.explanationOutdated = next_.explanation && session_->restarts() != explainedRestarts_;
+  next_.callsPrint = session_->callsPrint();
+  next_.print = session_->print();
   next_.state = session_->state();
   next_.parameters = std::make_shared<const program::ParameterValues>(session_->parameters());
   next_.canUndo = session_->canUndo();
@@ -281,6 +292,23 @@ void SessionThread::pickPixel(const PickRequest& request) {
   } else if (found) {
     applyCommand(interactive::SetOrbitCenter{found->position});
   }
+}
+
+void SessionThread::explainPixel(const ExplainRequest& request) {
+  if (!session_) return;
+  next_.explaining = true;
+  publishState();
+  next_.explaining = false;
+  next_.explanation = nullptr;
+  try {
+    next_.explanation = std::make_shared<const job::PixelExplanation>(session_->explain(request.pixel, request.sample));
+  } catch (...) {
+    publish();
+    throw;
+  }
+  explainedRestarts_ = session_->restarts();
+  if (options_.onEvent) options_.onEvent(interactive::explainedJson(*next_.explanation, ""));
+  publishState();
 }
 
 void SessionThread::step() {
@@ -307,6 +335,9 @@ void SessionThread::report(const std::vector<interactive::Event>& events) {
       addMessage(Message::Kind::note, fmt::format("reloaded {}", reloaded->files));
     } else if (std::holds_alternative<interactive::Restarted>(event)) {
       next_.renderError.clear();
+      next_.printed = nullptr;
+    } else if (const auto* lines = std::get_if<interactive::LinesPrinted>(&event)) {
+      addPrinted(lines->printed);
     } else if (const auto* note = std::get_if<interactive::Note>(&event)) {
       addMessage(Message::Kind::note, note->text);
     } else if (const auto* warning = std::get_if<interactive::Warning>(&event)) {
@@ -326,6 +357,14 @@ void SessionThread::report(const std::vector<interactive::Event>& events) {
       if (output.name == session_->state().output) next_.outputKind = output.kind;
   }
   publishState(programReloaded);
+}
+
+void SessionThread::addPrinted(const job::Printed& printed) {
+  job::Printed all = next_.printed ? *next_.printed : job::Printed();
+  all.lines.insert(all.lines.end(), printed.lines.begin(), printed.lines.end());
+  all.omitted += printed.omitted;
+  all.notStored += printed.notStored;
+  next_.printed = std::make_shared<const job::Printed>(std::move(all));
 }
 
 void SessionThread::measureRays() {

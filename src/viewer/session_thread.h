@@ -66,6 +66,15 @@ struct Snapshot {
   double raysPerSecond = 0;                 // 0 if unknown
   double secondsPerImage = 0;               // between the last two images
   std::string renderError;                  // of the last Failed event, until the session restarts; else empty
+
+  // Of the last explain(); null before the first one, and if the last one failed.
+  std::shared_ptr<const job::PixelExplanation> explanation;
+  bool explanationOutdated = false;  // the samples were discarded since
+  bool explaining = false;           // an explain() is in progress
+
+  bool callsPrint = false;                      // the program has calls of debugPrintfEXT
+  std::optional<job::PrintRequest> print;       // the pixels that print; unset if none
+  std::shared_ptr<const job::Printed> printed;  // since the last restart; null if nothing
 };
 
 // What to do with the surface at a pixel.
@@ -92,6 +101,8 @@ class SessionThread {
   void apply(job::interactive::Command command);        // without a session it has no effect
   void pick(uvec2 pixel, PickUse use);
   void save(const std::filesystem::path& file);  // the shown output, as soon as it has its full size
+  // Snapshot::explanation becomes that of this sample. A later call replaces those that wait.
+  void explain(uvec2 pixel, std::uint32_t sample);
 
   std::shared_ptr<const Snapshot> snapshot() const;
   std::vector<Message> takeMessages();
@@ -106,7 +117,12 @@ class SessionThread {
   struct SaveRequest {
     std::filesystem::path file;
   };
-  using Request = std::variant<job::interactive::SessionRequest, job::interactive::Command, PickRequest, SaveRequest>;
+  struct ExplainRequest {
+    uvec2 pixel{0};
+    std::uint32_t sample = 0;
+  };
+  using Request = std::variant<job::interactive::SessionRequest, job::interactive::Command, PickRequest, SaveRequest,
+                               ExplainRequest>;
   class Host;
 
   void run();
@@ -118,10 +134,12 @@ class SessionThread {
   void closeSession();
   void applyCommand(const job::interactive::Command& command);
   void pickPixel(const PickRequest& request);
+  void explainPixel(const ExplainRequest& request);
   void writeSaves();
   void writeSave(const SaveRequest& save);
   void step();
   void measureRays();
+  void addPrinted(const job::Printed& printed);
   void report(const std::vector<job::interactive::Event>& events);
   void guarded(const std::function<void()>& function);
   void fail(const std::string& error);
@@ -143,6 +161,7 @@ class SessionThread {
   double lastImage_ = 0;       // on clock_
   double lastRates_ = 0;       // on clock_
   std::uint64_t sessions_ = 0;
+  std::uint64_t explainedRestarts_ = 0;  // Session::restarts() of next_.explanation
 
   std::atomic<bool> stop_ = false;
   std::atomic<bool> hasRequests_ = false;

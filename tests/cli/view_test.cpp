@@ -96,6 +96,17 @@ TEST_F(View, PicksAPixel) {
   EXPECT_TRUE(picked.contains("instance"));
 }
 
+TEST_F(View, ExplainsAPixelAsTheCommandDoes) {
+  const RunResult result = view("{\"do\":\"explain\",\"x\":16,\"y\":12,\"sample\":1,\"file\":\"pixel.json\"}\n");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(events(result).front(),
+            (nlohmann::json{{"event", "explained"}, {"x", 16}, {"y", 12}, {"sample", 1}, {"file", "pixel.json"}}));
+  const RunResult same = quintet({"explain-pixel", "scene.gltf", "--program", "normals", "--size", "32x24", "--spp",
+                                  "6", "--pixel", "16,12", "--sample", "1", "--against", "pixel.json"});
+  EXPECT_EQ(same.status, 0) << same.out << same.err;
+  EXPECT_THAT(same.out, HasSubstr("events are equal"));
+}
+
 TEST_F(View, RequiresTheScript) {
   expectError(quintet({"view", "scene.gltf", "--script", "missing.jsonl"}), 1, {"missing.jsonl"});
 }

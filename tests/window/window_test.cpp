@@ -457,6 +457,79 @@ TEST_F(WindowTest, ComparesWithADroppedImage) {
   expectColor(kRed, "no comparison");
 }
 
+TEST_F(WindowTest, ExplainsAPixelAndComparesTwo) {
+  openPanels(R"("Explain")");
+  windowSize_ = "760x960";  // for all of the panel
+  ViewerProcess& viewer = startScene("pathtracer", {"--set", "bounces=1"});
+  const auto [x, y] = imageCenter();
+  const auto [left, top, right, bottom] = viewer.imageArea();
+  viewer.window().click(x, y, 1, {"Control_L"});
+  const Json explained = viewer.waitFor("explained");
+  EXPECT_EQ(explained["x"], x - left);
+  EXPECT_EQ(explained["y"], y - top);
+  const Json& explanation = explained["explanation"];
+  EXPECT_GT(explanation["outputs"][0]["value"][0], 0.0) << "the sky lights the wall";
+  viewer.clickControl("Explain/Ray 2");
+  viewer.control("Explain/details of Ray 2");
+  viewer.clickControl("Explain/Ray 1/hit");
+  viewer.control("Explain/details of hit");
+  EXPECT_FALSE(viewer.hasControl("Explain/details of Ray 2"));
+  imageColor();  // a screenshot
+
+  viewer.clickControl("Explain/Keep as A");
+  viewer.control("Explain/equal");
+  const auto saved = [&](const char* name) {
+    viewer.window().key("e", {"Control_L"});
+    viewer.clickControl("Save");
+    viewer.settle();
+    return (folder_ / name).string();
+  };
+  const std::string before =
+      saved(("pixel-" + std::to_string(x - left) + "-" + std::to_string(y - top) + ".json").c_str());
+  EXPECT_EQ(Json::parse(readTextFile(before))["events"], explanation["events"]);
+  viewer.window().key("i", {"Control_L"});
+  viewer.settle();
+  const std::string command = viewer.window().clipboard();
+  EXPECT_THAT(command, testing::StartsWith("quintet explain-pixel wall.scene.toml --pixel "));
+  const std::string same = "cd '" + folder_.path().string() + "' && PATH='" + QUINTET_BINARY_FOLDER +
+                           "':\"$PATH\" && " + command + " --against '" + before + "' > output.txt 2>&1";
+  EXPECT_EQ(std::system(same.c_str()), 0) << command << readTextFile(folder_ / "output.txt");
+
+  viewer.window().drag(x, y, x + 30, y);
+  viewer.waitForImage();
+  viewer.clickControl("Explain/Explain again");
+  EXPECT_NE(viewer.waitFor("explained")["explanation"]["events"], explanation["events"]);
+  viewer.control("Explain/first difference");
+  EXPECT_FALSE(viewer.hasControl("Explain/equal"));
+  imageColor();
+  viewer.window().key("Escape");
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Explain/Ray 1")) << "Escape hides the explanation";
+}
+
+TEST_F(WindowTest, ShowsWhatAProgramPrints) {
+  openPanels(R"("Printed")");
+  writeFile(folder_ / "flat.rt.glsl", flatProgram("color").insert(flatProgram("color").rfind("}\n"),
+                                                                  "  debugPrintfEXT(\"frame %d\", frameID);\n"));
+  ViewerProcess& viewer = startScene("flat.rt.glsl");
+  EXPECT_FALSE(viewer.hasControl("Printed/lines"));
+  const auto [x, y] = imageCenter();
+  viewer.window().move(x, y);
+  viewer.settle();
+  viewer.window().key("p");
+  const Json printed = viewer.waitFor("printed");
+  EXPECT_EQ(printed["lines"].size(), 1u);
+  EXPECT_EQ(printed["lines"][0]["text"], "frame 0");
+  viewer.waitForImage();
+  viewer.control("Printed/lines");
+  viewer.settle();
+  imageColor();
+  viewer.clickControl("Printed/Stop");
+  viewer.waitForImage();
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Printed/lines"));
+}
+
 TEST_F(WindowTest, PlaysAnAnimation) {
   std::string scene = kScene;
   scene.insert(scene.find("[[camera]]"),

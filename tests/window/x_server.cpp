@@ -113,10 +113,12 @@ void XWindow::release(unsigned button) {
   pause();
 }
 
-void XWindow::click(int x, int y, unsigned button) {
+void XWindow::click(int x, int y, unsigned button, const std::vector<std::string>& modifiers) {
   move(x, y);
+  for (const std::string& modifier : modifiers) sendKey(modifier, true);
   press(button);
   release(button);
+  for (const std::string& modifier : modifiers) sendKey(modifier, false);
 }
 
 void XWindow::drag(int fromX, int fromY, int toX, int toY, unsigned button) {
@@ -127,18 +129,19 @@ void XWindow::drag(int fromX, int fromY, int toX, int toY, unsigned button) {
   release(button);
 }
 
+void XWindow::sendKey(const std::string& symbol, bool down) {
+  const KeyCode code = ::XKeysymToKeycode(display_, ::XStringToKeysym(symbol.c_str()));
+  if (code == 0) throw std::runtime_error("no key " + symbol);
+  ::XTestFakeKeyEvent(display_, code, down ? True : False, CurrentTime);
+  ::XSync(display_, False);
+  pause();
+}
+
 void XWindow::key(const std::string& symbol, const std::vector<std::string>& modifiers) {
-  const auto send = [&](const std::string& name, bool down) {
-    const KeyCode code = ::XKeysymToKeycode(display_, ::XStringToKeysym(name.c_str()));
-    if (code == 0) throw std::runtime_error("no key " + name);
-    ::XTestFakeKeyEvent(display_, code, down ? True : False, CurrentTime);
-    ::XSync(display_, False);
-    pause();
-  };
-  for (const std::string& modifier : modifiers) send(modifier, true);
-  send(symbol, true);
-  send(symbol, false);
-  for (const std::string& modifier : modifiers) send(modifier, false);
+  for (const std::string& modifier : modifiers) sendKey(modifier, true);
+  sendKey(symbol, true);
+  sendKey(symbol, false);
+  for (const std::string& modifier : modifiers) sendKey(modifier, false);
 }
 
 void XWindow::resize(unsigned width, unsigned height) {

@@ -44,7 +44,8 @@ class XWindow {
   void move(int x, int y);
   void press(unsigned button);  // 1 left, 2 middle, 3 right, 4 and 5 wheel
   void release(unsigned button);
-  void click(int x, int y, unsigned button = 1);
+  // `modifiers`: as of key().
+  void click(int x, int y, unsigned button = 1, const std::vector<std::string>& modifiers = {});
   void drag(int fromX, int fromY, int toX, int toY, unsigned button = 1);
   // A key by the name of its symbol, "z" or "Home", while the modifiers "Control_L" or "Shift_L" are held.
   void key(const std::string& symbol, const std::vector<std::string>& modifiers = {});
@@ -59,6 +60,7 @@ class XWindow {
   io::Image screenshot();  // 8-bit RGB of the whole window
 
  private:
+  void sendKey(const std::string& symbol, bool down);
   void send(unsigned long target, const char* type, const std::vector<long>& data);
   void answerSelection(void* event, const std::string& text);
 

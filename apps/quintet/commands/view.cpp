@@ -14,6 +14,7 @@
 #include "cli/failure.h"
 #include "cli/view_options.h"
 #include "gpu/error.h"
+#include "job/explanation_json.h"
 #include "job/interactive/command_json.h"
 #include "job/interactive/event_json.h"
 #include "job/interactive/session.h"
@@ -28,7 +29,7 @@ using job::interactive::Session;
 void printLine(const std::string& json) { writeFile("-", json + "\n"); }
 
 // The commands of a script that a session does not have.
-const std::vector<std::string> kScriptCommands{"refine", "step", "pick", "save", "quit"};
+const std::vector<std::string> kScriptCommands{"refine", "step", "pick", "explain", "save", "quit"};
 
 class Script {
  public:
@@ -53,6 +54,14 @@ class Script {
       fields.rejectOthers();
       const std::optional<job::interactive::Pick> picked = session_.pick(pixel);
       printLine(job::interactive::pickedJson(pixel, picked, session_.instanceNames(), session_.materialNames()));
+    } else if (name == "explain") {
+      const uvec2 pixel(fields.index("x"), fields.index("y"));
+      const std::uint32_t sample = fields.has("sample") ? fields.index("sample") : 0;
+      const std::string file = fields.findText("file").value_or("");
+      fields.rejectOthers();
+      const job::PixelExplanation explanation = session_.explain(pixel, sample);
+      if (!file.empty()) writeFile(file, job::explanationJson(explanation));
+      printLine(job::interactive::explainedJson(explanation, file));
     } else if (name == "save") {
       const std::string file = fields.text("file");
       fields.rejectOthers();

@@ -29,15 +29,12 @@ const char* useText(const FolderEntry& entry) {
 
 }  // namespace
 
-void FileDialog::open() {
-  purpose_ = Purpose::open;
-  name_.clear();
-  visible_ = focus_ = true;
-  enter(folder_);
-}
+void FileDialog::open() { show(Purpose::open, {}); }
+void FileDialog::save(const std::string& name) { show(Purpose::save, name); }
+void FileDialog::saveExplanation(const std::string& name) { show(Purpose::saveExplanation, name); }
 
-void FileDialog::save(const std::string& name) {
-  purpose_ = Purpose::save;
+void FileDialog::show(Purpose purpose, const std::string& name) {
+  purpose_ = purpose;
   name_ = name;
   visible_ = focus_ = true;
   enter(folder_);
@@ -87,6 +84,11 @@ std::optional<std::filesystem::path> FileDialog::choose(const std::filesystem::p
       error_ = fmt::format("{}: file not found", path.string());
       return std::nullopt;
     }
+  } else if (purpose_ == Purpose::saveExplanation) {
+    if (lowerCase(path.extension().string()) != ".json") {
+      error_ = "the name must end with .json";
+      return std::nullopt;
+    }
   } else {
     const std::string extension = lowerCase(path.extension().string());
     if (extension != ".png" && extension != ".exr" && extension != ".hdr") {
@@ -115,7 +117,8 @@ std::optional<std::filesystem::path> FileDialog::draw(float scale) {
                            ImGuiCond_Appearing);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6.0f * scale);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1.0f);
-  const char* title = opens ? "Open###files" : "Save the image###files";
+  const bool isImage = purpose_ == Purpose::save;
+  const char* title = opens ? "Open###files" : isImage ? "Save the image###files" : "Save the explanation###files";
   if (ImGui::Begin(title, &visible_, ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse)) {
     if (button("Up", "The parent folder")) enter(folder_.parent_path());
     ImGui::SameLine();
@@ -126,8 +129,9 @@ std::optional<std::filesystem::path> FileDialog::draw(float scale) {
     if (!error_.empty())
       ImGui::TextWrapped("%s", error_.c_str());
     else
-      ImGui::TextDisabled(
-          "%s", opens ? "You can also type a path." : "PNG as displayed. OpenEXR and HDR have linear values.");
+      ImGui::TextDisabled("%s", opens     ? "You can also type a path."
+                                : isImage ? "PNG as displayed. OpenEXR and HDR have linear values."
+                                          : "JSON, as quintet explain-pixel --json writes it.");
     if (focus_) ImGui::SetKeyboardFocusHere();
     focus_ = false;
     const char* action = opens ? "Open" : "Save";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A dialog that chooses a file to open, or a name to save the image.
+// A dialog that chooses a file to open, or a name to save the image or an explanation.
 #ifndef QUINTET_APPS_VIEWER_OVERLAYS_FILE_DIALOG_H
 #define QUINTET_APPS_VIEWER_OVERLAYS_FILE_DIALOG_H
 
@@ -14,11 +14,12 @@ namespace quintet::viewer {
 
 class FileDialog {
  public:
-  enum class Purpose { open, save };
+  enum class Purpose { open, save, saveExplanation };
 
-  // Both start in the folder of the last choice.
+  // They start in the folder of the last choice.
   void open();
   void save(const std::string& name);
+  void saveExplanation(const std::string& name);
   void close() { visible_ = false; }
   bool visible() const { return visible_; }
   Purpose purpose() const { return purpose_; }
@@ -28,6 +29,7 @@ class FileDialog {
   std::optional<std::filesystem::path> draw(float scale);
 
  private:
+  void show(Purpose purpose, const std::string& name);
   void enter(const std::filesystem::path& folder);
   void list();  // shows entries_
   std::optional<std::filesystem::path> choose(const std::filesystem::path& path);

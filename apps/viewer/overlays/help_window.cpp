@@ -48,6 +48,7 @@ void helpWindow(ViewState& state) {
       for (const DragBinding& binding : set.drags) row(dragText(binding), description(binding.drag));
       row("Wheel", "Move closer to what is below the pointer, or away");
       row("Click", "Select the object");
+      row("Ctrl + click", description(Action::explain));
       row("Double click", "Set orbit center and focus distance");
       for (const FlyBinding& binding : set.flies)
         row(std::string(binding.key) + (set.flyNeedsButton ? " while looking around" : ""), description(binding.fly));

@@ -20,6 +20,7 @@ namespace {
 
 constexpr ImU32 kShade = IM_COL32(0, 0, 0, 150);
 constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255);
+constexpr ImU32 kPrinted = IM_COL32(110, 200, 255, 255);
 constexpr ImU32 kSelected = IM_COL32(255, 170, 60, 255);
 
 ImU32 toColor(const vec3& color) {
@@ -63,6 +64,23 @@ void selectionOutline(const ViewState& state, const Area& area) {
     list.AddLine({from.x, from.y}, {to.x, to.y}, kShade, 3.0f * state.scale);
     list.AddLine({from.x, from.y}, {to.x, to.y}, kSelected, 1.3f * state.scale);
   }
+  list.PopClipRect();
+}
+
+void explainedPixel(const ViewState& state, const Area& area) {
+  const ImagePlacement& at = state.placement;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  list.PushClipRect({area.origin.x, area.origin.y}, {area.origin.x + area.size.x, area.origin.y + area.size.y});
+  const auto mark = [&](const render::Region& pixels, ImU32 color) {
+    const float margin = 3.0f * state.scale;
+    const vec2 begin = at.origin + at.scale * vec2(pixels.x, pixels.y) - margin;
+    const vec2 end = at.origin + at.scale * vec2(pixels.x + pixels.width, pixels.y + pixels.height) + margin;
+    list.AddRect({begin.x, begin.y}, {end.x, end.y}, kShade, 0.0f, 0, 3.5f * state.scale);
+    list.AddRect({begin.x, begin.y}, {end.x, end.y}, color, 0.0f, 0, 1.5f * state.scale);
+  };
+  if (const auto& print = state.snapshot->print; print && !print->all) mark(print->pixels, kPrinted);
+  if (state.explanation && state.explanation->size == state.snapshot->state.size)
+    mark({state.explanation->pixel.x, state.explanation->pixel.y, 1, 1}, kWhite);
   list.PopClipRect();
 }
 

@@ -29,6 +29,7 @@ void loadingScreen(const ViewState& state, const Area& area);
 void failureScreen(ViewState& state, const Area& area);
 
 void selectionOutline(const ViewState& state, const Area& area);  // a box around the selected object
+void explainedPixel(const ViewState& state, const Area& area);    // a mark on it, and on the pixels that print
 void legend(const ViewState& state, const Area& area);            // of false color
 void splitLine(ViewState& state, const Area& area);               // of the comparison; can be dragged
 void diagnosticsDrawer(ViewState& state, const Area& area);       // problems of the program, with file and line

@@ -9,6 +9,8 @@ namespace quintet::viewer {
 
 void scenePanel(ViewState& state);      // tree of instances, materials and lights
 void selectionPanel(ViewState& state);  // properties of the selected object
+void explainPanel(ViewState& state);    // tree of the explained pixel's rays
+void printedPanel(ViewState& state);    // what the program prints
 void environmentPanel(ViewState& state);
 void parametersPanel(ViewState& state);  // of the program
 void cameraPanel(ViewState& state);      // cameras of the file, lens, bookmarks

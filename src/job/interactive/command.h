@@ -105,6 +105,12 @@ struct SetSamples {
   std::uint32_t samples = 64;  // per pixel, which refinement reaches; or frames
 };
 
+// What the program prints for these pixels of the image (debugPrintfEXT) becomes LinesPrinted. No step of undo, and undo
+// keeps it.
+struct SetPrint {
+  std::optional<PrintRequest> print;  // with pixels, or for all; unset: nothing is printed
+};
+
 // Commands of the same kind that change the same thing, one after the other, are one step of undo, until EndDrag.
 struct EndDrag {};
 struct Undo {};
@@ -112,7 +118,7 @@ struct Redo {};
 
 using Command = std::variant<Orbit, Pan, Zoom, Fly, Frame, SetOrbitCenter, SetCamera, SetLens, SetProgram, SetParameter,
                              EditMaterial, EditLight, SetEnvironment, SetTransform, Move, SetFrame, SelectOutput,
-                             SetExposure, SetToneMap, SetSize, SetSamples, EndDrag, Undo, Redo>;
+                             SetExposure, SetToneMap, SetSize, SetSamples, SetPrint, EndDrag, Undo, Redo>;
 
 // What a command changes: the kind of the command and its target. Commands of the same group, one after the other, are
 // one step of undo; an empty group is a step of its own.

@@ -111,6 +111,20 @@ Command parseToneMap(JsonFields& fields) {
   return SetToneMap{toneMap};
 }
 
+Command parsePrint(JsonFields& fields) {
+  if (!fields.findFlag("on").value_or(true)) return SetPrint{};
+  PrintRequest print;
+  print.all = fields.findFlag("all").value_or(false);
+  if (fields.has("limit")) print.limit = fields.count("limit");
+  if (!print.all) {
+    print.pixels.x = fields.index("x");
+    print.pixels.y = fields.index("y");
+    print.pixels.width = fields.has("width") ? fields.count("width") : 1;
+    print.pixels.height = fields.has("height") ? fields.count("height") : 1;
+  }
+  return SetPrint{print};
+}
+
 using Parser = Command (*)(JsonFields&);
 constexpr std::pair<std::string_view, Parser> kParsers[] = {
     {"orbit",
@@ -154,6 +168,7 @@ constexpr std::pair<std::string_view, Parser> kParsers[] = {
        return SetSize{{width, f.count("height")}};
      }},
     {"samples", [](JsonFields& f) -> Command { return SetSamples{f.count("count")}; }},
+    {"print", parsePrint},
     {"undo", [](JsonFields&) -> Command { return Undo{}; }},
     {"redo", [](JsonFields&) -> Command { return Redo{}; }},
 };

@@ -10,6 +10,7 @@
 
 #include "base/diagnostic.h"
 #include "base/math.h"
+#include "job/observer.h"
 
 namespace quintet::job::interactive {
 
@@ -29,6 +30,11 @@ struct ProgramReloaded {
 struct DiagnosticsFound {
   std::vector<Diagnostic> diagnostics;
 };
+// What the program printed for the pixels that SetPrint chose, since the last event of this kind or restart. Only images
+// at full resolution print.
+struct LinesPrinted {
+  Printed printed;
+};
 struct Note {
   std::string text;
 };
@@ -40,7 +46,8 @@ struct Failed {
   std::string message;
 };
 
-using Event = std::variant<Restarted, ImageUpdated, ProgramReloaded, DiagnosticsFound, Note, Warning, Failed>;
+using Event =
+    std::variant<Restarted, ImageUpdated, ProgramReloaded, DiagnosticsFound, LinesPrinted, Note, Warning, Failed>;
 
 }  // namespace quintet::job::interactive
 #endif

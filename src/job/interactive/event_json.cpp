@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "check/diagnostic_text.h"
+#include "job/explanation_json.h"
+#include "job/printed_line_json.h"
 
 namespace quintet::job::interactive {
 namespace {
@@ -22,6 +24,11 @@ struct ToJson {
   Json operator()(const ProgramReloaded& e) const { return {{"event", "reloaded"}, {"files", e.files}}; }
   Json operator()(const DiagnosticsFound& e) const {
     return {{"event", "diagnostics"}, {"diagnostics", Json::parse(check::diagnosticsJson(e.diagnostics))}};
+  }
+  Json operator()(const LinesPrinted& e) const {
+    Json lines = Json::array();
+    for (const PrintedLine& line : e.printed.lines) lines.push_back(printedLineJson(line));
+    return {{"event", "printed"}, {"lines", std::move(lines)}, {"omitted", e.printed.omitted}};
   }
   Json operator()(const Note& e) const { return {{"event", "note"}, {"message", e.text}}; }
   Json operator()(const Warning& e) const { return {{"event", "warning"}, {"message", e.text}}; }
@@ -56,6 +63,16 @@ std::string pickedJson(uvec2 pixel, const std::optional<Pick>& pick, const std::
   json["geometricNormal"] = list(pick->geometricNormal);
   json["front"] = pick->front;
   json["distance"] = shortest(pick->distance);
+  return lineOf(json);
+}
+
+std::string explainedJson(const PixelExplanation& explanation, const std::string& file) {
+  Json json{{"event", "explained"}, {"x", explanation.pixel.x}, {"y", explanation.pixel.y}};
+  json[explanation.frames ? "frame" : "sample"] = explanation.sample;
+  if (file.empty())
+    json["explanation"] = Json::parse(explanationJson(explanation));
+  else
+    json["file"] = file;
   return lineOf(json);
 }
 

@@ -11,6 +11,7 @@
 #include "base/math.h"
 #include "job/interactive/event.h"
 #include "job/interactive/picking.h"
+#include "job/pixel_explanation.h"
 
 namespace quintet::job::interactive {
 
@@ -20,6 +21,8 @@ std::string savedJson(const std::string& file);  // a script wrote an image
 // A script picked a pixel. `names`: that the indices of `pick` refer to.
 std::string pickedJson(uvec2 pixel, const std::optional<Pick>& pick, const std::vector<std::string>& instanceNames,
                        const std::vector<std::string>& materialNames);
+// A script explained a pixel. `file`: that has the explanation; if it is empty, the event has it.
+std::string explainedJson(const PixelExplanation& explanation, const std::string& file);
 std::string failedJson(std::uint64_t line, const std::string& message);  // a line of a script failed
 
 }  // namespace quintet::job::interactive

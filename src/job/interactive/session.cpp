@@ -97,6 +97,9 @@ class Session::Recorder : public Observer {
   void note(const std::string& text) override { add(Note{text}); }
   void warning(const std::string& text) override { add(Warning{text}); }
   void diagnostics(const std::vector<Diagnostic>& found) override { add(DiagnosticsFound{found}); }
+  void printed(const Printed& prints) override {
+    if (keepsPrints) add(LinesPrinted{prints});
+  }
   StopRequest stopRequested() override {
     return interrupted && interrupted() ? StopRequest::abandon : StopRequest::none;
   }
@@ -111,6 +114,7 @@ class Session::Recorder : public Observer {
   }
 
   std::function<bool()> interrupted;
+  bool keepsPrints = false;  // the image has its full resolution
 
  private:
   Observer& host_;
@@ -159,6 +163,10 @@ void Session::apply(const Command& command) {
   if (const auto* size = std::get_if<SetSize>(&command); size && size->ofWindow) {
     show(changed(command));
     sizeOfWindow_ = true;
+    return;
+  }
+  if (const auto* print = std::get_if<SetPrint>(&command)) {
+    setPrint(*print);
     return;
   }
   const bool isUndo = std::holds_alternative<Undo>(command), isRedo = std::holds_alternative<Redo>(command);
@@ -306,6 +314,7 @@ SessionState Session::changed(const Command& command) const {
       if (c.samples == 0) throw UsageError("the number of samples must be at least 1");
       next.samples = c.samples;
     }
+    void operator()(const SetPrint&) {}
     void operator()(const EndDrag&) {}
     void operator()(const Undo&) {}
     void operator()(const Redo&) {}
@@ -435,7 +444,23 @@ void Session::showProgram(program::Program program, const SessionState& next) {
   job_->setProgram(std::move(program), with, *recorder_);  // keeps the old one if it throws
 }
 
+void Session::setPrint(const SetPrint& command) {
+  if (command.print && !command.print->all) {
+    const render::Region& pixels = command.print->pixels;
+    const auto end = [](std::uint32_t begin, std::uint32_t size) { return std::uint64_t{begin} + size; };
+    if (pixels.width == 0 || pixels.height == 0 || end(pixels.x, pixels.width) > state_.size.x ||
+        end(pixels.y, pixels.height) > state_.size.y)
+      throw UsageError(fmt::format("the pixels {},{},{},{}, which shall print, are not in the image of {}x{}", pixels.x,
+                                   pixels.y, pixels.width, pixels.height, state_.size.x, state_.size.y));
+  }
+  job_->setPrint(command.print, *recorder_);
+  imageChanged_ = true;
+  restarted();
+}
+
 void Session::restarted() {
+  explainer_.reset();
+  ++restarts_;
   recorder_->add(Restarted{});
   samples_ = 0;
   seconds_ = 0;
@@ -570,6 +595,7 @@ bool Session::renderPreview(unsigned factor) {
   filmSize_ = size;
   samples_ = 0;
   seconds_ = 0;
+  recorder_->keepsPrints = false;
   if (!added(job_->renderBatch(1, *recorder_), 1, factor)) return false;
   previewFactor_ = factor;
   preview_ = true;
@@ -592,6 +618,7 @@ void Session::beginRefinement() {
 bool Session::renderBatch() {
   const std::uint64_t count = job_->resolved().accumulatesFrames() ? 1 : render::kBatchSamples;
   const std::uint64_t end = std::min<std::uint64_t>(state_.samples, samples_ + count);
+  recorder_->keepsPrints = true;
   return added(job_->renderBatch(end, *recorder_), end - samples_, 1);
 }
 
@@ -625,10 +652,34 @@ RenderResult Session::result() const { return job_->result(true); }
 
 render::RayCount Session::rays() const { return job_->renderer().rays(); }
 
-std::optional<Pick> Session::pick(uvec2 pixel) {
+void Session::requirePixel(uvec2 pixel) const {
   if (pixel.x >= state_.size.x || pixel.y >= state_.size.y)
     throw UsageError(
         fmt::format("pixel {},{} is outside of the image of {}x{}", pixel.x, pixel.y, state_.size.x, state_.size.y));
+}
+
+PixelExplanation Session::explain(uvec2 pixel, std::uint32_t sample) {
+  requirePixel(pixel);
+  if (sample >= state_.samples)
+    throw UsageError(fmt::format("{} {} does not exist: the first one is 0, the last one {}",
+                                 job_->resolved().accumulatesFrames() ? "frame" : "sample", sample,
+                                 state_.samples - 1));
+  job_->update(*recorder_);
+  if (!explainer_ || explainedPixel_ != pixel) {
+    explainer_.reset();
+    const float aspect = static_cast<float>(state_.size.x) / static_cast<float>(state_.size.y);
+    explainer_ = std::make_unique<PixelExplainer>(
+        engine_, *job_,
+        ExplainedImage{chooseCamera(job_->hostScene(), state_.camera, aspect, sceneBounds_), state_.size}, pixel);
+    explainedPixel_ = pixel;
+  }
+  PixelExplanation explanation = explainer_->explain(pixel, sample, *recorder_);
+  job_->showCurrentFrame();
+  return explanation;
+}
+
+std::optional<Pick> Session::pick(uvec2 pixel) {
+  requirePixel(pixel);
   job_->update(*recorder_);
   return interactive::pick(engine_, *job_->scene()->onDevice, camera(), state_.size, pixel, program());
 }

@@ -26,6 +26,7 @@
 #include "job/interactive/orbit_camera.h"
 #include "job/interactive/picking.h"
 #include "job/interactive/resolution_control.h"
+#include "job/pixel_explainer.h"
 #include "job/render_job.h"
 #include "job/source_watcher.h"
 
@@ -110,6 +111,19 @@ class Session {
   // camera of the scene. Throws UsageError for a pixel outside, and as step() does.
   std::optional<Pick> pick(uvec2 pixel);
 
+  // Explains a sample of a pixel of the image at full resolution, as it is after all commands: the result is that of a
+  // PixelExplainer for a render with the same request. For a program that accumulates, `sample` is a frame, and those
+  // before it are rendered first. The image stays, and refinement continues. Blocks; compiles a variant of the program
+  // after each change that compiles the program. Throws UsageError for a pixel or a sample that the image does not have,
+  // ProgramError, TimeoutError and gpu errors.
+  PixelExplanation explain(uvec2 pixel, std::uint32_t sample);
+  // The changes so far that discarded the samples: an explanation is outdated if this number has changed since.
+  std::uint64_t restarts() const { return restarts_; }
+
+  // SetPrint; unset if nothing is printed.
+  const std::optional<PrintRequest>& print() const { return job_->resolved().request.print; }
+  bool callsPrint() const { return job_->callsPrint(); }  // the program has calls of debugPrintfEXT
+
   const SessionState& state() const { return state_; }
   const program::Program& program() const { return job_->resolved().program; }
   const program::ParameterValues& parameters() const { return job_->resolved().parameters; }
@@ -138,6 +152,8 @@ class Session {
   LightState lightIn(const SessionState& state, std::size_t index) const;
   void show(const SessionState& next);
   void showProgram(program::Program program, const SessionState& next);
+  void setPrint(const SetPrint& command);
+  void requirePixel(uvec2 pixel) const;
   void restarted();
   bool hasAutomaticCamera() const;
   std::size_t outputIndex() const;  // in the program
@@ -161,6 +177,9 @@ class Session {
   Bounds3 sceneBounds_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<RenderJob> job_;
+  std::unique_ptr<PixelExplainer> explainer_;  // of explainedPixel_; null after a restart
+  uvec2 explainedPixel_{0};
+  std::uint64_t restarts_ = 0;
   SourceWatcher watcher_;
   SessionState state_;
   History<SessionState> history_;

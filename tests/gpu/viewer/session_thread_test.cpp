@@ -185,6 +185,46 @@ TEST_F(SessionThreadTest, ReportsErrorsAndContinues) {
   EXPECT_EQ(waitForImage()->session, 3u);
 }
 
+TEST_F(SessionThreadTest, ExplainsAndNoticesChanges) {
+  thread_->open(request());
+  thread_->explain(kSize / 2u, 3);
+  const auto first = waitFor([](const Snapshot& s) { return s.explanation && s.progress.complete; });
+  EXPECT_EQ(first->explanation->pixel, kSize / 2u);
+  EXPECT_EQ(first->explanation->sample, 3u);
+  EXPECT_NEAR(first->explanation->outputs.at(0).value.z, 1.0f, 1e-3f) << "the normal is +z";
+  EXPECT_FALSE(first->explanationOutdated);
+  thread_->apply(SetExposure{1.0});
+  waitFor([](const Snapshot& s) { return s.state.exposure == 1.0; });
+  EXPECT_FALSE(thread_->snapshot()->explanationOutdated) << "the samples are the same";
+  thread_->apply(Orbit{30, 0});
+  const auto turned = waitFor([](const Snapshot& s) { return s.explanationOutdated; });
+  EXPECT_EQ(turned->explanation, first->explanation) << "it stays until the next request";
+  thread_->explain(kSize / 2u, 3);
+  const auto second = waitFor([&](const Snapshot& s) { return s.explanation && s.explanation != first->explanation; });
+  EXPECT_FALSE(second->explanationOutdated);
+  EXPECT_FALSE(second->explaining);
+  thread_->explain(kSize, 0);
+  EXPECT_TRUE(hasMessage(Message::Kind::error, "outside"));
+  EXPECT_EQ(thread_->snapshot()->explanation, nullptr);
+}
+
+TEST_F(SessionThreadTest, CollectsWhatIsPrinted) {
+  writeFile(folder_ / "say.rt.glsl",
+            "void main() { /**** RAY GENERATION SHADER ****/\n  debugPrintfEXT(\"frame %d\", frameID);\n"
+            "  gsnSetPixel(vec4(1.0));\n}\n");
+  SessionRequest say = request();
+  say.program = (folder_ / "say.rt.glsl").string();
+  thread_->open(say);
+  EXPECT_TRUE(waitForImage()->callsPrint);
+  thread_->apply(SetPrint{job::PrintRequest{.pixels = {3, 4, 1, 1}, .limit = 5}});
+  const auto printed = waitFor([](const Snapshot& s) { return s.printed && s.progress.complete; });
+  ASSERT_EQ(printed->printed->lines.size(), 5u) << "of all batches";
+  EXPECT_EQ(printed->printed->lines[4].text, "frame 4");
+  EXPECT_EQ(printed->printed->omitted, 3u);
+  thread_->apply(SetPrint{});
+  waitFor([](const Snapshot& s) { return !s.print && !s.printed; });
+}
+
 TEST_F(SessionThreadTest, KeepsTheLastProgramThatCompiles) {
   const auto program = [](const std::string& color) {
     return "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(" + color + ", 1.0));\n}\n";

@@ -34,6 +34,25 @@ TEST(ExplanationDiff, NamesTheFirstEventAndBothValues) {
   EXPECT_EQ(diff.facts[0].location, "parameters");
 }
 
+TEST(ExplanationDiff, MarksAllEventsThatDiffer) {
+  EXPECT_TRUE(differentEvents(somePath(), somePath()).a.empty());
+  PixelExplanation b = somePath();
+  b.events[0].children[0].set("primitive", std::int64_t{8});
+  b.events[3].set("scatterings", std::int64_t{2});
+  const DifferentEvents fields = differentEvents(somePath(), b);
+  EXPECT_EQ(fields.a, (std::vector<std::size_t>{1, 5}));
+  EXPECT_EQ(fields.b, fields.a);
+
+  b = somePath();
+  b.events.erase(b.events.begin() + 1);  // the first contribution
+  const DifferentEvents missing = differentEvents(somePath(), b);
+  EXPECT_EQ(missing.a, (std::vector<std::size_t>{3, 4, 5})) << "from there on";
+  EXPECT_EQ(missing.b, (std::vector<std::size_t>{3, 4}));
+  b.events.erase(b.events.begin());
+  EXPECT_EQ(differentEvents(somePath(), b).a, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5}))
+      << "the rays differ, the hit and the payload are missing, the contributions differ, and the rest is missing";
+}
+
 TEST(ExplanationDiff, IgnoresRoundingAndSourceLines) {
   PixelExplanation b = somePath();
   b.events[0].set("line", std::int64_t{99});

@@ -104,6 +104,20 @@ TEST(ReproducingCommand, EditsTheSceneByAScript) {
   EXPECT_THAT(command, testing::EndsWith("--script -"));
 }
 
+TEST(ExplainingCommand, ExplainsThePixelOfTheState) {
+  EXPECT_EQ(explainingCommand(snapshotOf("a.glb", "pathtracer"), {3, 4}, 0),
+            "quintet explain-pixel a.glb --pixel 3,4 --size 640x480 --spp 16");
+  Snapshot snapshot = snapshotOf("", "lessons/05_shadow");
+  snapshot.state.frame = 2;
+  EXPECT_EQ(
+      explainingCommand(snapshot, {3, 4}, 5),
+      "quintet explain-pixel --pixel 3,4 --sample 5 --program lessons/05_shadow --frame 2 --size 640x480 --spp 16");
+  snapshot.state.transforms[0] = mat4(2.0f);
+  EXPECT_THAT(explainingCommand(snapshot, {3, 4}, 5),
+              HasSubstr("{\"do\":\"explain\",\"x\":3,\"y\":4,\"sample\":5,\"file\":\"pixel.json\"}' | quintet view "
+                        "--program lessons/05_shadow"));
+}
+
 TEST(ReproducingCommand, EditsLightsByAScript) {
   Snapshot snapshot = snapshotOf("a.glb", "pathtracer");
   auto lamp = std::make_shared<job::interactive::LightState>();

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "io/codec.h"
+#include "job/explanation_diff.h"
 #include "job/films.h"
 #include "job/interactive/command_json.h"
 #include "program/load.h"
@@ -83,11 +84,37 @@ class SessionTest : public testing::Test {
   }
   static std::vector<shared::FixedSum> sums(const Session& session) { return session.result().film->plane(0).sums; }
 
+  // What `quintet explain-pixel` records of a render.
+  PixelExplanation explainRender(const RenderRequest& request, uvec2 pixel, std::uint32_t sample,
+                                 const std::string& program = "pathtracer") {
+    const program::Program loaded = program::loadProgram(program);
+    RenderJob job(engine(), resolve(requestForPixel(request, loaded, pixel), loaded), observer_);
+    return PixelExplainer(engine(), job).explain(pixel, sample, observer_);
+  }
+
   template <class T>
   static const T* find(const std::vector<Event>& events) {
     for (const Event& event : events)
       if (const T* found = std::get_if<T>(&event)) return found;
     return nullptr;
+  }
+
+  // Expects the same values, also the last bits, except members of payloads that the program has not written.
+  static void expectEqual(const PixelExplanation& a, const PixelExplanation& b) {
+    const ExplanationDiff diff = diffExplanations(a, b, {.relative = 0.0f, .absolute = 0.0f});
+    EXPECT_TRUE(diff.outputs.empty());
+    for (const ExplanationDifference& fact : diff.facts)
+      ADD_FAILURE() << fact.location << ": " << fact.a << ", " << fact.b;
+    if (diff.first) ADD_FAILURE() << diff.first->location << ": " << diff.first->a << ", " << diff.first->b;
+    EXPECT_GT(diff.equalEvents, 1u);
+  }
+  // All lines that these events have.
+  static std::vector<PrintedLine> printedLines(const std::vector<Event>& events) {
+    std::vector<PrintedLine> lines;
+    for (const Event& event : events)
+      if (const auto* printed = std::get_if<LinesPrinted>(&event))
+        lines.insert(lines.end(), printed->printed.lines.begin(), printed->printed.lines.end());
+    return lines;
   }
 
   const quintet::test::TempFolder folder_;
@@ -419,6 +446,59 @@ TEST_F(SessionTest, PicksSolidsAndBoxes) {
   lesson->apply(SetSamples{1});
   lesson->refine();
   EXPECT_EQ(lesson->result().film->image(0).data, image) << "the program still finds its hit groups";
+}
+
+TEST_F(SessionTest, ExplainsASampleAsARender) {
+  const auto session = makeSession(request());
+  session->step(0.01);  // a preview: its size and its film do not matter
+  const uvec2 pixel(17, 12);
+  for (const std::uint32_t sample : {0u, 5u})
+    expectEqual(session->explain(pixel, sample), explainRender(request(), pixel, sample));
+  const PixelExplanation explanation = session->explain(pixel, 5);
+  EXPECT_GT(explanation.outputs.at(0).value.x, 0.0f) << "the pixel shows the box";
+  const std::uint64_t restarts = session->restarts();
+  session->refine();
+  EXPECT_TRUE(test::equalSums(sums(*session), reference(request()))) << "it leaves the film as it is";
+  EXPECT_EQ(session->restarts(), restarts);
+  EXPECT_THROW(session->explain({40, 0}, 0), UsageError);
+  EXPECT_THROW(session->explain(pixel, 6), UsageError);
+}
+
+TEST_F(SessionTest, ExplainsTheEditedScene) {
+  const auto session = makeSession(request());
+  const uvec2 pixel(17, 12);
+  const PixelExplanation before = session->explain(pixel, 1);
+  session->apply(EditMaterial{"red", {{"baseColor", {0.25, 0.5, 0.75}}, {"roughness", {0.25}}}});
+  session->apply(SetTransform{"right", mat4(1.0f)});
+  session->apply(SetParameter{"bounces", "2"});
+  session->apply(SetLens{.verticalFov = 30.0f});
+  EXPECT_EQ(session->restarts(), 4u) << "the explanation is outdated";
+  const PixelExplanation after = session->explain(pixel, 1);
+  EXPECT_NE(before.events, after.events);
+  std::string scene =
+      replaced(kScene, "base_color = [0.8, 0.1, 0.1]", "base_color = [0.25, 0.5, 0.75]\nroughness = 0.25");
+  scene = replaced(scene, "translate = [3.0, 0.0, 0.0]", "translate = [0.0, 0.0, 0.0]");
+  writeFile(folder_ / "b.scene.toml", scene);
+  RenderRequest same = request();
+  same.scene = folder_ / "b.scene.toml";
+  same.assignments = {"bounces=2"};
+  same.camera.verticalFov = 30.0f;
+  // The automatic environment was chosen before the edits, as in the render.
+  PixelExplanation expected = explainRender(same, pixel, 1);
+  expected.scene = after.scene;
+  expectEqual(after, expected);
+}
+
+TEST_F(SessionTest, ExplainsFramesAndContinues) {
+  RenderRequest frames = request(4);
+  frames.scene.clear();
+  const auto session = makeSession(frames, "lessons/09_progressive");
+  session->step(0);
+  frames.frames.accumulated = 4;
+  expectEqual(session->explain({20, 12}, 2), explainRender(frames, {20, 12}, 2, "lessons/09_progressive"));
+  session->refine();
+  RenderJob job(engine(), resolve(frames, program::loadProgram("lessons/09_progressive")), observer_);
+  EXPECT_EQ(session->result().film->image(0).data, job.run(frames.limits, observer_).film->image(0).data);
 }
 
 TEST_F(SessionTest, OrbitsAroundAPickedPoint) {
@@ -762,6 +842,34 @@ TEST_F(SessionReload, UndoSkipsWhatNoLongerExists) {
   EXPECT_EQ(session->state().exposure, 1.0);
   session->apply(Redo{});
   EXPECT_EQ(session->state().program, "ao");
+}
+
+TEST_F(SessionReload, PrintsTheChosenPixels) {
+  save("1.0, 0.0, 0.0, 1.0)); debugPrintfEXT(\"launch %d\", (int(gl_LaunchIDEXT.x)");
+  const auto session = makeSession(request(3), (folder_ / "p.rt.glsl").string());
+  EXPECT_TRUE(session->callsPrint());
+  EXPECT_TRUE(printedLines(session->refine()).empty()) << "no pixel was chosen";
+  session->apply(SetPrint{PrintRequest{.pixels = {5, 6, 2, 1}}});
+  std::vector<Event> events = session->step(0.01);
+  EXPECT_NE(find<Restarted>(events), nullptr);
+  EXPECT_TRUE(printedLines(events).empty()) << "a preview prints nothing";
+  events = session->refine();
+  std::vector<std::string> texts;
+  for (const PrintedLine& line : printedLines(events)) texts.push_back(line.text);
+  EXPECT_THAT(texts, testing::ElementsAre("launch 5", "launch 6", "launch 5", "launch 6", "launch 5", "launch 6"));
+  EXPECT_EQ(printedLines(events).front().pixel, uvec2(5, 6));
+  session->apply(SetPrint{PrintRequest{.all = true, .limit = 4}});
+  events = session->refine();
+  EXPECT_EQ(printedLines(events).size(), 4u);
+  std::uint64_t omitted = 0;
+  for (const Event& event : events)
+    if (const auto* printed = std::get_if<LinesPrinted>(&event)) omitted += printed->printed.omitted;
+  EXPECT_EQ(omitted, 3u * 40 * 24 - 4);
+  session->apply(SetSize{{60, 30}});
+  EXPECT_EQ(printedLines(session->refine()).size(), 4u) << "each change counts from 0 again";
+  EXPECT_THROW(session->apply(SetPrint{PrintRequest{.pixels = {60, 0, 1, 1}}}), UsageError);
+  session->apply(SetPrint{});
+  EXPECT_TRUE(printedLines(session->refine()).empty());
 }
 
 TEST_F(SessionReload, KeepsTheLastGoodProgram) {

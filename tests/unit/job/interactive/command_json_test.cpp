@@ -74,6 +74,19 @@ TEST(CommandJson, ReadsLights) {
   EXPECT_EQ(std::get<SetProgram>(parse(R"({"do":"program","name":"ao"})")).name, "ao");
 }
 
+TEST(CommandJson, ReadsThePixelsThatPrint) {
+  const auto print = std::get<SetPrint>(parse(R"({"do":"print","x":3,"y":0,"width":2})")).print;
+  ASSERT_TRUE(print);
+  EXPECT_EQ(print->pixels, (render::Region{3, 0, 2, 1}));
+  EXPECT_FALSE(print->all);
+  EXPECT_EQ(print->limit, 200u);
+  const auto all = std::get<SetPrint>(parse(R"({"do":"print","all":true,"limit":7})")).print;
+  EXPECT_TRUE(all->all);
+  EXPECT_EQ(all->limit, 7u);
+  EXPECT_FALSE(std::get<SetPrint>(parse(R"({"do":"print","on":false})")).print);
+  EXPECT_EQ(errorOf(R"({"do":"print","x":3})"), "'y' is missing");
+}
+
 TEST(CommandJson, RejectsMistakes) {
   EXPECT_EQ(errorOf(R"({"do":"orbti"})"), "unknown command 'orbti' (did you mean 'orbit'?)");
   EXPECT_EQ(errorOf(R"({"do":"refin"})"), "unknown command 'refin' (did you mean 'refine'?)");
@@ -114,6 +127,18 @@ TEST(EventJson, IsOneLine) {
   EXPECT_THAT(line, ::testing::StartsWith(R"({"event":"picked","x":5,"y":6,"instance":"b","geometry":0)"));
   EXPECT_THAT(line, HasSubstr(R"("primitive":70000,"material":"default","position":[1.0,2.0,3.0])"));
   EXPECT_EQ(pickedJson({5, 6}, {}, {}, {}), R"({"event":"picked","x":5,"y":6,"instance":null})");
+  Printed printed;
+  printed.lines.push_back({{3, 4}, {}, 5, {"a.rchit", 12, 3}, "a.rchit", "t = 1"});
+  printed.omitted = 2;
+  EXPECT_EQ(eventJson(LinesPrinted{printed}),
+            R"({"event":"printed","lines":[{"pixel":[3,4],"sample":5,"stage":"a.rchit","file":"a.rchit","line":12,)"
+            R"("text":"t = 1"}],"omitted":2})");
+  PixelExplanation explanation;
+  explanation.pixel = {3, 4};
+  explanation.sample = 5;
+  EXPECT_EQ(explainedJson(explanation, "p.json"), R"({"event":"explained","x":3,"y":4,"sample":5,"file":"p.json"})");
+  EXPECT_THAT(explainedJson(explanation, ""),
+              ::testing::AllOf(HasSubstr(R"("explanation":{"format":)"), ::testing::Not(HasSubstr("\n"))));
   EXPECT_EQ(failedJson(7, "no"), R"({"event":"error","line":7,"message":"no"})");
 }
 
