@@ -56,6 +56,7 @@ const Feature kOptionalFeatures[] = {
     QUINTET_FEATURE(rayTracingMaintenance1, rayTracingMaintenance1),
     QUINTET_FEATURE(pipelineExecutables, pipelineExecutableInfo),
     QUINTET_FEATURE(shaderClock, shaderSubgroupClock),
+    QUINTET_FEATURE(vulkan13, dynamicRendering),  // lines over images; every device with Vulkan 1.3 has it
 };
 #undef QUINTET_FEATURE
 

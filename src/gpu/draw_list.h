@@ -21,6 +21,7 @@ struct DrawCommand {
   float left = 0, top = 0, right = 0, bottom = 0;  // pixels
   std::uint32_t firstIndex = 0, indexCount = 0;    // in DrawList::indices
   std::uint32_t firstVertex = 0;                   // added to the indices
+  bool external = false;                           // DrawListRenderer::External draws in the rectangle instead
 };
 
 struct DrawList {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gpu/error.h"
+#include "gpu/graphics_pipeline.h"
 
 namespace quintet::gpu {
 namespace {
@@ -20,23 +21,6 @@ constexpr std::uint32_t kMaxSets = 4 * kMaxTextures;
 struct PushConstants {
   float scale[2];
 };
-
-VkShaderModule makeModule(Context& context, std::span<const std::uint32_t> spirv) {
-  VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-  info.codeSize = spirv.size_bytes();
-  info.pCode = spirv.data();
-  VkShaderModule shader = VK_NULL_HANDLE;
-  check(context.vk().vkCreateShaderModule(context.device(), &info, nullptr, &shader), "load a shader of the window");
-  return shader;
-}
-
-VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderModule shader) {
-  VkPipelineShaderStageCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO};
-  info.stage = stage;
-  info.module = shader;
-  info.pName = "main";
-  return info;
-}
 
 // Makes the buffer at least this large.
 void grow(Context& context, Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage, const char* name) {
@@ -113,77 +97,18 @@ void DrawListRenderer::createLayouts() {
 
 void DrawListRenderer::createPipeline(VkFormat format, std::span<const std::uint32_t> vertexShader,
                                       std::span<const std::uint32_t> fragmentShader) {
-  const VkVertexInputBindingDescription vertexBinding{0, sizeof(DrawVertex), VK_VERTEX_INPUT_RATE_VERTEX};
   const VkVertexInputAttributeDescription attributes[] = {
       {0, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(DrawVertex, x)},
       {1, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(DrawVertex, u)},
       {2, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(DrawVertex, color)},
   };
-  VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-  input.vertexBindingDescriptionCount = 1;
-  input.pVertexBindingDescriptions = &vertexBinding;
-  input.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(std::size(attributes));
-  input.pVertexAttributeDescriptions = attributes;
-  VkPipelineInputAssemblyStateCreateInfo assembly{VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
-  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  VkPipelineViewportStateCreateInfo viewport{VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO};
-  viewport.viewportCount = 1;
-  viewport.scissorCount = 1;
-  VkPipelineRasterizationStateCreateInfo raster{VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO};
-  raster.polygonMode = VK_POLYGON_MODE_FILL;
-  raster.cullMode = VK_CULL_MODE_NONE;
-  raster.lineWidth = 1.0f;
-  VkPipelineMultisampleStateCreateInfo samples{VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO};
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  VkPipelineColorBlendAttachmentState blend{};
-  blend.blendEnable = VK_TRUE;
-  blend.srcColorBlendFactor = VK_BLEND_FACTOR_SRC_ALPHA;
-  blend.dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
-  blend.colorBlendOp = VK_BLEND_OP_ADD;
-  blend.srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE;
-  blend.dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
-  blend.alphaBlendOp = VK_BLEND_OP_ADD;
-  blend.colorWriteMask =
-      VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  VkPipelineColorBlendStateCreateInfo blending{VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
-  blending.attachmentCount = 1;
-  blending.pAttachments = &blend;
-  const VkDynamicState dynamicStates[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  VkPipelineDynamicStateCreateInfo dynamic{VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO};
-  dynamic.dynamicStateCount = 2;
-  dynamic.pDynamicStates = dynamicStates;
-  VkPipelineRenderingCreateInfo rendering{VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO};
-  rendering.colorAttachmentCount = 1;
-  rendering.pColorAttachmentFormats = &format;
-
-  const VolkDeviceTable& vk = context_.vk();
-  const VkShaderModule vertex = makeModule(context_, vertexShader);
-  VkShaderModule fragment = VK_NULL_HANDLE;
-  try {
-    fragment = makeModule(context_, fragmentShader);
-  } catch (...) {
-    vk.vkDestroyShaderModule(context_.device(), vertex, nullptr);
-    throw;
-  }
-  const VkPipelineShaderStageCreateInfo stages[] = {stageInfo(VK_SHADER_STAGE_VERTEX_BIT, vertex),
-                                                    stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
-  VkGraphicsPipelineCreateInfo info{VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO};
-  info.pNext = &rendering;
-  info.stageCount = 2;
-  info.pStages = stages;
-  info.pVertexInputState = &input;
-  info.pInputAssemblyState = &assembly;
-  info.pViewportState = &viewport;
-  info.pRasterizationState = &raster;
-  info.pMultisampleState = &samples;
-  info.pColorBlendState = &blending;
-  info.pDynamicState = &dynamic;
-  info.layout = layout_;
-  const VkResult result =
-      vk.vkCreateGraphicsPipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
-  vk.vkDestroyShaderModule(context_.device(), vertex, nullptr);
-  vk.vkDestroyShaderModule(context_.device(), fragment, nullptr);
-  check(result, "create the pipeline of the window");
+  pipeline_ = makeGraphicsPipeline(context_, {.vertexShader = vertexShader,
+                                              .fragmentShader = fragmentShader,
+                                              .input = {0, sizeof(DrawVertex), VK_VERTEX_INPUT_RATE_VERTEX},
+                                              .attributes = attributes,
+                                              .layout = layout_,
+                                              .format = format,
+                                              .purpose = "draw the window"});
 }
 
 void DrawListRenderer::setTexture(std::size_t index, VkExtent2D size,
@@ -262,7 +187,7 @@ void DrawListRenderer::uploadTriangles(FrameBuffers& frame, const DrawList& list
 }
 
 void DrawListRenderer::draw(Commands& commands, const RenderTarget& target, const DrawList& list,
-                            const std::array<float, 4>& background) {
+                            const std::array<float, 4>& background, const External& external) {
   FrameBuffers& frame = frames_[target.slot];
   uploadTextures(commands, frame);
   uploadTriangles(frame, list);
@@ -279,10 +204,7 @@ void DrawListRenderer::draw(Commands& commands, const RenderTarget& target, cons
   info.pColorAttachments = &attachment;
   const VolkDeviceTable& vk = context_.vk();
   vk.vkCmdBeginRendering(commands.handle(), &info);
-  if (!list.indices.empty()) {
-    bind(commands, target, frame);
-    record(commands, target, list);
-  }
+  record(commands, target, list, frame, external);
   vk.vkCmdEndRendering(commands.handle());
 }
 
@@ -301,16 +223,25 @@ void DrawListRenderer::bind(Commands& commands, const RenderTarget& target, cons
   vk.vkCmdPushConstants(commands.handle(), layout_, VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(constants), &constants);
 }
 
-void DrawListRenderer::record(Commands& commands, const RenderTarget& target, const DrawList& list) {
+void DrawListRenderer::record(Commands& commands, const RenderTarget& target, const DrawList& list,
+                              const FrameBuffers& frame, const External& external) {
   const VolkDeviceTable& vk = context_.vk();
+  bool bound = false;
   for (const DrawCommand& command : list.commands) {
-    if (command.texture >= textures_.size() || !textures_[command.texture].set) continue;
     const VkOffset2D from{toPixel(command.left, target.size.width), toPixel(command.top, target.size.height)};
     const VkOffset2D to{toPixel(std::ceil(command.right), target.size.width),
                         toPixel(std::ceil(command.bottom), target.size.height)};
     if (to.x <= from.x || to.y <= from.y) continue;
     const VkRect2D scissor{from,
                            {static_cast<std::uint32_t>(to.x - from.x), static_cast<std::uint32_t>(to.y - from.y)}};
+    if (command.external) {
+      if (external) external(commands, target, scissor);
+      bound = false;
+      continue;
+    }
+    if (command.texture >= textures_.size() || !textures_[command.texture].set) continue;
+    if (!bound) bind(commands, target, frame);
+    bound = true;
     vk.vkCmdSetScissor(commands.handle(), 0, 1, &scissor);
     vk.vkCmdBindDescriptorSets(commands.handle(), VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1,
                                &textures_[command.texture].set, 0, nullptr);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,10 +34,13 @@ class DrawListRenderer {
   void setTexture(std::size_t texture, VkExtent2D size, std::shared_ptr<const std::vector<std::byte>> pixels,
                   VkFilter filter = VK_FILTER_LINEAR);
 
+  // Records what DrawCommand::external stands for, within the rectangle. It can bind any state.
+  using External = std::function<void(Commands& commands, const RenderTarget& target, const VkRect2D& rectangle)>;
+
   // Fills the target with the color {R, G, B, A}, in [0,1], and draws the list. Commands with a texture that was never
-  // set are skipped.
+  // set are skipped, as are external ones without `external`.
   void draw(Commands& commands, const RenderTarget& target, const DrawList& list,
-            const std::array<float, 4>& background);
+            const std::array<float, 4>& background, const External& external = {});
 
  private:
   struct Texture {
@@ -58,7 +62,8 @@ class DrawListRenderer {
   void uploadTextures(Commands& commands, FrameBuffers& frame);
   void uploadTriangles(FrameBuffers& frame, const DrawList& list);
   void bind(Commands& commands, const RenderTarget& target, const FrameBuffers& frame);
-  void record(Commands& commands, const RenderTarget& target, const DrawList& list);
+  void record(Commands& commands, const RenderTarget& target, const DrawList& list, const FrameBuffers& frame,
+              const External& external);
 
   Context& context_;
   Sampler linear_, nearest_;

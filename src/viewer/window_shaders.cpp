@@ -39,4 +39,9 @@ WindowShaders compileWindowShaders(const std::filesystem::path& caches) {
   return {compile(compiler, "triangles.vert"), compile(compiler, "triangles.frag")};
 }
 
+WindowShaders compileLineShaders(const std::filesystem::path& caches) {
+  const shader::Compiler compiler = job::makeCompiler(caches);
+  return {compile(compiler, "lines.vert"), compile(compiler, "lines.frag")};
+}
+
 }  // namespace quintet::viewer

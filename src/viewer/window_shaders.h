@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shaders of gpu::DrawListRenderer (shaders/window), compiled.
+// The shaders of gpu::DrawListRenderer and gpu::LineRenderer (shaders/window), compiled.
 #ifndef QUINTET_VIEWER_WINDOW_SHADERS_H
 #define QUINTET_VIEWER_WINDOW_SHADERS_H
 
@@ -13,8 +13,9 @@ struct WindowShaders {
   std::vector<std::uint32_t> vertex, fragment;  // SPIR-V
 };
 
-// `caches`: job::EngineOptions::caches. Throws ProgramError if the compiler rejects them.
-WindowShaders compileWindowShaders(const std::filesystem::path& caches);
+// `caches`: job::EngineOptions::caches. They throw ProgramError if the compiler rejects them.
+WindowShaders compileWindowShaders(const std::filesystem::path& caches);  // of gpu::DrawListRenderer
+WindowShaders compileLineShaders(const std::filesystem::path& caches);    // of gpu::LineRenderer
 
 }  // namespace quintet::viewer
 #endif

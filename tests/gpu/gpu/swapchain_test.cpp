@@ -18,6 +18,7 @@
 #include "gpu/draw_list_renderer.h"
 #include "gpu/error.h"
 #include "gpu/instance.h"
+#include "gpu/line_renderer.h"
 #include "harness.h"
 #include "shader/compiler.h"
 
@@ -93,10 +94,10 @@ class Canvas {
                          .name = "canvas"}),
         bytes_(context, {.size = image_.byteSize(), .memory = Memory::readback, .name = "pixels"}) {}
 
-  void draw(DrawListRenderer& renderer, const DrawList& list) {
+  void draw(DrawListRenderer& renderer, const DrawList& list, const DrawListRenderer::External& external = {}) {
     context_.submitAndWait([&](Commands& commands) {
       commands.transition(image_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-      renderer.draw(commands, {image_.view(), {image_.width(), image_.height()}, 0}, list, {0, 0, 0, 1});
+      renderer.draw(commands, {image_.view(), {image_.width(), image_.height()}, 0}, list, {0, 0, 0, 1}, external);
       commands.transition(image_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
       commands.copy(image_, bytes_);
       commands.toHost(Stage::transfer);
@@ -175,6 +176,38 @@ TEST(DrawListRenderer, DrawsTexturesWithinTheirClipRectangle) {
     EXPECT_EQ(canvas.at(6, 1), (Rgba{9, 8, 7, 255}));
     canvas.draw(*renderer, {});
     EXPECT_EQ(canvas.at(1, 1), (Rgba{0, 0, 0, 255}));
+  }
+  EXPECT_THAT(context->validationMessages(), testing::IsEmpty());
+}
+
+TEST(DrawListRenderer, CallsExternalCommandsInOrder) {
+  const std::unique_ptr<Context> context = presentingContext();
+  if (!context) GTEST_SKIP() << "the driver has no VK_EXT_headless_surface";
+  {
+    const auto renderer = makeRenderer(*context, VK_FORMAT_R8G8B8A8_UNORM);
+    LineRenderer lines(*context, VK_FORMAT_R8G8B8A8_UNORM, compileStage("lines.vert"), compileStage("lines.frag"));
+    Canvas canvas(*context, 16, 8);
+    renderer->setTexture(0, {1, 1}, pixels({255, 255, 255, 255}));
+    DrawList list;
+    addRectangle(list, 0, 0, 0, 16, 8, 0xFF0000FF, {0, 0, 16, 8});  // red
+    DrawCommand command;
+    command.left = 2, command.top = 0, command.right = 12, command.bottom = 8;
+    command.external = true;
+    list.commands.push_back(command);
+    addRectangle(list, 0, 8, 0, 16, 8, 0xFFFF0000, {0, 0, 16, 8});  // blue
+    LineList thick;
+    thick.lines.push_back({.ax = -20, .ay = 4, .bx = 40, .by = 4, .color = 0xFF00FF00, .width = 30, .outline = 0});
+    context->submitAndWait([&](Commands& commands) { lines.prepare(commands, 0, thick); });
+    canvas.draw(*renderer, list, [&](Commands& commands, const RenderTarget& target, const VkRect2D& rectangle) {
+      EXPECT_EQ(rectangle.offset.x, 2);
+      EXPECT_EQ(rectangle.extent.width, 10u);
+      lines.record(commands, target, rectangle);
+    });
+    EXPECT_EQ(canvas.at(1, 1), (Rgba{255, 0, 0, 255})) << "outside of the rectangle";
+    EXPECT_EQ(canvas.at(6, 6), (Rgba{0, 255, 0, 255}));
+    EXPECT_EQ(canvas.at(10, 1), (Rgba{0, 0, 255, 255})) << "drawn after it";
+    canvas.draw(*renderer, list);
+    EXPECT_EQ(canvas.at(6, 6), (Rgba{255, 0, 0, 255}));
   }
   EXPECT_THAT(context->validationMessages(), testing::IsEmpty());
 }

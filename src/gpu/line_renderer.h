@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws antialiased lines with a width and an outline, hidden parts faint and dashed.
+#ifndef QUINTET_GPU_LINE_RENDERER_H
+#define QUINTET_GPU_LINE_RENDERER_H
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gpu/buffer.h"
+#include "gpu/commands.h"
+#include "gpu/image.h"
+#include "gpu/line_list.h"
+#include "gpu/swapchain.h"
+
+namespace quintet::gpu {
+
+class LineRenderer {
+ public:
+  // `context` outlives the renderer. `format`: of the targets. Shaders: SPIR-V of shaders/window/lines.vert and .frag.
+  // Throws Error if the device has no graphics queue, VulkanError.
+  LineRenderer(Context& context, VkFormat format, std::span<const std::uint32_t> vertexShader,
+               std::span<const std::uint32_t> fragmentShader);
+  ~LineRenderer();
+  LineRenderer(const LineRenderer&) = delete;
+  LineRenderer& operator=(const LineRenderer&) = delete;
+
+  // Sets the reversed depths of surfaces, rows from the top; -infinity or the least float where there is no surface. The
+  // next prepare() copies them. Null, as at the beginning: nothing hides lines. Throws MemoryError.
+  void setDepth(VkExtent2D size, std::shared_ptr<const std::vector<float>> depths);
+
+  // Outside of rendering: uploads the list for record() in the same submission. `slot`: RenderTarget::slot.
+  void prepare(Commands& commands, std::uint32_t slot, const LineList& list);
+  // During rendering: draws the prepared lines within the rectangle.
+  void record(Commands& commands, const RenderTarget& target, const VkRect2D& rectangle);
+
+ private:
+  void createLayouts();
+  void createPipeline(VkFormat format, std::span<const std::uint32_t> vertexShader,
+                      std::span<const std::uint32_t> fragmentShader);
+  void destroy();
+  void bindDepth();
+  void uploadDepth(Commands& commands, std::uint32_t slot);
+
+  Context& context_;
+  Sampler sampler_;
+  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
+  VkDescriptorPool pool_ = VK_NULL_HANDLE;
+  VkPipelineLayout layout_ = VK_NULL_HANDLE;
+  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  Image depth_;
+  VkDescriptorSet set_ = VK_NULL_HANDLE;
+  std::shared_ptr<const std::vector<float>> pendingDepths_;  // to copy; null if the image has them
+  bool depthWritten_ = false;                                // the image has a layout
+  std::array<Buffer, Swapchain::kFramesInFlight> lineBuffers_, staging_;
+  LineList prepared_;  // without its lines
+  std::uint32_t preparedCount_ = 0, preparedSlot_ = 0;
+};
+
+}  // namespace quintet::gpu
+#endif
