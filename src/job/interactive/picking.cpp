@@ -6,28 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
-#include "job/device_limits.h"
-#include "job/runnable_program.h"
-#include "program/load.h"
+#include "job/picking_program.h"
 #include "render/renderer/renderer.h"
 
 namespace quintet::job::interactive {
 namespace {
-
-// With as many ray types as the shown program, so that both use the same acceleration structure.
-program::Program pickingProgram(const program::Program& shown) {
-  program::Program program = program::loadProgram("pick");
-  while (program.rays.size() < shown.rays.size()) {
-    program::RayType unused = program.rays.front();
-    unused.name = fmt::format("unused{}", program.rays.size());
-    program.rays.push_back(unused);
-  }
-  program.keepsInstanceOrder = shown.keepsInstanceOrder;
-  program.anyHitForAll = shown.anyHitForAll;
-  return program;
-}
 
 vec4 valueOf(const render::Renderer& renderer, const std::string& output) {
   const std::vector<std::string> names = program::outputNames(renderer.program());
@@ -39,17 +22,14 @@ vec4 valueOf(const render::Renderer& renderer, const std::string& output) {
 
 std::optional<Pick> pick(Engine& engine, render::DeviceScene& scene, const scene::Camera& camera, uvec2 size,
                          uvec2 pixel, const program::Program& shown) {
-  gpu::Context& context = engine.context();
-  const program::Program program = pickingProgram(shown);
-  CheckedProgram checked = compileAndCheck(program, engine.compiler(), render::renderDefines(scene.defines(), {}),
-                                           scene.facts(), deviceLimits(context.info()));
+  program::RunnableProgram program = pickingProgram(engine, scene, shown);
   render::RenderSettings settings;
   settings.width = size.x;
   settings.height = size.y;
   settings.region = {pixel.x, pixel.y, 1, 1};
   settings.camera = camera;
-  settings.parameters = program::ParameterValues(program.parameters);
-  render::Renderer renderer(scene, std::move(checked.runnable), engine.compiler(), &engine.pipelineCache(), settings);
+  settings.parameters = program::ParameterValues(program.description.parameters);
+  render::Renderer renderer(scene, std::move(program), engine.compiler(), &engine.pipelineCache(), settings);
   renderer.renderBatch(1);
   renderer.finish();
   const vec4 hit = valueOf(renderer, "hit"), position = valueOf(renderer, "position"),

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "job/depth_map.h"
+
+#include <functional>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "base/file.h"
+#include "job/observer.h"
+#include "job/render_job.h"
+#include "program/load.h"
+#include "temp_folder.h"
+
+namespace quintet::job {
+namespace {
+
+// A wall of 6 m at z = 0 behind a small one at z = 2, both seen from z = 4.
+constexpr const char* kScene = R"(
+[[mesh]]
+name = "wall"
+positions = [[-3, -3, 0], [3, -3, 0], [3, 3, 0], [-3, 3, 0]]
+indices = [[0, 1, 2], [0, 2, 3]]
+[[mesh]]
+name = "plate"
+positions = [[0, 0, 2], [1, 0, 2], [1, 1, 2], [0, 1, 2]]
+indices = [[0, 1, 2], [0, 2, 3]]
+[[instance]]
+of = "wall"
+[[instance]]
+of = "plate"
+[[camera]]
+name = "pinhole"
+look_from = [0, 0, 4]
+look_at = [0, 0, 0]
+fov = 90
+)";
+
+constexpr uvec2 kSize{32, 16};
+
+class DepthMapTest : public testing::Test {
+ protected:
+  DepthMapTest() { writeFile(folder_ / "walls.scene.toml", kScene); }
+
+  DepthMap depthOf(const char* programName, const std::function<void(scene::Camera&)>& change = {}) {
+    static Engine engine({.caches = {}});
+    const program::Program program = program::loadProgram(programName);
+    RenderRequest request;
+    request.scene = folder_ / "walls.scene.toml";
+    request.size = kSize;
+    Observer observer;
+    RenderJob job(engine, resolve(std::move(request), program), observer);
+    scene::Camera camera = job.camera();
+    if (change) change(camera);
+    return renderDepthMap(engine, *job.scene()->onDevice, camera, kSize, program);
+  }
+  static float at(const DepthMap& map, std::uint32_t x, std::uint32_t y) { return map.depths[y * map.size.x + x]; }
+
+  test::TempFolder folder_;
+};
+
+TEST_F(DepthMapTest, HoldsDepthsAlongTheAxis) {
+  const DepthMap map = depthOf("normals");
+  ASSERT_EQ(map.depths.size(), 512u);
+  // The image shows 16 m × 8 m at the wall.
+  EXPECT_NEAR(at(map, 15, 9), 4.0f, 1e-4f) << "the middle";
+  EXPECT_NEAR(at(map, 10, 13), 4.0f, 1e-4f) << "not the length of the ray";
+  EXPECT_NEAR(at(map, 17, 6), 2.0f, 1e-4f) << "the plate, up and to the right";
+  EXPECT_EQ(at(map, 1, 8), 0.0f) << "beside the wall";
+}
+
+TEST_F(DepthMapTest, SupportsOrthographicCamerasAndLenses) {
+  const DepthMap box = depthOf("normals", [](scene::Camera& camera) {
+    camera.orthographic = true;
+    camera.orthographicHalfSize = {8.0f, 4.0f};
+  });
+  EXPECT_NEAR(at(box, 10, 13), 4.0f, 1e-4f);
+  EXPECT_NEAR(at(box, 17, 6), 2.0f, 1e-4f);
+  EXPECT_EQ(at(box, 1, 8), 0.0f);
+  const DepthMap lens = depthOf("normals", [](scene::Camera& camera) { camera.apertureRadius = 0.5f; });
+  EXPECT_NEAR(at(lens, 17, 6), 2.0f, 1e-4f) << "the lens is replaced by its center";
+  EXPECT_NEAR(at(lens, 10, 13), 4.0f, 1e-4f);
+}
+
+// The scene is prepared for a program with one ray type.
+TEST_F(DepthMapTest, FitsTheSceneOfEveryProgram) { EXPECT_NEAR(at(depthOf("lessons/04_diffuse"), 17, 6), 2.0f, 1e-4f); }
+
+}  // namespace
+}  // namespace quintet::job
