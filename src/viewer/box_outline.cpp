@@ -2,8 +2,9 @@
 #include "viewer/box_outline.h"
 
 #include <array>
-#include <cmath>
 #include <cstddef>
+
+#include "viewer/camera_projection.h"
 
 namespace quintet::viewer {
 namespace {
@@ -15,26 +16,14 @@ vec3 cornerOf(const Bounds3& bounds, std::size_t index) {
           index & 4 ? bounds.max.z : bounds.min.z};
 }
 
-// From a point in camera space, z < 0 for a perspective camera, to pixels.
-vec2 project(const scene::Camera& camera, uvec2 size, const vec3& point) {
-  const vec2 pixels(size);
-  vec2 plane;  // [-1,1] in the image, y up
-  if (camera.orthographic) {
-    plane = vec2(point) / camera.orthographicHalfSize;
-  } else {
-    const float halfHeight = std::tan(0.5f * camera.verticalFov);
-    plane = vec2(point) / (-point.z * halfHeight * vec2(pixels.x / pixels.y, 1.0f));
-  }
-  return 0.5f * (plane * vec2(1.0f, -1.0f) + 1.0f) * pixels;
-}
-
 }  // namespace
 
 std::vector<ImageLine> boxOutline(const scene::Camera& camera, uvec2 size, const Bounds3& bounds,
                                   const mat4& worldFromObject) {
   std::vector<ImageLine> lines;
   if (bounds.empty() || size.x == 0 || size.y == 0) return lines;
-  const mat4 cameraFromObject = glm::inverse(camera.worldFromCamera) * worldFromObject;
+  const CameraProjection projection(camera, size);
+  const mat4 cameraFromObject = projection.cameraFromWorld() * worldFromObject;
   std::array<vec3, 8> corners;
   for (std::size_t i = 0; i < corners.size(); ++i)
     corners[i] = vec3(cameraFromObject * vec4(cornerOf(bounds, i), 1.0f));
@@ -49,7 +38,7 @@ std::vector<ImageLine> boxOutline(const scene::Camera& camera, uvec2 size, const
         if (a.z > nearest) a = glm::mix(a, b, (nearest - a.z) / (b.z - a.z));
         if (b.z > nearest) b = glm::mix(b, a, (nearest - b.z) / (a.z - b.z));
       }
-      lines.emplace_back(project(camera, size, a), project(camera, size, b));
+      lines.emplace_back(projection.toImage(a), projection.toImage(b));
     }
   return lines;
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "fixtures.h"
+#include "io/codec.h"
 
 namespace quintet::test {
 namespace {
@@ -49,6 +50,28 @@ TEST_F(ExplainPixel, PrintsJsonAndComparesWithIt) {
   EXPECT_EQ(difference["equal"], false);
   EXPECT_EQ(difference["facts"][0]["location"], "seed");
   EXPECT_EQ(difference["first"]["location"], "camera: film");
+}
+
+TEST_F(ExplainPixel, WritesAnImageWithTheRays) {
+  const RunResult plain = explain();
+  const RunResult result = explain({"--image", "rays.png"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, plain.out) << "the text stays the same";
+  const RunResult render =
+      quintet({"render", "scene.gltf", "--size", "32x24", "--env", "1,1,1", "--spp", "4", "-o", "plain.png"});
+  ASSERT_EQ(render.status, 0) << render.err;
+  const io::Image image = io::readImage(folder_ / "rays.png"), expected = io::readImage(folder_ / "plain.png");
+  ASSERT_EQ(image.width, 32u);
+  ASSERT_EQ(image.channels, 3u);
+  const auto pixel = [](const io::Image& from, std::uint32_t x, std::uint32_t y) {
+    const auto samples = from.pixel<std::uint8_t>(x, y);
+    return std::vector<int>(samples.begin(), samples.end());
+  };
+  EXPECT_EQ(pixel(image, 16, 12), (std::vector<int>{255, 255, 255})) << "the marker of the camera ray";
+  EXPECT_EQ(pixel(image, 0, 0), pixel(expected, 0, 0)) << "away from the rays";
+  EXPECT_NE(pixel(expected, 16, 12), pixel(image, 16, 12));
+
+  expectError(explain({"--image", "rays.exr"}), 2, {"--image: 'rays.exr' must be a PNG file"});
 }
 
 TEST_F(ExplainPixel, RejectsWrongRequests) {

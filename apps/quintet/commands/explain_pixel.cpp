@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -16,10 +17,13 @@
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "cli/work.h"
+#include "io/codec.h"
 #include "job/explanation_json.h"
 #include "job/pixel_explainer.h"
 #include "output/explanation_text.h"
+#include "output/write.h"
 #include "program/load.h"
+#include "viewer/ray_image.h"
 
 namespace quintet::cli {
 namespace {
@@ -33,6 +37,7 @@ struct Options : RenderOptions {
   std::uint32_t sample = 0;
   bool payloads = false;
   std::filesystem::path against;  // an explanation to compare with; may be empty
+  std::filesystem::path image;    // that shows the rays; may be empty
   job::DiffTolerance tolerance;
 };
 
@@ -62,6 +67,11 @@ OptionTable declare(Options& options, Texts& texts) {
   table.add(
       "Result",
       {{.names = "--json", .help = "Print one JSON object on standard output", .target = &options.console.json},
+       {.names = "--image",
+        .value = "FILE.png",
+        .help = "Also render the whole image, and write it with the rays drawn over it",
+        .target = &options.image,
+        .candidates = {.extensions = {"png"}}},
        {.names = "--payloads",
         .help = "Print payloads and details of hits also for programs that state their contributions",
         .target = &options.payloads},
@@ -86,6 +96,7 @@ OptionTable declare(Options& options, Texts& texts) {
   table.addExamples({
       {"quintet explain-pixel scene.glb --pixel 640,360", "sample 0 of the pixel, as the path tracer renders it"},
       {"quintet explain-pixel scene.glb --pixel 640,360 --sample 17 --spp 256", "sample 17 of a render with --spp 256"},
+      {"quintet explain-pixel scene.glb --pixel 640,360 --image rays.png", "the rays over the image"},
       {"quintet explain-pixel --program my_program/ --pixel 12,40", "each trace with its payload"},
       {"quintet explain-pixel scene.glb --pixel 640,360 --json > a.json", "for scripts, and for --against"},
       {"quintet explain-pixel scene.glb --pixel 640,360 --bounces 2 --against a.json", "where the two separate"},
@@ -122,7 +133,12 @@ std::optional<Options> parseOptions(Arguments arguments) {
   if (!parse(declare(options, texts), arguments)) return std::nullopt;
   options.request.scene = texts.scene;
   options.request.commandLine = commandLine("explain-pixel", arguments);
-  options.output.file = "image.png";  // of the render that is explained; it is not written
+  options.output.file = "image.png";  // of the render that is explained; written with the rays on request
+  if (!options.image.empty()) {
+    options.output.file = options.image;
+    if (output::fileKind(options.image) != output::FileKind::png)
+      throw UsageError(fmt::format("--image: '{}' must be a PNG file", options.image.string()));
+  }
   convert(texts, options);
   if (options.request.limits.samples)
     options.request.frames.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
@@ -131,6 +147,30 @@ std::optional<Options> parseOptions(Arguments arguments) {
 }
 
 std::size_t textWidth() { return std::clamp(terminalWidth(STDOUT_FILENO).value_or(kMaxWidth), kMinWidth, kMaxWidth); }
+
+job::PixelExplanation explain(job::Engine& engine, std::shared_ptr<job::PreparedScene>& scene,
+                              const program::Program& program, const Options& options, Console& console) {
+  const job::RenderRequest request = job::requestForPixel(options.request, program, options.pixel);
+  job::RenderJob job(engine, job::resolve(request, program), console, scene);
+  setWorkStage("explaining a pixel");
+  job::PixelExplainer explainer(engine, job);
+  return explainer.explain(options.pixel, options.sample, console);
+}
+
+// Renders the image of the explained render, and writes it with the rays.
+void writeImage(job::Engine& engine, std::shared_ptr<job::PreparedScene>& scene, const program::Program& program,
+                const job::PixelExplanation& explanation, const Options& options, Console& console) {
+  const output::OutputPlan plan = output::planOutputs(options.output, program, options.request.frames);
+  job::RenderJob job(engine, job::resolve(options.request, program), console, scene);
+  viewer::requireSceneCamera(explanation, job.camera());
+  setWorkStage("rendering");
+  const job::RenderResult result = job.run(options.request.limits, console);
+  const io::Image image =
+      viewer::drawRays(engine, job, explanation, output::displayImage(plan, *result.film), job::EngineOptions().caches);
+  console.clear();
+  console.write(output::isStandardOutput(options.image) ? "-" : options.image,
+                io::encodePng(image, job::metadataOf(result.provenance)));
+}
 
 // `other`: of Options::against. Returns the exit status.
 int print(const job::PixelExplanation& explanation, const std::optional<job::PixelExplanation>& other,
@@ -168,11 +208,9 @@ int explainPixelCommand(Arguments arguments) {
     job::Engine engine({.device = options->device, .log = [&](LogLevel level, const std::string& text) {
                           if (level == LogLevel::warning) console.warning(text);
                         }});
-    job::RenderJob job(engine, job::resolve(job::requestForPixel(options->request, program, options->pixel), program),
-                       console);
-    setWorkStage("explaining a pixel");
-    job::PixelExplainer explainer(engine, job);
-    const job::PixelExplanation explanation = explainer.explain(options->pixel, options->sample, console);
+    std::shared_ptr<job::PreparedScene> scene;
+    const job::PixelExplanation explanation = explain(engine, scene, program, *options, console);
+    if (!options->image.empty()) writeImage(engine, scene, program, explanation, *options, console);
     console.clear();
     return print(explanation, other, *options);
   } catch (const ProgramError& error) {

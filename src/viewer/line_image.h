@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws lines over an image in host memory.
+#ifndef QUINTET_VIEWER_LINE_IMAGE_H
+#define QUINTET_VIEWER_LINE_IMAGE_H
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/math.h"
+#include "gpu/context.h"
+#include "gpu/line_list.h"
+#include "io/image.h"
+#include "viewer/window_shaders.h"
+
+namespace quintet::viewer {
+
+// Returns a copy of `image` (8 bits per sample, sRGB, straight alpha) with the lines. `depths` has `depthSize` values
+// (gpu::LineRenderer::setDepth); null: nothing hides lines. `shaders`: compileLineShaders(). Blocks. Throws Error if the
+// device has no graphics queue, and gpu errors.
+io::Image drawLines(gpu::Context& context, const WindowShaders& shaders, const io::Image& image,
+                    const gpu::LineList& list, uvec2 depthSize, std::shared_ptr<const std::vector<float>> depths);
+
+}  // namespace quintet::viewer
+#endif
