@@ -113,6 +113,7 @@ void Application::frame(double wait) {
     framesToDraw_ = 0;
     return;
   }
+  if (state_.ready()) updateRays(state_);
   gui_->setTheme(state_.settings.theme);
   gui_->setScale(state_.scale);
   gui_->beginFrame();
@@ -238,7 +239,11 @@ void Application::draw(const gpu::DrawList& list) {
   try {
     updateTextures();
     presentation_->swapchain.draw({size.x, size.y}, [&](gpu::Commands& commands, const gpu::RenderTarget& target) {
-      presentation_->renderer.draw(commands, target, list, gui_->background());
+      prepareLines(commands, target);
+      const auto drawLines = [&](gpu::Commands& to, const gpu::RenderTarget& on, const VkRect2D& rectangle) {
+        if (presentation_->lines) presentation_->lines->record(to, on, rectangle);
+      };
+      presentation_->renderer.draw(commands, target, list, gui_->background(), drawLines);
     });
   } catch (const DeviceLostError&) {
     replacePresentation();
@@ -246,6 +251,25 @@ void Application::draw(const gpu::DrawList& list) {
     if (error.result() != VK_ERROR_SURFACE_LOST_KHR) throw;
     replacePresentation();
   }
+}
+
+// The rays of the explained pixel. Without them it has no effect.
+void Application::prepareLines(gpu::Commands& commands, const gpu::RenderTarget& target) {
+  if (!state_.rays.visible() && !presentation_->lines) return;
+  std::unique_ptr<gpu::LineRenderer>& lines = presentation_->lines;
+  if (!lines) {
+    const WindowShaders shaders = compileLineShaders(options_.engine.caches);
+    lines = std::make_unique<gpu::LineRenderer>(presentation_->context, presentation_->swapchain.format(),
+                                                shaders.vertex, shaders.fragment);
+  }
+  if (presentation_->depthOfLines != state_.rays.depth) {
+    presentation_->depthOfLines = state_.rays.depth;
+    if (const job::DepthMap* depth = state_.rays.depth.get())
+      lines->setDepth({depth->size.x, depth->size.y}, reversedDepths(*depth));
+    else
+      lines->setDepth({}, nullptr);
+  }
+  lines->prepare(commands, target.slot, state_.rays.lines);
 }
 
 // After the device or the surface was lost.
@@ -299,10 +323,12 @@ void Application::buildInterface() {
 
 void Application::imageArea(const Area& area) {
   drawImage();
+  rayLines(state_, area);
   selectionOutline(state_, area);
   explainedPixel(state_, area);
   splitLine(state_, area);
   legend(state_, area);
+  rayLegendBox(state_, area);
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   if (state_.snapshot->animated)
     animationBar(state_, {{0.0f, area.origin.y + area.size.y}, {area.size.x, animationBarHeight()}});
@@ -407,6 +433,10 @@ void Application::menuBar() {
   if (menu("View")) {
     if (ImGui::MenuItem("Panels", keysOf(set, Action::togglePanels).c_str(), state_.settings.panels))
       perform(Action::togglePanels);
+    if (ImGui::MenuItem("Rays of the pixel", keysOf(set, Action::toggleRays).c_str(), state_.rays.enabled,
+                        state_.rays.overlay.has_value()))
+      perform(Action::toggleRays);
+    logControl("Rays of the pixel");
     ImGui::MenuItem("Diagnostics", nullptr, &state_.showDiagnostics, !state_.snapshot->diagnostics.empty());
     item("Full screen", Action::toggleFullScreen);
     item("Switch theme", Action::toggleTheme);
@@ -462,6 +492,7 @@ void Application::perform(Action action) {
     case Action::quit: quit_ = true; return;
     case Action::togglePanels: state_.settings.panels = !state_.settings.panels; return;
     case Action::toggleFullScreen: return window_.toggleFullScreen();
+    case Action::toggleRays: state_.rays.enabled = !state_.rays.enabled; return;
     case Action::toggleTheme:
       state_.settings.theme = state_.settings.theme == Theme::dark ? Theme::light : Theme::dark;
       return;

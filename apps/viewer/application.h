@@ -15,6 +15,7 @@
 #include "base/stopwatch.h"
 #include "gpu/context.h"
 #include "gpu/draw_list_renderer.h"
+#include "gpu/line_renderer.h"
 #include "gpu/swapchain.h"
 #include "gui/gui.h"
 #include "job/engine.h"
@@ -56,6 +57,8 @@ class Application {
     gpu::Context context;
     gpu::Swapchain swapchain;
     gpu::DrawListRenderer renderer;
+    std::unique_ptr<gpu::LineRenderer> lines;           // null until rays are drawn
+    std::shared_ptr<const job::DepthMap> depthOfLines;  // in `lines`
   };
 
   void frame(double wait);
@@ -78,6 +81,7 @@ class Application {
   void play();
   void finishDialog();
   void draw(const gpu::DrawList& list);
+  void prepareLines(gpu::Commands& commands, const gpu::RenderTarget& target);
   void replacePresentation();
   const std::vector<Lesson>& lessonList();
   void emitWidgets();

@@ -86,7 +86,7 @@ void Navigator::onClick(ViewState& state, vec2 position, bool control) {
                      glm::length(position - lastClickAt_) < kClickPixels * state.scale;
   lastClick_ = twice ? -1 : state.time;
   lastClickAt_ = position;
-  if (!pixel) return;
+  if (!pixel || (!twice && selectRay(state, position))) return;
   state.session->pick(*pixel, twice ? PickUse::focus : PickUse::select);
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/math.h"
+#include "gpu/line_list.h"
 #include "io/image.h"
 #include "job/pixel_explanation.h"
 #include "viewer/bindings.h"
@@ -22,6 +23,7 @@
 #include "viewer/explanation_tree.h"
 #include "viewer/navigation.h"
 #include "viewer/rate_history.h"
+#include "viewer/ray_overlay.h"
 #include "viewer/session_thread.h"
 #include "viewer/settings.h"
 
@@ -39,6 +41,17 @@ struct Selection {
 struct Toast {
   Message message;
   double shownUntil = 0;  // ViewState::time
+};
+
+// The rays of the explained pixel over the image (overlays/rays.cpp).
+struct ShownRays {
+  bool enabled = true;                // by the user
+  std::optional<RayOverlay> overlay;  // unset without an explanation, or if the program has a camera of its own
+  gpu::LineList lines;                // of this frame, pixels of the window
+  std::shared_ptr<const job::DepthMap> depth;                // of this frame; null while it is not known
+  std::shared_ptr<const job::PixelExplanation> explanation;  // for which the overlay was made
+  bool depthRequested = false;                               // SessionThread::showDepth
+  bool visible() const { return enabled && overlay.has_value(); }
 };
 
 // How false color shows the image, and how it is compared.
@@ -82,6 +95,7 @@ struct ViewState {
   ExplainControls explain;
   ClickUse click = ClickUse::select;
   std::vector<Action> requests;  // of panels, for the application
+  ShownRays rays;
   DisplayControls controls;
   std::string referenceFile;
   std::shared_ptr<const io::Image> reference;  // null if there is none

@@ -36,6 +36,7 @@ std::vector<KeyBinding> commonKeys() {
       {"P", kNone, Action::print},
       {"E", kControl, Action::saveExplanation},
       {"I", kControl, Action::copyExplainCommand},
+      {"V", kNone, Action::toggleRays},
       {"Tab", kNone, Action::togglePanels},
       {"N", kNone, Action::togglePanels},
       {"F11", kNone, Action::toggleFullScreen},
@@ -167,6 +168,7 @@ std::string_view description(Action action) {
     case Action::print: return "Show what the program prints for the pixel at the pointer";
     case Action::saveExplanation: return "Save the explanation as JSON";
     case Action::copyExplainCommand: return "Copy the command that explains this pixel";
+    case Action::toggleRays: return "Show or hide the rays of the explained pixel";
     case Action::togglePanels: return "Show or hide the panels";
     case Action::toggleFullScreen: return "Use the full screen";
     case Action::toggleTheme: return "Switch between the dark and the light theme";

@@ -42,6 +42,7 @@ enum class Action {
   print,
   saveExplanation,
   copyExplainCommand,
+  toggleRays,
   togglePanels,
   toggleFullScreen,
   toggleTheme,

@@ -148,11 +148,12 @@ class Screen {
 
   const CameraProjection& projection() const { return projection_; }
 
-  std::optional<ScreenLine> line(const vec3& from, const vec3& to) const {
+  // `guard`: the line is cut at this many image sizes around the image.
+  std::optional<ScreenLine> line(const vec3& from, const vec3& to, float guard = kGuard) const {
     vec3 a = projection_.toCamera(from), b = projection_.toCamera(to);
     if (!clipBehind(a, b)) return std::nullopt;
     const vec2 pixelA = projection_.toImage(a), pixelB = projection_.toImage(b);
-    return cut({pixelA, pixelB, projection_.reversedDepth(-a.z), projection_.reversedDepth(-b.z)});
+    return cut({pixelA, pixelB, projection_.reversedDepth(-a.z), projection_.reversedDepth(-b.z)}, guard);
   }
 
   struct Point {
@@ -186,8 +187,8 @@ class Screen {
   }
 
   // Liang and Barsky (1984). `line` is in pixels of the image; the result is on the screen.
-  std::optional<ScreenLine> cut(const ScreenLine& line) const {
-    const vec2 size(placement_.size), least = -kGuard * size, most = (1.0f + kGuard) * size, step = line.b - line.a;
+  std::optional<ScreenLine> cut(const ScreenLine& line, float guard) const {
+    const vec2 size(placement_.size), least = -guard * size, most = (1.0f + guard) * size, step = line.b - line.a;
     float first = 0.0f, last = 1.0f;
     for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
       if (step[axis] == 0.0f) {
@@ -268,10 +269,11 @@ class LineMaker {
       fading.opacityB *= 1.0f - at->endB;
     }
     add(fading, at->a, at->b, at->depthA, at->depthB);
-    if (!isShadow(ray.kind)) addArrow(line, *at);
+    if (isShadow(ray.kind)) return;
+    if (const std::optional<ScreenLine> inImage = screen_.line(ray.from, ray.to, 0.0f)) addArrow(line, *inImage);
   }
 
-  // In the middle of the line, in the direction of the ray.
+  // In the middle of the visible part, in the direction of the ray.
   void addArrow(gpu::Line line, const ScreenLine& at) {
     const vec2 step = at.b - at.a;
     const float length = glm::length(step);

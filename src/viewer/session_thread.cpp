@@ -25,6 +25,8 @@ constexpr double kIdleSeconds = 0.1;    // between checks for saved files of the
 constexpr double kMovingSeconds = 0.3;  // after a command, images of reduced resolution are not interrupted
 constexpr double kRateSeconds = 0.25;   // between measurements of the rate of rays, which wait for the device
 
+constexpr double kFastDepthSeconds = 0.02;  // depths that are found in this time follow a moving camera
+
 // The request keeps the samples, so it does not interrupt a batch.
 template <class Request>
 bool onlyDisplays(const Request& request) {
@@ -105,6 +107,7 @@ void SessionThread::open(interactive::SessionRequest request) { post(std::move(r
 void SessionThread::apply(interactive::Command command) { post(std::move(command)); }
 void SessionThread::pick(uvec2 pixel, PickUse use) { post(PickRequest{pixel, use}); }
 void SessionThread::save(const std::filesystem::path& file) { post(SaveRequest{file}); }
+void SessionThread::showDepth(bool shown) { post(DepthRequest{shown}); }
 
 void SessionThread::explain(uvec2 pixel, std::uint32_t sample) { post(ExplainRequest{pixel, sample}); }
 
@@ -181,6 +184,8 @@ void SessionThread::handle(Request& request) {
           pickPixel(value);
         else if constexpr (std::is_same_v<T, ExplainRequest>)
           explainPixel(value);
+        else if constexpr (std::is_same_v<T, DepthRequest>)
+          depthShown_ = value.shown;
         else
           saves_.push_back(value);
       },
@@ -235,6 +240,7 @@ void SessionThread::openSession(interactive::SessionRequest request) {
   closeSession();
   saves_.clear();
   next_ = Snapshot{};
+  depthFailed_ = false;
   next_.session = ++sessions_;
   next_.phase = Snapshot::Phase::loading;
   next_.stage = "opening the device";
@@ -318,13 +324,35 @@ void SessionThread::step() {
   const std::vector<interactive::Event> events = session_->step(kStepSeconds, interrupted);
   if (!events.empty()) report(events);
   if (!saves_.empty()) writeSaves();
+  updateDepth();
+}
+
+// The depths of the view, once. Slow devices wait until nothing moves.
+void SessionThread::updateDepth() {
+  if (!depthShown_ || !next_.image || !next_.renderError.empty()) {
+    if (std::exchange(next_.depth, nullptr)) publish();
+    return;
+  }
+  const bool moving = clock_.seconds() - lastCommand_ < kMovingSeconds;
+  if (next_.depth || depthFailed_ || (moving && depthSeconds_ > kFastDepthSeconds)) return;
+  const double start = clock_.seconds();
+  depthFailed_ = true;  // unless it succeeds
+  next_.depth = std::make_shared<const job::DepthMap>(session_->depthMap());
+  depthFailed_ = false;
+  depthSeconds_ = clock_.seconds() - start;
+  publish();
 }
 
 void SessionThread::report(const std::vector<interactive::Event>& events) {
   bool image = false, programReloaded = false;
   for (const interactive::Event& event : events) {
     if (options_.onEvent) options_.onEvent(interactive::eventJson(event));
-    if (const auto* updated = std::get_if<interactive::ImageUpdated>(&event)) {
+    if (std::holds_alternative<interactive::Restarted>(event)) {
+      next_.renderError.clear();
+      next_.printed = nullptr;
+      next_.depth = nullptr;
+      depthFailed_ = false;
+    } else if (const auto* updated = std::get_if<interactive::ImageUpdated>(&event)) {
       next_.progress = *updated;
       image = true;
     } else if (const auto* found = std::get_if<interactive::DiagnosticsFound>(&event)) {
@@ -333,9 +361,6 @@ void SessionThread::report(const std::vector<interactive::Event>& events) {
     } else if (const auto* reloaded = std::get_if<interactive::ProgramReloaded>(&event)) {
       programReloaded = true;
       addMessage(Message::Kind::note, fmt::format("reloaded {}", reloaded->files));
-    } else if (std::holds_alternative<interactive::Restarted>(event)) {
-      next_.renderError.clear();
-      next_.printed = nullptr;
     } else if (const auto* lines = std::get_if<interactive::LinesPrinted>(&event)) {
       addPrinted(lines->printed);
     } else if (const auto* note = std::get_if<interactive::Note>(&event)) {

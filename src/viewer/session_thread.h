@@ -19,6 +19,7 @@
 #include "base/diagnostic.h"
 #include "base/stopwatch.h"
 #include "io/image.h"
+#include "job/depth_map.h"
 #include "job/engine.h"
 #include "job/interactive/session.h"
 #include "program/description/program.h"
@@ -75,6 +76,9 @@ struct Snapshot {
   bool callsPrint = false;                      // the program has calls of debugPrintfEXT
   std::optional<job::PrintRequest> print;       // the pixels that print; unset if none
   std::shared_ptr<const job::Printed> printed;  // since the last restart; null if nothing
+
+  // With showDepth(true): of the view at full resolution; null until it is known, and after the view has changed.
+  std::shared_ptr<const job::DepthMap> depth;
 };
 
 // What to do with the surface at a pixel.
@@ -103,6 +107,7 @@ class SessionThread {
   void save(const std::filesystem::path& file);  // the shown output, as soon as it has its full size
   // Snapshot::explanation becomes that of this sample. A later call replaces those that wait.
   void explain(uvec2 pixel, std::uint32_t sample);
+  void showDepth(bool shown);  // Snapshot::depth
 
   std::shared_ptr<const Snapshot> snapshot() const;
   std::vector<Message> takeMessages();
@@ -121,8 +126,11 @@ class SessionThread {
     uvec2 pixel{0};
     std::uint32_t sample = 0;
   };
+  struct DepthRequest {
+    bool shown = false;
+  };
   using Request = std::variant<job::interactive::SessionRequest, job::interactive::Command, PickRequest, SaveRequest,
-                               ExplainRequest>;
+                               ExplainRequest, DepthRequest>;
   class Host;
 
   void run();
@@ -138,6 +146,7 @@ class SessionThread {
   void writeSaves();
   void writeSave(const SaveRequest& save);
   void step();
+  void updateDepth();
   void measureRays();
   void addPrinted(const job::Printed& printed);
   void report(const std::vector<job::interactive::Event>& events);
@@ -162,6 +171,9 @@ class SessionThread {
   double lastRates_ = 0;       // on clock_
   std::uint64_t sessions_ = 0;
   std::uint64_t explainedRestarts_ = 0;  // Session::restarts() of next_.explanation
+  bool depthShown_ = false;
+  bool depthFailed_ = false;   // for this view
+  double depthSeconds_ = 1e9;  // that the last depths took
 
   std::atomic<bool> stop_ = false;
   std::atomic<bool> hasRequests_ = false;

@@ -3,6 +3,7 @@
 // if the viewer does not end with status 0.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -505,6 +506,53 @@ TEST_F(WindowTest, ExplainsAPixelAndComparesTwo) {
   viewer.window().key("Escape");
   viewer.settle();
   EXPECT_FALSE(viewer.hasControl("Explain/Ray 1")) << "Escape hides the explanation";
+}
+
+TEST_F(WindowTest, DrawsTheRaysOfTheExplainedPixel) {
+  openPanels(R"("Explain")");
+  windowSize_ = "760x960";  // for all of the panel
+  ViewerProcess& viewer = startScene("pathtracer", {"--set", "bounces=1"});
+  const auto [x, y] = imageCenter();
+  EXPECT_FALSE(viewer.hasControl("Legend of rays"));
+  viewer.window().click(x, y, 1, {"Control_L"});
+  viewer.waitFor("explained");
+  viewer.control("Legend of rays");
+
+  // From the side, the camera ray is a white line. V hides it.
+  viewer.window().drag(x, y, x + 110, y);
+  viewer.waitForImage();
+  viewer.settle();
+  imageColor();
+  const io::Image rays = viewer.window().screenshot();
+  viewer.window().key("v");
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Legend of rays"));
+  const io::Image plain = viewer.window().screenshot();
+  const auto [left, top, right, bottom] = viewer.imageArea();
+  std::pair<int, int> farthest{x, y};
+  const auto distance = [x = x, y = y](const std::pair<int, int>& p) { return std::hypot(p.first - x, p.second - y); };
+  int white = 0;
+  for (int v = top; v < bottom; ++v)
+    for (int u = left; u < right; ++u) {
+      const auto column = static_cast<std::uint32_t>(u), row = static_cast<std::uint32_t>(v);
+      const auto with = rays.pixel<std::uint8_t>(column, row), without = plain.pixel<std::uint8_t>(column, row);
+      if (std::min({with[0], with[1], with[2]}) < 255 || std::min({without[0], without[1], without[2]}) == 255)
+        continue;
+      ++white;
+      if (distance({u, v}) > distance(farthest)) farthest = {u, v};
+    }
+  EXPECT_GT(white, 60);
+  ASSERT_GT(distance(farthest), 40.0);
+
+  viewer.window().key("v");
+  viewer.control("Legend of rays");
+  EXPECT_FALSE(viewer.hasControl("Explain/details of Ray 1"));
+  viewer.window().click(farthest.first, farthest.second);
+  viewer.control("Explain/details of Ray 1");
+  imageColor();
+  viewer.window().key("Escape");
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Legend of rays"));
 }
 
 TEST_F(WindowTest, ShowsWhatAProgramPrints) {

@@ -78,6 +78,9 @@ void Gui::setScale(float scale) {
   loadFont();
 }
 
+// It is only compared with, never called.
+void drawExternally(const ImDrawList*, const ImDrawCmd*) {}
+
 void Gui::loadFont() {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
@@ -143,15 +146,17 @@ gpu::DrawList Gui::endFrame() {
       list.vertices.push_back({vertex.pos.x * scale.x, vertex.pos.y * scale.y, vertex.uv.x, vertex.uv.y, vertex.col});
     list.indices.insert(list.indices.end(), from.IdxBuffer.begin(), from.IdxBuffer.end());
     for (const ImDrawCmd& command : from.CmdBuffer) {
-      if (command.UserCallback || command.ElemCount == 0) continue;
-      list.commands.push_back({.texture = textureIndex(command.GetTexID()),
+      const bool external = command.UserCallback == drawExternally;
+      if (!external && (command.UserCallback || command.ElemCount == 0)) continue;
+      list.commands.push_back({.texture = external ? 0 : textureIndex(command.GetTexID()),
                                .left = command.ClipRect.x * scale.x,
                                .top = command.ClipRect.y * scale.y,
                                .right = command.ClipRect.z * scale.x,
                                .bottom = command.ClipRect.w * scale.y,
                                .firstIndex = firstIndex + command.IdxOffset,
                                .indexCount = command.ElemCount,
-                               .firstVertex = firstVertex + command.VtxOffset});
+                               .firstVertex = firstVertex + command.VtxOffset,
+                               .external = external});
     }
   }
   return list;

@@ -13,10 +13,16 @@
 #include "viewer/settings.h"
 #include "window/window.h"
 
+struct ImDrawCmd;
+struct ImDrawList;
+
 namespace quintet::viewer {
 
 // Indices of textures: gpu::DrawListRenderer::setTexture.
 inline constexpr std::size_t kFontTexture = 0, kImageTexture = 1, kReferenceTexture = 2;
+
+// A callback of ImGui's lists that becomes a DrawCommand::external with the clip rectangle at that point.
+void drawExternally(const ImDrawList*, const ImDrawCmd*);
 
 struct FontPixels {
   uvec2 size{0};

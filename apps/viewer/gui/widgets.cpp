@@ -265,6 +265,10 @@ void forgetPendingValues() { state().pending.clear(); }
 
 void logControl(const char* label) { logWidget(label); }
 
+void logControlAt(const char* label, vec2 least, vec2 most) {
+  if (state().log) state().log(label, least, most);
+}
+
 void setWidgetLog(WidgetLog log) { state().log = std::move(log); }
 
 }  // namespace quintet::viewer

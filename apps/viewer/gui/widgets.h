@@ -49,6 +49,7 @@ void forgetPendingValues();
 using WidgetLog = std::function<void(const std::string& name, vec2 least, vec2 most)>;
 void setWidgetLog(WidgetLog log);
 void logControl(const char* label);  // for a control that none of the functions above makes: the last one
+void logControlAt(const char* label, vec2 least, vec2 most);  // for a rectangle of any kind
 
 }  // namespace quintet::viewer
 #endif

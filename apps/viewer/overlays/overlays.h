@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/math.h"
 #include "view_state.h"
 
 namespace quintet::viewer {
@@ -32,7 +33,14 @@ void selectionOutline(const ViewState& state, const Area& area);  // a box aroun
 void explainedPixel(const ViewState& state, const Area& area);    // a mark on it, and on the pixels that print
 void legend(const ViewState& state, const Area& area);            // of false color
 void splitLine(ViewState& state, const Area& area);               // of the comparison; can be dragged
-void diagnosticsDrawer(ViewState& state, const Area& area);       // problems of the program, with file and line
+
+// The rays of the explained pixel.
+void updateRays(ViewState& state);                            // after a change of the explanation
+void rayLines(ViewState& state, const Area& area);            // ViewState::rays, drawn where they are in the order
+void rayLegendBox(const ViewState& state, const Area& area);  // what the colors mean
+bool selectRay(ViewState& state, vec2 position);              // the ray at a position of the window; false: none
+
+void diagnosticsDrawer(ViewState& state, const Area& area);  // problems of the program, with file and line
 void toasts(ViewState& state, const Area& area);
 void helpWindow(ViewState& state);
 void statusBar(const ViewState& state, const Area& area);

@@ -684,4 +684,9 @@ std::optional<Pick> Session::pick(uvec2 pixel) {
   return interactive::pick(engine_, *job_->scene()->onDevice, camera(), state_.size, pixel, program());
 }
 
+DepthMap Session::depthMap() {
+  job_->update(*recorder_);
+  return renderDepthMap(engine_, *job_->scene()->onDevice, camera(), state_.size, program());
+}
+
 }  // namespace quintet::job::interactive

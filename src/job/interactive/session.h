@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "io/image.h"
+#include "job/depth_map.h"
 #include "job/engine.h"
 #include "job/interactive/command.h"
 #include "job/interactive/event.h"
@@ -110,6 +111,8 @@ class Session {
   // What is visible at a pixel of the image at full resolution; nothing if no surface is. For programs that use the
   // camera of the scene. Throws UsageError for a pixel outside, and as step() does.
   std::optional<Pick> pick(uvec2 pixel);
+  // The depths of the image at full resolution, for lines over it. For the same programs. Blocks; throws as step() does.
+  DepthMap depthMap();
 
   // Explains a sample of a pixel of the image at full resolution, as it is after all commands: the result is that of a
   // PixelExplainer for a render with the same request. For a program that accumulates, `sample` is a frame, and those

@@ -147,6 +147,24 @@ TEST_F(SessionThreadTest, PicksWithoutMovingTheCamera) {
   EXPECT_NEAR(focused->state.orbitCenter->z, 0.0f, 1e-3f);
 }
 
+TEST_F(SessionThreadTest, FindsTheDepthsOfTheView) {
+  thread_->open(request());
+  EXPECT_FALSE(waitForImage()->depth) << "nothing asked for it";
+  thread_->showDepth(true);
+  const auto shown = waitFor([](const Snapshot& s) { return s.depth != nullptr; });
+  EXPECT_EQ(shown->depth->size, kSize);
+  EXPECT_NEAR(shown->depth->depths[kSize.y / 2 * kSize.x + kSize.x / 2], 4.0f, 0.01f);
+  EXPECT_EQ(shown->depth->camera.worldFromCamera, shown->camera.worldFromCamera);
+  thread_->apply(SetExposure{1.0});
+  EXPECT_EQ(waitFor([](const Snapshot& s) { return s.state.exposure == 1.0; })->depth, shown->depth)
+      << "the view is the same";
+  thread_->apply(Zoom{2.0f, std::nullopt});
+  const auto moved = waitFor([&](const Snapshot& s) { return s.depth && s.depth != shown->depth; });
+  EXPECT_NEAR(moved->depth->depths[kSize.y / 2 * kSize.x + kSize.x / 2], 2.0f, 0.01f);
+  thread_->showDepth(false);
+  EXPECT_FALSE(waitFor([](const Snapshot& s) { return !s.depth; })->depth);
+}
+
 TEST_F(SessionThreadTest, SavesTheCompleteSize) {
   thread_->open(request());
   thread_->apply(SetExposure{1.0});
