@@ -245,12 +245,13 @@ void RenderJob::setSize(uvec2 size) {
 // The pixels that a request for prints can have.
 render::Region RenderJob::printableRegion(const render::RenderSettings& settings) const {
   constexpr std::uint32_t kAnySize = 1u << 20;
-  if (job_.request.editable) return {0, 0, kAnySize, kAnySize};
+  if (printsInAnySize_) return {0, 0, kAnySize, kAnySize};
   return render::decideSettings(settings, job_.program, false).region;
 }
 
 void RenderJob::setPrint(std::optional<PrintRequest> print, Observer& observer) {
   assert(job_.request.editable && (!print || print->all || print->pixels.width > 0));
+  printsInAnySize_ = true;
   std::swap(job_.request.print, print);
   if (!renderer_) return;  // update() failed and is repeated by the next run()
   observer.stage("compiling shaders");

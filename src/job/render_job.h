@@ -181,6 +181,7 @@ class RenderJob {
   std::vector<Diagnostic> diagnostics_;
   std::unique_ptr<PrintLog> prints_;  // null unless the request asks for them
   bool printsNoted_ = false;          // Observer::printsDisabled() was called
+  bool printsInAnySize_ = false;      // setPrint() was called: the pixels of the request can be outside of the image
   bool callsPrint_ = false;
   std::unique_ptr<render::Renderer> renderer_;
   mutable Provenance provenance_;  // without the facts that a result adds; see describeEdits()
