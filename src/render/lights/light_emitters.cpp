@@ -249,7 +249,7 @@ double canonicalArea(const scene::Primitive& primitive, const StretchOf& at) {
 
 // Adds the triangles of a geometry, which all have one material.
 void addTriangles(Emitter& emitter, const scene::Geometry& geometry, const EmissionMap& map) {
-  emitter.triangles = &geometry;
+  emitter.triangles = emitter.ownTriangles ? emitter.ownTriangles.get() : &geometry;
   if (map.black()) return;
   emitter.luminance.resize(geometry.triangles.size());
   const std::vector<vec2>& uvs = geometry.uvs[static_cast<std::size_t>(map.uvSet())];
@@ -267,7 +267,7 @@ bool uses(const scene::PrimitiveSet& set, int material) {
 
 // Adds the solids of one material of a primitive set.
 void addSolids(Emitter& emitter, const scene::PrimitiveSet& set, int material, const EmissionMap& map) {
-  emitter.solids = &set;
+  emitter.solids = emitter.ownSolids ? emitter.ownSolids.get() : &set;
   emitter.luminance.resize(set.primitives.size(), 0.0f);
   const float mean = 0.5f * (map.meanOver({0, 0}, {1, 0}, {1, 1}) + map.meanOver({0, 0}, {1, 1}, {0, 1}));
   for (std::size_t i = 0; i < set.primitives.size(); ++i)
@@ -275,46 +275,86 @@ void addSolids(Emitter& emitter, const scene::PrimitiveSet& set, int material, c
   emitter.black = emitter.black && mean <= 0.0f;
 }
 
-}  // namespace
+// An emitter that must be computed, and its geometry or set of solids.
+struct Pending {
+  Emitter* emitter;
+  const scene::Geometry* geometry = nullptr;
+  const scene::PrimitiveSet* set = nullptr;
+};
 
-void Emitter::copyGeometry() {
-  if (triangles && !ownTriangles) {
-    scene::Geometry copy;
-    copy.positions = triangles->positions;
-    copy.triangles = triangles->triangles;
-    ownTriangles = std::make_shared<scene::Geometry>(std::move(copy));
-    triangles = ownTriangles.get();
-  }
-  if (solids && !ownSolids) {
-    ownSolids = std::make_shared<scene::PrimitiveSet>(*solids);
-    solids = ownSolids.get();
-  }
-}
-
-std::vector<std::vector<Emitter>> makeEmitters(const scene::Scene& scene) {
-  std::vector<std::vector<Emitter>> emitters(scene.meshes.size());
-  for (std::size_t m = 0; m < scene.materials.size(); ++m) {  // one emission map in memory at a time
-    const scene::Material& material = scene.materials[m];
-    if (material.unlit || lightLuminance(material.emissive) <= 0.0f) continue;
-    std::optional<EmissionMap> map;
-    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-      const std::vector<scene::PrimitiveSet>& sets = scene.meshes[i].primitiveSets;
-      for (std::size_t g = 0; g < sets.size(); ++g) {
-        if (sets[g].kind != scene::PrimitiveSetKind::solids || !uses(sets[g], static_cast<int>(m))) continue;
-        if (!map) map.emplace(scene, material);
-        emitters[i].resize(sets.size());
-        addSolids(emitters[i][g], sets[g], static_cast<int>(m), *map);
-      }
-      const std::vector<scene::Geometry>& geometries = scene.meshes[i].geometries;
-      for (std::size_t g = 0; g < geometries.size(); ++g) {
-        if (geometries[g].material != static_cast<int>(m)) continue;
-        if (!map) map.emplace(scene, material);
-        emitters[i].resize(geometries.size());
-        addTriangles(emitters[i][g], geometries[g], *map);
-      }
+// Empties the emitters that have one of these materials, and returns them.
+std::vector<Pending> discardEmitters(const scene::Scene& scene, const std::vector<bool>& materials,
+                                     std::vector<std::vector<Emitter>>& emitters) {
+  const auto affected = [&](int material) {
+    return material != scene::kNone && materials[static_cast<std::size_t>(material)];
+  };
+  std::vector<Pending> pending;
+  const auto discard = [&](Emitter& emitter, const scene::Geometry* geometry, const scene::PrimitiveSet* set) {
+    emitter.luminance.clear();
+    emitter.black = true;
+    pending.push_back({&emitter, geometry, set});
+  };
+  emitters.resize(scene.meshes.size());
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    const scene::Mesh& mesh = scene.meshes[m];
+    emitters[m].resize(mesh.geometryCount());
+    for (std::size_t g = 0; g < mesh.geometries.size(); ++g)
+      if (affected(mesh.geometries[g].material)) discard(emitters[m][g], &mesh.geometries[g], nullptr);
+    for (std::size_t g = 0; g < mesh.primitiveSets.size(); ++g) {
+      const scene::PrimitiveSet& set = mesh.primitiveSets[g];
+      if (set.kind == scene::PrimitiveSetKind::solids &&
+          std::ranges::any_of(set.primitives, affected, &scene::Primitive::material))
+        discard(emitters[m][g], nullptr, &set);
     }
   }
-  return emitters;
+  return pending;
+}
+
+}  // namespace
+
+void Emitters::copyGeometry() {
+  for (std::vector<Emitter>& mesh : emitters_)
+    for (Emitter& emitter : mesh) {
+      if (emitter.black) continue;
+      if (emitter.triangles && !emitter.ownTriangles) {
+        scene::Geometry copy;
+        copy.positions = emitter.triangles->positions;
+        copy.triangles = emitter.triangles->triangles;
+        emitter.ownTriangles = std::make_shared<scene::Geometry>(std::move(copy));
+        emitter.triangles = emitter.ownTriangles.get();
+      }
+      if (emitter.solids && !emitter.ownSolids) {
+        emitter.ownSolids = std::make_shared<scene::PrimitiveSet>(*emitter.solids);
+        emitter.solids = emitter.ownSolids.get();
+      }
+    }
+}
+
+void Emitters::update(const scene::Scene& scene) {
+  emissions_.resize(scene.materials.size());
+  std::vector<bool> changed;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    const scene::Material& material = scene.materials[m];
+    const bool emits = !material.unlit && lightLuminance(material.emissive) > 0.0f;
+    const Emission emission = emits ? Emission{material.emissive, material.emissiveTexture} : Emission{};
+    changed.push_back(emission != emissions_[m]);
+    emissions_[m] = emission;
+  }
+  const std::vector<Pending> pending = discardEmitters(scene, changed, emitters_);
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {  // one emission map in memory at a time
+    if (emissions_[m] == Emission{}) continue;
+    std::optional<EmissionMap> map;
+    for (const Pending& p : pending) {
+      if (p.set ? !uses(*p.set, static_cast<int>(m)) : p.geometry->material != static_cast<int>(m)) continue;
+      if (!map) map.emplace(scene, scene.materials[m]);
+      if (p.set)
+        addSolids(*p.emitter, *p.set, static_cast<int>(m), *map);
+      else
+        addTriangles(*p.emitter, *p.geometry, *map);
+    }
+  }
+  for (const Pending& p : pending)
+    if (p.emitter->black) *p.emitter = {};  // frees the copy of the geometry
 }
 
 double solidArea(const scene::Primitive& primitive, const dmat3& worldFromObject) {

@@ -24,14 +24,31 @@ struct Emitter {
   std::shared_ptr<const scene::Geometry> ownTriangles;
   std::shared_ptr<const scene::PrimitiveSet> ownSolids;
 
-  // Makes the emitter independent of the scene: copies the positions and triangles, or the primitive set.
-  void copyGeometry();
   std::size_t count() const { return luminance.size(); }
 };
 
-// Returns the emitters by mesh and geometry; the list of a mesh without emission is empty. Unlit materials and CSG
-// trees are not emitters.
-std::vector<std::vector<Emitter>> makeEmitters(const scene::Scene& scene);
+// The emitters of a scene. Unlit materials and CSG trees are not emitters.
+class Emitters {
+ public:
+  explicit Emitters(const scene::Scene& scene) { update(scene); }
+  // Computes the emitters of the materials whose emission differs from that of the last scene. The scene has the meshes
+  // and the images of the last one.
+  void update(const scene::Scene& scene);
+  // Makes the emitters independent of the scene: copies the positions and triangles, or the primitive sets.
+  void copyGeometry();
+  // Of a geometry or primitive set of a mesh.
+  const Emitter& of(std::size_t mesh, std::size_t geometry) const { return emitters_[mesh][geometry]; }
+
+ private:
+  // What the emission of a material depends on.
+  struct Emission {
+    vec3 factor{0.0f};  // 0 means that the material does not emit
+    scene::TextureUse texture;
+    bool operator==(const Emission&) const = default;
+  };
+  std::vector<std::vector<Emitter>> emitters_;  // by mesh and geometry
+  std::vector<Emission> emissions_;             // by material
+};
 
 // Returns the area of triangle or solid i of the emitter in an instance, in square meters.
 double emitterArea(const Emitter& emitter, std::size_t i, const mat4& worldFromObject);

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "render/lights/alias_table.h"
-#include "render/lights/light_tree.h"
 #include "render/lights/luminance.h"
 #include "scene/animation/keyframes.h"
 
@@ -13,6 +12,7 @@ namespace quintet::render {
 namespace {
 
 constexpr double kPiDouble = glm::pi<double>();
+constexpr std::size_t kKeptScratch = std::size_t{1} << 20;  // lights, of which the memory to build them is kept
 
 // The classes that share the samples (kMinimumClassShare).
 enum class LightClass { local, directional, surfaces, environment };
@@ -27,8 +27,9 @@ LightClass classOf(const shared::LightData& light) {
   }
 }
 
-// Returns the powers, scaled so that each class gets its share.
-std::vector<float> weightsOf(const std::vector<shared::LightData>& lights, const std::vector<double>& powers) {
+// Sets the weights to the powers, scaled so that each class gets its share.
+void setWeights(std::vector<float>& weights, const std::vector<shared::LightData>& lights,
+                const std::vector<double>& powers) {
   std::array<double, 4> sums{};
   for (std::size_t i = 0; i < powers.size(); ++i)
     sums[static_cast<std::size_t>(classOf(lights[i]))] += std::isfinite(powers[i]) ? powers[i] : 0.0;
@@ -38,10 +39,9 @@ std::vector<float> weightsOf(const std::vector<shared::LightData>& lights, const
   for (std::size_t c = 0; c < sums.size(); ++c)
     if (sums[c] > 0.0)
       factors[c] = (kMinimumClassShare + (1.0 - kMinimumClassShare * present) * (sums[c] / total)) / sums[c];
-  std::vector<float> result(powers.size());
+  weights.resize(powers.size());
   for (std::size_t i = 0; i < powers.size(); ++i)
-    result[i] = static_cast<float>(powers[i] * factors[static_cast<std::size_t>(classOf(lights[i]))]);
-  return result;
+    weights[i] = static_cast<float>(powers[i] * factors[static_cast<std::size_t>(classOf(lights[i]))]);
 }
 
 LightReach reachOf(const shared::LightData& light) {
@@ -53,15 +53,24 @@ LightReach reachOf(const shared::LightData& light) {
 
 // Collects the lights with their powers and bounds, one of each per light.
 struct LightTableBuilder::Collector {
-  double crossSection = 0.0;
-  LightTable table;
-  std::vector<double> powers;
-  std::vector<LightTreeInput> bounds;
+  double crossSection;
+  LightTable& table;
+  Scratch& scratch;
+  std::vector<double>& powers = scratch.powers;
+  std::vector<LightTreeInput>& bounds = scratch.bounds;
+  std::size_t next = 0;  // light to add
+
+  // Every element is written afterwards.
+  void resize(std::size_t count) {
+    table.lights.resize(count);
+    powers.resize(count);
+    bounds.resize(count);
+  }
 
   void add(const shared::LightData& light, double power, const LightBounds& lightBounds) {
-    bounds.push_back({lightBounds, static_cast<std::uint32_t>(table.lights.size()), reachOf(light)});
-    table.lights.push_back(light);
-    powers.push_back(power);
+    bounds[next] = {lightBounds, static_cast<std::uint32_t>(next), reachOf(light)};
+    table.lights[next] = light;
+    powers[next++] = power;
   }
 
   void addPunctual(const scene::Light& light) {
@@ -86,30 +95,52 @@ struct LightTableBuilder::Collector {
     }
   }
 
-  void addPart(const Part& part, const Emitter& emitter, const mat4& worldFromObject) {
-    const std::size_t first = table.lights.size(), count = emitter.count();
-    table.slots[part.slot] = static_cast<std::uint32_t>(first);
+  // Adds the triangles and solids of all parts. Instances can be small, so one loop visits the lights of all.
+  void addParts(const std::vector<Part>& parts, const Emitters& emitters, std::span<const mat4> worldFromObject) {
+    std::vector<std::size_t> firsts;  // light of triangle or solid 0 of each part
+    const std::size_t begin = next;
+    for (const Part& part : parts) {
+      table.slots[part.slot] = static_cast<std::uint32_t>(next);
+      firsts.push_back(next);
+      next += part.count;
+    }
+    const auto fill = [&](std::size_t first, std::size_t last) {
+      first += begin, last += begin;
+      auto p = static_cast<std::size_t>(std::ranges::upper_bound(firsts, first) - firsts.begin()) - 1;
+      for (; first < last; ++p) {
+        const std::size_t end = std::min(last, firsts[p] + parts[p].count);
+        const Emitter& emitter = emitters.of(parts[p].mesh, parts[p].geometry);
+        fillPart(parts[p], emitter, worldFromObject[parts[p].instance], firsts[p], first, end);
+        first = end;
+      }
+    };
+    parallelRanges(next - begin, fill, 4096);
+  }
+
+  // Fills the lights from `first` up to `end`; `zero` is the light of the part's triangle or solid 0.
+  void fillPart(const Part& part, const Emitter& emitter, const mat4& worldFromObject, std::size_t zero,
+                std::size_t first, std::size_t end) {
     shared::LightData light{};
     light.type = emitter.solids ? shared::kLightSolid : shared::kLightTriangle;
     light.instance = static_cast<shared::uint>(part.instance);
     light.geometry = static_cast<shared::uint>(part.geometry);
-    table.lights.resize(first + count, light);
-    powers.resize(table.lights.size());
-    bounds.resize(table.lights.size());
-    forManyInParallel(count, [&](std::size_t i) {
-      table.lights[first + i].primitive = static_cast<shared::uint>(i);
-      bounds[first + i].light = static_cast<std::uint32_t>(first + i);
-      const double luminance = emitter.luminance[i];
-      const double area = luminance > 0.0 ? emitterArea(emitter, i, worldFromObject) : 0.0;
-      if (!(area > 0.0)) return;
-      powers[first + i] = kPiDouble * area * luminance;
-      bounds[first + i].bounds = emitterBounds(emitter, i, worldFromObject, area * luminance);
-    });
+    for (std::size_t i = first; i < end; ++i) {
+      light.primitive = static_cast<shared::uint>(i - zero);
+      table.lights[i] = light;
+      powers[i] = 0.0;
+      bounds[i] = {LightBounds{}, static_cast<std::uint32_t>(i)};
+      const double luminance = emitter.luminance[i - zero];
+      const double area = luminance > 0.0 ? emitterArea(emitter, i - zero, worldFromObject) : 0.0;
+      if (!(area > 0.0)) continue;
+      powers[i] = kPiDouble * area * luminance;
+      bounds[i].bounds = emitterBounds(emitter, i - zero, worldFromObject, area * luminance);
+    }
   }
 
   // Builds the alias table and the tree. Both sample the same lights, which are those with a weight above 0.
-  LightTable finish() {
-    const std::vector<float> weights = weightsOf(table.lights, powers);
+  void finish() {
+    std::vector<float>& weights = scratch.weights;
+    setWeights(weights, table.lights, powers);
     table.entries = buildAliasTable(weights);
     double total = 0.0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -119,17 +150,17 @@ struct LightTableBuilder::Collector {
     for (LightTreeInput& input : bounds)
       if (input.bounds.intensity > 0.0f)
         input.bounds.intensity = std::max(static_cast<float>(input.bounds.intensity / total), 1e-30f);
-    LightTree tree = buildLightTree(std::move(bounds), table.lights.size());
-    for (std::size_t i = 0; i < table.lights.size(); ++i) table.lights[i].leaf = tree.leaves[i];
-    table.nodes = std::move(tree.nodes);
-    return std::move(table);
+    scratch.tree.nodes.swap(table.nodes);
+    scratch.tree.build(bounds, table.lights.size());
+    scratch.tree.nodes.swap(table.nodes);
+    for (std::size_t i = 0; i < table.lights.size(); ++i) table.lights[i].leaf = scratch.tree.leaves[i];
   }
 };
 
 LightTableBuilder::LightTableBuilder(const scene::Scene& scene, const scene::Environment& environment,
                                      std::size_t maxTriangleLights)
     : punctual_(scene.lights),
-      emitters_(makeEmitters(scene)),
+      emitters_(scene),
       environment_(buildEnvironmentTable(environment)),
       maxTriangleLights_(maxTriangleLights),
       environmentIntegral_(environment_.width > 0 ? environment_.integral : 0.0) {
@@ -140,7 +171,7 @@ LightTableBuilder::LightTableBuilder(const scene::Scene& scene, const scene::Env
 }
 
 void LightTableBuilder::setEmission(const scene::Scene& scene) {
-  emitters_ = makeEmitters(scene);
+  emitters_.update(scene);
   parts_.clear();
   slots_.clear();
   firstSlots_.clear();
@@ -156,8 +187,8 @@ void LightTableBuilder::addParts(const scene::Scene& scene) {
     if (mesh == scene::kNone) continue;
     const auto m = static_cast<std::size_t>(mesh);
     for (std::size_t g = 0; g < scene.meshes[m].geometryCount(); ++g) {
-      if (visible && g < emitters_[m].size() && !emitters_[m][g].black)
-        parts_.push_back({i, g, slots_.size(), m, emitters_[m][g].count()});
+      const Emitter& emitter = emitters_.of(m, g);
+      if (visible && !emitter.black) parts_.push_back({i, g, slots_.size(), m, emitter.count()});
       slots_.push_back(shared::kNoLight);
     }
   }
@@ -175,28 +206,24 @@ void LightTableBuilder::addParts(const scene::Scene& scene) {
       std::ranges::any_of(parts_, [&](const Part& part) { return !scene.instances[part.instance].keyframes.empty(); });
 }
 
-void LightTableBuilder::copyGeometry() {
-  for (std::vector<Emitter>& mesh : emitters_)
-    for (Emitter& emitter : mesh)
-      if (!emitter.black) emitter.copyGeometry();
-}
-
-LightTable LightTableBuilder::build(std::span<const mat4> worldFromObject) const {
-  Collector collector;
-  collector.crossSection = crossSection_;
-  LightTable& table = collector.table;
+void LightTableBuilder::build(std::span<const mat4> worldFromObject, LightTable& table) {
   table.slots = slots_;
   table.firstSlots = firstSlots_;
+  table.environmentLight = shared::kNoLight;
+  Collector collector{crossSection_, table, scratch_};
+  std::size_t count = punctual_.size() + (environmentIntegral_ > 0.0 ? 1 : 0);
+  for (const Part& part : parts_) count += part.count;
+  collector.resize(count);
   for (const scene::Light& light : punctual_) collector.addPunctual(light);
-  for (const Part& part : parts_)
-    collector.addPart(part, emitters_[part.mesh][part.geometry], worldFromObject[part.instance]);
+  collector.addParts(parts_, emitters_, worldFromObject);
   if (environmentIntegral_ > 0.0) {
-    table.environmentLight = static_cast<std::uint32_t>(table.lights.size());
+    table.environmentLight = static_cast<std::uint32_t>(count - 1);
     shared::LightData light{};
     light.type = shared::kLightEnvironment;
     collector.add(light, environmentIntegral_ * crossSection_, environmentBounds(0.25 * environmentIntegral_));
   }
-  return collector.finish();
+  collector.finish();
+  if (table.lights.size() > kKeptScratch) scratch_ = {};
 }
 
 double spotSolidAngle(double cosInner, double cosOuter) {
@@ -219,7 +246,8 @@ LightTable buildLightTable(const scene::Scene& scene, const scene::Environment& 
   std::vector<mat4> worldFromObject;
   for (const scene::Instance& instance : scene.instances)
     worldFromObject.push_back(scene::worldFromObjectAt(instance, 0.0f));
-  LightTable table = builder.build(worldFromObject);
+  LightTable table;
+  builder.build(worldFromObject, table);
   table.environment = std::move(builder.environment());
   if (table.hasNoPower()) table.clear();
   return table;

@@ -8,6 +8,7 @@
 #include "quintet/shared/frame.h"
 #include "render/lights/environment_table.h"
 #include "render/lights/light_emitters.h"
+#include "render/lights/light_tree.h"
 
 namespace quintet::render {
 
@@ -52,21 +53,23 @@ class LightTableBuilder {
  public:
   LightTableBuilder(const scene::Scene& scene, const scene::Environment& environmentInUse,
                     std::size_t maxTriangleLights = kMaxTriangleLights);
-  // Builds the table for these transforms, one per instance. Lights, slots and the environment's index are the same for
-  // all transforms. LightTable::environment is left empty.
-  LightTable build(std::span<const mat4> worldFromObject) const;
+  // Builds the table for these transforms, one per instance, in the memory of an earlier table. Lights, slots and the
+  // environment's index are the same for all transforms. LightTable::environment is left as it is.
+  void build(std::span<const mat4> worldFromObject, LightTable& table);
   EnvironmentTable& environment() { return environment_; }
 
   // Edits for the next build(). The scene has the same meshes and instances as that of the constructor.
   void setPunctualLights(const std::vector<scene::Light>& lights) { punctual_ = lights; }
-  void setEmission(const scene::Scene& scene);  // of its materials
+  // Of its materials. Work is done for the geometries of those whose emission differs from the builder's.
+  void setEmission(const scene::Scene& scene);
   // `integral`: EnvironmentTable::integral; 0 means that the environment is black.
   void setEnvironment(double integral) { environmentIntegral_ = integral; }
   double environmentIntegral() const { return environmentIntegral_; }
 
   bool hasMovingLights() const { return hasMovingLights_; }              // an instance with keyframes has lights
   bool hasLights(std::size_t instance) const { return lit_[instance]; }  // so that its transform matters
-  void copyGeometry();  // makes the builder independent of the scene, which can then be destroyed
+  // Makes the builder independent of the scene, which can then be destroyed.
+  void copyGeometry() { emitters_.copyGeometry(); }
 
  private:
   struct Part {
@@ -77,10 +80,17 @@ class LightTableBuilder {
     std::size_t count;
   };
   struct Collector;
+  // What is built for each light of the table. It is kept, because new memory costs as much time as an edit of lights.
+  struct Scratch {
+    std::vector<double> powers;
+    std::vector<float> weights;
+    std::vector<LightTreeInput> bounds;
+    LightTree tree;
+  };
   void addParts(const scene::Scene& scene);
 
   std::vector<scene::Light> punctual_;
-  std::vector<std::vector<Emitter>> emitters_;  // by mesh and geometry
+  Emitters emitters_;
   std::vector<Part> parts_;
   std::vector<bool> lit_;  // by instance: it has a part
   std::vector<std::uint32_t> slots_, firstSlots_;
@@ -89,6 +99,7 @@ class LightTableBuilder {
   double environmentIntegral_ = 0.0;
   double crossSection_ = 0.0;  // π·R², m²
   bool hasMovingLights_ = false;
+  Scratch scratch_;
 };
 
 // Builds the table at frame 0, including the environment.

@@ -4,16 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <mutex>
+#include <unordered_map>
 
 #include "base/parallel.h"
 
 namespace quintet::render {
 namespace {
 
-constexpr std::size_t kBins = 12;
-constexpr std::size_t kChunk = 16384;    // lights that one task bins
-constexpr std::size_t kSubtree = 32768;  // largest number of lights whose subtree one task builds
-constexpr int kHalvingDepth = 64;        // deeper ranges are split in half, which bounds the depth of the recursion
+constexpr std::size_t kChunk = 16384;       // lights that one task bins
+constexpr std::size_t kLargeRange = 65536;  // larger ranges are split one after the other, each on all cores
+constexpr std::size_t kSubtree = 2048;      // largest number of lights whose subtree one task builds
+constexpr int kHalvingDepth = 64;           // deeper ranges are split in half, which bounds the depth of the recursion
 
 using Lights = std::span<LightTreeInput>;
 
@@ -50,8 +53,9 @@ struct Bin {
   }
 };
 
-using Row = std::array<LightBounds, kBins>;  // an empty bin has intensity 0
-using Rows = std::array<Row, 3>;
+// Per axis and bin; an empty bin has intensity 0.
+template <std::size_t kBins>
+using Rows = std::array<std::array<LightBounds, kBins>, 3>;
 
 double cost(const LightBounds& b) {
   const vec3 extent = b.box.extent();
@@ -69,69 +73,69 @@ struct Split {
   std::size_t bin = 0;
 };
 
+template <std::size_t kBins>
 struct Binning {
   vec3 low, scale;
-  std::size_t bins;
-  Binning(const Bounds3& centers, std::size_t lights)
-      : low(centers.min),
-        bins(lights < 32    ? 4
-             : lights < 512 ? 8
-                            : kBins) {
+  explicit Binning(const Bounds3& centers) : low(centers.min) {
     const vec3 extent = centers.extent();
-    for (glm::length_t i = 0; i < 3; ++i) scale[i] = extent[i] > 0.0f ? static_cast<float>(bins) / extent[i] : 0.0f;
+    for (glm::length_t i = 0; i < 3; ++i) scale[i] = extent[i] > 0.0f ? static_cast<float>(kBins) / extent[i] : 0.0f;
   }
   std::size_t of(const LightBounds& b, glm::length_t axis) const {
-    const float at = (b.box.center()[axis] - low[axis]) * scale[axis];
-    return std::min(bins - 1, static_cast<std::size_t>(std::max(0.0f, at)));
+    const float center = 0.5f * b.box.min[axis] + 0.5f * b.box.max[axis];
+    const float at = (center - low[axis]) * scale[axis];
+    return std::min(kBins - 1, static_cast<std::size_t>(std::max(0.0f, at)));
   }
 };
 
-void fillRows(Lights lights, const Binning& binning, Rows& rows) {
+template <std::size_t kBins>
+void fillRows(Lights lights, const Binning<kBins>& binning, Rows<kBins>& rows) {
   std::array<std::array<Bin, kBins>, 3> bins;
   for (const LightTreeInput& light : lights)
     for (glm::length_t axis = 0; axis < 3; ++axis)
       if (binning.scale[axis] > 0.0f)
         bins[static_cast<std::size_t>(axis)][binning.of(light.bounds, axis)].add(light.bounds);
   for (std::size_t axis = 0; axis < 3; ++axis)
-    for (std::size_t bin = 0; bin < binning.bins; ++bin)
+    for (std::size_t bin = 0; bin < kBins; ++bin)
       if (bins[axis][bin].count > 0) add(rows[axis][bin], bins[axis][bin].bounds());
 }
 
 // Bins in chunks that do not depend on the number of cores.
-Rows fillRows(Lights lights, const Binning& binning) {
-  Rows rows;
+template <std::size_t kBins>
+Rows<kBins> fillRows(Lights lights, const Binning<kBins>& binning) {
+  Rows<kBins> rows;
   if (lights.size() <= kChunk) {
     fillRows(lights, binning, rows);
     return rows;
   }
-  std::vector<Rows> parts((lights.size() + kChunk - 1) / kChunk);
+  std::vector<Rows<kBins>> parts((lights.size() + kChunk - 1) / kChunk);
   parallelFor(parts.size(), [&](std::size_t part) {
     fillRows(lights.subspan(part * kChunk, std::min(kChunk, lights.size() - part * kChunk)), binning, parts[part]);
   });
-  for (const Rows& part : parts)
+  for (const Rows<kBins>& part : parts)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t bin = 0; bin < binning.bins; ++bin) add(rows[axis][bin], part[axis][bin]);
+      for (std::size_t bin = 0; bin < kBins; ++bin) add(rows[axis][bin], part[axis][bin]);
   return rows;
 }
 
 // Returns the cheapest split between bins by equation 2, regularized by the extents.
-Split cheapest(const Rows& rows, std::size_t bins, const vec3& extent) {
+template <std::size_t kBins>
+Split cheapest(const Rows<kBins>& rows, const vec3& extent) {
   const float longest = std::max({extent.x, extent.y, extent.z});
   Split best;
   double least = std::numeric_limits<double>::infinity();
   for (glm::length_t axis = 0; axis < 3; ++axis) {
     if (!(extent[axis] > 0.0f)) continue;
-    const Row& row = rows[static_cast<std::size_t>(axis)];
+    const auto& row = rows[static_cast<std::size_t>(axis)];
     std::array<double, kBins> above{};  // cost of the bins from i to the end; negative if they are empty
     LightBounds right, left;
-    for (std::size_t i = bins; i-- > 1;) {
-      above[i] = i + 1 < bins ? above[i + 1] : -1.0;
+    for (std::size_t i = kBins; i-- > 1;) {
+      above[i] = i + 1 < kBins ? above[i + 1] : -1.0;
       if (!(row[i].intensity > 0.0f)) continue;
       add(right, row[i]);
       above[i] = cost(right);
     }
     const double regular = static_cast<double>(longest) / extent[axis];
-    for (std::size_t i = 0; i + 1 < bins; ++i) {
+    for (std::size_t i = 0; i + 1 < kBins; ++i) {
       if (!(row[i].intensity > 0.0f)) continue;  // a split after an empty bin equals the split before it
       add(left, row[i]);
       if (above[i + 1] < 0.0) break;
@@ -145,20 +149,52 @@ Split cheapest(const Rows& rows, std::size_t bins, const vec3& extent) {
   return best;
 }
 
+// Moves the lights of the first part of the cheapest split to the front, and returns their number.
+template <std::size_t kBins>
+std::size_t splitAtBin(Lights lights, const Bounds3& centers) {
+  const Binning<kBins> binning(centers);
+  const Split best = cheapest<kBins>(fillRows(lights, binning), centers.extent());
+  if (best.axis == 3) return lights.size() / 2;
+  const auto isFirst = [&](const LightTreeInput& light) { return binning.of(light.bounds, best.axis) <= best.bin; };
+  return static_cast<std::size_t>(std::partition(lights.begin(), lights.end(), isFirst) - lights.begin());
+}
+
+// Moves the lights with power to the end of the list and returns them: environments, directional lights, and finite
+// lights, each in their order. There are few infinite lights, so the others are moved only once.
+Lights sortByReach(std::vector<LightTreeInput>& lights) {
+  std::vector<LightTreeInput> infinite;
+  std::size_t first = lights.size();
+  for (std::size_t i = lights.size(); i-- > 0;) {
+    if (!(lights[i].bounds.intensity > 0.0f)) continue;
+    if (lights[i].reach != LightReach::finite)
+      infinite.push_back(lights[i]);
+    else if (--first != i)
+      lights[first] = lights[i];
+  }
+  std::ranges::stable_sort(infinite, std::ranges::less{}, &LightTreeInput::reach);  // the last one is the first light
+  for (const LightTreeInput& light : infinite) lights[--first] = light;
+  return Lights(lights).subspan(first);
+}
+
 class Builder {
  public:
-  Builder(Lights lights, std::vector<shared::LightNode>& nodes) : lights_(lights), nodes_(nodes) {
+  Builder(Lights lights, LightTree& tree) : lights_(lights), nodes_(tree.nodes), leaves_(tree.leaves) {
     environments_ = countReach(LightReach::environment);
     infinite_ = environments_ + countReach(LightReach::directional);
   }
 
   void run() {
-    nodes_.resize(2 * lights_.size());
     const Range all{0, lights_.size(), 0, 2, 0};
-    plan(all);
-    parallelFor(subtrees_.size(), [&](std::size_t i) { subtreeBounds_[i] = build(subtrees_[i]); });
-    nextSubtree_ = 0;
-    nextPlanned_ = 0;
+    std::vector<Range> ranges;
+    splitLarge(all, ranges);
+    // A range adds its parts as tasks, until they are small enough.
+    parallelTasks(std::move(ranges), [&](const Range& range, TaskList<Range>& list) {
+      if (range.count <= kSubtree && reachBorder(range) == 0) return record(range, {0, build(range)});
+      const std::size_t count = split(range);
+      record(range, {count, {}});
+      list.add(secondChild(range, count));
+      list.add(firstChild(range, count));
+    });
     finish(all);
   }
 
@@ -169,6 +205,12 @@ class Builder {
     std::size_t below;  // index of its first child; all descendants follow
     int depth;
   };
+  // A range that was split, or whose subtree is complete.
+  struct Result {
+    std::size_t firstCount = 0;  // of a range that was split: size of the first part
+    LightBounds bounds;          // of a complete subtree
+  };
+
   std::size_t countReach(LightReach reach) const {
     return static_cast<std::size_t>(std::ranges::count(lights_, reach, &LightTreeInput::reach));
   }
@@ -195,42 +237,41 @@ class Builder {
     const Lights lights = lights_.subspan(r.first, r.count);
     Bounds3 centers;
     for (const LightTreeInput& light : lights) centers.extend(light.bounds.box.center());
-    const Binning binning(centers, r.count);
-    const Split best = cheapest(fillRows(lights, binning), binning.bins, centers.extent());
-    if (best.axis == 3) return r.count / 2;
-    const auto isFirst = [&](const LightTreeInput& light) { return binning.of(light.bounds, best.axis) <= best.bin; };
-    return static_cast<std::size_t>(std::partition(lights.begin(), lights.end(), isFirst) - lights.begin());
+    if (r.count < 32) return splitAtBin<4>(lights, centers);
+    if (r.count < 512) return splitAtBin<8>(lights, centers);
+    return splitAtBin<12>(lights, centers);
   }
 
-  // Splits large ranges one after the other, each on all cores. A range that is small enough becomes the task of one
-  // core.
-  void plan(const Range& r) {
-    if (r.count <= kSubtree && reachBorder(r) == 0) {
-      subtrees_.push_back(r);
-      subtreeBounds_.emplace_back();
-      return;
-    }
+  void splitLarge(const Range& r, std::vector<Range>& ranges) {
+    if (r.count <= kLargeRange) return ranges.push_back(r);
     const std::size_t count = split(r);
-    planned_.push_back(count);
-    plan(firstChild(r, count));
-    plan(secondChild(r, count));
+    record(r, {count, {}});
+    splitLarge(firstChild(r, count), ranges);
+    splitLarge(secondChild(r, count), ranges);
+  }
+
+  void record(const Range& r, const Result& result) {
+    const std::scoped_lock lock(mutex_);
+    results_[r.node] = result;
   }
 
   LightBounds build(const Range& r) {
-    if (r.count == 1) return write(r, lights_[r.first].bounds, shared::kLightNodeLeaf | lights_[r.first].light);
+    if (r.count == 1) {
+      leaves_[lights_[r.first].light] = static_cast<std::uint32_t>(r.node);
+      return write(r, lights_[r.first].bounds, shared::kLightNodeLeaf | lights_[r.first].light);
+    }
     const std::size_t count = split(r);
     const LightBounds first = build(firstChild(r, count));
     const LightBounds second = build(secondChild(r, count));
     return write(r, unite(first, second), static_cast<std::uint32_t>(r.below));
   }
 
-  // Writes the nodes above the subtrees, in the order in which they were planned.
+  // Writes the nodes above the complete subtrees.
   LightBounds finish(const Range& r) {
-    if (nextSubtree_ < subtrees_.size() && subtrees_[nextSubtree_].node == r.node)
-      return subtreeBounds_[nextSubtree_++];
-    const std::size_t count = planned_[nextPlanned_++];
-    const LightBounds first = finish(firstChild(r, count));
-    const LightBounds second = finish(secondChild(r, count));
+    const Result& result = results_.at(r.node);
+    if (result.firstCount == 0) return result.bounds;
+    const LightBounds first = finish(firstChild(r, result.firstCount));
+    const LightBounds second = finish(secondChild(r, result.firstCount));
     if (reachBorder(r) > 0) nodes_[r.below].link |= shared::kLightNodeShare;
     return write(r, unite(first, second), static_cast<std::uint32_t>(r.below));
   }
@@ -245,13 +286,11 @@ class Builder {
 
   Lights lights_;
   std::vector<shared::LightNode>& nodes_;
+  std::vector<std::uint32_t>& leaves_;
   std::size_t environments_ = 0;  // number of environments, which come first
   std::size_t infinite_ = 0;      // number of environments and directional lights, which come next
-  std::vector<Range> subtrees_;
-  std::vector<LightBounds> subtreeBounds_;
-  std::vector<std::size_t> planned_;  // sizes of the first parts
-  std::size_t nextSubtree_ = 0;
-  std::size_t nextPlanned_ = 0;
+  std::mutex mutex_;
+  std::unordered_map<std::size_t, Result> results_;  // by node
 };
 
 std::uint32_t packAxis(const vec3& n) {
@@ -270,23 +309,15 @@ std::uint32_t packCosine(double cosine) {
 
 }  // namespace
 
-LightTree buildLightTree(std::vector<LightTreeInput> lights, std::size_t lightCount) {
-  std::erase_if(lights, [](const LightTreeInput& l) { return !(l.bounds.intensity > 0.0f); });
-  std::ranges::stable_sort(lights, std::ranges::greater{}, &LightTreeInput::reach);
-  LightTree tree;
-  tree.leaves.assign(lightCount, shared::kNoLight);
-  if (lights.empty()) {
-    tree.nodes.resize(2);
-    tree.nodes[0].link = shared::kLightNodeLeaf;
-    return tree;
-  }
-  Builder(lights, tree.nodes).run();
-  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
-    const std::uint32_t link = tree.nodes[i].link;
-    if (i != 1 && (link & shared::kLightNodeLeaf) != 0)
-      tree.leaves[link & shared::kLightNodeIndex] = static_cast<std::uint32_t>(i);
-  }
-  return tree;
+void LightTree::build(std::vector<LightTreeInput>& lights, std::size_t lightCount) {
+  leaves.assign(lightCount, shared::kNoLight);
+  const Lights used = sortByReach(lights);
+  nodes.resize(2 * std::max<std::size_t>(used.size(), 1));
+  nodes[0] = nodes[1] = {};
+  if (used.empty())
+    nodes[0].link = shared::kLightNodeLeaf;
+  else
+    Builder(used, *this).run();
 }
 
 vec3 unpackLightAxis(std::uint32_t axis) {

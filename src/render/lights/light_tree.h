@@ -23,11 +23,12 @@ struct LightTreeInput {
 struct LightTree {
   std::vector<shared::LightNode> nodes;  // pairs of siblings begin at even indices; node 1 is unused
   std::vector<std::uint32_t> leaves;     // node of each light, or kNoLight
-};
 
-// Builds a tree with one light per leaf. Lights whose intensity is not above 0 are skipped. The topmost splits separate
-// environments from directional lights, and both from finite lights; each group gets its share of the samples.
-LightTree buildLightTree(std::vector<LightTreeInput> lights, std::size_t lightCount);
+  // Builds a tree with one light per leaf, in the memory of an earlier tree. Lights whose intensity is not above 0 are
+  // skipped. The topmost splits separate environments from directional lights, and both from finite lights; each group
+  // gets its share of the samples. Changes the order of `lights`. LightTreeInput::light is below `lightCount`.
+  void build(std::vector<LightTreeInput>& lights, std::size_t lightCount);
+};
 
 // Returns the quantized node of these bounds, rounded so that it contains them. The caller sets the link's index and
 // leaf bit.

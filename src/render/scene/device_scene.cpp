@@ -2,6 +2,7 @@
 #include "render/scene/device_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -16,7 +17,9 @@
 namespace quintet::render {
 namespace {
 
-constexpr std::uint32_t kMinSlots = 1024;  // of textures; those without a texture are white
+constexpr VkDeviceSize kLightStaging = VkDeviceSize{32} << 20;   // largest staging memory for the tables of lights
+constexpr VkDeviceSize kMinLightBuffer = VkDeviceSize{1} << 20;  // smaller buffers are not made smaller
+constexpr std::uint32_t kMinSlots = 1024;                        // of textures; those without a texture are white
 
 // Returns the environment's texels as the device samples them: finite and not negative.
 io::Image cleanEnvironment(const io::Image& image) {
@@ -63,14 +66,16 @@ void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environme
   std::vector<mat4> worldFromObject;
   for (const scene::Instance& instance : scene.instances)
     worldFromObject.push_back(scene::worldFromObjectAt(instance, 0.0f));
-  LightTable table = builder.build(worldFromObject);
+  LightTable table;
+  builder.build(worldFromObject, table);
   EnvironmentTable environmentTable = std::move(builder.environment());
   firstLightSlots_ = table.firstSlots;
   if (builder.hasMovingLights() || options_.editable) {
     builder.copyGeometry();
     lightBuilder_ = std::move(builder);
   }
-  uploadLightTable(std::move(table));
+  uploadLightTable(table);
+  if (lightBuilder_) lightTables_ = std::move(table);
   if (environmentTable.width > 0 && !environment.image.empty()) {
     environmentImage_.entries = gpu::makeBufferOf(context_, environmentTable.entries, 0, "environment table");
     environmentTable.entries = {};
@@ -83,19 +88,28 @@ void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environme
   frame_.albedoTables = albedoTable_.address();
 }
 
-void DeviceScene::uploadLightTable(LightTable table) {
+void DeviceScene::uploadLightTable(LightTable& table) {
   if (lightBuilder_ && lightBuilder_->hasMovingLights())
     padTables(table);
   else if (table.hasNoPower())
     table.clear();
-  lights_ = gpu::makeBufferOf(context_, table.lights, 0, "lights");
-  lightTable_ = gpu::makeBufferOf(context_, table.entries, 0, "light table");
-  lightNodes_ = gpu::makeBufferOf(context_, table.nodes, 0, "light nodes");
-  lightSlots_ = gpu::makeBufferOf(context_, table.slots, 0, "light slots");
-  frame_.lights = lights_.address();
-  frame_.lightTable = lightTable_.address();
-  frame_.lightNodes = lightNodes_.address();
-  frame_.lightSlots = lightSlots_.address();
+  const std::array bytes{std::as_bytes(std::span(table.lights)), std::as_bytes(std::span(table.entries)),
+                         std::as_bytes(std::span(table.nodes)), std::as_bytes(std::span(table.slots))};
+  VkDeviceSize total = 0;
+  for (const std::span<const std::byte>& part : bytes) total += part.size();
+  gpu::Uploader uploader(context_, std::min(2 * total, kLightStaging));
+  const auto store = [&](gpu::Buffer& buffer, std::span<const std::byte> data, const char* name) {
+    // A buffer is used again unless that wastes much memory: dragging a value edits lights many times a second.
+    if (!buffer || buffer.size() < data.size() || buffer.size() > 2 * data.size() + kMinLightBuffer)
+      buffer = gpu::Buffer(context_, {.size = data.size(), .name = name});
+    uploader.upload(buffer, data);
+    return buffer.address();
+  };
+  frame_.lights = store(lights_, bytes[0], "lights");
+  frame_.lightTable = store(lightTable_, bytes[1], "light table");
+  frame_.lightNodes = store(lightNodes_, bytes[2], "light nodes");
+  frame_.lightSlots = store(lightSlots_, bytes[3], "light slots");
+  uploader.flush();
   frame_.lightCount = static_cast<std::uint32_t>(table.entries.size());
   frame_.environmentLight = table.environmentLight;
 }
@@ -220,11 +234,12 @@ void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder,
 
 void DeviceScene::setFrame(float frame) {
   if (!topLevel_->setFrame(frame) || !lightBuilder_ || !lightBuilder_->hasMovingLights()) return;
-  LightTable table = lightBuilder_->build(topLevel_->worldFromObject());
-  padTables(table);
-  lights_.uploadAs(std::span<const shared::LightData>(table.lights));
-  lightTable_.uploadAs(std::span<const shared::AliasEntry>(table.entries));
-  lightNodes_.uploadAs(std::span<const shared::LightNode>(table.nodes));
+  updateLights();
+}
+
+void DeviceScene::updateLights() {
+  lightBuilder_->build(topLevel_->worldFromObject(), lightTables_);
+  uploadLightTable(lightTables_);
 }
 
 void DeviceScene::setTransforms(std::span<const InstanceTransform> transforms) {

@@ -106,8 +106,8 @@ class DeviceScene {
 
   void uploadLights(const scene::Scene& scene, const scene::Environment& environment);
   void showEnvironment(const scene::Environment& environment, const EnvironmentTable& table);
-  void updateLights() { uploadLightTable(lightBuilder_->build(topLevel_->worldFromObject())); }
-  void uploadLightTable(LightTable table);
+  void updateLights();
+  void uploadLightTable(LightTable& table);
   void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
   bool needsSingleAnyHit(const program::GeometryFacts& geometry) const;
   // Returns the geometries of a mesh. The boxes of primitive sets are stored in `boxes`, which must live until the
@@ -129,6 +129,7 @@ class DeviceScene {
   gpu::Buffer lights_, lightTable_, lightNodes_, lightSlots_;
   std::vector<std::uint32_t> firstLightSlots_;     // per instance
   std::optional<LightTableBuilder> lightBuilder_;  // only if an instance with keyframes has lights, or for edits
+  LightTable lightTables_;                         // of the last edit, for its memory
   std::vector<rt::Blas> blas_;                     // one per mesh that an instance uses
   std::vector<int> blasOfMesh_;                    // index in blas_; -1 if no instance uses the mesh
   std::uint64_t bottomLevelBytes_ = 0;

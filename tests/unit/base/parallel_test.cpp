@@ -42,6 +42,47 @@ TEST(ParallelTest, RunsNestedLoops) {
       std::logic_error);
 }
 
+// Each task above 0 adds two smaller ones: a binary tree of 2^10 - 1 tasks.
+TEST(ParallelTest, RunsTasksThatAddTasks) {
+  std::atomic<int> calls{0};
+  const auto halve = [&](int depth, TaskList<int>& list) {
+    ++calls;
+    for (int child = 0; depth > 0 && child < 2; ++child) list.add(depth - 1);
+  };
+  parallelTasks(std::vector<int>{9}, halve);
+  EXPECT_EQ(calls, 1023);
+  calls = 0;
+  parallelTasks(std::vector<int>{}, halve);
+  EXPECT_EQ(calls, 0);
+  parallelFor(2, [&](std::size_t) { parallelTasks(std::vector<int>{4, 4}, halve); });  // nested
+  EXPECT_EQ(calls, 4 * 31);
+  EXPECT_THROW(parallelTasks(std::vector<int>{9},
+                             [&](int depth, TaskList<int>& list) {
+                               if (depth == 5) throw std::runtime_error("five");
+                               halve(depth, list);
+                             }),
+               std::runtime_error);
+}
+
+TEST(ParallelTest, UsesAllCoresForTasks) {
+  if (hardwareThreads() < 2) GTEST_SKIP() << "one core";
+  std::atomic<int> inside{0};
+  std::atomic<bool> together{false};
+  parallelTasks(std::vector<int>{0}, [&](int depth, TaskList<int>& list) {
+    if (depth == 0) {
+      list.add(1);
+      list.add(1);
+      return;
+    }
+    ++inside;
+    for (int wait = 0; wait < 5000 && !together; ++wait) {  // until the other task arrives
+      if (inside == 2) together = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  EXPECT_TRUE(together);
+}
+
 TEST(ParallelTest, UsesAllCoresForALoopInsideASingleIteration) {
   if (hardwareThreads() < 2) GTEST_SKIP() << "one core";
   std::atomic<int> inside{0};

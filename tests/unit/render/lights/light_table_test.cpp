@@ -167,6 +167,24 @@ TEST(LightTable, AssignsSlotsAndIndices) {
   EXPECT_EQ(last.primitive, 1u);
 }
 
+// A texture on the emissive square of `squares`.
+scene::Scene textured(io::Image image, scene::Sampler sampler = {}) {
+  scene::Scene scene = squares(vec3(2.0f));
+  scene.images.push_back({"image", std::move(image)});
+  scene.textures.push_back({"texture", 0, sampler});
+  scene.materials[1].emissiveTexture.texture = 0;
+  scene.instances = {instanceOf(1)};
+  return scene;
+}
+
+io::Image gray(std::uint32_t width, std::uint32_t height, auto value) {
+  io::Image image = io::makeImage(width, height, 3, io::PixelType::f32, io::ColorEncoding::linear);
+  for (std::uint32_t y = 0; y < height; ++y)
+    for (std::uint32_t x = 0; x < width; ++x)
+      for (float& c : image.pixel<float>(x, y)) c = static_cast<float>(value(x, y));
+  return image;
+}
+
 bool equal(const LightTable& a, const LightTable& b) {
   const auto bytes = [](const auto& values) {
     const auto view = std::as_bytes(std::span(values));
@@ -184,9 +202,11 @@ TEST(LightTable, EditsGiveTheTableOfTheEditedScene) {
   scene::Environment environment;
   environment.constant = vec3(0.5f);
   LightTableBuilder builder(scene, environment);
+  LightTable table;  // is built in the memory of the last one
   const auto expectTableOfScene = [&](const char* edit) {
     const LightTable expected = buildLightTable(scene, environment);
-    EXPECT_TRUE(equal(builder.build(std::vector<mat4>(2, mat4(1.0f))), expected)) << edit;
+    builder.build(std::vector<mat4>(2, mat4(1.0f)), table);
+    EXPECT_TRUE(equal(table, expected)) << edit;
   };
   expectTableOfScene("none");
   scene.lights[1].intensity = {3, 2, 1};
@@ -202,6 +222,57 @@ TEST(LightTable, EditsGiveTheTableOfTheEditedScene) {
   environment.intensity = 0.0f;
   builder.setEnvironment(0.0);
   expectTableOfScene("no environment");
+}
+
+// Instances of a grid of triangles, more lights than one task builds: the tables after each edit of a material are those
+// of a new scene. Textures, a set of solids with two materials, and lights that come and go.
+TEST(LightTable, EditsOfManyLightsGiveTheTableOfTheEditedScene) {
+  scene::Scene scene = textured(gray(16, 16, [](auto x, auto y) { return x < 8 ? 0.0 : 1.0 + y; }));
+  scene.materials.push_back(emitter({0.25f, 0.5f, 1.0f}));
+  scene::Geometry& grid = scene.meshes[0].geometries[0];
+  grid = {};
+  grid.material = 0;
+  for (std::uint32_t i = 0; i < 1500; ++i) {
+    const vec3 corner(i % 40, i / 40, std::sin(static_cast<float>(i)));
+    grid.positions.insert(grid.positions.end(), {corner, corner + vec3(0.5f, 0, 0.1f), corner + vec3(0, 0.7f, 0)});
+    grid.triangles.push_back(uvec3(0, 1, 2) + 3 * i);
+  }
+  scene::PrimitiveSet& solids = scene.meshes.emplace_back().primitiveSets.emplace_back();
+  solids.primitives.resize(4);
+  for (int i = 0; i < 4; ++i) solids.primitives[static_cast<std::size_t>(i)].material = i % 3;
+  for (int i = 0; i < 9; ++i) {
+    const mat4 turned = glm::rotate(mat4(1.0f), 0.3f * static_cast<float>(i), vec3(0, 1, 0));
+    scene.instances.push_back(instanceOf(i % 4 == 3 ? i / 4 + 1 : 0, turned));
+  }
+  std::vector<mat4> worldFromObject;
+  for (const scene::Instance& instance : scene.instances) worldFromObject.push_back(instance.worldFromObject);
+  LightTableBuilder builder(scene, {});
+  builder.copyGeometry();
+  LightTable table;
+  const auto expectTableOf = [&](const scene::Scene& edited, std::size_t lights) {
+    builder.setEmission(edited);
+    builder.copyGeometry();
+    builder.build(worldFromObject, table);
+    EXPECT_TRUE(equal(table, buildLightTable(edited, {})));
+    EXPECT_EQ(table.lights.size(), lights);
+  };
+  const std::size_t square = 2 * 2, set = 4, grids = 7 * 1500;
+  builder.build(worldFromObject, table);
+  EXPECT_EQ(table.lights.size(), square + set);
+  scene::Scene edited = scene;
+  edited.materials[0].emissive = {0.5f, 0.25f, 2.0f};
+  expectTableOf(edited, grids + square + set);
+  edited.materials[0].emissive = {0.5f, 2.0f, 0.25f};  // all lights, with new powers
+  expectTableOf(edited, grids + square + set);
+  edited.materials[1].emissive = vec3(0.0f);
+  expectTableOf(edited, grids + set);
+  edited.materials[0].unlit = true;
+  expectTableOf(edited, set);
+  edited.materials[2].emissive = vec3(0.0f);
+  edited.materials[1].emissive = vec3(3.0f);
+  edited.materials[1].emissiveTexture.offset = vec2(0.5f, 0.0f);
+  expectTableOf(edited, square + set);
+  expectTableOf(scene, square + set);
 }
 
 // Instances that no ray hits are not lights.
@@ -252,24 +323,6 @@ TEST(LightTable, SkipsTheLargestGeometriesBeyondTheLimit) {
   const LightTable table = buildLightTable(scene, {}, 17);
   EXPECT_EQ(table.slots, (std::vector<std::uint32_t>{4, 0, none, 2}));
   EXPECT_EQ(buildLightTable(scene, {}, 3).slots, (std::vector<std::uint32_t>{none, 0, none, none}));
-}
-
-// A texture on the emissive square of `squares`.
-scene::Scene textured(io::Image image, scene::Sampler sampler = {}) {
-  scene::Scene scene = squares(vec3(2.0f));
-  scene.images.push_back({"image", std::move(image)});
-  scene.textures.push_back({"texture", 0, sampler});
-  scene.materials[1].emissiveTexture.texture = 0;
-  scene.instances = {instanceOf(1)};
-  return scene;
-}
-
-io::Image gray(std::uint32_t width, std::uint32_t height, auto value) {
-  io::Image image = io::makeImage(width, height, 3, io::PixelType::f32, io::ColorEncoding::linear);
-  for (std::uint32_t y = 0; y < height; ++y)
-    for (std::uint32_t x = 0; x < width; ++x)
-      for (float& c : image.pixel<float>(x, y)) c = static_cast<float>(value(x, y));
-  return image;
 }
 
 // Returns the mean radiance of a textured square, from its probability relative to that of a point light.

@@ -33,6 +33,12 @@ class Random {
   std::mt19937 engine_;
 };
 
+LightTree treeOf(std::vector<LightTreeInput> lights, std::size_t lightCount) {
+  LightTree tree;
+  tree.build(lights, lightCount);
+  return tree;
+}
+
 // Clusters of triangles, points and spots with very different sizes and powers.
 struct Case {
   std::vector<LightTreeInput> lights;
@@ -93,7 +99,7 @@ void forAncestors(const LightTree& tree, const Body& body) {
 
 TEST(LightTree, BoundsLightsByNodes) {
   const Case c = makeCase(3000, 1);
-  const LightTree tree = buildLightTree(c.lights, c.lights.size());
+  const LightTree tree = treeOf(c.lights, c.lights.size());
   ASSERT_EQ(tree.nodes.size(), 6000u);
   std::vector<double> sums(tree.nodes.size(), 0.0);
   std::size_t narrow = 0;
@@ -124,7 +130,7 @@ TEST(LightTree, BoundsLightsByNodes) {
 
 TEST(LightTree, IsDeterministic) {
   const Case c = makeCase(100'000, 2);  // more than one task
-  const LightTree a = buildLightTree(c.lights, c.lights.size()), b = buildLightTree(c.lights, c.lights.size());
+  const LightTree a = treeOf(c.lights, c.lights.size()), b = treeOf(c.lights, c.lights.size());
   ASSERT_EQ(a.nodes.size(), b.nodes.size());
   EXPECT_EQ(std::memcmp(a.nodes.data(), b.nodes.data(), a.nodes.size() * sizeof(shared::LightNode)), 0);
   EXPECT_EQ(a.leaves, b.leaves);
@@ -149,7 +155,7 @@ TEST(LightTree, HandlesDegenerateCases) {
   }
   cases[4] = {{pointBounds(vec3(0.0f), 1.0), 0}};
   for (const std::vector<LightTreeInput>& lights : cases) {
-    const LightTree tree = buildLightTree(lights, lights.size());
+    const LightTree tree = treeOf(lights, lights.size());
     std::size_t found = 0;
     forAncestors(tree, [&](std::size_t light, std::uint32_t at) { found += at == tree.leaves[light] ? 1 : 0; });
     EXPECT_EQ(found, lights.size());
@@ -158,10 +164,10 @@ TEST(LightTree, HandlesDegenerateCases) {
 }
 
 TEST(LightTree, SkipsLightsWithoutPower) {
-  const LightTree none = buildLightTree({{pointBounds(vec3(0.0f), 0.0), 0}}, 1);
+  const LightTree none = treeOf({{pointBounds(vec3(0.0f), 0.0), 0}}, 1);
   EXPECT_EQ(none.leaves, std::vector<std::uint32_t>{shared::kNoLight});
   EXPECT_EQ(none.nodes.at(0).intensity, 0.0f);
-  const LightTree one = buildLightTree({{pointBounds(vec3(0.0f), 0.0), 0}, {pointBounds(vec3(0.0f), 2.0), 1}}, 3);
+  const LightTree one = treeOf({{pointBounds(vec3(0.0f), 0.0), 0}, {pointBounds(vec3(0.0f), 2.0), 1}}, 3);
   EXPECT_EQ(one.leaves, (std::vector<std::uint32_t>{shared::kNoLight, 0, shared::kNoLight}));
 }
 
@@ -171,7 +177,7 @@ TEST(LightTree, SeparatesKindsFirst) {
   c.lights[10] = {environmentBounds(1.0), 10, LightReach::environment};
   c.lights[20] = {directionalBounds(vec3(0, -1, 0), 1.0), 20, LightReach::directional};
   c.lights[30] = {directionalBounds(vec3(0, 1, 0), 1.0), 30, LightReach::directional};
-  const LightTree tree = buildLightTree(c.lights, 100);
+  const LightTree tree = treeOf(c.lights, 100);
   const auto flags = [&](std::uint32_t node) {
     return tree.nodes[node].link & (shared::kLightNodeInfinite | shared::kLightNodeShare);
   };
