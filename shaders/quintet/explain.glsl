@@ -53,10 +53,15 @@ EXPLAIN_RECORD(ExplainEmission, kLogEmission, 10u)
 EXPLAIN_RECORD(ExplainContribution, kLogContribution, 8u)
 EXPLAIN_RECORD(ExplainPathEnd, kLogPathEnd, 1u)
 
+// program::compile defines more words for a stage with larger data.
+#ifndef QUINTET_EXPLAIN_DATA_WORDS
+#define QUINTET_EXPLAIN_DATA_WORDS kExplainDataWords
+#endif
+
 // Makes room for the payload or callable data of a call. spirv/log_call_data.h replaces the store.
 #define EXPLAIN_DATA(marker)                                         \
   do {                                                               \
-    const uint at = logBegin_(kLogData, 1u + kExplainDataWords);     \
+    const uint at = logBegin_(kLogData, 1u + QUINTET_EXPLAIN_DATA_WORDS); \
     if (at != kLogNone_) LogReference_(frame.log).words[at] = marker; \
   } while (false)
 void explainDataBefore_() { EXPLAIN_DATA(kExplainDataBefore); }

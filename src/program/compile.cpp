@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <filesystem>
+#include <set>
+#include <string>
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -10,10 +13,13 @@
 #include "program/gsn/lecture.h"
 #include "program/hit_shaders.h"
 #include "quintet/shared/explain.h"
+#include "shader/include_resolver.h"
 #include "spirv/module.h"
 
 namespace quintet::program {
 namespace {
+
+constexpr std::uint32_t kMostDataWords = 4096;  // of the data of a call that is logged: 16 KiB
 
 std::vector<std::string> usedFiles(const Program& program) {
   std::vector<std::string> files;
@@ -42,12 +48,22 @@ void addResult(CompiledProgram& compiled, shader::Result& result) {
   compiled.fileHashes.insert(compiled.fileHashes.end(), result.fileHashes.begin(), result.fileHashes.end());
 }
 
-// Adds the stores of payloads and callable data to an instrumented stage.
-void logCalls(const Program& program, CompiledProgram::Stage& stage, std::size_t index) {
+// Adds the stores of payloads and callable data to an instrumented stage. A stage with large data is compiled again, so that
+// its records have room for them.
+void logCalls(const Program& program, CompiledProgram::Stage& stage, std::size_t index, const shader::Source& source,
+              const shader::Compiler& compiler) {
   if (stage.spirv.empty()) return;
-  spirv::LoggedCalls logged = spirv::logCallData(
-      stage.spirv, {shared::kExplainDataBefore, shared::kExplainDataAfter, shared::kExplainDataWords},
-      static_cast<std::uint32_t>(index) * kCallsPerStage);
+  const auto log = [&](std::uint32_t words) {
+    return spirv::logCallData(stage.spirv, {shared::kExplainDataBefore, shared::kExplainDataAfter, words},
+                              static_cast<std::uint32_t>(index) * kCallsPerStage);
+  };
+  spirv::LoggedCalls logged = log(shared::kExplainDataWords);
+  if (const std::uint32_t words = std::min(logged.maxWords, kMostDataWords); words > shared::kExplainDataWords) {
+    shader::Source larger = source;
+    larger.defines.emplace_back("QUINTET_EXPLAIN_DATA_WORDS", std::to_string(words) + "u");
+    stage.spirv = compiler.compile(larger).spirv;
+    logged = log(words);
+  }
   stage.spirv = std::move(logged.spirv);
   stage.calls = std::move(logged.sites);
   for (spirv::CallSite& call : stage.calls) call.location.file = userFile(program, call.location.file);
@@ -99,7 +115,7 @@ CompiledProgram compile(const Program& program, const shader::Compiler& compiler
     results[i] = compiler.compile(source);
     if (program.descriptionFile.ends_with(kLectureExtension)) explainLectureNames(results[i].diagnostics, source.stage);
     compiled.stages[i] = {files[i], source.stage, std::move(results[i].spirv)};
-    if (instrumentation == Instrumentation::explain) logCalls(program, compiled.stages[i], i);
+    if (instrumentation == Instrumentation::explain) logCalls(program, compiled.stages[i], i, source, compiler);
   });
   compiled.ok = std::ranges::none_of(compiled.stages, [](const auto& stage) { return stage.spirv.empty(); });
   compiled.diagnostics = program.diagnostics;

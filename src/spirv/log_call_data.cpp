@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -22,6 +23,8 @@ struct LoggedPart {
   Id type = 0;       // of the scalar or vector
   Id component = 0;  // type of its components
 };
+
+constexpr std::uint64_t kMostWords = 1u << 16;  // parts beyond them are not counted
 
 class FieldList {
  public:
@@ -44,16 +47,17 @@ class FieldList {
   std::vector<DataField> fields;
   std::vector<LoggedPart> parts;
   bool complete = true;
+  std::uint64_t words = 0;  // of all fields, also of those that do not fit
 
  private:
   void addParts(const Type& type, const std::string& name) {
-    for (std::uint32_t i = 0; i < type.partCount() && words_ < maxWords_; ++i) {
+    for (std::uint32_t i = 0; i < type.partCount() && words <= kMostWords; ++i) {
       path_.push_back(i);
       const bool named = type.kind == Type::Kind::structure && i < type.memberNames.size();
       add(type.part(i), named ? name + "." + type.memberNames[i] : fmt::format("{}[{}]", name, i));
       path_.pop_back();
     }
-    complete = complete && words_ < maxWords_;
+    complete = complete && words <= kMostWords;
   }
 
   void addScalars(Id id, Id component, std::uint32_t count, const std::string& name) {
@@ -63,12 +67,13 @@ class FieldList {
     field.type = types_.nameOf(id);
     field.components = count;
     field.firstWord = words_;
-    field.width = type.kind == Type::Kind::boolean ? 32 : type.width;
+    field.width = type.kind == Type::Kind::boolean ? 32 : std::max(type.width, 32u);
     field.kind = type.kind == Type::Kind::boolean    ? DataField::Kind::boolean
                  : type.kind == Type::Kind::floating ? DataField::Kind::floating
                  : type.isSigned                     ? DataField::Kind::signedInteger
                                                      : DataField::Kind::unsignedInteger;
-    if ((field.width != 32 && field.width != 64) || words_ + field.wordCount() > maxWords_) {
+    words += field.wordCount();
+    if (words_ + field.wordCount() > maxWords_) {
       complete = false;
       return;
     }
@@ -102,7 +107,7 @@ class DataLogger {
 
   LoggedCalls run() {
     findCalls();
-    if (stores_.empty()) return {{}, {}};
+    if (stores_.empty()) return {};
     decideIds();
     std::size_t index = 0;
     bool constantsDone = false;
@@ -118,7 +123,7 @@ class DataLogger {
       else
         out_.copy();
     }
-    return {out_.take(), std::move(sites_)};
+    return {out_.take(), std::move(sites_), maxWords_};
   }
 
  private:
@@ -160,6 +165,7 @@ class DataLogger {
   std::size_t addCall(const Instruction& instruction, const Variable& variable) {
     FieldList list(module_.types(), markers_.maxWords);
     list.add(variable.type, variable.name);
+    maxWords_ = std::max(maxWords_, static_cast<std::uint32_t>(list.words));
     const bool trace = instruction.op == Op::OpTraceRayKHR;
     sites_.push_back({variable.name, module_.types().nameOf(variable.type), std::move(list.fields), list.complete,
                       module_.location(instruction, trace ? "traceRayEXT" : "executeCallableEXT")});
@@ -178,7 +184,10 @@ class DataLogger {
     for (const Instruction& instruction : module_.instructions())
       if (instruction.op == Op::OpTypeVector && instruction.at(0) == wordType_ && instruction.at(1) == 2)
         pairType_ = instruction.result;
+    for (const Instruction& instruction : module_.instructions())
+      if (instruction.op == Op::OpTypeFloat && instruction.at(0) == 32) floatType_ = instruction.result;
     if (pairType_ == 0) newPairType_ = pairType_ = out_.newId();
+    if (floatType_ == 0) newFloatType_ = floatType_ = out_.newId();
   }
   void useConstant(std::uint32_t value) {
     if (!constants_.contains(value)) constants_[value] = out_.newId();
@@ -186,6 +195,7 @@ class DataLogger {
 
   void emitConstants() {
     for (const auto& [value, id] : constants_) out_.emit(Op::OpConstant, {wordType_, id, value});
+    if (newFloatType_ != 0) out_.emit(Op::OpTypeFloat, {newFloatType_, 32});
     if (newPairType_ != 0) out_.emit(Op::OpTypeVector, {newPairType_, wordType_, 2});
   }
 
@@ -236,7 +246,15 @@ class DataLogger {
       return;
     }
     Id bits = value;
-    if (typeId != wordType_) {
+    if (type.kind == Type::Kind::floating && type.width < 32) {
+      const Id wide = out_.newId();
+      out_.emit(Op::OpFConvert, {floatType_, wide, value});
+      bits = out_.newId();
+      out_.emit(Op::OpBitcast, {wordType_, bits, wide});
+    } else if (type.kind == Type::Kind::integer && type.width < 32) {
+      bits = out_.newId();
+      out_.emit(type.isSigned ? Op::OpSConvert : Op::OpUConvert, {wordType_, bits, value});
+    } else if (typeId != wordType_) {
       bits = out_.newId();
       if (type.kind == Type::Kind::boolean)
         out_.emit(Op::OpSelect, {wordType_, bits, value, constants_.at(1), constants_.at(0)});
@@ -275,6 +293,8 @@ class DataLogger {
   std::map<std::uint32_t, Id> constants_;  // new ones, by value
   Id wordType_ = 0;                        // uint
   Id pairType_ = 0, newPairType_ = 0;      // uvec2; the second is 0 if the module has it
+  Id floatType_ = 0, newFloatType_ = 0;    // float, as well
+  std::uint32_t maxWords_ = 0;             // LoggedCalls::maxWords
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ struct DataField {
   std::string name;  // as GLSL accesses it: "payload.light.color", "payload.weights[2]"; a column of a matrix: "m[1]"
   std::string type;  // GLSL name
   Kind kind = Kind::floating;
-  std::uint32_t width = 32;  // bits of a component: 32 or 64
+  std::uint32_t width = 32;  // bits of a logged component: 32 or 64; narrower numbers are widened to 32
   std::uint32_t components = 1;
   std::uint32_t firstWord = 0;  // in the logged data
 
@@ -31,7 +31,7 @@ struct DataField {
 struct CallSite {
   std::string variable;           // name in GLSL; empty if unknown
   std::string type;               // GLSL name
-  std::vector<DataField> fields;  // those that fit; parts of other types (16 bits, addresses) are left out
+  std::vector<DataField> fields;  // those that fit; parts of other types (addresses) are left out
   bool complete = true;           // `fields` has all parts
   SourceLocation location;        // of the call; unknown without debug information
 };
@@ -44,6 +44,7 @@ struct DataMarkers {
 struct LoggedCalls {
   std::vector<std::uint32_t> spirv;
   std::vector<CallSite> sites;
+  std::uint32_t maxWords = 0;  // of the data of a call, also if they do not fit
 };
 
 // Number that a record contains for a marker without a call.

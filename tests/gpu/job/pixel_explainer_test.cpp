@@ -297,6 +297,27 @@ TEST(PixelExplainer, ReportsHitsWithoutShader) {
   EXPECT_EQ(vec3(e.outputs[0].value), vec3(0.25f)) << "no shader changed the payload";
 }
 
+TEST(PixelExplainer, RecordsLargePayloads) {
+  const char* text = R"(
+struct RayPayloadType { float values[300]; vec3 color; };
+void main() { /**** RAY GENERATION SHADER ****/
+  for (int i = 0; i < 300; ++i) payload.values[i] = float(i);
+  payload.color = vec3(0.25);
+  traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(0, 90, 0), 0.5, vec3(0, 1, 0), 100.0, 0);
+  gsnSetPixel(vec4(payload.color, payload.values[299]));
+}
+void main() { /**** MISS SHADER ****/ payload.values[299] = 0.5; payload.color = vec3(0.75); }
+)";
+  const PixelExplanation e = explain(program::parseLecture(text, "large.rt.glsl", "here"), {5, 6}, 0);
+  const std::vector<const ExplainedEvent*> payloads = eventsOf(e, "payload");
+  ASSERT_EQ(payloads.size(), 2u);
+  EXPECT_EQ(payloads[0]->number("payload.values[298]"), 298.0f);
+  EXPECT_EQ(payloads[0]->number("payload.values[299]"), 299.0f);
+  EXPECT_EQ(payloads[1]->number("payload.values[299]"), 0.5f);
+  EXPECT_EQ(payloads[1]->vector("payload.color"), vec3(0.75f));
+  EXPECT_FALSE(payloads[1]->find("complete"));
+}
+
 TEST(PixelExplainer, RecordsCandidates) {
   const PixelExplanation any = explain(program::loadProgram("15_any_hit"), {32, 24}, 0);
   const PixelExplanation box = explain(program::loadProgram("10_sphere"), {32, 24}, 0);

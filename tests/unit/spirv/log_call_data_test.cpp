@@ -103,11 +103,35 @@ TEST(LogCallData, ListsMembersDownToVectors) {
   EXPECT_EQ(site.fields[8].kind, DataField::Kind::signedInteger);
 }
 
+// Narrow numbers are widened to words. The module converts them, and stays valid.
+TEST(LogCallData, WidensNarrowNumbers) {
+  const LoggedCalls calls = logged(
+      "#extension GL_EXT_shader_explicit_arithmetic_types : require\n"
+      "struct Payload { float16_t h; f16vec3 v; int16_t i; u16vec2 u; int8_t b; float t; };\n"
+      "layout(location = 0) rayPayloadEXT Payload payload;\n",
+      "payload.i = int16_t(-2);" + trace(0));
+  ASSERT_EQ(calls.sites.size(), 1u);
+  EXPECT_TRUE(calls.sites[0].complete);
+  EXPECT_EQ(calls.maxWords, 9u);
+  EXPECT_THAT(fieldsOf(calls.sites[0]),
+              testing::ElementsAre("float16_t payload.h at 0", "f16vec3 payload.v at 1", "int16_t payload.i at 4",
+                                   "u16vec2 payload.u at 5", "int8_t payload.b at 7", "float payload.t at 8"));
+  for (const DataField& field : calls.sites[0].fields) EXPECT_EQ(field.width, 32u) << field.name;
+  std::string why;
+  const auto module = Module::read(calls.spirv, &why);
+  ASSERT_TRUE(module) << why;
+  const auto count = [&](spv::Op op) { return std::ranges::count(module->instructions(), op, &Instruction::op); };
+  EXPECT_EQ(count(spv::Op::OpFConvert), 2 * 4);  // before and after the call
+  EXPECT_EQ(count(spv::Op::OpSConvert), 2 * 2);
+  EXPECT_EQ(count(spv::Op::OpUConvert), 2 * 2);
+}
+
 TEST(LogCallData, LeavesOutWhatDoesNotFit) {
   const LoggedCalls calls =
       logged("layout(location = 0) rayPayloadEXT vec4 many[5];\n", trace(0), {kMarkers.before, kMarkers.after, 10});
   ASSERT_EQ(calls.sites.size(), 1u);
   EXPECT_FALSE(calls.sites[0].complete);
+  EXPECT_EQ(calls.maxWords, 20u);
   EXPECT_THAT(fieldsOf(calls.sites[0]), testing::ElementsAre("vec4 many[0] at 0", "vec4 many[1] at 4"));
 }
 
