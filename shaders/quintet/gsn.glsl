@@ -7,7 +7,7 @@
 #define QUINTET_GSN_GLSL
 
 #ifndef QUINTET_GSN_OPEN
-#include "gsn/names_begin.glsl"
+#include "names_begin.glsl"
 #endif
 #include "frame.glsl"
 #ifdef QUINTET_INSTRUMENT

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names that the library declares. The lecture form renames some of them (quintet/gsn/names_begin.glsl).
+// Names that the library declares. The lecture form renames some of them (quintet/names_begin.glsl).
 #ifndef QUINTET_CHECK_LIBRARY_NAMES_H
 #define QUINTET_CHECK_LIBRARY_NAMES_H
 

@@ -71,6 +71,25 @@ void logCalls(const Program& program, CompiledProgram::Stage& stage, std::size_t
 
 }  // namespace
 
+bool usesLibrary(const Program& program, const std::string& file) {
+  std::set<std::string> seen{file};
+  std::vector<std::string> open{file};
+  while (!open.empty()) {
+    const auto found = program.files.find(open.back());
+    if (found == program.files.end()) return true;
+    const std::filesystem::path folder = std::filesystem::path(open.back()).parent_path();
+    open.pop_back();
+    for (const shader::IncludeDirective& include : shader::findIncludes(found->second)) {
+      if (include.name.starts_with("quintet/")) return true;
+      // Relative to the including file, else to the folder of the program.
+      std::string name = (folder / include.name).lexically_normal().generic_string();
+      if (!program.files.contains(name)) name = std::filesystem::path(include.name).lexically_normal().generic_string();
+      if (seen.insert(name).second) open.push_back(name);
+    }
+  }
+  return false;
+}
+
 shader::Source stageSource(const Program& program, const std::string& file, std::size_t index,
                            const std::vector<std::pair<std::string, std::string>>& defines,
                            Instrumentation instrumentation) {
@@ -79,7 +98,8 @@ shader::Source stageSource(const Program& program, const std::string& file, std:
   source.stage = *shader::stageOfFile(library ? file.substr(1, file.size() - 2) : file);
   source.text = library ? "#version 460\n#extension GL_EXT_ray_tracing : require\n#include " + file + "\n"
                         : program.files.at(file);
-  if (!isHitStage(file)) source.text = instrumentStage(source.text, source.stage, index, instrumentation);
+  if (!isHitStage(file))
+    source.text = instrumentStage(source.text, source.stage, index, instrumentation, usesLibrary(program, file));
   source.name = program.path(file);
   source.defines = defines;
   source.virtualFiles = generatedFiles(program);

@@ -44,6 +44,10 @@ struct CompiledProgram {
 // "<folder/file>".
 std::string userFile(const Program& program, const std::string& file);
 
+// Returns whether a file of the program includes <quintet/…>, directly or through files of the program, or a file that the
+// program does not contain, which can do so.
+bool usesLibrary(const Program& program, const std::string& file);
+
 // Returns the source of one stage. A stage of the library becomes a file that includes it. `index` is its position in
 // CompiledProgram::stages.
 shader::Source stageSource(const Program& program, const std::string& file, std::size_t index,

@@ -75,9 +75,17 @@ std::string insertAfterHead(const std::string& source, const std::string& text) 
   return result + text + fmt::format("#line {}\n", head.lines + 1) + source.substr(head.bytes);
 }
 
+// The lines that include files of the library. The front end of the lecture form includes the files itself.
+std::string includeLines(const std::string& source, const std::string& includes, bool usesLibrary) {
+  if (isLecture(source)) return {};
+  if (usesLibrary) return includes;
+  return "#include <quintet/names_begin.glsl>\n" + includes + "#include <quintet/names_end.glsl>\n";
+}
+
 }  // namespace
 
-std::string probedStage(const std::string& source, shader::Stage stage, Probes probes, bool accumulates) {
+std::string probedStage(const std::string& source, shader::Stage stage, Probes probes, bool accumulates,
+                        bool usesLibrary) {
   std::string defines, includes, before, after;
   if (probes.prints) {
     defines += "#define QUINTET_PRINT 1\n";
@@ -91,13 +99,12 @@ std::string probedStage(const std::string& source, shader::Stage stage, Probes p
     before += "  heatKeep_();\n  heatBegin_();\n";
     after = "  heatEnd_();\n";
   }
-  // The front end of the lecture form includes the files itself.
-  return insertAfterHead(source, defines + (isLecture(source) ? "" : includes) + "#define main probedMain_\n") +
+  return insertAfterHead(source, defines + includeLines(source, includes, usesLibrary) + "#define main probedMain_\n") +
          "\n#undef main\nvoid main() {\n" + before + "  probedMain_();\n" + after + "}\n";
 }
 
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
-                            Instrumentation instrumentation) {
+                            Instrumentation instrumentation, bool usesLibrary) {
   const bool wraps = instrumentation == Instrumentation::checks || instrumentation == Instrumentation::explain;
   const bool traces =
       stage == shader::Stage::rayGeneration || stage == shader::Stage::closestHit || stage == shader::Stage::miss;
@@ -110,8 +117,10 @@ std::string instrumentStage(const std::string& source, shader::Stage stage, std:
   else
     inserted = "#define QUINTET_RECURSION 1\n";
   if (!wraps && stage == shader::Stage::rayGeneration) inserted += "#define QUINTET_RECURSION_START 1\n";
-  if (!isLecture(source))
-    inserted += fmt::format("#include <quintet/{}.glsl>\n", explain ? "explain" : wraps ? "instrument" : "recursion");
+  const std::string include = fmt::format("#include <quintet/{}.glsl>\n", explain ? "explain"
+                                                                          : wraps ? "instrument"
+                                                                                  : "recursion");
+  inserted += includeLines(source, include, usesLibrary);
   std::string result = insertAfterHead(source, inserted);
   if (!wraps) return result;
   result += "\n#undef main\nvoid main() {\n";

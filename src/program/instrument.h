@@ -22,8 +22,9 @@ enum class Instrumentation {
 // Returns the source of stage number `index` with the instrumentation. Only stages that can trace get the recursion check.
 // Messages keep their line numbers. A lecture-form stage includes quintet/gsn.glsl, which includes it itself;
 // other sources get them after their leading #version and #extension lines.
+// `usesLibrary`: the stage includes <quintet/…> itself. Otherwise it can declare the names of the library for its own use.
 std::string instrumentStage(const std::string& source, shader::Stage stage, std::size_t index,
-                            Instrumentation instrumentation = Instrumentation::checks);
+                            Instrumentation instrumentation = Instrumentation::checks, bool usesLibrary = true);
 
 // What an instrumented variant of a stage records (program/probes.h).
 struct Probes {
@@ -33,8 +34,9 @@ struct Probes {
 
 // Returns the source of a stage with the functions of quintet/print.glsl and quintet/heat.glsl, for
 // spirv::replacePrintCalls and spirv::addTraceCalls. `source` can have the checks of the recursion, but not all checks.
-// `accumulates`: the program averages its own frames.
-std::string probedStage(const std::string& source, shader::Stage stage, Probes probes, bool accumulates);
+// `accumulates`: the program averages its own frames. `usesLibrary` as above.
+std::string probedStage(const std::string& source, shader::Stage stage, Probes probes, bool accumulates,
+                        bool usesLibrary = true);
 
 }  // namespace quintet::program
 #endif

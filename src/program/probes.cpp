@@ -75,7 +75,8 @@ PrintTable addProbes(CompiledProgram& compiled, const Program& program, const sh
     const ProbedStage& stage = stages[k];
     const std::string& file = compiled.stages[stage.index].file;
     shader::Source source = stageSource(program, file, stage.index, defines, instrumentation);
-    source.text = probedStage(source.text, source.stage, stage.probes, program.accumulation == Accumulation::program);
+    source.text = probedStage(source.text, source.stage, stage.probes, program.accumulation == Accumulation::program,
+                              usesLibrary(program, file));
     source.optimize = false;  // the functions of the probes would be inlined
     results[k] = compiler.compile(source);
   });

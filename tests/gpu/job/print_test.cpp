@@ -3,13 +3,16 @@
 // without them.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 
 #include "base/error.h"
+#include "job/pixel_explainer.h"
 #include "job/render_job.h"
 #include "program/description/parser.h"
 #include "program/gsn/lecture.h"
+#include "program/heat.h"
 #include "program/load.h"
 
 namespace quintet::job {
@@ -162,6 +165,49 @@ PrintRequest allPixels(std::uint64_t limit) {
   request.all = true;
   request.limit = limit;
   return request;
+}
+
+// Stages that do not include the library can use its names for their own declarations, also with prints and heat maps, and
+// in an explanation.
+TEST_F(PrintTest, StagesCanDeclareTheNamesOfTheLibrary) {
+  constexpr const char* kOwnNames = R"(
+#define launchPixel 3
+const float kPi = 3.0;
+const uint kInfinity = 7u;
+struct Frame { float textures; };
+struct Launch { Frame parameters; };
+Launch launch;
+float luminance(vec3 c) { return c.x; }
+float maxComponent(float frame) { return frame + float(launchPixel); }
+float useNames() {
+  launch.parameters.textures = 2.0;
+  return launch.parameters.textures * kPi + luminance(vec3(4.0)) + maxComponent(float(kInfinity));
+}
+)";
+  Files own = files();
+  for (const char* file : {"sky.rmiss", "box.rchit", "box.rahit", "box.rint", "shade.rcall"}) {
+    std::string& text = own.at(file);
+    const std::size_t main = text.find("void main");
+    text.insert(main, kOwnNames);
+    text.insert(text.find("{", text.find("void main")) + 1, "\n  debugPrintfEXT(\"own %.0f\", useNames());\n");
+  }
+  for (const std::vector<std::string>& outputs : {std::vector<std::string>{}, std::vector<std::string>{"heat_rays"}}) {
+    RenderRequest request = makeRequest({2, 1}, 1);
+    request.loadedScene = boxScene();
+    request.print = pixels(0, 0);
+    request.outputs = outputs;
+    observer_ = {};
+    render(request, program::withHeatMaps(program::parseProgram(kToml, "box", "box", own), outputs));
+    EXPECT_EQ(std::ranges::count(textsOf(observer_.lines), "own 20"), 4) << outputs.size();
+  }
+  RenderRequest request = makeRequest({2, 1}, 1);
+  request.loadedScene = boxScene();
+  const program::Program program = program::parseProgram(kToml, "box", "box", own);
+  RenderJob job(engine(), resolve(requestForPixel(request, program, {0, 0}), program), observer_);
+  const PixelExplanation explanation = PixelExplainer(engine(), job).explain({0, 0}, 0, observer_);
+  bool hit = false;
+  forEachEvent(explanation.events, [&](const ExplainedEvent& event, int) { hit = hit || event.type == "closest-hit"; });
+  EXPECT_TRUE(hit);
 }
 
 TEST_F(PrintTest, EveryStagePrints) {

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renames names of the library that a lecture-form program can use itself, up to names_end.glsl.
+// Renames names of the library, up to names_end.glsl, so that a program can use them for its own declarations: of the lecture
+// form, and of instrumented stages that do not include the library themselves. Files can be included before in such a block.
+#ifdef QUINTET_SHARED_TYPES_H
+#define Address uint64_t
+#endif
+#ifdef QUINTET_FRAME_GLSL
+#define frame FrameReference(launch.frameAddress).value
+#endif
 #define AliasArray gsnAliasArray_
 #define AliasEntry gsnAliasEntry_
 #define BoxArray gsnBoxArray_
