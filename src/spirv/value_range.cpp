@@ -63,8 +63,21 @@ ValueRange combine(const Type& type, const ValueRange& a, const ValueRange& b, c
     result.nan = a.nan || b.nan || std::isinf(a.min) || std::isinf(a.max) || std::isinf(b.min) || std::isinf(b.max);
   }
   const Occurrence occurrence = combined(a, b, keeps);
-  if (keeps != Keeps::nothing && a.values.empty() != b.values.empty()) result.occurrence = occurrence;
+  if (keeps != Keeps::nothing && a.values.empty() != b.values.empty()) {
+    result.occurrence = occurrence;
+    result.run = a.values.empty() ? a.run : b.run;
+  }
   return fitted(type, std::move(result));
+}
+
+// The quotients of runs of consecutive integers are shorter runs.
+ValueRange withShorterRuns(ValueRange quotient, const ValueRange& dividend, std::optional<double> divisor) {
+  if (dividend.occurrence != Occurrence::many || dividend.min < 0.0 || !divisor || *divisor < 1.0) return quotient;
+  const double run = std::floor(dividend.run / *divisor);
+  if (run < 2.0 || !quotient.values.empty()) return quotient;
+  quotient.occurrence = Occurrence::many;
+  quotient.run = run;
+  return quotient;
 }
 
 using Pair = std::pair<double, double>;
@@ -265,13 +278,13 @@ ValueRange binary(const Type& type, Op op, const ValueRange& a, const ValueRange
         const double all[] = {l.min / r.min, l.min / r.max, l.max / r.min, l.max / r.max};
         return Pair{std::trunc(*std::ranges::min_element(all)), std::trunc(*std::ranges::max_element(all))};
       };
-      return combine(type, a, b, exact, hull, Keeps::each);
+      return withShorterRuns(combine(type, a, b, exact, hull, Keeps::each), a, b.constant());
     }
     case Op::OpUMod:
     case Op::OpSRem:
     case Op::OpSMod: {
       const std::optional<double> size = b.constant();
-      if (size && *size > 0.0 && *size <= kLongRun && a.min >= 0.0 && a.max >= *size - 1.0 &&
+      if (size && *size > 0.0 && *size <= a.run && a.min >= 0.0 && a.max >= *size - 1.0 &&
           a.occurrence == Occurrence::many) {
         ValueRange result = ValueRange::between(0.0, *size - 1.0, Occurrence::each);
         if (*size <= ValueRange::kMaxValues)
@@ -332,7 +345,7 @@ ValueRange bitwise(const Type& type, Op op, const ValueRange& a, const ValueRang
   if (op == Op::OpBitwiseAnd && constant && *constant >= 0.0) {
     const ValueRange& other = b.constant() ? a : b;
     const std::uint32_t bits = bitsOf(*constant);
-    if (other.occurrence == Occurrence::many && other.min >= 0.0 && other.max >= *constant && *constant < kLongRun &&
+    if (other.occurrence == Occurrence::many && other.min >= 0.0 && other.max >= *constant && *constant < other.run &&
         (bits & (bits + 1)) == 0) {
       ValueRange result = ValueRange::between(0.0, *constant, Occurrence::each);
       if (*constant < ValueRange::kMaxValues)
@@ -365,6 +378,8 @@ ValueRange bitwise(const Type& type, Op op, const ValueRange& a, const ValueRang
   };
   const bool shifts = op != Op::OpBitwiseAnd && op != Op::OpBitwiseOr && op != Op::OpBitwiseXor;
   ValueRange result = combine(type, a, b, exact, hull, shifts ? Keeps::each : Keeps::nothing);
+  if (shifts && op != Op::OpShiftLeftLogical)
+    if (const std::optional<int> shift = shiftOf(b)) result = withShorterRuns(result, a, std::ldexp(1.0, *shift));
   if (!result.values.empty()) return result;
   if (op == Op::OpBitwiseAnd) result.ones |= a.ones & b.ones, result.zeros |= a.zeros | b.zeros;
   if (op == Op::OpBitwiseOr) result.ones |= a.ones | b.ones, result.zeros |= a.zeros & b.zeros;

@@ -20,7 +20,7 @@ namespace quintet::spirv {
 enum class Occurrence {
   unknown,
   each,  // each of ValueRange::values occurs, or min and max if there are none, wherever no branch depends on it
-  many,  // runs of at least kLongRun consecutive integers, as far as the range allows, such as the coordinates of pixels
+  many,  // runs of at least ValueRange::run consecutive integers, as far as the range allows, such as coordinates of pixels
 };
 constexpr double kLongRun = 256;
 
@@ -32,6 +32,7 @@ struct ValueRange {
   std::uint32_t ones = 0, zeros = 0;  // bits of an integer that are always set, never set
   bool nan = true;                    // NaN is possible
   Occurrence occurrence = Occurrence::unknown;
+  double run = kLongRun;  // of Occurrence::many; a division makes runs shorter
 
   static constexpr std::size_t kMaxValues = 16;
 

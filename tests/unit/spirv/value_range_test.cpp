@@ -197,6 +197,29 @@ TEST(ValueRange, ComparisonsDecideOnlyWhatIsCertain) {
   }
 }
 
+// Quotients of a run are a shorter run: of 256 coordinates, 32 tiles of 8.
+TEST(ValueRange, RunsOfTilesAreShorter) {
+  const Type type = integer(32, false);
+  const ValueRange pixels = ValueRange::between(0.0, 1073741823.0, Occurrence::many);
+  const auto occurrence = [&](const ValueRange& tiles, double size) {
+    return binary(type, Op::OpUMod, tiles, ValueRange::of(size)).occurrence;
+  };
+  for (const ValueRange& tiles : {binary(type, Op::OpUDiv, pixels, ValueRange::of(8.0)),
+                                  bitwise(type, Op::OpShiftRightLogical, pixels, ValueRange::of(3.0))}) {
+    EXPECT_EQ(tiles.occurrence, Occurrence::many);
+    EXPECT_EQ(tiles.run, 32.0);
+    EXPECT_EQ(occurrence(tiles, 32.0), Occurrence::each);
+    EXPECT_NE(occurrence(tiles, 33.0), Occurrence::each);
+    EXPECT_EQ(bitwise(type, Op::OpBitwiseAnd, tiles, ValueRange::of(31.0)).occurrence, Occurrence::each);
+    EXPECT_NE(bitwise(type, Op::OpBitwiseAnd, tiles, ValueRange::of(63.0)).occurrence, Occurrence::each);
+    const ValueRange later = binary(type, Op::OpIAdd, tiles, ValueRange::of(1.0));
+    EXPECT_EQ(later.run, 32.0);
+  }
+  EXPECT_EQ(binary(type, Op::OpUDiv, pixels, ValueRange::of(1024.0)).occurrence, Occurrence::unknown);
+  const ValueRange signedPixels = ValueRange::between(-8.0, 1000.0, Occurrence::many);
+  EXPECT_NE(binary(integer(32, true), Op::OpSDiv, signedPixels, ValueRange::of(2.0)).occurrence, Occurrence::many);
+}
+
 TEST(ValueRange, RunsOfPixelsReachOnlySmallRemainders) {
   const Type type = integer(32, false);
   const ValueRange pixels = ValueRange::between(0.0, 1073741823.0, Occurrence::many);

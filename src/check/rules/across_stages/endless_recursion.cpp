@@ -99,15 +99,15 @@ class EndlessRecursion {
     });
   }
 
-  // A single surface can be convex: then no ray that leaves it hits it again.
-  bool hasOneSurface() const {
-    return input_.scene && input_.scene->instances.size() == 1 && input_.scene->instances[0].geometryCount == 1;
+  // A single surface can be convex: then no ray that leaves it hits it again. An unknown scene can be such a surface.
+  bool canBeConvex() const {
+    return !input_.scene || (input_.scene->instances.size() == 1 && input_.scene->instances[0].geometryCount == 1);
   }
 
   // Returns the edge to a stage with such a trace if each hit of the trace, or its miss, runs one; else null.
   const Edge* next(const TraceSite& site) const {
     const Edge* found = nullptr;
-    bool allHits = !site.skipsClosestHit() && !hasOneSurface();
+    bool allHits = !site.skipsClosestHit() && !canBeConvex();
     for (const HitGroupRay hit : site.hits) {
       if (!isUsed(hit.group)) continue;
       const auto edge = std::ranges::find_if(site.edges, [&](const Edge& e) {

@@ -1,0 +1,4 @@
+struct Payload {
+  vec3 color;
+  float t;  // negative if the ray hit nothing
+};
