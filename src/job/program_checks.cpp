@@ -122,7 +122,7 @@ void ProgramChecks::checkProgram(CheckReport& all, CheckObserver& observer) cons
   for (const Diagnostic& d : diagnostics) addFile(report, d.file);
   if (report.program)
     for (const auto& [file, text] : report.program->files) addFile(report, report.program->path(file));
-  observer.finished(report);
+  observer.finished(all);
 }
 
 // On the requested scene or the program's own; without either, what holds for every scene.

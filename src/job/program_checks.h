@@ -59,7 +59,7 @@ class CheckObserver {
 
   virtual void started(const std::string& /*name*/) {}            // the check of a program
   virtual void rendering(const program::Program& /*program*/) {}  // its instrumented run; valid until finished()
-  virtual void finished(const ProgramReport& /*report*/) {}
+  virtual void finished(const CheckReport& /*report*/) {}         // the check of the last program of the report
   // A launch did not end in time. The report contains all programs so far, and this as the last diagnostic. A front end
   // should print it and exit without unwinding, as after Observer::deviceHung().
   virtual void hung(const CheckReport& /*report*/) {}

@@ -2,6 +2,7 @@
 // A program that crashes the driver: the command ends with one error and an exit status, not with a signal.
 #include <algorithm>
 #include <csignal>
+#include <fstream>
 
 #include <gmock/gmock.h>
 
@@ -66,6 +67,20 @@ TEST_F(Crash, IsAnErrorInJson) {
   const auto array = nlohmann::json::parse(check.out);
   ASSERT_EQ(array.size(), 1u) << check.out;
   EXPECT_EQ(array[0]["id"], check.status == 4 ? "CRASH" : "");
+}
+
+// What the check of earlier programs found is printed also if a later one crashes the driver.
+TEST_F(Crash, KeepsTheResultsOfEarlierPrograms) {
+  writeSkyProgram(folder_ / "broken", "payload.color = undeclared;");
+  const RunResult check = quintet(
+      {"check", "broken", "10_sphere", "wild", "--instrument", "--size", "16x16", "--json", "--sarif", "found.sarif"});
+  const auto array = nlohmann::json::parse(check.out);
+  ASSERT_EQ(array.size(), 2u) << check.out;
+  EXPECT_EQ(array[0]["id"], "GLSL");
+  EXPECT_EQ(array[1]["id"], check.status == 4 ? "CRASH" : "");
+  const auto sarif = nlohmann::json::parse(std::ifstream(folder_ / "found.sarif"));
+  EXPECT_EQ(sarif["runs"][0]["results"].size(), check.status == 4 ? 1u : 2u);
+  EXPECT_EQ(sarif["runs"][0]["results"][0]["ruleId"], "GLSL");
 }
 
 // The compiler limits the depth of its parser, so that its stack does not overflow.

@@ -12,7 +12,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <initializer_list>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -63,6 +65,17 @@ bool isCrash(int signal) {
   return std::ranges::find(kCrashes, signal) != kCrashes.end();
 }
 
+// Joins JSON arrays, each in one line.
+std::string joinedArrays(const std::vector<std::string>& arrays) {
+  std::string elements;
+  for (const std::string& array : arrays) {
+    const std::size_t begin = array.find('[') + 1, end = array.rfind(']');
+    if (end == array.npos || begin >= end) continue;
+    elements += (elements.empty() ? "" : ",") + array.substr(begin, end - begin);
+  }
+  return "[" + elements + "]\n";
+}
+
 void reportCrash(int signal, std::span<const std::string> arguments) {
   const std::string program(workProgram()), stage(workStage());
   const char* description = ::strsignal(signal);
@@ -72,10 +85,14 @@ void reportCrash(int signal, std::span<const std::string> arguments) {
   const std::string message = program.empty() ? text : fmt::format("{}: {}", program, text);
   if (!workFile().empty()) TemporaryFile::removeLeftovers(workFile());
   const FailureJson json = failureJson(arguments);
-  if (json == FailureJson::object)
+  if (json == FailureJson::object) {
     printFailureJson(output::errorJson(message, nullptr, kCrashed));
-  else if (json == FailureJson::diagnostics)
-    printFailureJson(check::diagnosticsJson({{Severity::error, program, 0, 0, "CRASH", text}}));
+  } else if (json == FailureJson::diagnostics) {
+    std::vector<std::string> arrays = workResults();
+    arrays.push_back(check::diagnosticsJson({{Severity::error, program, 0, 0, "CRASH", text}}));
+    printFailureJson(joinedArrays(arrays));
+    clearWorkResults();
+  }
   printFailure(message, kCrashed);
 }
 

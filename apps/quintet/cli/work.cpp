@@ -2,13 +2,17 @@
 #include "cli/work.h"
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace quintet::cli {
 namespace {
@@ -17,10 +21,13 @@ struct Work {
   std::array<char, 128> stage{};
   std::array<char, 256> program{};
   std::array<char, 4096> file{};
-  std::array<char, 1 << 16> watched{};  // 'd' for a folder or 'f' for a file, path, '\0'; ends with '\0'
+  std::array<char, 1 << 16> watched{};        // 'd' for a folder or 'f' for a file, path, '\0'; ends with '\0'
+  std::atomic<std::uint64_t> resultBytes{0};  // of complete lines in the file of results
 };
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
 Work* work = nullptr;
+int results = -1;  // a file in memory; negative if there is none
 
 template <std::size_t N>
 void assign(std::array<char, N>& target, std::string_view text) {
@@ -35,6 +42,7 @@ bool shareWork() {
   void* memory = ::mmap(nullptr, sizeof(Work), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) return false;
   work = new (memory) Work;
+  results = ::memfd_create("quintet results", MFD_CLOEXEC);
   return true;
 }
 
@@ -64,6 +72,32 @@ job::WatchList watchedFiles() {
   for (const char* entry = work->watched.data(); *entry; entry += std::strlen(entry) + 1)
     (*entry == 'd' ? list.folders : list.files).emplace_back(entry + 1);
   return list;
+}
+
+void addWorkResult(const std::string& line) {
+  if (!work || results < 0) return;
+  const std::uint64_t begin = work->resultBytes;
+  for (std::size_t done = 0; done < line.size();) {
+    const ssize_t written = ::pwrite(results, line.data() + done, line.size() - done, static_cast<off_t>(begin + done));
+    if (written <= 0) return;
+    done += static_cast<std::size_t>(written);
+  }
+  work->resultBytes = begin + line.size();
+}
+
+void clearWorkResults() {
+  if (work) work->resultBytes = 0;
+}
+
+std::vector<std::string> workResults() {
+  std::vector<std::string> lines;
+  if (!work || results < 0) return lines;
+  std::string text(work->resultBytes, '\0');
+  const ssize_t read = ::pread(results, text.data(), text.size(), 0);
+  text.resize(read > 0 ? static_cast<std::size_t>(read) : 0);
+  for (std::size_t at = 0, end; (end = text.find('\n', at)) != text.npos; at = end + 1)
+    lines.push_back(text.substr(at, end - at));
+  return lines;
 }
 
 void setWorkFile(const std::filesystem::path& file) {

@@ -5,7 +5,9 @@
 #define QUINTET_CLI_WORK_H
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "job/source_watcher.h"
 
@@ -20,11 +22,16 @@ void setWorkProgram(std::string_view program);        // name
 void setWorkFile(const std::filesystem::path& file);  // that is being written; empty for none
 void setWatchedFiles(const job::WatchList& list);     // as far as 64 KiB suffice, folders first
 
+// Results of the command so far that its --json prints at the end, in one line each. They are complete or missing.
+void addWorkResult(const std::string& line);
+void clearWorkResults();  // they are printed, or the command starts over
+
 // In the parent, after the child has ended. Empty if unknown.
 std::string_view workStage();
 std::string_view workProgram();
 std::string_view workFile();
 job::WatchList watchedFiles();
+std::vector<std::string> workResults();
 
 }  // namespace quintet::cli
 #endif

@@ -201,20 +201,27 @@ void writeGraph(const std::filesystem::path& graph, const std::optional<check::P
     writeFile(file, check::svgText(check::diagramOf(*model)));
 }
 
+void writeSarif(const job::CheckReport& report, const Options& options) {
+  writeFile(outputFile(options.sarif),
+            check::sarifText(report.diagnostics(), report.suppressed(), report.sources(), QUINTET_VERSION));
+}
+
 // Writes the files that the options request. Returns the exit status.
 int writeReport(const job::CheckReport& report, const job::ProgramChecks& checks, const Options& options) {
   std::vector<Diagnostic> found = report.diagnostics();
   const std::vector<check::SuppressedDiagnostic> suppressed = report.suppressed();
   int status = report.wrongRequest() ? kWrongCommandLine : report.passes(options.strict) ? 0 : kRuntimeError;
   try {
-    if (!options.sarif.empty())
-      writeFile(outputFile(options.sarif), check::sarifText(found, suppressed, report.sources(), QUINTET_VERSION));
+    if (!options.sarif.empty()) writeSarif(report, options);
     if (!options.graph.empty()) writeGraph(options.graph, checks.pipelineOf(report.programs.front()));
   } catch (const FileError& error) {
     status = reportFailure(error, FailureJson::none);
     found.push_back(asDiagnostic(error));
   }
-  if (options.json) writeFile("-", check::diagnosticsJson(found, suppressed));
+  if (options.json) {
+    clearWorkResults();
+    writeFile("-", check::diagnosticsJson(found, suppressed));
+  }
   return status;
 }
 
@@ -232,14 +239,28 @@ class Printer : public job::CheckObserver {
     setWorkStage("rendering with --instrument");
   }
   void hung(const job::CheckReport& report) override {
-    finished(report.programs.back());
+    finished(report);
     writeReport(report, checks_, options_);
     exitAfterHang(&*report.programs.back().program, report.programs.back().result.diagnostics.back());
   }
 
+  // A crash of the driver in a later program must not lose what was found.
+  void finished(const job::CheckReport& all) override {
+    const job::ProgramReport& report = all.programs.back();
+    if (options_.json)
+      addWorkResult(check::diagnosticsJson(report.result.diagnostics, report.result.suppressed));
+    else
+      print(report);
+    if (options_.sarif.empty() || output::isStandardOutput(options_.sarif)) return;
+    try {
+      writeSarif(all, options_);
+    } catch (const FileError&) {  // writeReport() reports it
+    }
+  }
+
+ private:
   // Diagnostics and the line "NAME: 1 error, 2 warnings (1 suppressed)".
-  void finished(const job::ProgramReport& report) override {
-    if (options_.json) return;
+  void print(const job::ProgramReport& report) const {
     const check::CheckResult& result = report.result;
     printError(check::diagnosticsText(result.diagnostics,
                                       report.program ? check::sourcesOf(*report.program) : check::sourcesOnDisk(),
@@ -251,7 +272,6 @@ class Printer : public job::CheckObserver {
     printError(fmt::format("{}: {}\n", printable(report.name), count));
   }
 
- private:
   const job::ProgramChecks& checks_;
   const Options& options_;
 };

@@ -43,7 +43,7 @@ inline std::vector<std::string> idsOf(const CheckReport& report) {
 
 struct CheckRecorder : CheckObserver {
   void started(const std::string& name) override { events.push_back("started " + name); }
-  void finished(const ProgramReport& report) override { events.push_back("finished " + report.name); }
+  void finished(const CheckReport& report) override { events.push_back("finished " + report.programs.back().name); }
   std::vector<std::string> events;
 };
 
