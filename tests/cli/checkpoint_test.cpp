@@ -406,17 +406,13 @@ TEST_F(Checkpoint, WarnsAtOnceIfItCannotBeWritten) {
   }
 }
 
-// The last batch is completed anyway.
+// The last batch is completed anyway. The first progress is that of the only batch.
 TEST_F(Checkpoint, InterruptInTheLastBatchHasNoEffect) {
-  const std::vector<std::string> arguments =
-      command({"--size", "1200x900", "--spp", "8", "--checkpoint", "1000", "--json-progress"});
-  TerminalRun process(arguments, folder_.path());
-  ASSERT_TRUE(process.waitFor("\"samples\":4,"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  TerminalRun process(command({"--size", "1200x900", "--spp", "4", "--checkpoint", "1000"}), folder_.path());
+  ASSERT_TRUE(process.waitFor("/4 samples"));
   process.signal(SIGINT);
   const RunResult result = process.finish();
   EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.err.find("\"samples\":8,"), std::string::npos) << result.err;
   EXPECT_EQ(fileNames(), (std::vector<std::string>{"out.png", "scene.gltf"}));
 }
 
