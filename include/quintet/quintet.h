@@ -15,6 +15,7 @@
 #include <quintet/device.h>
 #include <quintet/diagnostic.h>
 #include <quintet/error.h>
+#include <quintet/explanation.h>
 #include <quintet/film.h>
 #include <quintet/program.h>
 #include <quintet/renderer.h>

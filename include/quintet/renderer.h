@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <quintet/device.h>
+#include <quintet/explanation.h>
 #include <quintet/film.h>
 #include <quintet/program.h>
 #include <quintet/scene.h>
@@ -83,16 +84,6 @@ enum class StopReason {
   unknownError,  // an error is the only limit, and it can never be known, because samples exceed the range of the film
 };
 
-// What a shader printed for a pixel.
-struct PrintedLine {
-  std::uint32_t x = 0, y = 0;           // pixel of the whole image
-  std::optional<std::uint32_t> frame;   // of an animation, or of a program that accumulates
-  std::optional<std::uint32_t> sample;  // of the pixel, unless the program accumulates
-  std::string file;                     // of the debugPrintfEXT
-  int line = 0;
-  std::string text;
-};
-
 // What Renderer::render() did.
 struct RenderReport {
   StopReason reason = StopReason::samples;
@@ -129,6 +120,18 @@ class Renderer {
   std::vector<Diagnostic> diagnostics() const;        // warnings of the check of the program
   Image image(const std::string& output = {}) const;  // film().image(output) without copying the rest
   Film film() const;                                  // everything so far, copied to host memory
+
+  // Explains sample number `sample` (from 0) of a pixel of the whole image, or frame number `sample` of a program that
+  // accumulates, whose earlier frames are rendered for that. The sample has the values of render() with the edits so far;
+  // Settings::region and Settings::batches do not matter, and what is rendered so far stays. The first call links a variant
+  // of the program that records what it does, which can take seconds. Throws UsageError for a pixel outside of the image
+  // and for a sample above 2^24 - 1, and what render() throws.
+  Explanation explain(std::uint32_t x, std::uint32_t y, std::uint32_t sample = 0);
+  // Renders each sample of all pixels (of Settings::region) alone, and explains those that are not finite and fireflies.
+  // What is rendered so far stays. Progress counts the samples; returning false ends the search, and what was found is
+  // explained. In programs that accumulate, a pixel that is not finite is found in its first frame, and there are no
+  // fireflies. Throws UsageError for settings out of range, and what render() throws.
+  SearchReport search(const SearchSettings& settings = {}, const ProgressFunction& progress = {});
 
   // Edits. Each discards the samples so far; they take effect in the next render(). A change of camera, parameters or
   // transforms keeps the pipeline and the bottom-level acceleration structures. A change of a material compiles the

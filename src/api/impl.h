@@ -10,7 +10,9 @@
 #include <quintet/quintet.h>
 
 #include "base/math.h"
+#include "job/pixel_explanation.h"
 #include "job/render_job.h"
+#include "job/sample_search.h"
 #include "output/layers.h"
 #include "program/description/program.h"
 #include "scene/model/scene.h"
@@ -39,6 +41,11 @@ struct Film::Impl {
 // Reads an output (empty: the first) of a film on the device or in host memory. Throws UsageError. Defined in film.cpp, the
 // others in scene.cpp.
 Image toImage(const job::FilmView& film, const std::string& output);
+
+// Defined in explanation.cpp.
+std::vector<PrintedLine> toApi(const std::vector<job::PrintedLine>& lines);
+Explanation toApi(const job::PixelExplanation& explanation);  // Explanation::printed is left empty
+SearchReport toApi(const job::SearchResult& result);
 
 inline vec2 toGlm(const Float2& v) { return {v[0], v[1]}; }
 inline vec3 toGlm(const Float3& v) { return {v[0], v[1], v[2]}; }

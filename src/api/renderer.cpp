@@ -12,10 +12,13 @@
 #include "api/impl.h"
 #include "base/error.h"
 #include "base/suggestion.h"
+#include "job/pixel_explainer.h"
 #include "program/heat.h"
 
 namespace quintet {
 namespace {
+
+constexpr std::uint32_t kMaxSample = (1u << 24) - 1;
 
 // Passes progress on, and collects warnings.
 class ApiObserver : public job::Observer {
@@ -161,8 +164,9 @@ void append(std::vector<std::string>& texts, std::vector<std::string> more) {
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(job::Engine& engine, job::ResolvedJob resolved, job::Observer& observer)
-      : layers(renderedLayers(resolved.program, resolved.request.outputs)),
+  Impl(job::Engine& engineOfDevice, job::ResolvedJob resolved, job::Observer& observer)
+      : engine(engineOfDevice),
+        layers(renderedLayers(resolved.program, resolved.request.outputs)),
         assignments(resolved.request.assignments),
         job(engine, std::move(resolved), observer) {
     for (const output::Layer& layer : output::availableLayers(job.resolved().program))
@@ -170,6 +174,16 @@ struct Renderer::Impl {
         layers.push_back(layer);
   }
 
+  // Creates a job for `request` that renders the same scene on the device: with all edits, and at the same frame.
+  std::unique_ptr<job::RenderJob> makeJobOfSameScene(job::RenderRequest request, job::Observer& observer) {
+    std::shared_ptr<job::PreparedScene> scene = job.scene();
+    auto result = std::make_unique<job::RenderJob>(engine, job::resolve(std::move(request), job.resolved().program),
+                                                   observer, scene);
+    if (scene->onDevice->animated() && !result->resolved().accumulatesFrames()) result->setFrame(job.frame());
+    return result;
+  }
+
+  job::Engine& engine;
   std::vector<output::Layer> layers;
   std::vector<std::string> assignments;
   std::vector<std::string> warnings;  // for the next report
@@ -205,9 +219,7 @@ RenderReport Renderer::render(const Limits& limits, const ProgressFunction& prog
   report.rays = result.provenance.rays;
   report.droppedSamples = result.provenance.droppedSamples;
   report.error = result.provenance.error;
-  for (const job::PrintedLine& line : observer.prints().lines)
-    report.printed.push_back(
-        {line.pixel.x, line.pixel.y, line.frame, line.sample, line.location.file, line.location.line, line.text});
+  report.printed = toApi(observer.prints().lines);
   report.omittedPrints = observer.prints().omitted;
   report.warnings = std::exchange(impl_->warnings, {});
   append(report.warnings, observer.takeWarnings());
@@ -227,6 +239,37 @@ Film Renderer::film() const {
   job::RenderResult result = impl_->job.result(true);
   result.film = job::viewOf(result.film->state(), result.provenance.transparent);
   return Film::Impl::make(std::move(result), impl_->layers);
+}
+
+Explanation Renderer::explain(std::uint32_t x, std::uint32_t y, std::uint32_t sample) {
+  if (sample > kMaxSample) throw UsageError(fmt::format("sample {} is above {}", sample, kMaxSample));
+  ApiObserver observer;
+  impl_->job.update(observer);
+  job::RenderRequest request = impl_->job.resolved().request;
+  request.region = {};
+  request.batches.reset();
+  request.print = job::PrintRequest{.pixels = {x, y, 1, 1}};
+  request = job::requestForPixel(std::move(request), impl_->job.resolved().program, {x, y});
+  const std::unique_ptr<job::RenderJob> job = impl_->makeJobOfSameScene(std::move(request), observer);
+  Explanation result = toApi(job::PixelExplainer(impl_->engine, *job).explain({x, y}, sample, observer));
+  result.printed = toApi(observer.prints().lines);
+  return result;
+}
+
+SearchReport Renderer::search(const SearchSettings& settings, const ProgressFunction& progress) {
+  if (settings.samples == 0 || settings.samples > kMaxSample)
+    throw UsageError(fmt::format("a search has 1 to {} samples, not {}", kMaxSample, settings.samples));
+  if (!(settings.threshold > 0.0f && std::isfinite(settings.threshold)))
+    throw UsageError(fmt::format("the threshold {} of fireflies must be above 0", settings.threshold));
+  ApiObserver observer(&progress);
+  impl_->job.update(observer);
+  job::RenderRequest request = impl_->job.resolved().request;
+  request.batches.reset();
+  request.print.reset();
+  const std::unique_ptr<job::RenderJob> job = impl_->makeJobOfSameScene(std::move(request), observer);
+  const job::SearchOptions options{settings.notFinite, settings.fireflies, settings.threshold, settings.limit,
+                                   settings.samples};
+  return toApi(job::searchSamples(impl_->engine, *job, options, observer));
 }
 
 void Renderer::setCamera(const Camera& camera) { impl_->job.setCamera(toRequest(camera)); }

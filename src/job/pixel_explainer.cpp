@@ -120,7 +120,10 @@ PixelExplanation PixelExplainer::explain(uvec2 pixel, std::uint32_t sample, Obse
   requireInside(image_.size, pixel);
   try {
     if (job_.resolved().accumulatesFrames()) renderEarlierFrames(sample);
-    return record(pixel, sample);
+    if (!own_) job_.discardPrints();
+    PixelExplanation result = record(pixel, sample);
+    if (!own_) job_.flushPrints(observer);
+    return result;
   } catch (const TimeoutError& error) {
     observer.deviceHung(hangDiagnostic(job_.resolved().program, error.seconds()));
     throw;

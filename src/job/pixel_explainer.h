@@ -42,7 +42,8 @@ class PixelExplainer {
   PixelExplainer& operator=(const PixelExplainer&) = delete;
 
   // Explains sample number `sample` (from 0) of a pixel in the region of the job, or frame number `sample` of a program that
-  // accumulates, whose earlier frames are rendered first. The pixel has the same random numbers as in the job's render.
+  // accumulates, whose earlier frames are rendered first. The pixel has the same random numbers as in the job's render. What
+  // the sample prints goes to Observer::printed() if the request of the job asks for it, but not with an ExplainedImage.
   // Throws UsageError for a pixel outside of the image. A launch that does not end calls Observer::deviceHung() and throws
   // TimeoutError.
   PixelExplanation explain(uvec2 pixel, std::uint32_t sample, Observer& observer);

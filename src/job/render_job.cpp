@@ -430,6 +430,12 @@ StartPoint RenderJob::startPoint(const RenderLimits& limits, Observer& observer)
   return start_;
 }
 
+void RenderJob::discardPrints() {
+  if (!prints_) return;
+  renderer_->finish();
+  prints_->restart();
+}
+
 void RenderJob::flushPrints(Observer& observer) {
   if (!prints_) return;
   renderer_->finish();

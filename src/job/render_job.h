@@ -136,6 +136,11 @@ class RenderJob {
   // count their frames, so nothing moves. Throws UsageError for a frame after the first one if nothing in the scene moves.
   void showRequestedFrame();
 
+  float frame() const { return frame_; }  // of an animated scene
+  // Passes on what the last launches printed; does it without prints, too. run() and renderBatch() do it.
+  void flushPrints(Observer& observer);
+  void discardPrints();  // of launches since the last call
+
   // Files on disk from which the scene and the program were made, for file watching.
   std::vector<std::filesystem::path> sceneFiles() const;
   std::vector<std::filesystem::path> programFiles() const;  // with included files
@@ -167,7 +172,6 @@ class RenderJob {
   RenderLimits withinPart(RenderLimits limits) const;  // the same limits, not beyond the end of the part
   void beginFilm();                                    // continues from firstSample()
   StartPoint startPoint(const RenderLimits& limits, Observer& observer);
-  void flushPrints(Observer& observer);  // passes on what the last batch printed
   render::Region printableRegion(const render::RenderSettings& settings) const;
   void showImage(Observer& observer) const;  // if the observer wants it
   // The result after `seconds` of rendering; with the error estimate only where it is needed, because it takes time.

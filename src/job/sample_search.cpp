@@ -102,6 +102,7 @@ class Search {
 
  private:
   std::uint64_t sampleCount() const {
+    if (options_.samples) return *options_.samples;
     const RenderRequest& request = job_.resolved().request;
     if (job_.resolved().accumulatesFrames()) return request.frames.accumulatedCount().value_or(1);
     if (!request.limits.samples || request.limits.seconds || request.limits.error)

@@ -23,6 +23,8 @@ struct SearchOptions {
   // Fireflies: how much brighter than its surroundings one sample makes a pixel (BrightestSamples::find); above 0.
   float threshold = 2.0f;
   std::size_t limit = 10;  // of explained samples of each kind; the others are only counted
+  // Per pixel, or frames. Unset means those of the request: RenderLimits::samples, which also decides their values.
+  std::optional<std::uint64_t> samples{};
 };
 
 // The event of a sample that explains its value. Empty texts and -1 mean unknown: only programs that use the GLSL library

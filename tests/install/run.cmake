@@ -21,7 +21,7 @@ foreach(file IN ITEMS LICENSE README.md docs/README.md docs/cli.md docs/diagnost
 endforeach()
 run(${CMAKE_COMMAND} -S ${SOURCE}/examples/cpp -B ${work}/build -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=Release)
 run(${CMAKE_COMMAND} --build ${work}/build)
-foreach(example IN ITEMS first_ray mesh_from_memory animated_instances own_program error_target)
+foreach(example IN ITEMS first_ray mesh_from_memory animated_instances own_program error_target explain_pixel)
   file(STRINGS ${SOURCE}/examples/cpp/${example}.cpp lines)
   list(LENGTH lines count)
   if(count GREATER 60)
@@ -34,6 +34,9 @@ foreach(image IN ITEMS mesh_from_memory.png animated_instances_0.png animated_in
   run(${work}/prefix/bin/quintet info ${image})
 endforeach()
 run(${work}/prefix/bin/quintet info first_ray.png)
+# The command-line program must explain the same sample.
+run(${work}/prefix/bin/quintet explain-pixel --program pathtracer --size 240x160 --pixel 120,100 --spp 64
+    --against explain_pixel.json)
 # The command-line program must render the same image.
 run(${work}/prefix/bin/quintet run lessons/01_first_ray -o command.png --size 480x320)
 run(${work}/prefix/bin/quintet compare first_ray.png command.png --max 0)
