@@ -24,6 +24,11 @@ const bool kHasClearcoat = false;
 #else
 const bool kHasClearcoat = true;
 #endif
+#ifdef QUINTET_NO_SHEEN
+const bool kHasSheen = false;
+#else
+const bool kHasSheen = true;
+#endif
 #ifdef QUINTET_NO_TRIANGLE_LIGHTS
 const bool kHasTriangleLights = false;
 #else

@@ -60,6 +60,8 @@ Shading shadeSurface(Surface s, vec3 wo) {
   r.bsdf.specular = MATERIAL.specular;
   r.bsdf.specularColor = MATERIAL.specularColor;
   r.bsdf.clearcoat = MATERIAL.clearcoat;
+  r.bsdf.sheenColor = MATERIAL.sheenColor;
+  float sheenRoughness = MATERIAL.sheenRoughness;
   float coatRoughness = MATERIAL.clearcoatRoughness;
   vec3 mapped = vec3(0.0, 0.0, 1.0);
   vec3 coatMapped = mapped;
@@ -80,6 +82,8 @@ Shading shadeSurface(Surface s, vec3 wo) {
     else if (isTexture(slot, kTextureClearcoat)) r.bsdf.clearcoat *= v.r;
     else if (isTexture(slot, kTextureClearcoatRoughness)) coatRoughness *= v.g;
     else if (isTexture(slot, kTextureClearcoatNormal)) coatMapped = vec3(MATERIAL.clearcoatNormalScale * (2.0 * v.xy - 1.0), 2.0 * v.z - 1.0);
+    else if (isTexture(slot, kTextureSheenColor)) r.bsdf.sheenColor *= v.rgb;
+    else if (isTexture(slot, kTextureSheenRoughness)) sheenRoughness *= v.a;
   }
 
   r.unlit = (flags & kMaterialUnlit) != 0u;
@@ -91,6 +95,7 @@ Shading shadeSurface(Surface s, vec3 wo) {
   r.bsdf.entering = s.frontFace;
   r.bsdf.thin = (flags & kMaterialThin) != 0u;
   r.bsdf.clearcoatAlpha = coatRoughness * coatRoughness;
+  r.bsdf.sheenAlpha = sheenRoughness * sheenRoughness;
   r.absorption = MATERIAL.absorption;
   // The same factor as in lights/triangle.glsl for light samples.
   if (kHasClearcoat && !r.unlit) r.emission *= clearcoatPassed(r.bsdf.clearcoat, r.bsdf.clearcoatAlpha, abs(dot(s.shadingNormal, wo)));
@@ -107,7 +112,8 @@ Shading shadeSurface(Surface s, vec3 wo) {
   r.bitangent = cross(r.normal, r.tangent);
   r.bsdf.clearcoatNormal = vec3(0.0, 0.0, 1.0);
   if (kHasNormalMaps) r.bsdf.clearcoatNormal = toLocal(r, consistentNormal(side * fromTangentSpace(s, front, coatMapped), s.geometricNormal, wo));
-  explainShading(r.normal, r.emission, r.bsdf.baseColor, r.bsdf.metallic, r.bsdf.alpha, r.bsdf.transmission, r.bsdf.ior, r.bsdf.clearcoat, r.unlit);
+  explainShading(r.normal, r.emission, r.bsdf.baseColor, r.bsdf.metallic, r.bsdf.alpha, r.bsdf.transmission, r.bsdf.ior, r.bsdf.clearcoat,
+                 r.bsdf.sheenColor, r.bsdf.sheenAlpha, r.unlit);
   return r;
 }
 

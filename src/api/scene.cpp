@@ -53,6 +53,10 @@ void copyMaterial(To& to, const From& from, const Value& value, const Use& use) 
   use(to.clearcoatRoughnessTexture, from.clearcoatRoughnessTexture);
   use(to.clearcoatNormalTexture, from.clearcoatNormalTexture);
   to.clearcoatNormalScale = from.clearcoatNormalScale;
+  value(to.sheenColor, from.sheenColor);
+  use(to.sheenColorTexture, from.sheenColorTexture);
+  to.sheenRoughness = from.sheenRoughness;
+  use(to.sheenRoughnessTexture, from.sheenRoughnessTexture);
 }
 
 Material toPublic(const scene::Material& material) {

@@ -35,7 +35,8 @@ using EventValue = std::variant<bool, std::int64_t, float, std::string, std::vec
 //                  is a different one
 //   camera         film (pixels), lens
 //   surface        position, geometricNormal, shadingNormal, uv, material, side ("front", "back")
-//   shading        normal, baseColor, metallic, roughness, transmission, ior, clearcoat, emission, unlit
+//   shading        normal, baseColor, metallic, roughness, transmission, ior, clearcoat, sheenColor, sheenRoughness,
+//                  emission, unlit
 //   light          light ("none" if none can contribute, without the other fields), lightType, probability; of a triangle
 //                  or solid also instance, geometry, primitive; if it can contribute: direction, distance, radiance (behind
 //                  absorbing media), pdf, delta, bsdf, bsdfPdf, misWeight, throughput

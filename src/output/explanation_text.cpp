@@ -230,6 +230,8 @@ class TreeText {
     parts.add("roughness", e, "roughness");
     if (e.number("transmission") > 0.0f) parts.add("transmission", e, "transmission").add("IOR", e, "ior");
     if (e.number("clearcoat") > 0.0f) parts.add("clearcoat", e, "clearcoat");
+    if (e.vector("sheenColor") != vec3(0.0f))
+      parts.add("sheen color", e, "sheenColor").add("sheen roughness", e, "sheenRoughness");
     if (e.vector("emission") != vec3(0.0f)) parts.add("emission", e, "emission");
     if (e.flag("unlit")) parts.add("unlit");
     line(indent, "material", parts.text());

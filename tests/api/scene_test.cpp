@@ -53,7 +53,9 @@ TEST(ApiScene, ReturnsMaterialsAsTheyWereAdded) {
       .specular = 0.9f,
       .specularColor = {1, 2, 3},
       .clearcoat = 0.8f,
-      .clearcoatRoughness = 0.15f};
+      .clearcoatRoughness = 0.15f,
+      .sheenColor = {0.4f, 0.3f, 0.2f},
+      .sheenRoughness = 0.35f};
   EXPECT_EQ(scene.material(scene.addMaterial(material)), material);
 }
 
@@ -113,6 +115,7 @@ TEST(ApiScene, MessagesNameTheObject) {
   EXPECT_THAT(material({.roughness = 2}), HasSubstr("'steel'.roughness"));
   EXPECT_THAT(material({.normalScale = kNan}), HasSubstr("'steel'.normalScale"));
   EXPECT_THAT(material({.alphaCutoff = kNan}), HasSubstr("'steel'.alphaCutoff"));
+  EXPECT_THAT(material({.sheenColor = {0, 2, 0}}), HasSubstr("'steel'.sheenColor"));
   EXPECT_THAT(material({.clearcoatNormalScale = kNan}), HasSubstr("'steel'.clearcoatNormalScale"));
   for (const TextureUse& use :
        {TextureUse{.texture = texture, .offset = {0, kNan}}, TextureUse{.texture = texture, .scale = {kNan, 1}},

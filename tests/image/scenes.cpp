@@ -123,6 +123,20 @@ SceneBuilder clearcoat() {
   return scene;
 }
 
+// Sheen over a diffuse ball, over metal, and under a clearcoat.
+SceneBuilder sheen() {
+  SceneBuilder scene = stage();
+  scene::Material velvet = plastic({0.5f, 0.05f, 0.1f}, 0.8f), metal = plastic({0.9f, 0.7f, 0.3f}, 0.4f, 1.0f);
+  velvet.sheenColor = {1.0f, 0.6f, 0.8f}, velvet.sheenRoughness = 0.3f;
+  metal.sheenColor = vec3(0.7f), metal.sheenRoughness = 0.8f;
+  scene::Material lacquered = velvet;
+  lacquered.clearcoat = 1.0f;
+  scene.add(smooth(sphere({-0.8f, 0.7f, 0}, 0.7f, 3), {-0.8f, 0.7f, 0}), velvet);
+  scene.add(smooth(sphere({0.8f, 0.7f, 0}, 0.7f, 3), {0.8f, 0.7f, 0}), metal);
+  scene.add(quad({-2, 0, -2}, {4, 0, 0}, {0, 2, 0}), lacquered);
+  return scene;
+}
+
 // Frosted, colored glass around light, and a clear ball.
 SceneBuilder roughGlass() {
   SceneBuilder scene = stage(vec3(3.0f), vec3(0.6f));
@@ -328,6 +342,7 @@ std::span<const ImageScene> imageScenes() {
       {"many_lights", manyLights, 64, 36, 4, 256, 1536, true},
       {"textures", textures, 32, 20, 4, 128, 256, false},
       {"clearcoat", clearcoat, 32, 20, 4, 128, 256, false},
+      {"sheen", sheen, 32, 20, 4, 128, 256, false},
       {"rough_glass", roughGlass, 32, 20, 4, 128, 256, false},
       {"sun_and_sky", sunAndSky, 32, 20, 4, 256, 1024, true},
       {"solids", solids, 32, 20, 4, 128, 512, false},

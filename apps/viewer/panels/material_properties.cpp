@@ -70,6 +70,9 @@ void materialProperties(ViewState& state, std::size_t index) {
   edit.number("Clearcoat", "clearcoat", material.clearcoat, kUnit, "Strength of the clear coat");
   if (material.clearcoat > 0.0f)
     edit.number("Clearcoat roughness", "clearcoatRoughness", material.clearcoatRoughness, kUnit, "Perceptual");
+  edit.color("Sheen color", "sheenColor", material.sheenColor, "Linear Rec. 709; black: no sheen");
+  if (material.sheenColor != vec3(0.0f))
+    edit.number("Sheen roughness", "sheenRoughness", material.sheenRoughness, kUnit, "Perceptual");
   if (material.alphaMode == scene::AlphaMode::mask)
     edit.number("Alpha cutoff", "alphaCutoff", material.alphaCutoff, kUnit, "Less opaque points are invisible");
   edit.flag("Double-sided", "doubleSided", material.doubleSided, "The back is visible too");

@@ -63,4 +63,17 @@ vec2 albedoGlass(float cosine, float alpha, float ior, bool outside) {
   return mix(albedoFetch(table, kGlassCosines, row, column), albedoFetch(table + stride, kGlassCosines, row, column), layer.offset);
 }
 
+// Returns (E, A) of the sheen lobe at `cosine`; bsdf/sheen.glsl defines them. `row`: albedoRow(alpha, kSheenRoughnesses).
+vec2 albedoSheen(AlbedoCell row, float cosine) {
+  return albedoFetch(frame.albedoTables + 4u * kSheenOffset, kAlbedoCosines, row, albedoCell(albedoRoot(cosine), kAlbedoCosines));
+}
+
+// Returns the cosine-weighted averages over the hemisphere of A, A L and A B. L and B are those of albedoSchlick for the
+// base's roughness `base`.
+vec3 albedoSheenAverages(AlbedoCell row, AlbedoCell base) {
+  Vec2Array values = Vec2Array(frame.albedoTables + 4u * kSheenAverageOffset);
+  float average = mix(values.at[row.index].x, values.at[row.index + 1u].x, row.offset);
+  return vec3(average, albedoFetch(frame.albedoTables + 4u * kSheenBaseOffset, kAlbedoRoughnesses, row, base));
+}
+
 #endif

@@ -30,7 +30,7 @@ struct BaseLayer {
   float layerMultiple; // its largest component
   vec3 passing;        // layerPassing
   float passed;        // 1 - E(wo) of the layer
-  float underCoat;     // fraction of light that passes the clearcoat
+  float underCoat;     // fraction of light that passes the clearcoat and, from wo, the sheen; for estimates of albedos
 };
 
 // Returns (a, b, c) such that 1 - E = a + b L + c B for the albedo E of a layer with Schlick's Fresnel. `multiple` is the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The BSDF of glTF 2.0's metallic-roughness material with KHR_materials_transmission, _volume, _ior, _specular
-// and _clearcoat: a sum of lobes. lobes.glsl lists them; this file evaluates and samples the sum.
+// The BSDF of glTF 2.0's metallic-roughness material with KHR_materials_transmission, _volume, _ior, _specular,
+// _clearcoat and _sheen: a sum of lobes. lobes.glsl lists them; this file evaluates and samples the sum.
 //
 // Contract of this file and of every lobe:
 // - Directions are unit vectors in a local frame whose z is the shading normal on the side of wo, so wo.z > 0. Both point
@@ -37,7 +37,10 @@ bool bsdfHasSmooth(Bsdf b) {
 vec3 bsdfEval(Bsdf b, vec3 wo, vec3 wi) { return lobesEval(b, wo, wi); }
 
 // Returns the part of bsdfEval that the diffuse lobe contributes.
-vec3 bsdfEvalDiffuse(Bsdf b, vec3 wi) { return b.underCoat * diffuseEval(b.diffuse, wi, albedoSchlick(b.row, abs(wi.z))); }
+vec3 bsdfEvalDiffuse(Bsdf b, vec3 wi) {
+  float passed = kHasSheen ? b.underCoat * sheenScaleDiffuse(b.sheen, wi) : b.underCoat;
+  return passed * diffuseEval(b.diffuse, wi, albedoSchlick(b.row, abs(wi.z)));
+}
 
 float bsdfPdf(Bsdf b, vec3 wo, vec3 wi) {
   float pdf[kLobeCount];
@@ -50,7 +53,9 @@ float bsdfPdf(Bsdf b, vec3 wo, vec3 wi) {
 
 // Returns the weight of passing straight through a pane, a smooth thin wall, without the event's probability; 0 for all
 // other surfaces. Shadow rays multiply the light by the same number.
-vec3 bsdfStraight(Bsdf b, float cosine) { return b.underCoat * transmissionStraight(b.transmission, cosine); }
+vec3 bsdfStraight(Bsdf b, float cosine) {
+  return lobesPassLayers(b, vec3(0.0, 0.0, -cosine)) * transmissionStraight(b.transmission, cosine);
+}
 
 // A lobe chosen by a random number.
 struct LobeChoice {
@@ -94,7 +99,7 @@ bool bsdfSampleDirection(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s)
   s.transmitted = lobeTransmits(b, choice.lobe, s.wi, m);
   s.straight = lobePassesStraight(b, choice.lobe);
   s.pdf = 0.0;
-  s.weight = s.delta ? lobeDeltaWeight(b, choice.lobe, dot(wo, m), s.transmitted) / choice.probability : vec3(0.0);
+  s.weight = s.delta ? lobeDeltaWeight(b, choice.lobe, dot(wo, m), s.wi, s.transmitted) / choice.probability : vec3(0.0);
   // A microfacet may reflect below the surface (or below the clearcoat's), or refract above it.
   return s.transmitted ? s.wi.z < 0.0 : min(s.wi.z, dot(s.wi, facets.normal)) > 0.0;
 }

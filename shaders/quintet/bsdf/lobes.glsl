@@ -8,6 +8,7 @@
 #include "../features.glsl"
 #include "clearcoat.glsl"
 #include "diffuse.glsl"
+#include "sheen.glsl"
 #include "specular.glsl"
 #include "transmission.glsl"
 
@@ -15,10 +16,11 @@ const int kLobeClearcoat = 0;
 const int kLobeSpecular = 1;
 const int kLobeDiffuse = 2;
 const int kLobeTransmission = 3;
-const int kLobeCount = 4;
+const int kLobeSheen = 4;
+const int kLobeCount = 5;
 
 // False for lobes that no material of the scene has. The compiler then removes their code.
-const bool kLobeInScene[kLobeCount] = bool[kLobeCount](kHasClearcoat, true, true, kHasTransmission);
+const bool kLobeInScene[kLobeCount] = bool[kLobeCount](kHasClearcoat, true, true, kHasTransmission, kHasSheen);
 // True if all lobes have the normal z.
 const bool kLobesShareNormal = !kHasClearcoat;
 
@@ -36,6 +38,8 @@ struct BsdfParameters {
   float clearcoat;
   float clearcoatAlpha;  // clearcoatRoughness squared
   vec3 clearcoatNormal;  // unit, in the local frame
+  vec3 sheenColor;
+  float sheenAlpha;      // sheenRoughness squared
 };
 
 // The lobes of a material for one wo.
@@ -44,6 +48,7 @@ struct Bsdf {
   SpecularLobe specular;
   DiffuseLobe diffuse;
   TransmissionLobe transmission;
+  SheenLobe sheen;
   float lobeProbability[kLobeCount];  // of sampling each lobe; the sum is 1, or 0 for a black surface
   AlbedoCell row;                     // of the base's roughness
   float underCoat;                    // fraction of light that passes the clearcoat
@@ -94,13 +99,16 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   b.clearcoat = makeClearcoat(p.clearcoatNormal, p.clearcoat, p.clearcoatAlpha, coated);
   float coat = kHasClearcoat ? clearcoatAlbedo(b.clearcoat, wo) : 0.0;
   b.underCoat = 1.0 - coat;
-  base.underCoat = b.underCoat;
   b.row = base.row;
+  float sheen = 0.0;
+  if (kHasSheen) b.sheen = makeSheen(base, p.sheenColor, p.sheenAlpha, wo.z, sheen);
+  base.underCoat = kHasSheen ? b.underCoat * b.sheen.passed : b.underCoat;
 
   b.lobeProbability[kLobeClearcoat] = coat;
   b.specular = makeSpecular(base, b.lobeProbability[kLobeSpecular]);
   b.diffuse = makeDiffuse(base, b.lobeProbability[kLobeDiffuse]);
   b.transmission = makeTransmission(base, wo.z, p.alpha, b.lobeProbability[kLobeTransmission]);
+  b.lobeProbability[kLobeSheen] = b.underCoat * sheen;
 
   float sum = 0.0;
   for (int i = 0; i < kLobeCount; ++i) sum += b.lobeProbability[i];
@@ -122,9 +130,12 @@ bool lobeIsDelta(Bsdf b, int lobe) {
 vec3 lobesEval(Bsdf b, vec3 wo, vec3 wi) {
   vec2 lb = albedoSchlick(b.row, abs(wi.z));
   vec3 transmission = transmissionEval(b.transmission, wo, wi, lb);
+  float scale = kHasSheen ? sheenScale(b.sheen, wi) : 1.0;
   vec3 base = diffuseEval(b.diffuse, wi, lb);
-  base += b.specular.delta ? vec3(0.0) : specularEval(b.specular, wo, wi, lb);
-  if (kHasTransmission) base += b.transmission.delta ? vec3(0.0) : transmission;
+  if (kHasSheen) base *= sheenScaleDiffuse(b.sheen, wi);
+  base += b.specular.delta ? vec3(0.0) : scale * specularEval(b.specular, wo, wi, lb);
+  if (kHasTransmission) base += b.transmission.delta ? vec3(0.0) : scale * transmission;
+  if (kHasSheen) base += sheenEval(b.sheen, wo, wi);
   if (!kHasClearcoat) return base;
   float coat = b.clearcoat.delta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatEval(b.clearcoat, wo, wi);
   return vec3(coat) + b.underCoat * base;
@@ -137,6 +148,7 @@ void lobePdfs(Bsdf b, vec3 wo, vec3 wi, out float pdf[kLobeCount]) {
   pdf[kLobeDiffuse] = diffusePdf(wi);
   float transmission = transmissionPdf(b.transmission, wo, wi);
   pdf[kLobeTransmission] = b.transmission.delta ? 0.0 : transmission;
+  pdf[kLobeSheen] = kHasSheen ? sheenPdf(wi) : 0.0;
 }
 
 // The microfacets of a lobe. bsdf.glsl samples their normal once for all lobes, because ggxSample is expensive.
@@ -156,6 +168,7 @@ Microfacets lobeMicrofacets(Bsdf b, int lobe) {
 vec3 lobeSample(Bsdf b, int lobe, vec3 wo, vec3 m, float uPart, vec2 u) {
   if (isLobe(lobe, kLobeTransmission)) return transmissionSample(b.transmission, wo, m, uPart, u);
   if (isLobe(lobe, kLobeClearcoat)) return clearcoatSample(b.clearcoat, wo, m);
+  if (isLobe(lobe, kLobeSheen)) return sheenSample(u);
   return lobe == kLobeDiffuse ? diffuseSample(u) : specularSample(b.specular, wo, m, uPart, u);
 }
 
@@ -167,11 +180,15 @@ bool lobeTransmits(Bsdf b, int lobe, vec3 wi, vec3 m) {
 // Returns true if the lobe lets light pass straight on through a pane.
 bool lobePassesStraight(Bsdf b, int lobe) { return isLobe(lobe, kLobeTransmission) && transmissionIsPane(b.transmission); }
 
+// Returns the fraction of light that passes the layers over the specular and transmission lobes, on its way from wi to wo.
+float lobesPassLayers(Bsdf b, vec3 wi) { return kHasSheen ? b.underCoat * sheenScale(b.sheen, wi) : b.underCoat; }
+
 // Returns f |cos wi| / pdf of a delta, without the lobe's probability. cosine = dot(wo, normal of the lobe).
-vec3 lobeDeltaWeight(Bsdf b, int lobe, float cosine, bool transmitted) {
+vec3 lobeDeltaWeight(Bsdf b, int lobe, float cosine, vec3 wi, bool transmitted) {
   if (isLobe(lobe, kLobeClearcoat)) return vec3(clearcoatFresnel(b.clearcoat, cosine));
-  if (!kHasTransmission || lobe == kLobeSpecular) return b.underCoat * specularFresnel(b.specular, cosine);
-  return b.underCoat * transmissionDeltaWeight(b.transmission, cosine, transmitted);
+  float passed = lobesPassLayers(b, wi);
+  if (!kHasTransmission || lobe == kLobeSpecular) return passed * specularFresnel(b.specular, cosine);
+  return passed * transmissionDeltaWeight(b.transmission, cosine, transmitted);
 }
 
 #endif

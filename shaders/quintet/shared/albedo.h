@@ -25,7 +25,15 @@ QT_CONSTANT kGlassCosines = 33;  // odd, so that one node is at c
 QT_CONSTANT kGlassRoughnesses = 16;
 QT_CONSTANT kGlassIors = 12;
 QT_CONSTANT kGlassOffset = kAlbedoAverageOffset + kAlbedoRoughnesses * 2;
-QT_CONSTANT kAlbedoFloatCount = kGlassOffset + 2 * kGlassIors * kGlassRoughnesses * kGlassCosines * 2;
+// vec2 (E, A) [roughness][cosine], with kAlbedoCosines cosines: the albedo of the sheen lobe before and after it is limited
+// (bsdf/sheen.glsl).
+QT_CONSTANT kSheenRoughnesses = 24;
+QT_CONSTANT kSheenOffset = kGlassOffset + 2 * kGlassIors * kGlassRoughnesses * kGlassCosines * 2;
+// vec2 [roughness]: cosine-weighted average of A; 0.
+QT_CONSTANT kSheenAverageOffset = kSheenOffset + kSheenRoughnesses * kAlbedoCosines * 2;
+// vec2 [roughness of the sheen][roughness of the base]: cosine-weighted averages of A L and A B.
+QT_CONSTANT kSheenBaseOffset = kSheenAverageOffset + kSheenRoughnesses * 2;
+QT_CONSTANT kAlbedoFloatCount = kSheenBaseOffset + kSheenRoughnesses * kAlbedoRoughnesses * 2;
 
 QT_SHARED_END
 

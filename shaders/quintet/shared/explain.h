@@ -166,9 +166,11 @@ struct ExplainShading {
   float transmission;
   float ior;
   float clearcoat;
+  vec3 sheenColor;
+  float sheenAlpha;  // sheenRoughness squared
   uint unlit;
 };
-QT_SHARED_SIZE(ExplainShading, 60);
+QT_SHARED_SIZE(ExplainShading, 76);
 
 struct ExplainLobe {
   uint lobe;          // kLobe… (quintet/bsdf/lobes.glsl)

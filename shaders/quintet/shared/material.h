@@ -28,7 +28,7 @@ QT_CONSTANT kMaterialPane = 64u;        // thin, and smooth in some places: can 
 QT_CONSTANT kMaterialDoubleSided = 32u;  // informative only: every surface is rendered on both sides
 
 // Bit kMaterialTextureShift + k of the flags is set if the k-th texture of MaterialData exists.
-QT_CONSTANT kMaterialTextureShift = 16;
+QT_CONSTANT kMaterialTextureShift = 8;
 QT_CONSTANT kTextureBaseColor = 0;
 QT_CONSTANT kTextureMetallicRoughness = 1;
 QT_CONSTANT kTextureNormal = 2;
@@ -39,8 +39,10 @@ QT_CONSTANT kTextureSpecularColor = 6;
 QT_CONSTANT kTextureClearcoat = 7;
 QT_CONSTANT kTextureClearcoatRoughness = 8;
 QT_CONSTANT kTextureClearcoatNormal = 9;
-QT_CONSTANT kTextureCount = 10;
-QT_CONSTANT kMaterialTextureOffset = 96;  // byte offset of the first texture in MaterialData
+QT_CONSTANT kTextureSheenColor = 10;
+QT_CONSTANT kTextureSheenRoughness = 11;
+QT_CONSTANT kTextureCount = 12;
+QT_CONSTANT kMaterialTextureOffset = 112;  // byte offset of the first texture in MaterialData
 
 struct MaterialData {
   vec4 baseColor;
@@ -58,6 +60,8 @@ struct MaterialData {
   float clearcoatNormalScale;
   vec3 absorption;    // 1/m, -ln(attenuationColor)/attenuationDistance; 0 for none
   uint flags;
+  vec3 sheenColor;
+  float sheenRoughness;
   TextureData baseColorTexture;
   TextureData metallicRoughnessTexture;
   TextureData normalTexture;
@@ -68,6 +72,8 @@ struct MaterialData {
   TextureData clearcoatTexture;
   TextureData clearcoatRoughnessTexture;
   TextureData clearcoatNormalTexture;
+  TextureData sheenColorTexture;
+  TextureData sheenRoughnessTexture;
 };
 QT_SHARED_SIZE(MaterialData, kMaterialTextureOffset + kTextureCount * 32);
 

@@ -18,7 +18,7 @@ namespace {
 using scene::Material;
 using Member = std::variant<float Material::*, vec3 Material::*, vec4 Material::*, bool Material::*>;
 
-constexpr std::array<std::pair<std::string_view, Member>, 18> kProperties{{
+constexpr std::array<std::pair<std::string_view, Member>, 20> kProperties{{
     {"baseColor", &Material::baseColor},
     {"metallic", &Material::metallic},
     {"roughness", &Material::roughness},
@@ -37,6 +37,8 @@ constexpr std::array<std::pair<std::string_view, Member>, 18> kProperties{{
     {"clearcoat", &Material::clearcoat},
     {"clearcoatRoughness", &Material::clearcoatRoughness},
     {"clearcoatNormalScale", &Material::clearcoatNormalScale},
+    {"sheenColor", &Material::sheenColor},
+    {"sheenRoughness", &Material::sheenRoughness},
 }};
 
 // Components of a value; a base color can omit alpha.

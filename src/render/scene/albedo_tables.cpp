@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An albedo is the mean of Fresnel times shadowing over the visible micronormals. It is integrated by Gauss-Legendre
 // quadrature along the axis of the spherical cap of Dupuy and Benyoub 2023, and by the midpoint rule around it, on one
-// half of the symmetric cap.
+// half of the symmetric cap. The sheen, which has no visible normals, is integrated over the incident directions.
 #include "render/scene/albedo_tables.h"
 
 #include <algorithm>
@@ -153,6 +153,100 @@ vec2 averageRow(const vec2* row) {
   return sum / static_cast<float>(kCells * kPoints);
 }
 
+// Lambda of the sheen: the fit of Estevez and Kulla 2017, as in quintet/bsdf/sheen.glsl.
+float sheenLambda(float cosine, float alpha) {
+  const float t = (1.0f - alpha) * (1.0f - alpha);
+  const auto logLambda = [&](float x) {
+    const float a = glm::mix(21.5473f, 25.3245f, t), b = glm::mix(3.82987f, 3.32435f, t);
+    const float c = glm::mix(0.19823f, 0.16801f, t), d = glm::mix(-1.97760f, -1.27393f, t);
+    return a / (1.0f + b * std::pow(x, c)) + d * x + glm::mix(-4.32054f, -4.85967f, t);
+  };
+  return std::exp(cosine < 0.5f ? logLambda(cosine)
+                                : 2.0f * logLambda(0.5f) - logLambda(std::max(1.0f - cosine, 1e-6f)));
+}
+
+// Incident directions for the sheen: cosines, denser toward the horizon, and azimuths, denser toward that of wo.
+class SheenQuadrature {
+ public:
+  SheenQuadrature(int cosineCount, int azimuthCount);
+  struct Node {
+    float value;  // cosine of the direction, or cosine of the azimuth
+    float weight;
+  };
+  std::vector<Node> cosines;
+  std::vector<Node> azimuths;  // of one half; the weights add up to 2 pi
+};
+
+SheenQuadrature::SheenQuadrature(int cosineCount, int azimuthCount) {
+  for (int i = 0; i < cosineCount; ++i) {
+    const double x = (i + 0.5) / cosineCount;
+    cosines.push_back({static_cast<float>(x * x * x), static_cast<float>(3.0 * x * x / cosineCount)});
+  }
+  for (int i = 0; i < azimuthCount; ++i) {
+    const double x = (i + 0.5) / azimuthCount;
+    const double phi = std::numbers::pi * x * x;
+    azimuths.push_back(
+        {static_cast<float>(std::cos(phi)), static_cast<float>(4.0 * std::numbers::pi * x / azimuthCount)});
+  }
+}
+
+// Computes one row of (E, A) of the sheen.
+void sheenRow(float alpha, const SheenQuadrature& quadrature, vec2* row) {
+  const auto bounded = [](float cosine) { return std::max(cosine, 1e-4f); };
+  std::vector<float> lambdas;
+  for (const auto& [cosine, weight] : quadrature.cosines) lambdas.push_back(sheenLambda(bounded(cosine), alpha));
+  // Part of the albedo at `cosine` for each incident cosine.
+  const auto integrate = [&](float cosine, std::size_t i) {
+    const float cosI = quadrature.cosines[i].value;
+    const float sines = std::sqrt((1.0f - cosine * cosine) * (1.0f - cosI * cosI));
+    float sum = 0.0f;
+    for (const auto& [azimuth, weight] : quadrature.azimuths) {
+      const float height = (cosine + cosI) * (cosine + cosI);
+      const float length = 2.0f + 2.0f * (sines * azimuth + cosine * cosI);
+      sum += weight * std::pow(std::max(1.0f - height / length, 0.0f), 0.5f / alpha);
+    }
+    const float scale = (2.0f + 1.0f / alpha) / (8.0f * std::numbers::pi_v<float> * bounded(cosine) * bounded(cosI));
+    return sum * scale * cosI * quadrature.cosines[i].weight /
+           (1.0f + sheenLambda(bounded(cosine), alpha) + lambdas[i]);
+  };
+  std::vector<float> parts;
+  for (uint c = 0; c < kAlbedoCosines; ++c) {
+    row[c] = vec2(0.0f);
+    for (std::size_t i = 0; i < lambdas.size(); ++i) {
+      parts.push_back(integrate(cosineOf(c, kAlbedoCosines), i));
+      row[c].x += parts.back();
+    }
+  }
+  // E, as the shader interpolates it, limits the lobe.
+  const auto limit = [&](float cosine) {
+    const float x = std::sqrt(std::sqrt(cosine)) * (kAlbedoCosines - 1);
+    const uint cell = std::min(static_cast<uint>(x), kAlbedoCosines - 2);
+    return glm::mix(row[cell].x, row[cell + 1].x, x - static_cast<float>(cell));
+  };
+  for (uint c = 0; c < kAlbedoCosines; ++c)
+    for (std::size_t i = 0; i < lambdas.size(); ++i)
+      row[c].y += parts[c * lambdas.size() + i] / std::max({1.0f, row[c].x, limit(quadrature.cosines[i].value)});
+}
+
+// Computes the tables of the sheen. Those of the base's (L, B) must be complete.
+void computeSheen(std::vector<float>& table) {
+  const SheenQuadrature quadrature(40, 12);
+  parallelFor(kSheenRoughnesses, [&](std::size_t row) {
+    vec2 cells[kAlbedoCosines];
+    sheenRow(alphaOf(row, kSheenRoughnesses), quadrature, cells);
+    std::copy_n(&cells[0].x, kAlbedoCosines * 2, table.begin() + kSheenOffset + row * kAlbedoCosines * 2);
+    vec2 albedo[kAlbedoCosines], products[kAlbedoCosines];
+    for (uint i = 0; i < kAlbedoCosines; ++i) albedo[i] = vec2(cells[i].y, 0.0f);
+    table[kSheenAverageOffset + row * 2] = averageRow(albedo).x;
+    for (uint base = 0; base < kAlbedoRoughnesses; ++base) {
+      const float* lb = table.data() + base * kAlbedoCosines * 2;
+      for (uint i = 0; i < kAlbedoCosines; ++i) products[i] = cells[i].y * vec2(lb[2 * i], lb[2 * i + 1]);
+      const vec2 average = averageRow(products);
+      std::copy_n(&average.x, 2, table.begin() + kSheenBaseOffset + (row * kAlbedoRoughnesses + base) * 2);
+    }
+  });
+}
+
 }  // namespace
 
 std::vector<float> computeAlbedoTables() {
@@ -185,6 +279,7 @@ std::vector<float> computeAlbedoTables() {
       cells[2 * i + 1] = glass.y;
     }
   });
+  computeSheen(table);
   return table;
 }
 

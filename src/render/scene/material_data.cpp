@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "scene/model/material_textures.h"
 #include "scene/model/surface_class.h"
 
 namespace quintet::render {
@@ -57,19 +58,15 @@ shared::MaterialData makeMaterial(const scene::Material& m, const TextureIndex& 
   data.clearcoatNormalScale = m.clearcoatNormalScale;
   data.absorption = m.thickness > 0.0f ? absorption(m.attenuationColor, m.attenuationDistance) : vec3(0.0f);
   data.flags = materialFlags(m);
-  data.baseColorTexture = makeTexture(m.baseColorTexture, true, textureIndex);
-  data.metallicRoughnessTexture = makeTexture(m.metallicRoughnessTexture, false, textureIndex);
-  data.normalTexture = makeTexture(m.normalTexture, false, textureIndex);
-  data.emissiveTexture = makeTexture(m.emissiveTexture, true, textureIndex);
-  data.transmissionTexture = makeTexture(m.transmissionTexture, false, textureIndex);
-  data.specularTexture = makeTexture(m.specularTexture, false, textureIndex);
-  data.specularColorTexture = makeTexture(m.specularColorTexture, true, textureIndex);
-  data.clearcoatTexture = makeTexture(m.clearcoatTexture, false, textureIndex);
-  data.clearcoatRoughnessTexture = makeTexture(m.clearcoatRoughnessTexture, false, textureIndex);
-  data.clearcoatNormalTexture = makeTexture(m.clearcoatNormalTexture, false, textureIndex);
-  const shared::TextureData* textures = &data.baseColorTexture;
-  for (std::uint32_t k = 0; k < shared::kTextureCount; ++k)
+  data.sheenColor = m.sheenColor;
+  data.sheenRoughness = m.sheenRoughness;
+  static_assert(scene::kMaterialTextures.size() == shared::kTextureCount + 1);
+  shared::TextureData* textures = &data.baseColorTexture;
+  for (std::uint32_t k = 0; k < shared::kTextureCount; ++k) {
+    const scene::MaterialTexture& texture = scene::kMaterialTextures[k];
+    textures[k] = makeTexture(m.*texture.use, texture.sRgb, textureIndex);
     if (textures[k].index != shared::kNoTexture) data.flags |= 1u << (shared::kMaterialTextureShift + k);
+  }
   return data;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "quintet/shared/material.h"
+#include "scene/model/material_textures.h"
 #include "scene/model/surface_class.h"
 
 namespace quintet::render {
@@ -46,12 +47,8 @@ ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
 std::uint32_t textureSlots(const scene::Scene& scene) {
   std::uint32_t slots = 0;
   for (const scene::Material& m : scene.materials) {
-    const scene::TextureUse* const uses[shared::kTextureCount] = {
-        &m.baseColorTexture,          &m.metallicRoughnessTexture, &m.normalTexture,        &m.emissiveTexture,
-        &m.transmissionTexture,       &m.specularTexture,          &m.specularColorTexture, &m.clearcoatTexture,
-        &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture};
     for (std::uint32_t k = 0; k < shared::kTextureCount; ++k)
-      if (uses[k]->used()) slots |= 1u << k;
+      if ((m.*scene::kMaterialTextures[k].use).used()) slots |= 1u << k;
   }
   return slots;
 }
@@ -94,6 +91,7 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
   without("QUINTET_NO_PANES", any([](const scene::Material& m) { return scene::isPane(m); }));
   without("QUINTET_NO_TRANSMITTANCE", anyTintsShadows(scene));
   without("QUINTET_NO_CLEARCOAT", any([](const scene::Material& m) { return m.clearcoat > 0.0f; }));
+  without("QUINTET_NO_SHEEN", any([](const scene::Material& m) { return m.sheenColor != vec3(0.0f); }));
   without("QUINTET_NO_TRIANGLE_LIGHTS", any(emits));
   without("QUINTET_NO_PUNCTUAL_LIGHTS", !scene.lights.empty());
   without("QUINTET_NO_ENVIRONMENT", glm::any(glm::greaterThan(environmentScale, vec3(0.0f))));

@@ -23,6 +23,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "KHR_materials_unlit",
     "KHR_materials_specular",
     "KHR_materials_clearcoat",
+    "KHR_materials_sheen",
     "KHR_lights_punctual",
     "KHR_texture_transform",
     "KHR_mesh_quantization",

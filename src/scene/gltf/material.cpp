@@ -41,6 +41,7 @@ class MaterialReader {
       material_.specularColorTexture = texture(*e, "specularColorTexture");
     }
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_clearcoat")) readClearcoat(*e);
+    if (const auto* e = findExtension(from_.extensions, "KHR_materials_sheen")) readSheen(*e);
     material_.unlit = findExtension(from_.extensions, "KHR_materials_unlit") != nullptr;
     return std::move(material_);
   }
@@ -97,6 +98,13 @@ class MaterialReader {
     if (extension.Has("clearcoatNormalTexture"))
       material_.clearcoatNormalScale =
           static_cast<float>(numberOf(extension.Get("clearcoatNormalTexture"), "scale", 1.0));
+  }
+
+  void readSheen(const tinygltf::Value& extension) {
+    material_.sheenColor = range(vec3Of(extension, "sheenColorFactor", vec3(0.0f)), 0.0f, 1.0f, "sheenColorFactor");
+    material_.sheenColorTexture = texture(extension, "sheenColorTexture");
+    material_.sheenRoughness = unit(numberOf(extension, "sheenRoughnessFactor", 0.0), "sheenRoughnessFactor");
+    material_.sheenRoughnessTexture = texture(extension, "sheenRoughnessTexture");
   }
 
   TextureUse texture(const tinygltf::Value& extension, const char* key) {

@@ -219,6 +219,8 @@ constexpr Property kSpecular[] = {number("specularFactor"), texture("specularTex
 constexpr Property kClearcoat[] = {number("clearcoatFactor"), texture("clearcoatTexture"),
                                    number("clearcoatRoughnessFactor"), texture("clearcoatRoughnessTexture"),
                                    texture("clearcoatNormalTexture")};
+constexpr Property kSheen[] = {numbers("sheenColorFactor", 3), texture("sheenColorTexture"),
+                               number("sheenRoughnessFactor"), texture("sheenRoughnessTexture")};
 constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_unlit", {}),
     object("KHR_materials_emissive_strength", kEmissiveStrength),
@@ -227,6 +229,7 @@ constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_volume", kVolume),
     object("KHR_materials_specular", kSpecular),
     object("KHR_materials_clearcoat", kClearcoat),
+    object("KHR_materials_sheen", kSheen),
 };
 constexpr Property kMaterial[] = {
     string("name"),

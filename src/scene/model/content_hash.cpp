@@ -56,7 +56,8 @@ class Feeder {
             m.alphaMode, m.alphaCutoff, m.doubleSided, m.unlit, m.ior, m.transmission, m.transmissionTexture,
             m.thickness, m.attenuationDistance, m.attenuationColor, m.specular, m.specularTexture, m.specularColor,
             m.specularColorTexture, m.clearcoat, m.clearcoatTexture, m.clearcoatRoughness, m.clearcoatRoughnessTexture,
-            m.clearcoatNormalTexture, m.clearcoatNormalScale);
+            m.clearcoatNormalTexture, m.clearcoatNormalScale, m.sheenColor, m.sheenColorTexture, m.sheenRoughness,
+            m.sheenRoughnessTexture);
   }
   void add(const Geometry& g) {
     (*this)(g.positions, g.triangles, g.normals, g.tangents, g.uvs, g.colors, g.material, g.fileTriangles);

@@ -51,7 +51,7 @@ struct TextureUse {
 enum class AlphaMode : std::uint32_t { opaque, mask, blend };
 
 // The metallic-roughness material of glTF 2.0 with extensions. Factors multiply the value of the texture. Textures of
-// base color, emission and specular color are sRGB-encoded; all others are linear.
+// base color, emission, specular color and sheen color are sRGB-encoded; all others are linear.
 struct Material {
   std::string name;
   vec4 baseColor{1.0f};                 // linear, [0,1]; alpha is coverage
@@ -85,6 +85,10 @@ struct Material {
   TextureUse clearcoatRoughnessTexture;  // g
   TextureUse clearcoatNormalTexture;
   float clearcoatNormalScale = 1.0f;
+  vec3 sheenColor{0.0f};             // KHR_materials_sheen, [0,1]; black means no sheen
+  TextureUse sheenColorTexture;      // rgb, sRGB
+  float sheenRoughness = 0.0f;       // perceptual, [0,1]; alpha = sheenRoughness²
+  TextureUse sheenRoughnessTexture;  // a
 };
 
 // A list of triangles. Every attribute is empty or has positions.size() elements.

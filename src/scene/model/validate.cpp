@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/plural.h"
+#include "scene/model/material_textures.h"
 
 namespace quintet::scene {
 namespace {
@@ -135,16 +136,14 @@ void checkInstance(const Scene& scene, const Instance& instance, const std::stri
 }
 
 void checkMaterial(const Scene& scene, const Material& material, const std::string& name) {
-  for (const TextureUse* use : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
-                                &material.occlusionTexture, &material.emissiveTexture, &material.transmissionTexture,
-                                &material.specularTexture, &material.specularColorTexture, &material.clearcoatTexture,
-                                &material.clearcoatRoughnessTexture, &material.clearcoatNormalTexture}) {
-    if (!use->used()) continue;
-    if (!inRange(use->texture, scene.textures.size()))
-      fail("{}: texture {} of {}", name, use->texture, scene.textures.size());
-    if (!inRange(use->uvSet, kMaxUvSets)) fail("{}: texture coordinate set {} of {}", name, use->uvSet, kMaxUvSets);
-    if (!quintet::isFinite(vec3(use->offset, use->rotation)) || !quintet::isFinite(vec3(use->scale, 0.0f)))
-      fail("{}: the transform of texture {} is not finite", name, use->texture);
+  for (const MaterialTexture& texture : kMaterialTextures) {
+    const TextureUse& use = material.*texture.use;
+    if (!use.used()) continue;
+    if (!inRange(use.texture, scene.textures.size()))
+      fail("{}: texture {} of {}", name, use.texture, scene.textures.size());
+    if (!inRange(use.uvSet, kMaxUvSets)) fail("{}: texture coordinate set {} of {}", name, use.uvSet, kMaxUvSets);
+    if (!quintet::isFinite(vec3(use.offset, use.rotation)) || !quintet::isFinite(vec3(use.scale, 0.0f)))
+      fail("{}: the transform of texture {} is not finite", name, use.texture);
   }
   const auto checkRange = [&](float value, float min, float max, const char* property) {
     if (!(value >= min && value <= max)) fail("{}.{}: {} is not in [{}, {}]", name, property, value, min, max);
@@ -158,10 +157,12 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
   checkUnit(material.specular, "specular");
   checkUnit(material.clearcoat, "clearcoat");
   checkUnit(material.clearcoatRoughness, "clearcoatRoughness");
+  checkUnit(material.sheenRoughness, "sheenRoughness");
   for (int i = 0; i < 3; ++i) {
     checkRange(material.emissive[i], 0.0f, kLargest, "emissive");
     checkRange(material.specularColor[i], 0.0f, kLargest, "specularColor");
     checkUnit(material.attenuationColor[i], "attenuationColor");
+    checkUnit(material.sheenColor[i], "sheenColor");
   }
   checkRange(material.thickness, 0.0f, kLargest, "thickness");
   for (const auto& [value, property] : {std::pair(material.normalScale, "normalScale"),

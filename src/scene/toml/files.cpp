@@ -8,6 +8,7 @@
 
 #include "scene/gltf/gltf.h"
 #include "scene/load.h"
+#include "scene/model/material_textures.h"
 #include "scene/toml/context.h"
 
 namespace quintet::scene {
@@ -22,11 +23,7 @@ void shift(int& index, std::size_t by) {
 }
 
 void shiftTextures(Material& material, std::size_t by) {
-  for (TextureUse* use : {&material.baseColorTexture, &material.metallicRoughnessTexture, &material.normalTexture,
-                          &material.occlusionTexture, &material.emissiveTexture, &material.transmissionTexture,
-                          &material.specularTexture, &material.specularColorTexture, &material.clearcoatTexture,
-                          &material.clearcoatRoughnessTexture, &material.clearcoatNormalTexture})
-    shift(use->texture, by);
+  for (const MaterialTexture& texture : kMaterialTextures) shift((material.*texture.use).texture, by);
 }
 
 template <class T>

@@ -107,6 +107,10 @@ void readLayers(TomlReader& reader, TextureReader& texture, Material& m) {
   m.clearcoatRoughnessTexture = texture(reader, "clearcoat_roughness_texture", m.clearcoatRoughnessTexture);
   m.clearcoatNormalTexture = texture(reader, "clearcoat_normal_texture", m.clearcoatNormalTexture);
   m.clearcoatNormalScale = reader.number("clearcoat_normal_scale", m.clearcoatNormalScale);
+  m.sheenColor = readColor(reader, "sheen_color", m.sheenColor, kUnit);
+  m.sheenColorTexture = texture(reader, "sheen_color_texture", m.sheenColorTexture);
+  m.sheenRoughness = reader.number("sheen_roughness", m.sheenRoughness, kUnit);
+  m.sheenRoughnessTexture = texture(reader, "sheen_roughness_texture", m.sheenRoughnessTexture);
 }
 
 void readMaterial(SceneTomlContext& context, TextureReader& texture, const TomlValue& table) {

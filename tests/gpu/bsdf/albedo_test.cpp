@@ -78,6 +78,29 @@ glm::dvec4 integrate(const Query& q) {
   return sum / double{kRadii * kAngles};
 }
 
+// The albedo of Estevez and Kulla's sheen (2017, eq. 2 and table 1), integrated over the incident directions.
+double sheenAlbedo(double cosO, double alpha) {
+  const double t = (1.0 - alpha) * (1.0 - alpha);
+  const auto fit = [&](double x) {
+    const double a = 21.5473 + 3.7772 * t, b = 3.82987 - 0.50552 * t, c = 0.19823 - 0.03022 * t;
+    const double d = -1.97760 + 0.70367 * t, e = -4.32054 - 0.53913 * t;
+    return a / (1.0 + b * std::pow(x, c)) + d * x + e;
+  };
+  const auto lambda = [&](double x) { return std::exp(x < 0.5 ? fit(x) : 2.0 * fit(0.5) - fit(1.0 - x)); };
+  constexpr int kRadii = 1500, kAngles = 256;
+  const glm::dvec3 wo(std::sqrt(1.0 - cosO * cosO), 0.0, cosO);
+  double sum = 0.0;
+  for (int i = 0; i < kRadii; ++i) {
+    const double x = (i + 0.5) / kRadii, cosI = x * x, sinI = std::sqrt(1.0 - cosI * cosI);
+    for (int j = 0; j < kAngles; ++j) {
+      const double phi = std::numbers::pi * (j + 0.5) / kAngles;
+      const glm::dvec3 h = glm::normalize(wo + glm::dvec3(sinI * std::cos(phi), sinI * std::sin(phi), cosI));
+      sum += 2.0 * x * std::pow(1.0 - h.z * h.z, 0.5 / alpha) / (4.0 * cosO * (1.0 + lambda(cosO) + lambda(cosI)));
+    }
+  }
+  return sum * (2.0 + 1.0 / alpha) / (kRadii * kAngles);
+}
+
 class BsdfAlbedo : public BsdfTest {
  protected:
   static std::vector<Answer> lookUp(const std::vector<Query>& queries) { return runQueries<Answer>(kLookUp, queries); }
@@ -96,6 +119,32 @@ TEST_F(BsdfAlbedo, TablesAgreeWithTheOracle) {
     EXPECT_NEAR(answers[i].schlick.y, expected.y, 0.004) << i;
     EXPECT_NEAR(answers[i].glass.x, expected.z, 0.012) << i;
     EXPECT_NEAR(answers[i].glass.y, expected.w, 0.015) << i;
+  }
+}
+
+TEST_F(BsdfAlbedo, SheenAgreesWithTheOracle) {
+  struct SheenQuery {
+    float cosine;
+    float alpha;
+  };
+  const std::string body = kBsdfPrelude + R"(
+    struct SheenQuery { float cosine; float alpha; };
+    #define In SheenQuery
+    #define Out vec2
+    Out run(uint index, In q) { return albedoSheen(albedoRow(q.alpha, kSheenRoughnesses), q.cosine); }
+  )";
+  std::vector<SheenQuery> queries;
+  for (const float alpha : {0.003f, 0.02f, 0.05f, 0.1f, 0.3f, 0.7f, 1.0f})
+    for (const float cosine : {1.0f, 0.8f, 0.55f, 0.3f, 0.1f, 0.03f, 0.01f}) queries.push_back({cosine, alpha});
+  const std::vector<vec2> answers = runQueries<vec2>(body, queries);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const auto& [cosine, alpha] = queries[i];
+    const double expected = sheenAlbedo(cosine, alpha);
+    EXPECT_NEAR(answers[i].x, expected, 0.005 + 0.02 * expected) << "cosine " << cosine << ", alpha " << alpha;
+    EXPECT_LE(answers[i].y, 1.0 + 1e-5);
+    if (alpha >= 0.1f) {  // E is below 1
+      EXPECT_NEAR(answers[i].y, answers[i].x, 1e-6);
+    }
   }
 }
 

@@ -34,6 +34,8 @@ struct BsdfCase {
   float clearcoat = 0.0f;
   float clearcoatAlpha = 0.01f;
   vec3 clearcoatNormal{0.0f, 0.0f, 1.0f};
+  vec3 sheenColor{0.0f};
+  float sheenAlpha = 0.25f;
 };
 
 inline vec3 directionAt(float cosine, float azimuth = 0.7f) {
@@ -84,6 +86,9 @@ inline std::vector<NamedCase> materialsAt(float alpha, const vec3& wo) {
         [&](BsdfCase& c) { mix(c), c.entering = outside; });
   }
   add("coat", [&](BsdfCase& c) { coat(c), c.clearcoatAlpha = alpha, c.alpha = 0.3f; });
+  add("sheen", [&](BsdfCase& c) { c.sheenColor = {0.9f, 0.6f, 0.3f}, c.sheenAlpha = alpha, c.alpha = 0.3f; });
+  add("mixture with sheen", [&](BsdfCase& c) { mix(c), c.thin = 1, c.sheenColor = vec3(0.8f), c.sheenAlpha = 0.04f; });
+  add("mixture with sheen, solid inside", [&](BsdfCase& c) { mix(c), c.entering = 0, c.sheenColor = vec3(0.8f); });
   add("mixture, thin", [&](BsdfCase& c) { mix(c), c.thin = 1; });
   add("mixture, opaque", [&](BsdfCase& c) { mix(c), c.transmission = 0.0f; });
   return cases;
@@ -123,11 +128,13 @@ inline const std::string kBsdfPrelude = R"(
 struct Case {
   vec3 wo; float alpha; vec3 baseColor; float metallic; float transmission; float ior; uint entering; uint thin;
   float specular; vec3 specularColor; float clearcoat; float clearcoatAlpha; vec3 clearcoatNormal;
+  vec3 sheenColor; float sheenAlpha;
 };
 struct Sample { vec3 wi; uint valid; vec3 weight; float pdf; uint delta; uint transmitted; };
 Bsdf makeBsdfOf(Case c) {
   return makeBsdf(BsdfParameters(c.baseColor, c.metallic, c.alpha, c.transmission, c.ior, c.entering != 0u, c.thin != 0u,
-                                 c.specular, c.specularColor, c.clearcoat, c.clearcoatAlpha, c.clearcoatNormal), c.wo);
+                                 c.specular, c.specularColor, c.clearcoat, c.clearcoatAlpha, c.clearcoatNormal,
+                                 c.sheenColor, c.sheenAlpha), c.wo);
 }
 // Jarzynski and Olano 2020, "Hash Functions for GPU Rendering", listing "pcg3d"; 24 bits in [0,1).
 vec3 randomAt(uint index, uint dimension) {

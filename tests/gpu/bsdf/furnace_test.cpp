@@ -102,6 +102,45 @@ TEST_F(BsdfFurnace, ClearcoatAndMixture) {
   });
 }
 
+// A white dielectric stays white under any sheen: what the sheen does not reflect reaches the diffuse base. At the most
+// grazing angles, a narrow specular lobe loses light as the metal below does.
+TEST_F(BsdfFurnace, SheenOnDielectric) {
+  expectWhite("sheen on dielectric", 0.012,
+              [](BsdfCase& c) { c.sheenColor = vec3(1.0f), c.sheenAlpha = c.alpha, c.alpha = 0.25f; });
+  expectWhite("half sheen on dielectrics", 0.022, [](BsdfCase& c) { c.sheenColor = vec3(0.5f), c.sheenAlpha = 0.3f; });
+  expectWhite("sheen under clearcoat", 0.015, [](BsdfCase& c) {
+    c.sheenColor = vec3(1.0f), c.sheenAlpha = c.alpha, c.alpha = 0.5f, c.clearcoat = 1.0f, c.clearcoatAlpha = 0.1f;
+  });
+  expectWhite("sheen inside a solid", 0.018,
+              [](BsdfCase& c) { c.sheenColor = vec3(1.0f), c.transmission = 1.0f, c.entering = 0, c.ior = 0.0f; });
+}
+
+// The minimum that keeps f reciprocal loses light where the base scatters from grazing angles toward the normal: rough
+// metal and rough thin walls. Smooth ones lose nothing.
+TEST_F(BsdfFurnace, SheenOnMetalAndThinWall) {
+  for (const bool metal : {true, false}) {
+    double darkest = 1.0;
+    for (const float alpha : {0.0f, 0.003f, 0.1f, 1.0f})
+      for (const float sheenAlpha : {0.02f, 1.0f})
+        for (const float cosine : kAngles) {
+          BsdfCase c;
+          c.wo = directionAt(cosine);
+          c.alpha = alpha;
+          c.metallic = metal ? 1.0f : 0.0f;
+          c.transmission = metal ? 0.0f : 1.0f;
+          c.thin = 1;
+          c.sheenColor = vec3(1.0f);
+          c.sheenAlpha = sheenAlpha;
+          const Albedo albedo = albedoOf(c);
+          const double least = alpha <= 0.01f * cosine ? 0.988 : 0.85;
+          EXPECT_LE(albedo.mean.x, 1.012 + 4.0 * albedo.error) << alpha << " " << sheenAlpha << " " << cosine;
+          EXPECT_GE(albedo.mean.x, least - 4.0 * albedo.error) << alpha << " " << sheenAlpha << " " << cosine;
+          darkest = std::min(darkest, albedo.mean.x);
+        }
+    std::printf("  furnace, sheen on %s: smallest albedo %.3f\n", metal ? "metal" : "a thin wall", darkest);
+  }
+}
+
 TEST_F(BsdfFurnace, NoMaterialGainsEnergy) {
   std::mt19937 generator(11);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
@@ -121,6 +160,10 @@ TEST_F(BsdfFurnace, NoMaterialGainsEnergy) {
     c.clearcoat = next() < 0.5f ? next() : 0.0f;
     c.clearcoatAlpha = next() * next();
     c.clearcoatNormal = glm::normalize(vec3(next() - 0.5f, next() - 0.5f, 1.0f));
+    if (i % 4 == 1) {
+      c.sheenColor = {next(), 1.0f, next()};
+      c.sheenAlpha = next() * next();
+    }
     const Albedo albedo = albedoOf(c);
     EXPECT_LE(std::max({albedo.mean.x, albedo.mean.y, albedo.mean.z}), 1.04 + 4.0 * albedo.error)
         << "case " << i << ": alpha " << c.alpha << ", cosine " << c.wo.z << ", ior " << c.ior << ", transmission "

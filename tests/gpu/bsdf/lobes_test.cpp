@@ -281,6 +281,8 @@ TEST_F(BsdfLobes, NothingIsInvalid) {
       c.clearcoat = corner(index, 115u);
       c.clearcoatAlpha = pow(corner(index, 116u), 4.0);
       c.clearcoatNormal = a.y < 0.5 ? vec3(0.0, 0.0, 1.0) : uniformDirection(randomAt(index, 117u).xy);
+      c.sheenColor = vec3(corner(index, 122u), corner(index, 123u), corner(index, 124u));
+      c.sheenAlpha = pow(corner(index, 125u), 4.0);
       Bsdf b = makeBsdfOf(c);
       uint faults = 0u;
       float sum = 0.0;

@@ -51,6 +51,23 @@ double fresnel(double cosine, double eta) {
   return 0.5 * (s * s + p * p);
 }
 
+// Lambda of the sheen. Estevez and Kulla 2017, table 1: a, b, c, d, e for alpha 1 and alpha 0.
+double sheenLambda(double cosine, double alpha) {
+  if (cosine >= 0.5) return std::pow(sheenLambda(0.5 - 1e-12, alpha), 2.0) / sheenLambda(1.0 - cosine, alpha);
+  const double rough[] = {21.5473, 3.82987, 0.19823, -1.97760, -4.32054};
+  const double smooth[] = {25.3245, 3.32435, 0.16801, -1.27393, -4.85967};
+  double fit[5];
+  for (int i = 0; i < 5; ++i) fit[i] = rough[i] + (1.0 - alpha) * (1.0 - alpha) * (smooth[i] - rough[i]);
+  return std::exp(fit[0] / (1.0 + fit[1] * std::pow(std::max(cosine, 1e-6), fit[2])) + fit[3] * cosine + fit[4]);
+}
+
+// The "Charlie" distribution with its masking, without the cosine of wi.
+double charlie(const dvec3& wo, const dvec3& wi, double alpha) {
+  const double sine = glm::length(glm::cross(glm::normalize(wo + wi), dvec3(0.0, 0.0, 1.0)));
+  const double distribution = (2.0 + 1.0 / alpha) / (2.0 * kPi) * std::pow(sine, 1.0 / alpha);
+  return distribution / (4.0 * wo.z * wi.z * (1.0 + sheenLambda(wo.z, alpha) + sheenLambda(wi.z, alpha)));
+}
+
 // Sum over the orders of multiple scattering from the second on; Kulla and Conty 2017.
 double multipleFactor(double f0, double f90, double lost) {
   const double f = f0 + (f90 - f0) / 21.0;
@@ -95,6 +112,36 @@ ReferenceBsdf::Layer ReferenceBsdf::averages(double alpha) const {
   const std::size_t at = shared::kAlbedoAverageOffset + 2 * row.index;
   return {glm::mix(double{tables_[at]}, double{tables_[at + 2]}, row.part),
           glm::mix(double{tables_[at + 1]}, double{tables_[at + 3]}, row.part)};
+}
+
+ReferenceBsdf::Sheen ReferenceBsdf::sheen(double alpha, double cosine) const {
+  const Cell row = rowOf(alpha, shared::kSheenRoughnesses), column = cellOf(root4(cosine), shared::kAlbedoCosines);
+  dvec2 sum(0.0);
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) {
+      const std::size_t at = shared::kSheenOffset + 2 * ((row.index + i) * shared::kAlbedoCosines + column.index + j);
+      sum +=
+          (i ? row.part : 1.0 - row.part) * (j ? column.part : 1.0 - column.part) * dvec2(tables_[at], tables_[at + 1]);
+    }
+  return {sum.x, sum.y};
+}
+
+// Averages of the sheen's albedo, and of its products with the base's lost and Schlick parts.
+dvec3 ReferenceBsdf::sheenAverages(double alpha, double baseAlpha) const {
+  const Cell row = rowOf(alpha, shared::kSheenRoughnesses), base = rowOf(baseAlpha, shared::kAlbedoRoughnesses);
+  dvec3 sum(0.0);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double part = i ? row.part : 1.0 - row.part;
+    sum.x += part * tables_[shared::kSheenAverageOffset + 2 * (row.index + i)];
+    for (std::size_t j = 0; j < 2; ++j) {
+      const std::size_t at =
+          shared::kSheenBaseOffset + 2 * ((row.index + i) * shared::kAlbedoRoughnesses + base.index + j);
+      const double weight = part * (j ? base.part : 1.0 - base.part);
+      sum.y += weight * tables_[at];
+      sum.z += weight * tables_[at + 1];
+    }
+  }
+  return sum;
 }
 
 dvec2 ReferenceBsdf::glass(const BsdfCase& c, double cosine) const {
@@ -166,8 +213,22 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
     const double low = largest(f0);
     return 1.0 - low * (1.0 - l.lost - l.schlick) - f90 * l.schlick - multiple(low, f90) * l.lost;
   };
+  // Factors of the sheen for the lobes below: 1 - strength albedo for both directions, on sides with a sheen.
+  const double strength = largest(c.sheenColor), sheenAlpha = std::max(double{c.sheenAlpha}, kSmallestAlpha);
+  const bool sheenAtO = !solid || c.entering, sheenAtI = !solid || (wi.z > 0.0) == (c.entering != 0);
+  const Sheen sheenO = sheen(sheenAlpha, wo.z), sheenI = sheen(sheenAlpha, std::abs(wi.z));
+  const double underO = sheenAtO ? 1.0 - strength * std::min(sheenO.albedo, 1.0) : 1.0;
+  const double underI = sheenAtI ? 1.0 - strength * std::min(sheenI.albedo, 1.0) : 1.0;
+  dvec3 diffuse(0.0);
   if (wi.z > 0.0) {
-    f += opaque * color * (passed(o) * passed(i) / (kPi * passed(mean)));
+    diffuse = opaque * color * (passed(o) * passed(i) / (kPi * passed(mean)));
+    if (sheenAtO) {
+      const dvec3 products = sheenAverages(sheenAlpha, c.alpha);
+      const double low = largest(f0);
+      const double covered =
+          (1.0 - low) * products.x + (low - multiple(low, f90)) * products.y + (low - f90) * products.z;
+      diffuse *= underO * underI / (1.0 - strength * covered / passed(mean));
+    }
     if (rough) {
       const double shape = reflection(wo, wi, up, c.alpha), part = bends ? opaque : 1.0 - metal;
       f += shape * (metal * schlick(color, 1.0, glm::dot(wo, h)) + part * schlick(f0, f90, glm::dot(wo, h)));
@@ -183,6 +244,9 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
           multipleShape * (1.0 - multiple(largest(f0), f90)));
   }
   if (bends && rough) f += clear * refractive(c, wo, wi);
+  f = std::min(underO, underI) * f + diffuse;
+  if (strength > 0.0 && sheenAtO && wi.z > 0.0)
+    f += dvec3(c.sheenColor) * (charlie(wo, wi, sheenAlpha) / std::max({1.0, sheenO.limit, sheenI.limit}));
   f *= std::abs(wi.z);
 
   const double coatO = glm::dot(wo, coatNormal), coatI = glm::dot(wi, coatNormal);

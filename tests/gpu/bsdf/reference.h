@@ -22,6 +22,12 @@ class ReferenceBsdf {
   };
   Layer layer(double alpha, double cosine) const;
   Layer averages(double alpha) const;
+  // KHR_materials_sheen over the other lobes.
+  struct Sheen {
+    double limit, albedo;
+  };
+  Sheen sheen(double alpha, double cosine) const;
+  glm::dvec3 sheenAverages(double alpha, double baseAlpha) const;
   glm::dvec2 glass(const BsdfCase& c, double cosine) const;
   glm::dvec3 refractive(const BsdfCase& c, const glm::dvec3& wo, const glm::dvec3& wi) const;
 

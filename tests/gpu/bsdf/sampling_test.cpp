@@ -21,7 +21,7 @@ constexpr int kSectors = 16;
 constexpr int kPoints = 32;  // per cell and axis of the quadrature
 constexpr std::size_t kSamples = 120'000;
 
-// LOBE: 0 diffuse, 1 specular, 2 thin, 3 dielectric, 4 clearcoat, 5 all. WRONG: a mistake that the test must find.
+// LOBE: 0 diffuse, 1 specular, 2 thin, 3 dielectric, 4 clearcoat, 5 all, 6 sheen. WRONG: a mistake that the test must find.
 const std::string kLobes = kBsdfPrelude + R"(
 // Single scattering only. MultipleScatteringFollowsItsPdf and the mixtures test multiple scattering.
 Bsdf lobesOf(Case c) {
@@ -48,6 +48,8 @@ float pdfOf(Bsdf b, vec3 wo, vec3 wi) {
   return dielectricPdf(b.transmission.dielectric, wo, wi);
 #elif LOBE == 4
   return clearcoatPdf(b.clearcoat, wo, wi);
+#elif LOBE == 6
+  return sheenPdf(wi);
 #elif defined(WRONG)
   float moved = 0.1 * (b.lobeProbability[kLobeDiffuse] - b.lobeProbability[kLobeClearcoat]);
   b.lobeProbability[kLobeClearcoat] += moved;
@@ -72,6 +74,8 @@ vec3 sampleOf(Bsdf b, vec3 wo, vec3 u) {
   mat3 basis = localFrame(b.clearcoat.normal);
   vec3 o = wo * basis;
   return clearcoatSample(b.clearcoat, wo, basis * ggxSample(o, b.clearcoat.alpha, ggxBound(o.z, b.clearcoat.alpha), u.xy));
+#elif LOBE == 6
+  return sheenSample(u.xy);
 #else
   BsdfSample s;
   return bsdfSample(b, wo, u.z, u.xy, s) ? s.wi : vec3(0.0);
@@ -250,6 +254,7 @@ std::vector<Named> lobeCases() {
     BsdfCase base;
     base.wo = directionAt(cosine);
     cases.push_back({"diffuse" + describe(base, base.alpha), 0, base});
+    cases.push_back({"sheen" + describe(base, base.alpha), 6, base});
     for (const float alpha : kRoughAlphas) {
       BsdfCase c = base;
       c.alpha = alpha;
@@ -310,6 +315,9 @@ TEST_F(BsdfSampling, DielectricFollowsThePdf) {
 }
 TEST_F(BsdfSampling, ClearcoatFollowsThePdf) {
   expectFollowsThePdf(4, [](const Named& n) { return test(n); });
+}
+TEST_F(BsdfSampling, SheenFollowsThePdf) {
+  expectFollowsThePdf(6, [](const Named& n) { return test(n); });
 }
 TEST_F(BsdfSampling, MixturesFollowThePdf) {
   expectFollowsThePdf(5, [](const Named& n) { return test(n); });

@@ -280,6 +280,8 @@ TEST_F(SessionTest, EditsGiveTheFilmOfTheEditedScene) {
        "color = [0.1, 0.2, 0.3]", "none = true", 1},
       {"move", Move{"bulb", {0, 0, 2}}, "[-3.0, 0.0, 0.0]", "[-3.0, 0.0, 2.0]"},
       {"clear coat", EditMaterial{"red", {{"clearcoat", {1}}}}, "metallic = 0.0", "metallic = 0.0\nclearcoat = 1.0", 1},
+      {"sheen", EditMaterial{"red", {{"sheenColor", {1, 0.5, 1}}, {"sheenRoughness", {0.5}}}}, "metallic = 0.0",
+       "metallic = 0.0\nsheen_color = [1.0, 0.5, 1.0]\nsheen_roughness = 0.5", 1},
       {"clear pane", EditMaterial{"red", {{"transmission", {1}}, {"roughness", {0}}}}, "metallic = 0.0",
        "metallic = 0.0\ntransmission = 1.0\nroughness = 0.0", 1, 1}};
   writeFile(folder_ / "a.scene.toml", litScene());

@@ -10,6 +10,7 @@
 #include "program/compile.h"
 #include "program/load.h"
 #include "render/scene/scene_features.h"
+#include "scene/model/material_textures.h"
 
 namespace quintet::render {
 namespace {
@@ -60,6 +61,8 @@ const std::map<std::string, Change>& features() {
       {"cut-outs",
        [](scene::Scene& s, scene::Environment&) { (addVeil(s).alphaMode = scene::AlphaMode::mask, addTriangles(s)); }},
       {"clearcoat", [](scene::Scene& s, scene::Environment&) { (addMaterial(s).clearcoat = 1.0f, addTriangles(s)); }},
+      {"sheen",
+       [](scene::Scene& s, scene::Environment&) { (addMaterial(s).sheenColor = vec3(1.0f), addTriangles(s)); }},
       {"triangle lights",
        [](scene::Scene& s, scene::Environment&) { (addMaterial(s).emissive = vec3(1.0f), addTriangles(s)); }},
       {"lamps", [](scene::Scene& s, scene::Environment&) { s.lights.emplace_back(); }},
@@ -76,11 +79,7 @@ const std::map<std::string, Change>& features() {
       {"vertex colors", [](scene::Scene& s, scene::Environment&) { addTriangles(s).colors.assign(3, vec4(1.0f)); }},
       {"textures", [](scene::Scene& s, scene::Environment&) {
          scene::Material& m = addMaterial(s);
-         for (scene::TextureUse* use :
-              {&m.baseColorTexture, &m.metallicRoughnessTexture, &m.normalTexture, &m.emissiveTexture,
-               &m.transmissionTexture, &m.specularTexture, &m.specularColorTexture, &m.clearcoatTexture,
-               &m.clearcoatRoughnessTexture, &m.clearcoatNormalTexture})
-           use->texture = 0;
+         for (const scene::MaterialTexture& texture : scene::kMaterialTextures) (m.*texture.use).texture = 0;
          addTriangles(s);
        }}};
   return kFeatures;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "io/codec.h"
@@ -95,6 +97,10 @@ TEST(GltfMaterial, ReadsExtensions) {
   m = loadMaterial(extension("KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatRoughnessFactor", 0.1}}));
   EXPECT_EQ(m.clearcoat, 1.0f);
   EXPECT_EQ(m.clearcoatRoughness, 0.1f);
+  m = loadMaterial(
+      extension("KHR_materials_sheen", {{"sheenColorFactor", {0.5, 1, 0.25}}, {"sheenRoughnessFactor", 0.75}}));
+  EXPECT_EQ(m.sheenColor, vec3(0.5f, 1, 0.25f));
+  EXPECT_EQ(m.sheenRoughness, 0.75f);
 }
 
 TEST(GltfMaterial, ClampsFactors) {
@@ -189,6 +195,18 @@ TEST(GltfTexture, ReadsTexturesOfExtensions) {
   EXPECT_EQ(m.clearcoatNormalTexture.uvSet, 1);
   EXPECT_EQ(m.clearcoatNormalTexture.scale, vec2(4));
   EXPECT_EQ(m.clearcoatNormalScale, 0.5f);
+}
+
+TEST(GltfTexture, ReadsTexturesOfSheen) {
+  TextureBuilder builder;
+  builder.add("materials",
+              extension("KHR_materials_sheen", {{"sheenColorTexture", {{"index", 0}}},
+                                                {"sheenRoughnessTexture", {{"index", 0}, {"texCoord", 1}}}}));
+  const Material m = builder.load().materials[0];
+  EXPECT_EQ(m.sheenColorTexture.texture, 0);
+  EXPECT_EQ(m.sheenColorTexture.uvSet, 0);
+  EXPECT_EQ(m.sheenRoughnessTexture.texture, 0);
+  EXPECT_EQ(m.sheenRoughnessTexture.uvSet, 1);
 }
 
 TEST(GltfTexture, ReplacesUnsupportedTextureCoordinateSets) {

@@ -44,6 +44,8 @@ specular = 0.5
 specular_color = [1, 2, 0.5]
 clearcoat = 0.3
 clearcoat_roughness = 0.2
+sheen_color = [1, 0.5, 0.25]
+sheen_roughness = 0.4
 alpha_mode = "mask"
 alpha_cutoff = 0.3
 double_sided = true
@@ -72,6 +74,8 @@ name = "c"
   EXPECT_EQ(a.specularColor, vec3(1, 2, 0.5f));
   EXPECT_EQ(a.clearcoat, 0.3f);
   EXPECT_EQ(a.clearcoatRoughness, 0.2f);
+  EXPECT_EQ(a.sheenColor, vec3(1, 0.5f, 0.25f));
+  EXPECT_EQ(a.sheenRoughness, 0.4f);
   EXPECT_EQ(a.alphaMode, scene::AlphaMode::mask);
   EXPECT_EQ(a.alphaCutoff, 0.3f);
   EXPECT_TRUE(a.doubleSided && a.unlit);
