@@ -38,6 +38,7 @@ std::vector<std::string> commonOptions(const Snapshot& snapshot) {
   add("--spp", std::to_string(state.samples));
   if (request.seed != 0) add("--seed", std::to_string(request.seed));
   if (request.transparent) options.emplace_back("--transparent");
+  if (!request.variant.empty()) add("--variant", request.variant);
   const job::CameraRequest& camera = state.camera;
   if (!camera.name.empty() && !camera.lookFrom) add("--camera", camera.name);
   if (camera.lookFrom) {

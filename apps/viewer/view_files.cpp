@@ -110,6 +110,7 @@ void openFile(ViewState& state, const std::string& path) {
     case FileUse::scene: {
       job::interactive::SessionRequest request = currentRequest(state);
       request.render.scene = path;
+      request.render.variant.clear();
       return openSession(state, std::move(request), path);
     }
     case FileUse::program: {

@@ -173,8 +173,9 @@ struct Environment {
 class Scene {
  public:
   Scene();  // empty
-  // Reads glTF (.gltf, .glb) or .scene.toml. Throws FileError, MemoryError.
-  static Scene load(const std::filesystem::path& file);
+  // Reads glTF (.gltf, .glb) or .scene.toml. `variant`: name of a material variant of the glTF file; empty means the default
+  // materials. Throws FileError, MemoryError, UsageError if the variant does not exist.
+  static Scene load(const std::filesystem::path& file, const std::string& variant = {});
   // Reads a scene in the format of .scene.toml. `folder` is where it looks for files that the text names. Throws FileError
   // with the line, MemoryError.
   static Scene fromToml(std::string_view text, const std::filesystem::path& folder = ".");

@@ -231,9 +231,9 @@ Scene::Impl& Scene::change() {
   return *impl_;
 }
 
-Scene Scene::load(const std::filesystem::path& file) {
+Scene Scene::load(const std::filesystem::path& file, const std::string& variant) {
   Scene result;
-  result.impl_->scene = std::make_shared<scene::Scene>(scene::loadScene(file));
+  result.impl_->scene = std::make_shared<scene::Scene>(scene::loadScene(file, {.variant = variant}));
   return result;
 }
 

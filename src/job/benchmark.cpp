@@ -327,7 +327,7 @@ class ProgramBenchmark {
       : request_(request),
         program_(program::loadProgram(request.program)),
         parameters_(parameterValues(program_, request.render)),
-        source_(chooseSceneSource(request.render.scene, program_)),
+        source_(chooseSceneSource(request.render.scene, program_, request.render.variant)),
         context_([&] {
           gpu::ContextOptions options;
           options.device = request.device;

@@ -101,6 +101,7 @@ struct OutputNotes {
 
 struct RenderRequest {
   std::filesystem::path scene;                      // empty means the program's own scene, else the built-in one
+  std::string variant;                              // material variant of `scene`; empty means the default materials
   std::shared_ptr<const scene::Scene> loadedScene;  // instead of `scene`: one in host memory; may be null
   bool editable = false;                            // keep what the edits of RenderJob require; needs `loadedScene`
   CameraRequest camera;

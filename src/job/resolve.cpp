@@ -82,7 +82,7 @@ ResolvedJob resolve(RenderRequest request, program::Program program) {
   checkLimits(request, program);
   checkFiles(request);
   job.scene = request.loadedScene ? SceneSource{.name = request.loadedScene->name, .loaded = request.loadedScene}
-                                  : chooseSceneSource(request.scene, program);
+                                  : chooseSceneSource(request.scene, program, request.variant);
   job.request = std::move(request);
   job.program = std::move(program);
   return job;

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "program/hit_group_binding.h"
 #include "scene/toml/scene_toml.h"
@@ -41,18 +43,21 @@ bool isSceneFile(const std::filesystem::path& file) {
   return file.filename() != "program.toml" && scene::sceneFormat(file, {}) != scene::SceneFormat::none;
 }
 
-SceneSource chooseSceneSource(const std::filesystem::path& requested, const program::Program& program) {
+SceneSource chooseSceneSource(const std::filesystem::path& requested, const program::Program& program,
+                              const std::string& variant) {
   if (!requested.empty()) {
     checkReadable(requested);
-    return {.file = requested, .name = requested.filename().string()};
+    return {.file = requested, .variant = variant, .name = requested.filename().string()};
   }
+  if (!variant.empty())
+    throw UsageError(fmt::format("no variant '{}': only glTF files have material variants", variant));
   if (!program.scene.empty()) return {.name = program.path(program.scene), .text = program.files.at(program.scene)};
   return {.name = "default scene", .builtIn = defaultSceneOptions(program)};
 }
 
 scene::PendingScene beginLoading(const SceneSource& source) {
   if (source.loaded) return scene::PendingScene(scene::Scene(*source.loaded));
-  if (!source.file.empty()) return scene::beginLoading(source.file);
+  if (!source.file.empty()) return scene::beginLoading(source.file, {.variant = source.variant});
   if (!source.text.empty()) return scene::PendingScene(scene::parseSceneToml(source.text, source.name));
   return scene::PendingScene(scene::defaultScene(source.builtIn));
 }

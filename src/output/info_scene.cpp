@@ -154,6 +154,7 @@ Json toJson(const scene::Scene& scene, const std::string& file) {
             {"emissive", materials.emissive},
             {"transmissive", materials.transmissive},
             {"unlit", materials.unlit}}},
+          {"variants", scene.report.variants},
           {"textures", scene.textures.size()},
           {"imageBytes", imageBytes(scene)},
           {"images", namedObjects(scene, "images")},
@@ -211,6 +212,7 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
   line("instances", describe(countInstances(scene), scene.instances.size()));
   line("materials", fmt::format("{} ({} with alpha, {} emissive, {} transmissive, {} unlit)", scene.materials.size(),
                                 materials.alpha, materials.emissive, materials.transmissive, materials.unlit));
+  if (!scene.report.variants.empty()) line("variants", joined(scene.report.variants));
   line("textures", fmt::format("{}", scene.textures.size()));
   addList(text, "images", fmt::format("{}, {} decoded", scene.images.size(), bytesText(imageBytes(scene))),
           scene.images, describeAny);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/load.h"
 
+#include <fmt/format.h>
+
 #include <string_view>
 #include <utility>
 
+#include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "scene/gltf/gltf.h"
@@ -23,14 +26,22 @@ SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::
   return text[first] == '[' || text[first] == '#' ? SceneFormat::toml : SceneFormat::none;
 }
 
-PendingScene beginLoading(const std::filesystem::path& file) {
+PendingScene beginLoading(const std::filesystem::path& file, const LoadOptions& options) {
   // The content is read only if the name does not determine the format.
   SceneFormat format = sceneFormat(file, {});
   if (format == SceneFormat::none) format = sceneFormat(file, readFile(file));
+  if (format == SceneFormat::toml && !options.variant.empty())
+    throw UsageError(
+        fmt::format("{}: no variant '{}': only glTF files have material variants; a scene file selects them "
+                    "by the key 'variant' of [[file]]",
+                    file.string(), options.variant));
   if (format == SceneFormat::toml) return PendingScene(loadSceneToml(file));
-  return beginLoadingGltf(file);  // also reports the problem of a file without a known format
+  return beginLoadingGltf(file,
+                          {.variant = options.variant});  // also reports the problem of a file without a known format
 }
 
-Scene loadScene(const std::filesystem::path& file) { return beginLoading(file).finish(); }
+Scene loadScene(const std::filesystem::path& file, const LoadOptions& options) {
+  return beginLoading(file, options).finish();
+}
 
 }  // namespace quintet::scene

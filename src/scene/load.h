@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 
 #include "scene/model/scene.h"
 #include "scene/pending_scene.h"
@@ -18,12 +19,16 @@ enum class SceneFormat { none, gltf, toml };
 // brace of JSON, or a bracket or comment of TOML at the beginning.
 SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::byte> content);
 
+struct LoadOptions {
+  std::string variant;  // name of a material variant of a glTF file; empty means the materials of the primitives
+};
+
 // Reads the file except for its image data; a TOML scene is read completely. Throws FileError with the location in the
-// file ("/accessors/3/bufferView", "line 3"), MemoryError.
-PendingScene beginLoading(const std::filesystem::path& file);
+// file ("/accessors/3/bufferView", "line 3"), UsageError if the variant does not exist, MemoryError.
+PendingScene beginLoading(const std::filesystem::path& file, const LoadOptions& options = {});
 
 // Both steps.
-Scene loadScene(const std::filesystem::path& file);
+Scene loadScene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace quintet::scene
 #endif

@@ -122,6 +122,17 @@ TEST_F(Usage, UnknownNames) {
   expectError(quintet({"compare", "a", "b", "--metric", "flop"}), 2, {"--metric", "'flop'", "'flip'"});
 }
 
+TEST_F(Usage, Variants) {
+  expectError(quintet(quick({"--variant", "Red"})), 2, {"scene.gltf", "no variant 'Red'", "no material variants"});
+  nlohmann::json scene = quadScene();
+  for (const char* name : {"Red", "Green"})
+    scene["extensions"]["KHR_materials_variants"]["variants"].push_back({{"name", name}});
+  write(folder_ / "scene.gltf", scene.dump());
+  expectError(quintet(quick({"--variant", "red"})), 2, {"no variant 'red'", "Red, Green"});
+  EXPECT_EQ(quintet(quick({"--variant", "Green", "-o", "a.png"})).status, 0);
+  EXPECT_THAT(quintet({"info", "scene.gltf"}).out, testing::HasSubstr("Red, Green"));
+}
+
 TEST_F(Usage, Parameters) {
   expectError(quintet({"render", "scene.gltf", "--set", "bouncs=3"}), 2, {"'bouncs'", "'bounces'"});
   expectError(quintet({"render", "scene.gltf", "--set", "bounces"}), 2, {"bounces"});

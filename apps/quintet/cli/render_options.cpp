@@ -132,6 +132,10 @@ void declareQuality(OptionTable& table, RenderTexts& texts, RenderOptions& optio
 }
 
 void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+  table.add("Scene", {{.names = "--variant",
+                       .value = "NAME",
+                       .help = "Material variant of the glTF file; 'quintet info' lists them",
+                       .target = &options.request.variant}});
   table.add(
       "Camera",
       {{.names = "--camera",

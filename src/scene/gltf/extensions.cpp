@@ -24,6 +24,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "KHR_materials_specular",
     "KHR_materials_clearcoat",
     "KHR_materials_sheen",
+    "KHR_materials_variants",
     "KHR_lights_punctual",
     "KHR_texture_transform",
     "KHR_mesh_quantization",
@@ -34,7 +35,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
 });
 
 // A file that requires one of these can be read without it.
-constexpr auto kIgnorable = std::to_array<std::string_view>({"KHR_materials_variants", "KHR_xmp", "KHR_xmp_json_ld"});
+constexpr auto kIgnorable = std::to_array<std::string_view>({"KHR_xmp", "KHR_xmp_json_ld"});
 
 bool contains(std::span<const std::string_view> list, const std::string& name) {
   return std::ranges::find(list, name) != list.end();

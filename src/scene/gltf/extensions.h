@@ -19,6 +19,7 @@ inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 inline constexpr const char* kPunctualLights = "KHR_lights_punctual";
 inline constexpr const char* kTextureTransform = "KHR_texture_transform";
 inline constexpr const char* kTextureWebp = "EXT_texture_webp";
+inline constexpr const char* kVariants = "KHR_materials_variants";
 
 // Throws FileError for the first entry of extensionsRequired that is not supported.
 void checkRequiredExtensions(const std::filesystem::path& file, const std::vector<std::string>& required);

@@ -13,6 +13,7 @@
 #include "scene/gltf/material.h"
 #include "scene/gltf/nodes.h"
 #include "scene/gltf/texture.h"
+#include "scene/gltf/variants.h"
 #include "scene/memory_budget.h"
 
 namespace quintet::scene {
@@ -43,6 +44,7 @@ void readHeader(const Document& document, Scene& scene) {
   scene.report.copyright = document.model.asset.copyright;
   scene.report.files = document.files;
   reportExtensions(document.model.extensionsUsed, scene.report);
+  scene.report.variants = variantNames(document);
   scene.report.ignoredAnimations = document.animationCount;
   if (document.animationCount > 0)
     scene.report.ignored.push_back(
@@ -64,6 +66,7 @@ void readSceneNodes(const Document& document, const NodeTree& tree, InstanceBuil
 PendingScene begin(const std::filesystem::path& path, const GltfOptions& options) {
   Stopwatch watch;
   const auto file = std::make_shared<OpenFile>(path);
+  if (!options.variant.empty()) selectVariant(file->document, options.variant);
   const Document& document = file->document;
   Scene scene;
   readHeader(document, scene);

@@ -77,6 +77,7 @@ constexpr Collection kSamplers{"/samplers", "sampler"};
 constexpr Collection kScenes{"/scenes", "scene"};
 constexpr Collection kSkins{"/skins", "skin"};
 constexpr Collection kTextures{"/textures", "texture"};
+constexpr Collection kVariantNames{"/extensions/KHR_materials_variants/variants", "variant"};
 
 using List = std::span<const Property>;
 
@@ -168,7 +169,11 @@ constexpr Property kAccessor[] = {
 };
 
 constexpr Property kDraco[] = {required(index("bufferView", kBufferViews)), required(integerMap("attributes"))};
-constexpr Property kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", kDraco)};
+constexpr Property kVariantMapping[] = {required(index("material", kMaterials)),
+                                        required(indices("variants", kVariantNames))};
+constexpr Property kVariantMappings[] = {required(objects("mappings", kVariantMapping))};
+constexpr Property kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", kDraco),
+                                             object("KHR_materials_variants", kVariantMappings)};
 constexpr Property kPrimitive[] = {
     required(indexMap("attributes", kAccessors)),
     index("indices", kAccessors),
@@ -262,7 +267,10 @@ constexpr Property kSpot[] = {number("innerConeAngle"), number("outerConeAngle")
 constexpr Property kLight[] = {required(string("type")), numbers("color", 3),   number("intensity"),
                                number("range"),          object("spot", kSpot), string("name")};
 constexpr Property kRootLights[] = {required(objects("lights", kLight))};
-constexpr Property kRootExtensions[] = {object("KHR_lights_punctual", kRootLights)};
+constexpr Property kVariant[] = {required(string("name"))};
+constexpr Property kRootVariants[] = {required(objects("variants", kVariant))};
+constexpr Property kRootExtensions[] = {object("KHR_lights_punctual", kRootLights),
+                                        object("KHR_materials_variants", kRootVariants)};
 
 constexpr Property kRoot[] = {
     required(object("asset", kAsset)),

@@ -191,6 +191,7 @@ struct Report {
   std::vector<std::string> repaired;           // "/meshes/0/primitives/0: 3 triangles with non-finite vertices dropped"
   std::string generator;                       // asset.generator
   std::string copyright;                       // asset.copyright
+  std::vector<std::string> variants;           // names of the material variants of a glTF file
   std::vector<std::filesystem::path> files;    // all files read: the scene file, glTF files, their buffers and images
 };
 

@@ -51,6 +51,7 @@ void appendReport(Report& report, const Report& part, const std::string& name) {
   for (const std::string& extension : part.extensionsIgnored) addNew(report.extensionsIgnored, extension);
   for (const std::string& line : part.ignored) report.ignored.push_back(name + ": " + line);
   report.ignoredAnimations += part.ignoredAnimations;
+  for (const std::string& variant : part.variants) report.variants.push_back(name + "/" + variant);
   for (const std::string& line : part.repaired) report.repaired.push_back(name + ": " + line);
   if (!part.copyright.empty()) report.copyright += (report.copyright.empty() ? "" : "; ") + part.copyright;
 }
@@ -86,9 +87,10 @@ void readFile(SceneTomlContext& context, const TomlValue& table) {
   const bool lights = reader.boolean("lights", true), cameras = reader.boolean("cameras", true);
   InstanceTarget target;
   target.placedByDefault = reader.boolean("place", true);
+  const TomlValue* variant = reader.find("variant");
   reader.rejectUnknownKeys();
 
-  Scene part = loadGltf(path);
+  Scene part = loadGltf(path, {.variant = variant ? reader.toText(*variant, "variant") : std::string()});
   std::ranges::copy(part.report.files, std::back_inserter(context.scene.report.files));
   Scene& scene = context.scene;
   const std::size_t firstMaterial = scene.materials.size(), firstMesh = scene.meshes.size();

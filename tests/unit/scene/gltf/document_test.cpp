@@ -106,11 +106,11 @@ TEST(GltfContainer, ChecksTheVersion) {
 
 TEST(GltfContainer, RejectsUnknownRequiredExtensions) {
   GltfBuilder builder;
-  builder.root["extensionsUsed"] = {"KHR_materials_ior", "EXT_unknown", "KHR_materials_variants"};
-  builder.root["extensionsRequired"] = {"KHR_materials_ior", "KHR_materials_variants"};
+  builder.root["extensionsUsed"] = {"KHR_materials_ior", "EXT_unknown", "KHR_materials_variants", "KHR_xmp"};
+  builder.root["extensionsRequired"] = {"KHR_materials_ior", "KHR_materials_variants", "KHR_xmp"};
   const scene::Report report = builder.load().report;
-  EXPECT_THAT(report.extensionsUsed, testing::ElementsAre("KHR_materials_ior"));
-  EXPECT_THAT(report.extensionsIgnored, testing::ElementsAre("EXT_unknown", "KHR_materials_variants"));
+  EXPECT_THAT(report.extensionsUsed, testing::ElementsAre("KHR_materials_ior", "KHR_materials_variants"));
+  EXPECT_THAT(report.extensionsIgnored, testing::ElementsAre("EXT_unknown", "KHR_xmp"));
   builder.root["extensionsRequired"] = {"KHR_materials_ior", "KHR_texture_basisu"};
   EXPECT_THAT(errorOf(builder), IsErrorAt("/extensionsRequired/1", "KHR_texture_basisu"));
 }
