@@ -24,6 +24,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "KHR_materials_specular",
     "KHR_materials_clearcoat",
     "KHR_materials_sheen",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_variants",
     "KHR_lights_punctual",
     "KHR_texture_transform",
@@ -82,6 +83,9 @@ vec2 vec2Of(const tinygltf::Value& object, const std::string& key, vec2 fallback
   return vectorOf(object, key, fallback);
 }
 vec3 vec3Of(const tinygltf::Value& object, const std::string& key, vec3 fallback) {
+  return vectorOf(object, key, fallback);
+}
+vec4 vec4Of(const tinygltf::Value& object, const std::string& key, vec4 fallback) {
   return vectorOf(object, key, fallback);
 }
 

@@ -35,6 +35,7 @@ int indexOf(const tinygltf::Value& object, const std::string& key, int fallback 
 std::string stringOf(const tinygltf::Value& object, const std::string& key, const std::string& fallback);
 vec2 vec2Of(const tinygltf::Value& object, const std::string& key, vec2 fallback);
 vec3 vec3Of(const tinygltf::Value& object, const std::string& key, vec3 fallback);
+vec4 vec4Of(const tinygltf::Value& object, const std::string& key, vec4 fallback);
 
 }  // namespace quintet::scene
 #endif

@@ -27,7 +27,7 @@ struct OpenFile {
   }
   Document document;
   MemoryBudget budget;
-  std::vector<int> imageSources;
+  std::vector<ImageUse> imageUses;
 };
 
 // The report quotes names from the file.
@@ -80,13 +80,13 @@ PendingScene begin(const std::filesystem::path& path, const GltfOptions& options
   scene.seconds.meshes = watch.lap();
 
   scene.textures = textures.textures();
-  file->imageSources = textures.imageSources();
+  file->imageUses = textures.imageUses();
   makePrintable(scene.report);
-  const bool described = describeImages(document, file->imageSources, scene.images);
+  const bool described = describeImages(document, file->imageUses, scene.images);
   const auto decode = [file](Scene& pending) {
     withMemoryErrors(file->document.file, [&] {
       const Stopwatch decoding;
-      decodeImages(file->document, file->imageSources, pending.images, file->budget);
+      decodeImages(file->document, file->imageUses, pending.images, file->budget);
       pending.seconds.images = decoding.seconds();
     });
   };

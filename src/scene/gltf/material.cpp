@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "scene/gltf/extensions.h"
@@ -25,6 +26,10 @@ class MaterialReader {
   Material read() {
     material_.name = from_.name;
     readCore();
+    if (const auto* e = findExtension(from_.extensions, "KHR_materials_pbrSpecularGlossiness"))
+      readSpecularGlossiness(*e);
+    else
+      readMetallicRoughness();
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_emissive_strength"))
       material_.emissive *= range(numberOf(*e, "emissiveStrength", 1.0), 0.0f, kHuge, "emissiveStrength");
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_ior")) readIor(*e);
@@ -47,13 +52,36 @@ class MaterialReader {
   }
 
  private:
-  void readCore() {
+  void readMetallicRoughness() {
     const tinygltf::PbrMetallicRoughness& pbr = from_.pbrMetallicRoughness;
     for (std::size_t i = 0; i < 4; ++i) material_.baseColor[i] = unit(pbr.baseColorFactor[i], "baseColorFactor");
     material_.baseColorTexture = texture(pbr.baseColorTexture, "baseColorTexture");
     material_.metallic = unit(pbr.metallicFactor, "metallicFactor");
     material_.roughness = unit(pbr.roughnessFactor, "roughnessFactor");
     material_.metallicRoughnessTexture = texture(pbr.metallicRoughnessTexture, "metallicRoughnessTexture");
+  }
+
+  // A dielectric with the reflectance of the specular color: that of ior 0 is specularColor. What it does not reflect
+  // reaches the diffuse base, as in the extension.
+  void readSpecularGlossiness(const tinygltf::Value& extension) {
+    const vec4 diffuse = vec4Of(extension, "diffuseFactor", vec4(1.0f));
+    for (glm::length_t i = 0; i < 4; ++i)
+      material_.baseColor[i] = unit(static_cast<double>(diffuse[i]), "diffuseFactor");
+    material_.baseColorTexture = texture(extension, "diffuseTexture");
+    material_.metallic = 0.0f;
+    material_.ior = 0.0f;
+    material_.specularColor = range(vec3Of(extension, "specularFactor", vec3(1.0f)), 0.0f, 1.0f, "specularFactor");
+    material_.specularColorTexture = texture(extension, "specularGlossinessTexture");
+    const float glossiness = unit(numberOf(extension, "glossinessFactor", 1.0), "glossinessFactor");
+    material_.roughness = 1.0f - glossiness;
+    if (material_.specularColorTexture.used()) {
+      material_.roughness = 1.0f;
+      material_.metallicRoughnessTexture = texture(extension, "specularGlossinessTexture", glossiness);
+    }
+    repair("KHR_materials_pbrSpecularGlossiness converted to a dielectric with the specular color as its reflectance");
+  }
+
+  void readCore() {
     material_.normalTexture = texture(from_.normalTexture, "normalTexture");
     material_.normalScale = static_cast<float>(from_.normalTexture.scale);
     material_.occlusionTexture = texture(from_.occlusionTexture, "occlusionTexture");
@@ -107,13 +135,13 @@ class MaterialReader {
     material_.sheenRoughnessTexture = texture(extension, "sheenRoughnessTexture");
   }
 
-  TextureUse texture(const tinygltf::Value& extension, const char* key) {
+  TextureUse texture(const tinygltf::Value& extension, const char* key, std::optional<float> glossiness = {}) {
     if (!extension.Has(key)) return {};
     const tinygltf::Value& info = extension.Get(key);
     const tinygltf::Value* transform = info.Has("extensions") && info.Get("extensions").Has(kTextureTransform)
                                            ? &info.Get("extensions").Get(kTextureTransform)
                                            : nullptr;
-    return texture(indexOf(info, "index"), indexOf(info, "texCoord", 0), transform, key);
+    return texture(indexOf(info, "index"), indexOf(info, "texCoord", 0), transform, key, glossiness);
   }
 
   template <class TextureInfo>
@@ -121,10 +149,11 @@ class MaterialReader {
     return texture(info.index, info.texCoord, findExtension(info.extensions, kTextureTransform), key);
   }
 
-  TextureUse texture(int index, int texCoord, const tinygltf::Value* transform, const char* key) {
+  TextureUse texture(int index, int texCoord, const tinygltf::Value* transform, const char* key,
+                     std::optional<float> glossiness = {}) {
     TextureUse use;
     if (index == kNone) return use;
-    use.texture = textures_.use(index, fmt::format("{}/{}", location_, key));
+    use.texture = textures_.use(index, fmt::format("{}/{}", location_, key), glossiness);
     if (!use.used()) return use;
     if (transform) {
       texCoord = indexOf(*transform, "texCoord", texCoord);

@@ -226,6 +226,9 @@ constexpr Property kClearcoat[] = {number("clearcoatFactor"), texture("clearcoat
                                    texture("clearcoatNormalTexture")};
 constexpr Property kSheen[] = {numbers("sheenColorFactor", 3), texture("sheenColorTexture"),
                                number("sheenRoughnessFactor"), texture("sheenRoughnessTexture")};
+constexpr Property kSpecularGlossiness[] = {numbers("diffuseFactor", 4), texture("diffuseTexture"),
+                                            numbers("specularFactor", 3), number("glossinessFactor"),
+                                            texture("specularGlossinessTexture")};
 constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_unlit", {}),
     object("KHR_materials_emissive_strength", kEmissiveStrength),
@@ -235,6 +238,7 @@ constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_specular", kSpecular),
     object("KHR_materials_clearcoat", kClearcoat),
     object("KHR_materials_sheen", kSheen),
+    object("KHR_materials_pbrSpecularGlossiness", kSpecularGlossiness),
 };
 constexpr Property kMaterial[] = {
     string("name"),

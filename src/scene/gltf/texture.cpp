@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
+#include <type_traits>
 
 #include "base/error.h"
 #include "base/memory.h"
@@ -57,11 +59,29 @@ NamedImage loadImage(const Document& document, std::size_t index, MemoryBudget& 
   return result;
 }
 
+// Replaces the colors by the roughness 1 - glossiness · alpha. `one` is the sample value of 1.
+template <class T>
+void toRoughness(io::Image& image, float glossiness, float one) {
+  const std::size_t channels = image.channels, colors = image.colorChannels();
+  const std::span<T> samples = image.samples<T>();
+  for (std::size_t i = 0; i < samples.size(); i += channels) {
+    const float alpha = image.hasAlpha() ? static_cast<float>(samples[i + colors]) : one;
+    const float roughness = std::max(one - glossiness * alpha, 0.0f);
+    std::fill_n(samples.begin() + i, colors, static_cast<T>(std::is_integral_v<T> ? roughness + 0.5f : roughness));
+  }
+}
+
+void toRoughness(io::Image& image, float glossiness) {
+  if (image.type == io::PixelType::u8) toRoughness<std::uint8_t>(image, glossiness, 255.0f);
+  if (image.type == io::PixelType::u16) toRoughness<std::uint16_t>(image, glossiness, 65535.0f);
+  if (image.type == io::PixelType::f32) toRoughness<float>(image, glossiness, 1.0f);
+}
+
 // For each image its bytes in the document, or nothing if another image overlaps them.
-std::vector<std::span<const std::byte>> unsharedBytes(const Document& document, std::span<const int> images) {
+std::vector<std::span<const std::byte>> unsharedBytes(const Document& document, std::span<const ImageUse> images) {
   std::vector<std::span<const std::byte>> views(images.size()), unshared(images.size());
   for (std::size_t i = 0; i < images.size(); ++i) {
-    const int view = document.images[static_cast<std::size_t>(images[i])].bufferView;
+    const int view = document.images[static_cast<std::size_t>(images[i].image)].bufferView;
     if (view != kNone) views[i] = document.bufferViews[static_cast<std::size_t>(view)];
   }
   std::vector<std::size_t> order(images.size());
@@ -80,24 +100,20 @@ std::vector<std::span<const std::byte>> unsharedBytes(const Document& document, 
 
 }  // namespace
 
-TextureTable::TextureTable(const Document& document, Report& report)
-    : document_(document),
-      report_(report),
-      textureOf_(document.model.textures.size(), kNone),
-      imageOf_(document.images.size(), kNone) {}
+TextureTable::TextureTable(const Document& document, Report& report) : document_(document), report_(report) {}
 
-int TextureTable::useImage(int image) {
-  int& known = imageOf_[static_cast<std::size_t>(image)];
-  if (known == kNone) {
-    known = static_cast<int>(imageSources_.size());
-    imageSources_.push_back(image);
+int TextureTable::useImage(const ImageUse& use) {
+  int& known = indexOfImage_[use];
+  if (known == 0) {
+    imageUses_.push_back(use);
+    known = static_cast<int>(imageUses_.size());
   }
-  return known;
+  return known - 1;
 }
 
-int TextureTable::use(int texture, const std::string& location) {
-  int& known = textureOf_[static_cast<std::size_t>(texture)];
-  if (known != kNone) return known;
+int TextureTable::use(int texture, const std::string& location, std::optional<float> glossiness) {
+  const auto found = indexOfTexture_.find({texture, glossiness});
+  if (found != indexOfTexture_.end()) return found->second;
   const tinygltf::Texture& from = document_.model.textures[static_cast<std::size_t>(texture)];
   const tinygltf::Value* webp = findExtension(from.extensions, kTextureWebp);
   const int image = webp ? indexOf(*webp, "source") : from.source;
@@ -106,15 +122,16 @@ int TextureTable::use(int texture, const std::string& location) {
         fmt::format("{}: texture {} has no image in a supported format (PNG, JPEG, WebP)", location, texture));
     return kNone;
   }
-  known = static_cast<int>(textures_.size());
-  textures_.push_back({from.name, useImage(image), readSampler(document_, from.sampler)});
-  return known;
+  const auto index = static_cast<int>(textures_.size());
+  textures_.push_back({from.name, useImage({image, glossiness}), readSampler(document_, from.sampler)});
+  indexOfTexture_.emplace(ImageUse{texture, glossiness}, index);
+  return index;
 }
 
-bool describeImages(const Document& document, std::span<const int> imageSources, std::vector<NamedImage>& images) {
-  images.resize(imageSources.size());
-  for (std::size_t i = 0; i < imageSources.size(); ++i) {
-    const int view = document.images[static_cast<std::size_t>(imageSources[i])].bufferView;
+bool describeImages(const Document& document, std::span<const ImageUse> uses, std::vector<NamedImage>& images) {
+  images.resize(uses.size());
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    const int view = document.images[static_cast<std::size_t>(uses[i].image)].bufferView;
     if (view == kNone) return false;
     try {
       const io::ImageInfo info = io::probeImage(document.view(view), "image");
@@ -130,12 +147,13 @@ bool describeImages(const Document& document, std::span<const int> imageSources,
   return true;
 }
 
-void decodeImages(const Document& document, std::span<const int> imageSources, std::vector<NamedImage>& images,
+void decodeImages(const Document& document, std::span<const ImageUse> uses, std::vector<NamedImage>& images,
                   MemoryBudget& budget) {
-  images.resize(imageSources.size());
-  const std::vector<std::span<const std::byte>> unshared = unsharedBytes(document, imageSources);
-  parallelFor(imageSources.size(), [&](std::size_t i) {
-    images[i] = loadImage(document, static_cast<std::size_t>(imageSources[i]), budget);
+  images.resize(uses.size());
+  const std::vector<std::span<const std::byte>> unshared = unsharedBytes(document, uses);
+  parallelFor(uses.size(), [&](std::size_t i) {
+    images[i] = loadImage(document, static_cast<std::size_t>(uses[i].image), budget);
+    if (uses[i].glossiness) toRoughness(images[i].image, *uses[i].glossiness);
     releasePages(unshared[i]);
   });
 }

@@ -3,6 +3,9 @@
 #ifndef QUINTET_SCENE_GLTF_TEXTURE_H
 #define QUINTET_SCENE_GLTF_TEXTURE_H
 
+#include <compare>
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +15,15 @@
 
 namespace quintet::scene {
 
+// An image of the scene and the image of the file that it is made of.
+struct ImageUse {
+  int image = kNone;  // index in Document::images
+  // If set, the image is a specular-glossiness texture (KHR_materials_pbrSpecularGlossiness), and its colors become the
+  // roughness: 1 - glossiness · alpha. Images without alpha have alpha 1.
+  std::optional<float> glossiness{};
+  auto operator<=>(const ImageUse&) const = default;
+};
+
 // Collects the textures that materials use.
 class TextureTable {
  public:
@@ -19,31 +31,31 @@ class TextureTable {
 
   // Index in textures() of a texture of the file, or kNone, with a line in the report, if the texture has no image in a
   // supported format. `location` is that of the use.
-  int use(int texture, const std::string& location);
+  // `glossiness`: see ImageUse.
+  int use(int texture, const std::string& location, std::optional<float> glossiness = {});
 
-  // Texture::image is an index into imageSources().
+  // Texture::image is an index into imageUses().
   const std::vector<Texture>& textures() const { return textures_; }
-  // Indices into Document::images.
-  const std::vector<int>& imageSources() const { return imageSources_; }
+  const std::vector<ImageUse>& imageUses() const { return imageUses_; }
 
  private:
-  int useImage(int image);
+  int useImage(const ImageUse& use);
 
   const Document& document_;
   Report& report_;
   std::vector<Texture> textures_;
-  std::vector<int> imageSources_;
-  std::vector<int> textureOf_;  // index in the file → index in textures_, or kNone
-  std::vector<int> imageOf_;    // index in the file → index in imageSources_, or kNone
+  std::vector<ImageUse> imageUses_;
+  std::map<ImageUse, int> indexOfTexture_;  // ImageUse::image is here the index of a texture in the file
+  std::map<ImageUse, int> indexOfImage_;    // in imageUses_, plus 1
 };
 
 // Sets the size, channels and type of each image from its header. Returns false if an image is in a separate file or
 // has an invalid header; the images from that one on are then not described.
-bool describeImages(const Document&, std::span<const int> imageSources, std::vector<NamedImage>& images);
+bool describeImages(const Document&, std::span<const ImageUse> uses, std::vector<NamedImage>& images);
 
-// Decodes the images. Returns the memory of each encoded image to the system once the image is decoded; the images of
+// Decodes and converts the images. Returns the memory of each encoded image to the system once the image is decoded; the images of
 // the document must not be read afterwards. Throws FileError, MemoryError.
-void decodeImages(const Document&, std::span<const int> imageSources, std::vector<NamedImage>& images, MemoryBudget&);
+void decodeImages(const Document&, std::span<const ImageUse> uses, std::vector<NamedImage>& images, MemoryBudget&);
 
 }  // namespace quintet::scene
 #endif

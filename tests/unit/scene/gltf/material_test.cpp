@@ -103,6 +103,29 @@ TEST(GltfMaterial, ReadsExtensions) {
   EXPECT_EQ(m.sheenRoughness, 0.75f);
 }
 
+// The extension states: c_diff = diffuse (1 - max(specular)), F0 = specular, alpha = (1 - glossiness)².
+TEST(GltfMaterial, ConvertsSpecularGlossiness) {
+  GltfBuilder builder;
+  Json material = extension(
+      "KHR_materials_pbrSpecularGlossiness",
+      {{"diffuseFactor", {0.1, 0.2, 0.3, 0.4}}, {"specularFactor", {0.5, 0.25, 1}}, {"glossinessFactor", 0.75}});
+  material["pbrMetallicRoughness"] = {{"baseColorFactor", {1, 0, 0, 1}}, {"metallicFactor", 1}};
+  builder.add("materials", material);
+  const scene::Scene scene = builder.load();
+  const Material& m = scene.materials[0];
+  EXPECT_EQ(m.baseColor, vec4(0.1f, 0.2f, 0.3f, 0.4f));
+  EXPECT_EQ(m.metallic, 0.0f);
+  EXPECT_EQ(m.roughness, 0.25f);
+  EXPECT_EQ(m.ior, 0.0f);
+  EXPECT_EQ(m.specular, 1.0f);
+  EXPECT_EQ(m.specularColor, vec3(0.5f, 0.25f, 1));
+  EXPECT_THAT(scene.report.repaired, ElementsAre(IsErrorAt("/materials/0", "KHR_materials_pbrSpecularGlossiness")));
+  const Material defaults = loadMaterial(extension("KHR_materials_pbrSpecularGlossiness", Json::object()));
+  EXPECT_EQ(defaults.baseColor, vec4(1));
+  EXPECT_EQ(defaults.specularColor, vec3(1));
+  EXPECT_EQ(defaults.roughness, 0.0f);
+}
+
 TEST(GltfMaterial, ClampsFactors) {
   GltfBuilder builder;
   builder.add("materials",
@@ -207,6 +230,32 @@ TEST(GltfTexture, ReadsTexturesOfSheen) {
   EXPECT_EQ(m.sheenColorTexture.uvSet, 0);
   EXPECT_EQ(m.sheenRoughnessTexture.texture, 0);
   EXPECT_EQ(m.sheenRoughnessTexture.uvSet, 1);
+}
+
+// Glossiness is in alpha, and its factor scales it. The same image gives the specular color.
+TEST(GltfTexture, ConvertsGlossinessToRoughness) {
+  io::Image image = io::makeImage(2, 1, 4, io::PixelType::u8, io::ColorEncoding::sRgb);
+  const std::uint8_t texels[] = {10, 20, 30, 0, 40, 50, 60, 255};
+  std::ranges::copy(texels, image.samples<std::uint8_t>().begin());
+  GltfBuilder builder;
+  builder.add("images", {{"bufferView", builder.addView(io::encodePng(image))}, {"mimeType", "image/png"}});
+  builder.add("textures", {{"source", 0}});
+  builder.add("materials",
+              extension("KHR_materials_pbrSpecularGlossiness",
+                        {{"glossinessFactor", 0.6}, {"specularGlossinessTexture", {{"index", 0}, {"texCoord", 1}}}}));
+  const scene::Scene scene = builder.load();
+  const Material& m = scene.materials[0];
+  EXPECT_EQ(m.roughness, 1.0f);
+  EXPECT_EQ(m.metallic, 0.0f);
+  EXPECT_EQ(m.metallicRoughnessTexture.uvSet, 1);
+  const auto imageOf = [&](const scene::TextureUse& use) {
+    const std::size_t texture = static_cast<std::size_t>(use.texture);
+    return scene.images.at(static_cast<std::size_t>(scene.textures.at(texture).image)).image;
+  };
+  const io::Image roughness = imageOf(m.metallicRoughnessTexture), specular = imageOf(m.specularColorTexture);
+  EXPECT_EQ(roughness.pixel<std::uint8_t>(0, 0)[1], 255);
+  EXPECT_EQ(roughness.pixel<std::uint8_t>(1, 0)[1], 102);
+  EXPECT_EQ(specular.pixel<std::uint8_t>(1, 0)[1], 50);
 }
 
 TEST(GltfTexture, ReplacesUnsupportedTextureCoordinateSets) {
