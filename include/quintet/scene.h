@@ -61,7 +61,7 @@ struct TextureUse {
 enum class AlphaMode { opaque, mask, blend };
 
 // The metallic-roughness material of glTF 2.0 with its extensions. Factors multiply the value of the texture. Textures of
-// base color, emission, specular color and sheen color are sRGB-encoded unless they are floats; all others are linear.
+// base color, emission, specular color, sheen color and diffuse transmission color are sRGB-encoded unless they are floats; all others are linear.
 struct Material {
   std::string name{};
   Float4 baseColor{1, 1, 1, 1};           // linear, [0,1]; alpha is coverage
@@ -93,10 +93,14 @@ struct Material {
   TextureUse clearcoatRoughnessTexture{};  // g
   TextureUse clearcoatNormalTexture{};
   float clearcoatNormalScale = 1;
-  Float3 sheenColor{0, 0, 0};          // [0,1]; black means no sheen
-  TextureUse sheenColorTexture{};      // rgb
-  float sheenRoughness = 0;            // [0,1]
-  TextureUse sheenRoughnessTexture{};  // a
+  Float3 sheenColor{0, 0, 0};                    // [0,1]; black means no sheen
+  TextureUse sheenColorTexture{};                // rgb
+  float sheenRoughness = 0;                      // [0,1]
+  TextureUse sheenRoughnessTexture{};            // a
+  float diffuseTransmission = 0;                 // [0,1], part of the diffuse light that passes to the other side
+  TextureUse diffuseTransmissionTexture{};       // a
+  Float3 diffuseTransmissionColor{1, 1, 1};      // [0,1]
+  TextureUse diffuseTransmissionColorTexture{};  // rgb
   bool operator==(const Material&) const = default;
 };
 

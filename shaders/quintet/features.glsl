@@ -5,7 +5,7 @@
 #define QUINTET_FEATURES_GLSL
 
 #ifdef QUINTET_NO_SOLID_TRANSMISSION
-const bool kHasSolidTransmission = false;  // refraction into closed solids
+const bool kHasSolidTransmission = false;  // light enters closed solids
 #else
 const bool kHasSolidTransmission = true;
 #endif
@@ -28,6 +28,11 @@ const bool kHasClearcoat = true;
 const bool kHasSheen = false;
 #else
 const bool kHasSheen = true;
+#endif
+#ifdef QUINTET_NO_DIFFUSE_TRANSMISSION
+const bool kHasDiffuseTransmission = false;
+#else
+const bool kHasDiffuseTransmission = true;
 #endif
 #ifdef QUINTET_NO_TRIANGLE_LIGHTS
 const bool kHasTriangleLights = false;

@@ -62,6 +62,8 @@ Shading shadeSurface(Surface s, vec3 wo) {
   r.bsdf.clearcoat = MATERIAL.clearcoat;
   r.bsdf.sheenColor = MATERIAL.sheenColor;
   float sheenRoughness = MATERIAL.sheenRoughness;
+  r.bsdf.diffuseTransmission = MATERIAL.diffuseTransmission;
+  r.bsdf.diffuseTransmissionColor = MATERIAL.diffuseTransmissionColor;
   float coatRoughness = MATERIAL.clearcoatRoughness;
   vec3 mapped = vec3(0.0, 0.0, 1.0);
   vec3 coatMapped = mapped;
@@ -84,6 +86,8 @@ Shading shadeSurface(Surface s, vec3 wo) {
     else if (isTexture(slot, kTextureClearcoatNormal)) coatMapped = vec3(MATERIAL.clearcoatNormalScale * (2.0 * v.xy - 1.0), 2.0 * v.z - 1.0);
     else if (isTexture(slot, kTextureSheenColor)) r.bsdf.sheenColor *= v.rgb;
     else if (isTexture(slot, kTextureSheenRoughness)) sheenRoughness *= v.a;
+    else if (isTexture(slot, kTextureDiffuseTransmission)) r.bsdf.diffuseTransmission *= v.a;
+    else if (isTexture(slot, kTextureDiffuseTransmissionColor)) r.bsdf.diffuseTransmissionColor *= v.rgb;
   }
 
   r.unlit = (flags & kMaterialUnlit) != 0u;
@@ -113,7 +117,7 @@ Shading shadeSurface(Surface s, vec3 wo) {
   r.bsdf.clearcoatNormal = vec3(0.0, 0.0, 1.0);
   if (kHasNormalMaps) r.bsdf.clearcoatNormal = toLocal(r, consistentNormal(side * fromTangentSpace(s, front, coatMapped), s.geometricNormal, wo));
   explainShading(r.normal, r.emission, r.bsdf.baseColor, r.bsdf.metallic, r.bsdf.alpha, r.bsdf.transmission, r.bsdf.ior, r.bsdf.clearcoat,
-                 r.bsdf.sheenColor, r.bsdf.sheenAlpha, r.unlit);
+                 r.bsdf.sheenColor, r.bsdf.sheenAlpha, r.bsdf.diffuseTransmission, r.unlit);
   return r;
 }
 

@@ -57,6 +57,10 @@ void copyMaterial(To& to, const From& from, const Value& value, const Use& use) 
   use(to.sheenColorTexture, from.sheenColorTexture);
   to.sheenRoughness = from.sheenRoughness;
   use(to.sheenRoughnessTexture, from.sheenRoughnessTexture);
+  to.diffuseTransmission = from.diffuseTransmission;
+  use(to.diffuseTransmissionTexture, from.diffuseTransmissionTexture);
+  value(to.diffuseTransmissionColor, from.diffuseTransmissionColor);
+  use(to.diffuseTransmissionColorTexture, from.diffuseTransmissionColorTexture);
 }
 
 Material toPublic(const scene::Material& material) {

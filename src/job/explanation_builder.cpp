@@ -29,7 +29,7 @@ constexpr std::pair<std::uint32_t, const char*> kRayFlags[] = {
     {256, "SkipTriangles"},
     {512, "SkipAABB"},
 };
-constexpr const char* kLobes[] = {"clearcoat", "specular", "diffuse", "transmission", "sheen"};
+constexpr const char* kLobes[] = {"clearcoat", "specular", "diffuse", "transmission", "sheen", "diffuse transmission"};
 constexpr const char* kLightTypes[] = {"point", "spot", "directional", "triangle", "environment", "solid"};
 constexpr const char* kSources[] = {"background", "surface", "light sample"};
 constexpr const char* kReasons[] = {"unlit surface", "largest number of bounces",
@@ -386,6 +386,7 @@ class Builder {
              {"clearcoat", r.clearcoat},
              {"sheenColor", floats(r.sheenColor)},
              {"sheenRoughness", std::sqrt(r.sheenAlpha)},
+             {"diffuseTransmission", r.diffuseTransmission},
              {"emission", floats(r.emission)},
              {"unlit", r.unlit != 0}},
             {}};

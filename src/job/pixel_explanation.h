@@ -36,7 +36,7 @@ using EventValue = std::variant<bool, std::int64_t, float, std::string, std::vec
 //   camera         film (pixels), lens
 //   surface        position, geometricNormal, shadingNormal, uv, material, side ("front", "back")
 //   shading        normal, baseColor, metallic, roughness, transmission, ior, clearcoat, sheenColor, sheenRoughness,
-//                  emission, unlit
+//                  diffuseTransmission, emission, unlit
 //   light          light ("none" if none can contribute, without the other fields), lightType, probability; of a triangle
 //                  or solid also instance, geometry, primitive; if it can contribute: direction, distance, radiance (behind
 //                  absorbing media), pdf, delta, bsdf, bsdfPdf, misWeight, throughput

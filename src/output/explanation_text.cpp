@@ -232,6 +232,7 @@ class TreeText {
     if (e.number("clearcoat") > 0.0f) parts.add("clearcoat", e, "clearcoat");
     if (e.vector("sheenColor") != vec3(0.0f))
       parts.add("sheen color", e, "sheenColor").add("sheen roughness", e, "sheenRoughness");
+    if (e.number("diffuseTransmission") > 0.0f) parts.add("diffuse transmission", e, "diffuseTransmission");
     if (e.vector("emission") != vec3(0.0f)) parts.add("emission", e, "emission");
     if (e.flag("unlit")) parts.add("unlit");
     line(indent, "material", parts.text());

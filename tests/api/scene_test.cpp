@@ -55,7 +55,9 @@ TEST(ApiScene, ReturnsMaterialsAsTheyWereAdded) {
       .clearcoat = 0.8f,
       .clearcoatRoughness = 0.15f,
       .sheenColor = {0.4f, 0.3f, 0.2f},
-      .sheenRoughness = 0.35f};
+      .sheenRoughness = 0.35f,
+      .diffuseTransmission = 0.45f,
+      .diffuseTransmissionColor = {0.3f, 0.2f, 0.1f}};
   EXPECT_EQ(scene.material(scene.addMaterial(material)), material);
 }
 

@@ -137,6 +137,21 @@ SceneBuilder sheen() {
   return scene;
 }
 
+// Leaves and a volume of wax that light passes diffusely, in front of light and under a sheen.
+SceneBuilder translucent() {
+  SceneBuilder scene = stage();
+  scene::Material leaf = plastic({0.2f, 0.6f, 0.1f}, 0.5f), wax = plastic({0.8f, 0.7f, 0.5f}, 0.4f);
+  leaf.diffuseTransmission = 0.6f, leaf.diffuseTransmissionColor = {0.6f, 0.9f, 0.1f};
+  wax.diffuseTransmission = 1.0f, wax.thickness = 1.0f;
+  wax.attenuationColor = {0.9f, 0.5f, 0.3f}, wax.attenuationDistance = 0.7f;
+  scene::Material velvet = leaf;
+  velvet.sheenColor = vec3(0.6f), velvet.sheenRoughness = 0.4f;
+  scene.add(smooth(sphere({-0.8f, 0.7f, 0}, 0.7f, 3), {-0.8f, 0.7f, 0}), wax);
+  scene.add(quad({0.2f, 0.1f, 0}, {1.4f, 0, 0.3f}, {0, 1.4f, 0.2f}), leaf);
+  scene.add(quad({-2, 0, -2}, {4, 0, 0}, {0, 2, 0}), velvet);
+  return scene;
+}
+
 // Frosted, colored glass around light, and a clear ball.
 SceneBuilder roughGlass() {
   SceneBuilder scene = stage(vec3(3.0f), vec3(0.6f));
@@ -343,6 +358,7 @@ std::span<const ImageScene> imageScenes() {
       {"textures", textures, 32, 20, 4, 128, 256, false},
       {"clearcoat", clearcoat, 32, 20, 4, 128, 256, false},
       {"sheen", sheen, 32, 20, 4, 128, 256, false},
+      {"translucent", translucent, 32, 20, 4, 128, 256, false},
       {"rough_glass", roughGlass, 32, 20, 4, 128, 256, false},
       {"sun_and_sky", sunAndSky, 32, 20, 4, 256, 1024, true},
       {"solids", solids, 32, 20, 4, 128, 512, false},

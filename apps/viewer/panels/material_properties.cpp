@@ -73,6 +73,11 @@ void materialProperties(ViewState& state, std::size_t index) {
   edit.color("Sheen color", "sheenColor", material.sheenColor, "Linear Rec. 709; black: no sheen");
   if (material.sheenColor != vec3(0.0f))
     edit.number("Sheen roughness", "sheenRoughness", material.sheenRoughness, kUnit, "Perceptual");
+  edit.number("Diffuse transmission", "diffuseTransmission", material.diffuseTransmission, kUnit,
+              "Part of the diffuse light that passes to the other side");
+  if (material.diffuseTransmission > 0.0f)
+    edit.color("Diffuse transmission color", "diffuseTransmissionColor", material.diffuseTransmissionColor,
+               "Linear Rec. 709");
   if (material.alphaMode == scene::AlphaMode::mask)
     edit.number("Alpha cutoff", "alphaCutoff", material.alphaCutoff, kUnit, "Less opaque points are invisible");
   edit.flag("Double-sided", "doubleSided", material.doubleSided, "The back is visible too");

@@ -11,6 +11,8 @@ struct BaseLayer {
   vec3 color;          // base color
   float metallic;
   float opaque;        // weight of the opaque dielectric
+  float diffuse;       // weight of diffuse reflection, a part of `opaque`
+  float translucent;   // weight of diffuse transmission, the other part
   float clear;         // weight of the transmissive dielectric
   float alpha;         // GGX width, at least kDeltaAlpha
   bool delta;          // the surface is smooth

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The BSDF of glTF 2.0's metallic-roughness material with KHR_materials_transmission, _volume, _ior, _specular,
-// _clearcoat and _sheen: a sum of lobes. lobes.glsl lists them; this file evaluates and samples the sum.
+// _clearcoat, _sheen and _diffuse_transmission: a sum of lobes. lobes.glsl lists them; this file evaluates and samples the sum.
 //
 // Contract of this file and of every lobe:
 // - Directions are unit vectors in a local frame whose z is the shading normal on the side of wo, so wo.z > 0. Both point

@@ -16,8 +16,8 @@ struct DiffuseLobe {
 
 // `albedo`: estimate of the lobe's albedo, for the choice of a lobe.
 DiffuseLobe makeDiffuse(BaseLayer base, out float albedo) {
-  albedo = base.underCoat * base.opaque * luminance(base.color) * base.passed;
-  return DiffuseLobe(base.opaque * base.color * (base.passed / max(layerPassed(base.passing, base.average), 1e-4)), base.passing);
+  albedo = base.underCoat * base.diffuse * luminance(base.color) * base.passed;
+  return DiffuseLobe(base.diffuse * base.color * (base.passed / max(layerPassed(base.passing, base.average), 1e-4)), base.passing);
 }
 
 // `lb`: the layer's albedoSchlick at wi.

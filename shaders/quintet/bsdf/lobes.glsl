@@ -8,6 +8,7 @@
 #include "../features.glsl"
 #include "clearcoat.glsl"
 #include "diffuse.glsl"
+#include "diffuse_transmission.glsl"
 #include "sheen.glsl"
 #include "specular.glsl"
 #include "transmission.glsl"
@@ -17,10 +18,11 @@ const int kLobeSpecular = 1;
 const int kLobeDiffuse = 2;
 const int kLobeTransmission = 3;
 const int kLobeSheen = 4;
-const int kLobeCount = 5;
+const int kLobeDiffuseTransmission = 5;
+const int kLobeCount = 6;
 
 // False for lobes that no material of the scene has. The compiler then removes their code.
-const bool kLobeInScene[kLobeCount] = bool[kLobeCount](kHasClearcoat, true, true, kHasTransmission, kHasSheen);
+const bool kLobeInScene[kLobeCount] = bool[kLobeCount](kHasClearcoat, true, true, kHasTransmission, kHasSheen, kHasDiffuseTransmission);
 // True if all lobes have the normal z.
 const bool kLobesShareNormal = !kHasClearcoat;
 
@@ -40,7 +42,14 @@ struct BsdfParameters {
   vec3 clearcoatNormal;  // unit, in the local frame
   vec3 sheenColor;
   float sheenAlpha;      // sheenRoughness squared
+  float diffuseTransmission;
+  vec3 diffuseTransmissionColor;
 };
+
+// Returns true if light can pass the surface.
+bool bsdfTransmits(BsdfParameters p) {
+  return (kHasTransmission && p.transmission > 0.0) || (kHasDiffuseTransmission && p.diffuseTransmission > 0.0);
+}
 
 // The lobes of a material for one wo.
 struct Bsdf {
@@ -49,6 +58,7 @@ struct Bsdf {
   DiffuseLobe diffuse;
   TransmissionLobe transmission;
   SheenLobe sheen;
+  DiffuseTransmissionLobe diffuseTransmission;
   float lobeProbability[kLobeCount];  // of sampling each lobe; the sum is 1, or 0 for a black surface
   AlbedoCell row;                     // of the base's roughness
   float underCoat;                    // fraction of light that passes the clearcoat
@@ -62,6 +72,8 @@ BaseLayer makeBaseLayer(BsdfParameters p, vec3 wo) {
   base.color = clamp(p.baseColor, 0.0, 1.0);
   base.metallic = p.metallic;
   base.opaque = dielectric * (1.0 - transmission);
+  base.translucent = kHasDiffuseTransmission ? base.opaque * p.diffuseTransmission : 0.0;
+  base.diffuse = kHasDiffuseTransmission ? base.opaque * (1.0 - p.diffuseTransmission) : base.opaque;
   base.clear = dielectric * transmission;
   base.alpha = max(p.alpha, kDeltaAlpha);
   base.delta = p.alpha < kDeltaAlpha;
@@ -109,6 +121,11 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   b.diffuse = makeDiffuse(base, b.lobeProbability[kLobeDiffuse]);
   b.transmission = makeTransmission(base, wo.z, p.alpha, b.lobeProbability[kLobeTransmission]);
   b.lobeProbability[kLobeSheen] = b.underCoat * sheen;
+  b.lobeProbability[kLobeDiffuseTransmission] = 0.0;
+  if (kHasDiffuseTransmission) {
+    vec3 color = clamp(p.diffuseTransmissionColor, 0.0, 1.0);
+    b.diffuseTransmission = makeDiffuseTransmission(base, color, b.lobeProbability[kLobeDiffuseTransmission]);
+  }
 
   float sum = 0.0;
   for (int i = 0; i < kLobeCount; ++i) sum += b.lobeProbability[i];
@@ -132,6 +149,7 @@ vec3 lobesEval(Bsdf b, vec3 wo, vec3 wi) {
   vec3 transmission = transmissionEval(b.transmission, wo, wi, lb);
   float scale = kHasSheen ? sheenScale(b.sheen, wi) : 1.0;
   vec3 base = diffuseEval(b.diffuse, wi, lb);
+  if (kHasDiffuseTransmission) base += diffuseTransmissionEval(b.diffuseTransmission, wi, lb);
   if (kHasSheen) base *= sheenScaleDiffuse(b.sheen, wi);
   base += b.specular.delta ? vec3(0.0) : scale * specularEval(b.specular, wo, wi, lb);
   if (kHasTransmission) base += b.transmission.delta ? vec3(0.0) : scale * transmission;
@@ -149,6 +167,7 @@ void lobePdfs(Bsdf b, vec3 wo, vec3 wi, out float pdf[kLobeCount]) {
   float transmission = transmissionPdf(b.transmission, wo, wi);
   pdf[kLobeTransmission] = b.transmission.delta ? 0.0 : transmission;
   pdf[kLobeSheen] = kHasSheen ? sheenPdf(wi) : 0.0;
+  pdf[kLobeDiffuseTransmission] = kHasDiffuseTransmission ? diffuseTransmissionPdf(wi) : 0.0;
 }
 
 // The microfacets of a lobe. bsdf.glsl samples their normal once for all lobes, because ggxSample is expensive.
@@ -169,12 +188,14 @@ vec3 lobeSample(Bsdf b, int lobe, vec3 wo, vec3 m, float uPart, vec2 u) {
   if (isLobe(lobe, kLobeTransmission)) return transmissionSample(b.transmission, wo, m, uPart, u);
   if (isLobe(lobe, kLobeClearcoat)) return clearcoatSample(b.clearcoat, wo, m);
   if (isLobe(lobe, kLobeSheen)) return sheenSample(u);
+  if (isLobe(lobe, kLobeDiffuseTransmission)) return diffuseTransmissionSample(u);
   return lobe == kLobeDiffuse ? diffuseSample(u) : specularSample(b.specular, wo, m, uPart, u);
 }
 
 // Returns true if the sampled wi is on the other side of the surface.
 bool lobeTransmits(Bsdf b, int lobe, vec3 wi, vec3 m) {
-  return isLobe(lobe, kLobeTransmission) && transmissionTransmits(b.transmission, wi, m);
+  return isLobe(lobe, kLobeDiffuseTransmission) ||
+         (isLobe(lobe, kLobeTransmission) && transmissionTransmits(b.transmission, wi, m));
 }
 
 // Returns true if the lobe lets light pass straight on through a pane.

@@ -75,9 +75,10 @@ float sheenScale(SheenLobe lobe, vec3 wi) {
   return min(lobe.passed, covered ? sheenPassed(lobe, abs(wi.z)) : 1.0);
 }
 
-// Returns the factor of the diffuse lobe: P(wo) P(wi) / N.
+// Returns the factor of the diffuse lobes: P(wo) P(wi) / N, or the P of the only side with sheen.
 float sheenScaleDiffuse(SheenLobe lobe, vec3 wi) {
-  return lobe.nearSide ? lobe.diffuse * sheenPassed(lobe, abs(wi.z)) : 1.0;
+  bool covered = wi.z > 0.0 ? lobe.nearSide : lobe.farSide;
+  return (lobe.nearSide && covered ? lobe.diffuse : lobe.passed) * (covered ? sheenPassed(lobe, abs(wi.z)) : 1.0);
 }
 
 vec3 sheenEval(SheenLobe lobe, vec3 wo, vec3 wi) {

@@ -168,9 +168,10 @@ struct ExplainShading {
   float clearcoat;
   vec3 sheenColor;
   float sheenAlpha;  // sheenRoughness squared
+  float diffuseTransmission;
   uint unlit;
 };
-QT_SHARED_SIZE(ExplainShading, 76);
+QT_SHARED_SIZE(ExplainShading, 80);
 
 struct ExplainLobe {
   uint lobe;          // kLobe… (quintet/bsdf/lobes.glsl)

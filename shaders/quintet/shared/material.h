@@ -41,8 +41,10 @@ QT_CONSTANT kTextureClearcoatRoughness = 8;
 QT_CONSTANT kTextureClearcoatNormal = 9;
 QT_CONSTANT kTextureSheenColor = 10;
 QT_CONSTANT kTextureSheenRoughness = 11;
-QT_CONSTANT kTextureCount = 12;
-QT_CONSTANT kMaterialTextureOffset = 112;  // byte offset of the first texture in MaterialData
+QT_CONSTANT kTextureDiffuseTransmission = 12;
+QT_CONSTANT kTextureDiffuseTransmissionColor = 13;
+QT_CONSTANT kTextureCount = 14;
+QT_CONSTANT kMaterialTextureOffset = 128;  // byte offset of the first texture in MaterialData
 
 struct MaterialData {
   vec4 baseColor;
@@ -62,6 +64,8 @@ struct MaterialData {
   uint flags;
   vec3 sheenColor;
   float sheenRoughness;
+  vec3 diffuseTransmissionColor;
+  float diffuseTransmission;
   TextureData baseColorTexture;
   TextureData metallicRoughnessTexture;
   TextureData normalTexture;
@@ -74,6 +78,8 @@ struct MaterialData {
   TextureData clearcoatNormalTexture;
   TextureData sheenColorTexture;
   TextureData sheenRoughnessTexture;
+  TextureData diffuseTransmissionTexture;
+  TextureData diffuseTransmissionColorTexture;
 };
 QT_SHARED_SIZE(MaterialData, kMaterialTextureOffset + kTextureCount * 32);
 

@@ -18,7 +18,7 @@ namespace {
 using scene::Material;
 using Member = std::variant<float Material::*, vec3 Material::*, vec4 Material::*, bool Material::*>;
 
-constexpr std::array<std::pair<std::string_view, Member>, 20> kProperties{{
+constexpr std::array<std::pair<std::string_view, Member>, 22> kProperties{{
     {"baseColor", &Material::baseColor},
     {"metallic", &Material::metallic},
     {"roughness", &Material::roughness},
@@ -39,6 +39,8 @@ constexpr std::array<std::pair<std::string_view, Member>, 20> kProperties{{
     {"clearcoatNormalScale", &Material::clearcoatNormalScale},
     {"sheenColor", &Material::sheenColor},
     {"sheenRoughness", &Material::sheenRoughness},
+    {"diffuseTransmission", &Material::diffuseTransmission},
+    {"diffuseTransmissionColor", &Material::diffuseTransmissionColor},
 }};
 
 // Components of a value; a base color can omit alpha.

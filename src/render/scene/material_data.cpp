@@ -60,6 +60,8 @@ shared::MaterialData makeMaterial(const scene::Material& m, const TextureIndex& 
   data.flags = materialFlags(m);
   data.sheenColor = m.sheenColor;
   data.sheenRoughness = m.sheenRoughness;
+  data.diffuseTransmissionColor = m.diffuseTransmissionColor;
+  data.diffuseTransmission = m.diffuseTransmission;
   static_assert(scene::kMaterialTextures.size() == shared::kTextureCount + 1);
   shared::TextureData* textures = &data.baseColorTexture;
   for (std::uint32_t k = 0; k < shared::kTextureCount; ++k) {

@@ -84,14 +84,17 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
   const auto without = [&](const char* name, bool present) {
     if (!present) defines.emplace_back(name, "1");
   };
-  without("QUINTET_NO_SOLID_TRANSMISSION",
-          any([](const scene::Material& m) { return m.transmission > 0.0f && m.thickness > 0.0f; }));
+  without("QUINTET_NO_SOLID_TRANSMISSION", any([](const scene::Material& m) {
+            return (m.transmission > 0.0f || m.diffuseTransmission > 0.0f) && m.thickness > 0.0f;
+          }));
   without("QUINTET_NO_THIN_TRANSMISSION",
           any([](const scene::Material& m) { return m.transmission > 0.0f && !(m.thickness > 0.0f); }));
   without("QUINTET_NO_PANES", any([](const scene::Material& m) { return scene::isPane(m); }));
   without("QUINTET_NO_TRANSMITTANCE", anyTintsShadows(scene));
   without("QUINTET_NO_CLEARCOAT", any([](const scene::Material& m) { return m.clearcoat > 0.0f; }));
   without("QUINTET_NO_SHEEN", any([](const scene::Material& m) { return m.sheenColor != vec3(0.0f); }));
+  without("QUINTET_NO_DIFFUSE_TRANSMISSION",
+          any([](const scene::Material& m) { return m.diffuseTransmission > 0.0f; }));
   without("QUINTET_NO_TRIANGLE_LIGHTS", any(emits));
   without("QUINTET_NO_PUNCTUAL_LIGHTS", !scene.lights.empty());
   without("QUINTET_NO_ENVIRONMENT", glm::any(glm::greaterThan(environmentScale, vec3(0.0f))));

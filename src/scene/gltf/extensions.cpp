@@ -24,6 +24,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "KHR_materials_specular",
     "KHR_materials_clearcoat",
     "KHR_materials_sheen",
+    "KHR_materials_diffuse_transmission",
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_variants",
     "KHR_lights_punctual",

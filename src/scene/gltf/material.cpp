@@ -47,6 +47,8 @@ class MaterialReader {
     }
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_clearcoat")) readClearcoat(*e);
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_sheen")) readSheen(*e);
+    if (const auto* e = findExtension(from_.extensions, "KHR_materials_diffuse_transmission"))
+      readDiffuseTransmission(*e);
     material_.unlit = findExtension(from_.extensions, "KHR_materials_unlit") != nullptr;
     return std::move(material_);
   }
@@ -126,6 +128,15 @@ class MaterialReader {
     if (extension.Has("clearcoatNormalTexture"))
       material_.clearcoatNormalScale =
           static_cast<float>(numberOf(extension.Get("clearcoatNormalTexture"), "scale", 1.0));
+  }
+
+  void readDiffuseTransmission(const tinygltf::Value& extension) {
+    material_.diffuseTransmission =
+        unit(numberOf(extension, "diffuseTransmissionFactor", 0.0), "diffuseTransmissionFactor");
+    material_.diffuseTransmissionTexture = texture(extension, "diffuseTransmissionTexture");
+    material_.diffuseTransmissionColor = range(vec3Of(extension, "diffuseTransmissionColorFactor", vec3(1.0f)), 0.0f,
+                                               1.0f, "diffuseTransmissionColorFactor");
+    material_.diffuseTransmissionColorTexture = texture(extension, "diffuseTransmissionColorTexture");
   }
 
   void readSheen(const tinygltf::Value& extension) {

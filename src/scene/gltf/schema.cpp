@@ -229,6 +229,9 @@ constexpr Property kSheen[] = {numbers("sheenColorFactor", 3), texture("sheenCol
 constexpr Property kSpecularGlossiness[] = {numbers("diffuseFactor", 4), texture("diffuseTexture"),
                                             numbers("specularFactor", 3), number("glossinessFactor"),
                                             texture("specularGlossinessTexture")};
+constexpr Property kDiffuseTransmission[] = {number("diffuseTransmissionFactor"), texture("diffuseTransmissionTexture"),
+                                             numbers("diffuseTransmissionColorFactor", 3),
+                                             texture("diffuseTransmissionColorTexture")};
 constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_unlit", {}),
     object("KHR_materials_emissive_strength", kEmissiveStrength),
@@ -238,6 +241,7 @@ constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_specular", kSpecular),
     object("KHR_materials_clearcoat", kClearcoat),
     object("KHR_materials_sheen", kSheen),
+    object("KHR_materials_diffuse_transmission", kDiffuseTransmission),
     object("KHR_materials_pbrSpecularGlossiness", kSpecularGlossiness),
 };
 constexpr Property kMaterial[] = {

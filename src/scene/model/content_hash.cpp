@@ -57,7 +57,8 @@ class Feeder {
             m.thickness, m.attenuationDistance, m.attenuationColor, m.specular, m.specularTexture, m.specularColor,
             m.specularColorTexture, m.clearcoat, m.clearcoatTexture, m.clearcoatRoughness, m.clearcoatRoughnessTexture,
             m.clearcoatNormalTexture, m.clearcoatNormalScale, m.sheenColor, m.sheenColorTexture, m.sheenRoughness,
-            m.sheenRoughnessTexture);
+            m.sheenRoughnessTexture, m.diffuseTransmission, m.diffuseTransmissionTexture, m.diffuseTransmissionColor,
+            m.diffuseTransmissionColorTexture);
   }
   void add(const Geometry& g) {
     (*this)(g.positions, g.triangles, g.normals, g.tangents, g.uvs, g.colors, g.material, g.fileTriangles);

@@ -28,6 +28,8 @@ inline constexpr std::array kMaterialTextures{
     MaterialTexture{&Material::clearcoatNormalTexture, false},
     MaterialTexture{&Material::sheenColorTexture, true},
     MaterialTexture{&Material::sheenRoughnessTexture, false},
+    MaterialTexture{&Material::diffuseTransmissionTexture, false},
+    MaterialTexture{&Material::diffuseTransmissionColorTexture, true},
     MaterialTexture{&Material::occlusionTexture, false},
 };
 

@@ -85,10 +85,14 @@ struct Material {
   TextureUse clearcoatRoughnessTexture;  // g
   TextureUse clearcoatNormalTexture;
   float clearcoatNormalScale = 1.0f;
-  vec3 sheenColor{0.0f};             // KHR_materials_sheen, [0,1]; black means no sheen
-  TextureUse sheenColorTexture;      // rgb, sRGB
-  float sheenRoughness = 0.0f;       // perceptual, [0,1]; alpha = sheenRoughness²
-  TextureUse sheenRoughnessTexture;  // a
+  vec3 sheenColor{0.0f};                       // KHR_materials_sheen, [0,1]; black means no sheen
+  TextureUse sheenColorTexture;                // rgb, sRGB
+  float sheenRoughness = 0.0f;                 // perceptual, [0,1]; alpha = sheenRoughness²
+  TextureUse sheenRoughnessTexture;            // a
+  float diffuseTransmission = 0.0f;            // KHR_materials_diffuse_transmission, [0,1]
+  TextureUse diffuseTransmissionTexture;       // a
+  vec3 diffuseTransmissionColor{1.0f};         // [0,1]
+  TextureUse diffuseTransmissionColorTexture;  // rgb, sRGB
 };
 
 // A list of triangles. Every attribute is empty or has positions.size() elements.

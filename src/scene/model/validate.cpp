@@ -158,11 +158,13 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
   checkUnit(material.clearcoat, "clearcoat");
   checkUnit(material.clearcoatRoughness, "clearcoatRoughness");
   checkUnit(material.sheenRoughness, "sheenRoughness");
+  checkUnit(material.diffuseTransmission, "diffuseTransmission");
   for (int i = 0; i < 3; ++i) {
     checkRange(material.emissive[i], 0.0f, kLargest, "emissive");
     checkRange(material.specularColor[i], 0.0f, kLargest, "specularColor");
     checkUnit(material.attenuationColor[i], "attenuationColor");
     checkUnit(material.sheenColor[i], "sheenColor");
+    checkUnit(material.diffuseTransmissionColor[i], "diffuseTransmissionColor");
   }
   checkRange(material.thickness, 0.0f, kLargest, "thickness");
   for (const auto& [value, property] : {std::pair(material.normalScale, "normalScale"),

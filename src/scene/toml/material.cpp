@@ -91,6 +91,11 @@ void readTransmission(TomlReader& reader, TextureReader& texture, Material& m) {
   m.ior = reader.number("ior", m.ior, kAtLeastOne);
   m.transmission = reader.number("transmission", m.transmission, kUnit);
   m.transmissionTexture = texture(reader, "transmission_texture", m.transmissionTexture);
+  m.diffuseTransmission = reader.number("diffuse_transmission", m.diffuseTransmission, kUnit);
+  m.diffuseTransmissionTexture = texture(reader, "diffuse_transmission_texture", m.diffuseTransmissionTexture);
+  m.diffuseTransmissionColor = readColor(reader, "diffuse_transmission_color", m.diffuseTransmissionColor, kUnit);
+  m.diffuseTransmissionColorTexture =
+      texture(reader, "diffuse_transmission_color_texture", m.diffuseTransmissionColorTexture);
   m.thickness = reader.number("thickness", m.thickness, kNotNegative);
   m.attenuationDistance = reader.number("attenuation_distance", m.attenuationDistance, kPositive);
   m.attenuationColor = readColor(reader, "attenuation_color", m.attenuationColor, kColorAboveZero);

@@ -36,6 +36,8 @@ struct BsdfCase {
   vec3 clearcoatNormal{0.0f, 0.0f, 1.0f};
   vec3 sheenColor{0.0f};
   float sheenAlpha = 0.25f;
+  float diffuseTransmission = 0.0f;
+  vec3 diffuseTransmissionColor{1.0f};
 };
 
 inline vec3 directionAt(float cosine, float azimuth = 0.7f) {
@@ -89,6 +91,11 @@ inline std::vector<NamedCase> materialsAt(float alpha, const vec3& wo) {
   add("sheen", [&](BsdfCase& c) { c.sheenColor = {0.9f, 0.6f, 0.3f}, c.sheenAlpha = alpha, c.alpha = 0.3f; });
   add("mixture with sheen", [&](BsdfCase& c) { mix(c), c.thin = 1, c.sheenColor = vec3(0.8f), c.sheenAlpha = 0.04f; });
   add("mixture with sheen, solid inside", [&](BsdfCase& c) { mix(c), c.entering = 0, c.sheenColor = vec3(0.8f); });
+  add("diffuse transmission", [&](BsdfCase& c) {
+    c.diffuseTransmission = 0.6f, c.diffuseTransmissionColor = {0.3f, 0.7f, 0.5f}, c.thin = 1;
+  });
+  add("mixture with diffuse transmission",
+      [&](BsdfCase& c) { mix(c), c.thin = 1, c.diffuseTransmission = 0.7f, c.sheenColor = vec3(0.5f); });
   add("mixture, thin", [&](BsdfCase& c) { mix(c), c.thin = 1; });
   add("mixture, opaque", [&](BsdfCase& c) { mix(c), c.transmission = 0.0f; });
   return cases;
@@ -129,12 +136,13 @@ struct Case {
   vec3 wo; float alpha; vec3 baseColor; float metallic; float transmission; float ior; uint entering; uint thin;
   float specular; vec3 specularColor; float clearcoat; float clearcoatAlpha; vec3 clearcoatNormal;
   vec3 sheenColor; float sheenAlpha;
+  float diffuseTransmission; vec3 diffuseTransmissionColor;
 };
 struct Sample { vec3 wi; uint valid; vec3 weight; float pdf; uint delta; uint transmitted; };
 Bsdf makeBsdfOf(Case c) {
   return makeBsdf(BsdfParameters(c.baseColor, c.metallic, c.alpha, c.transmission, c.ior, c.entering != 0u, c.thin != 0u,
                                  c.specular, c.specularColor, c.clearcoat, c.clearcoatAlpha, c.clearcoatNormal,
-                                 c.sheenColor, c.sheenAlpha), c.wo);
+                                 c.sheenColor, c.sheenAlpha, c.diffuseTransmission, c.diffuseTransmissionColor), c.wo);
 }
 // Jarzynski and Olano 2020, "Hash Functions for GPU Rendering", listing "pcg3d"; 24 bits in [0,1).
 vec3 randomAt(uint index, uint dimension) {

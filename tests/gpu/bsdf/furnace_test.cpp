@@ -94,6 +94,13 @@ TEST_F(BsdfFurnace, WhiteGlass) {
   expectWhite("matched glass", 1e-4, [](BsdfCase& c) { c.transmission = 1.0f, c.ior = 1.0f; });
 }
 
+TEST_F(BsdfFurnace, DiffuseTransmission) {
+  expectWhite("diffuse transmission", 0.01, [](BsdfCase& c) { c.diffuseTransmission = 0.6f, c.thin = 1; });
+  expectWhite("diffuse transmission under sheen", 0.022, [](BsdfCase& c) {
+    c.diffuseTransmission = 0.6f, c.thin = 1, c.sheenColor = vec3(0.5f), c.sheenAlpha = 0.3f;
+  });
+}
+
 TEST_F(BsdfFurnace, ClearcoatAndMixture) {
   expectWhite("clearcoat on dielectric", 0.01,
               [](BsdfCase& c) { c.clearcoat = 1.0f, c.clearcoatAlpha = c.alpha, c.alpha = 0.5f; });
@@ -164,6 +171,7 @@ TEST_F(BsdfFurnace, NoMaterialGainsEnergy) {
       c.sheenColor = {next(), 1.0f, next()};
       c.sheenAlpha = next() * next();
     }
+    if (i % 5 == 1) c.diffuseTransmission = next(), c.thin = 1;
     const Albedo albedo = albedoOf(c);
     EXPECT_LE(std::max({albedo.mean.x, albedo.mean.y, albedo.mean.z}), 1.04 + 4.0 * albedo.error)
         << "case " << i << ": alpha " << c.alpha << ", cosine " << c.wo.z << ", ior " << c.ior << ", transmission "

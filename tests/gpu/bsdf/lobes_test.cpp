@@ -283,6 +283,8 @@ TEST_F(BsdfLobes, NothingIsInvalid) {
       c.clearcoatNormal = a.y < 0.5 ? vec3(0.0, 0.0, 1.0) : uniformDirection(randomAt(index, 117u).xy);
       c.sheenColor = vec3(corner(index, 122u), corner(index, 123u), corner(index, 124u));
       c.sheenAlpha = pow(corner(index, 125u), 4.0);
+      c.diffuseTransmission = corner(index, 126u);
+      c.diffuseTransmissionColor = vec3(corner(index, 127u), corner(index, 128u), corner(index, 129u));
       Bsdf b = makeBsdfOf(c);
       uint faults = 0u;
       float sum = 0.0;
@@ -304,7 +306,7 @@ TEST_F(BsdfLobes, NothingIsInvalid) {
       if (broken(s.weight)) faults |= 16u;
       if (s.transmitted != (s.wi.z < 0.0)) faults |= 32u;
       if (s.delta != (s.pdf == 0.0)) faults |= 64u;
-      if (s.transmitted && c.metallic == 1.0 || s.transmitted && c.transmission == 0.0) faults |= 128u;
+      if (s.transmitted && c.metallic == 1.0 || s.transmitted && c.transmission == 0.0 && c.diffuseTransmission == 0.0) faults |= 128u;
       return Out(faults, maxComponent(s.weight));
     }
   )";

@@ -219,16 +219,17 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
   const Sheen sheenO = sheen(sheenAlpha, wo.z), sheenI = sheen(sheenAlpha, std::abs(wi.z));
   const double underO = sheenAtO ? 1.0 - strength * std::min(sheenO.albedo, 1.0) : 1.0;
   const double underI = sheenAtI ? 1.0 - strength * std::min(sheenI.albedo, 1.0) : 1.0;
-  dvec3 diffuse(0.0);
+  const double translucent = c.diffuseTransmission;
+  const dvec3 diffuseColor = wi.z > 0.0 ? (1.0 - translucent) * color : translucent * dvec3(c.diffuseTransmissionColor);
+  dvec3 diffuse = opaque * diffuseColor * (passed(o) * passed(i) / (kPi * passed(mean))) * underO * underI;
+  if (sheenAtO && sheenAtI) {
+    const dvec3 products = sheenAverages(sheenAlpha, c.alpha);
+    const double low = largest(f0);
+    const double covered =
+        (1.0 - low) * products.x + (low - multiple(low, f90)) * products.y + (low - f90) * products.z;
+    diffuse /= 1.0 - strength * covered / passed(mean);
+  }
   if (wi.z > 0.0) {
-    diffuse = opaque * color * (passed(o) * passed(i) / (kPi * passed(mean)));
-    if (sheenAtO) {
-      const dvec3 products = sheenAverages(sheenAlpha, c.alpha);
-      const double low = largest(f0);
-      const double covered =
-          (1.0 - low) * products.x + (low - multiple(low, f90)) * products.y + (low - f90) * products.z;
-      diffuse *= underO * underI / (1.0 - strength * covered / passed(mean));
-    }
     if (rough) {
       const double shape = reflection(wo, wi, up, c.alpha), part = bends ? opaque : 1.0 - metal;
       f += shape * (metal * schlick(color, 1.0, glm::dot(wo, h)) + part * schlick(f0, f90, glm::dot(wo, h)));

@@ -30,7 +30,7 @@ const std::string kEvaluation = kBsdfPrelude + R"(
 class BsdfReference : public BsdfTest {
  protected:
   // The tolerance covers the rounding errors of half vectors: 1e-7 over the length of their tangential part, relative to
-  // alpha.
+  // alpha. Near the critical angle, 1 - Fresnel has few digits: values below 2e-5 are not compared.
   static void compare(std::vector<NamedCase> cases, double tolerance, int perCase) {
     std::erase_if(cases, [](const NamedCase& named) { return !named.inReference; });
     const ReferenceBsdf reference;
@@ -45,7 +45,7 @@ class BsdfReference : public BsdfTest {
       const glm::dvec3 expected = reference.eval(named.material, glm::normalize(glm::dvec3(answers[k].wi)));
       const glm::dvec3 value = answers[k].value;
       ++compared;
-      ASSERT_LE(glm::length(value - expected), tolerance * glm::length(expected) + 1e-5)
+      ASSERT_LE(glm::length(value - expected), tolerance * glm::length(expected) + 2e-5)
           << named.name << ": " << value.x << ", " << value.y << ", " << value.z << " instead of " << expected.x << ", "
           << expected.y << ", " << expected.z << " at wi = " << answers[k].wi.x << ", " << answers[k].wi.y << ", "
           << answers[k].wi.z;

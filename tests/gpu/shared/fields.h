@@ -104,9 +104,10 @@ struct Fields;
 GPU_FIELDS(TextureData, rowU, rowV, index, uvSet);
 GPU_FIELDS(MaterialData, baseColor, emissive, metallic, roughness, normalScale, alphaCutoff, ior, transmission,
            specular, specularColor, clearcoat, clearcoatRoughness, clearcoatNormalScale, absorption, flags, sheenColor,
-           sheenRoughness, baseColorTexture, metallicRoughnessTexture, normalTexture, emissiveTexture,
-           transmissionTexture, specularTexture, specularColorTexture, clearcoatTexture, clearcoatRoughnessTexture,
-           clearcoatNormalTexture, sheenColorTexture, sheenRoughnessTexture);
+           sheenRoughness, diffuseTransmissionColor, diffuseTransmission, baseColorTexture, metallicRoughnessTexture,
+           normalTexture, emissiveTexture, transmissionTexture, specularTexture, specularColorTexture, clearcoatTexture,
+           clearcoatRoughnessTexture, clearcoatNormalTexture, sheenColorTexture, sheenRoughnessTexture,
+           diffuseTransmissionTexture, diffuseTransmissionColorTexture);
 GPU_FIELDS(AliasEntry, keep, alias, probability);
 GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, leaf);
 GPU_FIELDS(LightNode, center, radius, intensity, axis, cone, link);
@@ -146,7 +147,7 @@ GPU_FIELDS(ExplainStore, stage, line, slot, mode, pixel, value);
 GPU_FIELDS(ExplainCamera, film, lens);
 GPU_FIELDS(ExplainSurface, position, geometricNormal, shadingNormal, uv, material, frontFace);
 GPU_FIELDS(ExplainShading, normal, emission, baseColor, metallic, alpha, transmission, ior, clearcoat, sheenColor,
-           sheenAlpha, unlit);
+           sheenAlpha, diffuseTransmission, unlit);
 GPU_FIELDS(ExplainLobe, lobe, probability);
 GPU_FIELDS(ExplainLightChoice, light, type, instance, geometry, primitive, probability);
 GPU_FIELDS(ExplainLightSample, delta, direction, distance, radiance, pdf, bsdf, bsdfPdf, misWeight, throughput);

@@ -63,6 +63,8 @@ const std::map<std::string, Change>& features() {
       {"clearcoat", [](scene::Scene& s, scene::Environment&) { (addMaterial(s).clearcoat = 1.0f, addTriangles(s)); }},
       {"sheen",
        [](scene::Scene& s, scene::Environment&) { (addMaterial(s).sheenColor = vec3(1.0f), addTriangles(s)); }},
+      {"diffuse transmission",
+       [](scene::Scene& s, scene::Environment&) { (addMaterial(s).diffuseTransmission = 1.0f, addTriangles(s)); }},
       {"triangle lights",
        [](scene::Scene& s, scene::Environment&) { (addMaterial(s).emissive = vec3(1.0f), addTriangles(s)); }},
       {"lamps", [](scene::Scene& s, scene::Environment&) { s.lights.emplace_back(); }},

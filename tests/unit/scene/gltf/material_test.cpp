@@ -101,6 +101,11 @@ TEST(GltfMaterial, ReadsExtensions) {
       extension("KHR_materials_sheen", {{"sheenColorFactor", {0.5, 1, 0.25}}, {"sheenRoughnessFactor", 0.75}}));
   EXPECT_EQ(m.sheenColor, vec3(0.5f, 1, 0.25f));
   EXPECT_EQ(m.sheenRoughness, 0.75f);
+  m = loadMaterial(
+      extension("KHR_materials_diffuse_transmission",
+                {{"diffuseTransmissionFactor", 0.25}, {"diffuseTransmissionColorFactor", {1, 0.5, 0.25}}}));
+  EXPECT_EQ(m.diffuseTransmission, 0.25f);
+  EXPECT_EQ(m.diffuseTransmissionColor, vec3(1, 0.5f, 0.25f));
 }
 
 // The extension states: c_diff = diffuse (1 - max(specular)), F0 = specular, alpha = (1 - glossiness)².

@@ -144,6 +144,7 @@ TEST(ContentHash, DependsOnTheContentButNotTheReport) {
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].clearcoatNormalScale = 2; }));
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].sheenColor.x = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].sheenRoughness = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.materials[0].diffuseTransmission = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].baseColorTexture.rotation = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.textures[0].sampler.wrapV = scene::Wrap::clampToEdge; }));
   EXPECT_TRUE(differs([](auto& s) { s.images[0].image.data[2] = std::byte{1}; }));

@@ -46,6 +46,8 @@ clearcoat = 0.3
 clearcoat_roughness = 0.2
 sheen_color = [1, 0.5, 0.25]
 sheen_roughness = 0.4
+diffuse_transmission = 0.6
+diffuse_transmission_color = [0.5, 1, 0.25]
 alpha_mode = "mask"
 alpha_cutoff = 0.3
 double_sided = true
@@ -76,6 +78,8 @@ name = "c"
   EXPECT_EQ(a.clearcoatRoughness, 0.2f);
   EXPECT_EQ(a.sheenColor, vec3(1, 0.5f, 0.25f));
   EXPECT_EQ(a.sheenRoughness, 0.4f);
+  EXPECT_EQ(a.diffuseTransmission, 0.6f);
+  EXPECT_EQ(a.diffuseTransmissionColor, vec3(0.5f, 1, 0.25f));
   EXPECT_EQ(a.alphaMode, scene::AlphaMode::mask);
   EXPECT_EQ(a.alphaCutoff, 0.3f);
   EXPECT_TRUE(a.doubleSided && a.unlit);
