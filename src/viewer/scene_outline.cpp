@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "job/interactive/light_properties.h"
 #include "scene/model/mesh_bounds.h"
 
 namespace quintet::viewer {
@@ -72,7 +73,9 @@ const scene::Material& materialOf(const SceneOutline& scene, const job::interact
 job::interactive::LightState lightOf(const SceneOutline& scene, const job::interactive::SessionState& state,
                                      std::size_t index) {
   const auto edited = state.lights.find(index);
-  return edited != state.lights.end() ? *edited->second : job::interactive::LightState{scene.lights[index], true};
+  return edited != state.lights.end() ? *edited->second
+                                      : job::interactive::LightState{scene.lights[index], true,
+                                                                     job::interactive::lightColor(scene.lights[index])};
 }
 
 mat4 transformOf(const SceneOutline& scene, const job::interactive::SessionState& state, std::size_t index) {

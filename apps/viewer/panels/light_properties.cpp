@@ -25,7 +25,7 @@ void lightProperties(ViewState& state, std::size_t index) {
   textRow("Type", nameOf(type));
   bool on = light.on;
   if (checkBox("On", on)) set("on", {on ? 1.0 : 0.0});
-  vec3 color = interactive::lightColor(light.light);
+  vec3 color = interactive::lightIntensity(light.light) > 0.0f ? interactive::lightColor(light.light) : light.color;
   if (colorField("Color", color, "Linear Rec. 709")) set("color", {color.r, color.g, color.b});
   double intensity = interactive::lightIntensity(light.light);
   if (numberField("Intensity", intensity,

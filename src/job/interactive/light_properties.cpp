@@ -113,6 +113,16 @@ void setLightProperty(Light& light, const std::string& name, std::span<const dou
   found->set(light, values);
 }
 
+void setLightProperty(Light& light, vec3& color, const std::string& name, std::span<const double> values) {
+  const bool dark = !(lightIntensity(light) > 0.0f);
+  Light edited = light;
+  if (dark) edited.intensity = color;  // of intensity 1
+  setLightProperty(edited, name, values);
+  if (lightIntensity(edited) > 0.0f) color = lightColor(edited);
+  if (dark && name != "intensity") edited.intensity = vec3(0.0f);
+  light = edited;
+}
+
 float lightIntensity(const Light& light) {
   return std::max({light.intensity.r, light.intensity.g, light.intensity.b, 0.0f});
 }

@@ -88,5 +88,24 @@ TEST(LightProperties, RejectsWrongValues) {
   }
 }
 
+// The color survives the intensity 0, also if it changes meanwhile.
+TEST(LightProperties, KeepTheColorOfADarkLight) {
+  scene::Light light;
+  light.intensity = {1, 2, 4};
+  vec3 color = lightColor(light);
+  const auto set = [&](const char* name, std::vector<double> values) { setLightProperty(light, color, name, values); };
+  set("intensity", {0});
+  EXPECT_EQ(light.intensity, vec3(0.0f));
+  set("intensity", {8});
+  EXPECT_EQ(light.intensity, vec3(2, 4, 8));
+  set("intensity", {0});
+  set("color", {1, 0, 0});
+  EXPECT_EQ(light.intensity, vec3(0.0f)) << "it stays dark";
+  set("position", {1, 2, 3});
+  set("intensity", {3});
+  EXPECT_EQ(light.intensity, vec3(3, 0, 0));
+  EXPECT_EQ(light.position, vec3(1, 2, 3));
+}
+
 }  // namespace
 }  // namespace quintet::job::interactive
