@@ -10,8 +10,7 @@
 
 namespace quintet::job {
 
-program::RunnableProgram pickingProgram(Engine& engine, const render::DeviceScene& scene, const program::Program& shown,
-                                        const char* rayGeneration) {
+program::Program describePicking(const program::Program& shown, const char* rayGeneration) {
   program::Program program = program::loadProgram("pick");
   program.rayGeneration = rayGeneration;
   // With as many ray types as the shown program, so that both use the same acceleration structure.
@@ -22,7 +21,12 @@ program::RunnableProgram pickingProgram(Engine& engine, const render::DeviceScen
   }
   program.keepsInstanceOrder = shown.keepsInstanceOrder;
   program.anyHitForAll = shown.anyHitForAll;
-  return compileAndCheck(program, engine.compiler(), render::renderDefines(scene.defines(), {}), scene.facts(),
+  return program;
+}
+
+program::RunnableProgram pickingProgram(Engine& engine, const render::DeviceScene& scene, const program::Program& shown,
+                                        const char* rayGeneration) {
+  return compileAndCheck(describePicking(shown, rayGeneration), engine.compiler(), render::renderDefines(scene.defines(), {}), scene.facts(),
                          deviceLimits(engine.context().info()))
       .runnable;
 }

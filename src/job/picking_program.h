@@ -11,7 +11,9 @@
 namespace quintet::job {
 
 // `shown`: the program for which the scene is prepared. The result uses the same acceleration structures.
-// `rayGeneration`: a file of the program `pick`. Throws ProgramError.
+// `rayGeneration`: a file of the program `pick`.
+program::Program describePicking(const program::Program& shown, const char* rayGeneration = "pick.rgen");
+// The same, compiled. Throws ProgramError.
 program::RunnableProgram pickingProgram(Engine& engine, const render::DeviceScene& scene, const program::Program& shown,
                                         const char* rayGeneration = "pick.rgen");
 

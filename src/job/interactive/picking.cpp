@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "job/picking_program.h"
+#include "program/compile.h"
 #include "render/renderer/renderer.h"
 
 namespace quintet::job::interactive {
@@ -46,6 +48,17 @@ std::optional<Pick> pick(Engine& engine, render::DeviceScene& scene, const scene
   result.front = geometric.w > 0.0f;
   result.distance = position.w;
   return result;
+}
+
+std::future<void> compilePicking(Engine& engine, const render::DeviceScene& scene, const program::Program& shown) {
+  return std::async(std::launch::async,
+                    [&engine, program = describePicking(shown), defines = render::renderDefines(scene.defines(), {})] {
+                      try {
+                        program::compile(program, engine.compiler(), defines);
+                      } catch (const Error&) {
+                        return;  // pick() reports it
+                      }
+                    });
 }
 
 }  // namespace quintet::job::interactive

@@ -269,7 +269,7 @@ SessionState Session::changed(const Command& command) const {
         if (isSwitch)
           light.on = property.numbers[0] == 1;
         else
-          setLightProperty(light.light, property.name, property.numbers);
+          setLightProperty(light.light, light.color, property.name, property.numbers);
       }
       next.lights[index] = std::make_shared<const LightState>(light);
     }
@@ -331,7 +331,9 @@ const scene::Material& Session::materialIn(const SessionState& state, std::size_
 
 LightState Session::lightIn(const SessionState& state, std::size_t index) const {
   const auto edited = state.lights.find(index);
-  return edited != state.lights.end() ? *edited->second : LightState{scene_->lights.at(index), true};
+  return edited != state.lights.end()
+             ? *edited->second
+             : LightState{scene_->lights.at(index), true, lightColor(scene_->lights.at(index))};
 }
 
 const scene::Material& Session::material(std::size_t index) const { return materialIn(state_, index); }
@@ -629,6 +631,8 @@ bool Session::added(std::optional<double> seconds, std::uint64_t samples, unsign
   seconds_ += *seconds;
   imageChanged_ = true;
   kept_.reset();
+  // The first click then need not wait for the compiler.
+  if (!picking_.valid()) picking_ = compilePicking(engine_, *job_->scene()->onDevice, program());
   if (measuredLink_ == job_->linkCount()) resolution_.measured(factor, *seconds / static_cast<double>(samples));
   measuredLink_ = job_->linkCount();
   return true;

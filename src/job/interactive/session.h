@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <limits>
 #include <map>
 #include <memory>
@@ -36,6 +37,8 @@ namespace quintet::job::interactive {
 struct LightState {
   scene::Light light;
   bool on = true;
+  // lightColor() of the last intensity above 0, to which a light of intensity 0 returns.
+  vec3 color{1.0f};
 };
 
 // Everything that undo restores.
@@ -180,6 +183,7 @@ class Session {
   Bounds3 sceneBounds_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<RenderJob> job_;
+  std::future<void> picking_;                  // compiles the program that picks
   std::unique_ptr<PixelExplainer> explainer_;  // of explainedPixel_; null after a restart
   uvec2 explainedPixel_{0};
   std::uint64_t restarts_ = 0;
