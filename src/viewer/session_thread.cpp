@@ -151,6 +151,11 @@ void SessionThread::run() {
       if (stop_) break;
       guarded([&] { handle(request); });
     }
+    if (retry_ && !stop_ && retryWatcher_->pending()) {
+      retryWatcher_->wait(0);
+      Request request = *retry_;
+      guarded([&] { handle(request); });
+    }
     if (session_ && !stop_) guarded([&] { step(); });
   }
   closeSession();
@@ -173,6 +178,38 @@ std::vector<SessionThread::Request> SessionThread::takeRequests() {
 }
 
 void SessionThread::handle(Request& request) {
+  const auto* command = std::get_if<interactive::Command>(&request);
+  const bool opens = std::holds_alternative<interactive::SessionRequest>(request) ||
+                     (command && std::holds_alternative<interactive::SetProgram>(*command));
+  if (!opens) return dispatch(request);
+  retry_.reset();
+  const Request original = request;
+  try {
+    dispatch(request);
+  } catch (const ProgramError& error) {
+    retryAfterSave(original, error.diagnostics());
+    throw;
+  } catch (const FileError& error) {
+    retryAfterSave(original, {asDiagnostic(error)});
+    throw;
+  }
+}
+
+void SessionThread::retryAfterSave(const Request& request, const std::vector<Diagnostic>& diagnostics) {
+  const auto* open = std::get_if<interactive::SessionRequest>(&request);
+  job::WatchList files;
+  files.addProgram(open ? open->program : as<interactive::SetProgram>(std::get<interactive::Command>(request))->name);
+  files.addDiagnosed(diagnostics);
+  if (files.files.empty() && files.folders.empty()) return;
+  try {
+    retryWatcher_.emplace().watch(std::move(files));
+    retry_ = request;
+  } catch (const Error& error) {  // the limit of watches
+    addMessage(Message::Kind::warning, error.what());
+  }
+}
+
+void SessionThread::dispatch(Request& request) {
   std::visit(
       [&](auto& value) {
         using T = std::decay_t<decltype(value)>;

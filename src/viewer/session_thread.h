@@ -22,6 +22,7 @@
 #include "job/depth_map.h"
 #include "job/engine.h"
 #include "job/interactive/session.h"
+#include "job/source_watcher.h"
 #include "program/description/program.h"
 #include "viewer/scene_outline.h"
 
@@ -101,7 +102,7 @@ class SessionThread {
   SessionThread& operator=(const SessionThread&) = delete;
 
   // Each of these returns at once. Errors become messages.
-  void open(job::interactive::SessionRequest request);  // replaces the session
+  void open(job::interactive::SessionRequest request);  // replaces the session; after an error, again after each save
   void apply(job::interactive::Command command);        // without a session it has no effect
   void pick(uvec2 pixel, PickUse use);
   void save(const std::filesystem::path& file);  // the shown output, as soon as it has its full size
@@ -138,6 +139,8 @@ class SessionThread {
   bool waitForWork();
   std::vector<Request> takeRequests();
   void handle(Request& request);
+  void dispatch(Request& request);
+  void retryAfterSave(const Request& request, const std::vector<Diagnostic>& diagnostics);
   void openSession(job::interactive::SessionRequest request);
   void closeSession();
   void applyCommand(const job::interactive::Command& command);
@@ -166,6 +169,8 @@ class SessionThread {
   std::unique_ptr<job::interactive::Session> session_;
   Snapshot next_;
   std::vector<SaveRequest> saves_;
+  std::optional<Request> retry_;  // opens a program that has errors; repeated when one of its files is saved
+  std::optional<job::SourceWatcher> retryWatcher_;
   double lastCommand_ = -1e9;  // on clock_
   double lastImage_ = 0;       // on clock_
   double lastRates_ = 0;       // on clock_

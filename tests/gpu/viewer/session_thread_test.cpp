@@ -289,6 +289,32 @@ TEST_F(SessionThreadTest, AFailureStaysUntilTheSessionRestarts) {
   EXPECT_EQ(corrected->renderError, "");
 }
 
+TEST_F(SessionThreadTest, OpensAProgramAsSoonAsItIsCorrected) {
+  const auto program = [](const std::string& color) {
+    return "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(" + color + ", 1.0));\n}\n";
+  };
+  writeFile(folder_ / "flat.rt.glsl", program("missing"));
+  SessionRequest flat = request();
+  flat.program = (folder_ / "flat.rt.glsl").string();
+  thread_->open(flat);
+  waitFor([](const Snapshot& s) { return s.phase == Snapshot::Phase::failed; });
+  writeFile(folder_ / "flat.rt.glsl", program("vec3(0, 1, 0)"));
+  EXPECT_EQ(middle(*waitForImage()), vec3(0, 1, 0));
+
+  // The same for another program in the session.
+  writeFile(folder_ / "other.rt.glsl", program("nothing"));
+  thread_->apply(SetProgram{(folder_ / "other.rt.glsl").string()});
+  const auto failed = waitFor([](const Snapshot& s) { return hasErrors(s.diagnostics); });
+  EXPECT_EQ(failed->phase, Snapshot::Phase::ready);
+  EXPECT_EQ(failed->state.program, flat.program);
+  writeFile(folder_ / "other.rt.glsl", program("vec3(0, 0, 1)"));
+  const auto other = waitFor([&](const Snapshot& s) {
+    return s.state.program != flat.program && s.progress.complete && s.imageNumber > failed->imageNumber;
+  });
+  EXPECT_EQ(middle(*other), vec3(0, 0, 1));
+  EXPECT_TRUE(other->canUndo);
+}
+
 TEST(WindowShaders, Compile) {
   const WindowShaders shaders = compileWindowShaders({});
   EXPECT_FALSE(shaders.vertex.empty());
