@@ -63,10 +63,11 @@ reference: build ## Compare with the reference images and values (tests/referenc
 mutation: build ## Insert bugs one by one and check that the tests detect them (tests/mutation/run)
 	@tests/mutation/run $(BUILD)/bin --jobs $(JOBS) $(MUTATION_FLAGS)
 
-sanitize: setup ## Build with ASan and UBSan and run the unit tests (build/asan)
+# The window tests find leaks, too. They are missing if the window is not built.
+sanitize: setup ## Build with ASan and UBSan, and run the unit tests and the tests of the window (build/asan)
 	@cmake --preset asan -DQUINTET_TESTS=ON $(CMAKE_FLAGS)
-	@cmake --build --preset asan -j $(JOBS) --target quintet_unit_tests
-	@ctest --preset asan -L '^unit$$' --no-tests=error -j $(JOBS) $(CTEST_FLAGS)
+	@cmake --build --preset asan -j $(JOBS) --target quintet_unit_tests quintet_all_window_tests
+	@ctest --preset asan -L '^(unit|window)$$' --no-tests=error -j $(JOBS) $(CTEST_FLAGS)
 
 docs: ## Install Doxygen and build the reference of the C++ API (build/docs/html/index.html)
 	@bash scripts/setup.sh docs

@@ -24,7 +24,7 @@ using Json = nlohmann::json;
 
 class ViewerProcess {
  public:
-  // Starts in `folder`, where the settings are stored too, with validation.
+  // Starts in `folder`, where the settings are stored too, with validation unless the build has sanitizers.
   ViewerProcess(const XServer& server, const std::filesystem::path& folder, const std::vector<std::string>& arguments);
   ~ViewerProcess();  // kills the process if it still runs
   ViewerProcess(const ViewerProcess&) = delete;
