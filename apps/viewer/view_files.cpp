@@ -40,6 +40,8 @@ void openSession(ViewState& state, job::interactive::SessionRequest request, con
   storeSettings(state);
   state.selection = {};
   state.playing = false;
+  state.explain.pixel.reset();
+  state.click = ClickUse::select;
   state.session->open(std::move(request));
 }
 
@@ -48,6 +50,18 @@ void useReference(ViewState& state, const std::string& path) {
     state.reference = std::make_shared<const io::Image>(io::readImage(path));
     state.referenceFile = std::filesystem::path(path).filename().string();
     if (state.controls.compare == CompareMode::off) state.controls.compare = CompareMode::split;
+  } catch (const Error& error) {
+    state.addMessage({Message::Kind::error, error.what()});
+  }
+}
+
+// As A of a comparison.
+void useExplanation(ViewState& state, const std::string& path) {
+  try {
+    state.explain.kept = std::make_shared<const job::PixelExplanation>(job::readExplanation(path));
+    state.settings.openPanels.insert("Explain");
+    state.compareExplanation(true);
+    state.addMessage({Message::Kind::note, fmt::format("{} is A of the comparison in Explain", path)});
   } catch (const Error& error) {
     state.addMessage({Message::Kind::error, error.what()});
   }
@@ -114,6 +128,12 @@ void openFile(ViewState& state, const std::string& path) {
       return openSession(state, std::move(request), path);
     }
     case FileUse::program: {
+      // For a scene of its own, the program is a change of the session, which can be undone.
+      if (state.ready() && !state.snapshot->request->render.scene.empty()) {
+        addRecentFile(state.settings, path);
+        storeSettings(state);
+        return state.apply(job::interactive::SetProgram{absolutePath(path)});
+      }
       job::interactive::SessionRequest request = currentRequest(state);
       request.program = path;
       return openSession(state, std::move(request), path);
@@ -125,13 +145,13 @@ void openFile(ViewState& state, const std::string& path) {
         state.addMessage({Message::Kind::warning, fmt::format("{}: open a scene first", path)});
       return;
     case FileUse::reference: return useReference(state, path);
+    case FileUse::explanation: return useExplanation(state, path);
     case FileUse::unknown:
       state.addMessage(
           {Message::Kind::error,
-           fmt::format(
-               "{}: neither a scene (.glb, .gltf, .scene.toml), a program (.rt.glsl, a folder with program.toml) "
-               "nor an image",
-               path)});
+           fmt::format("{}: neither a scene (.glb, .gltf, .scene.toml), a program (.rt.glsl, a folder with "
+                       "program.toml), an image nor an explanation (.json)",
+                       path)});
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_state.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace quintet::viewer {
@@ -24,9 +25,9 @@ void ViewState::addMessage(Message message) {
 
 void ViewState::explainPixel(uvec2 pixel, std::uint32_t sample) {
   explain.pixel = pixel;
-  explain.sample = sample;
+  explain.sample = std::min(sample, std::max(snapshot->state.samples, 1u) - 1);
   explain.revealsPanel = settings.openPanels.insert("Explain").second || !explanation;
-  session->explain(pixel, sample);
+  session->explain(pixel, explain.sample);
 }
 
 void ViewState::printPixels(const render::Region& pixels) {

@@ -116,7 +116,7 @@ struct ViewState {
   bool ready() const { return snapshot->phase == Snapshot::Phase::ready; }
   void apply(job::interactive::Command command) { session->apply(std::move(command)); }
   void addMessage(Message message);
-  void explainPixel(uvec2 pixel, std::uint32_t sample);
+  void explainPixel(uvec2 pixel, std::uint32_t sample);  // or the last sample, if there are fewer
   void printPixels(const render::Region& pixels);
   void setExplanation(std::shared_ptr<const job::PixelExplanation> next);  // null hides it
   void selectRow(std::optional<std::size_t> row);                          // of the tree

@@ -12,6 +12,7 @@ enum class FileUse {
   program,      // a folder with program.toml or one *.rt.glsl file; program.toml; *.rt.glsl
   environment,  // .hdr, .exr
   reference,    // .png, .jpg, .jpeg, .webp: an image to compare with
+  explanation,  // .json: an explanation of a pixel to compare with
   unknown,
 };
 

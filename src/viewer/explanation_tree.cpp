@@ -107,7 +107,7 @@ const Style kStyles[] = {
        return fmt::format("callable {} {}", e.integer("index"), printable(e.text("callable")));
      }},
     {"store", "store", storeSummary},
-    {"camera", "camera", [](const ExplainedEvent& e) { return "film position " + shortText(e, "film"); }},
+    {"camera", "camera", [](const ExplainedEvent& e) { return "film position " + output::fieldText(e, "film"); }},
     {"surface", "surface",
      [](const ExplainedEvent& e) { return fmt::format("{} side at {}", e.text("side"), shortText(e, "position")); }},
     {"shading", "material",

@@ -169,6 +169,7 @@ class WindowTest : public testing::Test {
     EXPECT_EQ(end.status, 0) << end.errors;
     EXPECT_THAT(end.errors, Not(HasSubstr("Vulkan validation")));
     EXPECT_THAT(end.errors, Not(HasSubstr("Sanitizer")));
+    EXPECT_THAT(end.errors, Not(HasSubstr("runtime error:"))) << "of the sanitizer of undefined behavior";
   }
 
   TempFolder folder_;
@@ -361,6 +362,14 @@ TEST_F(WindowTest, OpensDroppedFiles) {
   viewer.waitForImage();
   expectColor(kRed, "the program stays with the scene");
   EXPECT_THAT(copiedCommand(), HasSubstr("wall.scene.toml"));
+  std::string blue = flatProgram("color.bgr");
+  writeFile(folder_ / "blue.rt.glsl", blue);
+  EXPECT_TRUE(drop("blue.rt.glsl"));
+  viewer.waitForImage();
+  expectColor(kBlue, "another program for the scene");
+  viewer.window().key("z", {"Control_L"});
+  viewer.waitForImage();
+  expectColor(kRed, "undo brings back the program");
   writeFile(folder_ / "notes.txt", "no scene");
   EXPECT_TRUE(drop("notes.txt"));
   viewer.control(
@@ -460,7 +469,7 @@ TEST_F(WindowTest, ComparesWithADroppedImage) {
 
 TEST_F(WindowTest, ExplainsAPixelAndComparesTwo) {
   openPanels(R"("Explain")");
-  windowSize_ = "760x960";  // for all of the panel
+  windowSize_ = "760x1000";  // for all of the panel
   ViewerProcess& viewer = startScene("pathtracer", {"--set", "bounces=1"});
   const auto [x, y] = imageCenter();
   const auto [left, top, right, bottom] = viewer.imageArea();
@@ -503,6 +512,11 @@ TEST_F(WindowTest, ExplainsAPixelAndComparesTwo) {
   viewer.control("Explain/first difference");
   EXPECT_FALSE(viewer.hasControl("Explain/equal"));
   imageColor();
+  viewer.clickControl("Explain/Forget A");
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Explain/first difference"));
+  EXPECT_TRUE(viewer.window().drop(before, 200, 200));
+  viewer.control("Explain/first difference");
   viewer.window().key("Escape");
   viewer.settle();
   EXPECT_FALSE(viewer.hasControl("Explain/Ray 1")) << "Escape hides the explanation";

@@ -22,6 +22,7 @@ const char* useText(const FolderEntry& entry) {
     case FileUse::program: return "program";
     case FileUse::environment: return "environment";
     case FileUse::reference: return "reference image";
+    case FileUse::explanation: return "explanation";
     case FileUse::unknown: break;
   }
   return "";

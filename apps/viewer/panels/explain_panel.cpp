@@ -162,7 +162,8 @@ void tree(ViewState& state) {
   }
   if (explain.revealsRow && explain.row)
     std::erase_if(explain.closed, [&](std::size_t i) { return i < *explain.row && *explain.row < rows[i].end; });
-  ImGui::BeginChild("tree", {0, kTreeRows * ImGui::GetTextLineHeightWithSpacing()}, true);
+  const float shown = std::min(kTreeRows, static_cast<float>(rows.size()) + 1.0f);
+  ImGui::BeginChild("tree", {0, shown * ImGui::GetTextLineHeightWithSpacing()}, true);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, 0.25f * ImGui::GetTextLineHeight()});
   for (std::size_t i = 0; i < rows.size();) {
     treeRow(state, i);
@@ -248,10 +249,11 @@ void comparison(ViewState& state) {
     logControl("first difference");
     difference(state, *diff.first);
   }
+  if (diff.outputs.empty() && diff.facts.empty()) return;
+  if (!ImGui::TreeNode("Outputs and what was explained")) return;
   for (const job::ExplanationDifference& output : diff.outputs) difference(state, output);
-  if (diff.facts.empty()) return;
-  ImGui::TextDisabled("%s", "What was explained differs, too");
   for (const job::ExplanationDifference& fact : diff.facts) difference(state, fact);
+  ImGui::TreePop();
 }
 
 }  // namespace

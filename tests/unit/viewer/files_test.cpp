@@ -32,6 +32,7 @@ TEST(DroppedFile, IsRecognizedByItsName) {
   EXPECT_EQ(useOfFile("sky.exr"), FileUse::environment);
   EXPECT_EQ(useOfFile("a.png"), FileUse::reference);
   EXPECT_EQ(useOfFile("a.jpeg"), FileUse::reference);
+  EXPECT_EQ(useOfFile("pixel.json"), FileUse::explanation);
   EXPECT_EQ(useOfFile("a.glsl"), FileUse::unknown);
   EXPECT_EQ(useOfFile("other.toml"), FileUse::unknown);
   EXPECT_EQ(useOfFile(""), FileUse::unknown);
