@@ -10,7 +10,8 @@
 
 namespace quintet::output {
 
-// With up to `digits` digits. "0" also for -0, "nan", "infinity" also for the largest float: a ray without limit in the shader library.
+// With up to `digits` digits. "0" also for -0, "nan", "infinity" also for the largest float: a ray without limit in the shader
+// library.
 std::string floatText(float value, int digits = 5);
 // Separated by spaces.
 std::string floatsText(std::span<const float> values, int digits = 5);

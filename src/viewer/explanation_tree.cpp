@@ -233,7 +233,9 @@ void addData(const ExplainedEvent& caller, std::vector<ExplanationField>& fields
   if (!shown) return;
   for (const auto& [name, value] : shown->fields) {
     if (name == "when" || name == "variable" || name == "dataType" || name == "complete") continue;
-    ExplanationField field{name, output::fieldText(*shown, name), {}};
+    // A variable without members.
+    const std::string shownName = name == "value" ? shown->text("variable") : name;
+    ExplanationField field{shownName, output::fieldText(*shown, name), {}};
     if (after && before) {
       const std::string old = output::fieldText(*before, name);
       if (old != field.value) field.before = old;

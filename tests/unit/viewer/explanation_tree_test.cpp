@@ -2,6 +2,7 @@
 // The rows of an explanation: order, depth, rays, contributions, summaries and fields.
 #include "viewer/explanation_tree.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -107,6 +108,16 @@ TEST(ExplanationTree, HasAllFieldsAndThePayload) {
   EXPECT_EQ(value("payload.t"), "1 -> 2.5");
   EXPECT_EQ(value("payload.ids"), "1 -2");
   EXPECT_EQ(fields.back().value, "main.rgen:12");
+}
+
+TEST(ExplanationTree, NamesPayloadsWithoutMembers) {
+  job::PixelExplanation path = job::somePath();
+  path.events[0].children[1] = {
+      "payload", {{"when", std::string("before")}, {"variable", std::string("visible")}, {"value", 0.5f}}, {}};
+  const std::vector<ExplanationField> fields = fieldsOf(path.events[0]);
+  const auto field = std::ranges::find(fields, "visible", &ExplanationField::name);
+  ASSERT_NE(field, fields.end());
+  EXPECT_EQ(field->value, "0.5");
 }
 
 }  // namespace
