@@ -19,6 +19,7 @@ namespace {
 constexpr ImU32 kShade = IM_COL32(0, 0, 0, 150);
 constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255);
 constexpr float kPointerDistance = 6.0f;  // pixels at scale 1
+constexpr float kLegendArea = 0.2f;       // the legend covers at most this fraction of the image
 constexpr float kHiddenAlpha = 0.45f;     // of the legend's dashes
 
 bool sameView(const scene::Camera& a, const scene::Camera& b) {
@@ -90,7 +91,8 @@ void rayLegendBox(const ViewState& state, const Area& area) {
   const ImVec2 size{sample + textWidth + 3.0f * margin, static_cast<float>(entries.size()) * row + 2.0f * margin};
   const ImVec2 end{area.origin.x + area.size.x - margin, area.origin.y + area.size.y - margin};
   const ImVec2 begin{end.x - size.x, end.y - size.y};
-  if (entries.empty() || begin.x < area.origin.x || begin.y < area.origin.y) return;
+  const bool fits = size.x * size.y <= kLegendArea * area.size.x * area.size.y;
+  if (entries.empty() || !fits || begin.x < area.origin.x || begin.y < area.origin.y) return;
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.AddRectFilled(begin, end, kShade, 6.0f * scale);
   float y = begin.y + margin + 0.5f * ImGui::GetTextLineHeight();
