@@ -26,7 +26,8 @@ program::Program describePicking(const program::Program& shown, const char* rayG
 
 program::RunnableProgram pickingProgram(Engine& engine, const render::DeviceScene& scene, const program::Program& shown,
                                         const char* rayGeneration) {
-  return compileAndCheck(describePicking(shown, rayGeneration), engine.compiler(), render::renderDefines(scene.defines(), {}), scene.facts(),
+  return compileAndCheck(describePicking(shown, rayGeneration), engine.compiler(),
+                         render::renderDefines(scene.defines(), {}), scene.facts(),
                          deviceLimits(engine.context().info()))
       .runnable;
 }

@@ -198,7 +198,8 @@ void SessionThread::handle(Request& request) {
 void SessionThread::retryAfterSave(const Request& request, const std::vector<Diagnostic>& diagnostics) {
   const auto* open = std::get_if<interactive::SessionRequest>(&request);
   job::WatchList files;
-  files.addProgram(open ? open->program : as<interactive::SetProgram>(std::get<interactive::Command>(request))->name);
+  files.addProgram(open ? open->program
+                        : std::get<interactive::SetProgram>(std::get<interactive::Command>(request)).name);
   files.addDiagnosed(diagnostics);
   if (files.files.empty() && files.folders.empty()) return;
   try {

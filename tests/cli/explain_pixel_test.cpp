@@ -72,6 +72,7 @@ TEST_F(ExplainPixel, WritesAnImageWithTheRays) {
   EXPECT_NE(pixel(expected, 16, 12), pixel(image, 16, 12));
 
   expectError(explain({"--image", "rays.exr"}), 2, {"--image: 'rays.exr' must be a PNG file"});
+  expectError(explain({"--image", "-"}), 2, {"--image requires a file"});
 }
 
 TEST_F(ExplainPixel, RejectsWrongRequests) {

@@ -138,6 +138,8 @@ std::optional<Options> parseOptions(Arguments arguments) {
     options.output.file = options.image;
     if (output::fileKind(options.image) != output::FileKind::png)
       throw UsageError(fmt::format("--image: '{}' must be a PNG file", options.image.string()));
+    if (output::isStandardOutput(options.image))
+      throw UsageError("--image requires a file: the explanation is printed on standard output");
   }
   convert(texts, options);
   if (options.request.limits.samples)
@@ -168,8 +170,7 @@ void writeImage(job::Engine& engine, std::shared_ptr<job::PreparedScene>& scene,
   const io::Image image =
       viewer::drawRays(engine, job, explanation, output::displayImage(plan, *result.film), job::EngineOptions().caches);
   console.clear();
-  console.write(output::isStandardOutput(options.image) ? "-" : options.image,
-                io::encodePng(image, job::metadataOf(result.provenance)));
+  console.write(options.image, io::encodePng(image, job::metadataOf(result.provenance)));
 }
 
 // `other`: of Options::against. Returns the exit status.
