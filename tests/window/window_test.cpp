@@ -372,10 +372,9 @@ TEST_F(WindowTest, OpensDroppedFiles) {
   expectColor(kRed, "undo brings back the program");
   writeFile(folder_ / "notes.txt", "no scene");
   EXPECT_TRUE(drop("notes.txt"));
-  viewer.control(
-      (folder_ / "notes.txt").string() +
-      ": neither a scene (.glb, .gltf, .scene.toml), a program (.rt.glsl, a folder with program.toml) nor an "
-      "image");
+  viewer.control((folder_ / "notes.txt").string() +
+                 ": neither a scene (.glb, .gltf, .scene.toml), a program (.rt.glsl, a folder with program.toml), an "
+                 "image nor an explanation (.json)");
   // The failure is shown without panels, so the window has room for a larger image.
   writeFile(folder_ / "broken.scene.toml", "[[mesh");
   EXPECT_TRUE(drop("broken.scene.toml"));
@@ -473,24 +472,28 @@ TEST_F(WindowTest, ExplainsAPixelAndComparesTwo) {
   ViewerProcess& viewer = startScene("pathtracer", {"--set", "bounces=1"});
   const auto [x, y] = imageCenter();
   const auto [left, top, right, bottom] = viewer.imageArea();
+  const auto press = [&](const char* control) {
+    viewer.settle();  // the panel scrolls and grows
+    viewer.clickControl(control);
+  };
   viewer.window().click(x, y, 1, {"Control_L"});
   const Json explained = viewer.waitFor("explained");
   EXPECT_EQ(explained["x"], x - left);
   EXPECT_EQ(explained["y"], y - top);
   const Json& explanation = explained["explanation"];
   EXPECT_GT(explanation["outputs"][0]["value"][0], 0.0) << "the sky lights the wall";
-  viewer.clickControl("Explain/Ray 2");
+  press("Explain/Ray 2");
   viewer.control("Explain/details of Ray 2");
-  viewer.clickControl("Explain/Ray 1/hit");
+  press("Explain/Ray 1/hit");
   viewer.control("Explain/details of hit");
   EXPECT_FALSE(viewer.hasControl("Explain/details of Ray 2"));
   imageColor();  // a screenshot
 
-  viewer.clickControl("Explain/Keep as A");
+  press("Explain/Keep as A");
   viewer.control("Explain/equal");
   const auto saved = [&](const char* name) {
     viewer.window().key("e", {"Control_L"});
-    viewer.clickControl("Save");
+    press("Save");
     viewer.settle();
     return (folder_ / name).string();
   };
@@ -507,12 +510,12 @@ TEST_F(WindowTest, ExplainsAPixelAndComparesTwo) {
 
   viewer.window().drag(x, y, x + 30, y);
   viewer.waitForImage();
-  viewer.clickControl("Explain/Explain again");
+  press("Explain/Explain again");
   EXPECT_NE(viewer.waitFor("explained")["explanation"]["events"], explanation["events"]);
   viewer.control("Explain/first difference");
   EXPECT_FALSE(viewer.hasControl("Explain/equal"));
   imageColor();
-  viewer.clickControl("Explain/Forget A");
+  press("Explain/Forget A");
   viewer.settle();
   EXPECT_FALSE(viewer.hasControl("Explain/first difference"));
   EXPECT_TRUE(viewer.window().drop(before, 200, 200));
