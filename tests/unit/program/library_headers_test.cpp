@@ -44,9 +44,9 @@ const std::map<std::string, std::vector<Stage>> kSupported{
 
 // Not for programs: parts that the front end of the lecture form and the instrumentation insert, and whole shaders.
 bool isInternal(const std::string& path) {
-  return path.starts_with("quintet/gsn") || path == "quintet/explain.glsl" || path == "quintet/heat.glsl" ||
-         path == "quintet/instrument.glsl" || path == "quintet/log.glsl" || path == "quintet/print.glsl" ||
-         path == "quintet/recursion.glsl" || path.starts_with("quintet/stages/") ||
+  return path.starts_with("quintet/gsn") || path.starts_with("quintet/names_") || path == "quintet/explain.glsl" ||
+         path == "quintet/heat.glsl" || path == "quintet/instrument.glsl" || path == "quintet/log.glsl" ||
+         path == "quintet/print.glsl" || path == "quintet/recursion.glsl" || path.starts_with("quintet/stages/") ||
          path.starts_with("quintet/passes/film_");
 }
 
