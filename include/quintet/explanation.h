@@ -39,7 +39,7 @@ using EventValue = std::variant<bool, std::int64_t, float, std::string, std::vec
 //   surface        position, geometricNormal, shadingNormal, uv, material
 //   light, bsdf    direction, pdf, misWeight; lobe or light (texts), throughput or weight
 //   emission, contribution, store   source (text); radiance or value
-// src/job/pixel_explanation.h lists all of them. Programs that do not use the GLSL library have only those of rays and
+// docs/explain-pixel.md lists all of them. Programs that do not use the GLSL library have only those of rays and
 // shaders.
 struct Event {
   std::string type{};  // "ray", "closest-hit", "light", "contribution", …

@@ -18,33 +18,7 @@ namespace quintet::job {
 using EventValue = std::variant<bool, std::int64_t, float, std::string, std::vector<float>, std::vector<std::int64_t>>;
 
 // Something that happened on the device. Lengths are meters, positions and directions are in world space, indices are
-// those of the scene. The types, with their fields:
-//   ray            stage, file, line, rayType (or records, if offset and stride are not those of one), flags, cullMask,
-//                  missIndex, missShader, origin, tmin, direction, tmax, result ("hit", "miss", "not traced");
-//                  transmittance of shadow rays of the library
-//   payload, data  when ("before", "after"), variable, dataType, complete (false if members are missing), and each member
-//                  under its GLSL name; `value` if the variable has no members
-//   closest-hit, hit, any-hit   stage, instance, instanceName, geometry, primitive, material, hitKind, t, and for triangles
-//                  barycentrics, uv, geometricNormal, shadingNormal; `hit` means that no shader of the program ran;
-//                  any-hit: result ("accepted", "ignored", "terminated")
-//   intersection   stage, instance, instanceName, geometry, primitive, tmin, tmax
-//   report         t, hitKind, accepted
-//   miss, callable stage
-//   call           stage, file, line, callable, index
-//   store          stage, line, output, mode ("store", "add"), value; id instead of value for storeCoverage; pixel if it
-//                  is a different one
-//   camera         film (pixels), lens
-//   surface        position, geometricNormal, shadingNormal, uv, material, side ("front", "back")
-//   shading        normal, baseColor, metallic, roughness, transmission, ior, clearcoat, sheenColor, sheenRoughness,
-//                  diffuseTransmission, emission, unlit
-//   light          light ("none" if none can contribute, without the other fields), lightType, probability; of a triangle
-//                  or solid also instance, geometry, primitive; if it can contribute: direction, distance, radiance (behind
-//                  absorbing media), pdf, delta, bsdf, bsdfPdf, misWeight, throughput
-//   bsdf           lobe, probability, useful; if useful: direction, pdf, weight, delta, transmitted, straight
-//   roulette       survival, u, survived, throughput
-//   emission       source, radiance, throughput, bsdfPdf, lightPdf, misWeight
-//   end            reason why the path ends
-//   contribution   source, scatterings, value; unclamped if it was clamped
+// those of the scene. docs/explain-pixel.md lists the types with their fields.
 struct ExplainedEvent {
   std::string type;
   std::vector<std::pair<std::string, EventValue>> fields;
