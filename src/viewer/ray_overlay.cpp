@@ -418,7 +418,7 @@ std::vector<RayLegendEntry> rayLegend(const RayOverlay& overlay) {
   std::vector<RayLegendEntry> entries;
   if (overlay.rays.empty()) return entries;
   for (const auto& [kind, text] : kTexts)
-    if (std::ranges::any_of(overlay.rays, [&](const OverlayRay& ray) { return ray.kind == kind; }))
+    if (std::ranges::find(overlay.rays, kind, &OverlayRay::kind) != overlay.rays.end())
       entries.push_back({text, colorOf(kind)});
   const auto hasNormal = [](const OverlayRay& ray) { return ray.normal && !isShadow(ray.kind); };
   if (std::ranges::any_of(overlay.rays, hasNormal)) entries.push_back({"Shading normal", kPurple});

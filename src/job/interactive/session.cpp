@@ -261,7 +261,8 @@ SessionState Session::changed(const Command& command) const {
       LightState light = session.light(index);
       std::vector<Property> properties = c.properties;
       // JSON objects have no order, and a light of intensity 0 has no color to set.
-      std::ranges::stable_partition(properties, [](const Property& p) { return p.name == "intensity"; });
+      std::stable_partition(properties.begin(), properties.end(),
+                            [](const Property& p) { return p.name == "intensity"; });
       for (const Property& property : properties) {
         const bool isSwitch = property.name == "on";
         if (isSwitch && (property.numbers.size() != 1 || (property.numbers[0] != 0 && property.numbers[0] != 1)))
