@@ -14,6 +14,7 @@
 #include "gpu/buffer.h"
 #include "gpu/commands.h"
 #include "gpu/draw_list.h"
+#include "gpu/graphics_pipeline.h"
 #include "gpu/image.h"
 #include "gpu/swapchain.h"
 
@@ -25,9 +26,6 @@ class DrawListRenderer {
   // shaders/window/triangles.vert and .frag. Throws VulkanError.
   DrawListRenderer(Context& context, VkFormat format, std::span<const std::uint32_t> vertexShader,
                    std::span<const std::uint32_t> fragmentShader);
-  ~DrawListRenderer();
-  DrawListRenderer(const DrawListRenderer&) = delete;
-  DrawListRenderer& operator=(const DrawListRenderer&) = delete;
 
   // Sets the pixels of a texture: RGBA bytes, rows from the top. The next draw() copies them. A texture is created on
   // its first use. Throws MemoryError if a side is 0 or larger than the device supports.
@@ -54,11 +52,6 @@ class DrawListRenderer {
     Buffer vertices, indices, staging;
   };
 
-  void createLayouts();
-  void createPipeline(VkFormat format, std::span<const std::uint32_t> vertexShader,
-                      std::span<const std::uint32_t> fragmentShader);
-  void destroy();
-  void bindImage(Texture& texture);
   void uploadTextures(Commands& commands, FrameBuffers& frame);
   void uploadTriangles(FrameBuffers& frame, const DrawList& list);
   void bind(Commands& commands, const RenderTarget& target, const FrameBuffers& frame);
@@ -67,10 +60,7 @@ class DrawListRenderer {
 
   Context& context_;
   Sampler linear_, nearest_;
-  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
-  VkDescriptorPool pool_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
-  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  GraphicsPipeline pipeline_;
   std::vector<Texture> textures_;
   std::array<FrameBuffers, Swapchain::kFramesInFlight> frames_;
 };

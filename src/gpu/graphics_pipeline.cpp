@@ -10,6 +10,8 @@
 namespace quintet::gpu {
 namespace {
 
+constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+
 VkShaderModule makeModule(Context& context, std::span<const std::uint32_t> spirv) {
   VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
   info.codeSize = spirv.size_bytes();
@@ -41,8 +43,8 @@ VkPipelineColorBlendAttachmentState alphaBlending() {
   return blend;
 }
 
-VkPipeline createPipeline(Context& context, const GraphicsPipelineOptions& options, VkShaderModule vertex,
-                          VkShaderModule fragment) {
+VkPipeline createPipeline(Context& context, const GraphicsPipelineOptions& options, VkPipelineLayout layout,
+                          VkShaderModule vertex, VkShaderModule fragment) {
   VkPipelineVertexInputStateCreateInfo input{VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
   input.vertexBindingDescriptionCount = 1;
   input.pVertexBindingDescriptions = &options.input;
@@ -84,16 +86,14 @@ VkPipeline createPipeline(Context& context, const GraphicsPipelineOptions& optio
   info.pMultisampleState = &samples;
   info.pColorBlendState = &blending;
   info.pDynamicState = &dynamic;
-  info.layout = options.layout;
+  info.layout = layout;
   VkPipeline pipeline = VK_NULL_HANDLE;
   check(context.vk().vkCreateGraphicsPipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
         "create a pipeline to", options.purpose);
   return pipeline;
 }
 
-}  // namespace
-
-VkPipeline makeGraphicsPipeline(Context& context, const GraphicsPipelineOptions& options) {
+VkPipeline createPipeline(Context& context, const GraphicsPipelineOptions& options, VkPipelineLayout layout) {
   // Destroys the shaders, which the pipeline does not need.
   struct Modules {
     Context& context;
@@ -105,15 +105,121 @@ VkPipeline makeGraphicsPipeline(Context& context, const GraphicsPipelineOptions&
   } modules{context};
   modules.vertex = makeModule(context, options.vertexShader);
   modules.fragment = makeModule(context, options.fragmentShader);
-  return createPipeline(context, options, modules.vertex, modules.fragment);
+  return createPipeline(context, options, layout, modules.vertex, modules.fragment);
 }
 
-void requireGraphicsQueue(const Context& context) {
+}  // namespace
+
+GraphicsPipeline::GraphicsPipeline(Context& context, const GraphicsPipelineOptions& options) : context_(context) {
+  try {
+    createLayouts(options);
+    pipeline_ = createPipeline(context, options, layout_);
+  } catch (...) {
+    destroy();
+    throw;
+  }
+}
+
+GraphicsPipeline::~GraphicsPipeline() { destroy(); }
+
+void GraphicsPipeline::destroy() {
+  context_.retire([&context = context_, pipeline = pipeline_, layout = layout_, pool = pool_, setLayout = setLayout_] {
+    const VolkDeviceTable& vk = context.vk();
+    vk.vkDestroyPipeline(context.device(), pipeline, nullptr);
+    vk.vkDestroyPipelineLayout(context.device(), layout, nullptr);
+    vk.vkDestroyDescriptorPool(context.device(), pool, nullptr);
+    vk.vkDestroyDescriptorSetLayout(context.device(), setLayout, nullptr);
+  });
+}
+
+void GraphicsPipeline::createLayouts(const GraphicsPipelineOptions& options) {
+  const VolkDeviceTable& vk = context_.vk();
+  VkDescriptorSetLayoutBinding binding{};
+  binding.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  binding.descriptorCount = 1;
+  binding.stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT;
+  VkDescriptorSetLayoutCreateInfo setInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
+  setInfo.bindingCount = 1;
+  setInfo.pBindings = &binding;
+  check(vk.vkCreateDescriptorSetLayout(context_.device(), &setInfo, nullptr, &setLayout_),
+        "create a descriptor layout");
+
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, options.maxSets};
+  VkDescriptorPoolCreateInfo poolInfo{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+  poolInfo.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
+  poolInfo.maxSets = options.maxSets;
+  poolInfo.poolSizeCount = 1;
+  poolInfo.pPoolSizes = &size;
+  check(vk.vkCreateDescriptorPool(context_.device(), &poolInfo, nullptr, &pool_), "create a descriptor pool");
+
+  const VkPushConstantRange constants{kStages, 0, options.constantBytes};
+  VkPipelineLayoutCreateInfo layoutInfo{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+  layoutInfo.setLayoutCount = 1;
+  layoutInfo.pSetLayouts = &setLayout_;
+  layoutInfo.pushConstantRangeCount = 1;
+  layoutInfo.pPushConstantRanges = &constants;
+  check(vk.vkCreatePipelineLayout(context_.device(), &layoutInfo, nullptr, &layout_), "create a pipeline layout");
+}
+
+VkDescriptorSet GraphicsPipeline::makeSet(const Image& image, const Sampler& sampler) {
+  const VolkDeviceTable& vk = context_.vk();
+  VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+  info.descriptorPool = pool_;
+  info.descriptorSetCount = 1;
+  info.pSetLayouts = &setLayout_;
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  check(vk.vkAllocateDescriptorSets(context_.device(), &info, &set), "allocate a descriptor set");
+  const VkDescriptorImageInfo descriptor{sampler.handle(), image.view(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+  VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+  write.dstSet = set;
+  write.descriptorCount = 1;
+  write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+  write.pImageInfo = &descriptor;
+  vk.vkUpdateDescriptorSets(context_.device(), 1, &write, 0, nullptr);
+  return set;
+}
+
+void GraphicsPipeline::freeSet(VkDescriptorSet set) {
+  if (!set) return;
+  context_.retire(
+      [&context = context_, pool = pool_, set] { context.vk().vkFreeDescriptorSets(context.device(), pool, 1, &set); });
+}
+
+void GraphicsPipeline::bind(Commands& commands, const Buffer& vertices, VkExtent2D target) const {
+  const VolkDeviceTable& vk = context_.vk();
+  vk.vkCmdBindPipeline(commands.handle(), VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_);
+  const VkBuffer buffer = vertices.handle();
+  const VkDeviceSize offset = 0;
+  vk.vkCmdBindVertexBuffers(commands.handle(), 0, 1, &buffer, &offset);
+  const VkViewport viewport{0.0f, 0.0f, static_cast<float>(target.width), static_cast<float>(target.height),
+                            0.0f, 1.0f};
+  vk.vkCmdSetViewport(commands.handle(), 0, 1, &viewport);
+}
+
+void GraphicsPipeline::bindSet(Commands& commands, VkDescriptorSet set) const {
+  context_.vk().vkCmdBindDescriptorSets(commands.handle(), VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set, 0,
+                                        nullptr);
+}
+
+void GraphicsPipeline::setConstants(Commands& commands, std::span<const std::byte> bytes) const {
+  context_.vk().vkCmdPushConstants(commands.handle(), layout_, kStages, 0, static_cast<std::uint32_t>(bytes.size()),
+                                   bytes.data());
+}
+
+void reserveUpload(Context& context, Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage, const char* name) {
+  if (buffer && buffer.size() >= size) return;
+  buffer = Buffer(
+      context,
+      {.size = size + size / 2, .memory = Memory::upload, .usage = usage, .name = name, .purpose = Purpose::staging});
+}
+
+Context& requireGraphicsQueue(Context& context) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(context.physicalDevice(), &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(context.physicalDevice(), &count, families.data());
-  if (context.queueFamily() < count && (families[context.queueFamily()].queueFlags & VK_QUEUE_GRAPHICS_BIT)) return;
+  if (context.queueFamily() < count && (families[context.queueFamily()].queueFlags & VK_QUEUE_GRAPHICS_BIT))
+    return context;
   throw Error(fmt::format("device '{}' has no graphics queue, so it cannot draw lines; use a different device",
                           context.info().name));
 }

@@ -11,6 +11,7 @@
 
 #include "gpu/buffer.h"
 #include "gpu/commands.h"
+#include "gpu/graphics_pipeline.h"
 #include "gpu/image.h"
 #include "gpu/line_list.h"
 #include "gpu/swapchain.h"
@@ -23,9 +24,6 @@ class LineRenderer {
   // Throws Error if the device has no graphics queue, VulkanError.
   LineRenderer(Context& context, VkFormat format, std::span<const std::uint32_t> vertexShader,
                std::span<const std::uint32_t> fragmentShader);
-  ~LineRenderer();
-  LineRenderer(const LineRenderer&) = delete;
-  LineRenderer& operator=(const LineRenderer&) = delete;
 
   // Sets the reversed depths of surfaces, rows from the top; -infinity or the least float where there is no surface. The
   // next prepare() copies them. Null, as at the beginning: nothing hides lines. Throws MemoryError.
@@ -37,19 +35,11 @@ class LineRenderer {
   void record(Commands& commands, const RenderTarget& target, const VkRect2D& rectangle);
 
  private:
-  void createLayouts();
-  void createPipeline(VkFormat format, std::span<const std::uint32_t> vertexShader,
-                      std::span<const std::uint32_t> fragmentShader);
-  void destroy();
-  void bindDepth();
   void uploadDepth(Commands& commands, std::uint32_t slot);
 
   Context& context_;
   Sampler sampler_;
-  VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
-  VkDescriptorPool pool_ = VK_NULL_HANDLE;
-  VkPipelineLayout layout_ = VK_NULL_HANDLE;
-  VkPipeline pipeline_ = VK_NULL_HANDLE;
+  GraphicsPipeline pipeline_;
   Image depth_;
   VkDescriptorSet set_ = VK_NULL_HANDLE;
   std::shared_ptr<const std::vector<float>> pendingDepths_;  // to copy; null if the image has them
