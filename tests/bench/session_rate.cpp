@@ -4,7 +4,7 @@
 // While the camera orbits, it counts images per second, from the command to the image in host memory for display. Then
 // it makes each kind of edit several times while the image is refined, and measures the time from the command to the
 // next image, and how often the program is compiled. It also measures how long an interruption of the refinement waits,
-// and how long picking takes. The output is one JSON object.
+// how long picking takes, and how long the rays of an explained pixel take to draw. The output is one JSON object.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,9 +21,14 @@
 
 #include "base/error.h"
 #include "base/stopwatch.h"
+#include "gpu/image.h"
 #include "gpu/instance.h"
+#include "gpu/line_renderer.h"
+#include "gpu/timer.h"
 #include "job/interactive/light_properties.h"
 #include "job/interactive/session.h"
+#include "viewer/ray_overlay.h"
+#include "viewer/window_shaders.h"
 
 namespace quintet::bench {
 namespace {
@@ -77,6 +82,7 @@ class Measurement {
     json["edits"] = edits();
     json["interruptionMilliseconds"] = interruption();
     json["pickMilliseconds"] = picking();
+    json["explanation"] = explanation();
     return json;
   }
 
@@ -219,6 +225,80 @@ class Measurement {
     const double first = seconds.front();
     seconds.erase(seconds.begin());
     return {{"first", milliseconds(first)}, {"median", milliseconds(quantile(seconds, 0.5))}};
+  }
+
+  // Of 25 pixels, explains the one with the most rays, and draws its rays over the image.
+  Json explanation() {
+    session_->explain({0, 0}, 0);  // compiles the instrumented program
+    viewer::RayOverlay overlay;
+    std::vector<double> explainSeconds;
+    for (std::uint32_t i = 0; i < 25; ++i) {
+      const Stopwatch watch;
+      const job::PixelExplanation explained =
+          session_->explain(uvec2(options_.width, options_.height) * uvec2(i % 5 + 1, i / 5 + 1) / 6u, 0);
+      explainSeconds.push_back(watch.seconds());
+      viewer::RayOverlay rays = viewer::rayOverlay(explained, 1.0f);
+      if (rays.rays.size() > overlay.rays.size()) overlay = std::move(rays);
+    }
+    session_->depthMap();  // compiles its program
+    const Stopwatch depthWatch;
+    const job::DepthMap depth = session_->depthMap();
+    const double depthSeconds = depthWatch.seconds();
+    const viewer::OverlayView view{session_->camera(), {.origin = {}, .size = {options_.width, options_.height}}};
+    std::vector<double> seconds;
+    gpu::LineList list;
+    for (int i = 0; i < options_.repeat; ++i) {
+      const Stopwatch lines;
+      list = viewer::overlayLines(overlay, view, {}, &depth);
+      seconds.push_back(lines.seconds());
+    }
+    return {{"explainMilliseconds", milliseconds(quantile(explainSeconds, 0.5))},
+            {"depthMapMilliseconds", milliseconds(depthSeconds)},
+            {"rays", overlay.rays.size()},
+            {"lines", list.lines.size()},
+            {"linesHostMilliseconds", milliseconds(quantile(seconds, 0.5))},
+            {"linesDeviceMilliseconds", milliseconds(drawingSeconds(list, depth))}};
+  }
+
+  // Device time of the lines over an image of the size of the session, median.
+  double drawingSeconds(const gpu::LineList& list, const job::DepthMap& depth) {
+    gpu::Context& context = engine_.context();
+    const viewer::WindowShaders shaders = viewer::compileLineShaders(job::EngineOptions().caches);
+    constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
+    gpu::LineRenderer renderer(context, kFormat, shaders.vertex, shaders.fragment);
+    renderer.setDepth({depth.size.x, depth.size.y}, viewer::reversedDepths(depth));
+    const VkExtent2D size{options_.width, options_.height};
+    const gpu::Image target(context, {.width = size.width,
+                                      .height = size.height,
+                                      .format = kFormat,
+                                      .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
+                                      .name = "benchmark of lines"});
+    VkRenderingAttachmentInfo attachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    attachment.imageView = target.view();
+    attachment.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
+    info.renderArea.extent = size;
+    info.layerCount = 1;
+    info.colorAttachmentCount = 1;
+    info.pColorAttachments = &attachment;
+    gpu::Timer timer(context, 2);
+    std::vector<double> seconds;
+    for (int i = 0; i < options_.repeat; ++i) {
+      context.submitAndWait([&](gpu::Commands& commands) {
+        commands.transition(target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+        timer.reset(commands);
+        timer.mark(commands, 0);
+        renderer.prepare(commands, 0, list);
+        context.vk().vkCmdBeginRendering(commands.handle(), &info);
+        renderer.record(commands, {target.view(), size, 0}, {{0, 0}, size});
+        context.vk().vkCmdEndRendering(commands.handle());
+        timer.mark(commands, 1);
+      });
+      seconds.push_back(timer.seconds(0, 1));
+    }
+    return quantile(seconds, 0.5);
   }
 
   const Options& options_;
