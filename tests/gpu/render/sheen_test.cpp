@@ -41,7 +41,8 @@ int addTexel(scene::Scene& scene, std::array<std::uint8_t, 4> rgba, io::ColorEnc
 }
 
 // Black cloth in the light of the sun: color D V cos E. Color and roughness are products of factor and texture: the sRGB
-// value 188 is 0.5029, and 128 / 255 of the roughness is 0.5. Lavapipe decodes sRGB with an error of 0.15 %.
+// value 188 is 0.5029, and 128 / 255 of the roughness is 0.5. Drivers decode sRGB with errors of up to 0.2 % (lavapipe
+// 0.15 %, H100 0.2 %).
 TEST(SheenRender, BlackClothReflectsTheSun) {
   scene::Material cloth = lambert(vec3(0.0f));
   cloth.sheenColor = {1.0f, 0.5f, 0.2f};
@@ -60,7 +61,7 @@ TEST(SheenRender, BlackClothReflectsTheSun) {
   const double distribution = 6.0 * std::pow(1.0 - h.y * h.y, 2.0) / (2.0 * kPi);
   const double visible = distribution / (4.0 * wo.y * (1.0 + lambda(wo.y) + lambda(wi.y)));
   const glm::dvec3 color(1.0, 0.5 * 0.50289, 0.2);
-  expectUniform(renderImage(scene), vec4(vec3(2.0 * visible * color), 1.0f), {.error = 0.001, .rounding = 2e-3});
+  expectUniform(renderImage(scene), vec4(vec3(2.0 * visible * color), 1.0f), {.error = 0.001, .rounding = 4e-3});
 }
 
 // What a white sheen does not reflect reaches the white base: the square is invisible in front of a white sky.
