@@ -10,12 +10,20 @@
 # machines with many cores each suite counts as several jobs, so that at most eight suites use the device at a time.
 # lavapipe gets four threads instead of eight per core, because most launches are so small that waking 32 threads takes
 # longer than the work. The command line tests use the default number of threads.
+#
+# GALLIVM_PERF=nopt makes lavapipe compile a pipeline without the optimizations of LLVM, in less than half of the time.
+# Tests that compile much and trace few rays take half as long with it. The tests of images, the lessons, the oracle and
+# the command line use the driver as users do. Other drivers ignore the variable.
 include(ProcessorCount)
 ProcessorCount(QUINTET_CORES)
 math(EXPR QUINTET_DEVICE_JOBS "(${QUINTET_CORES} + 7) / 8")
 if(QUINTET_DEVICE_JOBS EQUAL 0)
   set(QUINTET_DEVICE_JOBS 1)
 endif()
+
+# Labels of the suites that compile without optimization, and suites of these labels that trace too many rays for it.
+set(QUINTET_UNOPTIMIZED_LABELS gpu api)
+set(QUINTET_OPTIMIZED_SUITES gpu.BsdfFurnace gpu.ErrorEstimate gpu.LightTreeDevice)
 
 # Suites that measure the time of a launch and therefore run alone.
 set(QUINTET_SERIAL_SUITES gpu.GpuSubmissions gpu.GpuTimer)
@@ -71,6 +79,9 @@ function(quintet_add_suites TARGET LABEL TIMEOUT)
   foreach(name IN LISTS names)
     set_tests_properties(${name} PROPERTIES ENVIRONMENT "QUINTET_VALIDATE=1;LP_NUM_THREADS=4"
       PROCESSORS ${QUINTET_DEVICE_JOBS})
+    if(LABEL IN_LIST QUINTET_UNOPTIMIZED_LABELS AND NOT name IN_LIST QUINTET_OPTIMIZED_SUITES)
+      set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT GALLIVM_PERF=nopt)
+    endif()
     if(name STREQUAL gpu.GpuContext)  # tests the variables that the library sets for lavapipe
       set_tests_properties(${name} PROPERTIES ENVIRONMENT QUINTET_VALIDATE=1)
     endif()
