@@ -11,7 +11,7 @@ using shader::Stage;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr const char* kHead = R"(#extension GL_EXT_buffer_reference : require
+constexpr const char* kAddressHead = R"(#extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_nonuniform_qualifier : require
 struct Payload { vec3 color; uint texture; };
@@ -23,7 +23,7 @@ layout(set = 0, binding = 1) uniform sampler2D textures[];
 )";
 
 std::vector<std::string> closestHit(const std::string& body, const StageContext& context = {}) {
-  return checkText(Stage::closestHit, kHead + ("void main() {\n" + body + "\n}\n"), context);
+  return checkText(Stage::closestHit, kAddressHead + ("void main() {\n" + body + "\n}\n"), context);
 }
 
 TEST(CheckInstanceIndices, ReportsArrayIndices) {

@@ -24,7 +24,7 @@ struct Mistake {
 constexpr const char* kRadianceTrace = "gl_RayFlagsNoneEXT, 0xFFu, kRay_radiance, kRayTypeCount, kMiss_radiance";
 constexpr const char* kSurfaceHit = "payload = triangleHit(baryCoord, raySeed(payload));";
 
-const Mistake kMistakes[] = {
+const Mistake kLibraryMistakes[] = {
     // Payloads.
     {"Q101", "quintet/stages/radiance.rmiss", "rayPayloadInEXT HitPayload payload;",
      "rayPayloadInEXT Wide { uint more; HitPayload inner; } wide;\n#define payload wide.inner"},
@@ -137,15 +137,15 @@ TEST(LibraryMutation, FindsMistakes) {
   std::size_t total = 0, caught = 0;
   for (const std::string& name : programs)
     ASSERT_EQ(textOf(check(program::loadProgram(name), compiler, &scene, {})), "") << name;
-  std::vector<std::string> texts(std::size(kMistakes) * programs.size());
+  std::vector<std::string> texts(std::size(kLibraryMistakes) * programs.size());
   parallelFor(texts.size(), [&](std::size_t i) {
-    const Mistake& mistake = kMistakes[i / programs.size()];
+    const Mistake& mistake = kLibraryMistakes[i / programs.size()];
     program::Program program = program::loadProgram(programs[i % programs.size()]);
     program.files[fmt::format("<{}>", mistake.file)] = mutated(mistake);  // overrides the file of the library
     texts[i] = textOf(check(program, compiler, &scene, {}));
   });
   for (std::size_t i = 0; i < texts.size(); ++i) {
-    const Mistake& mistake = kMistakes[i / programs.size()];
+    const Mistake& mistake = kLibraryMistakes[i / programs.size()];
     const bool shadow = std::string_view(mistake.from).find("hadow") != std::string_view::npos ||
                         std::string_view(mistake.file).find("shadow") != std::string_view::npos ||
                         std::string_view(mistake.from).find("Terminate") != std::string_view::npos ||

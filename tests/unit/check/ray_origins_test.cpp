@@ -11,7 +11,7 @@ using shader::Stage;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr const char* kHead = R"(#extension GL_EXT_buffer_reference : require
+constexpr const char* kOriginHead = R"(#extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 layout(set = 0, binding = 0) uniform accelerationStructureEXT topLevelAS;
 struct Payload { vec3 color; float t; vec3 position; vec3 normal; };
@@ -23,7 +23,7 @@ traceRayEXT(topLevelAS, 0u, 255u, 0u, 1u, 0u, origin, tmin, direction, 1e30, 1);
 }
 )";
 constexpr const char* kHitHead = "layout(location = 0) rayPayloadInEXT Payload payload;\nhitAttributeEXT vec2 b;\n";
-constexpr const char* kReported = "Q705:11";  // the trace in kHead
+constexpr const char* kReported = "Q705:11";  // the trace in kOriginHead
 
 std::vector<std::string> originsOf(Stage stage, const std::string& text) {
   const auto module = compileStage(stage, text);
@@ -32,33 +32,33 @@ std::vector<std::string> originsOf(Stage stage, const std::string& text) {
   return linesOf(report.take());
 }
 
-std::vector<std::string> closestHit(const std::string& body) {
-  return originsOf(Stage::closestHit,
-                   std::string(kHead) + kHitHead + "void main() {\n" + body + "\npayload.color = inner.color;\n}\n");
+std::vector<std::string> originsIn(const std::string& body) {
+  return originsOf(Stage::closestHit, std::string(kOriginHead) + kHitHead + "void main() {\n" + body +
+                                          "\npayload.color = inner.color;\n}\n");
 }
 std::vector<std::string> rayGeneration(const std::string& body) {
-  return originsOf(Stage::rayGeneration,
-                   kHead + ("layout(set = 0, binding = 2, rgba8) uniform writeonly image2D result;\nvoid main() {\n"
-                            "vec3 o = vec3(0, 0, 9), d = normalize(vec3(gl_LaunchIDEXT.xy, -9));\n" +
-                            body + "\nimageStore(result, ivec2(gl_LaunchIDEXT.xy), vec4(inner.color, 1));\n}\n"));
+  return originsOf(
+      Stage::rayGeneration,
+      kOriginHead + ("layout(set = 0, binding = 2, rgba8) uniform writeonly image2D result;\nvoid main() {\n"
+                     "vec3 o = vec3(0, 0, 9), d = normalize(vec3(gl_LaunchIDEXT.xy, -9));\n" +
+                     body + "\nimageStore(result, ivec2(gl_LaunchIDEXT.xy), vec4(inner.color, 1));\n}\n"));
 }
 
 constexpr const char* kPoint = "vec3 p = gl_WorldRayOriginEXT + gl_HitTEXT * gl_WorldRayDirectionEXT;\n";
 
 TEST(CheckRayOrigins, ReportsPointsOnTheRay) {
-  EXPECT_THAT(closestHit(std::string(kPoint) + "shoot(p, 0.0, vec3(0, 1, 0));"), ElementsAre(kReported));
+  EXPECT_THAT(originsIn(std::string(kPoint) + "shoot(p, 0.0, vec3(0, 1, 0));"), ElementsAre(kReported));
   EXPECT_THAT(
-      closestHit(
-          "vec3 p = gl_WorldRayDirectionEXT * gl_HitTEXT + gl_WorldRayOriginEXT;\nshoot(p, 0.0, vec3(0, 1, 0));"),
+      originsIn("vec3 p = gl_WorldRayDirectionEXT * gl_HitTEXT + gl_WorldRayOriginEXT;\nshoot(p, 0.0, vec3(0, 1, 0));"),
       ElementsAre(kReported));
 }
 
 TEST(CheckRayOrigins, AcceptsAnOffsetOrTmin) {
-  EXPECT_THAT(closestHit(std::string(kPoint) + "shoot(p, 0.001, vec3(0, 1, 0));"), IsEmpty());
-  EXPECT_THAT(closestHit(std::string(kPoint) + "shoot(p, push.tmin, vec3(0, 1, 0));"), IsEmpty());
-  EXPECT_THAT(closestHit(std::string(kPoint) + "shoot(p + 0.001 * vec3(0, 1, 0), 0.0, vec3(0, 1, 0));"), IsEmpty());
-  EXPECT_THAT(closestHit("vec3 p = gl_WorldRayOriginEXT + 0.999 * gl_HitTEXT * gl_WorldRayDirectionEXT;\nshoot(p, 0.0, "
-                         "vec3(0, 1, 0));"),
+  EXPECT_THAT(originsIn(std::string(kPoint) + "shoot(p, 0.001, vec3(0, 1, 0));"), IsEmpty());
+  EXPECT_THAT(originsIn(std::string(kPoint) + "shoot(p, push.tmin, vec3(0, 1, 0));"), IsEmpty());
+  EXPECT_THAT(originsIn(std::string(kPoint) + "shoot(p + 0.001 * vec3(0, 1, 0), 0.0, vec3(0, 1, 0));"), IsEmpty());
+  EXPECT_THAT(originsIn("vec3 p = gl_WorldRayOriginEXT + 0.999 * gl_HitTEXT * gl_WorldRayDirectionEXT;\nshoot(p, 0.0, "
+                        "vec3(0, 1, 0));"),
               IsEmpty());
 }
 
@@ -67,11 +67,11 @@ constexpr const char* kVertices =
     "push.mesh.positions[2];\n";
 
 TEST(CheckRayOrigins, ReportsInterpolatedVertices) {
-  EXPECT_THAT(closestHit(std::string(kVertices) + "shoot(gl_ObjectToWorldEXT * vec4(v, 1.0), 0.0, vec3(0, 1, 0));"),
+  EXPECT_THAT(originsIn(std::string(kVertices) + "shoot(gl_ObjectToWorldEXT * vec4(v, 1.0), 0.0, vec3(0, 1, 0));"),
               ElementsAre(kReported));
   EXPECT_THAT(
-      closestHit(std::string(kVertices) +
-                 "vec3 p = gl_ObjectToWorldEXT * vec4(v, 1.0);\nshoot(p + vec3(0, 1e-3, 0), 0.0, vec3(0, 1, 0));"),
+      originsIn(std::string(kVertices) +
+                "vec3 p = gl_ObjectToWorldEXT * vec4(v, 1.0);\nshoot(p + vec3(0, 1e-3, 0), 0.0, vec3(0, 1, 0));"),
       IsEmpty());
 }
 

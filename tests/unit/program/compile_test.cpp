@@ -12,11 +12,6 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-const shader::Compiler& compiler() {
-  static const shader::Compiler kCompiler{shader::CompilerOptions{}};
-  return kCompiler;
-}
-
 std::string problems(const CompiledProgram& compiled) {
   std::string text;
   for (const Diagnostic& d : compiled.diagnostics) text += d.format() + "\n";

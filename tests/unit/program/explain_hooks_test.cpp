@@ -11,16 +11,12 @@
 #include "program/description/generated_glsl.h"
 #include "program/hit_shaders.h"
 #include "program/load.h"
+#include "program/program_test_support.h"
 #include "shader/library.h"
 #include "spirv/module.h"
 
 namespace quintet::program {
 namespace {
-
-const shader::Compiler& compiler() {
-  static const shader::Compiler kCompiler{shader::CompilerOptions{}};
-  return kCompiler;
-}
 
 // The text without calls of the hooks.
 std::string withoutHooks(const std::string& text) {

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "program/description/parser.h"
 #include "program/description/program.h"
+#include "shader/compiler.h"
 
 namespace quintet::program {
 
@@ -34,6 +35,11 @@ miss = "sky.rmiss"
 
 inline Program parse(const std::string& toml, const Files& files = someFiles()) {
   return parseProgram(toml, "demo", "folder/demo", files);
+}
+
+inline const shader::Compiler& compiler() {
+  static const shader::Compiler kCompiler{shader::CompilerOptions{}};
+  return kCompiler;
 }
 
 // A program.toml with two outputs and a parameter of most types; parse it with parameterFiles().

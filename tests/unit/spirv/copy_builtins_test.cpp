@@ -13,7 +13,7 @@ using namespace shader;
 
 namespace {
 
-constexpr const char* kHead = R"(#version 460
+constexpr const char* kBuiltinHead = R"(#version 460
 #extension GL_EXT_ray_tracing : require
 layout(set = 0, binding = 0) uniform accelerationStructureEXT topLevelAS;
 layout(location = 0) rayPayloadInEXT vec3 color;
@@ -22,13 +22,13 @@ void shoot() { traceRayEXT(topLevelAS, 0u, 255u, 0u, 1u, 0u, gl_WorldRayOriginEX
 void main() {
 )";
 
-std::vector<std::uint32_t> compileMain(const std::string& body, bool debugInfo = true) {
+std::vector<std::uint32_t> compileClosestHit(const std::string& body, bool debugInfo = true) {
   CompilerOptions options;
   options.debugInfo = debugInfo;
   Source source;
   source.stage = Stage::closestHit;
   source.name = "test.rchit";
-  source.text = kHead + body + "\n}\n";
+  source.text = kBuiltinHead + body + "\n}\n";
   Result result = Compiler(options).compile(source);
   EXPECT_TRUE(result.ok()) << all(result);
   return result.spirv;
@@ -62,7 +62,7 @@ Loads loadsOf(const std::vector<std::uint32_t>& words) {
 TEST(CopyBuiltIns, MovesLoadsBeforeTheTrace) {
   for (const bool debugInfo : {true, false}) {
     const auto words =
-        compileMain("shoot(); color = inner * float(gl_PrimitiveID + gl_InstanceCustomIndexEXT);", debugInfo);
+        compileClosestHit("shoot(); color = inner * float(gl_PrimitiveID + gl_InstanceCustomIndexEXT);", debugInfo);
     EXPECT_EQ(loadsOf(words).after, 2);
     const auto copied = copyBuiltIns(words);
     EXPECT_EQ(loadsOf(copied).after, 0);
@@ -72,20 +72,20 @@ TEST(CopyBuiltIns, MovesLoadsBeforeTheTrace) {
 
 TEST(CopyBuiltIns, MovesPartsOfAMatrix) {
   const auto copied =
-      copyBuiltIns(compileMain("shoot(); color = inner * gl_ObjectToWorldEXT[3] + gl_WorldToObjectEXT[1].y;"));
+      copyBuiltIns(compileClosestHit("shoot(); color = inner * gl_ObjectToWorldEXT[3] + gl_WorldToObjectEXT[1].y;"));
   EXPECT_EQ(loadsOf(copied).after, 0);
   EXPECT_EQ(loadsOf(copied).before, 2);
 }
 
 TEST(CopyBuiltIns, MovesLoadsInALoopWithATrace) {
-  const auto words =
-      compileMain("for (int i = 0; i < gl_PrimitiveID; ++i) { color += inner * float(gl_GeometryIndexEXT); shoot(); }");
+  const auto words = compileClosestHit(
+      "for (int i = 0; i < gl_PrimitiveID; ++i) { color += inner * float(gl_GeometryIndexEXT); shoot(); }");
   EXPECT_GT(loadsOf(words).after, 0);
   EXPECT_EQ(loadsOf(copyBuiltIns(words)).after, 0);
 }
 
 TEST(CopyBuiltIns, KeepsLoadsWithAComputedIndex) {
-  const auto words = compileMain("shoot(); color = gl_ObjectToWorldEXT[int(inner.x) & 3];");
+  const auto words = compileClosestHit("shoot(); color = gl_ObjectToWorldEXT[int(inner.x) & 3];");
   EXPECT_EQ(copyBuiltIns(words), words);
 }
 
@@ -93,13 +93,13 @@ TEST(CopyBuiltIns, KeepsModulesWithoutLoadsAfterATrace) {
   for (const char* body :
        {"color = vec3(gl_PrimitiveID);", "int p = gl_PrimitiveID; shoot(); color = inner * float(p);",
         "shoot(); color = inner * gl_HitTEXT * gl_WorldRayDirectionEXT;"}) {
-    const auto words = compileMain(body);
+    const auto words = compileClosestHit(body);
     EXPECT_EQ(copyBuiltIns(words), words) << body;
   }
 }
 
 TEST(CopyBuiltIns, ReturnsMalformedModulesUnchanged) {
-  const auto words = compileMain("shoot(); color = inner * float(gl_PrimitiveID);");
+  const auto words = compileClosestHit("shoot(); color = inner * float(gl_PrimitiveID);");
   EXPECT_TRUE(copyBuiltIns({}).empty());
   std::mt19937 random(7);
   for (int i = 0; i < 300; ++i) {

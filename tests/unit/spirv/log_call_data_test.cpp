@@ -18,7 +18,7 @@ namespace {
 constexpr DataMarkers kMarkers{0xABCD0001u, 0xABCD0002u, 64};
 
 // BEFORE and AFTER are the marking stores, as in quintet/explain.glsl.
-constexpr const char* kHead = R"(#version 460
+constexpr const char* kCallHead = R"(#version 460
 #extension GL_EXT_ray_tracing : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -42,7 +42,7 @@ LoggedCalls logged(const std::string& declarations, const std::string& body, con
   Source source;
   source.stage = Stage::rayGeneration;
   source.name = "test.rgen";
-  source.text = kHead + declarations + "\nvoid main() {\n" + body + "\n}\n";
+  source.text = kCallHead + declarations + "\nvoid main() {\n" + body + "\n}\n";
   const Result result = Compiler(options).compile(source);
   EXPECT_TRUE(result.ok()) << all(result);
   return logCallData(result.spirv, markers, 1000);

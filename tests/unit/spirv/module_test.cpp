@@ -12,8 +12,6 @@ using namespace shader;
 
 namespace {
 
-using Kind = Type::Kind;
-
 Result compileText(Stage stage, const std::string& text, std::map<std::string, std::string> files = {}) {
   CompilerOptions options;
   options.debugInfo = true;
@@ -276,7 +274,7 @@ void main() { color = push.colors.at[push.first]; }
   const Type& block = module.types().get(push->type);
   ASSERT_EQ(block.members.size(), 2u);
   const Type& reference = module.types().get(block.members[1]);
-  EXPECT_EQ(reference.kind, Kind::pointer);
+  EXPECT_EQ(reference.kind, Type::Kind::pointer);
   EXPECT_EQ(reference.bytes, 8u);
   EXPECT_EQ(module.types().get(reference.element).name, "Colors");
 }

@@ -20,7 +20,7 @@ using ::testing::ElementsAre;
 using ::testing::Field;
 using Kind = PrintArgument::Kind;
 
-constexpr const char* kHead = R"(#version 460
+constexpr const char* kPrintHead = R"(#version 460
 #extension GL_EXT_ray_tracing : require
 #extension GL_EXT_debug_printf : require
 #extension GL_EXT_shader_explicit_arithmetic_types : require
@@ -31,8 +31,8 @@ Source sourceOf(const std::string& text, bool printing) {
   Source source;
   source.stage = Stage::miss;
   source.name = "test.rmiss";
-  source.text =
-      printing ? program::probedStage(kHead + text, Stage::miss, {.prints = true, .heat = false}, false) : kHead + text;
+  source.text = printing ? program::probedStage(kPrintHead + text, Stage::miss, {.prints = true, .heat = false}, false)
+                         : kPrintHead + text;
   source.optimize = !printing;
   return source;
 }

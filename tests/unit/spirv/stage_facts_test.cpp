@@ -12,7 +12,7 @@ using namespace shader;
 
 namespace {
 
-std::vector<std::uint32_t> compileText(Stage stage, const std::string& text) {
+std::vector<std::uint32_t> compileStage(Stage stage, const std::string& text) {
   CompilerOptions options;
   options.debugInfo = true;
   Source source;
@@ -25,7 +25,7 @@ std::vector<std::uint32_t> compileText(Stage stage, const std::string& text) {
 }
 
 StageFacts factsOf(Stage stage, const std::string& text) {
-  return StageFacts(std::move(*Module::read(compileText(stage, text))));
+  return StageFacts(std::move(*Module::read(compileStage(stage, text))));
 }
 
 constexpr const char* kHit = R"(struct Payload { vec3 color; float t; uint seed; };
@@ -107,7 +107,7 @@ TEST(StageFacts, FindsBuiltInsReadAfterATrace) {
 }
 
 TEST(StageFacts, AcceptsAnyModuleSafely) {
-  const std::vector<std::uint32_t> good = compileText(Stage::closestHit, kHit);
+  const std::vector<std::uint32_t> good = compileStage(Stage::closestHit, kHit);
   std::mt19937 random(11);
   const auto pick = [&](std::size_t below) { return static_cast<std::size_t>(random() % below); };
   std::size_t sum = 0;

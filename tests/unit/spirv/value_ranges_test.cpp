@@ -12,7 +12,7 @@ using namespace shader;
 namespace {
 
 // Two lines precede the text. `out.x`, `out.i`, … are what the tests look at.
-constexpr const char* kHead = R"(#version 460
+constexpr const char* kRangeHead = R"(#version 460
 #extension GL_EXT_ray_tracing : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
@@ -60,7 +60,7 @@ class Ranges {
     Source source;
     source.stage = stage;
     source.name = "test.glsl";
-    source.text = kHead + body;
+    source.text = kRangeHead + body;
     Result result = Compiler(options).compile(source);
     EXPECT_TRUE(result.ok()) << all(result);
     return std::move(*Module::read(std::move(result.spirv)));
@@ -215,7 +215,7 @@ TEST(ValueRanges, AcceptsAnyModuleSafely) {
   Source source;
   source.stage = Stage::closestHit;
   source.name = "test.glsl";
-  source.text = kHead + std::string(R"(void main() {
+  source.text = kRangeHead + std::string(R"(void main() {
   float a[4] = float[](data.x, 1.0, 2.0, 3.0);
   for (int i = 0; i < 4; ++i) data.x += a[i] * kTable[(i + gl_PrimitiveID) & 3];
   vec3 v = clamp(parameters.tint, vec3(0.0), vec3(data.x)) / max(data.x, 0.5);

@@ -6,7 +6,7 @@
 namespace quintet::viewer {
 namespace {
 
-constexpr uvec2 kSize{200, 100};
+constexpr uvec2 kProjected{200, 100};
 
 scene::Camera turnedCamera() {
   scene::Camera camera;
@@ -20,7 +20,7 @@ vec3 worldOf(const scene::Camera& camera, const vec3& point) { return camera.wor
 
 TEST(CameraProjection, ProjectsPointsOfAPerspectiveCamera) {
   const scene::Camera camera = turnedCamera();
-  const CameraProjection projection(camera, kSize);
+  const CameraProjection projection(camera, kProjected);
   const vec3 point = projection.toCamera(worldOf(camera, {1.0f, -2.0f, -4.0f}));
   EXPECT_NEAR(point.x, 1.0f, 1e-5f);
   EXPECT_NEAR(point.z, -4.0f, 1e-5f);
@@ -34,7 +34,7 @@ TEST(CameraProjection, ProjectsPointsOfAPerspectiveCamera) {
 TEST(CameraProjection, ShowsTheWholeBoxOfAnOrthographicCamera) {
   scene::Camera camera = turnedCamera();
   camera.orthographic = true;
-  const CameraProjection projection(camera, kSize);
+  const CameraProjection projection(camera, kProjected);
   const vec2 corner = projection.toImage({3.0f, 2.0f, -9.0f});
   EXPECT_NEAR(corner.x, 175.0f, 1e-3f);  // the image is 8 m wide
   EXPECT_NEAR(corner.y, 0.0f, 1e-3f);
@@ -46,7 +46,7 @@ TEST(CameraProjection, ReversesDepthsLinearly) {
   for (const bool orthographic : {false, true}) {
     scene::Camera camera = turnedCamera();
     camera.orthographic = orthographic;
-    const CameraProjection projection(camera, kSize);
+    const CameraProjection projection(camera, kProjected);
     const vec3 a(-1.0f, 0.5f, -1.0f), b(2.0f, 1.0f, -7.0f);
     const vec2 from = projection.toImage(a), to = projection.toImage(b);
     for (const float t : {0.1f, 0.4f, 0.9f}) {

@@ -29,7 +29,7 @@ TEST(CommandQueue, KeepsCommandsThatAddUp) {
   EXPECT_FALSE(overwrites(Orbit{1, 0}, Orbit{1, 0}));
   EXPECT_FALSE(overwrites(Pan{{1, 0}}, Pan{{1, 0}}));
   EXPECT_FALSE(overwrites(Zoom{2}, Zoom{2}));
-  EXPECT_FALSE(overwrites(Fly{{1, 0, 0}}, Fly{{1, 0, 0}}));
+  EXPECT_FALSE(overwrites(job::interactive::Fly{{1, 0, 0}}, job::interactive::Fly{{1, 0, 0}}));
   EXPECT_FALSE(overwrites(Move{"i", {1, 0, 0}}, Move{"i", {1, 0, 0}}));
   EXPECT_FALSE(overwrites(Undo{}, Undo{}));
   EXPECT_FALSE(overwrites(EndDrag{}, EndDrag{}));

@@ -13,8 +13,6 @@
 namespace quintet::render {
 namespace {
 
-constexpr double kPiDouble = std::numbers::pi;
-
 // The unit square [0,1]² in z = 0 as two triangles.
 scene::Geometry unitSquare(int material) {
   scene::Geometry geometry;
@@ -86,16 +84,16 @@ TEST(LightTable, SamplesByPowerWithinClasses) {
   const LightTable table = buildLightTable(scene, environment);
   ASSERT_EQ(table.lights.size(), 7u);
   EXPECT_EQ(table.environmentLight, 6u);
-  const double crossSection = kPiDouble * 0.5;  // R² of the unit square
+  const double crossSection = std::numbers::pi * 0.5;  // R² of the unit square
   const double cosInner = std::cos(0.3), cosOuter = std::cos(0.8);
-  const double spot = 3.0 * 2.0 * kPiDouble * ((1.0 - cosInner) + (cosInner - cosOuter) / 3.0);
-  const std::vector<double> powers{4.0 * kPiDouble * 0.5,
+  const double spot = 3.0 * 2.0 * std::numbers::pi * ((1.0 - cosInner) + (cosInner - cosOuter) / 3.0);
+  const std::vector<double> powers{4.0 * std::numbers::pi * 0.5,
                                    spot,
                                    1.5 * crossSection,
                                    0.0,
-                                   kPiDouble * 0.5 * 2.0,
-                                   kPiDouble * 0.5 * 2.0,
-                                   4.0 * kPiDouble * 0.7 * crossSection};
+                                   std::numbers::pi * 0.5 * 2.0,
+                                   std::numbers::pi * 0.5 * 2.0,
+                                   4.0 * std::numbers::pi * 0.7 * crossSection};
   const double local = powers[0] + powers[1], directional = powers[2], triangles = powers[4] + powers[5];
   const double total = local + directional + triangles + powers[6];
   const auto share = [&](double power, double ofClass) { return power / ofClass * (0.1 + 0.6 * ofClass / total); };
@@ -118,14 +116,15 @@ TEST(LightTable, GivesEachClassItsMinimumShare) {
 }
 
 TEST(LightTable, IntegratesSpotAttenuation) {
-  for (const auto& [inner, outer] : {std::pair{0.0, 0.5}, {0.3, 0.8}, {0.5, 0.5}, {0.0, 0.01}, {1.0, kPiDouble / 2}}) {
+  for (const auto& [inner, outer] :
+       {std::pair{0.0, 0.5}, {0.3, 0.8}, {0.5, 0.5}, {0.0, 0.01}, {1.0, std::numbers::pi / 2}}) {
     const double cosInner = std::cos(inner), cosOuter = std::cos(outer);
     double sum = 0.0;
     constexpr int kSteps = 200'000;
     for (int i = 0; i < kSteps; ++i) {
       const double c = cosOuter + (1.0 - cosOuter) * (i + 0.5) / kSteps;
       const double a = std::clamp((c - cosOuter) / std::max(0.001, cosInner - cosOuter), 0.0, 1.0);
-      sum += a * a * 2.0 * kPiDouble * (1.0 - cosOuter) / kSteps;
+      sum += a * a * 2.0 * std::numbers::pi * (1.0 - cosOuter) / kSteps;
     }
     EXPECT_NEAR(spotSolidAngle(cosInner, cosOuter), sum, 1e-6 * sum) << inner << " " << outer;
   }
@@ -331,7 +330,7 @@ double meanRadiance(scene::Scene scene) {
   scene.lights[0].intensity = vec3(1.0f);
   const LightTable table = buildLightTable(scene, {});
   const double share = (table.entries[0].probability - 0.1) / 0.8;
-  return 4.0 * kPiDouble * (1.0 / share - 1.0) / kPiDouble;
+  return 4.0 * std::numbers::pi * (1.0 / share - 1.0) / std::numbers::pi;
 }
 
 TEST(LightTable, AveragesTextures) {

@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
+# quintet_unity(TARGET) compiles the sources of a test executable in groups of eight, which takes half of the time in a new
+# clone: the sources of a group share the headers and their templates. A changed test then compiles with its group; use
+# -DQUINTET_UNITY=OFF while you work on tests. Sources of a group must not define the same name, even in unnamed
+# namespaces. Sources with compile options of their own stay alone.
+option(QUINTET_UNITY "Compile tests in groups" ON)
+
+function(quintet_unity TARGET)
+  if(QUINTET_UNITY)
+    set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
