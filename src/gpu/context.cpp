@@ -38,11 +38,12 @@ struct Surface {
 };
 
 // `surface`: null selects among the devices with ray tracing.
-FoundDevice findDevice(VkInstance instance, VkSurfaceKHR surface, const std::string& request) {
-  std::vector<FoundDevice> devices = surface ? findPresentingDevices(instance, surface) : findDevices(instance);
+FoundDevice findDevice(VkInstance instance, VkSurfaceKHR surface, const ContextOptions& options) {
+  std::vector<FoundDevice> devices =
+      surface ? findPresentingDevices(instance, surface, options.surface->hasGlx) : findDevices(instance);
   std::vector<DeviceInfo> infos;
   for (const FoundDevice& device : devices) infos.push_back(device.info);
-  return devices[chooseDevice(infos, request.empty() ? environment("QUINTET_DEVICE") : request)];
+  return devices[chooseDevice(infos, options.device.empty() ? environment("QUINTET_DEVICE") : options.device)];
 }
 
 // The logical device with one queue.
@@ -85,7 +86,7 @@ struct Context::Impl {
         sink(options.log),
         instance(options.validate ? &sink : nullptr, instanceExtensions(options)),
         surface(instance.handle(), options.surface),
-        found(findDevice(instance.handle(), surface.handle, options.device)),
+        found(findDevice(instance.handle(), surface.handle, options)),
         device(found, options.surface.has_value()),
         allocator(instance.handle(), found, device.handle),
         submissions(device.vk, device.handle, device.queue, found.queueFamily),

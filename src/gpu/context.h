@@ -27,6 +27,7 @@ class PipelineStore;
 struct SurfaceSource {
   std::vector<std::string> instanceExtensions;
   std::function<VkSurfaceKHR(VkInstance)> create;  // throws Error if it fails
+  bool hasGlx = true;  // false for an X server without the extension GLX (Quirks::presentingRequiresGlx)
 };
 
 struct ContextOptions {

@@ -23,6 +23,7 @@ struct Quirks {
   bool changesNestedBuiltIns = false;  // built-ins that are read after a nested trace belong to the inner hit
   bool sharesAnyHit = false;       // hit groups that share an intersection stage use the first group's any-hit shader
   bool sharesLocalArrays = false;  // indexed arrays of an intersection shader and its any-hit shader overlap
+  bool presentingRequiresGlx = false;  // crashes in queries of surfaces of X servers without the extension GLX
 };
 
 // 0 without ray tracing.

@@ -115,6 +115,7 @@ std::string driverText(const VkPhysicalDeviceDriverProperties& driver) {
 
 Quirks quirksOf(VkDriverId driver) {
   Quirks quirks;
+  quirks.presentingRequiresGlx = driver == VK_DRIVER_ID_NVIDIA_PROPRIETARY;
   if (driver != VK_DRIVER_ID_MESA_LLVMPIPE) return quirks;
   quirks.keepsPrimitiveOrder = true;
   quirks.corruptsHitAttributes = true;

@@ -32,13 +32,16 @@ std::optional<std::uint32_t> presentingFamily(VkInstance instance, VkPhysicalDev
 
 }  // namespace
 
-std::string cannotPresentReason(const Capabilities& capabilities, bool presentingQueue) {
+std::string cannotPresentReason(const Capabilities& capabilities, bool presentingQueue, bool missesGlx) {
   std::vector<std::string> reasons;
   if (capabilities.apiVersion < VK_API_VERSION_1_3)
     reasons.push_back(fmt::format("Vulkan {}.{} (1.3 is required)", VK_API_VERSION_MAJOR(capabilities.apiVersion),
                                   VK_API_VERSION_MINOR(capabilities.apiVersion)));
   if (!capabilities.has(VK_KHR_SWAPCHAIN_EXTENSION_NAME)) reasons.emplace_back("no " VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-  if (!presentingQueue) reasons.push_back("no graphics queue that presents to this window");
+  if (missesGlx)
+    reasons.emplace_back("the X server has no GLX, which the driver requires");
+  else if (!presentingQueue)
+    reasons.emplace_back("no graphics queue that presents to this window");
   return fmt::format("{}", fmt::join(reasons, ", "));
 }
 
@@ -58,12 +61,14 @@ DeviceFeatures presentationFeatures() {
   return features;
 }
 
-std::vector<FoundDevice> findPresentingDevices(VkInstance instance, VkSurfaceKHR surface) {
+std::vector<FoundDevice> findPresentingDevices(VkInstance instance, VkSurfaceKHR surface, bool hasGlx) {
   std::vector<FoundDevice> devices = findDevices(instance);
   for (FoundDevice& device : devices) {
-    const std::optional<std::uint32_t> family = presentingFamily(instance, device.handle, surface);
+    const bool missesGlx = device.info.quirks.presentingRequiresGlx && !hasGlx;
+    std::optional<std::uint32_t> family;
+    if (!missesGlx) family = presentingFamily(instance, device.handle, surface);
     device.queueFamily = family.value_or(0);
-    device.info.unusableReason = cannotPresentReason(device.capabilities, family.has_value());
+    device.info.unusableReason = cannotPresentReason(device.capabilities, family.has_value(), missesGlx);
   }
   return devices;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "window/window.h"
 
+#include <dlfcn.h>
+
 #include <algorithm>
 #include <cctype>
 #include <utility>
@@ -19,6 +21,25 @@ namespace {
 std::string lastGlfwError() {
   const char* text = nullptr;
   return ::glfwGetError(&text) == GLFW_NO_ERROR || !text ? "unknown reason" : text;
+}
+
+// Whether the X server of $DISPLAY has the extension GLX; true if GLFW uses no X server. The functions are those of the
+// libX11 that GLFW loads, so that the build requires no headers of X11.
+bool serverHasGlx() {
+  void* const library = ::dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+  if (!library) return true;
+  const auto open = reinterpret_cast<void* (*)(const char*)>(::dlsym(library, "XOpenDisplay"));
+  const auto close = reinterpret_cast<int (*)(void*)>(::dlsym(library, "XCloseDisplay"));
+  const auto query =
+      reinterpret_cast<int (*)(void*, const char*, int*, int*, int*)>(::dlsym(library, "XQueryExtension"));
+  bool found = true;
+  if (void* const display = open && close && query ? open(nullptr) : nullptr) {
+    int code = 0, event = 0, error = 0;
+    found = query(display, "GLX", &code, &event, &error) != 0;
+    close(display);
+  }
+  ::dlclose(library);
+  return found;
 }
 
 Modifiers modifiersOf(int bits) {
@@ -139,6 +160,10 @@ gpu::SurfaceSource Window::surfaceSource() const {
   std::uint32_t count = 0;
   const char** names = ::glfwGetRequiredInstanceExtensions(&count);
   if (names) source.instanceExtensions.assign(names, names + count);
+  const auto ofX11 = [](const std::string& name) {
+    return name == "VK_KHR_xlib_surface" || name == "VK_KHR_xcb_surface";
+  };
+  source.hasGlx = std::ranges::none_of(source.instanceExtensions, ofX11) || serverHasGlx();
   source.create = [handle = handle_](VkInstance instance) {
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     gpu::check(::glfwCreateWindowSurface(instance, handle, nullptr, &surface), "create the surface of the window");

@@ -15,6 +15,7 @@ TEST(Presentation, StatesWhyADeviceCannotPresent) {
   device.extensions = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
   EXPECT_EQ(cannotPresentReason(device, true), "");
   EXPECT_EQ(cannotPresentReason(device, false), "no graphics queue that presents to this window");
+  EXPECT_EQ(cannotPresentReason(device, false, true), "the X server has no GLX, which the driver requires");
   device.extensions.clear();
   EXPECT_EQ(cannotPresentReason(device, true), "no VK_KHR_swapchain");
   device.apiVersion = VK_API_VERSION_1_2;
