@@ -92,14 +92,18 @@ Shading shadeSurface(Surface s, vec3 wo) {
 
   r.unlit = (flags & kMaterialUnlit) != 0u;
   if (r.unlit) r.emission = base.rgb;
+  // Textures with float values can leave the range of the parameters.
   r.bsdf.baseColor = clamp(base.rgb, 0.0, 1.0);
+  r.bsdf.transmission = clamp(r.bsdf.transmission, 0.0, 1.0);
+  r.bsdf.sheenColor = clamp(r.bsdf.sheenColor, 0.0, 1.0);
+  r.bsdf.diffuseTransmission = clamp(r.bsdf.diffuseTransmission, 0.0, 1.0);
   r.bsdf.metallic = roughMetal.y;
   r.bsdf.alpha = roughMetal.x * roughMetal.x;
   r.bsdf.ior = MATERIAL.ior;
   r.bsdf.entering = s.frontFace;
   r.bsdf.thin = (flags & kMaterialThin) != 0u;
   r.bsdf.clearcoatAlpha = coatRoughness * coatRoughness;
-  r.bsdf.sheenAlpha = sheenRoughness * sheenRoughness;
+  r.bsdf.sheenAlpha = min(sheenRoughness * sheenRoughness, 1.0);
   r.absorption = MATERIAL.absorption;
   // The same factor as in lights/triangle.glsl for light samples.
   if (kHasClearcoat && !r.unlit) r.emission *= clearcoatPassed(r.bsdf.clearcoat, r.bsdf.clearcoatAlpha, abs(dot(s.shadingNormal, wo)));

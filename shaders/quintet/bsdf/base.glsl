@@ -20,6 +20,7 @@ struct BaseLayer {
   float ior;           // at least 1
   bool refractive;     // transmission is that of a solid (DielectricLobe), not of a thin wall (ThinLobe)
   bool bends;          // refractive, and the ior is not 0
+  bool solid;          // light enters a closed volume here, by refraction or diffusely
   float reflecting;    // weight of the dielectric whose reflection is in the specular lobe
   float specular;      // KHR_materials_specular; also f90 of the layer
   vec3 clearF0;        // reflectance at normal incidence without `specular`

@@ -83,6 +83,7 @@ BaseLayer makeBaseLayer(BsdfParameters p, vec3 wo) {
   // The specular lobe reflects for the metal and for the part of the dielectric that DielectricLobe does not cover. With
   // ior 0, DielectricLobe reflects and bends nothing: what the layer does not reflect passes straight on.
   base.bends = base.refractive && p.ior >= 1.0;
+  base.solid = kHasSolidTransmission && !p.thin && base.clear + base.translucent > 0.0;
   base.reflecting = base.bends ? base.opaque : dielectric;
 
   // KHR_materials_specular: reflectance of the dielectric part.
@@ -107,7 +108,7 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   BaseLayer base = makeBaseLayer(p, wo);
   Bsdf b;
   // The clearcoat of a solid is on its outside only.
-  bool coated = dot(wo, p.clearcoatNormal) > 0.0 && (p.entering || !base.refractive);
+  bool coated = dot(wo, p.clearcoatNormal) > 0.0 && (p.entering || !base.solid);
   b.clearcoat = makeClearcoat(p.clearcoatNormal, p.clearcoat, p.clearcoatAlpha, coated);
   float coat = kHasClearcoat ? clearcoatAlbedo(b.clearcoat, wo) : 0.0;
   b.underCoat = 1.0 - coat;

@@ -53,8 +53,8 @@ float sheenPassed(SheenLobe lobe, float cosine) {
 // lobe.
 SheenLobe makeSheen(BaseLayer base, vec3 color, float alpha, float cosine, out float albedo) {
   SheenLobe lobe;
-  lobe.nearSide = base.entering || !base.refractive;
-  lobe.farSide = !base.entering || !base.refractive;
+  lobe.nearSide = base.entering || !base.solid;
+  lobe.farSide = !base.entering || !base.solid;
   lobe.color = lobe.nearSide ? color : vec3(0.0);
   lobe.alpha = max(alpha, kDeltaAlpha);
   lobe.strength = maxComponent(color);

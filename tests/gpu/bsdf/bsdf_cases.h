@@ -96,6 +96,8 @@ inline std::vector<NamedCase> materialsAt(float alpha, const vec3& wo) {
   });
   add("mixture with diffuse transmission",
       [&](BsdfCase& c) { mix(c), c.thin = 1, c.diffuseTransmission = 0.7f, c.sheenColor = vec3(0.5f); });
+  add("diffuse transmission, solid inside",
+      [&](BsdfCase& c) { c.diffuseTransmission = 0.6f, c.entering = 0, c.sheenColor = vec3(0.8f), coat(c); });
   add("mixture, thin", [&](BsdfCase& c) { mix(c), c.thin = 1; });
   add("mixture, opaque", [&](BsdfCase& c) { mix(c), c.transmission = 0.0f; });
   return cases;

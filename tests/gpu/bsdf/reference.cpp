@@ -198,8 +198,9 @@ dvec3 ReferenceBsdf::eval(const BsdfCase& c, const dvec3& wi) const {
               coatNormal = glm::normalize(dvec3(c.clearcoatNormal));
   const double metal = c.metallic, opaque = (1.0 - metal) * (1.0 - c.transmission),
                clear = (1.0 - metal) * c.transmission;
-  const bool solid = clear > 0.0 && !c.thin, bends = solid && c.ior >= 1.0f,
-             rough = c.alpha >= static_cast<float>(kSmallestAlpha);
+  // Sheen and clearcoat of a solid are on its outside only.
+  const bool solid = !c.thin && (clear > 0.0 || opaque * c.diffuseTransmission > 0.0),
+             bends = !c.thin && clear > 0.0 && c.ior >= 1.0f, rough = c.alpha >= static_cast<float>(kSmallestAlpha);
   const double r = (c.ior - 1.0) / (c.ior + 1.0), f90 = c.specular;
   const dvec3 f0 = f90 * glm::min(r * r * dvec3(c.specularColor), dvec3(1.0));
   const Layer o = layer(c.alpha, wo.z), i = layer(c.alpha, std::abs(wi.z)), mean = averages(c.alpha);

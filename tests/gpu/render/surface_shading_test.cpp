@@ -23,6 +23,8 @@ struct Answer {
   vec3 baseColor;
   float metallic, alpha, clearcoat, clearcoatAlpha;
   vec3 emission;
+  float transmission, diffuseTransmission, sheenAlpha;
+  vec3 diffuseTransmissionColor, sheenColor;
 };
 
 const std::string kShade = R"(
@@ -30,7 +32,7 @@ const std::string kShade = R"(
   struct Query { vec2 barycentric; vec3 wo; };
   struct Answer {
     vec3 position, geometricNormal, normal; uint frontFace; vec3 baseColor; float metallic, alpha, clearcoat, clearcoatAlpha;
-    vec3 emission;
+    vec3 emission; float transmission, diffuseTransmission, sheenAlpha; vec3 diffuseTransmissionColor, sheenColor;
   };
   #define In Query
   #define Out Answer
@@ -42,7 +44,8 @@ const std::string kShade = R"(
     Surface s = fetchSurface(hit, q.wo);
     Shading r = shadeSurface(s, q.wo);
     return Answer(s.position, s.geometricNormal, r.normal, uint(s.frontFace), r.bsdf.baseColor, r.bsdf.metallic, r.bsdf.alpha,
-                  r.bsdf.clearcoat, r.bsdf.clearcoatAlpha, r.emission);
+                  r.bsdf.clearcoat, r.bsdf.clearcoatAlpha, r.emission, r.bsdf.transmission, r.bsdf.diffuseTransmission,
+                  r.bsdf.sheenAlpha, r.bsdf.diffuseTransmissionColor, r.bsdf.sheenColor);
   }
 )";
 
@@ -56,6 +59,14 @@ int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba, io::Col
                             static_cast<int>(scene.images.size()) - 1,
                             {scene::Wrap::repeat, scene::Wrap::repeat, scene::Filter::nearest}});
   return static_cast<int>(scene.textures.size()) - 1;
+}
+
+int addFloatTexel(scene::Scene& scene, const vec4& rgba) {
+  const int texture = addTexel(scene, {0, 0, 0, 0}, io::ColorEncoding::linear);
+  io::Image image = io::makeImage(1, 1, 4, io::PixelType::f32, io::ColorEncoding::linear);
+  for (std::size_t i = 0; i < 4; ++i) image.samples<float>()[i] = rgba[static_cast<glm::length_t>(i)];
+  scene.images.back().image = std::move(image);
+  return texture;
 }
 
 scene::TextureUse use(int texture, int uvSet = 0) {
@@ -207,6 +218,10 @@ TEST(SurfaceShading, MultipliesTexturesByFactors) {
   m.metallicRoughnessTexture = use(addTexel(scene, {10, 150, 60, 255}, io::ColorEncoding::linear));
   m.emissive = {1, 2, 3};
   m.emissiveTexture = use(addTexel(scene, {255, 128, 64, 255}, io::ColorEncoding::sRgb));
+  m.diffuseTransmission = 0.9f, m.diffuseTransmissionColor = {0.8f, 0.6f, 0.4f};
+  m.diffuseTransmissionTexture = use(addTexel(scene, {10, 20, 30, 170}, io::ColorEncoding::linear));
+  m.diffuseTransmissionColorTexture = use(addTexel(scene, {220, 110, 70, 40}, io::ColorEncoding::sRgb));
+  const dvec3 transmitted = dvec3(0.8, 0.6, 0.4) * dvec3(fromSrgb(220), fromSrgb(110), fromSrgb(70));
   const std::vector<Query> points = queries();
   const std::vector<Answer> answers = shade(scene, points);
   const double roughness = 0.8f * 150 / 255.0;
@@ -219,7 +234,29 @@ TEST(SurfaceShading, MultipliesTexturesByFactors) {
     ASSERT_NEAR(answers[i].alpha, roughness * roughness, 1e-4);
     ASSERT_NEAR(answers[i].metallic, 0.9 * 60 / 255.0, 1e-4);
     ASSERT_LT(glm::length(dvec3(answers[i].emission) - dvec3(1.0, 2.0 * fromSrgb(128), 3.0 * fromSrgb(64))), 1e-2);
+    ASSERT_NEAR(answers[i].diffuseTransmission, 0.9 * 170 / 255.0, 1e-4);
+    ASSERT_LT(glm::length(dvec3(answers[i].diffuseTransmissionColor) - transmitted), 2e-3);
   }
+}
+
+// Textures with float values can leave the range of the parameters.
+TEST(SurfaceShading, LimitsFloatTextures) {
+  scene::Scene scene = triangle(mat4(1.0f));
+  scene::Material& m = scene.materials[0];
+  m.transmission = m.diffuseTransmission = 1.0f;
+  m.sheenColor = {0.5f, 1.0f, 0.5f};
+  m.sheenRoughness = 1.0f;
+  m.transmissionTexture = m.sheenColorTexture = use(addFloatTexel(scene, {4.0f, -2.0f, 0.5f, 1.0f}));
+  m.diffuseTransmissionTexture = m.sheenRoughnessTexture = use(addFloatTexel(scene, {0.0f, 0.0f, 0.0f, 3.0f}));
+  const Answer above = shade(scene, {queries()[0]})[0];
+  EXPECT_EQ(above.transmission, 1.0f);
+  EXPECT_EQ(above.diffuseTransmission, 1.0f);
+  EXPECT_EQ(above.sheenAlpha, 1.0f);
+  EXPECT_EQ(above.sheenColor, vec3(1.0f, 0.0f, 0.25f));
+  m.transmissionTexture = m.diffuseTransmissionTexture = use(addFloatTexel(scene, vec4(-1.0f)));
+  const Answer below = shade(scene, {queries()[0]})[0];
+  EXPECT_EQ(below.transmission, 0.0f);
+  EXPECT_EQ(below.diffuseTransmission, 0.0f);
 }
 
 // A texture with a black and a white texel reveals the coordinate of its lookup: either UV set, translated, rotated and
