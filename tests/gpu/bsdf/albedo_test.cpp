@@ -3,7 +3,9 @@
 // with src/render/scene/albedo_tables.cpp. It integrates Walter's BSDF over all micronormals, weighted by D cos theta.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
+#include <vector>
 
 #include "bsdf/bsdf_cases.h"
 
@@ -78,8 +80,10 @@ glm::dvec4 integrate(const Query& q) {
   return sum / double{kRadii * kAngles};
 }
 
-// The albedo of Estevez and Kulla's sheen (2017, eq. 2 and table 1), integrated over the incident directions.
-double sheenAlbedo(double cosO, double alpha) {
+// The albedo of Estevez and Kulla's sheen (2017, eq. 2 and table 1), integrated over the incident directions. Each is
+// divided by divisor(its cosine).
+template <class Divisor>
+double sheenAlbedo(double cosO, double alpha, int radii, const Divisor& divisor) {
   const double t = (1.0 - alpha) * (1.0 - alpha);
   const auto fit = [&](double x) {
     const double a = 21.5473 + 3.7772 * t, b = 3.82987 - 0.50552 * t, c = 0.19823 - 0.03022 * t;
@@ -87,19 +91,47 @@ double sheenAlbedo(double cosO, double alpha) {
     return a / (1.0 + b * std::pow(x, c)) + d * x + e;
   };
   const auto lambda = [&](double x) { return std::exp(x < 0.5 ? fit(x) : 2.0 * fit(0.5) - fit(1.0 - x)); };
-  constexpr int kRadii = 1500, kAngles = 256;
+  constexpr int kAngles = 256;
   const glm::dvec3 wo(std::sqrt(1.0 - cosO * cosO), 0.0, cosO);
   double sum = 0.0;
-  for (int i = 0; i < kRadii; ++i) {
-    const double x = (i + 0.5) / kRadii, cosI = x * x, sinI = std::sqrt(1.0 - cosI * cosI);
+  for (int i = 0; i < radii; ++i) {
+    const double x = (i + 0.5) / radii, cosI = x * x, sinI = std::sqrt(1.0 - cosI * cosI);
+    const double lambdas = lambda(cosO) + lambda(cosI), scale = 2.0 * x / divisor(cosI);
     for (int j = 0; j < kAngles; ++j) {
       const double phi = std::numbers::pi * (j + 0.5) / kAngles;
       const glm::dvec3 h = glm::normalize(wo + glm::dvec3(sinI * std::cos(phi), sinI * std::sin(phi), cosI));
-      sum += 2.0 * x * std::pow(1.0 - h.z * h.z, 0.5 / alpha) / (4.0 * cosO * (1.0 + lambda(cosO) + lambda(cosI)));
+      sum += scale * std::pow(1.0 - h.z * h.z, 0.5 / alpha) / (4.0 * cosO * (1.0 + lambdas));
     }
   }
-  return sum * (2.0 + 1.0 / alpha) / (kRadii * kAngles);
+  return sum * (2.0 + 1.0 / alpha) / (radii * kAngles);
 }
+double sheenAlbedo(double cosO, double alpha, int radii = 1500) {
+  return sheenAlbedo(cosO, alpha, radii, [](double) { return 1.0; });
+}
+
+// The albedo A of the sheen whose f is divided by max(1, E(o), E(i)) (sheen.glsl).
+class LimitedSheen {
+ public:
+  explicit LimitedSheen(double alpha) : alpha_(alpha) {
+    for (int i = 0; i <= kCells; ++i)
+      albedos_.push_back(sheenAlbedo(std::pow(std::max(i, 1) / double{kCells}, 2.0), alpha, 300));
+  }
+  double operator()(double cosO) const {
+    const double atO = std::max(1.0, sheenAlbedo(cosO, alpha_));
+    return sheenAlbedo(cosO, alpha_, 1500, [&](double cosI) { return std::max(atO, albedo(cosI)); });
+  }
+
+ private:
+  static constexpr int kCells = 100;
+  // E, interpolated along the square root of the cosine.
+  double albedo(double cosine) const {
+    const double x = std::sqrt(cosine) * kCells;
+    const auto cell = static_cast<std::size_t>(std::min(x, kCells - 1.0));
+    return std::lerp(albedos_[cell], albedos_[cell + 1], x - static_cast<double>(cell));
+  }
+  const double alpha_;
+  std::vector<double> albedos_;
+};
 
 class BsdfAlbedo : public BsdfTest {
  protected:
@@ -144,6 +176,14 @@ TEST_F(BsdfAlbedo, SheenAgreesWithTheOracle) {
     EXPECT_LE(answers[i].y, 1.0 + 1e-5);
     if (alpha >= 0.1f) {  // E is below 1
       EXPECT_NEAR(answers[i].y, answers[i].x, 1e-6);
+    }
+  }
+  for (const float alpha : {0.003f, 0.02f, 0.05f}) {
+    const LimitedSheen limited(static_cast<double>(alpha));
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      if (queries[i].alpha != alpha) continue;
+      EXPECT_NEAR(answers[i].y, limited(static_cast<double>(queries[i].cosine)), 0.02)
+          << "cosine " << queries[i].cosine << ", alpha " << alpha;
     }
   }
 }

@@ -166,6 +166,7 @@ TEST(Renderer, RendersTheSameWithCodeForUnusedFeatures) {
                                {clearGlass(1.5f, 1.0f), clearGlass(1.5f, 0.0f), emitter(vec3(1.0f))});
   scene.scene.materials.back().clearcoat = 1.0f;
   scene.scene.materials.back().sheenColor = vec3(1.0f);
+  scene.scene.materials.back().diffuseTransmission = 0.5f;
   expectSame(lean, renderImage(scene, options));
 }
 
