@@ -26,24 +26,29 @@ class MaterialReader {
   Material read() {
     material_.name = from_.name;
     readCore();
-    if (const auto* e = findExtension(from_.extensions, "KHR_materials_pbrSpecularGlossiness"))
-      readSpecularGlossiness(*e);
+    const auto* glossiness = findExtension(from_.extensions, "KHR_materials_pbrSpecularGlossiness");
+    if (glossiness)
+      readSpecularGlossiness(*glossiness);
     else
       readMetallicRoughness();
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_emissive_strength"))
       material_.emissive *= range(numberOf(*e, "emissiveStrength", 1.0), 0.0f, kHuge, "emissiveStrength");
-    if (const auto* e = findExtension(from_.extensions, "KHR_materials_ior")) readIor(*e);
+    if (const auto* e = findExtension(from_.extensions, "KHR_materials_ior")) {
+      if (glossiness)
+        ignoreForGlossiness("KHR_materials_ior");
+      else
+        readIor(*e);
+    }
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_transmission")) {
       material_.transmission = unit(numberOf(*e, "transmissionFactor", 0.0), "transmissionFactor");
       material_.transmissionTexture = texture(*e, "transmissionTexture");
     }
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_volume")) readVolume(*e);
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_specular")) {
-      material_.specular = unit(numberOf(*e, "specularFactor", 1.0), "specularFactor");
-      material_.specularTexture = texture(*e, "specularTexture");
-      material_.specularColor =
-          range(vec3Of(*e, "specularColorFactor", vec3(1.0f)), 0.0f, kHuge, "specularColorFactor");
-      material_.specularColorTexture = texture(*e, "specularColorTexture");
+      if (glossiness)
+        ignoreForGlossiness("KHR_materials_specular");
+      else
+        readSpecular(*e);
     }
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_clearcoat")) readClearcoat(*e);
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_sheen")) readSheen(*e);
@@ -78,7 +83,11 @@ class MaterialReader {
     material_.roughness = 1.0f - glossiness;
     if (material_.specularColorTexture.used()) {
       material_.roughness = 1.0f;
-      material_.metallicRoughnessTexture = texture(extension, "specularGlossinessTexture", glossiness);
+      // The same texels with another conversion.
+      material_.metallicRoughnessTexture = material_.specularColorTexture;
+      material_.metallicRoughnessTexture.texture =
+          textures_.use(indexOf(extension.Get("specularGlossinessTexture"), "index"),
+                        location_ + "/specularGlossinessTexture", glossiness);
     }
     repair("KHR_materials_pbrSpecularGlossiness converted to a dielectric with the specular color as its reflectance");
   }
@@ -101,6 +110,14 @@ class MaterialReader {
   void readIor(const tinygltf::Value& extension) {
     const double ior = numberOf(extension, "ior", 1.5);
     material_.ior = ior == 0.0 ? 0.0f : range(ior, 1.0f, kHuge, "ior");
+  }
+
+  void readSpecular(const tinygltf::Value& extension) {
+    material_.specular = unit(numberOf(extension, "specularFactor", 1.0), "specularFactor");
+    material_.specularTexture = texture(extension, "specularTexture");
+    material_.specularColor =
+        range(vec3Of(extension, "specularColorFactor", vec3(1.0f)), 0.0f, kHuge, "specularColorFactor");
+    material_.specularColorTexture = texture(extension, "specularColorTexture");
   }
 
   void readVolume(const tinygltf::Value& extension) {
@@ -146,13 +163,13 @@ class MaterialReader {
     material_.sheenRoughnessTexture = texture(extension, "sheenRoughnessTexture");
   }
 
-  TextureUse texture(const tinygltf::Value& extension, const char* key, std::optional<float> glossiness = {}) {
+  TextureUse texture(const tinygltf::Value& extension, const char* key) {
     if (!extension.Has(key)) return {};
     const tinygltf::Value& info = extension.Get(key);
     const tinygltf::Value* transform = info.Has("extensions") && info.Get("extensions").Has(kTextureTransform)
                                            ? &info.Get("extensions").Get(kTextureTransform)
                                            : nullptr;
-    return texture(indexOf(info, "index"), indexOf(info, "texCoord", 0), transform, key, glossiness);
+    return texture(indexOf(info, "index"), indexOf(info, "texCoord", 0), transform, key);
   }
 
   template <class TextureInfo>
@@ -160,11 +177,10 @@ class MaterialReader {
     return texture(info.index, info.texCoord, findExtension(info.extensions, kTextureTransform), key);
   }
 
-  TextureUse texture(int index, int texCoord, const tinygltf::Value* transform, const char* key,
-                     std::optional<float> glossiness = {}) {
+  TextureUse texture(int index, int texCoord, const tinygltf::Value* transform, const char* key) {
     TextureUse use;
     if (index == kNone) return use;
-    use.texture = textures_.use(index, fmt::format("{}/{}", location_, key), glossiness);
+    use.texture = textures_.use(index, fmt::format("{}/{}", location_, key));
     if (!use.used()) return use;
     if (transform) {
       texCoord = indexOf(*transform, "texCoord", texCoord);
@@ -180,6 +196,10 @@ class MaterialReader {
     return use;
   }
 
+  // The conversion of KHR_materials_pbrSpecularGlossiness sets the values of these extensions.
+  void ignoreForGlossiness(const char* extension) {
+    ignore(fmt::format("{}: KHR_materials_pbrSpecularGlossiness has precedence", extension));
+  }
   void ignore(const std::string& what) { report_.ignored.push_back(fmt::format("{}: {}", location_, what)); }
   void repair(const std::string& what) { report_.repaired.push_back(fmt::format("{}: {}", location_, what)); }
 

@@ -131,6 +131,22 @@ TEST(GltfMaterial, ConvertsSpecularGlossiness) {
   EXPECT_EQ(defaults.roughness, 0.0f);
 }
 
+// The conversion sets the ior and the specular factors.
+TEST(GltfMaterial, IgnoresExtensionsThatSpecularGlossinessReplaces) {
+  GltfBuilder builder;
+  builder.add("materials",
+              {{"extensions",
+                {{"KHR_materials_pbrSpecularGlossiness", {{"specularFactor", {0.5, 0.25, 1}}}},
+                 {"KHR_materials_ior", {{"ior", 1.8}}},
+                 {"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {1, 1, 0}}}}}}});
+  const scene::Scene scene = builder.load();
+  EXPECT_EQ(scene.materials[0].ior, 0.0f);
+  EXPECT_EQ(scene.materials[0].specular, 1.0f);
+  EXPECT_EQ(scene.materials[0].specularColor, vec3(0.5f, 0.25f, 1));
+  EXPECT_THAT(scene.report.ignored, ElementsAre(IsErrorAt("/materials/0", "KHR_materials_ior"),
+                                                IsErrorAt("/materials/0", "KHR_materials_specular")));
+}
+
 TEST(GltfMaterial, ClampsFactors) {
   GltfBuilder builder;
   builder.add("materials",
@@ -235,6 +251,28 @@ TEST(GltfTexture, ReadsTexturesOfSheen) {
   EXPECT_EQ(m.sheenColorTexture.uvSet, 0);
   EXPECT_EQ(m.sheenRoughnessTexture.texture, 0);
   EXPECT_EQ(m.sheenRoughnessTexture.uvSet, 1);
+}
+
+TEST(GltfTexture, ReadsTexturesOfDiffuseTransmission) {
+  TextureBuilder builder;
+  builder.add("materials", extension("KHR_materials_diffuse_transmission",
+                                     {{"diffuseTransmissionTexture", {{"index", 0}}},
+                                      {"diffuseTransmissionColorTexture", {{"index", 0}, {"texCoord", 1}}}}));
+  const Material m = builder.load().materials[0];
+  EXPECT_EQ(m.diffuseTransmissionTexture.texture, 0);
+  EXPECT_EQ(m.diffuseTransmissionTexture.uvSet, 0);
+  EXPECT_EQ(m.diffuseTransmissionColorTexture.texture, 0);
+  EXPECT_EQ(m.diffuseTransmissionColorTexture.uvSet, 1);
+}
+
+// Two uses of one texture, but one line in the report.
+TEST(GltfTexture, ReportsTheSpecularGlossinessTextureOnce) {
+  TextureBuilder builder;
+  builder.add("materials", extension("KHR_materials_pbrSpecularGlossiness",
+                                     {{"specularGlossinessTexture", {{"index", 0}, {"texCoord", 2}}}}));
+  const scene::Scene scene = builder.load();
+  EXPECT_TRUE(scene.materials[0].metallicRoughnessTexture.used());
+  EXPECT_THAT(scene.report.ignored, ElementsAre(IsErrorAt("/materials/0", "TEXCOORD_2")));
 }
 
 // Glossiness is in alpha, and its factor scales it. The same image gives the specular color.
