@@ -75,6 +75,15 @@ void addNames(SceneTomlContext& context, const TomlValue& at, const std::string&
   }
 }
 
+Scene loadPart(TomlReader& reader, const std::filesystem::path& path, const TomlValue* variant) {
+  try {
+    return loadGltf(path, {.variant = variant ? reader.toText(*variant, "variant") : std::string()});
+  } catch (const UsageError& error) {  // the file has no such variant
+    if (!variant) throw;
+    reader.fail(*variant, error.what());
+  }
+}
+
 void readFile(SceneTomlContext& context, const TomlValue& table) {
   TomlReader reader(table, describeTable("file", table), context.file);
   const TomlValue& nameValue = reader.require("name");
@@ -90,7 +99,7 @@ void readFile(SceneTomlContext& context, const TomlValue& table) {
   const TomlValue* variant = reader.find("variant");
   reader.rejectUnknownKeys();
 
-  Scene part = loadGltf(path, {.variant = variant ? reader.toText(*variant, "variant") : std::string()});
+  Scene part = loadPart(reader, path, variant);
   std::ranges::copy(part.report.files, std::back_inserter(context.scene.report.files));
   Scene& scene = context.scene;
   const std::size_t firstMaterial = scene.materials.size(), firstMesh = scene.meshes.size();

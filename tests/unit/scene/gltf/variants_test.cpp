@@ -83,5 +83,14 @@ TEST(GltfVariants, SceneFilesSelectThemPerFile) {
               ThrowsMessage<UsageError>(HasSubstr("[[file]]")));
 }
 
+TEST(GltfVariants, UnknownNamesInSceneFilesAreErrorsAtTheirLine) {
+  const TempFolder folder;
+  writeFile(folder / "a.glb", VariantBuilder().glb());
+  writeFile(folder / "a.scene.toml", "[[file]]\nname = \"a\"\npath = \"a.glb\"\nvariant = \"Blue\"\n");
+  EXPECT_THAT([&] { scene::loadScene(folder / "a.scene.toml"); },
+              ThrowsMessage<FileError>(AllOf(IsErrorAt((folder / "a.scene.toml").string() + ": line 4", "'Blue'"),
+                                             HasSubstr("Red, Green, Dark red"))));
+}
+
 }  // namespace
 }  // namespace quintet::test
