@@ -61,7 +61,7 @@ MaterialCounts countMaterials(const scene::Scene& scene) {
   for (const scene::Material& material : scene.materials) {
     counts.alpha += material.alphaMode != scene::AlphaMode::opaque;
     counts.emissive += glm::any(glm::greaterThan(material.emissive, vec3(0.0f)));
-    counts.transmissive += material.transmission > 0;
+    counts.transmissive += material.transmission > 0 || material.diffuseTransmission > 0;
     counts.unlit += material.unlit;
   }
   return counts;

@@ -51,7 +51,7 @@ struct TextureUse {
 enum class AlphaMode : std::uint32_t { opaque, mask, blend };
 
 // The metallic-roughness material of glTF 2.0 with extensions. Factors multiply the value of the texture. Textures of
-// base color, emission, specular color and sheen color are sRGB-encoded; all others are linear.
+// base color, emission, specular color, sheen color and diffuse transmission color are sRGB-encoded, the others linear.
 struct Material {
   std::string name;
   vec4 baseColor{1.0f};                 // linear, [0,1]; alpha is coverage

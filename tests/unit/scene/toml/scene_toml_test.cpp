@@ -100,6 +100,8 @@ name = "a"
 base_color_texture = "p.png"
 normal_texture = "p.png"
 roughness = 0.5
+diffuse_transmission_texture = "p.png"
+diffuse_transmission_color_texture = { image = "p.png", uv_set = 1 }
 metallic_roughness_texture = { image = "./p.png", uv_set = 1, offset = [0.1, 0.2], scale = [2, 3], rotation = 90, wrap = "clamp_to_edge", wrap_v = "mirrored_repeat", filter = "nearest" }
 [[mesh]]
 shape = "quad"
@@ -111,6 +113,9 @@ material = "a"
   ASSERT_EQ(s.textures.size(), 2u);
   const scene::TextureUse& use = s.materials[0].metallicRoughnessTexture;
   EXPECT_EQ(s.materials[0].baseColorTexture.texture, s.materials[0].normalTexture.texture);
+  EXPECT_EQ(s.materials[0].diffuseTransmissionTexture, s.materials[0].baseColorTexture);
+  EXPECT_EQ(s.materials[0].diffuseTransmissionColorTexture.texture, s.materials[0].baseColorTexture.texture);
+  EXPECT_EQ(s.materials[0].diffuseTransmissionColorTexture.uvSet, 1);
   EXPECT_EQ(use.uvSet, 1);
   EXPECT_EQ(use.offset, vec2(0.1f, 0.2f));
   EXPECT_EQ(use.scale, vec2(2, 3));
