@@ -157,6 +157,8 @@ class RenderJob {
   void showFrame();              // moves the instances with keyframes to frame_
   void requireRenderer() const;  // throws Error if an edit failed
   void rebuildScene(Observer& observer);
+  void editDevice();
+  void updateFrame();
   void relink(Observer& observer);
   void describeEdits() const;  // updates hashes and provenance_
 

@@ -20,15 +20,6 @@
 namespace quintet::job {
 namespace {
 
-// True if lights depend on the difference between the materials.
-bool emissionDiffers(const scene::Material& a, const scene::Material& b) {
-  const auto emits = [](const scene::Material& m) { return glm::any(glm::greaterThan(m.emissive, vec3(0.0f))); };
-  if (!emits(a) && !emits(b)) return a.unlit != b.unlit;
-  return !(a.emissive == b.emissive && a.emissiveTexture == b.emissiveTexture && a.unlit == b.unlit &&
-           a.doubleSided == b.doubleSided && a.alphaMode == b.alphaMode && a.baseColor.a == b.baseColor.a &&
-           a.baseColorTexture == b.baseColorTexture && a.alphaCutoff == b.alphaCutoff);
-}
-
 // What shaders and acceleration structures were made for.
 struct DeviceForm {
   render::SceneFeatures features;
@@ -120,7 +111,7 @@ void RenderJob::setMaterial(std::size_t index, const scene::Material& material) 
   const bool newTangents = scene::addTangents(scene, index);
   sceneOutdated_ = sceneOutdated_ || newTangents || edited.facts != form.facts ||
                    !scene_->onDevice->setMaterial(index, material);  // last, because it changes the device
-  emissionOutdated_ = emissionOutdated_ || emissionDiffers(before, material);
+  emissionOutdated_ = true;
   programOutdated_ = programOutdated_ || edited.features != form.features;
 }
 
@@ -192,26 +183,37 @@ const EnvironmentRequest& RenderJob::keepEnvironment() {
 }
 
 void RenderJob::update(Observer& observer) {
-  const bool lightsChanged = emissionOutdated_ || lightsOutdated_ || environmentOutdated_;
   if (!sceneOutdated_ && environmentOutdated_ && !scene_->onDevice->setEnvironment(environmentInUse()))
     sceneOutdated_ = true;
   if (sceneOutdated_) {
     rebuildScene(observer);
+    updateFrame();
   } else {
-    if (!movedInstances_.empty()) {
-      std::vector<render::InstanceTransform> transforms;
-      for (const auto& [instance, worldFromObject] : movedInstances_) transforms.push_back({instance, worldFromObject});
-      scene_->onDevice->setTransforms(transforms);
-    }
-    if (emissionOutdated_) scene_->onDevice->setEmission(*editedScene_);
-    if (lightsOutdated_) scene_->onDevice->setLights(editedScene_->lights);
+    const bool changed = !movedInstances_.empty() || emissionOutdated_ || lightsOutdated_ || environmentOutdated_;
+    editDevice();
+    updateFrame();
+    scene_->onDevice->updateLights();  // once for all edits
     if (programOutdated_)
       relink(observer);
-    else if (lightsChanged || !movedInstances_.empty())
+    else if (changed)
       renderer_->sceneChanged();
   }
   sceneOutdated_ = programOutdated_ = emissionOutdated_ = lightsOutdated_ = environmentOutdated_ = false;
   movedInstances_.clear();
+}
+
+// Edits the transforms, materials and lights of the scene on the device.
+void RenderJob::editDevice() {
+  if (!movedInstances_.empty()) {
+    std::vector<render::InstanceTransform> transforms;
+    for (const auto& [instance, worldFromObject] : movedInstances_) transforms.push_back({instance, worldFromObject});
+    scene_->onDevice->setTransforms(transforms);
+  }
+  if (emissionOutdated_) scene_->onDevice->setEmission(*editedScene_);
+  if (lightsOutdated_) scene_->onDevice->setLights(editedScene_->lights);
+}
+
+void RenderJob::updateFrame() {
   if (!std::exchange(frameOutdated_, false)) return;
   scene_->onDevice->setFrame(frame_);
   provenanceOutdated_ = true;

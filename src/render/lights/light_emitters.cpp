@@ -330,7 +330,7 @@ void Emitters::copyGeometry() {
     }
 }
 
-void Emitters::update(const scene::Scene& scene) {
+bool Emitters::update(const scene::Scene& scene) {
   emissions_.resize(scene.materials.size());
   std::vector<bool> changed;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
@@ -340,6 +340,8 @@ void Emitters::update(const scene::Scene& scene) {
     changed.push_back(emission != emissions_[m]);
     emissions_[m] = emission;
   }
+  const bool any = std::ranges::count(changed, true) > 0;
+  if (!any && emitters_.size() == scene.meshes.size()) return false;
   const std::vector<Pending> pending = discardEmitters(scene, changed, emitters_);
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {  // one emission map in memory at a time
     if (emissions_[m] == Emission{}) continue;
@@ -355,6 +357,7 @@ void Emitters::update(const scene::Scene& scene) {
   }
   for (const Pending& p : pending)
     if (p.emitter->black) *p.emitter = {};  // frees the copy of the geometry
+  return any;
 }
 
 double solidArea(const scene::Primitive& primitive, const dmat3& worldFromObject) {

@@ -32,11 +32,11 @@ class Emitters {
  public:
   explicit Emitters(const scene::Scene& scene) { update(scene); }
   // Computes the emitters of the materials whose emission differs from that of the last scene. The scene has the meshes
-  // and the images of the last one.
-  void update(const scene::Scene& scene);
+  // and the images of the last one. Returns false if no emission differs.
+  bool update(const scene::Scene& scene);
   // Makes the emitters independent of the scene: copies the positions and triangles, or the primitive sets.
   void copyGeometry();
-  // Of a geometry or primitive set of a mesh.
+  // Returns the emitter of a geometry or primitive set of a mesh.
   const Emitter& of(std::size_t mesh, std::size_t geometry) const { return emitters_[mesh][geometry]; }
 
  private:

@@ -12,7 +12,6 @@ namespace quintet::render {
 namespace {
 
 constexpr double kPiDouble = glm::pi<double>();
-constexpr std::size_t kKeptScratch = std::size_t{1} << 20;  // lights, of which the memory to build them is kept
 
 // The classes that share the samples (kMinimumClassShare).
 enum class LightClass { local, directional, surfaces, environment };
@@ -170,12 +169,13 @@ LightTableBuilder::LightTableBuilder(const scene::Scene& scene, const scene::Env
   addParts(scene);
 }
 
-void LightTableBuilder::setEmission(const scene::Scene& scene) {
-  emitters_.update(scene);
+bool LightTableBuilder::setEmission(const scene::Scene& scene) {
+  if (!emitters_.update(scene)) return false;
   parts_.clear();
   slots_.clear();
   firstSlots_.clear();
   addParts(scene);
+  return true;
 }
 
 void LightTableBuilder::addParts(const scene::Scene& scene) {
@@ -223,7 +223,7 @@ void LightTableBuilder::build(std::span<const mat4> worldFromObject, LightTable&
     collector.add(light, environmentIntegral_ * crossSection_, environmentBounds(0.25 * environmentIntegral_));
   }
   collector.finish();
-  if (table.lights.size() > kKeptScratch) scratch_ = {};
+  if (table.lights.size() > kKeptLights) scratch_ = {};
 }
 
 double spotSolidAngle(double cosInner, double cosOuter) {

@@ -12,6 +12,9 @@
 
 namespace quintet::render {
 
+// Largest number of lights whose scratch memory and tables are kept for the next edit.
+inline constexpr std::size_t kKeptLights = std::size_t{1} << 20;
+
 struct LightTable {
   // The punctual lights in the scene's order, then all triangles or solids of each emissive geometry of each instance,
   // then the environment. Lights without power are listed but never sampled. Empty if nothing emits.
@@ -60,8 +63,9 @@ class LightTableBuilder {
 
   // Edits for the next build(). The scene has the same meshes and instances as that of the constructor.
   void setPunctualLights(const std::vector<scene::Light>& lights) { punctual_ = lights; }
-  // Of its materials. Work is done for the geometries of those whose emission differs from the builder's.
-  void setEmission(const scene::Scene& scene);
+  // Sets the emission of the materials. Recomputes only the emitters of materials whose emission changed. Returns false if
+  // none changed.
+  bool setEmission(const scene::Scene& scene);
   // `integral`: EnvironmentTable::integral; 0 means that the environment is black.
   void setEnvironment(double integral) { environmentIntegral_ = integral; }
   double environmentIntegral() const { return environmentIntegral_; }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "base/memory.h"
 #include "base/stopwatch.h"
@@ -18,7 +19,7 @@ namespace quintet::render {
 namespace {
 
 constexpr VkDeviceSize kLightStaging = VkDeviceSize{32} << 20;   // largest staging memory for the tables of lights
-constexpr VkDeviceSize kMinLightBuffer = VkDeviceSize{1} << 20;  // smaller buffers are not made smaller
+constexpr VkDeviceSize kMinLightBuffer = VkDeviceSize{1} << 20;  // buffers up to this size are not shrunk
 constexpr std::uint32_t kMinSlots = 1024;                        // of textures; those without a texture are white
 
 // Returns the environment's texels as the device samples them: finite and not negative.
@@ -75,7 +76,6 @@ void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environme
     lightBuilder_ = std::move(builder);
   }
   uploadLightTable(table);
-  if (lightBuilder_) lightTables_ = std::move(table);
   if (environmentTable.width > 0 && !environment.image.empty()) {
     environmentImage_.entries = gpu::makeBufferOf(context_, environmentTable.entries, 0, "environment table");
     environmentTable.entries = {};
@@ -233,13 +233,15 @@ void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder,
 }
 
 void DeviceScene::setFrame(float frame) {
-  if (!topLevel_->setFrame(frame) || !lightBuilder_ || !lightBuilder_->hasMovingLights()) return;
+  if (topLevel_->setFrame(frame) && lightBuilder_ && lightBuilder_->hasMovingLights()) lightsOutdated_ = true;
   updateLights();
 }
 
 void DeviceScene::updateLights() {
+  if (!std::exchange(lightsOutdated_, false)) return;
   lightBuilder_->build(topLevel_->worldFromObject(), lightTables_);
   uploadLightTable(lightTables_);
+  if (lightTables_.slots.size() > kKeptLights || lightTables_.lights.size() > kKeptLights) lightTables_ = {};
 }
 
 void DeviceScene::setTransforms(std::span<const InstanceTransform> transforms) {
@@ -248,20 +250,20 @@ void DeviceScene::setTransforms(std::span<const InstanceTransform> transforms) {
     topLevel_->setTransform(transform.instance, transform.worldFromObject);
   topLevel_->update();
   if (std::ranges::any_of(transforms, [&](const InstanceTransform& t) { return lightBuilder_->hasLights(t.instance); }))
-    updateLights();
+    lightsOutdated_ = true;
 }
 
 void DeviceScene::setLights(const std::vector<scene::Light>& lights) {
   assert(options_.editable);
   lightBuilder_->setPunctualLights(lights);
-  updateLights();
+  lightsOutdated_ = true;
 }
 
 void DeviceScene::setEmission(const scene::Scene& scene) {
   assert(options_.editable);
-  lightBuilder_->setEmission(scene);
+  if (!lightBuilder_->setEmission(scene)) return;
   lightBuilder_->copyGeometry();
-  updateLights();
+  lightsOutdated_ = true;
 }
 
 bool DeviceScene::setEnvironment(const scene::Environment& environment) {
@@ -278,7 +280,7 @@ bool DeviceScene::setEnvironment(const scene::Environment& environment) {
   const double integral = table.width > 0 ? table.integral : 0.0;
   if (integral == lightBuilder_->environmentIntegral()) return true;  // it has only turned
   lightBuilder_->setEnvironment(integral);
-  updateLights();
+  lightsOutdated_ = true;
   return true;
 }
 

@@ -76,23 +76,26 @@ class DeviceScene {
   void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder = false, bool anyHitForAll = false);
 
   // Moves the instances with keyframes (scene.h) to their transforms at `frame`: updates the instance table, the TLAS,
-  // and the light tables if a moving instance emits. Addresses do not change, so frameTemplate() stays valid. Blocks;
-  // no launch can be under way. The scene starts at frame 0.
+  // and the light tables if a moving instance emits or an edit changed them. The addresses of moving lights do not change,
+  // so frameTemplate() stays valid. Blocks; no launch can be under way. The scene starts at frame 0.
   void setFrame(float frame);
-  // Moves instances without keyframes: updates the instance table, the TLAS and the light tables. frameTemplate() can
-  // change. Requires DeviceSceneOptions::editable. Blocks; no launch can be under way.
+
+  // Edits. Those of lights take effect in updateLights(), so that several edits build the light tables once. They require
+  // DeviceSceneOptions::editable and block; no launch can be under way.
+  // Moves instances without keyframes: updates the instance table and the TLAS, and edits the lights that move.
   void setTransforms(std::span<const InstanceTransform> transforms);
   // Replaces a row of the material table. Returns false, and changes nothing, if the material uses a texture that is
   // not on the device. The caller makes sure that everything else that depends on materials stays the same: features,
-  // facts and lights. Blocks; no launch can be under way.
+  // facts and lights.
   bool setMaterial(std::size_t index, const scene::Material& material);
-  // Edits of lights, which update the light tables; frameTemplate() changes. `scene`: with the meshes and instances of
-  // the constructor's. Require DeviceSceneOptions::editable. Block; no launch can be under way.
+  // Edits of lights. `scene`: with the meshes and instances of the constructor's.
   void setLights(const std::vector<scene::Light>& lights);  // all punctual lights
   void setEmission(const scene::Scene& scene);              // of the materials
   // If `environment` has an image, it must be the one of the constructor's environment. Returns false, and changes
   // nothing, if that image is not on the device, because its intensity was 0.
   bool setEnvironment(const scene::Environment& environment);
+  // Builds the light tables if an edit since the last call changes them; frameTemplate() can then change.
+  void updateLights();
   // What defines() is made of, after edits.
   void setFeatures(const SceneFeatures& features) { defines_ = shaderDefines(features, context_.info().quirks); }
   bool animated() const { return topLevel_->animated(); }  // an instance has keyframes
@@ -106,7 +109,6 @@ class DeviceScene {
 
   void uploadLights(const scene::Scene& scene, const scene::Environment& environment);
   void showEnvironment(const scene::Environment& environment, const EnvironmentTable& table);
-  void updateLights();
   void uploadLightTable(LightTable& table);
   void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
   bool needsSingleAnyHit(const program::GeometryFacts& geometry) const;
@@ -129,7 +131,8 @@ class DeviceScene {
   gpu::Buffer lights_, lightTable_, lightNodes_, lightSlots_;
   std::vector<std::uint32_t> firstLightSlots_;     // per instance
   std::optional<LightTableBuilder> lightBuilder_;  // only if an instance with keyframes has lights, or for edits
-  LightTable lightTables_;                         // of the last edit, for its memory
+  LightTable lightTables_;                         // of the last edit, for its memory; empty above kKeptLights
+  bool lightsOutdated_ = false;                    // an edit is not yet in the light tables
   std::vector<rt::Blas> blas_;                     // one per mesh that an instance uses
   std::vector<int> blasOfMesh_;                    // index in blas_; -1 if no instance uses the mesh
   std::uint64_t bottomLevelBytes_ = 0;

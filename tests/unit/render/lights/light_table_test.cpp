@@ -274,6 +274,22 @@ TEST(LightTable, EditsOfManyLightsGiveTheTableOfTheEditedScene) {
   expectTableOf(scene, square + set);
 }
 
+// Only edits that change an emission require new tables.
+TEST(LightTable, EditsThatDoNotChangeAnEmissionAreFound) {
+  scene::Scene scene = squares();
+  scene.instances = {instanceOf(0), instanceOf(1)};
+  LightTableBuilder builder(scene, {});
+  EXPECT_FALSE(builder.setEmission(scene));
+  scene.materials[1].baseColor = vec4(0.5f);
+  scene.materials[1].doubleSided = true;
+  EXPECT_FALSE(builder.setEmission(scene));
+  scene.materials[1].emissive += vec3(1.0f);
+  EXPECT_TRUE(builder.setEmission(scene));
+  EXPECT_FALSE(builder.setEmission(scene));
+  scene.materials[1].unlit = true;
+  EXPECT_TRUE(builder.setEmission(scene));
+}
+
 // Instances that no ray hits are not lights.
 TEST(LightTable, HiddenInstancesHaveNoLights) {
   scene::Scene scene = squares();
