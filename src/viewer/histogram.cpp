@@ -7,6 +7,7 @@
 #include <limits>
 #include <mutex>
 
+#include "base/luminance.h"
 #include "base/parallel.h"
 
 namespace quintet::viewer {
@@ -31,11 +32,11 @@ struct Partial {
       return;
     }
     for (std::size_t c = 0; c < 3; ++c) ++histogram.channels[c][binOf(rgba[c])];
-    const float luminance = 0.2126f * rgba[0] + 0.7152f * rgba[1] + 0.0722f * rgba[2];
-    ++histogram.luminance[binOf(luminance)];
-    least = std::min<double>(least, luminance);
-    most = std::max<double>(most, luminance);
-    sum += luminance;
+    const float light = luminance({rgba[0], rgba[1], rgba[2]});
+    ++histogram.luminance[binOf(light)];
+    least = std::min<double>(least, light);
+    most = std::max<double>(most, light);
+    sum += light;
     ++pixels;
   }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "base/luminance.h"
 #include "base/math.h"
 
 namespace quintet::render {
@@ -14,7 +15,7 @@ namespace quintet::render {
 // infinite components as 1e30.
 inline float lightLuminance(const vec3& color) {
   const auto clean = [](float c) { return c > 0.0f ? std::min(c, 1e30f) : 0.0f; };
-  return 0.2126f * clean(color.x) + 0.7152f * clean(color.y) + 0.0722f * clean(color.z);
+  return luminance({clean(color.x), clean(color.y), clean(color.z)});
 }
 
 }  // namespace quintet::render
