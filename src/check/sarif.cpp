@@ -72,10 +72,11 @@ class SarifRun {
     results_.push_back(std::move(result));
   }
 
-  Json take(const std::string& version) {
+  Json take(const std::string& version, bool complete) {
     Json driver{{"name", "quintet"}, {"version", version}, {"rules", rules_}};
     return {{"tool", {{"driver", std::move(driver)}}},
             {"columnKind", "unicodeCodePoints"},
+            {"invocations", Json::array({Json{{"executionSuccessful", complete}}})},
             {"results", std::move(results_)}};
   }
 
@@ -120,12 +121,12 @@ class SarifRun {
 }  // namespace
 
 std::string sarifText(const std::vector<Diagnostic>& diagnostics, const std::vector<SuppressedDiagnostic>& suppressed,
-                      const SourceLookup& sources, const std::string& version) {
+                      const SourceLookup& sources, const std::string& version, bool complete) {
   SarifRun run(sources);
   for (const Diagnostic& d : diagnostics) run.add(d, nullptr);
   for (const SuppressedDiagnostic& s : suppressed) run.add(s.diagnostic, &s);
   Json log{{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"}, {"version", "2.1.0"}};
-  log["runs"].push_back(run.take(version));
+  log["runs"].push_back(run.take(version, complete));
   return log.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -13,8 +13,9 @@ namespace quintet::check {
 
 // Returns one line with a log of one run. `version` is that of Quintet. Rules come from the catalog, with the pages of
 // docs/diagnostics as help; only those that a result uses. Columns count code points, for which `sources` is read.
+// `complete`: executionSuccessful of the invocation; false for a log that is replaced unless the process crashes.
 std::string sarifText(const std::vector<Diagnostic>& diagnostics, const std::vector<SuppressedDiagnostic>& suppressed,
-                      const SourceLookup& sources, const std::string& version);
+                      const SourceLookup& sources, const std::string& version, bool complete);
 
 }  // namespace quintet::check
 #endif

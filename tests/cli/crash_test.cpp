@@ -81,6 +81,7 @@ TEST_F(Crash, KeepsTheResultsOfEarlierPrograms) {
   const auto sarif = nlohmann::json::parse(std::ifstream(folder_ / "found.sarif"));
   EXPECT_EQ(sarif["runs"][0]["results"].size(), check.status == 4 ? 1u : 2u);
   EXPECT_EQ(sarif["runs"][0]["results"][0]["ruleId"], "GLSL");
+  EXPECT_EQ(sarif["runs"][0]["invocations"][0]["executionSuccessful"], check.status != 4);
 }
 
 // The compiler limits the depth of its parser, so that its stack does not overflow.

@@ -201,9 +201,10 @@ void writeGraph(const std::filesystem::path& graph, const std::optional<check::P
     writeFile(file, check::svgText(check::diagramOf(*model)));
 }
 
-void writeSarif(const job::CheckReport& report, const Options& options) {
+// `complete`: the file is not replaced by one with more results.
+void writeSarif(const job::CheckReport& report, const Options& options, bool complete) {
   writeFile(outputFile(options.sarif),
-            check::sarifText(report.diagnostics(), report.suppressed(), report.sources(), QUINTET_VERSION));
+            check::sarifText(report.diagnostics(), report.suppressed(), report.sources(), QUINTET_VERSION, complete));
 }
 
 // Writes the files that the options request. Returns the exit status.
@@ -212,7 +213,7 @@ int writeReport(const job::CheckReport& report, const job::ProgramChecks& checks
   const std::vector<check::SuppressedDiagnostic> suppressed = report.suppressed();
   int status = report.wrongRequest() ? kWrongCommandLine : report.passes(options.strict) ? 0 : kRuntimeError;
   try {
-    if (!options.sarif.empty()) writeSarif(report, options);
+    if (!options.sarif.empty()) writeSarif(report, options, true);
     if (!options.graph.empty()) writeGraph(options.graph, checks.pipelineOf(report.programs.front()));
   } catch (const FileError& error) {
     status = reportFailure(error, FailureJson::none);
@@ -253,7 +254,7 @@ class Printer : public job::CheckObserver {
       print(report);
     if (options_.sarif.empty() || output::isStandardOutput(options_.sarif)) return;
     try {
-      writeSarif(all, options_);
+      writeSarif(all, options_, false);
     } catch (const FileError&) {  // writeReport() reports it
     }
   }

@@ -75,7 +75,9 @@ void expectLog(const Json& log) {
   EXPECT_EQ(log.at("version"), "2.1.0");
   ASSERT_EQ(log.at("runs").size(), 1u);
   const Json& run = log["runs"][0];
-  expectObject(run, {"tool", "results"}, {"columnKind"});
+  expectObject(run, {"tool", "results"}, {"columnKind", "invocations"});
+  ASSERT_EQ(run.at("invocations").size(), 1u);
+  expectObject(run["invocations"][0], {"executionSuccessful"}, {});
   EXPECT_EQ(run.at("columnKind"), "unicodeCodePoints");
   expectObject(run.at("tool"), {"driver"});
   const Json& driver = run["tool"].at("driver");
@@ -85,11 +87,12 @@ void expectLog(const Json& log) {
 }
 
 // The log of these diagnostics, which is valid.
-Json sarif(const std::vector<Diagnostic>& diagnostics, const std::vector<SuppressedDiagnostic>& suppressed = {}) {
+Json sarif(const std::vector<Diagnostic>& diagnostics, const std::vector<SuppressedDiagnostic>& suppressed = {},
+           bool complete = true) {
   const SourceLookup sources = [](const std::string& file) {
     return file == "a b.rgen" ? std::optional<std::string>("\xc3\xa4\xc3\xb6 trace\n") : std::nullopt;
   };
-  const Json log = Json::parse(sarifText(diagnostics, suppressed, sources, "1.2.3"));
+  const Json log = Json::parse(sarifText(diagnostics, suppressed, sources, "1.2.3", complete));
   expectLog(log);
   return log;
 }
@@ -100,6 +103,11 @@ TEST(Sarif, IsALogOfOneRun) {
   EXPECT_EQ(run.at("tool").at("driver").at("name"), "quintet");
   EXPECT_EQ(run["tool"]["driver"].at("version"), "1.2.3");
   EXPECT_EQ(run.at("results"), Json::array());
+}
+
+TEST(Sarif, StatesWhetherItIsComplete) {
+  EXPECT_EQ(sarif({}, {}, true)["runs"][0]["invocations"][0]["executionSuccessful"], true);
+  EXPECT_EQ(sarif({}, {}, false)["runs"][0]["invocations"][0]["executionSuccessful"], false);
 }
 
 TEST(Sarif, HasTheRulesOfItsResults) {
