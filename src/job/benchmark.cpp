@@ -55,7 +55,7 @@ struct Setup {
   shader::Compiler compiler;
 
   Setup(const BenchmarkRequest& r, bool softwareDevice)
-      : request(r), scene(scene::loadScene(r.scene)), compiler(makeCompiler(cacheFolder())) {
+      : request(r), scene(scene::loadScene(r.scene, {.variant = r.variant})), compiler(makeCompiler(cacheFolder())) {
     size = sizeOf(r.size, softwareDevice);
     camera = chooseCamera(scene, {}, static_cast<float>(size.x) / static_cast<float>(size.y)).camera;
     environment = chooseEnvironment(scene, {r.environment, {}, {}}).environment;

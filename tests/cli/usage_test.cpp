@@ -130,6 +130,15 @@ TEST_F(Usage, Variants) {
   write(folder_ / "scene.gltf", scene.dump());
   expectError(quintet(quick({"--variant", "red"})), 2, {"no variant 'red'", "Red, Green"});
   EXPECT_EQ(quintet(quick({"--variant", "Green", "-o", "a.png"})).status, 0);
+  expectError(quintet({"bench", "scene.gltf", "--variant", "red"}), 2, {"no variant 'red'", "Red, Green"});
+  expectError(quintet({"bench", "normals", "scene.gltf", "--variant", "red"}), 2, {"no variant 'red'", "Red, Green"});
+  const RunResult noFile = quintet({"check", "normals", "--variant", "Red", "--device", "none"});
+  EXPECT_EQ(noFile.status, 2);
+  EXPECT_THAT(noFile.err, testing::HasSubstr("no variant 'Red': only glTF files"));
+  const RunResult unknown = quintet({"check", "normals", "scene.gltf", "--variant", "red", "--device", "none"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, testing::HasSubstr("no variant 'red'"));
+  EXPECT_EQ(quintet({"check", "normals", "scene.gltf", "--variant", "Red", "--device", "none"}).status, 0);
   EXPECT_THAT(quintet({"info", "scene.gltf"}).out, testing::HasSubstr("Red, Green"));
 }
 

@@ -66,6 +66,10 @@ OptionTable declare(Options& options) {
               .value = "WHAT",
               .help = "Environment, as in 'quintet render'",
               .target = &request.environment},
+             {.names = "--variant",
+              .value = "NAME",
+              .help = "Material variant of the glTF file; 'quintet info' lists them",
+              .target = &request.variant},
              {.names = "--size",
               .value = "WxH",
               .help = "Size in pixels (default: 512x512 on a CPU, else 1920x1080)",
@@ -146,6 +150,7 @@ int benchCommand(Arguments arguments) {
   own.repeat = request.repeat;
   own.render.size = request.size;
   own.render.environment.source = request.environment;
+  own.render.variant = request.variant;
   setWorkProgram(ofScene ? request.program : own.program);
   setWorkStage("measuring");
   try {
