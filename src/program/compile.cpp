@@ -61,8 +61,10 @@ void logCalls(const Program& program, CompiledProgram::Stage& stage, std::size_t
   if (const std::uint32_t words = std::min(logged.maxWords, kMostDataWords); words > shared::kExplainDataWords) {
     shader::Source larger = source;
     larger.defines.emplace_back("QUINTET_EXPLAIN_DATA_WORDS", std::to_string(words) + "u");
-    stage.spirv = compiler.compile(larger).spirv;
-    logged = log(words);
+    if (shader::Result result = compiler.compile(larger); result.ok()) {
+      stage.spirv = std::move(result.spirv);
+      logged = log(words);
+    }
   }
   stage.spirv = std::move(logged.spirv);
   stage.calls = std::move(logged.sites);
