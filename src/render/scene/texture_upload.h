@@ -76,7 +76,8 @@ class TextureUpload {
 // Bindless slots after the scene's textures, shared by the parameter images of all renderers that use the scene.
 class TextureSlots {
  public:
-  static constexpr std::uint32_t kCount = 64;
+  // 64 for each of three renderers: that of a job, and two that explain a sample (job/pixel_explainer.h).
+  static constexpr std::uint32_t kCount = 192;
 
   // Manages slots [first, first + count) of `set`, which must outlive this object.
   TextureSlots(gpu::BindlessSet& set, std::uint32_t first, std::uint32_t count);
