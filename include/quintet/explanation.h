@@ -37,8 +37,8 @@ using EventValue = std::variant<bool, std::int64_t, float, std::string, std::vec
 //   payload, data  when: "before" or "after"; each member of the payload or callable data under its GLSL name
 //   closest-hit, hit, any-hit, intersection   instance, geometry, primitive (integers), instanceName, material, t
 //   surface        position, geometricNormal, shadingNormal, uv, material
-//   light, bsdf    direction, pdf, misWeight; lobe or light (texts), throughput or weight
-//   emission, contribution, store   source (text); radiance or value
+//   light, bsdf    direction, pdf, misWeight; lobe or light (strings), throughput or weight
+//   emission, contribution, store   source (string); radiance or value
 // docs/explain-pixel.md lists all of them. Programs that do not use the GLSL library have only those of rays and
 // shaders.
 struct Event {
@@ -86,21 +86,24 @@ struct Explanation {
   std::vector<Contribution> contributions{};  // their sum is the value of the first output
   bool discarded = false;                     // the program discarded the sample, because its value is not finite
   std::uint32_t lostEvents = 0;               // records that the device could not store
-  std::vector<PrintedLine> printed{};         // of this sample (debugPrintfEXT)
+  std::vector<PrintedLine> printed{};         // of this sample (debugPrintfEXT); at most Settings::printLimit
+  std::uint64_t omittedPrints = 0;            // beyond the limit, or more than the device could store
   std::string text{};                         // the tree as `quintet explain-pixel` prints it, 100 columns wide
   std::string json{};                         // one JSON object, as `quintet explain-pixel --json` prints it
 };
 
 // What Renderer::search() looks for.
 struct SearchSettings {
-  std::uint32_t samples = 64;  // per pixel, or frames of a program that accumulates; at least 4 for fireflies
-  bool notFinite = true;       // samples with NaN or infinity
-  bool fireflies = true;       // samples that alone make their pixel much brighter than its surroundings
-  float threshold = 2;         // of fireflies: how many times as bright, above 0
-  std::size_t limit = 10;      // of samples of each kind to explain; the others are only counted
+  // Per pixel, or frames of a program that accumulates; 1 to 2^24, at least 4 for fireflies.
+  std::uint32_t samples = 64;
+  bool notFinite = true;  // samples with NaN or infinity
+  // Samples that alone make their pixel much brighter than its surroundings. No effect in programs that accumulate.
+  bool fireflies = true;
+  float threshold = 2;     // of fireflies: how many times as bright, above 0
+  std::size_t limit = 10;  // of samples of each kind to explain; the others are only counted
 };
 
-// A sample that Renderer::search() found, and the event that caused its value. Empty texts and -1 mean unknown: only
+// A sample that Renderer::search() found, and the event that caused its value. Empty strings and -1 mean unknown: only
 // programs that use the GLSL library state bounce, lobe and material.
 struct FoundSample {
   std::uint32_t x = 0, y = 0;  // pixel of the whole image, from the top left
@@ -123,7 +126,8 @@ struct SearchReport {
   std::uint64_t notFiniteCount = 0;      // all
   std::uint64_t fireflyCount = 0;        // all
   std::uint64_t samples = 0;             // searched, per pixel; or frames
-  bool canceled = false;                 // the progress function stopped the search
+  // The progress function returned false: not all samples were searched, or not all that were found are listed.
+  bool canceled = false;
 };
 
 }  // namespace quintet

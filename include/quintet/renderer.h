@@ -122,15 +122,17 @@ class Renderer {
   Film film() const;                                  // everything so far, copied to host memory
 
   // Explains sample number `sample` (from 0) of a pixel of the whole image, or frame number `sample` of a program that
-  // accumulates, whose earlier frames are rendered for that. The sample has the values of render() with the edits so far;
-  // Settings::region and Settings::batches do not matter, and what is rendered so far stays. The first call links a variant
-  // of the program that records what it does, which can take seconds. Throws UsageError for a pixel outside of the image
-  // and for a sample above 2^24 - 1, and what render() throws.
+  // accumulates, whose earlier frames are rendered for that. The sample has the value that render() would give it, with the
+  // edits so far; Settings::region and Settings::batches do not matter, and the samples rendered so far are kept. The first
+  // call links a variant of the program that records what it does, which can take seconds. Throws UsageError for a pixel
+  // outside of the image and for a sample above 2^24 - 1, and what render() throws.
   Explanation explain(std::uint32_t x, std::uint32_t y, std::uint32_t sample = 0);
   // Renders each sample of all pixels (of Settings::region) alone, and explains those that are not finite and fireflies.
-  // What is rendered so far stays. Progress counts the samples; returning false ends the search, and what was found is
-  // explained. In programs that accumulate, a pixel that is not finite is found in its first frame, and there are no
-  // fireflies. Throws UsageError for settings out of range, and what render() throws.
+  // The samples rendered so far are kept. Progress counts the samples of the search, and then, from 0 again, the
+  // explanations. Returning false during the search ends it, and what was found is explained. Returning false during the
+  // explanations removes the samples that are not explained yet. In programs that accumulate, a pixel that is not finite is
+  // found in its first frame, and SearchSettings::fireflies has no effect. Throws UsageError for settings out of range, and
+  // what render() throws.
   SearchReport search(const SearchSettings& settings = {}, const ProgressFunction& progress = {});
 
   // Edits. Each discards the samples so far; they take effect in the next render(). A change of camera, parameters or

@@ -21,9 +21,18 @@ std::vector<FoundSample> toApi(const std::vector<job::FoundSample>& found) {
   std::vector<FoundSample> result;
   for (const job::FoundSample& sample : found) {
     const job::SampleCause& cause = sample.cause;
-    result.push_back({sample.pixel.x, sample.pixel.y, sample.sample, fromGlm(sample.value), sample.luminance,
-                      sample.level, cause.bounce, cause.lobe, cause.material, cause.instance, cause.event,
-                      cause.field});
+    result.push_back({.x = sample.pixel.x,
+                      .y = sample.pixel.y,
+                      .sample = sample.sample,
+                      .value = fromGlm(sample.value),
+                      .luminance = sample.luminance,
+                      .level = sample.level,
+                      .bounce = cause.bounce,
+                      .lobe = cause.lobe,
+                      .material = cause.material,
+                      .instance = cause.instance,
+                      .event = cause.event,
+                      .field = cause.field});
   }
   return result;
 }
@@ -57,8 +66,12 @@ Explanation toApi(const job::PixelExplanation& explanation) {
 }
 
 SearchReport toApi(const job::SearchResult& result) {
-  return {toApi(result.notFinite), toApi(result.fireflies), result.notFiniteCount,
-          result.fireflyCount,     result.samples,          result.interrupted};
+  return {.notFinite = toApi(result.notFinite),
+          .fireflies = toApi(result.fireflies),
+          .notFiniteCount = result.notFiniteCount,
+          .fireflyCount = result.fireflyCount,
+          .samples = result.samples,
+          .canceled = result.interrupted};
 }
 
 }  // namespace quintet

@@ -18,8 +18,6 @@
 namespace quintet {
 namespace {
 
-constexpr std::uint32_t kMaxSample = (1u << 24) - 1;
-
 // Passes progress on, and collects warnings.
 class ApiObserver : public job::Observer {
  public:
@@ -164,14 +162,28 @@ void append(std::vector<std::string>& texts, std::vector<std::string> more) {
 }  // namespace
 
 struct Renderer::Impl {
-  Impl(job::Engine& engineOfDevice, job::ResolvedJob resolved, job::Observer& observer)
+  Impl(job::Engine& engineOfDevice, job::ResolvedJob resolved, std::uint64_t printLimitOfSettings,
+       job::Observer& observer)
       : engine(engineOfDevice),
+        printLimit(printLimitOfSettings),
         layers(renderedLayers(resolved.program, resolved.request.outputs)),
         assignments(resolved.request.assignments),
         job(engine, std::move(resolved), observer) {
     for (const output::Layer& layer : output::availableLayers(job.resolved().program))
       if (layer.source == output::Layer::Source::variance || layer.source == output::Layer::Source::sampleCount)
         layers.push_back(layer);
+  }
+
+  // Brings the edits to the device. Keeps the warnings, also if this fails.
+  void update() {
+    ApiObserver observer;
+    try {
+      job.update(observer);
+    } catch (...) {
+      append(warnings, observer.takeWarnings());
+      throw;
+    }
+    append(warnings, observer.takeWarnings());
   }
 
   // Creates a job for `request` that renders the same scene on the device: with all edits, and at the same frame.
@@ -184,6 +196,7 @@ struct Renderer::Impl {
   }
 
   job::Engine& engine;
+  std::uint64_t printLimit;  // Settings::printLimit
   std::vector<output::Layer> layers;
   std::vector<std::string> assignments;
   std::vector<std::string> warnings;  // for the next report
@@ -194,7 +207,8 @@ Renderer::Renderer(Device& device, const Scene& scene, const Program& program, c
   ApiObserver observer;
   program::Program withHeat = program::withHeatMaps(program.impl_->program, settings.outputs);
   const job::RenderRequest request = toRequest(settings, scene.impl_->scene, withHeat);
-  impl_ = std::make_unique<Impl>(device.impl_->engine, job::resolve(request, std::move(withHeat)), observer);
+  impl_ = std::make_unique<Impl>(device.impl_->engine, job::resolve(request, std::move(withHeat)), settings.printLimit,
+                                 observer);
   impl_->warnings = observer.takeWarnings();
 }
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -242,33 +256,31 @@ Film Renderer::film() const {
 }
 
 Explanation Renderer::explain(std::uint32_t x, std::uint32_t y, std::uint32_t sample) {
-  if (sample > kMaxSample) throw UsageError(fmt::format("sample {} is above {}", sample, kMaxSample));
+  impl_->update();
   ApiObserver observer;
-  impl_->job.update(observer);
   job::RenderRequest request = impl_->job.resolved().request;
   request.region = {};
   request.batches.reset();
-  request.print = job::PrintRequest{.pixels = {x, y, 1, 1}};
+  request.print = job::PrintRequest{.pixels = {x, y, 1, 1}, .limit = impl_->printLimit};
   request = job::requestForPixel(std::move(request), impl_->job.resolved().program, {x, y});
   const std::unique_ptr<job::RenderJob> job = impl_->makeJobOfSameScene(std::move(request), observer);
   Explanation result = toApi(job::PixelExplainer(impl_->engine, *job).explain({x, y}, sample, observer));
   result.printed = toApi(observer.prints().lines);
+  result.omittedPrints = observer.prints().omitted;
   return result;
 }
 
 SearchReport Renderer::search(const SearchSettings& settings, const ProgressFunction& progress) {
-  if (settings.samples == 0 || settings.samples > kMaxSample)
-    throw UsageError(fmt::format("a search has 1 to {} samples, not {}", kMaxSample, settings.samples));
   if (!(settings.threshold > 0.0f && std::isfinite(settings.threshold)))
     throw UsageError(fmt::format("the threshold {} of fireflies must be above 0", settings.threshold));
+  impl_->update();
   ApiObserver observer(&progress);
-  impl_->job.update(observer);
   job::RenderRequest request = impl_->job.resolved().request;
   request.batches.reset();
   request.print.reset();
   const std::unique_ptr<job::RenderJob> job = impl_->makeJobOfSameScene(std::move(request), observer);
-  const job::SearchOptions options{settings.notFinite, settings.fireflies, settings.threshold, settings.limit,
-                                   settings.samples};
+  const bool fireflies = settings.fireflies && !job->resolved().accumulatesFrames();
+  const job::SearchOptions options{settings.notFinite, fireflies, settings.threshold, settings.limit, settings.samples};
   return toApi(job::searchSamples(impl_->engine, *job, options, observer));
 }
 

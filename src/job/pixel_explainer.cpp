@@ -118,6 +118,7 @@ void PixelExplainer::makeInstrumented(render::RenderSettings settings) {
 
 PixelExplanation PixelExplainer::explain(uvec2 pixel, std::uint32_t sample, Observer& observer) {
   requireInside(image_.size, pixel);
+  if (sample > kMaxSample) throw UsageError(fmt::format("sample {} is above {}", sample, kMaxSample));
   try {
     if (job_.resolved().accumulatesFrames()) renderEarlierFrames(sample);
     if (!own_) job_.discardPrints();

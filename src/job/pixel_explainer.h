@@ -17,6 +17,9 @@
 
 namespace quintet::job {
 
+// Largest number of a sample or frame that can be explained. Renders have at most 2^24 samples per pixel.
+inline constexpr std::uint32_t kMaxSample = (1u << 24) - 1;
+
 // Returns the request of a render for explaining this pixel. Its region is the pixel, unless the program accumulates frames
 // and can read those of other pixels. Throws UsageError for a region or a part of a render, which cannot be explained, and
 // for a pixel outside of the image if its size is known; if it is not, RenderJob or PixelExplainer::explain() throws.
@@ -44,7 +47,7 @@ class PixelExplainer {
   // Explains sample number `sample` (from 0) of a pixel in the region of the job, or frame number `sample` of a program that
   // accumulates, whose earlier frames are rendered first. The pixel has the same random numbers as in the job's render. What
   // the sample prints goes to Observer::printed() if the request of the job asks for it, but not with an ExplainedImage.
-  // Throws UsageError for a pixel outside of the image. A launch that does not end calls Observer::deviceHung() and throws
+  // Throws UsageError for a pixel outside of the image and a sample above kMaxSample. A launch that does not end calls Observer::deviceHung() and throws
   // TimeoutError.
   PixelExplanation explain(uvec2 pixel, std::uint32_t sample, Observer& observer);
 

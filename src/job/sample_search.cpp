@@ -102,6 +102,14 @@ class Search {
 
  private:
   std::uint64_t sampleCount() const {
+    const std::uint64_t count = requestedCount();
+    constexpr std::uint64_t kMost = std::uint64_t{kMaxSample} + 1;
+    if (count == 0 || count > kMost)
+      throw UsageError(fmt::format("a search has 1 to {} samples, not {}", kMost, count));
+    return count;
+  }
+
+  std::uint64_t requestedCount() const {
     if (options_.samples) return *options_.samples;
     const RenderRequest& request = job_.resolved().request;
     if (job_.resolved().accumulatesFrames()) return request.frames.accumulatedCount().value_or(1);

@@ -23,7 +23,7 @@ struct SearchOptions {
   // Fireflies: how much brighter than its surroundings one sample makes a pixel (BrightestSamples::find); above 0.
   float threshold = 2.0f;
   std::size_t limit = 10;  // of explained samples of each kind; the others are only counted
-  // Per pixel, or frames. Unset means those of the request: RenderLimits::samples, which also decides their values.
+  // Per pixel, or frames; 1 to kMaxSample + 1. Unset means those of the request: RenderLimits::samples, which also decides their values.
   std::optional<std::uint64_t> samples{};
 };
 
@@ -63,7 +63,7 @@ SampleCause causeOf(const PixelExplanation& explanation, bool notFinite);
 // Searches all samples of the request (RenderLimits::samples), or all frames, and explains those that it lists. The search
 // needs exclusive use of `job`. In programs that accumulate, a pixel that is not finite is found in its first frame. If the
 // observer stops during the search, what was found is explained; if it stops later, the rest is not listed. Throws
-// UsageError if the number of samples is unknown, or if the fireflies that SearchOptions requests cannot be found, and for
+// UsageError if the number of samples is unknown or out of range, or if the fireflies that SearchOptions requests cannot be found, and for
 // the frame (RenderJob::showRequestedFrame); ProgramError and gpu errors.
 SearchResult searchSamples(Engine& engine, RenderJob& job, const SearchOptions& options, Observer& observer);
 

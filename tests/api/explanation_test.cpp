@@ -114,11 +114,69 @@ TEST(ApiExplanation, HasTheLinesOfTheFrame) {
   EXPECT_EQ(explanation.contributions[0].source, "store");
 }
 
+constexpr const char* kPrintingTwice = R"(struct RayPayloadType { vec3 color; };
+void main() { /**** RAY GENERATION SHADER ****/
+  debugPrintfEXT("first");
+  debugPrintfEXT("second");
+  gsnSetPixel(vec4(1.0));
+}
+void main() { /**** MISS SHADER ****/ payload.color = vec3(0.0); }
+)";
+
+TEST(ApiExplanation, CountsTheLinesBeyondTheLimit) {
+  const Program program = Program::fromSource(kPrintingTwice, "printing");
+  Renderer renderer(device(), Scene::of(program), program, {.width = 8, .height = 4, .printLimit = 1});
+  const Explanation explanation = renderer.explain(5, 1);
+  EXPECT_EQ(explanation.printed.size(), 1u);
+  EXPECT_EQ(explanation.omittedPrints, 1u);
+}
+
+// An edit that rebuilds the scene warns again. The warning is in the next report.
+TEST(ApiExplanation, KeepsTheWarningsOfEdits) {
+  Scene scene;
+  addSquare(scene, {.name = "unused"});
+  Renderer renderer(device(), scene, Program::load("normals"), smallImage());
+  EXPECT_THAT(renderer.render(4).warnings, ElementsAre(HasSubstr("no surfaces")));
+  EXPECT_THAT(renderer.render(4).warnings, ElementsAre());
+  renderer.setMaterial(0, {.name = "unused", .baseColor = {1, 1, 1, 0.2f}, .alphaMode = AlphaMode::mask});
+  renderer.explain(0, 0);
+  EXPECT_THAT(renderer.render(4).warnings, ElementsAre(HasSubstr("no surfaces")));
+  renderer.setMaterial(0, {.name = "unused"});
+  renderer.search({.samples = 4});
+  EXPECT_THAT(renderer.render(4).warnings, ElementsAre(HasSubstr("no surfaces")));
+}
+
+TEST(ApiExplanation, SearchesProgramsThatAccumulate) {
+  const Program program = Program::fromSource(kPrinting, "printing");
+  Renderer renderer(device(), Scene::of(program), program, {.width = 8, .height = 4});
+  const SearchReport report = renderer.search();
+  EXPECT_EQ(report.samples, SearchSettings{}.samples);
+  EXPECT_EQ(report.notFiniteCount, 0u);
+  EXPECT_EQ(report.fireflyCount, 0u);
+}
+
+TEST(ApiExplanation, SearchFindsFireflies) {
+  const Program program =
+      constantProgram("(launchPixel() == uvec2(3, 2) && launch.firstSample == 5u ? vec4(90.0) : vec4(0.5))");
+  Renderer renderer(device(), lampScene(), program, {.width = 8, .height = 4});
+  const SearchReport report = renderer.search({.samples = 8});
+  EXPECT_EQ(report.fireflyCount, 1u);
+  ASSERT_EQ(report.fireflies.size(), 1u);
+  const FoundSample& found = report.fireflies[0];
+  EXPECT_EQ(found.x, 3u);
+  EXPECT_EQ(found.y, 2u);
+  EXPECT_EQ(found.sample, 5u);
+  EXPECT_EQ(found.value, (Float3{90, 90, 90}));
+  EXPECT_FLOAT_EQ(found.luminance, 90.0f);
+  EXPECT_FLOAT_EQ(found.level, 0.5f);
+}
+
 TEST(ApiExplanation, RejectsPixelsAndSettingsOutOfRange) {
   Renderer renderer(device(), lampScene(), pathTracer(), smallImage());
   EXPECT_THAT(messageOf([&] { renderer.explain(48, 0); }), HasSubstr("pixel 48,0 is not inside the image of 48x32"));
   EXPECT_THROW(renderer.explain(0, 0, 1u << 24), UsageError);
   EXPECT_THROW(renderer.search({.samples = 0}), UsageError);
+  EXPECT_THROW(renderer.search({.samples = (1u << 24) + 1}), UsageError);
   EXPECT_THROW(renderer.search({.samples = 3}), UsageError);
   EXPECT_THROW(renderer.search({.threshold = 0}), UsageError);
 }

@@ -29,7 +29,6 @@ namespace quintet::cli {
 namespace {
 
 constexpr double kMaxPixel = 65535;
-constexpr double kMaxSample = (1u << 24) - 1;
 constexpr std::size_t kMinWidth = 60, kMaxWidth = 100;  // columns
 
 struct Options : RenderOptions {
@@ -115,7 +114,7 @@ uvec2 parsePixel(const std::string& text) {
 void convertSample(const Texts& texts, Options& options) {
   if (texts.pixel.empty()) throw UsageError("no pixel given; use --pixel X,Y");
   options.pixel = parsePixel(texts.pixel);
-  options.sample = static_cast<std::uint32_t>(parseInteger("--sample", texts.sample, 0, kMaxSample).value_or(0));
+  options.sample = static_cast<std::uint32_t>(parseInteger("--sample", texts.sample, 0, job::kMaxSample).value_or(0));
   const job::RenderLimits& limits = options.request.limits;
   if (limits.samples && !limits.adaptive && options.sample >= *limits.samples)
     throw UsageError(fmt::format("--sample {}: a render with --spp {} has the samples 0 to {}", options.sample,

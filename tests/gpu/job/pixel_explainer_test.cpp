@@ -318,6 +318,20 @@ void main() { /**** MISS SHADER ****/ payload.values[299] = 0.5; payload.color =
   EXPECT_FALSE(payloads[1]->find("complete"));
 }
 
+// Three renderers bind the images: that of the job, and two that explain.
+TEST(PixelExplainer, ExplainsProgramsWithManyImages) {
+  program::Program program = program::loadProgram("normals");
+  for (int i = 0; i < 40; ++i) {
+    program::Parameter& parameter = program.parameters.emplace_back();
+    parameter.name = "image" + std::to_string(i);
+    parameter.type = program::ParameterType::image;
+  }
+  Observer observer;
+  RenderJob job(engine(), resolve(requestForPixel(smallRequest(), program, {32, 24}), program), observer);
+  const ExplainedImage image{{job.scene()->camera, job.scene()->cameraDescription}, job.scene()->size};
+  EXPECT_FALSE(PixelExplainer(engine(), job, image, {32, 24}).explain({32, 24}, 0, observer).events.empty());
+}
+
 TEST(PixelExplainer, RecordsCandidates) {
   const PixelExplanation any = explain(program::loadProgram("15_any_hit"), {32, 24}, 0);
   const PixelExplanation box = explain(program::loadProgram("10_sphere"), {32, 24}, 0);
@@ -365,6 +379,10 @@ TEST(PixelExplainer, RejectsRequestsWithoutASinglePixel) {
   EXPECT_THROW(requestForPixel(request, program, {0, 0}), UsageError);
   request.batches.reset();
   EXPECT_EQ(requestForPixel(request, program, {3, 4}).region, (render::Region{3, 4, 1, 1}));
+}
+
+TEST(PixelExplainer, RejectsSamplesAboveTheLimit) {
+  EXPECT_THROW(explain(program::loadProgram("normals"), {0, 0}, kMaxSample + 1), UsageError);
 }
 
 // Without a size in the request, the size of the image follows from the camera.
