@@ -52,7 +52,7 @@ std::vector<DeviceInfo> devices();
 struct DeviceOptions {
   // Index, or part of the name, driver name or kind ("h200", "lavapipe", "cpu"). Empty means $QUINTET_DEVICE, else the first usable device.
   std::string choice{};
-  std::filesystem::path cacheFolder{};                  // for compiled shaders and pipelines; empty: in memory
+  std::filesystem::path cacheFolder{};  // for compiled shaders and pipelines; empty means that they are kept in memory
   std::function<void(const std::string&)> onWarning{};  // of the driver; called from any thread; may be empty
 };
 

@@ -61,7 +61,8 @@ struct TextureUse {
 enum class AlphaMode { opaque, mask, blend };
 
 // The metallic-roughness material of glTF 2.0 with its extensions. Factors multiply the value of the texture. Textures of
-// base color, emission, specular color, sheen color and diffuse transmission color are sRGB-encoded unless they are floats; all others are linear.
+// base color, emission, specular color, sheen color and diffuse transmission color are sRGB-encoded unless they are floats;
+// all others are linear.
 struct Material {
   std::string name{};
   Float4 baseColor{1, 1, 1, 1};           // linear, [0,1]; alpha is coverage

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renames names of the library, up to names_end.glsl, so that a program can use them for its own declarations: of the lecture
-// form, and of instrumented stages that do not include the library themselves. Files can be included before in such a block.
+// Renames names of the library, up to names_end.glsl, so that these programs can declare the same names: programs in lecture
+// form, and instrumented stages that do not include the library themselves. Library files may already be included before
+// this file.
 #ifdef QUINTET_SHARED_TYPES_H
 #define Address uint64_t
 #endif

@@ -30,7 +30,7 @@ struct CompilerOptions {
   // Folder that overrides the embedded library with its quintet/ folder; $QUINTET_SHADER_PATH if empty.
   std::filesystem::path libraryOverride;
   std::vector<std::filesystem::path> includeFolders;  // additional folders for #include <…>
-  std::filesystem::path cacheFolder;                  // of compiled shaders; empty: in memory
+  std::filesystem::path cacheFolder;                  // of compiled shaders; empty means that they are kept in memory
   bool optimize = true;                               // run spirv-opt
   // Keep sources, lines and names in the SPIR-V. The code is the same; spirv::withoutDebugInfo removes them.
   bool debugInfo = true;

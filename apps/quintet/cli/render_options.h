@@ -37,7 +37,7 @@ struct RenderTexts {
 };
 
 void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options);  // except the output file
-// The part of it that decides what is rendered. `regionHelp`: of --region; null means that there is none.
+// Size, region and background. `regionHelp` is the help of --region; null omits the option.
 void declareSize(OptionTable& table, RenderTexts& texts, RenderOptions& options, const char* regionHelp = nullptr);
 void declareFrame(OptionTable& table, RenderTexts& texts, const char* verb);  // "Render only this frame of …"
 void declareDisplay(OptionTable& table, RenderTexts& texts, const char* group, const char* otherwise);
