@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,8 @@ void parallelRanges(std::size_t count, const Body& body, std::size_t grain = 655
 // Tasks that add further tasks, such as the nodes of a tree. Any thread can take the one that was added last.
 template <class Task>
 class TaskList {
+  static_assert(std::is_nothrow_move_constructible_v<Task>, "take() must not lose a task");
+
  public:
   explicit TaskList(std::vector<Task> tasks) : tasks_(std::move(tasks)) {}
 
