@@ -4,9 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <string_view>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
+
+#include "base/sequence_alignment.h"
 
 namespace quintet::job {
 namespace {
@@ -57,16 +62,24 @@ float size(const std::vector<float>& values) {
   return largest;
 }
 
-// The difference of two values; unset if they are equal. `error` is the distance of numbers.
-std::optional<ExplanationDifference> compare(std::string location, const EventValue& a, const EventValue& b,
-                                             const DiffTolerance& tolerance) {
-  if (a == b) return {};
-  ExplanationDifference difference{std::move(location), valueText(a), valueText(b), {}};
+// The distance of numbers; unset for other values.
+std::optional<float> distanceOf(const EventValue& a, const EventValue& b) {
   const std::vector<float> x = components(a), y = components(b);
-  if (x.empty() || x.size() != y.size()) return difference;
-  difference.error = distance(x, y);
-  if (*difference.error <= tolerance.absolute + tolerance.relative * std::max(size(x), size(y))) return {};
-  return difference;
+  if (x.empty() || x.size() != y.size()) return {};
+  return distance(x, y);
+}
+
+bool areEqual(const EventValue& a, const EventValue& b, const DiffTolerance& tolerance) {
+  if (a == b) return true;
+  const std::vector<float> x = components(a), y = components(b);
+  if (x.empty() || x.size() != y.size()) return false;
+  return distance(x, y) <= tolerance.absolute + tolerance.relative * std::max(size(x), size(y));
+}
+
+// `a`, `b`: null if there is no value.
+ExplanationDifference differenceOf(std::string location, const EventValue* a, const EventValue* b) {
+  return {std::move(location), a ? valueText(*a) : kMissing, b ? valueText(*b) : kMissing,
+          a && b ? distanceOf(*a, *b) : std::nullopt};
 }
 
 bool isLocation(const std::string& field) { return field == "line" || field == "file"; }
@@ -97,95 +110,121 @@ bool isUndefined(const ExplainedEvent& a, const ExplainedEvent& b, const Before&
   return unchanged(a, *before.a) && unchanged(b, *before.b);
 }
 
-// The first field that differs between two events of the same type; its location is its name.
-std::optional<ExplanationDifference> compareFields(const ExplainedEvent& a, const ExplainedEvent& b,
-                                                   const Before& before, const DiffTolerance& tolerance) {
+// The name of the first field that differs between two events of the same type; null if they are equal.
+const std::string* differentField(const ExplainedEvent& a, const ExplainedEvent& b, const Before& before,
+                                  const DiffTolerance& tolerance) {
   for (const auto& [name, value] : a.fields) {
     if (isLocation(name) || isUndefined(a, b, before, name)) continue;
     const EventValue* other = b.find(name);
-    if (!other) return ExplanationDifference{name, valueText(value), kMissing, {}};
-    if (auto difference = compare(name, value, *other, tolerance)) return difference;
+    if (!other || !areEqual(value, *other, tolerance)) return &name;
   }
   for (const auto& [name, value] : b.fields)
-    if (!isLocation(name) && !a.find(name) && !isUndefined(a, b, before, name))
-      return ExplanationDifference{name, kMissing, valueText(value), {}};
+    if (!isLocation(name) && !a.find(name) && !isUndefined(a, b, before, name)) return &name;
+  return nullptr;
+}
+
+// What distinguishes events of one type: the kind of ray, the stage, the output, …; empty if nothing does.
+std::string_view labelOf(const ExplainedEvent& event) {
+  for (const char* name : {"rayType", "records", "callable", "output", "source", "light", "lobe", "stage"})
+    if (const EventValue* value = event.find(name))
+      if (const auto* text = std::get_if<std::string>(value)) return *text;
   return {};
 }
 
-// Finds the first difference.
-class Walk {
- public:
-  Walk(ExplanationDiff& diff, const DiffTolerance& tolerance) : diff_(diff), tolerance_(tolerance) {}
-
-  // Returns false at the first difference.
-  bool compareLists(const std::vector<ExplainedEvent>& a, const std::vector<ExplainedEvent>& b, const std::string& at) {
-    const std::size_t count = std::max(a.size(), b.size());
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::string nameA = i < a.size() ? eventName(a, i) : kMissing;
-      const std::string nameB = i < b.size() ? eventName(b, i) : kMissing;
-      if (i >= a.size() || i >= b.size() || a[i].type != b[i].type) {
-        diff_.before = path_;
-        diff_.first = {at + (at.empty() ? "event " : ", event ") + std::to_string(i + 1), nameA, nameB, {}};
-        return false;
-      }
-      path_.push_back(nameA);
-      const bool equal =
-          compareEvents(a[i], b[i], at.empty() ? nameA : at + ", " + nameA, {findBefore(a, a[i]), findBefore(b, b[i])});
-      path_.pop_back();
-      if (!equal) return false;
-    }
-    return true;
+// A list of events with the values before the calls.
+struct EventList {
+  explicit EventList(const std::vector<ExplainedEvent>& list) : events(list) {
+    for (const ExplainedEvent& event : list) before.push_back(findBefore(list, event));
   }
-
- private:
-  bool compareEvents(const ExplainedEvent& a, const ExplainedEvent& b, const std::string& at, const Before& before) {
-    if (auto difference = compareFields(a, b, before, tolerance_)) {
-      difference->location = at + ": " + difference->location;
-      diff_.before = path_;
-      diff_.first = std::move(*difference);
-      return false;
-    }
-    diff_.equalEvents++;
-    return compareLists(a.children, b.children, at);
-  }
-
-  ExplanationDiff& diff_;
-  const DiffTolerance& tolerance_;
-  std::vector<std::string> path_;  // names of the enclosing events
+  const std::vector<ExplainedEvent>& events;
+  std::vector<const ExplainedEvent*> before;  // findBefore()
 };
 
-// Finds all differences.
-class Marks {
+// Compares all events, and finds the first difference.
+class Comparison {
  public:
-  explicit Marks(const DiffTolerance& tolerance) : tolerance_(tolerance) {}
+  explicit Comparison(const DiffTolerance& tolerance) : tolerance_(tolerance) {}
 
-  void compareLists(const std::vector<ExplainedEvent>& a, const std::vector<ExplainedEvent>& b) {
-    std::size_t i = 0;
-    for (; i < a.size() && i < b.size() && a[i].type == b[i].type; ++i) {
-      if (compareFields(a[i], b[i], {findBefore(a, a[i]), findBefore(b, b[i])}, tolerance_)) {
-        found_.a.push_back(numberA_);
-        found_.b.push_back(numberB_);
+  void compareLists(const std::vector<ExplainedEvent>& eventsA, const std::vector<ExplainedEvent>& eventsB,
+                    const std::string& at) {
+    const EventList a(eventsA), b(eventsB);
+    const std::vector<AlignedPair> pairs = alignSequences(
+        eventsA.size(), eventsB.size(), [&](std::size_t i, std::size_t j) { return similarity(a, i, b, j); });
+    for (auto pair = pairs.begin(); pair != pairs.end(); ++pair) {
+      if (pair->a && pair->b) {
+        compareEvents(a, *pair->a, b, *pair->b, at);
+        continue;
       }
-      ++numberA_;
-      ++numberB_;
-      compareLists(a[i].children, b[i].children);
+      if (!diff_.first) reportUnpaired(a, b, {pair, pairs.end()}, at);
+      if (pair->a)
+        mark(eventsA[*pair->a], found_.a, numberA_);
+      else
+        mark(eventsB[*pair->b], found_.b, numberB_);
     }
-    mark(a, i, found_.a, numberA_);
-    mark(b, i, found_.b, numberB_);
   }
-  DifferentEvents take() { return std::move(found_); }
+  ExplanationDiff takeDiff() { return std::move(diff_); }
+  DifferentEvents takeEvents() { return std::move(found_); }
 
  private:
-  static void mark(const std::vector<ExplainedEvent>& events, std::size_t first, std::vector<std::size_t>& found,
-                   std::size_t& number) {
-    for (std::size_t i = first; i < events.size(); ++i) {
-      found.push_back(number++);
-      mark(events[i].children, 0, found, number);
+  const std::string* differentFieldOf(const EventList& a, std::size_t i, const EventList& b, std::size_t j) const {
+    return differentField(a.events[i], b.events[j], {a.before[i], b.before[j]}, tolerance_);
+  }
+
+  // An equal event counts as much as two with the same label, and they as much as two of the same type.
+  unsigned similarity(const EventList& a, std::size_t i, const EventList& b, std::size_t j) const {
+    const ExplainedEvent &x = a.events[i], &y = b.events[j];
+    if (x.type != y.type || x.text("when") != y.text("when")) return 0;
+    if (!differentFieldOf(a, i, b, j)) return kMostSimilar;
+    return labelOf(x) == labelOf(y) ? kMostSimilar / 2 : kMostSimilar / 4;
+  }
+
+  void compareEvents(const EventList& a, std::size_t i, const EventList& b, std::size_t j, const std::string& at) {
+    const ExplainedEvent &x = a.events[i], &y = b.events[j];
+    const std::string name = diff_.first ? "" : eventName(a.events, i);
+    const std::string here = at.empty() ? name : at + ", " + name;
+    path_.push_back(name);
+    if (const std::string* field = differentFieldOf(a, i, b, j)) {
+      if (!diff_.first) {
+        diff_.first = differenceOf(here + ": " + *field, x.find(*field), y.find(*field));
+        diff_.before = path_;
+        found_.firstInB = numberB_;
+      }
+      found_.a.push_back(numberA_);
+      found_.b.push_back(numberB_);
+    } else if (!diff_.first) {
+      diff_.equalEvents++;
     }
+    ++numberA_;
+    ++numberB_;
+    compareLists(x.children, y.children, here);
+    path_.pop_back();
+  }
+
+  // The first difference is that events have no partner. `rest`: from the first one of them on.
+  void reportUnpaired(const EventList& a, const EventList& b, std::span<const AlignedPair> rest,
+                      const std::string& at) {
+    const AlignedPair& first = rest.front();
+    const std::string event = fmt::format("event {}", 1 + first.a.value_or(first.b.value_or(0)));
+    diff_.first = {at.empty() ? event : at + ", " + event, kMissing, kMissing, {}};
+    diff_.before = path_;
+    if (first.a) diff_.first->a = eventName(a.events, *first.a);
+    // A different event of B at the same place.
+    const auto other = std::ranges::find_if(rest, [](const AlignedPair& pair) { return pair.b.has_value(); });
+    if (other == rest.end() || other->a) return;
+    diff_.first->b = eventName(b.events, *other->b);
+    found_.firstInB = numberB_;
+  }
+
+  // The event and those in it.
+  static void mark(const ExplainedEvent& event, std::vector<std::size_t>& found, std::size_t& number) {
+    found.push_back(number++);
+    for (const ExplainedEvent& child : event.children) mark(child, found, number);
   }
 
   const DiffTolerance& tolerance_;
+  ExplanationDiff diff_;
   DifferentEvents found_;
+  std::vector<std::string> path_;          // names of the enclosing events, up to the first difference
   std::size_t numberA_ = 0, numberB_ = 0;  // of the next event
 };
 
@@ -226,25 +265,27 @@ std::string eventName(const std::vector<ExplainedEvent>& events, std::size_t ind
 }
 
 ExplanationDiff diffExplanations(const PixelExplanation& a, const PixelExplanation& b, const DiffTolerance& tolerance) {
-  ExplanationDiff diff;
+  Comparison comparison(tolerance);
+  comparison.compareLists(a.events, b.events, {});
+  ExplanationDiff diff = comparison.takeDiff();
   compareFacts(diff, a, b);
-  Walk(diff, tolerance).compareLists(a.events, b.events, {});
   for (const ExplainedOutput& output : a.outputs) {
     const auto other = std::ranges::find(b.outputs, output.name, &ExplainedOutput::name);
     const auto floats = [](const vec4& v) { return EventValue(std::vector<float>{v.x, v.y, v.z, v.w}); };
-    if (other == b.outputs.end()) {
-      diff.outputs.push_back({output.name, valueText(floats(output.value)), kMissing, {}});
-    } else if (auto difference = compare(output.name, floats(output.value), floats(other->value), tolerance)) {
-      diff.outputs.push_back(std::move(*difference));
-    }
+    const EventValue value = floats(output.value);
+    const EventValue otherValue = other == b.outputs.end() ? EventValue() : floats(other->value);
+    if (other == b.outputs.end())
+      diff.outputs.push_back(differenceOf(output.name, &value, nullptr));
+    else if (!areEqual(value, otherValue, tolerance))
+      diff.outputs.push_back(differenceOf(output.name, &value, &otherValue));
   }
   return diff;
 }
 
 DifferentEvents differentEvents(const PixelExplanation& a, const PixelExplanation& b, const DiffTolerance& tolerance) {
-  Marks marks(tolerance);
-  marks.compareLists(a.events, b.events);
-  return marks.take();
+  Comparison comparison(tolerance);
+  comparison.compareLists(a.events, b.events, {});
+  return comparison.takeEvents();
 }
 
 }  // namespace quintet::job

@@ -33,19 +33,18 @@ struct ExplanationDiff {
   bool equal() const { return !first && outputs.empty(); }
 };
 
+// Lists of events are aligned: an event that only one of them has does not make those after it different.
 // Numbers within the tolerance are equal. Source lines and files are not compared, nor are payloads and callable data before
 // a call, and what the call does not change: members that a program has not written are undefined.
 ExplanationDiff diffExplanations(const PixelExplanation& a, const PixelExplanation& b,
                                  const DiffTolerance& tolerance = {});
 
-// The events that differ, by their numbers in the order of forEachEvent(), ascending. The first one of A or of B is that of
-// ExplanationDiff::first.
+// The events that differ in a field, or that only one explanation has, with those in them. By their numbers in the
+// order of forEachEvent(), ascending.
 struct DifferentEvents {
   std::vector<std::size_t> a, b;
+  std::optional<std::size_t> firstInB;  // the event of B in ExplanationDiff::first; unset if B lacks it
 };
-
-// All events that differ in a field. Two lists of events are compared one by one until the types differ; the events from
-// there on differ, with those in them.
 DifferentEvents differentEvents(const PixelExplanation& a, const PixelExplanation& b,
                                 const DiffTolerance& tolerance = {});
 

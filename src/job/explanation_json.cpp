@@ -23,9 +23,12 @@ constexpr const char* kFormat = "quintet-explanation";
 constexpr int kFormatVersion = 1;
 constexpr std::size_t kMaxDepth = 256;  // of nested events
 
-// Fields that are always texts: the user can name an instance "nan".
-constexpr std::string_view kTexts[] = {"stage",        "file",     "rayType", "missShader", "variable", "dataType",
-                                       "instanceName", "material", "light",   "callable",   "output"};
+// Fields that are always texts, also if the text is that of a number: the user can name an instance "nan". `hitKind`
+// can be a text or an integer, and its texts are fixed.
+constexpr std::string_view kTexts[] = {"stage",  "file",     "rayType",     "records",   "flags", "missShader",
+                                       "result", "callable", "variable",    "dataType",  "when",  "output",
+                                       "mode",   "side",     "light",       "lightType", "lobe",  "source",
+                                       "reason", "material", "instanceName"};
 
 struct ToJson {
   Json operator()(bool value) const { return value; }

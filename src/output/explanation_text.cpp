@@ -350,10 +350,8 @@ std::string contributions(const PixelExplanation& e) {
   };
   std::string text = "\nContributions\n";
   for (const job::Contribution& part : parts) text += row(contributionName(part), part.value);
-  const vec3 sum = job::sumContributions(e);
-  text += row("sum", sum);
-  if (!e.discarded && !e.outputs.empty() && !isRounding(sum, e.outputs.front().value))
-    text += fmt::format("  The sum is not the value of '{}'.\n", printable(e.outputs.front().name));
+  text += row("sum", job::sumContributions(e));
+  if (sumDiffers(e)) text += fmt::format("  The sum is not the value of '{}'.\n", printable(e.outputs.front().name));
   return text;
 }
 
@@ -365,6 +363,10 @@ bool isRounding(const vec3& a, const vec3& b) {
     if (!(std::abs(a[i] - b[i]) <= 1e-6f + 1e-4f * std::max(std::abs(a[i]), std::abs(b[i])))) return false;
   }
   return true;
+}
+
+bool sumDiffers(const PixelExplanation& e) {
+  return !e.discarded && !e.outputs.empty() && !isRounding(job::sumContributions(e), e.outputs.front().value);
 }
 
 std::string fieldText(const ExplainedEvent& event, std::string_view name, int digits) {

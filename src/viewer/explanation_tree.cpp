@@ -248,7 +248,9 @@ void addData(const ExplainedEvent& caller, std::vector<ExplanationField>& fields
 }  // namespace
 
 ExplanationTree::ExplanationTree(std::shared_ptr<const PixelExplanation> explanation)
-    : explanation_(std::move(explanation)) {
+    : explanation_(std::move(explanation)),
+      contributionSum_(job::sumContributions(*explanation_)),
+      sumDiffers_(output::sumDiffers(*explanation_)) {
   Builder(*explanation_, rows_, rowOfEvent_).list(explanation_->events, 0);
 }
 
@@ -262,11 +264,9 @@ ExplanationComparison compareExplanations(const PixelExplanation& a, const Expla
   ExplanationComparison result;
   result.diff = job::diffExplanations(a, *b.explanation());
   result.differs.resize(b.rows().size());
-  for (const std::size_t number : job::differentEvents(a, *b.explanation()).b) {
-    const std::size_t row = b.rowOfEvent(number);
-    if (!result.first) result.first = row;
-    result.differs[row] = true;
-  }
+  const job::DifferentEvents different = job::differentEvents(a, *b.explanation());
+  for (const std::size_t number : different.b) result.differs[b.rowOfEvent(number)] = true;
+  if (different.firstInB) result.first = b.rowOfEvent(*different.firstInB);
   return result;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An explanation of a pixel as rows of a tree: each ray, and below it what its shaders and the shader that traced it did.
+// An explanation of a pixel as rows of a tree: each ray, and below it what its shaders and the shader that traced it
+// did.
 #ifndef QUINTET_VIEWER_EXPLANATION_TREE_H
 #define QUINTET_VIEWER_EXPLANATION_TREE_H
 
@@ -40,6 +41,8 @@ class ExplanationTree {
 
   const std::shared_ptr<const job::PixelExplanation>& explanation() const { return explanation_; }
   const std::vector<ExplanationRow>& rows() const { return rows_; }
+  const vec3& contributionSum() const { return contributionSum_; }  // job::sumContributions()
+  bool sumDiffers() const { return sumDiffers_; }                   // output::sumDiffers()
   // The row of a ray; rows().size() if there is none.
   std::size_t rowOfRay(std::size_t ray) const;
   // The row that shows the event with this number: its own, or that of the call whose payload it is.
@@ -49,17 +52,21 @@ class ExplanationTree {
   std::shared_ptr<const job::PixelExplanation> explanation_;
   std::vector<ExplanationRow> rows_;
   std::vector<std::size_t> rowOfEvent_;  // by the number of the event
+  vec3 contributionSum_{0.0f};
+  bool sumDiffers_ = false;
 };
 
 // The difference between an explanation A and the one of a tree, B.
 struct ExplanationComparison {
   job::ExplanationDiff diff;
-  std::vector<bool> differs;         // by row of the tree
-  std::optional<std::size_t> first;  // the first of these rows; unset if B only lacks events of A
+  std::vector<bool> differs;  // by row of the tree
+  // The row of ExplanationDiff::first; unset if there is none, or if B lacks the event.
+  std::optional<std::size_t> first;
 };
 ExplanationComparison compareExplanations(const job::PixelExplanation& a, const ExplanationTree& b);
 
-// All fields of an event; of a ray and a call, also the members of the payload or data. Shader and source line are last.
+// All fields of an event; of a ray and a call, also the members of the payload or data. Shader and source line are
+// last.
 std::vector<ExplanationField> fieldsOf(const job::ExplainedEvent& event);
 
 }  // namespace quintet::viewer

@@ -8,9 +8,11 @@
 
 #include <cmath>
 #include <memory>
+#include <variant>
 
 #include "../render/scene_builder.h"
 #include "base/error.h"
+#include "job/explanation_json.h"
 #include "program/gsn/lecture.h"
 #include "program/load.h"
 
@@ -64,6 +66,19 @@ std::vector<const ExplainedEvent*> eventsOf(const PixelExplanation& explanation,
   return found;
 }
 
+// Expects that each text is read as a text, whatever it is.
+void expectTextsInJson(PixelExplanation e, const std::string& what) {
+  const auto replace = [](const auto& self, std::vector<ExplainedEvent>& events) -> void {
+    for (ExplainedEvent& event : events) {
+      for (auto& [name, value] : event.fields)
+        if (name != "hitKind" && std::holds_alternative<std::string>(value)) value = std::string("nan");
+      self(self, event.children);
+    }
+  };
+  replace(replace, e.events);
+  EXPECT_TRUE(parseExplanation(explanationJson(e), "e.json").events == e.events) << what;
+}
+
 class ExplainedPrograms : public testing::TestWithParam<const char*> {};
 
 // For some pixels and samples: the instrumented program computes what the program computes, and the contributions sum to
@@ -85,6 +100,7 @@ TEST_P(ExplainedPrograms, SumContributionsToTheValue) {
       EXPECT_FALSE(e.discarded) << what;
       EXPECT_EQ(e.lostRecords, 0u) << what;
       EXPECT_FALSE(eventsOf(e, "store").empty()) << what;
+      expectTextsInJson(e, what);
       const vec3 value = e.outputs[0].value;
       expectNear(e.outputs[0].recorded, value, 1e-5f, what + ": recorded");
       expectNear(sumContributions(e), value, 1e-5f, what + ": sum");

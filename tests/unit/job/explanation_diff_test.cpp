@@ -46,11 +46,44 @@ TEST(ExplanationDiff, MarksAllEventsThatDiffer) {
   b = somePath();
   b.events.erase(b.events.begin() + 1);  // the first contribution
   const DifferentEvents missing = differentEvents(somePath(), b);
-  EXPECT_EQ(missing.a, (std::vector<std::size_t>{3, 4, 5})) << "from there on";
-  EXPECT_EQ(missing.b, (std::vector<std::size_t>{3, 4}));
+  EXPECT_EQ(missing.a, std::vector<std::size_t>{3}) << "those after it are equal";
+  EXPECT_TRUE(missing.b.empty());
+  EXPECT_FALSE(missing.firstInB);
   b.events.erase(b.events.begin());
-  EXPECT_EQ(differentEvents(somePath(), b).a, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5}))
-      << "the rays differ, the hit and the payload are missing, the contributions differ, and the rest is missing";
+  EXPECT_EQ(differentEvents(somePath(), b).a, (std::vector<std::size_t>{0, 1, 2, 3})) << "a ray with the events in it";
+  const DifferentEvents more = differentEvents(b, somePath());
+  EXPECT_EQ(more.b, (std::vector<std::size_t>{0, 1, 2, 3}));
+  EXPECT_TRUE(more.a.empty());
+  EXPECT_EQ(more.firstInB, 0u);
+}
+
+TEST(ExplanationDiff, AlignsEventsAfterAnInsertedOne) {
+  PixelExplanation b = somePath();
+  ExplainedEvent inserted = b.events[2];  // a shadow ray
+  inserted.set("tmax", 4.0f);
+  b.events.insert(b.events.begin() + 1, inserted);
+  b.events[3].set("direction", std::vector<float>{1, 0, 0});  // of the shadow ray that was there before
+  const DifferentEvents different = differentEvents(somePath(), b);
+  EXPECT_EQ(different.b, (std::vector<std::size_t>{3, 5}));
+  EXPECT_EQ(different.a, std::vector<std::size_t>{4});
+  EXPECT_EQ(different.firstInB, 3u);
+  const ExplanationDiff diff = diffExplanations(somePath(), b);
+  EXPECT_EQ(diff.first->location, "event 2");
+  EXPECT_EQ(diff.first->a, "missing");
+  EXPECT_EQ(diff.first->b, "ray 2");
+  EXPECT_EQ(diff.equalEvents, 3u);
+}
+
+// A ray of a different kind is less similar than one with other values.
+TEST(ExplanationDiff, PairsEventsOfTheSameKind) {
+  PixelExplanation b = somePath();
+  b.events.erase(b.events.begin() + 1);
+  b.events[1].set("direction", std::vector<float>{1, 0, 0});
+  b.events.erase(b.events.begin());  // the shadow ray is the first one
+  const DifferentEvents different = differentEvents(somePath(), b);
+  EXPECT_EQ(different.a, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(different.b, std::vector<std::size_t>{0});
+  EXPECT_FALSE(different.firstInB) << "the first difference is the ray that B lacks";
 }
 
 TEST(ExplanationDiff, IgnoresRoundingAndSourceLines) {
@@ -120,7 +153,11 @@ TEST(ExplanationDiff, ReportsMissingEventsAndFields) {
   EXPECT_EQ(more.first->location, "ray 2: transmittance");
   EXPECT_EQ(more.first->a, "missing");
   c.events[1].type = "store";
-  EXPECT_EQ(diffExplanations(somePath(), c).first->location, "event 2");
+  const ExplanationDiff replaced = diffExplanations(somePath(), c);
+  EXPECT_EQ(replaced.first->location, "event 2");
+  EXPECT_EQ(replaced.first->a, "contribution 1");
+  EXPECT_EQ(replaced.first->b, "store");
+  EXPECT_EQ(differentEvents(somePath(), c).firstInB, 3u);
 }
 
 TEST(ExplanationDiff, ComparesNumbersThatAreNotFinite) {

@@ -66,6 +66,17 @@ TEST(ExplanationJson, KeepsNames) {
   EXPECT_THAT(problemOf(json.dump()), testing::StartsWith("a.json: /events/1/light: must be a text"));
 }
 
+TEST(ExplanationJson, KeepsTextsOfNumbers) {
+  PixelExplanation e = somePath();
+  ExplainedEvent event{"ray", {}, {}};
+  for (const char* name : {"stage",    "file",      "rayType",  "records", "flags",  "missShader", "result",
+                           "callable", "variable",  "dataType", "when",    "output", "mode",       "side",
+                           "light",    "lightType", "lobe",     "source",  "reason", "material",   "instanceName"})
+    event.set(name, std::string("nan"));
+  e.events = {event};
+  EXPECT_EQ(parseExplanation(explanationJson(e), "a.json").events, e.events);
+}
+
 TEST(ExplanationJson, HasContributionsAndTheirSum) {
   const auto json = nlohmann::json::parse(explanationJson(somePath(), "quintet explain-pixel …"));
   EXPECT_EQ(json["command"], "quintet explain-pixel …");

@@ -89,6 +89,20 @@ TEST(ExplanationTree, MarksTheRowsThatDiffer) {
   EXPECT_EQ(shorter.diff.first->b, "missing");
 }
 
+// Row 1 differs, but it is not the first difference: that is the contribution, which has no row.
+TEST(ExplanationTree, TheFirstDifferenceCanHaveNoRow) {
+  job::PixelExplanation a = job::somePath();
+  a.events[0].children.push_back(a.events[1]);
+  a.events = {a.events[0], a.events[2]};
+  job::PixelExplanation b = a;
+  b.events[0].children.pop_back();
+  b.events[1].set("direction", std::vector<float>{1, 0, 0});
+  const ExplanationComparison comparison = compareExplanations(a, treeOf(b));
+  EXPECT_FALSE(comparison.first);
+  EXPECT_EQ(comparison.diff.first->b, "missing");
+  EXPECT_EQ(comparison.differs, (std::vector<bool>{false, false, true}));
+}
+
 TEST(ExplanationTree, HasAllFieldsAndThePayload) {
   job::PixelExplanation path = job::somePath();
   std::vector<job::ExplainedEvent>& children = path.events[0].children;
