@@ -22,11 +22,15 @@ layout(location = 4) flat in float lineRadius;
 
 layout(location = 0) out vec4 color;
 
-// The farthest surface at the pixel and beside it, so that lines on an inclined surface are visible.
+const float kFarthest = -3.402823466e38;  // the least float
+
+// The farthest surface at the pixel and beside it, so that lines on an inclined surface are visible. Outside of the
+// depth image there is no surface.
 float farthestSurface(vec2 point) {
   const ivec2 last = textureSize(surfaceDepth, 0) - 1;
   const ivec2 pixel = ivec2(floor((point - constants.depthOrigin) / constants.depthScale));
-  float depth = texelFetch(surfaceDepth, clamp(pixel, ivec2(0), last), 0).r;
+  if (any(lessThan(pixel, ivec2(0))) || any(greaterThan(pixel, last))) return kFarthest;
+  float depth = texelFetch(surfaceDepth, pixel, 0).r;
   depth = min(depth, texelFetch(surfaceDepth, clamp(pixel + ivec2(1, 0), ivec2(0), last), 0).r);
   depth = min(depth, texelFetch(surfaceDepth, clamp(pixel - ivec2(1, 0), ivec2(0), last), 0).r);
   depth = min(depth, texelFetch(surfaceDepth, clamp(pixel + ivec2(0, 1), ivec2(0), last), 0).r);

@@ -77,12 +77,9 @@ std::vector<std::string> extensionNames(VkPhysicalDevice device) {
 
 // Finds a queue family with compute (which implies transfer), preferably with graphics, because it can present.
 bool findQueueFamily(VkPhysicalDevice device, std::uint32_t& family, std::uint32_t& timestampBits) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  const std::vector<VkQueueFamilyProperties> families = queueFamilies(device);
   for (const VkQueueFlags wanted : {VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT, int{VK_QUEUE_COMPUTE_BIT}}) {
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (std::uint32_t i = 0; i < families.size(); ++i) {
       if ((families[i].queueFlags & wanted) != wanted) continue;
       family = i;
       timestampBits = families[i].timestampValidBits;
@@ -264,6 +261,14 @@ DeviceFeatures featuresToEnable(const Capabilities& capabilities) {
   for (const Feature& feature : kRequiredFeatures) feature.member(result) = VK_TRUE;
   for (const Feature& feature : kOptionalFeatures) feature.member(result) = feature.member(available);
   return result;
+}
+
+std::vector<VkQueueFamilyProperties> queueFamilies(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  return families;
 }
 
 std::vector<FoundDevice> findDevices(VkInstance instance) {

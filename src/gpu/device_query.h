@@ -55,6 +55,8 @@ struct FoundDevice {
   std::uint32_t queueFamily = 0;
 };
 
+std::vector<VkQueueFamilyProperties> queueFamilies(VkPhysicalDevice device);
+
 // Returns all devices in the order of preference.
 std::vector<FoundDevice> findDevices(VkInstance instance);
 

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <utility>
 
+#include "gpu/upload_buffer.h"
+
 namespace quintet::gpu {
 namespace {
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gpu/graphics_pipeline.h"
 
-#include <vector>
-
-#include <fmt/format.h>
-
 #include "gpu/error.h"
 
 namespace quintet::gpu {
@@ -204,24 +200,6 @@ void GraphicsPipeline::bindSet(Commands& commands, VkDescriptorSet set) const {
 void GraphicsPipeline::setConstants(Commands& commands, std::span<const std::byte> bytes) const {
   context_.vk().vkCmdPushConstants(commands.handle(), layout_, kStages, 0, static_cast<std::uint32_t>(bytes.size()),
                                    bytes.data());
-}
-
-void reserveUpload(Context& context, Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage, const char* name) {
-  if (buffer && buffer.size() >= size) return;
-  buffer = Buffer(
-      context,
-      {.size = size + size / 2, .memory = Memory::upload, .usage = usage, .name = name, .purpose = Purpose::staging});
-}
-
-Context& requireGraphicsQueue(Context& context) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(context.physicalDevice(), &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(context.physicalDevice(), &count, families.data());
-  if (context.queueFamily() < count && (families[context.queueFamily()].queueFlags & VK_QUEUE_GRAPHICS_BIT))
-    return context;
-  throw Error(fmt::format("device '{}' has no graphics queue, so it cannot draw lines; use a different device",
-                          context.info().name));
 }
 
 }  // namespace quintet::gpu

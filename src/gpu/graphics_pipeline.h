@@ -56,11 +56,5 @@ class GraphicsPipeline {
   VkPipeline pipeline_ = VK_NULL_HANDLE;
 };
 
-// Makes a buffer for uploads at least this large. Its content is lost if it grows.
-void reserveUpload(Context& context, Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage, const char* name);
-
-// Returns the context. Throws Error unless its queue can rasterize. A context that presents always can.
-Context& requireGraphicsQueue(Context& context);
-
 }  // namespace quintet::gpu
 #endif

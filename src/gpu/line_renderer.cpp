@@ -7,6 +7,12 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "gpu/device_query.h"
+#include "gpu/upload_buffer.h"
+
 namespace quintet::gpu {
 namespace {
 
@@ -34,6 +40,13 @@ constexpr VkVertexInputAttributeDescription kAttributes[] = {
 };
 
 }  // namespace
+
+Context& requireGraphicsQueue(Context& context) {
+  const std::vector<VkQueueFamilyProperties> families = queueFamilies(context.physicalDevice());
+  if (families.at(context.queueFamily()).queueFlags & VK_QUEUE_GRAPHICS_BIT) return context;
+  throw Error(fmt::format("device '{}' has no graphics queue, so it cannot draw lines; use a different device",
+                          context.info().name));
+}
 
 LineRenderer::LineRenderer(Context& context, VkFormat format, std::span<const std::uint32_t> vertexShader,
                            std::span<const std::uint32_t> fragmentShader)

@@ -18,10 +18,13 @@
 
 namespace quintet::gpu {
 
+// Returns the context. Throws Error if its queue cannot draw lines. A context that presents always can.
+Context& requireGraphicsQueue(Context& context);
+
 class LineRenderer {
  public:
   // `context` outlives the renderer. `format`: of the targets. Shaders: SPIR-V of shaders/window/lines.vert and .frag.
-  // Throws Error if the device has no graphics queue, VulkanError.
+  // Throws Error as requireGraphicsQueue() does, VulkanError.
   LineRenderer(Context& context, VkFormat format, std::span<const std::uint32_t> vertexShader,
                std::span<const std::uint32_t> fragmentShader);
 

@@ -15,9 +15,9 @@
 
 namespace quintet::viewer {
 
-// Returns a copy of `image` (8 bits per sample, sRGB, straight alpha) with the lines. `depths` has `depthSize` values
-// (gpu::LineRenderer::setDepth); null: nothing hides lines. `shaders`: compileLineShaders(). Blocks. Throws Error if the
-// device has no graphics queue, and gpu errors.
+// Returns a copy of `image` (8 bits per sample, sRGB, opaque) with the lines. `depths` has `depthSize` values
+// (gpu::LineRenderer::setDepth); null: nothing hides lines. `shaders`: compileLineShaders(). Blocks. Throws Error if
+// the device has no graphics queue, and gpu errors.
 io::Image drawLines(gpu::Context& context, const WindowShaders& shaders, const io::Image& image,
                     const gpu::LineList& list, uvec2 depthSize, std::shared_ptr<const std::vector<float>> depths);
 

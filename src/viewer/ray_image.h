@@ -14,8 +14,8 @@
 
 namespace quintet::viewer {
 
-// Throws Error if the program did not use the camera of the scene for the explained pixel: rays cannot be drawn over its
-// image.
+// Throws Error if the program did not use the camera of the scene for the explained pixel: rays cannot be drawn over
+// its image.
 void requireSceneCamera(const job::PixelExplanation& explanation, const scene::Camera& camera);
 
 // Draws over `image`, which the job rendered: 8 bits per sample, sRGB, of the whole image. `caches`:

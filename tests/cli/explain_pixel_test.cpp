@@ -73,6 +73,34 @@ TEST_F(ExplainPixel, WritesAnImageWithTheRays) {
 
   expectError(explain({"--image", "rays.exr"}), 2, {"--image: 'rays.exr' must be a PNG file"});
   expectError(explain({"--image", "-"}), 2, {"--image requires a file"});
+  expectError(explain({"--image", "missing/rays.png"}), 1, {"missing"});
+}
+
+TEST_F(ExplainPixel, PrintsTheExplanationAlsoIfTheImageFails) {
+  write(folder_ / "flat.rt.glsl",
+        "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(1.0, 0.0, 0.0, 1.0));\n}\n");
+  const RunResult result = explain({"--program", "flat.rt.glsl", "--image", "rays.png", "--json"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(nlohmann::json::parse(result.out)["program"], "flat") << "one object";
+  EXPECT_THAT(result.err, HasSubstr("is not that of the scene's camera"));
+}
+
+// The image shows the frame that was explained.
+TEST_F(ExplainPixel, DrawsOverTheExplainedFrame) {
+  write(folder_ / "count.rt.glsl",
+        "#include <quintet/camera.glsl>\n/**** COMMON START ****/\nstruct RayPayloadType {\n  vec3 color;\n};\n"
+        "/**** COMMON END ****/\n"
+        "void main() { /**** RAY GENERATION SHADER ****/\n"
+        "  const Ray ray = cameraRay(vec2(gl_LaunchIDEXT.xy) + 0.5, vec2(0.5));\n"
+        "  traceRayEXT(topLevelAS, gl_RayFlagsNoneEXT, 0xFFu, 0u, 0u, 0u, ray.origin, 0.0, ray.direction, 100.0, 0);\n"
+        "  gsnSetPixel(vec4(float(frameID) / 4.0, float(frameSize) / 8.0, 0.0, 1.0));\n}\n"
+        "void main() { /**** CLOSEST-HIT SHADER ****/\n}\n"
+        "void main() { /**** MISS SHADER ****/\n}\n");
+  const RunResult result = explain({"--program", "count.rt.glsl", "--sample", "1", "--image", "rays.png"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const io::Image image = io::readImage(folder_ / "rays.png");
+  const auto corner = image.pixel<std::uint8_t>(0, 0);
+  EXPECT_EQ(std::vector<int>(corner.begin(), corner.end()), (std::vector<int>{64, 128, 0})) << "frame 1 of 4";
 }
 
 TEST_F(ExplainPixel, RejectsWrongRequests) {

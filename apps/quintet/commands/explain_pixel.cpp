@@ -12,11 +12,13 @@
 #include "base/file.h"
 #include "cli/candidates.h"
 #include "cli/exit_status.h"
+#include "cli/failure.h"
 #include "cli/parser.h"
 #include "cli/render_options.h"
 #include "cli/terminal.h"
 #include "cli/values.h"
 #include "cli/work.h"
+#include "gpu/line_renderer.h"
 #include "io/codec.h"
 #include "job/explanation_json.h"
 #include "job/pixel_explainer.h"
@@ -158,14 +160,30 @@ job::PixelExplanation explain(job::Engine& engine, std::shared_ptr<job::Prepared
   return explainer.explain(options.pixel, options.sample, console);
 }
 
+// Checks what can be checked before the work starts.
+output::OutputPlan planImage(job::Engine& engine, const program::Program& program, const Options& options) {
+  gpu::requireGraphicsQueue(engine.context());
+  return output::planOutputs(options.output, program, options.request.frames);
+}
+
+// The image of the explained render. Of a program that accumulates, up to the explained frame.
+job::RenderResult renderImage(job::RenderJob& job, const job::PixelExplanation& explanation, const Options& options,
+                              Console& console) {
+  if (!explanation.frames) return job.run(options.request.limits, console);
+  const std::uint64_t frames = std::uint64_t{explanation.sample} + 1;
+  while (job.sampleCount() < static_cast<double>(frames) && job.renderBatch(frames, console)) {
+  }
+  return job.result();
+}
+
 // Renders the image of the explained render, and writes it with the rays.
 void writeImage(job::Engine& engine, std::shared_ptr<job::PreparedScene>& scene, const program::Program& program,
-                const job::PixelExplanation& explanation, const Options& options, Console& console) {
-  const output::OutputPlan plan = output::planOutputs(options.output, program, options.request.frames);
+                const output::OutputPlan& plan, const job::PixelExplanation& explanation, const Options& options,
+                Console& console) {
   job::RenderJob job(engine, job::resolve(options.request, program), console, scene);
   viewer::requireSceneCamera(explanation, job.camera());
   setWorkStage("rendering");
-  const job::RenderResult result = job.run(options.request.limits, console);
+  const job::RenderResult result = renderImage(job, explanation, options, console);
   const io::Image image =
       viewer::drawRays(engine, job, explanation, output::displayImage(plan, *result.film), job::EngineOptions().caches);
   console.clear();
@@ -208,11 +226,21 @@ int explainPixelCommand(Arguments arguments) {
     job::Engine engine({.device = options->device, .log = [&](LogLevel level, const std::string& text) {
                           if (level == LogLevel::warning) console.warning(text);
                         }});
+    std::optional<output::OutputPlan> plan;
+    if (!options->image.empty()) plan = planImage(engine, program, *options);
     std::shared_ptr<job::PreparedScene> scene;
     const job::PixelExplanation explanation = explain(engine, scene, program, *options, console);
-    if (!options->image.empty()) writeImage(engine, scene, program, explanation, *options, console);
     console.clear();
-    return print(explanation, other, *options);
+    const int status = print(explanation, other, *options);  // first, because the image can fail
+    if (!plan) return status;
+    try {
+      writeImage(engine, scene, program, *plan, explanation, *options, console);
+    } catch (const Error& error) {
+      if (!options->console.json) throw;
+      console.clear();
+      return reportFailure(error, FailureJson::none);  // standard output has one object already
+    }
+    return status;
   } catch (const ProgramError& error) {
     console.diagnostics(error.diagnostics());
     return kRuntimeError;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -50,6 +51,8 @@ vec4 unpack(std::uint32_t color) {
 float surfaceAt(const gpu::LineList& list, uvec2 size, const std::vector<float>& depths, vec2 point) {
   const auto column = static_cast<int>(std::floor((point.x - list.depthX) / list.depthScale));
   const auto row = static_cast<int>(std::floor((point.y - list.depthY) / list.depthScale));
+  const auto isInside = [](int at, std::uint32_t count) { return at >= 0 && at < static_cast<int>(count); };
+  if (!isInside(column, size.x) || !isInside(row, size.y)) return std::numeric_limits<float>::lowest();
   float least = 1e30f;
   for (const auto& [dx, dy] : std::vector<std::pair<int, int>>{{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
     const int x = std::clamp(column + dx, 0, static_cast<int>(size.x) - 1);
@@ -139,7 +142,7 @@ TEST(LineImage, AgreesWithARasterizerOnTheHost) {
               expectedImage(list, kSize, *depths));
   // Depths with a lower resolution, which begin elsewhere.
   list.depthX = -8.0f;
-  list.depthY = 2.0f;
+  list.depthY = 8.0f;  // the first line is partly above them
   list.depthScale = 4.0f;
   list.dash = 0.0f;
   list.bias = 0.05f;
