@@ -12,7 +12,7 @@ namespace quintet::job {
 DepthMap renderDepthMap(Engine& engine, render::DeviceScene& scene, const scene::Camera& camera, uvec2 size,
                         const program::Program& shown) {
   program::RunnableProgram program = pickingProgram(engine, scene, shown, "depth.rgen");
-  program.description.outputs.resize(1);  // depth.rgen writes no other one
+  program.description.outputs.resize(1);  // depth.rgen writes only the first output
   render::RenderSettings settings;
   settings.width = size.x;
   settings.height = size.y;

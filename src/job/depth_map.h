@@ -19,8 +19,8 @@ struct DepthMap {
 };
 
 // Traces the rays through the centers of pixels and lens (the program `pick`). `size`: of the whole image. `shown`: the
-// program for which the scene is prepared, so that it stays so. Boxes with a surface that only a program knows have the
-// depth of the box. Blocks. Throws ProgramError, gpu errors and TimeoutError.
+// program for which the scene is prepared, so that the scene need not be prepared again. Boxes with a surface that only
+// a program knows have the depth of the box. Blocks. Throws ProgramError, gpu errors and TimeoutError.
 DepthMap renderDepthMap(Engine& engine, render::DeviceScene& scene, const scene::Camera& camera, uvec2 size,
                         const program::Program& shown);
 

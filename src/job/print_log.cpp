@@ -23,8 +23,8 @@ render::Region printedPixels(const PrintRequest& request, const render::Region& 
   if (isInside(p.x, p.width, rendered.x, rendered.width) && isInside(p.y, p.height, rendered.y, rendered.height))
     return p;
   throw UsageError(
-      fmt::format("the pixels that print, {},{},{},{}, are not in the rendered part of the image, {},{},{},{}", p.x,
-                  p.y, p.width, p.height, rendered.x, rendered.y, rendered.width, rendered.height));
+      fmt::format("the pixels {},{},{},{} to print are outside the rendered part of the image, {},{},{},{}", p.x, p.y,
+                  p.width, p.height, rendered.x, rendered.y, rendered.width, rendered.height));
 }
 
 }  // namespace

@@ -89,7 +89,7 @@ TEST_F(View, ReadsStandardInput) {
 TEST_F(View, PicksAPixel) {
   const RunResult result = view("{\"do\":\"pick\",\"x\":16,\"y\":12}\n{\"do\":\"pick\",\"x\":32,\"y\":0}\n");
   EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("line 2: pixel 32,0 is outside of the image of 32x24"));
+  EXPECT_THAT(result.err, HasSubstr("line 2: pixel 32,0 is not inside the image of 32x24"));
   const nlohmann::json picked = events(result).front();
   EXPECT_EQ(picked["event"], "picked");
   EXPECT_EQ(picked["x"], 16);

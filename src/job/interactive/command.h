@@ -105,8 +105,8 @@ struct SetSamples {
   std::uint32_t samples = 64;  // per pixel, which refinement reaches; or frames
 };
 
-// What the program prints for these pixels of the image (debugPrintfEXT) becomes LinesPrinted. No step of undo, and undo
-// keeps it.
+// What the program prints for these pixels of the image (debugPrintfEXT) becomes LinesPrinted. No step of undo, and
+// undo keeps it.
 struct SetPrint {
   std::optional<PrintRequest> print;  // with pixels, or for all; unset: nothing is printed
 };

@@ -30,8 +30,8 @@ struct ProgramReloaded {
 struct DiagnosticsFound {
   std::vector<Diagnostic> diagnostics;
 };
-// What the program printed for the pixels that SetPrint chose, since the last event of this kind or restart. Only images
-// at full resolution print.
+// What the program printed for the pixels that SetPrint chose, since the last event of this kind or restart. Only
+// images at full resolution print.
 struct LinesPrinted {
   Printed printed;
 };

@@ -18,10 +18,10 @@ namespace quintet::job::interactive {
 // All without a line break.
 std::string eventJson(const Event& event);
 std::string savedJson(const std::string& file);  // a script wrote an image
-// A script picked a pixel. `names`: that the indices of `pick` refer to.
+// A script picked a pixel. The names are those to which the indices of `pick` refer.
 std::string pickedJson(uvec2 pixel, const std::optional<Pick>& pick, const std::vector<std::string>& instanceNames,
                        const std::vector<std::string>& materialNames);
-// A script explained a pixel. `file`: that has the explanation; if it is empty, the event has it.
+// A script explained a pixel. `file`: the file that has the explanation; if it is empty, the event has it.
 std::string explainedJson(const PixelExplanation& explanation, const std::string& file);
 std::string failedJson(std::uint64_t line, const std::string& message);  // a line of a script failed
 

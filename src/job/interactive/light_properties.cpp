@@ -31,7 +31,8 @@ vec3 toVec3(std::span<const double> v) { return {v[0], v[1], v[2]}; }
 void setIntensity(Light& light, std::span<const double> values) {
   const double intensity = values[0];
   if (!(intensity >= 0.0) || !std::isfinite(static_cast<float>(intensity))) fail("intensity", "a number of at least 0");
-  light.intensity = static_cast<float>(intensity) * lightColor(light);
+  if (static_cast<float>(intensity) != lightIntensity(light))
+    light.intensity = static_cast<float>(intensity) * lightColor(light);
 }
 
 void setColor(Light& light, std::span<const double> values) {
@@ -39,7 +40,7 @@ void setColor(Light& light, std::span<const double> values) {
   const float largest = std::max({color.r, color.g, color.b});
   if (!isFinite(color) || glm::any(glm::lessThan(color, vec3(0.0f))) || !(largest > 0.0f))
     fail("color", "three numbers of at least 0, not all 0");
-  light.intensity = lightIntensity(light) * (color / largest);
+  if (color / largest != lightColor(light)) light.intensity = lightIntensity(light) * (color / largest);
 }
 
 void setPosition(Light& light, std::span<const double> values) {
@@ -52,20 +53,20 @@ void setDirection(Light& light, std::span<const double> values) {
   const vec3 direction = toVec3(values);
   const float length = glm::length(direction);
   if (!(length > 0.0f) || !std::isfinite(length)) fail("direction", "a vector with a length above 0");
-  light.direction = direction / length;
+  if (direction != light.direction) light.direction = direction / length;
 }
 
-float coneAngle(std::string_view name, double degrees) {
+void setConeAngle(float& angle, std::string_view name, double degrees) {
   if (!(degrees >= 0.0 && degrees <= 90.0)) fail(name, "from 0 to 90 degrees");
-  return glm::radians(static_cast<float>(degrees));
+  if (static_cast<float>(degrees) != glm::degrees(angle)) angle = glm::radians(static_cast<float>(degrees));
 }
 
 void setInnerConeAngle(Light& light, std::span<const double> values) {
-  light.innerConeAngle = coneAngle("innerConeAngle", values[0]);
+  setConeAngle(light.innerConeAngle, "innerConeAngle", values[0]);
 }
 
 void setOuterConeAngle(Light& light, std::span<const double> values) {
-  light.outerConeAngle = coneAngle("outerConeAngle", values[0]);
+  setConeAngle(light.outerConeAngle, "outerConeAngle", values[0]);
 }
 
 struct Property {

@@ -32,8 +32,8 @@ struct Pick {
 std::optional<Pick> pick(Engine& engine, render::DeviceScene& scene, const scene::Camera& camera, uvec2 size,
                          uvec2 pixel, const program::Program& shown);
 
-// Compiles the program of pick() in another thread, for the cache of the engine's compiler, so that the first pick() does
-// not wait for it. `engine` outlives the result. Errors are those of the first pick().
+// Compiles the program of pick() in another thread, for the cache of the engine's compiler, so that the first pick()
+// does not wait for it. `engine` outlives the result. Errors are those of the first pick().
 std::future<void> compilePicking(Engine& engine, const render::DeviceScene& scene, const program::Program& shown);
 
 }  // namespace quintet::job::interactive

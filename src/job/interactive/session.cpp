@@ -2,6 +2,7 @@
 #include "job/interactive/session.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <utility>
@@ -80,6 +81,19 @@ std::vector<std::size_t> changedKeys(const std::map<std::size_t, Value>& a, cons
   for (const auto& [key, value] : b)
     if (!a.contains(key)) keys.push_back(key);
   return keys;
+}
+
+// In all that EditLight can change.
+bool isSame(const LightState& a, const LightState& b) {
+  return a.on == b.on && a.color == b.color && a.light.intensity == b.light.intensity &&
+         a.light.position == b.light.position && a.light.direction == b.light.direction &&
+         a.light.innerConeAngle == b.light.innerConeAngle && a.light.outerConeAngle == b.light.outerConeAngle;
+}
+
+bool isSame(const scene::Material& a, const scene::Material& b, const std::vector<Property>& properties) {
+  return std::ranges::all_of(properties, [&](const Property& property) {
+    return materialPropertyValue(a, property.name) == materialPropertyValue(b, property.name);
+  });
 }
 
 void requirePositive(double value, const char* name) {
@@ -176,11 +190,17 @@ void Session::apply(const Command& command) {
   SessionState next = isUndo ? history_.undone() : isRedo ? history_.redone() : changed(command);
   if (!isUndo && !isRedo && next == before) return;
   if (sizeOfWindow_ && (isUndo || isRedo)) next.size = state_.size;
-  try {
-    show(next);
-  } catch (const Error&) {  // such as a program whose file no longer exists
+  const auto drop = [&] {
     if (isUndo) history_.dropUndo();
     if (isRedo) history_.dropRedo();
+  };
+  try {
+    show(next);
+  } catch (const FileError&) {  // such as a program whose file no longer exists
+    drop();
+    throw;
+  } catch (const UsageError&) {  // such as a parameter that the program no longer has
+    drop();
     throw;
   }
   if (isUndo)
@@ -203,6 +223,11 @@ SessionState Session::changed(const Command& command) const {
         throw UsageError("the camera would be too near or too far");
     }
     uvec2 size() const { return next.size; }
+    // RenderJob reports animated instances.
+    void setTransform(std::size_t instance, const mat4& worldFromObject) {
+      const bool animated = !session.scene_->instances[instance].keyframes.empty();
+      if (animated || worldFromObject != session.transform(instance)) next.transforms[instance] = worldFromObject;
+    }
 
     void operator()(const Orbit& c) {
       const OrbitCamera camera = session.navigation();
@@ -245,8 +270,18 @@ SessionState Session::changed(const Command& command) const {
       next.output = isShown ? session.program().outputs.front().name : "";  // the first one of the program
     }
     void operator()(const SetParameter& c) {
-      std::erase_if(next.assignments, [&](const std::string& text) { return text.starts_with(c.name + "="); });
-      next.assignments.push_back(c.name + "=" + c.value);
+      program::ParameterValues values = session.parameters();
+      values.set(c.name, c.value);
+      if (values.toJson() == session.parameters().toJson()) return;
+      const auto sets = [&](const std::string& text) { return text.starts_with(c.name + "="); };
+      const std::string assignment = c.name + "=" + c.value;
+      const auto found = std::ranges::find_if(next.assignments, sets);
+      if (found == next.assignments.end()) {
+        next.assignments.push_back(assignment);
+      } else {
+        next.assignments.erase(std::remove_if(found + 1, next.assignments.end(), sets), next.assignments.end());
+        *found = assignment;
+      }
     }
     void operator()(const EditMaterial& c) {
       std::vector<std::string> names = session.materialNames_;
@@ -254,16 +289,13 @@ SessionState Session::changed(const Command& command) const {
       const std::size_t index = indexOf(c.material, names, "material");
       scene::Material material = session.material(index);
       for (const Property& property : c.properties) setMaterialProperty(material, property.name, property.numbers);
+      if (isSame(material, session.material(index), c.properties)) return;
       next.materials[index] = std::make_shared<const scene::Material>(std::move(material));
     }
     void operator()(const EditLight& c) {
       const std::size_t index = indexOf(c.light, session.lightNames_, "light");
       LightState light = session.light(index);
-      std::vector<Property> properties = c.properties;
-      // JSON objects have no order, and a light of intensity 0 has no color to set.
-      std::stable_partition(properties.begin(), properties.end(),
-                            [](const Property& p) { return p.name == "intensity"; });
-      for (const Property& property : properties) {
+      for (const Property& property : c.properties) {
         const bool isSwitch = property.name == "on";
         if (isSwitch && (property.numbers.size() != 1 || (property.numbers[0] != 0 && property.numbers[0] != 1)))
           throw UsageError("the property 'on' of a light is true or false");
@@ -272,7 +304,7 @@ SessionState Session::changed(const Command& command) const {
         else
           setLightProperty(light.light, light.color, property.name, property.numbers);
       }
-      next.lights[index] = std::make_shared<const LightState>(light);
+      if (!isSame(light, session.light(index))) next.lights[index] = std::make_shared<const LightState>(light);
     }
     void operator()(const SetEnvironment& c) {
       if (c.intensity && !(*c.intensity >= 0.0f && std::isfinite(*c.intensity)))
@@ -284,13 +316,13 @@ SessionState Session::changed(const Command& command) const {
       if (c.on) next.environmentOn = *c.on;
     }
     void operator()(const SetTransform& c) {
-      next.transforms[indexOf(c.instance, session.instanceNames_, "instance")] = c.worldFromObject;
+      setTransform(indexOf(c.instance, session.instanceNames_, "instance"), c.worldFromObject);
     }
     void operator()(const Move& c) {
       const std::size_t index = indexOf(c.instance, session.instanceNames_, "instance");
       mat4 moved = session.transform(index);
       moved[3] += vec4(c.meters, 0.0f);
-      next.transforms[index] = moved;
+      setTransform(index, moved);
     }
     void operator()(const SetFrame& c) {
       if (!session.isAnimated()) throw UsageError("no instance has keyframes, so all frames are the same");
@@ -382,51 +414,66 @@ float Session::lastFrame() const {
   return last;
 }
 
-// Passes the difference to the job. A command changes one thing, so an error leaves the rest as it is.
-void Session::show(const SessionState& next) {
-  const auto differs = [&](auto member) { return !(next.*member == state_.*member); };
-  bool restart = false;
+// Passes the difference to the job. Counts the edits that have succeeded, which discard the samples. An empty output of
+// `to` becomes the first one of its program.
+void Session::transfer(const SessionState& from, SessionState& to, unsigned& edits) {
+  const auto differs = [&](auto member) { return !(to.*member == from.*member); };
   const auto edit = [&](bool needed, const auto& function) {
     if (!needed) return;
     function();
-    restart = true;
+    ++edits;
   };
-  SessionState shown = next;
   if (differs(&SessionState::program) || differs(&SessionState::parameterFile)) {
-    program::Program loaded = loadForSession(next.program);
-    if (shown.output.empty() && !loaded.outputs.empty()) shown.output = loaded.outputs.front().name;
-    edit(true, [&] { showProgram(std::move(loaded), shown); });
+    program::Program loaded = loadForSession(to.program);
+    if (to.output.empty() && !loaded.outputs.empty()) to.output = loaded.outputs.front().name;
+    edit(true, [&] { showProgram(std::move(loaded), to); });
   } else {
-    edit(differs(&SessionState::output) && outputsFor(program(), next.output) != job_->resolved().request.outputs,
-         [&] { showProgram(program(), next); });
-    edit(differs(&SessionState::assignments), [&] { job_->setParameters(next.assignments); });
+    edit(differs(&SessionState::output) && outputsFor(program(), to.output) != job_->resolved().request.outputs,
+         [&] { showProgram(program(), to); });
+    edit(differs(&SessionState::assignments), [&] { job_->setParameters(to.assignments); });
   }
-  edit(differs(&SessionState::camera), [&] { job_->setCamera(next.camera); });
-  edit(differs(&SessionState::frame), [&] { job_->setFrame(next.frame); });
-  edit(differs(&SessionState::samples), [&] { job_->setPlannedSamples(next.samples); });
+  edit(differs(&SessionState::camera), [&] { job_->setCamera(to.camera); });
+  edit(differs(&SessionState::frame), [&] { job_->setFrame(to.frame); });
+  edit(differs(&SessionState::samples), [&] { job_->setPlannedSamples(to.samples); });
   edit(differs(&SessionState::size), [&] {
-    job_->setSize(next.size);
-    filmSize_ = next.size;
-    if (hasAutomaticCamera()) job_->setCamera(next.camera);  // it depends on the aspect ratio
+    job_->setSize(to.size);
+    filmSize_ = to.size;
+    if (hasAutomaticCamera()) job_->setCamera(to.camera);  // it depends on the aspect ratio
   });
   edit(differs(&SessionState::environment) || differs(&SessionState::environmentOn), [&] {
-    EnvironmentRequest environment = next.environment;
-    if (!next.environmentOn) environment.source = "none";
+    EnvironmentRequest environment = to.environment;
+    if (!to.environmentOn) environment.source = "none";
     job_->setEnvironment(environment);
   });
-  for (const std::size_t i : changedKeys(state_.materials, next.materials))
-    edit(true, [&] { job_->setMaterial(i, materialIn(next, i)); });
-  for (const std::size_t i : changedKeys(state_.lights, next.lights))
+  for (const std::size_t i : changedKeys(from.materials, to.materials))
+    edit(true, [&] { job_->setMaterial(i, materialIn(to, i)); });
+  for (const std::size_t i : changedKeys(from.lights, to.lights))
     edit(true, [&] {
-      LightState light = lightIn(next, i);
+      LightState light = lightIn(to, i);
       if (!light.on) light.light.intensity = vec3(0.0f);
       job_->setLight(i, light.light);
     });
-  for (const std::size_t i : changedKeys(state_.transforms, next.transforms))
+  for (const std::size_t i : changedKeys(from.transforms, to.transforms))
     edit(true, [&] {
-      const auto edited = next.transforms.find(i);
-      job_->setTransform(i, edited != next.transforms.end() ? edited->second : scene_->instances[i].worldFromObject);
+      const auto edited = to.transforms.find(i);
+      job_->setTransform(i, edited != to.transforms.end() ? edited->second : scene_->instances[i].worldFromObject);
     });
+}
+
+// After an error, the job is as before. If removed steps made the difference large, edits before the error are undone.
+void Session::show(const SessionState& next) {
+  SessionState shown = next;
+  unsigned edits = 0;
+  try {
+    transfer(state_, shown, edits);
+  } catch (...) {
+    if (edits > 0) {
+      SessionState before = state_;
+      transfer(shown, before, edits);
+      restarted();
+    }
+    throw;
+  }
   const bool otherProgram = shown.program != state_.program;
   if (kept_ && shown.output != state_.output) {  // it shows the output before, and the film has no samples
     kept_.reset();
@@ -439,12 +486,14 @@ void Session::show(const SessionState& next) {
     watchFiles({});
   }
   imageChanged_ = true;
-  if (restart) restarted();
+  if (edits > 0) restarted();
 }
 
 void Session::showProgram(program::Program program, const SessionState& next) {
   const ProgramRequest with{outputsFor(program, next.output), next.parameterFile, next.assignments};
   job_->setProgram(std::move(program), with, *recorder_);  // keeps the old one if it throws
+  // The program that picks depends on the shown one, so it is prepared again. Destroying the future would wait.
+  if (picking_.valid() && picking_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) picking_ = {};
 }
 
 void Session::setPrint(const SetPrint& command) {
@@ -453,8 +502,8 @@ void Session::setPrint(const SetPrint& command) {
     const auto end = [](std::uint32_t begin, std::uint32_t size) { return std::uint64_t{begin} + size; };
     if (pixels.width == 0 || pixels.height == 0 || end(pixels.x, pixels.width) > state_.size.x ||
         end(pixels.y, pixels.height) > state_.size.y)
-      throw UsageError(fmt::format("the pixels {},{},{},{}, which shall print, are not in the image of {}x{}", pixels.x,
-                                   pixels.y, pixels.width, pixels.height, state_.size.x, state_.size.y));
+      throw UsageError(fmt::format("the pixels {},{},{},{} to print are outside the image of {}x{}", pixels.x, pixels.y,
+                                   pixels.width, pixels.height, state_.size.x, state_.size.y));
   }
   job_->setPrint(command.print, *recorder_);
   imageChanged_ = true;
@@ -660,7 +709,7 @@ render::RayCount Session::rays() const { return job_->renderer().rays(); }
 void Session::requirePixel(uvec2 pixel) const {
   if (pixel.x >= state_.size.x || pixel.y >= state_.size.y)
     throw UsageError(
-        fmt::format("pixel {},{} is outside of the image of {}x{}", pixel.x, pixel.y, state_.size.x, state_.size.y));
+        fmt::format("pixel {},{} is not inside the image of {}x{}", pixel.x, pixel.y, state_.size.x, state_.size.y));
 }
 
 PixelExplanation Session::explain(uvec2 pixel, std::uint32_t sample) {

@@ -82,8 +82,9 @@ class Session {
   ~Session();
 
   // Throws UsageError and FileError, and ProgramError for a program or an output whose code does not compile, and then
-  // changes nothing. A command that sets what is set adds no step. Undo and redo without a step are errors, too. A step that cannot be shown, because a file has
-  // changed since, is removed, so that the next undo or redo reaches the step after it.
+  // changes nothing. A command that sets what is set adds no step. Undo and redo without a step are errors, too. A step
+  // that refers to a file or a name that no longer exists is removed, so that the next undo or redo reaches the step
+  // after it. After any other error it stays: a program can be corrected.
   void apply(const Command& command);
   bool canUndo() const { return history_.canUndo(); }
   bool canRedo() const { return history_.canRedo(); }
@@ -120,8 +121,8 @@ class Session {
   // Explains a sample of a pixel of the image at full resolution, as it is after all commands: the result is that of a
   // PixelExplainer for a render with the same request. For a program that accumulates, `sample` is a frame, and those
   // before it are rendered first. The image stays, and refinement continues. Blocks; compiles a variant of the program
-  // after each change that compiles the program. Throws UsageError for a pixel or a sample that the image does not have,
-  // ProgramError, TimeoutError and gpu errors.
+  // after each change that compiles the program. Throws UsageError for a pixel or a sample that the image does not
+  // have, ProgramError, TimeoutError and gpu errors.
   PixelExplanation explain(uvec2 pixel, std::uint32_t sample);
   // The changes so far that discarded the samples: an explanation is outdated if this number has changed since.
   std::uint64_t restarts() const { return restarts_; }
@@ -157,6 +158,7 @@ class Session {
   const scene::Material& materialIn(const SessionState& state, std::size_t index) const;
   LightState lightIn(const SessionState& state, std::size_t index) const;
   void show(const SessionState& next);
+  void transfer(const SessionState& from, SessionState& to, unsigned& edits);
   void showProgram(program::Program program, const SessionState& next);
   void setPrint(const SetPrint& command);
   void requirePixel(uvec2 pixel) const;

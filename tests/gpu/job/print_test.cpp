@@ -298,8 +298,7 @@ TEST_F(PrintTest, PixelsOutsideOfTheImageAreAnError) {
     renderBox(request);
     FAIL();
   } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(),
-                 "the pixels that print, 20,15,5,1, are not in the rendered part of the image, 0,0,24,16");
+    EXPECT_STREQ(error.what(), "the pixels 20,15,5,1 to print are outside the rendered part of the image, 0,0,24,16");
   }
 }
 

@@ -673,6 +673,36 @@ TEST_F(SessionTest, CommandsThatChangeNothingAddNoStep) {
   EXPECT_TRUE(session->step(1).empty()) << "the image stays";
 }
 
+TEST_F(SessionTest, EditsToTheSameValueAddNoStep) {
+  writeFile(folder_ / "a.scene.toml", litScene());
+  const auto session = makeSession(request(1));
+  session->apply(SetParameter{"bounces", "3"});
+  session->apply(SetParameter{"roulette_start", "2"});
+  session->apply(EditLight{"lamp", {{"color", {3, 5, 7}}}});
+  session->refine();
+  const scene::Light spot = session->light(1).light;
+  const std::vector<double> color{3.0 / 7, 5.0 / 7, 1};
+  const std::vector<Command> commands{
+      SetParameter{"bounces", "3"},
+      SetParameter{"bounces", "03"},
+      SetParameter{"clamp", "0"},  // the default
+      EditMaterial{"red", {{"roughness", {session->material(0).roughness}}, {"metallic", {0}}}},
+      EditLight{"lamp", {{"intensity", {20}}, {"color", color}, {"on", {1}}}},
+      EditLight{"spot", {{"direction", {0, -1, 0}}, {"outerConeAngle", {glm::degrees(spot.outerConeAngle)}}}},
+      SetTransform{"right", session->transform(1)},
+      Move{"left", {}}};
+  const SessionState before = session->state();
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    session->apply(commands[i]);
+    EXPECT_TRUE(session->state() == before) << i;
+  }
+  EXPECT_TRUE(session->step(1).empty()) << "the image stays";
+  session->apply(SetParameter{"bounces", "4"});
+  EXPECT_EQ(session->state().assignments, (std::vector<std::string>{"bounces=4", "roulette_start=2"}));
+  session->apply(Undo{});
+  EXPECT_TRUE(session->state() == before);
+}
+
 TEST_F(SessionTest, TheSameProgramGetsItsDefaults) {
   writeFile(folder_ / "values.json", "{\"bounces\": 2}");
   RenderRequest few = request();
@@ -844,6 +874,47 @@ TEST_F(SessionReload, UndoSkipsWhatNoLongerExists) {
   EXPECT_EQ(session->state().exposure, 1.0);
   session->apply(Redo{});
   EXPECT_EQ(session->state().program, "ao");
+}
+
+TEST_F(SessionReload, UndoWaitsForProgramsWithErrors) {
+  save("1.0, 0.0, 0.0, 1.0");
+  const auto session = makeSession(request(1), (folder_ / "p.rt.glsl").string());
+  session->apply(SetProgram{"normals"});
+  save("nothing");
+  EXPECT_THROW(session->apply(Undo{}), ProgramError);
+  EXPECT_EQ(session->state().program, "normals");
+  save("0.0, 1.0, 0.0, 1.0");
+  session->apply(Undo{});
+  session->refine();
+  EXPECT_EQ(session->image().pixel<std::uint8_t>(0, 0)[1], 255);
+  EXPECT_FALSE(session->canUndo());
+}
+
+// The removed step makes the next undo change two things, of which the second one fails.
+TEST_F(SessionReload, AFailedUndoChangesNothing) {
+  save("1.0, 0.0, 0.0, 1.0");
+  for (const char* name : {"a.hdr", "b.hdr"})
+    io::writeImage(folder_ / name, io::makeImage(4, 2, 3, io::PixelType::f32, io::ColorEncoding::linear));
+  const auto session = makeSession(request(1), "normals");
+  session->apply(SetEnvironment{.source = (folder_ / "a.hdr").string()});
+  session->apply(SetProgram{(folder_ / "p.rt.glsl").string()});
+  session->apply(SetEnvironment{.source = (folder_ / "b.hdr").string()});
+  session->apply(SetProgram{"ao"});
+  session->apply(SetEnvironment{.source = "none"});
+  session->refine();
+  const auto film = sums(*session);
+  const SessionState before = session->state();
+  std::filesystem::remove(folder_ / "a.hdr");
+  std::filesystem::remove(folder_ / "b.hdr");
+  std::filesystem::remove(folder_ / "p.rt.glsl");
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_THROW(session->apply(Undo{}), Error) << i;
+    EXPECT_TRUE(session->state() == before) << i;
+    session->refine();
+    EXPECT_TRUE(test::equalSums(sums(*session), film)) << i;
+  }
+  session->apply(Undo{});
+  EXPECT_EQ(session->state().program, "normals");
 }
 
 TEST_F(SessionReload, PrintsTheChosenPixels) {
