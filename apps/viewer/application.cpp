@@ -139,7 +139,7 @@ void Application::receive() {
     state_.addMessage(std::move(message));
     framesToDraw_ = kStableFrames;
   }
-  if (last->explanation != state_.snapshot->explanation) state_.setExplanation(state_.snapshot->explanation);
+  if (last->explanation != state_.snapshot->explanation) setExplanation();
   for (const std::optional<job::interactive::Pick>& pick : session_->takePicks())
     state_.selection = pick ? Selection{Selection::Kind::instance, pick->instance} : Selection{};
   if (last->session != state_.snapshot->session || last->phase != state_.snapshot->phase) {
@@ -165,6 +165,15 @@ void Application::receive() {
     displayError_ = std::move(error);
     framesToDraw_ = kStableFrames;
   }
+}
+
+// The command is made now, because the scene can change later.
+void Application::setExplanation() {
+  const Snapshot& snapshot = *state_.snapshot;
+  const job::PixelExplanation* explanation = snapshot.explanation.get();
+  const bool known = explanation && state_.ready() && !snapshot.explanationOutdated;
+  state_.setExplanation(snapshot.explanation,
+                        known ? explainingCommand(snapshot, explanation->pixel, explanation->sample) : "");
 }
 
 // The image has the pixels of its area, unless its size is fixed.
@@ -413,7 +422,7 @@ void Application::menuBar() {
     }
     item("Save image…", Action::save, ready);
     item("Copy command", Action::copyCommand, ready);
-    item("Save explanation…", Action::saveExplanation, state_.explanation != nullptr);
+    item("Save explanation…", Action::saveExplanation, ready && state_.explanation);
     ImGui::Separator();
     item("Quit", Action::quit);
     ImGui::EndMenu();
@@ -492,7 +501,9 @@ void Application::perform(Action action) {
     case Action::quit: quit_ = true; return;
     case Action::togglePanels: state_.settings.panels = !state_.settings.panels; return;
     case Action::toggleFullScreen: return window_.toggleFullScreen();
-    case Action::toggleRays: state_.rays.enabled = !state_.rays.enabled; return;
+    case Action::toggleRays:
+      if (state_.rays.overlay) state_.rays.enabled = !state_.rays.enabled;
+      return;
     case Action::toggleTheme:
       state_.settings.theme = state_.settings.theme == Theme::dark ? Theme::light : Theme::dark;
       return;
@@ -546,7 +557,11 @@ void Application::perform(Action action) {
       break;
     case Action::copyExplainCommand:
       if (!state_.explanation) break;
-      window_.setClipboard(explainingCommand(snapshot, state_.explanation->pixel, state_.explanation->sample));
+      if (state_.explain.command.empty()) {
+        state_.addMessage({Message::Kind::warning, "the scene has changed; explain the pixel again"});
+        break;
+      }
+      window_.setClipboard(state_.explain.command);
       state_.addMessage({Message::Kind::note, "copied the command that explains this pixel"});
       break;
     case Action::addBookmark: addBookmark(state_); break;

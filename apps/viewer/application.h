@@ -63,7 +63,8 @@ class Application {
 
   void frame(double wait);
   double waitTime() const;
-  void receive();  // what the threads have made since the last frame
+  void receive();         // what the threads have made since the last frame
+  void setExplanation();  // that of the snapshot
   void chooseImageSize(const Area& area);
   void requestDisplay();
   void updateTextures();
@@ -109,8 +110,8 @@ class Application {
   std::shared_ptr<const io::Image> displayedReference_;
   std::shared_ptr<const Display> textured_;  // in the textures
   float textureScale_ = 0;                   // of the placement when they were made
-  uvec2 imageSize_{0};                       // of the session, or that it was asked for since
-  uvec2 wantedSize_{0};                      // that the window has room for
+  uvec2 imageSize_{0};                       // size of the session's image, or the size requested last
+  uvec2 wantedSize_{0};                      // size that fits the window
   double wantedSince_ = 0;                   // on clock_
   std::vector<double> requestedExposures_;   // by changeExposure(), which the session has not confirmed
   std::string displayError_;                 // of displays_, as the last message shows it

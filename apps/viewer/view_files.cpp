@@ -11,7 +11,6 @@
 #include "base/file.h"
 #include "io/codec.h"
 #include "job/explanation_json.h"
-#include "reproduce.h"
 #include "viewer/dropped_file.h"
 
 namespace quintet::viewer {
@@ -128,7 +127,7 @@ void openFile(ViewState& state, const std::string& path) {
       return openSession(state, std::move(request), path);
     }
     case FileUse::program: {
-      // For a scene of its own, the program is a change of the session, which can be undone.
+      // If a scene file is open, a new program is a change of the session, which can be undone.
       if (state.ready() && !state.snapshot->request->render.scene.empty()) {
         addRecentFile(state.settings, path);
         storeSettings(state);
@@ -173,10 +172,13 @@ void openLesson(ViewState& state, const std::string& program) {
 }
 
 void saveExplanation(ViewState& state, const std::filesystem::path& file) {
-  if (!state.explanation) return;
-  const std::string command = explainingCommand(*state.snapshot, state.explanation->pixel, state.explanation->sample);
+  if (!state.explanation) {
+    state.addMessage(
+        {Message::Kind::error, fmt::format("{}: not saved, because no pixel is explained", file.string())});
+    return;
+  }
   try {
-    writeFile(file, job::explanationJson(*state.explanation, state.snapshot->explanationOutdated ? "" : command));
+    writeFile(file, job::explanationJson(*state.explanation, state.explain.command));
     state.addMessage({Message::Kind::note, fmt::format("saved {}", file.string())});
   } catch (const Error& error) {
     state.addMessage({Message::Kind::error, error.what()});

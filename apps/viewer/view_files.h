@@ -13,16 +13,16 @@ namespace quintet::viewer {
 // The key of the bookmarks of the session's scene: an absolute path, or the name of the program whose own scene it is.
 std::string sceneKey(const Snapshot& snapshot);
 
-// A scene or program replaces the current one; the program stays with a new scene, and the scene with a new program, which
-// can be undone. An
-// environment, a reference image or an explanation is used for the current scene. Other files cause a message.
+// A scene or program replaces the current one; the program stays with a new scene, and the scene with a new program,
+// which can be undone. An environment, a reference image or an explanation is used for the current scene. Other files
+// cause a message.
 void openFile(ViewState& state, const std::string& path);
 // One of Settings::recentFiles. If it no longer exists, this is a message, and the session continues.
 void openRecent(ViewState& state, const std::string& file);
 // A built-in program on its own scene.
 void openLesson(ViewState& state, const std::string& program);
 
-// As JSON, with the command that explains the pixel unless the scene has changed since. Errors become messages.
+// As JSON, with the command that explains the pixel if it is known. Errors become messages.
 void saveExplanation(ViewState& state, const std::filesystem::path& file);
 
 // Settings and bookmarks. A file that cannot be read is renamed and causes a message, and the defaults are used.

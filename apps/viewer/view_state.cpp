@@ -35,8 +35,9 @@ void ViewState::printPixels(const render::Region& pixels) {
   apply(job::interactive::SetPrint{job::PrintRequest{.pixels = pixels}});
 }
 
-void ViewState::setExplanation(std::shared_ptr<const job::PixelExplanation> next) {
+void ViewState::setExplanation(std::shared_ptr<const job::PixelExplanation> next, std::string command) {
   explanation = std::move(next);
+  explain.command = std::move(command);
   explain.tree = explanation ? std::make_shared<const ExplanationTree>(explanation) : nullptr;
   explain.closed.clear();
   explain.row.reset();

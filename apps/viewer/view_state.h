@@ -76,6 +76,7 @@ struct ExplainControls {
   bool revealsPanel = false, revealsRow = false;      // by scrolling, in the next frame
   std::shared_ptr<const job::PixelExplanation> kept;  // A of a comparison; null if there is none
   bool compares = false;
+  std::string command;  // the command line that explains the pixel; empty if the scene had changed before it was known
   std::optional<ExplanationComparison> comparison;  // if `compares`
 };
 
@@ -118,9 +119,10 @@ struct ViewState {
   void addMessage(Message message);
   void explainPixel(uvec2 pixel, std::uint32_t sample);  // or the last sample, if there are fewer
   void printPixels(const render::Region& pixels);
-  void setExplanation(std::shared_ptr<const job::PixelExplanation> next);  // null hides it
-  void selectRow(std::optional<std::size_t> row);                          // of the tree
-  void compareExplanation(bool on);                                        // with ExplainControls::kept
+  // Null hides it. `command`: ExplainControls::command.
+  void setExplanation(std::shared_ptr<const job::PixelExplanation> next, std::string command = {});
+  void selectRow(std::optional<std::size_t> row);  // of the tree
+  void compareExplanation(bool on);                // with ExplainControls::kept
 };
 
 }  // namespace quintet::viewer

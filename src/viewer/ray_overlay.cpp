@@ -34,6 +34,7 @@ constexpr float kGuard = 2.0f;            // lines are cut at this many image si
 constexpr float kRelativeBias = 2e-3f;    // of the depth
 constexpr float kFaint = 0.35f;           // opacity of rays that are not selected
 constexpr float kPixelRadius = 1.5f;      // film positions of a sample are at most this far from its pixel's center
+constexpr float kRounding = 2.5e-7f;      // of a position in world space, as a fraction of its largest coordinate
 
 // At scale 1, pixels.
 constexpr float kPathWidth = 2.4f, kShadowWidth = 1.5f, kNormalWidth = 1.5f, kSelectedWidth = 4.0f;
@@ -334,7 +335,7 @@ RayOverlay rayOverlay(const job::PixelExplanation& explanation, float sceneSize)
   }
   RayOverlay overlay;
   const float diagonal = bounds.empty() ? 0.0f : glm::length(bounds.extent());
-  overlay.extent = diagonal > kLeastSceneSize * sceneSize ? diagonal : sceneSize;
+  overlay.extent = diagonal > 0.0f ? std::max(diagonal, kLeastSceneSize * sceneSize) : sceneSize;
   for (const TracedRay& t : traced) {
     OverlayRay ray = t.ray;
     const float length = glm::length(t.direction);
@@ -346,21 +347,31 @@ RayOverlay rayOverlay(const job::PixelExplanation& explanation, float sceneSize)
 }
 
 bool usesCamera(const job::PixelExplanation& explanation, const scene::Camera& camera) {
-  const RayOverlay overlay = rayOverlay(explanation, 1.0f);
-  if (overlay.rays.empty() || overlay.rays.front().kind != OverlayRayKind::camera) return false;
+  const std::vector<TracedRay> rays = tracedRays(explanation);
+  if (rays.empty() || rays.front().ray.kind != OverlayRayKind::camera) return false;
   const CameraProjection projection(camera, glm::max(explanation.size, uvec2(1)));
-  const vec3 origin = projection.toCamera(overlay.rays.front().from);
-  const vec3 direction = glm::normalize(projection.toCamera(overlay.rays.front().to) - origin);
+  // Relative to the camera, so that large coordinates cancel without an error.
+  const mat3 cameraFromWorld(projection.cameraFromWorld());
+  const vec3 &from = rays.front().ray.from, eye(camera.worldFromCamera[3]);
+  vec3 origin = cameraFromWorld * (from - eye);
+  const vec3 direction = glm::normalize(cameraFromWorld * rays.front().direction);
+  float rounding = kRounding * std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z)});
   const float size = camera.orthographic ? 1.0f : camera.focusDistance;
   vec3 focus = origin;
   if (camera.orthographic) {
     if (!(glm::length(vec2(direction)) <= 1e-3f && direction.z < 0.0f)) return false;
   } else {
-    if (!(glm::length(origin) <= 1.01f * camera.apertureRadius + 1e-3f * size && direction.z < 0.0f)) return false;
+    const float radius = 1.01f * camera.apertureRadius + 1e-3f * size + rounding;
+    if (!(glm::length(origin) <= radius && direction.z < 0.0f)) return false;
+    if (camera.apertureRadius == 0.0f) {  // the origin is the eye, so only the direction counts
+      origin = vec3(0.0f);
+      rounding = 0.0f;
+    }
     focus = origin + (-size - origin.z) / direction.z * direction;
   }
   const vec2 offset = projection.toImage(focus) - (vec2(explanation.pixel) + 0.5f);
-  return std::abs(offset.x) <= kPixelRadius && std::abs(offset.y) <= kPixelRadius;
+  const float radius = kPixelRadius + rounding / projection.pixelSize(size);
+  return std::abs(offset.x) <= radius && std::abs(offset.y) <= radius;
 }
 
 gpu::LineList overlayLines(const RayOverlay& overlay, const OverlayView& view, const OverlayStyle& style,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays of an explained pixel as lines over an image of the scene: what is drawn, in which colors, and which ray is at
-// a position of the image. gpu::LineRenderer draws the lines.
+// The rays of an explained pixel as lines over an image of the scene: what is drawn, in which colors, and which ray is
+// at a position of the image. gpu::LineRenderer draws the lines.
 #ifndef QUINTET_VIEWER_RAY_OVERLAY_H
 #define QUINTET_VIEWER_RAY_OVERLAY_H
 
@@ -39,11 +39,11 @@ struct OverlayRay {
 
 struct RayOverlay {
   std::vector<OverlayRay> rays;  // in the order of the traces
-  float extent = 1;              // meters: diagonal of the bounds of all origins and hits
+  float extent = 1;              // meters: about the diagonal of the bounds of all origins and hits
 };
 
-// The rays that were traced. `sceneSize`: diagonal of the scene, meters, > 0: for rays without surfaces. Rays without an
-// end have half of the overlay's extent.
+// The rays that were traced. `sceneSize`: diagonal of the scene, meters, > 0: the extent for rays without surfaces, and
+// 50 times the least extent of others. Rays without an end have half of the overlay's extent.
 RayOverlay rayOverlay(const job::PixelExplanation& explanation, float sceneSize);
 
 // Whether the first ray of the explanation is one of this camera through the explained pixel. If not, the program has a
@@ -61,8 +61,9 @@ struct OverlayStyle {
   bool normals = true;
 };
 
-// Lines in pixels of the screen. A camera ray that starts in the lens of the view's camera is only drawn as the marker of
-// its hit, because it is seen along its direction. `depth`: of the view, for LineList::depthScale; null if there is none.
+// Lines in pixels of the screen. A camera ray that starts in the lens of the view's camera is only drawn as the marker
+// of its hit, because it is seen along its direction. `depth`: of the view, for LineList::depthScale; null if there is
+// none.
 gpu::LineList overlayLines(const RayOverlay& overlay, const OverlayView& view, const OverlayStyle& style,
                            const job::DepthMap* depth);
 

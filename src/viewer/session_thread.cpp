@@ -14,6 +14,7 @@
 #include "job/interactive/event_json.h"
 #include "output/plan.h"
 #include "output/write.h"
+#include "viewer/ray_overlay.h"
 
 namespace quintet::viewer {
 namespace {
@@ -41,13 +42,20 @@ bool isAny(const interactive::Command& command) {
   return (std::holds_alternative<Kinds>(command) || ...);
 }
 
+// Commands that a user gives while correcting a program do not end its retries.
+bool endsRetries(const interactive::Command& command) {
+  using namespace interactive;
+  const auto* size = std::get_if<SetSize>(&command);
+  return !isAny<SetExposure, SetToneMap, SetPrint, EndDrag>(command) && !(size && size->ofWindow);
+}
+
 }  // namespace
 
 bool overwrites(const interactive::Command& next, const interactive::Command& last) {
   using namespace interactive;
   if (next.index() != last.index()) return false;
   if (isAny<SetSamples, SetToneMap, SetPrint>(next)) return true;
-  if (isAny<Orbit, Pan, Zoom, Fly, Move>(next)) return false;  // they add up
+  if (isAny<Orbit, Pan, Zoom, interactive::Fly, Move>(next)) return false;  // they add up
   const std::string group = undoGroup(next);
   return !group.empty() && group == undoGroup(last);
 }
@@ -192,6 +200,9 @@ void SessionThread::handle(Request& request) {
   } catch (const FileError& error) {
     retryAfterSave(original, {asDiagnostic(error)});
     throw;
+  } catch (const UsageError&) {  // such as a value for a parameter that the program does not have yet
+    retryAfterSave(original, {});
+    throw;
   }
 }
 
@@ -299,6 +310,7 @@ void SessionThread::openSession(interactive::SessionRequest request) {
 void SessionThread::applyCommand(const interactive::Command& command) {
   if (!session_) return;
   lastCommand_ = clock_.seconds();
+  if (endsRetries(command)) retry_.reset();
   session_->apply(command);
   publishState();
 }
@@ -310,6 +322,7 @@ void SessionThread::publishState(bool reloaded) {
     next_.animated = session_->isAnimated() && !next_.countsFrames;
     next_.diagnostics = session_->diagnostics();
     next_.outdatedProgram = false;
+    next_.explanationUsesCamera = false;
   }
   next_.explanationOutdated = next_.explanation && session_->restarts() != explainedRestarts_;
   next_.callsPrint = session_->callsPrint();
@@ -350,6 +363,7 @@ void SessionThread::explainPixel(const ExplainRequest& request) {
     publish();
     throw;
   }
+  next_.explanationUsesCamera = usesCamera(*next_.explanation, session_->camera());
   explainedRestarts_ = session_->restarts();
   if (options_.onEvent) options_.onEvent(interactive::explainedJson(*next_.explanation, ""));
   publishState();

@@ -72,7 +72,9 @@ struct Snapshot {
   // Of the last explain(); null before the first one, and if the last one failed.
   std::shared_ptr<const job::PixelExplanation> explanation;
   bool explanationOutdated = false;  // the samples were discarded since
-  bool explaining = false;           // an explain() is in progress
+  // Its rays are those of the scene's camera (viewer::usesCamera()), and the program is still the same.
+  bool explanationUsesCamera = false;
+  bool explaining = false;  // an explain() is in progress
 
   bool callsPrint = false;                      // the program has calls of debugPrintfEXT
   std::optional<job::PrintRequest> print;       // the pixels that print; unset if none
@@ -102,8 +104,10 @@ class SessionThread {
   SessionThread& operator=(const SessionThread&) = delete;
 
   // Each of these returns at once. Errors become messages.
-  void open(job::interactive::SessionRequest request);  // replaces the session; after an error, again after each save
-  void apply(job::interactive::Command command);        // without a session it has no effect
+  // Replaces the session. If its program has errors, it tries again after each save of the program's files. The same
+  // holds for the command SetProgram, until a different command edits the session.
+  void open(job::interactive::SessionRequest request);
+  void apply(job::interactive::Command command);  // without a session it has no effect
   void pick(uvec2 pixel, PickUse use);
   void save(const std::filesystem::path& file);  // the shown output, as soon as it has its full size
   // Snapshot::explanation becomes that of this sample. A later call replaces those that wait.

@@ -3,6 +3,7 @@
 // if the viewer does not end with status 0.
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -487,6 +489,9 @@ TEST_F(WindowTest, ExplainsAPixelAndComparesTwo) {
   press("Explain/Ray 1/hit");
   viewer.control("Explain/details of hit");
   EXPECT_FALSE(viewer.hasControl("Explain/details of Ray 2"));
+  press("Explain/Ray 1/hit");
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Explain/details of hit")) << "a second click deselects the row";
   imageColor();  // a screenshot
 
   press("Explain/Keep as A");
@@ -523,6 +528,7 @@ TEST_F(WindowTest, ExplainsAPixelAndComparesTwo) {
   viewer.window().key("Escape");
   viewer.settle();
   EXPECT_FALSE(viewer.hasControl("Explain/Ray 1")) << "Escape hides the explanation";
+  EXPECT_TRUE(viewer.hasControl("Explain/Forget A")) << "A stays";
 }
 
 TEST_F(WindowTest, DrawsTheRaysOfTheExplainedPixel) {
@@ -569,6 +575,10 @@ TEST_F(WindowTest, DrawsTheRaysOfTheExplainedPixel) {
   viewer.window().click(farthest.first, farthest.second);
   viewer.control("Explain/details of Ray 1");
   imageColor();
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));  // not a double click
+  viewer.window().click(farthest.first, farthest.second);
+  viewer.settle();
+  EXPECT_FALSE(viewer.hasControl("Explain/details of Ray 1")) << "a second click deselects the ray";
   viewer.window().key("Escape");
   viewer.settle();
   EXPECT_FALSE(viewer.hasControl("Legend of rays"));

@@ -43,7 +43,7 @@ OptionTable viewOptionTable(ViewOptions& options, RenderTexts& texts) {
       "Window",
       {{.names = "--window-size",
         .value = "WxH",
-        .help = "Size of the window in pixels (default: the last one)",
+        .help = "Size of the window in screen coordinates (default: the last one)",
         .target = &options.windowSize},
        {.names = "--scale",
         .value = "X",

@@ -11,7 +11,7 @@
 
 namespace quintet::viewer {
 
-// A rectangle of the window, pixels.
+// A rectangle of the window, screen coordinates.
 struct Area {
   vec2 origin{0.0f};
   vec2 size{0.0f};
@@ -35,10 +35,12 @@ void legend(const ViewState& state, const Area& area);            // of false co
 void splitLine(ViewState& state, const Area& area);               // of the comparison; can be dragged
 
 // The rays of the explained pixel.
-void updateRays(ViewState& state);                            // after a change of the explanation
+void updateRays(ViewState& state);                            // after a change of the explanation or the program
 void rayLines(ViewState& state, const Area& area);            // ViewState::rays, drawn where they are in the order
 void rayLegendBox(const ViewState& state, const Area& area);  // what the colors mean
-bool selectRay(ViewState& state, vec2 position);              // the ray at a position of the window; false: none
+// Selects the ray at a position of the window, or clears the selection if the ray is selected. Returns false if there
+// is none.
+bool selectRay(ViewState& state, vec2 position);
 
 void diagnosticsDrawer(ViewState& state, const Area& area);  // problems of the program, with file and line
 void toasts(ViewState& state, const Area& area);
@@ -46,7 +48,7 @@ void helpWindow(ViewState& state);
 void statusBar(const ViewState& state, const Area& area);
 void animationBar(ViewState& state, const Area& area);
 
-// Heights of the bars, pixels.
+// Heights of the bars, screen coordinates.
 float statusBarHeight();
 float animationBarHeight();
 

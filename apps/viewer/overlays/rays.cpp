@@ -2,6 +2,7 @@
 // The rays of the explained pixel over the image: their lines, the legend, and selection with the pointer.
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,7 +21,6 @@ constexpr ImU32 kShade = IM_COL32(0, 0, 0, 150);
 constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255);
 constexpr float kPointerDistance = 6.0f;  // pixels at scale 1
 constexpr float kLegendArea = 0.2f;       // the legend covers at most this fraction of the image
-constexpr float kHiddenAlpha = 0.45f;     // of the legend's dashes
 
 bool sameView(const scene::Camera& a, const scene::Camera& b) {
   return a.worldFromCamera == b.worldFromCamera && a.orthographic == b.orthographic && a.verticalFov == b.verticalFov &&
@@ -41,18 +41,21 @@ OverlayView viewOf(const ViewState& state) { return {state.snapshot->camera, sta
 
 void updateRays(ViewState& state) {
   ShownRays& rays = state.rays;
-  const bool changed = rays.explanation != state.explanation;
-  if (changed) {
+  const bool usesCamera = state.snapshot->explanationUsesCamera;
+  if (rays.explanation != state.explanation) {
     rays.explanation = state.explanation;
     rays.overlay.reset();
     rays.lines = {};
     if (state.explanation) rays.overlay = rayOverlay(*state.explanation, state.snapshot->scene->size);
     if (rays.overlay && rays.overlay->rays.empty()) rays.overlay.reset();
-    if (rays.overlay && !usesCamera(*state.explanation, state.snapshot->camera)) {
+    if (rays.overlay && !usesCamera) {
       rays.overlay.reset();
       state.addMessage(
           {Message::Kind::note, "the rays are not drawn over the image, because the program has a camera of its own"});
     }
+  } else if (rays.overlay && !usesCamera) {  // the program has changed since
+    rays.overlay.reset();
+    rays.lines = {};
   }
   if (rays.depthRequested == rays.visible()) return;
   rays.depthRequested = rays.visible();
@@ -100,7 +103,7 @@ void rayLegendBox(const ViewState& state, const Area& area) {
     ImVec4 color = ImGui::ColorConvertU32ToFloat4(entry.color);
     const float left = begin.x + margin, width = 2.0f * scale;
     if (entry.hidden) {
-      color.w = kHiddenAlpha;
+      color.w = gpu::LineList{}.hiddenOpacity;
       for (float x = 0.0f; x < sample; x += 10.0f * scale)
         list.AddLine({left + x, y}, {left + x + 5.0f * scale, y}, ImGui::ColorConvertFloat4ToU32(color), width);
     } else {
@@ -115,7 +118,10 @@ void rayLegendBox(const ViewState& state, const Area& area) {
 bool selectRay(ViewState& state, vec2 position) {
   if (!state.rays.visible()) return false;
   const auto ray = rayAt(*state.rays.overlay, viewOf(state), position, kPointerDistance * state.scale);
-  if (ray) state.selectedRay = ray;
+  if (ray && ray == state.selectedRay)
+    state.selectRow(std::nullopt);
+  else if (ray)
+    state.selectedRay = ray;
   return ray.has_value();
 }
 

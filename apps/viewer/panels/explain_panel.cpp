@@ -24,8 +24,8 @@ constexpr float kTreeRows = 14.0f, kDetailRows = 11.0f;
 
 ImU32 displayColor(const ViewState& state, const vec3& linear) {
   const float exposure = std::exp2(static_cast<float>(state.snapshot->state.exposure));
-  const auto channel = [&](float value) {
-    return static_cast<int>(255.0f * io::srgbFromLinear(std::clamp(exposure * value, 0.0f, 1.0f)) + 0.5f);
+  const auto channel = [&](float value) {  // NaN becomes 0
+    return static_cast<int>(io::byteFromUnit(io::srgbFromLinear(exposure * value)));
   };
   return IM_COL32(channel(linear.r), channel(linear.g), channel(linear.b), 255);
 }
@@ -73,10 +73,10 @@ void result(ViewState& state) {
   const job::PixelExplanation& explanation = *state.explanation;
   if (!explanation.outputs.empty()) {
     const vec3 value = explanation.outputs.front().value;
-    const vec3 sum = job::sumContributions(explanation);
     valueRow(state, "Value", value, "What the sample adds to the image, linear Rec. 709");
-    valueRow(state, "Sum", sum, "Of the contributions of the rays below, which equals the value");
-    if (!output::isRounding(value, sum))
+    valueRow(state, "Sum", state.explain.tree->contributionSum(),
+             "Sum of the contributions of the rays below; it equals the value");
+    if (state.explain.tree->sumDiffers())
       ImGui::TextColored(colors.warning, "%s", "The contributions do not sum to the value.");
     if (!output::isRounding(value, explanation.outputs.front().recorded))
       ImGui::TextColored(colors.warning, "%s", "The recorded variant of the program has another value.");
@@ -104,15 +104,17 @@ void treeRow(ViewState& state, std::size_t index) {
   const bool selected = explain.row == index;
   const bool hasRows = row.end > index + 1;
   const float line = ImGui::GetTextLineHeight();
+  const ImVec2 size{ImGui::GetContentRegionAvail().x, line};
+  if (!(selected && explain.revealsRow) && !ImGui::IsRectVisible(size)) return ImGui::Dummy(size);
   const float indent = static_cast<float>(row.depth) * ImGui::GetStyle().IndentSpacing;
   const ImVec2 origin = ImGui::GetCursorScreenPos();
-  const float right = origin.x + ImGui::GetContentRegionAvail().x;
+  const float right = origin.x + size.x;
   const float arrowEnd = origin.x + indent + line;
   ImGui::PushID(static_cast<int>(index));
   if (ImGui::Selectable("##row", selected)) {
     const bool onArrow = hasRows && ImGui::GetIO().MousePos.x < arrowEnd;
     if (!onArrow)
-      state.selectRow(index);
+      state.selectRow(selected ? std::nullopt : std::optional(index));
     else if (explain.closed.erase(index) == 0)
       explain.closed.insert(index);
   }
@@ -268,15 +270,22 @@ void explainPanel(ViewState& state) {
     ImGui::TextDisabled("%s", "Ctrl + click a pixel to see why it has its value.");
   if (button("Choose a pixel", "The next click on the image explains the pixel, as Ctrl + click does, or the key I"))
     state.click = ClickUse::explain;
-  if (!explain.pixel) return;
+  if (!explain.pixel) {
+    if (explain.kept) comparison(state);
+    return;
+  }
   const bool outdated = state.explanation && snapshot.explanationOutdated && !snapshot.explaining;
   ImGui::SameLine();
   if (button("Explain again", "Explain the same pixel of the scene as it is now", !snapshot.explaining))
     state.explainPixel(*explain.pixel, explain.sample);
   question(state);
   if (snapshot.explaining) ImGui::TextDisabled("%s", "Recording…");
-  if (outdated) ImGui::TextColored(palette(state.settings.theme).warning, "%s", "The image has changed since.");
-  if (!state.explanation || !explain.tree) return;
+  if (outdated)
+    ImGui::TextColored(palette(state.settings.theme).warning, "%s", "The image has changed since this was recorded.");
+  if (!state.explanation || !explain.tree) {
+    if (explain.kept) comparison(state);
+    return;
+  }
   result(state);
   comparison(state);
   tree(state);

@@ -69,14 +69,17 @@ void printedPanel(ViewState& state) {
     const bool moved =
         vectorField("Pixel", corner, 2, {.least = 0.0, .most = 1e6, .whole = true}, "The top left pixel");
     const bool resized = vectorField("Size", extent, 2, {.least = 1.0, .most = 1e6, .whole = true}, "In pixels");
-    if ((moved || resized) && corner[0] + extent[0] <= size.x && corner[1] + extent[1] <= size.y)
-      state.printPixels({static_cast<std::uint32_t>(corner[0]), static_cast<std::uint32_t>(corner[1]),
-                         static_cast<std::uint32_t>(extent[0]), static_cast<std::uint32_t>(extent[1])});
+    if (moved || resized) {
+      // The largest part of them that is inside the image.
+      const uvec2 first = glm::min(uvec2(corner[0], corner[1]), size - 1u);
+      const uvec2 count = glm::min(uvec2(extent[0], extent[1]), size - first);
+      state.printPixels({first.x, first.y, count.x, count.y});
+    }
   }
   if (snapshot.printed)
     lines(state, *snapshot.printed);
   else if (snapshot.callsPrint)
-    ImGui::TextDisabled("%s", "Nothing was printed yet.");
+    ImGui::TextDisabled("%s", "Nothing has been printed yet.");
 }
 
 }  // namespace quintet::viewer

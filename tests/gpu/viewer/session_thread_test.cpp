@@ -211,19 +211,40 @@ TEST_F(SessionThreadTest, ExplainsAndNoticesChanges) {
   EXPECT_EQ(first->explanation->sample, 3u);
   EXPECT_NEAR(first->explanation->outputs.at(0).value.z, 1.0f, 1e-3f) << "the normal is +z";
   EXPECT_FALSE(first->explanationOutdated);
+  EXPECT_TRUE(first->explanationUsesCamera);
   thread_->apply(SetExposure{1.0});
   waitFor([](const Snapshot& s) { return s.state.exposure == 1.0; });
   EXPECT_FALSE(thread_->snapshot()->explanationOutdated) << "the samples are the same";
   thread_->apply(Orbit{30, 0});
   const auto turned = waitFor([](const Snapshot& s) { return s.explanationOutdated; });
   EXPECT_EQ(turned->explanation, first->explanation) << "it stays until the next request";
+  EXPECT_TRUE(turned->explanationUsesCamera) << "that of the explained image";
   thread_->explain(kSize / 2u, 3);
   const auto second = waitFor([&](const Snapshot& s) { return s.explanation && s.explanation != first->explanation; });
   EXPECT_FALSE(second->explanationOutdated);
   EXPECT_FALSE(second->explaining);
   thread_->explain(kSize, 0);
-  EXPECT_TRUE(hasMessage(Message::Kind::error, "outside"));
+  EXPECT_TRUE(hasMessage(Message::Kind::error, "is not inside"));
   EXPECT_EQ(thread_->snapshot()->explanation, nullptr);
+}
+
+TEST_F(SessionThreadTest, RaysAreThoseOfTheProgram) {
+  const std::string file = (folder_ / "own.rt.glsl").string();
+  const auto save = [&](const char* color) {
+    writeFile(file,
+              std::string("void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(") + color + "));\n}\n");
+  };
+  save("1.0");
+  thread_->open(request());
+  thread_->explain(kSize / 2u, 3);
+  EXPECT_TRUE(waitFor([](const Snapshot& s) { return s.explanation != nullptr; })->explanationUsesCamera);
+  thread_->apply(SetProgram{file});
+  const auto changed = waitFor([&](const Snapshot& s) { return s.state.program == file; });
+  EXPECT_NE(changed->explanation, nullptr);
+  EXPECT_FALSE(changed->explanationUsesCamera) << "the rays do not fit the image of the new program";
+  thread_->explain(kSize / 2u, 0);
+  const auto own = waitFor([&](const Snapshot& s) { return s.explanation && s.explanation != changed->explanation; });
+  EXPECT_FALSE(own->explanationUsesCamera) << "no ray at all";
 }
 
 TEST_F(SessionThreadTest, CollectsWhatIsPrinted) {
@@ -307,12 +328,48 @@ TEST_F(SessionThreadTest, OpensAProgramAsSoonAsItIsCorrected) {
   const auto failed = waitFor([](const Snapshot& s) { return hasErrors(s.diagnostics); });
   EXPECT_EQ(failed->phase, Snapshot::Phase::ready);
   EXPECT_EQ(failed->state.program, flat.program);
+  thread_->apply(SetExposure{1.0});  // not an edit
+  const auto bright =
+      waitFor([&](const Snapshot& s) { return s.state.exposure == 1.0 && s.imageNumber > failed->imageNumber; });
   writeFile(folder_ / "other.rt.glsl", program("vec3(0, 0, 1)"));
   const auto other = waitFor([&](const Snapshot& s) {
-    return s.state.program != flat.program && s.progress.complete && s.imageNumber > failed->imageNumber;
+    return s.state.program != flat.program && s.progress.complete && s.imageNumber > bright->imageNumber;
   });
   EXPECT_EQ(middle(*other), vec3(0, 0, 1));
   EXPECT_TRUE(other->canUndo);
+}
+
+TEST_F(SessionThreadTest, AnEditEndsTheRetriesOfAProgram) {
+  const auto program = [](const std::string& color) {
+    return "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(" + color + ", 1.0));\n}\n";
+  };
+  const std::string file = (folder_ / "other.rt.glsl").string();
+  writeFile(file, program("nothing"));
+  thread_->open(request());
+  thread_->apply(SetProgram{file});
+  EXPECT_TRUE(hasMessage(Message::Kind::error, "other.rt.glsl"));
+  thread_->apply(Orbit{10, 0});
+  waitFor([](const Snapshot& s) { return s.canUndo; });
+  writeFile(file, program("vec3(0, 0, 1)"));
+  for (const double stops : {1.0, 2.0, 3.0}) {  // a retry would be in between
+    thread_->apply(SetExposure{stops});
+    EXPECT_EQ(waitFor([&](const Snapshot& s) { return s.state.exposure == stops; })->state.program, "normals");
+  }
+}
+
+TEST_F(SessionThreadTest, OpensAProgramAsSoonAsItHasTheParameter) {
+  const std::string main = "void main() { /**** RAY GENERATION SHADER ****/\n  gsnSetPixel(vec4(vec3(";
+  const std::string end = "), 1.0));\n}\n";
+  writeFile(folder_ / "flat.rt.glsl", main + "0.0" + end);
+  SessionRequest flat = request();
+  flat.program = (folder_ / "flat.rt.glsl").string();
+  flat.render.assignments = {"gray=1"};
+  thread_->open(flat);
+  waitFor([](const Snapshot& s) { return s.phase == Snapshot::Phase::failed; });
+  writeFile(folder_ / "flat.rt.glsl",
+            "/**** COMMON START ****/\nuniform float gray;  // defaultval=\"0.5\"\n/**** COMMON END ****/\n" + main +
+                "gray" + end);
+  EXPECT_EQ(middle(*waitForImage()), vec3(1.0f));
 }
 
 TEST(WindowShaders, Compile) {

@@ -141,6 +141,13 @@ TEST(RayOverlay, RaysWithoutAnEndGetALengthThatFits) {
   EXPECT_TRUE(rayOverlay({}, 1.0f).rays.empty());
 }
 
+TEST(RayOverlay, TheExtentIsNotMuchLessThanTheScene) {
+  job::PixelExplanation e;
+  e.events = {ray("radiance", {0, 0, 0}, {0, 0, -1}, kInfinity, 1.0f)};
+  EXPECT_FLOAT_EQ(rayOverlay(e, 10.0f).extent, 1.0f);
+  EXPECT_FLOAT_EQ(rayOverlay(e, 100.0f).extent, 2.0f);
+}
+
 TEST(RayOverlay, TakesTheNormalThatTheProgramShades) {
   job::PixelExplanation e = path();
   e.events.insert(e.events.begin() + 1, {{"surface", {{"shadingNormal", floats({1, 0, 0})}}, {}},
@@ -181,6 +188,21 @@ TEST(RayOverlay, RecognizesTheCamera) {
   EXPECT_TRUE(usesCamera(e, box));
   e.events[0] = ray("radiance", {0.3f, -0.01f, 5.0f}, {0, 0, -1}, kInfinity, 5.0f);
   EXPECT_FALSE(usesCamera(e, box));
+}
+
+TEST(RayOverlay, RecognizesTheCameraFarFromTheOrigin) {
+  const vec3 offset(500000.0f, -500000.0f, 500000.0f);
+  job::PixelExplanation e = path();
+  scene::Camera far = camera();
+  far.worldFromCamera[3] += vec4(offset, 0.0f);
+  e.events[0].set("origin", floats(vec3(far.worldFromCamera[3])));
+  EXPECT_TRUE(usesCamera(e, far));
+  far.worldFromCamera = glm::rotate(far.worldFromCamera, 0.7f, glm::normalize(vec3(1, 2, 3)));
+  EXPECT_FALSE(usesCamera(e, far)) << "it looks elsewhere";
+  e.events[0].set("direction", floats(mat3(far.worldFromCamera) * e.events[0].vector("direction")));
+  EXPECT_TRUE(usesCamera(e, far));
+  e.pixel.x += 4;
+  EXPECT_FALSE(usesCamera(e, far));
 }
 
 TEST(RayOverlay, DrawsProjectedLinesAndMarkers) {
@@ -261,7 +283,9 @@ TEST(RayOverlay, CutsLinesBehindTheCamera) {
     for (const gpu::Line& line : list.lines) {
       EXPECT_TRUE(isFinite(line));
       EXPECT_GT(line.depthA, 0.0f);
-      for (const float x : {line.ax, line.bx}) EXPECT_LE(std::abs(x), 1000.0f) << "cut near the image";
+      // Twice the size of the image around it.
+      for (const float x : {line.ax, line.bx}) EXPECT_TRUE(x >= -401.0f && x <= 601.0f) << x;
+      for (const float y : {line.ay, line.by}) EXPECT_TRUE(y >= -201.0f && y <= 301.0f) << y;
     }
   }
 }
