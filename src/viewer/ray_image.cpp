@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "job/depth_map.h"
 #include "viewer/line_image.h"
 #include "viewer/ray_overlay.h"
 #include "viewer/window_shaders.h"
@@ -25,19 +24,17 @@ void requireSceneCamera(const job::PixelExplanation& explanation, const scene::C
       explanation.program, explanation.pixel.x, explanation.pixel.y));
 }
 
-io::Image drawRays(job::Engine& engine, job::RenderJob& job, const job::PixelExplanation& explanation,
+io::Image drawRays(gpu::Context& context, const job::PixelExplanation& explanation, const job::DepthMap& depth,
                    const io::Image& image, const std::filesystem::path& caches) {
   const uvec2 size(image.width, image.height);
-  const job::DepthMap depth =
-      job::renderDepthMap(engine, *job.scene()->onDevice, job.camera(), size, job.resolved().program);
   const float farthest = *std::ranges::max_element(depth.depths);
   const RayOverlay overlay = rayOverlay(explanation, farthest > 0.0f ? farthest : 1.0f);
-  OverlayView view{job.camera(), {}};
+  OverlayView view{depth.camera, {}};
   view.placement.size = size;
   OverlayStyle style;
   style.scale = std::max(1.0f, static_cast<float>(size.y) / kPlainHeight);
-  return drawLines(engine.context(), compileLineShaders(caches), image, overlayLines(overlay, view, style, &depth),
-                   size, reversedDepths(depth));
+  return drawLines(context, compileLineShaders(caches), image, overlayLines(overlay, view, style, &depth), depth.size,
+                   reversedDepths(depth));
 }
 
 }  // namespace quintet::viewer

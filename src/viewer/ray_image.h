@@ -3,14 +3,13 @@
 #ifndef QUINTET_VIEWER_RAY_IMAGE_H
 #define QUINTET_VIEWER_RAY_IMAGE_H
 
-#include <cstddef>
 #include <filesystem>
-#include <optional>
 
+#include "gpu/context.h"
 #include "io/image.h"
-#include "job/engine.h"
+#include "job/depth_map.h"
 #include "job/pixel_explanation.h"
-#include "job/render_job.h"
+#include "scene/model/scene.h"
 
 namespace quintet::viewer {
 
@@ -18,10 +17,9 @@ namespace quintet::viewer {
 // its image.
 void requireSceneCamera(const job::PixelExplanation& explanation, const scene::Camera& camera);
 
-// Draws over `image`, which the job rendered: 8 bits per sample, sRGB, of the whole image. `caches`:
-// job::EngineOptions::caches. Traces the depths of the first surfaces with the job's scene. Blocks. Throws Error if the
-// device has no graphics queue, and as job::renderDepthMap() does.
-io::Image drawRays(job::Engine& engine, job::RenderJob& job, const job::PixelExplanation& explanation,
+// Draws over `image`: 8 bits per sample, sRGB, opaque, seen by the camera of `depth`, which has the depths of its pixels.
+// `caches`: job::EngineOptions::caches. Blocks. Throws Error as gpu::requireGraphicsQueue() does, and gpu errors.
+io::Image drawRays(gpu::Context& context, const job::PixelExplanation& explanation, const job::DepthMap& depth,
                    const io::Image& image, const std::filesystem::path& caches);
 
 }  // namespace quintet::viewer

@@ -107,6 +107,29 @@ TEST_F(View, ExplainsAPixelAsTheCommandDoes) {
   EXPECT_THAT(same.out, HasSubstr("events are equal"));
 }
 
+TEST_F(View, SavesAnImageWithRays) {
+  const RunResult result = view(
+      "{\"do\":\"save\",\"file\":\"early.png\",\"rays\":true}\n"
+      "{\"do\":\"explain\",\"x\":16,\"y\":12,\"file\":\"pixel.json\"}\n"
+      "{\"do\":\"save\",\"file\":\"a.exr\",\"rays\":true}\n"
+      "{\"do\":\"orbit\",\"dx\":60}\n"
+      "{\"do\":\"save\",\"file\":\"plain.png\"}\n"
+      "{\"do\":\"save\",\"file\":\"rays.png\",\"rays\":true}\n"
+      "{\"do\":\"program\",\"name\":\"ao\"}\n"
+      "{\"do\":\"save\",\"file\":\"late.png\",\"rays\":true}\n",
+      {"--keep-going"});
+  EXPECT_THAT(result.err, HasSubstr("line 1: no pixel has been explained"));
+  EXPECT_THAT(result.err, HasSubstr("line 3: a.exr: an image with rays must be a PNG file"));
+  EXPECT_THAT(result.err, HasSubstr("line 8: the program has changed"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "early.png"));
+  const io::Image plain = readImage("plain.png"), rays = readImage("rays.png");
+  ASSERT_EQ(rays.data.size(), plain.data.size());
+  int different = 0;
+  for (std::size_t i = 0; i < plain.data.size(); ++i) different += plain.data[i] != rays.data[i];
+  EXPECT_GT(different, 50) << "the camera ray from the side";
+  EXPECT_LT(different, static_cast<int>(plain.data.size()) / 2);
+}
+
 TEST_F(View, RequiresTheScript) {
   expectError(quintet({"view", "scene.gltf", "--script", "missing.jsonl"}), 1, {"missing.jsonl"});
 }

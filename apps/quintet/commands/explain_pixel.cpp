@@ -20,6 +20,7 @@
 #include "cli/work.h"
 #include "gpu/line_renderer.h"
 #include "io/codec.h"
+#include "job/depth_map.h"
 #include "job/explanation_json.h"
 #include "job/pixel_explainer.h"
 #include "output/explanation_text.h"
@@ -184,8 +185,10 @@ void writeImage(job::Engine& engine, std::shared_ptr<job::PreparedScene>& scene,
   viewer::requireSceneCamera(explanation, job.camera());
   setWorkStage("rendering");
   const job::RenderResult result = renderImage(job, explanation, options, console);
-  const io::Image image =
-      viewer::drawRays(engine, job, explanation, output::displayImage(plan, *result.film), job::EngineOptions().caches);
+  const job::DepthMap depth =
+      job::renderDepthMap(engine, *job.scene()->onDevice, job.camera(), job.scene()->size, job.resolved().program);
+  const io::Image image = viewer::drawRays(engine.context(), explanation, depth,
+                                           output::displayImage(plan, *result.film), job::EngineOptions().caches);
   console.clear();
   console.write(options.image, io::encodePng(image, job::metadataOf(result.provenance)));
 }

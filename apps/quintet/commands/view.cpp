@@ -3,6 +3,7 @@
 // window, which reads commands as lines of JSON and prints events as lines of JSON.
 #include <algorithm>
 #include <iostream>
+#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -14,11 +15,14 @@
 #include "cli/failure.h"
 #include "cli/view_options.h"
 #include "gpu/error.h"
+#include "gpu/line_renderer.h"
+#include "io/codec.h"
 #include "job/explanation_json.h"
 #include "job/interactive/command_json.h"
 #include "job/interactive/event_json.h"
 #include "job/interactive/session.h"
 #include "output/write.h"
+#include "viewer/ray_image.h"
 
 namespace quintet::cli {
 namespace {
@@ -33,7 +37,8 @@ const std::vector<std::string> kScriptCommands{"refine", "step", "pick", "explai
 
 class Script {
  public:
-  Script(Session& session, Console& console) : session_(session), console_(console) {}
+  Script(job::Engine& engine, Session& session, Console& console)
+      : engine_(engine), session_(session), console_(console) {}
 
   // Returns false if the line ends the script.
   bool execute(const std::string& line) {
@@ -59,13 +64,15 @@ class Script {
       const std::uint32_t sample = fields.has("sample") ? fields.index("sample") : 0;
       const std::string file = fields.findText("file").value_or("");
       fields.rejectOthers();
-      const job::PixelExplanation explanation = session_.explain(pixel, sample);
-      if (!file.empty()) writeFile(file, job::explanationJson(explanation));
-      printLine(job::interactive::explainedJson(explanation, file));
+      explained_.reset();
+      explained_ = Explained{session_.explain(pixel, sample), session_.camera(), session_.state().program};
+      if (!file.empty()) writeFile(file, job::explanationJson(explained_->explanation));
+      printLine(job::interactive::explainedJson(explained_->explanation, file));
     } else if (name == "save") {
       const std::string file = fields.text("file");
+      const bool rays = fields.findFlag("rays").value_or(false);
       fields.rejectOthers();
-      save(file);
+      save(file, rays);
     } else if (name == "quit") {
       fields.rejectOthers();
       return false;
@@ -76,6 +83,13 @@ class Script {
   }
 
  private:
+  // The last explained pixel.
+  struct Explained {
+    job::PixelExplanation explanation;
+    scene::Camera camera;
+    std::string program;  // SessionState::program
+  };
+
   void report(const std::vector<job::interactive::Event>& events) {
     const job::interactive::Failed* failed = nullptr;
     for (const job::interactive::Event& event : events) {
@@ -84,11 +98,29 @@ class Script {
         failed = failure;  // becomes the error of the line
       else
         printLine(job::interactive::eventJson(event));
+      if (std::holds_alternative<job::interactive::ProgramReloaded>(event)) explained_.reset();
     }
     if (failed) throw Error(failed->message);
   }
 
-  void save(const std::string& file) {
+  void requireRays(const std::string& file) {
+    if (!explained_) throw UsageError("no pixel has been explained since the program was loaded; use 'explain' first");
+    if (explained_->program != session_.state().program)
+      throw UsageError("the program has changed since the pixel was explained; use 'explain' again");
+    if (output::fileKind(file) != output::FileKind::png)
+      throw UsageError(fmt::format("{}: an image with rays must be a PNG file", file));
+    viewer::requireSceneCamera(explained_->explanation, explained_->camera);
+    gpu::requireGraphicsQueue(engine_.context());
+  }
+
+  void writeRays(const output::OutputPlan& plan, const std::string& file) {
+    const job::RenderResult result = session_.result();
+    const io::Image image = viewer::drawRays(engine_.context(), explained_->explanation, session_.depthMap(),
+                                             output::displayImage(plan, *result.film), job::EngineOptions().caches);
+    console_.write(file, io::encodePng(image, job::metadataOf(result.provenance)));
+  }
+
+  void save(const std::string& file, bool rays) {
     const job::interactive::SessionState& state = session_.state();
     output::OutputRequest request;
     request.file = file;
@@ -98,15 +130,24 @@ class Script {
     if (output::isStandardOutput(file)) throw UsageError("standard output has the events; save to a file");
     if (output::fileKind(file) == output::FileKind::film)
       throw UsageError(fmt::format("{}: a session writes images; use 'quintet render' for films", file));
-    static_cast<void>(output::planOutputs(request, session_.program()));  // reports mistakes before the render
-    report(session_.refine());                                            // can reload the program
+    // Reports mistakes before the render.
+    static_cast<void>(output::planOutputs(request, session_.program()));
+    if (rays) requireRays(file);
+    report(session_.refine());
+    // The program can have been loaded again.
     const output::OutputPlan plan = output::planOutputs(request, session_.program());
-    output::writeOutputs(plan, session_.result(), console_);
+    if (rays) requireRays(file);
+    if (rays)
+      writeRays(plan, file);
+    else
+      output::writeOutputs(plan, session_.result(), console_);
     printLine(job::interactive::savedJson(file));
   }
 
+  job::Engine& engine_;
   Session& session_;
   Console& console_;
+  std::optional<Explained> explained_;
 };
 
 // Returns the exit status.
@@ -118,7 +159,7 @@ int runScript(const ViewOptions& options, std::istream& lines, const std::string
   const Stopwatch clock;
   Session session(
       engine, {options.program, options.request}, [&] { return clock.seconds(); }, console);
-  Script script(session, console);
+  Script script(engine, session, console);
   int status = 0;
   std::string line;
   for (std::uint64_t number = 1; std::getline(lines, line); ++number) {

@@ -14,7 +14,9 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "job/depth_map.h"
+#include "job/engine.h"
 #include "job/observer.h"
+#include "job/render_job.h"
 #include "program/load.h"
 #include "temp_folder.h"
 #include "viewer/line_image.h"
@@ -93,7 +95,9 @@ class RayImageTest : public testing::Test {
 
 TEST_F(RayImageTest, DrawsHiddenRaysFaintly) {
   const auto job = makeJob();
-  const io::Image image = drawRays(engine(), *job, threeLines(), black(), {});
+  const job::DepthMap depth =
+      job::renderDepthMap(engine(), *job->scene()->onDevice, job->camera(), kSize, job->resolved().program);
+  const io::Image image = drawRays(engine().context(), threeLines(), depth, black(), {});
   const int before = brightness(image, -1, 3), behind = brightness(image, -4, 6), free = brightness(image, 4, 6);
   EXPECT_GT(before, 16 * 200);
   EXPECT_NEAR(free, before, 0.2 * before) << "nothing hides it";
