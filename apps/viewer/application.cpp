@@ -414,15 +414,15 @@ void Application::menuBar() {
   if (!ImGui::BeginMainMenuBar()) return;
   const bool ready = state_.ready();
   if (menu("File")) {
-    item("Open…", Action::open);
+    item("Open...", Action::open);
     if (ImGui::BeginMenu("Open recent", !state_.settings.recentFiles.empty())) {
       for (const std::string& file : std::vector<std::string>(state_.settings.recentFiles))
         if (ImGui::MenuItem(file.c_str())) openRecent(state_, file);
       ImGui::EndMenu();
     }
-    item("Save image…", Action::save, ready);
+    item("Save image...", Action::save, ready);
     item("Copy command", Action::copyCommand, ready);
-    item("Save explanation…", Action::saveExplanation, ready && state_.explanation);
+    item("Save explanation...", Action::saveExplanation, ready && state_.explanation);
     ImGui::Separator();
     item("Quit", Action::quit);
     ImGui::EndMenu();

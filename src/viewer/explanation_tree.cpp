@@ -242,7 +242,7 @@ void addData(const ExplainedEvent& caller, std::vector<ExplanationField>& fields
     }
     fields.push_back(std::move(field));
   }
-  if (shown->find("complete")) fields.push_back({"…", "the log has no further members", {}});
+  if (shown->find("complete")) fields.push_back({"...", "the log has no further members", {}});
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ void startScreen(ViewState& state, const Area& area, const std::vector<Lesson>& 
 void loadingScreen(const ViewState& state, const Area& area) {
   place(area);
   ImGui::Begin("loading", nullptr, kPlain);
-  const std::string text = fmt::format("{} …", state.snapshot->stage);
+  const std::string text = fmt::format("{}...", state.snapshot->stage);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const float barWidth = 220.0f * state.scale;
   ImGui::SetCursorPos({0.5f * (area.size.x - size.x), 0.5f * area.size.y - size.y});

@@ -279,7 +279,7 @@ void explainPanel(ViewState& state) {
   if (button("Explain again", "Explain the same pixel of the scene as it is now", !snapshot.explaining))
     state.explainPixel(*explain.pixel, explain.sample);
   question(state);
-  if (snapshot.explaining) ImGui::TextDisabled("%s", "Recording…");
+  if (snapshot.explaining) ImGui::TextDisabled("%s", "Recording...");
   if (outdated)
     ImGui::TextColored(palette(state.settings.theme).warning, "%s", "The image has changed since this was recorded.");
   if (!state.explanation || !explain.tree) {
@@ -290,7 +290,7 @@ void explainPanel(ViewState& state) {
   comparison(state);
   tree(state);
   details(state);
-  if (button("Save…", "Write the explanation as JSON")) state.requests.push_back(Action::saveExplanation);
+  if (button("Save...", "Write the explanation as JSON")) state.requests.push_back(Action::saveExplanation);
   ImGui::SameLine();
   if (button("Copy command", "Copy the command line that explains this pixel"))
     state.requests.push_back(Action::copyExplainCommand);
