@@ -102,6 +102,16 @@ struct Material {
   TextureUse diffuseTransmissionTexture{};       // a
   Float3 diffuseTransmissionColor{1, 1, 1};      // [0,1]
   TextureUse diffuseTransmissionColorTexture{};  // rgb
+  float anisotropy = 0;                          // [0,1], strength; roughness grows along one direction
+  float anisotropyRotation = 0;                  // radians, of this direction, from the tangent to the bitangent
+  TextureUse anisotropyTexture{};                // rg: direction in tangent space, b: strength
+  float iridescence = 0;                         // [0,1], weight of a thin film over the surface
+  TextureUse iridescenceTexture{};               // r
+  float iridescenceIor = 1.3f;                   // index of refraction of the film, >= 1
+  float iridescenceThicknessMinimum = 100;       // nanometers, >= 0; where the texture is 0
+  float iridescenceThicknessMaximum = 400;       // nanometers, >= 0; where the texture is 1, and without a texture
+  TextureUse iridescenceThicknessTexture{};      // g
+  float dispersion = 0;                          // 20 / Abbe number, >= 0; colors refract differently in solids
   bool operator==(const Material&) const = default;
 };
 

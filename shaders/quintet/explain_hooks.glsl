@@ -15,9 +15,10 @@ void explainSurface(vec3 position, vec3 geometricNormal, vec3 shadingNormal, vec
 }
 
 void explainShading(vec3 normal, vec3 emission, vec3 baseColor, float metallic, float alpha, float transmission, float ior,
-                    float clearcoat, vec3 sheenColor, float sheenAlpha, float diffuseTransmission, bool unlit) {
+                    float clearcoat, vec3 sheenColor, float sheenAlpha, float diffuseTransmission, float anisotropy, float iridescence,
+                    float iridescenceThickness, float dispersion, bool unlit) {
   explain_(ExplainShading(normal, emission, baseColor, metallic, alpha, transmission, ior, clearcoat, sheenColor, sheenAlpha,
-                          diffuseTransmission, unlit ? 1u : 0u));
+                          diffuseTransmission, anisotropy, iridescence, iridescenceThickness, dispersion, unlit ? 1u : 0u));
 }
 
 void explainLobe(int lobe, float probability) { explain_(ExplainLobe(uint(lobe), probability)); }
@@ -79,7 +80,7 @@ void explainFound(uint source, vec3 radiance, vec3 throughput, uint scatterings)
 #else
 #define explainCamera(lens, film)
 #define explainSurface(position, geometricNormal, shadingNormal, uv, material, frontFace)
-#define explainShading(normal, emission, baseColor, metallic, alpha, transmission, ior, clearcoat, sheenColor, sheenAlpha, diffuseTransmission, unlit)
+#define explainShading(normal, emission, baseColor, metallic, alpha, transmission, ior, clearcoat, sheenColor, sheenAlpha, diffuseTransmission, anisotropy, iridescence, iridescenceThickness, dispersion, unlit)
 #define explainLobe(lobe, probability)
 #define explainLightChoice(index, probability)
 #define explainLightSample(delta, direction, distance, radiance, pdf, bsdf, bsdfPdf, weight, throughput)

@@ -34,6 +34,21 @@ const bool kHasDiffuseTransmission = false;
 #else
 const bool kHasDiffuseTransmission = true;
 #endif
+#ifdef QUINTET_NO_ANISOTROPY
+const bool kHasAnisotropy = false;  // the widths of all GGX lobes are equal in all directions
+#else
+const bool kHasAnisotropy = true;
+#endif
+#ifdef QUINTET_NO_IRIDESCENCE
+const bool kHasIridescence = false;  // thin films
+#else
+const bool kHasIridescence = true;
+#endif
+#ifdef QUINTET_NO_DISPERSION
+const bool kHasDispersion = false;  // solids refract all colors alike
+#else
+const bool kHasDispersion = true;
+#endif
 #ifdef QUINTET_NO_TRIANGLE_LIGHTS
 const bool kHasTriangleLights = false;
 #else

@@ -4,6 +4,7 @@
 #define QUINTET_MATERIAL_GLSL
 
 #include "bsdf/bsdf.glsl"
+#include "bsdf/dispersion.glsl"
 #include "features.glsl"
 #include "surface.glsl"
 
@@ -64,6 +65,13 @@ Shading shadeSurface(Surface s, vec3 wo) {
   float sheenRoughness = MATERIAL.sheenRoughness;
   r.bsdf.diffuseTransmission = MATERIAL.diffuseTransmission;
   r.bsdf.diffuseTransmissionColor = MATERIAL.diffuseTransmissionColor;
+  r.bsdf.anisotropy = MATERIAL.anisotropy;
+  vec2 grain = vec2(1.0, 0.0);  // direction of the anisotropy in tangent space, before its rotation
+  r.bsdf.iridescence = MATERIAL.iridescence;
+  r.bsdf.iridescenceIor = MATERIAL.iridescenceIor;
+  r.bsdf.iridescenceThickness = MATERIAL.iridescenceThicknessMaximum;
+  r.bsdf.dispersion = MATERIAL.dispersion;
+  r.bsdf.transmitted = vec3(1.0);
   float coatRoughness = MATERIAL.clearcoatRoughness;
   vec3 mapped = vec3(0.0, 0.0, 1.0);
   vec3 coatMapped = mapped;
@@ -88,6 +96,13 @@ Shading shadeSurface(Surface s, vec3 wo) {
     else if (isTexture(slot, kTextureSheenRoughness)) sheenRoughness *= v.a;
     else if (isTexture(slot, kTextureDiffuseTransmission)) r.bsdf.diffuseTransmission *= v.a;
     else if (isTexture(slot, kTextureDiffuseTransmissionColor)) r.bsdf.diffuseTransmissionColor *= v.rgb;
+    else if (isTexture(slot, kTextureAnisotropy)) {
+      grain = 2.0 * v.xy - 1.0;
+      r.bsdf.anisotropy *= v.b;
+    } else if (isTexture(slot, kTextureIridescence)) r.bsdf.iridescence *= v.r;
+    else if (isTexture(slot, kTextureIridescenceThickness)) {
+      r.bsdf.iridescenceThickness = mix(MATERIAL.iridescenceThicknessMinimum, MATERIAL.iridescenceThicknessMaximum, v.g);
+    }
   }
 
   r.unlit = (flags & kMaterialUnlit) != 0u;
@@ -105,6 +120,7 @@ Shading shadeSurface(Surface s, vec3 wo) {
   r.bsdf.clearcoatAlpha = coatRoughness * coatRoughness;
   r.bsdf.sheenAlpha = min(sheenRoughness * sheenRoughness, 1.0);
   r.absorption = MATERIAL.absorption;
+  const vec2 rotation = MATERIAL.anisotropyDirection;
   // The same factor as in lights/triangle.glsl for light samples.
   if (kHasClearcoat && !r.unlit) r.emission *= clearcoatPassed(r.bsdf.clearcoat, r.bsdf.clearcoatAlpha, abs(dot(s.shadingNormal, wo)));
 #undef MATERIAL
@@ -114,14 +130,22 @@ Shading shadeSurface(Surface s, vec3 wo) {
   const vec3 front = side * s.shadingNormal;
   const vec3 wanted = kHasNormalMaps ? side * fromTangentSpace(s, front, mapped) : s.shadingNormal;
   r.normal = consistentNormal(wanted, s.geometricNormal, wo);
-  // No lobe depends on the tangent's direction. Without normal maps any tangent works, and none is fetched.
+  // The tangent is the direction of the anisotropy. Isotropic lobes do not depend on it: without normal maps any tangent
+  // works, and none is fetched.
   r.tangent = anyTangent(r.normal);
-  if (kHasNormalMaps) r.tangent = safeNormalize(s.tangent - r.normal * dot(r.normal, s.tangent), r.tangent);
+  vec3 along = s.tangent;
+  if (kHasAnisotropy && r.bsdf.anisotropy > 0.0) {
+    const vec2 turned = vec2(grain.x * rotation.x - grain.y * rotation.y, grain.x * rotation.y + grain.y * rotation.x);
+    along = safeNormalize(turned.x * s.tangent + turned.y * s.bitangent, s.tangent);
+  }
+  if (kHasNormalMaps || (kHasAnisotropy && r.bsdf.anisotropy > 0.0))
+    r.tangent = safeNormalize(along - r.normal * dot(r.normal, along), r.tangent);
   r.bitangent = cross(r.normal, r.tangent);
   r.bsdf.clearcoatNormal = vec3(0.0, 0.0, 1.0);
   if (kHasNormalMaps) r.bsdf.clearcoatNormal = toLocal(r, consistentNormal(side * fromTangentSpace(s, front, coatMapped), s.geometricNormal, wo));
   explainShading(r.normal, r.emission, r.bsdf.baseColor, r.bsdf.metallic, r.bsdf.alpha, r.bsdf.transmission, r.bsdf.ior, r.bsdf.clearcoat,
-                 r.bsdf.sheenColor, r.bsdf.sheenAlpha, r.bsdf.diffuseTransmission, r.unlit);
+                 r.bsdf.sheenColor, r.bsdf.sheenAlpha, r.bsdf.diffuseTransmission, r.bsdf.anisotropy,
+                 r.bsdf.iridescence, r.bsdf.iridescenceThickness, r.bsdf.dispersion, r.unlit);
   return r;
 }
 

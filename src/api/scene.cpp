@@ -61,6 +61,16 @@ void copyMaterial(To& to, const From& from, const Value& value, const Use& use) 
   use(to.diffuseTransmissionTexture, from.diffuseTransmissionTexture);
   value(to.diffuseTransmissionColor, from.diffuseTransmissionColor);
   use(to.diffuseTransmissionColorTexture, from.diffuseTransmissionColorTexture);
+  to.anisotropy = from.anisotropy;
+  to.anisotropyRotation = from.anisotropyRotation;
+  use(to.anisotropyTexture, from.anisotropyTexture);
+  to.iridescence = from.iridescence;
+  use(to.iridescenceTexture, from.iridescenceTexture);
+  to.iridescenceIor = from.iridescenceIor;
+  to.iridescenceThicknessMinimum = from.iridescenceThicknessMinimum;
+  to.iridescenceThicknessMaximum = from.iridescenceThicknessMaximum;
+  use(to.iridescenceThicknessTexture, from.iridescenceThicknessTexture);
+  to.dispersion = from.dispersion;
 }
 
 Material toPublic(const scene::Material& material) {

@@ -387,6 +387,10 @@ class Builder {
              {"sheenColor", floats(r.sheenColor)},
              {"sheenRoughness", std::sqrt(r.sheenAlpha)},
              {"diffuseTransmission", r.diffuseTransmission},
+             {"anisotropy", r.anisotropy},
+             {"iridescence", r.iridescence},
+             {"iridescenceThickness", r.iridescenceThickness},
+             {"dispersion", r.dispersion},
              {"emission", floats(r.emission)},
              {"unlit", r.unlit != 0}},
             {}};

@@ -233,6 +233,10 @@ class TreeText {
     if (e.vector("sheenColor") != vec3(0.0f))
       parts.add("sheen color", e, "sheenColor").add("sheen roughness", e, "sheenRoughness");
     if (e.number("diffuseTransmission") > 0.0f) parts.add("diffuse transmission", e, "diffuseTransmission");
+    if (e.number("anisotropy") > 0.0f) parts.add("anisotropy", e, "anisotropy");
+    if (e.number("iridescence") > 0.0f)
+      parts.add("iridescence", e, "iridescence").add("film thickness in nm", e, "iridescenceThickness");
+    if (e.number("dispersion") > 0.0f) parts.add("dispersion", e, "dispersion");
     if (e.vector("emission") != vec3(0.0f)) parts.add("emission", e, "emission");
     if (e.flag("unlit")) parts.add("unlit");
     line(indent, "material", parts.text());

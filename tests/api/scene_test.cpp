@@ -57,7 +57,17 @@ TEST(ApiScene, ReturnsMaterialsAsTheyWereAdded) {
       .sheenColor = {0.4f, 0.3f, 0.2f},
       .sheenRoughness = 0.35f,
       .diffuseTransmission = 0.45f,
-      .diffuseTransmissionColor = {0.3f, 0.2f, 0.1f}};
+      .diffuseTransmissionColor = {0.3f, 0.2f, 0.1f},
+      .anisotropy = 0.55f,
+      .anisotropyRotation = 1.5f,
+      .anisotropyTexture = {.texture = texture},
+      .iridescence = 0.65f,
+      .iridescenceTexture = {.texture = texture, .uvSet = 1},
+      .iridescenceIor = 1.4f,
+      .iridescenceThicknessMinimum = 120,
+      .iridescenceThicknessMaximum = 480,
+      .iridescenceThicknessTexture = {.texture = texture, .rotation = 0.5f},
+      .dispersion = 0.3f};
   EXPECT_EQ(scene.material(scene.addMaterial(material)), material);
 }
 
@@ -118,6 +128,13 @@ TEST(ApiScene, MessagesNameTheObject) {
   EXPECT_THAT(material({.normalScale = kNan}), HasSubstr("'steel'.normalScale"));
   EXPECT_THAT(material({.alphaCutoff = kNan}), HasSubstr("'steel'.alphaCutoff"));
   EXPECT_THAT(material({.sheenColor = {0, 2, 0}}), HasSubstr("'steel'.sheenColor"));
+  EXPECT_THAT(material({.anisotropy = 1.5f}), HasSubstr("'steel'.anisotropy"));
+  EXPECT_THAT(material({.anisotropyRotation = kNan}), HasSubstr("'steel'.anisotropyRotation"));
+  EXPECT_THAT(material({.iridescence = -1}), HasSubstr("'steel'.iridescence"));
+  EXPECT_THAT(material({.iridescenceIor = 0.9f}), HasSubstr("'steel'.iridescenceIor"));
+  EXPECT_THAT(material({.iridescenceThicknessMinimum = -1}), HasSubstr("'steel'.iridescenceThicknessMinimum"));
+  EXPECT_THAT(material({.iridescenceThicknessMaximum = kNan}), HasSubstr("'steel'.iridescenceThicknessMaximum"));
+  EXPECT_THAT(material({.dispersion = -0.1f}), HasSubstr("'steel'.dispersion"));
   EXPECT_THAT(material({.clearcoatNormalScale = kNan}), HasSubstr("'steel'.clearcoatNormalScale"));
   for (const TextureUse& use :
        {TextureUse{.texture = texture, .offset = {0, kNan}}, TextureUse{.texture = texture, .scale = {kNan, 1}},

@@ -137,6 +137,22 @@ SceneBuilder sheen() {
   return scene;
 }
 
+// Brushed metal, plastic under a film, glass that disperses, and all of them on a wall.
+SceneBuilder opticalEffects() {
+  SceneBuilder scene = stage(vec3(3.0f), vec3(0.6f));
+  scene::Material brushed = plastic({0.9f, 0.7f, 0.3f}, 0.3f, 1.0f), soap = plastic({0.1f, 0.2f, 0.3f}, 0.3f);
+  brushed.anisotropy = 0.8f, brushed.anisotropyRotation = 0.7f;
+  soap.iridescence = 1.0f, soap.iridescenceThicknessMaximum = 450.0f;
+  scene::Material prism = clearGlass(1.5f, 1.0f), wall = brushed;
+  prism.dispersion = 2.0f;
+  wall.iridescence = 0.6f, wall.metallic = 0.5f, wall.transmission = 0.3f;
+  scene.add(smooth(sphere({-1.2f, 0.6f, 0}, 0.6f, 3), {-1.2f, 0.6f, 0}), brushed);
+  scene.add(smooth(sphere({0, 0.6f, 0}, 0.6f, 3), {0, 0.6f, 0}), soap);
+  scene.add(box({0.8f, 0.1f, -0.4f}, {1.6f, 1.0f, 0.4f}), prism);
+  scene.add(quad({-2, 0, -2}, {4, 0, 0}, {0, 2, 0}), wall);
+  return scene;
+}
+
 // Leaves and a volume of wax that light passes diffusely, in front of light and under a sheen.
 SceneBuilder translucent() {
   SceneBuilder scene = stage();
@@ -359,6 +375,7 @@ std::span<const ImageScene> imageScenes() {
       {"clearcoat", clearcoat, 32, 20, 4, 128, 256, false},
       {"sheen", sheen, 32, 20, 4, 128, 256, false},
       {"translucent", translucent, 32, 20, 4, 128, 256, false},
+      {"optical_effects", opticalEffects, 32, 20, 4, 128, 256, false},
       {"rough_glass", roughGlass, 32, 20, 4, 128, 256, false},
       {"sun_and_sky", sunAndSky, 32, 20, 4, 256, 1024, true},
       {"solids", solids, 32, 20, 4, 128, 512, false},

@@ -65,6 +65,8 @@ void materialProperties(ViewState& state, std::size_t index) {
                   {.least = 1e-4, .most = 1e5, .logarithmic = true, .unit = "m"},
                   "After this distance, white light has the attenuation color");
     edit.color("Attenuation color", "attenuationColor", material.attenuationColor, "Linear Rec. 709");
+    edit.number("Dispersion", "dispersion", material.dispersion, {.least = 0.0, .most = 2.0},
+                "20 / Abbe number; solids refract colors differently");
   }
   edit.number("Specular", "specular", material.specular, kUnit, "Strength of the dielectric reflection");
   edit.number("Clearcoat", "clearcoat", material.clearcoat, kUnit, "Strength of the clear coat");
@@ -78,6 +80,20 @@ void materialProperties(ViewState& state, std::size_t index) {
   if (material.diffuseTransmission > 0.0f)
     edit.color("Diffuse transmission color", "diffuseTransmissionColor", material.diffuseTransmissionColor,
                "Linear Rec. 709");
+  edit.number("Anisotropy", "anisotropy", material.anisotropy, kUnit, "Reflections are longer in one direction");
+  if (material.anisotropy > 0.0f)
+    edit.number("Anisotropy rotation", "anisotropyRotation", material.anisotropyRotation,
+                {.least = -3.1416, .most = 3.1416, .unit = "rad"}, "From the tangent to the bitangent");
+  edit.number("Iridescence", "iridescence", material.iridescence, kUnit, "Weight of a thin film over the surface");
+  if (material.iridescence > 0.0f) {
+    edit.number("Film index of refraction", "iridescenceIor", material.iridescenceIor, {.least = 1.0, .most = 3.0},
+                "Index of refraction of the thin film");
+    edit.number("Film thickness", "iridescenceThicknessMaximum", material.iridescenceThicknessMaximum,
+                {.least = 0.0, .most = 2000.0, .unit = "nm"}, "Where the texture is 1, and without a texture");
+    if (material.iridescenceThicknessTexture.used())
+      edit.number("Least film thickness", "iridescenceThicknessMinimum", material.iridescenceThicknessMinimum,
+                  {.least = 0.0, .most = 2000.0, .unit = "nm"}, "Where the texture is 0");
+  }
   if (material.alphaMode == scene::AlphaMode::mask)
     edit.number("Alpha cutoff", "alphaCutoff", material.alphaCutoff, kUnit, "Less opaque points are invisible");
   edit.flag("Double-sided", "doubleSided", material.doubleSided, "The back is visible too");

@@ -4,7 +4,7 @@
 #ifndef QUINTET_BSDF_ALBEDO_GLSL
 #define QUINTET_BSDF_ALBEDO_GLSL
 
-#include "ggx.glsl"
+#include "anisotropy.glsl"
 #include "../shared/albedo.h"
 
 // A cell of a table axis: the index of its first node, and the position in the cell, [0,1].
@@ -48,6 +48,87 @@ vec3 albedoSingle(vec3 f0, float f90, vec2 lb) { return f0 * (1.0 - lb.x - lb.y)
 vec2 albedoAverage(AlbedoCell row) {
   Vec2Array values = Vec2Array(frame.albedoTables + 4u * kAlbedoAverageOffset);
   return mix(values.at[row.index], values.at[row.index + 1u], row.offset);
+}
+
+// The position of the base's widths in the tables.
+struct AlbedoRoughness {
+  AlbedoCell row;      // of one width: the only one, or the mean width
+  vec2 alpha;
+  AlbedoCell across;   // of the anisotropic table: alpha.y
+  AlbedoCell ratio;    // alpha.x / alpha.y
+  bool anisotropic;    // the widths differ by more than rounding
+};
+
+AlbedoRoughness albedoRoughness(vec2 alpha) {
+  AlbedoRoughness r;
+  r.row = albedoRow(ggxMeanWidth(alpha));
+  r.alpha = alpha;
+  r.anisotropic = kHasAnisotropy && alpha.x > 1.0001 * alpha.y;
+  float small = albedoRoot(alpha.y);
+  r.across = albedoRow(alpha.y, kAnisotropyRoughnesses);
+  r.ratio = albedoCell((albedoRoot(alpha.x) - small) / max(1.0 - small, 1e-6), kAnisotropyRatios);
+  return r;
+}
+
+// Returns the value of an anisotropic surface at the row and ratio `node`, interpolated in cosine and width.
+vec2 albedoAnisotropicNode(uint node, AlbedoCell cosine, AlbedoCell width) {
+  Address table = frame.albedoTables + 4u * kAnisotropyOffset + 8u * kAnisotropyCosines * kAnisotropyWidths * node;
+  return albedoFetch(table, kAnisotropyWidths, cosine, width);
+}
+
+// Returns (L, B) for the direction w, with w.z >= 0.
+vec2 albedoSchlick(AlbedoRoughness r, vec3 w) {
+  if (!r.anisotropic) return albedoSchlick(r.row, w.z);
+  // The width along the azimuth of w, which decides the masking of w.
+  float length2 = dot(w.xy, w.xy);
+  float width = length2 > 0.0 ? sqrt(dot(r.alpha * w.xy, r.alpha * w.xy) / length2) : r.alpha.y;
+  float low = albedoRoot(r.alpha.y);
+  AlbedoCell along = albedoCell((albedoRoot(width) - low) / (albedoRoot(r.alpha.x) - low), kAnisotropyWidths);
+  AlbedoCell cosine = albedoCell(albedoRoot(w.z), kAnisotropyCosines);
+  vec2 value = vec2(0.0);
+  for (uint corner = 0u; corner < 4u; ++corner) {
+    uint i = corner >> 1u, j = corner & 1u;
+    float weight = (i == 1u ? r.across.offset : 1.0 - r.across.offset) * (j == 1u ? r.ratio.offset : 1.0 - r.ratio.offset);
+    value += weight * albedoAnisotropicNode((r.across.index + i) * kAnisotropyRatios + r.ratio.index + j, cosine, along);
+  }
+  return value;
+}
+
+// Returns the cosine-weighted averages of L and B over the hemisphere.
+vec2 albedoAverage(AlbedoRoughness r) {
+  if (!r.anisotropic) return albedoAverage(r.row);
+  return albedoFetch(frame.albedoTables + 4u * kAnisotropyAverageOffset, kAnisotropyRatios, r.across, r.ratio);
+}
+
+// Reflectance that a thin film adds to Schlick's at the nodes of the film tables (shared/albedo.h): the first and the last
+// four nodes. It can be negative.
+struct AlbedoFilm {
+  vec4 low;
+  vec4 high;
+};
+
+float albedoFilmAt(AlbedoFilm film, Address nodes) {
+  Vec4Array values = Vec4Array(nodes);
+  return dot(film.low, values.at[0]) + dot(film.high, values.at[1]);
+}
+
+// Returns the albedo of single scattering that the film adds, in a row of the tables.
+float albedoFilmRow(AlbedoFilm film, uint row, AlbedoCell column) {
+  Address nodes = frame.albedoTables + 4u * kFilmOffset + 4u * kFilmNodes * (row * kAlbedoCosines + column.index);
+  return mix(albedoFilmAt(film, nodes), albedoFilmAt(film, nodes + 4u * kFilmNodes), column.offset);
+}
+
+float albedoFilm(AlbedoFilm film, float alpha, float cosine) {
+  AlbedoCell row = albedoRow(alpha, kFilmRoughnesses);
+  AlbedoCell column = albedoCell(albedoRoot(cosine), kAlbedoCosines);
+  return mix(albedoFilmRow(film, row.index, column), albedoFilmRow(film, row.index + 1u, column), row.offset);
+}
+
+// Returns the cosine-weighted average over the hemisphere of the albedo that the film adds.
+float albedoFilmAverage(AlbedoFilm film, float alpha) {
+  AlbedoCell row = albedoRow(alpha, kFilmRoughnesses);
+  Address nodes = frame.albedoTables + 4u * kFilmAverageOffset + 4u * kFilmNodes * row.index;
+  return mix(albedoFilmAt(film, nodes), albedoFilmAt(film, nodes + 4u * kFilmNodes), row.offset);
 }
 
 // Returns the albedo of rough glass with single scattering: x with Fresnel's reflectance, y with total reflection only.

@@ -5,6 +5,7 @@
 #define QUINTET_BSDF_BASE_GLSL
 
 #include "albedo.glsl"
+#include "film.glsl"
 
 // Factors are linear and in [0,1]. "Layer" is the dielectric's specular layer.
 struct BaseLayer {
@@ -14,7 +15,7 @@ struct BaseLayer {
   float diffuse;       // weight of diffuse reflection, a part of `opaque`
   float translucent;   // weight of diffuse transmission, the other part
   float clear;         // weight of the transmissive dielectric
-  float alpha;         // GGX width, at least kDeltaAlpha
+  vec2 alpha;          // GGX widths along x and y, at least kDeltaAlpha
   bool delta;          // the surface is smooth
   bool entering;       // wo is on the outside
   float ior;           // at least 1
@@ -26,19 +27,29 @@ struct BaseLayer {
   vec3 clearF0;        // reflectance at normal incidence without `specular`
   vec3 colorF0;        // reflectance at normal incidence
   float f0;            // largest component of colorF0
-  AlbedoCell row;      // row of the albedo table for the roughness
-  vec2 lb;             // albedoSchlick at wo
-  vec2 average;        // albedoAverage
+  AlbedoRoughness roughness;  // position of the widths in the albedo tables
+  Film film;           // over the base; weight 0 if there is none
+  AlbedoFilm filmExtra;  // reflectance that the film adds to the layer
+  vec3 lb;             // layerTerms at wo
+  vec3 average;        // average of layerTerms
   vec3 colorMultiple;  // multipleFactor of the layer
+  vec3 metalMultiple;  // multipleFactor of the metal
   float layerMultiple; // its largest component
   vec3 passing;        // layerPassing
   float passed;        // 1 - E(wo) of the layer
   float underCoat;     // fraction of light that passes the clearcoat and, from wo, the sheen; for estimates of albedos
 };
 
-// Returns (a, b, c) such that 1 - E = a + b L + c B for the albedo E of a layer with Schlick's Fresnel. `multiple` is the
-// factor of its multiple scattering: E = f0 (1 - L - B) + f90 B + multiple L. L and B are those of albedoSchlick.
+// Returns (L, B, X) for the direction w, with w.z >= 0: those of albedoSchlick, and the albedo that the film adds.
+vec3 layerTerms(AlbedoRoughness roughness, AlbedoFilm extra, vec3 w) {
+  vec3 terms = vec3(albedoSchlick(roughness, w), 0.0);
+  if (kHasIridescence) terms.z = albedoFilm(extra, ggxMeanWidth(roughness.alpha), w.z);
+  return terms;
+}
+
+// Returns (a, b, c) such that 1 - E = a + b L + c B - X for the albedo E of a layer with Schlick's Fresnel and a film.
+// `multiple` is the factor of its multiple scattering: E = f0 (1 - L - B) + f90 B + X + multiple L.
 vec3 layerPassing(float f0, float f90, float multiple) { return vec3(1.0 - f0, f0 - multiple, f0 - f90); }
-float layerPassed(vec3 passing, vec2 lb) { return max(passing.x + dot(passing.yz, lb), 0.0); }
+float layerPassed(vec3 passing, vec3 lb) { return max(passing.x + dot(passing.yz, lb.xy) - lb.z, 0.0); }
 
 #endif

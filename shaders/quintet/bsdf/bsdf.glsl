@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The BSDF of glTF 2.0's metallic-roughness material with KHR_materials_transmission, _volume, _ior, _specular,
-// _clearcoat, _sheen and _diffuse_transmission: a sum of lobes. lobes.glsl lists them; this file evaluates and samples the sum.
+// _clearcoat, _sheen, _diffuse_transmission, _anisotropy, _iridescence and _dispersion: a sum of lobes. lobes.glsl lists
+// them; this file evaluates and samples the sum.
 //
 // Contract of this file and of every lobe:
 // - Directions are unit vectors in a local frame whose z is the shading normal on the side of wo, so wo.z > 0. Both point
@@ -39,7 +40,7 @@ vec3 bsdfEval(Bsdf b, vec3 wo, vec3 wi) { return lobesEval(b, wo, wi); }
 // Returns the part of bsdfEval that the diffuse lobe contributes.
 vec3 bsdfEvalDiffuse(Bsdf b, vec3 wi) {
   float passed = kHasSheen ? b.underCoat * sheenScaleDiffuse(b.sheen, wi) : b.underCoat;
-  return passed * diffuseEval(b.diffuse, wi, albedoSchlick(b.row, abs(wi.z)));
+  return passed * diffuseEval(b.diffuse, wi, baseTerms(b, wi));
 }
 
 float bsdfPdf(Bsdf b, vec3 wo, vec3 wi) {
@@ -92,7 +93,7 @@ bool bsdfSampleDirection(Bsdf b, vec3 wo, float uLobe, vec2 u, out BsdfSample s)
   Microfacets facets = lobeMicrofacets(b, choice.lobe);
   mat3 basis = kLobesShareNormal ? mat3(1.0) : localFrame(facets.normal);
   vec3 o = wo * basis;
-  float bound = facets.bounded ? ggxBound(o.z, facets.alpha) : 1.0;
+  float bound = facets.bounded ? ggxBound(o, facets.alpha) : 1.0;
   vec3 m = s.delta ? facets.normal : basis * ggxSample(o, facets.alpha, bound, u);
 
   s.wi = lobeSample(b, choice.lobe, wo, m, choice.u, u);

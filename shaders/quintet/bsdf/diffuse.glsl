@@ -20,8 +20,8 @@ DiffuseLobe makeDiffuse(BaseLayer base, out float albedo) {
   return DiffuseLobe(base.diffuse * base.color * (base.passed / max(layerPassed(base.passing, base.average), 1e-4)), base.passing);
 }
 
-// `lb`: the layer's albedoSchlick at wi.
-vec3 diffuseEval(DiffuseLobe lobe, vec3 wi, vec2 lb) {
+// `lb`: layerTerms at wi.
+vec3 diffuseEval(DiffuseLobe lobe, vec3 wi, vec3 lb) {
   return lobe.color * (layerPassed(lobe.passing, lb) * max(wi.z, 0.0) / kPi);
 }
 

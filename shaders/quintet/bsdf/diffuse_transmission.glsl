@@ -20,8 +20,8 @@ DiffuseTransmissionLobe makeDiffuseTransmission(BaseLayer base, vec3 color, out 
   return DiffuseTransmissionLobe(base.translucent * color * (base.passed / max(layerPassed(base.passing, base.average), 1e-4)), base.passing);
 }
 
-// `lb`: the layer's albedoSchlick at |wi.z|.
-vec3 diffuseTransmissionEval(DiffuseTransmissionLobe lobe, vec3 wi, vec2 lb) {
+// `lb`: layerTerms at |wi.z|.
+vec3 diffuseTransmissionEval(DiffuseTransmissionLobe lobe, vec3 wi, vec3 lb) {
   return lobe.color * (layerPassed(lobe.passing, lb) * max(-wi.z, 0.0) / kPi);
 }
 

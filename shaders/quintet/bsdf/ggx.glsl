@@ -49,8 +49,8 @@ float ggxReflectionPdf(float d, float cosO, float alpha, float bound) {
 
 // Samples a normal that is visible from wo (wo.z > 0). Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical
 // Caps", listing 3, with the cap bounded as above. With bound 1 the density over m is D G1(wo) (wo.m) / wo.z, which is
-// 4 (wo.m) ggxReflectionPdf (Heitz 2018, "Sampling the GGX Distribution of Visible Normals").
-vec3 ggxSample(vec3 wo, float alpha, float bound, vec2 u) {
+// 4 (wo.m) ggxReflectionPdf (Heitz 2018, "Sampling the GGX Distribution of Visible Normals"). `alpha`: widths along x and y.
+vec3 ggxSampleVisible(vec3 wo, vec2 alpha, float bound, vec2 u) {
   vec3 o = normalize(vec3(alpha * wo.xy, wo.z));
   float b = bound * o.z;
   float z = (1.0 - u.x) * (1.0 + b) - b;
@@ -59,5 +59,6 @@ vec3 ggxSample(vec3 wo, float alpha, float bound, vec2 u) {
   vec3 m = o + vec3(r * cos(phi), r * sin(phi), z);
   return normalize(vec3(alpha * m.xy, max(m.z, 1e-6)));
 }
+vec3 ggxSample(vec3 wo, float alpha, float bound, vec2 u) { return ggxSampleVisible(wo, vec2(alpha), bound, u); }
 
 #endif

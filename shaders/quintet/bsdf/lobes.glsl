@@ -30,7 +30,7 @@ const bool kLobesShareNormal = !kHasClearcoat;
 struct BsdfParameters {
   vec3 baseColor;
   float metallic;
-  float alpha;           // roughness squared
+  float alpha;           // roughness squared; GGX width along y
   float transmission;
   float ior;             // the material's, at least 1; 0 means that the reflectance is specular * specularColor
   bool entering;         // wo is on the outside
@@ -44,6 +44,12 @@ struct BsdfParameters {
   float sheenAlpha;      // sheenRoughness squared
   float diffuseTransmission;
   vec3 diffuseTransmissionColor;
+  float anisotropy;      // strength; x of the local frame is the direction of the larger width
+  float iridescence;           // weight of the thin film
+  float iridescenceIor;        // of the film, at least 1
+  float iridescenceThickness;  // of the film, nanometers
+  float dispersion;            // 20 / Abbe number
+  vec3 transmitted;            // scales transmitted light: 1, or 3 for one channel and 0 for the others (dispersion.glsl)
 };
 
 // Returns true if light can pass the surface.
@@ -60,9 +66,39 @@ struct Bsdf {
   SheenLobe sheen;
   DiffuseTransmissionLobe diffuseTransmission;
   float lobeProbability[kLobeCount];  // of sampling each lobe; the sum is 1, or 0 for a black surface
-  AlbedoCell row;                     // of the base's roughness
+  AlbedoRoughness roughness;          // of the base
+  AlbedoFilm filmExtra;               // reflectance that a film adds to the base's layer
+  vec3 transmitted;                   // scales transmitted light
   float underCoat;                    // fraction of light that passes the clearcoat
 };
+
+// Adds the film to the terms of the layer: the reflectance at the nodes of the tables, and the averages.
+void addFilm(inout BaseLayer base, vec3 wo) {
+  vec3 layerMean = vec3(0.0), metalMean = vec3(0.0);
+  float weights = 0.0;
+  for (uint k = 0u; k < kFilmNodes; ++k) {
+    float root = float(k) / float(kFilmNodes - 1u);
+    float cosine = root * root;
+    float schlick = schlickWeight(cosine);
+    vec3 layer = base.specular * filmReflectance(base.film, cosine, base.clearF0);
+    float extra = base.film.weight * (maxComponent(layer) - mix(base.f0, base.specular, schlick));
+    if (k < 4u) base.filmExtra.low[k] = extra;
+    else base.filmExtra.high[k - 4u] = extra;
+    // Cosine-weighted integral of the node's part of the piecewise linear reflectance; the parts add up to 1.
+    float step = 1.0 / float(kFilmNodes - 1u);
+    float weight = k + 1u < kFilmNodes ? 4.0 * step * (root * root * root + 0.5 * root * step * step) : 1.0 - weights;
+    weights += weight;
+    layerMean += weight * layer;
+    if (base.metallic > 0.0) metalMean += weight * filmReflectance(base.film, cosine, base.color);
+  }
+  base.colorMultiple = mix(base.colorMultiple, multipleFactor(layerMean, base.average.x), base.film.weight);
+  base.metalMultiple = mix(base.metalMultiple, multipleFactor(metalMean, base.average.x), base.film.weight);
+  float alpha = ggxMeanWidth(base.alpha);
+  float layerAtO = base.specular * maxComponent(filmReflectance(base.film, wo.z, base.clearF0));
+  float extraAtO = base.film.weight * (layerAtO - mix(base.f0, base.specular, schlickWeight(wo.z)));
+  base.lb.z = base.delta ? extraAtO : albedoFilm(base.filmExtra, alpha, wo.z);
+  base.average.z = albedoFilmAverage(base.filmExtra, alpha);
+}
 
 // Returns the shared terms of the base, except underCoat.
 BaseLayer makeBaseLayer(BsdfParameters p, vec3 wo) {
@@ -75,8 +111,9 @@ BaseLayer makeBaseLayer(BsdfParameters p, vec3 wo) {
   base.translucent = kHasDiffuseTransmission ? base.opaque * p.diffuseTransmission : 0.0;
   base.diffuse = kHasDiffuseTransmission ? base.opaque * (1.0 - p.diffuseTransmission) : base.opaque;
   base.clear = dielectric * transmission;
-  base.alpha = max(p.alpha, kDeltaAlpha);
-  base.delta = p.alpha < kDeltaAlpha;
+  vec2 alpha = ggxWidths(p.alpha, p.anisotropy);
+  base.alpha = max(alpha, vec2(kDeltaAlpha));
+  base.delta = alpha.x < kDeltaAlpha;  // the larger width
   base.entering = p.entering;
   base.ior = max(p.ior, 1.0);
   base.refractive = kHasSolidTransmission && base.clear > 0.0 && !(kHasThinTransmission && p.thin);
@@ -92,11 +129,15 @@ BaseLayer makeBaseLayer(BsdfParameters p, vec3 wo) {
   base.colorF0 = p.specular * base.clearF0;
   base.f0 = maxComponent(base.colorF0);
 
-  base.row = albedoRow(p.alpha);
+  base.roughness = albedoRoughness(base.alpha);
   float schlick = schlickWeight(wo.z);
-  base.lb = base.delta ? vec2(0.0, schlick) : albedoSchlick(base.row, wo.z);
-  base.average = albedoAverage(base.row);
+  base.lb = vec3(base.delta ? vec2(0.0, schlick) : albedoSchlick(base.roughness, wo), 0.0);
+  base.average = vec3(albedoAverage(base.roughness), 0.0);
   base.colorMultiple = multipleFactor(base.colorF0, p.specular, base.average.x);
+  base.metalMultiple = multipleFactor(base.color, 1.0, base.average.x);
+  base.film = makeFilm(p.iridescence, p.iridescenceIor, p.iridescenceThickness);
+  base.filmExtra = AlbedoFilm(vec4(0.0), vec4(0.0));
+  if (kHasIridescence && base.film.weight > 0.0) addFilm(base, wo);
   base.layerMultiple = maxComponent(base.colorMultiple);
   base.passing = layerPassing(base.f0, p.specular, base.layerMultiple);
   base.passed = layerPassed(base.passing, base.lb);
@@ -112,15 +153,17 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   b.clearcoat = makeClearcoat(p.clearcoatNormal, p.clearcoat, p.clearcoatAlpha, coated);
   float coat = kHasClearcoat ? clearcoatAlbedo(b.clearcoat, wo) : 0.0;
   b.underCoat = 1.0 - coat;
-  b.row = base.row;
+  b.roughness = base.roughness;
+  b.filmExtra = base.filmExtra;
+  b.transmitted = kHasDispersion ? p.transmitted : vec3(1.0);
   float sheen = 0.0;
   if (kHasSheen) b.sheen = makeSheen(base, p.sheenColor, p.sheenAlpha, wo.z, sheen);
   base.underCoat = kHasSheen ? b.underCoat * b.sheen.passed : b.underCoat;
 
   b.lobeProbability[kLobeClearcoat] = coat;
-  b.specular = makeSpecular(base, b.lobeProbability[kLobeSpecular]);
+  b.specular = makeSpecular(base, wo.z, b.lobeProbability[kLobeSpecular]);
   b.diffuse = makeDiffuse(base, b.lobeProbability[kLobeDiffuse]);
-  b.transmission = makeTransmission(base, wo.z, p.alpha, b.lobeProbability[kLobeTransmission]);
+  b.transmission = makeTransmission(base, wo, b.lobeProbability[kLobeTransmission]);
   b.lobeProbability[kLobeSheen] = b.underCoat * sheen;
   b.lobeProbability[kLobeDiffuseTransmission] = 0.0;
   if (kHasDiffuseTransmission) {
@@ -135,6 +178,9 @@ Bsdf makeBsdf(BsdfParameters p, vec3 wo) {
   return b;
 }
 
+// Returns layerTerms of the base at wi, on either side.
+vec3 baseTerms(Bsdf b, vec3 wi) { return layerTerms(b.roughness, b.filmExtra, vec3(wi.xy, abs(wi.z))); }
+
 // Returns true if `lobe` is `which`; false at once for lobes that no material of the scene has.
 bool isLobe(int lobe, int which) { return kLobeInScene[which] && lobe == which; }
 
@@ -146,7 +192,7 @@ bool lobeIsDelta(Bsdf b, int lobe) {
 
 // Returns f |cos wi| of all lobes that are not deltas.
 vec3 lobesEval(Bsdf b, vec3 wo, vec3 wi) {
-  vec2 lb = albedoSchlick(b.row, abs(wi.z));
+  vec3 lb = baseTerms(b, wi);
   vec3 transmission = transmissionEval(b.transmission, wo, wi, lb);
   float scale = kHasSheen ? sheenScale(b.sheen, wi) : 1.0;
   vec3 base = diffuseEval(b.diffuse, wi, lb);
@@ -154,6 +200,7 @@ vec3 lobesEval(Bsdf b, vec3 wo, vec3 wi) {
   if (kHasSheen) base *= sheenScaleDiffuse(b.sheen, wi);
   base += b.specular.delta ? vec3(0.0) : scale * specularEval(b.specular, wo, wi, lb);
   if (kHasTransmission) base += b.transmission.delta ? vec3(0.0) : scale * transmission;
+  if (kHasDispersion) base *= wi.z < 0.0 ? b.transmitted : vec3(1.0);
   if (kHasSheen) base += sheenEval(b.sheen, wo, wi);
   if (!kHasClearcoat) return base;
   float coat = b.clearcoat.delta || b.clearcoat.weight == 0.0 ? 0.0 : clearcoatEval(b.clearcoat, wo, wi);
@@ -174,13 +221,13 @@ void lobePdfs(Bsdf b, vec3 wo, vec3 wi, out float pdf[kLobeCount]) {
 // The microfacets of a lobe. bsdf.glsl samples their normal once for all lobes, because ggxSample is expensive.
 struct Microfacets {
   vec3 normal;   // unit, in the local frame
-  float alpha;
+  vec2 alpha;
   bool bounded;  // sample with ggxBound instead of bound 1
 };
 
 Microfacets lobeMicrofacets(Bsdf b, int lobe) {
   bool coat = isLobe(lobe, kLobeClearcoat);
-  return Microfacets(coat ? b.clearcoat.normal : vec3(0.0, 0.0, 1.0), coat ? b.clearcoat.alpha : b.specular.alpha,
+  return Microfacets(coat ? b.clearcoat.normal : vec3(0.0, 0.0, 1.0), coat ? vec2(b.clearcoat.alpha) : b.specular.alpha,
                      !(isLobe(lobe, kLobeTransmission) && b.transmission.refractive));
 }
 
@@ -210,7 +257,8 @@ vec3 lobeDeltaWeight(Bsdf b, int lobe, float cosine, vec3 wi, bool transmitted) 
   if (isLobe(lobe, kLobeClearcoat)) return vec3(clearcoatFresnel(b.clearcoat, cosine));
   float passed = lobesPassLayers(b, wi);
   if (!kHasTransmission || lobe == kLobeSpecular) return passed * specularFresnel(b.specular, cosine);
-  return passed * transmissionDeltaWeight(b.transmission, cosine, transmitted);
+  vec3 weight = passed * transmissionDeltaWeight(b.transmission, cosine, transmitted);
+  return kHasDispersion && transmitted ? weight * b.transmitted : weight;
 }
 
 #endif

@@ -63,7 +63,8 @@ SheenLobe makeSheen(BaseLayer base, vec3 color, float alpha, float cosine, out f
   lobe.lambda = sheenLambda(max(cosine, kSheenCosine), lobe.alpha);
   lobe.divisor = max(sheen.x, 1.0);
   lobe.passed = lobe.nearSide ? 1.0 - lobe.strength * min(sheen.y, 1.0) : 1.0;
-  float covered = dot(base.passing, albedoSheenAverages(lobe.row, base.row)) / max(layerPassed(base.passing, base.average), 1e-4);
+  vec3 averages = albedoSheenAverages(lobe.row, base.roughness.row);
+  float covered = (dot(base.passing, averages) - base.average.z * averages.x) / max(layerPassed(base.passing, base.average), 1e-4);
   lobe.diffuse = lobe.nearSide ? lobe.passed / max(1.0 - lobe.strength * covered, 1e-4) : 1.0;
   albedo = luminance(lobe.color) * sheen.y;
   return lobe;

@@ -8,14 +8,15 @@
 
 #include "base.glsl"
 #include "fresnel.glsl"
-#include "ggx.glsl"
 #include "multiple.glsl"
 
 struct ThinLobe {
   vec3 color;                 // tint
   float f0;
   float f90;
-  float alpha;
+  Film film;                  // replaces a part of Schlick's Fresnel
+  vec3 filmF0;
+  vec2 alpha;
   vec3 multiple;              // multiple scattering divided by multipleEval
   float multipleProbability;  // of sampling multiple scattering
 };
@@ -23,19 +24,23 @@ struct ThinLobe {
 ThinLobe makeThin(BaseLayer base) {
   vec3 color = base.clear * base.color;
   float through = base.lb.x * (1.0 - base.layerMultiple);
-  return ThinLobe(color, base.f0, base.specular, base.alpha, through / base.average.x * color,
+  return ThinLobe(color, base.f0, base.specular, base.film, base.clearF0, base.alpha, through / base.average.x * color,
                   min(through / max(base.passed, 1e-20), 1.0));
 }
 
 vec3 thinTransmittance(ThinLobe lobe, float cosine) {
-  return lobe.color * max(1.0 - mix(lobe.f0, lobe.f90, schlickWeight(cosine)), 0.0);
+  float f = mix(lobe.f0, lobe.f90, schlickWeight(cosine));
+  if (kHasIridescence && lobe.film.weight > 0.0)
+    f = mix(f, lobe.f90 * maxComponent(filmReflectance(lobe.film, cosine, lobe.filmF0)), lobe.film.weight);
+  return lobe.color * max(1.0 - f, 0.0);
 }
 
-// `lb`: the layer's albedoSchlick at |wi.z|.
-vec3 thinEval(ThinLobe lobe, vec3 wo, vec3 wi, vec2 lb) {
-  vec3 h = wo + vec3(wi.xy, -wi.z);
-  float d = ggxDistribution(h.z * h.z, dot(h.xy, h.xy), lobe.alpha);
-  vec3 single = ggxReflection(d, wo.z, -wi.z, lobe.alpha) * thinTransmittance(lobe, 0.5 * length(h));
+// `lb`: layerTerms at |wi.z|.
+vec3 thinEval(ThinLobe lobe, vec3 wo, vec3 wi, vec3 lb) {
+  vec3 mirrored = vec3(wi.xy, -wi.z);
+  vec3 h = wo + mirrored;
+  float d = ggxDistribution(h, lobe.alpha);
+  vec3 single = ggxReflection(d, wo, mirrored, lobe.alpha) * thinTransmittance(lobe, 0.5 * length(h));
   return wi.z < 0.0 ? single + lobe.multiple * multipleEval(wi, lb) : vec3(0.0);
 }
 
@@ -47,8 +52,8 @@ vec3 thinSample(ThinLobe lobe, vec3 wo, vec3 m, float uPart, vec2 u) {
 
 float thinPdf(ThinLobe lobe, vec3 wo, vec3 wi) {
   vec3 h = wo + vec3(wi.xy, -wi.z);
-  float d = ggxDistribution(h.z * h.z, dot(h.xy, h.xy), lobe.alpha);
-  float single = ggxReflectionPdf(d, wo.z, lobe.alpha, ggxBound(wo.z, lobe.alpha));
+  float d = ggxDistribution(h, lobe.alpha);
+  float single = ggxReflectionPdf(d, wo, lobe.alpha, ggxBound(wo, lobe.alpha));
   return wi.z < 0.0 ? mix(single, multiplePdf(wi, lobe.alpha), lobe.multipleProbability) : 0.0;
 }
 

@@ -15,23 +15,26 @@ struct TransmissionLobe {
   bool delta;
 };
 
-// `alpha`: the material's, not bounded by kDeltaAlpha. `albedo`: estimate of the lobe's albedo, for the choice of a lobe.
-TransmissionLobe makeTransmission(BaseLayer base, float cosine, float alpha, out float albedo) {
+// `albedo`: estimate of the lobe's albedo, for the choice of a lobe.
+TransmissionLobe makeTransmission(BaseLayer base, vec3 wo, out float albedo) {
   TransmissionLobe lobe;
   lobe.refractive = base.refractive;
   lobe.thin = makeThin(base);
   // Refraction between nearly equal indices is too narrow for its half vector. It counts as a delta.
-  lobe.delta = base.delta || (base.refractive && (base.ior < 1.01 || alpha * (base.ior - 1.0) < 1e-5));
-  vec2 glass = base.refractive && !lobe.delta ? albedoGlass(cosine, alpha, base.ior, base.entering) : vec2(1.0);
+  lobe.delta = base.delta || (base.refractive && (base.ior < 1.01 || base.alpha.y * (base.ior - 1.0) < 1e-5));
+  vec2 glass = vec2(1.0);
+  if (base.refractive && !lobe.delta) glass = albedoGlass(wo.z, ggxMeanWidth(base.alpha), base.ior, base.entering);
+  if (base.refractive && !lobe.delta && base.roughness.anisotropic)
+    glass = anisotropicGlass(wo, base.alpha, base.entering ? base.ior : 1.0 / base.ior);
   lobe.dielectric = makeDielectric(base, glass);
   float tint = luminance(base.color);
-  float glassAlbedo = mix(tint, 1.0, max(fresnelDielectric(cosine, lobe.dielectric.eta), 0.1));
+  float glassAlbedo = mix(tint, 1.0, max(fresnelDielectric(wo.z, lobe.dielectric.eta), 0.1));
   albedo = kHasTransmission ? base.underCoat * base.clear * (base.bends ? glassAlbedo : tint * base.passed) : 0.0;
   return lobe;
 }
 
-// `lb`: the layer's albedoSchlick at |wi.z|.
-vec3 transmissionEval(TransmissionLobe lobe, vec3 wo, vec3 wi, vec2 lb) {
+// `lb`: layerTerms at |wi.z|.
+vec3 transmissionEval(TransmissionLobe lobe, vec3 wo, vec3 wi, vec3 lb) {
   vec3 f = vec3(0.0);
   if (kHasSolidTransmission) f = dielectricEval(lobe.dielectric, wo, wi);
   if (kHasThinTransmission) f = lobe.refractive ? f : thinEval(lobe.thin, wo, wi, lb);

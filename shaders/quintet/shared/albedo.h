@@ -33,7 +33,25 @@ QT_CONSTANT kSheenOffset = kGlassOffset + 2 * kGlassIors * kGlassRoughnesses * k
 QT_CONSTANT kSheenAverageOffset = kSheenOffset + kSheenRoughnesses * kAlbedoCosines * 2;
 // vec2 [roughness of the sheen][roughness of the base]: cosine-weighted averages of A L and A B.
 QT_CONSTANT kSheenBaseOffset = kSheenAverageOffset + kSheenRoughnesses * 2;
-QT_CONSTANT kAlbedoFloatCount = kSheenBaseOffset + kSheenRoughnesses * kAlbedoRoughnesses * 2;
+// vec2 (L, B) [alpha y][ratio][cosine][width] of an anisotropic surface, with the larger alpha along x:
+// - ratio: (alpha_x^(1/4) - alpha_y^(1/4)) / (1 - alpha_y^(1/4)) from 0 to 1
+// - width w along the azimuth of the direction: (w^(1/4) - alpha_y^(1/4)) / (alpha_x^(1/4) - alpha_y^(1/4)) from 0 to 1
+QT_CONSTANT kAnisotropyRoughnesses = 8;
+QT_CONSTANT kAnisotropyRatios = 6;
+QT_CONSTANT kAnisotropyCosines = 20;
+QT_CONSTANT kAnisotropyWidths = 8;
+QT_CONSTANT kAnisotropyOffset = kSheenBaseOffset + kSheenRoughnesses * kAlbedoRoughnesses * 2;
+// vec2 [alpha y][ratio]: cosine-weighted averages of L and B.
+QT_CONSTANT kAnisotropyAverageOffset = kAnisotropyOffset + kAnisotropyRoughnesses * kAnisotropyRatios * kAnisotropyCosines * kAnisotropyWidths * 2;
+// float [roughness][cosine][node], with kAlbedoCosines cosines: the albedo of single scattering by GGX with the reflectance
+// hat_k(sqrt(cos)), which is 1 at node k and goes linearly to 0 at the nodes beside it. Node k is at sqrt(cos) =
+// k / (kFilmNodes - 1). The sum over the nodes is 1 - L.
+QT_CONSTANT kFilmNodes = 8;
+QT_CONSTANT kFilmRoughnesses = 16;
+QT_CONSTANT kFilmOffset = kAnisotropyAverageOffset + kAnisotropyRoughnesses * kAnisotropyRatios * 2;
+// float [roughness][node]: cosine-weighted averages.
+QT_CONSTANT kFilmAverageOffset = kFilmOffset + kFilmRoughnesses * kAlbedoCosines * kFilmNodes;
+QT_CONSTANT kAlbedoFloatCount = kFilmAverageOffset + kFilmRoughnesses * kFilmNodes;
 
 QT_SHARED_END
 

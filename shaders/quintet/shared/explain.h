@@ -169,9 +169,13 @@ struct ExplainShading {
   vec3 sheenColor;
   float sheenAlpha;  // sheenRoughness squared
   float diffuseTransmission;
+  float anisotropy;  // strength
+  float iridescence;
+  float iridescenceThickness;  // nanometers
+  float dispersion;
   uint unlit;
 };
-QT_SHARED_SIZE(ExplainShading, 80);
+QT_SHARED_SIZE(ExplainShading, 96);
 
 struct ExplainLobe {
   uint lobe;          // kLobe… (quintet/bsdf/lobes.glsl)

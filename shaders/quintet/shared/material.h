@@ -43,8 +43,11 @@ QT_CONSTANT kTextureSheenColor = 10;
 QT_CONSTANT kTextureSheenRoughness = 11;
 QT_CONSTANT kTextureDiffuseTransmission = 12;
 QT_CONSTANT kTextureDiffuseTransmissionColor = 13;
-QT_CONSTANT kTextureCount = 14;
-QT_CONSTANT kMaterialTextureOffset = 128;  // byte offset of the first texture in MaterialData
+QT_CONSTANT kTextureAnisotropy = 14;
+QT_CONSTANT kTextureIridescence = 15;
+QT_CONSTANT kTextureIridescenceThickness = 16;
+QT_CONSTANT kTextureCount = 17;
+QT_CONSTANT kMaterialTextureOffset = 160;  // byte offset of the first texture in MaterialData
 
 struct MaterialData {
   vec4 baseColor;
@@ -66,6 +69,13 @@ struct MaterialData {
   float sheenRoughness;
   vec3 diffuseTransmissionColor;
   float diffuseTransmission;
+  float anisotropy;         // strength
+  vec2 anisotropyDirection;  // cosine and sine of the rotation
+  float iridescence;
+  float iridescenceIor;
+  float iridescenceThicknessMinimum;  // nanometers
+  float iridescenceThicknessMaximum;  // nanometers
+  float dispersion;          // 20 / Abbe number
   TextureData baseColorTexture;
   TextureData metallicRoughnessTexture;
   TextureData normalTexture;
@@ -80,6 +90,9 @@ struct MaterialData {
   TextureData sheenRoughnessTexture;
   TextureData diffuseTransmissionTexture;
   TextureData diffuseTransmissionColorTexture;
+  TextureData anisotropyTexture;
+  TextureData iridescenceTexture;
+  TextureData iridescenceThicknessTexture;
 };
 QT_SHARED_SIZE(MaterialData, kMaterialTextureOffset + kTextureCount * 32);
 

@@ -18,7 +18,7 @@ namespace {
 using scene::Material;
 using Member = std::variant<float Material::*, vec3 Material::*, vec4 Material::*, bool Material::*>;
 
-constexpr std::array<std::pair<std::string_view, Member>, 22> kProperties{{
+constexpr std::array<std::pair<std::string_view, Member>, 29> kProperties{{
     {"baseColor", &Material::baseColor},
     {"metallic", &Material::metallic},
     {"roughness", &Material::roughness},
@@ -41,6 +41,13 @@ constexpr std::array<std::pair<std::string_view, Member>, 22> kProperties{{
     {"sheenRoughness", &Material::sheenRoughness},
     {"diffuseTransmission", &Material::diffuseTransmission},
     {"diffuseTransmissionColor", &Material::diffuseTransmissionColor},
+    {"anisotropy", &Material::anisotropy},
+    {"anisotropyRotation", &Material::anisotropyRotation},
+    {"iridescence", &Material::iridescence},
+    {"iridescenceIor", &Material::iridescenceIor},
+    {"iridescenceThicknessMinimum", &Material::iridescenceThicknessMinimum},
+    {"iridescenceThicknessMaximum", &Material::iridescenceThicknessMaximum},
+    {"dispersion", &Material::dispersion},
 }};
 
 // Components of a value; a base color can omit alpha.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An albedo is the mean of Fresnel times shadowing over the visible micronormals. It is integrated by Gauss-Legendre
 // quadrature along the axis of the spherical cap of Dupuy and Benyoub 2023, and by the midpoint rule around it, on one
-// half of the symmetric cap. The sheen, which has no visible normals, is integrated over the incident directions.
+// half of the symmetric cap; for an anisotropic surface, on the whole cap. The sheen, which has no visible normals, is integrated over the incident directions.
 #include "render/scene/albedo_tables.h"
 
 #include <algorithm>
@@ -138,6 +138,31 @@ vec2 glassAlbedo(const Outgoing& wo, float eta, const Quadrature& quadrature) {
   });
 }
 
+// Returns (L, B) of an anisotropic surface with the widths `alpha` along x and y, seen from wo.
+vec2 anisotropicAlbedo(const vec2& alpha, const vec3& wo, const Quadrature& quadrature) {
+  const auto stretchOf = [&](const vec3& w) { return glm::length(vec3(alpha.x * w.x, alpha.y * w.y, w.z)); };
+  const float stretchO = stretchOf(wo);
+  const vec3 axis = vec3(alpha.x * wo.x, alpha.y * wo.y, wo.z) / stretchO;
+  vec2 sum(0.0f);
+  const auto add = [&](const vec3& onCap, float weight) {
+    const vec3 m = glm::normalize(vec3(alpha.x * onCap.x, alpha.y * onCap.y, onCap.z));
+    const float cosine = std::min(glm::dot(wo, m), 1.0f);
+    const vec3 wi = 2.0f * cosine * m - wo;
+    const float shadowing =
+        wi.z <= 0.0f ? 0.0f : std::min(wi.z * (wo.z + stretchO) / (wo.z * stretchOf(wi) + wi.z * stretchO), 1.0f);
+    const float x = std::max(1.0f - cosine, 0.0f);
+    sum += weight * vec2(1.0f - shadowing, shadowing * x * x * x * x * x);
+  };
+  for (const Ring& ring : quadrature.rings) {
+    const float z = 1.0f - ring.position * (1.0f + axis.z);
+    const float r = std::sqrt(std::max(1.0f - z * z, 0.0f));
+    for (const vec2& sector : quadrature.sectors)
+      for (const float side : {-0.5f, 0.5f})
+        add(axis + vec3(r * sector.x, 2.0f * side * r * sector.y, z), 0.5f * ring.weight);
+  }
+  return sum;
+}
+
 // Returns the average of one row of (L, B) as the shader interpolates it: ∫ 8 x⁷ … dx over x = cos^(1/4).
 vec2 averageRow(const vec2* row) {
   constexpr int kPoints = 8;  // points of the midpoint rule in each cell
@@ -247,6 +272,87 @@ void computeSheen(std::vector<float>& table) {
   });
 }
 
+// The widths of an anisotropic surface and their fourth roots, between which the tables interpolate.
+struct Widths {
+  float rootX, rootY;
+  vec2 alpha() const { return {fourth(rootX), fourth(rootY)}; }
+  // Returns the direction at `cosine` whose azimuth has the width w, with w^(1/4) = mix(rootY, rootX, part).
+  vec3 directionAt(float cosine, float part) const {
+    const float width = fourth(glm::mix(rootY, rootX, part)), x = alpha().x, y = alpha().y;
+    const float cos2 = x > y ? std::clamp((width * width - y * y) / (x * x - y * y), 0.0f, 1.0f) : 0.0f;
+    const float sine = std::sqrt(1.0f - cosine * cosine);
+    return {sine * std::sqrt(cos2), sine * std::sqrt(1.0f - cos2), cosine};
+  }
+};
+
+// Returns the cosine-weighted average of (L, B) over the hemisphere. `cells` are interpolated as in the shader.
+vec2 averageAnisotropic(const Widths& widths, const vec2* cells) {
+  constexpr int kAzimuths = 32, kCosines = 64;  // points of the midpoint rule
+  const vec2 alpha = widths.alpha();
+  vec2 sum(0.0f);
+  for (int i = 0; i < kAzimuths; ++i) {
+    const float phi = kPi / 2.0f * (static_cast<float>(i) + 0.5f) / kAzimuths;
+    const float width = glm::length(alpha * vec2(std::cos(phi), std::sin(phi)));
+    const float range = widths.rootX - widths.rootY;
+    const float part = range > 1e-6f ? (std::sqrt(std::sqrt(width)) - widths.rootY) / range : 0.0f;
+    const float x = std::clamp(part, 0.0f, 1.0f) * (kAnisotropyWidths - 1);
+    const uint column = std::min(static_cast<uint>(x), kAnisotropyWidths - 2);
+    for (int k = 0; k < kCosines; ++k) {
+      const float root = (static_cast<float>(k) + 0.5f) / kCosines, y = root * (kAnisotropyCosines - 1);
+      const uint row = std::min(static_cast<uint>(y), kAnisotropyCosines - 2);
+      const vec2* at = cells + row * kAnisotropyWidths + column;
+      const float offset = x - static_cast<float>(column);
+      const vec2 value =
+          glm::mix(glm::mix(at[0], at[1], offset), glm::mix(at[kAnisotropyWidths], at[kAnisotropyWidths + 1], offset),
+                   y - static_cast<float>(row));
+      sum += value * (8.0f * fourth(root) * root * root * root);
+    }
+  }
+  return sum / static_cast<float>(kAzimuths * kCosines);
+}
+
+void computeAnisotropy(std::vector<float>& table) {
+  const Quadrature quadrature(12, 6);
+  constexpr uint kCells = kAnisotropyCosines * kAnisotropyWidths;
+  parallelFor(kAnisotropyRoughnesses * kAnisotropyRatios, [&](std::size_t node) {
+    Widths widths;
+    widths.rootY = std::sqrt(std::sqrt(alphaOf(node / kAnisotropyRatios, kAnisotropyRoughnesses)));
+    widths.rootX = glm::mix(widths.rootY, 1.0f, position(node % kAnisotropyRatios, kAnisotropyRatios));
+    vec2 cells[kCells];
+    for (uint i = 0; i < kCells; ++i) {
+      const float cosine = cosineOf(i / kAnisotropyWidths, kAnisotropyCosines);
+      const vec3 wo = widths.directionAt(cosine, position(i % kAnisotropyWidths, kAnisotropyWidths));
+      cells[i] = anisotropicAlbedo(widths.alpha(), wo, quadrature);
+    }
+    std::copy_n(&cells[0].x, kCells * 2, table.begin() + kAnisotropyOffset + node * kCells * 2);
+    const vec2 average = averageAnisotropic(widths, cells);
+    std::copy_n(&average.x, 2, table.begin() + kAnisotropyAverageOffset + node * 2);
+  });
+}
+
+// Computes the albedos of the nodes of a thin film.
+void computeFilm(std::vector<float>& table) {
+  const Quadrature quadrature(24, 8);
+  parallelFor(kFilmRoughnesses, [&](std::size_t row) {
+    const float alpha = alphaOf(row, kFilmRoughnesses);
+    for (uint node = 0; node < kFilmNodes; node += 2) {
+      vec2 cells[kAlbedoCosines];
+      for (uint i = 0; i < kAlbedoCosines; ++i) {
+        const float cosine = cosineOf(i, kAlbedoCosines);
+        const Outgoing wo{cosine, alpha, stretch(cosine, alpha)};
+        cells[i] = meanOverVisible(wo, quadrature, [&](float cosMicro, float normalZ) {
+          const float x = std::sqrt(std::max(cosMicro, 0.0f)) * (kFilmNodes - 1) - static_cast<float>(node);
+          const vec2 hats = glm::max(1.0f - glm::abs(vec2(x, x - 1.0f)), vec2(0.0f));
+          return std::min(reflectedShadowing(wo, cosMicro, normalZ), 1.0f) * hats;
+        });
+        std::copy_n(&cells[i].x, 2, table.begin() + kFilmOffset + (row * kAlbedoCosines + i) * kFilmNodes + node);
+      }
+      const vec2 average = averageRow(cells);
+      std::copy_n(&average.x, 2, table.begin() + kFilmAverageOffset + row * kFilmNodes + node);
+    }
+  });
+}
+
 }  // namespace
 
 std::vector<float> computeAlbedoTables() {
@@ -280,6 +386,8 @@ std::vector<float> computeAlbedoTables() {
     }
   });
   computeSheen(table);
+  computeAnisotropy(table);
+  computeFilm(table);
   return table;
 }
 

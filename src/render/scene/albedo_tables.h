@@ -7,7 +7,7 @@
 
 namespace quintet::render {
 
-// Computes kAlbedoFloatCount floats, which do not depend on the scene; about 10 ms on two cores.
+// Computes kAlbedoFloatCount floats, which do not depend on the scene; about 30 ms on two cores.
 std::vector<float> computeAlbedoTables();
 // Returns the tables of this process, which are computed on the first call.
 const std::vector<float>& albedoTables();

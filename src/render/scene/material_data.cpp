@@ -62,6 +62,13 @@ shared::MaterialData makeMaterial(const scene::Material& m, const TextureIndex& 
   data.sheenRoughness = m.sheenRoughness;
   data.diffuseTransmissionColor = m.diffuseTransmissionColor;
   data.diffuseTransmission = m.diffuseTransmission;
+  data.anisotropy = m.anisotropy;
+  data.anisotropyDirection = {std::cos(m.anisotropyRotation), std::sin(m.anisotropyRotation)};
+  data.iridescence = m.iridescence;
+  data.iridescenceIor = m.iridescenceIor;
+  data.iridescenceThicknessMinimum = m.iridescenceThicknessMinimum;
+  data.iridescenceThicknessMaximum = m.iridescenceThicknessMaximum;
+  data.dispersion = m.thickness > 0.0f ? m.dispersion : 0.0f;
   static_assert(scene::kMaterialTextures.size() == shared::kTextureCount + 1);
   shared::TextureData* textures = &data.baseColorTexture;
   for (std::uint32_t k = 0; k < shared::kTextureCount; ++k) {

@@ -95,6 +95,11 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
   without("QUINTET_NO_SHEEN", any([](const scene::Material& m) { return m.sheenColor != vec3(0.0f); }));
   without("QUINTET_NO_DIFFUSE_TRANSMISSION",
           any([](const scene::Material& m) { return m.diffuseTransmission > 0.0f; }));
+  without("QUINTET_NO_ANISOTROPY", any([](const scene::Material& m) { return m.anisotropy > 0.0f; }));
+  without("QUINTET_NO_IRIDESCENCE", any([](const scene::Material& m) { return m.iridescence > 0.0f; }));
+  without("QUINTET_NO_DISPERSION", any([](const scene::Material& m) {
+            return m.dispersion > 0.0f && m.transmission > 0.0f && m.thickness > 0.0f && m.ior > 0.0f;
+          }));
   without("QUINTET_NO_TRIANGLE_LIGHTS", any(emits));
   without("QUINTET_NO_PUNCTUAL_LIGHTS", !scene.lights.empty());
   without("QUINTET_NO_ENVIRONMENT", glm::any(glm::greaterThan(environmentScale, vec3(0.0f))));

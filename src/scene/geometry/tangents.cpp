@@ -157,8 +157,12 @@ void generateTangents(Geometry& geometry, const TextureUse& use) {
 }
 
 bool addTangents(Geometry& geometry, const Material& material) {
-  const TextureUse& use = material.normalTexture.used() ? material.normalTexture : material.clearcoatNormalTexture;
-  if (!use.used() || !geometry.tangents.empty()) return false;
+  const bool needed =
+      material.normalTexture.used() || material.clearcoatNormalTexture.used() || material.anisotropy > 0.0f;
+  if (!needed || !geometry.tangents.empty()) return false;
+  const TextureUse& use = material.normalTexture.used()            ? material.normalTexture
+                          : material.clearcoatNormalTexture.used() ? material.clearcoatNormalTexture
+                                                                   : material.anisotropyTexture;
   if (geometry.uvs[static_cast<std::size_t>(use.uvSet)].empty()) return false;
   if (geometry.normals.empty()) splitIntoFlatTriangles(geometry);
   generateTangents(geometry, use);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tangent frames for normal maps, if the file has none. The tangent of a vertex is the sum of dP/du of the triangles
+// Tangent frames for normal maps and anisotropy, if the file has none. The tangent of a vertex is the sum of dP/du of the triangles
 // around it, weighted by the corner angle and made perpendicular to the normal (E. Lengyel, "Computing Tangent Space
 // Basis Vectors for an Arbitrary Mesh", 2001; Foundations of Game Engine Development 2, section 7.5). MikkTSpace, which
 // glTF recommends, also weights by the angle, but sums only within the smooth groups of its own welding. Both agree on
@@ -16,8 +16,9 @@ namespace quintet::scene {
 // duplicated.
 void generateTangents(Geometry&, const TextureUse& use);
 
-// Generates the tangents that the normal map of the material requires, if the geometry has none. The normal map of the
-// clear coat uses the same frame as that of the base. Returns whether the geometry has changed.
+// Generates the tangents that a normal map or the anisotropy of the material requires, if the geometry has none. All of
+// them use one frame: that of the normal map, else of the clear coat's normal map, else of the anisotropy texture, else
+// of the first texture coordinates. Returns whether the geometry has changed.
 bool addTangents(Geometry&, const Material&);
 // The same for all geometries with this material of the scene. Returns whether one has changed.
 bool addTangents(Scene&, std::size_t material);

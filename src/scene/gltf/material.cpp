@@ -54,6 +54,10 @@ class MaterialReader {
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_sheen")) readSheen(*e);
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_diffuse_transmission"))
       readDiffuseTransmission(*e);
+    if (const auto* e = findExtension(from_.extensions, "KHR_materials_anisotropy")) readAnisotropy(*e);
+    if (const auto* e = findExtension(from_.extensions, "KHR_materials_iridescence")) readIridescence(*e);
+    if (const auto* e = findExtension(from_.extensions, "KHR_materials_dispersion"))
+      material_.dispersion = range(numberOf(*e, "dispersion", 0.0), 0.0f, kHuge, "dispersion");
     material_.unlit = findExtension(from_.extensions, "KHR_materials_unlit") != nullptr;
     return std::move(material_);
   }
@@ -154,6 +158,23 @@ class MaterialReader {
     material_.diffuseTransmissionColor = range(vec3Of(extension, "diffuseTransmissionColorFactor", vec3(1.0f)), 0.0f,
                                                1.0f, "diffuseTransmissionColorFactor");
     material_.diffuseTransmissionColorTexture = texture(extension, "diffuseTransmissionColorTexture");
+  }
+
+  void readAnisotropy(const tinygltf::Value& extension) {
+    material_.anisotropy = unit(numberOf(extension, "anisotropyStrength", 0.0), "anisotropyStrength");
+    material_.anisotropyRotation = static_cast<float>(numberOf(extension, "anisotropyRotation", 0.0));
+    material_.anisotropyTexture = texture(extension, "anisotropyTexture");
+  }
+
+  void readIridescence(const tinygltf::Value& extension) {
+    material_.iridescence = unit(numberOf(extension, "iridescenceFactor", 0.0), "iridescenceFactor");
+    material_.iridescenceTexture = texture(extension, "iridescenceTexture");
+    material_.iridescenceIor = range(numberOf(extension, "iridescenceIor", 1.3), 1.0f, kHuge, "iridescenceIor");
+    material_.iridescenceThicknessMinimum =
+        range(numberOf(extension, "iridescenceThicknessMinimum", 100.0), 0.0f, kHuge, "iridescenceThicknessMinimum");
+    material_.iridescenceThicknessMaximum =
+        range(numberOf(extension, "iridescenceThicknessMaximum", 400.0), 0.0f, kHuge, "iridescenceThicknessMaximum");
+    material_.iridescenceThicknessTexture = texture(extension, "iridescenceThicknessTexture");
   }
 
   void readSheen(const tinygltf::Value& extension) {

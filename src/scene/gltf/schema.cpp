@@ -232,6 +232,15 @@ constexpr Property kSpecularGlossiness[] = {numbers("diffuseFactor", 4), texture
 constexpr Property kDiffuseTransmission[] = {number("diffuseTransmissionFactor"), texture("diffuseTransmissionTexture"),
                                              numbers("diffuseTransmissionColorFactor", 3),
                                              texture("diffuseTransmissionColorTexture")};
+constexpr Property kAnisotropy[] = {number("anisotropyStrength"), number("anisotropyRotation"),
+                                    texture("anisotropyTexture")};
+constexpr Property kIridescence[] = {number("iridescenceFactor"),
+                                     texture("iridescenceTexture"),
+                                     number("iridescenceIor"),
+                                     number("iridescenceThicknessMinimum"),
+                                     number("iridescenceThicknessMaximum"),
+                                     texture("iridescenceThicknessTexture")};
+constexpr Property kDispersion[] = {number("dispersion")};
 constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_unlit", {}),
     object("KHR_materials_emissive_strength", kEmissiveStrength),
@@ -242,6 +251,9 @@ constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_clearcoat", kClearcoat),
     object("KHR_materials_sheen", kSheen),
     object("KHR_materials_diffuse_transmission", kDiffuseTransmission),
+    object("KHR_materials_anisotropy", kAnisotropy),
+    object("KHR_materials_iridescence", kIridescence),
+    object("KHR_materials_dispersion", kDispersion),
     object("KHR_materials_pbrSpecularGlossiness", kSpecularGlossiness),
 };
 constexpr Property kMaterial[] = {

@@ -58,7 +58,9 @@ class Feeder {
             m.specularColorTexture, m.clearcoat, m.clearcoatTexture, m.clearcoatRoughness, m.clearcoatRoughnessTexture,
             m.clearcoatNormalTexture, m.clearcoatNormalScale, m.sheenColor, m.sheenColorTexture, m.sheenRoughness,
             m.sheenRoughnessTexture, m.diffuseTransmission, m.diffuseTransmissionTexture, m.diffuseTransmissionColor,
-            m.diffuseTransmissionColorTexture);
+            m.diffuseTransmissionColorTexture, m.anisotropy, m.anisotropyRotation, m.anisotropyTexture, m.iridescence,
+            m.iridescenceTexture, m.iridescenceIor, m.iridescenceThicknessMinimum, m.iridescenceThicknessMaximum,
+            m.iridescenceThicknessTexture, m.dispersion);
   }
   void add(const Geometry& g) {
     (*this)(g.positions, g.triangles, g.normals, g.tangents, g.uvs, g.colors, g.material, g.fileTriangles);

@@ -30,6 +30,9 @@ inline constexpr std::array kMaterialTextures{
     MaterialTexture{&Material::sheenRoughnessTexture, false},
     MaterialTexture{&Material::diffuseTransmissionTexture, false},
     MaterialTexture{&Material::diffuseTransmissionColorTexture, true},
+    MaterialTexture{&Material::anisotropyTexture, false},
+    MaterialTexture{&Material::iridescenceTexture, false},
+    MaterialTexture{&Material::iridescenceThicknessTexture, false},
     MaterialTexture{&Material::occlusionTexture, false},
 };
 

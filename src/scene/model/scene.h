@@ -93,6 +93,16 @@ struct Material {
   TextureUse diffuseTransmissionTexture;       // a
   vec3 diffuseTransmissionColor{1.0f};         // [0,1]
   TextureUse diffuseTransmissionColorTexture;  // rgb, sRGB
+  float anisotropy = 0.0f;                     // KHR_materials_anisotropy, strength, [0,1]
+  float anisotropyRotation = 0.0f;             // radians, from the tangent to the bitangent
+  TextureUse anisotropyTexture;                // rg: direction in tangent space, [-1,1]; b: strength
+  float iridescence = 0.0f;                    // KHR_materials_iridescence, weight of the thin film, [0,1]
+  TextureUse iridescenceTexture;               // r
+  float iridescenceIor = 1.3f;                 // of the film, ≥ 1
+  float iridescenceThicknessMinimum = 100.0f;  // nanometers, ≥ 0; where the texture is 0
+  float iridescenceThicknessMaximum = 400.0f;  // nanometers, ≥ 0; where the texture is 1, and without a texture
+  TextureUse iridescenceThicknessTexture;      // g
+  float dispersion = 0.0f;                     // KHR_materials_dispersion, 20 / Abbe number, ≥ 0; for solids
 };
 
 // A list of triangles. Every attribute is empty or has positions.size() elements.

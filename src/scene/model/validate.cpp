@@ -159,6 +159,8 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
   checkUnit(material.clearcoatRoughness, "clearcoatRoughness");
   checkUnit(material.sheenRoughness, "sheenRoughness");
   checkUnit(material.diffuseTransmission, "diffuseTransmission");
+  checkUnit(material.anisotropy, "anisotropy");
+  checkUnit(material.iridescence, "iridescence");
   for (int i = 0; i < 3; ++i) {
     checkRange(material.emissive[i], 0.0f, kLargest, "emissive");
     checkRange(material.specularColor[i], 0.0f, kLargest, "specularColor");
@@ -167,9 +169,14 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
     checkUnit(material.diffuseTransmissionColor[i], "diffuseTransmissionColor");
   }
   checkRange(material.thickness, 0.0f, kLargest, "thickness");
-  for (const auto& [value, property] : {std::pair(material.normalScale, "normalScale"),
-                                        std::pair(material.clearcoatNormalScale, "clearcoatNormalScale"),
-                                        std::pair(material.alphaCutoff, "alphaCutoff")})
+  checkRange(material.iridescenceIor, 1.0f, kLargest, "iridescenceIor");
+  checkRange(material.iridescenceThicknessMinimum, 0.0f, kLargest, "iridescenceThicknessMinimum");
+  checkRange(material.iridescenceThicknessMaximum, 0.0f, kLargest, "iridescenceThicknessMaximum");
+  checkRange(material.dispersion, 0.0f, kLargest, "dispersion");
+  for (const auto& [value, property] :
+       {std::pair(material.normalScale, "normalScale"),
+        std::pair(material.clearcoatNormalScale, "clearcoatNormalScale"),
+        std::pair(material.alphaCutoff, "alphaCutoff"), std::pair(material.anisotropyRotation, "anisotropyRotation")})
     if (!std::isfinite(value)) fail("{}.{}: not finite", name, property);
   if (material.ior != 0.0f) checkRange(material.ior, 1.0f, kLargest, "ior");
   if (!(material.attenuationDistance > 0.0f)) fail("{}.attenuationDistance: {}", name, material.attenuationDistance);

@@ -99,6 +99,7 @@ void readTransmission(TomlReader& reader, TextureReader& texture, Material& m) {
   m.thickness = reader.number("thickness", m.thickness, kNotNegative);
   m.attenuationDistance = reader.number("attenuation_distance", m.attenuationDistance, kPositive);
   m.attenuationColor = readColor(reader, "attenuation_color", m.attenuationColor, kColorAboveZero);
+  m.dispersion = reader.number("dispersion", m.dispersion, kNotNegative);
 }
 
 void readLayers(TomlReader& reader, TextureReader& texture, Material& m) {
@@ -116,6 +117,23 @@ void readLayers(TomlReader& reader, TextureReader& texture, Material& m) {
   m.sheenColorTexture = texture(reader, "sheen_color_texture", m.sheenColorTexture);
   m.sheenRoughness = reader.number("sheen_roughness", m.sheenRoughness, kUnit);
   m.sheenRoughnessTexture = texture(reader, "sheen_roughness_texture", m.sheenRoughnessTexture);
+}
+
+void readAnisotropy(TomlReader& reader, TextureReader& texture, Material& m) {
+  m.anisotropy = reader.number("anisotropy", m.anisotropy, kUnit);
+  m.anisotropyRotation = glm::radians(reader.number("anisotropy_rotation", glm::degrees(m.anisotropyRotation)));
+  m.anisotropyTexture = texture(reader, "anisotropy_texture", m.anisotropyTexture);
+}
+
+void readIridescence(TomlReader& reader, TextureReader& texture, Material& m) {
+  m.iridescence = reader.number("iridescence", m.iridescence, kUnit);
+  m.iridescenceTexture = texture(reader, "iridescence_texture", m.iridescenceTexture);
+  m.iridescenceIor = reader.number("iridescence_ior", m.iridescenceIor, kAtLeastOne);
+  m.iridescenceThicknessMinimum =
+      reader.number("iridescence_thickness_minimum", m.iridescenceThicknessMinimum, kNotNegative);
+  m.iridescenceThicknessMaximum =
+      reader.number("iridescence_thickness_maximum", m.iridescenceThicknessMaximum, kNotNegative);
+  m.iridescenceThicknessTexture = texture(reader, "iridescence_thickness_texture", m.iridescenceThicknessTexture);
 }
 
 void readMaterial(SceneTomlContext& context, TextureReader& texture, const TomlValue& table) {
@@ -145,6 +163,8 @@ void readMaterial(SceneTomlContext& context, TextureReader& texture, const TomlV
   m.unlit = reader.boolean("unlit", m.unlit);
   readTransmission(reader, texture, m);
   readLayers(reader, texture, m);
+  readAnisotropy(reader, texture, m);
+  readIridescence(reader, texture, m);
   reader.rejectUnknownKeys();
   if (!context.materials.emplace(name, static_cast<int>(context.scene.materials.size())).second)
     context.fail(nameValue, fmt::format("second material '{}'", name));

@@ -38,6 +38,10 @@ struct BsdfCase {
   float sheenAlpha = 0.25f;
   float diffuseTransmission = 0.0f;
   vec3 diffuseTransmissionColor{1.0f};
+  float anisotropy = 0.0f;
+  float iridescence = 0.0f;
+  float iridescenceIor = 1.3f;
+  float iridescenceThickness = 400.0f;
 };
 
 inline vec3 directionAt(float cosine, float azimuth = 0.7f) {
@@ -98,6 +102,20 @@ inline std::vector<NamedCase> materialsAt(float alpha, const vec3& wo) {
       [&](BsdfCase& c) { mix(c), c.thin = 1, c.diffuseTransmission = 0.7f, c.sheenColor = vec3(0.5f); });
   add("diffuse transmission, solid inside",
       [&](BsdfCase& c) { c.diffuseTransmission = 0.6f, c.entering = 0, c.sheenColor = vec3(0.8f), coat(c); });
+  add("anisotropic metal", [](BsdfCase& c) { c.metallic = 1.0f, c.anisotropy = 0.9f; });
+  add("anisotropic dielectric", [](BsdfCase& c) { c.anisotropy = 0.5f; });
+  add("anisotropic thin wall", [](BsdfCase& c) { c.anisotropy = 0.6f, c.transmission = 1.0f, c.thin = 1; });
+  add("anisotropic glass outside", [](BsdfCase& c) { c.anisotropy = 0.6f, c.transmission = 1.0f; });
+  add("anisotropic glass inside", [](BsdfCase& c) { c.anisotropy = 0.6f, c.transmission = 1.0f, c.entering = 0; });
+  add("anisotropic mixture", [&](BsdfCase& c) { mix(c), c.anisotropy = 0.7f, c.thin = 1, c.sheenColor = vec3(0.5f); });
+  const auto film = [](BsdfCase& c, float thickness) { c.iridescence = 0.8f, c.iridescenceThickness = thickness; };
+  add("film on metal", [&](BsdfCase& c) { film(c, 350.0f), c.metallic = 1.0f; });
+  add("film on dielectric", [&](BsdfCase& c) { film(c, 500.0f), c.iridescenceIor = 1.8f; });
+  add("film on a thin wall", [&](BsdfCase& c) { film(c, 250.0f), c.transmission = 1.0f, c.thin = 1; });
+  for (const bool outside : {true, false})
+    add(outside ? "film on glass outside" : "film on glass inside",
+        [&](BsdfCase& c) { film(c, 300.0f), c.transmission = 1.0f, c.entering = outside; });
+  add("mixture with film", [&](BsdfCase& c) { mix(c), film(c, 600.0f), c.thin = 1, c.sheenColor = vec3(0.5f); });
   add("mixture, thin", [&](BsdfCase& c) { mix(c), c.thin = 1; });
   add("mixture, opaque", [&](BsdfCase& c) { mix(c), c.transmission = 0.0f; });
   return cases;
@@ -139,12 +157,14 @@ struct Case {
   float specular; vec3 specularColor; float clearcoat; float clearcoatAlpha; vec3 clearcoatNormal;
   vec3 sheenColor; float sheenAlpha;
   float diffuseTransmission; vec3 diffuseTransmissionColor;
+  float anisotropy; float iridescence; float iridescenceIor; float iridescenceThickness;
 };
 struct Sample { vec3 wi; uint valid; vec3 weight; float pdf; uint delta; uint transmitted; };
 Bsdf makeBsdfOf(Case c) {
   return makeBsdf(BsdfParameters(c.baseColor, c.metallic, c.alpha, c.transmission, c.ior, c.entering != 0u, c.thin != 0u,
                                  c.specular, c.specularColor, c.clearcoat, c.clearcoatAlpha, c.clearcoatNormal,
-                                 c.sheenColor, c.sheenAlpha, c.diffuseTransmission, c.diffuseTransmissionColor), c.wo);
+                                 c.sheenColor, c.sheenAlpha, c.diffuseTransmission, c.diffuseTransmissionColor,
+                                 c.anisotropy, c.iridescence, c.iridescenceIor, c.iridescenceThickness, 0.0, vec3(1.0)), c.wo);
 }
 // Jarzynski and Olano 2020, "Hash Functions for GPU Rendering", listing "pcg3d"; 24 bits in [0,1).
 vec3 randomAt(uint index, uint dimension) {

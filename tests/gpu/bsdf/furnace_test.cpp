@@ -41,13 +41,13 @@ class BsdfFurnace : public BsdfTest {
 
   // Expects albedo 1 within `tolerance` for all roughnesses and angles; prints the largest deviation.
   template <class Change>
-  static void expectWhite(const char* name, double tolerance, const Change& change) {
+  static void expectWhite(const char* name, double tolerance, const Change& change, float azimuth = 0.7f) {
     double worst = 0.0;
     std::string where;
     for (const float alpha : kAlphas) {
       for (const float cosine : kAngles) {
         BsdfCase c;
-        c.wo = directionAt(cosine);
+        c.wo = directionAt(cosine, azimuth);
         c.alpha = alpha;
         change(c);
         const Albedo albedo = albedoOf(c);
@@ -99,6 +99,45 @@ TEST_F(BsdfFurnace, DiffuseTransmission) {
   expectWhite("diffuse transmission under sheen", 0.022, [](BsdfCase& c) {
     c.diffuseTransmission = 0.6f, c.thin = 1, c.sheenColor = vec3(0.5f), c.sheenAlpha = 0.3f;
   });
+}
+
+// The tables of the widths and the azimuth are coarse for the widest ratios, at grazing angles along the narrow width.
+TEST_F(BsdfFurnace, Anisotropy) {
+  for (const auto& [strength, azimuth] : {std::pair{0.5f, 0.9f}, {1.0f, 0.0f}, {1.0f, 1.5f}})
+    expectWhite(
+        "anisotropic metal", 0.03, [&](BsdfCase& c) { c.metallic = 1.0f, c.anisotropy = strength; }, azimuth);
+  const auto anisotropic = [](BsdfCase& c) { c.anisotropy = 0.8f; };
+  expectWhite("anisotropic dielectric", 0.03, anisotropic);
+  expectWhite("anisotropic thin wall", 0.03, [&](BsdfCase& c) { anisotropic(c), c.transmission = 1.0f, c.thin = 1; });
+  for (const bool outside : {true, false})
+    expectWhite(outside ? "anisotropic glass, outside" : "anisotropic glass, inside", outside ? 0.03 : 0.1,
+                [&](BsdfCase& c) { anisotropic(c), c.transmission = 1.0f, c.entering = outside; });
+}
+
+// A film reflects colors. Of these, the largest channel limits the light below, as in KHR_materials_iridescence: the
+// largest channel of the albedo is 1, or less where it changes with the angle of rough surfaces.
+TEST_F(BsdfFurnace, Iridescence) {
+  const auto film = [](BsdfCase& c, float thickness) { c.iridescence = 1.0f, c.iridescenceThickness = thickness; };
+  expectWhite("film on metal", 0.01, [&](BsdfCase& c) { film(c, 400.0f), c.metallic = 1.0f; });
+  double brightest = 0.0, darkest = 1.0;
+  for (const int kind : {0, 1, 2, 3})  // dielectric, thin wall, glass from outside and inside
+    for (const float thickness : {150.0f, 400.0f, 900.0f})
+      for (const float alpha : {0.0f, 0.02f, 0.3f, 1.0f})
+        for (const float cosine : {1.0f, 0.75f, 0.3f, 0.1f, 0.01f}) {
+          BsdfCase c;
+          c.wo = directionAt(cosine);
+          c.alpha = alpha;
+          c.transmission = kind == 0 ? 0.0f : 1.0f;
+          c.thin = kind == 1;
+          c.entering = kind != 3;
+          film(c, thickness);
+          const Albedo albedo = albedoOf(c);
+          const double largest = std::max({albedo.mean.x, albedo.mean.y, albedo.mean.z});
+          EXPECT_LE(largest, 1.03 + 4.0 * albedo.error) << kind << " " << thickness << " " << alpha << " " << cosine;
+          EXPECT_GE(largest, 0.94 - 4.0 * albedo.error) << kind << " " << thickness << " " << alpha << " " << cosine;
+          brightest = std::max(brightest, largest), darkest = std::min(darkest, largest);
+        }
+  std::printf("  furnace, film: largest channel from %.3f to %.3f\n", darkest, brightest);
 }
 
 TEST_F(BsdfFurnace, ClearcoatAndMixture) {
@@ -172,6 +211,8 @@ TEST_F(BsdfFurnace, NoMaterialGainsEnergy) {
       c.sheenAlpha = next() * next();
     }
     if (i % 5 == 1) c.diffuseTransmission = next(), c.thin = 1;
+    if (i % 5 == 2) c.anisotropy = next();
+    if (i % 5 == 3) c.iridescence = next(), c.iridescenceIor = 1.0f + next(), c.iridescenceThickness = 1000.0f * next();
     const Albedo albedo = albedoOf(c);
     EXPECT_LE(std::max({albedo.mean.x, albedo.mean.y, albedo.mean.z}), 1.04 + 4.0 * albedo.error)
         << "case " << i << ": alpha " << c.alpha << ", cosine " << c.wo.z << ", ior " << c.ior << ", transmission "

@@ -83,7 +83,7 @@ const std::string kBothWays = kBsdfPrelude + R"(
   #ifdef IN_THE_LOBE
     // Directions within the lobe around the mirrored or refracted one: slopes of up to 5 alpha.
     vec3 u = randomAt(index, 5u);
-    float width = c.clearcoat > 0.0 && u.z < 0.5 ? c.clearcoatAlpha : c.alpha;
+    vec2 width = c.clearcoat > 0.0 && u.z < 0.5 ? vec2(c.clearcoatAlpha) : ggxWidths(c.alpha, c.anisotropy);
     vec3 m = normalize(vec3(width * 5.0 * u.x * vec2(cos(6.2831853 * u.y), sin(6.2831853 * u.y)), 1.0));
     wi = reflect(-wo, m);
     if (c.transmission > 0.0 && index % 2u == 0u)
@@ -286,6 +286,10 @@ TEST_F(BsdfLobes, NothingIsInvalid) {
       c.sheenAlpha = pow(corner(index, 125u), 4.0);
       c.diffuseTransmission = corner(index, 126u);
       c.diffuseTransmissionColor = vec3(corner(index, 127u), corner(index, 128u), corner(index, 129u));
+      c.anisotropy = max(corner(index, 130u), 0.0) * float(randomAt(index, 131u).x < 0.5);
+      c.iridescence = corner(index, 132u);
+      c.iridescenceIor = 1.0 + 2.0 * corner(index, 133u);
+      c.iridescenceThickness = 1000.0 * corner(index, 134u);
       Bsdf b = makeBsdfOf(c);
       uint faults = 0u;
       float sum = 0.0;

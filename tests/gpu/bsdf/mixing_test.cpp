@@ -37,7 +37,7 @@ const std::string kMixing = kBsdfPrelude + R"(
 
     mat3 basis = localFrame(b.clearcoat.normal);
     vec3 local = c.wo * basis;
-    vec3 m = ggxSample(c.wo, b.specular.alpha, ggxBound(c.wo.z, b.specular.alpha), u.xy);
+    vec3 m = ggxSample(c.wo, b.specular.alpha, ggxBound(c.wo, b.specular.alpha), u.xy);
     vec3 mCoat = basis * ggxSample(local, b.clearcoat.alpha, ggxBound(local.z, b.clearcoat.alpha), u.xy);
     nearer(s.wi, clearcoatSample(b.clearcoat, c.wo, mCoat), 0u, o);
     nearer(s.wi, reflect(-c.wo, m), 1u, o);

@@ -35,7 +35,7 @@ float pdfOf(Bsdf b, vec3 wo, vec3 wi) {
   return wi.z > 0.0 ? 0.5 / kPi : 0.0;
 #elif defined(WRONG) && LOBE == 1
   vec3 h = normalize(wo + wi);
-  return wi.z > 0.0 ? ggxReflectionPdf(ggxDistribution(h.z * h.z, dot(h.xy, h.xy), b.specular.alpha), wo.z, b.specular.alpha, 1.0) : 0.0;
+  return wi.z > 0.0 ? ggxReflectionPdf(ggxDistribution(h, b.specular.alpha), wo, b.specular.alpha, 1.0) : 0.0;
 #elif defined(WRONG) && LOBE == 3
   return dielectricPdf(b.transmission.dielectric, wo, wi) / (wi.z < 0.0 ? b.transmission.dielectric.eta * b.transmission.dielectric.eta : 1.0);
 #elif LOBE == 0
@@ -63,9 +63,9 @@ vec3 sampleOf(Bsdf b, vec3 wo, vec3 u) {
 #if LOBE == 0
   return diffuseSample(u.xy);
 #elif LOBE == 1
-  return specularSample(b.specular, wo, ggxSample(wo, b.specular.alpha, ggxBound(wo.z, b.specular.alpha), u.xy), u.z, u.xy);
+  return specularSample(b.specular, wo, ggxSample(wo, b.specular.alpha, ggxBound(wo, b.specular.alpha), u.xy), u.z, u.xy);
 #elif LOBE == 2
-  return thinSample(b.transmission.thin, wo, ggxSample(wo, b.transmission.thin.alpha, ggxBound(wo.z, b.transmission.thin.alpha), u.xy), u.z, u.xy);
+  return thinSample(b.transmission.thin, wo, ggxSample(wo, b.transmission.thin.alpha, ggxBound(wo, b.transmission.thin.alpha), u.xy), u.z, u.xy);
 #elif LOBE == 3
   vec3 m = ggxSample(wo, b.transmission.dielectric.alpha, 1.0, u.xy);
   vec3 wi = dielectricSample(b.transmission.dielectric, wo, m, u.z);
@@ -82,9 +82,9 @@ vec3 sampleOf(Bsdf b, vec3 wo, vec3 u) {
 #endif
 }
 #if LOBE >= 1 && LOBE <= 4
-// The frame of the lobe's micronormals and its width.
+// The frame of the lobe's micronormals and its widths.
 mat3 frameOf(Bsdf b) { return LOBE == 4 ? localFrame(b.clearcoat.normal) : mat3(1.0); }
-float widthOf(Bsdf b) { return LOBE == 4 ? b.clearcoat.alpha : b.specular.alpha; }
+vec2 widthOf(Bsdf b) { return LOBE == 4 ? vec2(b.clearcoat.alpha) : b.specular.alpha; }
 // Rings of equal steps of 1 - 1/sqrt(1 + p^2), p: tangent of the micronormal over the width.
 // Near the mirror direction of a grazing wo the spacing of floats is up to a fifth of a cell of the narrowest lobe. Random
 // numbers spread wi over the interval that rounding has mapped to one value. (A compiler may do the same by turning
@@ -103,7 +103,7 @@ uint cellOf(Case c, Bsdf b, vec3 wi, vec2 u) {
 float densityAt(Case c, Bsdf b, bool below, float t, float phi) {
   float p = sqrt(t * (2.0 - t)) / (1.0 - t);
   vec3 m = normalize(vec3(p * widthOf(b) * vec2(cos(phi), sin(phi)), 1.0));
-  float solidAngle = pow(m.z * (1.0 / (1.0 - t)), 3.0) * widthOf(b) * widthOf(b);  // cos^3 of an area of slopes
+  float solidAngle = pow(m.z * (1.0 / (1.0 - t)), 3.0) * widthOf(b).x * widthOf(b).y;  // cos^3 of an area of slopes
   m = frameOf(b) * m;
   float cosO = dot(c.wo, m);
   if (cosO <= 0.0) return 0.0;
@@ -274,6 +274,13 @@ std::vector<Named> lobeCases() {
         }
       }
       c = base;
+      c.alpha = alpha, c.anisotropy = 0.7f;
+      cases.push_back({"anisotropic specular" + where, 1, c});
+      c.transmission = 1.0f, c.thin = 1;
+      cases.push_back({"anisotropic thin" + where, 2, c});
+      c.thin = 0;
+      if (alpha >= 0.003f || cosine >= 0.05f) cases.push_back({"anisotropic dielectric" + where, 3, c});
+      c = base;
       c.clearcoat = 1.0f;
       c.clearcoatAlpha = alpha;
       c.clearcoatNormal = glm::normalize(vec3(0.1f, -0.05f, 1.0f));
@@ -334,8 +341,8 @@ TEST_F(BsdfSampling, MultipleScatteringFollowsItsPdf) {
     #define In float
     #define Out Out_
     Out run(uint index, In alpha) {
-      vec3 wi = multipleSample(alpha, randomAt(index, 13u).xy);
-      return Out(wi, multiplePdf(wi, alpha));
+      vec3 wi = multipleSample(vec2(alpha), randomAt(index, 13u).xy);
+      return Out(wi, multiplePdf(wi, vec2(alpha)));
     }
   )";
   for (const float alpha : kRoughAlphas) {

@@ -167,6 +167,9 @@ TEST(Renderer, RendersTheSameWithCodeForUnusedFeatures) {
   scene.scene.materials.back().clearcoat = 1.0f;
   scene.scene.materials.back().sheenColor = vec3(1.0f);
   scene.scene.materials.back().diffuseTransmission = 0.5f;
+  scene.scene.materials.back().anisotropy = 1.0f;
+  scene.scene.materials.back().iridescence = 1.0f;
+  scene.scene.materials[scene.scene.materials.size() - 3].dispersion = 1.0f;
   expectSame(lean, renderImage(scene, options));
 }
 

@@ -104,10 +104,12 @@ struct Fields;
 GPU_FIELDS(TextureData, rowU, rowV, index, uvSet);
 GPU_FIELDS(MaterialData, baseColor, emissive, metallic, roughness, normalScale, alphaCutoff, ior, transmission,
            specular, specularColor, clearcoat, clearcoatRoughness, clearcoatNormalScale, absorption, flags, sheenColor,
-           sheenRoughness, diffuseTransmissionColor, diffuseTransmission, baseColorTexture, metallicRoughnessTexture,
-           normalTexture, emissiveTexture, transmissionTexture, specularTexture, specularColorTexture, clearcoatTexture,
-           clearcoatRoughnessTexture, clearcoatNormalTexture, sheenColorTexture, sheenRoughnessTexture,
-           diffuseTransmissionTexture, diffuseTransmissionColorTexture);
+           sheenRoughness, diffuseTransmissionColor, diffuseTransmission, anisotropy, anisotropyDirection, iridescence,
+           iridescenceIor, iridescenceThicknessMinimum, iridescenceThicknessMaximum, dispersion, baseColorTexture,
+           metallicRoughnessTexture, normalTexture, emissiveTexture, transmissionTexture, specularTexture,
+           specularColorTexture, clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture, sheenColorTexture,
+           sheenRoughnessTexture, diffuseTransmissionTexture, diffuseTransmissionColorTexture, anisotropyTexture,
+           iridescenceTexture, iridescenceThicknessTexture);
 GPU_FIELDS(AliasEntry, keep, alias, probability);
 GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, leaf);
 GPU_FIELDS(LightNode, center, radius, intensity, axis, cone, link);
@@ -147,7 +149,7 @@ GPU_FIELDS(ExplainStore, stage, line, slot, mode, pixel, value);
 GPU_FIELDS(ExplainCamera, film, lens);
 GPU_FIELDS(ExplainSurface, position, geometricNormal, shadingNormal, uv, material, frontFace);
 GPU_FIELDS(ExplainShading, normal, emission, baseColor, metallic, alpha, transmission, ior, clearcoat, sheenColor,
-           sheenAlpha, diffuseTransmission, unlit);
+           sheenAlpha, diffuseTransmission, anisotropy, iridescence, iridescenceThickness, dispersion, unlit);
 GPU_FIELDS(ExplainLobe, lobe, probability);
 GPU_FIELDS(ExplainLightChoice, light, type, instance, geometry, primitive, probability);
 GPU_FIELDS(ExplainLightSample, delta, direction, distance, radiance, pdf, bsdf, bsdfPdf, misWeight, throughput);

@@ -282,6 +282,10 @@ TEST_F(SessionTest, EditsGiveTheFilmOfTheEditedScene) {
       {"clear coat", EditMaterial{"red", {{"clearcoat", {1}}}}, "metallic = 0.0", "metallic = 0.0\nclearcoat = 1.0", 1},
       {"sheen", EditMaterial{"red", {{"sheenColor", {1, 0.5, 1}}, {"sheenRoughness", {0.5}}}}, "metallic = 0.0",
        "metallic = 0.0\nsheen_color = [1.0, 0.5, 1.0]\nsheen_roughness = 0.5", 1},
+      {"anisotropy", EditMaterial{"red", {{"anisotropy", {0.5}}, {"anisotropyRotation", {0}}}}, "metallic = 0.0",
+       "metallic = 0.0\nanisotropy = 0.5", 1, 1},
+      {"film", EditMaterial{"red", {{"iridescence", {1}}, {"iridescenceThicknessMaximum", {300}}}}, "metallic = 0.0",
+       "metallic = 0.0\niridescence = 1.0\niridescence_thickness_maximum = 300.0", 1},
       {"clear pane", EditMaterial{"red", {{"transmission", {1}}, {"roughness", {0}}}}, "metallic = 0.0",
        "metallic = 0.0\ntransmission = 1.0\nroughness = 0.0", 1, 1}};
   writeFile(folder_ / "a.scene.toml", litScene());

@@ -65,6 +65,15 @@ const std::map<std::string, Change>& features() {
        [](scene::Scene& s, scene::Environment&) { (addMaterial(s).sheenColor = vec3(1.0f), addTriangles(s)); }},
       {"diffuse transmission",
        [](scene::Scene& s, scene::Environment&) { (addMaterial(s).diffuseTransmission = 1.0f, addTriangles(s)); }},
+      {"anisotropy", [](scene::Scene& s, scene::Environment&) { (addMaterial(s).anisotropy = 1.0f, addTriangles(s)); }},
+      {"iridescence",
+       [](scene::Scene& s, scene::Environment&) { (addMaterial(s).iridescence = 1.0f, addTriangles(s)); }},
+      {"dispersion",
+       [](scene::Scene& s, scene::Environment&) {
+         scene::Material& glass = addPane(s);
+         glass.thickness = glass.dispersion = 1.0f;
+         addTriangles(s);
+       }},
       {"triangle lights",
        [](scene::Scene& s, scene::Environment&) { (addMaterial(s).emissive = vec3(1.0f), addTriangles(s)); }},
       {"lamps", [](scene::Scene& s, scene::Environment&) { s.lights.emplace_back(); }},

@@ -129,7 +129,7 @@ TEST(Tangents, GivesFlatTrianglesTheirOwnVertices) {
   EXPECT_EQ(g.uvs[0][5], vec2(0, 0));
 }
 
-// The importer generates tangents only for a normal map, also for flat shading.
+// The importer generates tangents only for normal maps and anisotropy, also for flat shading.
 TEST(Tangents, GeneratesTangentsForNormalMaps) {
   GltfBuilder builder;
   builder.addTriangle();
@@ -141,7 +141,8 @@ TEST(Tangents, GeneratesTangentsForNormalMaps) {
   EXPECT_THAT(builder.load().meshes[0].geometries[0].tangents, IsEmpty());
   for (const Json& material :
        {Json{{"normalTexture", {{"index", 0}}}},
-        Json{{"extensions", {{"KHR_materials_clearcoat", {{"clearcoatNormalTexture", {{"index", 0}}}}}}}}}) {
+        Json{{"extensions", {{"KHR_materials_clearcoat", {{"clearcoatNormalTexture", {{"index", 0}}}}}}}},
+        Json{{"extensions", {{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}}}}}}) {
     builder.root["materials"][0] = material;
     const Geometry g = builder.load().meshes[0].geometries[0];
     EXPECT_THAT(g.normals, Each(vec3(0, 0, 1)));

@@ -106,6 +106,46 @@ TEST(GltfMaterial, ReadsExtensions) {
                 {{"diffuseTransmissionFactor", 0.25}, {"diffuseTransmissionColorFactor", {1, 0.5, 0.25}}}));
   EXPECT_EQ(m.diffuseTransmission, 0.25f);
   EXPECT_EQ(m.diffuseTransmissionColor, vec3(1, 0.5f, 0.25f));
+  m = loadMaterial(extension("KHR_materials_anisotropy", {{"anisotropyStrength", 0.75}, {"anisotropyRotation", -2.5}}));
+  EXPECT_EQ(m.anisotropy, 0.75f);
+  EXPECT_EQ(m.anisotropyRotation, -2.5f);
+  m = loadMaterial(extension("KHR_materials_iridescence", {{"iridescenceFactor", 0.5},
+                                                           {"iridescenceIor", 1.75},
+                                                           {"iridescenceThicknessMinimum", 50},
+                                                           {"iridescenceThicknessMaximum", 800}}));
+  EXPECT_EQ(m.iridescence, 0.5f);
+  EXPECT_EQ(m.iridescenceIor, 1.75f);
+  EXPECT_EQ(m.iridescenceThicknessMinimum, 50.0f);
+  EXPECT_EQ(m.iridescenceThicknessMaximum, 800.0f);
+  m = loadMaterial(extension("KHR_materials_dispersion", {{"dispersion", 1.5}}));
+  EXPECT_EQ(m.dispersion, 1.5f);
+}
+
+// Values of the specification.
+TEST(GltfMaterial, HasTheDefaultsOfExtensions) {
+  const Material m = loadMaterial(extension("KHR_materials_iridescence", Json::object()));
+  EXPECT_EQ(m.iridescence, 0.0f);
+  EXPECT_EQ(m.iridescenceIor, 1.3f);
+  EXPECT_EQ(m.iridescenceThicknessMinimum, 100.0f);
+  EXPECT_EQ(m.iridescenceThicknessMaximum, 400.0f);
+  EXPECT_EQ(m.anisotropy, 0.0f);
+  EXPECT_EQ(m.dispersion, 0.0f);
+}
+
+// A material out of range is repaired, and the report says so.
+TEST(GltfMaterial, ClampsFactorsOfExtensions) {
+  GltfBuilder builder;
+  Json material = extension("KHR_materials_anisotropy", {{"anisotropyStrength", 2}});
+  material["extensions"]["KHR_materials_dispersion"] = {{"dispersion", -1}};
+  material["extensions"]["KHR_materials_iridescence"] = {{"iridescenceIor", 0.5}};
+  builder.add("materials", material);
+  const scene::Scene scene = builder.load();
+  EXPECT_EQ(scene.materials[0].anisotropy, 1.0f);
+  EXPECT_EQ(scene.materials[0].dispersion, 0.0f);
+  EXPECT_EQ(scene.materials[0].iridescenceIor, 1.0f);
+  EXPECT_THAT(scene.report.repaired,
+              ElementsAre(IsErrorAt("/materials/0", "anisotropyStrength"), IsErrorAt("/materials/0", "iridescenceIor"),
+                          IsErrorAt("/materials/0", "dispersion")));
 }
 
 // The extension states: c_diff = diffuse (1 - max(specular)), F0 = specular, alpha = (1 - glossiness)².
@@ -273,6 +313,23 @@ TEST(GltfTexture, ReportsTheSpecularGlossinessTextureOnce) {
   const scene::Scene scene = builder.load();
   EXPECT_TRUE(scene.materials[0].metallicRoughnessTexture.used());
   EXPECT_THAT(scene.report.ignored, ElementsAre(IsErrorAt("/materials/0", "TEXCOORD_2")));
+}
+
+TEST(GltfTexture, ReadsTexturesOfAnisotropyAndIridescence) {
+  TextureBuilder builder;
+  const Json turned = {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"rotation", 0.5}, {"texCoord", 1}}}}}};
+  Json material = extension("KHR_materials_anisotropy", {{"anisotropyTexture", turned}});
+  material["extensions"]["KHR_materials_iridescence"] = {{"iridescenceTexture", {{"index", 0}}},
+                                                         {"iridescenceThicknessTexture", turned}};
+  builder.add("materials", material);
+  const Material m = builder.load().materials[0];
+  for (const scene::TextureUse& use : {m.anisotropyTexture, m.iridescenceThicknessTexture}) {
+    EXPECT_EQ(use.texture, 0);
+    EXPECT_EQ(use.uvSet, 1);
+    EXPECT_EQ(use.rotation, 0.5f);
+  }
+  EXPECT_EQ(m.iridescenceTexture.texture, 0);
+  EXPECT_EQ(m.iridescenceTexture.uvSet, 0);
 }
 
 // Glossiness is in alpha, and its factor scales it. The same image gives the specular color.

@@ -145,6 +145,13 @@ TEST(ContentHash, DependsOnTheContentButNotTheReport) {
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].sheenColor.x = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].sheenRoughness = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].diffuseTransmission = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.materials[0].anisotropy = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.materials[0].anisotropyRotation = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.materials[0].iridescence = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.materials[0].iridescenceIor = 2; }));
+  EXPECT_TRUE(differs([](auto& s) { s.materials[0].iridescenceThicknessMinimum = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.materials[0].iridescenceThicknessMaximum = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.materials[0].dispersion = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].baseColorTexture.rotation = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.textures[0].sampler.wrapV = scene::Wrap::clampToEdge; }));
   EXPECT_TRUE(differs([](auto& s) { s.images[0].image.data[2] = std::byte{1}; }));

@@ -48,6 +48,13 @@ sheen_color = [1, 0.5, 0.25]
 sheen_roughness = 0.4
 diffuse_transmission = 0.6
 diffuse_transmission_color = [0.5, 1, 0.25]
+anisotropy = 0.7
+anisotropy_rotation = 90
+iridescence = 0.8
+iridescence_ior = 1.6
+iridescence_thickness_minimum = 150
+iridescence_thickness_maximum = 550
+dispersion = 0.36
 alpha_mode = "mask"
 alpha_cutoff = 0.3
 double_sided = true
@@ -80,6 +87,13 @@ name = "c"
   EXPECT_EQ(a.sheenRoughness, 0.4f);
   EXPECT_EQ(a.diffuseTransmission, 0.6f);
   EXPECT_EQ(a.diffuseTransmissionColor, vec3(0.5f, 1, 0.25f));
+  EXPECT_EQ(a.anisotropy, 0.7f);
+  EXPECT_FLOAT_EQ(a.anisotropyRotation, kPi / 2);
+  EXPECT_EQ(a.iridescence, 0.8f);
+  EXPECT_EQ(a.iridescenceIor, 1.6f);
+  EXPECT_EQ(a.iridescenceThicknessMinimum, 150);
+  EXPECT_EQ(a.iridescenceThicknessMaximum, 550);
+  EXPECT_EQ(a.dispersion, 0.36f);
   EXPECT_EQ(a.alphaMode, scene::AlphaMode::mask);
   EXPECT_EQ(a.alphaCutoff, 0.3f);
   EXPECT_TRUE(a.doubleSided && a.unlit);
@@ -87,6 +101,7 @@ name = "c"
   EXPECT_EQ(b.roughness, 0);
   EXPECT_EQ(b.baseColor, vec4(0.1f, 0.2f, 0.3f, 0.4f));
   EXPECT_EQ(b.ior, 1.33f);
+  EXPECT_FLOAT_EQ(b.anisotropyRotation, kPi / 2);
   EXPECT_EQ(s.materials[2].metallic, 0);
   EXPECT_EQ(s.materials[2].roughness, 1);
 }
