@@ -38,7 +38,13 @@ std::vector<std::string> commonOptions(const Snapshot& snapshot) {
   add("--spp", std::to_string(state.samples));
   if (request.seed != 0) add("--seed", std::to_string(request.seed));
   if (request.transparent) options.emplace_back("--transparent");
-  if (!request.variant.empty()) add("--variant", request.variant);
+  const scene::LoadOptions& load = request.load;
+  if (!load.scene.empty()) add("--scene", load.scene);
+  if (!load.variant.empty()) add("--variant", load.variant);
+  if (load.strict) options.emplace_back("--strict");
+  if (load.missingTextures == scene::MissingTextures::warn) add("--missing-textures", "warn");
+  if (load.maxMemory > 0) add("--max-memory", std::to_string(load.maxMemory));
+  if (load.allowExternal) options.emplace_back("--allow-external");
   const job::CameraRequest& camera = state.camera;
   if (!camera.name.empty() && !camera.lookFrom) add("--camera", camera.name);
   if (camera.lookFrom) {

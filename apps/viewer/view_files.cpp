@@ -123,7 +123,8 @@ void openFile(ViewState& state, const std::string& path) {
     case FileUse::scene: {
       job::interactive::SessionRequest request = currentRequest(state);
       request.render.scene = path;
-      request.render.variant.clear();
+      request.render.load.variant.clear();
+      request.render.load.scene.clear();
       return openSession(state, std::move(request), path);
     }
     case FileUse::program: {

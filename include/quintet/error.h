@@ -20,6 +20,9 @@ enum class Remedy {
   selectLayer,        // request the output as a layer
   allowDifference,    // name the facts of two films that may differ
   measureLaunches,    // measure the launches of the program instead of its rays
+  raiseMemoryLimit,   // allow the scene file more memory
+  allowExternal,      // allow files outside of the folder of the scene file
+  omitTextures,       // render without missing textures
 };
 
 // Base of all exceptions that the library throws on purpose; also thrown itself, for example if no device can be used.

@@ -158,6 +158,7 @@ struct Light {
   float innerConeAngle = 0;    // radians from the axis, spot only
   float outerConeAngle = 0.785398163f;  // radians from the axis, (innerConeAngle, pi/2], spot only
   std::string name{};
+  float range = std::numeric_limits<float>::infinity();  // meters, > 0; no light arrives beyond it; point and spot only
 };
 
 // A perspective camera with a thin lens.
@@ -180,6 +181,49 @@ struct Environment {
   float rotation = 0;                // radians about +y, counter-clockwise seen from above
 };
 
+// How a scene file is read.
+struct LoadOptions {
+  std::string scene{};         // index or name of a scene of the glTF file; empty means its default scene
+  std::string variant{};       // name of a material variant of the glTF file; empty means the default materials
+  bool strict = false;         // throw FileError with a list if a part of the file is ignored or repaired
+  bool omitTextures = false;   // use the factors of materials if an image is missing or invalid, instead of FileError
+  std::size_t maxMemory = 0;   // bytes that the file can request; 0 means 80 % of the memory
+  bool allowExternal = false;  // read buffers and images of glTF files from outside of their folders
+};
+
+// How a scene uses a part of its file.
+enum class FeatureUse {
+  used,
+  unused,    // cannot change the image
+  repaired,  // used with a change
+  ignored,   // can change the image, but is not supported or not valid
+};
+
+// A kind of content of a scene file, such as all attributes TEXCOORD_0 that are used.
+struct Feature {
+  std::string kind{};  // "extension", "attribute", "texture", …
+  std::string name{};  // "KHR_materials_ior", "TEXCOORD_0", the name of a camera; empty for objects without a name
+  FeatureUse use = FeatureUse::used;
+  std::size_t count = 0;   // number of occurrences
+  std::string location{};  // JSON pointer of the first one
+  std::string reason{};    // why it is unused or ignored, or how it is repaired; empty if it is used
+};
+
+// A property of the metadata of a file (KHR_xmp_json_ld).
+struct MetadataEntry {
+  std::string object{};  // JSON pointers of the objects that have it; "/asset" means the whole file
+  std::string name{};    // "dc:title"
+  std::string value{};
+};
+
+// What a scene file contains, and what the scene uses of it.
+struct SceneReport {
+  std::vector<Feature> features{};
+  std::vector<std::string> ignored{};   // lines "LOCATION: REASON"
+  std::vector<std::string> repaired{};  // lines "LOCATION: REPAIR"
+  std::vector<MetadataEntry> metadata{};
+};
+
 // A scene in host memory: a value. Copies share their data until one of them changes. Functions that add or replace objects
 // throw UsageError with the name of the object for indices out of range, attributes of the wrong length, values that are not
 // finite, and transforms that are not invertible; the scene is then unchanged. Only normals, tangents, texture coordinates and
@@ -188,9 +232,9 @@ struct Environment {
 class Scene {
  public:
   Scene();  // empty
-  // Reads glTF (.gltf, .glb) or .scene.toml. `variant`: name of a material variant of the glTF file; empty means the default
-  // materials. Throws FileError, MemoryError, UsageError if the variant does not exist.
-  static Scene load(const std::filesystem::path& file, const std::string& variant = {});
+  // Reads glTF (.gltf, .glb) or .scene.toml. Throws FileError, MemoryError, UsageError if the scene or the variant does not
+  // exist.
+  static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
   // Reads a scene in the format of .scene.toml. `folder` is where it looks for files that the text names. Throws FileError
   // with the line, MemoryError.
   static Scene fromToml(std::string_view text, const std::filesystem::path& folder = ".");
@@ -226,6 +270,7 @@ class Scene {
   Transform transform(int instance) const;                       // at frame 0; throws UsageError
   std::optional<int> findInstance(std::string_view name) const;  // the first with this name
   std::optional<int> findMaterial(std::string_view name) const;  // the first with this name
+  SceneReport report() const;                                    // of the file; empty for a scene from memory
   Bounds bounds() const;                                         // world space; empty for a scene without instances
 
  private:

@@ -245,9 +245,16 @@ Scene::Impl& Scene::change() {
   return *impl_;
 }
 
-Scene Scene::load(const std::filesystem::path& file, const std::string& variant) {
+Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
+  scene::LoadOptions load;
+  load.scene = options.scene;
+  load.variant = options.variant;
+  load.strict = options.strict;
+  if (options.omitTextures) load.missingTextures = scene::MissingTextures::warn;
+  load.maxMemory = options.maxMemory;
+  load.allowExternal = options.allowExternal;
   Scene result;
-  result.impl_->scene = std::make_shared<scene::Scene>(scene::loadScene(file, {.variant = variant}));
+  result.impl_->scene = std::make_shared<scene::Scene>(scene::loadScene(file, load));
   return result;
 }
 
@@ -358,6 +365,7 @@ int Scene::addLight(const Light& light) {
   if (glm::any(glm::lessThan(added.intensity, vec3(0.0f)))) throw UsageError(name + ": the intensity is negative");
   added.innerConeAngle = light.innerConeAngle;
   added.outerConeAngle = light.outerConeAngle;
+  added.range = light.range;
   scene::Scene& scene = *change().scene;
   return append(scene, scene.lights, std::move(added), scene::validateLight);
 }
@@ -429,6 +437,18 @@ std::optional<int> Scene::findInstance(std::string_view name) const {
 }
 std::optional<int> Scene::findMaterial(std::string_view name) const {
   return findByName(impl_->scene->materials, name);
+}
+
+SceneReport Scene::report() const {
+  SceneReport result;
+  for (const scene::Feature& from : impl_->scene->report.features)
+    result.features.push_back(
+        {from.kind, from.name, static_cast<FeatureUse>(from.use), from.count, from.location, from.reason});
+  result.ignored = impl_->scene->report.ignored;
+  result.repaired = impl_->scene->report.repaired;
+  for (const scene::MetadataEntry& from : impl_->scene->report.metadata)
+    result.metadata.push_back({from.object, from.name, from.value});
+  return result;
 }
 
 Bounds Scene::bounds() const {

@@ -83,7 +83,10 @@ struct ImageInfo {
   std::uint32_t height = 0;
   std::uint32_t channels = 0;  // of the decoded image
   PixelType type = PixelType::u8;
-  std::string_view format;  // "PNG", "JPEG", "WebP", "Radiance HDR", "OpenEXR"
+  std::string_view format;         // "PNG", "JPEG", "WebP", "Radiance HDR", "OpenEXR"
+  std::size_t byteCount() const {  // of the decoded image
+    return std::size_t{width} * height * channels * bytesPerSample(type);
+  }
 };
 
 // Keywords and texts in the order of the file. Keywords have 1 to 79 bytes of printable ASCII; texts are UTF-8.

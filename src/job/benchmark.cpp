@@ -55,7 +55,7 @@ struct Setup {
   shader::Compiler compiler;
 
   Setup(const BenchmarkRequest& r, bool softwareDevice)
-      : request(r), scene(scene::loadScene(r.scene, {.variant = r.variant})), compiler(makeCompiler(cacheFolder())) {
+      : request(r), scene(scene::loadScene(r.scene, r.load)), compiler(makeCompiler(cacheFolder())) {
     size = sizeOf(r.size, softwareDevice);
     camera = chooseCamera(scene, {}, static_cast<float>(size.x) / static_cast<float>(size.y)).camera;
     environment = chooseEnvironment(scene, {r.environment, {}, {}}).environment;
@@ -327,7 +327,7 @@ class ProgramBenchmark {
       : request_(request),
         program_(program::loadProgram(request.program)),
         parameters_(parameterValues(program_, request.render)),
-        source_(chooseSceneSource(request.render.scene, program_, request.render.variant)),
+        source_(chooseSceneSource(request.render.scene, program_, request.render.load)),
         context_([&] {
           gpu::ContextOptions options;
           options.device = request.device;

@@ -17,7 +17,7 @@ namespace quintet::job {
 
 struct BenchmarkRequest {
   std::filesystem::path scene;         // triangles without alpha: the replay supports nothing else
-  std::string variant;                 // material variant of the scene; empty means the default materials
+  scene::LoadOptions load;             // how `scene` is read
   std::string program = "pathtracer";  // its rays go through traceClosest and traceVisible
   std::string device;                  // gpu::ContextOptions::device
   std::string environment;             // EnvironmentRequest::source
@@ -35,7 +35,7 @@ struct ProgramBenchmarkRequest {
   std::string device;   // gpu::ContextOptions::device
   int repeat = 5;       // measured launches; at least 1
   RenderRequest
-      render;  // scene, variant, camera, environment, size (0: as above), seed, parameters; the rest is unused
+      render;  // scene, load, camera, environment, size (0: as above), seed, parameters; the rest is unused
 };
 
 // One object about one launch of the whole image with a sample per pixel, or a frame: device, scene, "launch" (seconds

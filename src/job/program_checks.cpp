@@ -129,7 +129,7 @@ void ProgramChecks::checkProgram(CheckReport& all, CheckObserver& observer) cons
 void ProgramChecks::checkLoaded(CheckReport& all, CheckObserver& observer) const {
   ProgramReport& report = all.programs.back();
   const program::Program& program = *report.program;
-  const SceneSource source = chooseSceneSource(request_.scene, program, request_.variant);
+  const SceneSource source = chooseSceneSource(request_.scene, program, request_.run.load);
   const bool hasScene = !request_.scene.empty() || !program.scene.empty();
   report.files = sourceFiles(source);
   std::optional<scene::Scene> scene;

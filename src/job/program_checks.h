@@ -24,10 +24,9 @@ namespace quintet::job {
 struct CheckRequest {
   std::vector<std::string> programs;  // files, built-in names, and folders, which stand for all programs below them
   std::filesystem::path scene;        // empty means each program's own; without one, any scene is assumed
-  std::string variant;                // material variant of `scene`; empty means the default materials
   std::string device;                 // whose limits and driver defects count: limitsOfDevice()
   bool instrument = false;            // also runInstrumented(), if the check finds no error
-  RenderRequest run;                  // of the instrumented run
+  RenderRequest run;                  // of the instrumented run; `run.load` also of the check
 };
 
 // What the check of one program found.

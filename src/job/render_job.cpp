@@ -86,9 +86,8 @@ void describeScene(const LoadedScene& loaded, const ResolvedJob& job, Observer& 
         "{}: no lights in the scene, using the default environment (the environment 'none' disables it)", name));
   if (loaded.scene.instances.empty()) observer.warning(fmt::format("{}: the scene has no surfaces", name));
   const scene::Report& report = loaded.scene.report;
-  const std::size_t ignored = report.ignored.size() + report.extensionsIgnored.size();
-  if (ignored + report.repaired.size() > 0)
-    observer.note(fmt::format("{}: {} ignored, {} repaired; 'quintet info {}' lists them", name, ignored,
+  if (!report.isExact())
+    observer.note(fmt::format("{}: {} ignored, {} repaired; 'quintet info {}' lists them", name, report.ignored.size(),
                               report.repaired.size(), shellQuoted(job.scene.path())));
 }
 

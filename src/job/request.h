@@ -12,6 +12,7 @@
 
 #include "base/math.h"
 #include "render/film/film_state.h"
+#include "scene/load_options.h"
 #include "scene/model/scene.h"
 
 namespace quintet::job {
@@ -101,7 +102,7 @@ struct OutputNotes {
 
 struct RenderRequest {
   std::filesystem::path scene;                      // empty means the program's own scene, else the built-in one
-  std::string variant;                              // material variant of `scene`; empty means the default materials
+  scene::LoadOptions load;                          // how `scene`, or the program's own scene, is read
   std::shared_ptr<const scene::Scene> loadedScene;  // instead of `scene`: one in host memory; may be null
   bool editable = false;                            // keep what the edits of RenderJob require; needs `loadedScene`
   CameraRequest camera;

@@ -81,8 +81,12 @@ ResolvedJob resolve(RenderRequest request, program::Program program) {
   job.parameters = parameterValues(program, request);
   checkLimits(request, program);
   checkFiles(request);
-  job.scene = request.loadedScene ? SceneSource{.name = request.loadedScene->name, .loaded = request.loadedScene}
-                                  : chooseSceneSource(request.scene, program, request.variant);
+  if (request.loadedScene) {
+    job.scene.name = request.loadedScene->name;
+    job.scene.loaded = request.loadedScene;
+  } else {
+    job.scene = chooseSceneSource(request.scene, program, request.load);
+  }
   job.request = std::move(request);
   job.program = std::move(program);
   return job;

@@ -44,21 +44,24 @@ bool isSceneFile(const std::filesystem::path& file) {
 }
 
 SceneSource chooseSceneSource(const std::filesystem::path& requested, const program::Program& program,
-                              const std::string& variant) {
+                              const scene::LoadOptions& options) {
   if (!requested.empty()) {
     checkReadable(requested);
-    return {.file = requested, .variant = variant, .name = requested.filename().string()};
+    return {.file = requested, .options = options, .name = requested.filename().string()};
   }
-  if (!variant.empty())
-    throw UsageError(fmt::format("no variant '{}': only glTF files have material variants", variant));
-  if (!program.scene.empty()) return {.name = program.path(program.scene), .text = program.files.at(program.scene)};
+  if (!options.variant.empty())
+    throw UsageError(fmt::format("no variant '{}': only glTF files have material variants", options.variant));
+  if (!options.scene.empty())
+    throw UsageError(fmt::format("no scene '{}': only glTF files have scenes", options.scene));
+  if (!program.scene.empty())
+    return {.options = options, .name = program.path(program.scene), .text = program.files.at(program.scene)};
   return {.name = "default scene", .builtIn = defaultSceneOptions(program)};
 }
 
 scene::PendingScene beginLoading(const SceneSource& source) {
   if (source.loaded) return scene::PendingScene(scene::Scene(*source.loaded));
-  if (!source.file.empty()) return scene::beginLoading(source.file, {.variant = source.variant});
-  if (!source.text.empty()) return scene::PendingScene(scene::parseSceneToml(source.text, source.name));
+  if (!source.file.empty()) return scene::beginLoading(source.file, source.options);
+  if (!source.text.empty()) return scene::PendingScene(scene::parseSceneToml(source.text, source.name, source.options));
   return scene::PendingScene(scene::defaultScene(source.builtIn));
 }
 

@@ -16,7 +16,7 @@ namespace quintet::job {
 
 struct SceneSource {
   std::filesystem::path file;                  // empty if the scene is the program's own or built in
-  std::string variant;                         // of a glTF file: scene::LoadOptions
+  scene::LoadOptions options;                  // of a file, and of `text`
   std::string name;                            // for messages and metadata; the path of the program's own scene
   std::string text;                            // TOML of the program's own scene; empty if there is none
   std::shared_ptr<const scene::Scene> loaded;  // in host memory; null if it has to be loaded
@@ -30,9 +30,9 @@ struct SceneSource {
 bool isSceneFile(const std::filesystem::path& file);
 
 // `requested` if it is not empty, else the scene that the program names, else the built-in one. Throws FileError if the
-// file cannot be read, UsageError for a variant of a scene without file.
+// file cannot be read, UsageError for a scene or a variant of a glTF file without file.
 SceneSource chooseSceneSource(const std::filesystem::path& requested, const program::Program& program,
-                              const std::string& variant = {});
+                              const scene::LoadOptions& options = {});
 
 // The first step of loading: everything but the image data of a glTF file. Throws FileError, MemoryError.
 scene::PendingScene beginLoading(const SceneSource& source);

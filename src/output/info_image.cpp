@@ -230,9 +230,9 @@ std::string imageInfo(const std::filesystem::path& file, Bytes bytes, bool json)
 
 }  // namespace
 
-std::string fileInfo(const std::filesystem::path& file, bool json) {
+std::string fileInfo(const std::filesystem::path& file, bool json, const scene::LoadOptions& options) {
   const std::vector<std::byte> bytes = readFile(file);
-  if (scene::sceneFormat(file, bytes) != scene::SceneFormat::none) return sceneInfo(file, json);
+  if (scene::sceneFormat(file, bytes) != scene::SceneFormat::none) return sceneInfo(file, json, options);
   if (io::isOpenExr(bytes)) return exrInfo(file, bytes, json);  // also of layers that are not an image
   if (render::isFilmFile(bytes)) return filmInfo(file, bytes, json);
   return imageInfo(file, bytes, json);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -51,6 +53,10 @@ std::string describe(const scene::Light& light) {
   return fmt::format("'{}': {}, {:.4g} {:.4g} {:.4g} {}", printable(light.name), nameOf(light.type), light.intensity.x,
                      light.intensity.y, light.intensity.z,
                      light.type == scene::LightType::directional ? "W/m2" : "W/sr");
+}
+
+std::string describe(const scene::MetadataEntry& entry) {
+  return printable(fmt::format("{}{}{}: {}", entry.object, entry.object.empty() ? "" : " ", entry.name, entry.value));
 }
 
 struct MaterialCounts {
@@ -120,6 +126,25 @@ Json namedObjects(const scene::Scene& scene, const char* kind) {
   return list;
 }
 
+Json featuresJson(const scene::Report& report) {
+  Json list = Json::array();
+  for (const scene::Feature& feature : report.features)
+    list.push_back({{"kind", feature.kind},
+                    {"name", feature.name},
+                    {"use", nameOf(feature.use)},
+                    {"count", feature.count},
+                    {"location", feature.location},
+                    {"reason", feature.reason}});
+  return list;
+}
+
+Json metadataJson(const scene::Report& report) {
+  Json list = Json::array();
+  for (const scene::MetadataEntry& entry : report.metadata)
+    list.push_back({{"object", entry.object}, {"name", entry.name}, {"value", entry.value}});
+  return list;
+}
+
 Json toJson(const scene::Scene& scene, const std::string& file) {
   const Bounds3 bounds = scene::worldBounds(scene);
   const scene::TriangleCount triangles = scene::countTriangles(scene);
@@ -162,6 +187,8 @@ Json toJson(const scene::Scene& scene, const std::string& file) {
           {"cameras", namedObjects(scene, "cameras")},
           {"environment", scene.environment.present},
           {"extensions", {{"used", scene.report.extensionsUsed}, {"ignored", scene.report.extensionsIgnored}}},
+          {"metadata", metadataJson(scene.report)},
+          {"features", featuresJson(scene.report)},
           {"ignored", scene.report.ignored},
           {"repaired", scene.report.repaired}};
 }
@@ -178,6 +205,35 @@ std::string joined(const std::vector<std::string>& names) {
   return names.empty() ? "none" : printable(fmt::format("{}", fmt::join(names, ", ")));
 }
 
+// Lines such as "attributes  used: NORMAL (2), POSITION (2)" and "textures  used: 5" for each kind.
+std::string featuresText(const scene::Report& report) {
+  // Kinds whose names are defined by glTF; the names of other objects are arbitrary, and only counted.
+  constexpr std::string_view kNamedKinds[] = {"extension", "node", "primitive", "attribute", "morph target"};
+  constexpr scene::FeatureUse kUses[] = {scene::FeatureUse::used, scene::FeatureUse::unused,
+                                         scene::FeatureUse::repaired, scene::FeatureUse::ignored};
+  std::vector<std::string> kinds;
+  for (const scene::Feature& feature : report.features)
+    if (std::ranges::find(kinds, feature.kind) == kinds.end()) kinds.push_back(feature.kind);
+  std::string text;
+  for (const std::string& kind : kinds) {
+    const bool named = std::ranges::find(kNamedKinds, kind) != std::end(kNamedKinds);
+    std::string label = kind + (kind.ends_with("property") ? "" : "s");
+    if (kind == "property") label = "properties";
+    for (const scene::FeatureUse use : kUses) {
+      std::map<std::string, std::size_t> counts;
+      for (const scene::Feature& feature : report.features)
+        if (feature.kind == kind && feature.use == use) counts[named ? feature.name : ""] += feature.count;
+      if (counts.empty()) continue;
+      std::vector<std::string> parts;
+      for (const auto& [name, count] : counts)
+        parts.push_back(named ? fmt::format("{} ({})", printable(name), count) : std::to_string(count));
+      text += fmt::format("   {:<14}{}: {}\n", label, nameOf(use), fmt::join(parts, ", "));
+      label.clear();
+    }
+  }
+  return text;
+}
+
 std::string toText(const scene::Scene& scene, const std::string& file) {
   const Bounds3 bounds = scene::worldBounds(scene);
   const scene::TriangleCount triangles = scene::countTriangles(scene);
@@ -191,6 +247,8 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
   };
   line("generator", printable(scene.report.generator));
   line("copyright", printable(scene.report.copyright));
+  if (!scene.report.metadata.empty())
+    addList(text, "metadata", fmt::format("{}", scene.report.metadata.size()), scene.report.metadata, describeAny);
   line("hash", scene::contentHash(scene).hex());
   if (bounds.empty()) {
     line("bounds", "empty");
@@ -218,8 +276,9 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
           scene.images, describeAny);
   addList(text, "lights", fmt::format("{}", scene.lights.size()), scene.lights, describeAny);
   addList(text, "cameras", fmt::format("{}", scene.cameras.size()), scene.cameras, describeAny);
-  line("extensions", fmt::format("used: {}", joined(scene.report.extensionsUsed)));
-  line("", fmt::format("ignored: {}", joined(scene.report.extensionsIgnored)));
+  text += featuresText(scene.report);
+  const std::vector<std::string> unused = unusedLines(scene.report);
+  addList(text, "unused", fmt::format("{}", unused.size()), unused, itself);
   addList(text, "ignored", fmt::format("{}", scene.report.ignored.size()), scene.report.ignored, itself);
   addList(text, "repaired", fmt::format("{}", scene.report.repaired.size()), scene.report.repaired, itself);
   return text;
@@ -227,8 +286,8 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
 
 }  // namespace
 
-std::string sceneInfo(const std::filesystem::path& file, bool json) {
-  const scene::Scene scene = scene::loadScene(file);
+std::string sceneInfo(const std::filesystem::path& file, bool json, const scene::LoadOptions& options) {
+  const scene::Scene scene = scene::loadScene(file, options);
   if (!json) return toText(scene, file.string());
   return toJson(scene, file.string()).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -30,14 +30,8 @@ PendingScene beginLoading(const std::filesystem::path& file, const LoadOptions& 
   // The content is read only if the name does not determine the format.
   SceneFormat format = sceneFormat(file, {});
   if (format == SceneFormat::none) format = sceneFormat(file, readFile(file));
-  if (format == SceneFormat::toml && !options.variant.empty())
-    throw UsageError(
-        fmt::format("{}: no variant '{}': only glTF files have material variants; a scene file selects them "
-                    "by the key 'variant' of [[file]]",
-                    file.string(), options.variant));
-  if (format == SceneFormat::toml) return PendingScene(loadSceneToml(file));
-  return beginLoadingGltf(file,
-                          {.variant = options.variant});  // also reports the problem of a file without a known format
+  if (format == SceneFormat::toml) return PendingScene(loadSceneToml(file, options));
+  return beginLoadingGltf(file, options);  // also reports the problem of a file without a known format
 }
 
 Scene loadScene(const std::filesystem::path& file, const LoadOptions& options) {

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
-#include <string>
 
+#include "scene/load_options.h"
 #include "scene/model/scene.h"
 #include "scene/pending_scene.h"
 
@@ -19,12 +19,9 @@ enum class SceneFormat { none, gltf, toml };
 // brace of JSON, or a bracket or comment of TOML at the beginning.
 SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::byte> content);
 
-struct LoadOptions {
-  std::string variant;  // name of a material variant of a glTF file; empty means the materials of the primitives
-};
-
 // Reads the file except for its image data; a TOML scene is read completely. Throws FileError with the location in the
-// file ("/accessors/3/bufferView", "line 3"), UsageError if the variant does not exist, MemoryError.
+// file ("/accessors/3/bufferView", "line 3"), UsageError if the scene or the variant does not exist,
+// MemoryError. finish() throws as well, for images.
 PendingScene beginLoading(const std::filesystem::path& file, const LoadOptions& options = {});
 
 // Both steps.

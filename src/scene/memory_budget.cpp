@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "base/text.h"
+
 namespace quintet::scene {
 namespace {
 
@@ -16,13 +18,14 @@ std::size_t machineMemory() {
 }  // namespace
 
 MemoryBudget::MemoryBudget(const std::filesystem::path& file, std::size_t limit)
-    : file_(file), limit_(limit ? limit : machineMemory()) {}
+    : file_(file), limit_(limit ? limit : machineMemory() / 5 * 4) {}
 
 void MemoryBudget::take(std::size_t bytes) {
   // No overflow: each request is far below 2^60, and the first one above the limit throws.
   if (bytes > limit_ || taken_.fetch_add(bytes) + bytes > limit_)
-    throw MemoryError(fmt::format("{}: the scene needs more than {:.1f} GiB of memory", file_.string(),
-                                  static_cast<double>(limit_) / (1024.0 * 1024.0 * 1024.0)));
+    throw MemoryError(
+        fmt::format("{}: the scene requires more than {} of memory, the limit", file_.string(), bytesText(limit_)),
+        Remedy::raiseMemoryLimit);
 }
 
 }  // namespace quintet::scene

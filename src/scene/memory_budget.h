@@ -16,7 +16,7 @@ namespace quintet::scene {
 
 class MemoryBudget {
  public:
-  // `limit` in bytes; 0 means the machine's memory.
+  // `limit` in bytes; 0 means 80 % of the machine's memory.
   explicit MemoryBudget(const std::filesystem::path& file, std::size_t limit = 0);
   // Thread-safe. Throws MemoryError when the sum exceeds the limit.
   void take(std::size_t bytes);

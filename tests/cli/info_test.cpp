@@ -98,8 +98,16 @@ TEST_F(Info, ListsIgnoredContent) {
   write(folder_ / "odd.gltf", json.dump());
   const auto report = nlohmann::json::parse(quintet({"info", "odd.gltf", "--json"}).out);
   EXPECT_EQ(report["extensions"]["ignored"], nlohmann::json({"EXT_unsupported"}));
-  ASSERT_EQ(report["ignored"].size(), 1u);
+  ASSERT_EQ(report["ignored"].size(), 2u);
   EXPECT_THAT(report["ignored"][0].get<std::string>(), HasSubstr("/meshes/0/primitives/1"));
+  EXPECT_THAT(report["ignored"][1].get<std::string>(), HasSubstr("EXT_unsupported"));
+  for (const nlohmann::json& feature : report["features"])
+    if (feature["name"] == "LINES") EXPECT_EQ(feature["use"], "ignored");
+  const std::string text = quintet({"info", "odd.gltf"}).out;
+  for (const char* part :
+       {"primitives    used: TRIANGLES (1)\n", "ignored: LINES (1)\n", "ignored: EXT_unsupported (1)\n"})
+    EXPECT_THAT(text, HasSubstr(part));
+  expectError(quintet({"info", "odd.gltf", "--strict"}), 1, {"odd.gltf", "2 ignored", "EXT_unsupported", "LINES"});
 }
 
 TEST_F(Info, DescribesAnImage) {

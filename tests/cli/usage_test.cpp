@@ -142,6 +142,26 @@ TEST_F(Usage, Variants) {
   EXPECT_THAT(quintet({"info", "scene.gltf"}).out, testing::HasSubstr("Red, Green"));
 }
 
+TEST_F(Usage, Loading) {
+  nlohmann::json scene = quadScene();
+  scene["images"] = {{{"uri", "none.png"}}};
+  scene["textures"] = {{{"source", 0}}};
+  scene["materials"] = {{{"emissiveTexture", {{"index", 0}}}}};
+  write(folder_ / "scene.gltf", scene.dump());
+  expectError(quintet(quick({"-o", "a.png"})), 1, {"/images/0/uri", "none.png", "--missing-textures warn"});
+  EXPECT_EQ(quintet(quick({"-o", "a.png", "--missing-textures", "warn"})).status, 0);
+  expectError(quintet(quick({"--missing-textures", "ignore"})), 2, {"--missing-textures", "'ignore'", "warn"});
+  expectError(quintet(quick({"--missing-textures", "warn", "--strict"})), 2, {"--strict", "--missing-textures"});
+  scene["images"][0]["uri"] = "../none.png";
+  write(folder_ / "scene.gltf", scene.dump());
+  expectError(quintet(quick({})), 1, {"../none.png", "outside", "--allow-external"});
+  expectError(quintet(quick({"--allow-external"})), 1, {"../none.png", "does not exist"});
+  for (const char* bytes : {"0", "x", "G", "-1", "1e99", "5Q"})
+    expectError(quintet(quick({"--max-memory", bytes})), 2, {"--max-memory", bytes});
+  expectError(quintet(quick({"--max-memory", "100"})), 1, {"scene.gltf", "100 bytes", "--max-memory"});
+  expectError(quintet(quick({"--scene", "none"})), 2, {"scene.gltf", "no scene 'none'"});
+}
+
 TEST_F(Usage, Parameters) {
   expectError(quintet({"render", "scene.gltf", "--set", "bouncs=3"}), 2, {"'bouncs'", "'bounces'"});
   expectError(quintet({"render", "scene.gltf", "--set", "bounces"}), 2, {"bounces"});

@@ -62,6 +62,42 @@ void convertCheckpoints(const RenderTexts& texts, RenderOptions& options) {
 
 }  // namespace
 
+void declareLoading(OptionTable& table, LoadTexts& texts, scene::LoadOptions& options, const char* strictHelp) {
+  table.add("Scene",
+            {{.names = "--scene",
+              .value = "NAME",
+              .help = "Index or name of the scene of the glTF file (default: the file's); 'quintet info' lists them",
+              .target = &options.scene},
+             {.names = "--variant",
+              .value = "NAME",
+              .help = "Material variant of the glTF file; 'quintet info' lists them",
+              .target = &options.variant},
+             {.names = "--strict", .help = strictHelp, .target = &options.strict},
+             {.names = "--missing-textures",
+              .value = "WHAT",
+              .help = "For a texture whose image is missing or invalid: error, or warn, which uses the "
+                      "factors of the material (default: error)",
+              .target = &texts.missingTextures,
+              .candidates = {.names = {"error", "warn"}}},
+             {.names = "--max-memory",
+              .value = "BYTES",
+              .help = "Memory that a scene file can request, with K, M, G or T for powers of 1024 (default: "
+                      "80 % of the memory)",
+              .target = &texts.maxMemory},
+             {.names = "--allow-external",
+              .help = "Read buffers and images of glTF files from outside of their folders",
+              .target = &options.allowExternal}});
+}
+
+void convertLoading(const LoadTexts& texts, scene::LoadOptions& options) {
+  if (!texts.missingTextures.empty() &&
+      parseChoice("--missing-textures", texts.missingTextures, {"error", "warn"}) == 1)
+    options.missingTextures = scene::MissingTextures::warn;
+  if (options.strict && options.missingTextures == scene::MissingTextures::warn)
+    throw UsageError("--strict and --missing-textures warn exclude each other");
+  options.maxMemory = parseBytes("--max-memory", texts.maxMemory).value_or(0);
+}
+
 void declareSize(OptionTable& table, RenderTexts& texts, RenderOptions& options, const char* regionHelp) {
   table.add(
       "Image",
@@ -132,10 +168,7 @@ void declareQuality(OptionTable& table, RenderTexts& texts, RenderOptions& optio
 }
 
 void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
-  table.add("Scene", {{.names = "--variant",
-                       .value = "NAME",
-                       .help = "Material variant of the glTF file; 'quintet info' lists them",
-                       .target = &options.request.variant}});
+  declareLoading(table, texts.load, options.request.load);
   table.add(
       "Camera",
       {{.names = "--camera",
@@ -329,6 +362,7 @@ void convertOutput(const RenderTexts& texts, output::OutputRequest& output) {
 void convert(const RenderTexts& texts, RenderOptions& options) {
   job::RenderRequest& request = options.request;
   convertOutput(texts, options.output);
+  convertLoading(texts.load, request.load);
   if (!texts.size.empty()) request.size = parseSize("--size", texts.size);
   if (!texts.region.empty()) request.region = parseRegion("--region", texts.region);
   job::RenderLimits& limits = request.limits;

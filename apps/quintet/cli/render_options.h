@@ -27,7 +27,11 @@ struct RenderOptions {
 };
 
 // Option values as text.
+struct LoadTexts {
+  std::string missingTextures, maxMemory;
+};
 struct RenderTexts {
+  LoadTexts load;
   std::string scene, output, size, region, frame, exposure, toneMap, pngBits;
   std::string spp, time, untilError, seed, bounces, clamp;
   std::string lookFrom, lookAt, up, fov, aperture, focus, envIntensity, envRotation;
@@ -35,6 +39,13 @@ struct RenderTexts {
   std::string checkpoint, batches, timeout, print, printLimit;
   std::vector<std::string> layers;
 };
+
+inline constexpr const char* kStrictHelp =
+    "Fail if a part of the scene file is ignored or repaired, with a list of these parts";
+// How scene files are read; of all commands that load scenes.
+void declareLoading(OptionTable& table, LoadTexts& texts, scene::LoadOptions& options,
+                    const char* strictHelp = kStrictHelp);
+void convertLoading(const LoadTexts& texts, scene::LoadOptions& options);  // throws UsageError
 
 void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options);  // except the output file
 // Size, region and background. `regionHelp` is the help of --region; null omits the option.

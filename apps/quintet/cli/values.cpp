@@ -41,6 +41,19 @@ std::optional<std::uint64_t> parseInteger(const std::string& option, const std::
   return static_cast<std::uint64_t>(*value);
 }
 
+std::optional<std::size_t> parseBytes(const std::string& option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  constexpr std::string_view kUnits = "KMGT";
+  const std::size_t unit = kUnits.find(text.back());
+  const double factor = unit == std::string_view::npos ? 1.0 : std::exp2(10.0 * static_cast<double>(unit + 1));
+  const std::optional<double> value =
+      parseNumber<double>(unit == std::string_view::npos ? text : text.substr(0, text.size() - 1));
+  constexpr double kMax = 1e15;
+  if (!value || !(*value * factor >= 1.0 && *value * factor <= kMax))
+    fail(option, text, "is not a number of bytes like 500000000, 512M or 2.5G, at least 1");
+  return static_cast<std::size_t>(*value * factor);
+}
+
 uvec2 parseSize(const std::string& option, const std::string& text) {
   const std::string form = fmt::format("is not a size in pixels like 1280x720, each 1 to {}", io::kMaxImageSide);
   const std::vector<std::string> parts = splitText(text, 'x');

@@ -4,6 +4,7 @@
 #ifndef QUINTET_CLI_VALUES_H
 #define QUINTET_CLI_VALUES_H
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -22,6 +23,9 @@ namespace quintet::cli {
 // A number in [min, max]; empty for an empty text.
 std::optional<double> parseReal(const std::string& option, const std::string& text, double min, double max);
 std::optional<std::uint64_t> parseInteger(const std::string& option, const std::string& text, double min, double max);
+
+// "1500000", "64M", "2.5G": at least 1 byte; K, M, G and T are powers of 1024. Empty for an empty text.
+std::optional<std::size_t> parseBytes(const std::string& option, const std::string& text);
 
 uvec2 parseSize(const std::string& option, const std::string& text);             // "800x600"; "800" leaves the height 0
 render::Region parseRegion(const std::string& option, const std::string& text);  // "x,y,width,height", pixels

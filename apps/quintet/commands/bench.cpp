@@ -13,6 +13,7 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/parser.h"
+#include "cli/render_options.h"
 #include "cli/values.h"
 #include "cli/work.h"
 #include "job/scene_source.h"
@@ -43,6 +44,7 @@ struct Options {
   std::vector<std::string> positional;
   std::string program;  // --program
   std::string size;
+  LoadTexts load;
   bool json = false;
 };
 
@@ -66,10 +68,6 @@ OptionTable declare(Options& options) {
               .value = "WHAT",
               .help = "Environment, as in 'quintet render'",
               .target = &request.environment},
-             {.names = "--variant",
-              .value = "NAME",
-              .help = "Material variant of the glTF file; 'quintet info' lists them",
-              .target = &request.variant},
              {.names = "--size",
               .value = "WxH",
               .help = "Size in pixels (default: 512x512 on a CPU, else 1920x1080)",
@@ -100,6 +98,7 @@ OptionTable declare(Options& options) {
               .target = &options.own.render.parameterFile,
               .candidates = {.extensions = {"json"}}},
              {.names = "--json", .help = "Print one JSON object instead of a table", .target = &options.json}});
+  declareLoading(table, options.load, request.load);
   table.addExamples({
       {"quintet bench scene.glb", "a table"},
       {"quintet bench scene.glb --json --repeat 9", "the same as JSON, medians of nine measurements"},
@@ -146,11 +145,12 @@ int benchCommand(Arguments arguments) {
   if (!options.program.empty()) request.program = options.program;
   request.scene = own.program = positional[0];
   if (positional.size() > 1) own.render.scene = positional[1];
+  convertLoading(options.load, request.load);
+  own.render.load = request.load;
   own.device = request.device;
   own.repeat = request.repeat;
   own.render.size = request.size;
   own.render.environment.source = request.environment;
-  own.render.variant = request.variant;
   setWorkProgram(ofScene ? request.program : own.program);
   setWorkStage("measuring");
   try {

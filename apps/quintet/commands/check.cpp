@@ -21,6 +21,7 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/parser.h"
+#include "cli/render_options.h"
 #include "cli/signals.h"
 #include "cli/supervisor.h"
 #include "cli/terminal.h"
@@ -43,7 +44,8 @@ struct Options {
   bool showSuppressed = false;
   bool watch = false;
   bool json = false;
-  bool strict = false;
+  LoadTexts load;
+  bool strict() const { return request.run.load.strict; }
 };
 
 OptionTable declare(Options& options) {
@@ -57,10 +59,6 @@ OptionTable declare(Options& options) {
         .target = &options.request.programs,
         .candidates = programOrSceneCandidates(),
         .required = true},
-       {.names = "--variant",
-        .value = "NAME",
-        .help = "Material variant of the scene, a glTF file; 'quintet info' lists them",
-        .target = &options.request.variant},
        {.names = "--json", .help = "Print an array of diagnostics on standard output", .target = &options.json},
        {.names = "--sarif",
         .value = "FILE",
@@ -84,7 +82,6 @@ OptionTable declare(Options& options) {
         .target = &options.colorName,
         .candidates = {.names = {"auto", "always", "never"}}},
        {.names = "--watch", .help = "Keep running: check again whenever a file is saved", .target = &options.watch},
-       {.names = "--strict", .help = "Exit with status 1 also for warnings", .target = &options.strict},
        {.names = "--instrument",
         .help = "Also render a small image with checks in the shaders (Q001 to Q007)",
         .target = &options.request.instrument},
@@ -121,6 +118,8 @@ OptionTable declare(Options& options) {
                         kDeviceHelp),
         .target = &options.request.device,
         .candidates = {.names = deviceNames({"none"})}}});
+  declareLoading(table, options.load, options.request.run.load,
+                 "Exit with status 1 also for warnings, and if a part of the scene file is ignored or repaired");
   table.addExamples({
       {"quintet check my_program/", "its shaders, and how they fit together"},
       {"quintet check my_program/ scene.glb", "and how they fit this scene"},
@@ -174,6 +173,7 @@ std::optional<Options> parseOptions(Arguments arguments) {
     reject(!run.assignments.empty(), "--set");
     reject(!run.parameterFile.empty(), "--set-file");
   }
+  convertLoading(options.load, run.load);
   if (!options.size.empty()) run.size = parseSize("--size", options.size);
   if (!options.region.empty()) run.region = parseRegion("--region", options.region);
   run.limits.samples = parseInteger("--spp", options.samples, 1, 1u << 24);
@@ -215,7 +215,7 @@ void writeSarif(const job::CheckReport& report, const Options& options, bool com
 int writeReport(const job::CheckReport& report, const job::ProgramChecks& checks, const Options& options) {
   std::vector<Diagnostic> found = report.diagnostics();
   const std::vector<check::SuppressedDiagnostic> suppressed = report.suppressed();
-  int status = report.wrongRequest() ? kWrongCommandLine : report.passes(options.strict) ? 0 : kRuntimeError;
+  int status = report.wrongRequest() ? kWrongCommandLine : report.passes(options.strict()) ? 0 : kRuntimeError;
   try {
     if (!options.sarif.empty()) writeSarif(report, options, true);
     if (!options.graph.empty()) writeGraph(options.graph, checks.pipelineOf(report.programs.front()));

@@ -4,12 +4,15 @@
 
 #include "base/file.h"
 #include "cli/parser.h"
+#include "cli/render_options.h"
 
 namespace quintet::cli {
 namespace {
 
 struct Options {
   std::optional<std::string> file;
+  scene::LoadOptions load;
+  LoadTexts loadTexts;
   bool json = false;
 };
 
@@ -21,9 +24,11 @@ OptionTable declare(Options& options) {
               .candidates = {.extensions = {"gltf", "glb", "scene.toml", "png", "exr", "hdr", "jpg", "jpeg", "webp",
                                             "qfilm"}}},
              {.names = "--json", .help = "Print one JSON object instead of text", .target = &options.json}});
+  declareLoading(table, options.loadTexts, options.load);
   table.addExamples({
       {"quintet info", "every device, and why one cannot be used"},
-      {"quintet info scene.glb", "counts, cameras, extensions; what was ignored or repaired"},
+      {"quintet info scene.glb", "counts, cameras, extensions; what is used, unused, ignored or repaired"},
+      {"quintet info scene.glb --strict", "fails if something is ignored or repaired"},
       {"quintet info out.png", "size, format, and how Quintet rendered it"},
       {"quintet info out.exr", "layers, channels, types, compression, windows, attributes"},
       {"quintet info part.qfilm", "which samples of which render"},
@@ -42,7 +47,9 @@ OptionTable infoOptions() {
 int infoCommand(Arguments arguments) {
   Options options;
   if (!parse(declare(options), arguments)) return 0;
-  writeFile("-", options.file ? output::fileInfo(*options.file, options.json) : output::devicesInfo(options.json));
+  convertLoading(options.loadTexts, options.load);
+  writeFile("-", options.file ? output::fileInfo(*options.file, options.json, options.load)
+                              : output::devicesInfo(options.json));
   return 0;
 }
 

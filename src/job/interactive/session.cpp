@@ -142,7 +142,7 @@ Session::Session(Engine& engine, SessionRequest request, Clock clock, Observer& 
       recorder_(std::make_unique<Recorder>(host)),
       resolution_(request.updatesPerSecond > 0 ? request.updatesPerSecond : paceOf(engine).updatesPerSecond) {
   program::Program program = loadForSession(request.program);
-  SceneSource source = chooseSceneSource(request.render.scene, program, request.render.variant);
+  SceneSource source = chooseSceneSource(request.render.scene, program, request.render.load);
   host.stage("loading " + source.name);
   scene_ = std::make_shared<const scene::Scene>(loadScene(source));
   instanceNames_ = scene::instanceNames(*scene_);

@@ -66,6 +66,7 @@ FileBytes decodeMeshopt(const Document& document, const tinygltf::BufferView& vi
     document.fail(location + "/count",
                   fmt::format("{} cannot hold {}", counted(length, "byte"), counted(count, "element")));
 
+  document.budget->take(count * stride);
   FileBytes result(count * stride);
   if (count == 0) return result;
   if (decode(mode, result.data(), count, stride, bytes.subspan(offset, length)) != 0)
@@ -103,6 +104,9 @@ std::uint64_t claimedTriangles(std::span<const std::byte> stream) {
 // Far above what Draco reaches (about 8). Decoding a stream that claims more could take minutes and gigabytes.
 constexpr std::uint64_t kMaxTrianglesPerByte = 256;
 
+// Bytes that the decoder requires per triangle: its corner table, and the attributes of a vertex.
+constexpr std::uint64_t kDracoMemory = 80;
+
 }  // namespace
 
 struct DracoMesh::State {
@@ -121,6 +125,7 @@ DracoMesh::DracoMesh(const Document& document, const tinygltf::Primitive& primit
   if (const std::uint64_t claimed = claimedTriangles(bytes); claimed > kMaxTrianglesPerByte * bytes.size())
     document.fail(state_->location,
                   fmt::format("{} cannot hold {}", counted(bytes.size(), "byte"), counted(claimed, "triangle")));
+  document.budget->take(kDracoMemory * claimedTriangles(bytes));
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   draco::Decoder decoder;

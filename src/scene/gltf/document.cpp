@@ -15,7 +15,7 @@
 #include "base/plural.h"
 #include "base/text.h"
 #include "scene/gltf/extensions.h"
-#include "scene/gltf/schema.h"
+#include "scene/gltf/metadata.h"
 
 namespace quintet::scene {
 namespace {
@@ -145,6 +145,13 @@ bool hasScheme(std::string_view uri) {
   return true;
 }
 
+// Compares names only; a symbolic link can still lead elsewhere.
+bool leavesFolder(const std::filesystem::path& file, const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path().lexically_normal();
+  const std::filesystem::path inside = (folder / name).lexically_normal().lexically_relative(folder);
+  return inside.empty() || *inside.begin() == "..";
+}
+
 // ---- JSON ----
 
 std::string lineAndColumn(std::string_view text, std::size_t byte) {
@@ -162,6 +169,37 @@ std::string withoutLocation(std::string what) {
   const std::size_t colon = what.find(": ");
   if (what.starts_with("parse error at ") && colon != std::string::npos) what.erase(0, colon + 2);
   return what;
+}
+
+// Bytes that parsing requires for each byte of JSON: lists of small numbers become 16 bytes per number, twice.
+constexpr std::size_t kJsonMemory = 16;
+
+// Far above what glTF has. Some operations on a JSON value are recursive.
+constexpr int kMaxNesting = 256;
+
+void checkNesting(const std::filesystem::path& file, std::string_view text) {
+  int depth = 0;
+  bool inString = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (inString) {
+      if (c == '\\') ++i;
+      inString = c != '"';
+      continue;
+    }
+    inString = c == '"';
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kMaxNesting)
+      throw FileError(file, lineAndColumn(text, i + 1),
+                      fmt::format("more than {} nested arrays and objects", kMaxNesting));
+  }
+}
+
+void takeFile(MemoryBudget& budget, const std::filesystem::path& file) {
+  std::error_code unknown;  // the file is then read without a size, for example from a pipe
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+  if (!unknown) budget.take(size);
 }
 
 json parseJson(const std::filesystem::path& file, std::string_view text) {
@@ -274,8 +312,8 @@ void loadBuffers(Document& document, const json& buffers, const Container& conta
 
 }  // namespace
 
-void Document::fail(std::string_view location, std::string_view problem) const {
-  throw FileError(file, printable(location), printable(problem));
+void Document::fail(std::string_view location, std::string_view problem, Remedy remedy) const {
+  throw FileError(file, printable(location), printable(problem), remedy);
 }
 
 std::span<const std::byte> Document::view(int bufferView) const {
@@ -286,19 +324,25 @@ std::span<const std::byte> Document::view(int bufferView) const {
 }
 
 FileBytes Document::loadUri(std::string_view uri, std::string_view location) const {
-  if (isDataUri(uri)) return decodeDataUri(*this, uri, location);
+  if (isDataUri(uri)) {
+    budget->take(uri.size());
+    return decodeDataUri(*this, uri, location);
+  }
   if (hasScheme(uri)) fail(location, "only data URIs and relative file names are supported");
   const std::string name = percentDecode(uri);
   if (name.empty()) fail(location, "the file name is empty");
   if (name.find('\0') != std::string::npos) fail(location, "the file name contains a zero byte");
   if (name[0] == '/') fail(location, "the file name is absolute; only relative file names are supported");
 
-  const std::filesystem::path path = file.parent_path() / name;
+  if (!allowExternal && leavesFolder(file, name))
+    fail(location, fmt::format("{} is outside of the folder of the file", name), Remedy::allowExternal);
+  const std::filesystem::path path = pathOfUri(uri);
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status)) fail(location, fmt::format("{} does not exist", name));
   // A device or a pipe could be endless.
   if (!std::filesystem::is_regular_file(status)) fail(location, fmt::format("{} is not a regular file", name));
+  takeFile(*budget, path);
   try {
     return readLargeFile(path);
   } catch (const FileError& error) {
@@ -307,7 +351,13 @@ FileBytes Document::loadUri(std::string_view uri, std::string_view location) con
 }
 
 std::filesystem::path Document::pathOfUri(std::string_view uri) const {
-  return file.parent_path() / percentDecode(uri);
+  // RFC 3986, section 5.2.4: dot segments are removed before a name is looked up.
+  const auto resolve = [&](std::string_view name) {
+    return file.parent_path() / std::filesystem::path(name).lexically_normal();
+  };
+  const std::filesystem::path decoded = resolve(percentDecode(uri)), itself = resolve(uri);
+  std::error_code ignored;
+  return !std::filesystem::exists(decoded, ignored) && std::filesystem::exists(itself, ignored) ? itself : decoded;
 }
 
 bool isDataUri(std::string_view uri) { return uri.starts_with("data:"); }
@@ -329,16 +379,25 @@ std::string percentDecode(std::string_view text) {
   return result;
 }
 
-Document readDocument(const std::filesystem::path& file) {
+Document readDocument(const std::filesystem::path& file, bool allowExternal, std::shared_ptr<MemoryBudget> budget) {
   Document document;
+  document.budget = std::move(budget);
+  document.allowExternal = allowExternal;
   document.file = file;
   document.files.push_back(file);
+  takeFile(*document.budget, file);
   const FileBytes& bytes = document.storage.emplace_back(readLargeFile(file));
   const Container container = splitContainer(file, bytes);
+  document.budget->take(kJsonMemory * container.json.size());
+  checkNesting(file, container.json);
   json root = parseJson(file, container.json);
-  json checked = checkSchema(file, root);
+  CheckedSchema schema = checkSchema(file, root);
+  json& checked = schema.json;
+  document.unread = std::move(schema.unread);
+  document.extensionUses = std::move(schema.extensions);
   if (const auto animations = root.find("animations"); animations != root.end() && animations->is_array())
     document.animationCount = animations->size();
+  document.metadata = readMetadata(checked);
   checkVersion(document, checked["asset"]);
   checkDependencies(document, checked);
   checkRequiredExtensions(file, checked.value("extensionsRequired", std::vector<std::string>{}));

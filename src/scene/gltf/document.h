@@ -12,12 +12,17 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
 #include "base/file.h"
+#include "scene/gltf/schema.h"
+#include "scene/memory_budget.h"
 #include "scene/model/scene.h"
 
 namespace quintet::scene {
@@ -35,35 +40,41 @@ struct Buffer {
 
 struct Document {
   std::filesystem::path file;
+  bool allowExternal = false;  // LoadOptions::allowExternal
+  std::shared_ptr<MemoryBudget> budget;
   tinygltf::Model model;  // `buffers` and `images` stay empty
   std::vector<ImageSource> images;
   std::vector<Buffer> buffers;
   // Parallel to model.bufferViews, decompressed. data() is null for a view of a buffer without data, which is valid as
   // long as nothing reads it.
   std::vector<std::span<const std::byte>> bufferViews;
+  std::vector<MetadataEntry> metadata;
   std::size_t animationCount = 0;
-  std::vector<std::filesystem::path> files;  // this file, and the files that its buffers and images name
+  std::vector<UnreadProperty> unread;                   // of the JSON
+  std::map<std::string, ExtensionUse> extensionUses{};  // objects of supported extensions, by name
+  std::vector<std::filesystem::path> files;             // this file, and the files that its buffers and images name
 
   // Owner of the bytes that the spans refer to. A deque, because its elements keep their addresses.
   std::deque<FileBytes> storage;
 
   // Throws FileError; `location` is a JSON pointer.
-  [[noreturn]] void fail(std::string_view location, std::string_view problem) const;
+  [[noreturn]] void fail(std::string_view location, std::string_view problem, Remedy remedy = Remedy::none) const;
   // Bytes of a buffer view. Throws FileError if its buffer has no data.
   std::span<const std::byte> view(int bufferView) const;
 
   // Bytes of a data URI (RFC 2397), or of a file named by a relative path (RFC 3986). Throws FileError for any other
-  // URI; nothing is fetched.
+  // URI, and for a file outside of the folder unless allowExternal; nothing is fetched.
   FileBytes loadUri(std::string_view uri, std::string_view location) const;
-  // Path of a URI that is not a data URI.
+  // Path of a URI that is not a data URI: the decoded one, or if it does not exist the text itself, because some
+  // exporters do not encode '%' in file names.
   std::filesystem::path pathOfUri(std::string_view uri) const;
 };
 
 bool isDataUri(std::string_view uri);
 std::string percentDecode(std::string_view text);
 
-// Reads the container, the JSON and the buffers; bufferViews stays empty. Throws FileError.
-Document readDocument(const std::filesystem::path& file);
+// Reads the container, the JSON and the buffers; bufferViews stays empty. Throws FileError, MemoryError.
+Document readDocument(const std::filesystem::path& file, bool allowExternal, std::shared_ptr<MemoryBudget> budget);
 
 }  // namespace quintet::scene
 #endif

@@ -31,6 +31,8 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_variants",
     "KHR_lights_punctual",
+    "KHR_node_visibility",
+    "KHR_xmp_json_ld",
     "KHR_texture_transform",
     "KHR_mesh_quantization",
     "EXT_texture_webp",
@@ -39,8 +41,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "EXT_meshopt_compression",
 });
 
-// A file that requires one of these can be read without it.
-constexpr auto kIgnorable = std::to_array<std::string_view>({"KHR_xmp", "KHR_xmp_json_ld"});
+constexpr auto kWithoutEffect = std::to_array<std::string_view>({"KHR_xmp"});
 
 bool contains(std::span<const std::string_view> list, const std::string& name) {
   return std::ranges::find(list, name) != list.end();
@@ -57,16 +58,19 @@ Vec vectorOf(const tinygltf::Value& object, const std::string& key, Vec fallback
 
 }  // namespace
 
+bool isSupportedExtension(const std::string& name) { return contains(kSupported, name); }
+bool hasNoEffect(const std::string& name) { return contains(kWithoutEffect, name); }
+
 void checkRequiredExtensions(const std::filesystem::path& file, const std::vector<std::string>& required) {
   for (std::size_t i = 0; i < required.size(); ++i)
-    if (!contains(kSupported, required[i]) && !contains(kIgnorable, required[i]))
+    if (!isSupportedExtension(required[i]) && !hasNoEffect(required[i]))
       throw FileError(file, fmt::format("/extensionsRequired/{}", i),
                       printable(fmt::format("{} is not supported", required[i].substr(0, 80))));
 }
 
 void reportExtensions(const std::vector<std::string>& used, Report& report) {
   for (const std::string& name : used)
-    (contains(kSupported, name) ? report.extensionsUsed : report.extensionsIgnored).push_back(name);
+    (isSupportedExtension(name) ? report.extensionsUsed : report.extensionsIgnored).push_back(name);
 }
 
 const tinygltf::Value* findExtension(const tinygltf::ExtensionMap& extensions, const std::string& name) {

@@ -21,6 +21,14 @@ inline constexpr const char* kTextureTransform = "KHR_texture_transform";
 inline constexpr const char* kTextureWebp = "EXT_texture_webp";
 inline constexpr const char* kVariants = "KHR_materials_variants";
 
+inline constexpr const char* kVisibility = "KHR_node_visibility";
+inline constexpr const char* kXmp = "KHR_xmp_json_ld";
+inline constexpr const char* kQuantization = "KHR_mesh_quantization";
+
+bool isSupportedExtension(const std::string& name);
+// Whether the extension contains only metadata, which cannot change the image.
+bool hasNoEffect(const std::string& name);
+
 // Throws FileError for the first entry of extensionsRequired that is not supported.
 void checkRequiredExtensions(const std::filesystem::path& file, const std::vector<std::string>& required);
 // Fills the report's lists from extensionsUsed.

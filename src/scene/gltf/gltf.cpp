@@ -3,13 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
+#include <utility>
 
 #include "base/stopwatch.h"
-#include "base/text.h"
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/extensions.h"
 #include "scene/gltf/instances.h"
+#include "scene/gltf/inventory.h"
 #include "scene/gltf/material.h"
 #include "scene/gltf/nodes.h"
 #include "scene/gltf/texture.h"
@@ -21,22 +23,14 @@ namespace {
 
 // The part of a file that remains in memory until its images are decoded.
 struct OpenFile {
-  explicit OpenFile(const std::filesystem::path& file) : document(readDocument(file)), budget(file) {
+  OpenFile(const std::filesystem::path& file, const LoadOptions& options, std::shared_ptr<MemoryBudget> budget)
+      : document(readDocument(file, options.allowExternal, std::move(budget))) {
     resolveBufferViews(document);
     checkAccessors(document);
   }
   Document document;
-  MemoryBudget budget;
   std::vector<ImageUse> imageUses;
 };
-
-// The report quotes names from the file.
-void makePrintable(Report& report) {
-  for (auto* lines : {&report.extensionsUsed, &report.extensionsIgnored, &report.ignored, &report.repaired})
-    for (std::string& line : *lines) line = printable(line);
-  report.generator = printable(report.generator);
-  report.copyright = printable(report.copyright);
-}
 
 void readHeader(const Document& document, Scene& scene) {
   scene.name = document.file.filename().string();
@@ -45,61 +39,90 @@ void readHeader(const Document& document, Scene& scene) {
   scene.report.files = document.files;
   reportExtensions(document.model.extensionsUsed, scene.report);
   scene.report.variants = variantNames(document);
+  scene.report.metadata = document.metadata;
   scene.report.ignoredAnimations = document.animationCount;
   if (document.animationCount > 0)
     scene.report.ignored.push_back(
         fmt::format("/animations: {} not played; the rest pose is used", document.animationCount));
 }
 
-// Adds the instances, the camera and the light of each node.
+// Adds the instances and the light of each visible node, and the camera of each node.
 void readSceneNodes(const Document& document, const NodeTree& tree, InstanceBuilder& instances, Scene& scene) {
   for (const int index : tree.sceneNodes) {
     const auto i = static_cast<std::size_t>(index);
     const tinygltf::Node& node = document.model.nodes[i];
-    instances.addNode(index);
+    if (tree.visible[i]) instances.addNode(index);
     if (node.camera != kNone) scene.cameras.push_back(readCamera(document, node.camera, node, tree.worldFromNode[i]));
-    if (const tinygltf::Value* light = findExtension(node.extensions, kPunctualLights))
-      readLight(document, indexOf(*light, "light"), node, tree.worldFromNode[i], scene);
+    const tinygltf::Value* light = findExtension(node.extensions, kPunctualLights);
+    if (light && tree.visible[i]) readLight(document, indexOf(*light, "light"), node, tree.worldFromNode[i], scene);
   }
 }
 
-PendingScene begin(const std::filesystem::path& path, const GltfOptions& options) {
+// Materials use their factors instead of the textures whose images could not be read.
+void removeImages(const OpenFile& file, const std::vector<ImageFailure>& failures, Scene& scene) {
+  std::map<int, std::string> problems;  // of images of the file, each listed once
+  for (const ImageFailure& failure : failures) {
+    problems.emplace(file.imageUses[failure.use].image, failure.problem);
+    removeTextures(scene, static_cast<int>(failure.use), file.imageUses[failure.use].glossiness);
+  }
+  std::vector<MissingImage> missing;
+  for (const auto& [image, problem] : problems) missing.push_back({image, problem});
+  reportMissingImages(file.document, missing, scene.report);
+  makePrintable(scene.report);
+}
+
+// The second step. `replace`: use the factors of materials instead of images that cannot be read.
+void finishImages(const OpenFile& file, bool replace, Scene& scene) {
+  const Stopwatch decoding;
+  const std::vector<ImageFailure> failures =
+      decodeImages(file.document, file.imageUses, scene.images, *file.document.budget);
+  if (!failures.empty()) {
+    const ImageFailure& first = failures.front();
+    if (!replace) file.document.fail(first.location, first.problem, first.remedy);
+    removeImages(file, failures, scene);
+  }
+  scene.seconds.images = decoding.seconds();
+}
+
+PendingScene begin(const std::filesystem::path& path, const LoadOptions& options,
+                   std::shared_ptr<MemoryBudget> budget) {
   Stopwatch watch;
-  const auto file = std::make_shared<OpenFile>(path);
+  if (!budget) budget = std::make_shared<MemoryBudget>(path, options.maxMemory);
+  const auto file = std::make_shared<OpenFile>(path, options, std::move(budget));
   if (!options.variant.empty()) selectVariant(file->document, options.variant);
   const Document& document = file->document;
   Scene scene;
   readHeader(document, scene);
-  const NodeTree tree = readNodes(document, options.scene, scene.report);
+  const NodeTree tree = readNodes(document, findScene(document, options.scene), scene.report);
   TextureTable textures(document, scene.report);
   scene.materials = readMaterials(document, textures, scene.report);
   InstanceBuilder instances(document, tree, scene.report);
   readSceneNodes(document, tree, instances, scene);
   scene.seconds.document = watch.lap();
-  instances.finish(scene, file->budget);
+  instances.finish(scene, *document.budget);
   scene.seconds.meshes = watch.lap();
 
   scene.textures = textures.textures();
   file->imageUses = textures.imageUses();
+  completeReport(document, tree, textures, scene.materials, scene.report);
   makePrintable(scene.report);
+  if (options.strict) requireExact(path, scene.report);
   const bool described = describeImages(document, file->imageUses, scene.images);
-  const auto decode = [file](Scene& pending) {
-    withMemoryErrors(file->document.file, [&] {
-      const Stopwatch decoding;
-      decodeImages(file->document, file->imageUses, pending.images, file->budget);
-      pending.seconds.images = decoding.seconds();
-    });
+  const bool replace = options.missingTextures == MissingTextures::warn && !options.strict;
+  const auto decode = [file, replace](Scene& pending) {
+    withMemoryErrors(file->document.file, [&] { finishImages(*file, replace, pending); });
   };
   return {std::move(scene), described, decode};
 }
 
 }  // namespace
 
-PendingScene beginLoadingGltf(const std::filesystem::path& file, const GltfOptions& options) {
-  return withMemoryErrors(file, [&] { return begin(file, options); });
+PendingScene beginLoadingGltf(const std::filesystem::path& file, const LoadOptions& options,
+                              std::shared_ptr<MemoryBudget> budget) {
+  return withMemoryErrors(file, [&] { return begin(file, options, std::move(budget)); });
 }
 
-Scene loadGltf(const std::filesystem::path& file, const GltfOptions& options) {
+Scene loadGltf(const std::filesystem::path& file, const LoadOptions& options) {
   return beginLoadingGltf(file, options).finish();
 }
 

@@ -53,6 +53,8 @@ std::size_t estimateBytes(const tinygltf::Model& model, int mesh, int primitiveI
   std::size_t bytes = primitive.indices == kNone ? 0 : sizeof(uvec3) * count(primitive.indices);
   for (const auto& [name, accessor] : primitive.attributes)
     if (!name.starts_with('_')) bytes += sizeof(vec4) * count(accessor);
+  for (const auto& target : primitive.targets)
+    for (const auto& [name, accessor] : target) bytes += sizeof(vec3) * count(accessor);
   return bytes;
 }
 
@@ -128,6 +130,7 @@ void InstanceBuilder::addRigid(int index, const mat4& worldFromObject) {
 std::vector<mat4> InstanceBuilder::jointMatrices(int index) const {
   const int skinIndex = document_.model.nodes[static_cast<std::size_t>(index)].skin;
   const tinygltf::Skin& skin = document_.model.skins[static_cast<std::size_t>(skinIndex)];
+  document_.budget->take(skin.joints.size() * sizeof(mat4));
   std::vector<mat4> matrices(skin.joints.size(), mat4(1.0f));
   if (skin.inverseBindMatrices != kNone) {
     const std::string location = fmt::format("/skins/{}/inverseBindMatrices", skinIndex);
@@ -165,6 +168,7 @@ std::vector<mat4> InstanceBuilder::instanceTransforms(int index) const {
 
   if (instances_.size() + count > kMaxInstances)
     document_.fail(location, fmt::format("more than {} instances", kMaxInstances));
+  document_.budget->take(count * (sizeof(Instance) + sizeof(mat4)));
   std::vector<mat4> transforms;
   transforms.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {

@@ -126,8 +126,6 @@ class MaterialReader {
 
   void readVolume(const tinygltf::Value& extension) {
     material_.thickness = range(numberOf(extension, "thicknessFactor", 0.0), 0.0f, kHuge, "thicknessFactor");
-    if (extension.Has("thicknessTexture"))
-      ignore("thicknessTexture: a path tracer takes the thickness from the geometry");
     const double distance = numberOf(extension, "attenuationDistance", std::numeric_limits<double>::infinity());
     if (distance > 0.0) {
       material_.attenuationDistance = static_cast<float>(distance);

@@ -239,13 +239,14 @@ MorphTarget PrimitiveReader::readMorphTarget(std::size_t index, const Geometry& 
 
 // ---- From primitive to geometry ----
 
-// Adds a line for each unused attribute.
+// Adds a line for each attribute that is not supported. Names with an underscore are specific to an application.
 void reportAttributes(const tinygltf::Primitive& primitive, const std::string& location, GeometryResult& result) {
   for (const auto& [name, accessor] : primitive.attributes) {
     const bool used = name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name == "TEXCOORD_0" ||
                       name == "TEXCOORD_1" || name == "COLOR_0" || name == "JOINTS_0" || name == "JOINTS_1" ||
                       name == "WEIGHTS_0" || name == "WEIGHTS_1";
-    if (!used) result.ignored.push_back(fmt::format("{}/attributes/{}: unused attribute", location, name));
+    if (!used && !name.starts_with('_'))
+      result.ignored.push_back(fmt::format("{}/attributes/{}: attribute not supported", location, name));
   }
 }
 

@@ -2,11 +2,16 @@
 #include "scene/gltf/nodes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "base/error.h"
+#include "base/plural.h"
+#include "base/text.h"
 #include "scene/geometry/repair.h"
+#include "scene/gltf/extensions.h"
 
 namespace quintet::scene {
 namespace {
@@ -77,16 +82,17 @@ std::vector<int> rootNodes(const std::vector<int>& parents) {
   return roots;
 }
 
-std::vector<int> sceneRoots(const Document& document, int sceneIndex, const std::vector<int>& parents) {
+// The requested scene, else the default one, else the first one, else kNone.
+int chooseScene(const Document& document, int requested) {
   const tinygltf::Model& model = document.model;
-  if (sceneIndex != kNone && (sceneIndex < 0 || static_cast<std::size_t>(sceneIndex) >= model.scenes.size()))
-    throw UsageError(fmt::format("{}: scene {} does not exist; the file has {}", document.file.string(), sceneIndex,
-                                 model.scenes.size()));
-  if (sceneIndex == kNone) sceneIndex = model.defaultScene;
-  if (sceneIndex == kNone && !model.scenes.empty()) sceneIndex = 0;
-  if (sceneIndex == kNone) return rootNodes(parents);
+  if (requested != kNone) return requested;
+  if (model.defaultScene != kNone) return model.defaultScene;
+  return model.scenes.empty() ? kNone : 0;
+}
 
-  const std::vector<int>& roots = model.scenes[static_cast<std::size_t>(sceneIndex)].nodes;
+std::vector<int> sceneRoots(const Document& document, int sceneIndex, const std::vector<int>& parents) {
+  if (sceneIndex == kNone) return rootNodes(parents);
+  const std::vector<int>& roots = document.model.scenes[static_cast<std::size_t>(sceneIndex)].nodes;
   std::vector<bool> listed(parents.size(), false);
   for (std::size_t i = 0; i < roots.size(); ++i) {
     const auto node = static_cast<std::size_t>(roots[i]);
@@ -132,6 +138,21 @@ dmat4 composeTransform(const dvec3& translation, const dvec4& rotation, const dv
   return matrix;
 }
 
+int findScene(const Document& document, const std::string& nameOrIndex) {
+  if (nameOrIndex.empty()) return kNone;
+  std::vector<std::string> names;
+  for (const tinygltf::Scene& scene : document.model.scenes) names.push_back(scene.name);
+  if (const auto found = std::ranges::find(names, nameOrIndex); found != names.end())
+    return static_cast<int>(found - names.begin());
+  std::size_t index = 0;
+  const char* end = nameOrIndex.data() + nameOrIndex.size();
+  const auto [stop, error] = std::from_chars(nameOrIndex.data(), end, index);
+  if (error == std::errc{} && stop == end && index < names.size()) return static_cast<int>(index);
+  throw UsageError(printable(fmt::format("{}: no scene '{}'; the file has {}{}", document.file.string(), nameOrIndex,
+                                         counted(names.size(), "scene"),
+                                         names.empty() ? "" : fmt::format(": {}", fmt::join(names, ", ")))));
+}
+
 NodeTree readNodes(const Document& document, int sceneIndex, Report& report) {
   const std::size_t count = document.model.nodes.size();
   const std::vector<int> parents = findParents(document);
@@ -147,8 +168,12 @@ NodeTree readNodes(const Document& document, int sceneIndex, Report& report) {
   NodeTree tree;
   std::vector<dmat4> world(count);
   tree.worldFromNode.resize(count);
+  tree.visible.resize(count, true);
   for (const int node : order) {
     const auto i = static_cast<std::size_t>(node);
+    const tinygltf::Value* visibility = findExtension(document.model.nodes[i].extensions, kVisibility);
+    const bool shown = !visibility || !visibility->Has("visible") || visibility->Get("visible").Get<bool>();
+    tree.visible[i] = shown && (parents[i] == kNone || tree.visible[static_cast<std::size_t>(parents[i])]);
     const dmat4 local = localTransform(document, i);
     world[i] = parents[i] == kNone ? local : world[static_cast<std::size_t>(parents[i])] * local;
     tree.worldFromNode[i] = mat4(world[i]);
@@ -156,7 +181,8 @@ NodeTree readNodes(const Document& document, int sceneIndex, Report& report) {
       if (!isFinite(vec3(tree.worldFromNode[i][column])))
         document.fail(fmt::format("/nodes/{}", node), "the transform to world space is not finite");
   }
-  tree.sceneNodes = walk(document, sceneRoots(document, sceneIndex, parents));
+  tree.scene = chooseScene(document, sceneIndex);
+  tree.sceneNodes = walk(document, sceneRoots(document, tree.scene, parents));
   return tree;
 }
 
@@ -196,10 +222,17 @@ void readLight(const Document& document, int index, const tinygltf::Node& node, 
   }
   light.name = from.name.empty() ? node.name : from.name;
   const vec3 color = from.color.empty() ? vec3(1.0f) : vec3(from.color[0], from.color[1], from.color[2]);
-  light.intensity = glm::max(static_cast<float>(from.intensity) * color, vec3(0.0f));
+  light.intensity = static_cast<float>(from.intensity) * color;
+  if (glm::any(glm::lessThan(light.intensity, vec3(0.0f))))
+    scene.report.repaired.push_back(location + ": negative intensity or color replaced by 0");
+  light.intensity = glm::max(light.intensity, vec3(0.0f));
   light.position = vec3(worldFromNode[3]);
   light.direction = directionOr(-vec3(worldFromNode[2]), vec3(0, 0, -1));
+  if (from.range < 0.0)
+    scene.report.repaired.push_back(
+        fmt::format("{}: range {} is not positive, replaced by infinity", location, from.range));
   if (from.range > 0.0) light.range = static_cast<float>(from.range);
+  if (light.type == LightType::directional) light.range = Light().range;
   if (light.type == LightType::spot) readSpot(from, location, light, scene.report);
   scene.lights.push_back(std::move(light));
 }

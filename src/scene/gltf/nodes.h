@@ -3,6 +3,7 @@
 #ifndef QUINTET_SCENE_GLTF_NODES_H
 #define QUINTET_SCENE_GLTF_NODES_H
 
+#include <string>
 #include <vector>
 
 #include "scene/gltf/document.h"
@@ -11,11 +12,16 @@ namespace quintet::scene {
 
 struct NodeTree {
   std::vector<mat4> worldFromNode;  // of every node of the file, because joints can be outside the chosen scene
+  std::vector<bool> visible;        // of every node: its own KHR_node_visibility and that of its ancestors
+  int scene = kNone;                // the chosen scene; kNone if the file has none, and all root nodes are used
   std::vector<int> sceneNodes;      // nodes of the chosen scene, parents before children, in the file's order
 };
 
+// Index of the scene with this name, else with this index; kNone for an empty text. Throws UsageError.
+int findScene(const Document&, const std::string& nameOrIndex);
+
 // `sceneIndex` kNone means the file's default scene, else its first scene, else all root nodes. Throws FileError for
-// cycles, second parents and transforms that are not finite or not affine; UsageError for a scene that does not exist.
+// cycles, second parents and transforms that are not finite or not affine.
 NodeTree readNodes(const Document&, int sceneIndex, Report&);
 
 // Translation · rotation · scale. The quaternion (x, y, z, w) is normalized; zero means no rotation.

@@ -35,6 +35,8 @@ enum class PropertyKind {
   integerMap,
   object,
   objects,
+  any,     // of any type
+  unread,  // of any type, and not in the result
 };
 
 // An array of the file that indices can point into.
@@ -55,6 +57,7 @@ struct Property {
   std::span<const Property> object{};           // object, objects: its members
   std::span<const std::string_view> choices{};  // string
   std::span<const int> values{};                // integer
+  std::string_view reason{};  // why it has no effect on the image; empty if it has, or if the report needs no line
 };
 
 // ---- The table: glTF 2.0 (Khronos, 2021, sections 5.1 to 5.29) and the supported extensions ----
@@ -76,6 +79,7 @@ constexpr Collection kNodes{"/nodes", "node"};
 constexpr Collection kSamplers{"/samplers", "sampler"};
 constexpr Collection kScenes{"/scenes", "scene"};
 constexpr Collection kSkins{"/skins", "skin"};
+constexpr Collection kPackets{"/extensions/KHR_xmp_json_ld/packets", "metadata packet"};
 constexpr Collection kTextures{"/textures", "texture"};
 constexpr Collection kVariantNames{"/extensions/KHR_materials_variants/variants", "variant"};
 
@@ -119,6 +123,17 @@ constexpr Property object(std::string_view name, List inside) {
 constexpr Property objects(std::string_view name, List inside) {
   return {.name = name, .kind = PropertyKind::objects, .object = inside};
 }
+// A property that cannot change the image.
+constexpr Property noEffect(std::string_view name, std::string_view reason) {
+  return {.name = name, .kind = PropertyKind::unread, .reason = reason};
+}
+// The same for a property whose value is checked.
+constexpr Property withoutEffect(Property property, std::string_view reason) {
+  property.reason = reason;
+  return property;
+}
+// A property without content of its own, or one that another part of the importer reports.
+constexpr Property unreported(std::string_view name) { return noEffect(name, {}); }
 constexpr Property required(Property property) {
   property.required = true;
   return property;
@@ -135,8 +150,11 @@ constexpr int kModes[] = {0, 1, 2, 3, 4, 5, 6};
 constexpr int kMagFilters[] = {9728, 9729};
 constexpr int kWraps[] = {33071, 33648, 10497};
 
+constexpr Property kMetadata[] = {required(index("packet", kPackets))};
+constexpr Property metadata() { return object("KHR_xmp_json_ld", kMetadata); }
+constexpr Property kOnlyMetadata[] = {metadata()};
 constexpr Property kAsset[] = {required(string("version")), string("minVersion"), string("generator"),
-                               string("copyright")};
+                               string("copyright"), object("extensions", kOnlyMetadata)};
 
 constexpr Property kMeshoptFallback[] = {boolean("fallback")};
 constexpr Property kBufferExtensions[] = {object("EXT_meshopt_compression", kMeshoptFallback)};
@@ -149,9 +167,13 @@ constexpr Property kMeshoptView[] = {
     choice("filter", kMeshoptFilters),
 };
 constexpr Property kViewExtensions[] = {object("EXT_meshopt_compression", kMeshoptView)};
-constexpr Property kBufferView[] = {required(index("buffer", kBuffers)), integer("byteOffset", 0, kMaxBytes),
-                                    required(integer("byteLength", 1, kMaxBytes)), integer("byteStride", 0, 252),
-                                    object("extensions", kViewExtensions)};
+constexpr Property kBufferView[] = {required(index("buffer", kBuffers)),
+                                    integer("byteOffset", 0, kMaxBytes),
+                                    required(integer("byteLength", 1, kMaxBytes)),
+                                    integer("byteStride", 0, 252),
+                                    object("extensions", kViewExtensions),
+                                    unreported("name"),
+                                    noEffect("target", "a hint for vertex buffers of rasterizers")};
 
 constexpr Property kSparseIndices[] = {required(index("bufferView", kBufferViews)), integer("byteOffset"),
                                        required(oneOf("componentType", kIndexTypes))};
@@ -166,11 +188,14 @@ constexpr Property kAccessor[] = {
     boolean("normalized"),
     required(oneOf("componentType", kComponentTypes)),
     object("sparse", kSparse),
+    noEffect("min", "bounds are computed from the data"),
+    noEffect("max", "bounds are computed from the data"),
+    unreported("name"),
 };
 
 constexpr Property kDraco[] = {required(index("bufferView", kBufferViews)), required(integerMap("attributes"))};
 constexpr Property kVariantMapping[] = {required(index("material", kMaterials)),
-                                        required(indices("variants", kVariantNames))};
+                                        required(indices("variants", kVariantNames)), unreported("name")};
 constexpr Property kVariantMappings[] = {required(objects("mappings", kVariantMapping))};
 constexpr Property kPrimitiveExtensions[] = {object("KHR_draco_mesh_compression", kDraco),
                                              object("KHR_materials_variants", kVariantMappings)};
@@ -182,12 +207,15 @@ constexpr Property kPrimitive[] = {
     indexMaps("targets", kAccessors),
     object("extensions", kPrimitiveExtensions),
 };
-constexpr Property kMesh[] = {required(objects("primitives", kPrimitive)), anyNumbers("weights"), string("name")};
+constexpr Property kMesh[] = {required(objects("primitives", kPrimitive)), anyNumbers("weights"), string("name"),
+                              object("extensions", kOnlyMetadata)};
 
+constexpr Property kVisibility[] = {boolean("visible")};
 constexpr Property kNodeLight[] = {required(index("light", kLights))};
 constexpr Property kInstancing[] = {required(indexMap("attributes", kAccessors))};
 constexpr Property kNodeExtensions[] = {object("KHR_lights_punctual", kNodeLight),
-                                        object("EXT_mesh_gpu_instancing", kInstancing)};
+                                        object("EXT_mesh_gpu_instancing", kInstancing),
+                                        object("KHR_node_visibility", kVisibility), metadata()};
 constexpr Property kNode[] = {
     index("camera", kCameras),
     indices("children", kNodes),
@@ -201,8 +229,9 @@ constexpr Property kNode[] = {
     string("name"),
     object("extensions", kNodeExtensions),
 };
-constexpr Property kScene[] = {indices("nodes", kNodes), string("name")};
-constexpr Property kSkin[] = {index("inverseBindMatrices", kAccessors), index("skeleton", kNodes),
+constexpr Property kScene[] = {indices("nodes", kNodes), string("name"), object("extensions", kOnlyMetadata)};
+constexpr Property kSkin[] = {index("inverseBindMatrices", kAccessors),
+                              withoutEffect(index("skeleton", kNodes), "the joints determine the pose"),
                               required(indices("joints", kNodes)), string("name")};
 
 constexpr Property kTransform[] = {numbers("offset", 2), number("rotation"), numbers("scale", 2), integer("texCoord")};
@@ -217,8 +246,10 @@ constexpr Property kMetallicRoughness[] = {numbers("baseColorFactor", 4), textur
 constexpr Property kEmissiveStrength[] = {number("emissiveStrength")};
 constexpr Property kIor[] = {number("ior")};
 constexpr Property kTransmission[] = {number("transmissionFactor"), texture("transmissionTexture")};
-constexpr Property kVolume[] = {number("thicknessFactor"), texture("thicknessTexture"), number("attenuationDistance"),
-                                numbers("attenuationColor", 3)};
+constexpr Property kVolume[] = {
+    number("thicknessFactor"),
+    withoutEffect(texture("thicknessTexture"), "a path tracer takes the thickness from the geometry"),
+    number("attenuationDistance"), numbers("attenuationColor", 3)};
 constexpr Property kSpecular[] = {number("specularFactor"), texture("specularTexture"),
                                   numbers("specularColorFactor", 3), texture("specularColorTexture")};
 constexpr Property kClearcoat[] = {number("clearcoatFactor"), texture("clearcoatTexture"),
@@ -255,12 +286,13 @@ constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_iridescence", kIridescence),
     object("KHR_materials_dispersion", kDispersion),
     object("KHR_materials_pbrSpecularGlossiness", kSpecularGlossiness),
+    metadata(),
 };
 constexpr Property kMaterial[] = {
     string("name"),
     object("pbrMetallicRoughness", kMetallicRoughness),
     texture("normalTexture"),
-    texture("occlusionTexture"),
+    withoutEffect(texture("occlusionTexture"), "a path tracer computes the occlusion"),
     texture("emissiveTexture"),
     numbers("emissiveFactor", 3),
     choice("alphaMode", kAlphaModes),
@@ -269,17 +301,23 @@ constexpr Property kMaterial[] = {
     object("extensions", kMaterialExtensions),
 };
 
-constexpr Property kImage[] = {index("bufferView", kBufferViews), string("uri"), string("mimeType"), string("name")};
-constexpr Property kSampler[] = {oneOf("magFilter", kMagFilters), oneOf("wrapS", kWraps), oneOf("wrapT", kWraps)};
+constexpr Property kImage[] = {index("bufferView", kBufferViews), string("uri"), string("mimeType"), string("name"),
+                               object("extensions", kOnlyMetadata)};
+constexpr Property kSampler[] = {
+    oneOf("magFilter", kMagFilters), oneOf("wrapS", kWraps), oneOf("wrapT", kWraps),
+    noEffect("minFilter", "there are no mip levels; many samples per pixel filter instead"), unreported("name")};
 constexpr Property kWebp[] = {required(index("source", kImages))};
 constexpr Property kTextureExtensions[] = {object("EXT_texture_webp", kWebp)};
 constexpr Property kTexture[] = {index("sampler", kSamplers), index("source", kImages), string("name"),
                                  object("extensions", kTextureExtensions)};
 
-constexpr Property kPerspective[] = {number("aspectRatio"), required(number("yfov")), required(number("znear")),
-                                     number("zfar")};
-constexpr Property kOrthographic[] = {required(number("xmag")), required(number("ymag")), required(number("znear")),
-                                      required(number("zfar"))};
+constexpr std::string_view kNoClipping = "rays are not clipped to the depth range of a rasterizer";
+constexpr Property kPerspective[] = {number("aspectRatio"), required(number("yfov")),
+                                     withoutEffect(required(number("znear")), kNoClipping),
+                                     withoutEffect(number("zfar"), kNoClipping)};
+constexpr Property kOrthographic[] = {required(number("xmag")), required(number("ymag")),
+                                      withoutEffect(required(number("znear")), kNoClipping),
+                                      withoutEffect(required(number("zfar")), kNoClipping)};
 constexpr Property kCamera[] = {required(choice("type", kCameraTypes)), object("perspective", kPerspective),
                                 object("orthographic", kOrthographic), string("name")};
 
@@ -289,7 +327,9 @@ constexpr Property kLight[] = {required(string("type")), numbers("color", 3),   
 constexpr Property kRootLights[] = {required(objects("lights", kLight))};
 constexpr Property kVariant[] = {required(string("name"))};
 constexpr Property kRootVariants[] = {required(objects("variants", kVariant))};
+constexpr Property kRootMetadata[] = {required({.name = "packets", .kind = PropertyKind::any})};
 constexpr Property kRootExtensions[] = {object("KHR_lights_punctual", kRootLights),
+                                        object("KHR_xmp_json_ld", kRootMetadata),
                                         object("KHR_materials_variants", kRootVariants)};
 
 constexpr Property kRoot[] = {
@@ -297,6 +337,7 @@ constexpr Property kRoot[] = {
     strings("extensionsUsed"),
     strings("extensionsRequired"),
     objects("accessors", kAccessor),
+    unreported("animations"),
     objects("buffers", kBuffer),
     objects("bufferViews", kBufferView),
     objects("cameras", kCamera),
@@ -342,26 +383,76 @@ class Checker {
  public:
   Checker(const std::filesystem::path& file, json& root) : file_(file), root_(root) {}
 
-  json object(json& in, std::span<const Property> properties, const Location& location) const {
+  CheckedSchema check() {
+    result_.json = object(root_, kRoot, Location{});
+    return std::move(result_);
+  }
+
+ private:
+  json object(json& in, std::span<const Property> properties, const Location& location) {
     if (!in.is_object()) fail(location, "must be an object");
     json out = json::object();
+    std::size_t known = 0;
     for (const Property& property : properties) {
       const auto found = in.find(property.name);
       if (found != in.end()) {
-        out[std::string(property.name)] = value(*found, property, location[property.name]);
+        ++known;
+        const Location inside = location[property.name];
+        noteUnread(UnreadProperty::Cause::noEffect, properties, inside, property.reason);
+        if (property.kind == PropertyKind::unread) continue;
+        out[std::string(property.name)] = value(*found, property, inside);
+        if (location.key == "extensions") noteExtension(inside);
       } else if (property.required) {
         fail(location, fmt::format("{} is missing", property.name));
       }
     }
+    if (known < in.size()) noteUnknown(in, properties, location);
     return out;
   }
 
- private:
+  // ---- What is not read ----
+
+  void noteExtension(const Location& location) {
+    ExtensionUse& use = result_.extensions[std::string(location.key)];
+    if (use.count++ == 0) use.location = location.pointer();
+  }
+
+  // Equal properties of objects with the same table are counted together.
+  void noteUnread(UnreadProperty::Cause cause, std::span<const Property> properties, const Location& location,
+                  std::string_view reason) {
+    if (cause == UnreadProperty::Cause::noEffect && reason.empty()) return;
+    const auto [entry, isNew] =
+        unread_.try_emplace(std::pair(properties.data(), std::string(location.key)), result_.unread.size());
+    if (isNew)
+      result_.unread.push_back({cause, std::string(location.key), location.pointer(), std::string(reason)});
+    else
+      ++result_.unread[entry->second].count;
+  }
+
+  void noteUnknown(const json& in, std::span<const Property> properties, const Location& location) {
+    using Cause = UnreadProperty::Cause;
+    for (const auto& [key, element] : in.items()) {
+      if (std::ranges::find(properties, std::string_view(key), &Property::name) != properties.end()) continue;
+      const Location inside = location[std::string_view(key)];
+      if (key == "extras")
+        noteUnread(Cause::noEffect, properties, inside, "application-specific data");
+      else if (location.key == "extensions")
+        noteUnread(Cause::extension, properties, inside, {});
+      else if (key == "extensions" && element.is_object())
+        for (const auto& [name, value] : element.items())
+          noteUnread(Cause::extension, properties, inside[std::string_view(name)], {});
+      else
+        noteUnread(Cause::unknown, properties, inside, {});
+    }
+  }
+
+  // ---- Values ----
+
   [[noreturn]] void fail(const Location& location, std::string_view problem) const {
     throw FileError(file_, printable(location.pointer()), printable(problem));
   }
 
-  json value(json& in, const Property& property, const Location& location) const {
+  json value(json& in, const Property& property, const Location& location) {
     switch (property.kind) {
       case PropertyKind::boolean:
         if (!in.is_boolean()) fail(location, "must be true or false");
@@ -378,6 +469,8 @@ class Checker {
       case PropertyKind::indices:
       case PropertyKind::indexMaps:
       case PropertyKind::objects: return array(in, property, location);
+      case PropertyKind::any: return std::move(in);
+      case PropertyKind::unread: break;
     }
     return {};
   }
@@ -449,7 +542,7 @@ class Checker {
     return out;
   }
 
-  json array(json& in, const Property& property, const Location& location) const {
+  json array(json& in, const Property& property, const Location& location) {
     if (!in.is_array()) fail(location, "must be an array");
     json out = json::array();
     for (std::size_t i = 0; i < in.size(); ++i) {
@@ -475,12 +568,12 @@ class Checker {
   const std::filesystem::path& file_;
   json& root_;
   mutable std::map<const Collection*, std::size_t> sizes_;
+  CheckedSchema result_;
+  std::map<std::pair<const Property*, std::string>, std::size_t> unread_;  // index in result_.unread
 };
 
 }  // namespace
 
-json checkSchema(const std::filesystem::path& file, json& root) {
-  return Checker(file, root).object(root, kRoot, Location{});
-}
+CheckedSchema checkSchema(const std::filesystem::path& file, json& root) { return Checker(file, root).check(); }
 
 }  // namespace quintet::scene

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "io/codec.h"
 #include "scene/gltf/extensions.h"
+#include "scene/model/material_textures.h"
 
 namespace quintet::scene {
 namespace {
@@ -31,8 +32,7 @@ Sampler readSampler(const Document& document, int index) {
 }
 
 io::Image decode(std::span<const std::byte> bytes, const std::string& location, MemoryBudget& budget) {
-  const io::ImageInfo info = io::probeImage(bytes, location);
-  budget.take(std::size_t{info.width} * info.height * info.channels * io::bytesPerSample(info.type));
+  budget.take(io::probeImage(bytes, location).byteCount());
   return io::decodeImage(bytes, location);
 }
 
@@ -118,10 +118,11 @@ int TextureTable::use(int texture, const std::string& location, std::optional<fl
   const tinygltf::Value* webp = findExtension(from.extensions, kTextureWebp);
   const int image = webp ? indexOf(*webp, "source") : from.source;
   if (image == kNone) {
-    report_.ignored.push_back(
-        fmt::format("{}: texture {} has no image in a supported format (PNG, JPEG, WebP)", location, texture));
+    problems_.emplace(texture, "no image in a supported format (PNG, JPEG, WebP)");
+    report_.ignored.push_back(fmt::format("{}: texture {} has {}", location, texture, problems_.at(texture)));
     return kNone;
   }
+  used_.insert(texture);
   const auto index = static_cast<int>(textures_.size());
   textures_.push_back({from.name, useImage({image, glossiness}), readSampler(document_, from.sampler)});
   indexOfTexture_.emplace(ImageUse{texture, glossiness}, index);
@@ -147,15 +148,39 @@ bool describeImages(const Document& document, std::span<const ImageUse> uses, st
   return true;
 }
 
-void decodeImages(const Document& document, std::span<const ImageUse> uses, std::vector<NamedImage>& images,
-                  MemoryBudget& budget) {
+std::vector<ImageFailure> decodeImages(const Document& document, std::span<const ImageUse> uses,
+                                       std::vector<NamedImage>& images, MemoryBudget& budget) {
   images.resize(uses.size());
+  std::vector<ImageFailure> failures(uses.size());
   const std::vector<std::span<const std::byte>> unshared = unsharedBytes(document, uses);
   parallelFor(uses.size(), [&](std::size_t i) {
-    images[i] = loadImage(document, static_cast<std::size_t>(uses[i].image), budget);
-    if (uses[i].glossiness) toRoughness(images[i].image, *uses[i].glossiness);
+    try {
+      images[i] = loadImage(document, static_cast<std::size_t>(uses[i].image), budget);
+      if (uses[i].glossiness) toRoughness(images[i].image, *uses[i].glossiness);
+    } catch (const FileError& error) {
+      images[i] = {};
+      failures[i] = {i, error.location(), error.problem(),
+                     error.remedy() == Remedy::none ? Remedy::omitTextures : error.remedy()};
+    }
     releasePages(unshared[i]);
   });
+  std::erase_if(failures, [](const ImageFailure& failure) { return failure.problem.empty(); });
+  return failures;
+}
+
+void removeTextures(Scene& scene, int image, std::optional<float> glossiness) {
+  for (Material& material : scene.materials)
+    for (const MaterialTexture& texture : kMaterialTextures) {
+      TextureUse& use = material.*texture.use;
+      if (!use.used() || scene.textures[static_cast<std::size_t>(use.texture)].image != image) continue;
+      use = {};
+      if (texture.use == &Material::metallicRoughnessTexture && glossiness) material.roughness = 1.0f - *glossiness;
+    }
+  NamedImage& removed = scene.images[static_cast<std::size_t>(image)];
+  removed.name = "missing";
+  removed.image = {};
+  removed.image.width = removed.image.height = removed.image.channels = 1;
+  removed.image.data.assign(1, std::byte{255});
 }
 
 }  // namespace quintet::scene

@@ -6,6 +6,7 @@
 #include <compare>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,6 +38,10 @@ class TextureTable {
   // Texture::image is an index into imageUses().
   const std::vector<Texture>& textures() const { return textures_; }
   const std::vector<ImageUse>& imageUses() const { return imageUses_; }
+  // Whether a material uses the texture of the file.
+  bool isUsed(int texture) const { return used_.contains(texture); }
+  // Textures of the file that materials use, but that have no image in a supported format, with the reason.
+  const std::map<int, std::string>& problems() const { return problems_; }
 
  private:
   int useImage(const ImageUse& use);
@@ -45,6 +50,8 @@ class TextureTable {
   Report& report_;
   std::vector<Texture> textures_;
   std::vector<ImageUse> imageUses_;
+  std::set<int> used_;  // textures of the file
+  std::map<int, std::string> problems_;
   std::map<ImageUse, int> indexOfTexture_;  // ImageUse::image is here the index of a texture in the file
   std::map<ImageUse, int> indexOfImage_;    // in imageUses_, plus 1
 };
@@ -53,9 +60,23 @@ class TextureTable {
 // has an invalid header; the images from that one on are then not described.
 bool describeImages(const Document&, std::span<const ImageUse> uses, std::vector<NamedImage>& images);
 
-// Decodes and converts the images. Returns the memory of each encoded image to the system once the image is decoded; the images of
-// the document must not be read afterwards. Throws FileError, MemoryError.
-void decodeImages(const Document&, std::span<const ImageUse> uses, std::vector<NamedImage>& images, MemoryBudget&);
+// An image that is missing or invalid.
+struct ImageFailure {
+  std::size_t use = 0;   // index of the use
+  std::string location;  // JSON pointer
+  std::string problem;   // one sentence without a period; empty if there is no failure
+  Remedy remedy = Remedy::omitTextures;
+};
+
+// Decodes and converts the images. Returns the failures, in the order of the uses; their images are empty. Returns the
+// memory of each encoded image to the system once the image is decoded; the images of the document must not be read
+// afterwards. Throws MemoryError.
+std::vector<ImageFailure> decodeImages(const Document&, std::span<const ImageUse> uses, std::vector<NamedImage>& images,
+                                       MemoryBudget&);
+
+// Materials no longer use the textures with this image of the scene, which becomes one white pixel. `glossiness`:
+// ImageUse::glossiness of the image.
+void removeTextures(Scene&, int image, std::optional<float> glossiness = {});
 
 }  // namespace quintet::scene
 #endif

@@ -7,13 +7,13 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/math.h"
 #include "io/image.h"
 #include "scene/model/procedural.h"
+#include "scene/model/report.h"
 
 namespace quintet::scene {
 
@@ -177,7 +177,7 @@ struct Light {
   vec3 direction{0, 0, -1};           // world space, unit, in which the light travels
   float innerConeAngle = 0.0f;        // radians from the axis, 0 to outerConeAngle; of spot lights
   float outerConeAngle = kPi / 4.0f;  // radians, at most π/2
-  float range = std::numeric_limits<float>::infinity();  // meters; not used by a path tracer
+  float range = std::numeric_limits<float>::infinity();  // meters, > 0; point, spot: no light arrives beyond it
 };
 
 // Equirectangular radiance. Texture coordinates of direction d: u = atan2(d.z, d.x)/2π + 0.5, v = acos(d.y)/π from the
@@ -194,19 +194,6 @@ struct Environment {
 struct NamedImage {
   std::string name;  // path, or "scene.glb: /images/3"
   io::Image image;
-};
-
-// Report of an importer, printed by `quintet info`.
-struct Report {
-  std::vector<std::string> extensionsUsed;     // used by the file and supported
-  std::vector<std::string> extensionsIgnored;  // used by the file and not supported
-  std::vector<std::string> ignored;            // "/meshes/0/primitives/2: mode LINES has no surface"
-  std::size_t ignoredAnimations = 0;           // of glTF files; also listed in `ignored`
-  std::vector<std::string> repaired;           // "/meshes/0/primitives/0: 3 triangles with non-finite vertices dropped"
-  std::string generator;                       // asset.generator
-  std::string copyright;                       // asset.copyright
-  std::vector<std::string> variants;           // names of the material variants of a glTF file
-  std::vector<std::filesystem::path> files;    // all files read: the scene file, glTF files, their buffers and images
 };
 
 // Wall-clock time of the steps of an importer, in seconds; 0 if the importer does not measure it.

@@ -219,6 +219,7 @@ void validateLight(const Scene& scene, std::size_t index) {
   const Light& light = scene.lights[index];
   if (!quintet::isFinite(light.intensity) || !quintet::isFinite(light.position) || !quintet::isFinite(light.direction))
     fail("{}: not finite", objectName("lights", index, light.name));
+  if (!(light.range > 0.0f)) fail("{}: the range must be above 0", objectName("lights", index, light.name));
   constexpr float kRounding = 1e-6f;
   const float inner = light.innerConeAngle, outer = light.outerConeAngle;
   if (light.type == LightType::spot && !(inner >= 0.0f && inner <= outer && outer <= kPi / 2.0f + kRounding))

@@ -5,10 +5,12 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/toml_reader.h"
+#include "scene/load_options.h"
 #include "scene/memory_budget.h"
 #include "scene/model/scene.h"
 
@@ -31,12 +33,18 @@ struct NamedTree {
 };
 
 struct SceneTomlContext {
-  SceneTomlContext(const std::filesystem::path& sceneFile, std::size_t memoryLimit)
-      : file(sceneFile), folder(sceneFile.parent_path()), budget(sceneFile, memoryLimit) {}
+  SceneTomlContext(const std::filesystem::path& sceneFile, const LoadOptions& loadOptions)
+      : file(sceneFile),
+        folder(sceneFile.parent_path()),
+        options(loadOptions),
+        sharedBudget(std::make_shared<MemoryBudget>(sceneFile, loadOptions.maxMemory)),
+        budget(*sharedBudget) {}
 
   const std::filesystem::path file;
   const std::filesystem::path folder;  // paths in the file are relative to it
-  MemoryBudget budget;
+  const LoadOptions options;
+  const std::shared_ptr<MemoryBudget> sharedBudget;  // also of the glTF files
+  MemoryBudget& budget;
   Scene scene;
   std::map<std::string, int> materials;           // "name" or "file/name"
   std::map<std::string, InstanceTarget> targets;  // "name" or "file/mesh"

@@ -49,7 +49,13 @@ void appendReport(Report& report, const Report& part, const std::string& name) {
   };
   for (const std::string& extension : part.extensionsUsed) addNew(report.extensionsUsed, extension);
   for (const std::string& extension : part.extensionsIgnored) addNew(report.extensionsIgnored, extension);
+  for (Feature feature : part.features) {
+    feature.location = name + ": " + feature.location;
+    report.features.push_back(std::move(feature));
+  }
   for (const std::string& line : part.ignored) report.ignored.push_back(name + ": " + line);
+  for (const MetadataEntry& entry : part.metadata)
+    report.metadata.push_back({name + ": " + entry.object, entry.name, entry.value});
   report.ignoredAnimations += part.ignoredAnimations;
   for (const std::string& variant : part.variants) report.variants.push_back(name + "/" + variant);
   for (const std::string& line : part.repaired) report.repaired.push_back(name + ": " + line);
@@ -75,12 +81,13 @@ void addNames(SceneTomlContext& context, const TomlValue& at, const std::string&
   }
 }
 
-Scene loadPart(TomlReader& reader, const std::filesystem::path& path, const TomlValue* variant) {
+// `at`: what the user named, for errors about a variant or a scene that the file does not have.
+Scene loadPart(SceneTomlContext& context, TomlReader& reader, const std::filesystem::path& path,
+               const LoadOptions& options, const TomlValue& at) {
   try {
-    return loadGltf(path, {.variant = variant ? reader.toText(*variant, "variant") : std::string()});
-  } catch (const UsageError& error) {  // the file has no such variant
-    if (!variant) throw;
-    reader.fail(*variant, error.what());
+    return beginLoadingGltf(path, options, context.sharedBudget).finish();
+  } catch (const UsageError& error) {
+    reader.fail(at, error.what());
   }
 }
 
@@ -96,10 +103,14 @@ void readFile(SceneTomlContext& context, const TomlValue& table) {
   const bool lights = reader.boolean("lights", true), cameras = reader.boolean("cameras", true);
   InstanceTarget target;
   target.placedByDefault = reader.boolean("place", true);
-  const TomlValue* variant = reader.find("variant");
+  LoadOptions options = context.options;
+  const TomlValue *const variant = reader.find("variant"), *const sceneName = reader.find("scene");
+  options.variant = variant ? reader.toText(*variant, "variant") : std::string();
+  options.scene = sceneName ? reader.toText(*sceneName, "scene") : std::string();
   reader.rejectUnknownKeys();
 
-  Scene part = loadPart(reader, path, variant);
+  const TomlValue* const named = variant && sceneName ? &pathValue : variant ? variant : sceneName;
+  Scene part = loadPart(context, reader, path, options, named ? *named : pathValue);
   std::ranges::copy(part.report.files, std::back_inserter(context.scene.report.files));
   Scene& scene = context.scene;
   const std::size_t firstMaterial = scene.materials.size(), firstMesh = scene.meshes.size();

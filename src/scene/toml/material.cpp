@@ -2,6 +2,8 @@
 // [[material]]: all members of scene::Material, with textures. The keys are the names of the members in snake_case.
 #include <fmt/format.h>
 
+#include "base/error.h"
+#include "base/file.h"
 #include "io/codec.h"
 #include "scene/toml/context.h"
 
@@ -22,7 +24,8 @@ class TextureReader {
     if (!value) return fallback;
     TextureUse use;
     if (value->kind == TomlValue::Kind::text) {
-      use.texture = texture(loadImage(*value, value->text), {});
+      const int image = loadImage(*value, value->text);
+      if (image != kNone) use.texture = texture(image, {});
       return use;
     }
     TomlReader reader(material.toTable(*value, key), fmt::format("'{}' of {}", key, material.what()), context_.file);
@@ -39,17 +42,33 @@ class TextureReader {
     sampler.wrapV = static_cast<Wrap>(reader.choice("wrap_v", wraps, wrap));
     sampler.filter = static_cast<Filter>(reader.choice("filter", {"linear", "nearest"}, 0));
     reader.rejectUnknownKeys();
+    if (image == kNone) return {};
     use.texture = texture(image, sampler);
     return use;
   }
 
  private:
+  // kNone, with a line in the report, for an image that is missing or invalid if the options allow it.
   int loadImage(const TomlValue& at, const std::string& path) {
+    try {
+      return readImage(at, path);
+    } catch (const FileError& error) {
+      if (context_.options.missingTextures == MissingTextures::error || context_.options.strict) throw;
+      const std::string inside =
+          error.file() == context_.file ? error.problem() : fmt::format("{}: {}", path, error.problem());
+      context_.scene.report.ignored.push_back(
+          fmt::format("line {}: {}; rendered without the texture", at.line, inside));
+      return kNone;
+    }
+  }
+
+  int readImage(const TomlValue& at, const std::string& path) {
     const std::filesystem::path file = context_.resolvePath(at, path).lexically_normal();
     const auto [entry, isNew] = images_.emplace(file.string(), static_cast<int>(context_.scene.images.size()));
     if (isNew) {
-      io::Image image = io::readImage(file);
-      context_.budget.take(image.data.size());
+      const std::vector<std::byte> bytes = readFile(file);
+      context_.budget.take(bytes.size() + io::probeImage(bytes, file.string()).byteCount());
+      io::Image image = io::decodeImage(bytes, file.string());
       context_.scene.report.files.push_back(file);
       context_.scene.images.push_back({file.string(), std::move(image)});
     }

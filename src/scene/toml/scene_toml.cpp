@@ -1,18 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/toml/scene_toml.h"
 
+#include <fmt/format.h>
+
 #include "base/error.h"
 #include "base/file.h"
-#include "base/text.h"
 #include "scene/model/validate.h"
 #include "scene/toml/context.h"
 
 namespace quintet::scene {
 namespace {
 
-Scene read(std::string_view text, const std::filesystem::path& file, const SceneTomlOptions& options) {
+void rejectGltfOptions(const std::filesystem::path& file, const LoadOptions& options) {
+  const auto reject = [&](const std::string& value, const char* what, const char* key) {
+    if (!value.empty())
+      throw UsageError(
+          fmt::format("{}: no {} '{}': only glTF files have {}s; a scene file selects them by the key "
+                      "'{}' of [[file]]",
+                      file.string(), what, value, what, key));
+  };
+  reject(options.variant, "material variant", "variant");
+  reject(options.scene, "scene", "scene");
+}
+
+Scene read(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
+  rejectGltfOptions(file, options);
   const TomlValue document = parseToml(text, file);
-  SceneTomlContext context(file, options.memoryLimit);
+  SceneTomlContext context(file, options);
   context.scene.name = file.filename().string();
   context.scene.report.files.push_back(file);
   TomlReader root(document, "the scene", context.file);
@@ -23,7 +37,8 @@ Scene read(std::string_view text, const std::filesystem::path& file, const Scene
   readInstances(context, root);
   readView(context, root);
   root.rejectUnknownKeys();
-  for (std::string& line : context.scene.report.ignored) line = printable(line);
+  makePrintable(context.scene.report);
+  if (options.strict) requireExact(file, context.scene.report);
   // The readers have checked everything, with line numbers. This finds errors that they miss.
   try {
     validate(context.scene);
@@ -35,9 +50,11 @@ Scene read(std::string_view text, const std::filesystem::path& file, const Scene
 
 }  // namespace
 
-Scene loadSceneToml(const std::filesystem::path& file) { return parseSceneToml(readTextFile(file), file); }
+Scene loadSceneToml(const std::filesystem::path& file, const LoadOptions& options) {
+  return parseSceneToml(readTextFile(file), file, options);
+}
 
-Scene parseSceneToml(std::string_view text, const std::filesystem::path& file, const SceneTomlOptions& options) {
+Scene parseSceneToml(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
   return withMemoryErrors(file, [&] { return read(text, file, options); });
 }
 

@@ -7,19 +7,17 @@
 #include <filesystem>
 #include <string_view>
 
+#include "scene/load_options.h"
 #include "scene/model/scene.h"
 
 namespace quintet::scene {
 
-struct SceneTomlOptions {
-  std::size_t memoryLimit = 0;  // bytes that the scene can request; 0 means the machine's memory
-};
-
-// Throws FileError "scene.toml: line 12: problem", FileError of a file that the scene names, MemoryError.
-Scene loadSceneToml(const std::filesystem::path& file);
+// Throws FileError "scene.toml: line 12: problem", FileError of a file that the scene names, MemoryError. UsageError for
+// options.scene and options.variant, which are keys of [[file]].
+Scene loadSceneToml(const std::filesystem::path& file, const LoadOptions& options = {});
 
 // Reads a scene from text. `file` is its name in messages; paths are relative to the folder of `file`.
-Scene parseSceneToml(std::string_view text, const std::filesystem::path& file, const SceneTomlOptions& options = {});
+Scene parseSceneToml(std::string_view text, const std::filesystem::path& file, const LoadOptions& options = {});
 
 }  // namespace quintet::scene
 #endif

@@ -5,8 +5,11 @@
 #include <gmock/gmock.h>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "scene/error_matcher.h"
+#include "scene/gltf/gltf.h"
 #include "scene/gltf_builder.h"
+#include "scene/toml/scene_toml.h"
 
 namespace quintet::test {
 namespace {
@@ -20,6 +23,7 @@ TEST(MemoryBudget, ThrowsAboveItsLimit) {
     FAIL();
   } catch (const MemoryError& error) {
     EXPECT_THAT(error.what(), IsErrorAt("scene.glb", "3.0 GiB"));
+    EXPECT_EQ(error.remedy(), Remedy::raiseMemoryLimit);
   }
   EXPECT_THROW(scene::MemoryBudget("x", 10).take(~std::size_t{0}), MemoryError);
 }
@@ -34,6 +38,66 @@ TEST(MemoryBudget, RejectsExcessiveAccessors) {
        builder.add("accessors", {{"componentType", kUnsignedInt}, {"count", 4294967295u}, {"type", "SCALAR"}})}};
   builder.root["meshes"][0]["primitives"] = Json::array_t(1000, primitive);
   EXPECT_THROW(builder.load(), Error);
+}
+
+std::string errorWithin(const GltfBuilder& builder, std::size_t bytes) {
+  const TempFolder folder;
+  writeFile(folder / "a.glb", builder.glb());
+  try {
+    scene::loadGltf(folder / "a.glb", {.maxMemory = bytes});
+  } catch (const MemoryError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// Each of these files states a size that its bytes cannot fill. The size counts before it is allocated.
+TEST(MemoryBudget, CountsStatedSizes) {
+  constexpr std::size_t kLimit = std::size_t{1} << 20;
+  GltfBuilder plain;
+  plain.addTriangle();
+  EXPECT_EQ(errorWithin(plain, kLimit), "");
+
+  GltfBuilder instances = plain;
+  const int zeros = instances.add("accessors", {{"componentType", kFloat}, {"count", 1 << 20}, {"type", "VEC3"}});
+  instances.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = zeros;
+
+  GltfBuilder targets = plain;
+  const int unbacked = targets.add("accessors", {{"componentType", kFloat}, {"count", 1 << 20}, {"type", "VEC3"}});
+  targets.primitive()["targets"] = {{{"POSITION", unbacked}}};
+
+  GltfBuilder meshopt = plain;
+  const int view = meshopt.addView(std::vector<std::uint8_t>(1 << 14, 0xA0));
+  meshopt.root["bufferViews"][1]["byteLength"] = 1 << 21;
+  meshopt.root["bufferViews"][1]["extensions"]["EXT_meshopt_compression"] = {
+      {"buffer", 0}, {"byteLength", 1 << 14}, {"byteStride", 4}, {"count", 1 << 19}, {"mode", "ATTRIBUTES"}};
+  EXPECT_EQ(view, 1);
+
+  GltfBuilder image = plain;
+  const std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4096 +X 4096\n";
+  image.add("images",
+            {{"bufferView", image.addView(std::vector<char>(hdr.begin(), hdr.end()))}, {"mimeType", "image/png"}});
+  image.add("textures", {{"source", 0}});
+  image.add("materials", {{"emissiveTexture", {{"index", 0}}}});
+
+  GltfBuilder json = plain;
+  json.root["extras"] = std::vector<int>(40000, 0);
+
+  for (const GltfBuilder* builder : {&instances, &targets, &meshopt, &image, &json})
+    EXPECT_THAT(errorWithin(*builder, kLimit), testing::HasSubstr("1.0 MiB")) << builder->json().substr(0, 300);
+}
+
+// All files of a scene share one limit.
+TEST(MemoryBudget, IsSharedByTheFilesOfAScene) {
+  GltfBuilder builder;
+  builder.addTriangle();
+  const TempFolder folder;
+  writeFile(folder / "a.glb", builder.glb());
+  std::string text;
+  for (int i = 0; i < 20; ++i) text += "[[file]]\nname = 'f" + std::to_string(i) + "'\npath = 'a.glb'\n";
+  const std::size_t enough = 20 * 32 * builder.glb().size();
+  EXPECT_NO_THROW(scene::parseSceneToml(text, folder / "s.scene.toml", {.maxMemory = enough}));
+  EXPECT_THROW(scene::parseSceneToml(text, folder / "s.scene.toml", {.maxMemory = enough / 8}), MemoryError);
 }
 
 TEST(MemoryBudget, LimitsTheNumberOfInstances) {

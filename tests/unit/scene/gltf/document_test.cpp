@@ -88,11 +88,14 @@ TEST(GltfContainer, ReportsJsonErrorsByLine) {
   EXPECT_THAT(errorOfText("{\"a\": \"\xFF\"}"), HasSubstr("JSON"));
 }
 
-TEST(GltfContainer, SurvivesDeepNesting) {
-  const std::string open(200000, '['), close(200000, ']');
-  const std::string text = "{\"asset\": {\"version\": \"2.0\"}, \"extras\": " + open + close + "}";
-  EXPECT_EQ(errorOfText(text), "");
-  EXPECT_THAT(errorOfText("{\"asset\": " + open + close + "}"), IsErrorAt("/asset", "object"));
+TEST(GltfContainer, LimitsNesting) {
+  const auto nested = [](std::size_t depth) {
+    return "{\"asset\": {\"version\": \"2.0\"}, \"extras\": [\"[[\\\"[\",\n" + std::string(depth, '[') +
+           std::string(depth, ']') + "]}";
+  };
+  EXPECT_EQ(errorOfText(nested(254)), "");
+  EXPECT_THAT(errorOfText(nested(255)), IsErrorAt("line 2, column 255", "256 nested"));
+  EXPECT_THAT(errorOfText(nested(200000)), IsErrorAt("line 2, column 255", "256 nested"));
 }
 
 TEST(GltfContainer, ChecksTheVersion) {
@@ -202,15 +205,54 @@ TEST(GltfUri, ReadsExternalFiles) {
   };
   EXPECT_EQ(errorWith("my%20data.bin"), "");
   EXPECT_EQ(errorWith("my data.bin"), "");
-  EXPECT_EQ(errorWith("../up.bin"), "");
+  EXPECT_EQ(errorWith("../models/my data.bin"), "");
+  EXPECT_EQ(errorWith("./a/../my data.bin"), "");
+  EXPECT_THAT(errorWith("../up.bin"), IsErrorAt("/buffers/0/uri", "outside of the folder"));
+  EXPECT_THAT(errorWith("%2e%2e/up.bin"), IsErrorAt("/buffers/0/uri", "outside of the folder"));
+  EXPECT_THAT(errorWith("../models2/up.bin"), IsErrorAt("/buffers/0/uri", "outside of the folder"));
   EXPECT_THAT(errorWith("short.bin"), IsErrorAt("/buffers/0/byteLength", "36 bytes"));
   EXPECT_THAT(errorWith("none.bin"), IsErrorAt("/buffers/0/uri", "none.bin"));
-  EXPECT_THAT(errorWith("../models"), IsErrorAt("/buffers/0/uri", "file"));
+  EXPECT_THAT(errorWith("."), IsErrorAt("/buffers/0/uri", "file"));
   EXPECT_THAT(errorWith((folder / "up.bin").string()), IsErrorAt("/buffers/0/uri", "absolute"));
   EXPECT_THAT(errorWith("http://example.com/a.bin"), IsErrorAt("/buffers/0/uri", "data URI"));
   EXPECT_THAT(errorWith("file:///a.bin"), IsErrorAt("/buffers/0/uri", "data URI"));
   EXPECT_THAT(errorWith("up%00.bin"), IsErrorAt("/buffers/0/uri", "zero byte"));
   EXPECT_THAT(errorWith(""), IsErrorAt("/buffers/0/uri", "empty"));
+}
+
+TEST(GltfUri, ReadsFilesOutsideOfTheFolderOnRequest) {
+  GltfBuilder builder;
+  builder.addTriangle();
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "models");
+  writeFile(folder / "up.bin", builder.binary);
+  Json json = Json::parse(builder.gltf());
+  json["buffers"][0]["uri"] = "../up.bin";
+  writeFile(folder / "models/scene.gltf", json.dump());
+  try {
+    scene::loadGltf(folder / "models/scene.gltf");
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.remedy(), Remedy::allowExternal);
+  }
+  EXPECT_EQ(scene::loadGltf(folder / "models/scene.gltf", {.allowExternal = true}).meshes.size(), 1u);
+}
+
+TEST(GltfUri, ReadsUnicodeNamesAndNamesWithPercentSigns) {
+  GltfBuilder builder;
+  builder.addTriangle();
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "Größe 模型");
+  writeFile(folder / "Größe 模型/é+&.bin", builder.binary);
+  writeFile(folder / "50%25.bin", builder.binary);
+  writeFile(folder / "100%.bin", builder.binary);
+  Json json = Json::parse(builder.gltf());
+  for (const char* uri : {"Größe 模型/é+&.bin", "Gr%C3%B6%C3%9Fe%20%E6%A8%A1%E5%9E%8B/%c3%a9+&.bin",
+                          "./Größe%20模型/%C3%A9%2B%26.bin", "50%25.bin", "50%2525.bin", "100%.bin", "100%25.bin"}) {
+    json["buffers"][0]["uri"] = uri;
+    writeFile(folder / "scene.gltf", json.dump());
+    EXPECT_EQ(scene::loadGltf(folder / "scene.gltf").instances.size(), 1u) << uri;
+  }
 }
 
 TEST(GltfUri, ReportsAMissingSceneFile) {

@@ -12,6 +12,7 @@
 #include "scene/gltf/gltf.h"
 #include "scene/gltf_builder.h"
 #include "scene/model/content_hash.h"
+#include "scene/model/material_textures.h"
 #include "scene/model/validate.h"
 
 namespace quintet::test {
@@ -281,6 +282,59 @@ TEST(GltfTexture, ReadsTexturesOfExtensions) {
   EXPECT_EQ(m.clearcoatNormalScale, 0.5f);
 }
 
+// The JSON pointer of each texture inside of a material.
+struct TextureCase {
+  const char* pointer;
+  scene::TextureUse Material::*use;
+};
+constexpr TextureCase kTextureCases[] = {
+    {"/pbrMetallicRoughness/baseColorTexture", &Material::baseColorTexture},
+    {"/pbrMetallicRoughness/metallicRoughnessTexture", &Material::metallicRoughnessTexture},
+    {"/normalTexture", &Material::normalTexture},
+    {"/occlusionTexture", &Material::occlusionTexture},
+    {"/emissiveTexture", &Material::emissiveTexture},
+    {"/extensions/KHR_materials_transmission/transmissionTexture", &Material::transmissionTexture},
+    {"/extensions/KHR_materials_specular/specularTexture", &Material::specularTexture},
+    {"/extensions/KHR_materials_specular/specularColorTexture", &Material::specularColorTexture},
+    {"/extensions/KHR_materials_clearcoat/clearcoatTexture", &Material::clearcoatTexture},
+    {"/extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture", &Material::clearcoatRoughnessTexture},
+    {"/extensions/KHR_materials_clearcoat/clearcoatNormalTexture", &Material::clearcoatNormalTexture},
+    {"/extensions/KHR_materials_sheen/sheenColorTexture", &Material::sheenColorTexture},
+    {"/extensions/KHR_materials_sheen/sheenRoughnessTexture", &Material::sheenRoughnessTexture},
+    {"/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture",
+     &Material::diffuseTransmissionTexture},
+    {"/extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture",
+     &Material::diffuseTransmissionColorTexture},
+    {"/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture", &Material::baseColorTexture},
+    {"/extensions/KHR_materials_pbrSpecularGlossiness/specularGlossinessTexture", &Material::specularColorTexture},
+};
+
+// Each texture has its own set of texture coordinates and its own transform.
+TEST(GltfTexture, ReadsSetsAndTransformsOfEveryTexture) {
+  for (const scene::MaterialTexture& texture : scene::kMaterialTextures)
+    EXPECT_TRUE(std::ranges::any_of(kTextureCases, [&](const TextureCase& c) { return c.use == texture.use; }))
+        << "a texture of a material is not in kTextureCases";
+  for (const TextureCase& c : kTextureCases) {
+    TextureBuilder builder;
+    Json material;
+    material[Json::json_pointer(c.pointer)] = {
+        {"index", 0},
+        {"texCoord", 0},
+        {"extensions",
+         {{"KHR_texture_transform",
+           {{"offset", {0.5, 0.25}}, {"rotation", 0.75}, {"scale", {2, 3}}, {"texCoord", 1}}}}}};
+    builder.add("materials", material);
+    const scene::Scene scene = builder.load();
+    const scene::TextureUse& use = scene.materials[0].*c.use;
+    EXPECT_TRUE(use.used()) << c.pointer;
+    EXPECT_EQ(use.uvSet, 1) << c.pointer;
+    EXPECT_EQ(use.offset, vec2(0.5f, 0.25f)) << c.pointer;
+    EXPECT_EQ(use.rotation, 0.75f) << c.pointer;
+    EXPECT_EQ(use.scale, vec2(2, 3)) << c.pointer;
+    EXPECT_TRUE(scene.report.ignored.empty()) << c.pointer;
+  }
+}
+
 TEST(GltfTexture, ReadsTexturesOfSheen) {
   TextureBuilder builder;
   builder.add("materials",
@@ -396,7 +450,7 @@ TEST(GltfTexture, IgnoresTexturesWithoutASupportedImage) {
   builder.root["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
   const scene::Scene scene = builder.load();
   EXPECT_FALSE(scene.materials[0].baseColorTexture.used());
-  EXPECT_THAT(scene.report.ignored, ElementsAre(IsErrorAt("/materials/0/baseColorTexture", "texture 0")));
+  EXPECT_THAT(scene.report.ignored, testing::Contains(IsErrorAt("/materials/0/baseColorTexture", "texture 0")));
 }
 
 TEST(GltfImage, ReportsInvalidImagesAsErrorsOfTheScene) {

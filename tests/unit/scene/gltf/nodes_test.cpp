@@ -65,10 +65,64 @@ TEST(GltfNodes, SelectsTheNodesOfTheScene) {
 
   const TempFolder folder;
   writeFile(folder / "scene.glb", builder.glb());
-  EXPECT_EQ(names(scene::loadGltf(folder / "scene.glb", {.scene = 0})), "a");
-  EXPECT_THROW(scene::loadGltf(folder / "scene.glb", {.scene = 2}), UsageError);
+  EXPECT_EQ(names(scene::loadGltf(folder / "scene.glb", {.scene = "0"})), "a");
+  EXPECT_THROW(scene::loadGltf(folder / "scene.glb", {.scene = "2"}), UsageError);
   builder.root["scene"] = 2;
   EXPECT_THAT(errorOf(builder), IsErrorAt("/scene", "scene 2"));
+}
+
+TEST(GltfNodes, SelectsAScene) {
+  GltfBuilder builder;
+  builder.addTriangle();
+  builder.add("nodes", {{"mesh", 0}});
+  builder.add("nodes", {{"mesh", 0}});
+  builder.root["scenes"] = {{{"nodes", {0}}, {"name", "one"}}, {{"nodes", {1, 2}}, {"name", "0"}}};
+  const TempFolder folder;
+  writeFile(folder / "scene.glb", builder.glb());
+  const auto count = [&](const std::string& scene) {
+    return scene::loadGltf(folder / "scene.glb", {.scene = scene}).instances.size();
+  };
+  EXPECT_EQ(count("one"), 1u);
+  EXPECT_EQ(count("0"), 2u);  // a name has precedence over an index
+  EXPECT_EQ(count("1"), 2u);
+  for (const char* name : {"two", "2", "-1", "1x"})
+    EXPECT_THAT([&] { count(name); }, testing::ThrowsMessage<UsageError>(
+                                          testing::AllOf(testing::HasSubstr("scene.glb"), testing::HasSubstr(name),
+                                                         testing::HasSubstr("2 scenes: one, 0"))));
+}
+
+// A node is visible if it and all its ancestors are (KHR_node_visibility).
+TEST(GltfNodes, HidesNodesAndTheirDescendants) {
+  GltfBuilder builder;
+  builder.addTriangle();
+  builder.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  builder.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
+  const auto visibility = [](bool visible) { return Json{{"KHR_node_visibility", {{"visible", visible}}}}; };
+  builder.add("nodes", {{"mesh", 0}, {"camera", 0}, {"extensions", visibility(true)}});
+  builder.root["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = 0;
+  builder.add("nodes", {{"children", {1}}, {"extensions", visibility(false)}});
+  builder.add("nodes", {{"mesh", 0}, {"extensions", {{"KHR_node_visibility", Json::object()}}}});
+  scene::Scene scene = builder.load();
+  EXPECT_EQ(scene.instances.size(), 2u);
+  EXPECT_EQ(scene.lights.size(), 0u);
+  EXPECT_EQ(scene.cameras.size(), 1u);
+  EXPECT_TRUE(scene.report.isExact());
+  builder.root["nodes"][2]["extensions"] = visibility(true);
+  scene = builder.load();
+  EXPECT_EQ(scene.instances.size(), 3u);
+  EXPECT_EQ(scene.lights.size(), 1u);
+  builder.root["nodes"][2]["extensions"]["KHR_node_visibility"]["visible"] = 0;
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/nodes/2/extensions/KHR_node_visibility/visible", "true or false"));
+}
+
+// Each node is visited once, without recursion.
+TEST(GltfNodes, ReadsDeepHierarchies) {
+  GltfBuilder builder;
+  builder.addTriangle();
+  constexpr int kDepth = 20000;
+  for (int i = 0; i < kDepth; ++i)
+    builder.root["nodes"].push_back({{"children", {i}}, {"translation", {1.0 / kDepth, 0, 0}}});
+  EXPECT_THAT(worldPoint(builder.load(), vec3(0)), IsNear(vec3(1, 0, 0)));
 }
 
 TEST(GltfNodes, RejectsCyclesAndSecondParents) {
@@ -265,6 +319,14 @@ TEST(GltfLight, ReadsPointSpotAndDirectionalLights) {
   EXPECT_EQ(sun.type, scene::LightType::directional);
   EXPECT_EQ(sun.name, "sun");
   EXPECT_THAT(sun.direction, IsNear(vec3(-1, 0, 0)));
+}
+
+TEST(GltfLight, RepairsNegativeIntensities) {
+  const scene::Scene scene = LightBuilder({{"type", "point"}, {"color", {1, -1, 1}}, {"range", -2}}).load();
+  EXPECT_EQ(scene.lights.at(0).intensity, vec3(1, 0, 1));
+  EXPECT_TRUE(std::isinf(scene.lights.at(0).range));
+  EXPECT_THAT(scene.report.repaired, ElementsAre(IsErrorAt("/extensions/KHR_lights_punctual/lights/0", "negative"),
+                                                 IsErrorAt("/extensions/KHR_lights_punctual/lights/0", "range -2")));
 }
 
 TEST(GltfLight, RepairsSpotAngles) {

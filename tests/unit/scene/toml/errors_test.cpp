@@ -21,7 +21,7 @@ namespace {
 
 std::string errorOf(const std::string& text, std::size_t limit = 0) {
   try {
-    scene::validate(scene::parseSceneToml(text, "s.toml", {limit}));
+    scene::validate(scene::parseSceneToml(text, "s.toml", {.maxMemory = limit}));
   } catch (const Error& error) {
     return error.what();
   }
@@ -138,7 +138,7 @@ TEST(SceneTomlErrors, RejectsExcessiveSizesBeforeAllocation) {
                            "[[mesh]]\nshape = 'quad'\nsegments = 4096\n",
                            "[[mesh]]\nname = 'm'\nshape = 'quad'\n[[instance]]\nof = 'm'\nrandom = { count = 10000000, "
                            "box = [[0,0,0],[1,1,1]] }\n"})
-    EXPECT_THAT(errorOf(text, kLimit), testing::HasSubstr("0.1 GiB")) << text;
+    EXPECT_THAT(errorOf(text, kLimit), testing::HasSubstr("64.0 MiB")) << text;
   // Each tree contains the one before twice: 2^40 leaves.
   std::string text = "[[csg]]\nname = 't0'\ntree = { sphere = {} }\n";
   for (int i = 1; i <= 40; ++i)
@@ -238,7 +238,7 @@ TEST(SceneTomlFuzz, LoadsMutatedScenesOrReportsAnError) {
     for (int i = 0; i < 400; ++i) {
       try {
         const scene::Scene loadedScene =
-            scene::parseSceneToml(mutated(original, random), folder / name, {std::size_t{4} << 20});
+            scene::parseSceneToml(mutated(original, random), folder / name, {.maxMemory = std::size_t{4} << 20});
         scene::validate(loadedScene);
         useEverything(loadedScene);
         ++loaded;
