@@ -40,6 +40,15 @@ bool lightFromPoint(vec3 point, vec3 intensity, vec3 position, inout LightSample
   return squared > 0.0 && maxComponent(intensity) > 0.0;
 }
 
+// Attenuation of KHR_lights_punctual besides the inverse square law: 1 - (distance / range)^4, and 0 beyond the range.
+// `inverseRange` is 0 without a range.
+float rangeAttenuation(float distance, float inverseRange) {
+  if (inverseRange == 0.0) return 1.0;
+  const float ratio = distance * inverseRange;
+  const float squared = ratio * ratio;
+  return clamp(1.0 - squared * squared, 0.0, 1.0);
+}
+
 // Fills the sample of a light at infinity in direction wi.
 void lightFromInfinity(vec3 wi, vec3 radiance, bool delta, inout LightSample s) {
   s.wi = wi;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Spot light of KHR_lights_punctual: a point light with a smooth cone. It has full intensity within the inner angle and
-// none outside the outer angle.
+// none outside the outer angle and beyond the range.
 #ifndef QUINTET_LIGHTS_SPOT_GLSL
 #define QUINTET_LIGHTS_SPOT_GLSL
 
@@ -13,8 +13,10 @@ float spotAttenuation(LightData light, float cosine) {
 }
 
 bool sampleSpotLight(LightData light, vec3 position, inout LightSample s) {
-  const float cosine = dot(light.direction, normalize(position - light.position));
-  return lightFromPoint(light.position, light.intensity * spotAttenuation(light, cosine), position, s);
+  const vec3 d = position - light.position;
+  const float attenuation = spotAttenuation(light, dot(light.direction, normalize(d))) *
+                            rangeAttenuation(length(d), uintBitsToFloat(light.geometry));
+  return lightFromPoint(light.position, light.intensity * attenuation, position, s);
 }
 
 #endif

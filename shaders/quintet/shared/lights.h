@@ -9,7 +9,7 @@ QT_SHARED_BEGIN
 
 // Entry of a Walker/Vose alias table: entry i is kept with probability `keep`; otherwise `alias` is used.
 struct AliasEntry {
-  float keep;         // [0,1]
+  float keep;  // [0,1]
   uint alias;
   float probability;  // of sampling i; the sum over all entries is 1
 };
@@ -24,16 +24,17 @@ QT_CONSTANT kLightEnvironment = 4u;  // the environment; EnvironmentData has the
 QT_CONSTANT kLightSolid = 5u;        // emissive sphere, box, cylinder, cone or torus of an instance
 
 struct LightData {
-  vec3 intensity;   // point, spot: W/sr; directional: W/m²; others unused
+  vec3 intensity;  // point, spot: W/sr; directional: W/m²; others unused
   uint type;
-  vec3 position;    // world; point, spot
-  uint instance;    // triangle, solid
-  vec3 direction;   // world, unit, in which the light travels; spot, directional
-  uint geometry;    // triangle, solid: geometry index in the instance's mesh
-  float cosInner;   // spot
-  float cosOuter;   // spot
-  uint primitive;   // triangle, solid: original index in the geometry
-  uint leaf;        // its LightNode, or kNoLight if it is never sampled
+  vec3 position;   // world; point, spot
+  uint instance;   // triangle, solid
+  vec3 direction;  // world, unit, in which the light travels; spot, directional
+  uint
+      geometry;  // triangle, solid: geometry index in the instance's mesh; point, spot: the bits of the float 1 / range
+  float cosInner;  // spot
+  float cosOuter;  // spot
+  uint primitive;  // triangle, solid: original index in the geometry
+  uint leaf;       // its LightNode, or kNoLight if it is never sampled
 };
 QT_SHARED_SIZE(LightData, 64);
 
@@ -60,10 +61,10 @@ QT_SHARED_SIZE(LightNode, 32);
 // Equirectangular environment (scene::Environment): u = atan2(d.z, d.x)/2π + 0.5, v = acos(d.y)/π after
 // rotating d by -rotation about y. Radiance = scale · texel.
 struct EnvironmentData {
-  Address table;    // AliasEntry[width · height]: texels by luminance · solid angle; 0 means black or no environment
-  vec3 scale;       // multiplies the texture; the radiance itself when texture is kNoTexture
-  uint texture;     // bindless index or kNoTexture
-  uint width;       // texels of the table
+  Address table;  // AliasEntry[width · height]: texels by luminance · solid angle; 0 means black or no environment
+  vec3 scale;     // multiplies the texture; the radiance itself when texture is kNoTexture
+  uint texture;   // bindless index or kNoTexture
+  uint width;     // texels of the table
   uint height;
   float cosRotation;
   float sinRotation;

@@ -2,6 +2,7 @@
 #include "render/lights/light_table.h"
 
 #include <array>
+#include <bit>
 #include <numeric>
 
 #include "render/lights/alias_table.h"
@@ -79,6 +80,7 @@ struct LightTableBuilder::Collector {
     data.direction = light.direction;
     data.cosInner = std::cos(light.innerConeAngle);
     data.cosOuter = std::cos(light.outerConeAngle);
+    if (light.type != scene::LightType::directional) data.geometry = std::bit_cast<shared::uint>(1.0f / light.range);
     const double luminance = lightLuminance(light.intensity);
     switch (light.type) {
       case scene::LightType::point:

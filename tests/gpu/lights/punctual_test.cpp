@@ -21,7 +21,6 @@ TEST(PointLight, InverseSquare) {
   scene::Light light;
   light.intensity = {2, 4, 8};
   light.position = {1, 2, 3};
-  light.range = 0.1f;  // no effect
   const LightScene scene(withLight(light), {});
   for (const vec3& position : {vec3(1, 2, 2), vec3(-4, 0, 7), vec3(1000, -2000, 500), vec3(1.001f, 2.0f, 3.0f)}) {
     const LightOut s = only(scene, position);
@@ -36,6 +35,25 @@ TEST(PointLight, InverseSquare) {
     EXPECT_LT(glm::distance(s.radiance, wanted), 1e-6f * glm::length(wanted));
   }
   EXPECT_FALSE(only(scene, light.position).valid);
+}
+
+// KHR_lights_punctual: max(min(1 - (distance / range)^4, 1), 0) / distance^2.
+TEST(PointLight, RangeOfTheExtension) {
+  for (const scene::LightType type : {scene::LightType::point, scene::LightType::spot}) {
+    scene::Light light;
+    light.type = type;
+    light.intensity = vec3(3.0f);
+    light.direction = {1, 0, 0};
+    light.range = 4.0f;
+    const LightScene scene(withLight(light), {});
+    for (const float distance : {0.01f, 1.0f, 2.0f, 3.0f, 3.99f, 4.0f, 4.01f, 1000.0f}) {
+      const LightOut s = only(scene, {distance, 0, 0});
+      const float ratio = distance / light.range, window = std::max(1.0f - ratio * ratio * ratio * ratio, 0.0f);
+      const float expected = 3.0f * window / (distance * distance);
+      EXPECT_EQ(s.valid, distance < light.range ? 1u : 0u) << distance;
+      EXPECT_NEAR(s.radiance.y, expected, 1e-5f * expected + 1e-7f) << distance;
+    }
+  }
 }
 
 TEST(SpotLight, FalloffOfTheExtension) {
