@@ -243,7 +243,7 @@ class Scene {
 
   // Each function returns the index of the new object.
   int addTexture(const Texture& texture);
-  int addTexture(const std::filesystem::path& file);  // PNG, JPEG, WebP, HDR or OpenEXR; throws FileError
+  int addTexture(const std::filesystem::path& file);  // PNG, JPEG, WebP, KTX2, HDR or OpenEXR; throws FileError
   int addMaterial(const Material& material);          // its textures exist already
   int addMesh(const Triangles& triangles, const std::string& name = {});             // its material exists already
   int addMesh(std::span<const Triangles> geometries, const std::string& name = {});  // one mesh with several materials

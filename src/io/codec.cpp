@@ -13,13 +13,13 @@
 namespace quintet::io {
 namespace {
 
-constexpr std::array<const Format*, 5> kFormats{&kPng, &kJpeg, &kWebp, &kHdr, &kExr};
+constexpr std::array<const Format*, 6> kFormats{&kPng, &kJpeg, &kWebp, &kHdr, &kExr, &kKtx2};
 
 const Format& findFormat(const Source& source) {
   for (const Format* format : kFormats)
     if (format->matches(source)) return *format;
   source.fail(source.size() == 0 ? "the image is empty"
-                                 : "not a supported image (PNG, JPEG, WebP, Radiance HDR, OpenEXR)");
+                                 : "not a supported image (PNG, JPEG, WebP, Radiance HDR, OpenEXR, KTX2)");
 }
 
 // Runs read(format). An image within the limits can still exceed the available memory.

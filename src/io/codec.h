@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Image files. Reads PNG, JPEG, WebP, Radiance HDR and OpenEXR, detected by content and not by name; writes PNG,
+// Image files. Reads PNG, JPEG, WebP, Radiance HDR, OpenEXR and KTX2, detected by content and not by name; writes PNG,
 // OpenEXR and Radiance HDR. Decoding returns the complete image or fails: truncated data, a wrong checksum, or a size
 // above the limits is a FileError such as "name: byte 312: PNG data ends early".
 #ifndef QUINTET_IO_CODEC_H
@@ -22,6 +22,8 @@ namespace quintet::io {
 //   Radiance HDR  f32, 3 channels, in top-to-bottom orientation, divided by the EXPOSURE of the header
 //   OpenEXR       f32, 1 to 4 channels, premultiplied; the first part with Y or R, G, B, otherwise the first layer with
 //                 R, G, B, otherwise the only channel; the display window, with 0 outside the data window
+//   KTX2          u8, u16 or f32, 1, 3 or 4 channels: level 0 of a 2D image, uncompressed or BC1 to BC7, without Basis
+//                 Universal
 // Integer formats are sRGB-encoded with straight alpha, float formats are linear. Color chunks and profiles are
 // ignored, as glTF 2.0 (3.8.3) requires for textures; so is the Exif orientation.
 // `nameForErrors` is a path or another name of the bytes. Throws FileError.
@@ -30,6 +32,9 @@ Image readImage(const std::filesystem::path& file);
 
 // Reads the header only, so corrupt pixel data is not detected. Throws FileError.
 ImageInfo probeImage(std::span<const std::byte> bytes, const std::string& nameForErrors);
+
+// Whether the bytes are a KTX2 file with Basis Universal (ETC1S or UASTC), which decodeImage() rejects.
+bool isBasisUniversal(std::span<const std::byte> bytes);
 
 // Returns the text chunks before the pixels (PNG) or the sorted string attributes (OpenEXR); empty for other formats.
 Metadata readMetadata(std::span<const std::byte> bytes, const std::string& nameForErrors);

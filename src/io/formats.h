@@ -46,6 +46,7 @@ extern const Format kJpeg;
 extern const Format kWebp;
 extern const Format kHdr;
 extern const Format kExr;
+extern const Format kKtx2;
 
 // Throws UsageError for an image without pixels or with inconsistent sizes.
 void checkEncodable(const Image& image, std::string_view format);

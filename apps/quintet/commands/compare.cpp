@@ -58,7 +58,7 @@ OptionTable declare(Options& options) {
   std::vector<std::string> measures;
   for (const output::Measure& measure : output::measures({})) measures.push_back(measure.name);
   table.add({{.names = "A",
-              .help = "The image: PNG, JPEG, WebP, Radiance HDR or OpenEXR",
+              .help = "The image: PNG, JPEG, WebP, KTX2, Radiance HDR or OpenEXR",
               .target = &options.a,
               .candidates = images,
               .required = true},

@@ -36,6 +36,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "KHR_texture_transform",
     "KHR_mesh_quantization",
     "EXT_texture_webp",
+    "KHR_texture_basisu",
     "EXT_mesh_gpu_instancing",
     "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",

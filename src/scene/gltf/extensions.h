@@ -19,6 +19,7 @@ inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 inline constexpr const char* kPunctualLights = "KHR_lights_punctual";
 inline constexpr const char* kTextureTransform = "KHR_texture_transform";
 inline constexpr const char* kTextureWebp = "EXT_texture_webp";
+inline constexpr const char* kTextureBasisu = "KHR_texture_basisu";
 inline constexpr const char* kVariants = "KHR_materials_variants";
 
 inline constexpr const char* kVisibility = "KHR_node_visibility";

@@ -307,7 +307,8 @@ constexpr Property kSampler[] = {
     oneOf("magFilter", kMagFilters), oneOf("wrapS", kWraps), oneOf("wrapT", kWraps),
     noEffect("minFilter", "there are no mip levels; many samples per pixel filter instead"), unreported("name")};
 constexpr Property kWebp[] = {required(index("source", kImages))};
-constexpr Property kTextureExtensions[] = {object("EXT_texture_webp", kWebp)};
+constexpr Property kBasisu[] = {required(index("source", kImages))};
+constexpr Property kTextureExtensions[] = {object("EXT_texture_webp", kWebp), object("KHR_texture_basisu", kBasisu)};
 constexpr Property kTexture[] = {index("sampler", kSamplers), index("source", kImages), string("name"),
                                  object("extensions", kTextureExtensions)};
 

@@ -59,6 +59,26 @@ NamedImage loadImage(const Document& document, std::size_t index, MemoryBudget& 
   return result;
 }
 
+// Why an image cannot be used, from its header.
+struct HeaderProblem {
+  std::string text;             // empty if there is no problem
+  bool basisUniversal = false;  // a valid file, but not supported
+};
+HeaderProblem headerProblem(const Document& document, int index) {
+  const ImageSource& source = document.images[static_cast<std::size_t>(index)];
+  const std::string location = fmt::format("/images/{}", index);
+  FileBytes loaded;
+  std::span<const std::byte> bytes;
+  try {
+    if (source.bufferView == kNone) loaded = document.loadUri(source.uri, location + "/uri");
+    bytes = source.bufferView == kNone ? std::span<const std::byte>(loaded) : document.view(source.bufferView);
+    io::probeImage(bytes, location);
+  } catch (const FileError& error) {
+    return {error.problem(), io::isBasisUniversal(bytes)};
+  }
+  return {};
+}
+
 // Replaces the colors by the roughness 1 - glossiness · alpha. `one` is the sample value of 1.
 template <class T>
 void toRoughness(io::Image& image, float glossiness, float one) {
@@ -111,14 +131,33 @@ int TextureTable::useImage(const ImageUse& use) {
   return known - 1;
 }
 
+int TextureTable::chooseImage(int texture) {
+  const tinygltf::Texture& from = document_.model.textures[static_cast<std::size_t>(texture)];
+  if (const tinygltf::Value* webp = findExtension(from.extensions, kTextureWebp)) return indexOf(*webp, "source");
+  if (const tinygltf::Value* basisu = findExtension(from.extensions, kTextureBasisu)) {
+    const int image = indexOf(*basisu, "source");
+    const HeaderProblem problem = headerProblem(document_, image);
+    // Without a fallback, an image that is missing or invalid is an error when it is decoded.
+    if (problem.text.empty() || (from.source == kNone && !problem.basisUniversal)) return image;
+    const std::string location = fmt::format("/textures/{}/extensions/{}", texture, kTextureBasisu);
+    if (from.source != kNone) {
+      report_.ignored.push_back(
+          fmt::format("{}: {}; replaced by the fallback /images/{}", location, problem.text, from.source));
+      return from.source;
+    }
+    problems_.emplace(texture, fmt::format("no fallback for its image: {}", problem.text));
+    return kNone;
+  }
+  if (from.source == kNone) problems_.emplace(texture, "no image in a supported format (PNG, JPEG, WebP, KTX2)");
+  return from.source;
+}
+
 int TextureTable::use(int texture, const std::string& location, std::optional<float> glossiness) {
   const auto found = indexOfTexture_.find({texture, glossiness});
   if (found != indexOfTexture_.end()) return found->second;
   const tinygltf::Texture& from = document_.model.textures[static_cast<std::size_t>(texture)];
-  const tinygltf::Value* webp = findExtension(from.extensions, kTextureWebp);
-  const int image = webp ? indexOf(*webp, "source") : from.source;
+  const int image = chooseImage(texture);
   if (image == kNone) {
-    problems_.emplace(texture, "no image in a supported format (PNG, JPEG, WebP)");
     report_.ignored.push_back(fmt::format("{}: texture {} has {}", location, texture, problems_.at(texture)));
     return kNone;
   }

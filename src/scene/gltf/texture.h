@@ -45,6 +45,9 @@ class TextureTable {
 
  private:
   int useImage(const ImageUse& use);
+  // Image of a texture of the file: that of an extension if it can be read, else its own. kNone, with an entry in
+  // problems_, without an image in a supported format.
+  int chooseImage(int texture);
 
   const Document& document_;
   Report& report_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -444,10 +445,50 @@ TEST(GltfTexture, PrefersWebp) {
   EXPECT_THAT(errorOf(builder), IsErrorAt("/textures/0/extensions/EXT_texture_webp/source", "image 2"));
 }
 
+// The header of a KTX2 file with UASTC, which is not supported.
+std::vector<std::byte> uastcHeader() {
+  std::vector<std::byte> ktx2(128, std::byte{0});
+  const std::string_view identifier("\xABKTX 20\xBB\r\n\x1A\n", 12);
+  std::memcpy(ktx2.data(), identifier.data(), identifier.size());
+  ktx2[20] = ktx2[24] = ktx2[36] = ktx2[40] = std::byte{1};
+  ktx2[48] = std::byte{104};
+  ktx2[104 + 12] = std::byte{166};
+  return ktx2;
+}
+
+TEST(GltfTexture, UsesTheFallbackOfBasisUniversal) {
+  TextureBuilder builder;
+  builder.use();
+  builder.add("images", {{"bufferView", builder.addView(uastcHeader())}, {"mimeType", "image/ktx2"}});
+  builder.root["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 1;
+  builder.root["extensionsRequired"] = {"KHR_texture_basisu"};
+  scene::Scene scene = builder.load();
+  EXPECT_TRUE(scene.materials[0].baseColorTexture.used());
+  EXPECT_EQ(scene.images.at(0).name, "scene.glb: /images/0");
+  EXPECT_THAT(scene.report.ignored,
+              ElementsAre(IsErrorAt("/textures/0/extensions/KHR_texture_basisu", "UASTC) is not supported; replaced")));
+  // Without a fallback, the factor remains.
+  builder.root["textures"][0].erase("source");
+  scene = builder.load();
+  EXPECT_FALSE(scene.materials[0].baseColorTexture.used());
+  EXPECT_THAT(scene.report.ignored, ElementsAre(IsErrorAt("/materials/0/baseColorTexture", "UASTC")));
+  // An image that can be read has precedence.
+  builder.root["textures"][0]["source"] = 1;
+  builder.root["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 0;
+  scene = builder.load();
+  EXPECT_TRUE(scene.report.isExact());
+  EXPECT_EQ(scene.images.at(0).name, "scene.glb: /images/0");
+  // A broken one without a fallback is an error.
+  builder.root["textures"][0].erase("source");
+  builder.root["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 1;
+  builder.binary[builder.root["bufferViews"][1]["byteOffset"].get<std::size_t>()] = std::byte{0};
+  EXPECT_THAT(errorOf(builder), IsErrorAt("/images/1", "not a supported image"));
+}
+
 TEST(GltfTexture, IgnoresTexturesWithoutASupportedImage) {
   TextureBuilder builder;
   builder.use();
-  builder.root["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+  builder.root["textures"][0] = {{"extensions", {{"EXT_texture_video", {{"source", 0}}}}}};
   const scene::Scene scene = builder.load();
   EXPECT_FALSE(scene.materials[0].baseColorTexture.used());
   EXPECT_THAT(scene.report.ignored, testing::Contains(IsErrorAt("/materials/0/baseColorTexture", "texture 0")));

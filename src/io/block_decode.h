@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to src/io: decoders of the block-compressed formats BC1 to BC7.
+#ifndef QUINTET_IO_BLOCK_DECODE_H
+#define QUINTET_IO_BLOCK_DECODE_H
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "io/block_image.h"
+#include "io/image.h"
+
+namespace quintet::io {
+
+// Bytes of a block of 4 x 4 texels.
+std::size_t bytesPerBlock(BlockFormat format);
+
+// Type and channels of the decoded image: u8 for BC1, BC2, BC3 and BC7; u16 for BC4 and BC5, whose values have more than
+// 8 bits; f32 for signed formats and BC6H. BC4 has 1 channel, BC5 has red, green and a blue of 0.
+ImageInfo blockImageInfo(BlockFormat format, std::uint32_t width, std::uint32_t height);
+
+// Decodes on all cores. `blocks` has ceil(width / 4) · ceil(height / 4) blocks.
+Image decodeBlocks(BlockFormat format, std::span<const std::byte> blocks, std::uint32_t width, std::uint32_t height);
+
+// One block each, texels in rows. RGBA: 16 · 4 values.
+void decodeBc7Block(const std::byte* block, std::uint8_t* rgba);
+// RGB: 16 · 3 values.
+void decodeBc6Block(const std::byte* block, bool isSigned, float* rgb);
+
+}  // namespace quintet::io
+#endif

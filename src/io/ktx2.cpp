@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: Apache-2.0
+// KTX 2.0 (Khronos, version 2.0.4): 2D images in uncompressed formats and BC1 to BC7, with Zstandard or zlib
+// supercompression. Only level 0, the whole image, is read. Basis Universal (ETC1S, UASTC) is not supported: no package of
+// Debian has a transcoder for C++.
+#include <zlib.h>
+#include <zstd.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "base/plural.h"
+#include "io/block_decode.h"
+#include "io/codec.h"
+#include "io/formats.h"
+
+namespace quintet::io {
+namespace {
+
+constexpr std::string_view kIdentifier{"\xABKTX 20\xBB\r\n\x1A\n", 12};
+constexpr std::size_t kHeaderSize = 80;  // with the index
+constexpr std::size_t kLevelSize = 24;   // of an entry of the level index
+
+enum class Supercompression : std::uint32_t { none = 0, basisLz = 1, zstandard = 2, zlib = 3 };
+
+enum class Sample { unorm8, unorm16, half, float32, sharedExponent, packedFloat };
+
+// A value of VkFormat.
+struct Layout {
+  std::uint32_t format;
+  BlockFormat block = BlockFormat::none;
+  bool sRgb = false;
+  Sample sample = Sample::unorm8;
+  std::uint32_t channels = 0;  // stored, of uncompressed formats
+  bool bgr = false;
+};
+constexpr Layout uncompressed(std::uint32_t format, Sample sample, std::uint32_t channels, bool sRgb = false,
+                              bool bgr = false) {
+  return {format, BlockFormat::none, sRgb, sample, channels, bgr};
+}
+constexpr Layout blocks(std::uint32_t format, BlockFormat block, bool sRgb = false) { return {format, block, sRgb}; }
+
+constexpr Layout kLayouts[] = {
+    uncompressed(9, Sample::unorm8, 1),
+    uncompressed(15, Sample::unorm8, 1, true),
+    uncompressed(16, Sample::unorm8, 2),
+    uncompressed(22, Sample::unorm8, 2, true),
+    uncompressed(23, Sample::unorm8, 3),
+    uncompressed(29, Sample::unorm8, 3, true),
+    uncompressed(30, Sample::unorm8, 3, false, true),
+    uncompressed(36, Sample::unorm8, 3, true, true),
+    uncompressed(37, Sample::unorm8, 4),
+    uncompressed(43, Sample::unorm8, 4, true),
+    uncompressed(44, Sample::unorm8, 4, false, true),
+    uncompressed(50, Sample::unorm8, 4, true, true),
+    uncompressed(70, Sample::unorm16, 1),
+    uncompressed(76, Sample::half, 1),
+    uncompressed(77, Sample::unorm16, 2),
+    uncompressed(83, Sample::half, 2),
+    uncompressed(84, Sample::unorm16, 3),
+    uncompressed(90, Sample::half, 3),
+    uncompressed(91, Sample::unorm16, 4),
+    uncompressed(97, Sample::half, 4),
+    uncompressed(100, Sample::float32, 1),
+    uncompressed(103, Sample::float32, 2),
+    uncompressed(106, Sample::float32, 3),
+    uncompressed(109, Sample::float32, 4),
+    uncompressed(122, Sample::packedFloat, 3),
+    uncompressed(123, Sample::sharedExponent, 3),
+    blocks(131, BlockFormat::bc1Rgb),
+    blocks(132, BlockFormat::bc1Rgb, true),
+    blocks(133, BlockFormat::bc1Rgba),
+    blocks(134, BlockFormat::bc1Rgba, true),
+    blocks(135, BlockFormat::bc2),
+    blocks(136, BlockFormat::bc2, true),
+    blocks(137, BlockFormat::bc3),
+    blocks(138, BlockFormat::bc3, true),
+    blocks(139, BlockFormat::bc4),
+    blocks(140, BlockFormat::bc4Signed),
+    blocks(141, BlockFormat::bc5),
+    blocks(142, BlockFormat::bc5Signed),
+    blocks(143, BlockFormat::bc6),
+    blocks(144, BlockFormat::bc6Signed),
+    blocks(145, BlockFormat::bc7),
+    blocks(146, BlockFormat::bc7, true),
+};
+
+std::uint64_t littleEndian(const Source& source, std::size_t offset, std::size_t count) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < count; ++i) value |= std::uint64_t{source[offset + i]} << (8 * i);
+  return value;
+}
+
+struct Header {
+  Layout layout;
+  std::uint32_t width = 0, height = 0;
+  Supercompression supercompression = Supercompression::none;
+  std::uint64_t offset = 0, length = 0, size = 0;  // of level 0: in the file; once it is decompressed
+  bool bottomUp = false;
+  // Of each channel of the image: 0 to 3 for red to alpha of the file, or '0' or '1'.
+  std::string swizzle = "rgba";
+};
+
+// The form of Basis Universal; null for other files. The color model is in the data format descriptor.
+const char* basisUniversalName(const Source& source) {
+  constexpr std::uint32_t kUastc = 166;
+  if (littleEndian(source, 12, 4) != 0) return nullptr;
+  if (Supercompression{static_cast<std::uint32_t>(littleEndian(source, 44, 4))} == Supercompression::basisLz)
+    return "ETC1S";
+  const std::uint64_t descriptor = littleEndian(source, 48, 4);
+  return descriptor + 13 <= source.size() && source[descriptor + 12] == kUastc ? "UASTC" : nullptr;
+}
+
+[[noreturn]] void failForFormat(const Source& source, std::uint32_t format) {
+  if (const char* name = basisUniversalName(source))
+    source.fail(fmt::format("KTX2 with Basis Universal ({}) is not supported", name));
+  source.fail(fmt::format("KTX2 with the format {} (VkFormat) is not supported", format));
+}
+
+// The value of a key, without the final zero byte; empty if it does not exist or the entries are not valid.
+std::string_view keyValue(const Source& source, std::string_view wanted) {
+  const std::uint64_t begin = littleEndian(source, 56, 4), length = littleEndian(source, 60, 4);
+  const std::uint64_t end = std::min<std::uint64_t>(begin + length, source.size());
+  for (std::uint64_t at = begin; at + 4 <= end;) {
+    const std::uint64_t size = littleEndian(source, at, 4);
+    if (size > end - at - 4) break;
+    const std::string_view entry(reinterpret_cast<const char*>(source.data()) + at + 4, size);
+    const std::size_t zero = entry.find('\0');
+    if (zero != std::string_view::npos && entry.substr(0, zero) == wanted) {
+      const std::string_view value = entry.substr(zero + 1);
+      return value.substr(0, value.find('\0'));
+    }
+    at += 4 + (size + 3) / 4 * 4;
+  }
+  return {};
+}
+
+std::uint32_t channelsOf(const Header& header) {
+  const ImageInfo info = blockImageInfo(header.layout.block, header.width, header.height);
+  return header.layout.block == BlockFormat::none ? header.layout.channels : info.channels;
+}
+
+// Channels of the image: without a swizzle those of the format, where red alone becomes gray and red with green gets a
+// blue of 0.
+std::uint32_t imageChannels(const Header& header) {
+  if (header.swizzle != "rgba") return header.swizzle[3] == '1' ? 3 : 4;
+  const std::uint32_t stored = channelsOf(header);
+  return stored == 2 ? 3 : stored;
+}
+
+PixelType imageType(const Layout& layout) {
+  if (layout.block != BlockFormat::none) return blockImageInfo(layout.block, 1, 1).type;
+  if (layout.sample == Sample::unorm8) return PixelType::u8;
+  return layout.sample == Sample::unorm16 ? PixelType::u16 : PixelType::f32;
+}
+
+std::uint64_t bytesPerTexel(const Layout& layout) {
+  switch (layout.sample) {
+    case Sample::unorm8: return layout.channels;
+    case Sample::unorm16:
+    case Sample::half: return 2 * layout.channels;
+    case Sample::float32: return 4 * layout.channels;
+    default: return 4;
+  }
+}
+
+// Bytes of level 0.
+std::uint64_t levelSize(const Header& header) {
+  const std::uint64_t width = header.width, height = header.height;
+  if (header.layout.block == BlockFormat::none) return width * height * bytesPerTexel(header.layout);
+  return (width + 3) / 4 * ((height + 3) / 4) * bytesPerBlock(header.layout.block);
+}
+
+// The part of the file before the pixels. The pixels need not exist.
+Header readHeader(const Source& source) {
+  if (source.size() < kHeaderSize + kLevelSize) source.fail(source.size(), "KTX2 data ends early");
+  const auto u32 = [&](std::size_t offset) { return static_cast<std::uint32_t>(littleEndian(source, offset, 4)); };
+  Header header;
+  const std::uint32_t format = u32(12);
+  header.supercompression = Supercompression{u32(44)};
+  const auto layout = std::ranges::find(kLayouts, format, &Layout::format);
+  if (layout == std::end(kLayouts)) failForFormat(source, format);
+  if (header.supercompression == Supercompression::basisLz || header.supercompression > Supercompression::zlib)
+    source.fail(44, fmt::format("KTX2 with the supercompression scheme {} is not supported", u32(44)));
+  if (u32(28) != 0 || u32(32) > 1 || u32(36) != 1)
+    source.fail(28, "KTX2 with a volume, layers or cube faces is not supported; only 2D images are");
+  header.layout = *layout;
+  header.width = u32(20), header.height = u32(24);
+  const std::string_view orientation = keyValue(source, "KTXorientation"), swizzle = keyValue(source, "KTXswizzle");
+  header.bottomUp = orientation.size() > 1 && orientation[1] == 'u';
+  if (swizzle.size() == 4 && swizzle.find_first_not_of("rgba01") == std::string_view::npos) header.swizzle = swizzle;
+  source.checkSize(header.width, header.height, imageChannels(header) * bytesPerSample(imageType(header.layout)));
+  header.offset = littleEndian(source, 80, 8), header.length = littleEndian(source, 88, 8);
+  header.size = littleEndian(source, 96, 8);
+  if (header.size != levelSize(header))
+    source.fail(96, fmt::format("KTX2 states {} for level 0; {} x {} pixels have {}", counted(header.size, "byte"),
+                                header.width, header.height, levelSize(header)));
+  return header;
+}
+
+// ---- Pixels ----
+
+std::vector<std::byte> inflateLevel(const Source& source, const Header& header, std::span<const std::byte> level) {
+  std::vector<std::byte> pixels(header.size);
+  if (header.supercompression == Supercompression::zstandard) {
+    const std::size_t size = ZSTD_decompress(pixels.data(), pixels.size(), level.data(), level.size());
+    if (ZSTD_isError(size))
+      source.fail(header.offset, fmt::format("broken Zstandard data: {}", ZSTD_getErrorName(size)));
+    if (size != pixels.size()) source.fail(header.offset, "KTX2 data ends early");
+    return pixels;
+  }
+  auto size = static_cast<uLongf>(pixels.size());
+  const int status = uncompress(reinterpret_cast<Bytef*>(pixels.data()), &size,
+                                reinterpret_cast<const Bytef*>(level.data()), static_cast<uLong>(level.size()));
+  if (status != Z_OK || size != pixels.size()) source.fail(header.offset, "broken zlib data");
+  return pixels;
+}
+
+float fromHalf(std::uint32_t bits) {
+  const std::uint32_t exponent = bits >> 10 & 31, mantissa = bits & 1023;
+  float value = std::ldexp(static_cast<float>(exponent == 0 ? mantissa : mantissa + 1024),
+                           static_cast<int>(exponent == 0 ? 1 : exponent) - 25);
+  if (exponent == 31) value = mantissa == 0 ? INFINITY : NAN;
+  return bits & 0x8000 ? -value : value;
+}
+
+// An unsigned float with 5 bits of exponent.
+float fromSmallFloat(std::uint32_t bits, std::uint32_t mantissaBits) {
+  return fromHalf((bits >> mantissaBits & 31) << 10 | (bits & ((1u << mantissaBits) - 1)) << (10 - mantissaBits));
+}
+
+std::uint32_t word(const std::byte* at, std::size_t count) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < count; ++i) value |= std::to_integer<std::uint32_t>(at[i]) << (8 * i);
+  return value;
+}
+
+// Channels of one texel that the file stores, as samples of the image.
+void readTexel(const Layout& layout, const std::byte* at, std::uint8_t* out) {
+  for (std::uint32_t c = 0; c < layout.channels; ++c) out[c] = std::to_integer<std::uint8_t>(at[c]);
+  if (layout.bgr) std::swap(out[0], out[2]);
+}
+void readTexel(const Layout& layout, const std::byte* at, std::uint16_t* out) {
+  for (std::uint32_t c = 0; c < layout.channels; ++c) out[c] = static_cast<std::uint16_t>(word(at + 2 * c, 2));
+}
+void readTexel(const Layout& layout, const std::byte* at, float* out) {
+  const std::uint32_t bits = word(at, layout.sample == Sample::half ? 2 : 4);
+  if (layout.sample == Sample::packedFloat) {
+    out[0] = fromSmallFloat(bits & 2047, 6), out[1] = fromSmallFloat(bits >> 11 & 2047, 6);
+    out[2] = fromSmallFloat(bits >> 22, 5);
+  } else if (layout.sample == Sample::sharedExponent) {
+    const float scale = std::ldexp(1.0f, static_cast<int>(bits >> 27) - 24);
+    for (std::uint32_t c = 0; c < 3; ++c) out[c] = static_cast<float>(bits >> (9 * c) & 511) * scale;
+  } else {
+    for (std::uint32_t c = 0; c < layout.channels; ++c) {
+      if (layout.sample == Sample::half) {
+        out[c] = fromHalf(word(at + 2 * c, 2));
+      } else {
+        const std::uint32_t single = word(at + 4 * c, 4);
+        std::memcpy(&out[c], &single, sizeof single);
+      }
+    }
+  }
+}
+
+// Arranges the channels of each texel: `read` fills the stored ones. `one` is the sample value of 1.
+template <class T, class Read>
+void arrange(const Header& header, Image& image, T one, const Read& read) {
+  const std::uint32_t stored = channelsOf(header);
+  std::array<T, 4> texel{};
+  for (std::uint32_t y = 0; y < image.height; ++y)
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      texel = {};
+      read(x, header.bottomUp ? image.height - 1 - y : y, texel.data());
+      if (stored < 4) texel[3] = one;
+      const auto out = image.pixel<T>(x, y);
+      for (std::size_t c = 0; c < image.channels; ++c) {
+        const std::size_t from = std::string_view("rgba").find(header.swizzle[c]);
+        out[c] = from < 4 ? texel[from] : header.swizzle[c] == '1' ? one : T{};
+      }
+    }
+}
+
+// Calls arrange() with the sample type of the image.
+template <class Read>
+void arrangeAny(const Header& header, Image& image, const Read& read) {
+  switch (image.type) {
+    case PixelType::u8: return arrange<std::uint8_t>(header, image, 255, read);
+    case PixelType::u16: return arrange<std::uint16_t>(header, image, 65535, read);
+    case PixelType::f32: return arrange<float>(header, image, 1.0f, read);
+  }
+}
+
+// ---- The format ----
+
+bool matches(const Source& source) { return source.has(0, kIdentifier); }
+
+ImageInfo probe(const Source& source) {
+  const Header header = readHeader(source);
+  return {header.width, header.height, imageChannels(header), imageType(header.layout), {}};
+}
+
+Image decode(const Source& source) {
+  const Header header = readHeader(source);
+  if (header.offset > source.size() || header.length > source.size() - header.offset)
+    source.fail(source.size(), "KTX2 data ends early");
+  const bool compressed = header.supercompression != Supercompression::none;
+  if (!compressed && header.length != header.size)
+    source.fail(88,
+                fmt::format("KTX2 stores {} for level 0 instead of {}", counted(header.length, "byte"), header.size));
+  std::span<const std::byte> level = source.bytes.subspan(header.offset, header.length);
+  std::vector<std::byte> inflated;
+  if (compressed) level = inflated = inflateLevel(source, header, level);
+
+  const PixelType type = imageType(header.layout);
+  const auto encoding = type == PixelType::f32 ? ColorEncoding::linear : ColorEncoding::sRgb;
+  Image image = makeImage(header.width, header.height, imageChannels(header), type, encoding);
+  if (header.layout.block == BlockFormat::none) {
+    const std::uint64_t size = bytesPerTexel(header.layout);
+    arrangeAny(header, image, [&](std::size_t x, std::size_t y, auto* texel) {
+      readTexel(header.layout, level.data() + (y * header.width + x) * size, texel);
+    });
+    return image;
+  }
+  Image decoded = decodeBlocks(header.layout.block, level, header.width, header.height);
+  if (!header.bottomUp && header.swizzle == "rgba" && decoded.channels == image.channels) return decoded;
+  arrangeAny(header, image, [&](std::uint32_t x, std::uint32_t y, auto* texel) {
+    const auto from = decoded.pixel<std::remove_pointer_t<decltype(texel)>>(x, y);
+    std::ranges::copy(from, texel);
+  });
+  return image;
+}
+
+}  // namespace
+
+bool isBasisUniversal(std::span<const std::byte> bytes) {
+  const std::string name;
+  const Source source{bytes, name};
+  return matches(source) && source.size() >= kHeaderSize + kLevelSize && basisUniversalName(source);
+}
+
+const Format kKtx2{"KTX2", matches, probe, decode, nullptr};
+
+}  // namespace quintet::io
