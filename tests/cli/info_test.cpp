@@ -102,7 +102,9 @@ TEST_F(Info, ListsIgnoredContent) {
   EXPECT_THAT(report["ignored"][0].get<std::string>(), HasSubstr("/meshes/0/primitives/1"));
   EXPECT_THAT(report["ignored"][1].get<std::string>(), HasSubstr("EXT_unsupported"));
   for (const nlohmann::json& feature : report["features"])
-    if (feature["name"] == "LINES") EXPECT_EQ(feature["use"], "ignored");
+    if (feature["name"] == "LINES") {
+      EXPECT_EQ(feature["use"], "ignored");
+    }
   const std::string text = quintet({"info", "odd.gltf"}).out;
   for (const char* part :
        {"primitives    used: TRIANGLES (1)\n", "ignored: LINES (1)\n", "ignored: EXT_unsupported (1)\n"})

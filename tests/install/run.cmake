@@ -19,7 +19,7 @@ foreach(file IN ITEMS LICENSE README.md docs/README.md docs/cli.md docs/diagnost
     message(FATAL_ERROR "not installed: share/doc/quintet/${file}")
   endif()
 endforeach()
-run(${CMAKE_COMMAND} -S ${SOURCE}/examples/cpp -B ${work}/build -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=Release)
+run(${CMAKE_COMMAND} -S ${SOURCE}/examples/cpp -B ${work}/build -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=Debug)
 run(${CMAKE_COMMAND} --build ${work}/build)
 foreach(example IN ITEMS first_ray mesh_from_memory animated_instances own_program error_target explain_pixel)
   file(STRINGS ${SOURCE}/examples/cpp/${example}.cpp lines)
@@ -42,7 +42,7 @@ run(${work}/prefix/bin/quintet run lessons/01_first_ray -o command.png --size 48
 run(${work}/prefix/bin/quintet compare first_ray.png command.png --max 0)
 
 # Other parts of the API.
-run(${CMAKE_COMMAND} -S ${SOURCE}/tests/install/consumer -B ${work}/consumer -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=Release)
+run(${CMAKE_COMMAND} -S ${SOURCE}/tests/install/consumer -B ${work}/consumer -DCMAKE_PREFIX_PATH=${work}/prefix -DCMAKE_BUILD_TYPE=Debug)
 run(${CMAKE_COMMAND} --build ${work}/consumer)
 run(${work}/consumer/consumer)
 run(${work}/prefix/bin/quintet run lessons/19_dynamic -o frames.png --size 96x64 --frames 14)

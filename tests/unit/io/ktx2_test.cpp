@@ -284,8 +284,9 @@ TEST(BlockImages, DecodeAnyBits) {
     const auto format = static_cast<BlockFormat>(f);
     const io::Image image = io::decodeBlocks(format, blocks, 125, 127);
     EXPECT_EQ(image.data.size(), image.rowBytes() * 127);
-    if (image.type == PixelType::f32)
+    if (image.type == PixelType::f32) {
       for (const float v : image.samples<float>()) ASSERT_TRUE(std::isfinite(v)) << f;
+    }
   }
 }
 

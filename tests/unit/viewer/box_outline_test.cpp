@@ -9,7 +9,7 @@
 namespace quintet::viewer {
 namespace {
 
-constexpr uvec2 kSize{200, 100};
+constexpr uvec2 kImage{200, 100};
 
 scene::Camera cameraAt(const vec3& position) {
   scene::Camera camera;
@@ -26,7 +26,7 @@ Bounds3 unitBox() {
 }
 
 TEST(BoxOutline, ProjectsTheEdges) {
-  const std::vector<ImageLine> lines = boxOutline(cameraAt({0, 0, 3}), kSize, unitBox(), mat4(1.0f));
+  const std::vector<ImageLine> lines = boxOutline(cameraAt({0, 0, 3}), kImage, unitBox(), mat4(1.0f));
   ASSERT_EQ(lines.size(), 12u);
   // The near face is 2 m away: half a meter of the image's half height per meter.
   vec2 least(1e9f), most(-1e9f);
@@ -43,15 +43,15 @@ TEST(BoxOutline, ProjectsTheEdges) {
 TEST(BoxOutline, AppliesTheTransform) {
   mat4 moved(1.0f);
   moved[3] = {4, 0, 0, 1};
-  for (const auto& [a, b] : boxOutline(cameraAt({0, 0, 3}), kSize, unitBox(), moved)) {
+  for (const auto& [a, b] : boxOutline(cameraAt({0, 0, 3}), kImage, unitBox(), moved)) {
     EXPECT_GT(a.x, 125.0f);
     EXPECT_GT(b.x, 125.0f);
   }
 }
 
 TEST(BoxOutline, ClipsEdgesBehindTheCamera) {
-  EXPECT_TRUE(boxOutline(cameraAt({0, 0, -3}), kSize, unitBox(), mat4(1.0f)).empty()) << "all behind";
-  const std::vector<ImageLine> inside = boxOutline(cameraAt({0, 0, 0.5f}), kSize, unitBox(), mat4(1.0f));
+  EXPECT_TRUE(boxOutline(cameraAt({0, 0, -3}), kImage, unitBox(), mat4(1.0f)).empty()) << "all behind";
+  const std::vector<ImageLine> inside = boxOutline(cameraAt({0, 0, 0.5f}), kImage, unitBox(), mat4(1.0f));
   EXPECT_EQ(inside.size(), 8u) << "the edges of the near face are behind the camera";
   for (const auto& [a, b] : inside) EXPECT_TRUE(std::isfinite(a.x + a.y + b.x + b.y));
 }
@@ -60,7 +60,7 @@ TEST(BoxOutline, SupportsOrthographicCameras) {
   scene::Camera camera = cameraAt({0, 0, 3});
   camera.orthographic = true;
   camera.orthographicHalfSize = {4, 2};
-  const std::vector<ImageLine> lines = boxOutline(camera, kSize, unitBox(), mat4(1.0f));
+  const std::vector<ImageLine> lines = boxOutline(camera, kImage, unitBox(), mat4(1.0f));
   ASSERT_EQ(lines.size(), 12u);
   for (const auto& [a, b] : lines) {
     EXPECT_NEAR(std::abs(a.x - 100.0f), 25.0f, 1e-3f);
@@ -69,7 +69,7 @@ TEST(BoxOutline, SupportsOrthographicCameras) {
 }
 
 TEST(BoxOutline, IsEmptyWithoutABoxOrAnImage) {
-  EXPECT_TRUE(boxOutline(cameraAt({0, 0, 3}), kSize, {}, mat4(1.0f)).empty());
+  EXPECT_TRUE(boxOutline(cameraAt({0, 0, 3}), kImage, {}, mat4(1.0f)).empty());
   EXPECT_TRUE(boxOutline(cameraAt({0, 0, 3}), {0, 0}, unitBox(), mat4(1.0f)).empty());
 }
 
