@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Private to src/io: decoders of the block-compressed formats BC1 to BC7.
+// Private to src/io: decoders of the block-compressed formats BC1 to BC7 (Khronos Data Format Specification 1.3, chapters
+// 18 to 20). Blocks of 4 x 4 texels are in rows from the top; those at the right and bottom edges can exceed the image.
 #ifndef QUINTET_IO_BLOCK_DECODE_H
 #define QUINTET_IO_BLOCK_DECODE_H
 
@@ -7,10 +8,24 @@
 #include <cstdint>
 #include <span>
 
-#include "io/block_image.h"
 #include "io/image.h"
 
 namespace quintet::io {
+
+enum class BlockFormat : std::uint8_t {
+  none,
+  bc1Rgb,
+  bc1Rgba,
+  bc2,
+  bc3,
+  bc4,
+  bc4Signed,
+  bc5,
+  bc5Signed,
+  bc6,
+  bc6Signed,
+  bc7
+};
 
 // Bytes of a block of 4 x 4 texels.
 std::size_t bytesPerBlock(BlockFormat format);

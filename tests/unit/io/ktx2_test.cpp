@@ -3,6 +3,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -245,6 +246,20 @@ TEST(BlockImages, DecodesBc7) {
     else
       EXPECT_THAT(texel, ElementsAre(0, 253, 129, 255)) << i;
   }
+  // Mode 0, partition 0: subset s has the endpoints 0 and 30 of 31 in channel s. All bits of the indices are 1, so that
+  // those of the anchors, texels 0, 3 and 15, are 3 instead of 7.
+  BitWriter zero;
+  zero(1, 1)(0, 4);
+  for (std::uint32_t c = 0; c < 3; ++c)
+    for (std::uint32_t e = 0; e < 6; ++e) zero(e == 2 * c + 1 ? 15 : 0, 4);
+  zero(0, 6)(~0u, 32)(~0u, 13);
+  rgba = samplesOf<std::uint8_t>(decodeOne(BlockFormat::bc7, zero.block));
+  const std::string subsets = "0011001102212222";
+  for (std::size_t i = 0; i < 16; ++i)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const bool own = c == static_cast<std::size_t>(subsets[i] - '0'), anchor = i == 0 || i == 3 || i == 15;
+      EXPECT_EQ(rgba[4 * i + c], own ? (anchor ? (247 * 27 + 32) / 64 : 247) : 0) << i << ' ' << c;
+    }
   // Mode 5 with rotation 1: red and alpha are exchanged.
   BitWriter five;
   five(1 << 5, 6)(1, 2)(127, 7)(127, 7)(0, 7)(0, 7)(64, 7)(64, 7)(10, 8)(10, 8);
