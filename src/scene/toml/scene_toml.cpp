@@ -12,14 +12,13 @@ namespace quintet::scene {
 namespace {
 
 void rejectGltfOptions(const std::filesystem::path& file, const LoadOptions& options) {
-  const auto reject = [&](const std::string& value, const char* what, const char* key) {
-    if (!value.empty())
-      throw UsageError(
-          fmt::format("{}: no {} '{}': only glTF files have {}s; a scene file selects them by the key "
-                      "'{}' of [[file]]",
-                      file.string(), what, value, what, key));
+  const auto reject = [&](const std::string& value, const char* key, const char* what) {
+    if (value.empty()) return;
+    throw UsageError(
+        fmt::format("{}: no {} '{}': only glTF files have {}s; a scene file selects them by the key '{}' of [[file]]",
+                    file.string(), key, value, what, key));
   };
-  reject(options.variant, "material variant", "variant");
+  reject(options.variant, "variant", "material variant");
   reject(options.scene, "scene", "scene");
 }
 
