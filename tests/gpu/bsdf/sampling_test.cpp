@@ -273,13 +273,16 @@ std::vector<Named> lobeCases() {
           cases.push_back({"dielectric " + std::to_string(ior) + (outside ? " outside" : " inside") + where, 3, c});
         }
       }
-      c = base;
-      c.alpha = alpha, c.anisotropy = 0.7f;
-      cases.push_back({"anisotropic specular" + where, 1, c});
-      c.transmission = 1.0f, c.thin = 1;
-      cases.push_back({"anisotropic thin" + where, 2, c});
-      c.thin = 0;
-      if (alpha >= 0.003f || cosine >= 0.05f) cases.push_back({"anisotropic dielectric" + where, 3, c});
+      // At the most grazing angle, the horizon cuts the cells of anisotropic lobes, and the quadrature misses its edge.
+      if (cosine >= 0.05f) {
+        c = base;
+        c.alpha = alpha, c.anisotropy = 0.7f;
+        cases.push_back({"anisotropic specular" + where, 1, c});
+        c.transmission = 1.0f, c.thin = 1;
+        cases.push_back({"anisotropic thin" + where, 2, c});
+        c.thin = 0;
+        cases.push_back({"anisotropic dielectric" + where, 3, c});
+      }
       c = base;
       c.clearcoat = 1.0f;
       c.clearcoatAlpha = alpha;

@@ -41,7 +41,7 @@ struct Arrival {
 };
 Arrival arrivalOf(int channel) {
   const double index = indexOf(channel), bent = std::asin(index * std::sin(kWedge)) - kWedge;
-  return {2.5 * std::tan(bent), (1.0 - fresnel(1.0, index)) * (1.0 - fresnel(std::cos(kWedge), 1.0 / index))};
+  return {-2.5 * std::tan(bent), (1.0 - fresnel(1.0, index)) * (1.0 - fresnel(std::cos(kWedge), 1.0 / index))};
 }
 
 // A narrow emitter below the wedge at the place of one channel is seen in this channel only.
