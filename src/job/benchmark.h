@@ -31,11 +31,10 @@ struct BenchmarkRequest {
 nlohmann::ordered_json runBenchmark(const BenchmarkRequest& request);
 
 struct ProgramBenchmarkRequest {
-  std::string program;  // any program, with any rays
-  std::string device;   // gpu::ContextOptions::device
-  int repeat = 5;       // measured launches; at least 1
-  RenderRequest
-      render;  // scene, load, camera, environment, size (0: as above), seed, parameters; the rest is unused
+  std::string program;   // any program, with any rays
+  std::string device;    // gpu::ContextOptions::device
+  int repeat = 5;        // measured launches; at least 1
+  RenderRequest render;  // scene, load, camera, environment, size (0: as above), seed, parameters; the rest is unused
 };
 
 // One object about one launch of the whole image with a sample per pixel, or a frame: device, scene, "launch" (seconds

@@ -541,36 +541,39 @@ TEST_F(WindowTest, DrawsTheRaysOfTheExplainedPixel) {
   viewer.waitFor("explained");
   viewer.control("Legend of rays");
 
-  // From the side, the camera ray is a white line. V hides it.
+  // From the side, the camera ray is a white line. V hides it. On a busy machine, the first images after the drag can show
+  // only a part of the turn.
   viewer.window().drag(x, y, x + 110, y);
   viewer.waitForImage();
-  viewer.settle();
-  imageColor();
-  const io::Image rays = viewer.window().screenshot();
-  const auto legend = viewer.control("Legend of rays");
-  viewer.window().key("v");
-  viewer.settle();
-  EXPECT_FALSE(viewer.hasControl("Legend of rays"));
-  const io::Image plain = viewer.window().screenshot();
   const auto [left, top, right, bottom] = viewer.imageArea();
-  std::pair<int, int> farthest{x, y};
   const auto distance = [x = x, y = y](const std::pair<int, int>& p) { return std::hypot(p.first - x, p.second - y); };
+  std::pair<int, int> farthest{x, y};
   int white = 0;
-  for (int v = top; v < bottom; ++v)
-    for (int u = left; u < right; ++u) {
-      const auto column = static_cast<std::uint32_t>(u), row = static_cast<std::uint32_t>(v);
-      const auto with = rays.pixel<std::uint8_t>(column, row), without = plain.pixel<std::uint8_t>(column, row);
-      if (std::min({with[0], with[1], with[2]}) < 255 || std::min({without[0], without[1], without[2]}) == 255)
-        continue;
-      if (u >= legend[0] && v >= legend[1]) continue;
-      ++white;
-      if (distance({u, v}) > distance(farthest)) farthest = {u, v};
-    }
+  for (int attempt = 0; attempt < 20 && (white <= 60 || distance(farthest) <= 40.0); ++attempt) {
+    viewer.settle();
+    imageColor();
+    const io::Image rays = viewer.window().screenshot();
+    const auto legend = viewer.control("Legend of rays");
+    viewer.window().key("v");
+    viewer.settle();
+    EXPECT_FALSE(viewer.hasControl("Legend of rays"));
+    const io::Image plain = viewer.window().screenshot();
+    white = 0;
+    for (int v = top; v < bottom; ++v)
+      for (int u = left; u < right; ++u) {
+        const auto column = static_cast<std::uint32_t>(u), row = static_cast<std::uint32_t>(v);
+        const auto with = rays.pixel<std::uint8_t>(column, row), without = plain.pixel<std::uint8_t>(column, row);
+        if (std::min({with[0], with[1], with[2]}) < 255 || std::min({without[0], without[1], without[2]}) == 255)
+          continue;
+        if (u >= legend[0] && v >= legend[1]) continue;
+        ++white;
+        if (distance({u, v}) > distance(farthest)) farthest = {u, v};
+      }
+    viewer.window().key("v");
+    viewer.control("Legend of rays");
+  }
   EXPECT_GT(white, 60);
   ASSERT_GT(distance(farthest), 40.0);
-
-  viewer.window().key("v");
-  viewer.control("Legend of rays");
   EXPECT_FALSE(viewer.hasControl("Explain/details of Ray 1"));
   viewer.window().click(farthest.first, farthest.second);
   viewer.control("Explain/details of Ray 1");

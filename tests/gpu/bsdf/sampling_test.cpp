@@ -239,9 +239,11 @@ class BsdfSampling : public BsdfTest {
 
 // Returns true if the cells of mixtures are fine enough. For the other cases, mixing_test.cpp and the tests of single
 // lobes apply. A narrow clearcoat has its peak away from the pole, around its own normal. At the most grazing angle the
-// horizon is too near for narrow lobes and for refraction.
+// horizon is too near for narrow lobes and for refraction. The cells are made for the smaller width of an anisotropic lobe,
+// which is wider in the other direction.
 bool cellsFit(const BsdfCase& c) {
   const bool solid = c.transmission > 0.0f && !c.thin;
+  if (c.anisotropy > 0.0f && (c.alpha < 0.02f || c.wo.z < 0.05f || (solid && c.wo.z < 0.3f))) return false;
   const float coat = c.clearcoat > 0.0f ? c.clearcoatAlpha : 1.0f;
   if (c.ior == 1.15f) return false;
   if (c.wo.z < 0.05f) return std::min(c.alpha, coat) >= 0.1f && !solid;
