@@ -88,12 +88,20 @@ const std::string kBothWays = kBsdfPrelude + R"(
     wi = reflect(-wo, m);
     if (c.transmission > 0.0 && index % 2u == 0u)
       wi = c.thin != 0u ? vec3(wi.xy, -wi.z) : refract(-wo, m, c.entering != 0u ? 1.0 / c.ior : c.ior);
-    // Skip directions where light leaves the solid near the critical angle: 1 - Fresnel depends on g^2 there, which goes
-    // to 0 as dot(wo, m)^2 does and has an absolute error of about 1e-7. wi is 0 for total reflection.
-    if (wi.z < 0.0 && c.thin == 0u && min(dot(wo, m), -dot(wi, m)) < 0.05) return Out(vec3(0.0), vec3(0.0));
-    if (dot(wi, wi) == 0.0) return Out(vec3(0.0), vec3(0.0));
+    if (dot(wi, wi) == 0.0) return Out(vec3(0.0), vec3(0.0));  // total reflection
     wi = normalize(wi);
+  #else
+    vec3 m = normalize(wo + (c.entering != 0u ? c.ior : 1.0 / c.ior) * wi);
+    m = m.z < 0.0 ? -m : m;
   #endif
+    // Skip directions where light leaves the solid near the critical angle: 1 - Fresnel depends on g^2 there, which goes
+    // to 0 as dot(wo, m)^2 does and has an absolute error of about 1e-7. Few arbitrary directions of isotropic lobes that
+    // are narrow enough for this error are bright enough to be compared.
+    bool narrow = c.anisotropy > 0.0;
+  #ifdef IN_THE_LOBE
+    narrow = true;
+  #endif
+    if (narrow && wi.z < 0.0 && c.thin == 0u && min(dot(wo, m), -dot(wi, m)) < 0.05) return Out(vec3(0.0), vec3(0.0));
     if (abs(wi.z) < 0.01) wi = vec3(0.0, 0.0, 1.0);
     vec3 forward = evalOf(c, wo, wi);
     if (wi.z > 0.0) return Out(forward, evalOf(c, wi, wo));
@@ -120,9 +128,7 @@ TEST_F(BsdfLobes, Reciprocity) {
           const double size = std::max(glm::length(out.forward), glm::length(out.backward));
           if (size < 1e-3) continue;  // far from the peak of a narrow lobe, float has few significant digits
           ++compared;
-          // Rough anisotropic glass sums 40 micronormals in float.
-          const double tolerance = solid && !named.material.thin && named.material.anisotropy > 0.0f ? 1e-2 : 2e-3;
-          ASSERT_LE(relativeDifference(out.forward, out.backward), tolerance) << named.name << " " << inTheLobe;
+          ASSERT_LE(relativeDifference(out.forward, out.backward), 2e-3) << named.name << " " << inTheLobe;
         }
         EXPECT_GT(compared, inTheLobe ? 5000u : alpha < 0.1f ? 5u : 2000u) << named.name;
       }
