@@ -30,6 +30,10 @@ PendingScene beginLoading(const std::filesystem::path& file, const LoadOptions& 
   // The content is read only if the name does not determine the format.
   SceneFormat format = sceneFormat(file, {});
   if (format == SceneFormat::none) format = sceneFormat(file, readFile(file));
+  if (format == SceneFormat::toml && options.animation && !options.animation->empty())
+    throw UsageError(
+        fmt::format("{}: no animation '{}': only glTF files have named animations; a scene file has keyframes",
+                    file.string(), *options.animation));
   if (format == SceneFormat::toml) return PendingScene(loadSceneToml(file, options));
   return beginLoadingGltf(file, options);  // also reports the problem of a file without a known format
 }

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "scene/load_options.h"
@@ -20,7 +21,7 @@ enum class SceneFormat { none, gltf, toml };
 SceneFormat sceneFormat(const std::filesystem::path& file, std::span<const std::byte> content);
 
 // Reads the file except for its image data; a TOML scene is read completely. Throws FileError with the location in the
-// file ("/accessors/3/bufferView", "line 3"), UsageError if the scene or the variant does not exist,
+// file ("/accessors/3/bufferView", "line 3"), UsageError if the scene, the variant or the animation does not exist,
 // MemoryError. finish() throws as well, for images.
 PendingScene beginLoading(const std::filesystem::path& file, const LoadOptions& options = {});
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/animation/deform.h"
 
+#include "base/parallel.h"
+
 namespace quintet::scene {
 namespace {
 
@@ -34,7 +36,8 @@ void applyMorphTarget(Geometry& geometry, const MorphTarget& target, float weigh
 }
 
 void applySkin(Geometry& geometry, std::span<const SkinSet> sets, std::span<const mat4> matrices) {
-  for (std::size_t i = 0; i < geometry.positions.size(); ++i) {
+  constexpr std::size_t kVerticesPerTask = 8192;
+  const auto skin = [&](std::size_t i) {
     float sum = 0.0f;
     for (const SkinSet& set : sets) sum += set.weights[i].x + set.weights[i].y + set.weights[i].z + set.weights[i].w;
     mat4 blended(0.0f);
@@ -46,7 +49,17 @@ void applySkin(Geometry& geometry, std::span<const SkinSet> sets, std::span<cons
       blended = matrices[sets[0].joints[i].x];  // without a weight, the first joint applies
     }
     transformVertex(geometry, i, blended);
-  }
+  };
+  parallelRanges(
+      geometry.positions.size(),
+      [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) skin(i);
+      },
+      kVerticesPerTask);
+}
+
+void transformVertices(Geometry& geometry, const mat4& matrix) {
+  for (std::size_t i = 0; i < geometry.positions.size(); ++i) transformVertex(geometry, i, matrix);
 }
 
 void applyTransform(Geometry& geometry, const mat4& matrix) {
@@ -54,7 +67,7 @@ void applyTransform(Geometry& geometry, const mat4& matrix) {
     geometry.normals.clear();
     geometry.tangents.clear();
   }
-  for (std::size_t i = 0; i < geometry.positions.size(); ++i) transformVertex(geometry, i, matrix);
+  transformVertices(geometry, matrix);
 }
 
 }  // namespace quintet::scene

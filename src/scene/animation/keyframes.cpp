@@ -16,22 +16,15 @@ mat4 worldFromObjectAt(const Instance& instance, float frame) {
   const std::vector<Keyframe>& keys = instance.keyframes;
   if (keys.empty()) return instance.worldFromObject;
   const auto next = std::ranges::upper_bound(keys, frame, {}, &Keyframe::frame);
-  if (next == keys.begin()) return matrixOf(keys.front()) * instance.keyframeFromObject;
-  if (next == keys.end()) return matrixOf(keys.back()) * instance.keyframeFromObject;
+  if (next == keys.begin()) return matrixOf(keys.front()) * instance.animatedFromObject;
+  if (next == keys.end()) return matrixOf(keys.back()) * instance.animatedFromObject;
   const Keyframe& a = *(next - 1);
   const Keyframe& b = *next;
   const float t = (frame - a.frame) / (b.frame - a.frame);
   const Keyframe between{frame, glm::mix(a.translation, b.translation, t),
                          glm::slerp(glm::normalize(a.rotation), glm::normalize(b.rotation), t),
                          glm::mix(a.scale, b.scale, t)};
-  return matrixOf(between) * instance.keyframeFromObject;
-}
-
-float lastKeyframe(const Scene& scene) {
-  float last = 0.0f;
-  for (const Instance& instance : scene.instances)
-    if (!instance.keyframes.empty()) last = std::max(last, instance.keyframes.back().frame);
-  return last;
+  return matrixOf(between) * instance.animatedFromObject;
 }
 
 }  // namespace quintet::scene

@@ -10,12 +10,9 @@ namespace quintet::scene {
 // translate · rotate · scale.
 mat4 matrixOf(const Keyframe&);
 
-// Interpolated keyframe · keyframeFromObject: linear for translation and scale, spherical along the shorter arc for the
+// Interpolated keyframe · animatedFromObject: linear for translation and scale, spherical along the shorter arc for the
 // rotation. Constant before the first and after the last keyframe. Without keyframes, worldFromObject.
 mat4 worldFromObjectAt(const Instance&, float frame);
-
-// Last frame at which anything changes; 0 without animation.
-float lastKeyframe(const Scene&);
 
 }  // namespace quintet::scene
 #endif

@@ -89,6 +89,7 @@ void dropUnusedVertices(Geometry& geometry) {
   compact(geometry.normals);
   compact(geometry.tangents);
   compact(geometry.colors);
+  compact(geometry.fileVertices);
   for (auto& set : geometry.uvs) compact(set);
   std::uint32_t next = 0;
   for (std::uint32_t& index : newIndex) index = index != 0 ? next++ : 0;

@@ -20,6 +20,7 @@ std::uint32_t duplicateVertex(Geometry& geometry, std::uint32_t index) {
   appendCopy(geometry.positions, index);
   appendCopy(geometry.normals, index);
   appendCopy(geometry.colors, index);
+  appendCopy(geometry.fileVertices, index);
   for (auto& set : geometry.uvs) appendCopy(set, index);
   return copy;
 }
@@ -115,6 +116,7 @@ void splitIntoFlatTriangles(Geometry& geometry) {
   };
   gather(geometry.positions);
   gather(geometry.colors);
+  gather(geometry.fileVertices);
   for (auto& set : geometry.uvs) gather(set);
   geometry.normals.assign(geometry.positions.size(), vec3(0.0f));
   geometry.tangents.clear();
@@ -173,7 +175,7 @@ bool addTangents(Scene& scene, std::size_t material) {
   bool changed = false;
   for (Mesh& mesh : scene.meshes)
     for (Geometry& geometry : mesh.geometries)
-      if (geometry.material == static_cast<int>(material))
+      if (geometry.material == static_cast<int>(material) && !mesh.deformation)
         changed = addTangents(geometry, scene.materials[material]) || changed;
   return changed;
 }

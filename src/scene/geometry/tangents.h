@@ -20,7 +20,8 @@ void generateTangents(Geometry&, const TextureUse& use);
 // them use one frame: that of the normal map, else of the clear coat's normal map, else of the anisotropy texture, else
 // of the first texture coordinates. Returns whether the geometry has changed.
 bool addTangents(Geometry&, const Material&);
-// The same for all geometries with this material of the scene. Returns whether one has changed.
+// The same for all geometries with this material of the scene, except those of deformed meshes, whose vertices must
+// stay. Returns whether one has changed.
 bool addTangents(Scene&, std::size_t material);
 
 // Gives each triangle its own three vertices with the face normal, for a normal map on a flat-shaded geometry.

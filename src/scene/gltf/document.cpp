@@ -240,10 +240,11 @@ void checkDependencies(const Document& document, json& checked) {
     if (!light.contains("spot")) light["spot"] = json::object();
 }
 
-// Workaround for two checks of tinygltf 2.7.0. It rejects index accessors without a buffer view, which are valid
+// Workaround for three checks of tinygltf 2.7.0. It rejects index accessors without a buffer view, which are valid
 // (Draco, sparse): here they refer to an extra view. It rejects strides that are no multiple of four, which are
-// harmless: they are removed and put back. Tests: GltfSparse.ReadsIndicesWithoutBufferView,
-// GltfAccessor.ReadsOddStrides.
+// harmless: they are removed and put back. It drops animation channels without a node, which the report lists: their
+// node becomes kNone. Tests: GltfSparse.ReadsIndicesWithoutBufferView, GltfAccessor.ReadsOddStrides,
+// GltfAnimations.ReportChannelsThatCannotPlay.
 tinygltf::Model parseModel(const Document& document, json& checked) {
   json& views = checked["bufferViews"];
   const std::size_t viewCount = views.size();  // 0 for null
@@ -256,6 +257,10 @@ tinygltf::Model parseModel(const Document& document, json& checked) {
   if (const auto accessors = checked.find("accessors"); accessors != checked.end())
     for (json& accessor : *accessors)
       if (!accessor.contains("bufferView")) accessor["bufferView"] = viewCount;
+  if (const auto animations = checked.find("animations"); animations != checked.end())
+    for (json& animation : *animations)
+      for (json& channel : animation["channels"])
+        if (!channel["target"].contains("node")) channel["target"]["node"] = kNone;
 
   tinygltf::Model model;
   tinygltf::TinyGLTF parser;
@@ -395,8 +400,6 @@ Document readDocument(const std::filesystem::path& file, bool allowExternal, std
   json& checked = schema.json;
   document.unread = std::move(schema.unread);
   document.extensionUses = std::move(schema.extensions);
-  if (const auto animations = root.find("animations"); animations != root.end() && animations->is_array())
-    document.animationCount = animations->size();
   document.metadata = readMetadata(checked);
   checkVersion(document, checked["asset"]);
   checkDependencies(document, checked);

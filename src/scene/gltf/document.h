@@ -49,7 +49,6 @@ struct Document {
   // long as nothing reads it.
   std::vector<std::span<const std::byte>> bufferViews;
   std::vector<MetadataEntry> metadata;
-  std::size_t animationCount = 0;
   std::vector<UnreadProperty> unread;                   // of the JSON
   std::map<std::string, ExtensionUse> extensionUses{};  // objects of supported extensions, by name
   std::vector<std::filesystem::path> files;             // this file, and the files that its buffers and images name

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "base/stopwatch.h"
+#include "scene/animation/pose.h"
 #include "scene/gltf/accessor.h"
+#include "scene/gltf/animations.h"
 #include "scene/gltf/extensions.h"
 #include "scene/gltf/instances.h"
 #include "scene/gltf/inventory.h"
@@ -40,21 +42,23 @@ void readHeader(const Document& document, Scene& scene) {
   reportExtensions(document.model.extensionsUsed, scene.report);
   scene.report.variants = variantNames(document);
   scene.report.metadata = document.metadata;
-  scene.report.ignoredAnimations = document.animationCount;
-  if (document.animationCount > 0)
-    scene.report.ignored.push_back(
-        fmt::format("/animations: {} not played; the rest pose is used", document.animationCount));
+  scene.report.animations = summarizeAnimations(document, scene.report);
 }
 
 // Adds the instances and the light of each visible node, and the camera of each node.
-void readSceneNodes(const Document& document, const NodeTree& tree, InstanceBuilder& instances, Scene& scene) {
+void readSceneNodes(const Document& document, const NodeTree& tree, const PlayedAnimation& animation,
+                    InstanceBuilder& instances, Scene& scene) {
   for (const int index : tree.sceneNodes) {
     const auto i = static_cast<std::size_t>(index);
     const tinygltf::Node& node = document.model.nodes[i];
+    const std::size_t firstCamera = scene.cameras.size(), firstLight = scene.lights.size();
     if (tree.visible[i]) instances.addNode(index);
     if (node.camera != kNone) scene.cameras.push_back(readCamera(document, node.camera, node, tree.worldFromNode[i]));
     const tinygltf::Value* light = findExtension(node.extensions, kPunctualLights);
     if (light && tree.visible[i]) readLight(document, indexOf(*light, "light"), node, tree.worldFromNode[i], scene);
+    if (!animation.movesNode(index)) continue;
+    for (std::size_t k = firstCamera; k < scene.cameras.size(); ++k) scene.cameras[k].node = index;
+    for (std::size_t k = firstLight; k < scene.lights.size(); ++k) scene.lights[k].node = index;
   }
 }
 
@@ -96,10 +100,15 @@ PendingScene begin(const std::filesystem::path& path, const LoadOptions& options
   const NodeTree tree = readNodes(document, findScene(document, options.scene), scene.report);
   TextureTable textures(document, scene.report);
   scene.materials = readMaterials(document, textures, scene.report);
-  InstanceBuilder instances(document, tree, scene.report);
-  readSceneNodes(document, tree, instances, scene);
+  PlayedAnimation animation;
+  if (options.animation) animation = playAnimation(document, tree, *options.animation, options.framesPerSecond);
+  scene.nodeAnimation = animation.data;
+  if (!animation.data) scene.report.ignoredAnimations = scene.report.animations.size();
+  InstanceBuilder instances(document, tree, animation, scene.report);
+  readSceneNodes(document, tree, animation, instances, scene);
   scene.seconds.document = watch.lap();
   instances.finish(scene, *document.budget);
+  if (scene.nodeAnimation) applyPose(scene, poseAt(scene.nodeAnimation.get(), 0.0));
   scene.seconds.meshes = watch.lap();
 
   scene.textures = textures.textures();

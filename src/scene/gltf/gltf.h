@@ -15,7 +15,7 @@ namespace quintet::scene {
 
 // Reads everything except image data, using all cores for the meshes. The result is described unless a used image is in
 // a separate file or has an invalid header. Throws FileError with the location in the file
-// ("/accessors/3/bufferView", "line 3, column 7", "byte 12"), UsageError if options.scene or options.variant does not
+// ("/accessors/3/bufferView", "line 3, column 7", "byte 12"), UsageError if options.scene, variant or animation does not
 // exist, MemoryError.
 // finish() decodes the images on all cores; it throws FileError and MemoryError.
 // `budget`: shared with other files; null means one of its own with options.maxMemory.

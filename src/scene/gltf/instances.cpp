@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <set>
 
 #include "base/parallel.h"
@@ -45,14 +46,14 @@ bool hasJoints(const tinygltf::Mesh& mesh) {
 }
 
 // Estimated bytes of a geometry, for the memory budget.
-std::size_t estimateBytes(const tinygltf::Model& model, int mesh, int primitiveIndex) {
+std::size_t estimateBytes(const tinygltf::Model& model, int mesh, int primitiveIndex, bool animated) {
   const tinygltf::Primitive& primitive =
       model.meshes[static_cast<std::size_t>(mesh)].primitives[static_cast<std::size_t>(primitiveIndex)];
   if (primitive.mode < TINYGLTF_MODE_TRIANGLES) return 0;
   const auto count = [&](int accessor) { return model.accessors[static_cast<std::size_t>(accessor)].count; };
   std::size_t bytes = primitive.indices == kNone ? 0 : sizeof(uvec3) * count(primitive.indices);
   for (const auto& [name, accessor] : primitive.attributes)
-    if (!name.starts_with('_')) bytes += sizeof(vec4) * count(accessor);
+    if (!name.starts_with('_')) bytes += (animated ? 2 : 1) * sizeof(vec4) * count(accessor);
   for (const auto& target : primitive.targets)
     for (const auto& [name, accessor] : target) bytes += sizeof(vec3) * count(accessor);
   return bytes;
@@ -65,8 +66,9 @@ void appendUnique(std::vector<std::string>& lines, std::set<std::string>& seen, 
 
 }  // namespace
 
-InstanceBuilder::InstanceBuilder(const Document& document, const NodeTree& tree, Report& report)
-    : document_(document), tree_(tree), report_(report) {
+InstanceBuilder::InstanceBuilder(const Document& document, const NodeTree& tree, const PlayedAnimation& animation,
+                                 Report& report)
+    : document_(document), tree_(tree), animation_(animation), report_(report) {
   for (std::size_t i = 0; i < document.model.meshes.size(); ++i) checkMorphTargets(document, static_cast<int>(i));
 }
 
@@ -94,32 +96,60 @@ void InstanceBuilder::addNode(int index) {
     if (hasJoints(mesh)) return addSkinned(index);
     report_.ignored.push_back(fmt::format("/nodes/{}/skin: the mesh has no JOINTS_0 and WEIGHTS_0", index));
   }
-  for (const mat4& transform : instanceTransforms(index)) addRigid(index, transform);
+  for (const Transform& transform : instanceTransforms(index)) addRigid(index, transform);
 }
 
-void InstanceBuilder::addInstance(int index, int pose, const mat4& worldFromObject) {
+Instance& InstanceBuilder::addInstance(int index, int pose, const mat4& worldFromObject) {
   if (instances_.size() == kMaxInstances)
     document_.fail(fmt::format("/nodes/{}", index), fmt::format("more than {} instances", kMaxInstances));
   Instance& instance = instances_.emplace_back();
   instance.name = document_.model.nodes[static_cast<std::size_t>(index)].name;
   instance.mesh = pose;
   instance.worldFromObject = worldFromObject;
+  return instance;
+}
+
+int InstanceBuilder::animatedPose(int index) {
+  const auto [known, isNew] = animated_.try_emplace(index, static_cast<int>(poses_.size()));
+  if (!isNew) return known->second;
+  const tinygltf::Node& node = document_.model.nodes[static_cast<std::size_t>(index)];
+  const bool skinned = node.skin != kNone && hasJoints(document_.model.meshes[static_cast<std::size_t>(node.mesh)]);
+  Pose pose{.mesh = node.mesh, .deformation = {.animated = true}, .node = index};
+  if (skinned) {
+    pose.skin = node.skin;
+    pose.deformation.jointCount = document_.model.skins[static_cast<std::size_t>(node.skin)].joints.size();
+  }
+  poses_.push_back(std::move(pose));
+  return known->second;
 }
 
 // glTF 2.0 section 3.7.3.3: the joints' transforms apply, the node's own does not.
 void InstanceBuilder::addSkinned(int index) {
   const auto i = static_cast<std::size_t>(index);
   const tinygltf::Node& node = document_.model.nodes[i];
-  const int pose = newPose(node.mesh, {node.weights, jointMatrices(index), tree_.worldFromNode[i]});
+  const int pose = animation_.movesSkin(document_, index)
+                       ? animatedPose(index)
+                       : newPose(node.mesh, {node.weights, jointMatrices(index), tree_.worldFromNode[i]});
   addInstance(index, pose, mat4(1.0f));
 }
 
-void InstanceBuilder::addRigid(int index, const mat4& worldFromObject) {
+void InstanceBuilder::addRigid(int index, const Transform& transform) {
   const tinygltf::Node& node = document_.model.nodes[static_cast<std::size_t>(index)];
-  switch (rankOf(worldFromObject)) {
-    case Rank::full: addInstance(index, sharedPose(node.mesh, node.weights), worldFromObject); return;
+  const bool moves = animation_.movesNode(index), morphs = animation_.morphsNode(index);
+  const auto pose = [&] { return morphs ? animatedPose(index) : sharedPose(node.mesh, node.weights); };
+  if (moves) {
+    Instance& instance = addInstance(index, pose(), transform.worldFromObject);
+    instance.node = index;
+    instance.animatedFromObject = transform.nodeFromObject;
+    return;
+  }
+  switch (rankOf(transform.worldFromObject)) {
+    case Rank::full: addInstance(index, pose(), transform.worldFromObject); return;
     case Rank::plane:  // flattened by a zero scale: visible, but without an inverse
-      addInstance(index, newPose(node.mesh, {node.weights, {}, worldFromObject}), mat4(1.0f));
+      if (morphs)
+        report_.ignored.push_back(
+            fmt::format("/nodes/{}: the scale flattens the mesh; its weights do not move", index));
+      addInstance(index, newPose(node.mesh, {node.weights, {}, transform.worldFromObject}), mat4(1.0f));
       return;
     case Rank::less:
       report_.ignored.push_back(fmt::format("/nodes/{}: the scale flattens the mesh to a line or a point", index));
@@ -131,26 +161,18 @@ std::vector<mat4> InstanceBuilder::jointMatrices(int index) const {
   const int skinIndex = document_.model.nodes[static_cast<std::size_t>(index)].skin;
   const tinygltf::Skin& skin = document_.model.skins[static_cast<std::size_t>(skinIndex)];
   document_.budget->take(skin.joints.size() * sizeof(mat4));
-  std::vector<mat4> matrices(skin.joints.size(), mat4(1.0f));
-  if (skin.inverseBindMatrices != kNone) {
-    const std::string location = fmt::format("/skins/{}/inverseBindMatrices", skinIndex);
-    const std::vector<mat4> inverseBind = readMat4(document_, skin.inverseBindMatrices, location);
-    if (inverseBind.size() < matrices.size())
-      document_.fail(location, fmt::format("{} for {}", counted(inverseBind.size(), "matrix", "matrices"),
-                                           counted(matrices.size(), "joint")));
-    std::copy_n(inverseBind.begin(), matrices.size(), matrices.begin());
-  }
+  std::vector<mat4> matrices = readInverseBindMatrices(document_, static_cast<std::size_t>(skinIndex));
   for (std::size_t i = 0; i < matrices.size(); ++i)
     matrices[i] = tree_.worldFromNode[static_cast<std::size_t>(skin.joints[i])] * matrices[i];
   return matrices;
 }
 
 // One transform per instance of EXT_mesh_gpu_instancing, or the node's own.
-std::vector<mat4> InstanceBuilder::instanceTransforms(int index) const {
+std::vector<InstanceBuilder::Transform> InstanceBuilder::instanceTransforms(int index) const {
   const tinygltf::Node& node = document_.model.nodes[static_cast<std::size_t>(index)];
   const mat4& worldFromNode = tree_.worldFromNode[static_cast<std::size_t>(index)];
   const tinygltf::Value* extension = findExtension(node.extensions, kInstancing);
-  if (!extension) return {worldFromNode};
+  if (!extension) return {{.worldFromObject = worldFromNode}};
 
   const tinygltf::Value& attributes = extension->Get("attributes");
   const std::string location = fmt::format("/nodes/{}/extensions/{}/attributes", index, kInstancing);
@@ -168,16 +190,16 @@ std::vector<mat4> InstanceBuilder::instanceTransforms(int index) const {
 
   if (instances_.size() + count > kMaxInstances)
     document_.fail(location, fmt::format("more than {} instances", kMaxInstances));
-  document_.budget->take(count * (sizeof(Instance) + sizeof(mat4)));
-  std::vector<mat4> transforms;
+  document_.budget->take(count * (sizeof(Instance) + sizeof(Transform)));
+  std::vector<Transform> transforms;
   transforms.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     const mat4 local(composeTransform(translations.empty() ? vec3(0.0f) : translations[i],
                                       rotations.empty() ? vec4(0, 0, 0, 1) : rotations[i],
                                       scales.empty() ? vec3(1.0f) : scales[i]));
-    transforms.push_back(worldFromNode * local);
+    transforms.push_back({worldFromNode * local, local});
     for (std::size_t column = 0; column < 4; ++column)
-      if (!isFinite(vec3(transforms.back()[column])))
+      if (!isFinite(vec3(transforms.back().worldFromObject[column])))
         document_.fail(location, fmt::format("the transform of instance {} is not finite", i));
   }
   return transforms;
@@ -201,14 +223,15 @@ void InstanceBuilder::finish(Scene& scene, MemoryBudget& budget) {
   }
   const auto run = [&](Job& job) {
     const Pose& pose = poses_[job.pose];
-    budget.take(estimateBytes(document_.model, pose.mesh, job.primitive));
+    budget.take(estimateBytes(document_.model, pose.mesh, job.primitive, pose.deformation.animated));
     job.result = readGeometry(document_, scene.materials, pose.mesh, job.primitive, pose.deformation);
     if (!pose.instanced) job.result = {};
   };
   // Large primitives one after the other, each on all cores; then all small ones in parallel.
   std::vector<Job*> small;
   for (Job& job : jobs) {
-    if (estimateBytes(document_.model, poses_[job.pose].mesh, job.primitive) > kLargeBytes) {
+    const Pose& pose = poses_[job.pose];
+    if (estimateBytes(document_.model, pose.mesh, job.primitive, pose.deformation.animated) > kLargeBytes) {
       run(job);
     } else {
       small.push_back(&job);
@@ -218,8 +241,12 @@ void InstanceBuilder::finish(Scene& scene, MemoryBudget& budget) {
 
   std::vector<Mesh> meshes(poses_.size());
   std::set<std::string> ignored, repaired;
+  std::vector<MeshDeformation> deformations(poses_.size());
   for (Job& job : jobs) {
-    if (job.result.geometry) meshes[job.pose].geometries.push_back(std::move(*job.result.geometry));
+    if (job.result.geometry) {
+      meshes[job.pose].geometries.push_back(std::move(*job.result.geometry));
+      deformations[job.pose].geometries.push_back(std::move(job.result.deformation));
+    }
     appendUnique(report_.ignored, ignored, job.result.ignored);
     appendUnique(report_.repaired, repaired, job.result.repaired);
   }
@@ -227,6 +254,11 @@ void InstanceBuilder::finish(Scene& scene, MemoryBudget& budget) {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     if (meshes[i].geometries.empty()) continue;
     meshes[i].name = document_.model.meshes[static_cast<std::size_t>(poses_[i].mesh)].name;
+    if (poses_[i].deformation.animated) {
+      deformations[i].node = poses_[i].node;
+      deformations[i].skin = poses_[i].skin;
+      meshes[i].deformation = std::make_shared<MeshDeformation>(std::move(deformations[i]));
+    }
     meshOf[i] = static_cast<int>(scene.meshes.size());
     scene.meshes.push_back(std::move(meshes[i]));
   }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "scene/gltf/animations.h"
 #include "scene/gltf/mesh.h"
 #include "scene/gltf/nodes.h"
 #include "scene/memory_budget.h"
@@ -15,7 +16,7 @@ namespace quintet::scene {
 
 class InstanceBuilder {
  public:
-  InstanceBuilder(const Document&, const NodeTree&, Report&);
+  InstanceBuilder(const Document&, const NodeTree&, const PlayedAnimation&, Report&);
 
   // Adds the instances of a node of the scene. Throws FileError.
   void addNode(int node);
@@ -29,20 +30,30 @@ class InstanceBuilder {
     int mesh;
     Deformation deformation;
     bool instanced = true;
+    int node = kNone;  // of an animated deformation
+    int skin = kNone;  // of an animated deformation
+  };
+  // An instance of a node's mesh.
+  struct Transform {
+    mat4 worldFromObject{1.0f};
+    mat4 nodeFromObject{1.0f};  // of EXT_mesh_gpu_instancing
   };
   int sharedPose(int mesh, const std::vector<double>& morphWeights);
   int newPose(int mesh, Deformation deformation);
+  int animatedPose(int node);  // of a mesh that the animation deforms
   void addSkinned(int node);
-  void addInstance(int node, int pose, const mat4& worldFromObject);
-  void addRigid(int node, const mat4& worldFromObject);
+  Instance& addInstance(int node, int pose, const mat4& worldFromObject);
+  void addRigid(int node, const Transform& transform);
   std::vector<mat4> jointMatrices(int node) const;
-  std::vector<mat4> instanceTransforms(int node) const;
+  std::vector<Transform> instanceTransforms(int node) const;
 
   const Document& document_;
   const NodeTree& tree_;
+  const PlayedAnimation& animation_;
   Report& report_;
   std::vector<Pose> poses_;
   std::map<std::pair<int, std::vector<double>>, int> shared_;  // mesh and morph weights → index into poses_
+  std::map<int, int> animated_;                                // node → index into poses_
   std::vector<Instance> instances_;                            // Instance::mesh is an index into poses_ until finish
 };
 

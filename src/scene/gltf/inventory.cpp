@@ -310,9 +310,9 @@ class Inventory {
 
   void listAnimations() {
     const std::string* text = ignored_->at("/animations");
-    if (document_.animationCount > 0)
+    if (!document_.model.animations.empty())
       table_.add("animation", "", "/animations", text ? FeatureUse::ignored : FeatureUse::used,
-                 text ? *text : std::string(), document_.animationCount);
+                 text ? *text : std::string(), document_.model.animations.size());
   }
 
   void listLights() {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <exception>
 #include <functional>
+#include <numeric>
 #include <span>
 
 #include "base/parallel.h"
@@ -103,7 +104,7 @@ class PrimitiveReader {
   Geometry readAttributes() const;
   // Indexed or not. Every index is below vertexCount.
   std::vector<uvec3> readTriangles(std::size_t vertexCount) const;
-  // JOINTS_0/WEIGHTS_0 and JOINTS_1/WEIGHTS_1; empty without a skin. Every joint is below jointCount.
+  // JOINTS_0/WEIGHTS_0, JOINTS_1/WEIGHTS_1 and so on; empty without a skin. Every joint is below jointCount.
   std::vector<SkinSet> readSkinSets(std::size_t vertexCount, std::size_t jointCount) const;
   MorphTarget readMorphTarget(std::size_t index, const Geometry& base) const;
 
@@ -199,8 +200,8 @@ std::vector<uvec3> PrimitiveReader::readTriangles(std::size_t vertexCount) const
 
 std::vector<SkinSet> PrimitiveReader::readSkinSets(std::size_t vertexCount, std::size_t jointCount) const {
   std::vector<SkinSet> sets;
-  for (const char* number : {"0", "1"}) {
-    const std::string jointsName = std::string("JOINTS_") + number, weightsName = std::string("WEIGHTS_") + number;
+  for (std::size_t number = 0;; ++number) {
+    const std::string jointsName = fmt::format("JOINTS_{}", number), weightsName = fmt::format("WEIGHTS_{}", number);
     const auto joints = primitive_.attributes.find(jointsName), weights = primitive_.attributes.find(weightsName);
     if (joints == primitive_.attributes.end() || weights == primitive_.attributes.end()) break;
     SkinSet set;
@@ -243,8 +244,8 @@ MorphTarget PrimitiveReader::readMorphTarget(std::size_t index, const Geometry& 
 void reportAttributes(const tinygltf::Primitive& primitive, const std::string& location, GeometryResult& result) {
   for (const auto& [name, accessor] : primitive.attributes) {
     const bool used = name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name == "TEXCOORD_0" ||
-                      name == "TEXCOORD_1" || name == "COLOR_0" || name == "JOINTS_0" || name == "JOINTS_1" ||
-                      name == "WEIGHTS_0" || name == "WEIGHTS_1";
+                      name == "TEXCOORD_1" || name == "COLOR_0" || name.starts_with("JOINTS_") ||
+                      name.starts_with("WEIGHTS_");
     if (!used && !name.starts_with('_'))
       result.ignored.push_back(fmt::format("{}/attributes/{}: attribute not supported", location, name));
   }
@@ -266,6 +267,39 @@ void deform(Geometry& geometry, const PrimitiveReader& reader, const tinygltf::M
     if (!sets.empty()) return applySkin(geometry, sets, deformation.jointMatrices);
   }
   if (deformation.bake) applyTransform(geometry, *deformation.bake);
+}
+
+// What an animation needs to deform the vertices of the primitive, in the order of the file.
+void readDeformation(GeometryDeformation& deformation, const PrimitiveReader& reader, const Geometry& geometry,
+                     std::size_t jointCount) {
+  for (std::size_t i = 0; i < reader.primitive().targets.size(); ++i)
+    deformation.targets.push_back(reader.readMorphTarget(i, geometry));
+  if (jointCount > 0) deformation.skinSets = reader.readSkinSets(geometry.positions.size(), jointCount);
+}
+
+// Brings the deformation into the order of the vertices of the geometry, and adds the undeformed attributes.
+void finishDeformation(GeometryDeformation& deformation, Geometry& geometry, bool faceNormals) {
+  const auto gather = [&](auto& values) {
+    if (values.empty()) return;
+    std::remove_reference_t<decltype(values)> gathered;
+    gathered.reserve(geometry.fileVertices.size());
+    for (const std::uint32_t vertex : geometry.fileVertices) gathered.push_back(values[vertex]);
+    values = std::move(gathered);
+  };
+  for (MorphTarget& target : deformation.targets) {
+    gather(target.positions);
+    gather(target.normals);
+    gather(target.tangents);
+  }
+  for (SkinSet& set : deformation.skinSets) {
+    gather(set.joints);
+    gather(set.weights);
+  }
+  deformation.positions = geometry.positions;
+  deformation.normals = geometry.normals;
+  deformation.tangents = geometry.tangents;
+  deformation.faceNormals = faceNormals;
+  geometry.fileVertices = {};
 }
 
 void repair(Geometry& geometry, const std::string& location, GeometryResult& result) {
@@ -305,14 +339,22 @@ GeometryResult readGeometry(const Document& document, const std::vector<Material
   Geometry geometry = reader.readAttributes();
   geometry.triangles = reader.readTriangles(geometry.positions.size());
   geometry.material = reader.primitive().material;
-  deform(geometry, reader, mesh, deformation);
+  if (deformation.animated) {
+    readDeformation(result.deformation, reader, geometry, deformation.jointCount);
+    geometry.fileVertices.resize(geometry.positions.size());
+    std::iota(geometry.fileVertices.begin(), geometry.fileVertices.end(), 0u);
+  } else {
+    deform(geometry, reader, mesh, deformation);
+  }
   repair(geometry, location, result);
   if (geometry.triangles.empty()) {
     result.ignored.push_back(location + ": no triangles");
     return result;
   }
   dropUnusedVertices(geometry);
+  const bool flat = geometry.normals.empty();
   if (geometry.material != kNone) addTangents(geometry, materials[static_cast<std::size_t>(geometry.material)]);
+  if (deformation.animated) finishDeformation(result.deformation, geometry, flat && !geometry.normals.empty());
   result.geometry = std::move(geometry);
   return result;
 }

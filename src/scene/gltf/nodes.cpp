@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include "base/error.h"
 #include "base/plural.h"
 #include "base/text.h"
 #include "scene/geometry/repair.h"
+#include "scene/gltf/accessor.h"
 #include "scene/gltf/extensions.h"
 
 namespace quintet::scene {
@@ -21,28 +23,6 @@ namespace {
 using glm::dmat4;
 using glm::dvec3;
 using glm::dvec4;
-
-dmat4 localTransform(const Document& document, std::size_t index) {
-  const tinygltf::Node& node = document.model.nodes[index];
-  if (node.matrix.empty()) {
-    const auto at = [](const std::vector<double>& v, std::size_t i, double fallback) {
-      return v.empty() ? fallback : v[i];
-    };
-    const auto &t = node.translation, &r = node.rotation, &s = node.scale;
-    return composeTransform({at(t, 0, 0), at(t, 1, 0), at(t, 2, 0)},
-                            {at(r, 0, 0), at(r, 1, 0), at(r, 2, 0), at(r, 3, 1)},
-                            {at(s, 0, 1), at(s, 1, 1), at(s, 2, 1)});
-  }
-  dmat4 matrix;
-  for (std::size_t i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[i];
-  for (std::size_t column = 0; column < 4; ++column) {
-    const double expected = column == 3 ? 1.0 : 0.0;
-    if (std::abs(matrix[column][3] - expected) > 1e-4)
-      document.fail(fmt::format("/nodes/{}/matrix", index), "the last row is not 0 0 0 1");
-    matrix[column][3] = expected;
-  }
-  return matrix;
-}
 
 // Parent of each node, or kNone.
 std::vector<int> findParents(const Document& document) {
@@ -129,6 +109,41 @@ void readSpot(const tinygltf::Light& from, const std::string& location, Light& l
 
 }  // namespace
 
+dmat4 localTransform(const Document& document, std::size_t index) {
+  const tinygltf::Node& node = document.model.nodes[index];
+  if (node.matrix.empty()) {
+    const auto at = [](const std::vector<double>& v, std::size_t i, double fallback) {
+      return v.empty() ? fallback : v[i];
+    };
+    const auto &t = node.translation, &r = node.rotation, &s = node.scale;
+    return composeTransform({at(t, 0, 0), at(t, 1, 0), at(t, 2, 0)},
+                            {at(r, 0, 0), at(r, 1, 0), at(r, 2, 0), at(r, 3, 1)},
+                            {at(s, 0, 1), at(s, 1, 1), at(s, 2, 1)});
+  }
+  dmat4 matrix;
+  for (std::size_t i = 0; i < 16; ++i) matrix[i / 4][i % 4] = node.matrix[i];
+  for (std::size_t column = 0; column < 4; ++column) {
+    const double expected = column == 3 ? 1.0 : 0.0;
+    if (std::abs(matrix[column][3] - expected) > 1e-4)
+      document.fail(fmt::format("/nodes/{}/matrix", index), "the last row is not 0 0 0 1");
+    matrix[column][3] = expected;
+  }
+  return matrix;
+}
+
+std::vector<mat4> readInverseBindMatrices(const Document& document, std::size_t index) {
+  const tinygltf::Skin& skin = document.model.skins[index];
+  std::vector<mat4> matrices(skin.joints.size(), mat4(1.0f));
+  if (skin.inverseBindMatrices == kNone) return matrices;
+  const std::string location = fmt::format("/skins/{}/inverseBindMatrices", index);
+  const std::vector<mat4> inverseBind = readMat4(document, skin.inverseBindMatrices, location);
+  if (inverseBind.size() < matrices.size())
+    document.fail(location, fmt::format("{} for {}", counted(inverseBind.size(), "matrix", "matrices"),
+                                        counted(matrices.size(), "joint")));
+  std::copy_n(inverseBind.begin(), matrices.size(), matrices.begin());
+  return matrices;
+}
+
 dmat4 composeTransform(const dvec3& translation, const dvec4& rotation, const dvec3& scale) {
   const double length = glm::length(rotation);
   const dvec4 q = length > 0.0 ? rotation / length : dvec4(0, 0, 0, 1);
@@ -155,8 +170,8 @@ int findScene(const Document& document, const std::string& nameOrIndex) {
 
 NodeTree readNodes(const Document& document, int sceneIndex, Report& report) {
   const std::size_t count = document.model.nodes.size();
-  const std::vector<int> parents = findParents(document);
-  const std::vector<int> order = walk(document, rootNodes(parents));
+  std::vector<int> parents = findParents(document);
+  std::vector<int> order = walk(document, rootNodes(parents));
   if (order.size() != count) {  // nodes without a root form a cycle
     std::vector<bool> reached(count, false);
     for (const int node : order) reached[static_cast<std::size_t>(node)] = true;
@@ -183,6 +198,8 @@ NodeTree readNodes(const Document& document, int sceneIndex, Report& report) {
   }
   tree.scene = chooseScene(document, sceneIndex);
   tree.sceneNodes = walk(document, sceneRoots(document, tree.scene, parents));
+  tree.order = std::move(order);
+  tree.parents = std::move(parents);
   return tree;
 }
 

@@ -333,12 +333,21 @@ constexpr Property kRootExtensions[] = {object("KHR_lights_punctual", kRootLight
                                         object("KHR_xmp_json_ld", kRootMetadata),
                                         object("KHR_materials_variants", kRootVariants)};
 
+constexpr std::string_view kInterpolations[] = {"LINEAR", "STEP", "CUBICSPLINE"};
+constexpr Property kAnimationTarget[] = {index("node", kNodes), required(string("path"))};
+constexpr Property kAnimationChannel[] = {required(integer("sampler")), required(object("target", kAnimationTarget))};
+constexpr Property kAnimationSampler[] = {required(index("input", kAccessors)),
+                                          choice("interpolation", kInterpolations),
+                                          required(index("output", kAccessors))};
+constexpr Property kAnimation[] = {required(objects("channels", kAnimationChannel)),
+                                   required(objects("samplers", kAnimationSampler)), string("name")};
+
 constexpr Property kRoot[] = {
     required(object("asset", kAsset)),
     strings("extensionsUsed"),
     strings("extensionsRequired"),
     objects("accessors", kAccessor),
-    unreported("animations"),
+    objects("animations", kAnimation),
     objects("buffers", kBuffer),
     objects("bufferViews", kBufferView),
     objects("cameras", kCamera),

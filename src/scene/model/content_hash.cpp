@@ -9,6 +9,7 @@ namespace {
 // These are hashed as bytes, so they must not have padding.
 static_assert(sizeof(Primitive) == 3 * 4 + sizeof(mat4) && sizeof(CsgNode) == 8 && sizeof(CsgTree) == 8);
 static_assert(sizeof(Bounds3) == 24 && sizeof(Keyframe) == 44);
+static_assert(sizeof(AnimationChannel) == 8 + sizeof(std::size_t));
 
 // Hashes values field by field, because most structs have padding. The length of a vector precedes its elements.
 class Feeder {
@@ -66,16 +67,45 @@ class Feeder {
     (*this)(g.positions, g.triangles, g.normals, g.tangents, g.uvs, g.colors, g.material, g.fileTriangles);
   }
   void add(const PrimitiveSet& s) { (*this)(s.name, s.kind, s.primitives, s.nodes, s.trees, s.boxes, s.material); }
-  void add(const Mesh& m) { (*this)(m.name, m.geometries, m.primitiveSets); }
+  void add(const Mesh& m) {
+    (*this)(m.name, m.geometries, m.primitiveSets);
+    if (m.deformation) (*this)(m.deformation->node, m.deformation->skin, m.deformation->geometries);
+  }
+  void add(const MorphTarget& t) { (*this)(t.positions, t.normals, t.tangents); }
+  void add(const SkinSet& s) { (*this)(s.joints, s.weights); }
+  void add(const GeometryDeformation& d) {
+    (*this)(d.positions, d.normals, d.tangents, d.faceNormals, d.targets, d.skinSets);
+  }
   void add(const Instance& i) {
-    (*this)(i.name, i.mesh, i.worldFromObject, i.mask, i.flags, i.customIndex, i.keyframes, i.keyframeFromObject);
+    (*this)(i.name, i.mesh, i.worldFromObject, i.mask, i.flags, i.customIndex, i.keyframes, i.animatedFromObject);
+    addNode(i.node);
   }
   void add(const Camera& c) {
     (*this)(c.name, c.orthographic, c.verticalFov, c.aspect, c.orthographicHalfSize, c.worldFromCamera,
             c.apertureRadius, c.focusDistance);
+    addNode(c.node);
   }
   void add(const Light& l) {
     (*this)(l.name, l.type, l.intensity, l.position, l.direction, l.innerConeAngle, l.outerConeAngle, l.range);
+    addNode(l.node);
+  }
+  // Without an animation, the hash is that of the file without its animations.
+  void addNode(int node) {
+    if (node != kNone) add(node);
+  }
+  template <glm::length_t N>
+  void add(const glm::mat<N, N, double, glm::defaultp>& value) {
+    for (glm::length_t i = 0; i < N; ++i) add(value[i]);
+  }
+  void add(const glm::dquat& q) { (*this)(q.w, q.x, q.y, q.z); }
+  void add(const AnimationNode& n) {
+    (*this)(n.parent, n.translation, n.rotation, n.scale, n.matrix, n.hasMatrix, n.weights);
+  }
+  void add(const Skin& s) { (*this)(s.joints, s.inverseBindMatrices); }
+  void add(const AnimationSampler& s) { (*this)(s.interpolation, s.times, s.values, s.valueSize); }
+  void add(const AnimationChannel& c) { (*this)(c.node, c.property, c.sampler); }
+  void add(const std::shared_ptr<const NodeAnimation>& a) {
+    if (a) (*this)(a->nodes, a->skins, a->animation.samplers, a->animation.channels, a->framesPerSecond);
   }
   void add(const Environment& e) { (*this)(e.image, e.constant, e.intensity, e.rotation, e.present); }
 
@@ -87,7 +117,7 @@ class Feeder {
 Hash contentHash(const Scene& scene) {
   Feeder feed;
   feed(scene.meshes, scene.instances, scene.materials, scene.textures, scene.images, scene.cameras, scene.lights,
-       scene.environment);
+       scene.environment, scene.nodeAnimation);
   return feed.finish();
 }
 

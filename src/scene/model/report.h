@@ -10,6 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "scene/model/animation.h"
+
 namespace quintet::scene {
 
 enum class FeatureUse {
@@ -53,7 +55,8 @@ struct Report {
   std::vector<std::string> extensionsIgnored;  // used by the file and not supported
   std::vector<Feature> features;               // everything that the file contains
   std::vector<std::string> ignored;            // "/meshes/0/primitives/2: mode LINES has no surface"
-  std::size_t ignoredAnimations = 0;           // of glTF files; also listed in `ignored`
+  std::vector<AnimationSummary> animations;    // of a glTF file, whether they play or not
+  std::size_t ignoredAnimations = 0;           // of glTF files, because none plays
   std::vector<std::string> repaired;           // "/meshes/0/primitives/0: 3 triangles with non-finite vertices dropped"
   std::string generator;                       // asset.generator
   std::string copyright;                       // asset.copyright

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/model/scene.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 
 namespace quintet::scene {
@@ -70,6 +72,11 @@ Bounds3 boundsOfBoxes(const Scene& scene) {
 }
 
 }  // namespace
+
+bool isAnimated(const Scene& scene) {
+  const auto hasKeyframes = [](const Instance& instance) { return !instance.keyframes.empty(); };
+  return scene.nodeAnimation != nullptr || std::ranges::any_of(scene.instances, hasKeyframes);
+}
 
 Bounds3 worldBounds(const Scene& scene) {
   std::uint64_t count = 0;

@@ -7,11 +7,13 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/math.h"
 #include "io/image.h"
+#include "scene/model/animation.h"
 #include "scene/model/procedural.h"
 #include "scene/model/report.h"
 
@@ -116,6 +118,8 @@ struct Geometry {
   int material = kNone;      // index in Scene::materials; kNone means the default material
   // Index in the file of each triangle, if triangles with non-finite vertices were dropped. Empty means the same index.
   std::vector<std::uint32_t> fileTriangles;
+  // Index in the file of each vertex, while a geometry that an animation deforms is imported. Empty otherwise.
+  std::vector<std::uint32_t> fileVertices;
 };
 
 // One BLAS: the geometries of one glTF mesh, or sets of procedural primitives. Not both, because Vulkan does not mix
@@ -124,6 +128,8 @@ struct Mesh {
   std::string name;
   std::vector<Geometry> geometries;
   std::vector<PrimitiveSet> primitiveSets;
+  // Of a mesh that the animation of the scene deforms; `geometries` is then its shape at frame 0. Else null.
+  std::shared_ptr<const MeshDeformation> deformation;
   bool procedural() const { return !primitiveSets.empty(); }
   // Number of hit records per ray type.
   std::size_t geometryCount() const { return procedural() ? primitiveSets.size() : geometries.size(); }
@@ -152,7 +158,11 @@ struct Instance {
   std::uint32_t flags = 0;          // kInstance… bits
   std::uint32_t customIndex = 0;    // 24 bits, for the program
   std::vector<Keyframe> keyframes;  // ascending frames; if not empty, worldFromObject is the transform at frame 0
-  mat4 keyframeFromObject{1.0f};    // applied before the keyframe (animation/keyframes.h)
+  // Index in NodeAnimation::nodes of the node that the instance follows, or kNone. worldFromObject is then the
+  // transform at frame 0. An instance with a node has no keyframes.
+  int node = kNone;
+  mat4 animatedFromObject{1.0f};  // applied before the keyframe or the node's transform (animation/pose.h)
+  bool animated() const { return node != kNone || !keyframes.empty(); }
 };
 
 struct Camera {
@@ -164,6 +174,7 @@ struct Camera {
   mat4 worldFromCamera{1.0f};               // rigid; the camera looks along -z, y up
   float apertureRadius = 0.0f;              // meters; 0 means a pinhole
   float focusDistance = 1.0f;               // meters along the optical axis, > 0
+  int node = kNone;  // in NodeAnimation::nodes: the camera follows it, and worldFromCamera is that of frame 0
 };
 
 enum class LightType : std::uint32_t { point, spot, directional };
@@ -178,6 +189,7 @@ struct Light {
   float innerConeAngle = 0.0f;        // radians from the axis, 0 to outerConeAngle; of spot lights
   float outerConeAngle = kPi / 4.0f;  // radians, at most π/2
   float range = std::numeric_limits<float>::infinity();  // meters, > 0; point, spot: no light arrives beyond it
+  int node = kNone;  // in NodeAnimation::nodes: the light follows it; position and direction are those of frame 0
 };
 
 // Equirectangular radiance. Texture coordinates of direction d: u = atan2(d.z, d.x)/2π + 0.5, v = acos(d.y)/π from the
@@ -213,9 +225,15 @@ struct Scene {
   std::vector<Camera> cameras;
   std::vector<Light> lights;
   Environment environment;
+  // Moves instances, cameras and lights with a node, and deforms meshes. Null if no glTF animation plays. The scene is
+  // that of frame 0.
+  std::shared_ptr<const NodeAnimation> nodeAnimation;
   Report report;
   ImportSeconds seconds;
 };
+
+// Whether the scene changes with the frame: keyframes, or a glTF animation that plays.
+bool isAnimated(const Scene&);
 
 // World-space bounds of all instances; empty without instances.
 Bounds3 worldBounds(const Scene&);

@@ -56,7 +56,11 @@ void appendReport(Report& report, const Report& part, const std::string& name) {
   for (const std::string& line : part.ignored) report.ignored.push_back(name + ": " + line);
   for (const MetadataEntry& entry : part.metadata)
     report.metadata.push_back({name + ": " + entry.object, entry.name, entry.value});
-  report.ignoredAnimations += part.ignoredAnimations;
+  if (!part.animations.empty()) {
+    report.ignoredAnimations += part.ignoredAnimations;
+    report.ignored.push_back(
+        fmt::format("{}: /animations: {} not played; the rest pose is used", name, part.animations.size()));
+  }
   for (const std::string& variant : part.variants) report.variants.push_back(name + "/" + variant);
   for (const std::string& line : part.repaired) report.repaired.push_back(name + ": " + line);
   if (!part.copyright.empty()) report.copyright += (report.copyright.empty() ? "" : "; ") + part.copyright;
@@ -104,6 +108,7 @@ void readFile(SceneTomlContext& context, const TomlValue& table) {
   InstanceTarget target;
   target.placedByDefault = reader.boolean("place", true);
   LoadOptions options = context.options;
+  options.animation.reset();  // animations of [[file]] do not play
   const TomlValue *const variant = reader.find("variant"), *const sceneName = reader.find("scene");
   options.variant = variant ? reader.toText(*variant, "variant") : std::string();
   options.scene = sceneName ? reader.toText(*sceneName, "scene") : std::string();

@@ -101,10 +101,10 @@ void addInstances(SceneTomlContext& context, const TomlReader& reader, const Ins
     Instance instance = pattern;
     instance.mesh = part.mesh;
     if (target.instances.size() > 1) instance.name += "/" + part.name;
-    instance.keyframeFromObject = inner * part.worldFromObject;
-    instance.worldFromObject = outer * instance.keyframeFromObject;
+    instance.animatedFromObject = inner * part.worldFromObject;
+    instance.worldFromObject = outer * instance.animatedFromObject;
     if (instance.keyframes.empty())
-      instance.keyframeFromObject = mat4(1.0f);
+      instance.animatedFromObject = mat4(1.0f);
     else
       instance.worldFromObject = worldFromObjectAt(instance, 0.0f);
     checkInvertible(reader, reader.table(), instance.worldFromObject);

@@ -2,6 +2,8 @@
 // Interpolation between, before and after keyframes.
 #include "scene/animation/keyframes.h"
 
+#include "scene/animation/pose.h"
+
 #include <gtest/gtest.h>
 
 namespace quintet::test {
@@ -49,10 +51,10 @@ TEST(Keyframes, RotatesAlongTheShorterArc) {
 
 TEST(Keyframes, FindsTheLastKeyframe) {
   scene::Scene s;
-  EXPECT_EQ(scene::lastKeyframe(s), 0.0f);
+  EXPECT_EQ(scene::lastFrame(s), 0.0f);
   s.instances.resize(2);
   s.instances[1].keyframes = {{0, {}, rotation(0), vec3(1)}, {44, {}, rotation(0), vec3(1)}};
-  EXPECT_EQ(scene::lastKeyframe(s), 44.0f);
+  EXPECT_EQ(scene::lastFrame(s), 44.0f);
 }
 
 }  // namespace

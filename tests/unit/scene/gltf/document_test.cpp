@@ -118,13 +118,6 @@ TEST(GltfContainer, RejectsUnknownRequiredExtensions) {
   EXPECT_THAT(errorOf(builder), IsErrorAt("/extensionsRequired/1", "EXT_unknown"));
 }
 
-TEST(GltfContainer, CountsAnimationsThatAreNotPlayed) {
-  GltfBuilder builder;
-  EXPECT_EQ(builder.load().report.ignoredAnimations, 0u);
-  builder.root["animations"] = nlohmann::json::parse(R"([{"channels": [], "samplers": []}])");
-  EXPECT_EQ(builder.load().report.ignoredAnimations, 1u);
-}
-
 TEST(GltfBuffers, RejectsBuffersShorterThanStated) {
   GltfBuilder builder;
   builder.addTriangle();

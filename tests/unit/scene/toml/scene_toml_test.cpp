@@ -318,7 +318,7 @@ of = "f/Tri"
 )");
   ASSERT_EQ(twice.instances.size(), 3u);
   expectNear(vec3(twice.instances[0].worldFromObject[3]), {1, 2, 0});
-  expectNear(vec3(twice.instances[0].keyframeFromObject[3]), {1, 0, 0});  // applied before the keyframe
+  expectNear(vec3(twice.instances[0].animatedFromObject[3]), {1, 0, 0});  // applied before the keyframe
   EXPECT_EQ(twice.instances[1].worldFromObject, mat4(1.0f));              // the mesh without the transform of its node
   EXPECT_EQ(twice.lights.size(), 1u);
   EXPECT_EQ(twice.lights[0].position, vec3(1, 2, 0));

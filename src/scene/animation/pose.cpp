@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/animation/pose.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "scene/animation/deform.h"
+#include "scene/animation/interpolate.h"
+#include "scene/animation/keyframes.h"
+#include "scene/geometry/repair.h"
+
+namespace quintet::scene {
+namespace {
+
+using glm::dmat4;
+using glm::dvec3;
+using glm::dvec4;
+
+dvec3 interpolateVector(const AnimationSampler& sampler, double seconds) {
+  vec3 value(0.0f);
+  interpolate(sampler, seconds, {&value.x, 3});
+  return value;
+}
+
+// A node with the values of its channels.
+struct MovedNode {
+  dvec3 translation;
+  glm::dquat rotation;
+  dvec3 scale;
+};
+
+dmat4 localTransform(const AnimationNode& node, const MovedNode& moved) {
+  if (node.hasMatrix) return node.matrix;
+  dmat4 matrix = glm::mat4_cast(moved.rotation);
+  for (std::size_t i = 0; i < 3; ++i) matrix[i] *= moved.scale[i];
+  matrix[3] = dvec4(moved.translation, 1.0);
+  return matrix;
+}
+
+void restoreNonFinite(std::vector<vec3>& positions, const std::vector<vec3>& undeformed) {
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (!isFinite(positions[i])) positions[i] = undeformed[i];
+}
+
+}  // namespace
+
+Pose poseAt(const NodeAnimation* animation, double frame) {
+  Pose pose;
+  pose.frame = frame;
+  if (!animation) return pose;
+  const double seconds = frame / animation->framesPerSecond;
+  std::vector<MovedNode> moved;
+  moved.reserve(animation->nodes.size());
+  pose.weights.reserve(animation->nodes.size());
+  for (const AnimationNode& node : animation->nodes) {
+    moved.push_back({node.translation, node.rotation, node.scale});
+    pose.weights.push_back(node.weights);
+  }
+  for (const AnimationChannel& channel : animation->animation.channels) {
+    const auto node = static_cast<std::size_t>(channel.node);
+    const AnimationSampler& sampler = animation->animation.samplers[channel.sampler];
+    switch (channel.property) {
+      case AnimatedProperty::translation: moved[node].translation = interpolateVector(sampler, seconds); break;
+      case AnimatedProperty::rotation: moved[node].rotation = interpolateRotation(sampler, seconds); break;
+      case AnimatedProperty::scale: moved[node].scale = interpolateVector(sampler, seconds); break;
+      case AnimatedProperty::weights:
+        pose.weights[node].resize(sampler.valueSize);
+        interpolate(sampler, seconds, pose.weights[node]);
+        break;
+    }
+  }
+  std::vector<dmat4> world(animation->nodes.size());
+  pose.worldFromNode.resize(world.size());
+  for (const int index : animation->order) {
+    const auto i = static_cast<std::size_t>(index);
+    const AnimationNode& node = animation->nodes[i];
+    const dmat4 local = localTransform(node, moved[i]);
+    world[i] = node.parent == kNone ? local : world[static_cast<std::size_t>(node.parent)] * local;
+    pose.worldFromNode[i] = mat4(world[i]);
+  }
+  return pose;
+}
+
+mat4 worldFromObjectAt(const Instance& instance, const Pose& pose) {
+  if (instance.node == kNone) return worldFromObjectAt(instance, static_cast<float>(pose.frame));
+  return pose.worldFromNode[static_cast<std::size_t>(instance.node)] * instance.animatedFromObject;
+}
+
+Camera cameraAt(const Camera& camera, const Pose& pose) {
+  Camera moved = camera;
+  if (camera.node != kNone)
+    moved.worldFromCamera = rigidFrame(pose.worldFromNode[static_cast<std::size_t>(camera.node)]);
+  return moved;
+}
+
+Light lightAt(const Light& light, const Pose& pose) {
+  Light moved = light;
+  if (light.node == kNone) return moved;
+  const mat4& worldFromNode = pose.worldFromNode[static_cast<std::size_t>(light.node)];
+  moved.position = vec3(worldFromNode[3]);
+  moved.direction = directionOr(-vec3(worldFromNode[2]), vec3(0, 0, -1));
+  return moved;
+}
+
+float lastFrame(const Scene& scene) {
+  double last = 0.0;
+  for (const Instance& instance : scene.instances)
+    if (!instance.keyframes.empty()) last = std::max(last, double{instance.keyframes.back().frame});
+  if (const NodeAnimation* animation = scene.nodeAnimation.get())
+    for (const AnimationSampler& sampler : animation->animation.samplers)
+      last = std::max(last, sampler.times.back() * animation->framesPerSecond);
+  return static_cast<float>(last);
+}
+
+std::vector<mat4> jointMatrices(const Skin& skin, const Pose& pose) {
+  std::vector<mat4> matrices;
+  matrices.reserve(skin.joints.size());
+  for (std::size_t i = 0; i < skin.joints.size(); ++i)
+    matrices.push_back(pose.worldFromNode[static_cast<std::size_t>(skin.joints[i])] * skin.inverseBindMatrices[i]);
+  return matrices;
+}
+
+void deformGeometry(const MeshDeformation& mesh, std::size_t index, const NodeAnimation& animation, const Pose& pose,
+                    Geometry& out) {
+  const GeometryDeformation& from = mesh.geometries[index];
+  const auto node = static_cast<std::size_t>(mesh.node);
+  out.positions = from.positions;
+  out.normals = from.normals;
+  out.tangents = from.tangents;
+  const std::vector<float>& weights = pose.weights[node];
+  for (std::size_t i = 0; i < std::min(weights.size(), from.targets.size()); ++i)
+    if (weights[i] != 0.0f) applyMorphTarget(out, from.targets[i], weights[i]);
+  if (mesh.skin != kNone && !from.skinSets.empty()) {
+    applySkin(out, from.skinSets, jointMatrices(animation.skins[static_cast<std::size_t>(mesh.skin)], pose));
+  } else if (mesh.skin != kNone) {
+    transformVertices(out, pose.worldFromNode[node]);
+  }
+  restoreNonFinite(out.positions, from.positions);
+  if (from.faceNormals) std::ranges::fill(out.normals, vec3(0.0f));  // replaced by the only face normal
+  repairNormals(out);
+  repairTangents(out);
+}
+
+void applyPose(Scene& scene, const Pose& pose) {
+  for (Instance& instance : scene.instances) instance.worldFromObject = worldFromObjectAt(instance, pose);
+  for (Camera& camera : scene.cameras) camera = cameraAt(camera, pose);
+  for (Light& light : scene.lights) light = lightAt(light, pose);
+  for (Mesh& mesh : scene.meshes) {
+    if (!mesh.deformation) continue;
+    for (std::size_t g = 0; g < mesh.geometries.size(); ++g)
+      deformGeometry(*mesh.deformation, g, *scene.nodeAnimation, pose, mesh.geometries[g]);
+  }
+}
+
+}  // namespace quintet::scene

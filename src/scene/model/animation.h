@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// The animation of a glTF file as plain structs: a tree of nodes, the channels that move them, skins, and the vertices
+// that skins and morph targets deform (glTF 2.0 sections 3.7.2.2, 3.7.3 and 3.11). animation/pose.h evaluates it.
+#ifndef QUINTET_SCENE_MODEL_ANIMATION_H
+#define QUINTET_SCENE_MODEL_ANIMATION_H
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/math.h"
+
+namespace quintet::scene {
+
+inline constexpr double kDefaultFramesPerSecond = 24.0;
+
+enum class Interpolation { step, linear, cubicSpline };
+
+// A value as a function of time. Before the first time and after the last one it is constant.
+struct AnimationSampler {
+  Interpolation interpolation = Interpolation::linear;
+  std::vector<float> times;  // seconds, strictly ascending, at least one; cubicSpline: at least two
+  // One value per time; cubicSpline: in-tangent, value and out-tangent per time.
+  std::vector<float> values;
+  std::size_t valueSize = 1;  // number of floats of one value: 3, 4, or the number of morph weights
+};
+
+enum class AnimatedProperty { translation, rotation, scale, weights };
+
+struct AnimationChannel {
+  int node = -1;  // index in NodeAnimation::nodes
+  AnimatedProperty property = AnimatedProperty::translation;
+  std::size_t sampler = 0;  // index in Animation::samplers; a rotation is a quaternion x, y, z, w
+};
+
+struct Animation {
+  std::string name;
+  std::vector<AnimationSampler> samplers;
+  std::vector<AnimationChannel> channels;  // at most one per node and property
+};
+
+struct AnimationNode {
+  int parent = -1;  // index in NodeAnimation::nodes; -1 for a root
+  // Local transform without channels: translation · rotation · scale.
+  glm::dvec3 translation{0.0};
+  glm::dquat rotation{1, 0, 0, 0};  // w, x, y, z; unit
+  glm::dvec3 scale{1.0};
+  glm::dmat4 matrix{1.0};  // instead, if hasMatrix
+  bool hasMatrix = false;
+  std::vector<float> weights;  // of the morph targets of its mesh, without channels
+};
+
+struct Skin {
+  std::vector<int> joints;                // indices in NodeAnimation::nodes
+  std::vector<mat4> inverseBindMatrices;  // one per joint
+};
+
+// All nodes of a file, by their index in the file, and the animation that plays.
+struct NodeAnimation {
+  std::vector<AnimationNode> nodes;
+  std::vector<int> order;  // of `nodes`, parents before children
+  std::vector<Skin> skins;
+  Animation animation;
+  double framesPerSecond = kDefaultFramesPerSecond;  // > 0; time in seconds = frame / framesPerSecond
+};
+
+// Displacements of one target. Each vector is empty or has one element per vertex.
+struct MorphTarget {
+  std::vector<vec3> positions;
+  std::vector<vec3> normals;
+  std::vector<vec3> tangents;
+};
+
+// Four joints and weights per vertex. A mesh can have several sets.
+struct SkinSet {
+  std::vector<glm::u16vec4> joints;  // indices in Skin::joints
+  std::vector<vec4> weights;         // the sum over all sets is normalized
+};
+
+// The vertices of a geometry before deformation, in object space. Arrays are empty or have one element per vertex.
+struct GeometryDeformation {
+  std::vector<vec3> positions;
+  std::vector<vec3> normals;
+  std::vector<vec4> tangents;
+  bool faceNormals = false;  // the normals are those of the triangles, which have vertices of their own
+  std::vector<MorphTarget> targets;
+  std::vector<SkinSet> skinSets;
+};
+
+// How an animation deforms a mesh. The mesh belongs to one node.
+struct MeshDeformation {
+  int node = -1;  // index in NodeAnimation::nodes, for its morph weights
+  // Index in NodeAnimation::skins. With a skin the vertices are in world space: those of geometries without skin sets
+  // follow the node. -1 means no skin; the vertices are then in object space.
+  int skin = -1;
+  std::vector<GeometryDeformation> geometries;  // parallel to Mesh::geometries
+};
+
+// Of an animation in a file, whether it plays or not.
+struct AnimationSummary {
+  std::string name;    // may be empty
+  double seconds = 0;  // largest time
+  std::size_t channels = 0;
+  std::size_t ignored = 0;  // of the channels, those with an unsupported target
+};
+
+}  // namespace quintet::scene
+#endif
