@@ -568,7 +568,7 @@ void Application::perform(Action action) {
     case Action::playPause:
       if (!snapshot.animated) break;
       state_.playing = !state_.playing;
-      state_.playStart = state_.time - snapshot.state.frame / kFramesPerSecond;
+      state_.playStart = state_.time - snapshot.state.frame / snapshot.request->render.framesPerSecond;
       break;
     case Action::previousOutput: changeOutput(-1); break;
     case Action::nextOutput: changeOutput(1); break;
@@ -610,7 +610,8 @@ void Application::confirmExposure(double exposure) {
 void Application::play() {
   if (!state_.ready() || !state_.snapshot->animated) return;
   const double last = std::max(1.0f, state_.snapshot->scene->lastFrame);
-  const double frame = std::fmod((state_.time - state_.playStart) * kFramesPerSecond, last + 1.0);
+  const double frame =
+      std::fmod((state_.time - state_.playStart) * state_.snapshot->request->render.framesPerSecond, last + 1.0);
   state_.apply(job::interactive::SetFrame{static_cast<float>(std::min(frame, last))});
 }
 

@@ -14,6 +14,7 @@
 #include "job/interactive/light_properties.h"
 #include "job/interactive/material_properties.h"
 #include "render/tone_map/tone_map.h"
+#include "scene/load.h"
 
 namespace quintet::viewer {
 namespace {
@@ -45,6 +46,13 @@ std::vector<std::string> commonOptions(const Snapshot& snapshot) {
   if (load.missingTextures == scene::MissingTextures::warn) add("--missing-textures", "warn");
   if (load.maxMemory > 0) add("--max-memory", std::to_string(load.maxMemory));
   if (load.allowExternal) options.emplace_back("--allow-external");
+  const bool isGltf = !request.scene.empty() && scene::sceneFormat(request.scene, {}) != scene::SceneFormat::toml;
+  if (!request.animation.empty())
+    add("--animation", request.animation);
+  else if (snapshot.animated && isGltf)
+    add("--animation", "0");  // otherwise frame 0 would be the rest pose
+  if (snapshot.animated && request.framesPerSecond != scene::kDefaultFramesPerSecond)
+    add("--fps", number(request.framesPerSecond));
   const job::CameraRequest& camera = state.camera;
   if (!camera.name.empty() && !camera.lookFrom) add("--camera", camera.name);
   if (camera.lookFrom) {

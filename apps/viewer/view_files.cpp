@@ -125,6 +125,7 @@ void openFile(ViewState& state, const std::string& path) {
       request.render.scene = path;
       request.render.load.variant.clear();
       request.render.load.scene.clear();
+      request.render.animation.clear();
       return openSession(state, std::move(request), path);
     }
     case FileUse::program: {

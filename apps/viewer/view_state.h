@@ -29,8 +29,6 @@
 
 namespace quintet::viewer {
 
-inline constexpr double kFramesPerSecond = 24.0;  // of a playing animation
-
 struct Selection {
   enum class Kind { none, instance, material, light };
   Kind kind = Kind::none;

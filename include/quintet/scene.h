@@ -185,6 +185,10 @@ struct Environment {
 struct LoadOptions {
   std::string scene{};         // index or name of a scene of the glTF file; empty means its default scene
   std::string variant{};       // name of a material variant of the glTF file; empty means the default materials
+  // Name or index of the animation of the glTF file that Renderer::setFrame plays; empty means the first one, if the file
+  // has one; "none" means the rest pose.
+  std::string animation = "none";
+  double framesPerSecond = 24.0;  // > 0; frame k of the animation is at k / framesPerSecond seconds
   bool strict = false;         // throw FileError with a list if a part of the file is ignored or repaired
   bool omitTextures = false;   // use the factors of materials if an image is missing or invalid, instead of FileError
   std::size_t maxMemory = 0;   // bytes that the file can request; 0 means 80 % of the memory
@@ -232,8 +236,8 @@ struct SceneReport {
 class Scene {
  public:
   Scene();  // empty
-  // Reads glTF (.gltf, .glb) or .scene.toml. Throws FileError, MemoryError, UsageError if the scene or the variant does not
-  // exist.
+  // Reads glTF (.gltf, .glb) or .scene.toml. Throws FileError, MemoryError, UsageError if the scene, the variant or the
+  // animation does not exist.
   static Scene load(const std::filesystem::path& file, const LoadOptions& options = {});
   // Reads a scene in the format of .scene.toml. `folder` is where it looks for files that the text names. Throws FileError
   // with the line, MemoryError.
@@ -258,7 +262,8 @@ class Scene {
 
   // Replaces a material. Its geometries get tangents for a normal map if they have none, and keep those that they have.
   void setMaterial(int index, const Material& material);
-  void setTransform(int instance, const Transform& worldFromObject);  // replaces a transform, and removes keyframes
+  void setTransform(int instance,
+                    const Transform& worldFromObject);  // replaces a transform; it is not animated afterwards
 
   std::string name() const;                                      // of the file; empty for a scene from memory
   std::size_t meshCount() const;                                 // number of meshes

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -246,9 +247,13 @@ Scene::Impl& Scene::change() {
 }
 
 Scene Scene::load(const std::filesystem::path& file, const LoadOptions& options) {
+  if (!(std::isfinite(options.framesPerSecond) && options.framesPerSecond > 0))
+    throw UsageError(fmt::format("{} frames per second: the rate must be above 0", options.framesPerSecond));
   scene::LoadOptions load;
   load.scene = options.scene;
   load.variant = options.variant;
+  if (options.animation != "none") load.animation = options.animation;
+  load.framesPerSecond = options.framesPerSecond;
   load.strict = options.strict;
   if (options.omitTextures) load.missingTextures = scene::MissingTextures::warn;
   load.maxMemory = options.maxMemory;
@@ -414,6 +419,7 @@ void Scene::setTransform(int instance, const Transform& worldFromObject) {
   scene::Instance moved = scene.instances[i];
   moved.worldFromObject = toGlm(worldFromObject);
   moved.keyframes.clear();
+  moved.node = scene::kNone;
   replace(scene, scene.instances[i], std::move(moved), i, scene::validateInstance);
 }
 

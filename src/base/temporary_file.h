@@ -19,6 +19,7 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   int descriptor() const { return fd_; }
+  const std::filesystem::path& path() const { return path_; }  // for other programs that write the file
   // Both return 0 or the error code. After flush() all data is on the disk, or the error has been reported.
   int flush();
   int renameToTarget();

@@ -17,6 +17,7 @@
 namespace quintet::job {
 
 class FilmView;
+struct Provenance;
 struct RenderResult;
 
 // State of a render between two launches.
@@ -85,6 +86,9 @@ class Observer {
   // True asks for Progress::error also without a target error. The estimate takes up to 2 % of the time.
   virtual bool showsError() const { return false; }
 
+  // With FrameRequest::every and CheckpointRequest::resume, before each frame: true if its images were written by an
+  // earlier run with the same request, so that the frame is skipped. `frame`: identity, limits and number of the frame.
+  virtual bool isFrameWritten(const Provenance& /*frame*/) { return false; }
   // With FrameRequest::every: a frame is complete.
   virtual void frame(const RenderResult& /*result*/) {}
   // True asks for preview(): of the first batch of a film; of frames that are not written, one per second.

@@ -60,6 +60,7 @@ struct Provenance {
   double seconds = 0;       // wall clock of rendering
   double batchSeconds = 0;  // of the last batch
   std::optional<double> targetError;
+  std::string limits;              // of the request: "64 samples, 60 s"; not stored
   std::optional<double> exposure;  // stops; unset for files of linear values
   std::string toneMap;             // empty for files of linear values; in a film empty means by the kind of output
   bool allOutputs = false;         // an image of each output

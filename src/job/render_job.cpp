@@ -20,6 +20,8 @@
 #include "job/runnable_program.h"
 #include "job/scene_loading.h"
 #include "render/scene/camera.h"
+#include "scene/animation/animated_bounds.h"
+#include "scene/animation/pose.h"
 #include "scene/model/names.h"
 
 namespace quintet::job {
@@ -78,6 +80,14 @@ class DeviceFilm : public FilmView {
   std::vector<render::FilmPlane> planes_;
 };
 
+std::string describe(const RenderLimits& limits) {
+  std::string text;
+  if (limits.samples) text += fmt::format("{} samples ", *limits.samples);
+  if (limits.seconds) text += fmt::format("{} s ", *limits.seconds);
+  if (limits.error) text += fmt::format("error {} ", *limits.error);
+  return text;
+}
+
 void describeScene(const LoadedScene& loaded, const ResolvedJob& job, Observer& observer) {
   const std::string& name = job.scene.name;
   // Lecture programs bring their own lights.
@@ -86,6 +96,9 @@ void describeScene(const LoadedScene& loaded, const ResolvedJob& job, Observer& 
         "{}: no lights in the scene, using the default environment (the environment 'none' disables it)", name));
   if (loaded.scene.instances.empty()) observer.warning(fmt::format("{}: the scene has no surfaces", name));
   const scene::Report& report = loaded.scene.report;
+  if (!report.animations.empty() && !loaded.scene.nodeAnimation)
+    observer.note(fmt::format("{}: rendered in its rest pose; the file has {}", name,
+                              counted(report.animations.size(), "animation")));
   if (!report.isExact())
     observer.note(fmt::format("{}: {} ignored, {} repaired; 'quintet info {}' lists them", name, report.ignored.size(),
                               report.repaired.size(), shellQuoted(job.scene.path())));
@@ -152,6 +165,11 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   prepared->size = loaded.size;
   prepared->files = loaded.scene.report.files;
   prepared->ignoredAnimations = loaded.scene.report.ignoredAnimations;
+  prepared->nodeAnimation = loaded.scene.nodeAnimation;
+  if (std::ranges::any_of(loaded.scene.cameras, [](const scene::Camera& c) { return c.node != scene::kNone; })) {
+    prepared->movingCameras = loaded.scene.cameras;
+    prepared->bounds = job_.request.bounds ? *job_.request.bounds : scene::animatedBounds(loaded.scene);
+  }
   prepared->instanceNames = scene::instanceNames(loaded.scene);
   prepared->materialNames = scene::materialNames(loaded.scene);
   for (const scene::Light& light : loaded.scene.lights) prepared->lightNames.push_back(light.name);
@@ -312,6 +330,7 @@ Provenance RenderJob::makeProvenance() const {
   p.device = engine_.context().info().name;
   p.driver = engine_.context().info().driver;
   p.targetError = request.limits.error;
+  p.limits = describe(request.limits);
   const OutputNotes& notes = request.outputNotes;
   p.exposure = notes.exposure;
   p.toneMap = notes.toneMap;
@@ -466,6 +485,10 @@ RenderResult RenderJob::run(const RenderLimits& limits, Observer& observer) {
     describeEdits();
     if (job_.accumulatesFrames()) return runFrames(limits, observer);
     const FrameRequest& frames = job_.request.frames;
+    if (frames.seconds) {
+      showRequestedFrame();
+      return runFilm(limits, observer);
+    }
     if (frames.lastFrame() > 0) requireAnimation();
     if (frames.first || frames.lastFrame() > 0 || frames.every) return runAnimation(limits, observer);
     return runFilm(limits, observer);
@@ -507,7 +530,7 @@ std::optional<double> RenderJob::renderFilmBatch(std::uint64_t samples, Observer
 std::optional<double> RenderJob::renderNextFrame(std::uint64_t count, Observer& observer) {
   if (nextFrame_ >= count) return 0.0;
   const Stopwatch clock;
-  if (scene_->onDevice->animated()) scene_->onDevice->setFrame(static_cast<float>(nextFrame_));
+  if (scene_->onDevice->animated()) scene_->onDevice->setFrame(nextFrame_);
   const bool complete = renderer_->renderFrame(
       nextFrame_, [&](double /*fraction*/) { return observer.stopRequested() != StopRequest::abandon; });
   renderer_->finish();
@@ -521,7 +544,7 @@ void RenderJob::requireAnimation() const {
   if (scene_->onDevice->animated()) return;
   const std::size_t ignored = scene_->ignoredAnimations;
   const std::string cause = ignored == 0
-                                ? "no instance has keyframes"
+                                ? "the scene has neither keyframes nor an animation"
                                 : fmt::format("{} {} not played, and no instance has keyframes",
                                               counted(ignored, "glTF animation"), nounFor(ignored, "is", "are"));
   throw UsageError(
@@ -621,10 +644,12 @@ RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& obser
   RenderResult last, earlier;
   for (std::uint32_t frame = frames.every ? frames.firstFrame() : frames.lastFrame(); frame <= frames.lastFrame();
        ++frame) {
-    frame_ = static_cast<float>(frame);
-    showFrame();
+    frame_ = frame;
+    describeFrame();
+    if (isFrameWritten(frame, observer)) continue;
+    scene_->onDevice->setFrame(frame_);
     renderer_->restart();
-    beginFilm();
+    started_ = false;  // a checkpoint can hold the samples of this frame
     last = runFilm(limits, observer);
     if (last.abandoned) return last;
     seconds += last.provenance.seconds;
@@ -635,15 +660,38 @@ RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& obser
     const bool stop = observer.stopRequested() == StopRequest::finish && !isLast;
     last.interrupted = last.provenance.interrupted = last.interrupted || stop;
     last.earlierTargetMissed = missed;
-    if (frames.every) observer.frame(last);
+    if (frames.every) finishFrame(last, observer);
     if (last.interrupted || isLast) break;
     addFrame(earlier, last);
     // The caller sees only the last result, to which addFrame() adds what is not finite.
     if (last.targetMissed) observer.warning(fmt::format("frame {}: {}", frame, resultWarnings(last).front()));
     missed = missed || last.targetMissed;
   }
+  if (!last.film) {  // all frames were written before, or those at the end
+    last = makeResult(seconds, start_, false);
+    last.provenance.frame = frames.lastFrame();
+  }
   addFrame(last, earlier);
   return last;
+}
+
+bool RenderJob::isFrameWritten(std::uint32_t frame, Observer& observer) const {
+  if (!job_.request.frames.every || !job_.request.checkpoint.resume) return false;
+  Provenance asked = provenance_;
+  if (scene_->onDevice->animated()) asked.frame = frame;
+  return observer.isFrameWritten(asked);
+}
+
+// The checkpoint of a frame is removed when its images are written.
+void RenderJob::finishFrame(const RenderResult& frame, Observer& observer) {
+  try {
+    observer.frame(frame);
+  } catch (...) {
+    outputsFailed(frame, observer);
+    throw;
+  }
+  // The next frame needs the file, so it does not stay for a target error that was missed.
+  if (checkpoint_ && !frame.interrupted) checkpoint_->remove(observer);
 }
 
 // A program that accumulates: one launch of the image per frame.
@@ -666,7 +714,7 @@ RenderResult RenderJob::runFrames(const RenderLimits& limits, Observer& observer
   bool previewed = false;
   double lastPreview = 0;
   for (std::uint32_t frame = nextFrame_;; ++frame) {
-    if (scene_->onDevice->animated()) scene_->onDevice->setFrame(static_cast<float>(frame));
+    if (scene_->onDevice->animated()) scene_->onDevice->setFrame(frame);
     bool abandoned = false;
     renderer_->renderFrame(frame, [&](double fraction) {
       if (firstPixelSeconds_ == 0) firstPixelSeconds_ = clock_.seconds();
@@ -724,9 +772,10 @@ const render::Region& RenderJob::region() const {
 void RenderJob::showRequestedFrame() {
   if (job_.accumulatesFrames()) return;
   const FrameRequest& frames = job_.request.frames;
-  if (frames.lastFrame() > 0) requireAnimation();
+  if (frames.lastFrame() > 0 || frames.seconds) requireAnimation();
   if (!scene_->onDevice->animated()) return;
-  if (frames.first || frames.count) frame_ = static_cast<float>(frames.lastFrame());  // otherwise that of setFrame()
+  if (frames.seconds) frame_ = *frames.seconds * job_.request.framesPerSecond;
+  if (frames.first || frames.count) frame_ = frames.lastFrame();  // otherwise that of setFrame()
   showFrame();
 }
 
@@ -742,13 +791,33 @@ double RenderJob::sampleCount() const {
 }
 
 void RenderJob::showFrame() {
+  describeFrame();
   scene_->onDevice->setFrame(frame_);
+}
+
+void RenderJob::describeFrame() {
+  if (!scene_->movingCameras.empty()) {
+    CameraChoice chosen = chooseMovingCamera(job_.request.camera);
+    scene_->camera = chosen.camera;
+    scene_->cameraDescription = std::move(chosen.description);
+    renderer_->setCamera(scene_->camera);
+  }
   provenance_ = makeProvenance();
+}
+
+// At frame_.
+CameraChoice RenderJob::chooseMovingCamera(const CameraRequest& camera) const {
+  const scene::Pose pose = scene::poseAt(scene_->nodeAnimation.get(), frame_);
+  scene::Scene view;
+  view.name = job_.scene.name;
+  for (const scene::Camera& moving : scene_->movingCameras) view.cameras.push_back(scene::cameraAt(moving, pose));
+  const float aspect = static_cast<float>(scene_->size.x) / static_cast<float>(scene_->size.y);
+  return chooseCamera(view, camera, aspect, scene_->bounds);
 }
 
 void RenderJob::showCurrentFrame() {
   if (!scene_ || !scene_->onDevice->animated()) return;
-  scene_->onDevice->setFrame(job_.accumulatesFrames() ? static_cast<float>(std::max(nextFrame_, 1u) - 1) : frame_);
+  scene_->onDevice->setFrame(job_.accumulatesFrames() ? double{std::max(nextFrame_, 1u) - 1.0} : frame_);
 }
 
 RenderResult RenderJob::result(bool withError) const {

@@ -36,11 +36,15 @@ struct PreparedScene {
   EnvironmentChoice environmentInUse;
   std::string environmentSource;
   std::string hash, environmentHash;
-  uvec2 size{0};                                                        // of the whole image, pixels
-  std::vector<std::filesystem::path> files;                             // that the scene file names
-  std::vector<std::string> instanceNames, materialNames;                // scene/model/names.h
-  std::vector<std::string> lightNames;                                  // of scene::Scene::lights
-  std::size_t ignoredAnimations = 0;                                    // of glTF files
+  uvec2 size{0};                                          // of the whole image, pixels
+  std::vector<std::filesystem::path> files;               // that the scene file names
+  std::vector<std::string> instanceNames, materialNames;  // scene/model/names.h
+  std::vector<std::string> lightNames;                    // of scene::Scene::lights
+  std::size_t ignoredAnimations = 0;                      // of glTF files
+  // Of the scene, if one follows a node of `nodeAnimation`; else empty. At frame 0.
+  std::vector<scene::Camera> movingCameras;
+  std::shared_ptr<const scene::NodeAnimation> nodeAnimation;            // null if no glTF animation plays
+  Bounds3 bounds;                                                       // of the animated scene, if cameras move
   program::SingleAnyHit singleAnyHit = program::SingleAnyHit::tinting;  // of the acceleration structures
   Timings seconds;
   std::unique_ptr<render::DeviceScene> onDevice;
@@ -90,15 +94,15 @@ class RenderJob {
   // the program is compiled again; if alpha tests, textures or tangents do, the scene is built again.
   void setCamera(const CameraRequest& camera);
   void setParameters(const std::vector<std::string>& assignments);       // replaces RenderRequest::assignments
-  void setTransform(std::size_t instance, const mat4& worldFromObject);  // of an instance without keyframes
+  void setTransform(std::size_t instance, const mat4& worldFromObject);  // of an instance that is not animated
   void setMaterial(std::size_t index, const scene::Material& material);
   void setLight(std::size_t index, const scene::Light& light);  // in scene.lights
   void setEnvironment(const EnvironmentRequest& environment);   // replaces RenderRequest::environment
   // An environment that was chosen because of the lights of the scene stays, also if edits add or remove lights.
   // Returns the request that states it.
   const EnvironmentRequest& keepEnvironment();
-  void setFrame(float frame);  // of an animated scene; not for programs that accumulate, which count their frames
-  void setSize(uvec2 size);    // of the whole image; the camera stays
+  void setFrame(double frame);  // of an animated scene; not for programs that accumulate, which count their frames
+  void setSize(uvec2 size);     // of the whole image; the camera stays
   // RenderRequest::limits.samples and frames.accumulated, for which the samples are distributed.
   void setPlannedSamples(std::uint32_t count);
   // Compiles the program, which can be the same with changed shaders. Throws ProgramError, too, and then the old one
@@ -110,7 +114,7 @@ class RenderJob {
   // Applies the edits to the device now. Throws as run() does.
   void update(Observer& observer);
 
-  // Moves the instances with keyframes to the frame of the last render, after a PixelExplainer has moved them.
+  // Moves the scene on the device to the frame of the last render, after a PixelExplainer has moved it.
   void showCurrentFrame();
   bool callsPrint() const { return callsPrint_; }  // the program has calls of debugPrintfEXT
 
@@ -132,11 +136,11 @@ class RenderJob {
   render::Renderer& renderer();                           // throws Error if an edit failed
   std::uint64_t linkCount() const { return linkCount_; }  // of programs so far, each with a new renderer
   const render::Region& region() const;  // the rendered part of the image; throws Error if an edit failed
-  // For users of renderer(): moves the instances with keyframes to the frame that run() shows last. Programs that accumulate
+  // For users of renderer(): moves the scene to the frame that run() shows last. Programs that accumulate
   // count their frames, so nothing moves. Throws UsageError for a frame after the first one if nothing in the scene moves.
   void showRequestedFrame();
 
-  float frame() const { return frame_; }  // of an animated scene
+  double frame() const { return frame_; }  // of an animated scene
   // Passes on what the last launches printed; does it without prints, too. run() and renderBatch() do it.
   void flushPrints(Observer& observer);
   void discardPrints();  // of launches since the last call
@@ -154,7 +158,9 @@ class RenderJob {
 
   scene::Scene& editedScene();  // a copy of the loaded scene, for edits
   const scene::Environment& environmentInUse() const;
-  void showFrame();              // moves the instances with keyframes to frame_
+  void showFrame();      // moves the scene and the camera to frame_
+  void describeFrame();  // moves only the camera, and updates provenance_
+  CameraChoice chooseMovingCamera(const CameraRequest& camera) const;
   void requireRenderer() const;  // throws Error if an edit failed
   void rebuildScene(Observer& observer);
   void editDevice();
@@ -169,6 +175,8 @@ class RenderJob {
   void requireAnimation() const;  // throws UsageError if nothing in the scene moves
   RenderResult runFilm(const RenderLimits& limits, Observer& observer);
   RenderResult runAnimation(const RenderLimits& limits, Observer& observer);
+  bool isFrameWritten(std::uint32_t frame, Observer& observer) const;
+  void finishFrame(const RenderResult& frame, Observer& observer);
   RenderResult runFrames(const RenderLimits& limits, Observer& observer);
   StartPoint firstSample() const;                      // of the render or part
   RenderLimits withinPart(RenderLimits limits) const;  // the same limits, not beyond the end of the part
@@ -206,7 +214,7 @@ class RenderJob {
   mutable bool provenanceOutdated_ = false;
   mutable bool sceneEdited_ = false;        // since the hash of the scene was computed
   mutable bool environmentEdited_ = false;  // since the hash of the environment was computed
-  float frame_ = 0;                         // of an animated scene
+  double frame_ = 0;                        // of an animated scene
   bool frameOutdated_ = false;              // the device does not show frame_ yet
   std::uint64_t linkCount_ = 0;
   double linkedSeconds_ = 0;      // on clock_

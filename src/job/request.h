@@ -58,6 +58,9 @@ struct FrameRequest {
   // Number of the first frame, if only a part of an animation is rendered; unset means the whole animation, from frame
   // 0.
   std::optional<std::uint32_t> first;
+  // Time of the only frame, ≥ 0, instead of `first` and `count`: frame seconds · RenderRequest::framesPerSecond, which
+  // can be between two frames.
+  std::optional<double> seconds;
   // Number of frames for a program that accumulates, if `count` is unset; if both are, it runs until the time limit.
   std::optional<std::uint32_t> accumulated;
   bool every = false;  // an image of each frame, not only of the last one
@@ -104,7 +107,11 @@ struct RenderRequest {
   std::filesystem::path scene;                      // empty means the program's own scene, else the built-in one
   scene::LoadOptions load;                          // how `scene`, or the program's own scene, is read
   std::shared_ptr<const scene::Scene> loadedScene;  // instead of `scene`: one in host memory; may be null
-  bool editable = false;                            // keep what the edits of RenderJob require; needs `loadedScene`
+  // Name or index of the glTF animation of `scene` that plays, or "none" for the rest pose. Empty means the first one
+  // if `frames` asks for a frame or a time, or if the job is editable; else the rest pose.
+  std::string animation;
+  double framesPerSecond = scene::kDefaultFramesPerSecond;  // > 0; of glTF animations and FrameRequest::seconds
+  bool editable = false;  // keep what the edits of RenderJob require; needs `loadedScene`
   CameraRequest camera;
   EnvironmentRequest environment;
   std::optional<Bounds3> bounds;  // that the automatic camera shows, also after edits; default: those of the scene

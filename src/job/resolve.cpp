@@ -2,6 +2,7 @@
 #include "job/resolve.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -25,21 +26,41 @@ namespace {
       first == last ? fmt::format("frame {}", first) : fmt::format("frames {}–{}", first, last), program.name));
 }
 
+bool accumulates(const program::Program& program) { return program.accumulation == program::Accumulation::program; }
+
+void checkFrames(const RenderRequest& request, const program::Program& program) {
+  const FrameRequest& frames = request.frames;
+  if (!(std::isfinite(request.framesPerSecond) && request.framesPerSecond > 0))
+    throw UsageError(fmt::format("{} frames per second: the rate must be above 0", request.framesPerSecond));
+  if (accumulates(program) && frames.first) rejectFrames(frames, program);
+  if (!frames.seconds) return;
+  if (!(std::isfinite(*frames.seconds) && *frames.seconds >= 0))
+    throw UsageError(fmt::format("time {}: it must be at least 0 seconds", *frames.seconds));
+  if (frames.first || frames.count) throw UsageError("a time and a range of frames exclude each other");
+  if (frames.every) throw UsageError("a time is one image; a name with a frame number requires frames");
+  if (accumulates(program))
+    throw UsageError(fmt::format("time: the program '{}' counts its frames itself; give their number", program.name));
+}
+
 void checkLimits(const RenderRequest& request, const program::Program& program) {
   const RenderLimits& limits = request.limits;
-  const bool accumulates = program.accumulation == program::Accumulation::program;
+  const bool averages = accumulates(program);
   if (limits.adaptive && !program.adaptive)
     throw UsageError(
         fmt::format("adaptive sampling: the program '{}' takes the same number of samples in all pixels "
                     "(docs/programs.md: adaptive)",
                     program.name));
-  if (limits.error && accumulates)
+  if (limits.error && averages)
     throw UsageError(fmt::format(
         "target error: the program '{}' averages its samples itself, so their variance is unknown", program.name));
-  if (accumulates && (!request.checkpoint.file.empty() || !request.film.empty()))
+  if (averages && (!request.checkpoint.file.empty() || !request.film.empty()))
     throw UsageError(fmt::format(
         "the program '{}' averages its samples itself, so checkpoints and films are not available", program.name));
-  if (accumulates && request.frames.first) rejectFrames(request.frames, program);
+  const bool severalFrames = request.frames.every && request.frames.lastFrame() > request.frames.firstFrame();
+  if (severalFrames && (request.batches || !request.film.empty()))
+    throw UsageError("frames: a film holds one frame; render each frame with a film of its own");
+  if (severalFrames && request.checkpoint.keep)
+    throw UsageError("frames: they share one checkpoint, which cannot be kept; render each frame alone");
   if (!request.batches) return;
   if (limits.seconds || limits.error || limits.adaptive || !limits.samples)
     throw UsageError(
@@ -79,13 +100,14 @@ void checkFiles(const RenderRequest& request) {
 ResolvedJob resolve(RenderRequest request, program::Program program) {
   ResolvedJob job;
   job.parameters = parameterValues(program, request);
+  checkFrames(request, program);
   checkLimits(request, program);
   checkFiles(request);
   if (request.loadedScene) {
     job.scene.name = request.loadedScene->name;
     job.scene.loaded = request.loadedScene;
   } else {
-    job.scene = chooseSceneSource(request.scene, program, request.load);
+    job.scene = chooseSceneSource(request.scene, program, loadOptions(request, accumulates(program)));
   }
   job.request = std::move(request);
   job.program = std::move(program);

@@ -52,7 +52,9 @@ void RenderJob::restart() {
 void RenderJob::setCamera(const CameraRequest& camera) {
   const uvec2 size = scene_ ? scene_->size : job_.request.size;
   const float aspect = size.y > 0 ? static_cast<float>(size.x) / static_cast<float>(size.y) : 0.0f;
-  CameraChoice chosen = chooseCamera(hostScene(), camera, aspect, job_.request.bounds);
+  CameraChoice chosen = scene_ && !scene_->movingCameras.empty()
+                            ? chooseMovingCamera(camera)
+                            : chooseCamera(hostScene(), camera, aspect, job_.request.bounds);
   job_.request.camera = camera;
   if (!renderer_) return;  // update() failed and is repeated by the next run()
   scene_->camera = chosen.camera;
@@ -79,8 +81,9 @@ void RenderJob::setTransform(std::size_t instance, const mat4& worldFromObject) 
   if (instance >= scene.instances.size())
     throw UsageError(fmt::format("instance {} does not exist; the scene has {}", instance, scene.instances.size()));
   scene::Instance& edited = scene.instances[instance];
-  if (!edited.keyframes.empty())
-    throw UsageError(fmt::format("instance {} is animated by keyframes, which set its transform", instance));
+  if (edited.animated())
+    throw UsageError(fmt::format("instance {} is animated by {}, which set its transform", instance,
+                                 edited.keyframes.empty() ? "the channels of the glTF file" : "keyframes"));
   const mat4 before = std::exchange(edited.worldFromObject, worldFromObject);
   try {
     scene::validateInstance(scene, instance);
@@ -124,7 +127,7 @@ void RenderJob::setPlannedSamples(std::uint32_t count) {
   provenanceOutdated_ = true;
 }
 
-void RenderJob::setFrame(float frame) {
+void RenderJob::setFrame(double frame) {
   if (job_.accumulatesFrames())
     throw UsageError(fmt::format("the program '{}' counts its frames itself", job_.program.name));
   if (!std::isfinite(frame)) throw UsageError(fmt::format("frame {} is not finite", frame));
@@ -216,6 +219,10 @@ void RenderJob::editDevice() {
 void RenderJob::updateFrame() {
   if (!std::exchange(frameOutdated_, false)) return;
   scene_->onDevice->setFrame(frame_);
+  if (!scene_->movingCameras.empty()) {
+    scene_->camera = chooseMovingCamera(job_.request.camera).camera;
+    renderer_->setCamera(scene_->camera);
+  }
   provenanceOutdated_ = true;
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "job/scene_loading.h"
 
+#include <optional>
 #include <utility>
 
 #include "base/stopwatch.h"
 #include "render/scene/albedo_tables.h"
+#include "scene/animation/animated_bounds.h"
 #include "scene/model/content_hash.h"
 
 namespace quintet::job {
@@ -33,7 +35,9 @@ LoadedScene load(const SceneSource& source, const RenderRequest& request,
 
   const uvec2 requested = request.size;
   const float aspect = requested.y > 0 ? static_cast<float>(requested.x) / static_cast<float>(requested.y) : 0.0f;
-  loaded.camera = chooseCamera(loaded.scene, request.camera, aspect, request.bounds);
+  std::optional<Bounds3> bounds = request.bounds;
+  if (!bounds && loaded.scene.nodeAnimation) bounds = scene::animatedBounds(loaded.scene);
+  loaded.camera = chooseCamera(loaded.scene, request.camera, aspect, bounds);
   loaded.environmentHash = scene::contentHash(loaded.environment.environment).hex();
   loaded.size = chooseImageSize(requested, loaded.camera.camera);
   loaded.viewSeconds += watch.lap();

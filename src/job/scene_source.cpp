@@ -51,11 +51,23 @@ SceneSource chooseSceneSource(const std::filesystem::path& requested, const prog
   }
   if (!options.variant.empty())
     throw UsageError(fmt::format("no variant '{}': only glTF files have material variants", options.variant));
+  if (options.animation && !options.animation->empty())
+    throw UsageError(fmt::format("no animation '{}': only glTF files have named animations", *options.animation));
   if (!options.scene.empty())
     throw UsageError(fmt::format("no scene '{}': only glTF files have scenes", options.scene));
   if (!program.scene.empty())
     return {.options = options, .name = program.path(program.scene), .text = program.files.at(program.scene)};
   return {.name = "default scene", .builtIn = defaultSceneOptions(program)};
+}
+
+scene::LoadOptions loadOptions(const RenderRequest& request, bool accumulates) {
+  scene::LoadOptions options = request.load;
+  options.framesPerSecond = request.framesPerSecond;
+  const FrameRequest& frames = request.frames;
+  const bool asksForFrames = frames.first || frames.count || frames.seconds || request.editable;
+  const bool plays = !request.animation.empty() || (asksForFrames && !accumulates);
+  if (plays && request.animation != "none") options.animation = request.animation;
+  return options;
 }
 
 scene::PendingScene beginLoading(const SceneSource& source) {

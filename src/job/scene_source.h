@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "job/request.h"
 #include "program/description/program.h"
 #include "scene/defaults/default_scene.h"
 #include "scene/load.h"
@@ -30,9 +31,12 @@ struct SceneSource {
 bool isSceneFile(const std::filesystem::path& file);
 
 // `requested` if it is not empty, else the scene that the program names, else the built-in one. Throws FileError if the
-// file cannot be read, UsageError for a scene or a variant of a glTF file without file.
+// file cannot be read, UsageError for a scene, a variant or a named animation of a glTF file without file.
 SceneSource chooseSceneSource(const std::filesystem::path& requested, const program::Program& program,
                               const scene::LoadOptions& options = {});
+
+// How the scene of a request is loaded: variant and animation. `accumulates`: the program counts its frames itself.
+scene::LoadOptions loadOptions(const RenderRequest& request, bool accumulates);
 
 // The first step of loading: everything but the image data of a glTF file. Throws FileError, MemoryError.
 scene::PendingScene beginLoading(const SceneSource& source);

@@ -59,6 +59,12 @@ std::string describe(const scene::MetadataEntry& entry) {
   return printable(fmt::format("{}{}{}: {}", entry.object, entry.object.empty() ? "" : " ", entry.name, entry.value));
 }
 
+std::string describe(const scene::AnimationSummary& animation) {
+  const std::string ignored = animation.ignored > 0 ? fmt::format(" ({} ignored)", animation.ignored) : "";
+  return fmt::format("'{}': {:.4g} s, {}{}", printable(animation.name), animation.seconds,
+                     counted(animation.channels, "channel"), ignored);
+}
+
 struct MaterialCounts {
   std::size_t alpha = 0, emissive = 0, transmissive = 0, unlit = 0;
 };
@@ -84,7 +90,7 @@ InstanceCounts countInstances(const scene::Scene& scene) {
     counts.masked += instance.mask != 0xFF;
     counts.flagged += instance.flags != 0;
     counts.indexed += instance.customIndex != 0;
-    counts.moving += !instance.keyframes.empty();
+    counts.moving += instance.animated();
   }
   return counts;
 }
@@ -120,6 +126,12 @@ Json namedObjects(const scene::Scene& scene, const char* kind) {
                       {"verticalFov", camera.orthographic ? Json() : Json(glm::degrees(camera.verticalFov))},
                       {"aspect", camera.aspect},
                       {"position", vectorJson(vec3(camera.worldFromCamera[3]))}});
+  if (kind == std::string_view("animations"))
+    for (const scene::AnimationSummary& animation : scene.report.animations)
+      list.push_back({{"name", animation.name},
+                      {"seconds", animation.seconds},
+                      {"channels", animation.channels},
+                      {"ignoredChannels", animation.ignored}});
   if (kind == std::string_view("lights"))
     for (const scene::Light& light : scene.lights)
       list.push_back({{"name", light.name}, {"type", nameOf(light.type)}, {"intensity", vectorJson(light.intensity)}});
@@ -185,6 +197,7 @@ Json toJson(const scene::Scene& scene, const std::string& file) {
           {"images", namedObjects(scene, "images")},
           {"lights", namedObjects(scene, "lights")},
           {"cameras", namedObjects(scene, "cameras")},
+          {"animations", namedObjects(scene, "animations")},
           {"environment", scene.environment.present},
           {"extensions", {{"used", scene.report.extensionsUsed}, {"ignored", scene.report.extensionsIgnored}}},
           {"metadata", metadataJson(scene.report)},
@@ -276,6 +289,7 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
           scene.images, describeAny);
   addList(text, "lights", fmt::format("{}", scene.lights.size()), scene.lights, describeAny);
   addList(text, "cameras", fmt::format("{}", scene.cameras.size()), scene.cameras, describeAny);
+  addList(text, "animations", fmt::format("{}", scene.report.animations.size()), scene.report.animations, describeAny);
   text += featuresText(scene.report);
   const std::vector<std::string> unused = unusedLines(scene.report);
   addList(text, "unused", fmt::format("{}", unused.size()), unused, itself);

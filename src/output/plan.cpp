@@ -125,6 +125,7 @@ OutputPlan planOutputs(const OutputRequest& request, const program::Program& pro
   plan.request = request;
   plan.kind = checkRequest(request);
   plan.outputs = selectOutputs(request, program);
+  for (const std::size_t output : plan.outputs) plan.outputNames.push_back(program.outputs[output].name);
   plan.layers = selectLayers(availableLayers(program), request.layers, fmt::format("the program '{}'", program.name),
                              program::heatMapNames());
   checkChannels(plan.layers);
@@ -165,8 +166,10 @@ OutputPlan planOutputs(const OutputRequest& request, const job::RenderResult& me
   const std::vector<render::FilmPlane>& planes = merged.film->planes();
   for (std::size_t i = 0; i < planes.size(); ++i)
     if ((i == 0 || plan.request.allOutputs) && merged.film->stores(i) &&
-        planes[i].pixel != program::OutputPixel::coverage)
+        planes[i].pixel != program::OutputPixel::coverage) {
       plan.outputs.push_back(i);
+      plan.outputNames.push_back(planes[i].name);
+    }
   std::vector<std::string> names;
   for (const render::FilmPlane& plane : planes) names.push_back(plane.name);
   checkFiles(plan, names, {});

@@ -47,7 +47,8 @@ struct OutputRequest {
 struct OutputPlan {
   OutputRequest request;
   FileKind kind = FileKind::png;
-  std::vector<std::size_t> outputs;  // of the program, those that get a file
+  std::vector<std::size_t> outputs;      // of the program, those that get a file
+  std::vector<std::string> outputNames;  // parallel to `outputs`
   std::vector<Layer> layers;
 
   // Names of the program's optional outputs that the files require: job::RenderRequest::outputs.

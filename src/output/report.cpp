@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "output/report.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -47,6 +48,19 @@ Json secondsJson(const job::Timings& t, double total) {
           {"render", t.render},   {"device", t.device},     {"total", total}};
 }
 
+Json framesJson(const std::vector<FrameFiles>& frames) {
+  Json list = Json::array();
+  for (const FrameFiles& frame : frames) {
+    Json files = Json::array();
+    for (const std::filesystem::path& file : frame.files) files.push_back(file.string());
+    list.push_back({{"frame", frame.frame},
+                    {"files", std::move(files)},
+                    {"seconds", frame.seconds},
+                    {"writtenBefore", frame.written}});
+  }
+  return list;
+}
+
 std::string oneLine(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 }  // namespace
@@ -67,7 +81,8 @@ std::string printedText(const job::PrintedLine& line) {
 
 std::string printedJson(const job::PrintedLine& line) { return oneLine({{"print", job::printedLineJson(line)}}); }
 
-std::string resultJson(const job::RenderResult& result, const std::vector<WrittenFile>& files, double totalSeconds) {
+std::string resultJson(const job::RenderResult& result, const std::vector<WrittenFile>& files, double totalSeconds,
+                       const std::vector<FrameFiles>& frames) {
   const job::MemoryUse& m = result.memory;
   Json json;
   for (const job::ProvenanceField& field : job::provenanceFields())
@@ -76,6 +91,7 @@ std::string resultJson(const job::RenderResult& result, const std::vector<Writte
   json["toneMap"] = files.empty() || files.back().toneMap.empty() ? Json() : Json(files.back().toneMap);
   json["files"] = Json::array();
   for (const WrittenFile& file : files) json["files"].push_back(file.path.string());
+  if (!frames.empty()) json["frames"] = framesJson(frames);
   json["raysPerSecond"] = result.raysPerSecond();
   json["error"] = errorJson(result);
   json["seconds"] = secondsJson(result.seconds, totalSeconds);
@@ -114,15 +130,23 @@ std::string errorJson(const std::string& message, const FileError* file, int exi
   return oneLine(json);
 }
 
-std::string resultSummary(const job::RenderResult& result, const std::vector<WrittenFile>& files) {
+std::string resultSummary(const job::RenderResult& result, const std::vector<WrittenFile>& files,
+                          const std::vector<FrameFiles>& frames) {
   const job::Provenance& p = result.provenance;
-  const std::string file = files.empty() ? "" : files.back().path.string();
+  std::string file = files.empty() ? "" : files.back().path.string();
+  if (files.empty() && !frames.empty() && !frames.back().files.empty()) file = frames.back().files.back().string();
   const std::string rate = p.rays > 0 ? fmt::format(", {:.3g} Mrays/s", result.raysPerSecond() * 1e-6) : "";
   const std::string error = result.error.known() ? fmt::format(", error {:.2g} %", 100.0 * result.error.upper) : "";
   const std::string samples =
       result.accumulatesFrames ? counted(p.samples, "frame") : counted(p.samples, "sample") + " per pixel";
-  return fmt::format("{}: {}x{}, {}{}, {}{}{}", file == "-" ? "standard output" : file, p.region.width, p.region.height,
-                     samples, error, durationText(p.seconds), rate, result.interrupted ? ", interrupted" : "");
+  std::string count;
+  if (frames.size() > 1) count = counted(frames.size(), "frame");
+  const auto before = std::ranges::count_if(frames, &FrameFiles::written);
+  if (before > 0) count += fmt::format(" ({} written before)", before);
+  if (!count.empty()) count += ", ";
+  return fmt::format("{}: {}{}x{}, {}{}, {}{}{}", file == "-" ? "standard output" : file, count, p.region.width,
+                     p.region.height, samples, error, durationText(p.seconds), rate,
+                     result.interrupted ? ", interrupted" : "");
 }
 
 }  // namespace quintet::output

@@ -7,6 +7,7 @@
 #include "io/codec.h"
 #include "job/film_store.h"
 #include "output/file_names.h"
+#include "output/frame_files.h"
 #include "render/tone_map/false_color.h"
 
 namespace quintet::output {
@@ -39,6 +40,14 @@ io::Image falseColors(const io::Image& image, float exposure, bool legend, unsig
   return render::falseColor(image, {.scale = render::falseColorScale(image, exposure), .legend = legend, .bits = bits});
 }
 
+// The metadata of an image; with the hash of the frame if it is complete.
+io::Metadata metadataOf(const OutputPlan& plan, const job::RenderResult& result, const job::Provenance& provenance) {
+  io::Metadata metadata = job::metadataOf(provenance);
+  if (plan.request.everyFrame && result.provenance.frame && !result.interrupted && !result.accumulatesFrames)
+    metadata.emplace_back(kFrameHashKey, frameHash(plan, result.provenance));
+  return metadata;
+}
+
 std::vector<std::byte> encodePng(const OutputPlan& plan, const job::RenderResult& result, std::size_t output) {
   const render::FilmPlane& plane = result.film->planes()[output];
   const double exposure = plan.request.exposure.value_or(0.0);
@@ -51,7 +60,7 @@ std::vector<std::byte> encodePng(const OutputPlan& plan, const job::RenderResult
   return io::encodePng(hasFalseColors(plan, plane) ? falseColors(image, stops, true, bits)
                                                    : render::toDisplay(image, toneMapOf(plan, plane), stops,
                                                                        !result.provenance.transparent, bits),
-                       job::metadataOf(provenance));
+                       metadataOf(plan, result, provenance));
 }
 
 std::vector<std::byte> encodeExr(const OutputPlan& plan, const job::RenderResult& result, std::size_t output) {
@@ -62,7 +71,7 @@ std::vector<std::byte> encodeExr(const OutputPlan& plan, const job::RenderResult
   image.width = p.region.width;
   image.height = p.region.height;
   image.window = {p.region.x, p.region.y, p.size.x, p.size.y};
-  image.metadata = job::metadataOf(provenanceOf(result, plane.name));
+  image.metadata = metadataOf(plan, result, provenanceOf(result, plane.name));
   if (p.worldToCamera && p.worldToNdc) {
     image.attributes.push_back({"worldToCamera", *p.worldToCamera});
     image.attributes.push_back({"worldToNDC", *p.worldToNdc});

@@ -28,6 +28,7 @@ class Blas {
   // Device address of an array of uints that maps gl_PrimitiveID of a geometry to the index in the input; 0 if both are
   // equal.
   VkDeviceAddress primitiveMap(std::size_t geometry) const { return maps_[geometry]; }
+  std::size_t geometryCount() const { return maps_.size(); }
   // Number of inactive primitives, which are not part of the build (prepareBlas).
   std::uint32_t inactiveCount() const { return inactiveCount_; }
 

@@ -19,7 +19,7 @@ InstanceOutline outlineOf(const scene::Scene& scene, std::size_t index, const st
   outline.name = name;
   outline.mesh = mesh.name;
   outline.bounds = meshBounds[static_cast<std::size_t>(instance.mesh)];
-  outline.animated = !instance.keyframes.empty();
+  outline.animated = instance.animated();
   outline.worldFromObject = instance.worldFromObject;
   const auto addMaterial = [&](int material) {
     if (material < 0) return;

@@ -23,6 +23,7 @@ namespace quintet::test {
 // A colored quad at z = 0, a camera "front" that looks at it, and a camera "side" without an aspect ratio. 3 KB of JSON
 // with an embedded buffer.
 nlohmann::json quadScene();
+std::string base64(std::string_view bytes);
 
 // A GLB with this JSON and this binary chunk.
 std::string glb(const nlohmann::json& json, std::string_view binary);

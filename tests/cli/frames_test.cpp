@@ -209,7 +209,7 @@ TEST_F(Frames, PatternOfAStillImage) {
   EXPECT_EQ(readImage("a#b#.png").width, 8u);
 }
 
-// Animations of glTF files are not played, and the message says so.
+// An animation that moves nothing, and none.
 TEST_F(Frames, GltfAnimations) {
   nlohmann::json json = quadScene();
   json["animations"] = nlohmann::json::parse(R"([{"channels": [], "samplers": []}])");
@@ -217,7 +217,7 @@ TEST_F(Frames, GltfAnimations) {
   expectError(quintet({"run", "normals", "fox.gltf", "--frames", "4", "--size", "8x8", "-q", "--env", "none"}), 2,
               {"fox.gltf: 1 glTF animation is not played", "keyframes", "scenes.md"});
   expectError(quintet({"run", "normals", "scene.gltf", "--frames", "4", "--size", "8x8", "-q", "--env", "none"}), 2,
-              {"scene.gltf: no instance has keyframes"});
+              {"scene.gltf: the scene has neither keyframes nor an animation"});
 }
 
 // A scene without animation has one frame, whose name gets no number.

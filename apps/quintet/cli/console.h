@@ -74,6 +74,7 @@ class Console : public job::Observer {
   job::StopRequest stopRequested() override;
   void write(const std::filesystem::path& file, std::span<const std::byte> bytes) override;
   void deviceHung(const Diagnostic& diagnostic) override;
+  bool isFrameWritten(const job::Provenance& frame) override { return wasWritten && wasWritten(frame); }
   void frame(const job::RenderResult& result) override;
   bool wantsImage() const override;
   void image(const job::FilmView& film) override;
@@ -81,7 +82,8 @@ class Console : public job::Observer {
   void preview(const job::RenderResult& result) override;
 
   std::function<void(const job::RenderResult&)> onFrame, onPreview;
-  std::function<bool()> isObsolete;  // the render is obsolete
+  std::function<bool(const job::Provenance&)> wasWritten;  // the frame, by an earlier run
+  std::function<bool()> isObsolete;                        // the render is obsolete
   // With a preview: makes the image of a film, sRGB bytes with 3 channels. It may call warning().
   std::function<io::Image(const job::FilmView&)> displayImage;
 

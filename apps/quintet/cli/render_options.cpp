@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -22,6 +23,9 @@ constexpr std::uint64_t kDefaultSamples = 64;
 constexpr double kMaxPrints = 1e6;
 constexpr double kMinError = 1e-6;
 constexpr double kMaxReal = 1e30;
+constexpr double kMaxRateFactor = 63;
+constexpr double kMaxSeconds = 1e6;
+constexpr double kMinRate = 1e-3, kMaxRate = 1e4;  // frames per second
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 std::optional<float> parseFloat(const std::string& option, const std::string& text, double min, double max) {
@@ -117,7 +121,42 @@ void declareFrame(OptionTable& table, RenderTexts& texts, const char* verb) {
   table.add("Image", {{.names = "--frame",
                        .value = "N",
                        .help = fmt::format("{} only this frame of an animated scene; the first one is 0", verb),
-                       .target = &texts.frame}});
+                       .target = &texts.frame},
+                      {.names = "--at",
+                       .value = "SECONDS",
+                       .help = fmt::format("{} an animated scene at this time", verb),
+                       .target = &texts.at}});
+}
+
+void declareFrames(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+  table.add("Image",
+            {{.names = "--frames",
+              .value = "N|A-B",
+              .help = "Number of frames, for an animated scene or a program that draws frame after frame (default: 1); "
+                      "A-B or A:B renders only frames A to B of an animated scene",
+              .target = &texts.frames},
+             {.names = "--all-frames",
+              .help = "Write each frame: out.0000.png (also with #### or %04d in the name)",
+              .target = &options.output.everyFrame},
+             {.names = "--crf",
+              .value = "N",
+              .help = "Constant rate factor of a video: from 0 (best) to 51 for .mp4 (default: 18), to 63 for .webm "
+                      "(default: 24)",
+              .target = &texts.rateFactor}});
+}
+
+void declareAnimation(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
+  table.add("Scene",
+            {{.names = "--animation",
+              .value = "NAME",
+              .help = "Name or index of the glTF animation, or none for the rest pose (default: the first one if "
+                      "a frame or a time is given); 'quintet info' lists them",
+              .target = &options.request.animation,
+              .candidates = {.names = {"none"}}},
+             {.names = "--fps",
+              .value = "N",
+              .help = "Frames per second of glTF animations, of times, and of videos (default: 24)",
+              .target = &texts.fps}});
 }
 
 void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
@@ -344,11 +383,38 @@ void declareExr(OptionTable& table, RenderTexts& texts, bool ofFilms) {
         .target = &texts.exrTiles}});
 }
 
-void convertFrame(const RenderTexts& texts, job::FrameRequest& frames) {
-  const auto frame = parseInteger("--frame", texts.frame, 0, kMaxFrames);
-  if (!frame) return;
-  frames.first = static_cast<std::uint32_t>(*frame);
-  frames.count = 1;
+void chooseVideo(RenderOptions& options) {
+  const std::filesystem::path file = options.output.file;
+  if (!output::videoFormat(file)) return;
+  options.video.emplace().file = file;
+  options.output.file = output::frameImages(file);
+}
+
+void convertFrames(const RenderTexts& texts, RenderOptions& options) {
+  job::FrameRequest& frames = options.request.frames;
+  if (texts.frame.empty() + texts.frames.empty() + texts.at.empty() < 2)
+    throw UsageError("--frame, --frames and --at exclude each other");
+  if (texts.frames.find_first_of("-:", 1) != std::string::npos) {
+    std::tie(frames.first, frames.count) = parseFrames("--frames", texts.frames, kMaxFrames);
+  } else if (const auto count = parseInteger("--frames", texts.frames, 1, kMaxFrames)) {
+    frames.count = static_cast<std::uint32_t>(*count);
+  }
+  if (const auto frame = parseInteger("--frame", texts.frame, 0, kMaxFrames)) {
+    frames.first = static_cast<std::uint32_t>(*frame);
+    frames.count = 1;
+  }
+  frames.seconds = parseReal("--at", texts.at, 0.0, kMaxSeconds);
+  if (const auto rate = parseReal("--fps", texts.fps, kMinRate, kMaxRate)) options.request.framesPerSecond = *rate;
+  const auto rateFactor = parseInteger("--crf", texts.rateFactor, 0, kMaxRateFactor);
+  if (rateFactor && !options.video) throw UsageError("--crf requires a video: -o FILE.mp4 or FILE.webm");
+  if (!options.video) return;
+  const std::string file = options.video->file.string();
+  if (!frames.first && !frames.count) throw UsageError(fmt::format("{}: a video requires --frames", file));
+  if (options.output.allOutputs) throw UsageError(fmt::format("{}: a video shows one output, not all", file));
+  options.output.everyFrame = true;
+  options.video->framesPerSecond = options.request.framesPerSecond;
+  options.video->resumable = options.request.checkpoint.resume;
+  if (rateFactor) options.video->rateFactor = static_cast<unsigned>(*rateFactor);
 }
 
 void convertOutput(const RenderTexts& texts, output::OutputRequest& output) {

@@ -11,6 +11,7 @@
 #include "cli/option_table.h"
 #include "job/request.h"
 #include "output/plan.h"
+#include "output/video/video.h"
 
 namespace quintet::cli {
 
@@ -21,6 +22,7 @@ struct RenderOptions {
   std::string device;
   job::RenderRequest request;
   output::OutputRequest output;
+  std::optional<output::VideoRequest> video;  // then `output` is for the images of its frames
   ConsoleOptions console;
   bool programHelp = false;  // print the program's parameters
   bool layerList = false;    // print the program's layers
@@ -32,7 +34,7 @@ struct LoadTexts {
 };
 struct RenderTexts {
   LoadTexts load;
-  std::string scene, output, size, region, frame, exposure, toneMap, pngBits;
+  std::string scene, output, size, region, frame, frames, at, fps, rateFactor, exposure, toneMap, pngBits;
   std::string spp, time, untilError, seed, bounces, clamp;
   std::string lookFrom, lookAt, up, fov, aperture, focus, envIntensity, envRotation;
   std::string exrType, exrCompression, exrTiles;
@@ -50,7 +52,9 @@ void convertLoading(const LoadTexts& texts, scene::LoadOptions& options);  // th
 void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options);  // except the output file
 // Size, region and background. `regionHelp` is the help of --region; null omits the option.
 void declareSize(OptionTable& table, RenderTexts& texts, RenderOptions& options, const char* regionHelp = nullptr);
-void declareFrame(OptionTable& table, RenderTexts& texts, const char* verb);  // "Render only this frame of …"
+void declareFrame(OptionTable& table, RenderTexts& texts, const char* verb);         // "Render only this frame of …"
+void declareFrames(OptionTable& table, RenderTexts& texts, RenderOptions& options);  // --frames and --all-frames
+void declareAnimation(OptionTable& table, RenderTexts& texts, RenderOptions& options);  // --animation and --fps
 void declareDisplay(OptionTable& table, RenderTexts& texts, const char* group, const char* otherwise);
 void declareQuality(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options);
@@ -68,8 +72,10 @@ void declareExr(OptionTable& table, RenderTexts& texts, bool ofFilms = false);
 
 // Fills in requests from the texts, except `output.file` and `request.scene`. Throws UsageError.
 void convert(const RenderTexts& texts, RenderOptions& options);
-// --frame: the request is then for this frame alone. Throws UsageError.
-void convertFrame(const RenderTexts& texts, job::FrameRequest& frames);
+// If the output file is a video, `output` becomes the request for the images of its frames. Before convert().
+void chooseVideo(RenderOptions& options);
+// --frame, --frames, --at: which frames the request is for, and whether each is written. Throws UsageError.
+void convertFrames(const RenderTexts& texts, RenderOptions& options);
 // The part of convert() that `merge` needs.
 void convertOutput(const RenderTexts& texts, output::OutputRequest& output);
 

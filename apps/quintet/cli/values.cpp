@@ -117,7 +117,7 @@ job::BatchRange parseBatches(const std::string& option, const std::string& text)
 }
 
 std::pair<std::uint32_t, std::uint32_t> parseFrames(const std::string& option, const std::string& text, double limit) {
-  const std::vector<std::string> parts = splitText(text, '-');
+  const std::vector<std::string> parts = splitText(text, text.find(':') != text.npos ? ':' : '-');
   const std::optional<std::uint32_t> first = parseNumber<std::uint32_t>(parts.front());
   const std::optional<std::uint32_t> last = parseNumber<std::uint32_t>(parts.back());
   if (!first || !last || parts.size() > 2 || *first > *last || *last >= limit)

@@ -39,6 +39,7 @@ OptionTable viewOptionTable(ViewOptions& options, RenderTexts& texts) {
                        .help = "Seed of the random number generator (default: 0)",
                        .target = &texts.seed}});
   declareView(table, texts, options);
+  declareAnimation(table, texts, options);
   table.add(
       "Window",
       {{.names = "--window-size",
@@ -85,6 +86,7 @@ std::optional<ViewOptions> parseViewOptions(Arguments arguments) {
   options.request.commandLine = commandLine("view", arguments);
   options.output.file = "view.png";  // files are chosen later
   convert(texts, options);
+  convertFrames(texts, options);
   options.startScreen = texts.scene.empty() && options.program.empty();
   if (options.program.empty()) options.program = ViewOptions().program;
   if (const auto scale = parseReal("--scale", options.scaleText, 0.5, 4.0)) options.scale = static_cast<float>(*scale);

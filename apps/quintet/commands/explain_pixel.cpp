@@ -91,6 +91,7 @@ OptionTable declare(Options& options, Texts& texts) {
   declareFrame(table, texts, "Explain");
   declareQuality(table, texts, options);
   declareView(table, texts, options);
+  declareAnimation(table, texts, options);
   declareProgramName(table, options);
   declareParameters(table, options);
   declareDevice(table, texts, options);
@@ -126,7 +127,7 @@ void convertSample(const Texts& texts, Options& options) {
     if (options.against.empty()) throw UsageError("--tolerance requires --against");
     options.tolerance.relative = static_cast<float>(*tolerance);
   }
-  convertFrame(texts, options.request.frames);
+  convertFrames(texts, options);
 }
 
 std::optional<Options> parseOptions(Arguments arguments) {

@@ -65,6 +65,7 @@ OptionTable declare(Options& options, Texts& texts) {
   declareFrame(table, texts, "Search");
   declareQuality(table, texts, options);
   declareView(table, texts, options);
+  declareAnimation(table, texts, options);
   declareProgramName(table, options);
   declareParameters(table, options);
   declareDevice(table, texts, options);
@@ -113,7 +114,7 @@ std::optional<Options> parseOptions(Arguments arguments) {
   if (const auto threshold = parseReal("--threshold", texts.threshold, 1e-3, kMaxThreshold))
     search.threshold = static_cast<float>(*threshold);
   if (const auto limit = parseInteger("--limit", texts.limit, 0, kMaxLimit)) search.limit = *limit;
-  convertFrame(texts, options.request.frames);
+  convertFrames(texts, options);
   return options;
 }
 

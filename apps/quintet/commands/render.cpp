@@ -4,6 +4,8 @@
 
 #include <unistd.h>
 
+#include <utility>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,6 +20,7 @@
 #include "cli/work.h"
 #include "job/render_job.h"
 #include "output/file_names.h"
+#include "output/frame_files.h"
 #include "output/layers.h"
 #include "output/report.h"
 #include "output/write.h"
@@ -39,14 +42,19 @@ OptionTable declare(RenderOptions& options, RenderTexts& texts) {
       "Image",
       {{.names = "-o,--output",
         .value = "FILE",
-        .help = "Output file: .png, .exr, .hdr or .qfilm (the whole film, for 'quintet merge'); - is PNG on standard "
-                "output, -.exr OpenEXR (default: SCENE.png in the current folder)",
+        .help =
+            "Output file: .png, .exr, .hdr or .qfilm (the whole film, for 'quintet merge'); #### is the frame number; "
+            ".mp4, .webm or .gif is a video of --frames; - is PNG on standard output, -.exr OpenEXR (default: "
+            "SCENE.png in the current folder)",
         .target = &texts.output,
-        .candidates = {.extensions = {"png", "exr", "hdr", "qfilm"}}}});
+        .candidates = {.extensions = {"png", "exr", "hdr", "qfilm", "mp4", "webm", "gif"}}}});
   declareImage(table, texts, options);
+  declareFrames(table, texts, options);
+  declareFrame(table, texts, "Render");
   declareExr(table, texts);
   declareQuality(table, texts, options);
   declareView(table, texts, options);
+  declareAnimation(table, texts, options);
   declareProgramName(table, options);
   declareProgram(table, options);
   table.add(
@@ -64,6 +72,9 @@ OptionTable declare(RenderOptions& options, RenderTexts& texts) {
       {"quintet render scene.glb -o out.exr --aov albedo,normal", "with layers; --aov list prints their names"},
       {"quintet render scene.glb --time 60 --env sky.hdr", "as many samples as possible in a minute"},
       {"quintet render scene.glb --look-from 2,1,3 --look-at 0,0.5,0 --fov 35"},
+      {"quintet render fox.glb --at 0.5 -o fox.png", "an animated scene at half a second"},
+      {"quintet render fox.glb --frames 0-47 --resume -o f####.png", "two seconds; finished frames are skipped"},
+      {"quintet render fox.glb --frames 48 -o fox.mp4", "a video, with ffmpeg"},
       {"quintet render scene.glb --program ao --set distance=0.5", "another program with a parameter"},
       {"quintet render --program pathtracer --help-program", "the program's parameters"},
       {"quintet render scene.glb -o - --quiet | display", "PNG on standard output"},
@@ -86,11 +97,16 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
   options.request.scene = texts.scene;
   options.output.file = texts.output.empty() ? options.request.scene.filename().replace_extension(".png")
                                              : std::filesystem::path(texts.output);
+  chooseVideo(options);
   // Without --frames there is one frame, so a pattern in the name is the number 0 or the last frame.
   options.output.everyFrame = !texts.output.empty() && output::hasFramePattern(options.output.file) &&
                               output::fileKind(options.output.file) != output::FileKind::film;
   options.request.commandLine = commandLine("render", arguments);
   convert(texts, options);
+  convertFrames(texts, options);
+  // Frames are written, not only the last one, unless a single file is named.
+  const job::FrameRequest& frames = options.request.frames;
+  options.request.frames.every = options.output.everyFrame && (frames.count || frames.first);
   checkStandardStreams(options);
   if (options.request.limits.samples)
     options.request.frames.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
@@ -132,6 +148,11 @@ std::string programHelpText(const program::Program& program, std::string_view co
 int renderImages(const RenderOptions& options, const program::Program& named, const Stopwatch& clock) {
   const program::Program program = output::withRequestedHeatMaps(named, options.output);
   const output::OutputPlan plan = output::planOutputs(options.output, program, options.request.frames);
+  std::optional<output::VideoWriter> video;
+  if (options.video) {
+    output::checkVideoRequest(*options.video, options.request.transparent);
+    video.emplace(*options.video, plan);
+  }
   Console console(options.console);
   console.setProgram(&program);
   console.displayImage = [&](const job::FilmView& film) { return output::displayImage(plan, film); };
@@ -152,7 +173,24 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
     const auto write = [&](const job::RenderResult& result) {
       output::addWritten(files, output::writeOutputs(plan, result, console));
     };
-    console.onFrame = write;
+    std::vector<output::FrameFiles> frames;
+    const auto filesOf = [&](std::uint64_t frame) {
+      return video ? std::vector<std::filesystem::path>{} : output::frameFiles(plan, frame);
+    };
+    console.wasWritten = [&](const job::Provenance& frame) {
+      if (video ? !video->addWritten(frame) : !output::isFrameWritten(plan, frame)) return false;
+      frames.push_back({*frame.frame, filesOf(*frame.frame), 0.0, true});
+      return true;
+    };
+    console.onFrame = [&, before = 0.0](const job::RenderResult& result) mutable {
+      if (video)
+        video->add(result, console);
+      else
+        write(result);
+      if (!result.provenance.frame) return;
+      const double seconds = result.provenance.seconds - std::exchange(before, result.provenance.seconds);
+      frames.push_back({*result.provenance.frame, filesOf(*result.provenance.frame), seconds});
+    };
     job::RenderResult result = job.run(options.request.limits, console);
     console.finalImage(*result.film);
     try {
@@ -162,12 +200,13 @@ int renderImages(const RenderOptions& options, const program::Program& named, co
       job.outputsFailed(result, console);
       throw;
     }
+    if (video && video->finish(result.interrupted, console)) files = {{options.video->file, ""}};
     job.outputsWritten(result, console);
 
     addWarnings(result, console);
     console.clear();
-    if (options.console.json) writeFile("-", output::resultJson(result, files, clock.seconds()));
-    console.note(output::resultSummary(result, files));
+    if (options.console.json) writeFile("-", output::resultJson(result, files, clock.seconds(), frames));
+    console.note(output::resultSummary(result, files, frames));
     if (result.interrupted) return stop.exitStatus();
     return result.targetMissed || result.earlierTargetMissed ? kTargetNotReached : 0;
   } catch (const ProgramError& error) {

@@ -38,20 +38,12 @@ constexpr double kTimeout = 30.0;  // seconds: a shader that takes longer probab
 struct RunOptions : RenderOptions {
   bool list = false;  // print the built-in programs
   bool watch = false;
-  std::string frames;           // number or range
   bool namedByProgram = false;  // no output file was given
 };
 
-void convertFrames(const RenderTexts& texts, RunOptions& options) {
+void convertFrameCount(const RenderTexts& texts, RunOptions& options) {
   job::FrameRequest& request = options.request.frames;
-  const std::string& frames = options.frames;
-  if (!frames.empty() && !texts.frame.empty()) throw UsageError("--frame and --frames exclude each other");
-  if (frames.find('-', 1) != std::string::npos) {
-    std::tie(request.first, request.count) = parseFrames("--frames", frames, kMaxFrames);
-  } else if (const auto count = parseInteger("--frames", frames, 1, kMaxFrames)) {
-    request.count = static_cast<std::uint32_t>(*count);
-  }
-  convertFrame(texts, request);
+  convertFrames(texts, options);
   if (!texts.spp.empty()) request.accumulated = static_cast<std::uint32_t>(*options.request.limits.samples);
   if (!request.accumulated && !options.request.limits.seconds) request.accumulated = 1;
   request.every = options.output.everyFrame = options.output.everyFrame || output::hasFramePattern(options.output.file);
@@ -70,27 +62,22 @@ OptionTable declare(RunOptions& options, RenderTexts& texts) {
               .help = "Scene file: .gltf, .glb or .scene.toml (default: the program's own, or built in)",
               .target = &texts.scene,
               .candidates = {.extensions = kSceneExtensions}}});
-  table.add("Image",
-            {{.names = "-o",
-              .value = "FILE",
-              .help = "Output file: .png, .exr or .hdr; #### is the frame number; - is PNG on standard output, -.exr "
-                      "OpenEXR (default: PROGRAM.png in the current folder)",
-              .target = &texts.output,
-              .candidates = {.extensions = {"png", "exr", "hdr"}}}});
+  table.add(
+      "Image",
+      {{.names = "-o",
+        .value = "FILE",
+        .help =
+            "Output file: .png, .exr or .hdr; #### is the frame number; .mp4, .webm or .gif is a video of --frames; - "
+            "is PNG on standard output, -.exr OpenEXR (default: PROGRAM.png in the current folder)",
+        .target = &texts.output,
+        .candidates = {.extensions = {"png", "exr", "hdr", "mp4", "webm", "gif"}}}});
   declareImage(table, texts, options);
-  table.add("Image",
-            {{.names = "--frames",
-              .value = "N|A-B",
-              .help = "Number of frames, for an animated scene or a program that draws frame after frame (default: 1); "
-                      "A-B renders only frames A to B of an animated scene",
-              .target = &options.frames}});
+  declareFrames(table, texts, options);
   declareFrame(table, texts, "Render");
-  table.add("Image", {{.names = "--all-frames",
-                       .help = "Write each frame: out.0000.png (also with #### or %04d in the name)",
-                       .target = &options.output.everyFrame}});
   declareExr(table, texts);
   declareQuality(table, texts, options);
   declareView(table, texts, options);
+  declareAnimation(table, texts, options);
   declareProgram(table, options);
   table.add("Program", {{.names = "--output",
                          .value = "NAME",
@@ -136,13 +123,15 @@ std::optional<RunOptions> parseRunOptions(Arguments arguments) {
   options.request.scene = texts.scene;
   options.namedByProgram = texts.output.empty();
   options.output.file = options.namedByProgram ? "out.png" : texts.output;
+  chooseVideo(options);
   if (output::fileKind(options.output.file) == output::FileKind::film)
     throw UsageError(
         fmt::format("{}: run writes images; use 'quintet render' for films", options.output.file.string()));
   convert(texts, options);
-  convertFrames(texts, options);
+  convertFrameCount(texts, options);
   if (texts.timeout.empty()) options.request.launchTimeout = kTimeout;
   checkStandardStreams(options);
+  if (options.watch && options.video) throw UsageError("--watch writes images; a video requires a run of its own");
   if (options.watch && output::isStandardOutput(options.output.file))
     throw UsageError("--watch writes the same file repeatedly: it cannot be standard output");
   return options;

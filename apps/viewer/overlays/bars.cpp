@@ -92,7 +92,7 @@ void animationBar(ViewState& state, const Area& area) {
   ImGui::SetCursorPosY(0.5f * (area.size.y - ImGui::GetFrameHeight()));
   if (button(state.playing ? "Pause" : "Play", "Space")) {
     state.playing = !state.playing;
-    state.playStart = state.time - state.snapshot->state.frame / kFramesPerSecond;
+    state.playStart = state.time - state.snapshot->state.frame / state.snapshot->request->render.framesPerSecond;
   }
   ImGui::SameLine();
   double frame = state.snapshot->state.frame;

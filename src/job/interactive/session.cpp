@@ -17,7 +17,9 @@
 #include "program/heat.h"
 #include "program/load.h"
 #include "render/tone_map/false_color.h"
+#include "scene/animation/animated_bounds.h"
 #include "scene/animation/keyframes.h"
+#include "scene/animation/pose.h"
 #include "scene/model/mesh_bounds.h"
 #include "scene/model/names.h"
 
@@ -142,13 +144,15 @@ Session::Session(Engine& engine, SessionRequest request, Clock clock, Observer& 
       recorder_(std::make_unique<Recorder>(host)),
       resolution_(request.updatesPerSecond > 0 ? request.updatesPerSecond : paceOf(engine).updatesPerSecond) {
   program::Program program = loadForSession(request.program);
-  SceneSource source = chooseSceneSource(request.render.scene, program, request.render.load);
+  // The animation plays with all programs that the session can select.
+  request.render.editable = true;
+  SceneSource source = chooseSceneSource(request.render.scene, program, loadOptions(request.render, false));
   host.stage("loading " + source.name);
   scene_ = std::make_shared<const scene::Scene>(loadScene(source));
   instanceNames_ = scene::instanceNames(*scene_);
   materialNames_ = scene::materialNames(*scene_);
   lightNames_ = scene::lightNames(*scene_);
-  sceneBounds_ = scene::worldBounds(*scene_);
+  sceneBounds_ = scene::animatedBounds(*scene_);
   job_ = std::make_unique<RenderJob>(engine,
                                      resolveSession(request, scene_, sceneBounds_, std::move(source),
                                                     std::move(program), paceOf(engine).launchSeconds),
@@ -325,7 +329,8 @@ SessionState Session::changed(const Command& command) const {
       setTransform(index, moved);
     }
     void operator()(const SetFrame& c) {
-      if (!session.isAnimated()) throw UsageError("no instance has keyframes, so all frames are the same");
+      if (!session.isAnimated())
+        throw UsageError("the scene has neither keyframes nor an animation, so all frames are the same");
       next.frame = c.frame;
     }
     void operator()(const SelectOutput& c) {
@@ -376,7 +381,7 @@ LightState Session::light(std::size_t index) const { return lightIn(state_, inde
 mat4 Session::transform(std::size_t instance) const {
   const auto edited = state_.transforms.find(instance);
   return edited != state_.transforms.end() ? edited->second
-                                           : scene::worldFromObjectAt(scene_->instances.at(instance), state_.frame);
+                                           : scene::worldFromObjectAt(scene_->instances.at(instance), pose());
 }
 
 Bounds3 Session::bounds(const std::string& instance) const {
@@ -395,7 +400,11 @@ Bounds3 Session::bounds(const std::string& instance) const {
 
 scene::Camera Session::camera() const {
   const float aspect = static_cast<float>(state_.size.x) / static_cast<float>(state_.size.y);
-  return chooseCamera(*scene_, state_.camera, aspect, sceneBounds_).camera;
+  if (!scene_->nodeAnimation) return chooseCamera(*scene_, state_.camera, aspect, sceneBounds_).camera;
+  scene::Scene cameras;
+  cameras.name = scene_->name;
+  for (const scene::Camera& camera : scene_->cameras) cameras.cameras.push_back(scene::cameraAt(camera, pose()));
+  return chooseCamera(cameras, state_.camera, aspect, sceneBounds_).camera;
 }
 
 OrbitCamera Session::navigation() const {
@@ -403,15 +412,13 @@ OrbitCamera Session::navigation() const {
   return orbitCamera(camera(), state_.orbitCenter.value_or(state_.camera.lookAt.value_or(sceneCenter)));
 }
 
-bool Session::isAnimated() const {
-  return std::ranges::any_of(scene_->instances, [](const scene::Instance& i) { return !i.keyframes.empty(); });
-}
+bool Session::isAnimated() const { return scene::isAnimated(*scene_); }
 
-float Session::lastFrame() const {
-  float last = 0;
-  for (const scene::Instance& instance : scene_->instances)
-    if (!instance.keyframes.empty()) last = std::max(last, instance.keyframes.back().frame);
-  return last;
+float Session::lastFrame() const { return scene::lastFrame(*scene_); }
+
+const scene::Pose& Session::pose() const {
+  if (!pose_ || pose_->frame != state_.frame) pose_ = scene::poseAt(scene_->nodeAnimation.get(), state_.frame);
+  return *pose_;
 }
 
 // Passes the difference to the job. Counts the edits that have succeeded, which discard the samples. An empty output of

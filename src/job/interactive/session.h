@@ -148,8 +148,8 @@ class Session {
   scene::Camera camera() const;                       // for the full resolution
   // Throws UsageError for an orthographic camera.
   OrbitCamera navigation() const;
-  bool isAnimated() const;  // an instance has keyframes
-  float lastFrame() const;  // that has a keyframe; 0 if none
+  bool isAnimated() const;  // keyframes, or a glTF animation
+  float lastFrame() const;  // at which something changes; 0 without animation
 
  private:
   class Recorder;
@@ -164,6 +164,7 @@ class Session {
   void requirePixel(uvec2 pixel) const;
   void restarted();
   bool hasAutomaticCamera() const;
+  const scene::Pose& pose() const;  // at the frame of the state
   std::size_t outputIndex() const;  // in the program
 
   void watchFiles(const std::vector<Diagnostic>& diagnostics);
@@ -182,7 +183,8 @@ class Session {
   const Clock clock_;
   std::shared_ptr<const scene::Scene> scene_;
   std::vector<std::string> instanceNames_, materialNames_, lightNames_;
-  Bounds3 sceneBounds_;
+  Bounds3 sceneBounds_;                      // scene::animatedBounds
+  mutable std::optional<scene::Pose> pose_;  // of the last call of pose()
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<RenderJob> job_;
   std::future<void> picking_;                  // compiles the program that picks

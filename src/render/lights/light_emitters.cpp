@@ -330,6 +330,11 @@ void Emitters::copyGeometry() {
     }
 }
 
+void Emitters::setPositions(std::size_t mesh, std::size_t geometry, std::span<const vec3> positions) {
+  const Emitter& emitter = emitters_[mesh][geometry];
+  if (emitter.ownTriangles) std::ranges::copy(positions, emitter.ownTriangles->positions.begin());
+}
+
 bool Emitters::update(const scene::Scene& scene) {
   emissions_.resize(scene.materials.size());
   std::vector<bool> changed;

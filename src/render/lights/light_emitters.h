@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "base/parallel.h"
@@ -21,7 +22,7 @@ struct Emitter {
   // One of these points to the scene, or to the emitter's copy after copyGeometry(). The other one is null.
   const scene::Geometry* triangles = nullptr;
   const scene::PrimitiveSet* solids = nullptr;
-  std::shared_ptr<const scene::Geometry> ownTriangles;
+  std::shared_ptr<scene::Geometry> ownTriangles;
   std::shared_ptr<const scene::PrimitiveSet> ownSolids;
 
   std::size_t count() const { return luminance.size(); }
@@ -36,6 +37,8 @@ class Emitters {
   bool update(const scene::Scene& scene);
   // Makes the emitters independent of the scene: copies the positions and triangles, or the primitive sets.
   void copyGeometry();
+  // Moves the vertices of a geometry that emits; does nothing for others. After copyGeometry().
+  void setPositions(std::size_t mesh, std::size_t geometry, std::span<const vec3> positions);
   // Returns the emitter of a geometry or primitive set of a mesh.
   const Emitter& of(std::size_t mesh, std::size_t geometry) const { return emitters_[mesh][geometry]; }
 

@@ -204,8 +204,11 @@ void LightTableBuilder::addParts(const scene::Scene& scene) {
   }
   lit_.assign(scene.instances.size(), false);
   for (const Part& part : parts_) lit_[part.instance] = true;
-  hasMovingLights_ =
-      std::ranges::any_of(parts_, [&](const Part& part) { return !scene.instances[part.instance].keyframes.empty(); });
+  const auto moves = [&](const Part& part) {
+    return scene.instances[part.instance].animated() || scene.meshes[part.mesh].deformation;
+  };
+  hasMovingLights_ = std::ranges::any_of(parts_, moves) ||
+                     std::ranges::any_of(scene.lights, [](const scene::Light& l) { return l.node != scene::kNone; });
 }
 
 void LightTableBuilder::build(std::span<const mat4> worldFromObject, LightTable& table) {

@@ -70,10 +70,15 @@ class LightTableBuilder {
   void setEnvironment(double integral) { environmentIntegral_ = integral; }
   double environmentIntegral() const { return environmentIntegral_; }
 
-  bool hasMovingLights() const { return hasMovingLights_; }              // an instance with keyframes has lights
+  // Something that an animation moves or deforms has lights, or a punctual light follows a node.
+  bool hasMovingLights() const { return hasMovingLights_; }
   bool hasLights(std::size_t instance) const { return lit_[instance]; }  // so that its transform matters
   // Makes the builder independent of the scene, which can then be destroyed.
   void copyGeometry() { emitters_.copyGeometry(); }
+  // Vertices of a deformed mesh, for the next build(). After copyGeometry().
+  void setPositions(std::size_t mesh, std::size_t geometry, std::span<const vec3> positions) {
+    emitters_.setPositions(mesh, geometry, positions);
+  }
 
  private:
   struct Part {

@@ -36,11 +36,22 @@ void padTables(LightTable& table) {
   table.nodes.resize(std::max(table.nodes.size(), 2 * table.lights.size()));
 }
 
+void moveEmitters(const DeformedMeshes& deformed, LightTableBuilder& lights) {
+  deformed.forPositions([&](std::size_t mesh, std::size_t geometry, std::span<const vec3> positions) {
+    lights.setPositions(mesh, geometry, positions);
+  });
+}
+
 }  // namespace
 
 DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scene::Environment& environment,
                          const DeviceSceneOptions& options)
-    : context_(context), options_(options), facts_(check::sceneFacts(scene)) {
+    : context_(context),
+      options_(options),
+      nodeAnimation_(scene.nodeAnimation),
+      deformed_(context),
+      animated_(scene::isAnimated(scene)),
+      facts_(check::sceneFacts(scene)) {
   const Stopwatch watch;
   defines_ = shaderDefines(sceneFeatures(scene, environment), context.info().quirks);
   uploadLights(scene, environment);  // first, because it reads images and attributes that the other uploads free
@@ -71,6 +82,8 @@ void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environme
   builder.build(worldFromObject, table);
   EnvironmentTable environmentTable = std::move(builder.environment());
   firstLightSlots_ = table.firstSlots;
+  if (std::ranges::any_of(scene.lights, [](const scene::Light& light) { return light.node != scene::kNone; }))
+    punctual_ = scene.lights;
   if (builder.hasMovingLights() || options_.editable) {
     builder.copyGeometry();
     lightBuilder_ = std::move(builder);
@@ -168,6 +181,7 @@ rt::BlasInput DeviceScene::blasInput(const scene::Scene& scene, std::size_t mesh
   rt::BlasInput input;
   input.options.name = scene.meshes[mesh].name;
   input.options.keepInputOrder = options_.keepInputOrder;
+  input.options.allowUpdate = scene.meshes[mesh].deformation != nullptr;
   std::size_t k = geometry_.firstGeometry[mesh];
   for (std::size_t g = 0; g < scene.meshes[mesh].geometries.size(); ++g, ++k) {
     rt::GeometryInput& part = input.geometries.emplace_back();
@@ -207,6 +221,8 @@ void DeviceScene::buildBottomLevel(const scene::Scene& scene) {
     for (std::size_t g = 0; g < inputs[i].geometries.size(); ++g)
       geometry_.geometries[geometry_.firstGeometry[meshOfInput[i]] + g].primitiveMap = blas_[i].primitiveMap(g);
   }
+  for (std::size_t i = 0; i < blas_.size(); ++i)
+    if (scene.meshes[meshOfInput[i]].deformation) deformed_.add(scene, meshOfInput[i], inputs[i], blas_[i], geometry_);
 }
 
 void DeviceScene::uploadTables(const scene::Scene& scene) {
@@ -232,9 +248,39 @@ void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder,
   statistics_.topLevelSeconds = watch.seconds();
 }
 
-void DeviceScene::setFrame(float frame) {
-  if (topLevel_->setFrame(frame) && lightBuilder_ && lightBuilder_->hasMovingLights()) lightsOutdated_ = true;
+void DeviceScene::setFrame(double frame) {
+  if (animated_ && frame != shownFrame_) showFrame(frame);
   updateLights();
+}
+
+void DeviceScene::showFrame(double frame) {
+  shownFrame_ = frame;
+  const scene::Pose pose = scene::poseAt(nodeAnimation_.get(), frame);
+  const scene::Pose before = scene::poseAt(nodeAnimation_.get(), std::max(0.0, frame - 1.0));
+  if (!deformed_.empty()) showDeformation(pose);
+  if (!deformed_.empty() || topLevel_->animated()) topLevel_->setPose(pose, before);
+  if (!lightBuilder_ || !lightBuilder_->hasMovingLights()) return;
+  moveEmitters(deformed_, *lightBuilder_);
+  if (!punctual_.empty()) movePunctualLights(pose);
+  lightsOutdated_ = true;
+}
+
+void DeviceScene::movePunctualLights(const scene::Pose& pose) {
+  std::vector<scene::Light> lights;
+  for (const scene::Light& light : punctual_) lights.push_back(scene::lightAt(light, pose));
+  lightBuilder_->setPunctualLights(lights);
+}
+
+void DeviceScene::showDeformation(const scene::Pose& pose) {
+  const auto updateMaps = [&](std::size_t mesh) {
+    const std::size_t first = geometry_.firstGeometry[mesh];
+    const rt::Blas& blas = blas_[static_cast<std::size_t>(blasOfMesh_[mesh])];
+    const std::size_t count = blas.geometryCount();
+    for (std::size_t g = 0; g < count; ++g) geometry_.geometries[first + g].primitiveMap = blas.primitiveMap(g);
+    geometryTable_.upload(std::as_bytes(std::span(geometry_.geometries).subspan(first, count)),
+                          first * sizeof(shared::GeometryData));
+  };
+  deformed_.setPose(*nodeAnimation_, pose, updateMaps);
 }
 
 void DeviceScene::updateLights() {
@@ -255,14 +301,20 @@ void DeviceScene::setTransforms(std::span<const InstanceTransform> transforms) {
 
 void DeviceScene::setLights(const std::vector<scene::Light>& lights) {
   assert(options_.editable);
-  lightBuilder_->setPunctualLights(lights);
   lightsOutdated_ = true;
+  if (punctual_.empty()) {
+    lightBuilder_->setPunctualLights(lights);
+    return;
+  }
+  punctual_ = lights;
+  movePunctualLights(scene::poseAt(nodeAnimation_.get(), shownFrame_));
 }
 
 void DeviceScene::setEmission(const scene::Scene& scene) {
   assert(options_.editable);
   if (!lightBuilder_->setEmission(scene)) return;
   lightBuilder_->copyGeometry();
+  moveEmitters(deformed_, *lightBuilder_);
   lightsOutdated_ = true;
 }
 

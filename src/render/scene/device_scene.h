@@ -8,6 +8,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "gpu/descriptors.h"
@@ -16,6 +17,7 @@
 #include "program/scene_facts.h"
 #include "quintet/shared/frame.h"
 #include "render/lights/light_table.h"
+#include "render/scene/deformed_meshes.h"
 #include "render/scene/geometry_upload.h"
 #include "render/scene/scene_features.h"
 #include "render/scene/texture_upload.h"
@@ -75,14 +77,15 @@ class DeviceScene {
   // (docs/design/quirks.md).
   void prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder = false, bool anyHitForAll = false);
 
-  // Moves the instances with keyframes (scene.h) to their transforms at `frame`: updates the instance table, the TLAS,
-  // and the light tables if a moving instance emits or an edit changed them. The addresses of moving lights do not change,
-  // so frameTemplate() stays valid. Blocks; no launch can be under way. The scene starts at frame 0.
-  void setFrame(float frame);
+  // Moves the animated instances and lights to `frame`, and deforms meshes: updates vertices, BLASes, the instance
+  // table, the TLAS, and the light tables if something that moves emits or an edit changed them. The addresses of moving
+  // lights do not change, so frameTemplate() stays valid. Blocks; no launch can be under way. The scene starts at
+  // frame 0.
+  void setFrame(double frame);
 
   // Edits. Those of lights take effect in updateLights(), so that several edits build the light tables once. They require
   // DeviceSceneOptions::editable and block; no launch can be under way.
-  // Moves instances without keyframes: updates the instance table and the TLAS, and edits the lights that move.
+  // Moves instances that are not animated: updates the instance table and the TLAS, and edits the lights that move.
   void setTransforms(std::span<const InstanceTransform> transforms);
   // Replaces a row of the material table. Returns false, and changes nothing, if the material uses a texture that is
   // not on the device. The caller makes sure that everything else that depends on materials stays the same: features,
@@ -98,7 +101,8 @@ class DeviceScene {
   void updateLights();
   // What defines() is made of, after edits.
   void setFeatures(const SceneFeatures& features) { defines_ = shaderDefines(features, context_.info().quirks); }
-  bool animated() const { return topLevel_->animated(); }  // an instance has keyframes
+  bool animated() const { return animated_; }  // keyframes, or a glTF animation (scene::isAnimated)
+  const DeformationStatistics& deformationStatistics() const { return deformed_.statistics(); }
 
  private:
   struct EnvironmentImage {
@@ -109,6 +113,9 @@ class DeviceScene {
 
   void uploadLights(const scene::Scene& scene, const scene::Environment& environment);
   void showEnvironment(const scene::Environment& environment, const EnvironmentTable& table);
+  void showFrame(double frame);
+  void showDeformation(const scene::Pose& pose);
+  void movePunctualLights(const scene::Pose& pose);  // in the builder
   void uploadLightTable(LightTable& table);
   void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
   bool needsSingleAnyHit(const program::GeometryFacts& geometry) const;
@@ -130,13 +137,18 @@ class DeviceScene {
   gpu::Buffer constantEnvironment_;    // table of an environment without an image
   gpu::Buffer lights_, lightTable_, lightNodes_, lightSlots_;
   std::vector<std::uint32_t> firstLightSlots_;     // per instance
-  std::optional<LightTableBuilder> lightBuilder_;  // only if an instance with keyframes has lights, or for edits
+  std::optional<LightTableBuilder> lightBuilder_;  // only if lights move, or for edits
   LightTable lightTables_;                         // of the last edit, for its memory; empty above kKeptLights
-  bool lightsOutdated_ = false;                    // an edit is not yet in the light tables
+  bool lightsOutdated_ = false;                    // an edit or a frame is not yet in the light tables
   std::vector<rt::Blas> blas_;                     // one per mesh that an instance uses
   std::vector<int> blasOfMesh_;                    // index in blas_; -1 if no instance uses the mesh
   std::uint64_t bottomLevelBytes_ = 0;
   std::optional<TopLevel> topLevel_;
+  std::shared_ptr<const scene::NodeAnimation> nodeAnimation_;  // null if no glTF animation plays
+  DeformedMeshes deformed_;
+  std::vector<scene::Light> punctual_;  // at frame 0, if one follows a node
+  bool animated_ = false;
+  double shownFrame_ = 0;
   program::SceneFacts facts_;
   shared::Frame frame_{};
   Defines defines_;

@@ -21,6 +21,7 @@ template <class T>
 struct UploadedArray {
   shared::Address address = 0;
   std::span<const T> host;
+  ArraySlot slot;
 };
 
 // Suballocates a few large buffers in the order of `sizes`, which are aligned and not 0. On a CPU the buffers are
@@ -36,7 +37,7 @@ class Arena {
     if (data.empty()) return {};
     if (used_ == capacity_) grow();
     gpu::Buffer& buffer = target_.buffers.back();
-    UploadedArray<T> uploaded{buffer.address() + used_, data};
+    UploadedArray<T> uploaded{buffer.address() + used_, data, {target_.buffers.size() - 1, used_}};
     if (std::byte* mapped = buffer.mapped()) {
       parallelCopy(mapped + used_, std::as_bytes(std::span(data)));
       uploaded.host = {reinterpret_cast<const T*>(mapped + used_), data.size()};
@@ -102,15 +103,18 @@ std::vector<VkDeviceSize> arraySizes(const scene::Scene& scene) {
 }
 
 shared::GeometryData uploadTriangles(Arena& arena, const scene::Scene& scene, const scene::Geometry& g,
-                                     GeometryArrays& arrays) {
+                                     GeometryArrays& arrays, VertexSlots& slots) {
   shared::GeometryData data{};
   const UploadedArray<vec3> positions = arena.add(g.positions);
   const UploadedArray<uvec3> triangles = arena.add(g.triangles);
   arrays = {positions.host, triangles.host};
   data.positions = positions.address;
   data.triangles = triangles.address;
-  data.normals = arena.add(g.normals).address;
-  data.tangents = arena.add(g.tangents).address;
+  const UploadedArray<vec3> normals = arena.add(g.normals);
+  const UploadedArray<vec4> tangents = arena.add(g.tangents);
+  slots = {positions.slot, normals.slot, tangents.slot};
+  data.normals = normals.address;
+  data.tangents = tangents.address;
   data.uvs[0] = arena.add(g.uvs[0]).address;
   data.uvs[1] = arena.add(g.uvs[1]).address;
   data.colors = arena.add(g.colors).address;
@@ -159,6 +163,17 @@ VkDeviceSize geometryUploadBytes(const gpu::Context& context, const scene::Scene
   return bytes;
 }
 
+void replaceArray(GeometryUpload& upload, const ArraySlot& slot, std::span<const std::byte> data,
+                  gpu::Uploader& uploader) {
+  if (data.empty()) return;
+  gpu::Buffer& buffer = upload.buffers[slot.buffer];
+  if (std::byte* mapped = buffer.mapped()) {
+    parallelCopy(mapped + slot.offset, data);
+  } else {
+    uploader.upload(buffer, data, slot.offset);
+  }
+}
+
 GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, scene::Scene& scene) {
   GeometryUpload upload;
   Arena arena(context, uploader, upload, arraySizes(scene));
@@ -166,11 +181,12 @@ GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, 
     upload.firstGeometry.push_back(static_cast<std::uint32_t>(upload.geometries.size()));
     for (scene::Geometry& geometry : mesh.geometries) {
       GeometryArrays& arrays = upload.arrays.emplace_back();
-      upload.geometries.push_back(uploadTriangles(arena, scene, geometry, arrays));
+      upload.geometries.push_back(uploadTriangles(arena, scene, geometry, arrays, upload.slots.emplace_back()));
       freeArrays(geometry, arrays);
     }
     for (const scene::PrimitiveSet& set : mesh.primitiveSets) {
       upload.arrays.emplace_back();
+      upload.slots.emplace_back();
       upload.geometries.push_back(uploadPrimitives(arena, scene, set));
     }
   }

@@ -3,6 +3,7 @@
 #ifndef QUINTET_RENDER_SCENE_GEOMETRY_UPLOAD_H
 #define QUINTET_RENDER_SCENE_GEOMETRY_UPLOAD_H
 
+#include <cstddef>
 #include <deque>
 #include <span>
 #include <vector>
@@ -20,11 +21,23 @@ struct GeometryArrays {
   std::span<const uvec3> triangles;
 };
 
+// Where an array is in GeometryUpload::buffers.
+struct ArraySlot {
+  std::size_t buffer = 0;
+  VkDeviceSize offset = 0;
+};
+
+// The arrays of a geometry that a deformation changes.
+struct VertexSlots {
+  ArraySlot positions, normals, tangents;
+};
+
 // Geometries and primitive sets in the order of hit records. The caller sets the addresses of primitive maps.
 struct GeometryUpload {
   std::deque<gpu::Buffer> buffers;
   std::vector<shared::GeometryData> geometries;
   std::vector<GeometryArrays> arrays;        // parallel to `geometries`; empty for primitive sets
+  std::vector<VertexSlots> slots;            // parallel to `geometries`; not used for primitive sets
   std::vector<std::uint32_t> firstGeometry;  // per mesh
   std::uint64_t bytes = 0;
 };
@@ -32,6 +45,11 @@ struct GeometryUpload {
 // Returns the bytes that uploadGeometries() transfers through the uploader. 0 on a CPU, where arrays are written
 // directly.
 VkDeviceSize geometryUploadBytes(const gpu::Context& context, const scene::Scene& scene);
+
+// Replaces an array by one of the same size; an empty one changes nothing. The data are on the device after
+// uploader.flush(). The device must not use the array meanwhile.
+void replaceArray(GeometryUpload& upload, const ArraySlot& slot, std::span<const std::byte> data,
+                  gpu::Uploader& uploader);
 
 // Uploads all geometries, and frees each array of the scene that GeometryUpload::arrays does not refer to.
 GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, scene::Scene& scene);

@@ -26,8 +26,9 @@ TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<c
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Instance& instance = scene.instances[i];
     const mat4 worldFromObject = scene::worldFromObjectAt(instance, 0.0f);
-    if (!instance.keyframes.empty()) {
+    if (instance.animated()) {
       moving_.push_back(instance);
+      before_.push_back(worldFromObject);
       movingIndex_.push_back(static_cast<std::uint32_t>(i));
     }
     shared::InstanceData& data = data_.emplace_back();
@@ -56,13 +57,12 @@ bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHi
   return true;
 }
 
-bool TopLevel::setFrame(float frame) {
-  if (moving_.empty() || frame == frame_) return false;
-  frame_ = frame;
-  for (std::size_t k = 0; k < moving_.size(); ++k)
-    setTransform(movingIndex_[k], scene::worldFromObjectAt(moving_[k], frame));
+void TopLevel::setPose(const scene::Pose& pose, const scene::Pose& before) {
+  for (std::size_t k = 0; k < moving_.size(); ++k) {
+    setTransform(movingIndex_[k], scene::worldFromObjectAt(moving_[k], pose));
+    before_[k] = scene::worldFromObjectAt(moving_[k], before);
+  }
   update();
-  return true;
 }
 
 void TopLevel::setTransform(std::size_t instance, const mat4& worldFromObject) {
@@ -74,8 +74,7 @@ void TopLevel::update() {
   table_.upload(std::as_bytes(std::span(data_)));
   if (animated()) {
     std::vector<shared::InstanceData> before = data_;
-    for (std::size_t k = 0; k < moving_.size(); ++k)
-      storeTransform(before[movingIndex_[k]], scene::worldFromObjectAt(moving_[k], std::max(0.0f, frame_ - 1.0f)));
+    for (std::size_t k = 0; k < moving_.size(); ++k) storeTransform(before[movingIndex_[k]], before_[k]);
     previousTable_.upload(std::as_bytes(std::span(before)));
   }
   if (tlas_) build();

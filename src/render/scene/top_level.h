@@ -11,6 +11,7 @@
 
 #include "quintet/shared/frame.h"
 #include "rt/tlas.h"
+#include "scene/animation/pose.h"
 #include "scene/model/scene.h"
 
 namespace quintet::render {
@@ -28,7 +29,7 @@ class TopLevel {
   TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstanceReferences> references);
 
   shared::Address table() const { return table_.address(); }  // shared::InstanceData[]; the same for all frames
-  // Returns the table of the frame before the current one; at frame 0, of frame 0. 0 if no instance has keyframes.
+  // Returns the table of the frame before the current one; at frame 0, of frame 0. 0 if no instance is animated.
   shared::Address previousTable() const { return animated() ? previousTable_.address() : 0; }
   std::vector<mat4> worldFromObject() const;  // transforms of the instances at the current frame
   bool animated() const { return !moving_.empty(); }
@@ -37,13 +38,14 @@ class TopLevel {
   // gl_InstanceID the instance's index in the scene. With anyHitForAll only instances that are forced to be opaque are
   // opaque. Blocks. Returns false if the structure already fits.
   bool prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHitForAll);
-  // Moves an instance to a transform, which must be affine and invertible; update() uploads it. One without keyframes was
-  // there in the previous frame, too.
+  // Moves an instance to a transform, which must be affine and invertible; update() uploads it. One that is not
+  // animated was there in the previous frame, too.
   void setTransform(std::size_t instance, const mat4& worldFromObject);
   // Uploads the instance tables and rebuilds the structure. Blocks; the device must not be tracing.
   void update();
-  // Moves the instances with keyframes. Blocks; the device must not be tracing. Returns false if no transform changed.
-  bool setFrame(float frame);
+  // Moves the animated instances, and rebuilds the structure over BLASes that may have changed. `before`: one frame
+  // earlier. Blocks; the device must not be tracing.
+  void setPose(const scene::Pose& pose, const scene::Pose& before);
 
   const rt::Tlas& structure() const { return *tlas_; }  // after prepareFor
 
@@ -51,8 +53,9 @@ class TopLevel {
   void build();
 
   gpu::Context& context_;
-  std::vector<scene::Instance> moving_;     // instances with keyframes
+  std::vector<scene::Instance> moving_;     // animated instances
   std::vector<std::uint32_t> movingIndex_;  // their indices in the scene
+  std::vector<mat4> before_;                // their transforms one frame earlier
   std::vector<shared::InstanceData> data_;
   std::vector<rt::InstanceInput> inputs_;
   gpu::Buffer table_, previousTable_;
@@ -60,7 +63,6 @@ class TopLevel {
   std::uint32_t rayTypeCount_ = 0;
   bool keepOrder_ = false;
   bool anyHitForAll_ = false;
-  float frame_ = 0.0f;
 };
 
 }  // namespace quintet::render

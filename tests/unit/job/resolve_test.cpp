@@ -85,6 +85,55 @@ TEST(Resolve, Batches) {
   EXPECT_NE(errorFor({0, 1}, [](RenderRequest& r) { r.limits.samples.reset(); }), "");
 }
 
+TEST(Resolve, ChecksTimesAndFrames) {
+  const auto problem = [](const program::Program& program, const auto& change) -> std::string {
+    RenderRequest request = makeRequest();
+    change(request);
+    try {
+      resolve(request, program);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const program::Program program = pathTracer();
+  EXPECT_EQ(problem(program, [](RenderRequest& r) { r.frames.seconds = 0.5; }), "");
+  EXPECT_THAT(problem(program, [](RenderRequest& r) { r.frames.seconds = -0.5; }), HasSubstr("at least 0 seconds"));
+  EXPECT_THAT(problem(program, [](RenderRequest& r) { r.frames.seconds = 1, r.frames.count = 3; }),
+              HasSubstr("exclude each other"));
+  EXPECT_THAT(problem(lecture(), [](RenderRequest& r) { r.frames.seconds = 1; }),
+              HasSubstr("counts its frames itself"));
+  EXPECT_THAT(problem(program, [](RenderRequest& r) { r.framesPerSecond = 0; }), HasSubstr("frames per second"));
+  const auto several = [](RenderRequest& r) { r.frames.count = 3, r.frames.every = true; };
+  EXPECT_EQ(problem(program, several), "");
+  EXPECT_THAT(problem(program,
+                      [&](RenderRequest& r) {
+                        several(r), r.batches = BatchRange{0, 1};
+                      }),
+              HasSubstr("a film holds one frame"));
+  EXPECT_THAT(problem(program, [&](RenderRequest& r) { several(r), r.checkpoint.keep = true; }),
+              HasSubstr("share one checkpoint"));
+}
+
+// The rest pose is loaded unless the request needs an animation.
+TEST(Resolve, LoadsAnAnimationOnRequest) {
+  const auto animation = [](const auto& change, bool accumulates = false) {
+    RenderRequest request = makeRequest();
+    change(request);
+    return loadOptions(request, accumulates).animation;
+  };
+  const auto nothing = [](RenderRequest&) {};
+  const auto frame = [](RenderRequest& r) { r.frames.first = 0, r.frames.count = 1; };
+  EXPECT_EQ(animation(nothing), std::nullopt);
+  EXPECT_EQ(animation(frame), "");
+  EXPECT_EQ(animation(frame, true), std::nullopt) << "the program counts its frames itself";
+  EXPECT_EQ(animation([](RenderRequest& r) { r.frames.seconds = 0; }), "");
+  EXPECT_EQ(animation([](RenderRequest& r) { r.editable = true; }), "");
+  EXPECT_EQ(animation([](RenderRequest& r) { r.animation = "Walk"; }), "Walk");
+  EXPECT_EQ(animation([](RenderRequest& r) { r.animation = "Walk"; }, true), "Walk");
+  EXPECT_EQ(animation([](RenderRequest& r) { r.animation = "none", r.editable = true; }), std::nullopt);
+}
+
 // A frame of a program that accumulates depends on the frames before it.
 TEST(Resolve, PartsOfAnAnimation) {
   RenderRequest request = makeRequest();

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// glTF animations on the device: each frame is that of the scene which the host poses (scene/animation/pose.h),
+// whichever frames were shown before.
+#include <gtest/gtest.h>
+
+#include "harness.h"
+#include "rendered_image.h"
+#include "scene/animation/pose.h"
+#include "scene/gltf_animation.h"
+
+namespace quintet::test {
+namespace {
+
+// The scene at a frame, without its animation.
+scene::Scene posedByHost(scene::Scene scene, double frame) {
+  scene::applyPose(scene, scene::poseAt(scene.nodeAnimation.get(), frame));
+  scene.nodeAnimation = nullptr;
+  for (scene::Mesh& mesh : scene.meshes) mesh.deformation = nullptr;
+  for (scene::Instance& instance : scene.instances) instance.node = scene::kNone;
+  for (scene::Light& light : scene.lights) light.node = scene::kNone;
+  return scene;
+}
+
+struct View {
+  std::string program = "normals";
+  scene::Camera camera = orthographic({0.5f, 1.0f, 5}, {0.5f, 1.0f, 0}, 3.0f);
+  std::vector<std::string> set;
+  std::uint32_t batches = 1;
+};
+
+std::vector<vec4> render(render::DeviceScene& device, const View& view) {
+  ImageOptions options;
+  options.program = program::loadProgram(view.program);
+  options.set = view.set;
+  options.width = options.height = 24;
+  render::Renderer renderer = makeRenderer(device, options.program, settingsFor(view.camera, options));
+  for (std::uint32_t i = 0; i < view.batches; ++i) renderer.renderBatch(render::kBatchSamples);
+  return renderer.film().downloadBatch(0);
+}
+
+std::vector<vec4> renderPosed(const scene::Scene& scene, double frame, const View& view) {
+  render::DeviceScene device(testContext(), posedByHost(scene, frame), scene::Environment{});
+  return render(device, view);
+}
+
+double largestDifference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t c = 0; c < 4; ++c) largest = std::max(largest, std::abs(double{a[i][c]} - double{b[i][c]}));
+  return largest;
+}
+
+bool hasImage(const std::vector<vec4>& pixels) {
+  return std::ranges::any_of(pixels, [&](const vec4& p) { return p != pixels[0]; });
+}
+
+// Shows the frames one after the other on one device scene, and compares each with the host's pose.
+void expectHostPoses(const scene::Scene& scene, const std::vector<double>& frames, const View& view = {}) {
+  render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{});
+  EXPECT_TRUE(device.animated());
+  std::vector<vec4> before;
+  for (const double frame : frames) {
+    device.setFrame(frame);
+    const std::vector<vec4> shown = render(device, view);
+    EXPECT_TRUE(hasImage(shown)) << frame;
+    EXPECT_LT(largestDifference(shown, renderPosed(scene, frame, view)), 1e-4) << frame;
+    if (!before.empty()) {
+      EXPECT_GT(largestDifference(shown, before), 0.1) << "nothing has moved at " << frame;
+    }
+    before = shown;
+  }
+}
+
+TEST(Animation, NodesMoveInstances) {
+  AnimationBuilder builder = movingTriangle();
+  const float half = std::sqrt(0.5f);
+  builder.addChannel(1, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, half, half});
+  builder.addChannel(1, "scale", {0, 1}, {1, 1, 1, 2, 2, 2});
+  expectHostPoses(builder.loadAnimated(), {12, 24, 3});
+}
+
+TEST(Animation, SkinsBend) { expectHostPoses(bendingStrip(2).loadAnimated(), {12, 24, 6}); }
+
+TEST(Animation, TargetsMorph) {
+  View view;
+  view.camera = perspective({3, 2, 4}, {0.5f, 1, 0}, 50);  // a displacement along z is visible
+  expectHostPoses(morphingTriangle().loadAnimated(), {24, 48, 12}, view);
+}
+
+// A BLAS is refitted while its tree is good, and built again when it is not.
+TEST(Animation, BuildsAgainWhenTheTreeHasDecayed) {
+  // Small triangles in a row. One target exchanges their order, the other moves all of them alike.
+  constexpr std::size_t kTriangles = 64;
+  std::vector<float> positions, exchanged, moved;
+  for (std::size_t i = 0; i < kTriangles; ++i) {
+    const std::size_t other = i * 37 % kTriangles;
+    const float x = 0.1f * static_cast<float>(i), shift = 0.1f * static_cast<float>(other) - x;
+    positions.insert(positions.end(), {x, 0, 0, x + 0.08f, 0, 0, x, 2, 0});
+    for (int corner = 0; corner < 3; ++corner) {
+      exchanged.insert(exchanged.end(), {shift, 0, 0});
+      moved.insert(moved.end(), {0, 0.5f, 0});
+    }
+  }
+  AnimationBuilder builder;
+  builder.addMesh(
+      {{"attributes", {{"POSITION", builder.addAccessor(positions, "VEC3")}}},
+       {"targets",
+        {{{"POSITION", builder.addAccessor(exchanged, "VEC3")}}, {{"POSITION", builder.addAccessor(moved, "VEC3")}}}}});
+  builder.addChannel(0, "weights", {0, 1, 2}, {0, 0, 0, 1, 1, 0});
+  const scene::Scene scene = builder.loadAnimated();
+  View view;
+  view.camera = orthographic({3, 1, 5}, {3, 1, 0}, 4.0f);
+  render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{});
+  device.setFrame(24);
+  EXPECT_EQ(device.deformationStatistics().refits, 1u);
+  EXPECT_EQ(device.deformationStatistics().builds, 0u);
+  device.setFrame(48);
+  EXPECT_EQ(device.deformationStatistics().refits, 1u);
+  EXPECT_EQ(device.deformationStatistics().builds, 1u);
+  EXPECT_LT(largestDifference(render(device, view), renderPosed(scene, 48, view)), 1e-4);
+  device.setFrame(48);  // nothing to do
+  EXPECT_EQ(device.deformationStatistics().builds, 1u);
+}
+
+// Light from a deformed emitter on a floor: the light tables follow the vertices.
+TEST(Animation, DeformedEmittersLight) {
+  AnimationBuilder builder = bendingStrip();
+  builder.add("materials", {{"emissiveFactor", {1, 1, 1}},
+                            {"doubleSided", true},
+                            {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 0, 1}}}}});
+  builder.primitive()["material"] = 0;
+  const int floor =
+      builder.addAccessor<float>({-4, -1, 4, 4, -1, 4, 4, -1, -4, -4, -1, 4, 4, -1, -4, -4, -1, -4}, "VEC3");
+  builder.addMesh({{"attributes", {{"POSITION", floor}}}});
+  View view{
+      .program = "pathtracer", .camera = perspective({0, 6, 6}, {0, -1, 0}, 50), .set = {"bounces=1"}, .batches = 2};
+  const scene::Scene scene = builder.loadAnimated();
+  render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{});
+  for (const double frame : {12.0, 24.0}) {
+    device.setFrame(frame);
+    EXPECT_LT(largestDifference(render(device, view), renderPosed(scene, frame, view)), 1e-3) << frame;
+  }
+}
+
+TEST(Animation, PunctualLightsFollowTheirNodes) {
+  AnimationBuilder builder = movingTriangle();
+  builder.root["extensionsUsed"] = {"KHR_lights_punctual"};
+  builder.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 20.0}}};
+  const int lamp = builder.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  builder.addChannel(lamp, "translation", {0, 1}, {0, 0, 1, 2, 1, 3});
+  View view{.program = "pathtracer",
+            .camera = orthographic({1.5f, 0.5f, 5}, {1.5f, 0.5f, 0}, 1.0f),
+            .set = {"bounces=1"},
+            .batches = 1};
+  expectHostPoses(builder.loadAnimated(), {6, 24}, view);
+}
+
+}  // namespace
+}  // namespace quintet::test
