@@ -183,13 +183,13 @@ struct Environment {
 
 // How a scene file is read.
 struct LoadOptions {
-  std::string scene{};         // index or name of a scene of the glTF file; empty means its default scene
-  std::string variant{};       // name of a material variant of the glTF file; empty means the default materials
+  std::string scene{};    // index or name of a scene of the glTF file; empty means its default scene
+  std::string variant{};  // name of a material variant of the glTF file; empty means the default materials
   // Name or index of the animation of the glTF file that Renderer::setFrame plays; empty means the first one, if the file
   // has one; "none" means the rest pose.
   std::string animation = "none";
   double framesPerSecond = 24.0;  // > 0; frame k of the animation is at k / framesPerSecond seconds
-  bool strict = false;         // throw FileError with a list if a part of the file is ignored or repaired
+  bool strict = false;            // throw FileError with a list if a part of the file is ignored or repaired
   bool omitTextures = false;   // use the factors of materials if an image is missing or invalid, instead of FileError
   std::size_t maxMemory = 0;   // bytes that the file can request; 0 means 80 % of the memory
   bool allowExternal = false;  // read buffers and images of glTF files from outside of their folders

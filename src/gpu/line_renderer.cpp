@@ -133,4 +133,22 @@ void LineRenderer::record(Commands& commands, const RenderTarget& target, const 
   }
 }
 
+void LineRenderer::draw(Commands& commands, const Image& target, const LineList& list, VkAttachmentLoadOp load) {
+  const VkExtent2D size{target.width(), target.height()};
+  VkRenderingAttachmentInfo attachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+  attachment.imageView = target.view();
+  attachment.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+  attachment.loadOp = load;
+  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+  VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
+  info.renderArea.extent = size;
+  info.layerCount = 1;
+  info.colorAttachmentCount = 1;
+  info.pColorAttachments = &attachment;
+  prepare(commands, 0, list);
+  context_.vk().vkCmdBeginRendering(commands.handle(), &info);
+  record(commands, {target.view(), size, 0}, {{0, 0}, size});
+  context_.vk().vkCmdEndRendering(commands.handle());
+}
+
 }  // namespace quintet::gpu

@@ -36,6 +36,9 @@ class LineRenderer {
   void prepare(Commands& commands, std::uint32_t slot, const LineList& list);
   // During rendering: draws the prepared lines within the rectangle.
   void record(Commands& commands, const RenderTarget& target, const VkRect2D& rectangle);
+  // Outside of rendering: prepare(), and record() over the whole image, whose layout is COLOR_ATTACHMENT_OPTIMAL.
+  void draw(Commands& commands, const Image& target, const LineList& list,
+            VkAttachmentLoadOp load = VK_ATTACHMENT_LOAD_OP_LOAD);
 
  private:
   void uploadDepth(Commands& commands, std::uint32_t slot);

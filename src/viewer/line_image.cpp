@@ -14,26 +14,6 @@ namespace {
 
 constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
 
-// Draws into an image whose layout is COLOR_ATTACHMENT_OPTIMAL.
-void recordLines(gpu::Commands& commands, gpu::LineRenderer& renderer, const gpu::Image& target,
-                 const gpu::LineList& list) {
-  const VkExtent2D size{target.width(), target.height()};
-  VkRenderingAttachmentInfo attachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-  attachment.imageView = target.view();
-  attachment.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-  attachment.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-  attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-  VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
-  info.renderArea.extent = size;
-  info.layerCount = 1;
-  info.colorAttachmentCount = 1;
-  info.pColorAttachments = &attachment;
-  renderer.prepare(commands, 0, list);
-  commands.context().vk().vkCmdBeginRendering(commands.handle(), &info);
-  renderer.record(commands, {target.view(), size, 0}, {{0, 0}, size});
-  commands.context().vk().vkCmdEndRendering(commands.handle());
-}
-
 }  // namespace
 
 io::Image drawLines(gpu::Context& context, const WindowShaders& shaders, const io::Image& image,
@@ -55,7 +35,7 @@ io::Image drawLines(gpu::Context& context, const WindowShaders& shaders, const i
     commands.transition(target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     commands.copy(upload, target);
     commands.transition(target, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    recordLines(commands, renderer, target, list);
+    renderer.draw(commands, target, list);
     commands.transition(target, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
     commands.copy(target, readback);
     commands.toHost(gpu::Stage::transfer);

@@ -267,22 +267,11 @@ class Measurement {
     constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
     gpu::LineRenderer renderer(context, kFormat, shaders.vertex, shaders.fragment);
     renderer.setDepth({depth.size.x, depth.size.y}, viewer::reversedDepths(depth));
-    const VkExtent2D size{options_.width, options_.height};
-    const gpu::Image target(context, {.width = size.width,
-                                      .height = size.height,
+    const gpu::Image target(context, {.width = options_.width,
+                                      .height = options_.height,
                                       .format = kFormat,
                                       .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
                                       .name = "benchmark of lines"});
-    VkRenderingAttachmentInfo attachment{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
-    attachment.imageView = target.view();
-    attachment.imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-    attachment.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    attachment.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
-    info.renderArea.extent = size;
-    info.layerCount = 1;
-    info.colorAttachmentCount = 1;
-    info.pColorAttachments = &attachment;
     gpu::Timer timer(context, 2);
     std::vector<double> seconds;
     for (int i = 0; i < options_.repeat; ++i) {
@@ -290,10 +279,7 @@ class Measurement {
         commands.transition(target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
         timer.reset(commands);
         timer.mark(commands, 0);
-        renderer.prepare(commands, 0, list);
-        context.vk().vkCmdBeginRendering(commands.handle(), &info);
-        renderer.record(commands, {target.view(), size, 0}, {{0, 0}, size});
-        context.vk().vkCmdEndRendering(commands.handle());
+        renderer.draw(commands, target, list, VK_ATTACHMENT_LOAD_OP_CLEAR);
         timer.mark(commands, 1);
       });
       seconds.push_back(timer.seconds(0, 1));

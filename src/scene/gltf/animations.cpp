@@ -276,6 +276,7 @@ PlayedAnimation playAnimation(const Document& document, const NodeTree& tree, co
   for (const AnimationChannel& channel : data->animation.channels)
     if (channel.property == AnimatedProperty::weights) played.morphs[static_cast<std::size_t>(channel.node)] = true;
   played.data = std::move(data);
+  played.index = static_cast<int>(index);
   return played;
 }
 

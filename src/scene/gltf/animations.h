@@ -19,6 +19,7 @@ std::vector<AnimationSummary> summarizeAnimations(const Document&, Report&);
 // The animation that plays, and what it changes.
 struct PlayedAnimation {
   std::shared_ptr<const NodeAnimation> data;  // null: none plays
+  int index = kNone;                          // in the file
   std::vector<bool> moves;                    // per node: the world transform changes
   std::vector<bool> morphs;                   // per node: the morph weights change
 

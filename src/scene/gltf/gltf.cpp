@@ -113,7 +113,7 @@ PendingScene begin(const std::filesystem::path& path, const LoadOptions& options
 
   scene.textures = textures.textures();
   file->imageUses = textures.imageUses();
-  completeReport(document, tree, textures, scene.materials, scene.report);
+  completeReport(document, tree, textures, animation, scene.materials, scene.report);
   makePrintable(scene.report);
   if (options.strict) requireExact(path, scene.report);
   const bool described = describeImages(document, file->imageUses, scene.images);

@@ -59,9 +59,14 @@ unsigned usedUvSets(const Material& material) {
 
 class Inventory {
  public:
-  Inventory(const Document& document, const NodeTree& tree, const TextureTable& textures,
+  Inventory(const Document& document, const NodeTree& tree, const TextureTable& textures, const PlayedAnimation& played,
             const std::vector<Material>& materials, Report& report)
-      : document_(document), model_(document.model), tree_(tree), textures_(textures), report_(report) {
+      : document_(document),
+        model_(document.model),
+        tree_(tree),
+        textures_(textures),
+        played_(played),
+        report_(report) {
     for (const Material& material : materials) uvSets_.push_back(usedUvSets(material));
   }
 
@@ -309,10 +314,17 @@ class Inventory {
   }
 
   void listAnimations() {
-    const std::string* text = ignored_->at("/animations");
-    if (!document_.model.animations.empty())
-      table_.add("animation", "", "/animations", text ? FeatureUse::ignored : FeatureUse::used,
-                 text ? *text : std::string(), document_.model.animations.size());
+    const char* const unusedReason = played_.data ? "another animation plays" : "no animation plays";
+    for (std::size_t i = 0; i < model_.animations.size(); ++i) {
+      const std::string location = fmt::format("/animations/{}", i);
+      add("animation", model_.animations[i].name, location, static_cast<int>(i) == played_.index ? "" : unusedReason);
+      for (std::size_t k = 0; k < model_.animations[i].channels.size(); ++k) {
+        const std::string target = fmt::format("{}/channels/{}/target", location, k);
+        if (const std::string* text = ignored_->at(target))
+          table_.add("animation channel", model_.animations[i].channels[k].target_path, target, FeatureUse::ignored,
+                     *text);
+      }
+    }
   }
 
   void listLights() {
@@ -335,6 +347,7 @@ class Inventory {
   const tinygltf::Model& model_;
   const NodeTree& tree_;
   const TextureTable& textures_;
+  const PlayedAnimation& played_;
   Report& report_;
   std::vector<unsigned> uvSets_;                                                                  // of each material
   std::set<int> nodes_, meshes_, skinnedMeshes_, materials_, skins_, cameras_, lights_, joints_;  // used by the scene
@@ -347,8 +360,8 @@ class Inventory {
 }  // namespace
 
 void completeReport(const Document& document, const NodeTree& tree, const TextureTable& textures,
-                    const std::vector<Material>& materials, Report& report) {
-  Inventory(document, tree, textures, materials, report).list();
+                    const PlayedAnimation& played, const std::vector<Material>& materials, Report& report) {
+  Inventory(document, tree, textures, played, materials, report).list();
 }
 
 void reportMissingImages(const Document& document, const std::vector<MissingImage>& missing, Report& report) {

@@ -3,23 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
 
 #include "bsdf/reference.h"
 #include "rendered_image.h"
 
 namespace quintet::test {
 namespace {
-
-int addTexel(scene::Scene& scene, std::array<std::uint8_t, 4> rgba) {
-  io::Image image = io::makeImage(1, 1, 4, io::PixelType::u8, io::ColorEncoding::linear);
-  std::ranges::copy(rgba, image.samples<std::uint8_t>().begin());
-  scene.images.push_back({"texel", std::move(image)});
-  scene.textures.push_back({"texel", static_cast<int>(scene.images.size()) - 1, {}});
-  return static_cast<int>(scene.textures.size()) - 1;
-}
 
 // A horizontal square under a white sky, with a camera at 60 degrees to the normal.
 SceneBuilder squareUnderTheSky(const scene::Material& material) {

@@ -83,6 +83,16 @@ scene::Geometry sphere(const vec3& center, float radius, int level) {
   return g;
 }
 
+int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba, io::ColorEncoding encoding) {
+  io::Image image = io::makeImage(static_cast<std::uint32_t>(rgba.size() / 4), 1, 4, io::PixelType::u8, encoding);
+  std::ranges::copy(rgba, image.samples<std::uint8_t>().begin());
+  scene.images.push_back({"texel", std::move(image)});
+  scene.textures.push_back({"texel",
+                            static_cast<int>(scene.images.size()) - 1,
+                            {scene::Wrap::repeat, scene::Wrap::repeat, scene::Filter::nearest}});
+  return static_cast<int>(scene.textures.size()) - 1;
+}
+
 SceneBuilder& SceneBuilder::add(scene::Geometry geometry, const scene::Material& material,
                                 const mat4& worldFromObject) {
   geometry.material = static_cast<int>(scene.materials.size());

@@ -3,6 +3,9 @@
 #ifndef QUINTET_TESTS_GPU_RENDER_SCENE_BUILDER_H
 #define QUINTET_TESTS_GPU_RENDER_SCENE_BUILDER_H
 
+#include <cstdint>
+#include <vector>
+
 #include "scene/model/scene.h"
 
 namespace quintet::test {
@@ -17,6 +20,11 @@ scene::Geometry quad(const vec3& corner, const vec3& a, const vec3& b);
 scene::Geometry box(const vec3& low, const vec3& high);  // front faces outside
 // Returns a convex polyhedron of 20 · 4^level flat triangles with its vertices on the sphere.
 scene::Geometry sphere(const vec3& center, float radius, int level);
+
+// Adds a texture with one row of RGBA texels and nearest filtering, so that filtering does not affect results. Returns its
+// index.
+int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba,
+             io::ColorEncoding encoding = io::ColorEncoding::linear);
 
 class SceneBuilder {
  public:

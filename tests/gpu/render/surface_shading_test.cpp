@@ -49,18 +49,6 @@ const std::string kShade = R"(
   }
 )";
 
-// Adds a texture with nearest filtering, so that filtering does not affect the results. One texel, or one row of texels
-// to reveal the texture coordinate.
-int addTexel(scene::Scene& scene, const std::vector<std::uint8_t>& rgba, io::ColorEncoding encoding) {
-  io::Image image = io::makeImage(static_cast<std::uint32_t>(rgba.size() / 4), 1, 4, io::PixelType::u8, encoding);
-  std::ranges::copy(rgba, image.samples<std::uint8_t>().begin());
-  scene.images.push_back({"texel", std::move(image)});
-  scene.textures.push_back({"texel",
-                            static_cast<int>(scene.images.size()) - 1,
-                            {scene::Wrap::repeat, scene::Wrap::repeat, scene::Filter::nearest}});
-  return static_cast<int>(scene.textures.size()) - 1;
-}
-
 int addFloatTexel(scene::Scene& scene, const vec4& rgba) {
   const int texture = addTexel(scene, {0, 0, 0, 0}, io::ColorEncoding::linear);
   io::Image image = io::makeImage(1, 1, 4, io::PixelType::f32, io::ColorEncoding::linear);

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "scene/animation/pose.h"
@@ -50,6 +52,18 @@ TEST(GltfAnimations, AreSummarized) {
   EXPECT_DOUBLE_EQ(report.animations[1].seconds, 0.5);
   EXPECT_EQ(report.animations[1].channels, 2u);
   EXPECT_THAT(report.ignored, IsEmpty());
+}
+
+TEST(GltfAnimations, TheReportTellsWhichOnePlays) {
+  const auto usesOf = [](const scene::Scene& scene) {
+    std::vector<std::string> uses;
+    for (const scene::Feature& feature : scene.report.features)
+      if (feature.kind == "animation") uses.push_back(feature.name + ": " + nameOf(feature.use));
+    return uses;
+  };
+  const AnimationBuilder builder = twoAnimations();
+  EXPECT_THAT(usesOf(builder.loadAnimated("Run")), ElementsAre("Walk: unused", "Run: used"));
+  EXPECT_THAT(usesOf(builder.load()), ElementsAre("Walk: unused", "Run: unused"));
 }
 
 TEST(GltfAnimations, AreChosenByNameOrIndex) {
@@ -117,6 +131,7 @@ TEST(GltfAnimations, ReportChannelsThatCannotPlay) {
                                           IsErrorAt("/animations/0/channels/2/target", "no morph targets"),
                                           IsErrorAt("/animations/0/channels/3/target", "\"pointer\" is not supported"),
                                           IsErrorAt("/animations/0/channels/4/target", "has a matrix")));
+  EXPECT_EQ(std::ranges::count(report.features, "animation channel", &scene::Feature::kind), 4);
   EXPECT_EQ(report.animations[0].channels, 5u);
   EXPECT_EQ(report.animations[0].ignored, 4u);
   EXPECT_EQ(builder.loadAnimated().nodeAnimation->animation.channels.size(), 1u);
