@@ -87,6 +87,8 @@ TEST_F(Animation, JsonListsTheFrames) {
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json frames = nlohmann::json::parse(result.out)["frames"];
   ASSERT_EQ(frames.size(), 2u);
+  ASSERT_EQ(render({"-o", "all.png", "--frames", "2", "--all-frames"}).status, 0);
+  EXPECT_EQ(readImage("all.0001.png").data, readImage("f1.png").data);
   EXPECT_EQ(frames[1]["frame"], 1);
   EXPECT_EQ(frames[1]["files"], nlohmann::json::array({"f1.png"}));
   EXPECT_EQ(frames[1]["writtenBefore"], false);
@@ -99,7 +101,8 @@ TEST_F(Animation, ResumeSkipsFinishedFrames) {
     const RunResult result = render(arguments);
     EXPECT_EQ(result.status, 0) << result.err;
     std::vector<int> rendered;
-    for (const nlohmann::json& frame : nlohmann::json::parse(result.out)["frames"])
+    const nlohmann::json json = nlohmann::json::parse(result.out);
+    for (const nlohmann::json& frame : json["frames"])
       if (!frame["writtenBefore"]) rendered.push_back(frame["frame"]);
     return rendered;
   };

@@ -187,7 +187,7 @@ TEST_F(Frames, PartsOfAnAnimation) {
   expectError(runCount({"--frame", "0"}), 2, {"accumulates"});
   for (const char* range : {"2-1", "1-", "-1", "1-2-3", "a-b", "0-1000000"})
     expectError(run({"--frames", range}), 2, {"--frames", range});
-  expectError(run({"--frames", "1-2", "--frame", "3"}), 2, {"--frame ", "--frames"});
+  expectError(run({"--frames", "1-2", "--frame", "3"}), 2, {"--frame", "--frames"});
 }
 
 // A pattern in the name is replaced also without frames, and by `render`.

@@ -32,6 +32,8 @@
 
 namespace quintet::test {
 
+inline constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+
 // Returns the device of this process ($QUINTET_DEVICE), which the first call creates; with validation if
 // $QUINTET_VALIDATE is set. Validation messages make the run fail at the end. Throws NoDeviceError.
 gpu::Context& testContext();

@@ -9,8 +9,6 @@
 namespace quintet::test {
 namespace {
 
-const glm::dvec4 kUndecided(0);
-
 struct BoxHit {
   double t = 1e30;
   dvec3 normal{0};

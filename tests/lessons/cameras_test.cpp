@@ -7,7 +7,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr double kUndecided = 1e-3;
+constexpr double kCamerasMargin = 1e-3;
 
 void expectRays(const std::string& way, const dvec3& eye, const dvec3& target, const LessonOptions& given) {
   LessonOptions options = given;
@@ -21,7 +21,7 @@ void expectRays(const std::string& way, const dvec3& eye, const dvec3& target, c
       const dvec2 point((x + 0.5) / image.width, (y + 0.5) / image.height);
       const HostRay ray = cameraRay(eye, target, dvec3(0, 1, 0), 40, aspect, point);
       const HostHit hit = closestTriangle(scene, ray, 0.1, 100);
-      if (hit.margin < kUndecided) continue;
+      if (hit.margin < kCamerasMargin) continue;
       const dvec3 expected = hit.t > 0 ? dvec3(hit.t / 10) : 0.5 + 0.5 * ray.direction;
       const dvec3 got(image.at(x, y));
       EXPECT_LT(glm::length(got - expected), 2e-5) << "way " << way << ", pixel " << x << ", " << y;

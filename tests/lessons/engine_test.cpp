@@ -8,7 +8,6 @@
 namespace quintet::test {
 namespace {
 
-const glm::dvec4 kUndecided(0);
 constexpr double kMargin = 3e-4;
 
 struct Blocked {

@@ -7,7 +7,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr double kUndecided = 1e-4;  // below this margin, float rounding decides
+constexpr double kFirstRayMargin = 1e-4;  // below this margin, float rounding decides
 
 void expectSilhouette(const LessonImage& image, const scene::Scene& scene, double fieldOfView, const vec3& color) {
   const double aspect = static_cast<double>(image.width) / image.height;
@@ -17,7 +17,7 @@ void expectSilhouette(const LessonImage& image, const scene::Scene& scene, doubl
       const dvec2 point((x + 0.5) / image.width, (y + 0.5) / image.height);
       const HostHit hit = closestTriangle(
           scene, cameraRay(dvec3(0), dvec3(0, 0, -1), dvec3(0, 1, 0), fieldOfView, aspect, point), 0.001, 1000);
-      if (hit.margin < kUndecided) continue;
+      if (hit.margin < kFirstRayMargin) continue;
       const vec3 expected = hit.t > 0 ? color : vec3(0);
       EXPECT_LT(glm::length(vec3(image.at(x, y)) - expected), 1e-5f) << x << ", " << y;
       (hit.t > 0 ? hits : misses)++;

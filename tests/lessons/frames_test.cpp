@@ -10,8 +10,6 @@
 namespace quintet::test {
 namespace {
 
-const glm::dvec4 kUndecided(0);
-
 double halton(int index, int base) {
   double value = 0, digit = 1;
   for (; index > 0; index /= base) value += (digit /= base) * (index % base);

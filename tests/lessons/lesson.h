@@ -21,6 +21,9 @@ using glm::dmat3;
 using glm::dvec2;
 using glm::dvec3;
 
+// The value of a pixel for which float rounding decides, so that it is not compared.
+inline const glm::dvec4 kUndecided(0);
+
 struct LessonOptions {
   std::uint32_t width = 48;
   std::uint32_t height = 32;

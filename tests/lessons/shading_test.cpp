@@ -7,7 +7,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr double kUndecided = 2e-4;
+constexpr double kShadingMargin = 2e-4;
 const dvec3 kEye(2, 3, 6);
 const dvec3 kTarget(0, 0.7, 0);
 const dvec3 kBackground(0.3, 0.35, 0.45);
@@ -19,7 +19,7 @@ HostRay eyeRay(dvec2 point, double aspect) { return cameraRay(kEye, kTarget, {0,
 bool seesLamp(const scene::Scene& scene, const dvec3& position, const dvec3& lamp, bool& decided) {
   const double distance = glm::length(lamp - position);
   const HostHit hit = closestTriangle(scene, {position, (lamp - position) / distance}, 0, distance);
-  decided = decided && hit.margin > kUndecided;
+  decided = decided && hit.margin > kShadingMargin;
   return hit.t < 0;
 }
 
@@ -30,7 +30,7 @@ TEST(LessonDiffuse, FollowsLambert) {
       image,
       [&](dvec2 point) {
         const HostHit hit = closestTriangle(scene, eyeRay(point, 1.5), 0.001, 1000);
-        if (hit.margin < kUndecided) return glm::dvec4(0);
+        if (hit.margin < kShadingMargin) return glm::dvec4(0);
         if (hit.t < 0) return glm::dvec4(kBackground, 1);
         const HostSurface s = surfaceAt(scene, hit);
         const double cosine = std::max(0.0, glm::dot(s.normal, glm::normalize(dvec3(3, 5, 3) - s.position)));
@@ -51,7 +51,7 @@ void expectShadow(std::uint32_t frame) {
       [&](dvec2 point) {
         const HostRay ray = eyeRay(point, 1.5);
         const HostHit hit = closestTriangle(scene, ray, 0.001, 1000);
-        if (hit.margin < kUndecided) return glm::dvec4(0);
+        if (hit.margin < kShadingMargin) return glm::dvec4(0);
         if (hit.t < 0) return glm::dvec4(kBackground, 1);
         const HostSurface s = surfaceAt(scene, hit);
         const dvec3 side = glm::dot(s.normal, ray.direction) < 0 ? s.normal : -s.normal;
@@ -87,7 +87,7 @@ glm::dvec4 mirrorColor(const scene::Scene& scene, HostRay ray, double reflectanc
   bool decided = true;
   for (int level = 0; level < maxLevel && contribution > 0.001; ++level) {
     const HostHit hit = closestTriangle(scene, ray, 0, 1000);
-    if (hit.margin < kUndecided) return glm::dvec4(0);
+    if (hit.margin < kShadingMargin) return glm::dvec4(0);
     if (hit.t < 0) return glm::dvec4(color + contribution * kBackground, decided ? 1 : 0);
     const HostSurface s = surfaceAt(scene, hit);
     const dvec3 normal = glm::dot(s.normal, ray.direction) > 0 ? -s.normal : s.normal;

@@ -7,8 +7,6 @@
 namespace quintet::test {
 namespace {
 
-const glm::dvec4 kUndecided(0);
-
 // The data of the nearest sphere that lesson 10 shows.
 struct SphereHit {
   double t = 1e30;

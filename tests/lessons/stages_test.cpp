@@ -7,7 +7,6 @@
 namespace quintet::test {
 namespace {
 
-const glm::dvec4 kUndecided(0);
 constexpr double kMargin = 2e-4;
 
 // Returns all hits of a ray, sorted by distance.

@@ -99,8 +99,9 @@ std::optional<RenderOptions> parseRenderOptions(Arguments arguments) {
                                              : std::filesystem::path(texts.output);
   chooseVideo(options);
   // Without --frames there is one frame, so a pattern in the name is the number 0 or the last frame.
-  options.output.everyFrame = !texts.output.empty() && output::hasFramePattern(options.output.file) &&
-                              output::fileKind(options.output.file) != output::FileKind::film;
+  const bool isPattern = !texts.output.empty() && output::hasFramePattern(options.output.file) &&
+                         output::fileKind(options.output.file) != output::FileKind::film;
+  options.output.everyFrame = options.output.everyFrame || isPattern;
   options.request.commandLine = commandLine("render", arguments);
   convert(texts, options);
   convertFrames(texts, options);

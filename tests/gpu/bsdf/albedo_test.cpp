@@ -12,13 +12,13 @@
 namespace quintet::test {
 namespace {
 
-struct Query {
+struct AlbedoQuery {
   float cosine;
   float alpha;
   float ior;
   std::uint32_t outside;
 };
-struct Answer {
+struct AlbedoAnswer {
   vec2 schlick;
   vec2 glass;
   vec2 average;
@@ -42,7 +42,7 @@ double masking(double cosine, double alpha) {
 
 // Returns (A, B, glass, glass without Fresnel). With micronormals of density D cos theta, the albedo is the mean of
 // F G (wo.m) / (cos_o cos_m).
-glm::dvec4 integrate(const Query& q) {
+glm::dvec4 integrate(const AlbedoQuery& q) {
   const double alpha = q.alpha, cosO = q.cosine, sinO = std::sqrt(1.0 - cosO * cosO);
   const double eta = q.outside ? q.ior : 1.0 / q.ior;
   constexpr int kRadii = 3000, kAngles = 256;
@@ -135,16 +135,18 @@ class LimitedSheen {
 
 class BsdfAlbedo : public BsdfTest {
  protected:
-  static std::vector<Answer> lookUp(const std::vector<Query>& queries) { return runQueries<Answer>(kLookUp, queries); }
+  static std::vector<AlbedoAnswer> lookUp(const std::vector<AlbedoQuery>& queries) {
+    return runQueries<AlbedoAnswer>(kLookUp, queries);
+  }
 };
 
 TEST_F(BsdfAlbedo, TablesAgreeWithTheOracle) {
-  const std::vector<Query> queries = {{1.0f, 1.0f, 1.5f, 1},   {1.0f, 1.0f, 1.5f, 0},  {0.6f, 0.5f, 1.33f, 1},
-                                      {0.6f, 0.5f, 1.33f, 0},  {0.15f, 0.8f, 2.0f, 1}, {0.15f, 0.8f, 2.0f, 0},
-                                      {0.3f, 0.1f, 1.5f, 1},   {0.3f, 0.1f, 1.5f, 0},  {0.85f, 0.02f, 1.7f, 1},
-                                      {0.85f, 0.25f, 1.7f, 0}, {0.05f, 0.3f, 1.2f, 1}, {0.05f, 0.3f, 1.2f, 0},
-                                      {1.0f, 0.6f, 1.5f, 0},   {0.1f, 1.0f, 1.15f, 0}, {0.75f, 1.0f, 2.4f, 0}};
-  const std::vector<Answer> answers = lookUp(queries);
+  const std::vector<AlbedoQuery> queries = {{1.0f, 1.0f, 1.5f, 1},   {1.0f, 1.0f, 1.5f, 0},  {0.6f, 0.5f, 1.33f, 1},
+                                            {0.6f, 0.5f, 1.33f, 0},  {0.15f, 0.8f, 2.0f, 1}, {0.15f, 0.8f, 2.0f, 0},
+                                            {0.3f, 0.1f, 1.5f, 1},   {0.3f, 0.1f, 1.5f, 0},  {0.85f, 0.02f, 1.7f, 1},
+                                            {0.85f, 0.25f, 1.7f, 0}, {0.05f, 0.3f, 1.2f, 1}, {0.05f, 0.3f, 1.2f, 0},
+                                            {1.0f, 0.6f, 1.5f, 0},   {0.1f, 1.0f, 1.15f, 0}, {0.75f, 1.0f, 2.4f, 0}};
+  const std::vector<AlbedoAnswer> answers = lookUp(queries);
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const glm::dvec4 expected = integrate(queries[i]);
     EXPECT_NEAR(1.0 - answers[i].schlick.x - answers[i].schlick.y, expected.x, 0.004) << i;
@@ -192,12 +194,12 @@ TEST_F(BsdfAlbedo, SheenAgreesWithTheOracle) {
 TEST_F(BsdfAlbedo, AverageIsThatOfTheRow) {
   constexpr int kPoints = 4096;
   for (const float alpha : {0.0005f, 0.05f, 0.4f, 1.0f}) {
-    std::vector<Query> queries;
+    std::vector<AlbedoQuery> queries;
     for (int i = 0; i < kPoints; ++i)
       queries.push_back({std::sqrt((static_cast<float>(i) + 0.5f) / kPoints), alpha, 1.5f, 1});
     glm::dvec2 sum(0.0);
-    const std::vector<Answer> answers = lookUp(queries);
-    for (const Answer& a : answers) sum += glm::dvec2(a.schlick) / double{kPoints};
+    const std::vector<AlbedoAnswer> answers = lookUp(queries);
+    for (const AlbedoAnswer& a : answers) sum += glm::dvec2(a.schlick) / double{kPoints};
     EXPECT_NEAR(answers[0].average.x, sum.x, 5e-4) << alpha;
     EXPECT_NEAR(answers[0].average.y, sum.y, 5e-4) << alpha;
   }

@@ -10,7 +10,7 @@
 namespace quintet::test {
 namespace {
 
-struct Query {
+struct DispersionQuery {
   vec3 wo;
   float alpha;
   float dispersion;
@@ -18,7 +18,7 @@ struct Query {
   std::uint32_t entering;
   std::uint32_t thin;
 };
-struct Answer {
+struct DispersionAnswer {
   vec3 above;  // f |cos| of a direction on the same side, and below
   vec3 below;
   vec3 weight;  // of a sample
@@ -53,7 +53,9 @@ constexpr std::uint32_t kOnly = 4;  // kChannelOnly
 
 class BsdfDispersion : public BsdfTest {
  protected:
-  static Answer ask(const Query& q) { return runQueries<Answer>(kDisperse, std::vector<Query>{q})[0]; }
+  static DispersionAnswer ask(const DispersionQuery& q) {
+    return runQueries<DispersionAnswer>(kDisperse, std::vector<DispersionQuery>{q})[0];
+  }
 };
 
 // Abbe number 55 at ior 1.5: n_F - n_C = 0.5 / 55.
@@ -70,10 +72,10 @@ TEST_F(BsdfDispersion, MeanOverTheChannelsIsUnbiased) {
   for (const std::uint32_t entering : {1u, 0u}) {
     vec3 above(0.0f), below(0.0f);
     for (std::uint32_t channel = 0; channel < 3; ++channel) {
-      Query q{directionAt(0.8f), 0.3f, 1.5f, channel, entering, 0};
-      const Answer open = ask(q);
+      DispersionQuery q{directionAt(0.8f), 0.3f, 1.5f, channel, entering, 0};
+      const DispersionAnswer open = ask(q);
       q.channel |= kOnly;
-      const Answer only = ask(q);
+      const DispersionAnswer only = ask(q);
       EXPECT_EQ(open.above, only.above);
       EXPECT_EQ(open.channel, channel | kOnly);
       for (int k = 0; k < 3; ++k)
@@ -82,7 +84,7 @@ TEST_F(BsdfDispersion, MeanOverTheChannelsIsUnbiased) {
       below[static_cast<int>(channel)] = only.below[static_cast<int>(channel)];
       EXPECT_GT(only.below[static_cast<int>(channel)], 0.01f);
     }
-    const Answer plain = ask({directionAt(0.8f), 0.3f, 0.0f, 0, entering, 0});
+    const DispersionAnswer plain = ask({directionAt(0.8f), 0.3f, 0.0f, 0, entering, 0});
     EXPECT_EQ(plain.channel, 0u);
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(above[k], plain.above[k], 0.03f * plain.above[k]);
@@ -95,9 +97,9 @@ TEST_F(BsdfDispersion, MeanOverTheChannelsIsUnbiased) {
 TEST_F(BsdfDispersion, SmoothGlassRefractsEachChannel) {
   for (std::uint32_t channel = 0; channel < 3; ++channel) {
     const vec3 wo = directionAt(0.6f);
-    const std::vector<Query> queries(400, {wo, 0.0f, 2.0f, channel, 1, 0});
+    const std::vector<DispersionQuery> queries(400, {wo, 0.0f, 2.0f, channel, 1, 0});
     std::size_t refracted = 0;
-    for (const Answer& a : runQueries<Answer>(kDisperse, queries)) {
+    for (const DispersionAnswer& a : runQueries<DispersionAnswer>(kDisperse, queries)) {
       const vec3 snell = glm::refract(-wo, vec3(0, 0, 1), 1.0f / a.ior);
       if (a.transmitted && glm::length(a.wi - snell) < 1e-5f) ++refracted;
       for (int k = 0; k < 3 && a.transmitted; ++k)
@@ -111,8 +113,8 @@ TEST_F(BsdfDispersion, SmoothGlassRefractsEachChannel) {
 }
 
 TEST_F(BsdfDispersion, ThinWallsDoNotDisperse) {
-  const Answer thin = ask({directionAt(0.8f), 0.3f, 1.5f, 2, 1, 1}),
-               plain = ask({directionAt(0.8f), 0.3f, 0.0f, 2, 1, 1});
+  const DispersionAnswer thin = ask({directionAt(0.8f), 0.3f, 1.5f, 2, 1, 1}),
+                         plain = ask({directionAt(0.8f), 0.3f, 0.0f, 2, 1, 1});
   EXPECT_EQ(thin.ior, 1.5f);
   EXPECT_EQ(thin.channel, 2u);
   EXPECT_EQ(thin.below, plain.below);

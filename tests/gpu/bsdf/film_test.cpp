@@ -14,7 +14,7 @@
 namespace quintet::test {
 namespace {
 
-struct Query {
+struct FilmQuery {
   float cosine, ior, thickness;
   vec3 baseF0;
 };
@@ -58,7 +58,7 @@ using BsdfFilm = BsdfTest;
 
 // The tolerance is that of the Gaussian fits, and of the two orders of interference that are summed.
 TEST_F(BsdfFilm, AgreesWithTheSpectrum) {
-  std::vector<Query> queries;
+  std::vector<FilmQuery> queries;
   for (const float base : {1.5f, 2.4f})
     for (const float ior : {1.2f, 1.4f, 1.9f})
       for (const float thickness : {100.0f, 250.0f, 400.0f, 700.0f}) {
@@ -68,7 +68,7 @@ TEST_F(BsdfFilm, AgreesWithTheSpectrum) {
   const auto answers = runQueries<vec3>(kReflectance, queries);
   double largest = 0.0;
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    const Query& q = queries[i];
+    const FilmQuery& q = queries[i];
     const double root = std::sqrt(double{q.baseF0.x});
     const glm::dvec3 expected =
         glm::clamp(spectralReflectance(q.ior, (1.0 + root) / (1.0 - root), q.thickness), 0.0, 1.0);
@@ -81,14 +81,14 @@ TEST_F(BsdfFilm, AgreesWithTheSpectrum) {
 
 // The same formula on the host, from normal incidence to grazing angles.
 TEST_F(BsdfFilm, AgreesWithTheReference) {
-  std::vector<Query> queries;
+  std::vector<FilmQuery> queries;
   for (const float cosine : {1.0f, 0.7f, 0.4f, 0.1f, 0.01f})
     for (const float ior : {1.1f, 1.6f, 2.2f})
       for (const float thickness : {0.5f, 80.0f, 300.0f, 1100.0f})
         queries.push_back({cosine, ior, thickness, vec3(0.04f, 0.3f, 0.95f)});
   const auto answers = runQueries<vec3>(kReflectance, queries);
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    const Query& q = queries[i];
+    const FilmQuery& q = queries[i];
     const glm::dvec3 expected = referenceFilm({q.ior, q.thickness}, q.cosine, q.baseF0);
     EXPECT_LT(glm::length(glm::dvec3(answers[i]) - expected), 1e-3) << q.cosine << " " << q.ior << " " << q.thickness;
   }
@@ -96,7 +96,7 @@ TEST_F(BsdfFilm, AgreesWithTheReference) {
 
 // A film without thickness is none. A base that reflects everything stays white.
 TEST_F(BsdfFilm, LimitsAreExact) {
-  std::vector<Query> queries;
+  std::vector<FilmQuery> queries;
   for (const float cosine : {1.0f, 0.6f, 0.2f, 0.0f}) queries.push_back({cosine, 1.4f, 420.0f, vec3(1.0f)});
   for (const vec3& answer : runQueries<vec3>(kReflectance, queries))
     EXPECT_LT(glm::distance(answer, vec3(1.0f)), 1e-3f);

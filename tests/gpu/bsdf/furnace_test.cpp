@@ -12,7 +12,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr std::size_t kSamples = 1 << 16;
+constexpr std::size_t kFurnaceSamples = 1 << 16;
 const std::vector<float> kAlphas = {0.0f, 0.0005f, 0.003f, 0.02f, 0.1f, 0.3f, 0.6f, 1.0f};
 const std::vector<float> kAngles = {1.0f, 0.75f, 0.3f, 0.1f, 0.03f, 0.01f, 0.001f};
 
@@ -24,7 +24,7 @@ struct Albedo {
 class BsdfFurnace : public BsdfTest {
  protected:
   static Albedo albedoOf(const BsdfCase& material) {
-    const auto samples = runCases<BsdfSampleOut>(kBsdfSampling, {material}, kSamples);
+    const auto samples = runCases<BsdfSampleOut>(kBsdfSampling, {material}, kFurnaceSamples);
     const double eta = material.entering ? material.ior : 1.0 / material.ior;
     const bool refracts = !material.thin && material.ior >= 1.0f;
     glm::dvec3 sum(0.0), squares(0.0);
@@ -34,7 +34,7 @@ class BsdfFurnace : public BsdfTest {
       sum += weight;
       squares += weight * weight;
     }
-    const double n = kSamples;
+    const double n = kFurnaceSamples;
     const glm::dvec3 variance = glm::max(squares / n - sum * sum / (n * n), 0.0);
     return {sum / n, std::sqrt(std::max({variance.x, variance.y, variance.z}) / n)};
   }

@@ -10,7 +10,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr std::size_t kSamples = 1 << 14;
+constexpr std::size_t kLobeSamples = 1 << 14;
 
 double relativeDifference(const vec3& a, const vec3& b) {
   return glm::length(a - b) / std::max(1e-6f, std::max(glm::length(a), glm::length(b)));
@@ -18,7 +18,7 @@ double relativeDifference(const vec3& a, const vec3& b) {
 
 class BsdfLobes : public BsdfTest {
  protected:
-  static std::vector<BsdfSampleOut> sample(const BsdfCase& material, std::size_t count = kSamples) {
+  static std::vector<BsdfSampleOut> sample(const BsdfCase& material, std::size_t count = kLobeSamples) {
     return runCases<BsdfSampleOut>(kBsdfSampling, {material}, count);
   }
 };
@@ -201,7 +201,7 @@ TEST_F(BsdfLobes, SmoothGlassFollowsSnellAndFresnel) {
       glm::dvec3 reflected(0.0), refracted(0.0);
       for (const BsdfSampleOut& s : sample(c)) {
         ASSERT_TRUE(s.valid && s.delta);
-        (s.transmitted ? refracted : reflected) += glm::dvec3(s.weight) / double{kSamples};
+        (s.transmitted ? refracted : reflected) += glm::dvec3(s.weight) / double{kLobeSamples};
         const vec3 snell(-c.wo.x / eta, -c.wo.y / eta, -cosT);
         ASSERT_LT(glm::length(s.wi - (s.transmitted ? snell : vec3(-c.wo.x, -c.wo.y, c.wo.z))), 2e-6f);
       }
@@ -240,7 +240,7 @@ TEST_F(BsdfLobes, SmoothThinWallGoesStraightOn) {
     ASSERT_TRUE(s.valid && s.delta);
     if (!s.transmitted) continue;
     ASSERT_LT(glm::length(s.wi + c.wo), 1e-6f);
-    passed += glm::dvec3(s.weight) / double{kSamples};
+    passed += glm::dvec3(s.weight) / double{kLobeSamples};
   }
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(passed[i], (1.0 - fresnel) * c.baseColor[i], 0.01);
 }

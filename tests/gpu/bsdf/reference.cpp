@@ -126,6 +126,14 @@ dvec3 film(const BsdfCase& c, double cosine, const dvec3& baseF0) {
   return referenceFilm({c.iridescenceIor, c.iridescenceThickness}, cosine, baseF0);
 }
 
+// The widths' cells of the anisotropic tables.
+struct WidthCells {
+  Cell across, ratio;
+  explicit WidthCells(const dvec2& widths)
+      : across(rowOf(widths.y, shared::kAnisotropyRoughnesses)),
+        ratio(cellOf((root4(widths.x) - root4(widths.y)) / (1.0 - root4(widths.y)), shared::kAnisotropyRatios)) {}
+};
+
 }  // namespace
 
 // The sum over paths that cross the film up to three times, with cosines of the phase instead of complex numbers.
@@ -180,14 +188,6 @@ ReferenceBsdf::Layer ReferenceBsdf::averages(double alpha) const {
   return {glm::mix(double{tables_[at]}, double{tables_[at + 2]}, row.part),
           glm::mix(double{tables_[at + 1]}, double{tables_[at + 3]}, row.part)};
 }
-
-// The widths' cells of the anisotropic tables.
-struct WidthCells {
-  Cell across, ratio;
-  explicit WidthCells(const dvec2& widths)
-      : across(rowOf(widths.y, shared::kAnisotropyRoughnesses)),
-        ratio(cellOf((root4(widths.x) - root4(widths.y)) / (1.0 - root4(widths.y)), shared::kAnisotropyRatios)) {}
-};
 
 ReferenceBsdf::Layer ReferenceBsdf::layer(const dvec2& widths, const dvec3& w) const {
   if (widths.x <= 1.0001 * widths.y) return layer(widths.y, std::abs(w.z));

@@ -7,7 +7,7 @@
 namespace quintet::test {
 namespace {
 
-struct Answer {
+struct Values {
   vec3 wi;
   vec3 value;
 };
@@ -36,8 +36,8 @@ class BsdfReference : public BsdfTest {
     const ReferenceBsdf reference;
     std::vector<BsdfCase> materials;
     for (const NamedCase& named : cases) materials.push_back(named.material);
-    const std::vector<Answer> answers =
-        runCases<Answer>(kEvaluation, materials, materials.size() * static_cast<std::size_t>(perCase));
+    const std::vector<Values> answers =
+        runCases<Values>(kEvaluation, materials, materials.size() * static_cast<std::size_t>(perCase));
     std::size_t compared = 0;
     for (std::size_t k = 0; k < answers.size(); ++k) {
       const NamedCase& named = cases[k % cases.size()];

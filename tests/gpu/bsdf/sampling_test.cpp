@@ -19,7 +19,7 @@ namespace {
 constexpr int kRings = 24;
 constexpr int kSectors = 16;
 constexpr int kPoints = 32;  // per cell and axis of the quadrature
-constexpr std::size_t kSamples = 120'000;
+constexpr std::size_t kDraws = 120'000;
 
 // LOBE: 0 diffuse, 1 specular, 2 thin, 3 dielectric, 4 clearcoat, 5 all, 6 sheen. WRONG: a mistake that the test must find.
 const std::string kLobes = kBsdfPrelude + R"(
@@ -187,7 +187,7 @@ Out run(uint index, In c) {
 )";
 
 // The integral of the density over cell `index`.
-const std::string kIntegrate = kLobes + R"(
+const std::string kIntegrateCells = kLobes + R"(
 #define In Case
 #define Out float
 Out run(uint index, In c) {
@@ -224,13 +224,13 @@ class BsdfSampling : public BsdfTest {
                        {"SECTORS", std::to_string(kSectors)},
                        {"POINTS", std::to_string(pointsFor(named.material))}};
     if (wrong) defines.emplace_back("WRONG", "1");
-    const auto integrals = runCases<float>(kIntegrate, {named.material}, 2 * kRings * kSectors, defines);
-    const auto draws = runCases<std::uint32_t>(kDraw, {named.material}, kSamples, defines);
+    const auto integrals = runCases<float>(kIntegrateCells, {named.material}, 2 * kRings * kSectors, defines);
+    const auto draws = runCases<std::uint32_t>(kDraw, {named.material}, kDraws, defines);
 
     std::vector<double> observed(integrals.size() + 1, 0.0);
     for (const std::uint32_t cell : draws) observed.at(cell) += 1.0;
     const double integral = std::accumulate(integrals.begin(), integrals.end(), 0.0);
-    const double accepted = 1.0 - observed.back() / kSamples;
+    const double accepted = 1.0 - observed.back() / kDraws;
     EXPECT_LE(integral, 1.0 + 2e-3) << named.name;
     EXPECT_TRUE(wrong || std::abs(integral - accepted) < 5e-3)
         << named.name << ": " << integral << ", accepted " << accepted;
@@ -238,7 +238,7 @@ class BsdfSampling : public BsdfTest {
     std::vector<double> expected(integrals.begin(), integrals.end());
     // If no sample was rejected, the quadrature's error must not count as an expectation.
     expected.push_back(observed.back() == 0.0 ? 0.0 : std::max(1.0 - integral, 0.0));
-    for (double& e : expected) e *= kSamples;
+    for (double& e : expected) e *= kDraws;
     return chiSquareTest(observed, expected);
   }
 };
@@ -354,7 +354,7 @@ TEST_F(BsdfSampling, MultipleScatteringFollowsItsPdf) {
   for (const float alpha : kRoughAlphas) {
     const double a2 = 2.0 * double{alpha} * alpha, scale = std::log1p(1.0 / a2);
     std::vector<double> observed(16 * 16, 0.0);
-    for (const Out& out : runQueries<Out>(body, std::vector<float>(kSamples, alpha))) {
+    for (const Out& out : runQueries<Out>(body, std::vector<float>(kDraws, alpha))) {
       const double z = out.wi.z;
       ASSERT_NEAR(out.pdf, z / (std::numbers::pi * (z * z + a2) * scale), 1e-4 * out.pdf);
       ASSERT_NEAR(glm::length(out.wi), 1.0f, 1e-5f);
@@ -362,7 +362,7 @@ TEST_F(BsdfSampling, MultipleScatteringFollowsItsPdf) {
       const auto cell = [](double x) { return static_cast<std::size_t>(std::clamp(16.0 * x, 0.0, 15.0)); };
       observed[16 * cell(std::log1p(z * z / a2) / scale) + cell(turn)] += 1.0;
     }
-    const ChiSquare result = chiSquareTest(observed, std::vector<double>(256, kSamples / 256.0));
+    const ChiSquare result = chiSquareTest(observed, std::vector<double>(256, kDraws / 256.0));
     EXPECT_GE(result.pValue, sidak(0.01, kRoughAlphas.size())) << alpha;
   }
 }

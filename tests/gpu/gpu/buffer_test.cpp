@@ -18,8 +18,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-constexpr std::size_t kMiB = std::size_t{1} << 20;
-
 std::vector<std::uint32_t> counting(std::size_t count, std::uint32_t first = 0) {
   std::vector<std::uint32_t> result(count);
   std::iota(result.begin(), result.end(), first);
@@ -38,7 +36,7 @@ TEST(GpuBuffer, RoundTripsInEveryMemory) {
 }
 
 TEST(GpuBuffer, RoundTripsMoreThanAStagingStep) {
-  const std::vector<std::uint32_t> data = counting(70 * kMiB / 4 + 5);
+  const std::vector<std::uint32_t> data = counting(70 * test::kMiB / 4 + 5);
   const Buffer buffer = makeBufferOf(test::testContext(), data, 0, "large");
   EXPECT_TRUE(buffer.downloadAs<std::uint32_t>(data.size()) == data);
 }
@@ -114,7 +112,7 @@ TEST(GpuUploader, FillsManyBuffersThroughASmallRing) {
   Context& context = test::testContext();
   std::vector<Buffer> buffers;
   {
-    Uploader uploader(context, 2 * kMiB);
+    Uploader uploader(context, 2 * test::kMiB);
     for (std::uint32_t i = 0; i < 40; ++i) {
       buffers.emplace_back(context, BufferOptions{.size = 300'004, .name = "one of many"});
       const std::vector<std::uint32_t> data = counting(75'001, i);
@@ -127,9 +125,9 @@ TEST(GpuUploader, FillsManyBuffersThroughASmallRing) {
 
 TEST(GpuUploader, SplitsUploadsThatAreLargerThanTheRing) {
   Context& context = test::testContext();
-  const std::vector<std::uint32_t> data = counting(9 * kMiB / 4 + 1);
+  const std::vector<std::uint32_t> data = counting(9 * test::kMiB / 4 + 1);
   const Buffer buffer(context, {.size = data.size() * 4 + 400, .name = "larger"});
-  Uploader uploader(context, 2 * kMiB);
+  Uploader uploader(context, 2 * test::kMiB);
   uploader.upload(buffer, std::as_bytes(std::span(data)), 400);
   uploader.flush();
   std::vector<std::uint32_t> result(data.size());

@@ -11,8 +11,6 @@
 namespace quintet::gpu {
 namespace {
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-
 class GpuMemory : public testing::Test {
  protected:
   std::uint64_t now() const { return context.memory().now; }
@@ -23,13 +21,13 @@ class GpuMemory : public testing::Test {
 TEST_F(GpuMemory, FreesLargeBuffers) {
   const std::uint64_t before = now();
   {
-    const Buffer buffer(context, {.size = 20 * kMiB, .name = "film", .purpose = Purpose::film});
-    EXPECT_GE(now(), before + 20 * kMiB);
-    EXPECT_LT(now(), before + 21 * kMiB);
+    const Buffer buffer(context, {.size = 20 * test::kMiB, .name = "film", .purpose = Purpose::film});
+    EXPECT_GE(now(), before + 20 * test::kMiB);
+    EXPECT_LT(now(), before + 21 * test::kMiB);
   }
   EXPECT_EQ(now(), before);
-  EXPECT_GE(context.memory().peak, before + 20 * kMiB);
-  EXPECT_GE(atPeak(Purpose::film), 20 * kMiB);
+  EXPECT_GE(context.memory().peak, before + 20 * test::kMiB);
+  EXPECT_GE(atPeak(Purpose::film), 20 * test::kMiB);
   EXPECT_EQ(atPeak(Purpose::staging), 0u);
 }
 
@@ -37,39 +35,39 @@ TEST_F(GpuMemory, SharesBlocksBetweenSmallBuffers) {
   std::vector<Buffer> buffers;
   for (int i = 0; i < 1000; ++i) buffers.emplace_back(context, BufferOptions{.size = 1000, .name = "small"});
   EXPECT_LE(context.allocator().account().blockCount(), 2u);
-  EXPECT_LE(now(), 8 * kMiB);
+  EXPECT_LE(now(), 8 * test::kMiB);
 }
 
 TEST_F(GpuMemory, FreesTheRingOfAnUploader) {
-  const Buffer buffer(context, {.size = 24 * kMiB, .name = "geometry", .purpose = Purpose::geometry});
+  const Buffer buffer(context, {.size = 24 * test::kMiB, .name = "geometry", .purpose = Purpose::geometry});
   const Image image(context, {.width = 1024, .height = 1024, .name = "image"});
   const std::uint64_t before = now();
   {
-    Uploader uploader(context, 16 * kMiB);
-    uploader.upload(buffer, std::vector<std::byte>(24 * kMiB));
-    uploader.upload(image, std::vector<std::byte>(4 * kMiB));
+    Uploader uploader(context, 16 * test::kMiB);
+    uploader.upload(buffer, std::vector<std::byte>(24 * test::kMiB));
+    uploader.upload(image, std::vector<std::byte>(4 * test::kMiB));
   }
   EXPECT_EQ(now(), before);
-  EXPECT_GE(context.memory().peak, before + 16 * kMiB);
-  EXPECT_GE(atPeak(Purpose::staging), 16 * kMiB);
-  EXPECT_GE(atPeak(Purpose::geometry), 24 * kMiB);
-  EXPECT_GE(atPeak(Purpose::textures), 4 * kMiB);
+  EXPECT_GE(context.memory().peak, before + 16 * test::kMiB);
+  EXPECT_GE(atPeak(Purpose::staging), 16 * test::kMiB);
+  EXPECT_GE(atPeak(Purpose::geometry), 24 * test::kMiB);
+  EXPECT_GE(atPeak(Purpose::textures), 4 * test::kMiB);
 }
 
 TEST_F(GpuMemory, LimitsStagingOfBlockingCopies) {
-  Buffer buffer(context, {.size = 64 * kMiB, .name = "large"});
+  Buffer buffer(context, {.size = 64 * test::kMiB, .name = "large"});
   const std::uint64_t before = now();
   std::vector<std::uint32_t> data(buffer.size() / 4);
   for (std::size_t i = 0; i < data.size(); ++i) data[i] = static_cast<std::uint32_t>(i);
   buffer.uploadAs(std::span<const std::uint32_t>(data));
   EXPECT_TRUE(buffer.downloadAs<std::uint32_t>(data.size()) == data);
-  EXPECT_LE(context.memory().peak, before + 9 * kMiB);
+  EXPECT_LE(context.memory().peak, before + 9 * test::kMiB);
   EXPECT_EQ(now(), before);
 }
 
 // The peak is always the sum of all purposes and of the free space in blocks.
 TEST_F(GpuMemory, AddsUpToThePeak) {
-  for (const std::uint64_t size : {3 * kMiB, 100 * kMiB / 1000, 7 * kMiB}) {
+  for (const std::uint64_t size : {3 * test::kMiB, 100 * test::kMiB / 1000, 7 * test::kMiB}) {
     const Buffer a(context, {.size = size, .name = "a", .purpose = Purpose::scratch});
     const Buffer b(context, {.size = size / 2, .memory = Memory::upload, .name = "b", .purpose = Purpose::staging});
     std::uint64_t sum = 0;
@@ -78,8 +76,8 @@ TEST_F(GpuMemory, AddsUpToThePeak) {
     EXPECT_LE(sum, memory.peak);
     EXPECT_EQ(sum + memory.unusedAtPeak(), memory.peak);
   }
-  EXPECT_GE(atPeak(Purpose::scratch), 7 * kMiB);
-  EXPECT_GE(atPeak(Purpose::staging), 7 * kMiB / 2);
+  EXPECT_GE(atPeak(Purpose::scratch), 7 * test::kMiB);
+  EXPECT_GE(atPeak(Purpose::staging), 7 * test::kMiB / 2);
 }
 
 }  // namespace

@@ -204,15 +204,15 @@ TEST(PixelExplainer, StatesTheNumbersOfThePathTracer) {
 
 // A lamp in a block of rough absorbing glass: the light of samples at its surface passes the glass.
 TEST(PixelExplainer, StatesTheNumbersInAbsorbingMedia) {
-  test::SceneBuilder builder;
-  scene::Material glass = test::clearGlass(1.3f, 1.0f);
+  quintet::test::SceneBuilder builder;
+  scene::Material glass = quintet::test::clearGlass(1.3f, 1.0f);
   glass.roughness = 0.6f;
   glass.attenuationColor = {0.2f, 0.5f, 0.8f};
   glass.attenuationDistance = 0.5f;
   const vec3 emitted(9.0f, 7.0f, 5.0f);
-  builder.add(test::box({-0.8f, -0.6f, -0.6f}, {0.8f, 0.6f, 0.8f}), glass);
-  builder.add(test::quad({-0.4f, -0.3f, 0.0f}, {0.8f, 0, 0}, {0, 0.6f, 0}), test::emitter(emitted));
-  builder.camera(test::perspective({0, 0, 4}, {0, 0, 0}, 40.0f));
+  builder.add(quintet::test::box({-0.8f, -0.6f, -0.6f}, {0.8f, 0.6f, 0.8f}), glass);
+  builder.add(quintet::test::quad({-0.4f, -0.3f, 0.0f}, {0.8f, 0, 0}, {0, 0.6f, 0}), quintet::test::emitter(emitted));
+  builder.camera(quintet::test::perspective({0, 0, 4}, {0, 0, 0}, 40.0f));
   RenderRequest request = smallRequest();
   request.loadedScene = std::make_shared<scene::Scene>(std::move(builder.scene));
   request.environment.source = "none";

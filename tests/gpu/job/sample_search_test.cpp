@@ -32,11 +32,11 @@ SearchResult search(const char* program, RenderRequest request, const SearchOpti
 
 // A floor under a small lamp: paths without light sampling seldom hit it.
 RenderRequest lampRequest() {
-  test::SceneBuilder builder;
-  builder.add(test::quad({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}), test::lambert(vec3(0.5f)));
-  builder.add(test::quad({-0.2f, 3, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}), test::emitter(vec3(500.0f)));
+  quintet::test::SceneBuilder builder;
+  builder.add(quintet::test::quad({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}), quintet::test::lambert(vec3(0.5f)));
+  builder.add(quintet::test::quad({-0.2f, 3, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}), quintet::test::emitter(vec3(500.0f)));
   builder.scene.materials[0].name = "floor";
-  builder.camera(test::perspective({0, 2, 5}, {0, 0, 0}, 40.0f));
+  builder.camera(quintet::test::perspective({0, 2, 5}, {0, 0, 0}, 40.0f));
   RenderRequest request;
   request.loadedScene = std::make_shared<scene::Scene>(std::move(builder.scene));
   request.environment.source = "0.2,0.2,0.2";
@@ -81,10 +81,10 @@ TEST(SampleSearch, FindsSamplesThatAreNotFinite) {
 
 // A wall hides the sky, which is infinite, in the first frame only.
 TEST(SampleSearch, SearchesTheRequestedFrame) {
-  test::SceneBuilder builder;
-  builder.add(test::quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}), test::lambert(vec3(0.5f)));
+  quintet::test::SceneBuilder builder;
+  builder.add(quintet::test::quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}), quintet::test::lambert(vec3(0.5f)));
   builder.scene.instances[0].keyframes = {{.frame = 0}, {.frame = 2, .translation = {0, 100, 0}}};
-  builder.camera(test::perspective({0, 0, 5}, {0, 0, 0}, 40.0f));
+  builder.camera(quintet::test::perspective({0, 0, 5}, {0, 0, 0}, 40.0f));
   RenderRequest request = lampRequest();
   request.loadedScene = std::make_shared<scene::Scene>(std::move(builder.scene));
   request.environment.source = "2,2,2";

@@ -12,8 +12,8 @@ namespace {
 
 using glm::dvec2;
 using glm::dvec3;
-constexpr std::size_t kSamples = 400'000;
-const Defines kWrong{{"QUINTET_WRONG_ENVIRONMENT_PDF", "1"}};
+constexpr std::size_t kEnvironmentSamples = 400'000;
+const Defines kWrongMap{{"QUINTET_WRONG_ENVIRONMENT_PDF", "1"}};
 
 scene::Environment mapOf(std::uint32_t width, std::uint32_t height, auto value) {
   scene::Environment environment;
@@ -25,7 +25,7 @@ scene::Environment mapOf(std::uint32_t width, std::uint32_t height, auto value) 
   return environment;
 }
 
-float noise(std::uint32_t x, std::uint32_t y) {
+float hashedNoise(std::uint32_t x, std::uint32_t y) {
   std::uint32_t h = x * 0x9E3779B9u ^ y * 0x85EBCA6Bu;
   h = (h ^ h >> 15) * 0x2C1B3C6Du;
   return static_cast<float>((h ^ h >> 13) >> 8) * 0x1p-24f;
@@ -37,7 +37,7 @@ scene::Environment nastyMap() {
     if (x > 10 && x < 20 && y > 5 && y < 11) return 0.0f;
     if (x == 3 && y == 4) return 1e4f;
     if ((x == 17 && y == 0) || (x == 30 && y == 9)) return 1e3f;
-    return std::pow(10.0f, 6.0f * noise(x, y) - 4.0f);
+    return std::pow(10.0f, 6.0f * hashedNoise(x, y) - 4.0f);
   });
   environment.rotation = 1.1f;
   environment.intensity = 0.5f;
@@ -63,19 +63,19 @@ double cellAngle(const render::EnvironmentTable& table, std::size_t row) {
   return 2.0 * kPiDouble / table.width * (rowCosine(table, row) - rowCosine(table, row + 1));
 }
 
-struct Query {
+struct MapQuery {
   vec3 radiance;
   float pdf;
 };
-std::vector<Query> query(const LightScene& scene, const std::vector<vec3>& directions, const Defines& defines = {}) {
-  return runCompute<Query>(R"(
+std::vector<MapQuery> query(const LightScene& scene, const std::vector<vec3>& directions, const Defines& defines = {}) {
+  return runCompute<MapQuery>(R"(
     #include <quintet/lights/lights.glsl>
     struct Query { vec3 radiance; float pdf; };
     #define In vec3
     #define Out Query
     Query run(uint i, vec3 d) { return Query(environmentRadiance(d), pdfLightEnvironment(d, lightSampleContext(vec3(0.0)))); }
   )",
-                           directions, directions.size(), scene.options(defines));
+                              directions, directions.size(), scene.options(defines));
 }
 
 // Directions: +x is u = 0.5, +z is u = 0.75, +y is the top row; a rotation turns the whole towards -z.
@@ -92,7 +92,7 @@ TEST(EnvironmentLight, Orientation) {
       directions.emplace_back(worldDirection(environment, uv.x, std::cos(kPiDouble * uv.y)));
       wanted.push_back(at(uv.x, uv.y));
     }
-    const std::vector<Query> found = query(scene, directions);
+    const std::vector<MapQuery> found = query(scene, directions);
     for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i].radiance.x, wanted[i], 0.3f) << i;
   }
   environment.rotation = kPi / 2.0f;
@@ -116,7 +116,7 @@ TEST(EnvironmentLight, DensityEqualsTheTable) {
       directions.emplace_back(worldDirection(environment, u, cosine));
       wanted.push_back(table.entries[cell].probability / cellAngle(table, row));
     }
-  const std::vector<Query> found = query(scene, directions), wrong = query(scene, directions, kWrong);
+  const std::vector<MapQuery> found = query(scene, directions), wrong = query(scene, directions, kWrongMap);
   std::size_t mistakes = 0;
   double integral = 0.0;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -145,7 +145,7 @@ TEST(EnvironmentLight, SamplesFollowTheDensity) {
       return vec4(wi, pdf);
     }
   )",
-                                        kSamples, scene.options());
+                                        kEnvironmentSamples, scene.options());
   std::vector<double> observed(table.entries.size() * 4, 0.0), expected(observed.size()), byAngle(observed.size());
   std::size_t mismatches = 0;
   for (const vec4& s : samples) {
@@ -161,8 +161,8 @@ TEST(EnvironmentLight, SamplesFollowTheDensity) {
     mismatches += std::abs(s.w - wanted) > 1e-4 * wanted ? 1 : 0;
   }
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    expected[i] = static_cast<double>(kSamples) * table.entries[i / 4].probability / 4.0;
-    byAngle[i] = static_cast<double>(kSamples) * cellAngle(table, i / 4 / table.width) / (16.0 * kPiDouble);
+    expected[i] = static_cast<double>(kEnvironmentSamples) * table.entries[i / 4].probability / 4.0;
+    byAngle[i] = static_cast<double>(kEnvironmentSamples) * cellAngle(table, i / 4 / table.width) / (16.0 * kPiDouble);
   }
   EXPECT_LT(mismatches, 20u);  // rounding moves a few directions over the border of their cell
   EXPECT_GT(chiSquareTest(observed, expected).pValue, 0.01);
@@ -178,10 +178,13 @@ TEST(EnvironmentLight, ConstantSkyGivesPi) {
   for (const scene::Environment& environment : {constant, mapOf(9, 5, [](auto, auto) { return 1.0f; })}) {
     const LightScene scene(scene::Scene{}, environment);
     for (const vec3& normal : {vec3(0, 1, 0), glm::normalize(vec3(1, -0.3f, 0.6f))})
-      EXPECT_GT(pValue(irradiance(sampleLights(scene, vec3(0.0f), kSamples), normal), kPiDouble), sidak(0.01, 4));
+      EXPECT_GT(pValue(irradiance(sampleLights(scene, vec3(0.0f), kEnvironmentSamples), normal), kPiDouble),
+                sidak(0.01, 4));
   }
   const LightScene scene(scene::Scene{}, mapOf(9, 5, [](auto, auto) { return 1.0f; }));
-  EXPECT_LT(pValue(irradiance(sampleLights(scene, vec3(0.0f), kSamples, kWrong), vec3(0, 1, 0)), kPiDouble), 1e-9);
+  EXPECT_LT(
+      pValue(irradiance(sampleLights(scene, vec3(0.0f), kEnvironmentSamples, kWrongMap), vec3(0, 1, 0)), kPiDouble),
+      1e-9);
 }
 
 // Importance sampling against a brute-force quadrature of environmentRadiance itself.
@@ -194,9 +197,9 @@ TEST(EnvironmentLight, IrradianceOfANastyMap) {
     const double theta = kPiDouble * (i / kWidth + 0.5) / kHeight;
     directions.emplace_back(worldDirection(environment, (i % kWidth + 0.5) / kWidth, std::cos(theta)));
   }
-  const std::vector<Query> values = query(scene, directions);
-  const std::vector<LightOut> samples = sampleLights(scene, vec3(0.0f), kSamples);
-  const std::vector<LightOut> wrong = sampleLights(scene, vec3(0.0f), kSamples, kWrong);
+  const std::vector<MapQuery> values = query(scene, directions);
+  const std::vector<LightOut> samples = sampleLights(scene, vec3(0.0f), kEnvironmentSamples);
+  const std::vector<LightOut> wrong = sampleLights(scene, vec3(0.0f), kEnvironmentSamples, kWrongMap);
   for (const vec3& normal : {vec3(0, 1, 0), vec3(-1, 0, 0), glm::normalize(vec3(0.2f, -0.3f, 0.9f))}) {
     double exact = 0.0;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -235,7 +238,7 @@ TEST(Lights, AllKindsTogether) {
 TEST(Lights, None) {
   const LightScene scene(scene::Scene{}, {});
   for (const LightOut& s : sampleLights(scene, vec3(0.0f), 100)) EXPECT_FALSE(s.valid);
-  const Query q = query(scene, {vec3(0, 1, 0)})[0];
+  const MapQuery q = query(scene, {vec3(0, 1, 0)})[0];
   EXPECT_EQ(q.pdf, 0.0f);
   EXPECT_EQ(q.radiance, vec3(0.0f));
 }

@@ -12,9 +12,9 @@ namespace {
 using glm::dvec3;
 using scene::PrimitiveType;
 
-constexpr std::size_t kSamples = 200'000;
-constexpr std::array kTypes{PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone,
-                            PrimitiveType::torus};
+constexpr std::size_t kSolidSamples = 200'000;
+constexpr std::array kLightTypes{PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder,
+                                 PrimitiveType::cone, PrimitiveType::torus};
 
 scene::Scene emissiveSolid(PrimitiveType type, const mat4& objectFromPrimitive,
                            const mat4& worldFromObject = mat4(1.0f)) {
@@ -44,13 +44,13 @@ mat4 stretched() {
 
 // Mean of 1/pdf: the solid angle of all of the surface, near and far side each for itself.
 Estimate solidAngle(const LightScene& scene, const vec3& position) {
-  return estimate(sampleLights(scene, position, kSamples),
+  return estimate(sampleLights(scene, position, kSolidSamples),
                   [](const LightOut& s) { return s.valid ? 1.0 / s.pdf : 0.0; });
 }
 
 // From inside, a closed convex surface is all around.
 TEST(SolidLamp, FillsTheSphereFromInside) {
-  for (const PrimitiveType type : kTypes) {
+  for (const PrimitiveType type : kLightTypes) {
     if (type == PrimitiveType::torus) continue;
     for (const mat4& m : {mat4(1.0f), stretched()}) {
       const LightScene scene(emissiveSolid(type, m, glm::translate(mat4(1.0f), vec3(5, 0, 0))), {});
@@ -61,7 +61,7 @@ TEST(SolidLamp, FillsTheSphereFromInside) {
 }
 
 // A solid, seen from one place: one uniform direction against all its crossings, and one light sample of it.
-struct Case {
+struct LightSolid {
   vec3 from;
   std::uint32_t light;
 };
@@ -118,8 +118,8 @@ TEST(SolidLamp, DensitiesIntegrateToOne) {
   scene::Scene source = emissiveSolid(PrimitiveType::sphere, mat4(1.0f));
   source.meshes.clear();
   source.instances.clear();
-  std::vector<Case> cases;
-  for (const PrimitiveType type : kTypes) {
+  std::vector<LightSolid> cases;
+  for (const PrimitiveType type : kLightTypes) {
     for (const mat4& m : {stretched(), glm::scale(mat4(1.0f), vec3(0.7f))}) {
       const mat4 place = glm::translate(mat4(1.0f), vec3(source.instances.size(), 0, 0));
       const scene::Scene one = emissiveSolid(type, m, place);
@@ -133,12 +133,12 @@ TEST(SolidLamp, DensitiesIntegrateToOne) {
     }
   }
   const LightScene scene(source, {});
-  for (Case& c : cases) {  // the second solid of the instance: the first is dark
+  for (LightSolid& c : cases) {  // the second solid of the instance: the first is dark
     const auto first = std::ranges::find(scene.table.lights, c.light, &shared::LightData::instance);
     c.light = static_cast<std::uint32_t>(first - scene.table.lights.begin()) + 1;
   }
 
-  const std::vector<Seen> seen = runCompute<Seen>(kSee, cases, kSamples * cases.size(), scene.options());
+  const std::vector<Seen> seen = runCompute<Seen>(kSee, cases, kSolidSamples * cases.size(), scene.options());
   const auto tests = 2 * cases.size();
   for (std::size_t i = 0; i < cases.size(); ++i) {
     SCOPED_TRACE(testing::Message() << "type " << i / 6 << (i % 6 < 3 ? ", stretched, " : ", round, ") << "case "

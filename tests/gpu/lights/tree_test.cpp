@@ -14,7 +14,7 @@ namespace quintet::test {
 namespace {
 
 using glm::dvec3;
-constexpr std::size_t kSamples = 400'000;
+constexpr std::size_t kTreeSamples = 400'000;
 
 class Random {
  public:
@@ -171,15 +171,15 @@ TEST(LightTreeDevice, DrawsFollowTheProbabilities) {
         return result;
       }
     )",
-                                       std::vector<Receiver>{all[r]}, kSamples, scene.options());
+                                       std::vector<Receiver>{all[r]}, kTreeSamples, scene.options());
     std::vector<double> observed(count + 1, 0.0), expected(count + 1, 0.0), ofAnother(count + 1, 0.0);
     for (const Out& draw : draws) {
       ASSERT_EQ(draw.drawn, draw.asked) << "receiver " << r << " light " << draw.light;
       observed[std::min<std::size_t>(draw.light, count)] += 1.0;
     }
     const auto fill = [&](std::vector<double>& out, const std::vector<double>& chances) {
-      out[count] = static_cast<double>(kSamples);
-      for (std::size_t i = 0; i < count; ++i) out[count] -= out[i] = static_cast<double>(kSamples) * chances[i];
+      out[count] = static_cast<double>(kTreeSamples);
+      for (std::size_t i = 0; i < count; ++i) out[count] -= out[i] = static_cast<double>(kTreeSamples) * chances[i];
       out[count] = std::max(out[count], 0.0);
     };
     fill(expected, scene.probabilities(all[r]));
@@ -256,7 +256,7 @@ Estimate irradianceOf(const LightScene& scene, const Receiver& place, const Defi
       return s.radiance.x * max(0.0, dot(s.wi, v.normal)) / s.pdf;
     }
   )",
-                                         std::vector<Receiver>{place}, kSamples, scene.options(defines));
+                                         std::vector<Receiver>{place}, kTreeSamples, scene.options(defines));
   return estimate(samples, [](float v) { return static_cast<double>(v); });
 }
 

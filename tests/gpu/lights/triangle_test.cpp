@@ -10,7 +10,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr std::size_t kSamples = 200'000;
+constexpr std::size_t kTriangleSamples = 200'000;
 const Defines kWrong{{"QUINTET_WRONG_TRIANGLE_PDF", "1"}};
 
 using glm::dvec3;
@@ -58,7 +58,7 @@ TEST(TriangleLight, SolidAngle) {
       const std::vector<dvec3> c = cornersFrom(source, size * p);
       const double exact = triangleSolidAngle(c[0], c[1], c[2]);
       const auto measure = [&](const Defines& defines) {
-        const auto samples = sampleLights(scene, size * p, kSamples, defines);
+        const auto samples = sampleLights(scene, size * p, kTriangleSamples, defines);
         return estimate(samples, [](const LightOut& s) { return s.valid ? 1.0 / s.pdf : 0.0; });
       };
       EXPECT_GT(pValue(measure({}), exact), sidak(0.01, 9)) << size;
@@ -77,7 +77,7 @@ TEST(TriangleLight, UniformOverTheArea) {
   const double d11 = glm::dot(e1, e1), d12 = glm::dot(e1, e2), d22 = glm::dot(e2, e2);
   constexpr int kCells = 20;
   std::vector<double> observed(kCells * kCells, 0.0);
-  for (const LightOut& s : sampleLights(scene, vec3(0.0f), kSamples)) {
+  for (const LightOut& s : sampleLights(scene, vec3(0.0f), kTriangleSamples)) {
     const dvec3 p = dvec3(s.point) - c[1];
     EXPECT_NEAR(glm::dot(p, glm::normalize(glm::cross(e1, e2))), 0.0, 1e-6);
     const double a = glm::dot(p, e1), b = glm::dot(p, e2), determinant = d11 * d22 - d12 * d12;
@@ -86,7 +86,7 @@ TEST(TriangleLight, UniformOverTheArea) {
     const int x = std::clamp(static_cast<int>(sum * sum * kCells), 0, kCells - 1);
     observed[x * kCells + std::clamp(static_cast<int>(b2 / sum * kCells), 0, kCells - 1)] += 1.0;
   }
-  const std::vector<double> expected(kCells * kCells, static_cast<double>(kSamples) / (kCells * kCells));
+  const std::vector<double> expected(kCells * kCells, static_cast<double>(kTriangleSamples) / (kCells * kCells));
   EXPECT_GT(chiSquareTest(observed, expected).pValue, 0.01);
 }
 
@@ -95,8 +95,8 @@ TEST(TriangleLight, RectangleOverAPlane) {
   const LightScene scene(source, {});
   for (const vec3& p : {vec3(0.0f), vec3(1.0f, 0.5f, -1.0f), vec3(-40.0f, 0.0f, 3.0f)}) {
     const double exact = 3.0 * polygonIrradiance(cornersFrom(source, p), dvec3(0, 1, 0));
-    EXPECT_GT(pValue(irradiance(sampleLights(scene, p, kSamples), vec3(0, 1, 0)), exact), sidak(0.01, 3));
-    EXPECT_LT(pValue(irradiance(sampleLights(scene, p, kSamples, kWrong), vec3(0, 1, 0)), exact), 1e-9);
+    EXPECT_GT(pValue(irradiance(sampleLights(scene, p, kTriangleSamples), vec3(0, 1, 0)), exact), sidak(0.01, 3));
+    EXPECT_LT(pValue(irradiance(sampleLights(scene, p, kTriangleSamples, kWrong), vec3(0, 1, 0)), exact), 1e-9);
   }
 }
 
@@ -107,7 +107,7 @@ TEST(TriangleLight, ParallelSquareTextbook) {
   const LightScene scene(emissiveRectangle(vec3(1.0f), above), {});
   const double r = 1.0 / std::sqrt(2.0);  // x = 0.5/0.5
   const double factor = 4.0 / (2.0 * kPiDouble) * 2.0 * r * std::atan(r);
-  const auto samples = sampleLights(scene, vec3(0.0f), kSamples);
+  const auto samples = sampleLights(scene, vec3(0.0f), kTriangleSamples);
   EXPECT_GT(pValue(irradiance(samples, vec3(0, 1, 0)), kPiDouble * factor), 0.01);
 }
 
@@ -128,7 +128,7 @@ TEST(TriangleLight, EmissiveTexture) {
   c[1] = 0.5 * (c[0] + c[1]);
   c[2] = 0.5 * (c[2] + c[3]);
   const double exact = 3.0 * polygonIrradiance(c, dvec3(0, 1, 0));
-  EXPECT_GT(pValue(irradiance(sampleLights(scene, vec3(0.0f), kSamples), vec3(0, 1, 0)), exact), 0.01);
+  EXPECT_GT(pValue(irradiance(sampleLights(scene, vec3(0.0f), kTriangleSamples), vec3(0, 1, 0)), exact), 0.01);
 }
 
 // KHR_materials_clearcoat: the coat lies over the emission. Smooth: Schlick's reflectance at the interpolated normal.
@@ -154,7 +154,7 @@ TEST(TriangleLight, AlphaOfTheEmitter) {
   const double exact = 3.0 * polygonIrradiance(cornersFrom(source, vec3(0.0f)), dvec3(0, 1, 0));
   const auto measure = [&] {
     const LightScene scene(source, {});
-    return irradiance(sampleLights(scene, vec3(0.0f), kSamples), vec3(0, 1, 0));
+    return irradiance(sampleLights(scene, vec3(0.0f), kTriangleSamples), vec3(0, 1, 0));
   };
   source.materials[0].alphaMode = scene::AlphaMode::blend;
   source.materials[0].baseColor.a = 0.25f;
@@ -177,7 +177,8 @@ TEST(TriangleLight, ForcedOpaqueEmittersAreWhole) {
   for (const scene::AlphaMode mode : {scene::AlphaMode::blend, scene::AlphaMode::mask}) {
     source.materials[0].alphaMode = mode;
     const LightScene scene(source, {});
-    EXPECT_GT(pValue(irradiance(sampleLights(scene, vec3(0.0f), kSamples), vec3(0, 1, 0)), exact), sidak(0.01, 2));
+    EXPECT_GT(pValue(irradiance(sampleLights(scene, vec3(0.0f), kTriangleSamples), vec3(0, 1, 0)), exact),
+              sidak(0.01, 2));
   }
 }
 

@@ -43,7 +43,7 @@ PrimitiveSet randomTrees(Random& random, int depth, int count, bool full) {
   return set;
 }
 
-std::vector<ProbeRay> raysAround(Random& random, std::size_t count, const mat4& worldFromObject) {
+std::vector<ProbeRay> raysAroundTree(Random& random, std::size_t count, const mat4& worldFromObject) {
   std::vector<ProbeRay> rays;
   for (std::size_t i = 0; i < count; ++i) {
     const vec3 from =
@@ -94,7 +94,7 @@ TEST(Csg, AgreesWithTheOracle) {
     SCOPED_TRACE(testing::Message() << "depth " << round.depth << ", " << round.trees << " trees");
     const PrimitiveSet set = randomTrees(random, round.depth, round.trees, round.full);
     const mat4 worldFromObject = round.depth % 2 ? random.affine(2.5f, 4.0f) : mat4(1.0f);
-    const std::vector<ProbeRay> rays = raysAround(random, round.rays, worldFromObject);
+    const std::vector<ProbeRay> rays = raysAroundTree(random, round.rays, worldFromObject);
     const std::vector<ProbeHit> found = probe(sceneOf(set, worldFromObject), rays);
     for (std::size_t i = 0; i < rays.size(); ++i, ++count) {
       const Expected expected =
@@ -236,7 +236,7 @@ TEST(Csg, IsNotHitByRaysLeavingIt) {
     const PrimitiveSet set = randomTrees(random, 3, 3, true);
     const mat4 worldFromObject = k == 0 ? mat4(1.0f) : random.affine(2.5f, k == 3 ? 1000.0f : 4.0f);
     const scene::Scene scene = sceneOf(set, worldFromObject);
-    const std::vector<ProbeHit> first = probe(scene, raysAround(random, 2000, worldFromObject));
+    const std::vector<ProbeHit> first = probe(scene, raysAroundTree(random, 2000, worldFromObject));
     std::vector<ProbeRay> rays;
     std::vector<const ProbeHit*> from;
     for (std::size_t i = 0; i < first.size(); ++i) {
@@ -325,7 +325,7 @@ TEST(Csg, LargeTreesAgreeWithTheOracle) {
   Random random(13);
   for (const PrimitiveSet& set : {plate(12, false), plate(12, true), fullStack()}) {
     SCOPED_TRACE(set.nodes.size());
-    const std::vector<ProbeRay> rays = raysAround(random, 600, mat4(1.0f));
+    const std::vector<ProbeRay> rays = raysAroundTree(random, 600, mat4(1.0f));
     const std::vector<ProbeHit> hits = probe(sceneOf(set), rays);
     std::size_t doubtful = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {

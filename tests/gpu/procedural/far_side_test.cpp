@@ -11,10 +11,7 @@ namespace {
 
 using scene::PrimitiveType;
 
-const vec3 kAlbedo(0.8f, 0.5f, 0.2f);
-
-mat4 scaled(float x, float y, float z) { return glm::scale(mat4(1.0f), vec3(x, y, z)); }
-mat4 moved(float x, float y, float z) { return glm::translate(mat4(1.0f), vec3(x, y, z)); }
+const vec3 kFarSideAlbedo(0.8f, 0.5f, 0.2f);
 
 scene::Primitive lampOf(PrimitiveType type, const mat4& place) {
   scene::Primitive lamp;
@@ -28,7 +25,7 @@ scene::Primitive lampOf(PrimitiveType type, const mat4& place) {
 SceneBuilder above(const std::vector<scene::Primitive>& lamps, const scene::Material& material,
                    const scene::Material& other) {
   SceneBuilder scene;
-  scene.scene.materials = {lambert(kAlbedo), material, other};
+  scene.scene.materials = {lambert(kFarSideAlbedo), material, other};
   scene::Primitive floor = lampOf(PrimitiveType::box, moved(0, -1, 0));
   floor.material = 0;
   for (const auto& solids : {std::vector{floor}, lamps}) {
@@ -69,7 +66,7 @@ TEST(SolidFarSide, ShowsThroughBalls) {
   for (const auto& [ball, part] : {std::pair{veiled(radiance), 0.75f}, {pane, 1.5f}}) {
     const SceneBuilder scene =
         above({lampOf(PrimitiveType::sphere, place)}, ball, part < 1.0f ? pane : veiled(radiance));
-    expectUniform(renderImage(scene, oneBounce(64)), vec4(part * irradiance / kPi * kAlbedo * radiance, 1.0f),
+    expectUniform(renderImage(scene, oneBounce(64)), vec4(part * irradiance / kPi * kFarSideAlbedo * radiance, 1.0f),
                   {.error = 0.015});
   }
 }

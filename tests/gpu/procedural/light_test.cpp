@@ -16,7 +16,7 @@ using scene::PrimitiveSet;
 using scene::PrimitiveSetKind;
 using scene::PrimitiveType;
 
-const vec3 kAlbedo(0.8f, 0.5f, 0.2f);
+const vec3 kFloorAlbedo(0.8f, 0.5f, 0.2f);
 
 Primitive solid(PrimitiveType type, const mat4& objectFromPrimitive = mat4(1.0f), float parameter = 0.4f) {
   Primitive primitive;
@@ -25,9 +25,6 @@ Primitive solid(PrimitiveType type, const mat4& objectFromPrimitive = mat4(1.0f)
   primitive.parameter = parameter;
   return primitive;
 }
-
-mat4 scaled(float x, float y, float z) { return glm::scale(mat4(1.0f), vec3(x, y, z)); }
-mat4 moved(float x, float y, float z) { return glm::translate(mat4(1.0f), vec3(x, y, z)); }
 
 // One tree: the first solid minus all others.
 PrimitiveSet difference(const std::vector<Primitive>& primitives) {
@@ -53,7 +50,8 @@ void add(SceneBuilder& scene, PrimitiveSet set, const scene::Material& material,
   scene.scene.meshes.emplace_back().primitiveSets.push_back(std::move(set));
 }
 
-ImageOptions with(std::vector<std::string> set, std::uint32_t batches = 16, const std::string& program = "pathtracer") {
+ImageOptions withParameters(std::vector<std::string> set, std::uint32_t batches = 16,
+                            const std::string& program = "pathtracer") {
   ImageOptions options;
   options.program = program::loadProgram(program);
   options.set = std::move(set);
@@ -63,7 +61,7 @@ ImageOptions with(std::vector<std::string> set, std::uint32_t batches = 16, cons
 
 constexpr std::array kConvex{PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cylinder, PrimitiveType::cone};
 
-void expectSame(const RenderedImage& a, const RenderedImage& b, double part) {
+void expectSameMean(const RenderedImage& a, const RenderedImage& b, double part) {
   const std::size_t tests = std::size_t{3} * a.width() * a.height();
   for (std::uint32_t y = 0; y < a.height(); ++y)
     for (std::uint32_t x = 0; x < a.width(); ++x)
@@ -87,11 +85,11 @@ TEST(SolidLight, ConvexSolidsInAUniformSkyShowTheirAlbedo) {
       const mat4& m = places[(static_cast<std::size_t>(type) + 3 * k) % 4];
       SCOPED_TRACE(testing::Message() << static_cast<int>(type) << " " << k);
       SceneBuilder scene;
-      add(scene, solidsOf({solid(type)}), lambert(kAlbedo), m);
+      add(scene, solidsOf({solid(type)}), lambert(kFloorAlbedo), m);
       const float size = glm::length(vec3(m[1]));
       const vec3 middle = m[3];
       scene.sky(vec3(1.0f)).camera(orthographic(middle + vec3(0.3f, 0.2f, 1.0f) * 4.0f * size, middle, 0.3f * size));
-      expectUniform(renderImage(scene, with({}, 6)), vec4(kAlbedo, 1.0f), {.error = 0.005});
+      expectUniform(renderImage(scene, withParameters({}, 6)), vec4(kFloorAlbedo, 1.0f), {.error = 0.005});
     }
   }
 }
@@ -109,7 +107,7 @@ TEST(SolidLight, WhiteBodiesAreInvisibleInAUniformSky) {
     scene.sky(vec3(0.5f, 1.0f, 2.0f)).camera(perspective({1.5f, 2.0f, 4.0f}, vec3(0.0f), 30.0f));
     for (const char* program : {"pathtracer", "naive"}) {
       SCOPED_TRACE(program);
-      ImageOptions options = with({"bounces=10000"}, 16, program);
+      ImageOptions options = withParameters({"bounces=10000"}, 16, program);
       if (options.program.name == "pathtracer") options.set.push_back("roulette_start=10000");
       expectUniform(renderImage(scene, options), vec4(0.5f, 1.0f, 2.0f, 1.0f), {.error = 0.01});
     }
@@ -123,7 +121,7 @@ TEST(SolidLight, IsBlackInside) {
     SceneBuilder scene;
     add(scene, std::move(set), lambert(vec3(0.9f)), scaled(size, size, size));
     scene.sky(vec3(1000.0f)).camera(perspective(vec3(0.05f, -0.3f, 0.1f) * size, vec3(-1.0f) * size, 110.0f));
-    ImageOptions options = with({}, 8);
+    ImageOptions options = withParameters({}, 8);
     options.width = options.height = 16;
     expectBlack(renderImage(scene, options));
   };
@@ -142,15 +140,15 @@ TEST(SolidLight, IsBlackInside) {
 // Inside a closed surface that emits L everywhere: L · (1 + a + a² + … + a^bounces).
 TEST(SolidLight, AlbedoSeriesInside) {
   vec3 sum(0.0f), power(0.5f, 1.0f, 2.0f);
-  for (int i = 0; i <= 3; ++i) sum += power, power *= kAlbedo;
+  for (int i = 0; i <= 3; ++i) sum += power, power *= kFloorAlbedo;
   for (const PrimitiveType type : {PrimitiveType::sphere, PrimitiveType::box, PrimitiveType::cone}) {
     SCOPED_TRACE(static_cast<int>(type));
-    scene::Material m = lambert(kAlbedo);
+    scene::Material m = lambert(kFloorAlbedo);
     m.emissive = {0.5f, 1.0f, 2.0f};
     SceneBuilder scene;
     add(scene, solidsOf({solid(type)}), m);
     scene.camera(perspective(vec3(0.1f, -0.2f, 0.05f), vec3(1, 1, 1), 90.0f));
-    expectUniform(renderImage(scene, with({"bounces=3"}, 16)), vec4(sum, 1.0f), {.error = 0.01});
+    expectUniform(renderImage(scene, withParameters({"bounces=3"}, 16)), vec4(sum, 1.0f), {.error = 0.01});
   }
 }
 
@@ -160,14 +158,14 @@ TEST(SolidLight, SphereLampsMatchTheirFormula) {
   const vec3 center(0.6f, 2.0f, -0.3f), radiance(4.0f, 2.0f, 1.0f);
   for (const mat4& turn : {mat4(1.0f), glm::rotate(mat4(1.0f), 1.0f, vec3(1, 2, 3)) * scaled(-1, 1, 1)}) {
     SceneBuilder scene;
-    add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(1, 1, 1))}), lambert(kAlbedo));
+    add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(1, 1, 1))}), lambert(kFloorAlbedo));
     add(scene, solidsOf({solid(PrimitiveType::sphere, scaled(radius, radius, radius))}), emitter(radiance),
         glm::translate(mat4(1.0f), center) * turn);
     scene.camera(orthographic({0, 0.5f, 0}, vec3(0.0f), 1e-3f));
     const float squared = glm::dot(center, center);
     const float irradiance = kPi * radius * radius / squared * center.y / std::sqrt(squared);
-    expectUniform(renderImage(scene, with({"bounces=1"}, 64)), vec4(irradiance / kPi * kAlbedo * radiance, 1.0f),
-                  {.error = 0.02});
+    expectUniform(renderImage(scene, withParameters({"bounces=1"}, 64)),
+                  vec4(irradiance / kPi * kFloorAlbedo * radiance, 1.0f), {.error = 0.02});
   }
 }
 
@@ -179,16 +177,16 @@ TEST(SolidLight, LampsOfEveryShapeAgreeWithBruteForce) {
                                    PrimitiveType::cone, PrimitiveType::torus}) {
     SCOPED_TRACE(static_cast<int>(type));
     SceneBuilder scene;
-    scene::Material floor = lambert(kAlbedo);
+    scene::Material floor = lambert(kFloorAlbedo);
     floor.specular = 1.0f;
     floor.roughness = 0.3f;
     add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(3, 1, 3))}), floor);
     add(scene, solidsOf({solid(type, turn * scaled(0.9f, 0.4f, 0.6f))}), emitter({4.0f, 2.0f, 1.0f}),
         moved(0, 1.2f, 0) * scaled(1, 1, -1));
     scene.camera(perspective({0, 1.5f, 4.0f}, {0, 0.2f, 0}, 30.0f));
-    const RenderedImage direct = renderImage(scene, with({"bounces=2"}, 32));
-    const RenderedImage naive = renderImage(scene, with({"bounces=2"}, 192, "naive"));
-    expectSame(direct, naive, 1e-4);
+    const RenderedImage direct = renderImage(scene, withParameters({"bounces=2"}, 32));
+    const RenderedImage naive = renderImage(scene, withParameters({"bounces=2"}, 192, "naive"));
+    expectSameMean(direct, naive, 1e-4);
   }
 }
 
@@ -208,7 +206,7 @@ TEST(SolidLight, SolidsAndTreesCastShadows) {
     add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(3, 1, 3))}), lambert(vec3(0.5f)));
     add(scene, set, lambert(vec3(0.0f)));
     scene.light(lamp).camera(perspective({1.5f, 0.3f, 0}, vec3(0.0f), 3.0f));
-    expectBlack(renderImage(scene, with({}, 4)));
+    expectBlack(renderImage(scene, withParameters({}, 4)));
   }
 }
 
@@ -240,10 +238,10 @@ TEST(SolidGlass, BoxMatchesTheTriangleMesh) {
       {solid(PrimitiveType::box, turn * scaled(1, 1, 1.3f)), solid(PrimitiveType::box, turn * scaled(1.2f, 1.0f, 1))});
   common.nodes.back().operation = CsgOperation::intersect;
   add(tree, common, glass());
-  const ImageOptions options = with({}, 64);
+  const ImageOptions options = withParameters({}, 64);
   const RenderedImage reference = renderImage(triangles, options);
-  expectSame(renderImage(analytic, options), reference, 1e-3);
-  expectSame(renderImage(tree, options), reference, 1e-3);
+  expectSameMean(renderImage(analytic, options), reference, 1e-3);
+  expectSameMean(renderImage(tree, options), reference, 1e-3);
 }
 
 TEST(SolidGlass, SphereMatchesTheTriangleMesh) {
@@ -252,8 +250,8 @@ TEST(SolidGlass, SphereMatchesTheTriangleMesh) {
   mesh.normals = mesh.positions;
   triangles.add(mesh, glass());
   add(analytic, solidsOf({solid(PrimitiveType::sphere)}), glass());
-  const ImageOptions options = with({}, 64);
-  expectSame(renderImage(analytic, options), renderImage(triangles, options), 0.01);
+  const ImageOptions options = withParameters({}, 64);
+  expectSameMean(renderImage(analytic, options), renderImage(triangles, options), 0.01);
 }
 
 // A hollow sphere, as a tree and as two triangle meshes, one of them inside out.
@@ -268,8 +266,8 @@ TEST(SolidGlass, HollowSphereMatchesTheTriangleMesh) {
   }
   add(tree, difference({solid(PrimitiveType::sphere), solid(PrimitiveType::sphere, scaled(0.7f, 0.7f, 0.7f))}),
       glass());
-  const ImageOptions options = with({}, 64);
-  expectSame(renderImage(tree, options), renderImage(triangles, options), 0.015);
+  const ImageOptions options = withParameters({}, 64);
+  expectSameMean(renderImage(tree, options), renderImage(triangles, options), 0.015);
 }
 
 // ---- alpha ----
@@ -295,7 +293,7 @@ TEST(SolidAlpha, TestsEachCrossingIndependently) {
     const float through = std::pow(0.6f, static_cast<float>(c.crossings));
     const vec3 exact = (1.0f - through) * vec3(2.0f, 1.0f, 0.5f) + through * vec3(0.5f, 0.25f, 4.0f);
     for (const char* program : {"pathtracer", "naive"})
-      expectUniform(renderImage(scene, with({}, 64, program)), vec4(exact, 1.0f), {.error = 0.02});
+      expectUniform(renderImage(scene, withParameters({}, 64, program)), vec4(exact, 1.0f), {.error = 0.02});
   }
 }
 
@@ -307,7 +305,7 @@ TEST(SolidAlpha, AttenuatesShadowRays) {
   for (const scene::AlphaMode mode : {scene::AlphaMode::blend, scene::AlphaMode::mask, scene::AlphaMode::opaque}) {
     for (const bool tree : {false, true}) {
       SceneBuilder scene;
-      add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(3, 1, 3))}), lambert(kAlbedo));
+      add(scene, solidsOf({solid(PrimitiveType::box, moved(0, -1, 0) * scaled(3, 1, 3))}), lambert(kFloorAlbedo));
       scene::Material m = lambert(vec3(0.0f));
       m.alphaMode = mode;
       m.baseColor.a = 0.4f;
@@ -315,7 +313,8 @@ TEST(SolidAlpha, AttenuatesShadowRays) {
       add(scene, tree ? difference({ball, solid(PrimitiveType::box, moved(5, 0, 0))}) : solidsOf({ball}), m);
       scene.light(lamp).camera(orthographic({0, 0.5f, 0}, vec3(0.0f), 0.1f));
       const float through = mode == scene::AlphaMode::blend ? 0.36f : mode == scene::AlphaMode::mask ? 1.0f : 0.0f;
-      expectUniform(renderImage(scene, with({"bounces=1"}, 64)), vec4(through * kAlbedo, 1.0f), {.error = 0.02});
+      expectUniform(renderImage(scene, withParameters({"bounces=1"}, 64)), vec4(through * kFloorAlbedo, 1.0f),
+                    {.error = 0.02});
     }
   }
 }

@@ -7,8 +7,9 @@
 namespace quintet::test {
 namespace {
 
-const Files kFiles = {{"m.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n"},
-                      {"main.rgen", R"(#version 460
+const Files kAccumulationFiles = {
+    {"m.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n"},
+    {"main.rgen", R"(#version 460
 #extension GL_EXT_ray_tracing : require
 #include <quintet/output.glsl>
 #include <quintet/generated/program.glsl>
@@ -20,12 +21,12 @@ void main() {
 }
 )"}};
 
-std::vector<vec4> render(const std::string& accumulation, std::uint32_t frames) {
+std::vector<vec4> renderAccumulating(const std::string& accumulation, std::uint32_t frames) {
   const std::string toml =
       "[program]\nray_generation = \"main.rgen\"\naccumulation = \"" + accumulation +
       "\"\n[[ray]]\nname = \"r\"\nmiss = \"m.rmiss\"\n[[output]]\nname = \"first\"\n[[output]]\nname = \"second\"\n";
   ImageOptions options;
-  options.program = program::parseProgram(toml, "test", "<test>", kFiles);
+  options.program = program::parseProgram(toml, "test", "<test>", kAccumulationFiles);
   options.width = 3;
   options.height = 1;
   const SceneBuilder scene = namedSquares({"a"});
@@ -42,13 +43,13 @@ std::vector<vec4> render(const std::string& accumulation, std::uint32_t frames) 
 }
 
 TEST(Accumulation, ByTheProgramReadsThePreviousFrame) {
-  const std::vector<vec4> values = render("program", 4);
+  const std::vector<vec4> values = renderAccumulating("program", 4);
   EXPECT_EQ(values[0], vec4(4.0f, 0 + 1 + 2 + 3, 0 + 10 + 11 + 12, 4 * 2));
   EXPECT_EQ(values[1], vec4(13.0f));
 }
 
 TEST(Accumulation, ByTheFilmHasNoPreviousFrame) {
-  const std::vector<vec4> values = render("film", 2);
+  const std::vector<vec4> values = renderAccumulating("film", 2);
   EXPECT_EQ(values[0].x, 1.0f) << "the mean";
   EXPECT_EQ(values[0].z, 0.0f);
 }

@@ -22,7 +22,7 @@ using glm::dvec2;
 using glm::dvec3;
 using glm::dvec4;
 
-constexpr const char* kToml = R"([program]
+constexpr const char* kHitBoxToml = R"([program]
 ray_generation = "main.rgen"
 [[ray]]
 name = "down"
@@ -83,7 +83,7 @@ void main() {
   SceneBuilder builder;
   builder.scene = scrambledBoxes(kCount);
   builder.camera(perspective({0, 0, 5}, {0, 0, 0}, 40.0f));
-  const Outputs outputs = runProgram(kToml, files, builder, kCount);
+  const Outputs outputs = runProgram(kHitBoxToml, files, builder, kCount);
   for (const Bounds3& box : builder.scene.meshes[0].primitiveSets[0].boxes) {
     const auto pixel = static_cast<std::size_t>(box.min.x);
     EXPECT_EQ(vec3(outputs[0][pixel]), box.min) << "pixel " << pixel;

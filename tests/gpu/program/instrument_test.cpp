@@ -25,7 +25,7 @@ const std::string kMiss = "void main() { /**** MISS SHADER ****/ payload.color =
 const std::string kHit = "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = vec3(1.0); }\n";
 
 // Lines: 1 common, 2 ray generation.
-std::string rayGeneration(const std::string& body) {
+std::string instrumentedRayGeneration(const std::string& body) {
   return "void main() { /**** RAY GENERATION SHADER ****/ vec2 p = (vec2(gl_LaunchIDEXT.xy) + 0.5) / "
          "vec2(gl_LaunchSizeEXT.xy); "
          "vec3 eye = vec3(0.0, 1.0, 6.0); vec3 d = normalize(vec3(p - 0.5, -1.0)); payload.color = vec3(0.0); " +
@@ -58,7 +58,7 @@ std::string idsOf(const std::vector<Diagnostic>& notes) {
 }
 
 TEST(Instrument, ReportsNothingForACorrectProgram) {
-  EXPECT_EQ(idsOf(notesOf(kCommon + rayGeneration(trace("eye", "d")) + kHit + kMiss)), "");
+  EXPECT_EQ(idsOf(notesOf(kCommon + instrumentedRayGeneration(trace("eye", "d")) + kHit + kMiss)), "");
 }
 
 TEST(Instrument, ReportsNothingForBuiltInPrograms) {
@@ -73,7 +73,8 @@ TEST(Instrument, ReportsNothingForBuiltInPrograms) {
 
 TEST(Instrument, ReportsRaysThatAreNotFinite) {
   const auto notes = notesOf(
-      kCommon + rayGeneration("if (gl_LaunchIDEXT.x == 3u) d.y = sqrt(-p.x);\n" + trace("eye", "d")) + kHit + kMiss);
+      kCommon + instrumentedRayGeneration("if (gl_LaunchIDEXT.x == 3u) d.y = sqrt(-p.x);\n" + trace("eye", "d")) +
+      kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q001:3");
   EXPECT_EQ(notes[0].severity, Severity::error);
   EXPECT_NE(notes[0].text.find("pixel 3, "), std::string::npos) << notes[0].text;
@@ -83,7 +84,7 @@ TEST(Instrument, ReportsRaysThatAreNotFinite) {
 // A trace in an included file, in a line that the program also has.
 TEST(Instrument, ReportsTheFileOfATraceInAnIncludedFile) {
   const std::string text = kCommon + "void side() { vec2 unused = vec2(0.0); }\n#include \"far.glsl\"\n" +
-                           rayGeneration("far(eye, float(gl_LaunchIDEXT.x & 1u) * d);") + kHit + kMiss;
+                           instrumentedRayGeneration("far(eye, float(gl_LaunchIDEXT.x & 1u) * d);") + kHit + kMiss;
   const std::string far = "void far(vec3 o, vec3 d) {\n" + trace("o", "d") + " }\n";
   const program::Program program = program::parseLecture(text, "demo.rt.glsl", "here", {{"far.glsl", far}});
   const auto notes = notesOf(program, job::loadScene(job::chooseSceneSource({}, program)));
@@ -93,7 +94,8 @@ TEST(Instrument, ReportsTheFileOfATraceInAnIncludedFile) {
 }
 
 TEST(Instrument, ReportsRaysWithoutDirection) {
-  const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "float(gl_LaunchIDEXT.x & 1u) * d")) + kHit + kMiss);
+  const auto notes =
+      notesOf(kCommon + instrumentedRayGeneration(trace("eye", "float(gl_LaunchIDEXT.x & 1u) * d")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q001:2");
   ASSERT_FALSE(notes.empty());
   EXPECT_NE(notes[0].text.find("its direction is 0: "), std::string::npos) << notes[0].text;
@@ -102,10 +104,10 @@ TEST(Instrument, ReportsRaysWithoutDirection) {
 
 // The offset is not a constant, so only the run finds that the table has no such record.
 TEST(Instrument, ReportsHitRecordsOutOfRange) {
-  const auto notes =
-      notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" +
-              rayGeneration("\ntraceRayEXT(topLevelAS, 0u, 0xFFu, uint(which), 1u, 0u, eye, 0.0, d, 100.0, 0);") +
-              kHit + kMiss);
+  const auto notes = notesOf(
+      kCommon + "uniform int which; // defaultval=\"7\"\n" +
+      instrumentedRayGeneration("\ntraceRayEXT(topLevelAS, 0u, 0xFFu, uint(which), 1u, 0u, eye, 0.0, d, 100.0, 0);") +
+      kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q004:4");
   ASSERT_FALSE(notes.empty());
   EXPECT_NE(notes[0].text.find("with offset 7 and stride 1"), std::string::npos) << notes[0].text;
@@ -114,7 +116,7 @@ TEST(Instrument, ReportsHitRecordsOutOfRange) {
 TEST(Instrument, ReportsOutputsThatAreNotFinite) {
   const auto notes = notesOf(
       kCommon +
-      rayGeneration(
+      instrumentedRayGeneration(
           trace("eye", "d") +
           " if (gl_LaunchIDEXT.y == 4u) payload.color = vec3(uintBitsToFloat(0x7FC00000u + gl_LaunchIDEXT.x));") +
       kHit + kMiss);
@@ -127,12 +129,13 @@ TEST(Instrument, ReportsRecursionBeyondTheDeclaredDepth) {
       "void main() { /**** CLOSEST-HIT SHADER ****/ vec3 o = gl_WorldRayOriginEXT; vec3 d = "
       "gl_WorldRayDirectionEXT;\nif (gl_HitTEXT > 0.0) { " +
       trace("o", "d") + " } payload.color = vec3(0.1); }\n";
-  EXPECT_EQ(idsOf(notesOf(options + kCommon + rayGeneration(trace("eye", "d")) + hit + kMiss)), "Q003:5");
+  EXPECT_EQ(idsOf(notesOf(options + kCommon + instrumentedRayGeneration(trace("eye", "d")) + hit + kMiss)), "Q003:5");
 }
 
 TEST(Instrument, ReportsMissIndicesOutOfRange) {
-  const auto notes = notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" +
-                             rayGeneration(trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
+  const auto notes =
+      notesOf(kCommon + "uniform int which; // defaultval=\"7\"\n" +
+              instrumentedRayGeneration(trace("eye", "d + vec3(0.0, 9.0, 0.0)", "uint(which)")) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q004:3");
   ASSERT_FALSE(notes.empty());
   EXPECT_NE(notes[0].text.find("beyond the 1 miss shader of the table"), std::string::npos) << notes[0].text;
@@ -143,7 +146,7 @@ TEST(Instrument, ReportsCallableIndicesOutOfRange) {
       "struct CallableDataType { vec3 value; };\nvoid main() { /**** CALLABLE SHADER ****/ callableData.value *= 0.5; "
       "}\n";
   const std::string call = " callableData.value = vec3(1.0);\nexecuteCallableEXT(gl_LaunchIDEXT.x / 15u * 9u, 0);";
-  const auto notes = notesOf(kCommon + callable + rayGeneration(trace("eye", "d") + call) + kHit + kMiss);
+  const auto notes = notesOf(kCommon + callable + instrumentedRayGeneration(trace("eye", "d") + call) + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q004:5");
   EXPECT_NE(notes.at(0).text.find("callable index 9"), std::string::npos) << notes[0].text;
   EXPECT_NE(notes.at(0).text.find("16 such calls"), std::string::npos) << notes[0].text;
@@ -203,8 +206,8 @@ program::Program endlessRecursion(int depth) {
       "gl_WorldRayDirectionEXT;\nif (gl_HitTEXT > 0.0) { " +
       trace("o", "d") + " } payload.color = vec3(0.001 * payload.level); }\n";
   return program::parseLecture(
-      options + kCommon + rayGeneration(" payload.level = 0; " + trace("eye", "d")) + hit + kMiss, "demo.rt.glsl",
-      "here");
+      options + kCommon + instrumentedRayGeneration(" payload.level = 0; " + trace("eye", "d")) + hit + kMiss,
+      "demo.rt.glsl", "here");
 }
 
 // Every run skips the traces that are too deep, and counts them.
@@ -288,11 +291,11 @@ TEST(Instrument, ReportsSelfIntersections) {
       "void main() { /**** CLOSEST-HIT SHADER ****/ payload.color = gl_WorldRayOriginEXT + gl_HitTEXT * "
       "gl_WorldRayDirectionEXT; payload.level = 1; }\n";
   const std::string miss = "void main() { /**** MISS SHADER ****/ payload.color = vec3(0.0); payload.level = 0; }\n";
-  const auto notes =
-      notesOf(kCommon +
-              rayGeneration(trace("eye", "d") + " if (payload.level == 1) { vec3 o = payload.color - 1e-7 * d;\n" +
-                            trace("o", "d") + " }") +
-              hit + miss);
+  const auto notes = notesOf(
+      kCommon +
+      instrumentedRayGeneration(trace("eye", "d") + " if (payload.level == 1) { vec3 o = payload.color - 1e-7 * d;\n" +
+                                trace("o", "d") + " }") +
+      hit + miss);
   EXPECT_EQ(idsOf(notes), "Q005:3");
 }
 
@@ -311,11 +314,11 @@ std::string shadowTrace(const std::string& origin, const std::string& tmin) {
 // No shader of the program runs at the hit of the shadow ray.
 TEST(Instrument, ReportsSelfIntersectionsOfRaysThatSkipClosestHitShaders) {
   const auto idsFor = [](const std::string& tmin) {
-    return idsOf(
-        notesOf(kCommon +
-                rayGeneration(trace("eye", "d") + " if (payload.level == 1) { vec3 o = payload.color - 1e-7 * d;\n\n" +
-                              shadowTrace("o", tmin) + " }") +
-                kPositionHit + "}\n" + kLevelMiss));
+    return idsOf(notesOf(kCommon +
+                         instrumentedRayGeneration(trace("eye", "d") +
+                                                   " if (payload.level == 1) { vec3 o = payload.color - 1e-7 * d;\n\n" +
+                                                   shadowTrace("o", tmin) + " }") +
+                         kPositionHit + "}\n" + kLevelMiss));
   };
   EXPECT_EQ(idsFor("0.0"), "Q005:4");
   EXPECT_EQ(idsFor("1e-3"), "");
@@ -326,7 +329,7 @@ TEST(Instrument, ReportsSelfIntersectionsAfterANestedTrace) {
   const auto idsFor = [](const std::string& tmin) {
     return idsOf(
         notesOf("// gsnShaderOptions: precompiler=\"GL_EXT_ray_tracing, recursion: 2\"\n" + kCommon +
-                rayGeneration("payload.level = 0; " + trace("eye", "d")) + kPositionHit +
+                instrumentedRayGeneration("payload.level = 0; " + trace("eye", "d")) + kPositionHit +
                 "vec3 d = gl_WorldRayDirectionEXT, o = payload.color - 1e-7 * d;\nif (gl_WorldRayOriginEXT.z == 6.0) { "
                 "traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, o, 1e-3, d, 100.0, 0);\nif (payload.level == 1) " +
                 shadowTrace("o", tmin) + " } }\n" + kLevelMiss));
@@ -383,9 +386,10 @@ TEST(Instrument, KeepsTheImage) {
   const std::string skips = "(gl_IncomingRayFlagsEXT & gl_RayFlagsSkipClosestHitShaderEXT) != 0u";
   const program::Program program = program::parseLecture(
       kCommon +
-          rayGeneration(trace("eye", "d") + " payload.level = 2; " + shadowTrace("eye", "0.0") +
-                        " payload.color.y = 0.1 * payload.level; payload.level = 2; " +
-                        shadowTrace("eye + vec3(0.0, 99.0, 0.0)", "0.0") + " payload.color.z = 0.1 * payload.level;") +
+          instrumentedRayGeneration(trace("eye", "d") + " payload.level = 2; " + shadowTrace("eye", "0.0") +
+                                    " payload.color.y = 0.1 * payload.level; payload.level = 2; " +
+                                    shadowTrace("eye + vec3(0.0, 99.0, 0.0)", "0.0") +
+                                    " payload.color.z = 0.1 * payload.level;") +
           "void main() { /**** ANY-HIT SHADER ****/ if (" + skips + " && gl_HitTEXT < 5.5) ignoreIntersectionEXT; }\n" +
           kHit + "void main() { /**** MISS SHADER ****/ payload.level = " + skips + " ? 5 : 7; }\n",
       "demo.rt.glsl", "here");
@@ -408,7 +412,7 @@ TEST(Instrument, KeepsTheImage) {
 TEST(Instrument, CountsAnyHitCalls) {
   const std::string anyHit =
       "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitTEXT < 3.0) ignoreIntersectionEXT; }\n";
-  const auto notes = notesOf(kCommon + rayGeneration(trace("eye", "d")) + anyHit + kHit + kMiss);
+  const auto notes = notesOf(kCommon + instrumentedRayGeneration(trace("eye", "d")) + anyHit + kHit + kMiss);
   EXPECT_EQ(idsOf(notes), "Q006:0");
   EXPECT_NE(notes[0].text.find("for 256 traces"), std::string::npos) << notes[0].text;
 }

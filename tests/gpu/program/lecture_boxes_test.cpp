@@ -9,7 +9,7 @@ namespace quintet::test {
 namespace {
 
 // A ray down to (x + 0.3, row + 0.2) from z = 10 with a direction of length 2.
-const std::string kHead = R"(// gsnShaderOptions: precompiler="GL_EXT_ray_tracing, app: 1"
+const std::string kBoxesHead = R"(// gsnShaderOptions: precompiler="GL_EXT_ray_tracing, app: 1"
 struct RayPayloadType { vec4 value; };
 struct HitAttributeType { float id; vec3 point; };
 uniform int what;
@@ -35,7 +35,7 @@ const std::string kTop = R"(void main() { /**** INTERSECTION SHADER ****/
 )";
 
 // Box i is above square (5 i mod 8) of row 0, up to z = 1 + i / 64, so that the order on the device differs from the scene.
-std::vector<Bounds3> row() {
+std::vector<Bounds3> rowOfBoxes() {
   std::vector<Bounds3> boxes;
   for (int i = 0; i < 8; ++i) {
     const auto x = static_cast<float>(5 * i % 8);
@@ -46,14 +46,15 @@ std::vector<Bounds3> row() {
 
 TEST(LectureBoxes, HaveTheIdsAndBoxesOfTheScene) {
   scene::Scene scene;
-  addBoxes(scene, row());
-  addBoxes(scene, row(), glm::translate(mat4(1.0f), vec3(0, 1, -2)) * glm::scale(mat4(1.0f), vec3(1, 1, 2)));
+  addBoxes(scene, rowOfBoxes());
+  addBoxes(scene, rowOfBoxes(), glm::translate(mat4(1.0f), vec3(0, 1, -2)) * glm::scale(mat4(1.0f), vec3(1, 1, 2)));
   const std::string hit =
       "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = what == 0 ? vec4(hit.id, gl_PrimitiveID, "
       "gl_InstanceID, gl_HitTEXT)"
       " : what == 1 ? vec4(hit.point, gl_HitKindEXT) : vec4(baryCoord, gl_GeometryIndexEXT, 0.0); }\n";
   const auto run = [&](int what) {
-    return runLecture(kHead + kTop + hit, scene, {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}});
+    return runLecture(kBoxesHead + kTop + hit, scene,
+                      {.width = 8, .height = 3, .set = {"what=" + std::to_string(what)}});
   };
   const LectureImage ids = run(0), points = run(1), rest = run(2);
   for (int i = 0; i < 8; ++i) {
@@ -61,13 +62,13 @@ TEST(LectureBoxes, HaveTheIdsAndBoxesOfTheScene) {
     const auto top = 1.0f + static_cast<float>(i) / 64.0f;
     EXPECT_EQ(ids.at(x, 0), vec4(i, i, 0, (10.0f - top) / 2.0f));
     EXPECT_EQ(ids.at(x, 1), vec4(i, i, 1, (10.0f - (2.0f * top - 2.0f)) / 2.0f));
-    for (std::uint32_t row = 0; row < 2; ++row) {
-      const vec4 point = points.at(x, row);
+    for (std::uint32_t rowOfBoxes = 0; rowOfBoxes < 2; ++rowOfBoxes) {
+      const vec4 point = points.at(x, rowOfBoxes);
       EXPECT_NEAR(point.x, static_cast<float>(x) + 0.3f, 1e-5f);
       EXPECT_NEAR(point.y, 0.2f, 1e-5f);
       EXPECT_NEAR(point.z, top, 1e-5f);
       EXPECT_EQ(point.w, 7.0f);
-      EXPECT_EQ(rest.at(x, row), vec4(0));
+      EXPECT_EQ(rest.at(x, rowOfBoxes), vec4(0));
     }
     EXPECT_EQ(ids.at(x, 2), vec4(-1));
   }
@@ -100,7 +101,7 @@ TEST(LectureBoxes, AttributesAreThoseOfTheHit) {
       "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitKindEXT == 9u && hit.id == float(gl_PrimitiveID)) "
       "ignoreIntersectionEXT; }\n";
   const auto width = static_cast<std::uint32_t>(expected.size());
-  const LectureImage image = runLecture(kHead + kTop + stages, scene, {.width = width});
+  const LectureImage image = runLecture(kBoxesHead + kTop + stages, scene, {.width = width});
   for (std::uint32_t x = 0; x < width; ++x) {
     const vec4& value = image.at(x);
     EXPECT_EQ(value.x, expected[x]) << "column " << x;
@@ -119,7 +120,7 @@ TEST(LectureBoxes, TrianglesKeepTheirBarycentrics) {
   const std::string stages =
       "void main() { /**** CLOSEST-HIT SHADER ****/ payload.value = vec4(baryCoord, hit.id, gl_HitTEXT); }\n"
       "void main() { /**** ANY-HIT SHADER ****/ if (gl_HitKindEXT == 9u) ignoreIntersectionEXT; }\n";
-  const LectureImage image = runLecture(kHead + kTop + stages, scene, {.width = 4});
+  const LectureImage image = runLecture(kBoxesHead + kTop + stages, scene, {.width = 4});
   for (std::uint32_t x = 0; x < 3; ++x) {
     // The lower right triangle (0,0), (4,0), (4,1) at (x + 0.3, 0.2), or the upper left one (0,0), (4,1), (0,1).
     const float u = (static_cast<float>(x) + 0.3f) / 4.0f, v = 0.2f;
@@ -135,7 +136,7 @@ TEST(LectureBoxes, TrianglesKeepTheirBarycentrics) {
 // Without HitAttributeType, only `hit` is missing.
 TEST(LectureBoxes, WorkWithoutAttributes) {
   scene::Scene scene;
-  addBoxes(scene, row());
+  addBoxes(scene, rowOfBoxes());
   const std::string text =
       "struct RayPayloadType { vec4 value; };\nvoid main() { /**** RAY GENERATION SHADER ****/\n"
       "traceRayEXT(topLevelAS, 0u, 0xFFu, 0u, 0u, 0u, vec3(vec2(gl_LaunchIDEXT.xy) + 0.5, 10.0), 0.0, vec3(0.0, 0.0, "

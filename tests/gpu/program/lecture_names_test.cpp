@@ -9,7 +9,7 @@ namespace quintet::test {
 namespace {
 
 // A ray to (x + 0.3, row + 0.2) from z = 10 with a direction of length 2.
-const std::string kHead = R"(struct RayPayloadType { vec4 value; int depth; };
+const std::string kNamesHead = R"(struct RayPayloadType { vec4 value; int depth; };
 uniform int what;
 void main() { /**** RAY GENERATION SHADER ****/
   payload.value = vec4(-9.0);
@@ -21,7 +21,7 @@ void main() { /**** MISS SHADER ****/ payload.value = vec4(-1.0); }
 )";
 
 std::string closestHit(const std::string& body) {
-  return kHead + "void main() { /**** CLOSEST-HIT SHADER ****/\n" + body + "\n}\n";
+  return kNamesHead + "void main() { /**** CLOSEST-HIT SHADER ****/\n" + body + "\n}\n";
 }
 
 // Returns a row of 8 unit squares from (0, y, 0) with two triangles each in permuted order: square s has index 5 s mod 8.

@@ -6,7 +6,7 @@
 namespace quintet::test {
 namespace {
 
-const std::string kToml = R"([program]
+const std::string kNestedToml = R"([program]
 ray_generation = "main.rgen"
 max_recursion = 2
 
@@ -27,7 +27,7 @@ name = "parts"
 )";
 
 // The outer ray hits square x, the inner one square 2.
-const Files kFiles = {
+const Files kNestedFiles = {
     {"data.glsl", "struct Data { vec4 names; vec4 inner; vec3 parts; int depth; };\n"},
     {"hit.rchit", R"(#include <quintet/generated/program.glsl>
 #include <quintet/shared/bindings.h>
@@ -79,7 +79,7 @@ SceneBuilder placedSquares() {
 }
 
 TEST(NestedTrace, KeepsTheBuiltInsOfTheOuterHit) {
-  const Outputs outputs = runProgram(kToml, kFiles, placedSquares(), 3);
+  const Outputs outputs = runProgram(kNestedToml, kNestedFiles, placedSquares(), 3);
   // The inner ray hits the last square in the triangle that the outer ray does not hit.
   const vec4 inner = outputs[1][0];
   EXPECT_EQ(inner.x, 2.0f);

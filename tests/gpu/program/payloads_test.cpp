@@ -6,7 +6,7 @@
 namespace quintet::test {
 namespace {
 
-const std::string kToml = R"([program]
+const std::string kPayloadsToml = R"([program]
 ray_generation = "main.rgen"
 
 [[ray]]
@@ -47,7 +47,7 @@ name = "color"
 name = "more"
 )";
 
-const Files kFiles = {
+const Files kPayloadsFiles = {
     {"types.glsl", R"(#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 struct Radiance { vec3 color; float t; uint depth; };
 struct Shadow { bool lit; int hits[3]; };
@@ -160,7 +160,7 @@ SceneBuilder floorAndRoof() {
 }
 
 TEST(Payloads, HaveAnyTypeAtAnyLocation) {
-  const Outputs outputs = runProgram(kToml, kFiles, floorAndRoof(), 6);
+  const Outputs outputs = runProgram(kPayloadsToml, kPayloadsFiles, floorAndRoof(), 6);
   EXPECT_EQ(outputs[0][0], vec4(1.0f, 0.5f, 0.25f, 1.0f)) << "lit floor";
   EXPECT_EQ(outputs[1][0].x, 11.0f);
   EXPECT_EQ(outputs[0][1], vec4(0.25f, 0.0f, 0.0f, 1.0f)) << "floor below the roof; its any-hit shader ran";

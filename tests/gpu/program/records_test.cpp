@@ -6,7 +6,7 @@ namespace quintet::test {
 namespace {
 
 // 12-byte and 4-byte fields in an order that only scalar layout packs without padding.
-const std::string kToml = R"([program]
+const std::string kRecordsToml = R"([program]
 ray_generation = "main.rgen"
 record = { count = -1 }
 
@@ -108,7 +108,7 @@ void fill(inout Data data) {
 }
 )";
 
-const Files kFiles = {
+const Files kRecordsFiles = {
     {"data.glsl", "struct Data { vec4 tint, numbers, vectors, quad; float anyHit; };\n"},
     {"fill.glsl", kFill},
     {"fill.rchit",
@@ -150,7 +150,7 @@ void main() {
 }
 )"}};
 
-struct Expected {
+struct ExpectedRecord {
   const char* what;
   vec4 tint{0.5f, 0.5f, 0.5f, 1};  // tint, weight
   vec4 numbers{0, 7, 3, 0};        // on, count, size, mode
@@ -160,7 +160,7 @@ struct Expected {
 };
 
 TEST(ShaderRecords, ReachEveryStage) {
-  const Expected kExpected[] = {
+  const ExpectedRecord kExpected[] = {
       {"a, first", {1, 2, 3, 2.5f}, {1, 7, 3, 0}, {10, 11, 13, 14}, {15, 16, 17, 30}, 2.5f},
       {"a, second", {0.5f, 0.5f, 0.5f, -2.5f}, {1, 7, 3, 0}, {10, 11, 13, 14}, {1, 2, 3, 16}, -2.5f},
       {"b, first", {0.5f, 0.5f, 0.5f, 1}, {0, 7, 3, 0}, {10, 11, 13, 14}, {15, 16, 17, 30}, 1},
@@ -172,7 +172,7 @@ TEST(ShaderRecords, ReachEveryStage) {
       {"callable stone", {0.5f, 0.5f, 0.5f, 1}, {0, -4, 3, 100}},
       {"ray generation", {0.5f, 0.5f, 0.5f, 1}, {0, -1, 3, 0}},
   };
-  const Outputs outputs = runProgram(kToml, kFiles, namedSquares({"a", "b"}), 10);
+  const Outputs outputs = runProgram(kRecordsToml, kRecordsFiles, namedSquares({"a", "b"}), 10);
   for (std::size_t i = 0; i < std::size(kExpected); ++i) {
     SCOPED_TRACE(kExpected[i].what);
     EXPECT_EQ(outputs[0][i], kExpected[i].tint);

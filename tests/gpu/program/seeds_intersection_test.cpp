@@ -36,7 +36,7 @@ void main() { /**** MISS SHADER ****/ payload.value = vec4(0.0, 0.0, 0.0, -1.0);
 )";
 }
 
-struct Expected {
+struct ExpectedHit {
   double t = -1;
   dvec3 normal{0};
   dvec2 texCoord{0};
@@ -44,21 +44,21 @@ struct Expected {
   int primitive = 0;
 };
 
-struct Case {
+struct SeedsCase {
   std::vector<Bounds3> boxes;
   mat4 worldFromObject{1.0f};
 };
 
 // Computes the hit of a box by a ray in object space; `t` is the same as in world space.
-using Surface = std::function<Expected(const RayD&, const Bounds3&)>;
+using Surface = std::function<ExpectedHit(const RayD&, const Bounds3&)>;
 
-Expected nearest(const Case& scene, const RayD& world, const Surface& surface) {
+ExpectedHit nearest(const SeedsCase& scene, const RayD& world, const Surface& surface) {
   const dmat4 objectFromWorld = glm::inverse(dmat4(scene.worldFromObject));
   const RayD ray{dvec3(objectFromWorld * glm::dvec4(world.origin, 1)),
                  dvec3(objectFromWorld * glm::dvec4(world.direction, 0))};
-  Expected best;
+  ExpectedHit best;
   for (std::size_t i = 0; i < scene.boxes.size(); ++i) {
-    Expected e = surface(ray, scene.boxes[i]);
+    ExpectedHit e = surface(ray, scene.boxes[i]);
     e.primitive = static_cast<int>(i);
     if (e.t >= 0.001 && (best.t < 0 || e.t < best.t)) best = e;
   }
@@ -66,7 +66,7 @@ Expected nearest(const Case& scene, const RayD& world, const Surface& surface) {
 }
 
 // Renders and compares, except pixels close to a discontinuity of the reference. Returns the number of compared hits.
-int expectSurface(const std::string& text, const Case& test, const Surface& surface,
+int expectSurface(const std::string& text, const SeedsCase& test, const Surface& surface,
                   const std::vector<std::string>& set = {}) {
   scene::Scene scene;
   addBoxes(scene, test.boxes, test.worldFromObject);
@@ -84,10 +84,10 @@ int expectSurface(const std::string& text, const Case& test, const Surface& surf
                        {dvec3(0), cameraDirection(60, 4.0 / 3.0, dvec2((x + 0.5 + dx) / 40, (row + 0.5 + dy) / 30))},
                        surface);
       };
-      const Expected exact = at(0, 0);
+      const ExpectedHit exact = at(0, 0);
       bool steady = true;
       for (const dvec2& d : {dvec2(0.02, 0), dvec2(-0.02, 0), dvec2(0, 0.02), dvec2(0, -0.02)}) {
-        const Expected other = at(d.x, d.y);
+        const ExpectedHit other = at(d.x, d.y);
         steady = steady && other.primitive == exact.primitive && other.kind == exact.kind &&
                  std::abs(other.t - exact.t) < 0.05 * std::abs(exact.t) &&
                  glm::distance(other.texCoord, exact.texCoord) < 0.5 && glm::distance(other.normal, exact.normal) < 0.5;
@@ -117,8 +117,8 @@ std::optional<dvec2> sphereInterval(const RayD& ray, const dvec3& center, double
   return dvec2((-b - root) / a, (-b + root) / a);
 }
 
-Expected sphereIn(const RayD& ray, const Bounds3& box) {
-  Expected e;
+ExpectedHit sphereIn(const RayD& ray, const Bounds3& box) {
+  ExpectedHit e;
   const dvec3 center(box.center());
   const auto interval = sphereInterval(ray, center, 0.5 * static_cast<double>(box.extent().x));
   if (!interval || interval->y < 0.001) return e;
@@ -131,8 +131,8 @@ Expected sphereIn(const RayD& ray, const Bounds3& box) {
 }
 
 // Returns a few cubes in front of the camera and one around it.
-Case cubes(const mat4& worldFromObject) {
-  Case test;
+SeedsCase cubes(const mat4& worldFromObject) {
+  SeedsCase test;
   test.worldFromObject = worldFromObject;
   const auto cube = [](const vec3& c, float r) { return Bounds3{c - r, c + r}; };
   test.boxes = {cube({-1.5f, 0.5f, -6}, 1), cube({1, -0.6f, -5}, 1.2f), cube({0.4f, 1.4f, -7}, 0.8f),
@@ -147,7 +147,7 @@ TEST(Seed003, SphereInWorldSpace) {
   ASSERT_NE(program.find("ray-sphere intersection in world space"), std::string::npos);
   const std::string text = supplied(program, around(cutBlock(other, "// Returns a camera ray")));
   // The shader computes the normal in world space; uniform scale keeps its direction.
-  const Case test = cubes(glm::translate(mat4(1.0f), vec3(0.2f, 0.1f, 0)) * glm::scale(mat4(1.0f), vec3(1.1f)));
+  const SeedsCase test = cubes(glm::translate(mat4(1.0f), vec3(0.2f, 0.1f, 0)) * glm::scale(mat4(1.0f), vec3(1.1f)));
   EXPECT_GT(expectSurface(text, test, sphereIn), 1000);
 }
 
@@ -157,7 +157,7 @@ TEST(Seed003, SphereInObjectSpace) {
   const std::string program = cutProgram(document, "struct HitAttributeType {", 1, "/**** INTERSECTION SHADER ****/");
   ASSERT_NE(program.find("ray-sphere intersection in object space"), std::string::npos);
   const std::string text = supplied(program, around(cutBlock(other, "// Returns a camera ray")));
-  const Case test =
+  const SeedsCase test =
       cubes(glm::rotate(mat4(1.0f), 0.3f, vec3(0, 1, 0)) * glm::scale(mat4(1.0f), vec3(1.3f, 0.7f, 1.1f)));
   EXPECT_GT(expectSurface(text, test, sphereIn), 1000);
 }
@@ -169,12 +169,12 @@ TEST(Seed003, Box) {
   ASSERT_NE(program.find("ray-box intersection"), std::string::npos);
   const std::string text = supplied(program, around(cutBlock(other, "// Returns a camera ray")));
   // One cube centered at the object's origin, because the shader finds the face by the largest coordinate.
-  Case test;
+  SeedsCase test;
   test.boxes = {{vec3(-1), vec3(1)}};
   test.worldFromObject = glm::translate(mat4(1.0f), vec3(0.3f, -0.2f, -5)) *
                          glm::rotate(mat4(1.0f), 0.7f, vec3(1, 2, 0.5f)) * glm::scale(mat4(1.0f), vec3(2, 1, 1.2f));
   const Surface surface = [](const RayD& ray, const Bounds3&) {
-    Expected e;
+    ExpectedHit e;
     for (glm::length_t axis = 0; axis < 3; ++axis) {
       for (const double side : {-1.0, 1.0}) {
         const double t = (side - ray.origin[axis]) / ray.direction[axis];
@@ -204,7 +204,7 @@ TEST(Seed003, Triangle) {
   ASSERT_NE(program.find("ray-triangle intersection"), std::string::npos);
   std::string text = supplied(program, around(cutBlock(other, "// Returns a camera ray")));
   const Surface surface = [](const RayD& ray, const Bounds3& box) {
-    Expected e;
+    ExpectedHit e;
     const dvec3 low(box.min), size(box.extent());
     const double t = (low.z + size.z / 2 - ray.origin.z) / ray.direction.z;
     const dvec2 p = (dvec2(ray.origin + t * ray.direction) - dvec2(low)) / dvec2(size);  // in [0,1]² of the box
@@ -217,7 +217,7 @@ TEST(Seed003, Triangle) {
     e.kind = ray.direction.z < 0 ? 0xFE : 0xFF;
     return e;
   };
-  Case test;
+  SeedsCase test;
   test.boxes = {{vec3(-2, -1, -5), vec3(1, 1.5f, -4)}, {vec3(-0.5f, -1.5f, -7), vec3(2.5f, 2, -6)}};
   EXPECT_GT(expectSurface(text, test, surface), 150);
   test.worldFromObject =
@@ -227,7 +227,7 @@ TEST(Seed003, Triangle) {
   const std::string shown = "vec4(hit.texCoord, gl_HitKindEXT, gl_PrimitiveID)";
   text.replace(text.find(shown), shown.size(), "vec4(hit.baryCoord, gl_HitKindEXT, gl_PrimitiveID)");
   const Surface weights = [&](const RayD& ray, const Bounds3& box) {
-    Expected e = surface(ray, box);
+    ExpectedHit e = surface(ray, box);
     e.texCoord = {e.texCoord.x - 0.5 * e.texCoord.y, e.texCoord.y};
     return e;
   };
@@ -281,13 +281,13 @@ TEST(Seed003, CsgOfTwoSpheres) {
                                 cutBlock(document, "bool computeCsgIntersection(") + "\n" +
                                 cutBlock(document, "bool computeCsgDifference(") + "\n";
   const std::string text = kIntervals + functions + around(cutBlock(other, "// Returns a camera ray")) + kCsgMain;
-  Case test;
+  SeedsCase test;
   test.boxes = {{vec3(-1), vec3(1)}};
   test.worldFromObject = glm::translate(mat4(1.0f), vec3(0.1f, 0, -2.2f)) * glm::scale(mat4(1.0f), vec3(1, 1.2f, 1));
   for (int operation = 0; operation < 3; ++operation) {
     // The first t at which the ray enters the set, by testing points between the four crossings.
     const Surface surface = [&](const RayD& ray, const Bounds3&) {
-      Expected e;
+      ExpectedHit e;
       std::vector<std::pair<double, int>> crossings;
       std::array<std::optional<dvec2>, 2> intervals;
       for (std::size_t i = 0; i < 2; ++i) {

@@ -28,7 +28,7 @@ struct View {
   std::uint32_t batches = 1;
 };
 
-std::vector<vec4> render(render::DeviceScene& device, const View& view) {
+std::vector<vec4> renderView(render::DeviceScene& device, const View& view) {
   ImageOptions options;
   options.program = program::loadProgram(view.program);
   options.set = view.set;
@@ -40,7 +40,7 @@ std::vector<vec4> render(render::DeviceScene& device, const View& view) {
 
 std::vector<vec4> renderPosed(const scene::Scene& scene, double frame, const View& view) {
   render::DeviceScene device(testContext(), posedByHost(scene, frame), scene::Environment{});
-  return render(device, view);
+  return renderView(device, view);
 }
 
 double largestDifference(const std::vector<vec4>& a, const std::vector<vec4>& b) {
@@ -61,7 +61,7 @@ void expectHostPoses(const scene::Scene& scene, const std::vector<double>& frame
   std::vector<vec4> before;
   for (const double frame : frames) {
     device.setFrame(frame);
-    const std::vector<vec4> shown = render(device, view);
+    const std::vector<vec4> shown = renderView(device, view);
     EXPECT_TRUE(hasImage(shown)) << frame;
     EXPECT_LT(largestDifference(shown, renderPosed(scene, frame, view)), 1e-4) << frame;
     if (!before.empty()) {
@@ -117,7 +117,7 @@ TEST(Animation, BuildsAgainWhenTheTreeHasDecayed) {
   device.setFrame(48);
   EXPECT_EQ(device.deformationStatistics().refits, 1u);
   EXPECT_EQ(device.deformationStatistics().builds, 1u);
-  EXPECT_LT(largestDifference(render(device, view), renderPosed(scene, 48, view)), 1e-4);
+  EXPECT_LT(largestDifference(renderView(device, view), renderPosed(scene, 48, view)), 1e-4);
   device.setFrame(48);  // nothing to do
   EXPECT_EQ(device.deformationStatistics().builds, 1u);
 }
@@ -138,7 +138,7 @@ TEST(Animation, DeformedEmittersLight) {
   render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{});
   for (const double frame : {12.0, 24.0}) {
     device.setFrame(frame);
-    EXPECT_LT(largestDifference(render(device, view), renderPosed(scene, frame, view)), 1e-3) << frame;
+    EXPECT_LT(largestDifference(renderView(device, view), renderPosed(scene, frame, view)), 1e-3) << frame;
   }
 }
 

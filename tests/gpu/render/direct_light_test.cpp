@@ -9,13 +9,13 @@
 namespace quintet::test {
 namespace {
 
-const vec3 kAlbedo(0.6f, 0.5f, 0.3f);
+const vec3 kLitAlbedo(0.6f, 0.5f, 0.3f);
 constexpr float kHalf = 0.5f;  // half the width of the image on the plane y = 0, in meters
 
 // A plane under a camera that looks straight down from below all lights, with x to the right and z down.
 SceneBuilder plane() {
   SceneBuilder scene;
-  scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kAlbedo));
+  scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kLitAlbedo));
   scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kHalf));
   return scene;
 }
@@ -58,7 +58,7 @@ TEST_P(AreaLight, MatchesTheFormFactor) {
   const std::vector<vec3> polygon = {c.corner, c.corner + c.a, c.corner + c.a + c.b, c.corner + c.b};
   expectPixels(renderImage(scene, batches(24)),
                [&](vec2 pixel) {
-                 return kAlbedo / kPi * radiance * irradiance(pointOf(pixel, 8), {0, 1, 0}, polygon);
+                 return kLitAlbedo / kPi * radiance * irradiance(pointOf(pixel, 8), {0, 1, 0}, polygon);
                },
                {.error = 0.01, .rounding = 2e-4});
 }
@@ -90,14 +90,14 @@ vec3 reflected(const scene::Light& light, const vec3& p) {
   const vec3 d = light.position - p;
   const float distance = glm::length(d);
   const vec3 wi = d / distance;
-  if (light.type == scene::LightType::directional) return kAlbedo / kPi * light.intensity * -light.direction.y;
+  if (light.type == scene::LightType::directional) return kLitAlbedo / kPi * light.intensity * -light.direction.y;
   float cone = 1.0f;
   if (light.type == scene::LightType::spot) {  // KHR_lights_punctual
     const float outer = std::cos(light.outerConeAngle);
     cone = glm::clamp((glm::dot(-wi, light.direction) - outer) / (std::cos(light.innerConeAngle) - outer), 0.0f, 1.0f);
     cone *= cone;
   }
-  return kAlbedo / kPi * light.intensity * (cone * wi.y / (distance * distance));
+  return kLitAlbedo / kPi * light.intensity * (cone * wi.y / (distance * distance));
 }
 
 class PunctualLight : public testing::TestWithParam<scene::LightType> {};
@@ -141,7 +141,7 @@ TEST(PunctualLights, AddUpWithAreaLights) {
                  const vec3 p = pointOf(pixel, 8);
                  vec3 sum = reflected(lights[0], p) + reflected(lights[1], p);
                  const float panel = irradiance(p, {0, 1, 0}, {corner, corner + a, corner + a + b, corner + b});
-                 return sum + kAlbedo / kPi * (radiance * panel + sky * (kPi - panel));
+                 return sum + kLitAlbedo / kPi * (radiance * panel + sky * (kPi - panel));
                },
                {.error = 0.01, .rounding = 5e-4});
 }

@@ -28,7 +28,7 @@ scene::Geometry wedge() {
 
 double indexOf(int channel) { return 1.5 + (channel - 1) * 0.025 * kDispersion * 0.5; }
 
-double fresnel(double cosine, double eta) {
+double fresnelOf(double cosine, double eta) {
   const double refracted = std::sqrt(1.0 - (1.0 - cosine * cosine) / (eta * eta));
   const double s = (cosine - eta * refracted) / (cosine + eta * refracted);
   const double p = (eta * cosine - refracted) / (eta * cosine + refracted);
@@ -41,7 +41,7 @@ struct Arrival {
 };
 Arrival arrivalOf(int channel) {
   const double index = indexOf(channel), bent = std::asin(index * std::sin(kWedge)) - kWedge;
-  return {-2.5 * std::tan(bent), (1.0 - fresnel(1.0, index)) * (1.0 - fresnel(std::cos(kWedge), 1.0 / index))};
+  return {-2.5 * std::tan(bent), (1.0 - fresnelOf(1.0, index)) * (1.0 - fresnelOf(std::cos(kWedge), 1.0 / index))};
 }
 
 // A narrow emitter below the wedge at the place of one channel is seen in this channel only.

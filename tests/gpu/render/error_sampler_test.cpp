@@ -20,7 +20,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr std::uint32_t kSide = 64, kPixels = kSide * kSide, kRuns = 60;
+constexpr std::uint32_t kSide = 64, kPixels = kSide * kSide, kSamplerRuns = 60;
 
 struct Job {
   std::uint32_t seed, planned, kind;
@@ -36,7 +36,7 @@ struct PixelSums {
 };
 
 // The invocation index is pixel · RUNS + run.
-const std::string kIntegrate = R"(
+const std::string kIntegratePixel = R"(
   #include <quintet/frame.glsl>
   #include <quintet/sampling/sobol.glsl>
   struct In { uint seed, planned, kind; };
@@ -72,7 +72,7 @@ std::vector<PixelSums> draw(const std::vector<Job>& jobs, std::uint32_t first, s
   const auto number = [](std::size_t n) { return std::to_string(n) + "u"; };
   const Defines defines = {
       {"RUNS", number(jobs.size())}, {"SIDE", number(kSide)}, {"FIRST", number(first)}, {"LAST", number(last)}};
-  return runCompute<PixelSums>(kIntegrate, jobs, jobs.size() * kPixels, {.defines = defines});
+  return runCompute<PixelSums>(kIntegratePixel, jobs, jobs.size() * kPixels, {.defines = defines});
 }
 
 struct ImageError {
@@ -110,23 +110,23 @@ TEST(ErrorEstimate, CoversTheErrorOfSamplerNumbers) {
     for (std::size_t i = 0; i < many.size(); ++i) exact[i / 2] += static_cast<double>(many[i].last.sum) / 4096;
     for (const std::uint32_t planned : {shared::kIndependentPixels, 0u, 4 * kLast}) {
       std::vector<Job> jobs;
-      for (std::uint32_t run = 0; run < kRuns; ++run) jobs.push_back({run, planned, kind});
+      for (std::uint32_t run = 0; run < kSamplerRuns; ++run) jobs.push_back({run, planned, kind});
       const std::vector<PixelSums> sums = draw(jobs, kFirst, kLast);
       for (const std::uint32_t batches : {kFirst, kLast}) {
-        std::vector<ImageError> errors(kRuns);
-        parallelFor(kRuns, [&](std::size_t run) {
+        std::vector<ImageError> errors(kSamplerRuns);
+        parallelFor(kSamplerRuns, [&](std::size_t run) {
           errors[run] = errorOf(exact, batches, [&](std::size_t p) {
-            const PixelSums& pixel = sums[p * kRuns + run];
+            const PixelSums& pixel = sums[p * kSamplerRuns + run];
             return batches == kFirst ? pixel.first : pixel.last;
           });
         });
         int covered = 0;
         double actual = 0, bound = 0;
         for (const ImageError& e : errors)
-          covered += e.actual <= e.bound, actual += e.actual / kRuns, bound += e.bound / kRuns;
+          covered += e.actual <= e.bound, actual += e.actual / kSamplerRuns, bound += e.bound / kSamplerRuns;
         std::printf("  integrand %u, planned %d, %u batches: covered %d of %u, bound %.4f, actual %.4f\n", kind,
-                    static_cast<int>(planned), batches, covered, kRuns, bound, actual);
-        EXPECT_GE(covered, static_cast<int>(9 * kRuns / 10)) << kind << " " << planned << " " << batches;
+                    static_cast<int>(planned), batches, covered, kSamplerRuns, bound, actual);
+        EXPECT_GE(covered, static_cast<int>(9 * kSamplerRuns / 10)) << kind << " " << planned << " " << batches;
         EXPECT_LT(bound, 1.35 * actual) << "the bound is too wide to be useful: " << kind << " " << planned << " "
                                         << batches;
       }

@@ -29,14 +29,14 @@ SceneBuilder room() {
   return scene;
 }
 
-constexpr std::uint32_t kSide = 14;
+constexpr std::uint32_t kErrorSide = 14;
 
 struct Runs {
   SceneBuilder scene = room();
   render::DeviceScene device{testContext(), scene::Scene(scene.scene), scene.environment};
   ImageOptions options;
   explicit Runs(std::uint32_t planned) {
-    options.width = options.height = kSide;
+    options.width = options.height = kErrorSide;
     options.plannedSamples = planned;
   }
 

@@ -85,8 +85,8 @@ TEST(FilmPasses, ConvertsFixedPointSumsToFloats) {
 }
 
 // A program whose samples store known values: a term of the mean, the center value, and an id.
-const Files kFiles = {{"m.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n"},
-                      {"main.rgen", R"(#version 460
+const Files kFilmFiles = {{"m.rmiss", "#version 460\n#extension GL_EXT_ray_tracing : require\nvoid main() {}\n"},
+                          {"main.rgen", R"(#version 460
 #extension GL_EXT_ray_tracing : require
 #include <quintet/output.glsl>
 #include <quintet/generated/program.glsl>
@@ -118,7 +118,7 @@ void main() {
 }
 )"}};
 
-constexpr const char* kToml = R"([program]
+constexpr const char* kFilmToml = R"([program]
 ray_generation = "main.rgen"
 samples_per_launch = 4
 adaptive = true
@@ -144,7 +144,7 @@ struct FilmTest : testing::Test {
   render::DeviceScene device{testContext(), scene::Scene(scene.scene), scene.environment};
 
   FilmTest() {
-    options.program = program::parseProgram(kToml, "test", "<test>", kFiles);
+    options.program = program::parseProgram(kFilmToml, "test", "<test>", kFilmFiles);
     options.width = 37;
     options.height = 5;
   }

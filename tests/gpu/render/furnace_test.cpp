@@ -8,7 +8,7 @@
 namespace quintet::test {
 namespace {
 
-const vec3 kAlbedo(0.8f, 0.5f, 0.2f);
+const vec3 kFurnaceAlbedo(0.8f, 0.5f, 0.2f);
 
 ImageOptions with(const std::string& program, std::vector<std::string> set = {}) {
   ImageOptions options;
@@ -21,17 +21,17 @@ ImageOptions with(const std::string& program, std::vector<std::string> set = {})
 SceneBuilder furnace(float size, const vec3& center, const mat4& worldFromObject = mat4(1.0f)) {
   SceneBuilder scene;
   const vec3 middle = worldFromObject * vec4(center, 1.0f);
-  scene.add(sphere(center, size, 3), lambert(kAlbedo), worldFromObject).sky(vec3(1.0f));
+  scene.add(sphere(center, size, 3), lambert(kFurnaceAlbedo), worldFromObject).sky(vec3(1.0f));
   scene.camera(orthographic(middle + vec3(0.3f, 0.2f, 1.0f) * 2.0f * size, middle, 0.55f * size));
   return scene;
 }
 
 TEST(Furnace, ShowsTheAlbedoOfASphere) {
-  expectUniform(renderImage(furnace(1.0f, vec3(0.0f))), vec4(kAlbedo, 1.0f), {.error = 0.003});
+  expectUniform(renderImage(furnace(1.0f, vec3(0.0f))), vec4(kFurnaceAlbedo, 1.0f), {.error = 0.003});
 }
 
 TEST(Furnace, AgreesWithNaive) {
-  expectUniform(renderImage(furnace(1.0f, vec3(0.0f)), with("naive")), vec4(kAlbedo, 1.0f), {.error = 0.003});
+  expectUniform(renderImage(furnace(1.0f, vec3(0.0f)), with("naive")), vec4(kFurnaceAlbedo, 1.0f), {.error = 0.003});
 }
 
 // A ray that hits the surface it starts from would give albedo² instead of albedo.
@@ -40,7 +40,7 @@ TEST(Furnace, HasNoAcneAtAnyScale) {
   options.batches = 8;
   for (const float size : {1e-3f, 1e-1f, 10.0f, 1e3f, 1e5f}) {
     SCOPED_TRACE(size);
-    expectUniform(renderImage(furnace(size, vec3(0.0f)), options), vec4(kAlbedo, 1.0f), {.error = 0.005});
+    expectUniform(renderImage(furnace(size, vec3(0.0f)), options), vec4(kFurnaceAlbedo, 1.0f), {.error = 0.005});
   }
 }
 
@@ -50,9 +50,9 @@ TEST(Furnace, HasNoAcneFarFromTheOrigin) {
   for (const float size : {1e-3f, 1.0f, 1e3f}) {
     SCOPED_TRACE(size);
     const vec3 far = vec3(700.0f, -500.0f, 510.0f) * size;  // 1000 times the size of the sphere
-    expectUniform(renderImage(furnace(size, far), options), vec4(kAlbedo, 1.0f), {.error = 0.005});
+    expectUniform(renderImage(furnace(size, far), options), vec4(kFurnaceAlbedo, 1.0f), {.error = 0.005});
     const mat4 moved = glm::translate(mat4(1.0f), far);
-    expectUniform(renderImage(furnace(size, vec3(0.0f), moved), options), vec4(kAlbedo, 1.0f), {.error = 0.005});
+    expectUniform(renderImage(furnace(size, vec3(0.0f), moved), options), vec4(kFurnaceAlbedo, 1.0f), {.error = 0.005});
   }
 }
 
@@ -61,20 +61,20 @@ TEST(Furnace, HasNoAcneUnderNonuniformAndMirroredScale) {
   for (const vec3 scale : {vec3(1.0f, 0.02f, 1.0f), vec3(-1.0f, 1.0f, 1.0f)}) {
     SceneBuilder scene;
     scene
-        .add(sphere(vec3(0.0f), 1.0f, 3), lambert(kAlbedo),
+        .add(sphere(vec3(0.0f), 1.0f, 3), lambert(kFurnaceAlbedo),
              turned * glm::scale(mat4(1.0f), scale) * glm::inverse(turned))
         .sky(vec3(1.0f));
     const vec3 side = turned * vec4(0, 1, 0, 0);  // from here the flat ellipsoid fills the image, too
     scene.camera(orthographic(4.0f * side, vec3(0.0f), 0.4f));
     ImageOptions options;
     options.batches = 8;
-    expectUniform(renderImage(scene, options), vec4(kAlbedo, 1.0f), {.error = 0.005});
+    expectUniform(renderImage(scene, options), vec4(kFurnaceAlbedo, 1.0f), {.error = 0.005});
   }
 }
 
 // The radiance inside a closed surface that emits L everywhere is L · (1 + a + a² + … + a^bounces).
 SceneBuilder inside(const scene::Geometry& geometry, float size) {
-  scene::Material m = lambert(kAlbedo);
+  scene::Material m = lambert(kFurnaceAlbedo);
   m.emissive = {0.5f, 1.0f, 2.0f};
   SceneBuilder scene;
   scene.add(geometry, m);
@@ -84,7 +84,7 @@ SceneBuilder inside(const scene::Geometry& geometry, float size) {
 
 vec4 series(int bounces) {
   vec3 sum(0.0f), power(0.5f, 1.0f, 2.0f);
-  for (int i = 0; i <= bounces; ++i) sum += power, power *= kAlbedo;
+  for (int i = 0; i <= bounces; ++i) sum += power, power *= kFurnaceAlbedo;
   return vec4(sum, 1.0f);
 }
 
@@ -135,11 +135,12 @@ TEST(AlbedoSeries, KeepsItsMeanWithRoulette) {
 
 // Light sampling chooses between 1280 triangles and the environment.
 TEST(AlbedoSeries, AddsEmissionAndSky) {
-  scene::Material m = lambert(kAlbedo);
+  scene::Material m = lambert(kFurnaceAlbedo);
   m.emissive = vec3(0.25f);
   SceneBuilder scene;
   scene.add(sphere(vec3(0.0f), 1.0f, 3), m).sky({2.0f, 1.0f, 0.5f}).camera(perspective({0, 0, 6}, vec3(0.0f), 12.0f));
-  expectUniform(renderImage(scene), vec4(vec3(0.25f) + kAlbedo * vec3(2.0f, 1.0f, 0.5f), 1.0f), {.error = 0.005});
+  expectUniform(renderImage(scene), vec4(vec3(0.25f) + kFurnaceAlbedo * vec3(2.0f, 1.0f, 0.5f), 1.0f),
+                {.error = 0.005});
 }
 
 // Kirchhoff's law: a coated black body at the temperature of its surroundings is invisible. The coat removes as much of

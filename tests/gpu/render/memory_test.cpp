@@ -9,8 +9,6 @@
 namespace quintet::test {
 namespace {
 
-constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
-
 TEST(DeviceSceneMemory, FreesTemporaryMemory) {
   gpu::Context context({.device = testContext().info().name});
   SceneBuilder builder;

@@ -10,8 +10,8 @@
 namespace quintet::test {
 namespace {
 
-const vec3 kAlbedo(0.6f, 0.5f, 0.3f);
-constexpr float kHalf = 0.5f;  // half the width of the image on the plane y = 0, in meters
+const vec3 kPaneAlbedo(0.6f, 0.5f, 0.3f);
+constexpr float kPaneHalf = 0.5f;  // half the width of the image on the plane y = 0, in meters
 
 // Returns the transmittance of a pane at this cosine to the shading normal, by KHR_materials_transmission, _specular,
 // _ior and _clearcoat with Schlick's reflectance.
@@ -62,20 +62,20 @@ TEST_P(LampBehindPanes, IsTintedByThem) {
   lamp.type = GetParam().lamp;
   lamp.direction = glm::normalize(vec3(-0.4f, -1.0f, 0.3f));
   SceneBuilder scene;
-  scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kAlbedo)).light(lamp);
+  scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kPaneAlbedo)).light(lamp);
   for (const Sheet& sheet : GetParam().sheets) scene.add(geometryOf(sheet), sheet.material);
   for (const LampCase& c : lampCases())  // the same shaders for all cases
     for (const Sheet& sheet : c.sheets) scene.scene.materials.push_back(sheet.material);
-  scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kHalf));
+  scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kPaneHalf));
   ImageOptions options;
   options.set = {"bounces=1"};
   const auto exact = [&](vec2 pixel) {
-    const vec2 at = kHalf * (2.0f * pixel / static_cast<float>(options.width) - 1.0f);
+    const vec2 at = kPaneHalf * (2.0f * pixel / static_cast<float>(options.width) - 1.0f);
     const vec3 p(at.x, 0.0f, at.y);
     const bool near = lamp.type == scene::LightType::point;
     const vec3 d = near ? lamp.position - p : -lamp.direction;
     const vec3 wi = glm::normalize(d);
-    vec3 light = kAlbedo / kPi * lamp.intensity * wi.y / (near ? glm::dot(d, d) : 1.0f);
+    vec3 light = kPaneAlbedo / kPi * lamp.intensity * wi.y / (near ? glm::dot(d, d) : 1.0f);
     for (const Sheet& sheet : GetParam().sheets) {
       const vec3 n = sheet.shadingNormal == vec3(0.0f) ? sheet.normal : glm::normalize(sheet.shadingNormal);
       scene::Material m = sheet.material;
@@ -148,16 +148,17 @@ TEST(LampInABubble, ShinesThroughItsWall) {
   lamp.position = {0, 1, 0};
   for (const bool tree : {false, true}) {
     SceneBuilder scene;
-    scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kAlbedo)).light(lamp);
+    scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kPaneAlbedo)).light(lamp);
     addBubble(scene, green, lamp.position, 0.4f, tree);
-    scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kHalf));
+    scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kPaneHalf));
     ImageOptions options;
     options.set = {"bounces=1"};
     expectPixels(renderImage(scene, options),
                  [&](vec2 pixel) {
-                   const vec2 at = kHalf * (2.0f * pixel / 8.0f - 1.0f);
+                   const vec2 at = kPaneHalf * (2.0f * pixel / 8.0f - 1.0f);
                    const vec3 d = lamp.position - vec3(at.x, 0.0f, at.y);
-                   return kAlbedo / kPi * lamp.intensity * glm::normalize(d).y / glm::dot(d, d) * straight(green, 1.0f);
+                   return kPaneAlbedo / kPi * lamp.intensity * glm::normalize(d).y / glm::dot(d, d) *
+                          straight(green, 1.0f);
                  },
                  {.error = 0.01, .rounding = 1.5e-3});
   }
@@ -172,17 +173,17 @@ TEST(LampBehindABubble, ShinesThroughBothWalls) {
   const float radius = 3.0f;
   for (const bool tree : {false, true}) {
     SceneBuilder scene;
-    scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kAlbedo)).light(sun);
+    scene.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), lambert(kPaneAlbedo)).light(sun);
     addBubble(scene, green, {0, 4, 0}, radius, tree);
-    scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kHalf));
+    scene.camera(orthographic({0, 0.25f, 0}, vec3(0.0f), kPaneHalf));
     ImageOptions options;
     options.set = {"bounces=1"};
     expectPixels(renderImage(scene, options),
                  [&](vec2 pixel) {
-                   const vec2 at = kHalf * (2.0f * pixel / 8.0f - 1.0f);
+                   const vec2 at = kPaneHalf * (2.0f * pixel / 8.0f - 1.0f);
                    const float cosine = std::sqrt(1.0f - glm::dot(at, at) / (radius * radius));
                    const vec3 wall = straight(green, cosine);
-                   return kAlbedo / kPi * wall * wall;
+                   return kPaneAlbedo / kPi * wall * wall;
                  },
                  {.error = 0.01, .rounding = 3e-3});
   }

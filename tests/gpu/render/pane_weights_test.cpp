@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kSize = 8;
 
 // A glossy floor and a diffuse wall under a small panel and a dim sky.
-SceneBuilder room() {
+SceneBuilder paneRoom() {
   SceneBuilder scene;
   scene::Material floor = lambert({0.7f, 0.6f, 0.5f});
   floor.specular = 1.0f;
@@ -52,18 +52,18 @@ int addTexture(SceneBuilder& scene, std::uint32_t columns, const std::vector<std
 }
 
 SceneBuilder onePane() {
-  SceneBuilder scene = room();
+  SceneBuilder scene = paneRoom();
   return scene.add(sheet(0.9f, 8.0f), pane({0.35f, 0.9f, 0.5f}));
 }
 
 SceneBuilder twoPanes() {
-  SceneBuilder scene = room();
+  SceneBuilder scene = paneRoom();
   return scene.add(sheet(0.9f, 8.0f), pane({0.35f, 0.9f, 0.5f})).add(sheet(1.25f, -5.0f), pane({0.9f, 0.5f, 0.4f}));
 }
 
 // Stained glass with textures for color, normal, roughness and transmission.
 SceneBuilder texturedPane() {
-  SceneBuilder scene = room();
+  SceneBuilder scene = paneRoom();
   scene::Material glass = pane(vec3(1.0f));
   glass.baseColorTexture.texture =
       addTexture(scene, 2, {255, 60, 40, 255, 40, 255, 90, 255, 80, 90, 255, 255, 250, 250, 120, 255}, true);
@@ -78,7 +78,7 @@ SceneBuilder texturedPane() {
 
 // Partially transmissive glass with a rough coat: light samples at the pane and through it.
 SceneBuilder paintedPane() {
-  SceneBuilder scene = room();
+  SceneBuilder scene = paneRoom();
   scene::Material glass = pane({0.4f, 0.8f, 0.9f});
   glass.transmission = 0.6f;
   glass.clearcoat = 0.7f;
@@ -89,7 +89,7 @@ SceneBuilder paintedPane() {
 
 // A blended sheet, and a lattice with holes.
 SceneBuilder alpha() {
-  SceneBuilder scene = room();
+  SceneBuilder scene = paneRoom();
   scene::Material lattice = veil(lambert(vec3(0.4f)), 1.0f, scene::AlphaMode::mask);
   lattice.baseColorTexture.texture =
       addTexture(scene, 2, {255, 255, 255, 255, 255, 255, 255, 0, 255, 255, 255, 0, 255, 255, 255, 255}, true);
@@ -100,7 +100,7 @@ SceneBuilder alpha() {
 
 // The panel in a bubble, a second bubble on the floor, and a blended sheet of glass.
 SceneBuilder bubbles() {
-  SceneBuilder scene = room();
+  SceneBuilder scene = paneRoom();
   addBubble(scene, pane({0.9f, 0.7f, 0.4f}), {0, 2.4f, 0}, 1.0f, true);
   addBubble(scene, pane({0.4f, 0.9f, 0.5f}), {-0.5f, 0.5f, 0.3f}, 0.45f, false);
   return scene.add(sheet(0.7f, 8.0f), veil(pane({0.5f, 0.6f, 1.0f}), 0.5f, scene::AlphaMode::blend));
@@ -115,7 +115,7 @@ SceneBuilder forcedOpaque() {
 
 // A lamp in a block of rough absorbing glass: light samples at its surface go into the glass.
 SceneBuilder lampInRoughGlass() {
-  SceneBuilder scene = room();
+  SceneBuilder scene = paneRoom();
   scene::Material glass = clearGlass(1.3f, 1.0f);
   glass.roughness = 0.6f;
   glass.attenuationColor = {0.2f, 0.5f, 0.8f};
@@ -124,16 +124,16 @@ SceneBuilder lampInRoughGlass() {
   return scene.add(quad({-0.4f, 0.5f, 0.0f}, {0.8f, 0, 0}, {0, 0.5f, 0.1f}), emitter({9.0f, 7.0f, 5.0f}));
 }
 
-struct Case {
+struct PaneCase {
   const char* name;
   SceneBuilder (*make)();
   int bounces;
   std::uint32_t batches, naiveBatches;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const PaneCase& c, std::ostream* out) { *out << c.name; }
 
-RenderedImage render(const Case& c, program::Program program, std::uint32_t batches) {
+RenderedImage renderPanes(const PaneCase& c, program::Program program, std::uint32_t batches) {
   ImageOptions options;
   options.program = std::move(program);
   options.set = {"bounces=" + std::to_string(c.bounces)};
@@ -143,12 +143,12 @@ RenderedImage render(const Case& c, program::Program program, std::uint32_t batc
 }
 
 // Returns the reference image, which is rendered once for all tests.
-const RenderedImage& naiveOf(const Case& c) {
+const RenderedImage& naiveOf(const PaneCase& c) {
   static std::map<std::string, RenderedImage> images;
   const auto known = images.find(c.name);
   return known != images.end()
              ? known->second
-             : images.emplace(c.name, render(c, program::loadProgram("naive"), c.naiveBatches)).first->second;
+             : images.emplace(c.name, renderPanes(c, program::loadProgram("naive"), c.naiveBatches)).first->second;
 }
 
 struct Verdict {
@@ -157,7 +157,7 @@ struct Verdict {
 };
 
 // Half of the level is for the pixels, and half for their sum.
-Verdict compare(const RenderedImage& a, const RenderedImage& b) {
+Verdict compareImages(const RenderedImage& a, const RenderedImage& b) {
   std::ostringstream where;
   double smallest = 1.0, whole = 1.0, noise = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -186,25 +186,25 @@ Verdict compare(const RenderedImage& a, const RenderedImage& b) {
   return {smallest >= sidak(0.005, 3 * kSize * kSize) && whole >= sidak(0.005, 3) && noise < 0.01, text.str()};
 }
 
-class PaneWeights : public testing::TestWithParam<Case> {};
+class PaneWeights : public testing::TestWithParam<PaneCase> {};
 
 TEST_P(PaneWeights, AgreeWithBruteForce) {
-  const Case& c = GetParam();
-  const Verdict v = compare(render(c, program::loadProgram("pathtracer"), c.batches), naiveOf(c));
+  const PaneCase& c = GetParam();
+  const Verdict v = compareImages(renderPanes(c, program::loadProgram("pathtracer"), c.batches), naiveOf(c));
   std::printf("%s: %s\n", c.name, v.text.c_str());
   EXPECT_TRUE(v.same) << v.text;
 }
 
-constexpr Case kOnePane{"OnePane", onePane, 3, 96, 896}, kOneBounce{"TwoPanesOneBounce", twoPanes, 1, 96, 896};
+constexpr PaneCase kOnePane{"OnePane", onePane, 3, 96, 896}, kOneBounce{"TwoPanesOneBounce", twoPanes, 1, 96, 896};
 
 INSTANTIATE_TEST_SUITE_P(Scenes, PaneWeights,
-                         testing::Values(kOnePane, Case{"OnePaneOneBounce", onePane, 1, 96, 896},
-                                         Case{"TwoPanes", twoPanes, 3, 96, 896}, kOneBounce,
-                                         Case{"TexturedPane", texturedPane, 3, 96, 896},
-                                         Case{"PaintedPane", paintedPane, 3, 96, 896}, Case{"Alpha", alpha, 3, 96, 896},
-                                         Case{"Bubbles", bubbles, 3, 96, 896},
-                                         Case{"ForcedOpaque", forcedOpaque, 2, 96, 896},
-                                         Case{"LampInRoughGlass", lampInRoughGlass, 3, 96, 896}),
+                         testing::Values(kOnePane, PaneCase{"OnePaneOneBounce", onePane, 1, 96, 896},
+                                         PaneCase{"TwoPanes", twoPanes, 3, 96, 896}, kOneBounce,
+                                         PaneCase{"TexturedPane", texturedPane, 3, 96, 896},
+                                         PaneCase{"PaintedPane", paintedPane, 3, 96, 896},
+                                         PaneCase{"Alpha", alpha, 3, 96, 896}, PaneCase{"Bubbles", bubbles, 3, 96, 896},
+                                         PaneCase{"ForcedOpaque", forcedOpaque, 2, 96, 896},
+                                         PaneCase{"LampInRoughGlass", lampInRoughGlass, 3, 96, 896}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 // Returns pathtracer with `from` replaced by `to` in its ray generation shader.
@@ -246,12 +246,12 @@ TEST(PaneWeights, RejectsWrongWeights) {
   };
   const RenderedImage& naive = naiveOf(kOnePane);
   for (const auto& [name, program] : wrong) {
-    const Verdict v = compare(render(kOnePane, program, kOnePane.batches), naive);
+    const Verdict v = compareImages(renderPanes(kOnePane, program, kOnePane.batches), naive);
     std::printf("%s: %s\n", name, v.text.c_str());
     EXPECT_FALSE(v.same) << name << ": " << v.text;
   }
   const Verdict v =
-      compare(render(kOneBounce, changed(keep, "path.depth++;"), kOneBounce.batches), naiveOf(kOneBounce));
+      compareImages(renderPanes(kOneBounce, changed(keep, "path.depth++;"), kOneBounce.batches), naiveOf(kOneBounce));
   EXPECT_FALSE(v.same) << "panes are bounces: " << v.text;
 }
 

@@ -121,6 +121,10 @@ SceneBuilder& SceneBuilder::camera(const scene::Camera& camera) {
   return *this;
 }
 
+mat4 moved(float x, float y, float z) { return glm::translate(mat4(1.0f), vec3(x, y, z)); }
+
+mat4 scaled(float x, float y, float z) { return glm::scale(mat4(1.0f), vec3(x, y, z)); }
+
 mat4 lookAt(const vec3& eye, const vec3& target) {
   const vec3 view = glm::normalize(target - eye);
   const vec3 up = std::abs(view.y) > 0.999f ? vec3(0, 0, -1) : vec3(0, 1, 0);

@@ -39,6 +39,8 @@ class SceneBuilder {
   scene::Environment environment;  // black unless sky() was called
 };
 
+mat4 moved(float x, float y, float z);
+mat4 scaled(float x, float y, float z);
 // Returns the transform of a camera that looks from `eye` to `target`. Up is y, or -z if the view is along y.
 mat4 lookAt(const vec3& eye, const vec3& target);
 scene::Camera perspective(const vec3& eye, const vec3& target, float verticalFovDegrees);

@@ -10,7 +10,7 @@ namespace quintet::test {
 namespace {
 
 // Estevez and Kulla 2017, table 1, for alpha 0.25: a quarter of the way is (1 - 0.25)² = 0.5625.
-double lambda(double cosine) {
+double sheenLambda(double cosine) {
   const auto fit = [](double x) {
     const auto mixed = [](double rough, double smooth) { return rough + 0.5625 * (smooth - rough); };
     return mixed(21.5473, 25.3245) / (1.0 + mixed(3.82987, 3.32435) * std::pow(x, mixed(0.19823, 0.16801))) +
@@ -20,7 +20,7 @@ double lambda(double cosine) {
 }
 
 // A horizontal square under a camera that looks down at 60 degrees to the normal.
-SceneBuilder square(const scene::Material& material) {
+SceneBuilder clothSquare(const scene::Material& material) {
   scene::Geometry floor = quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2});
   floor.uvs[0] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
   SceneBuilder scene;
@@ -35,7 +35,7 @@ TEST(SheenRender, BlackClothReflectsTheSun) {
   scene::Material cloth = lambert(vec3(0.0f));
   cloth.sheenColor = {1.0f, 0.5f, 0.2f};
   cloth.sheenRoughness = 255.0f / 256.0f;
-  SceneBuilder scene = square(cloth);
+  SceneBuilder scene = clothSquare(cloth);
   scene::Material& material = scene.scene.materials.back();
   material.sheenColorTexture.texture = addTexel(scene.scene, {255, 206, 255, 0}, io::ColorEncoding::sRgb);
   material.sheenRoughnessTexture.texture = addTexel(scene.scene, {0, 0, 0, 128}, io::ColorEncoding::linear);
@@ -47,7 +47,7 @@ TEST(SheenRender, BlackClothReflectsTheSun) {
 
   const glm::dvec3 wo(0.0, 0.5, std::sqrt(0.75)), wi(0.8, 0.6, 0.0), h = glm::normalize(wo + wi);
   const double distribution = 6.0 * std::pow(1.0 - h.y * h.y, 2.0) / (2.0 * kPi);
-  const double visible = distribution / (4.0 * wo.y * (1.0 + lambda(wo.y) + lambda(wi.y)));
+  const double visible = distribution / (4.0 * wo.y * (1.0 + sheenLambda(wo.y) + sheenLambda(wi.y)));
   const glm::dvec3 color(1.0, 0.5 * 0.617207, 0.2);
   expectUniform(renderImage(scene), vec4(vec3(2.0 * visible * color), 1.0f), {.error = 0.001, .rounding = 2e-3});
 }
@@ -59,7 +59,7 @@ TEST(SheenRender, WhiteClothIsInvisibleInAFurnace) {
     scene::Material cloth = lambert(vec3(1.0f));
     cloth.sheenColor = vec3(1.0f);
     cloth.sheenRoughness = roughness;
-    SceneBuilder scene = square(cloth);
+    SceneBuilder scene = clothSquare(cloth);
     scene.sky(vec3(1.0f));
     expectUniform(renderImage(scene), vec4(1.0f), {.error = 0.01, .rounding = 0.01});
   }

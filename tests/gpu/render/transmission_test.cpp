@@ -20,7 +20,7 @@ ImageOptions batches(std::uint32_t count, std::uint32_t size = 8) {
 
 // Returns the reflectance of a smooth interface for unpolarized light (Fresnel 1823). `eta` is the index behind the
 // interface over the index in front of it.
-double fresnel(double cosine, double eta) {
+double unpolarizedFresnel(double cosine, double eta) {
   const double inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (eta * eta));
   const double s = (cosine - eta * inside) / (cosine + eta * inside);
   const double p = (eta * cosine - inside) / (eta * cosine + inside);
@@ -62,7 +62,7 @@ TEST_P(GlassSlab, TransmitsByFresnelAndBeer) {
       renderImage(lookingThrough(box({-3, -3, -half}, {3, 3, half}), glass, c.degrees), batches(64));
 
   const double cosine = std::cos(glm::radians(static_cast<double>(c.degrees)));
-  const double r = fresnel(cosine, c.ior);
+  const double r = unpolarizedFresnel(cosine, c.ior);
   const double length = kThickness / std::sqrt(1.0 - (1.0 - cosine * cosine) / (c.ior * c.ior));
   vec4 expected(0, 0, 0, 1);
   for (glm::length_t i = 0; i < 3; ++i) {

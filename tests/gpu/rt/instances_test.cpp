@@ -6,19 +6,17 @@
 namespace quintet::rt::test {
 namespace {
 
-gpu::Context& context() { return quintet::test::testContext(); }
-
 Blas buildQuad() {
   const Mesh mesh = quad(0);
   const BlasInput input{.geometries = {mesh.geometry()}, .options = {.name = "quad"}};
-  return std::move(BlasBuilder(context()).build({&input, 1})[0]);
+  return std::move(BlasBuilder(quintet::test::testContext()).build({&input, 1})[0]);
 }
 
 mat4 translation(float x, float z) { return glm::translate(mat4(1.0f), vec3(x, 0, z)); }
 
 TEST(RtInstances, MissesAnEmptyTlas) {
   for (const std::uint32_t capacity : {0u, 4u}) {
-    Tlas tlas(context(), capacity);
+    Tlas tlas(quintet::test::testContext(), capacity);
     tlas.buildAndWait({});
     const auto hits = traceRays(tlas, contentsOf({}, {5}), {Ray{}});
     EXPECT_EQ(hits[0].t, -1.0f);
@@ -40,7 +38,7 @@ TEST(RtInstances, AppliesTransformsIndicesMasksAndRecords) {
     records.push_back(hitRecord(kTriangleHit, {.map = blas.primitiveMap(0), .tag = k}));
     rays.push_back({.origin = {x + 1, 1.5f, -4.5f}, .direction = {-1, 0, 0}, .tMax = 5});
   }
-  Tlas tlas(context(), kCount);
+  Tlas tlas(quintet::test::testContext(), kCount);
   tlas.buildAndWait(instances);
   const SbtContents contents = contentsOf(records);
   for (const std::uint32_t mask : {1u, 2u, 3u, 0u}) {
@@ -58,7 +56,7 @@ TEST(RtInstances, AppliesTransformsIndicesMasksAndRecords) {
 TEST(RtInstances, SkipsInactiveInstances) {
   const Blas blas = buildQuad();
   const BlasInput nothing;
-  const Blas empty = std::move(BlasBuilder(context()).build({&nothing, 1})[0]);
+  const Blas empty = std::move(BlasBuilder(quintet::test::testContext()).build({&nothing, 1})[0]);
   mat4 nan = translation(0, -1);
   nan[3][0] = std::numeric_limits<float>::quiet_NaN();
   const std::vector<InstanceInput> instances{{.worldFromObject = nan, .blas = &blas},
@@ -66,7 +64,7 @@ TEST(RtInstances, SkipsInactiveInstances) {
                                              {.worldFromObject = glm::scale(mat4(1.0f), vec3(1, 0, 1)), .blas = &blas},
                                              {.worldFromObject = translation(0, -1), .blas = &empty},
                                              {.worldFromObject = translation(0, -7), .blas = &blas, .customIndex = 9}};
-  Tlas tlas(context(), 5);
+  Tlas tlas(quintet::test::testContext(), 5);
   const SbtContents contents = contentsOf({hitRecord(kTriangleHit, {.map = blas.primitiveMap(0)})});
   for (const bool keepOrder : {false, true}) {
     tlas.keepInputOrder(keepOrder);
@@ -83,20 +81,20 @@ TEST(RtInstances, SkipsInactiveInstances) {
 TEST(RtInstances, RebuildsWhileFramesAreInFlight) {
   const Blas blas = buildQuad();
   constexpr std::uint32_t kInstances = 200, kFrames = 10;
-  Tlas tlas(context(), kInstances);
+  Tlas tlas(quintet::test::testContext(), kInstances);
   testSet().setAccelerationStructure(tlas.handle());
   const Pipeline& pipeline = testPipeline();
-  const ShaderBindingTable table(context(), pipeline,
+  const ShaderBindingTable table(quintet::test::testContext(), pipeline,
                                  contentsOf({hitRecord(kTriangleHit, {.map = blas.primitiveMap(0)})}), "table");
   std::vector<Ray> rays;
   for (std::uint32_t k = 0; k < kInstances; ++k) rays.push_back({.origin = {3.0f * static_cast<float>(k), -0.5f, 0}});
-  const gpu::Buffer rayBuffer = gpu::makeBufferOf(context(), rays, 0, "rays");
+  const gpu::Buffer rayBuffer = gpu::makeBufferOf(quintet::test::testContext(), rays, 0, "rays");
   std::vector<gpu::Buffer> hits;
   const auto depthOf = [](std::uint32_t frame, std::uint32_t k) {
     return 1.0f + static_cast<float>((frame * 7 + k) % 50);
   };
   for (std::uint32_t frame = 0; frame < kFrames; ++frame)
-    hits.push_back(gpu::Buffer(context(), {.size = kInstances * sizeof(Hit), .name = "hits"}));
+    hits.push_back(gpu::Buffer(quintet::test::testContext(), {.size = kInstances * sizeof(Hit), .name = "hits"}));
 
   for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
     std::vector<InstanceInput> instances;
@@ -108,12 +106,12 @@ TEST(RtInstances, RebuildsWhileFramesAreInFlight) {
       VkDeviceAddress rays, hits;
       std::uint32_t count, flags, mask, recordOffset, recordStride, missIndex;
     } const launch{rayBuffer.address(), hits[frame].address(), kInstances, 0, 0xFF, 0, 1, 0};
-    context().submit([&](gpu::Commands& commands) {
+    quintet::test::testContext().submit([&](gpu::Commands& commands) {
       tlas.build(commands, instances);
       trace(commands, pipeline, table, std::as_bytes(std::span(&launch, 1)), kInstances, 1);
     });
   }
-  context().wait(context().submitted());
+  quintet::test::testContext().wait(quintet::test::testContext().submitted());
   for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
     const auto result = hits[frame].downloadAs<Hit>(kInstances);
     for (std::uint32_t k = 0; k < kInstances; ++k) {
@@ -125,14 +123,14 @@ TEST(RtInstances, RebuildsWhileFramesAreInFlight) {
 
 TEST(RtInstances, RejectsTooManyInstancesAndTooLargeFields) {
   const Blas blas = buildQuad();
-  Tlas tlas(context(), 1);
+  Tlas tlas(quintet::test::testContext(), 1);
   const std::vector<InstanceInput> two(2, InstanceInput{.blas = &blas});
   EXPECT_THROW(tlas.buildAndWait(two), UsageError);
   for (const InstanceInput& instance :
        {InstanceInput{.blas = &blas, .customIndex = 1u << 24}, InstanceInput{.blas = &blas, .mask = 256},
         InstanceInput{.blas = &blas, .recordOffset = 1u << 24}})
     EXPECT_THROW(tlas.buildAndWait({&instance, 1}), UsageError);
-  EXPECT_THROW(Tlas(context(), ~0u), UsageError);
+  EXPECT_THROW(Tlas(quintet::test::testContext(), ~0u), UsageError);
 }
 
 }  // namespace

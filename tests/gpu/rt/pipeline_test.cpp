@@ -9,8 +9,6 @@
 namespace quintet::rt::test {
 namespace {
 
-gpu::Context& context() { return quintet::test::testContext(); }
-
 struct OneShader {
   explicit OneShader(shader::Stage stage, const std::string& text) : spirv(compileStage(stage, text)) {
     options.stages = {{program::vulkanStage(stage), spirv, "only"}};
@@ -23,22 +21,22 @@ struct OneShader {
 
 TEST(RtPipeline, RejectsDeepRecursionAndMissingRayGeneration) {
   OneShader rayGeneration(shader::Stage::rayGeneration, "void main() {}");
-  rayGeneration.options.maxRecursionDepth = context().info().limits.maxRecursionDepth + 1;
-  EXPECT_THROW(Pipeline(context(), testSet(), rayGeneration.options, nullptr), UsageError);
+  rayGeneration.options.maxRecursionDepth = quintet::test::testContext().info().limits.maxRecursionDepth + 1;
+  EXPECT_THROW(Pipeline(quintet::test::testContext(), testSet(), rayGeneration.options, nullptr), UsageError);
   OneShader miss(shader::Stage::miss, "void main() {}");
-  EXPECT_THROW(Pipeline(context(), testSet(), miss.options, nullptr), UsageError);
+  EXPECT_THROW(Pipeline(quintet::test::testContext(), testSet(), miss.options, nullptr), UsageError);
 }
 
 TEST(RtPipeline, SupportsEmptyTablesAndLaunches) {
   const OneShader shader(shader::Stage::rayGeneration,
                          "void main() { launch.hits.at[gl_LaunchIDEXT.x].primitive = 7; }");
-  const gpu::PipelineCache cache(context(), {});
-  const Pipeline pipeline(context(), testSet(), shader.options, &cache);
-  const ShaderBindingTable table(context(), pipeline, {}, "only ray generation");
-  const gpu::Buffer hits = gpu::makeBufferOf(context(), std::vector<Hit>(3), 0, "hits");
+  const gpu::PipelineCache cache(quintet::test::testContext(), {});
+  const Pipeline pipeline(quintet::test::testContext(), testSet(), shader.options, &cache);
+  const ShaderBindingTable table(quintet::test::testContext(), pipeline, {}, "only ray generation");
+  const gpu::Buffer hits = gpu::makeBufferOf(quintet::test::testContext(), std::vector<Hit>(3), 0, "hits");
   const std::uint64_t constants[] = {0, hits.address()};
   const auto bytes = std::as_bytes(std::span(constants));
-  context().submitAndWait([&](gpu::Commands& commands) {
+  quintet::test::testContext().submitAndWait([&](gpu::Commands& commands) {
     trace(commands, pipeline, table, bytes, 0, 5);
     trace(commands, pipeline, table, bytes, 2, 1);
     EXPECT_THROW(trace(commands, pipeline, table, bytes, 1u << 31, 1u << 31, 4), UsageError);
@@ -65,7 +63,7 @@ TEST(RtPipeline, ReadsRecordsInCallables) {
   options.stages = {{VK_SHADER_STAGE_RAYGEN_BIT_KHR, rayGeneration, "rgen"},
                     {VK_SHADER_STAGE_CALLABLE_BIT_KHR, callable, "rcall"}};
   options.groups = {{.general = 0}, {.general = 1}};
-  const Pipeline pipeline(context(), testSet(), options, nullptr);
+  const Pipeline pipeline(quintet::test::testContext(), testSet(), options, nullptr);
   SbtContents contents;
   for (std::uint32_t k = 0; k < 9; ++k) {
     SbtRecord record{1, std::vector<std::byte>(4 + 4 * (k % 3))};  // records of several sizes
@@ -73,10 +71,10 @@ TEST(RtPipeline, ReadsRecordsInCallables) {
     std::memcpy(record.data.data(), &tag, sizeof tag);
     contents.callable.push_back(std::move(record));
   }
-  const ShaderBindingTable table(context(), pipeline, contents, "callables");
-  const gpu::Buffer hits = gpu::makeBufferOf(context(), std::vector<Hit>(9), 0, "hits");
+  const ShaderBindingTable table(quintet::test::testContext(), pipeline, contents, "callables");
+  const gpu::Buffer hits = gpu::makeBufferOf(quintet::test::testContext(), std::vector<Hit>(9), 0, "hits");
   const std::uint64_t constants[] = {0, hits.address()};
-  context().submitAndWait(
+  quintet::test::testContext().submitAndWait(
       [&](gpu::Commands& commands) { trace(commands, pipeline, table, std::as_bytes(std::span(constants)), 9, 1); });
   const auto result = hits.downloadAs<Hit>(9);
   for (std::uint32_t k = 0; k < 9; ++k) EXPECT_EQ(result[k].tag, 100 + k);
@@ -84,8 +82,8 @@ TEST(RtPipeline, ReadsRecordsInCallables) {
 
 TEST(RtPipeline, RejectsTooLargeRecords) {
   SbtContents contents = contentsOf({});
-  contents.miss[0].data.resize(context().info().limits.maxRecordStride);
-  EXPECT_THROW(ShaderBindingTable(context(), testPipeline(), contents, "fat"), UsageError);
+  contents.miss[0].data.resize(quintet::test::testContext().info().limits.maxRecordStride);
+  EXPECT_THROW(ShaderBindingTable(quintet::test::testContext(), testPipeline(), contents, "fat"), UsageError);
 }
 
 // All of these are part of the key for the reuse of pipelines (gpu::PipelineStore).
@@ -93,10 +91,10 @@ TEST(RtPipeline, ReusesPipelinesWithEqualOptions) {
   OneShader shader(shader::Stage::rayGeneration, "void main() { launch.hits.at[0].tag = 1; }");
   const auto other = compileStage(shader::Stage::rayGeneration, "void main() { launch.hits.at[0].tag = 2; }");
   shader.options.stages.push_back({VK_SHADER_STAGE_RAYGEN_BIT_KHR, other, "other"});
-  const Pipeline first(context(), testSet(), shader.options, nullptr);
+  const Pipeline first(quintet::test::testContext(), testSet(), shader.options, nullptr);
   PipelineOptions same = shader.options;
   same.name = "same", same.stages[0].name = "same";
-  const Pipeline second(context(), testSet(), same, nullptr);
+  const Pipeline second(quintet::test::testContext(), testSet(), same, nullptr);
   EXPECT_EQ(second.handle(), first.handle());
   EXPECT_TRUE(std::ranges::equal(second.groupHandles(), first.groupHandles()));
   std::vector<PipelineOptions> different(4, shader.options);
@@ -107,16 +105,16 @@ TEST(RtPipeline, ReusesPipelinesWithEqualOptions) {
   std::vector<VkPipeline> handles = {first.handle()};
   std::vector<std::unique_ptr<Pipeline>> pipelines;
   for (const PipelineOptions& options : different) {
-    pipelines.push_back(std::make_unique<Pipeline>(context(), testSet(), options, nullptr));
+    pipelines.push_back(std::make_unique<Pipeline>(quintet::test::testContext(), testSet(), options, nullptr));
     EXPECT_EQ(std::ranges::count(handles, pipelines.back()->handle()), 0) << handles.size();
     handles.push_back(pipelines.back()->handle());
   }
   // lavapipe gives the same shaders new handles in each pipeline, so its disk cache never finds a pipeline again.
-  if (context().info().software) {
+  if (quintet::test::testContext().info().software) {
     EXPECT_FALSE(std::ranges::equal(pipelines[0]->groupHandles(), first.groupHandles())) << "the driver is fixed";
   }
-  const gpu::BindlessSet smaller(context(), 0, testSet().pushConstantBytes() / 2);
-  EXPECT_NE(Pipeline(context(), smaller, shader.options, nullptr).handle(), first.handle());
+  const gpu::BindlessSet smaller(quintet::test::testContext(), 0, testSet().pushConstantBytes() / 2);
+  EXPECT_NE(Pipeline(quintet::test::testContext(), smaller, shader.options, nullptr).handle(), first.handle());
 }
 
 }  // namespace

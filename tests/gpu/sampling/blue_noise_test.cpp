@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t kIndependent = shared::kIndependentPixels;
 
-struct Draw {
+struct PixelDraw {
   uvec2 pixel;
   std::uint32_t index;      // of the sample
   std::uint32_t dimension;  // number of earlier draws
@@ -26,7 +26,7 @@ struct Draw {
   std::uint32_t planned;
 };
 
-std::vector<vec2> evaluate(const std::vector<Draw>& draws) {
+std::vector<vec2> evaluatePixels(const std::vector<PixelDraw>& draws) {
   return runCompute<vec2>(R"(
     #include <quintet/frame.glsl>
     #include <quintet/sampling/sobol.glsl>
@@ -42,9 +42,9 @@ std::vector<vec2> evaluate(const std::vector<Draw>& draws) {
 }
 
 // Samples [first, first + count) of the pixels of a square.
-std::vector<Draw> square(uvec2 corner, std::uint32_t side, std::uint32_t first, std::uint32_t count,
-                         std::uint32_t planned, std::uint32_t dimension = 0, std::uint32_t seed = 1) {
-  std::vector<Draw> result;
+std::vector<PixelDraw> squareOfDraws(uvec2 corner, std::uint32_t side, std::uint32_t first, std::uint32_t count,
+                                     std::uint32_t planned, std::uint32_t dimension = 0, std::uint32_t seed = 1) {
+  std::vector<PixelDraw> result;
   for (std::uint32_t y = 0; y < side; ++y)
     for (std::uint32_t x = 0; x < side; ++x)
       for (std::uint32_t i = 0; i < count; ++i)
@@ -52,7 +52,7 @@ std::vector<Draw> square(uvec2 corner, std::uint32_t side, std::uint32_t first, 
   return result;
 }
 
-double uniformity(const std::vector<vec2>& points) {
+double planeUniformity(const std::vector<vec2>& points) {
   constexpr int kCells = 24;
   std::vector<double> observed(kCells * kCells, 0.0);
   const std::vector<double> expected(kCells * kCells, static_cast<double>(points.size()) / (kCells * kCells));
@@ -73,17 +73,18 @@ constexpr Range kRanges[] = {{0, 1, 1},   {0, 1, 0},   {0, 2, 0}, {0, 4, 4}, {0,
 TEST(BlueNoise, BlocksOfPixelsAreNets) {
   for (const Range& r : kRanges)
     for (const std::uint32_t dimension : {0u, 7u}) {
-      EXPECT_TRUE(isNet(evaluate(square({66, 130}, 1, r.first, r.count, r.planned, dimension))));
-      EXPECT_TRUE(isNet(evaluate(square({66, 130}, 2, r.first, r.count, r.planned, dimension))))
+      EXPECT_TRUE(isNet(evaluatePixels(squareOfDraws({66, 130}, 1, r.first, r.count, r.planned, dimension))));
+      EXPECT_TRUE(isNet(evaluatePixels(squareOfDraws({66, 130}, 2, r.first, r.count, r.planned, dimension))))
           << r.first << " " << r.count;
-      EXPECT_TRUE(isNet(evaluate(square({64, 136}, 8, r.first, r.count, r.planned, dimension))))
+      EXPECT_TRUE(isNet(evaluatePixels(squareOfDraws({64, 136}, 8, r.first, r.count, r.planned, dimension))))
           << r.first << " " << r.count;
     }
-  EXPECT_TRUE(isNet(evaluate(square({64, 128}, 64, 0, 4, 4))));
+  EXPECT_TRUE(isNet(evaluatePixels(squareOfDraws({64, 128}, 64, 0, 4, 4))));
   // Cases that are not nets, which the test must detect.
-  EXPECT_FALSE(isNet(evaluate(square({64, 136}, 8, 0, 4, kIndependent))));
-  EXPECT_FALSE(isNet(evaluate(square({65, 136}, 8, 0, 4, 4))));    // not aligned
-  EXPECT_FALSE(isNet(evaluate(square({64, 136}, 8, 16, 8, 64))));  // not a range of the plan, so shuffled per pixel
+  EXPECT_FALSE(isNet(evaluatePixels(squareOfDraws({64, 136}, 8, 0, 4, kIndependent))));
+  EXPECT_FALSE(isNet(evaluatePixels(squareOfDraws({65, 136}, 8, 0, 4, 4))));  // not aligned
+  EXPECT_FALSE(
+      isNet(evaluatePixels(squareOfDraws({64, 136}, 8, 16, 8, 64))));  // not a range of the plan, so shuffled per pixel
 }
 
 // For any plan, each prefix of 2^k samples of a pixel is a (0,k,2)-net.
@@ -91,7 +92,7 @@ TEST(BlueNoise, EachPixelHasNets) {
   for (const std::uint32_t planned : {0u, 1u, 24u, 100u, 1024u, kIndependent})
     for (const uvec2 pixel : {uvec2(0, 0), uvec2(63, 64), uvec2(1919, 1079)})
       for (const std::uint32_t dimension : {0u, 1u, 40u}) {
-        const std::vector<vec2> points = evaluate(square(pixel, 1, 0, 1024, planned, dimension));
+        const std::vector<vec2> points = evaluatePixels(squareOfDraws(pixel, 1, 0, 1024, planned, dimension));
         for (std::ptrdiff_t count = 1; count <= 1024; count *= 2)
           EXPECT_TRUE(isNet({points.begin(), points.begin() + count})) << planned << " " << count;
       }
@@ -101,7 +102,7 @@ TEST(BlueNoise, EachPixelHasNets) {
 // samples, and the same draw of two pixels in different tiles.
 TEST(BlueNoise, NumbersOfAPixelAreUniformAndIndependentOverSeeds) {
   struct Pair {
-    Draw a, b;
+    PixelDraw a, b;
   };
   std::vector<Pair> pairs;
   for (const std::uint32_t planned : {0u, 16u, 24u}) {
@@ -113,25 +114,25 @@ TEST(BlueNoise, NumbersOfAPixelAreUniformAndIndependentOverSeeds) {
   }
   constexpr std::uint32_t kSeeds = 1u << 16;
   const double least = sidak(0.01, pairs.size() * 5);
-  const auto overSeeds = [](Draw draw) {
-    std::vector<Draw> draws(kSeeds, draw);
+  const auto overSeeds = [](PixelDraw draw) {
+    std::vector<PixelDraw> draws(kSeeds, draw);
     for (std::uint32_t i = 0; i < kSeeds; ++i) draws[i].seed = i;
-    return evaluate(draws);
+    return evaluatePixels(draws);
   };
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const std::vector<vec2> a = overSeeds(pairs[k].a), b = overSeeds(pairs[k].b);
-    EXPECT_GT(uniformity(a), least) << "pair " << k;
+    EXPECT_GT(planeUniformity(a), least) << "pair " << k;
     for (int c = 0; c < 4; ++c) {
       std::vector<vec2> both(kSeeds);
       for (std::size_t i = 0; i < kSeeds; ++i) both[i] = {a[i][c & 1], b[i][c >> 1]};
-      EXPECT_GT(uniformity(both), least) << "pair " << k << " " << c;
+      EXPECT_GT(planeUniformity(both), least) << "pair " << k << " " << c;
     }
   }
   // The test detects dependence: neighbors in one draw are dependent by design.
   const std::vector<vec2> a = overSeeds({{4, 8}, 0, 2, 0, 1}), b = overSeeds({{5, 8}, 0, 2, 0, 1});
   std::vector<vec2> both(kSeeds);
   for (std::size_t i = 0; i < kSeeds; ++i) both[i] = {a[i].x, b[i].x};
-  EXPECT_LT(uniformity(both), 1e-9);
+  EXPECT_LT(planeUniformity(both), 1e-9);
 }
 
 // The variance of the error of a pixel, and 64 times that of the mean over 8 x 8 pixels. The ratio is 1 for white
@@ -144,7 +145,7 @@ template <class F>
 Noise noise(std::uint32_t count, std::uint32_t planned, double exact, const F& f) {
   constexpr std::uint32_t kSide = 128, kSquare = 8;
   Noise result;
-  const std::vector<vec2> points = evaluate(square({3, 5}, kSide, 0, count, planned, 2));
+  const std::vector<vec2> points = evaluatePixels(squareOfDraws({3, 5}, kSide, 0, count, planned, 2));
   std::vector<double> squares(kSide * kSide / (kSquare * kSquare), 0.0);
   for (std::uint32_t pixel = 0; pixel < kSide * kSide; ++pixel) {
     double error = -exact;

@@ -12,7 +12,7 @@
 namespace quintet::test {
 namespace {
 
-constexpr std::size_t kSamples = 200'000;
+constexpr std::size_t kWarpSamples = 200'000;
 constexpr int kCells = 24;
 
 // `inverse` maps the point back to the unit square, area-preserving, by a formula independent of the map. WRONG uses a
@@ -52,10 +52,10 @@ std::vector<vec3> run(const Warp& warp, bool wrong, bool raw) {
                            R"(;
     }
   )";
-  return runCompute<vec3>(body, kSamples, options);
+  return runCompute<vec3>(body, kWarpSamples, options);
 }
 
-double uniformity(const std::vector<vec3>& points) {
+double sphereUniformity(const std::vector<vec3>& points) {
   std::vector<double> observed(kCells * kCells, 0.0);
   const std::vector<double> expected(kCells * kCells, static_cast<double>(points.size()) / (kCells * kCells));
   for (const vec3& p : points) {
@@ -68,8 +68,8 @@ double uniformity(const std::vector<vec3>& points) {
 
 TEST(Warp, MatchesTheStatedDensity) {
   for (const Warp& warp : kWarps) {
-    EXPECT_GT(uniformity(run(warp, false, false)), sidak(0.01, kWarps.size())) << warp.name;
-    EXPECT_LT(uniformity(run(warp, true, false)), 1e-9) << warp.name;
+    EXPECT_GT(sphereUniformity(run(warp, false, false)), sidak(0.01, kWarps.size())) << warp.name;
+    EXPECT_LT(sphereUniformity(run(warp, true, false)), 1e-9) << warp.name;
   }
 }
 

@@ -18,7 +18,7 @@
 namespace quintet::viewer {
 namespace {
 
-constexpr uvec2 kSize{64, 48};
+constexpr uvec2 kLineImageSize{64, 48};
 
 const WindowShaders& shaders() {
   static const WindowShaders shaders = compileLineShaders({});
@@ -26,9 +26,10 @@ const WindowShaders& shaders() {
 }
 
 io::Image plainImage(std::uint32_t channels = 4) {
-  io::Image image = io::makeImage(kSize.x, kSize.y, channels, io::PixelType::u8, io::ColorEncoding::sRgb);
-  for (std::uint32_t y = 0; y < kSize.y; ++y)
-    for (std::uint32_t x = 0; x < kSize.x; ++x) {
+  io::Image image =
+      io::makeImage(kLineImageSize.x, kLineImageSize.y, channels, io::PixelType::u8, io::ColorEncoding::sRgb);
+  for (std::uint32_t y = 0; y < kLineImageSize.y; ++y)
+    for (std::uint32_t x = 0; x < kLineImageSize.x; ++x) {
       const auto pixel = image.pixel<std::uint8_t>(x, y);
       for (std::uint32_t c = 0; c < channels; ++c)
         pixel[c] = static_cast<std::uint8_t>(c == 3 ? 255u : 40 + x + 50 * c);
@@ -37,7 +38,8 @@ io::Image plainImage(std::uint32_t channels = 4) {
 }
 
 // A surface at this reversed depth in the columns from `first` to `end`.
-std::shared_ptr<std::vector<float>> wall(float depth, std::uint32_t first, std::uint32_t end, uvec2 size = kSize) {
+std::shared_ptr<std::vector<float>> wall(float depth, std::uint32_t first, std::uint32_t end,
+                                         uvec2 size = kLineImageSize) {
   auto depths = std::make_shared<std::vector<float>>(std::size_t{size.x} * size.y, 0.0f);
   for (std::uint32_t y = 0; y < size.y; ++y)
     for (std::uint32_t x = first; x < end; ++x) (*depths)[y * size.x + x] = depth;
@@ -84,8 +86,8 @@ float opacityAt(const gpu::LineList& list, const gpu::Line& line, float radius, 
 
 io::Image expectedImage(const gpu::LineList& list, uvec2 depthSize, const std::vector<float>& depths) {
   io::Image image = plainImage();
-  for (std::uint32_t y = 0; y < kSize.y; ++y)
-    for (std::uint32_t x = 0; x < kSize.x; ++x) {
+  for (std::uint32_t y = 0; y < kLineImageSize.y; ++y)
+    for (std::uint32_t x = 0; x < kLineImageSize.x; ++x) {
       const auto pixel = image.pixel<std::uint8_t>(x, y);
       vec3 color = vec3(pixel[0], pixel[1], pixel[2]) / 255.0f;
       for (const bool outline : {true, false})
@@ -138,8 +140,8 @@ TEST(LineImage, AgreesWithARasterizerOnTheHost) {
   list.lines[2].outlineColor = 0x80FFFFFF;
   list.lines[3].width = list.lines[4].width = 7.0f;
   const auto depths = wall(1.0f, 20, 44);
-  expectEqual(drawLines(test::testContext(), shaders(), plainImage(), list, kSize, depths),
-              expectedImage(list, kSize, *depths));
+  expectEqual(drawLines(test::testContext(), shaders(), plainImage(), list, kLineImageSize, depths),
+              expectedImage(list, kLineImageSize, *depths));
   // Depths with a lower resolution, which begin elsewhere.
   list.depthX = -8.0f;
   list.depthY = 8.0f;  // the first line is partly above them
@@ -164,7 +166,8 @@ TEST(LineImage, HidesNothingWithoutDepths) {
 }
 
 TEST(LineImage, KeepsTheImageWithoutLines) {
-  const io::Image image = drawLines(test::testContext(), shaders(), plainImage(3), {}, kSize, wall(1.0f, 0, 10));
+  const io::Image image =
+      drawLines(test::testContext(), shaders(), plainImage(3), {}, kLineImageSize, wall(1.0f, 0, 10));
   EXPECT_EQ(image.channels, 3u);
   EXPECT_EQ(image.data, plainImage(3).data);
 }

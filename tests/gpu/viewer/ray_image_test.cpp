@@ -28,7 +28,7 @@ namespace {
 using testing::HasSubstr;
 
 // A wall at z = 0 that fills the lower half of the image; the camera looks at it from z = 4.
-constexpr const char* kScene = R"(
+constexpr const char* kRayScene = R"(
 [[mesh]]
 name = "wall"
 positions = [[-9, -9, 0], [9, -9, 0], [9, 0, 0], [-9, 0, 0]]
@@ -41,7 +41,7 @@ look_at = [0, 0, 0]
 fov = 90
 )";
 
-constexpr uvec2 kSize{96, 64};
+constexpr uvec2 kRayImageSize{96, 64};
 
 job::ExplainedEvent ray(const vec3& from, const vec3& direction, float tmax) {
   return {"ray",
@@ -63,7 +63,7 @@ job::PixelExplanation threeLines() {
 
 class RayImageTest : public testing::Test {
  protected:
-  RayImageTest() { writeFile(folder_ / "wall.scene.toml", kScene); }
+  RayImageTest() { writeFile(folder_ / "wall.scene.toml", kRayScene); }
 
   static job::Engine& engine() {
     static job::Engine engine({.caches = {}});
@@ -72,13 +72,15 @@ class RayImageTest : public testing::Test {
   std::unique_ptr<job::RenderJob> makeJob() {
     job::RenderRequest request;
     request.scene = folder_ / "wall.scene.toml";
-    request.size = kSize;
+    request.size = kRayImageSize;
     request.limits.samples = 4;
     return std::make_unique<job::RenderJob>(engine(), job::resolve(std::move(request), program::loadProgram("normals")),
                                             observer_);
   }
 
-  static io::Image black() { return io::makeImage(kSize.x, kSize.y, 3, io::PixelType::u8, io::ColorEncoding::sRgb); }
+  static io::Image black() {
+    return io::makeImage(kRayImageSize.x, kRayImageSize.y, 3, io::PixelType::u8, io::ColorEncoding::sRgb);
+  }
   // Sum of the red values in the rows around the projection of a height in a plane, without the ends of the line.
   static int brightness(const io::Image& image, float y, float depth) {
     const float row = 32.0f - 32.0f * y / depth;
@@ -96,7 +98,7 @@ class RayImageTest : public testing::Test {
 TEST_F(RayImageTest, DrawsHiddenRaysFaintly) {
   const auto job = makeJob();
   const job::DepthMap depth =
-      job::renderDepthMap(engine(), *job->scene()->onDevice, job->camera(), kSize, job->resolved().program);
+      job::renderDepthMap(engine(), *job->scene()->onDevice, job->camera(), kRayImageSize, job->resolved().program);
   const io::Image image = drawRays(engine().context(), threeLines(), depth, black(), {});
   const int before = brightness(image, -1, 3), behind = brightness(image, -4, 6), free = brightness(image, 4, 6);
   EXPECT_GT(before, 16 * 200);
@@ -108,17 +110,17 @@ TEST_F(RayImageTest, DrawsHiddenRaysFaintly) {
 TEST_F(RayImageTest, EmphasizesTheSelectedRay) {
   const auto job = makeJob();
   const job::DepthMap depth =
-      job::renderDepthMap(engine(), *job->scene()->onDevice, job->camera(), kSize, job->resolved().program);
+      job::renderDepthMap(engine(), *job->scene()->onDevice, job->camera(), kRayImageSize, job->resolved().program);
   const RayOverlay overlay = rayOverlay(threeLines(), 1.0f);
   OverlayView view{job->camera(), {}};
-  view.placement.size = kSize;
+  view.placement.size = kRayImageSize;
   const WindowShaders shaders = compileLineShaders({});
   std::array<io::Image, 2> images;
   for (std::size_t i = 0; i < 2; ++i) {
     OverlayStyle style;
     if (i == 1) style.selected = 2;
-    images[i] = drawLines(engine().context(), shaders, black(), overlayLines(overlay, view, style, &depth), kSize,
-                          reversedDepths(depth));
+    images[i] = drawLines(engine().context(), shaders, black(), overlayLines(overlay, view, style, &depth),
+                          kRayImageSize, reversedDepths(depth));
   }
   EXPECT_GT(brightness(images[1], 4, 6), 1.5 * brightness(images[0], 4, 6)) << "wider";
   EXPECT_LT(brightness(images[1], -1, 3), 0.6 * brightness(images[0], -1, 3)) << "the others are faint";
@@ -128,7 +130,7 @@ TEST_F(RayImageTest, RequiresTheCameraOfTheScene) {
   const auto job = makeJob();
   job::PixelExplanation e;
   e.program = "fish eye";
-  e.size = kSize;
+  e.size = kRayImageSize;
   e.pixel = {48, 32};
   e.events = {ray({0, 0, 4}, glm::normalize(vec3(0.5f / 32, -0.5f / 32, -1)), 4)};
   e.events[0].set("rayType", std::string("radiance"));

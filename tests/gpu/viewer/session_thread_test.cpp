@@ -26,9 +26,9 @@ namespace {
 using namespace job::interactive;
 using testing::HasSubstr;
 
-constexpr uvec2 kSize{48, 32};
+constexpr uvec2 kThreadSize{48, 32};
 
-constexpr const char* kScene = R"(
+constexpr const char* kThreadScene = R"(
 [[material]]
 name = "paint"
 [[mesh]]
@@ -47,7 +47,7 @@ fov = 40
 class SessionThreadTest : public testing::Test {
  protected:
   SessionThreadTest() {
-    writeFile(folder_ / "wall.scene.toml", kScene);
+    writeFile(folder_ / "wall.scene.toml", kThreadScene);
     SessionThread::Options options;
     options.engine.device = test::testContext().info().name;
     options.onEvent = [this](const std::string& json) {
@@ -61,7 +61,7 @@ class SessionThreadTest : public testing::Test {
     SessionRequest result;
     result.program = "normals";
     result.render.scene = folder_ / "wall.scene.toml";
-    result.render.size = kSize;
+    result.render.size = kThreadSize;
     result.render.limits.samples = 8;
     return result;
   }
@@ -108,7 +108,7 @@ TEST_F(SessionThreadTest, RendersAndAppliesCommands) {
   thread_->apply(Orbit{1, 0});  // without a session it has no effect
   thread_->open(request());
   const auto first = waitForImage();
-  EXPECT_EQ(first->image->width, kSize.x);
+  EXPECT_EQ(first->image->width, kThreadSize.x);
   EXPECT_EQ(first->progress.samples, 8u);
   EXPECT_NEAR(middle(*first).b, 1.0f, 0.02f) << "the normal is +z";
   EXPECT_EQ(first->scene->instances.size(), 1u);
@@ -132,7 +132,7 @@ TEST_F(SessionThreadTest, RendersAndAppliesCommands) {
 TEST_F(SessionThreadTest, PicksWithoutMovingTheCamera) {
   thread_->open(request());
   waitForImage();
-  thread_->pick(kSize / 2u, PickUse::select);
+  thread_->pick(kThreadSize / 2u, PickUse::select);
   std::vector<std::optional<Pick>> picks;
   for (int i = 0; i < 10000 && picks.empty(); ++i) {
     picks = thread_->takePicks();
@@ -152,15 +152,15 @@ TEST_F(SessionThreadTest, FindsTheDepthsOfTheView) {
   EXPECT_FALSE(waitForImage()->depth) << "nothing asked for it";
   thread_->showDepth(true);
   const auto shown = waitFor([](const Snapshot& s) { return s.depth != nullptr; });
-  EXPECT_EQ(shown->depth->size, kSize);
-  EXPECT_NEAR(shown->depth->depths[kSize.y / 2 * kSize.x + kSize.x / 2], 4.0f, 0.01f);
+  EXPECT_EQ(shown->depth->size, kThreadSize);
+  EXPECT_NEAR(shown->depth->depths[kThreadSize.y / 2 * kThreadSize.x + kThreadSize.x / 2], 4.0f, 0.01f);
   EXPECT_EQ(shown->depth->camera.worldFromCamera, shown->camera.worldFromCamera);
   thread_->apply(SetExposure{1.0});
   EXPECT_EQ(waitFor([](const Snapshot& s) { return s.state.exposure == 1.0; })->depth, shown->depth)
       << "the view is the same";
   thread_->apply(Zoom{2.0f, std::nullopt});
   const auto moved = waitFor([&](const Snapshot& s) { return s.depth && s.depth != shown->depth; });
-  EXPECT_NEAR(moved->depth->depths[kSize.y / 2 * kSize.x + kSize.x / 2], 2.0f, 0.01f);
+  EXPECT_NEAR(moved->depth->depths[kThreadSize.y / 2 * kThreadSize.x + kThreadSize.x / 2], 2.0f, 0.01f);
   thread_->showDepth(false);
   EXPECT_FALSE(waitFor([](const Snapshot& s) { return !s.depth; })->depth);
 }
@@ -172,8 +172,8 @@ TEST_F(SessionThreadTest, SavesTheCompleteSize) {
   EXPECT_TRUE(hasMessage(Message::Kind::note, "out.png"));
   thread_->save(folder_ / "out.exr");
   EXPECT_TRUE(hasMessage(Message::Kind::note, "out.exr"));
-  EXPECT_EQ(io::readImage(folder_ / "out.png").width, kSize.x);
-  EXPECT_EQ(io::readImage(folder_ / "out.exr").height, kSize.y);
+  EXPECT_EQ(io::readImage(folder_ / "out.png").width, kThreadSize.x);
+  EXPECT_EQ(io::readImage(folder_ / "out.exr").height, kThreadSize.y);
 }
 
 TEST_F(SessionThreadTest, AFailedSaveDoesNotDiscardTheNextOne) {
@@ -205,9 +205,9 @@ TEST_F(SessionThreadTest, ReportsErrorsAndContinues) {
 
 TEST_F(SessionThreadTest, ExplainsAndNoticesChanges) {
   thread_->open(request());
-  thread_->explain(kSize / 2u, 3);
+  thread_->explain(kThreadSize / 2u, 3);
   const auto first = waitFor([](const Snapshot& s) { return s.explanation && s.progress.complete; });
-  EXPECT_EQ(first->explanation->pixel, kSize / 2u);
+  EXPECT_EQ(first->explanation->pixel, kThreadSize / 2u);
   EXPECT_EQ(first->explanation->sample, 3u);
   EXPECT_NEAR(first->explanation->outputs.at(0).value.z, 1.0f, 1e-3f) << "the normal is +z";
   EXPECT_FALSE(first->explanationOutdated);
@@ -219,11 +219,11 @@ TEST_F(SessionThreadTest, ExplainsAndNoticesChanges) {
   const auto turned = waitFor([](const Snapshot& s) { return s.explanationOutdated; });
   EXPECT_EQ(turned->explanation, first->explanation) << "it stays until the next request";
   EXPECT_TRUE(turned->explanationUsesCamera) << "that of the explained image";
-  thread_->explain(kSize / 2u, 3);
+  thread_->explain(kThreadSize / 2u, 3);
   const auto second = waitFor([&](const Snapshot& s) { return s.explanation && s.explanation != first->explanation; });
   EXPECT_FALSE(second->explanationOutdated);
   EXPECT_FALSE(second->explaining);
-  thread_->explain(kSize, 0);
+  thread_->explain(kThreadSize, 0);
   EXPECT_TRUE(hasMessage(Message::Kind::error, "is not inside"));
   EXPECT_EQ(thread_->snapshot()->explanation, nullptr);
 }
@@ -236,13 +236,13 @@ TEST_F(SessionThreadTest, RaysAreThoseOfTheProgram) {
   };
   save("1.0");
   thread_->open(request());
-  thread_->explain(kSize / 2u, 3);
+  thread_->explain(kThreadSize / 2u, 3);
   EXPECT_TRUE(waitFor([](const Snapshot& s) { return s.explanation != nullptr; })->explanationUsesCamera);
   thread_->apply(SetProgram{file});
   const auto changed = waitFor([&](const Snapshot& s) { return s.state.program == file; });
   EXPECT_NE(changed->explanation, nullptr);
   EXPECT_FALSE(changed->explanationUsesCamera) << "the rays do not fit the image of the new program";
-  thread_->explain(kSize / 2u, 0);
+  thread_->explain(kThreadSize / 2u, 0);
   const auto own = waitFor([&](const Snapshot& s) { return s.explanation && s.explanation != changed->explanation; });
   EXPECT_FALSE(own->explanationUsesCamera) << "no ray at all";
 }
