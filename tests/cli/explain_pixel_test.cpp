@@ -115,7 +115,7 @@ TEST_F(ExplainPixel, RejectsWrongRequests) {
               {"pixel 400,2 is not inside the image of 32x24"});
   expectError(quintet({"explain-pixel", "scene.gltf", "--env", "none", "--pixel", "5000,2"}), 2,
               {"pixel 5000,2 is not inside the image of"});
-  expectError(explain({"--frame", "3"}), 2, {"no instance has keyframes"});
+  expectError(explain({"--frame", "3"}), 2, {"neither keyframes nor an animation"});
 }
 
 }  // namespace

@@ -269,7 +269,7 @@ TEST_F(RenderJobTest, AStillSceneHasOneFrame) {
       makeJob(request)->run(request.limits, observer_);
       FAIL();
     } catch (const UsageError& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr("no instance has keyframes"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("neither keyframes nor an animation"));
     }
   }
   request.frames = {.count = 1, .first = 0};
