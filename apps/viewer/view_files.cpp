@@ -34,14 +34,18 @@ job::interactive::SessionRequest currentRequest(const ViewState& state) {
   return request;
 }
 
-void openSession(ViewState& state, job::interactive::SessionRequest request, const std::string& recent) {
-  addRecentFile(state.settings, recent);
-  storeSettings(state);
+void startSession(ViewState& state, job::interactive::SessionRequest request) {
   state.selection = {};
   state.playing = false;
   state.explain.pixel.reset();
   state.click = ClickUse::select;
   state.session->open(std::move(request));
+}
+
+void openSession(ViewState& state, job::interactive::SessionRequest request, const std::string& recent) {
+  addRecentFile(state.settings, recent);
+  storeSettings(state);
+  startSession(state, std::move(request));
 }
 
 void useReference(ViewState& state, const std::string& path) {
@@ -171,6 +175,19 @@ void openLesson(ViewState& state, const std::string& program) {
   request.program = program;
   request.render.size = state.fixedSize.value_or(state.viewSize);
   openSession(state, std::move(request), program);
+}
+
+void reopenScene(ViewState& state, const std::function<void(job::RenderRequest&)>& change) {
+  namespace interactive = job::interactive;
+  if (!state.ready()) return;
+  const interactive::SessionState shown = state.snapshot->state;
+  const std::string firstOutput = state.snapshot->program->outputs.front().name;
+  interactive::SessionRequest request = interactive::withState(*state.snapshot->request, shown);
+  change(request.render);
+  startSession(state, std::move(request));
+  if (shown.output != firstOutput) state.apply(interactive::SelectOutput{shown.output});
+  if (shown.exposure != 0.0) state.apply(interactive::SetExposure{shown.exposure});
+  if (shown.toneMap) state.apply(interactive::SetToneMap{shown.toneMap});
 }
 
 void saveExplanation(ViewState& state, const std::filesystem::path& file) {

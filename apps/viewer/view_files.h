@@ -4,6 +4,7 @@
 #define QUINTET_APPS_VIEWER_VIEW_FILES_H
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "view_state.h"
@@ -21,6 +22,10 @@ void openFile(ViewState& state, const std::string& path);
 void openRecent(ViewState& state, const std::string& file);
 // A built-in program on its own scene.
 void openLesson(ViewState& state, const std::string& program);
+
+// Reads the scene file again with a change of how it is read, such as another material variant. The view, the program and
+// its parameters stay; edits of materials, lights and objects are lost, and so are the steps of undo.
+void reopenScene(ViewState& state, const std::function<void(job::RenderRequest&)>& change);
 
 // As JSON, with the command that explains the pixel if it is known. Errors become messages.
 void saveExplanation(ViewState& state, const std::filesystem::path& file);

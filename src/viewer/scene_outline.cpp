@@ -56,6 +56,9 @@ SceneOutline outlineOf(const job::interactive::Session& session) {
     const std::string& name = scene.cameras[i].name;
     outline.cameras.push_back(name.empty() ? fmt::format("Camera {}", i) : name);
   }
+  outline.variants = scene.report.variants;
+  for (const scene::AnimationSummary& animation : scene.report.animations)
+    outline.animations.push_back(animation.name.empty() ? std::to_string(outline.animations.size()) : animation.name);
   outline.triangles = scene::countTriangles(scene);
   outline.lastFrame = session.lastFrame();
   const Bounds3 bounds = session.bounds("");

@@ -30,8 +30,10 @@ struct SceneOutline {
   std::vector<std::string> materialNames;
   std::vector<scene::Material> materials;  // as they were loaded
   std::vector<std::string> lightNames;
-  std::vector<scene::Light> lights;  // as they were loaded
-  std::vector<std::string> cameras;  // names; unnamed cameras are "Camera 0", "Camera 1", …
+  std::vector<scene::Light> lights;     // as they were loaded
+  std::vector<std::string> cameras;     // names; unnamed cameras are "Camera 0", "Camera 1", …
+  std::vector<std::string> variants;    // names of the material variants of a glTF file
+  std::vector<std::string> animations;  // names of the animations of a glTF file, or their indices
   scene::TriangleCount triangles;
   float lastFrame = 0;  // 0 without an animation
   float size = 1;       // meters: diagonal of the bounds, 1 if they are empty

@@ -283,6 +283,44 @@ TEST_F(WindowTest, AddsUpStepsOfExposure) {
   EXPECT_THAT(viewer.window().clipboard(), HasSubstr("--exposure -2"));
 }
 
+// A red triangle that covers the image; the variant "night" is green.
+constexpr const char* kVariants = R"({
+"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}],
+"nodes": [{"mesh": 0}, {"camera": 0, "translation": [0, 0, 4]}],
+"cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}],
+"buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAQwQAAEMEAAAAAAAAQQQAAEMEAAAAAAAAAAAAAkEEAAAAA"}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-9, -9, 0], "max": [9, 18, 0]}],
+"materials": [
+  {"pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}, "extensions": {"KHR_materials_unlit": {}}},
+  {"pbrMetallicRoughness": {"baseColorFactor": [0, 1, 0, 1]}, "extensions": {"KHR_materials_unlit": {}}}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0,
+  "extensions": {"KHR_materials_variants": {"mappings": [{"material": 1, "variants": [0]}]}}}]}],
+"extensions": {"KHR_materials_variants": {"variants": [{"name": "night"}]}},
+"extensionsUsed": ["KHR_materials_unlit", "KHR_materials_variants"]})";
+
+TEST_F(WindowTest, ChoosesAMaterialVariant) {
+  writeFile(folder_ / "day.gltf", kVariants);
+  openPanels(R"("Scene")");
+  ViewerProcess& viewer = start({"day.gltf", "--spp", "4", "--env", "none"});
+  viewer.waitForImage();
+  viewer.settle();
+  const Rgb day = imageColor();
+  EXPECT_GT(day[0], day[1] + 100) << testing::PrintToString(day);
+  viewer.window().key("minus");  // an exposure, which stays
+  viewer.clickControl("Scene/Variant");
+  viewer.settle();
+  viewer.clickControl("Scene/Variant/night");
+  viewer.waitForImage();
+  viewer.settle();
+  const Rgb night = imageColor();
+  EXPECT_GT(night[1], night[0] + 100) << testing::PrintToString(night);
+  viewer.window().key("c", {"Control_L"});
+  viewer.settle();
+  EXPECT_THAT(viewer.window().clipboard(), HasSubstr("--variant night"));
+  EXPECT_THAT(viewer.window().clipboard(), HasSubstr("--exposure -0.333"));
+}
+
 TEST_F(WindowTest, SelectsAnObjectAndEditsItsMaterial) {
   openPanels(R"("Selection")");
   windowSize_ = "720x900";  // for all properties

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include "base/text.h"
 #include "gui/widgets.h"
 #include "panels/panels.h"
+#include "view_files.h"
 
 namespace quintet::viewer {
 namespace {
@@ -41,6 +43,38 @@ bool treeGroup(const char* name, std::size_t count, bool open) {
   return ImGui::TreeNodeEx(name, flags, "%s (%zu)", name, count);
 }
 
+constexpr const char* kReopens = ". The file is read again: edits of materials, lights and objects are lost";
+
+void variantChoice(ViewState& state, const std::vector<std::string>& variants) {
+  if (variants.empty()) return;
+  std::vector<std::string> names{"default materials"};
+  names.insert(names.end(), variants.begin(), variants.end());
+  const std::string& current = state.snapshot->request->render.load.variant;
+  auto index = static_cast<std::size_t>(std::ranges::find(variants, current) - variants.begin()) + 1;
+  if (current.empty()) index = 0;
+  if (choiceField("Variant", index, names, std::string("Material variant of the file") + kReopens))
+    reopenScene(state,
+                [&](job::RenderRequest& request) { request.load.variant = index == 0 ? "" : variants[index - 1]; });
+}
+
+// By index, because names need not be unique.
+void animationChoice(ViewState& state, const std::vector<std::string>& animations) {
+  if (animations.empty()) return;
+  std::vector<std::string> names{"rest pose"};
+  names.insert(names.end(), animations.begin(), animations.end());
+  const std::string& current = state.snapshot->request->render.animation;
+  std::size_t index = 1;
+  for (std::size_t i = 1; i <= animations.size(); ++i)
+    if (current == std::to_string(i - 1)) index = i;
+  for (std::size_t i = animations.size(); i > 0; --i)
+    if (current == animations[i - 1]) index = i;
+  if (current == "none") index = 0;
+  if (choiceField("Animation", index, names, std::string("Animation of the file that plays") + kReopens))
+    reopenScene(state, [&](job::RenderRequest& request) {
+      request.animation = index == 0 ? "none" : std::to_string(index - 1);
+    });
+}
+
 }  // namespace
 
 void scenePanel(ViewState& state) {
@@ -49,6 +83,8 @@ void scenePanel(ViewState& state) {
   textRow("Scene", scene.name.empty() ? "built-in scene" : scene.name);
   if (scene.triangles.stored > 0)
     textRow("Triangles", fmt::format("{} ({} instanced)", scene.triangles.stored, scene.triangles.instanced));
+  variantChoice(state, scene.variants);
+  animationChoice(state, scene.animations);
   if (scene.instances.size() + scene.materials.size() > 20)
     textField("Filter", filter, "Show only names that contain this text");
   else

@@ -104,6 +104,18 @@ void requirePositive(double value, const char* name) {
 
 }  // namespace
 
+SessionRequest withState(SessionRequest request, const SessionState& state) {
+  request.program = state.program;
+  request.render.parameterFile = state.parameterFile;
+  request.render.assignments = state.assignments;
+  request.render.camera = state.camera;
+  request.render.environment = state.environment;
+  if (!state.environmentOn) request.render.environment.source = "none";
+  request.render.size = state.size;
+  request.render.limits.samples = state.samples;
+  return request;
+}
+
 // Turns the reports of the job into events, and stops it.
 class Session::Recorder : public Observer {
  public:

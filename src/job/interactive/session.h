@@ -71,6 +71,10 @@ struct SessionRequest {
   double updatesPerSecond = 0;  // while something moves; 0 means 12 on a CPU, else 90
 };
 
+// `request` with the program, parameters, camera, environment, size and samples of a state. A session of it shows the
+// scene as the file has it: edits of materials, lights and transforms, and what only affects the display, are not part.
+SessionRequest withState(SessionRequest request, const SessionState& state);
+
 class Session {
  public:
   // Seconds since any moment.
