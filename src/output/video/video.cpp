@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "output/video/video.h"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -23,13 +24,23 @@ void append(std::vector<std::string>& to, std::initializer_list<std::string> wor
   to.insert(to.end(), words.begin(), words.end());
 }
 
-// The encoders store colors at half the resolution, so both sides of the image must be even: one row or column of the
-// border is repeated. The colors are those of sRGB.
+// The colors are those of sRGB.
 void addColors(std::vector<std::string>& arguments) {
   append(arguments,
-         {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd",
-          "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1",
+         {"-vf", "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd", "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1",
           "-color_range", "tv"});
+}
+
+// MP4 and WebM store colors at half the resolution, so both sides must be even: the last column and row are repeated.
+io::Image withEvenSides(const io::Image& image) {
+  const std::uint32_t width = image.width + image.width % 2, height = image.height + image.height % 2;
+  if (width == image.width && height == image.height) return image;
+  io::Image even = io::makeImage(width, height, image.channels, image.type, image.encoding);
+  for (std::uint32_t y = 0; y < height; ++y)
+    for (std::uint32_t x = 0; x < width; ++x)
+      std::ranges::copy(image.pixel<std::uint8_t>(std::min(x, image.width - 1), std::min(y, image.height - 1)),
+                        even.pixel<std::uint8_t>(x, y).begin());
+  return even;
 }
 
 }  // namespace
@@ -123,7 +134,8 @@ void VideoWriter::add(const job::RenderResult& frame, job::Observer& observer) {
   encode(displayImage(plan_, *frame.film));
 }
 
-void VideoWriter::encode(const io::Image& frame) {
+void VideoWriter::encode(const io::Image& image) {
+  const io::Image frame = videoFormat(request_.file) == VideoFormat::gif ? image : withEvenSides(image);
   if (!ffmpeg_) {
     try {
       temporary_ = std::make_unique<TemporaryFile>(request_.file);

@@ -40,7 +40,7 @@ std::filesystem::path frameImages(const std::filesystem::path& video);
 // frames that are not opaque.
 void checkVideoRequest(const VideoRequest& request, bool transparent);
 
-// Arguments of ffmpeg for frames of this size, RGB with 8 bits.
+// Arguments of ffmpeg for frames of this size, RGB with 8 bits. Both sides are even, except for GIF.
 std::vector<std::string> ffmpegArguments(const VideoRequest& request, uvec2 size, const std::filesystem::path& output);
 
 // Receives the frames of one video in their order. The video appears under its name when finish() returns; without it,
@@ -59,7 +59,7 @@ class VideoWriter {
   bool finish(bool incomplete, job::Observer& observer);
 
  private:
-  void encode(const io::Image& frame);
+  void encode(const io::Image& image);
   [[noreturn]] void fail(const std::string& problem) const;
 
   VideoRequest request_;
