@@ -53,6 +53,7 @@ std::vector<std::string> commonOptions(const Snapshot& snapshot) {
     add("--animation", "0");  // otherwise frame 0 would be the rest pose
   if (snapshot.animated && request.framesPerSecond != scene::kDefaultFramesPerSecond)
     add("--fps", number(request.framesPerSecond));
+  if (request.shutter) add("--shutter", fmt::format("{},{}", request.shutter->open, request.shutter->close));
   const job::CameraRequest& camera = state.camera;
   if (!camera.name.empty() && !camera.lookFrom) add("--camera", camera.name);
   if (camera.lookFrom) {

@@ -32,15 +32,22 @@ struct Batches {
   std::uint64_t first = 0, last = 0;
 };
 
+// Motion blur: the shutter is open from frame + open to frame + close. Each sample shows the scene at a time of its own.
+struct Shutter {
+  double open = 0;     // frames of the animation, [-1000, 1000]
+  double close = 0.5;  // frames, [open, 1000]; equal to `open` means an image without blur at frame + open
+};
+
 // What decides the values of an image, besides scene and program.
 struct Settings {
   std::uint32_t width = 1280;  // pixels, [1, 65536]
   std::uint32_t height = 720;
-  std::optional<Region> region{};  // render only this part of the image
-  std::uint32_t seed = 0;          // of the random number generator
-  std::optional<Camera> camera{};  // default: the scene's first camera, else one that shows the whole scene
-  std::string cameraName{};        // or a camera of the scene, by name or index
-  bool transparent = false;        // alpha 0 where a camera ray leaves the scene, instead of the environment
+  std::optional<Region> region{};    // render only this part of the image
+  std::uint32_t seed = 0;            // of the random number generator
+  std::optional<Camera> camera{};    // default: the scene's first camera, else one that shows the whole scene
+  std::string cameraName{};          // or a camera of the scene, by name or index
+  std::optional<Shutter> shutter{};  // of an animated scene; not for programs that accumulate
+  bool transparent = false;          // alpha 0 where a camera ray leaves the scene, instead of the environment
   std::vector<std::pair<std::string, std::string>> parameters{};  // name, value as on the command line ("1,0.5,0")
   std::vector<std::string> outputs{};  // optional outputs (AOVs) and heat maps to render, by name; "all": every AOV
   bool adaptive = false;             // distribute samples by the error of each tile; only for programs that support it

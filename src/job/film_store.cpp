@@ -23,8 +23,13 @@ bool isHash(const std::string& text) {
   return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == text.npos;
 }
 
-std::string shown(const std::string* value) {
-  if (!value) return "unknown";
+bool isOnlyIfSet(const std::string& name) {
+  return std::ranges::any_of(provenanceFields(),
+                             [&](const ProvenanceField& field) { return field.onlyIfSet && field.name == name; });
+}
+
+std::string shown(const std::string& name, const std::string* value) {
+  if (!value) return isOnlyIfSet(name) ? "none" : "unknown";
   if (value->empty()) return "none";
   return isHash(*value) ? value->substr(0, kShownDigits) : *value;
 }
@@ -35,8 +40,9 @@ std::string differencesText(const FilmFacts& found, const FilmFacts& expected) {
   const std::vector<render::FactDifference> differences = render::differences(found, expected);
   std::string text;
   for (std::size_t i = 0; i < std::min(differences.size(), kShownDifferences); ++i)
-    text += fmt::format("{}{} {}, expected {}", i > 0 ? "; " : "", differences[i].name, shown(differences[i].left),
-                        shown(differences[i].right));
+    text +=
+        fmt::format("{}{} {}, expected {}", i > 0 ? "; " : "", differences[i].name,
+                    shown(differences[i].name, differences[i].left), shown(differences[i].name, differences[i].right));
   if (differences.size() > kShownDifferences)
     text += fmt::format("; and {} more", differences.size() - kShownDifferences);
   return text;

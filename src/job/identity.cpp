@@ -88,6 +88,7 @@ Provenance identityOf(const ResolvedJob& job, const render::Renderer& renderer, 
   p.plannedSamples = request.limits.samples;
   p.adaptive = request.limits.adaptive;
   p.transparent = request.transparent;
+  if (request.shutter) p.shutter = fmt::format("{},{}", request.shutter->open, request.shutter->close);
   std::vector<std::string> stored;
   for (std::size_t i = 0; i < job.program.outputs.size(); ++i)
     if (renderer.film().stores(i)) stored.push_back(job.program.outputs[i].name);

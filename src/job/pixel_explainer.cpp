@@ -158,7 +158,8 @@ PixelExplanation PixelExplainer::record(uvec2 pixel, std::uint32_t sample) {
   const std::vector<program::Output>& outputs = job_.resolved().program.outputs;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const bool written = outputs[i].pixel == program::OutputPixel::mean ||
-                         (outputs[i].pixel == program::OutputPixel::center && sample == 0);
+                         (outputs[i].pixel == program::OutputPixel::center && sample == 0 &&
+                          !renderer_.settings().shutter);  // then they show another time than the sample
     if (!written || !renderer_.film().stores(i)) continue;
     result.outputs.push_back({outputs[i].name, batchValue(renderer_, i, pixel), batchValue(*instrumented_, i, pixel)});
   }

@@ -120,6 +120,11 @@ constexpr ProvenanceField field(Role role, std::string_view name, std::string_vi
           }};
 }
 
+constexpr ProvenanceField onlyIfSet(ProvenanceField field) {
+  field.onlyIfSet = true;
+  return field;
+}
+
 using P = Provenance;
 
 constexpr std::array kFields{
@@ -149,6 +154,7 @@ constexpr std::array kFields{
     field<&P::plannedSamples>(Role::identity, "planned samples", "", ""),
     field<&P::samples>(Role::result, "", "samples", "Samples"),
     field<&P::adaptive>(Role::identity, "adaptive", "adaptive", "Adaptive"),
+    onlyIfSet(field<&P::shutter>(Role::identity, "shutter", "shutter", "Shutter")),
     field<&P::outputs>(Role::identity, "outputs", "", ""),
     field<&P::frame>(Role::result, "", "frame", "Frame"),
     field<&P::rays>(Role::result, "", "rays", "Rays"),
@@ -205,8 +211,11 @@ std::string toText(const FieldValue& value) {
 
 render::FilmFacts toFacts(const Provenance& provenance, Role role) {
   render::FilmFacts facts;
-  for (const ProvenanceField& f : kFields)
-    if (f.role == role) facts.emplace_back(f.name, toText(f.get(provenance)));
+  for (const ProvenanceField& f : kFields) {
+    if (f.role != role) continue;
+    std::string text = toText(f.get(provenance));
+    if (!f.onlyIfSet || !text.empty()) facts.emplace_back(f.name, std::move(text));
+  }
   if (role == Role::identity)
     for (const auto& [name, value] : provenance.parameterValues)
       facts.emplace_back(std::string(kParameterPrefix) + name, value);

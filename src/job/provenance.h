@@ -47,6 +47,7 @@ struct Provenance {
   std::optional<std::uint64_t> plannedSamples;  // samplers distribute their points for this number; unset: unlimited
   bool adaptive = false;
   bool transparent = false;
+  std::string shutter;  // ShutterRequest, in frames: "-0.25,0.25"; empty without one
   std::string outputs;  // of the program, those that the film stores: "color, albedo"
 
   // Notes: everything else that a film keeps for the images that are made of it.
@@ -103,6 +104,7 @@ struct ProvenanceField {
   FieldValue (*get)(const Provenance&) = nullptr;
   // Throws UsageError for a text that get() cannot have given.
   void (*set)(Provenance&, const std::string& text) = nullptr;
+  bool onlyIfSet = false;  // films do not store it if it is empty
 };
 
 // All fields but parameterValues, in the order in which they are shown.

@@ -147,6 +147,10 @@ void RenderJob::prepare(Observer& observer) {
   }
   observer.stage("compiling shaders");
   link(compiling.get(), observer);
+  if (request.shutter) {
+    requireAnimation("a shutter would change nothing; remove it");
+    frameOutdated_ = true;  // the renderer does not have the shutter yet
+  }
   provenance_ = makeProvenance();
   linkedSeconds_ = clock_.seconds();
 }
@@ -219,6 +223,8 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
   settings.plannedSamples = request.limits.adaptive ? shared::kIndependentPixels
                                                     : static_cast<std::uint32_t>(request.limits.samples.value_or(0));
   settings.transparent = request.transparent;
+  settings.shutter = shutter();
+  if (settings.shutter) settings.cameraAt = movingCamera();
   settings.parameters = job_.parameters;
   settings.outputs = request.outputs;
   settings.frameCount = request.frames.accumulatedCount().value_or(0);
@@ -489,7 +495,7 @@ RenderResult RenderJob::run(const RenderLimits& limits, Observer& observer) {
       showRequestedFrame();
       return runFilm(limits, observer);
     }
-    if (frames.lastFrame() > 0) requireAnimation();
+    if (frames.lastFrame() > 0) requireFrames();
     if (frames.first || frames.lastFrame() > 0 || frames.every) return runAnimation(limits, observer);
     return runFilm(limits, observer);
   });
@@ -540,17 +546,17 @@ std::optional<double> RenderJob::renderNextFrame(std::uint64_t count, Observer& 
   return clock.seconds();
 }
 
-void RenderJob::requireAnimation() const {
+void RenderJob::requireFrames() const { requireAnimation("all frames would be the same; render one frame"); }
+
+void RenderJob::requireAnimation(std::string_view consequence) const {
   if (scene_->onDevice->animated()) return;
   const std::size_t ignored = scene_->ignoredAnimations;
   const std::string cause = ignored == 0
                                 ? "the scene has neither keyframes nor an animation"
                                 : fmt::format("{} {} not played, and no instance has keyframes",
                                               counted(ignored, "glTF animation"), nounFor(ignored, "is", "are"));
-  throw UsageError(
-      fmt::format("{}: {}, so all frames would be the same; render one frame, or add keyframes in a .scene.toml file "
-                  "(docs/scenes.md)",
-                  job_.scene.name, cause));
+  throw UsageError(fmt::format("{}: {}, so {}, or add keyframes in a .scene.toml file (docs/scenes.md)",
+                               job_.scene.name, cause, consequence));
 }
 
 RenderResult RenderJob::runFilm(const RenderLimits& requested, Observer& observer) {
@@ -647,7 +653,8 @@ RenderResult RenderJob::runAnimation(const RenderLimits& limits, Observer& obser
     frame_ = frame;
     describeFrame();
     if (isFrameWritten(frame, observer)) continue;
-    scene_->onDevice->setFrame(frame_);
+    scene_->onDevice->setFrame(shownFrame());
+    moveShutter();
     renderer_->restart();
     started_ = false;  // a checkpoint can hold the samples of this frame
     last = runFilm(limits, observer);
@@ -772,7 +779,7 @@ const render::Region& RenderJob::region() const {
 void RenderJob::showRequestedFrame() {
   if (job_.accumulatesFrames()) return;
   const FrameRequest& frames = job_.request.frames;
-  if (frames.lastFrame() > 0 || frames.seconds) requireAnimation();
+  if (frames.lastFrame() > 0 || frames.seconds) requireFrames();
   if (!scene_->onDevice->animated()) return;
   if (frames.seconds) frame_ = *frames.seconds * job_.request.framesPerSecond;
   if (frames.first || frames.count) frame_ = frames.lastFrame();  // otherwise that of setFrame()
@@ -792,12 +799,34 @@ double RenderJob::sampleCount() const {
 
 void RenderJob::showFrame() {
   describeFrame();
-  scene_->onDevice->setFrame(frame_);
+  scene_->onDevice->setFrame(shownFrame());
+  moveShutter();
+}
+
+void RenderJob::moveShutter() {
+  if (const std::optional<render::ShutterInterval> interval = shutter())
+    renderer_->setShutter(interval, movingCamera());
+}
+
+std::optional<render::ShutterInterval> RenderJob::shutter() const {
+  const std::optional<ShutterRequest>& request = job_.request.shutter;
+  if (!request || !(request->close > request->open)) return std::nullopt;
+  return render::ShutterInterval{frame_ + request->open, frame_ + request->close};
+}
+
+std::function<scene::Camera(double frame)> RenderJob::movingCamera() const {
+  if (scene_->movingCameras.empty()) return {};
+  return [this](double frame) { return chooseMovingCamera(job_.request.camera, frame).camera; };
+}
+
+double RenderJob::shownFrame() const {
+  const std::optional<ShutterRequest>& request = job_.request.shutter;
+  return request ? frame_ + 0.5 * (request->open + request->close) : frame_;
 }
 
 void RenderJob::describeFrame() {
   if (!scene_->movingCameras.empty()) {
-    CameraChoice chosen = chooseMovingCamera(job_.request.camera);
+    CameraChoice chosen = chooseMovingCamera(job_.request.camera, shownFrame());
     scene_->camera = chosen.camera;
     scene_->cameraDescription = std::move(chosen.description);
     renderer_->setCamera(scene_->camera);
@@ -805,9 +834,8 @@ void RenderJob::describeFrame() {
   provenance_ = makeProvenance();
 }
 
-// At frame_.
-CameraChoice RenderJob::chooseMovingCamera(const CameraRequest& camera) const {
-  const scene::Pose pose = scene::poseAt(scene_->nodeAnimation.get(), frame_);
+CameraChoice RenderJob::chooseMovingCamera(const CameraRequest& camera, double frame) const {
+  const scene::Pose pose = scene::poseAt(scene_->nodeAnimation.get(), frame);
   scene::Scene view;
   view.name = job_.scene.name;
   for (const scene::Camera& moving : scene_->movingCameras) view.cameras.push_back(scene::cameraAt(moving, pose));
@@ -817,7 +845,7 @@ CameraChoice RenderJob::chooseMovingCamera(const CameraRequest& camera) const {
 
 void RenderJob::showCurrentFrame() {
   if (!scene_ || !scene_->onDevice->animated()) return;
-  scene_->onDevice->setFrame(job_.accumulatesFrames() ? double{std::max(nextFrame_, 1u) - 1.0} : frame_);
+  scene_->onDevice->setFrame(job_.accumulatesFrames() ? double{std::max(nextFrame_, 1u) - 1.0} : shownFrame());
 }
 
 RenderResult RenderJob::result(bool withError) const {

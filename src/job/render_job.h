@@ -6,9 +6,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "base/stopwatch.h"
@@ -158,9 +160,15 @@ class RenderJob {
 
   scene::Scene& editedScene();  // a copy of the loaded scene, for edits
   const scene::Environment& environmentInUse() const;
-  void showFrame();      // moves the scene and the camera to frame_
-  void describeFrame();  // moves only the camera, and updates provenance_
-  CameraChoice chooseMovingCamera(const CameraRequest& camera) const;
+  void showFrame();                                        // moves the scene, the camera and the shutter to frame_
+  void describeFrame();                                    // moves only the camera, and updates provenance_
+  void moveShutter();                                      // of the renderer, to frame_
+  std::optional<render::ShutterInterval> shutter() const;  // at frame_; unset without motion blur
+  std::function<scene::Camera(double frame)> movingCamera() const;  // empty if the camera does not move
+  // The frame that the scene shows between renders, and that makes the description of the camera: frame_, or with a shutter
+  // the middle of its interval.
+  double shownFrame() const;
+  CameraChoice chooseMovingCamera(const CameraRequest& camera, double frame) const;
   void requireRenderer() const;  // throws Error if an edit failed
   void rebuildScene(Observer& observer);
   void editDevice();
@@ -172,7 +180,9 @@ class RenderJob {
   auto reportingHang(Observer& observer, const Function& function);
   std::optional<double> renderFilmBatch(std::uint64_t samples, Observer& observer);
   std::optional<double> renderNextFrame(std::uint64_t count, Observer& observer);
-  void requireAnimation() const;  // throws UsageError if nothing in the scene moves
+  // Throws UsageError if nothing in the scene moves. `consequence`: "all frames would be the same".
+  void requireAnimation(std::string_view consequence) const;
+  void requireFrames() const;  // that animations have
   RenderResult runFilm(const RenderLimits& limits, Observer& observer);
   RenderResult runAnimation(const RenderLimits& limits, Observer& observer);
   bool isFrameWritten(std::uint32_t frame, Observer& observer) const;

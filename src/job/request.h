@@ -71,6 +71,16 @@ struct FrameRequest {
   std::uint32_t lastFrame() const { return firstFrame() + count.value_or(1) - 1; }
 };
 
+// Motion blur: the shutter is open from frame + open to frame + close of each frame, or of FrameRequest::seconds. The unit is
+// the frame, as in RenderMan and Blender, so that the blur in an image does not depend on where the animation begins, and
+// 0.5 is the shutter angle 180° at any number of frames per second.
+struct ShutterRequest {
+  double open = 0;   // frames, [-kMaxShutter, kMaxShutter]
+  double close = 0;  // frames, [open, kMaxShutter]; equal to `open` means an image without blur at frame + open
+  bool operator==(const ShutterRequest&) const = default;
+};
+inline constexpr double kMaxShutter = 1000.0;
+
 // Batches of render::kBatchSamples samples per pixel, both ends included, starting at 0.
 struct BatchRange {
   std::uint64_t first = 0;
@@ -108,7 +118,7 @@ struct RenderRequest {
   scene::LoadOptions load;                          // how `scene`, or the program's own scene, is read
   std::shared_ptr<const scene::Scene> loadedScene;  // instead of `scene`: one in host memory; may be null
   // Name or index of the glTF animation of `scene` that plays, or "none" for the rest pose. Empty means the first one
-  // if `frames` asks for a frame or a time, or if the job is editable; else the rest pose.
+  // if `frames` asks for a frame or a time, with a shutter, or if the job is editable; else the rest pose.
   std::string animation;
   double framesPerSecond = scene::kDefaultFramesPerSecond;  // > 0; of glTF animations and FrameRequest::seconds
   bool editable = false;  // keep what the edits of RenderJob require; needs `loadedScene`
@@ -124,7 +134,8 @@ struct RenderRequest {
   std::vector<std::string> outputs;      // names of the program's optional outputs to render
   RenderLimits limits;
   FrameRequest frames;
-  std::optional<BatchRange> batches;  // render only this part of limits.samples
+  std::optional<ShutterRequest> shutter;  // of an animated scene; unset means that the scene stands still in each frame
+  std::optional<BatchRange> batches;      // render only this part of limits.samples
   CheckpointRequest checkpoint;
   std::filesystem::path film;  // the film file (.qfilm) that will be written; empty if none
   bool overwriteFilm = false;  // allow to lose the samples that `film` holds

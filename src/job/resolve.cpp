@@ -42,6 +42,19 @@ void checkFrames(const RenderRequest& request, const program::Program& program) 
     throw UsageError(fmt::format("time: the program '{}' counts its frames itself; give their number", program.name));
 }
 
+void checkShutter(const RenderRequest& request, const program::Program& program) {
+  if (!request.shutter) return;
+  const auto [open, close] = *request.shutter;
+  for (const double time : {open, close})
+    if (!(std::abs(time) <= kMaxShutter))
+      throw UsageError(
+          fmt::format("shutter {},{}: the times must be {} to {} frames", open, close, -kMaxShutter, kMaxShutter));
+  if (close < open) throw UsageError(fmt::format("shutter {},{}: it closes before it opens", open, close));
+  if (accumulates(program))
+    throw UsageError(
+        fmt::format("shutter: the program '{}' averages its frames itself, without motion blur", program.name));
+}
+
 void checkLimits(const RenderRequest& request, const program::Program& program) {
   const RenderLimits& limits = request.limits;
   const bool averages = accumulates(program);
@@ -101,6 +114,7 @@ ResolvedJob resolve(RenderRequest request, program::Program program) {
   ResolvedJob job;
   job.parameters = parameterValues(program, request);
   checkFrames(request, program);
+  checkShutter(request, program);
   checkLimits(request, program);
   checkFiles(request);
   if (request.loadedScene) {

@@ -53,7 +53,7 @@ void RenderJob::setCamera(const CameraRequest& camera) {
   const uvec2 size = scene_ ? scene_->size : job_.request.size;
   const float aspect = size.y > 0 ? static_cast<float>(size.x) / static_cast<float>(size.y) : 0.0f;
   CameraChoice chosen = scene_ && !scene_->movingCameras.empty()
-                            ? chooseMovingCamera(camera)
+                            ? chooseMovingCamera(camera, shownFrame())
                             : chooseCamera(hostScene(), camera, aspect, job_.request.bounds);
   job_.request.camera = camera;
   if (!renderer_) return;  // update() failed and is repeated by the next run()
@@ -218,11 +218,12 @@ void RenderJob::editDevice() {
 
 void RenderJob::updateFrame() {
   if (!std::exchange(frameOutdated_, false)) return;
-  scene_->onDevice->setFrame(frame_);
+  scene_->onDevice->setFrame(shownFrame());
   if (!scene_->movingCameras.empty()) {
-    scene_->camera = chooseMovingCamera(job_.request.camera).camera;
+    scene_->camera = chooseMovingCamera(job_.request.camera, shownFrame()).camera;
     renderer_->setCamera(scene_->camera);
   }
+  moveShutter();
   provenanceOutdated_ = true;
 }
 

@@ -64,7 +64,7 @@ scene::LoadOptions loadOptions(const RenderRequest& request, bool accumulates) {
   scene::LoadOptions options = request.load;
   options.framesPerSecond = request.framesPerSecond;
   const FrameRequest& frames = request.frames;
-  const bool asksForFrames = frames.first || frames.count || frames.seconds || request.editable;
+  const bool asksForFrames = frames.first || frames.count || frames.seconds || request.shutter || request.editable;
   const bool plays = !request.animation.empty() || (asksForFrames && !accumulates);
   if (plays && request.animation != "none") options.animation = request.animation;
   return options;

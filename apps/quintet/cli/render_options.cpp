@@ -156,7 +156,12 @@ void declareAnimation(OptionTable& table, RenderTexts& texts, RenderOptions& opt
              {.names = "--fps",
               .value = "N",
               .help = "Frames per second of glTF animations, of times, and of videos (default: 24)",
-              .target = &texts.fps}});
+              .target = &texts.fps},
+             {.names = "--shutter",
+              .value = "OPEN,CLOSE",
+              .help = "Motion blur: the shutter is open from OPEN to CLOSE, in frames relative to the frame; 0,0.5 is "
+                      "an angle of 180 degrees (default: none)",
+              .target = &texts.shutter}});
 }
 
 void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options) {
@@ -403,6 +408,7 @@ void convertFrames(const RenderTexts& texts, RenderOptions& options) {
     frames.first = static_cast<std::uint32_t>(*frame);
     frames.count = 1;
   }
+  options.request.shutter = parseShutter("--shutter", texts.shutter);
   frames.seconds = parseReal("--at", texts.at, 0.0, kMaxSeconds);
   if (const auto rate = parseReal("--fps", texts.fps, kMinRate, kMaxRate)) options.request.framesPerSecond = *rate;
   const auto rateFactor = parseInteger("--crf", texts.rateFactor, 0, kMaxRateFactor);

@@ -34,7 +34,7 @@ struct LoadTexts {
 };
 struct RenderTexts {
   LoadTexts load;
-  std::string scene, output, size, region, frame, frames, at, fps, rateFactor, exposure, toneMap, pngBits;
+  std::string scene, output, size, region, frame, frames, at, fps, shutter, rateFactor, exposure, toneMap, pngBits;
   std::string spp, time, untilError, seed, bounces, clamp;
   std::string lookFrom, lookAt, up, fov, aperture, focus, envIntensity, envRotation;
   std::string exrType, exrCompression, exrTiles;
@@ -54,7 +54,8 @@ void declareImage(OptionTable& table, RenderTexts& texts, RenderOptions& options
 void declareSize(OptionTable& table, RenderTexts& texts, RenderOptions& options, const char* regionHelp = nullptr);
 void declareFrame(OptionTable& table, RenderTexts& texts, const char* verb);         // "Render only this frame of …"
 void declareFrames(OptionTable& table, RenderTexts& texts, RenderOptions& options);  // --frames and --all-frames
-void declareAnimation(OptionTable& table, RenderTexts& texts, RenderOptions& options);  // --animation and --fps
+void declareAnimation(OptionTable& table, RenderTexts& texts,
+                      RenderOptions& options);  // --animation, --fps and --shutter
 void declareDisplay(OptionTable& table, RenderTexts& texts, const char* group, const char* otherwise);
 void declareQuality(OptionTable& table, RenderTexts& texts, RenderOptions& options);
 void declareView(OptionTable& table, RenderTexts& texts, RenderOptions& options);

@@ -106,6 +106,18 @@ std::optional<vec3> parsePoint(const std::string& option, const std::string& tex
   return value;
 }
 
+std::optional<job::ShutterRequest> parseShutter(const std::string& option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const std::vector<std::string> parts = splitText(text, ',');
+  const std::optional<double> open = parseNumber<double>(parts.front()), close = parseNumber<double>(parts.back());
+  const auto isValid = [](const std::optional<double>& time) { return time && std::abs(*time) <= job::kMaxShutter; };
+  if (parts.size() != 2 || !isValid(open) || !isValid(close) || *close < *open)
+    fail(option, text,
+         fmt::format("is not OPEN,CLOSE with OPEN <= CLOSE: frames from {} to {}, like 0,0.5", -job::kMaxShutter,
+                     job::kMaxShutter));
+  return job::ShutterRequest{*open, *close};
+}
+
 job::BatchRange parseBatches(const std::string& option, const std::string& text) {
   const std::vector<std::string> parts = splitText(text, '-');
   const std::optional<std::uint64_t> first = parseNumber<std::uint64_t>(parts.front());

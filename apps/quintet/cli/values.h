@@ -32,7 +32,9 @@ render::Region parseRegion(const std::string& option, const std::string& text); 
 // "center", "all", "x,y" or "x,y,width,height", pixels; empty for an empty text.
 std::optional<job::PrintRequest> parsePrint(const std::string& option, const std::string& text);
 std::optional<vec3> parsePoint(const std::string& option, const std::string& text);  // "1,2.5,-3"
-job::BatchRange parseBatches(const std::string& option, const std::string& text);    // "3" or "0-7"
+// "0,0.5" or "-0.25,0.25": open and close, in frames; empty for an empty text.
+std::optional<job::ShutterRequest> parseShutter(const std::string& option, const std::string& text);
+job::BatchRange parseBatches(const std::string& option, const std::string& text);  // "3" or "0-7"
 // "0-7" or "0:7": first frame and number of frames, the last one below `limit`.
 std::pair<std::uint32_t, std::uint32_t> parseFrames(const std::string& option, const std::string& text, double limit);
 std::optional<render::ToneMap> parseToneMap(const std::string& option, const std::string& name);

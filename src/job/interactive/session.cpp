@@ -754,11 +754,13 @@ PixelExplanation Session::explain(uvec2 pixel, std::uint32_t sample) {
 std::optional<Pick> Session::pick(uvec2 pixel) {
   requirePixel(pixel);
   job_->update(*recorder_);
+  job_->showCurrentFrame();
   return interactive::pick(engine_, *job_->scene()->onDevice, camera(), state_.size, pixel, program());
 }
 
 DepthMap Session::depthMap() {
   job_->update(*recorder_);
+  job_->showCurrentFrame();
   return renderDepthMap(engine_, *job_->scene()->onDevice, camera(), state_.size, program());
 }
 

@@ -4,6 +4,8 @@
 #define QUINTET_RENDER_RENDERER_RENDER_SETTINGS_H
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "program/description/parameter.h"
 #include "program/description/program.h"
 #include "render/film/film_state.h"
+#include "render/renderer/shutter.h"
 #include "render/scene/scene_features.h"
 #include "scene/model/scene.h"
 
@@ -26,6 +29,11 @@ struct RenderSettings {
   std::uint32_t height = 720;
   Region region;  // the rendered part of the image; width and height 0 mean the whole image
   scene::Camera camera;
+  // Motion blur: each sample moves the scene, and the camera, to a time of its own (shutter.h). Outputs of pixel centers
+  // (program::OutputPixel::center) show the middle of the interval. Not for programs that accumulate.
+  std::optional<ShutterInterval> shutter;
+  // With a shutter: the camera at a frame of the animation. Empty means that `camera` does not move.
+  std::function<scene::Camera(double frame)> cameraAt;
   std::uint32_t seed = 0;
   // How the sampler distributes samples over neighboring pixels. Like the seed, it decides the values of samples.
   // kIndependentPixels makes pixels independent, as adaptive sampling requires. 0 gives blue-noise errors that are best

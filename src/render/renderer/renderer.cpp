@@ -54,9 +54,11 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
       gpu::makeBuffer(context_, settings_.parameters.pack(parameterTextures_.indices()), 0, "parameters");
 }
 
-void Renderer::uploadFrame() {
+void Renderer::uploadFrame() { uploadFrame(settings_.camera, Stored::all); }
+
+void Renderer::uploadFrame(const scene::Camera& camera, Stored stored) {
   shared::Frame frame = scene_.frameTemplate();
-  frame.camera = makeCamera(settings_.camera, settings_.width, settings_.height);
+  frame.camera = makeCamera(camera, settings_.width, settings_.height);
   frame.width = settings_.width;
   frame.height = settings_.height;
   frame.seed = settings_.seed;
@@ -70,7 +72,29 @@ void Renderer::uploadFrame() {
   if (instrument_) frame.instrument = instrument_->address();
   if (recursion_) frame.instrument = recursion_->address();
   film_.describe(frame);
+  if (stored != Stored::all) {
+    for (std::size_t i = 0; i < program().outputs.size(); ++i)
+      if ((program().outputs[i].pixel == program::OutputPixel::center) != (stored == Stored::centers))
+        frame.outputs[i] = 0;
+  }
+  if (stored == Stored::centers) frame.statistics = frame.log = frame.heat = 0;
   frameBuffer_ = gpu::makeBuffer(context_, std::as_bytes(std::span(&frame, 1)), 0, "frame");
+}
+
+void Renderer::showTime(double frame, Stored stored) {
+  queue_.finish();
+  scene_.setFrame(frame);
+  uploadFrame(settings_.cameraAt ? settings_.cameraAt(frame) : settings_.camera, stored);
+}
+
+void Renderer::showSample(std::uint32_t index, Stored stored) {
+  if (settings_.shutter) showTime(sampleTime(*settings_.shutter, index, settings_.seed), stored);
+}
+
+bool Renderer::storesCenters() const {
+  for (std::size_t i = 0; i < program().outputs.size(); ++i)
+    if (program().outputs[i].pixel == program::OutputPixel::center && film_.stores(i)) return true;
+  return false;
 }
 
 Renderer::Target Renderer::wholeRegion() const {
@@ -143,6 +167,7 @@ bool Renderer::renderFrame(std::uint32_t index, const BatchProgress& progress) {
 }
 
 void Renderer::renderPixel(uvec2 pixel, std::uint32_t index) {
+  showSample(index, Stored::all);
   launch({1, 1, pixel, 0}, 0, 1, {index, index + 1}, recordBegin(), {});
   finishLaunches();
 }
@@ -156,6 +181,17 @@ void Renderer::renderSample(std::uint32_t index) {
 bool Renderer::renderSamples(const Target& target, SampleRange samples, const Record& end,
                              const BatchProgress& progress) {
   const Stopwatch clock;
+  const bool complete = settings_.shutter ? renderTimes(target, samples, end, progress)
+                                          : renderStrips(target, samples, recordBegin(), end, progress);
+  if (!complete) return false;
+  statistics_.batches++;
+  statistics_.samples = film_.counts().samples();
+  statistics_.renderSeconds += clock.seconds();
+  return true;
+}
+
+bool Renderer::renderStrips(const Target& target, SampleRange samples, const Record& begin, const Record& end,
+                            const BatchProgress& progress) {
   const std::uint32_t count = samples.end - samples.begin;
   for (std::uint32_t row = 0; row < target.height;) {
     const std::uint32_t rows = queue_.rows(target.width, target.height - row, count);
@@ -164,16 +200,33 @@ bool Renderer::renderSamples(const Target& target, SampleRange samples, const Re
     const std::uint32_t step = queue_.isShort(static_cast<double>(rows) * target.width * count) ? count : 1;
     for (std::uint32_t s = 0; s < count; s += step) {
       const bool first = row == 0 && s == 0, last = row + rows == target.height && s + step >= count;
-      const std::uint32_t begin = samples.begin + s;
-      launch(target, row, rows, {begin, begin + std::min(step, count - s)}, first ? recordBegin() : Record(),
+      const std::uint32_t sample = samples.begin + s;
+      launch(target, row, rows, {sample, sample + std::min(step, count - s)}, first ? begin : Record(),
              last ? end : Record());
     }
     row += rows;
     if (progress && !progress(static_cast<double>(row) / target.height) && row < target.height) return false;
   }
-  statistics_.batches++;
-  statistics_.samples = film_.counts().samples();
-  statistics_.renderSeconds += clock.seconds();
+  return true;
+}
+
+bool Renderer::renderTimes(const Target& target, SampleRange samples, const Record& end,
+                           const BatchProgress& progress) {
+  const std::uint32_t count = samples.end - samples.begin;
+  // Programs store the values of pixel centers with sample 0, which is therefore rendered a second time.
+  const std::uint32_t passes = samples.begin == 0 && storesCenters() ? count + 1 : count;
+  for (std::uint32_t pass = 0; pass < passes; ++pass) {
+    const bool centers = pass == count;
+    const std::uint32_t sample = centers ? 0 : samples.begin + pass;
+    if (centers)
+      showTime(settings_.shutter->middle(), Stored::centers);
+    else
+      showSample(sample, Stored::samples);
+    const BatchProgress part = [&](double fraction) { return !progress || progress((pass + fraction) / passes); };
+    if (!renderStrips(target, {sample, sample + 1}, pass == 0 ? recordBegin() : Record(),
+                      pass + 1 == passes ? end : Record(), part))
+      return false;
+  }
   return true;
 }
 
@@ -223,6 +276,14 @@ void Renderer::restart() {
 
 void Renderer::setCamera(const scene::Camera& camera) {
   settings_.camera = camera;
+  sceneChanged();
+}
+
+void Renderer::setShutter(const std::optional<ShutterInterval>& shutter,
+                          std::function<scene::Camera(double frame)> cameraAt) {
+  assert(!shutter || (shutter->close > shutter->open && !accumulates()));
+  settings_.shutter = shutter;
+  settings_.cameraAt = std::move(cameraAt);
   sceneChanged();
 }
 

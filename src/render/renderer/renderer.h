@@ -60,6 +60,8 @@ class Renderer {
   // Edits: each discards all samples. Before a change of the scene itself, call finish() or restart(). After DeviceScene::setTransforms,
   // which can change addresses, call sceneChanged(); after setFrame and setMaterial, restart() is enough.
   void setCamera(const scene::Camera& camera);
+  // RenderSettings::shutter and cameraAt. Each launch then calls DeviceScene::setFrame; without a shutter, the caller does.
+  void setShutter(const std::optional<ShutterInterval>& shutter, std::function<scene::Camera(double frame)> cameraAt);
   // For the same program. Throws FileError for an image that cannot be read, and then changes nothing.
   void setParameters(const program::ParameterValues& values);
   void sceneChanged();
@@ -107,7 +109,18 @@ class Renderer {
   };
   using Record = LaunchQueue::Record;
 
+  // The outputs that a launch stores.
+  enum class Stored {
+    all,
+    samples,  // all but those of pixel centers
+    centers,  // only those of pixel centers, without any counts
+  };
   void uploadFrame();
+  void uploadFrame(const scene::Camera& camera, Stored stored);
+  // Moves the scene and the camera to a frame of the animation, and waits for the launches in flight.
+  void showTime(double frame, Stored stored);
+  void showSample(std::uint32_t index, Stored stored);  // the time of a sample, if there is a shutter
+  bool storesCenters() const;
   bool accumulates() const { return program().accumulation == program::Accumulation::program; }
   Target wholeRegion() const;
   Record recordBegin();
@@ -115,8 +128,12 @@ class Renderer {
   void launch(const Target& target, std::uint32_t row, std::uint32_t rows, SampleRange samples, const Record& before,
               const Record& after);
   bool renderFrames(std::uint32_t count, const BatchProgress& progress);
-  // Renders a batch in strips.
   bool renderSamples(const Target& target, SampleRange samples, const Record& end, const BatchProgress& progress);
+  // The parts of renderSamples(): in strips, all samples at the time that the scene shows; and each sample at its own
+  // time. They run `begin` before the first launch and `end` after the last one.
+  bool renderStrips(const Target& target, SampleRange samples, const Record& begin, const Record& end,
+                    const BatchProgress& progress);
+  bool renderTimes(const Target& target, SampleRange samples, const Record& end, const BatchProgress& progress);
   // Waits for the launches in flight, with their time limit, so that a hanging launch is detected. The wait counts as
   // render time.
   void finishLaunches() const;

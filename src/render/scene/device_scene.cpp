@@ -256,7 +256,7 @@ void DeviceScene::setFrame(double frame) {
 void DeviceScene::showFrame(double frame) {
   shownFrame_ = frame;
   const scene::Pose pose = scene::poseAt(nodeAnimation_.get(), frame);
-  const scene::Pose before = scene::poseAt(nodeAnimation_.get(), std::max(0.0, frame - 1.0));
+  const scene::Pose before = scene::poseAt(nodeAnimation_.get(), std::max(frame - 1.0, std::min(frame, 0.0)));
   if (!deformed_.empty()) showDeformation(pose);
   if (!deformed_.empty() || topLevel_->animated()) topLevel_->setPose(pose, before);
   if (!lightBuilder_ || !lightBuilder_->hasMovingLights()) return;

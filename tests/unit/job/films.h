@@ -39,6 +39,7 @@ inline Provenance makeProvenance() {
   p.plannedSamples = 16;
   p.adaptive = false;
   p.transparent = true;
+  p.shutter = "-0.25,0.25";
   p.outputs = "color, albedo";
   p.commandLine = "quintet render 'a b.glb' --spp 16";
   p.scene = "a b.glb";

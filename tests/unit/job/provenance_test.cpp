@@ -43,6 +43,15 @@ TEST(Provenance, AbsentFactsStayAbsent) {
   }
 }
 
+// Films of renders without a shutter are the same as before there were shutters.
+TEST(Provenance, FilmsHaveNoShutterWithoutMotionBlur) {
+  Provenance p = test::makeProvenance();
+  EXPECT_EQ(*render::findFact(toFacts(p, Role::identity), "shutter"), "-0.25,0.25");
+  p.shutter.clear();
+  EXPECT_EQ(render::findFact(toFacts(p, Role::identity), "shutter"), nullptr);
+  EXPECT_THAT(metadataOf(p), Not(Contains(Pair("Shutter", testing::_))));
+}
+
 TEST(Provenance, NamesAndKeysAreUnique) {
   std::set<std::string_view> names[2], json, metadata;
   for (const ProvenanceField& field : provenanceFields()) {

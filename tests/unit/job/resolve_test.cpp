@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "program/load.h"
@@ -115,6 +117,27 @@ TEST(Resolve, ChecksTimesAndFrames) {
               HasSubstr("share one checkpoint"));
 }
 
+TEST(Resolve, ChecksTheShutter) {
+  const auto problem = [](double open, double close, const program::Program& program = pathTracer()) -> std::string {
+    RenderRequest request = makeRequest();
+    request.shutter = ShutterRequest{open, close};
+    try {
+      resolve(request, program);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(problem(0, 0.5), "");
+  EXPECT_EQ(problem(-0.25, 0.25), "");
+  EXPECT_EQ(problem(0.5, 0.5), "") << "no blur";
+  EXPECT_EQ(problem(0.5, 0.25), "shutter 0.5,0.25: it closes before it opens");
+  EXPECT_THAT(problem(0, 1001), HasSubstr("-1000 to 1000 frames"));
+  EXPECT_THAT(problem(std::numeric_limits<double>::quiet_NaN(), 0), HasSubstr("-1000 to 1000 frames"));
+  EXPECT_THAT(problem(0, std::numeric_limits<double>::infinity()), HasSubstr("-1000 to 1000 frames"));
+  EXPECT_THAT(problem(0, 0.5, lecture()), HasSubstr("averages its frames itself"));
+}
+
 // The rest pose is loaded unless the request needs an animation.
 TEST(Resolve, LoadsAnAnimationOnRequest) {
   const auto animation = [](const auto& change, bool accumulates = false) {
@@ -128,6 +151,7 @@ TEST(Resolve, LoadsAnAnimationOnRequest) {
   EXPECT_EQ(animation(frame), "");
   EXPECT_EQ(animation(frame, true), std::nullopt) << "the program counts its frames itself";
   EXPECT_EQ(animation([](RenderRequest& r) { r.frames.seconds = 0; }), "");
+  EXPECT_EQ(animation([](RenderRequest& r) { r.shutter = ShutterRequest{0, 0.5}; }), "");
   EXPECT_EQ(animation([](RenderRequest& r) { r.editable = true; }), "");
   EXPECT_EQ(animation([](RenderRequest& r) { r.animation = "Walk"; }), "Walk");
   EXPECT_EQ(animation([](RenderRequest& r) { r.animation = "Walk"; }, true), "Walk");
