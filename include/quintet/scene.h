@@ -112,6 +112,7 @@ struct Material {
   float iridescenceThicknessMaximum = 400;       // nanometers, >= 0; where the texture is 1, and without a texture
   TextureUse iridescenceThicknessTexture{};      // g
   float dispersion = 0;                          // 20 / Abbe number, >= 0; colors refract differently in solids
+  float dielectricPriority = 0;  // where solids overlap, the one with the highest priority fills the space
   bool operator==(const Material&) const = default;
 };
 

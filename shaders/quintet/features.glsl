@@ -49,6 +49,11 @@ const bool kHasDispersion = false;  // solids refract all colors alike
 #else
 const bool kHasDispersion = true;
 #endif
+#ifdef QUINTET_NO_NESTED_MEDIA
+const bool kHasNestedMedia = false;  // all solids have the same priority: a path is in one solid at a time
+#else
+const bool kHasNestedMedia = true;
+#endif
 #ifdef QUINTET_NO_TRIANGLE_LIGHTS
 const bool kHasTriangleLights = false;
 #else

@@ -72,6 +72,7 @@ void copyMaterial(To& to, const From& from, const Value& value, const Use& use) 
   to.iridescenceThicknessMaximum = from.iridescenceThicknessMaximum;
   use(to.iridescenceThicknessTexture, from.iridescenceThicknessTexture);
   to.dispersion = from.dispersion;
+  to.dielectricPriority = from.dielectricPriority;
 }
 
 Material toPublic(const scene::Material& material) {

@@ -265,7 +265,7 @@ class TreeText {
     Parts choice;
     if (!e.text("lobe").empty()) choice.add(e.text("lobe") + " lobe").add("chosen with probability", e, "probability");
     if (e.flag("straight"))
-      choice.add("straight through a pane");
+      choice.add("straight through");
     else if (e.flag("transmitted"))
       choice.add("transmitted");
     if (!e.flag("useful")) choice.add("contributes nothing");

@@ -65,7 +65,7 @@ std::string lightSummary(const ExplainedEvent& e) {
 }
 
 std::string bsdfSummary(const ExplainedEvent& e) {
-  std::string text = e.flag("straight")       ? "straight through a pane"
+  std::string text = e.flag("straight")       ? "straight through"
                      : e.text("lobe").empty() ? ""
                      : e.flag("transmitted")  ? e.text("lobe") + " lobe, transmitted"
                                               : e.text("lobe") + " lobe";

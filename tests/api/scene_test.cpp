@@ -67,7 +67,8 @@ TEST(ApiScene, ReturnsMaterialsAsTheyWereAdded) {
       .iridescenceThicknessMinimum = 120,
       .iridescenceThicknessMaximum = 480,
       .iridescenceThicknessTexture = {.texture = texture, .rotation = 0.5f},
-      .dispersion = 0.3f};
+      .dispersion = 0.3f,
+      .dielectricPriority = 2};
   EXPECT_EQ(scene.material(scene.addMaterial(material)), material);
 }
 

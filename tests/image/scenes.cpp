@@ -179,6 +179,23 @@ SceneBuilder roughGlass() {
   return scene;
 }
 
+// Colored water in a frosted bowl, with a ball of glass that reaches out of it and light in the water. The bowl and the
+// ball diffuse the light, so that light sampling matters in all media.
+SceneBuilder nestedSolids() {
+  SceneBuilder scene = stage(vec3(3.0f), vec3(0.6f));
+  scene::Material bowl = clearGlass(1.5f, 1.0f), water = clearGlass(1.33f, 1.0f),
+                  ball = plastic({0.8f, 0.9f, 0.7f}, 0.4f);
+  bowl.roughness = 0.4f, bowl.dielectricPriority = 1.0f;
+  water.attenuationColor = {0.3f, 0.7f, 0.9f}, water.attenuationDistance = 0.5f;
+  ball.diffuseTransmission = 1.0f, ball.thickness = 1.0f, ball.ior = 1.7f, ball.dielectricPriority = 2.0f;
+  ball.attenuationColor = {0.9f, 0.6f, 0.3f}, ball.attenuationDistance = 0.4f;
+  scene.add(box({-1, 0.05f, -0.6f}, {1, 0.4f, 0.6f}), bowl);
+  scene.add(box({-0.9f, 0.3f, -0.5f}, {0.9f, 1.1f, 0.5f}), water);
+  scene.add(smooth(sphere({0.4f, 0.9f, 0}, 0.45f, 3), {0.4f, 0.9f, 0}), ball);
+  scene.add(quad({-0.7f, 0.6f, -0.3f}, {0.6f, 0, 0}, {0, 0.4f, 0.1f}), emitter({1, 2, 1}));
+  return scene;
+}
+
 // A sky with a large, soft sun that casts shadows on diffuse and shiny things.
 SceneBuilder sunAndSky() {
   SceneBuilder scene;
@@ -377,6 +394,7 @@ std::span<const ImageScene> imageScenes() {
       {"translucent", translucent, 32, 20, 4, 128, 256, false},
       {"optical_effects", opticalEffects, 32, 20, 4, 128, 256, false},
       {"rough_glass", roughGlass, 32, 20, 4, 128, 256, false},
+      {"nested_solids", nestedSolids, 32, 20, 4, 128, 256, false},
       {"sun_and_sky", sunAndSky, 32, 20, 4, 256, 1024, true},
       {"solids", solids, 32, 20, 4, 128, 512, false},
       {"alpha", alpha, 32, 20, 4, 128, 256, false},

@@ -67,6 +67,9 @@ void materialProperties(ViewState& state, std::size_t index) {
     edit.color("Attenuation color", "attenuationColor", material.attenuationColor, "Linear Rec. 709");
     edit.number("Dispersion", "dispersion", material.dispersion, {.least = 0.0, .most = 2.0},
                 "20 / Abbe number; solids refract colors differently");
+    edit.number("Dielectric priority", "dielectricPriority", material.dielectricPriority,
+                {.least = -10.0, .most = 10.0},
+                "Where solids overlap, the one with the highest priority fills the space");
   }
   edit.number("Specular", "specular", material.specular, kUnit, "Strength of the dielectric reflection");
   edit.number("Clearcoat", "clearcoat", material.clearcoat, kUnit, "Strength of the clear coat");

@@ -18,7 +18,8 @@ struct BaseLayer {
   vec2 alpha;          // GGX widths along x and y, at least kDeltaAlpha
   bool delta;          // the surface is smooth
   bool entering;       // wo is on the outside
-  float ior;           // at least 1
+  float ior;           // of the denser side over the other, at least 1
+  bool intoDenser;     // wi is in the denser medium if it is refracted
   bool refractive;     // transmission is that of a solid (DielectricLobe), not of a thin wall (ThinLobe)
   bool bends;          // refractive, and the ior is not 0
   bool solid;          // light enters a closed volume here, by refraction or diffusely

@@ -57,7 +57,7 @@ DielectricLobe makeDielectric(BaseLayer base, vec2 glass) {
   lobe.f0 = base.clearF0;
   lobe.specular = base.bends ? base.specular : 0.0;
   lobe.film = base.film;
-  lobe.eta = base.entering ? base.ior : 1.0 / base.ior;
+  lobe.eta = base.intoDenser ? base.ior : 1.0 / base.ior;
   lobe.alpha = base.alpha;
   return lobe;
 }

@@ -17,7 +17,7 @@ const uint kChannelOnly = 4u;
 
 // Returns true if refraction depends on the channel. Thin walls do not refract.
 bool isDispersive(BsdfParameters p) {
-  return kHasDispersion && p.dispersion > 0.0 && !p.thin && p.transmission > 0.0 && p.ior >= 1.0;
+  return kHasDispersion && p.dispersion > 0.0 && !p.thin && p.transmission > 0.0 && p.ior > 0.0;
 }
 
 // Returns the index of refraction for a channel, at least 1.
@@ -25,11 +25,16 @@ float dispersedIor(float ior, float dispersion, uint channel) {
   return max(ior + (float(channel) - 1.0) * 0.025 * dispersion * (ior - 1.0), 1.0);
 }
 
+// Light that the surface transmits keeps only the path's channel.
+void chooseChannel(inout BsdfParameters p, uint channel) {
+  if ((channel & kChannelOnly) == 0u) p.transmitted = 3.0 * vec3(equal(uvec3(channel & 3u), uvec3(0u, 1u, 2u)));
+}
+
 // Gives a dispersive material the index for the path's channel.
 void disperse(inout BsdfParameters p, uint channel) {
   if (!isDispersive(p)) return;
   p.ior = dispersedIor(p.ior, p.dispersion, channel & 3u);
-  if ((channel & kChannelOnly) == 0u) p.transmitted = 3.0 * vec3(equal(uvec3(channel & 3u), uvec3(0u, 1u, 2u)));
+  chooseChannel(p, channel);
 }
 
 // Returns the state of a path that a surface has transmitted.

@@ -32,7 +32,7 @@ struct BsdfParameters {
   float metallic;
   float alpha;           // roughness squared; GGX width along y
   float transmission;
-  float ior;             // the material's, at least 1; 0 means that the reflectance is specular * specularColor
+  float ior;             // relative to the medium outside, above 0; 0 means that the reflectance is specular * specularColor
   bool entering;         // wo is on the outside
   bool thin;             // a thin wall, not a solid: transmission does not refract
   float specular;
@@ -115,11 +115,13 @@ BaseLayer makeBaseLayer(BsdfParameters p, vec3 wo) {
   base.alpha = max(alpha, vec2(kDeltaAlpha));
   base.delta = alpha.x < kDeltaAlpha;  // the larger width
   base.entering = p.entering;
-  base.ior = max(p.ior, 1.0);
+  bool rarer = kHasNestedMedia && p.ior > 0.0 && p.ior < 1.0;  // than the medium outside
+  base.ior = rarer ? 1.0 / p.ior : max(p.ior, 1.0);
+  base.intoDenser = p.entering != rarer;
   base.refractive = kHasSolidTransmission && base.clear > 0.0 && !(kHasThinTransmission && p.thin);
   // The specular lobe reflects for the metal and for the part of the dielectric that DielectricLobe does not cover. With
   // ior 0, DielectricLobe reflects and bends nothing: what the layer does not reflect passes straight on.
-  base.bends = base.refractive && p.ior >= 1.0;
+  base.bends = base.refractive && p.ior > 0.0;
   base.solid = kHasSolidTransmission && !p.thin && base.clear + base.translucent > 0.0;
   base.reflecting = base.bends ? base.opaque : dielectric;
 

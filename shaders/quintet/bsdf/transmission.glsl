@@ -23,9 +23,9 @@ TransmissionLobe makeTransmission(BaseLayer base, vec3 wo, out float albedo) {
   // Refraction between nearly equal indices is too narrow for its half vector. It counts as a delta.
   lobe.delta = base.delta || (base.refractive && (base.ior < 1.01 || base.alpha.y * (base.ior - 1.0) < 1e-5));
   vec2 glass = vec2(1.0);
-  if (base.refractive && !lobe.delta) glass = albedoGlass(wo.z, ggxMeanWidth(base.alpha), base.ior, base.entering);
+  if (base.refractive && !lobe.delta) glass = albedoGlass(wo.z, ggxMeanWidth(base.alpha), base.ior, base.intoDenser);
   if (base.refractive && !lobe.delta && base.roughness.anisotropic)
-    glass = anisotropicGlass(wo, base.alpha, base.entering ? base.ior : 1.0 / base.ior);
+    glass = anisotropicGlass(wo, base.alpha, base.intoDenser ? base.ior : 1.0 / base.ior);
   lobe.dielectric = makeDielectric(base, glass);
   float tint = luminance(base.color);
   float glassAlbedo = mix(tint, 1.0, max(fresnelDielectric(wo.z, lobe.dielectric.eta), 0.1));

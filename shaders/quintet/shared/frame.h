@@ -91,6 +91,9 @@ struct RayKinds {
 };
 QT_SHARED_SIZE(RayKinds, 24);
 
+// Number of solids that a path can be in at the same time (quintet/media.glsl).
+QT_CONSTANT kMaxMedia = 4u;
+
 QT_CONSTANT kNoLight = 0xFFFFFFFFu;
 
 // Ids that pathtracer counts (pixel = "coverage"): this + index. The bit pattern is a normal float, which no device
@@ -131,8 +134,10 @@ struct Frame {
   Address previousInstances;  // InstanceData[] of the previous frame of an animation; 0: no motion
   Address log;          // LogHeader and its words (shared/log.h); 0: no log
   Address heat;         // HeatPixel[filmWidth · filmHeight] (shared/heat.h); 0: no heat maps
+  // Solids around the camera: 1 + index of the material, from the inside to the outside; 0: no further one.
+  uint cameraMedia[kMaxMedia];
 };
-QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 32);
+QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 32 + 16);
 
 // Adaptive sampling divides the image into squares of kTileSize pixels, starting at the film's first pixel. Each has
 // two cells, the pixels with even and with odd x + y. Each cell has its own number of samples.

@@ -25,6 +25,7 @@ QT_CONSTANT kMaterialUnlit = 4u;        // base color is the outgoing radiance
 QT_CONSTANT kMaterialThin = 8u;         // transmission without refraction (no volume)
 QT_CONSTANT kMaterialEmissive = 16u;    // emissive factor is not zero
 QT_CONSTANT kMaterialPane = 64u;        // thin, and smooth in some places: can transmit light without deflection
+QT_CONSTANT kMaterialSolid = 128u;       // light enters a closed solid: a medium (quintet/media.glsl)
 QT_CONSTANT kMaterialDoubleSided = 32u;  // informative only: every surface is rendered on both sides
 
 // Bit kMaterialTextureShift + k of the flags is set if the k-th texture of MaterialData exists.
@@ -47,7 +48,7 @@ QT_CONSTANT kTextureAnisotropy = 14;
 QT_CONSTANT kTextureIridescence = 15;
 QT_CONSTANT kTextureIridescenceThickness = 16;
 QT_CONSTANT kTextureCount = 17;
-QT_CONSTANT kMaterialTextureOffset = 160;  // byte offset of the first texture in MaterialData
+QT_CONSTANT kMaterialTextureOffset = 164;  // byte offset of the first texture in MaterialData
 
 struct MaterialData {
   vec4 baseColor;
@@ -76,6 +77,7 @@ struct MaterialData {
   float iridescenceThicknessMinimum;  // nanometers
   float iridescenceThicknessMaximum;  // nanometers
   float dispersion;          // 20 / Abbe number
+  float dielectricPriority;  // of solids that overlap, the medium is that of the highest priority
   TextureData baseColorTexture;
   TextureData metallicRoughnessTexture;
   TextureData normalTexture;

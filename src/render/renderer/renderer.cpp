@@ -57,6 +57,7 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
 void Renderer::uploadFrame() { uploadFrame(settings_.camera, Stored::all); }
 
 void Renderer::uploadFrame(const scene::Camera& camera, Stored stored) {
+  cameraMedia_ = mediaAround(camera);
   shared::Frame frame = scene_.frameTemplate();
   frame.camera = makeCamera(camera, settings_.width, settings_.height);
   frame.width = settings_.width;
@@ -71,6 +72,7 @@ void Renderer::uploadFrame(const scene::Camera& camera, Stored stored) {
   frame.heat = heat_ ? heat_.address() : 0;
   if (instrument_) frame.instrument = instrument_->address();
   if (recursion_) frame.instrument = recursion_->address();
+  std::ranges::copy(cameraMedia_, frame.cameraMedia);
   film_.describe(frame);
   if (stored != Stored::all) {
     for (std::size_t i = 0; i < program().outputs.size(); ++i)
@@ -95,6 +97,10 @@ bool Renderer::storesCenters() const {
   for (std::size_t i = 0; i < program().outputs.size(); ++i)
     if (program().outputs[i].pixel == program::OutputPixel::center && film_.stores(i)) return true;
   return false;
+}
+
+Media Renderer::mediaAround(const scene::Camera& camera) const {
+  return scene_.mediaAt(vec3(camera.worldFromCamera[3]));
 }
 
 Renderer::Target Renderer::wholeRegion() const {
@@ -272,6 +278,7 @@ void Renderer::restart() {
   statistics_.batches = 0;
   nextBatch_ = 0;
   if (recursion_) tracesSkippedBefore_ = recursion_->skippedTraces();
+  if (mediaAround(settings_.camera) != cameraMedia_) uploadFrame();  // the scene has moved
 }
 
 void Renderer::setCamera(const scene::Camera& camera) {

@@ -121,6 +121,7 @@ class Renderer {
   void showTime(double frame, Stored stored);
   void showSample(std::uint32_t index, Stored stored);  // the time of a sample, if there is a shutter
   bool storesCenters() const;
+  Media mediaAround(const scene::Camera& camera) const;  // the solids that contain it
   bool accumulates() const { return program().accumulation == program::Accumulation::program; }
   Target wholeRegion() const;
   Record recordBegin();
@@ -146,6 +147,7 @@ class Renderer {
   rt::ShaderBindingTable table_;
   Film film_;
   gpu::Buffer frameBuffer_;
+  Media cameraMedia_{};     // as in frameBuffer_
   gpu::Buffer tileBuffer_;  // tiles of the latest adaptive batch
   ParameterTextures parameterTextures_;
   gpu::Buffer parameterBuffer_;

@@ -46,7 +46,7 @@ void DeformedMeshes::upload(const Mesh& mesh, gpu::Uploader& uploader) const {
   const std::size_t first = mesh.upload->firstGeometry[mesh.index];
   for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
     const scene::Geometry& geometry = mesh.geometries[g];
-    const VertexSlots& slots = mesh.upload->slots[first + g];
+    const GeometrySlots& slots = mesh.upload->slots[first + g];
     replaceArray(*mesh.upload, slots.positions, std::as_bytes(std::span(geometry.positions)), uploader);
     replaceArray(*mesh.upload, slots.normals, std::as_bytes(std::span(geometry.normals)), uploader);
     replaceArray(*mesh.upload, slots.tangents, std::as_bytes(std::span(geometry.tangents)), uploader);

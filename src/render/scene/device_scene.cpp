@@ -50,6 +50,7 @@ DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scen
       options_(options),
       nodeAnimation_(scene.nodeAnimation),
       deformed_(context),
+      cameraMedia_(scene, [this](std::size_t mesh, std::size_t geometry) { return downloadMesh(mesh, geometry); }),
       animated_(scene::isAnimated(scene)),
       facts_(check::sceneFacts(scene)) {
   const Stopwatch watch;
@@ -281,6 +282,24 @@ void DeviceScene::showDeformation(const scene::Pose& pose) {
                           first * sizeof(shared::GeometryData));
   };
   deformed_.setPose(*nodeAnimation_, pose, updateMaps);
+  cameraMedia_.deform();
+}
+
+MeshArrays DeviceScene::downloadMesh(std::size_t mesh, std::size_t geometry) const {
+  const std::size_t k = geometry_.firstGeometry[mesh] + geometry;
+  MeshArrays arrays;
+  arrays.positions.resize(geometry_.arrays[k].positions.size());
+  arrays.triangles.resize(geometry_.arrays[k].triangles.size());
+  const auto download = [&](auto& values, const ArraySlot& slot) {
+    geometry_.buffers[slot.buffer].download(std::as_writable_bytes(std::span(values)), slot.offset);
+  };
+  if (!arrays.positions.empty()) download(arrays.positions, geometry_.slots[k].positions);
+  if (!arrays.triangles.empty()) download(arrays.triangles, geometry_.slots[k].triangles);
+  return arrays;
+}
+
+Media DeviceScene::mediaAt(const vec3& point) {
+  return cameraMedia_.any() ? cameraMedia_.at(point, topLevel_->worldFromObject()) : Media{};
 }
 
 void DeviceScene::updateLights() {
@@ -344,8 +363,10 @@ bool DeviceScene::setMaterial(std::size_t index, const scene::Material& material
     return found.value_or(shared::kNoTexture);
   };
   const shared::MaterialData data = makeMaterial(material, textureIndex);
-  if (complete) materialTable_.upload(std::as_bytes(std::span(&data, 1)), index * sizeof(data));
-  return complete;
+  if (!complete) return false;
+  materialTable_.upload(std::as_bytes(std::span(&data, 1)), index * sizeof(data));
+  cameraMedia_.setMaterial(index, material);
+  return true;
 }
 
 }  // namespace quintet::render

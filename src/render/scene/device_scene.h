@@ -17,6 +17,7 @@
 #include "program/scene_facts.h"
 #include "quintet/shared/frame.h"
 #include "render/lights/light_table.h"
+#include "render/scene/camera_media.h"
 #include "render/scene/deformed_meshes.h"
 #include "render/scene/geometry_upload.h"
 #include "render/scene/scene_features.h"
@@ -101,6 +102,8 @@ class DeviceScene {
   void updateLights();
   // What defines() is made of, after edits.
   void setFeatures(const SceneFeatures& features) { defines_ = shaderDefines(features, context_.info().quirks); }
+  // Returns the solids around a point in world space at the current frame, with the current materials.
+  Media mediaAt(const vec3& point);
   bool animated() const { return animated_; }  // keyframes, or a glTF animation (scene::isAnimated)
   const DeformationStatistics& deformationStatistics() const { return deformed_.statistics(); }
 
@@ -118,6 +121,7 @@ class DeviceScene {
   void movePunctualLights(const scene::Pose& pose);  // in the builder
   void uploadLightTable(LightTable& table);
   void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
+  MeshArrays downloadMesh(std::size_t mesh, std::size_t geometry) const;
   bool needsSingleAnyHit(const program::GeometryFacts& geometry) const;
   // Returns the geometries of a mesh. The boxes of primitive sets are stored in `boxes`, which must live until the
   // build ends.
@@ -146,6 +150,7 @@ class DeviceScene {
   std::optional<TopLevel> topLevel_;
   std::shared_ptr<const scene::NodeAnimation> nodeAnimation_;  // null if no glTF animation plays
   DeformedMeshes deformed_;
+  CameraMedia cameraMedia_;
   std::vector<scene::Light> punctual_;  // at frame 0, if one follows a node
   bool animated_ = false;
   double shownFrame_ = 0;

@@ -103,7 +103,7 @@ std::vector<VkDeviceSize> arraySizes(const scene::Scene& scene) {
 }
 
 shared::GeometryData uploadTriangles(Arena& arena, const scene::Scene& scene, const scene::Geometry& g,
-                                     GeometryArrays& arrays, VertexSlots& slots) {
+                                     GeometryArrays& arrays, GeometrySlots& slots) {
   shared::GeometryData data{};
   const UploadedArray<vec3> positions = arena.add(g.positions);
   const UploadedArray<uvec3> triangles = arena.add(g.triangles);
@@ -112,7 +112,7 @@ shared::GeometryData uploadTriangles(Arena& arena, const scene::Scene& scene, co
   data.triangles = triangles.address;
   const UploadedArray<vec3> normals = arena.add(g.normals);
   const UploadedArray<vec4> tangents = arena.add(g.tangents);
-  slots = {positions.slot, normals.slot, tangents.slot};
+  slots = {positions.slot, normals.slot, tangents.slot, triangles.slot};
   data.normals = normals.address;
   data.tangents = tangents.address;
   data.uvs[0] = arena.add(g.uvs[0]).address;

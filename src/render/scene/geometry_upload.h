@@ -27,9 +27,9 @@ struct ArraySlot {
   VkDeviceSize offset = 0;
 };
 
-// The arrays of a geometry that a deformation changes.
-struct VertexSlots {
-  ArraySlot positions, normals, tangents;
+// The arrays of a geometry that a deformation changes, and its triangles.
+struct GeometrySlots {
+  ArraySlot positions, normals, tangents, triangles;
 };
 
 // Geometries and primitive sets in the order of hit records. The caller sets the addresses of primitive maps.
@@ -37,7 +37,7 @@ struct GeometryUpload {
   std::deque<gpu::Buffer> buffers;
   std::vector<shared::GeometryData> geometries;
   std::vector<GeometryArrays> arrays;        // parallel to `geometries`; empty for primitive sets
-  std::vector<VertexSlots> slots;            // parallel to `geometries`; not used for primitive sets
+  std::vector<GeometrySlots> slots;          // parallel to `geometries`; not used for primitive sets
   std::vector<std::uint32_t> firstGeometry;  // per mesh
   std::uint64_t bytes = 0;
 };

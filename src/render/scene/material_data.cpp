@@ -36,6 +36,7 @@ std::uint32_t materialFlags(const scene::Material& m) {
   if (glm::any(glm::greaterThan(m.emissive, vec3(0.0f)))) flags |= shared::kMaterialEmissive;
   if (m.doubleSided) flags |= shared::kMaterialDoubleSided;
   if (scene::isPane(m)) flags |= shared::kMaterialPane;
+  if (scene::isMedium(m)) flags |= shared::kMaterialSolid;
   return flags;
 }
 
@@ -69,6 +70,7 @@ shared::MaterialData makeMaterial(const scene::Material& m, const TextureIndex& 
   data.iridescenceThicknessMinimum = m.iridescenceThicknessMinimum;
   data.iridescenceThicknessMaximum = m.iridescenceThicknessMaximum;
   data.dispersion = m.thickness > 0.0f ? m.dispersion : 0.0f;
+  data.dielectricPriority = m.dielectricPriority;
   static_assert(scene::kMaterialTextures.size() == shared::kTextureCount + 1);
   shared::TextureData* textures = &data.baseColorTexture;
   for (std::uint32_t k = 0; k < shared::kTextureCount; ++k) {

@@ -58,6 +58,8 @@ class MaterialReader {
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_iridescence")) readIridescence(*e);
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_dispersion"))
       material_.dispersion = range(numberOf(*e, "dispersion", 0.0), 0.0f, kHuge, "dispersion");
+    if (from_.extras.IsObject())
+      material_.dielectricPriority = static_cast<float>(numberOf(from_.extras, "dielectric_priority", 0.0));
     material_.unlit = findExtension(from_.extensions, "KHR_materials_unlit") != nullptr;
     return std::move(material_);
   }

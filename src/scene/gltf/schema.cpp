@@ -36,6 +36,7 @@ enum class PropertyKind {
   object,
   objects,
   any,     // of any type
+  extras,  // of any type; the result has its numbers that the table names
   unread,  // of any type, and not in the result
 };
 
@@ -288,6 +289,8 @@ constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_pbrSpecularGlossiness", kSpecularGlossiness),
     metadata(),
 };
+constexpr std::string_view kApplicationData = "application-specific data";
+constexpr Property kMaterialExtras[] = {number("dielectric_priority")};
 constexpr Property kMaterial[] = {
     string("name"),
     object("pbrMetallicRoughness", kMetallicRoughness),
@@ -299,6 +302,7 @@ constexpr Property kMaterial[] = {
     number("alphaCutoff"),
     boolean("doubleSided"),
     object("extensions", kMaterialExtensions),
+    {.name = "extras", .kind = PropertyKind::extras, .object = kMaterialExtras},
 };
 
 constexpr Property kImage[] = {index("bufferView", kBufferViews), string("uri"), string("mimeType"), string("name"),
@@ -410,6 +414,10 @@ class Checker {
         const Location inside = location[property.name];
         noteUnread(UnreadProperty::Cause::noEffect, properties, inside, property.reason);
         if (property.kind == PropertyKind::unread) continue;
+        if (property.kind == PropertyKind::extras) {
+          out["extras"] = extras(*found, property, properties, inside);
+          continue;
+        }
         out[std::string(property.name)] = value(*found, property, inside);
         if (location.key == "extensions") noteExtension(inside);
       } else if (property.required) {
@@ -417,6 +425,20 @@ class Checker {
       }
     }
     if (known < in.size()) noteUnknown(in, properties, location);
+    return out;
+  }
+
+  // Application-specific data can be anything, so nothing in it is an error.
+  json extras(const json& in, const Property& property, std::span<const Property> properties,
+              const Location& location) {
+    json out = json::object();
+    for (const Property& member : property.object) {
+      const auto found = in.is_object() ? in.find(member.name) : in.end();
+      if (found != in.end() && found->is_number() && std::isfinite(found->get<float>()))
+        out[std::string(member.name)] = found->get<double>();
+    }
+    if (!in.is_object() || out.size() < in.size())
+      noteUnread(UnreadProperty::Cause::noEffect, properties, location, kApplicationData);
     return out;
   }
 
@@ -445,7 +467,7 @@ class Checker {
       if (std::ranges::find(properties, std::string_view(key), &Property::name) != properties.end()) continue;
       const Location inside = location[std::string_view(key)];
       if (key == "extras")
-        noteUnread(Cause::noEffect, properties, inside, "application-specific data");
+        noteUnread(Cause::noEffect, properties, inside, kApplicationData);
       else if (location.key == "extensions")
         noteUnread(Cause::extension, properties, inside, {});
       else if (key == "extensions" && element.is_object())
@@ -480,6 +502,7 @@ class Checker {
       case PropertyKind::indexMaps:
       case PropertyKind::objects: return array(in, property, location);
       case PropertyKind::any: return std::move(in);
+      case PropertyKind::extras:
       case PropertyKind::unread: break;
     }
     return {};

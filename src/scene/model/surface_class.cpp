@@ -52,6 +52,10 @@ bool isPane(const Material& m) {
   return m.transmission > 0.0f && m.thickness <= 0.0f && smooth && !metal && !m.unlit;
 }
 
+bool isMedium(const Material& m) {
+  return (m.transmission > 0.0f || m.diffuseTransmission > 0.0f) && m.thickness > 0.0f && !m.unlit;
+}
+
 bool isPane(const Scene& scene, const Geometry& geometry) {
   const Material* m = find(scene, geometry.material);
   return m && isPane(*m);

@@ -3,8 +3,9 @@
 //   alpha-tested     coverage below 1 is possible (alpha mode mask or blend)
 //   pane             thin-walled (KHR_materials_transmission with thickness 0) and smooth, so that light can pass
 //                    straight through, such as window glass
+//   medium           the boundary of a closed solid that light enters, such as glass or water
 //   shadow-tinting   a shadow ray can pass and keep a part of its light: panes and alpha mode blend
-// A surface in none of these classes needs no any-hit shader.
+// A surface that is neither alpha-tested nor a pane nor shadow-tinting needs no any-hit shader.
 #ifndef QUINTET_SCENE_MODEL_SURFACE_CLASS_H
 #define QUINTET_SCENE_MODEL_SURFACE_CLASS_H
 
@@ -20,6 +21,9 @@ bool needsAlphaTest(const Scene& scene, const PrimitiveSet& set);
 bool isPane(const Material& material);
 bool isPane(const Scene& scene, const Geometry& geometry);
 bool isPane(const Scene& scene, const PrimitiveSet& set);
+
+// True if light can enter a closed solid of this material: transmission, also diffuse, and a thickness.
+bool isMedium(const Material& material);
 
 // True if the surface is a pane, or has alpha mode blend and an alpha that can be below 1.
 bool tintsShadows(const Scene& scene, const Geometry& geometry);

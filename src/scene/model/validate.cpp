@@ -176,7 +176,8 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
   for (const auto& [value, property] :
        {std::pair(material.normalScale, "normalScale"),
         std::pair(material.clearcoatNormalScale, "clearcoatNormalScale"),
-        std::pair(material.alphaCutoff, "alphaCutoff"), std::pair(material.anisotropyRotation, "anisotropyRotation")})
+        std::pair(material.alphaCutoff, "alphaCutoff"), std::pair(material.anisotropyRotation, "anisotropyRotation"),
+        std::pair(material.dielectricPriority, "dielectricPriority")})
     if (!std::isfinite(value)) fail("{}.{}: not finite", name, property);
   if (material.ior != 0.0f) checkRange(material.ior, 1.0f, kLargest, "ior");
   if (!(material.attenuationDistance > 0.0f)) fail("{}.attenuationDistance: {}", name, material.attenuationDistance);

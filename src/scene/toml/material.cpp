@@ -119,6 +119,7 @@ void readTransmission(TomlReader& reader, TextureReader& texture, Material& m) {
   m.attenuationDistance = reader.number("attenuation_distance", m.attenuationDistance, kPositive);
   m.attenuationColor = readColor(reader, "attenuation_color", m.attenuationColor, kColorAboveZero);
   m.dispersion = reader.number("dispersion", m.dispersion, kNotNegative);
+  m.dielectricPriority = reader.number("dielectric_priority", m.dielectricPriority);
 }
 
 void readLayers(TomlReader& reader, TextureReader& texture, Material& m) {

@@ -170,6 +170,7 @@ TEST(Renderer, RendersTheSameWithCodeForUnusedFeatures) {
   scene.scene.materials.back().anisotropy = 1.0f;
   scene.scene.materials.back().iridescence = 1.0f;
   scene.scene.materials[scene.scene.materials.size() - 3].dispersion = 1.0f;
+  scene.scene.materials[scene.scene.materials.size() - 3].dielectricPriority = 1.0f;
   expectSame(lean, renderImage(scene, options));
 }
 

@@ -105,11 +105,11 @@ GPU_FIELDS(TextureData, rowU, rowV, index, uvSet);
 GPU_FIELDS(MaterialData, baseColor, emissive, metallic, roughness, normalScale, alphaCutoff, ior, transmission,
            specular, specularColor, clearcoat, clearcoatRoughness, clearcoatNormalScale, absorption, flags, sheenColor,
            sheenRoughness, diffuseTransmissionColor, diffuseTransmission, anisotropy, anisotropyDirection, iridescence,
-           iridescenceIor, iridescenceThicknessMinimum, iridescenceThicknessMaximum, dispersion, baseColorTexture,
-           metallicRoughnessTexture, normalTexture, emissiveTexture, transmissionTexture, specularTexture,
-           specularColorTexture, clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture, sheenColorTexture,
-           sheenRoughnessTexture, diffuseTransmissionTexture, diffuseTransmissionColorTexture, anisotropyTexture,
-           iridescenceTexture, iridescenceThicknessTexture);
+           iridescenceIor, iridescenceThicknessMinimum, iridescenceThicknessMaximum, dispersion, dielectricPriority,
+           baseColorTexture, metallicRoughnessTexture, normalTexture, emissiveTexture, transmissionTexture,
+           specularTexture, specularColorTexture, clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture,
+           sheenColorTexture, sheenRoughnessTexture, diffuseTransmissionTexture, diffuseTransmissionColorTexture,
+           anisotropyTexture, iridescenceTexture, iridescenceThicknessTexture);
 GPU_FIELDS(AliasEntry, keep, alias, probability);
 GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, leaf);
 GPU_FIELDS(LightNode, center, radius, intensity, axis, cone, link);
@@ -127,7 +127,7 @@ GPU_FIELDS(RayKinds, camera, cameraHits, continuation, continuationHits, shadow,
 GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics,
            rayRecords, instrument, outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth,
            filmHeight, lightCount, environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount,
-           plannedSamples, lightNodes, previousInstances, log, heat);
+           plannedSamples, lightNodes, previousInstances, log, heat, cameraMedia);
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction, interval);
 GPU_FIELDS(RecursionGuard, cutCount);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive, flags, stage, line);

@@ -74,6 +74,12 @@ const std::map<std::string, Change>& features() {
          glass.thickness = glass.dispersion = 1.0f;
          addTriangles(s);
        }},
+      {"nested solids",
+       [](scene::Scene& s, scene::Environment&) {
+         scene::Material& glass = addPane(s);
+         glass.thickness = glass.dielectricPriority = 1.0f;
+         addTriangles(s);
+       }},
       {"triangle lights",
        [](scene::Scene& s, scene::Environment&) { (addMaterial(s).emissive = vec3(1.0f), addTriangles(s)); }},
       {"lamps", [](scene::Scene& s, scene::Environment&) { s.lights.emplace_back(); }},

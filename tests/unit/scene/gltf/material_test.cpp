@@ -123,6 +123,24 @@ TEST(GltfMaterial, ReadsExtensions) {
   EXPECT_EQ(m.dispersion, 1.5f);
 }
 
+// Extras can be anything: only a finite number counts, and everything else is reported as unused.
+TEST(GltfMaterial, ReadsThePriorityFromExtras) {
+  for (const auto& [extras, priority, unused] :
+       {std::tuple(Json{{"dielectric_priority", 2.5}}, 2.5f, 0u),
+        std::tuple(Json{{"dielectric_priority", -1}}, -1.0f, 0u),
+        std::tuple(Json{{"dielectric_priority", 3}, {"author", "me"}}, 3.0f, 1u),
+        std::tuple(Json{{"dielectric_priority", "high"}}, 0.0f, 1u),
+        std::tuple(Json{{"dielectric_priority", 1e300}}, 0.0f, 1u), std::tuple(Json("text"), 0.0f, 1u),
+        std::tuple(Json(nullptr), 0.0f, 1u)}) {
+    GltfBuilder builder;
+    builder.add("materials", {{"extras", extras}});
+    const scene::Scene scene = builder.load();
+    EXPECT_EQ(scene.materials[0].dielectricPriority, priority) << extras;
+    EXPECT_EQ(scene.report.ignored.size() + scene.report.repaired.size(), 0u) << extras;
+    EXPECT_EQ(std::ranges::count(scene.report.features, "extras", &scene::Feature::name), unused) << extras;
+  }
+}
+
 // Values of the specification.
 TEST(GltfMaterial, HasTheDefaultsOfExtensions) {
   const Material m = loadMaterial(extension("KHR_materials_iridescence", Json::object()));

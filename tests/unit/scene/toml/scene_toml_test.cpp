@@ -55,6 +55,7 @@ iridescence_ior = 1.6
 iridescence_thickness_minimum = 150
 iridescence_thickness_maximum = 550
 dispersion = 0.36
+dielectric_priority = -2.5
 alpha_mode = "mask"
 alpha_cutoff = 0.3
 double_sided = true
@@ -94,6 +95,7 @@ name = "c"
   EXPECT_EQ(a.iridescenceThicknessMinimum, 150);
   EXPECT_EQ(a.iridescenceThicknessMaximum, 550);
   EXPECT_EQ(a.dispersion, 0.36f);
+  EXPECT_EQ(a.dielectricPriority, -2.5f);
   EXPECT_EQ(a.alphaMode, scene::AlphaMode::mask);
   EXPECT_EQ(a.alphaCutoff, 0.3f);
   EXPECT_TRUE(a.doubleSided && a.unlit);
