@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tangent frames for normal maps and anisotropy, if the file has none. The tangent of a vertex is the sum of dP/du of the triangles
-// around it, weighted by the corner angle and made perpendicular to the normal (E. Lengyel, "Computing Tangent Space
-// Basis Vectors for an Arbitrary Mesh", 2001; Foundations of Game Engine Development 2, section 7.5). MikkTSpace, which
-// glTF recommends, also weights by the angle, but sums only within the smooth groups of its own welding. Both agree on
-// smooth surfaces.
+// Tangent frames for normal maps and anisotropy, if the file has none: those of MikkTSpace, which glTF requires for files
+// without tangents (M. Mikkelsen, "Simulation of Wrinkled Surfaces Revisited", 2008). The steps are:
+//   1. Vertices with the same position, normal and texture coordinate are one vertex.
+//   2. The triangles around a vertex form groups: those that are connected by edges and have the same orientation of the
+//      mapping.
+//   3. The tangent of a group is the sum of dP/du of its triangles in the plane of the normal, each of unit length and
+//      weighted by the angle of the corner in this plane.
+// Triangles without area in the texture connect others and add nothing; if they are between both orientations, they join
+// the positive one (MikkTSpace: the first one in the file). The result does not depend on the order of the triangles.
 #ifndef QUINTET_SCENE_GEOMETRY_TANGENTS_H
 #define QUINTET_SCENE_GEOMETRY_TANGENTS_H
 
@@ -12,8 +16,7 @@
 namespace quintet::scene {
 
 // Fills geometry.tangents for the texture coordinate set and the transform of `use`. Does nothing if the normals or
-// that set are missing. A vertex whose triangles differ in the handedness of the mapping (a mirrored seam) is
-// duplicated.
+// that set are missing. A vertex with several groups, such as on a mirrored seam, is duplicated.
 void generateTangents(Geometry&, const TextureUse& use);
 
 // Generates the tangents that a normal map or the anisotropy of the material requires, if the geometry has none. All of

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "scene/geometry/tangents.h"
 #include "scene/gltf/gltf.h"
 #include "scene/gltf_builder.h"
 #include "scene/model/validate.h"
@@ -95,6 +97,31 @@ TEST(SharedData, LoadsEveryModel) {
         for (const scene::Geometry& g : mesh.geometries)
           for (const vec3& n : g.normals) ASSERT_NEAR(glm::length(n), 1.0f, 1e-4f);
     });
+  }
+}
+
+// Files with tangents that Blender has computed with MikkTSpace.
+TEST(SharedData, GeneratedTangentsAgreeWithThoseOfFiles) {
+  if (!fs::exists(kFolder / "models")) GTEST_SKIP() << "no shared data at " << kFolder;
+  for (const char* file : {"AlphaBlendModeTest.glb", "MultiUVTest.glb", "VertexColorTest.glb"}) {
+    const scene::Scene s = scene::loadGltf(kFolder / "models" / file);
+    std::size_t corners = 0, different = 0;
+    for (const scene::Mesh& mesh : s.meshes) {
+      for (const scene::Geometry& g : mesh.geometries) {
+        if (g.tangents.empty()) continue;
+        scene::Geometry generated = g;
+        generated.tangents.clear();
+        scene::generateTangents(generated, scene::TextureUse{});
+        for (std::size_t t = 0; t < g.triangles.size(); ++t)
+          for (std::size_t c = 0; c < 3; ++c) {
+            const vec4 &a = g.tangents[g.triangles[t][c]], &b = generated.tangents[generated.triangles[t][c]];
+            ++corners;
+            if (a.w != b.w || glm::dot(vec3(a), vec3(b)) < std::cos(glm::radians(2.0f))) ++different;
+          }
+      }
+    }
+    EXPECT_GT(corners, 0u) << file;
+    EXPECT_EQ(different, 0u) << file << ", of " << corners;
   }
 }
 
