@@ -31,6 +31,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_variants",
     "KHR_lights_punctual",
+    "EXT_lights_image_based",
     "KHR_node_visibility",
     "KHR_xmp_json_ld",
     "KHR_texture_transform",

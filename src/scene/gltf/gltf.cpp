@@ -12,6 +12,7 @@
 #include "scene/gltf/accessor.h"
 #include "scene/gltf/animations.h"
 #include "scene/gltf/extensions.h"
+#include "scene/gltf/image_based_light.h"
 #include "scene/gltf/instances.h"
 #include "scene/gltf/inventory.h"
 #include "scene/gltf/material.h"
@@ -113,11 +114,13 @@ PendingScene begin(const std::filesystem::path& path, const LoadOptions& options
 
   scene.textures = textures.textures();
   file->imageUses = textures.imageUses();
-  completeReport(document, tree, textures, animation, scene.materials, scene.report);
+  const bool replace = options.missingTextures == MissingTextures::warn && !options.strict;
+  ImageBasedLight light = readImageBasedLight(document, tree.scene, replace, scene.report);
+  completeReport(document, tree, textures, animation, scene.materials, light, scene.report);
+  scene.environment = std::move(light.environment);
   makePrintable(scene.report);
   if (options.strict) requireExact(path, scene.report);
   const bool described = describeImages(document, file->imageUses, scene.images);
-  const bool replace = options.missingTextures == MissingTextures::warn && !options.strict;
   const auto decode = [file, replace](Scene& pending) {
     withMemoryErrors(file->document.file, [&] { finishImages(*file, replace, pending); });
   };

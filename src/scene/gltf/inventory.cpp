@@ -60,12 +60,13 @@ unsigned usedUvSets(const Material& material) {
 class Inventory {
  public:
   Inventory(const Document& document, const NodeTree& tree, const TextureTable& textures, const PlayedAnimation& played,
-            const std::vector<Material>& materials, Report& report)
+            const std::vector<Material>& materials, const ImageBasedLight& imageLight, Report& report)
       : document_(document),
         model_(document.model),
         tree_(tree),
         textures_(textures),
         played_(played),
+        imageLight_(imageLight),
         report_(report) {
     for (const Material& material : materials) uvSets_.push_back(usedUvSets(material));
   }
@@ -308,9 +309,12 @@ class Inventory {
         add("texture", model_.textures[i].name, location, textures_.isUsed(index) ? "" : "no material uses it");
     }
     for (const ImageUse& use : textures_.imageUses()) images.insert(use.image);
+    images.insert(imageLight_.images.begin(), imageLight_.images.end());
     for (std::size_t i = 0; i < document_.images.size(); ++i)
       add("image", imageName(document_, static_cast<int>(i)), fmt::format("/images/{}", i),
-          images.contains(static_cast<int>(i)) ? "" : "no texture that a material uses has it");
+          images.contains(static_cast<int>(i))                    ? ""
+          : imageLight_.prefiltered.contains(static_cast<int>(i)) ? "only level 0 of an image-based light is used"
+                                                                  : "no texture that a material uses has it");
   }
 
   void listAnimations() {
@@ -331,6 +335,12 @@ class Inventory {
     for (std::size_t i = 0; i < model_.lights.size(); ++i)
       add("light", model_.lights[i].name, fmt::format("/extensions/{}/lights/{}", kPunctualLights, i),
           lights_.contains(static_cast<int>(i)) ? "" : kNotInScene);
+    const tinygltf::Value* imageLights = findExtension(model_.extensions, kImageBasedLights);
+    const std::size_t count = imageLights ? imageLights->Get("lights").ArrayLen() : 0;
+    for (std::size_t i = 0; i < count; ++i)
+      add("light", stringOf(imageLights->Get("lights").Get(static_cast<int>(i)), "name", ""),
+          fmt::format("/extensions/{}/lights/{}", kImageBasedLights, i),
+          imageLight_.light == static_cast<int>(i) ? "" : "the scene does not have it");
   }
 
   void listProperties() {
@@ -348,6 +358,7 @@ class Inventory {
   const NodeTree& tree_;
   const TextureTable& textures_;
   const PlayedAnimation& played_;
+  const ImageBasedLight& imageLight_;
   Report& report_;
   std::vector<unsigned> uvSets_;                                                                  // of each material
   std::set<int> nodes_, meshes_, skinnedMeshes_, materials_, skins_, cameras_, lights_, joints_;  // used by the scene
@@ -360,8 +371,9 @@ class Inventory {
 }  // namespace
 
 void completeReport(const Document& document, const NodeTree& tree, const TextureTable& textures,
-                    const PlayedAnimation& played, const std::vector<Material>& materials, Report& report) {
-  Inventory(document, tree, textures, played, materials, report).list();
+                    const PlayedAnimation& played, const std::vector<Material>& materials,
+                    const ImageBasedLight& imageLight, Report& report) {
+  Inventory(document, tree, textures, played, materials, imageLight, report).list();
 }
 
 void reportMissingImages(const Document& document, const std::vector<MissingImage>& missing, Report& report) {

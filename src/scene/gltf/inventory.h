@@ -5,6 +5,7 @@
 
 #include "scene/gltf/animations.h"
 #include "scene/gltf/document.h"
+#include "scene/gltf/image_based_light.h"
 #include "scene/gltf/nodes.h"
 #include "scene/gltf/texture.h"
 
@@ -13,7 +14,7 @@ namespace quintet::scene {
 // Fills report.features. The readers have added their lines to `ignored` and `repaired` before; this adds lines for what
 // no reader saw: extensions and properties that are not supported. `materials` are those of the file.
 void completeReport(const Document&, const NodeTree&, const TextureTable&, const PlayedAnimation&,
-                    const std::vector<Material>& materials, Report&);
+                    const std::vector<Material>& materials, const ImageBasedLight&, Report&);
 
 // The images of these uses could not be read: adds a line "LOCATION: PROBLEM" to `ignored` and changes the features.
 struct MissingImage {

@@ -28,10 +28,11 @@ enum class PropertyKind {
   integer,
   number,
   numbers,
-  index,      // into `target`
-  indices,    // array of indices
-  indexMap,   // object of indices: the attributes of a primitive
-  indexMaps,  // array of such objects: morph targets
+  index,       // into `target`
+  indices,     // array of indices
+  indexLists,  // array of such arrays
+  indexMap,    // object of indices: the attributes of a primitive
+  indexMaps,   // array of such objects: morph targets
   integerMap,
   object,
   objects,
@@ -74,6 +75,7 @@ constexpr Collection kBufferViews{"/bufferViews", "buffer view"};
 constexpr Collection kCameras{"/cameras", "camera"};
 constexpr Collection kImages{"/images", "image"};
 constexpr Collection kLights{"/extensions/KHR_lights_punctual/lights", "light"};
+constexpr Collection kImageLights{"/extensions/EXT_lights_image_based/lights", "image-based light"};
 constexpr Collection kMaterials{"/materials", "material"};
 constexpr Collection kMeshes{"/meshes", "mesh"};
 constexpr Collection kNodes{"/nodes", "node"};
@@ -108,6 +110,9 @@ constexpr Property index(std::string_view name, const Collection& target) {
 }
 constexpr Property indices(std::string_view name, const Collection& target) {
   return {.name = name, .kind = PropertyKind::indices, .target = &target};
+}
+constexpr Property indexLists(std::string_view name, const Collection& target) {
+  return {.name = name, .kind = PropertyKind::indexLists, .target = &target};
 }
 constexpr Property indexMap(std::string_view name, const Collection& target) {
   return {.name = name, .kind = PropertyKind::indexMap, .target = &target};
@@ -230,7 +235,9 @@ constexpr Property kNode[] = {
     string("name"),
     object("extensions", kNodeExtensions),
 };
-constexpr Property kScene[] = {indices("nodes", kNodes), string("name"), object("extensions", kOnlyMetadata)};
+constexpr Property kSceneLight[] = {required(index("light", kImageLights))};
+constexpr Property kSceneExtensions[] = {object("EXT_lights_image_based", kSceneLight), metadata()};
+constexpr Property kScene[] = {indices("nodes", kNodes), string("name"), object("extensions", kSceneExtensions)};
 constexpr Property kSkin[] = {index("inverseBindMatrices", kAccessors),
                               withoutEffect(index("skeleton", kNodes), "the joints determine the pose"),
                               required(indices("joints", kNodes)), string("name")};
@@ -330,12 +337,20 @@ constexpr Property kSpot[] = {number("innerConeAngle"), number("outerConeAngle")
 constexpr Property kLight[] = {required(string("type")), numbers("color", 3),   number("intensity"),
                                number("range"),          object("spot", kSpot), string("name")};
 constexpr Property kRootLights[] = {required(objects("lights", kLight))};
+constexpr std::string_view kPrefiltered = "blurred light for rasterizers; a path tracer computes it";
+constexpr Property kImageLight[] = {string("name"),
+                                    numbers("rotation", 4),
+                                    number("intensity"),
+                                    noEffect("irradianceCoefficients", kPrefiltered),
+                                    required(indexLists("specularImages", kImages)),
+                                    noEffect("specularImageSize", "the images have their size")};
+constexpr Property kRootImageLights[] = {required(objects("lights", kImageLight))};
 constexpr Property kVariant[] = {required(string("name"))};
 constexpr Property kRootVariants[] = {required(objects("variants", kVariant))};
 constexpr Property kRootMetadata[] = {required({.name = "packets", .kind = PropertyKind::any})};
-constexpr Property kRootExtensions[] = {object("KHR_lights_punctual", kRootLights),
-                                        object("KHR_xmp_json_ld", kRootMetadata),
-                                        object("KHR_materials_variants", kRootVariants)};
+constexpr Property kRootExtensions[] = {
+    object("KHR_lights_punctual", kRootLights), object("EXT_lights_image_based", kRootImageLights),
+    object("KHR_xmp_json_ld", kRootMetadata), object("KHR_materials_variants", kRootVariants)};
 
 constexpr std::string_view kInterpolations[] = {"LINEAR", "STEP", "CUBICSPLINE"};
 constexpr Property kAnimationTarget[] = {index("node", kNodes), required(string("path"))};
@@ -499,6 +514,7 @@ class Checker {
       case PropertyKind::integerMap: return map(in, property, location);
       case PropertyKind::strings:
       case PropertyKind::indices:
+      case PropertyKind::indexLists:
       case PropertyKind::indexMaps:
       case PropertyKind::objects: return array(in, property, location);
       case PropertyKind::any: return std::move(in);
@@ -565,6 +581,13 @@ class Checker {
     return static_cast<std::uint64_t>(d);
   }
 
+  json indexList(const json& in, const Property& property, const Location& location) const {
+    if (!in.is_array()) fail(location, "must be an array");
+    json out = json::array();
+    for (std::size_t i = 0; i < in.size(); ++i) out.push_back(index(in[i], property, location[i]));
+    return out;
+  }
+
   json map(const json& in, const Property& property, const Location& location) const {
     if (!in.is_object()) fail(location, "must be an object");
     json out = json::object();
@@ -583,6 +606,7 @@ class Checker {
       switch (property.kind) {
         case PropertyKind::strings: out.push_back(string(in[i], property, inside)); break;
         case PropertyKind::indices: out.push_back(index(in[i], property, inside)); break;
+        case PropertyKind::indexLists: out.push_back(indexList(in[i], property, inside)); break;
         case PropertyKind::indexMaps: out.push_back(map(in[i], property, inside)); break;
         default: out.push_back(object(in[i], property.object, inside)); break;
       }

@@ -36,29 +36,6 @@ io::Image decode(std::span<const std::byte> bytes, const std::string& location, 
   return io::decodeImage(bytes, location);
 }
 
-NamedImage loadImage(const Document& document, std::size_t index, MemoryBudget& budget) {
-  const ImageSource& source = document.images[index];
-  const std::string location = fmt::format("/images/{}", index);
-  NamedImage result;
-  result.name = fmt::format("{}: {}", document.file.filename().string(), location);
-  try {
-    if (source.bufferView != kNone) {
-      result.image = decode(document.view(source.bufferView), location, budget);
-    } else {
-      const FileBytes bytes = document.loadUri(source.uri, location + "/uri");
-      if (!isDataUri(source.uri)) result.name = document.pathOfUri(source.uri).string();
-      result.image = decode(bytes, location, budget);
-    }
-  } catch (const FileError& error) {
-    if (error.file() == document.file) throw;
-    // The codec states a location inside the image, which is a part of the scene's file.
-    const std::string inside = error.location().empty() ? error.problem() : error.location() + ": " + error.problem();
-    document.fail(location,
-                  source.uri.empty() || isDataUri(source.uri) ? inside : percentDecode(source.uri) + ": " + inside);
-  }
-  return result;
-}
-
 // Why an image cannot be used, from its header.
 struct HeaderProblem {
   std::string text;             // empty if there is no problem
@@ -119,6 +96,29 @@ std::vector<std::span<const std::byte>> unsharedBytes(const Document& document, 
 }
 
 }  // namespace
+
+NamedImage loadImage(const Document& document, std::size_t index, MemoryBudget& budget) {
+  const ImageSource& source = document.images[index];
+  const std::string location = fmt::format("/images/{}", index);
+  NamedImage result;
+  result.name = fmt::format("{}: {}", document.file.filename().string(), location);
+  try {
+    if (source.bufferView != kNone) {
+      result.image = decode(document.view(source.bufferView), location, budget);
+    } else {
+      const FileBytes bytes = document.loadUri(source.uri, location + "/uri");
+      if (!isDataUri(source.uri)) result.name = document.pathOfUri(source.uri).string();
+      result.image = decode(bytes, location, budget);
+    }
+  } catch (const FileError& error) {
+    if (error.file() == document.file) throw;
+    // The codec states a location inside the image, which is a part of the scene's file.
+    const std::string inside = error.location().empty() ? error.problem() : error.location() + ": " + error.problem();
+    document.fail(location,
+                  source.uri.empty() || isDataUri(source.uri) ? inside : percentDecode(source.uri) + ": " + inside);
+  }
+  return result;
+}
 
 TextureTable::TextureTable(const Document& document, Report& report) : document_(document), report_(report) {}
 

@@ -63,6 +63,9 @@ class TextureTable {
 // has an invalid header; the images from that one on are then not described.
 bool describeImages(const Document&, std::span<const ImageUse> uses, std::vector<NamedImage>& images);
 
+// Decodes an image of the file. Throws FileError, MemoryError.
+NamedImage loadImage(const Document&, std::size_t index, MemoryBudget&);
+
 // An image that is missing or invalid.
 struct ImageFailure {
   std::size_t use = 0;   // index of the use

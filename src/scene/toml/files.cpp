@@ -123,6 +123,8 @@ void readFile(SceneTomlContext& context, const TomlValue& table) {
   target.instances = std::move(part.instances);
   if (lights) target.lights = std::move(part.lights);
   if (cameras) target.cameras = std::move(part.cameras);
+  // [environment] has precedence; it is read later.
+  if (lights && target.placedByDefault && !scene.environment.present) scene.environment = std::move(part.environment);
   context.addTarget(nameValue, name, std::move(target));
   addNames(context, nameValue, name, part, firstMaterial, firstMesh);
   appendReport(scene.report, part.report, name);
