@@ -112,7 +112,9 @@ struct Material {
   float iridescenceThicknessMaximum = 400;       // nanometers, >= 0; where the texture is 1, and without a texture
   TextureUse iridescenceThicknessTexture{};      // g
   float dispersion = 0;                          // 20 / Abbe number, >= 0; colors refract differently in solids
-  float dielectricPriority = 0;  // where solids overlap, the one with the highest priority fills the space
+  Float3 multiscatterColor{0, 0, 0};             // [0,1], color of a solid that scatters; black means it only absorbs
+  float scatterAnisotropy = 0;                   // (-1,1); above 0, solids scatter forwards
+  float dielectricPriority = 0;                  // where solids overlap, the highest one fills the space
   bool operator==(const Material&) const = default;
 };
 

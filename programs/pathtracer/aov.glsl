@@ -84,6 +84,14 @@ void aovScatterDelta(uint depth, bool transmitted) {
 #endif
 }
 
+// Called for a scattering event in a medium, which counts as transmission.
+void aovScatterMedium(uint depth) {
+#ifdef AOV_LIGHT
+  if (depth > 0u) return;
+  for (int i = 0; i < 2; ++i) aovDiffuse[i] = aovSpecular[i] = vec3(0.0);
+#endif
+}
+
 // Called for a contribution after `scatterings` events.
 void aovRadiance(vec3 contribution, uint scatterings, uint source) {
 #ifdef AOV_LIGHT

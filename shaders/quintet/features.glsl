@@ -49,6 +49,11 @@ const bool kHasDispersion = false;  // solids refract all colors alike
 #else
 const bool kHasDispersion = true;
 #endif
+#ifdef QUINTET_NO_SCATTERING
+const bool kHasScattering = false;  // solids only absorb
+#else
+const bool kHasScattering = true;
+#endif
 #ifdef QUINTET_NO_NESTED_MEDIA
 const bool kHasNestedMedia = false;  // all solids have the same priority: a path is in one solid at a time
 #else

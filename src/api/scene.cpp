@@ -72,6 +72,8 @@ void copyMaterial(To& to, const From& from, const Value& value, const Use& use) 
   to.iridescenceThicknessMaximum = from.iridescenceThicknessMaximum;
   use(to.iridescenceThicknessTexture, from.iridescenceThicknessTexture);
   to.dispersion = from.dispersion;
+  value(to.multiscatterColor, from.multiscatterColor);
+  to.scatterAnisotropy = from.scatterAnisotropy;
   to.dielectricPriority = from.dielectricPriority;
 }
 

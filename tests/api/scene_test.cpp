@@ -68,6 +68,8 @@ TEST(ApiScene, ReturnsMaterialsAsTheyWereAdded) {
       .iridescenceThicknessMaximum = 480,
       .iridescenceThicknessTexture = {.texture = texture, .rotation = 0.5f},
       .dispersion = 0.3f,
+      .multiscatterColor = {0.5f, 0.25f, 1},
+      .scatterAnisotropy = 0.5f,
       .dielectricPriority = 2};
   EXPECT_EQ(scene.material(scene.addMaterial(material)), material);
 }

@@ -196,6 +196,22 @@ SceneBuilder nestedSolids() {
   return scene;
 }
 
+// A milky solid with light and a red ball inside, and a wax ball that scatters forwards, with a dark one in front.
+SceneBuilder milk() {
+  SceneBuilder scene = stage(vec3(3.0f), vec3(0.6f));
+  scene::Material milky = clearGlass(1.33f, 1.0f), wax = plastic({0.8f, 0.7f, 0.5f}, 0.4f);
+  milky.attenuationColor = {0.3f, 0.4f, 0.5f}, milky.attenuationDistance = 0.4f;
+  milky.multiscatterColor = {0.9f, 0.8f, 0.6f};
+  wax.diffuseTransmission = 1.0f, wax.thickness = 1.0f;
+  wax.attenuationColor = {0.2f, 0.1f, 0.05f}, wax.attenuationDistance = 0.3f;
+  wax.multiscatterColor = {0.8f, 0.5f, 0.3f}, wax.scatterAnisotropy = 0.6f;
+  scene.add(box({-1.5f, 0.05f, -0.6f}, {-0.1f, 1.2f, 0.6f}), milky);
+  scene.add(quad({-1.3f, 0.4f, -0.3f}, {0.5f, 0, 0}, {0, 0.5f, 0.1f}), emitter({2, 2, 4}));
+  scene.add(sphere({-0.5f, 0.7f, 0.1f}, 0.25f, 2), lambert({0.8f, 0.2f, 0.1f}));
+  scene.add(smooth(sphere({0.8f, 0.7f, 0}, 0.6f, 3), {0.8f, 0.7f, 0}), wax);
+  return scene;
+}
+
 // A sky with a large, soft sun that casts shadows on diffuse and shiny things.
 SceneBuilder sunAndSky() {
   SceneBuilder scene;
@@ -394,6 +410,7 @@ std::span<const ImageScene> imageScenes() {
       {"translucent", translucent, 32, 20, 4, 128, 256, false},
       {"optical_effects", opticalEffects, 32, 20, 4, 128, 256, false},
       {"rough_glass", roughGlass, 32, 20, 4, 128, 256, false},
+      {"milk", milk, 32, 20, 4, 128, 256, false},
       {"nested_solids", nestedSolids, 32, 20, 4, 128, 256, false},
       {"sun_and_sky", sunAndSky, 32, 20, 4, 256, 1024, true},
       {"solids", solids, 32, 20, 4, 128, 512, false},

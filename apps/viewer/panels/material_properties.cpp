@@ -67,6 +67,11 @@ void materialProperties(ViewState& state, std::size_t index) {
     edit.color("Attenuation color", "attenuationColor", material.attenuationColor, "Linear Rec. 709");
     edit.number("Dispersion", "dispersion", material.dispersion, {.least = 0.0, .most = 2.0},
                 "20 / Abbe number; solids refract colors differently");
+    edit.color("Scattering", "multiscatterColor", material.multiscatterColor,
+               "Color after many scatterings in the solid; black: it only absorbs");
+    if (material.multiscatterColor != vec3(0.0f))
+      edit.number("Scatter anisotropy", "scatterAnisotropy", material.scatterAnisotropy, {.least = -0.99, .most = 0.99},
+                  "Above 0: forwards");
     edit.number("Dielectric priority", "dielectricPriority", material.dielectricPriority,
                 {.least = -10.0, .most = 10.0},
                 "Where solids overlap, the one with the highest priority fills the space");

@@ -48,7 +48,7 @@ QT_CONSTANT kTextureAnisotropy = 14;
 QT_CONSTANT kTextureIridescence = 15;
 QT_CONSTANT kTextureIridescenceThickness = 16;
 QT_CONSTANT kTextureCount = 17;
-QT_CONSTANT kMaterialTextureOffset = 164;  // byte offset of the first texture in MaterialData
+QT_CONSTANT kMaterialTextureOffset = 180;  // byte offset of the first texture in MaterialData
 
 struct MaterialData {
   vec4 baseColor;
@@ -64,7 +64,7 @@ struct MaterialData {
   float clearcoat;
   float clearcoatRoughness;
   float clearcoatNormalScale;
-  vec3 absorption;    // 1/m, -ln(attenuationColor)/attenuationDistance; 0 for none
+  vec3 absorption;    // attenuation, 1/m: -ln(attenuationColor)/attenuationDistance; 0 for none
   uint flags;
   vec3 sheenColor;
   float sheenRoughness;
@@ -77,6 +77,8 @@ struct MaterialData {
   float iridescenceThicknessMinimum;  // nanometers
   float iridescenceThicknessMaximum;  // nanometers
   float dispersion;          // 20 / Abbe number
+  vec3 scatteringAlbedo;     // fraction of `absorption` that scatters instead; 0 for none
+  float scatterAnisotropy;   // of the phase function, (-1,1)
   float dielectricPriority;  // of solids that overlap, the medium is that of the highest priority
   TextureData baseColorTexture;
   TextureData metallicRoughnessTexture;

@@ -18,7 +18,7 @@ namespace {
 using scene::Material;
 using Member = std::variant<float Material::*, vec3 Material::*, vec4 Material::*, bool Material::*>;
 
-constexpr std::array<std::pair<std::string_view, Member>, 30> kProperties{{
+constexpr std::array<std::pair<std::string_view, Member>, 32> kProperties{{
     {"baseColor", &Material::baseColor},
     {"metallic", &Material::metallic},
     {"roughness", &Material::roughness},
@@ -48,6 +48,8 @@ constexpr std::array<std::pair<std::string_view, Member>, 30> kProperties{{
     {"iridescenceThicknessMinimum", &Material::iridescenceThicknessMinimum},
     {"iridescenceThicknessMaximum", &Material::iridescenceThicknessMaximum},
     {"dispersion", &Material::dispersion},
+    {"multiscatterColor", &Material::multiscatterColor},
+    {"scatterAnisotropy", &Material::scatterAnisotropy},
     {"dielectricPriority", &Material::dielectricPriority},
 }};
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/scene/material_data.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/model/material_textures.h"
@@ -21,10 +22,24 @@ shared::TextureData makeTexture(const scene::TextureUse& use, bool sRgb, const T
   return data;
 }
 
+constexpr float kMostAnisotropic = 0.999f;  // the phase function of 1 is a delta distribution
+
 // Beer-Lambert coefficient that turns white into `color` after `distance`.
 vec3 absorption(const vec3& color, float distance) {
   if (!std::isfinite(distance) || distance <= 0.0f) return vec3(0.0f);
   return -glm::log(glm::clamp(color, vec3(1e-6f), vec3(1.0f))) / distance;
+}
+
+// The albedo of a single scattering that gives the color `multiple` after many (C. Kulla and A. Conty, "Revisiting
+// Physically Based Shading at Imageworks", 2017; the formula of KHR_materials_volume_scatter).
+vec3 singleScatteringAlbedo(const vec3& multiple) {
+  vec3 single;
+  for (glm::length_t i = 0; i < 3; ++i) {
+    const double m = std::clamp(static_cast<double>(multiple[i]), 0.0, 1.0);
+    const double root = 4.09712 + 4.20863 * m - std::sqrt(9.59217 + 41.6808 * m + 17.7126 * m * m);
+    single[i] = static_cast<float>(std::clamp(1.0 - root * root, 0.0, 1.0));
+  }
+  return multiple == vec3(0.0f) ? vec3(0.0f) : single;
 }
 
 std::uint32_t materialFlags(const scene::Material& m) {
@@ -70,6 +85,8 @@ shared::MaterialData makeMaterial(const scene::Material& m, const TextureIndex& 
   data.iridescenceThicknessMinimum = m.iridescenceThicknessMinimum;
   data.iridescenceThicknessMaximum = m.iridescenceThicknessMaximum;
   data.dispersion = m.thickness > 0.0f ? m.dispersion : 0.0f;
+  if (scene::scatters(m)) data.scatteringAlbedo = singleScatteringAlbedo(m.multiscatterColor);
+  data.scatterAnisotropy = std::clamp(m.scatterAnisotropy, -kMostAnisotropic, kMostAnisotropic);
   data.dielectricPriority = m.dielectricPriority;
   static_assert(scene::kMaterialTextures.size() == shared::kTextureCount + 1);
   shared::TextureData* textures = &data.baseColorTexture;

@@ -100,6 +100,7 @@ SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment&
   without("QUINTET_NO_DISPERSION", any([](const scene::Material& m) {
             return m.dispersion > 0.0f && m.transmission > 0.0f && m.thickness > 0.0f && m.ior > 0.0f;
           }));
+  without("QUINTET_NO_SCATTERING", any([](const scene::Material& m) { return scene::scatters(m); }));
   without("QUINTET_NO_NESTED_MEDIA",
           any([](const scene::Material& m) { return scene::isMedium(m) && m.dielectricPriority != 0.0f; }));
   without("QUINTET_NO_TRIANGLE_LIGHTS", any(emits));

@@ -20,6 +20,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "KHR_materials_ior",
     "KHR_materials_transmission",
     "KHR_materials_volume",
+    "KHR_materials_volume_scatter",
     "KHR_materials_unlit",
     "KHR_materials_specular",
     "KHR_materials_clearcoat",

@@ -44,6 +44,7 @@ class MaterialReader {
       material_.transmissionTexture = texture(*e, "transmissionTexture");
     }
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_volume")) readVolume(*e);
+    if (const auto* e = findExtension(from_.extensions, "KHR_materials_volume_scatter")) readVolumeScatter(*e);
     if (const auto* e = findExtension(from_.extensions, "KHR_materials_specular")) {
       if (glossiness)
         ignoreForGlossiness("KHR_materials_specular");
@@ -137,6 +138,13 @@ class MaterialReader {
     // Zero would mean infinite absorption.
     material_.attenuationColor =
         glm::max(range(vec3Of(extension, "attenuationColor", vec3(1.0f)), 0.0f, 1.0f, "attenuationColor"), vec3(1e-6f));
+  }
+
+  void readVolumeScatter(const tinygltf::Value& extension) {
+    material_.multiscatterColor =
+        range(vec3Of(extension, "multiscatterColor", vec3(0.0f)), 0.0f, 1.0f, "multiscatterColor");
+    material_.scatterAnisotropy =
+        range(numberOf(extension, "scatterAnisotropy", 0.0), -0.999f, 0.999f, "scatterAnisotropy");
   }
 
   void readClearcoat(const tinygltf::Value& extension) {

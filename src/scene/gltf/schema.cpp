@@ -280,12 +280,14 @@ constexpr Property kIridescence[] = {number("iridescenceFactor"),
                                      number("iridescenceThicknessMaximum"),
                                      texture("iridescenceThicknessTexture")};
 constexpr Property kDispersion[] = {number("dispersion")};
+constexpr Property kVolumeScatter[] = {numbers("multiscatterColor", 3), number("scatterAnisotropy")};
 constexpr Property kMaterialExtensions[] = {
     object("KHR_materials_unlit", {}),
     object("KHR_materials_emissive_strength", kEmissiveStrength),
     object("KHR_materials_ior", kIor),
     object("KHR_materials_transmission", kTransmission),
     object("KHR_materials_volume", kVolume),
+    object("KHR_materials_volume_scatter", kVolumeScatter),
     object("KHR_materials_specular", kSpecular),
     object("KHR_materials_clearcoat", kClearcoat),
     object("KHR_materials_sheen", kSheen),

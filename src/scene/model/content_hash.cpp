@@ -61,7 +61,8 @@ class Feeder {
             m.sheenRoughnessTexture, m.diffuseTransmission, m.diffuseTransmissionTexture, m.diffuseTransmissionColor,
             m.diffuseTransmissionColorTexture, m.anisotropy, m.anisotropyRotation, m.anisotropyTexture, m.iridescence,
             m.iridescenceTexture, m.iridescenceIor, m.iridescenceThicknessMinimum, m.iridescenceThicknessMaximum,
-            m.iridescenceThicknessTexture, m.dispersion, m.dielectricPriority);
+            m.iridescenceThicknessTexture, m.dispersion, m.multiscatterColor, m.scatterAnisotropy,
+            m.dielectricPriority);
   }
   void add(const Geometry& g) {
     (*this)(g.positions, g.triangles, g.normals, g.tangents, g.uvs, g.colors, g.material, g.fileTriangles);

@@ -105,7 +105,9 @@ struct Material {
   float iridescenceThicknessMaximum = 400.0f;  // nanometers, ≥ 0; where the texture is 1, and without a texture
   TextureUse iridescenceThicknessTexture;      // g
   float dispersion = 0.0f;                     // KHR_materials_dispersion, 20 / Abbe number, ≥ 0; for solids
-  float dielectricPriority = 0.0f;  // where solids overlap, the one with the highest priority fills the space
+  vec3 multiscatterColor{0.0f};                // KHR_materials_volume_scatter, color after many scatterings, [0,1]
+  float scatterAnisotropy = 0.0f;              // (-1,1), of the phase function; above 0 scatters forwards
+  float dielectricPriority = 0.0f;             // where solids overlap, the highest one fills the space
 };
 
 // A list of triangles. Every attribute is empty or has positions.size() elements.

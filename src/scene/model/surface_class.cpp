@@ -2,6 +2,7 @@
 #include "scene/model/surface_class.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace quintet::scene {
 namespace {
@@ -54,6 +55,11 @@ bool isPane(const Material& m) {
 
 bool isMedium(const Material& m) {
   return (m.transmission > 0.0f || m.diffuseTransmission > 0.0f) && m.thickness > 0.0f && !m.unlit;
+}
+
+bool scatters(const Material& m) {
+  return isMedium(m) && m.multiscatterColor != vec3(0.0f) && m.attenuationColor != vec3(1.0f) &&
+         std::isfinite(m.attenuationDistance);
 }
 
 bool isPane(const Scene& scene, const Geometry& geometry) {

@@ -24,6 +24,8 @@ bool isPane(const Scene& scene, const PrimitiveSet& set);
 
 // True if light can enter a closed solid of this material: transmission, also diffuse, and a thickness.
 bool isMedium(const Material& material);
+// True if light also scatters in this solid.
+bool scatters(const Material& material);
 
 // True if the surface is a pane, or has alpha mode blend and an alpha that can be below 1.
 bool tintsShadows(const Scene& scene, const Geometry& geometry);

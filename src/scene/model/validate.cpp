@@ -165,9 +165,11 @@ void checkMaterial(const Scene& scene, const Material& material, const std::stri
     checkRange(material.emissive[i], 0.0f, kLargest, "emissive");
     checkRange(material.specularColor[i], 0.0f, kLargest, "specularColor");
     checkUnit(material.attenuationColor[i], "attenuationColor");
+    checkUnit(material.multiscatterColor[i], "multiscatterColor");
     checkUnit(material.sheenColor[i], "sheenColor");
     checkUnit(material.diffuseTransmissionColor[i], "diffuseTransmissionColor");
   }
+  checkRange(material.scatterAnisotropy, -1.0f, 1.0f, "scatterAnisotropy");
   checkRange(material.thickness, 0.0f, kLargest, "thickness");
   checkRange(material.iridescenceIor, 1.0f, kLargest, "iridescenceIor");
   checkRange(material.iridescenceThicknessMinimum, 0.0f, kLargest, "iridescenceThicknessMinimum");

@@ -119,6 +119,8 @@ void readTransmission(TomlReader& reader, TextureReader& texture, Material& m) {
   m.attenuationDistance = reader.number("attenuation_distance", m.attenuationDistance, kPositive);
   m.attenuationColor = readColor(reader, "attenuation_color", m.attenuationColor, kColorAboveZero);
   m.dispersion = reader.number("dispersion", m.dispersion, kNotNegative);
+  m.multiscatterColor = readColor(reader, "multiscatter_color", m.multiscatterColor, kUnit);
+  m.scatterAnisotropy = reader.number("scatter_anisotropy", m.scatterAnisotropy, {-1.0, 1.0, true, true});
   m.dielectricPriority = reader.number("dielectric_priority", m.dielectricPriority);
 }
 

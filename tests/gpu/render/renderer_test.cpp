@@ -171,6 +171,9 @@ TEST(Renderer, RendersTheSameWithCodeForUnusedFeatures) {
   scene.scene.materials.back().iridescence = 1.0f;
   scene.scene.materials[scene.scene.materials.size() - 3].dispersion = 1.0f;
   scene.scene.materials[scene.scene.materials.size() - 3].dielectricPriority = 1.0f;
+  scene.scene.materials[scene.scene.materials.size() - 3].attenuationColor = vec3(0.5f);
+  scene.scene.materials[scene.scene.materials.size() - 3].attenuationDistance = 1.0f;
+  scene.scene.materials[scene.scene.materials.size() - 3].multiscatterColor = vec3(0.5f);
   expectSame(lean, renderImage(scene, options));
 }
 

@@ -105,11 +105,12 @@ GPU_FIELDS(TextureData, rowU, rowV, index, uvSet);
 GPU_FIELDS(MaterialData, baseColor, emissive, metallic, roughness, normalScale, alphaCutoff, ior, transmission,
            specular, specularColor, clearcoat, clearcoatRoughness, clearcoatNormalScale, absorption, flags, sheenColor,
            sheenRoughness, diffuseTransmissionColor, diffuseTransmission, anisotropy, anisotropyDirection, iridescence,
-           iridescenceIor, iridescenceThicknessMinimum, iridescenceThicknessMaximum, dispersion, dielectricPriority,
-           baseColorTexture, metallicRoughnessTexture, normalTexture, emissiveTexture, transmissionTexture,
-           specularTexture, specularColorTexture, clearcoatTexture, clearcoatRoughnessTexture, clearcoatNormalTexture,
-           sheenColorTexture, sheenRoughnessTexture, diffuseTransmissionTexture, diffuseTransmissionColorTexture,
-           anisotropyTexture, iridescenceTexture, iridescenceThicknessTexture);
+           iridescenceIor, iridescenceThicknessMinimum, iridescenceThicknessMaximum, dispersion, scatteringAlbedo,
+           scatterAnisotropy, dielectricPriority, baseColorTexture, metallicRoughnessTexture, normalTexture,
+           emissiveTexture, transmissionTexture, specularTexture, specularColorTexture, clearcoatTexture,
+           clearcoatRoughnessTexture, clearcoatNormalTexture, sheenColorTexture, sheenRoughnessTexture,
+           diffuseTransmissionTexture, diffuseTransmissionColorTexture, anisotropyTexture, iridescenceTexture,
+           iridescenceThicknessTexture);
 GPU_FIELDS(AliasEntry, keep, alias, probability);
 GPU_FIELDS(LightData, intensity, type, position, instance, direction, geometry, cosInner, cosOuter, primitive, leaf);
 GPU_FIELDS(LightNode, center, radius, intensity, axis, cone, link);

@@ -74,6 +74,13 @@ const std::map<std::string, Change>& features() {
          glass.thickness = glass.dispersion = 1.0f;
          addTriangles(s);
        }},
+      {"milk",
+       [](scene::Scene& s, scene::Environment&) {
+         scene::Material& milk = addPane(s);
+         milk.thickness = milk.attenuationDistance = 1.0f;
+         milk.attenuationColor = milk.multiscatterColor = vec3(0.5f);
+         addTriangles(s);
+       }},
       {"nested solids",
        [](scene::Scene& s, scene::Environment&) {
          scene::Material& glass = addPane(s);

@@ -119,6 +119,10 @@ TEST(GltfMaterial, ReadsExtensions) {
   EXPECT_EQ(m.iridescenceIor, 1.75f);
   EXPECT_EQ(m.iridescenceThicknessMinimum, 50.0f);
   EXPECT_EQ(m.iridescenceThicknessMaximum, 800.0f);
+  m = loadMaterial(
+      extension("KHR_materials_volume_scatter", {{"multiscatterColor", {0.5, 1, 0.25}}, {"scatterAnisotropy", -0.5}}));
+  EXPECT_EQ(m.multiscatterColor, vec3(0.5f, 1, 0.25f));
+  EXPECT_EQ(m.scatterAnisotropy, -0.5f);
   m = loadMaterial(extension("KHR_materials_dispersion", {{"dispersion", 1.5}}));
   EXPECT_EQ(m.dispersion, 1.5f);
 }
@@ -148,6 +152,8 @@ TEST(GltfMaterial, HasTheDefaultsOfExtensions) {
   EXPECT_EQ(m.iridescenceIor, 1.3f);
   EXPECT_EQ(m.iridescenceThicknessMinimum, 100.0f);
   EXPECT_EQ(m.iridescenceThicknessMaximum, 400.0f);
+  EXPECT_EQ(m.multiscatterColor, vec3(0.0f));
+  EXPECT_EQ(m.scatterAnisotropy, 0.0f);
   EXPECT_EQ(m.anisotropy, 0.0f);
   EXPECT_EQ(m.dispersion, 0.0f);
 }

@@ -153,6 +153,8 @@ TEST(ContentHash, DependsOnTheContentButNotTheReport) {
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].iridescenceThicknessMaximum = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].dispersion = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].dielectricPriority = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.materials[0].multiscatterColor.y = 1; }));
+  EXPECT_TRUE(differs([](auto& s) { s.materials[0].scatterAnisotropy = 0.5f; }));
   EXPECT_TRUE(differs([](auto& s) { s.materials[0].baseColorTexture.rotation = 1; }));
   EXPECT_TRUE(differs([](auto& s) { s.textures[0].sampler.wrapV = scene::Wrap::clampToEdge; }));
   EXPECT_TRUE(differs([](auto& s) { s.images[0].image.data[2] = std::byte{1}; }));

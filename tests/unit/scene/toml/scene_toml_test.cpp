@@ -55,6 +55,8 @@ iridescence_ior = 1.6
 iridescence_thickness_minimum = 150
 iridescence_thickness_maximum = 550
 dispersion = 0.36
+multiscatter_color = [0.25, 0.5, 1]
+scatter_anisotropy = -0.75
 dielectric_priority = -2.5
 alpha_mode = "mask"
 alpha_cutoff = 0.3
@@ -95,6 +97,8 @@ name = "c"
   EXPECT_EQ(a.iridescenceThicknessMinimum, 150);
   EXPECT_EQ(a.iridescenceThicknessMaximum, 550);
   EXPECT_EQ(a.dispersion, 0.36f);
+  EXPECT_EQ(a.multiscatterColor, vec3(0.25f, 0.5f, 1));
+  EXPECT_EQ(a.scatterAnisotropy, -0.75f);
   EXPECT_EQ(a.dielectricPriority, -2.5f);
   EXPECT_EQ(a.alphaMode, scene::AlphaMode::mask);
   EXPECT_EQ(a.alphaCutoff, 0.3f);
