@@ -25,6 +25,7 @@ class Blas {
   VkDeviceSize builtSize() const { return builtSize_; }         // bytes before compaction
   VkDeviceSize mapBytes() const { return mapStorage_.size(); }  // of the primitive maps
   const Bounds3& bounds() const { return bounds_; }             // of all geometries, object space
+  void setBounds(const Bounds3& bounds) { bounds_ = bounds; }   // after a BlasRefit
   // Device address of an array of uints that maps gl_PrimitiveID of a geometry to the index in the input; 0 if both are
   // equal.
   VkDeviceAddress primitiveMap(std::size_t geometry) const { return maps_[geometry]; }
@@ -35,6 +36,7 @@ class Blas {
  private:
   friend class BlasBuilder;
   friend class BlasBatch;
+  friend class BlasRefit;
   // Counts that a refit must match.
   struct BuiltGeometry {
     GeometryKind kind = GeometryKind::triangles;

@@ -23,6 +23,10 @@ class RefitQuality {
   // or scales. `moved` has the counts of the build.
   double growth(const BlasInput& moved) const;
 
+  // For the same measure on the device: primitives of all geometries in the order of the tree, and its cost.
+  const std::vector<std::uint32_t>& order() const { return order_; }
+  double builtCost() const { return builtCost_; }
+
  private:
   std::vector<std::uint32_t> order_;
   double builtCost_ = 0;

@@ -3,8 +3,9 @@
 // src/render/film/film.h.
 #extension GL_EXT_scalar_block_layout : require
 #include <quintet/passes/fixed_sum.glsl>
+#include <quintet/passes/pass_index.glsl>
 
-layout(local_size_x = kFilmGroupSize) in;
+layout(local_size_x = kPassGroupSize) in;
 layout(push_constant, scalar) uniform FilmAddBlock { FilmAdd pass; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer PixelArray { vec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FixedSumArray { FixedSum at[]; };
@@ -14,7 +15,7 @@ void add(Address sums, uint index, float value) {
 }
 
 void main() {
-  const uint i = gl_GlobalInvocationID.y * (kFilmColumns * kFilmGroupSize) + gl_GlobalInvocationID.x;
+  const uint i = passIndex();
   if (i >= pass.count) return;
   const vec4 batch = PixelArray(pass.batch).at[i];
   if (batch == vec4(0.0)) return;  // also pixels that adaptive sampling skips

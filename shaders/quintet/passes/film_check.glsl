@@ -4,8 +4,9 @@
 #extension GL_EXT_scalar_block_layout : require
 #include <quintet/passes/fixed_sum.glsl>
 #include <quintet/passes/not_finite.glsl>
+#include <quintet/passes/pass_index.glsl>
 
-layout(local_size_x = kFilmGroupSize) in;
+layout(local_size_x = kPassGroupSize) in;
 layout(push_constant, scalar) uniform FilmCheckBlock { FilmCheck pass; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ValueArray { uvec4 at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FixedSumArray { FixedSum at[]; };
@@ -13,7 +14,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Mar
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer NotFiniteReference { NotFinite value; };
 
 void main() {
-  const uint i = gl_GlobalInvocationID.y * (kFilmColumns * kFilmGroupSize) + gl_GlobalInvocationID.x;
+  const uint i = passIndex();
   if (i >= pass.count) return;
   bool bad = false;
   if (pass.mark != 0u)

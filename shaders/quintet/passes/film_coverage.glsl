@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts the ids of a batch's samples. A compute shader with one invocation per pixel.
 #extension GL_EXT_scalar_block_layout : require
+#include <quintet/passes/pass_index.glsl>
 #include <quintet/shared/film.h>
 
-layout(local_size_x = kFilmGroupSize) in;
+layout(local_size_x = kPassGroupSize) in;
 layout(push_constant, scalar) uniform FilmCoverageBlock { FilmCoverage pass; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer IdArray { uint at[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SlotArray { CoverageSlot at[]; };
@@ -23,7 +24,7 @@ void count(SlotArray slots, uint first, uint id) {
 }
 
 void main() {
-  const uint i = gl_GlobalInvocationID.y * (kFilmColumns * kFilmGroupSize) + gl_GlobalInvocationID.x;
+  const uint i = passIndex();
   if (i >= pass.count) return;
   for (uint s = 0u; s < kBatchSamples; ++s) {
     const uint id = IdArray(pass.batch).at[kBatchSamples * i + s];

@@ -4,6 +4,7 @@
 #define QUINTET_SHARED_FILM_H
 
 #include "frame.h"
+#include "pass.h"
 
 QT_SHARED_BEGIN
 
@@ -14,11 +15,6 @@ struct FixedSum {
 };
 QT_SHARED_SIZE(FixedSum, 16);
 QT_CONSTANT kNotFiniteWord = 0x80000000u;  // word[3] of that value
-
-// Workgroups of a film pass form rows of kFilmColumns, because a single dimension would exceed the device limit for
-// large images.
-QT_CONSTANT kFilmGroupSize = 64;
-QT_CONSTANT kFilmColumns = 32768;
 
 // Push constants of the pass that adds the sums of a batch to the totals.
 struct FilmAdd {

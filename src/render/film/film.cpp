@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "program/description/limits.h"
+#include "render/compute_pass.h"
 
 namespace quintet::render {
 namespace {
@@ -17,25 +18,6 @@ static_assert(shared::kMaxOutputs == program::kMaxOutputs);
 
 using program::Accumulation;
 using program::OutputPixel;
-
-std::unique_ptr<gpu::ComputePipeline> makePass(gpu::Context& context, const gpu::BindlessSet& set,
-                                               const shader::Compiler& compiler, const std::string& name) {
-  shader::Source source;
-  source.stage = shader::Stage::compute;
-  source.name = name + ".comp";
-  source.text = fmt::format("#version 460\n#include <quintet/passes/{}.glsl>\n", name);
-  const shader::Result result = compiler.compile(source);
-  if (!result.ok())
-    throw Error(result.diagnostics.empty() ? source.name + " does not compile" : result.diagnostics[0].format());
-  return std::make_unique<gpu::ComputePipeline>(context, set, result.spirv, VK_NULL_HANDLE, name);
-}
-
-void dispatch(const gpu::ComputePipeline& pass, gpu::Commands& commands, std::span<const std::byte> constants,
-              std::uint32_t pixels) {
-  const std::uint32_t groups = (pixels + shared::kFilmGroupSize - 1) / shared::kFilmGroupSize;
-  const std::uint32_t columns = std::min(groups, shared::kFilmColumns);
-  pass.dispatch(commands, constants, columns, (groups + columns - 1) / columns);
-}
 
 bool isStored(const program::Output& output, const std::vector<std::string>& wanted) {
   return !output.optional || std::ranges::find(wanted, output.name) != wanted.end();
@@ -181,17 +163,17 @@ void Film::addBatch(gpu::Commands& commands, SampleRange samples) {
     if (!output.total) continue;
     if (accumulation_ == Accumulation::program) {
       const shared::FilmFrame pass{output.total.address(), output.batch.address(), marks_.address(), pixels, 1u << i};
-      dispatch(*frame_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+      dispatchPass(*frame_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
     } else if (output.facts.pixel == OutputPixel::center) {
       if (samples.begin == 0) commands.copy(output.batch, output.total, output.total.size());
     } else if (output.facts.pixel == OutputPixel::coverage) {
       const shared::FilmCoverage pass{output.total.address(), output.batch.address(), pixels, 0};
-      dispatch(*coverage_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+      dispatchPass(*coverage_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
     } else {
       const shared::FilmAdd pass{output.total.address(), output.squares ? output.squares.address() : 0,
                                  output.batch.address(), pixels,
                                  1.0f / static_cast<float>(samples.end - samples.begin)};
-      dispatch(*add_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+      dispatchPass(*add_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
     }
   }
   commands.barrier(gpu::Stage::all, gpu::Stage::all);
@@ -299,7 +281,7 @@ io::Image Film::downloadMean(std::size_t output) const {
     const shared::FilmMean pass{source.total.address(), means_.address(), pixels, 1.0f / samples};
     context_.submitAndWait([&](gpu::Commands& commands) {
       commands.barrier(gpu::Stage::all, gpu::Stage::all);
-      dispatch(*mean_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+      dispatchPass(*mean_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
       commands.barrier(gpu::Stage::all, gpu::Stage::all);
     });
     values = &means_;
@@ -336,7 +318,7 @@ std::vector<NotFinitePixels> Film::notFinitePixels() const {
                                    !marks && pixel == OutputPixel::mean ? 1u : 0u,
                                    marks ? 1u << i : 0u,
                                    0};
-      dispatch(*check_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
+      dispatchPass(*check_, commands, std::as_bytes(std::span(&pass, 1)), pixels);
     }
   });
   results = buffer.downloadAs<shared::NotFinite>(results.size());

@@ -37,6 +37,10 @@ class Emitters {
   bool update(const scene::Scene& scene);
   // Makes the emitters independent of the scene: copies the positions and triangles, or the primitive sets.
   void copyGeometry();
+  // Whether the geometry consists of triangles that emit. After copyGeometry().
+  bool hasPositions(std::size_t mesh, std::size_t geometry) const {
+    return !emitters_[mesh][geometry].black && emitters_[mesh][geometry].ownTriangles;
+  }
   // Moves the vertices of a geometry that emits; does nothing for others. After copyGeometry().
   void setPositions(std::size_t mesh, std::size_t geometry, std::span<const vec3> positions);
   // Returns the emitter of a geometry or primitive set of a mesh.

@@ -75,6 +75,8 @@ class LightTableBuilder {
   bool hasLights(std::size_t instance) const { return lit_[instance]; }  // so that its transform matters
   // Makes the builder independent of the scene, which can then be destroyed.
   void copyGeometry() { emitters_.copyGeometry(); }
+  // Whether build() depends on the vertices of a geometry of a deformed mesh. After copyGeometry().
+  bool hasPositions(std::size_t mesh, std::size_t geometry) const { return emitters_.hasPositions(mesh, geometry); }
   // Vertices of a deformed mesh, for the next build(). After copyGeometry().
   void setPositions(std::size_t mesh, std::size_t geometry, std::span<const vec3> positions) {
     emitters_.setPositions(mesh, geometry, positions);

@@ -2,94 +2,193 @@
 #include "render/scene/deformed_meshes.h"
 
 #include <algorithm>
-#include <utility>
+#include <cstring>
 
 #include "base/stopwatch.h"
+#include "render/compute_pass.h"
 
 namespace quintet::render {
 namespace {
 
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize{32} << 20;
 
-// The arrays of `geometries` instead of those that the BLAS was built from.
-rt::BlasInput withArrays(rt::BlasInput input, const std::vector<scene::Geometry>& geometries) {
-  for (std::size_t g = 0; g < geometries.size(); ++g) {
-    input.geometries[g].positions = geometries[g].positions;
-    input.geometries[g].triangles = geometries[g].triangles;
+// Marks of the timer.
+enum Mark : std::uint32_t { kStart, kDeformed, kMeasured, kRefitted, kMarkCount };
+
+shared::DeformMatrix rowsOf(const mat4& matrix) {
+  const mat4 rows = glm::transpose(matrix);
+  return {{rows[0], rows[1], rows[2]}};
+}
+
+std::vector<shared::TreeCostGeometry> costGeometries(const rt::BlasInput& input) {
+  std::vector<shared::TreeCostGeometry> geometries;
+  std::size_t first = 0;
+  for (const rt::GeometryInput& geometry : input.geometries) {
+    geometries.push_back({geometry.positionsAddress, geometry.trianglesAddress, static_cast<std::uint32_t>(first), 0});
+    first += geometry.triangles.size();
   }
-  return input;
+  return geometries;
 }
 
 }  // namespace
 
-DeformedMeshes::Mesh::Mesh(const scene::Scene& scene, std::size_t indexInScene, const rt::BlasInput& built,
-                           rt::Blas& blasOfMesh, GeometryUpload& uploaded)
-    : index(indexInScene),
-      deformation(scene.meshes[indexInScene].deformation),
-      blas(&blasOfMesh),
-      upload(&uploaded),
-      quality(built) {
-  for (const rt::GeometryInput& from : built.geometries) {
-    scene::Geometry& geometry = geometries.emplace_back();
-    geometry.positions.assign(from.positions.begin(), from.positions.end());
-    geometry.triangles.assign(from.triangles.begin(), from.triangles.end());
-  }
-  input = withArrays(built, geometries);
+DeformedMeshes::DeformedMeshes(gpu::Context& context, const gpu::BindlessSet& set, const shader::Compiler& compiler)
+    : context_(context),
+      passes_(context, set, compiler),
+      costPass_(makePass(context, set, compiler, "tree_cost")),
+      timer_(context, kMarkCount) {}
+
+DeformedMeshes::PoseBuffer DeformedMeshes::makePoseBuffer(gpu::Context& context, const scene::MeshDeformation& mesh,
+                                                          std::size_t jointCount) {
+  PoseBuffer pose;
+  for (const scene::GeometryDeformation& geometry : mesh.geometries)
+    pose.weightCount = std::max(pose.weightCount, geometry.targets.size());
+  // The transform of the node follows the joints.
+  if (mesh.skin != scene::kNone) pose.weightOffset = (jointCount + 1) * sizeof(shared::DeformMatrix);
+  gpu::BufferOptions options{.size = pose.weightOffset + pose.weightCount * sizeof(float), .name = "pose"};
+  pose.device = gpu::Buffer(context, options);
+  options.memory = gpu::Memory::upload;
+  options.name = "pose staging";
+  options.purpose = gpu::Purpose::staging;
+  pose.staging = gpu::Buffer(context, options);
+  return pose;
 }
 
 void DeformedMeshes::add(const scene::Scene& scene, std::size_t index, const rt::BlasInput& input, rt::Blas& blas,
                          GeometryUpload& upload) {
-  meshes_.push_back(std::make_unique<Mesh>(scene, index, input, blas, upload));
+  if (std::ranges::all_of(input.geometries, [](const auto& geometry) { return geometry.triangles.empty(); })) return;
+  const scene::MeshDeformation& from = *scene.meshes[index].deformation;
+  std::size_t jointCount = 0;
+  if (from.skin != scene::kNone)
+    jointCount = scene.nodeAnimation->skins[static_cast<std::size_t>(from.skin)].joints.size();
+  Mesh& mesh = meshes_.emplace_back();
+  mesh.index = index;
+  mesh.node = from.node;
+  mesh.skin = from.skin;
+  mesh.input = input;
+  mesh.blas = &blas;
+  mesh.upload = &upload;
+  mesh.pose = makePoseBuffer(context_, from, jointCount);
+  gpu::Uploader uploader(context_, kStagingBytes);
+  const std::size_t first = upload.firstGeometry[index];
+  for (std::size_t g = 0; g < from.geometries.size(); ++g) {
+    PoseAddresses pose;
+    pose.weights = mesh.pose.device.address() + mesh.pose.weightOffset;
+    if (from.skin != scene::kNone) {
+      pose.matrices = mesh.pose.device.address();
+      if (from.geometries[g].skinSets.empty()) pose.matrices += jointCount * sizeof(shared::DeformMatrix);
+    }
+    mesh.geometries.emplace_back(context_, uploader, from.geometries[g], input.geometries[g].triangles,
+                                 upload.geometries[first + g], pose);
+  }
+  uploader.flush();
+  prepareUpdates(mesh);
+  roots_ = gpu::Buffer(
+      context_,
+      {.size = meshes_.size() * sizeof(shared::TreeCostNode), .memory = gpu::Memory::readback, .name = "tree roots"});
 }
 
-void DeformedMeshes::upload(const Mesh& mesh, gpu::Uploader& uploader) const {
+// After a build from mesh.input with its host arrays, which are not used afterwards.
+void DeformedMeshes::prepareUpdates(Mesh& mesh) {
+  mesh.refit = rt::BlasRefit(context_, *mesh.blas, mesh.input);
+  mesh.cost = TreeCost(context_, mesh.input, costGeometries(mesh.input));
+  for (rt::GeometryInput& geometry : mesh.input.geometries) geometry.positions = {}, geometry.triangles = {};
+}
+
+void DeformedMeshes::writePose(const Mesh& mesh, const scene::NodeAnimation& animation, const scene::Pose& pose) const {
+  const auto node = static_cast<std::size_t>(mesh.node);
+  auto* matrices = reinterpret_cast<shared::DeformMatrix*>(mesh.pose.staging.mapped());
+  if (mesh.skin != scene::kNone) {
+    for (const mat4& matrix : scene::jointMatrices(animation.skins[static_cast<std::size_t>(mesh.skin)], pose))
+      *matrices++ = rowsOf(matrix);
+    *matrices = rowsOf(pose.worldFromNode[node]);
+  }
+  auto* weights = reinterpret_cast<float*>(mesh.pose.staging.mapped() + mesh.pose.weightOffset);
+  const std::vector<float>& values = pose.weights[node];
+  for (std::size_t i = 0; i < mesh.pose.weightCount; ++i) weights[i] = i < values.size() ? values[i] : 0.0f;
+}
+
+void DeformedMeshes::recordCosts(gpu::Commands& commands) const {
+  std::size_t levels = 0;
+  for (const Mesh& mesh : meshes_) levels = std::max(levels, mesh.cost.levelCount());
+  for (std::size_t level = 0; level < levels; ++level) {
+    commands.barrier(gpu::Stage::compute, gpu::Stage::compute);
+    for (std::size_t m = 0; m < meshes_.size(); ++m)
+      if (level < meshes_[m].cost.levelCount())
+        meshes_[m].cost.record(commands, *costPass_, level, roots_.address() + m * sizeof(shared::TreeCostNode));
+  }
+}
+
+void DeformedMeshes::record(gpu::Commands& commands) {
+  timer_.reset(commands);
+  timer_.mark(commands, kStart);
+  commands.barrier(gpu::Stage::all, gpu::Stage::transfer);
+  for (const Mesh& mesh : meshes_) commands.copy(mesh.pose.staging, mesh.pose.device, mesh.pose.staging.size());
+  commands.barrier(gpu::Stage::all, gpu::Stage::compute);
+  for (const Mesh& mesh : meshes_)
+    for (const GeometryDeformer& geometry : mesh.geometries) geometry.recordVertices(commands, passes_);
+  commands.barrier(gpu::Stage::compute, gpu::Stage::compute);
+  for (const Mesh& mesh : meshes_)
+    for (const GeometryDeformer& geometry : mesh.geometries) geometry.recordRepair(commands, passes_);
+  timer_.mark(commands, kDeformed);
+  recordCosts(commands);
+  timer_.mark(commands, kMeasured);
+  commands.barrier(gpu::Stage::compute, gpu::Stage::accelerationStructureBuild);
+  for (const Mesh& mesh : meshes_) mesh.refit.record(commands);
+  timer_.mark(commands, kRefitted);
+  commands.barrier(gpu::Stage::all, gpu::Stage::all);
+  commands.toHost(gpu::Stage::compute);
+}
+
+// Builds the BLAS again, from the vertices of the frame.
+void DeformedMeshes::build(Mesh& mesh) {
   const std::size_t first = mesh.upload->firstGeometry[mesh.index];
-  for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
-    const scene::Geometry& geometry = mesh.geometries[g];
-    const GeometrySlots& slots = mesh.upload->slots[first + g];
-    replaceArray(*mesh.upload, slots.positions, std::as_bytes(std::span(geometry.positions)), uploader);
-    replaceArray(*mesh.upload, slots.normals, std::as_bytes(std::span(geometry.normals)), uploader);
-    replaceArray(*mesh.upload, slots.tangents, std::as_bytes(std::span(geometry.tangents)), uploader);
+  std::vector<HostArray<vec3>> positions;
+  std::vector<HostArray<uvec3>> triangles;
+  for (std::size_t g = 0; g < mesh.input.geometries.size(); ++g) {
+    const VertexSlots& slots = mesh.upload->slots[first + g];
+    positions.push_back(readArray<vec3>(*mesh.upload, slots.positions));
+    triangles.push_back(readArray<uvec3>(*mesh.upload, slots.triangles));
+    mesh.input.geometries[g].positions = positions.back().values();
+    mesh.input.geometries[g].triangles = triangles.back().values();
   }
-}
-
-bool DeformedMeshes::updateBlas(Mesh& mesh) {
-  mesh.input = withArrays(std::move(mesh.input), mesh.geometries);  // vectors can have moved
-  rt::BlasBuilder builder(context_);
-  if (mesh.quality.growth(mesh.input) <= rt::kMaxRefitGrowth) {
-    builder.refit(*mesh.blas, mesh.input);
-    ++statistics_.refits;
-    return false;
-  }
-  *mesh.blas = std::move(builder.build({&mesh.input, 1}).front());
-  mesh.quality = rt::RefitQuality(mesh.input);
-  ++statistics_.builds;
-  return true;
+  *mesh.blas = std::move(rt::BlasBuilder(context_).build({&mesh.input, 1}).front());
+  prepareUpdates(mesh);
 }
 
 void DeformedMeshes::setPose(const scene::NodeAnimation& animation, const scene::Pose& pose,
                              const std::function<void(std::size_t mesh)>& rebuilt) {
-  if (meshes_.empty()) return;
   Stopwatch watch;
-  VkDeviceSize bytes = 0;
-  for (const std::unique_ptr<Mesh>& mesh : meshes_)
-    for (std::size_t g = 0; g < mesh->geometries.size(); ++g) {
-      scene::deformGeometry(*mesh->deformation, g, animation, pose, mesh->geometries[g]);
-      bytes += mesh->geometries[g].positions.size() * (2 * sizeof(vec3) + sizeof(vec4));
+  for (const Mesh& mesh : meshes_) writePose(mesh, animation, pose);
+  statistics_.poseSeconds += watch.lap();
+  context_.submitAndWait([&](gpu::Commands& commands) { record(commands); });
+  statistics_.deformSeconds += timer_.seconds(kStart, kDeformed);
+  statistics_.costSeconds += timer_.seconds(kDeformed, kMeasured);
+  statistics_.refitSeconds += timer_.seconds(kMeasured, kRefitted);
+  watch.lap();
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    Mesh& mesh = meshes_[m];
+    shared::TreeCostNode root;
+    std::memcpy(&root, roots_.mapped() + m * sizeof(root), sizeof(root));
+    if (mesh.cost.growth(root) <= rt::kMaxRefitGrowth) {
+      mesh.blas->setBounds({root.low, root.high});
+      ++statistics_.refits;
+      continue;
     }
-  statistics_.deformSeconds += watch.lap();
-  gpu::Uploader uploader(context_, std::min(2 * bytes, kStagingBytes));
-  for (const std::unique_ptr<Mesh>& mesh : meshes_) upload(*mesh, uploader);
-  uploader.flush();
-  statistics_.uploadSeconds += watch.lap();
-  for (const std::unique_ptr<Mesh>& mesh : meshes_)
-    if (updateBlas(*mesh)) rebuilt(mesh->index);
+    build(mesh);
+    rebuilt(mesh.index);
+    ++statistics_.builds;
+  }
   statistics_.buildSeconds += watch.lap();
 }
 
-void DeformedMeshes::forPositions(const Visit& visit) const {
-  for (const std::unique_ptr<Mesh>& mesh : meshes_)
-    for (std::size_t g = 0; g < mesh->geometries.size(); ++g) visit(mesh->index, g, mesh->geometries[g].positions);
+void DeformedMeshes::forPositions(const Wanted& wanted, const Visit& visit) const {
+  for (const Mesh& mesh : meshes_)
+    for (std::size_t g = 0; g < mesh.geometries.size(); ++g) {
+      if (!wanted(mesh.index, g)) continue;
+      const VertexSlots& slots = mesh.upload->slots[mesh.upload->firstGeometry[mesh.index] + g];
+      visit(mesh.index, g, readArray<vec3>(*mesh.upload, slots.positions).values());
+    }
 }
 
 }  // namespace quintet::render

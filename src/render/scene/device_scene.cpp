@@ -36,12 +36,6 @@ void padTables(LightTable& table) {
   table.nodes.resize(std::max(table.nodes.size(), 2 * table.lights.size()));
 }
 
-void moveEmitters(const DeformedMeshes& deformed, LightTableBuilder& lights) {
-  deformed.forPositions([&](std::size_t mesh, std::size_t geometry, std::span<const vec3> positions) {
-    lights.setPositions(mesh, geometry, positions);
-  });
-}
-
 }  // namespace
 
 DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scene::Environment& environment,
@@ -49,7 +43,6 @@ DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scen
     : context_(context),
       options_(options),
       nodeAnimation_(scene.nodeAnimation),
-      deformed_(context),
       cameraMedia_(scene, [this](std::size_t mesh, std::size_t geometry) { return downloadMesh(mesh, geometry); }),
       animated_(scene::isAnimated(scene)),
       facts_(check::sceneFacts(scene)) {
@@ -222,8 +215,20 @@ void DeviceScene::buildBottomLevel(const scene::Scene& scene) {
     for (std::size_t g = 0; g < inputs[i].geometries.size(); ++g)
       geometry_.geometries[geometry_.firstGeometry[meshOfInput[i]] + g].primitiveMap = blas_[i].primitiveMap(g);
   }
-  for (std::size_t i = 0; i < blas_.size(); ++i)
-    if (scene.meshes[meshOfInput[i]].deformation) deformed_.add(scene, meshOfInput[i], inputs[i], blas_[i], geometry_);
+  addDeformedMeshes(scene, inputs, meshOfInput);
+}
+
+void DeviceScene::addDeformedMeshes(const scene::Scene& scene, std::span<const rt::BlasInput> inputs,
+                                    std::span<const std::size_t> meshOfInput) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    if (!scene.meshes[meshOfInput[i]].deformation) continue;
+    if (!deformed_) {
+      std::optional<shader::Compiler> own;
+      if (!options_.compiler) own.emplace(shader::CompilerOptions{});
+      deformed_.emplace(context_, *set_, own ? *own : *options_.compiler);
+    }
+    deformed_->add(scene, meshOfInput[i], inputs[i], blas_[i], geometry_);
+  }
 }
 
 void DeviceScene::uploadTables(const scene::Scene& scene) {
@@ -256,12 +261,16 @@ void DeviceScene::setFrame(double frame) {
 
 void DeviceScene::showFrame(double frame) {
   shownFrame_ = frame;
+  Stopwatch watch;
   const scene::Pose pose = scene::poseAt(nodeAnimation_.get(), frame);
   const scene::Pose before = scene::poseAt(nodeAnimation_.get(), std::max(frame - 1.0, std::min(frame, 0.0)));
-  if (!deformed_.empty()) showDeformation(pose);
-  if (!deformed_.empty() || topLevel_->animated()) topLevel_->setPose(pose, before);
+  frameStatistics_.poseSeconds += watch.lap();
+  if (deformed_) showDeformation(pose);
+  watch.lap();
+  if (deformed_ || topLevel_->animated()) topLevel_->setPose(pose, before);
+  frameStatistics_.topLevelSeconds += watch.lap();
   if (!lightBuilder_ || !lightBuilder_->hasMovingLights()) return;
-  moveEmitters(deformed_, *lightBuilder_);
+  moveEmitters();
   if (!punctual_.empty()) movePunctualLights(pose);
   lightsOutdated_ = true;
 }
@@ -270,6 +279,15 @@ void DeviceScene::movePunctualLights(const scene::Pose& pose) {
   std::vector<scene::Light> lights;
   for (const scene::Light& light : punctual_) lights.push_back(scene::lightAt(light, pose));
   lightBuilder_->setPunctualLights(lights);
+}
+
+void DeviceScene::moveEmitters() {
+  if (!deformed_) return;
+  deformed_->forPositions(
+      [&](std::size_t mesh, std::size_t geometry) { return lightBuilder_->hasPositions(mesh, geometry); },
+      [&](std::size_t mesh, std::size_t geometry, std::span<const vec3> positions) {
+        lightBuilder_->setPositions(mesh, geometry, positions);
+      });
 }
 
 void DeviceScene::showDeformation(const scene::Pose& pose) {
@@ -281,20 +299,18 @@ void DeviceScene::showDeformation(const scene::Pose& pose) {
     geometryTable_.upload(std::as_bytes(std::span(geometry_.geometries).subspan(first, count)),
                           first * sizeof(shared::GeometryData));
   };
-  deformed_.setPose(*nodeAnimation_, pose, updateMaps);
+  deformed_->setPose(*nodeAnimation_, pose, updateMaps);
   cameraMedia_.deform();
 }
 
 MeshArrays DeviceScene::downloadMesh(std::size_t mesh, std::size_t geometry) const {
-  const std::size_t k = geometry_.firstGeometry[mesh] + geometry;
-  MeshArrays arrays;
-  arrays.positions.resize(geometry_.arrays[k].positions.size());
-  arrays.triangles.resize(geometry_.arrays[k].triangles.size());
-  const auto download = [&](auto& values, const ArraySlot& slot) {
-    geometry_.buffers[slot.buffer].download(std::as_writable_bytes(std::span(values)), slot.offset);
+  const VertexSlots& slots = geometry_.slots[geometry_.firstGeometry[mesh] + geometry];
+  const auto copyOf = []<class T>(HostArray<T> array) {
+    return array.copy.empty() ? std::vector<T>(array.mapped.begin(), array.mapped.end()) : std::move(array.copy);
   };
-  if (!arrays.positions.empty()) download(arrays.positions, geometry_.slots[k].positions);
-  if (!arrays.triangles.empty()) download(arrays.triangles, geometry_.slots[k].triangles);
+  MeshArrays arrays;
+  if (slots.positions.bytes > 0) arrays.positions = copyOf(readArray<vec3>(geometry_, slots.positions));
+  if (slots.triangles.bytes > 0) arrays.triangles = copyOf(readArray<uvec3>(geometry_, slots.triangles));
   return arrays;
 }
 
@@ -304,9 +320,11 @@ Media DeviceScene::mediaAt(const vec3& point) {
 
 void DeviceScene::updateLights() {
   if (!std::exchange(lightsOutdated_, false)) return;
+  const Stopwatch watch;
   lightBuilder_->build(topLevel_->worldFromObject(), lightTables_);
   uploadLightTable(lightTables_);
   if (lightTables_.slots.size() > kKeptLights || lightTables_.lights.size() > kKeptLights) lightTables_ = {};
+  frameStatistics_.lightSeconds += watch.seconds();
 }
 
 void DeviceScene::setTransforms(std::span<const InstanceTransform> transforms) {
@@ -333,7 +351,7 @@ void DeviceScene::setEmission(const scene::Scene& scene) {
   assert(options_.editable);
   if (!lightBuilder_->setEmission(scene)) return;
   lightBuilder_->copyGeometry();
-  moveEmitters(deformed_, *lightBuilder_);
+  moveEmitters();
   lightsOutdated_ = true;
 }
 

@@ -33,6 +33,8 @@ struct DeviceSceneOptions {
   // Geometry that is built with NO_DUPLICATE_ANY_HIT_INVOCATION.
   program::SingleAnyHit singleAnyHit = program::SingleAnyHit::tinting;
   bool editable = false;  // keep what DeviceScene::setTransforms requires: the emissive geometry in host memory
+  // Compiles the passes that deform meshes; used by the constructor only. Null means one without a cache on disk.
+  const shader::Compiler* compiler = nullptr;
 };
 
 struct InstanceTransform {
@@ -50,6 +52,13 @@ struct DeviceSceneStatistics {
   std::uint64_t accelerationBytes = 0;  // bottom and top level
   std::uint64_t primitiveMapBytes = 0;  // only if the driver keeps the input order (quirks.md)
   std::uint32_t lightCount = 0;
+};
+
+// Sums over all frames after the first one. Wall-clock time on the host, with the waits for the device.
+struct FrameStatistics {
+  double poseSeconds = 0;      // transforms of the nodes
+  double topLevelSeconds = 0;  // instances and the TLAS
+  double lightSeconds = 0;     // tables of moving lights
 };
 
 class DeviceScene {
@@ -105,7 +114,10 @@ class DeviceScene {
   // Returns the solids around a point in world space at the current frame, with the current materials.
   Media mediaAt(const vec3& point);
   bool animated() const { return animated_; }  // keyframes, or a glTF animation (scene::isAnimated)
-  const DeformationStatistics& deformationStatistics() const { return deformed_.statistics(); }
+  const FrameStatistics& frameStatistics() const { return frameStatistics_; }
+  DeformationStatistics deformationStatistics() const {
+    return deformed_ ? deformed_->statistics() : DeformationStatistics{};
+  }
 
  private:
   struct EnvironmentImage {
@@ -119,6 +131,7 @@ class DeviceScene {
   void showFrame(double frame);
   void showDeformation(const scene::Pose& pose);
   void movePunctualLights(const scene::Pose& pose);  // in the builder
+  void moveEmitters();                               // in the builder, to the deformed vertices
   void uploadLightTable(LightTable& table);
   void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
   MeshArrays downloadMesh(std::size_t mesh, std::size_t geometry) const;
@@ -127,6 +140,8 @@ class DeviceScene {
   // build ends.
   rt::BlasInput blasInput(const scene::Scene& scene, std::size_t mesh, std::deque<std::vector<Bounds3>>& boxes) const;
   void buildBottomLevel(const scene::Scene& scene);
+  void addDeformedMeshes(const scene::Scene& scene, std::span<const rt::BlasInput> inputs,
+                         std::span<const std::size_t> meshOfInput);
   void uploadTables(const scene::Scene& scene);
 
   gpu::Context& context_;
@@ -149,11 +164,12 @@ class DeviceScene {
   std::uint64_t bottomLevelBytes_ = 0;
   std::optional<TopLevel> topLevel_;
   std::shared_ptr<const scene::NodeAnimation> nodeAnimation_;  // null if no glTF animation plays
-  DeformedMeshes deformed_;
+  std::optional<DeformedMeshes> deformed_;                     // if an animation deforms a mesh
   CameraMedia cameraMedia_;
-  std::vector<scene::Light> punctual_;  // at frame 0, if one follows a node
+  std::vector<scene::Light> punctual_;                         // at frame 0, if one follows a node
   bool animated_ = false;
   double shownFrame_ = 0;
+  FrameStatistics frameStatistics_;
   program::SceneFacts facts_;
   shared::Frame frame_{};
   Defines defines_;

@@ -37,7 +37,8 @@ class Arena {
     if (data.empty()) return {};
     if (used_ == capacity_) grow();
     gpu::Buffer& buffer = target_.buffers.back();
-    UploadedArray<T> uploaded{buffer.address() + used_, data, {target_.buffers.size() - 1, used_}};
+    UploadedArray<T> uploaded{
+        buffer.address() + used_, data, {target_.buffers.size() - 1, used_, data.size() * sizeof(T)}};
     if (std::byte* mapped = buffer.mapped()) {
       parallelCopy(mapped + used_, std::as_bytes(std::span(data)));
       uploaded.host = {reinterpret_cast<const T*>(mapped + used_), data.size()};
@@ -103,18 +104,16 @@ std::vector<VkDeviceSize> arraySizes(const scene::Scene& scene) {
 }
 
 shared::GeometryData uploadTriangles(Arena& arena, const scene::Scene& scene, const scene::Geometry& g,
-                                     GeometryArrays& arrays, GeometrySlots& slots) {
+                                     GeometryArrays& arrays, VertexSlots& slots) {
   shared::GeometryData data{};
   const UploadedArray<vec3> positions = arena.add(g.positions);
   const UploadedArray<uvec3> triangles = arena.add(g.triangles);
   arrays = {positions.host, triangles.host};
   data.positions = positions.address;
   data.triangles = triangles.address;
-  const UploadedArray<vec3> normals = arena.add(g.normals);
-  const UploadedArray<vec4> tangents = arena.add(g.tangents);
-  slots = {positions.slot, normals.slot, tangents.slot, triangles.slot};
-  data.normals = normals.address;
-  data.tangents = tangents.address;
+  slots = {positions.slot, triangles.slot};
+  data.normals = arena.add(g.normals).address;
+  data.tangents = arena.add(g.tangents).address;
   data.uvs[0] = arena.add(g.uvs[0]).address;
   data.uvs[1] = arena.add(g.uvs[1]).address;
   data.colors = arena.add(g.colors).address;
@@ -161,17 +160,6 @@ VkDeviceSize geometryUploadBytes(const gpu::Context& context, const scene::Scene
   VkDeviceSize bytes = 0;
   for (const VkDeviceSize size : arraySizes(scene)) bytes += size;
   return bytes;
-}
-
-void replaceArray(GeometryUpload& upload, const ArraySlot& slot, std::span<const std::byte> data,
-                  gpu::Uploader& uploader) {
-  if (data.empty()) return;
-  gpu::Buffer& buffer = upload.buffers[slot.buffer];
-  if (std::byte* mapped = buffer.mapped()) {
-    parallelCopy(mapped + slot.offset, data);
-  } else {
-    uploader.upload(buffer, data, slot.offset);
-  }
 }
 
 GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, scene::Scene& scene) {

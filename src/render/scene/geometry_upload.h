@@ -25,11 +25,12 @@ struct GeometryArrays {
 struct ArraySlot {
   std::size_t buffer = 0;
   VkDeviceSize offset = 0;
+  VkDeviceSize bytes = 0;
 };
 
-// The arrays of a geometry that a deformation changes, and its triangles.
-struct GeometrySlots {
-  ArraySlot positions, normals, tangents, triangles;
+// The arrays of a geometry that an acceleration structure is built from.
+struct VertexSlots {
+  ArraySlot positions, triangles;
 };
 
 // Geometries and primitive sets in the order of hit records. The caller sets the addresses of primitive maps.
@@ -37,7 +38,7 @@ struct GeometryUpload {
   std::deque<gpu::Buffer> buffers;
   std::vector<shared::GeometryData> geometries;
   std::vector<GeometryArrays> arrays;        // parallel to `geometries`; empty for primitive sets
-  std::vector<GeometrySlots> slots;          // parallel to `geometries`; not used for primitive sets
+  std::vector<VertexSlots> slots;            // parallel to `geometries`; not used for primitive sets
   std::vector<std::uint32_t> firstGeometry;  // per mesh
   std::uint64_t bytes = 0;
 };
@@ -46,10 +47,27 @@ struct GeometryUpload {
 // directly.
 VkDeviceSize geometryUploadBytes(const gpu::Context& context, const scene::Scene& scene);
 
-// Replaces an array by one of the same size; an empty one changes nothing. The data are on the device after
-// uploader.flush(). The device must not use the array meanwhile.
-void replaceArray(GeometryUpload& upload, const ArraySlot& slot, std::span<const std::byte> data,
-                  gpu::Uploader& uploader);
+// An array in host memory: a copy, or a view of mapped device memory.
+template <class T>
+struct HostArray {
+  std::vector<T> copy;
+  std::span<const T> mapped;
+  std::span<const T> values() const { return copy.empty() ? mapped : std::span<const T>(copy); }
+};
+
+// Reads an array from the device. Blocks, unless the memory is mapped.
+template <class T>
+HostArray<T> readArray(const GeometryUpload& upload, const ArraySlot& slot) {
+  const gpu::Buffer& buffer = upload.buffers[slot.buffer];
+  HostArray<T> array;
+  if (buffer.mapped()) {
+    array.mapped = {reinterpret_cast<const T*>(buffer.mapped() + slot.offset), slot.bytes / sizeof(T)};
+  } else {
+    array.copy.resize(slot.bytes / sizeof(T));
+    buffer.download(std::as_writable_bytes(std::span(array.copy)), slot.offset);
+  }
+  return array;
+}
 
 // Uploads all geometries, and frees each array of the scene that GeometryUpload::arrays does not refer to.
 GeometryUpload uploadGeometries(gpu::Context& context, gpu::Uploader& uploader, scene::Scene& scene);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Refits of moved vertices.
 #include "base/error.h"
+#include "rt/blas_refit.h"
 #include "rt_test_support.h"
 
 namespace quintet::rt::test {
@@ -52,6 +53,34 @@ TEST(RtRefit, RejectsDifferentCountsAndNonFiniteVertices) {
   input.options.allowUpdate = false;
   SingleBlas fixed(input);
   EXPECT_THROW(builder.refit(fixed.blas, input), UsageError);
+}
+
+// The device has moved the vertices; the host does not read them.
+TEST(RtRefit, FollowsVerticesOnTheDevice) {
+  gpu::Context& context = quintet::test::testContext();
+  Mesh mesh = randomMesh(500, 46, 0.3f);
+  constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
+  gpu::Buffer positions = gpu::makeBufferOf(context, mesh.positions, kUsage, "positions");
+  const gpu::Buffer triangles = gpu::makeBufferOf(context, mesh.triangles, kUsage, "triangles");
+  BlasInput input{.geometries = {mesh.geometry()}, .options = {.allowUpdate = true, .name = "on the device"}};
+  input.geometries[0].positionsAddress = positions.address();
+  input.geometries[0].trianglesAddress = triangles.address();
+  SingleBlas scene(input);
+  const BlasRefit refit(context, scene.blas, input);
+  const std::vector<Ray> rays = randomRays(1500, 47);
+  for (int step = 1; step <= 2; ++step) {
+    for (vec3& p : mesh.positions) p = vec3(p.y, 1.0f - p.x, p.z * 0.9f);
+    positions.upload(std::as_bytes(std::span(mesh.positions)));
+    context.submitAndWait([&](gpu::Commands& commands) { refit.record(commands); });
+    scene.buildTlas();
+    expectSameHits(scene.trace(rays), mesh, rays);
+  }
+  input.geometries.push_back(input.geometries[0]);
+  EXPECT_THROW(BlasRefit(context, scene.blas, input), UsageError);
+  input.geometries.pop_back();
+  input.options.allowUpdate = false;
+  SingleBlas fixed(input);
+  EXPECT_THROW(BlasRefit(context, fixed.blas, input), UsageError);
 }
 
 }  // namespace

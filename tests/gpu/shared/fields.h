@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "quintet/shared/deform.h"
 #include "quintet/shared/explain.h"
 #include "quintet/shared/film.h"
 #include "quintet/shared/heat.h"
@@ -169,6 +170,17 @@ GPU_FIELDS(FilmCheck, values, result, count, sums, mark, padding);
 GPU_FIELDS(FixedSum, word);
 GPU_FIELDS(CoverageSlot, id, samples);
 GPU_FIELDS(FilmTile, x, y, drawn);
+GPU_FIELDS(DeformTarget, positions, normals, tangents);
+GPU_FIELDS(DeformSkinSet, joints, weights);
+GPU_FIELDS(DeformMatrix, rows);
+GPU_FIELDS(DeformGeometry, positions, normals, tangents, deformedPositions, deformedNormals, deformedTangents, targets,
+           skinSets, triangles, firstCorners, corners, weights, matrices, vertexCount, targetCount, skinSetCount,
+           flags);
+GPU_FIELDS(DeformPass, geometry);
+GPU_FIELDS(TreeCostNode, low, high, cost);
+GPU_FIELDS(TreeCostGeometry, positions, triangles, first, padding);
+GPU_FIELDS(TreeCostList, order, geometries, triangleCount, geometryCount, depth, padding);
+GPU_FIELDS(TreeCostPass, leaves, roots, list, leafCount, padding);
 GPU_FIELDS(Launch, frameAddress, parameterAddress, offset, firstSample, sampleCount, tiles);
 
 #undef GPU_FIELDS

@@ -37,7 +37,8 @@ template <class T>
 std::string glslFor() {
   return std::string(
              "#include <quintet/shared/film.h>\n#include <quintet/shared/instrument.h>\n"
-             "#include <quintet/shared/explain.h>\n#include <quintet/shared/heat.h>\n") +
+             "#include <quintet/shared/explain.h>\n#include <quintet/shared/heat.h>\n"
+             "#include <quintet/shared/deform.h>\n") +
          kGlslWords + Fields<shared::TextureData>::glsl() + Fields<shared::EnvironmentData>::glsl() +
          Fields<shared::CameraData>::glsl() +
          (std::set<std::string>{"TextureData", "EnvironmentData", "CameraData"}.contains(Fields<T>::kName)
@@ -60,7 +61,9 @@ using SharedStructs = testing::Types<
     shared::ExplainHit, shared::ExplainBox, shared::ExplainStageEnd, shared::ExplainReport, shared::ExplainStore,
     shared::ExplainCamera, shared::ExplainSurface, shared::ExplainShading, shared::ExplainLobe,
     shared::ExplainLightChoice, shared::ExplainLightSample, shared::ExplainVisibility, shared::ExplainBsdfSample,
-    shared::ExplainRoulette, shared::ExplainEmission, shared::ExplainContribution, shared::ExplainPathEnd>;
+    shared::ExplainRoulette, shared::ExplainEmission, shared::ExplainContribution, shared::ExplainPathEnd,
+    shared::DeformTarget, shared::DeformSkinSet, shared::DeformMatrix, shared::DeformGeometry, shared::DeformPass,
+    shared::TreeCostNode, shared::TreeCostGeometry, shared::TreeCostList, shared::TreeCostPass>;
 
 struct StructNames {
   template <class T>
@@ -122,14 +125,14 @@ TEST(SharedHeaders, AgreeOnConstants) {
     #include <quintet/shared/film.h>
     struct Out { uint at[8]; };
     Out run(uint index) {
-      return Out(uint[8](kAlbedoAverageOffset, kGlassOffset, kAlbedoFloatCount, kNoTexture, kNoLight, kMaxOutputs, kFilmColumns,
+      return Out(uint[8](kAlbedoAverageOffset, kGlassOffset, kAlbedoFloatCount, kNoTexture, kNoLight, kMaxOutputs, kPassColumns,
                          kMaterialTextureOffset));
     }
   )",
                                                              1)[0];
   EXPECT_EQ(seen, (std::array<std::uint32_t, 8>{
                       shared::kAlbedoAverageOffset, shared::kGlassOffset, shared::kAlbedoFloatCount, shared::kNoTexture,
-                      shared::kNoLight, shared::kMaxOutputs, shared::kFilmColumns, shared::kMaterialTextureOffset}));
+                      shared::kNoLight, shared::kMaxOutputs, shared::kPassColumns, shared::kMaterialTextureOffset}));
 }
 
 }  // namespace

@@ -37,6 +37,8 @@ const std::map<std::string, std::vector<Stage>> kSupported{
     {"quintet/hit_geometry.glsl", kCandidateStages},
     {"quintet/launch_pixel.glsl", kRayTracingStages},
     {"quintet/output.glsl", kRayTracingStages},
+    {"quintet/passes/deform.glsl", {Stage::compute}},
+    {"quintet/passes/pass_index.glsl", {Stage::compute}},
     {"quintet/procedural/alpha.glsl", kHitStages},
     {"quintet/procedural/hit.glsl", kHitStages},
     {"quintet/trace.glsl", kTracingStages},
@@ -47,7 +49,8 @@ bool isInternal(const std::string& path) {
   return path.starts_with("quintet/gsn") || path.starts_with("quintet/names_") || path == "quintet/explain.glsl" ||
          path == "quintet/heat.glsl" || path == "quintet/instrument.glsl" || path == "quintet/log.glsl" ||
          path == "quintet/print.glsl" || path == "quintet/recursion.glsl" || path.starts_with("quintet/stages/") ||
-         path.starts_with("quintet/passes/film_");
+         path.starts_with("quintet/passes/film_") || path.starts_with("quintet/passes/deform_") ||
+         path == "quintet/passes/tree_cost.glsl";
 }
 
 std::vector<std::string> headers() {
