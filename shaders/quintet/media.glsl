@@ -26,11 +26,9 @@ vec3 mediumAbsorption(uint medium) {
   return medium == 0u ? vec3(0.0) : MaterialArray(frame.materials).at[medium - 1u].absorption;
 }
 
-uvec4 cameraMedia() {
-  return uvec4(frame.cameraMedia[0], frame.cameraMedia[1], frame.cameraMedia[2], frame.cameraMedia[3]);
-}
+uvec4 cameraMedia() { return frame.cameraMedia; }
 // The solid that fills the space around the camera, or 0.
-uint cameraMedium() { return kHasNestedMedia ? fillingMedium(cameraMedia()) : frame.cameraMedia[0]; }
+uint cameraMedium() { return kHasNestedMedia ? fillingMedium(cameraMedia()) : frame.cameraMedia.x; }
 
 // Index of refraction of a medium for the path's channel, at least 1.
 float mediumIor(uint medium, uint channel) {

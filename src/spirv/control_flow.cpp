@@ -143,15 +143,16 @@ std::vector<std::size_t> ControlFlow::controllers(std::size_t block) const {
 bool dependsOnDataOrControl(const Module& module, const ControlFlow& flow, Id value, const InstructionTest& test,
                             bool throughLoops) {
   std::vector<Id> open{value}, phis;
-  std::unordered_set<Id> seen{value}, seenPhis;
+  std::unordered_set<Id> seen{value};
+  Slices slices(module);
   const auto visit = [&](const Instruction& i) {
-    if (i.op == spv::Op::OpPhi && seenPhis.insert(i.result).second) phis.push_back(i.result);
+    if (i.op == spv::Op::OpPhi) phis.push_back(i.result);
     return test(i);
   };
   while (!open.empty()) {
     const Id next = open.back();
     open.pop_back();
-    if (dependsOn(module, next, visit)) return true;
+    if (slices.find(next, visit)) return true;
     for (const Id phi : phis) {
       const auto position = module.position(module.definitionIndex(phi));
       if (!position || position->function != flow.functionIndex()) continue;

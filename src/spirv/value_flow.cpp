@@ -103,12 +103,12 @@ Id partOf(const Module& module, Id value, const Access& store, const Access& loa
 
 }  // namespace
 
-const Instruction* findInSlice(const Module& module, Id value, const InstructionTest& test,
-                               const InstructionTest& stop) {
+const Instruction* Slices::find(Id value, const InstructionTest& test, const InstructionTest& stop) {
+  const Module& module = *module_;
   const std::size_t start = module.definitionIndex(value);
-  if (start == Module::kNone) return nullptr;
+  if (start == Module::kNone || seen_[start]) return nullptr;
   Indices open{start};
-  std::unordered_set<std::size_t> seen{start};
+  seen_[start] = true;
   while (!open.empty()) {
     const Instruction& instruction = module.instructions()[open.back()];
     open.pop_back();
@@ -118,10 +118,18 @@ const Instruction* findInSlice(const Module& module, Id value, const Instruction
     for (const Id id : valueOperands(instruction))
       if (module.definitionIndex(id) != Module::kNone) sources.push_back(module.definitionIndex(id));
     addIndirectSources(module, instruction, sources);
-    for (const std::size_t i : sources)
-      if (seen.insert(i).second) open.push_back(i);
+    for (const std::size_t i : sources) {
+      if (seen_[i]) continue;
+      seen_[i] = true;
+      open.push_back(i);
+    }
   }
   return nullptr;
+}
+
+const Instruction* findInSlice(const Module& module, Id value, const InstructionTest& test,
+                               const InstructionTest& stop) {
+  return Slices(module).find(value, test, stop);
 }
 
 InstructionTest sourcesOf(const Module& module, Id value) {

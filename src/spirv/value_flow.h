@@ -20,6 +20,20 @@ using InstructionTest = std::function<bool(const Instruction&)>;
 const Instruction* findInSlice(const Module& module, Id value, const InstructionTest& test,
                                const InstructionTest& stop = {});
 
+// The union of the slices of several values: each instruction is tested once, so that the searches for all values take as
+// long as one.
+class Slices {
+ public:
+  // `module` must exist as long as this object.
+  explicit Slices(const Module& module) : module_(&module), seen_(module.instructions().size(), false) {}
+  // As findInSlice(), without the instructions that an earlier search has visited.
+  const Instruction* find(Id value, const InstructionTest& test, const InstructionTest& stop = {});
+
+ private:
+  const Module* module_;
+  std::vector<bool> seen_;
+};
+
 inline bool dependsOn(const Module& module, Id value, const InstructionTest& test, const InstructionTest& stop = {}) {
   return findInSlice(module, value, test, stop) != nullptr;
 }

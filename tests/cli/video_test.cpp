@@ -37,13 +37,13 @@ TEST_F(Video, PipesEachFrame) {
   const RunResult result = render({"--frames", "3", "--fps", "12.5", "--crf", "21", "-o", "out.mp4", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const std::vector<std::byte> bytes = readFile(folder_ / "out.mp4");
-  ASSERT_EQ(bytes.size(), 3u * 5 * 3 * 3);
+  ASSERT_EQ(bytes.size(), 3u * 6 * 4 * 3);  // sides are even
   for (std::size_t frame = 0; frame < 3; ++frame) {
-    EXPECT_EQ(std::to_integer<int>(bytes[frame * 45]), static_cast<int>(16 * frame));
-    EXPECT_EQ(std::to_integer<int>(bytes[frame * 45 + 1]), 0);
+    EXPECT_EQ(std::to_integer<int>(bytes[frame * 72]), static_cast<int>(16 * frame));
+    EXPECT_EQ(std::to_integer<int>(bytes[frame * 72 + 1]), 0);
   }
   EXPECT_THAT(readTextFile(folder_ / "arguments.txt"),
-              testing::AllOf(HasSubstr("5x3"), HasSubstr("12.5"), HasSubstr("-crf 21")));
+              testing::AllOf(HasSubstr("6x4"), HasSubstr("12.5"), HasSubstr("-crf 21")));
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json["files"], nlohmann::json::array({"out.mp4"}));
   EXPECT_EQ(json["frames"].size(), 3u);

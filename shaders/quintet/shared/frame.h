@@ -135,7 +135,7 @@ struct Frame {
   Address log;          // LogHeader and its words (shared/log.h); 0: no log
   Address heat;         // HeatPixel[filmWidth · filmHeight] (shared/heat.h); 0: no heat maps
   // Solids around the camera: 1 + index of the material, from the inside to the outside; 0: no further one.
-  uint cameraMedia[kMaxMedia];
+  uvec4 cameraMedia;
 };
 QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 32 + 16);
 

@@ -72,7 +72,7 @@ void Renderer::uploadFrame(const scene::Camera& camera, Stored stored) {
   frame.heat = heat_ ? heat_.address() : 0;
   if (instrument_) frame.instrument = instrument_->address();
   if (recursion_) frame.instrument = recursion_->address();
-  std::ranges::copy(cameraMedia_, frame.cameraMedia);
+  frame.cameraMedia = {cameraMedia_[0], cameraMedia_[1], cameraMedia_[2], cameraMedia_[3]};
   film_.describe(frame);
   if (stored != Stored::all) {
     for (std::size_t i = 0; i < program().outputs.size(); ++i)

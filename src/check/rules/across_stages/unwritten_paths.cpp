@@ -141,8 +141,11 @@ class UnwrittenPaths {
 
   // True if the condition holds on some of the paths.
   bool holdsOn(const Path& path, const spirv::Guard& guard) const {
-    const std::optional<std::set<std::uint32_t>> leaves = leavesOf(guard.condition);
-    if (!guard.holds || !leaves || leaves->empty()) return false;
+    if (!guard.holds) return false;
+    const auto [known, isNew] = leavesOf_.try_emplace(guard.condition);
+    if (isNew) known->second = leavesOf(guard.condition);
+    const std::optional<std::set<std::uint32_t>>& leaves = known->second;
+    if (!leaves || leaves->empty()) return false;
     std::vector<std::pair<std::uint32_t, std::vector<double>>> samples;
     std::size_t count = 1;
     for (const std::uint32_t leaf : *leaves) {
@@ -244,6 +247,7 @@ class UnwrittenPaths {
   std::size_t start_ = 0, function_ = 0;                // of the shader's entry function
   std::vector<std::size_t> writers_;                    // of the leaf in the shader
   std::map<std::uint32_t, std::vector<Store>> stores_;  // to other leaves
+  mutable std::map<Id, std::optional<std::set<std::uint32_t>>> leavesOf_;  // cache, by condition
 };
 
 }  // namespace
