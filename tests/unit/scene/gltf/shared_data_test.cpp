@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -100,10 +102,12 @@ TEST(SharedData, LoadsEveryModel) {
   }
 }
 
-// Files with tangents that Blender has computed with MikkTSpace.
+// Files with tangents that Blender has computed with MikkTSpace, for the texture coordinates that were active there.
+// Triangles almost without area in the texture are left out: whether they have one depends on the rounding.
 TEST(SharedData, GeneratedTangentsAgreeWithThoseOfFiles) {
   if (!fs::exists(kFolder / "models")) GTEST_SKIP() << "no shared data at " << kFolder;
-  for (const char* file : {"AlphaBlendModeTest.glb", "MultiUVTest.glb", "VertexColorTest.glb"}) {
+  for (const auto& [file, uvSet] :
+       {std::pair("AlphaBlendModeTest.glb", 0), std::pair("MultiUVTest.glb", 1), std::pair("VertexColorTest.glb", 0)}) {
     const scene::Scene s = scene::loadGltf(kFolder / "models" / file);
     std::size_t corners = 0, different = 0;
     for (const scene::Mesh& mesh : s.meshes) {
@@ -111,13 +115,18 @@ TEST(SharedData, GeneratedTangentsAgreeWithThoseOfFiles) {
         if (g.tangents.empty()) continue;
         scene::Geometry generated = g;
         generated.tangents.clear();
-        scene::generateTangents(generated, scene::TextureUse{});
-        for (std::size_t t = 0; t < g.triangles.size(); ++t)
+        scene::generateTangents(generated, scene::TextureUse{.uvSet = uvSet});
+        for (std::size_t t = 0; t < g.triangles.size(); ++t) {
+          const std::vector<vec2>& uvs = g.uvs[static_cast<std::size_t>(uvSet)];
+          const uvec3& v = g.triangles[t];
+          const vec2 d1 = uvs[v.y] - uvs[v.x], d2 = uvs[v.z] - uvs[v.x];
+          if (std::abs(d1.x * d2.y - d1.y * d2.x) < 1e-6f) continue;
           for (std::size_t c = 0; c < 3; ++c) {
             const vec4 &a = g.tangents[g.triangles[t][c]], &b = generated.tangents[generated.triangles[t][c]];
             ++corners;
             if (a.w != b.w || glm::dot(vec3(a), vec3(b)) < std::cos(glm::radians(2.0f))) ++different;
           }
+        }
       }
     }
     EXPECT_GT(corners, 0u) << file;
