@@ -29,6 +29,7 @@ TEST(PhaseFunction, SamplesFollowTheDistribution) {
     const std::vector<vec3> found = runCompute<vec3>(R"(
       #include <quintet/sampling/pcg.glsl>
       #include <quintet/scattering.glsl>
+      #define In float
       #define Out vec3
       Out run(uint i, float g) {
         Sampler s = makeSampler(uvec2(i, 0u), 0u, 1u);
@@ -67,6 +68,7 @@ TEST(MediumStep, WeightsAreUnbiased) {
     const std::vector<Step> steps = runCompute<Step>(R"(
       #include <quintet/sampling/pcg.glsl>
       #include <quintet/scattering.glsl>
+      #define In vec3
       #define Out MediumStep
       Out run(uint i, vec3 throughput) {
         Sampler s = makeSampler(uvec2(i, 0u), 0u, 1u);
