@@ -37,9 +37,10 @@ vec3 singleScatteringAlbedo(const vec3& multiple) {
   for (glm::length_t i = 0; i < 3; ++i) {
     const double m = std::clamp(static_cast<double>(multiple[i]), 0.0, 1.0);
     const double root = 4.09712 + 4.20863 * m - std::sqrt(9.59217 + 41.6808 * m + 17.7126 * m * m);
-    single[i] = static_cast<float>(std::clamp(1.0 - root * root, 0.0, 1.0));
+    // The formula is not exactly 0 for black.
+    single[i] = m > 0.0 ? static_cast<float>(std::clamp(1.0 - root * root, 0.0, 1.0)) : 0.0f;
   }
-  return multiple == vec3(0.0f) ? vec3(0.0f) : single;
+  return single;
 }
 
 std::uint32_t materialFlags(const scene::Material& m) {
