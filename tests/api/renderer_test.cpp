@@ -330,6 +330,32 @@ TEST_F(ApiRenderer, SetsFramesOfKeyframes) {
   EXPECT_THROW(renderer.setTransform(added, {}), UsageError);
 }
 
+TEST_F(ApiRenderer, BlursMotion) {
+  Scene animated = lampScene();
+  animated.addInstance(
+      {.mesh = 1, .keyframes = {{.frame = 0, .translation = {-1, 1, 0}}, {.frame = 10, .translation = {1, 2, 0}}}});
+  const auto blurred = [&](const std::optional<Shutter>& shutter, float frame) {
+    Settings settings = smallImage();
+    settings.shutter = shutter;
+    Renderer renderer(device(), animated, pathTracer(), settings);
+    renderer.setFrame(frame);
+    // Compiles the program again, which keeps the shutter.
+    Material coated = animated.material(0);
+    coated.clearcoat = 1;
+    renderer.setMaterial(0, coated);
+    renderer.render(4);
+    return renderer.image().pixels;
+  };
+  const std::vector<float> image = blurred(Shutter{2, 8}, 1);
+  EXPECT_EQ(blurred(Shutter{0, 6}, 3), image) << "the same interval";
+  EXPECT_NE(blurred(Shutter{3, 3}, 3), image);
+  EXPECT_EQ(blurred(Shutter{3, 3}, 3), blurred({}, 6));
+  EXPECT_THROW(blurred(Shutter{1, 0}, 0), UsageError);
+  Settings settings = smallImage();
+  settings.shutter = Shutter{0, 0.5};
+  EXPECT_THROW(Renderer(device(), scene_, pathTracer(), settings), UsageError) << "nothing moves";
+}
+
 TEST_F(ApiRenderer, MovedInstancesKeepTheMotionOfOthers) {
   Scene animated = lampScene();
   animated.addInstance(

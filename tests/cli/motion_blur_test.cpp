@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "fixtures.h"
 #include "io/codec.h"
+#include "sky_program.h"
 
 namespace quintet::test {
 namespace {
@@ -85,6 +86,74 @@ TEST_F(MotionBlur, PartsAndCheckpointsHaveTheSameBytes) {
               {"a.qfilm", "shutter 0,1, expected 0,0.5"});
   expectError(render("other.exr", {"--spp", "12", "--resume", "--checkpoint-file", "a.qfilm"}), 1,
               {"a.qfilm", "shutter 0,1, expected none"});
+}
+
+// A session at rest has the image of `render`, also after a click has moved the scene to the middle of the shutter.
+TEST_F(MotionBlur, SessionsSaveTheSameImage) {
+  write(folder_ / "script.jsonl",
+        R"({"do":"time","frame":1}
+{"do":"refine","samples":4}
+{"do":"pick","x":14,"y":10}
+{"do":"refine","samples":8}
+{"do":"save","file":"session.exr"}
+)");
+  const RunResult session = quintet({"view", "moving.scene.toml", "--program", "normals", "--size", "32x20", "--env",
+                                     "none", "--shutter", "0,1", "--spp", "8", "--script", "script.jsonl"});
+  ASSERT_EQ(session.status, 0) << session.err << session.out;
+  EXPECT_THAT(session.out, ::testing::HasSubstr(R"("event":"picked","x":14,"y":10,"instance":"quad")"));
+  ASSERT_EQ(render("image.exr", {"--frame", "1", "--shutter", "0,1", "--spp", "8"}).status, 0);
+  expectSameImage("session.exr", "image.exr");
+}
+
+// The explanation of a sample shows the scene at the time of this sample: the mean of all of them is the pixel.
+TEST_F(MotionBlur, ExplainedSamplesHaveTheirTimes) {
+  const std::vector<std::string> shot{"--frame", "1", "--shutter", "0,1", "--spp", "4"};
+  std::vector<std::string> exact = shot;
+  exact.insert(exact.end(), {"--exr-type", "float"});
+  ASSERT_EQ(render("image.exr", exact).status, 0);
+  const io::Image image = readImage("image.exr");
+  std::uint32_t x = 0;  // a pixel that the quad covers in some of the samples
+  while (x < 32 && !(image.pixel<float>(x, 10)[2] > 0.0f && image.pixel<float>(x, 10)[2] < 1.0f)) ++x;
+  ASSERT_LT(x, 32u);
+  double mean = 0;
+  for (const char* sample : {"0", "1", "2", "3"}) {
+    std::vector<std::string> arguments{"explain-pixel",
+                                       "moving.scene.toml",
+                                       "--program",
+                                       "normals",
+                                       "--size",
+                                       "32x20",
+                                       "--env",
+                                       "none",
+                                       "--sample",
+                                       sample,
+                                       "--json",
+                                       "--pixel",
+                                       std::to_string(x) + ",10"};
+    arguments.insert(arguments.end(), shot.begin(), shot.end());
+    const RunResult result = quintet(arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+    mean += nlohmann::json::parse(result.out)["outputs"][0]["value"][2].get<double>() / 4;
+  }
+  EXPECT_FLOAT_EQ(image.pixel<float>(x, 10)[2], static_cast<float>(mean));
+}
+
+// The launch for the values of pixel centers is not counted.
+TEST_F(MotionBlur, HeatMapsCountTheSamples) {
+  writeSkyProgram(folder_ / "sky", "payload.color = vec3(0.5);");
+  write(folder_ / "sky" / "program.toml",
+        skyToml("sky.rmiss") + "[[output]]\nname = \"color\"\n" +
+            "[[output]]\nname = \"here\"\nkind = \"linear\"\npixel = \"center\"\noptional = true\n");
+  for (const std::string file : {"still.exr", "blurred.exr"}) {
+    std::vector<std::string> arguments{"run", "sky",   "moving.scene.toml", "-q",    "--size", "8x6", "-o",
+                                       file,  "--aov", "here,heat_rays",    "--spp", "4"};
+    if (file == "blurred.exr") arguments.insert(arguments.end(), {"--shutter", "0,1"});
+    const RunResult result = quintet(arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  const RunResult compared = quintet({"compare", "still.exr", "blurred.exr", "--layer", "heat_rays"});
+  EXPECT_EQ(compared.status, 0) << compared.err;
+  EXPECT_THAT(compared.out, ::testing::HasSubstr("rmse    0 "));
 }
 
 TEST_F(MotionBlur, StillImagesHaveNoShutter) {

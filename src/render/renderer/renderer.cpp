@@ -79,7 +79,7 @@ void Renderer::uploadFrame(const scene::Camera& camera, Stored stored) {
       if ((program().outputs[i].pixel == program::OutputPixel::center) != (stored == Stored::centers))
         frame.outputs[i] = 0;
   }
-  if (stored == Stored::centers) frame.statistics = frame.log = frame.heat = 0;
+  if (stored == Stored::centers) frame.statistics = frame.log = 0;
   frameBuffer_ = gpu::makeBuffer(context_, std::as_bytes(std::span(&frame, 1)), 0, "frame");
 }
 
