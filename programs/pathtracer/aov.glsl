@@ -176,12 +176,7 @@ uint aovCenter(uvec2 pixel) {
 #endif
 #ifdef QUINTET_OUTPUT_motion
   vec2 moved = vec2(0.0);
-  if (found && frame.previousInstances != 0ul) {
-    const InstanceData instance = InstanceArray(frame.instances).at[hit.instance];
-    const InstanceData before = InstanceArray(frame.previousInstances).at[hit.instance];
-    const vec3 object = rowsTimesPoint(instance.objectFromWorld, surface.position);
-    moved = imagePoint(surface.position) - imagePoint(rowsTimesPoint(before.worldFromObject, object));
-  }
+  if (found) moved = imageMotion(hit, surface.position);
   storeOutput(kOutput_motion, pixel, found ? vec4(moved.x, -moved.y, 0.0, 1.0) : vec4(0.0));
 #endif
 #ifdef QUINTET_OUTPUT_instance_id

@@ -42,22 +42,24 @@ Ray cameraRay(vec2 pixel, vec2 lens) {
   return ray;
 }
 
-// A world position in camera space.
-vec3 cameraFromWorld(vec3 world) {
-  const vec4 rows[3] = frame.camera.worldFromCamera;
+// A world position in the space of a camera.
+vec3 cameraFromWorld(CameraData camera, vec3 world) {
+  const vec4 rows[3] = camera.worldFromCamera;
   const vec3 p = world - vec3(rows[0].w, rows[1].w, rows[2].w);
   return rows[0].xyz * p.x + rows[1].xyz * p.y + rows[2].xyz * p.z;
 }
+vec3 cameraFromWorld(vec3 world) { return cameraFromWorld(frame.camera, world); }
 
 // Depth along the camera's axis in meters; positive in front of the camera.
 float cameraDepth(vec3 world) { return -cameraFromWorld(world).z; }
 
-// Projection of a world position in front of the camera, in pixels from the top left corner.
-vec2 imagePoint(vec3 world) {
-  const vec3 p = cameraFromWorld(world);
-  const vec2 plane = frame.camera.orthographic != 0u ? p.xy : p.xy / -p.z;
-  const vec2 ndc = plane / frame.camera.halfSize;
+// Projection of a world position in front of a camera, in pixels from the top left corner.
+vec2 imagePoint(CameraData camera, vec3 world) {
+  const vec3 p = cameraFromWorld(camera, world);
+  const vec2 plane = camera.orthographic != 0u ? p.xy : p.xy / -p.z;
+  const vec2 ndc = plane / camera.halfSize;
   return vec2(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * vec2(frame.width, frame.height);
 }
+vec2 imagePoint(vec3 world) { return imagePoint(frame.camera, world); }
 
 #endif

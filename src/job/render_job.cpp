@@ -225,7 +225,7 @@ void RenderJob::link(program::CompiledProgram compiled, Observer& observer) {
                                                     : static_cast<std::uint32_t>(request.limits.samples.value_or(0));
   settings.transparent = request.transparent;
   settings.shutter = shutter();
-  if (settings.shutter) settings.cameraAt = movingCamera();
+  settings.cameraAt = movingCamera();
   settings.parameters = job_.parameters;
   settings.outputs = request.outputs;
   settings.frameCount = request.frames.accumulatedCount().value_or(0);
@@ -805,8 +805,7 @@ void RenderJob::showFrame() {
 }
 
 void RenderJob::moveShutter() {
-  if (const std::optional<render::ShutterInterval> interval = shutter())
-    renderer_->setShutter(interval, movingCamera());
+  if (shutter() || !scene_->movingCameras.empty()) renderer_->setShutter(shutter(), movingCamera());
 }
 
 std::optional<render::ShutterInterval> RenderJob::shutter() const {

@@ -131,13 +131,17 @@ struct Frame {
   uint frameCount;      // frames of this run, if the program accumulates; 0: unlimited
   uint plannedSamples;  // for the sampler: total per pixel, 0 if unknown, or kIndependentPixels
   Address lightNodes;   // LightNode[]: the tree for sampling lights
-  Address previousInstances;  // InstanceData[] of the previous frame of an animation; 0: no motion
+  Address previousInstances;  // InstanceData[] of the previous frame of an animation; 0: instances do not move
+  // Address[] per geometry: vec3[] of its vertices in the previous frame, or 0; 0: no geometry is deformed, or the program
+  // has no motion to store (quintet/motion.glsl).
+  Address previousPositions;
   Address log;          // LogHeader and its words (shared/log.h); 0: no log
   Address heat;         // HeatPixel[filmWidth · filmHeight] (shared/heat.h); 0: no heat maps
   // Solids around the camera: 1 + index of the material, from the inside to the outside; 0: no further one.
   uvec4 cameraMedia;
+  CameraData previousCamera;  // of the previous frame of an animation
 };
-QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 32 + 16);
+QT_SHARED_SIZE(Frame, 8 * 10 + 2 * 8 * 32 + 40 + 72 + 56 + 40 + 16 + 72);
 
 // Adaptive sampling divides the image into squares of kTileSize pixels, starting at the film's first pixel. Each has
 // two cells, the pixels with even and with odd x + y. Each cell has its own number of samples.

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gpu/buffer.h"
@@ -21,6 +22,10 @@ namespace quintet::render {
 
 class ShaderLog;
 
+// An output of this name gets what it needs to store the motion of deformed meshes and of the camera: Frame::previousPositions
+// and previousCamera.
+inline constexpr std::string_view kMotionOutput = "motion";
+
 // Largest value of RenderSettings::launchesInFlight.
 inline constexpr std::uint32_t kMaxLaunchesInFlight = 2;
 
@@ -32,7 +37,8 @@ struct RenderSettings {
   // Motion blur: each sample moves the scene, and the camera, to a time of its own (shutter.h). Outputs of pixel centers
   // (program::OutputPixel::center) show the middle of the interval. Not for programs that accumulate.
   std::optional<ShutterInterval> shutter;
-  // With a shutter: the camera at a frame of the animation. Empty means that `camera` does not move.
+  // The camera at a frame of the animation, for the shutter and for the output `motion`. Empty means that `camera` does not
+  // move.
   std::function<scene::Camera(double frame)> cameraAt;
   std::uint32_t seed = 0;
   // How the sampler distributes samples over neighboring pixels. Like the seed, it decides the values of samples.

@@ -44,6 +44,7 @@ Renderer::Renderer(DeviceScene& scene, program::RunnableProgram program, const s
   const program::Program& description = runnable_.description;
   scene.prepareFor(static_cast<std::uint32_t>(description.rays.size()), description.keepsInstanceOrder,
                    description.anyHitForAll);
+  if (storesMotion()) scene.keepPreviousPositions();
   if (settings_.instrument)
     instrument_.emplace(context_, std::uint64_t{settings_.region.width} * settings_.region.height,
                         linked_.recursionDepth(), description, scene.facts());
@@ -59,7 +60,9 @@ void Renderer::uploadFrame() { uploadFrame(settings_.camera, Stored::all); }
 void Renderer::uploadFrame(const scene::Camera& camera, Stored stored) {
   cameraMedia_ = mediaAround(camera);
   shared::Frame frame = scene_.frameTemplate();
-  frame.camera = makeCamera(camera, settings_.width, settings_.height);
+  frame.camera = frame.previousCamera = makeCamera(camera, settings_.width, settings_.height);
+  if (settings_.cameraAt && storesMotion())
+    frame.previousCamera = makeCamera(settings_.cameraAt(scene_.previousFrame()), settings_.width, settings_.height);
   frame.width = settings_.width;
   frame.height = settings_.height;
   frame.seed = settings_.seed;
@@ -85,7 +88,7 @@ void Renderer::uploadFrame(const scene::Camera& camera, Stored stored) {
 
 void Renderer::showTime(double frame, Stored stored) {
   queue_.finish();
-  scene_.setFrame(frame);
+  scene_.setFrame(frame, stored == Stored::samples ? Previous::skip : Previous::update);
   uploadFrame(settings_.cameraAt ? settings_.cameraAt(frame) : settings_.camera, stored);
 }
 
@@ -96,6 +99,12 @@ void Renderer::showSample(std::uint32_t index, Stored stored) {
 bool Renderer::storesCenters() const {
   for (std::size_t i = 0; i < program().outputs.size(); ++i)
     if (program().outputs[i].pixel == program::OutputPixel::center && film_.stores(i)) return true;
+  return false;
+}
+
+bool Renderer::storesMotion() const {
+  for (std::size_t i = 0; i < program().outputs.size(); ++i)
+    if (program().outputs[i].name == kMotionOutput && film_.stores(i)) return true;
   return false;
 }
 

@@ -60,7 +60,8 @@ class Renderer {
   // Edits: each discards all samples. Before a change of the scene itself, call finish() or restart(). After DeviceScene::setTransforms,
   // which can change addresses, call sceneChanged(); after setFrame and setMaterial, restart() is enough.
   void setCamera(const scene::Camera& camera);
-  // RenderSettings::shutter and cameraAt. Each launch then calls DeviceScene::setFrame; without a shutter, the caller does.
+  // RenderSettings::shutter and cameraAt. With a shutter, each launch calls DeviceScene::setFrame; else the caller does, before
+  // this function.
   void setShutter(const std::optional<ShutterInterval>& shutter, std::function<scene::Camera(double frame)> cameraAt);
   // For the same program. Throws FileError for an image that cannot be read, and then changes nothing.
   void setParameters(const program::ParameterValues& values);
@@ -122,6 +123,7 @@ class Renderer {
   void showSample(std::uint32_t index, Stored stored);  // the time of a sample, if there is a shutter
   bool storesCenters() const;
   Media mediaAround(const scene::Camera& camera) const;  // the solids that contain it
+  bool storesMotion() const;
   bool accumulates() const { return program().accumulation == program::Accumulation::program; }
   Target wholeRegion() const;
   Record recordBegin();

@@ -227,7 +227,10 @@ void DeviceScene::addDeformedMeshes(const scene::Scene& scene, std::span<const r
       if (!options_.compiler) own.emplace(shader::CompilerOptions{});
       deformed_.emplace(context_, *set_, own ? *own : *options_.compiler);
     }
-    deformed_->add(scene, meshOfInput[i], inputs[i], blas_[i], geometry_);
+    const std::size_t mesh = meshOfInput[i];
+    deformed_->add(scene, mesh, inputs[i], blas_[i], geometry_);
+    for (std::size_t g = 0; g < inputs[i].geometries.size(); ++g)
+      deformedGeometries_.push_back({geometry_.firstGeometry[mesh] + g, inputs[i].geometries[g].positions.size()});
   }
 }
 
@@ -254,17 +257,32 @@ void DeviceScene::prepareFor(std::uint32_t rayTypeCount, bool keepInstanceOrder,
   statistics_.topLevelSeconds = watch.seconds();
 }
 
-void DeviceScene::setFrame(double frame) {
-  if (animated_ && frame != shownFrame_) showFrame(frame);
+void DeviceScene::setFrame(double frame, Previous previous) {
+  const bool withPrevious = previousPositions_ && previous == Previous::update && frame != previousPositionsOf_;
+  if (animated_ && (frame != shownFrame_ || withPrevious)) showFrame(frame, withPrevious);
   updateLights();
 }
 
-void DeviceScene::showFrame(double frame) {
+double DeviceScene::previousFrame() const { return std::max(shownFrame_ - 1.0, std::min(shownFrame_, 0.0)); }
+
+void DeviceScene::keepPreviousPositions() {
+  if (previousPositions_ || deformedGeometries_.empty()) return;
+  previousPositions_.emplace(context_, deformedGeometries_, geometry_.geometries.size());
+  frame_.previousPositions = previousPositions_->table();
+  showFrame(shownFrame_, true);
+}
+
+void DeviceScene::showFrame(double frame, bool withPrevious) {
   shownFrame_ = frame;
   Stopwatch watch;
   const scene::Pose pose = scene::poseAt(nodeAnimation_.get(), frame);
-  const scene::Pose before = scene::poseAt(nodeAnimation_.get(), std::max(frame - 1.0, std::min(frame, 0.0)));
+  const scene::Pose before = scene::poseAt(nodeAnimation_.get(), previousFrame());
   frameStatistics_.poseSeconds += watch.lap();
+  if (withPrevious) {
+    showDeformation(before);
+    previousPositions_->copyFrom(geometry_);
+    previousPositionsOf_ = frame;
+  }
   if (deformed_) showDeformation(pose);
   watch.lap();
   if (deformed_ || topLevel_->animated()) topLevel_->setPose(pose, before);

@@ -20,6 +20,7 @@
 #include "render/scene/camera_media.h"
 #include "render/scene/deformed_meshes.h"
 #include "render/scene/geometry_upload.h"
+#include "render/scene/previous_positions.h"
 #include "render/scene/scene_features.h"
 #include "render/scene/texture_upload.h"
 #include "render/scene/top_level.h"
@@ -61,6 +62,9 @@ struct FrameStatistics {
   double lightSeconds = 0;     // tables of moving lights
 };
 
+// Whether DeviceScene::setFrame also updates the previous positions of vertices, if they are kept.
+enum class Previous { update, skip };
+
 class DeviceScene {
  public:
   // Consumes `scene`: frees its attributes and images as soon as they are on the device, so that a large scene is in
@@ -91,7 +95,13 @@ class DeviceScene {
   // table, the TLAS, and the light tables if something that moves emits or an edit changed them. The addresses of moving
   // lights do not change, so frameTemplate() stays valid. Blocks; no launch can be under way. The scene starts at
   // frame 0.
-  void setFrame(double frame);
+  void setFrame(double frame, Previous previous = Previous::update);
+  double frame() const { return shownFrame_; }
+  // The frame of the previous instances and vertices: one before frame(), but a scene does not move before frame 0.
+  double previousFrame() const;
+  // From now on, setFrame() also deforms meshes at previousFrame(), and keeps the positions of their vertices on the device
+  // (Frame::previousPositions). It then takes about twice the time for deformed meshes. Blocks; no launch can be under way.
+  void keepPreviousPositions();
 
   // Edits. Those of lights take effect in updateLights(), so that several edits build the light tables once. They require
   // DeviceSceneOptions::editable and block; no launch can be under way.
@@ -128,7 +138,7 @@ class DeviceScene {
 
   void uploadLights(const scene::Scene& scene, const scene::Environment& environment);
   void showEnvironment(const scene::Environment& environment, const EnvironmentTable& table);
-  void showFrame(double frame);
+  void showFrame(double frame, bool withPrevious);
   void showDeformation(const scene::Pose& pose);
   void movePunctualLights(const scene::Pose& pose);  // in the builder
   void moveEmitters();                               // in the builder, to the deformed vertices
@@ -165,6 +175,9 @@ class DeviceScene {
   std::optional<TopLevel> topLevel_;
   std::shared_ptr<const scene::NodeAnimation> nodeAnimation_;  // null if no glTF animation plays
   std::optional<DeformedMeshes> deformed_;                     // if an animation deforms a mesh
+  std::vector<DeformedGeometry> deformedGeometries_;
+  std::optional<PreviousPositions> previousPositions_;
+  double previousPositionsOf_ = 0;  // frame one after that of the positions
   CameraMedia cameraMedia_;
   std::vector<scene::Light> punctual_;                         // at frame 0, if one follows a node
   bool animated_ = false;

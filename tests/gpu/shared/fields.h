@@ -129,7 +129,7 @@ GPU_FIELDS(RayKinds, camera, cameraHits, continuation, continuationHits, shadow,
 GPU_FIELDS(Frame, instances, geometries, materials, lights, lightTable, lightSlots, albedoTables, statistics,
            rayRecords, instrument, outputs, previousOutputs, environment, camera, width, height, filmOffset, filmWidth,
            filmHeight, lightCount, environmentLight, seed, flags, rayRecordCapacity, instanceCount, frameCount,
-           plannedSamples, lightNodes, previousInstances, log, heat, cameraMedia);
+           plannedSamples, lightNodes, previousInstances, previousPositions, log, heat, cameraMedia, previousCamera);
 GPU_FIELDS(InstrumentReport, kind, stage, line, depth, pixel, distance, index, origin, direction, interval);
 GPU_FIELDS(RecursionGuard, cutCount);
 GPU_FIELDS(InstrumentPixel, depth, anyHits, instance, geometry, primitive, flags, stage, line);
