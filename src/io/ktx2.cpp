@@ -25,6 +25,10 @@ constexpr std::string_view kIdentifier{"\xABKTX 20\xBB\r\n\x1A\n", 12};
 constexpr std::size_t kHeaderSize = 80;  // with the index
 constexpr std::size_t kLevelSize = 24;   // of an entry of the level index
 
+// Largest compression ratios. A block of Zstandard has at most 128 KiB and at least 4 bytes (RFC 8878, section 3.1.1.2).
+constexpr std::uint64_t kBestZstandard = 32768;
+constexpr std::uint64_t kBestDeflate = 1032;
+
 enum class Supercompression : std::uint32_t { none = 0, basisLz = 1, zstandard = 2, zlib = 3 };
 
 enum class Sample { unorm8, unorm16, half, float32, sharedExponent, packedFloat };
@@ -205,8 +209,10 @@ Header readHeader(const Source& source) {
 // ---- Pixels ----
 
 std::vector<std::byte> inflateLevel(const Source& source, const Header& header, std::span<const std::byte> level) {
+  const bool zstandard = header.supercompression == Supercompression::zstandard;
+  source.checkExpansion(header.size, zstandard ? kBestZstandard : kBestDeflate);
   std::vector<std::byte> pixels(header.size);
-  if (header.supercompression == Supercompression::zstandard) {
+  if (zstandard) {
     const std::size_t size = ZSTD_decompress(pixels.data(), pixels.size(), level.data(), level.size());
     if (ZSTD_isError(size))
       source.fail(header.offset, fmt::format("broken Zstandard data: {}", ZSTD_getErrorName(size)));

@@ -17,7 +17,41 @@ namespace {
 constexpr std::uint32_t kMultiPart = 0x1000;
 constexpr std::uint64_t kMaxTileArea = std::uint64_t{1} << 26;
 constexpr std::size_t kMaxNameBytes = 255;
-constexpr std::size_t kChunkPointer = 8;  // bytes per entry of the chunk table
+constexpr std::size_t kChunkPointer = 8;   // bytes per entry of the chunk table
+constexpr std::size_t kChannelBytes = 16;  // of a channel after its name
+
+// Attribute types with values of a fixed size in bytes. OpenEXR ignores the stated size of these; with a wrong one it would
+// take the values for the names and sizes of other attributes.
+struct TypeSize {
+  std::string_view type;
+  std::uint32_t bytes;
+};
+constexpr TypeSize kFixedSizes[] = {
+    {"box2i", 16},
+    {"box2f", 16},
+    {"chromaticities", 32},
+    {"compression", 1},
+    {"deepImageState", 1},
+    {"double", 8},
+    {"envmap", 1},
+    {"float", 4},
+    {"int", 4},
+    {"keycode", 28},
+    {"lineOrder", 1},
+    {"m33f", 36},
+    {"m33d", 72},
+    {"m44f", 64},
+    {"m44d", 128},
+    {"rational", 8},
+    {"tiledesc", 9},
+    {"timecode", 8},
+    {"v2i", 8},
+    {"v2f", 8},
+    {"v2d", 16},
+    {"v3i", 12},
+    {"v3f", 12},
+    {"v3d", 24},
+};
 
 struct Window {
   std::uint64_t width = 0;
@@ -68,12 +102,13 @@ class HeaderScan {
     Window data;
     Window tile;
     while (!atTerminator()) {
-      const std::string_view name = readName();
-      readName();  // type
+      const std::string_view name = readName(), type = readName();
       const std::uint32_t size = read32(at_);
       at_ += 4;
       if (size > source_.size() - at_)
         source_.fail(at_ - 4, fmt::format("broken OpenEXR: the attribute '{}' is larger than the file", name));
+      if (!hasSize(type, size))
+        source_.fail(at_ - 4, fmt::format("broken OpenEXR: the attribute '{}' has a wrong size", name));
       if (name == "displayWindow" && size == 16) readWindow(name);
       if (name == "dataWindow" && size == 16) data = readWindow(name);
       if (name == "tiles" && size == 9) tile = {read32(at_), read32(at_ + 4)};
@@ -84,6 +119,38 @@ class HeaderScan {
     if (tile.width > kMaxImageSide || tile.height > kMaxImageSide || tile.width * tile.height > kMaxTileArea)
       source_.fail(fmt::format("the OpenEXR tiles are too large: {} x {} pixels", tile.width, tile.height));
     checkChunks(((data.width + tile.width - 1) / tile.width) * ((data.height + tile.height - 1) / tile.height));
+  }
+
+  // Whether the value of an attribute fills `size` bytes.
+  bool hasSize(std::string_view type, std::uint32_t size) const {
+    const auto fixed = std::ranges::find(kFixedSizes, type, &TypeSize::type);
+    if (fixed != std::end(kFixedSizes)) return size == fixed->bytes;
+    if (type == "chlist") return size > 0 && channelListBytes(size) == size;
+    if (type == "stringvector") return stringsFill(size);
+    if (type == "preview")
+      return size >= 8 && size % 4 == 0 && std::uint64_t{read32(at_)} * read32(at_ + 4) == (size - 8) / 4;
+    return true;
+  }
+
+  // Bytes of a list of channels up to the empty name at its end; 0 if it does not end within `size` bytes.
+  std::size_t channelListBytes(std::size_t size) const {
+    for (std::size_t used = 0; used < size;) {
+      if (source_[at_ + used] == 0) return used + 1;
+      while (used < size && source_[at_ + used] != 0) ++used;
+      used += 1 + kChannelBytes;
+    }
+    return 0;
+  }
+
+  // Whether strings with a length before each fill `size` bytes.
+  bool stringsFill(std::size_t size) const {
+    std::size_t used = 0;
+    while (size - used >= 4) {
+      const std::size_t length = read32(at_ + used);
+      if (length > size - used - 4) return false;
+      used += 4 + length;
+    }
+    return used == size;
   }
 
   void checkChunks(std::uint64_t count) const {

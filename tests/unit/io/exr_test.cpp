@@ -148,5 +148,32 @@ TEST(ExrTest, RejectsHostileHeaders) {
   EXPECT_THAT(errorOf(withInt(4, 0x7fffffff)), HasSubstr("a.exr: "));  // version
 }
 
+// OpenEXR reads values of these types without regard to the stated size, and allocates what they state.
+TEST(ExrTest, RejectsAttributesOfWrongSize) {
+  const test::Bytes good = encodeExr(makeGradient(8, 8, 3, PixelType::f32));
+  const std::string text(reinterpret_cast<const char*>(good.data()), good.size());
+  EXPECT_EQ(errorOf(good), "no error");
+  test::Bytes noChannels = good;
+  noChannels[text.find("chlist") + 7 + 4] = std::byte{0};  // the list ends at its beginning
+  EXPECT_THAT(errorOf(noChannels), HasSubstr("'channels' has a wrong size"));
+  // An attribute after the magic number and the version.
+  const auto errorWith = [&](const std::string& type, const std::vector<std::uint32_t>& value) {
+    std::string attribute = "extra" + std::string(1, '\0') + type + '\0';
+    std::vector<std::uint32_t> words{static_cast<std::uint32_t>(4 * value.size())};
+    words.insert(words.end(), value.begin(), value.end());
+    attribute.append(reinterpret_cast<const char*>(words.data()), 4 * words.size());
+    return errorOf(test::bytesOf(text.substr(0, 8) + attribute + text.substr(8)));
+  };
+  constexpr const char* kProblem = "'extra' has a wrong size";
+  EXPECT_THAT(errorWith("preview", {0x7fffffff, 2}), HasSubstr(kProblem));
+  EXPECT_THAT(errorWith("preview", {2, 1, 0}), HasSubstr(kProblem));
+  EXPECT_THAT(errorWith("preview", {1, 1, 0}), testing::Not(HasSubstr(kProblem)));
+  EXPECT_THAT(errorWith("stringvector", {0x7fffffff, 0}), HasSubstr(kProblem));
+  EXPECT_THAT(errorWith("stringvector", {4, 0, 0}), testing::Not(HasSubstr(kProblem)));
+  EXPECT_THAT(errorWith("chlist", {}), HasSubstr(kProblem));
+  EXPECT_THAT(errorWith("m44f", {1, 2, 3}), HasSubstr(kProblem));
+  EXPECT_THAT(errorWith("unknown", {1, 2, 3}), testing::Not(HasSubstr(kProblem)));
+}
+
 }  // namespace
 }  // namespace quintet::io

@@ -149,6 +149,10 @@ TEST(Ktx2, RejectsInvalidFiles) {
   EXPECT_THAT(with([](Ktx2& f) { f.format = 200; }), HasSubstr("format 200"));
   EXPECT_THAT(with([](Ktx2& f) { f.format = 0, f.scheme = 1; }), HasSubstr("ETC1S"));
   EXPECT_THAT(with([](Ktx2& f) { f.scheme = 7; }), HasSubstr("supercompression scheme 7"));
+  // A gigabyte that the file cannot hold is not allocated.
+  for (const std::uint32_t scheme : {2u, 3u})
+    EXPECT_THAT(with([&](Ktx2& f) { f.width = f.height = 16000, f.statedSize = 1024000000, f.scheme = scheme; }),
+                HasSubstr("declares 1024000000 bytes"));
   // The header states more than the data holds, and the data holds more than the header states.
   for (const std::uint32_t scheme : {2u, 3u}) {
     EXPECT_THAT(with([&](Ktx2& f) { f.scheme = scheme, f.width = 2, f.statedSize = 8; }),
