@@ -6,7 +6,9 @@
 #include <charconv>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/suggestion.h"
+#include "io/codec.h"
 #include "io/color.h"
 
 namespace quintet::scene {
@@ -33,6 +35,14 @@ std::filesystem::path SceneTomlContext::resolvePath(const TomlValue& at, const s
   std::error_code error;
   if (!std::filesystem::is_regular_file(full, error)) fail(at, fmt::format("file '{}' not found", full.string()));
   return full;
+}
+
+io::Image SceneTomlContext::readImage(const std::filesystem::path& path) {
+  const std::vector<std::byte> bytes = readFile(path);
+  budget.take(bytes.size() + io::probeImage(bytes, path.string()).byteCount());
+  io::Image image = io::decodeImage(bytes, path.string());
+  scene.report.files.push_back(path);
+  return image;
 }
 
 int SceneTomlContext::findMaterial(const TomlValue& name) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/toml_reader.h"
+#include "io/image.h"
 #include "scene/load_options.h"
 #include "scene/memory_budget.h"
 #include "scene/model/scene.h"
@@ -56,6 +57,8 @@ struct SceneTomlContext {
   void checkName(const TomlValue& at, const std::string& name) const;
   // Path of an existing file, relative to the scene file.
   std::filesystem::path resolvePath(const TomlValue& at, const std::string& path) const;
+  // Reads an image within the memory budget, and adds the file to those of the scene. Throws FileError, MemoryError.
+  io::Image readImage(const std::filesystem::path& file);
   // Index of a material. Reports an unknown name.
   int findMaterial(const TomlValue& name) const;
   // Index of the default material (matte, gray), which is added to the scene when it is first used.

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "base/file.h"
-#include "io/codec.h"
 #include "scene/toml/context.h"
 
 namespace quintet::scene {
@@ -64,15 +62,11 @@ class TextureReader {
 
   int readImage(const TomlValue& at, const std::string& path) {
     const std::filesystem::path file = context_.resolvePath(at, path).lexically_normal();
-    const auto [entry, isNew] = images_.emplace(file.string(), static_cast<int>(context_.scene.images.size()));
-    if (isNew) {
-      const std::vector<std::byte> bytes = readFile(file);
-      context_.budget.take(bytes.size() + io::probeImage(bytes, file.string()).byteCount());
-      io::Image image = io::decodeImage(bytes, file.string());
-      context_.scene.report.files.push_back(file);
-      context_.scene.images.push_back({file.string(), std::move(image)});
-    }
-    return entry->second;
+    const auto known = images_.find(file.string());
+    if (known != images_.end()) return known->second;
+    std::vector<NamedImage>& images = context_.scene.images;
+    images.push_back({file.string(), context_.readImage(file)});
+    return images_.emplace(file.string(), static_cast<int>(images.size()) - 1).first->second;
   }
 
   int texture(int image, const Sampler& sampler) {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
-#include "io/codec.h"
+#include "io/image.h"
 #include "scene/defaults/auto_camera.h"
 #include "scene/defaults/default_environment.h"
 #include "scene/toml/context.h"
@@ -90,9 +90,10 @@ void readEnvironment(SceneTomlContext& context, const TomlValue& table) {
   if (!source) reader.fail(table, "[environment] needs 'image', 'color', 'default = true' or 'none = true'");
   if (reader.has("image")) {
     const std::filesystem::path file = context.resolvePath(*source, reader.toText(*source, "image"));
-    environment.image = io::toFloat(io::readImage(file));
+    const io::Image image = context.readImage(file);
+    context.budget.take(image.sampleCount() * sizeof(float));
+    environment.image = io::toFloat(image);
     environment.name = file.filename().string();
-    context.scene.report.files.push_back(file);
   } else if (reader.has("color")) {
     environment.constant = toColor(reader, *source, "color", kNotNegative);
   } else {
@@ -104,7 +105,6 @@ void readEnvironment(SceneTomlContext& context, const TomlValue& table) {
   environment.intensity = reader.number("intensity", 1.0f, kNotNegative);
   environment.rotation = glm::radians(reader.number("rotation", 0.0f));
   reader.rejectUnknownKeys();
-  context.budget.take(environment.image.data.size());
   context.scene.environment = std::move(environment);
 }
 

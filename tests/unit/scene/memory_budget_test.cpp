@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "base/error.h"
 #include "base/file.h"
 #include "scene/error_matcher.h"
@@ -85,6 +87,20 @@ TEST(MemoryBudget, CountsStatedSizes) {
 
   for (const GltfBuilder* builder : {&instances, &targets, &meshopt, &image, &json})
     EXPECT_THAT(errorWithin(*builder, kLimit), testing::HasSubstr("1.0 MiB")) << builder->json().substr(0, 300);
+}
+
+// The header of the image states 192 MiB of pixels, which do not follow.
+TEST(MemoryBudget, CountsImagesOfSceneFiles) {
+  const TempFolder folder;
+  std::ofstream(folder / "a.hdr") << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4096 +X 4096\n";
+  for (const char* text :
+       {"[environment]\nimage = 'a.hdr'\n", "[[material]]\nname = 'm'\nemissive_texture = { image = 'a.hdr' }\n"})
+    try {
+      scene::parseSceneToml(text, folder / "s.scene.toml", {.maxMemory = std::size_t{1} << 20});
+      ADD_FAILURE() << text;
+    } catch (const MemoryError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("1.0 MiB"));
+    }
 }
 
 // All files of a scene share one limit.

@@ -95,5 +95,17 @@ TEST(GltfMissingTextures, ApplyToSceneFiles) {
   EXPECT_THAT(scene.report.ignored, ElementsAre(IsErrorAt("line 4", "none.png")));
 }
 
+TEST(GltfMissingTextures, ApplyToInvalidImagesThatSeveralMaterialsUse) {
+  const TempFolder folder;
+  writeFile(folder / "broken.png", std::string_view("no image"));
+  writeFile(folder / "a.scene.toml", std::string_view("[[material]]\nname = 'a'\nbase_color_texture = 'broken.png'\n"
+                                                      "[[material]]\nname = 'b'\nemissive_texture = 'broken.png'\n"));
+  const scene::Scene scene = scene::loadScene(folder / "a.scene.toml", {.missingTextures = MissingTextures::warn});
+  EXPECT_TRUE(scene.images.empty());
+  EXPECT_FALSE(scene.materials.at(0).baseColorTexture.used());
+  EXPECT_FALSE(scene.materials.at(1).emissiveTexture.used());
+  EXPECT_THAT(scene.report.ignored, ElementsAre(IsErrorAt("line 3", "broken.png"), IsErrorAt("line 6", "broken.png")));
+}
+
 }  // namespace
 }  // namespace quintet::test
