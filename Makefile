@@ -20,11 +20,13 @@ RENDER_FLAGS ?= --size 800x450 --time 50
 BENCH_FLAGS  ?=
 # --only NAME, --fast, --list
 MUTATION_FLAGS ?=
+# --seconds N, --runs N, --seed S, names of targets
+FUZZ_FLAGS ?=
 # --fix
 LINT_FLAGS ?=
 
 .DEFAULT_GOAL := build
-.PHONY: demo test build setup bench lessons reference mutation sanitize docs lint tidy clean help configure
+.PHONY: demo test build setup bench lessons reference mutation sanitize fuzz docs lint tidy clean help configure
 # Targets run one by one; each of them is parallel.
 .NOTPARALLEL:
 
@@ -68,6 +70,12 @@ sanitize: setup ## Build with ASan and UBSan, and run the unit tests and the tes
 	@cmake --preset asan -DQUINTET_TESTS=ON $(CMAKE_FLAGS)
 	@cmake --build --preset asan -j $(JOBS) --target quintet_unit_tests quintet_all_window_tests
 	@ctest --preset asan -L '^(unit|window)$$' --no-tests=error -j $(JOBS) $(CTEST_FLAGS)
+
+fuzz: ## Install Clang, and run the readers of all file formats with random inputs (FUZZ_FLAGS, build/fuzz)
+	@bash scripts/setup.sh build fuzz
+	@cmake --preset fuzz $(CMAKE_FLAGS)
+	@cmake --build --preset fuzz -j $(JOBS)
+	@tests/fuzz/targets/run --jobs $(JOBS) $(FUZZ_FLAGS)
 
 docs: ## Install Doxygen and build the reference of the C++ API (build/docs/html/index.html)
 	@bash scripts/setup.sh docs

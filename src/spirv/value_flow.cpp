@@ -133,7 +133,7 @@ const Instruction* findInSlice(const Module& module, Id value, const Instruction
 }
 
 InstructionTest sourcesOf(const Module& module, Id value) {
-  constexpr Id kBuffers = 0;
+  static constexpr Id kBuffers = 0;
   const auto sourceOf = [&module](const Instruction& i) -> std::optional<Id> {
     if (i.op == spv::Op::OpPhi) return i.result;
     if (i.op != spv::Op::OpLoad) return {};

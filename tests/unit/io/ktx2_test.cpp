@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // KTX 2.0 files: formats, supercompression, orientation and swizzle, and files that are not valid.
-#include <zlib.h>
-#include <zstd.h>
-
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -12,6 +9,7 @@
 #include "base/error.h"
 #include "io/block_decode.h"
 #include "io/codec.h"
+#include "io/ktx2_builder.h"
 
 namespace quintet::test {
 namespace {
@@ -21,53 +19,14 @@ using io::PixelType;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-using Bytes = std::vector<std::byte>;
+using io::test::Bytes;
+using io::test::Ktx2;
 
 Bytes bytesOf(std::initializer_list<int> values) {
   Bytes bytes;
   for (const int value : values) bytes.push_back(static_cast<std::byte>(value));
   return bytes;
 }
-
-// A file of one level. The members can be changed before build().
-struct Ktx2 {
-  std::uint32_t format = 37, width = 1, height = 1, depth = 0, layers = 0, faces = 1, scheme = 0;
-  Bytes level;
-  std::uint64_t statedSize = 0;  // 0: that of `level`
-  std::string keys;              // key/value data
-
-  void addKey(const std::string& key, const std::string& value) {
-    const std::string entry = key + '\0' + value + '\0';
-    const auto size = static_cast<std::uint32_t>(entry.size());
-    keys.append(reinterpret_cast<const char*>(&size), 4);
-    keys += entry + std::string((4 - entry.size() % 4) % 4, '\0');
-  }
-  Bytes build() const {
-    Bytes stored = level;
-    if (scheme == 2) {
-      stored.resize(ZSTD_compressBound(level.size()));
-      stored.resize(ZSTD_compress(stored.data(), stored.size(), level.data(), level.size(), 3));
-    } else if (scheme == 3) {
-      uLongf size = compressBound(level.size());
-      stored.resize(size);
-      compress(reinterpret_cast<Bytef*>(stored.data()), &size, reinterpret_cast<const Bytef*>(level.data()),
-               level.size());
-      stored.resize(size);
-    }
-    Bytes file(104);
-    const std::string_view identifier("\xABKTX 20\xBB\r\n\x1A\n", 12);
-    std::memcpy(file.data(), identifier.data(), identifier.size());
-    const std::uint32_t keyOffset = 104, keyLength = static_cast<std::uint32_t>(keys.size());
-    const std::uint32_t words[] = {format, 1,      width, height, depth,     layers,   faces,
-                                   1,      scheme, 0,     0,      keyOffset, keyLength};
-    std::memcpy(file.data() + 12, words, sizeof words);
-    const std::uint64_t sizes[] = {104 + keys.size(), stored.size(), statedSize ? statedSize : level.size()};
-    std::memcpy(file.data() + 80, sizes, sizeof sizes);
-    for (const char c : keys) file.push_back(static_cast<std::byte>(c));
-    file.insert(file.end(), stored.begin(), stored.end());
-    return file;
-  }
-};
 
 io::Image decode(const Ktx2& file) { return io::decodeImage(file.build(), "a.ktx2"); }
 

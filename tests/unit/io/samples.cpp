@@ -9,6 +9,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "io/ktx2_builder.h"
+
 namespace quintet::io::test {
 namespace {
 
@@ -51,6 +53,20 @@ std::string storedDeflate(const std::string& data) {
                          static_cast<char>(~size & 255),
                          static_cast<char>(~size >> 8 & 255)};
   return head + data + bigEndian(b << 16 | a);
+}
+
+// Different bytes.
+Bytes ramp(std::size_t size) {
+  Bytes bytes(size);
+  for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<std::byte>(37 * i + 11);
+  return bytes;
+}
+
+Bytes swizzledKtx2() {
+  Ktx2 file{.format = 131, .width = 4, .height = 4, .level = ramp(8)};
+  file.addKey("KTXorientation", "ru");
+  file.addKey("KTXswizzle", "bgr1");
+  return file.build();
 }
 
 }  // namespace
@@ -171,6 +187,10 @@ std::vector<Sample> allSamples() {
       {"windows.exr", makeExr(ExrKind::offsetWindows)},
       {"multipart.exr", makeExr(ExrKind::multiPart)},
       {"piz.exr", makeExr(ExrKind::piz)},
+      {"rgba8.ktx2", Ktx2{.width = 2, .height = 2, .level = Bytes(16, std::byte{7})}.build()},
+      {"zstd.ktx2", Ktx2{.format = 97, .width = 3, .height = 2, .scheme = 2, .level = ramp(48)}.build()},
+      {"zlib.ktx2", Ktx2{.format = 145, .width = 5, .height = 4, .scheme = 3, .level = ramp(32)}.build()},
+      {"swizzled.ktx2", swizzledKtx2()},
   };
 }
 

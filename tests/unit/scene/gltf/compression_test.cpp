@@ -13,7 +13,7 @@
 
 #include "base/error.h"
 #include "scene/error_matcher.h"
-#include "scene/gltf_builder.h"
+#include "scene/gltf_samples.h"
 
 namespace quintet::test {
 namespace {
@@ -22,47 +22,6 @@ using scene::Geometry;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-// A fan of triangles around the origin, with texture coordinates.
-std::vector<std::byte> dracoStream(int triangles, int* positionId, int* uvId) {
-  draco::TriangleSoupMeshBuilder soup;
-  soup.Start(triangles);
-  const int positions = soup.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
-  const int uvs = soup.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
-  for (int i = 0; i < triangles; ++i) {
-    const float a[3] = {0, 0, 0}, b[3] = {1, static_cast<float>(i), 0}, c[3] = {1, static_cast<float>(i + 1), 0};
-    const float u[2] = {0, 0}, v[2] = {1, 0.25f}, w[2] = {1, 0.5f};
-    soup.SetAttributeValuesForFace(positions, draco::FaceIndex(static_cast<std::uint32_t>(i)), a, b, c);
-    soup.SetAttributeValuesForFace(uvs, draco::FaceIndex(static_cast<std::uint32_t>(i)), u, v, w);
-  }
-  const std::unique_ptr<draco::Mesh> mesh = soup.Finalize();
-  *positionId = static_cast<int>(mesh->GetNamedAttribute(draco::GeometryAttribute::POSITION)->unique_id());
-  *uvId = static_cast<int>(mesh->GetNamedAttribute(draco::GeometryAttribute::TEX_COORD)->unique_id());
-  draco::Encoder encoder;  // without quantization, so that floats are exact
-  draco::EncoderBuffer buffer;
-  EXPECT_TRUE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
-  const auto bytes = std::as_bytes(std::span(buffer.data(), buffer.size()));
-  return {bytes.begin(), bytes.end()};
-}
-
-struct DracoBuilder : GltfBuilder {
-  DracoBuilder() {
-    int positionId = 0, uvId = 0;
-    const int view = addView(dracoStream(2, &positionId, &uvId));
-    root["extensionsUsed"] = root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-    const Json floats = {{"componentType", kFloat}, {"count", 4}};
-    Json position = floats, uv = floats;
-    position["type"] = "VEC3", uv["type"] = "VEC2";
-    const int positions = add("accessors", position), uvs = add("accessors", uv);
-    const int indices = add("accessors", {{"componentType", kUnsignedShort}, {"count", 6}, {"type", "SCALAR"}});
-    addMesh({{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}},
-             {"indices", indices},
-             {"extensions",
-              {{"KHR_draco_mesh_compression",
-                {{"bufferView", view}, {"attributes", {{"POSITION", positionId}, {"TEXCOORD_0", uvId}}}}}}}});
-  }
-  Json& draco() { return primitive()["extensions"]["KHR_draco_mesh_compression"]; }
-};
 
 TEST(GltfDraco, DecodesAttributesAndTriangles) {
   const scene::Scene scene = DracoBuilder().load();
@@ -124,50 +83,6 @@ TEST(GltfDraco, SurvivesEveryCorruptByte) {
       }
     }
 }
-
-// A strip of vertices, compressed as attributes, and its triangles.
-struct MeshoptBuilder : GltfBuilder {
-  MeshoptBuilder() {
-    std::vector<vec3> positions;
-    for (int i = 0; i < 20; ++i) positions.emplace_back(i / 2, i % 2, 0);
-    std::vector<std::uint32_t> indices;
-    for (std::uint32_t i = 0; i + 2 < 20; ++i) indices.insert(indices.end(), {i, i + 1 + i % 2, i + 2 - i % 2});
-
-    std::vector<unsigned char> encoded(meshopt_encodeVertexBufferBound(20, 12));
-    encoded.resize(meshopt_encodeVertexBuffer(encoded.data(), encoded.size(), positions.data(), 20, 12));
-    addCompressed(encoded, 20, 12, "ATTRIBUTES");
-    root["bufferViews"][0]["byteStride"] = 12;
-    std::vector<unsigned char> encodedIndices(meshopt_encodeIndexBufferBound(indices.size(), 20));
-    encodedIndices.resize(
-        meshopt_encodeIndexBuffer(encodedIndices.data(), encodedIndices.size(), indices.data(), indices.size()));
-    addCompressed(encodedIndices, indices.size(), 2, "TRIANGLES");
-
-    const int p = add("accessors", {{"bufferView", 0}, {"componentType", kFloat}, {"count", 20}, {"type", "VEC3"}});
-    const int i =
-        add("accessors",
-            {{"bufferView", 1}, {"componentType", kUnsignedShort}, {"count", indices.size()}, {"type", "SCALAR"}});
-    addMesh({{"attributes", {{"POSITION", p}}}, {"indices", i}});
-    root["extensionsUsed"] = root["extensionsRequired"] = {"EXT_meshopt_compression"};
-    // Buffer 1 is the fallback buffer, without data.
-    root["buffers"] = {{{"byteLength", binary.size()}},
-                       {{"byteLength", 1000}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
-  }
-  void addCompressed(const std::vector<unsigned char>& data, std::size_t count, std::size_t stride, const char* mode) {
-    const int view = addView(data);
-    const Json inside = root["bufferViews"][static_cast<std::size_t>(view)];
-    root["bufferViews"][static_cast<std::size_t>(view)] = {{"buffer", 1},
-                                                           {"byteLength", count * stride},
-                                                           {"extensions",
-                                                            {{"EXT_meshopt_compression",
-                                                              {{"buffer", 0},
-                                                               {"byteOffset", inside["byteOffset"]},
-                                                               {"byteLength", inside["byteLength"]},
-                                                               {"byteStride", stride},
-                                                               {"count", count},
-                                                               {"mode", mode}}}}}};
-  }
-  Json& meshopt(std::size_t view) { return root["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]; }
-};
 
 TEST(GltfMeshopt, DecodesVerticesAndTriangles) {
   const scene::Scene scene = MeshoptBuilder().load();

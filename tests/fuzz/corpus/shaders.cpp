@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "program/compile.h"
+#include "program/load.h"
+#include "seeds.h"
+#include "shader/compiler.h"
+
+namespace quintet::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Debug information contains the text of the shader, so modules of programs that include the library are much larger.
+constexpr std::size_t kMaxBytes = 10'000, kMaxModules = 80;
+
+std::vector<fs::path> programsIn(const fs::path& folder) {
+  std::vector<fs::path> programs;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) programs.push_back(entry.path());
+  std::ranges::sort(programs);
+  return programs;
+}
+
+}  // namespace
+
+void addSpirvSeeds(Corpora& corpora, const fs::path& root) {
+  const shader::Compiler compiler{shader::CompilerOptions{}};
+  std::vector<Seed>& seeds = corpora["spirv"];
+  for (const fs::path& folder : programsIn(root / "tests/check/idioms")) {
+    const program::Program program = program::loadProgram(folder.string());
+    for (const program::CompiledProgram::Stage& stage : program::compile(program, compiler, {}).stages) {
+      const auto bytes = std::as_bytes(std::span(stage.spirv));
+      if (bytes.empty() || bytes.size() > kMaxBytes || seeds.size() >= kMaxModules) continue;
+      seeds.push_back(
+          {folder.filename().string() + "_" + std::to_string(seeds.size()) + ".spv", {bytes.begin(), bytes.end()}});
+    }
+  }
+  if (seeds.empty()) throw Error("no SPIR-V module is small enough");
+}
+
+}  // namespace quintet::fuzz
