@@ -333,6 +333,16 @@ FileBytes Document::loadUri(std::string_view uri, std::string_view location) con
     budget->take(uri.size());
     return decodeDataUri(*this, uri, location);
   }
+  const std::filesystem::path path = fileOfUri(uri, location);
+  takeFile(*budget, path);
+  try {
+    return readLargeFile(path);
+  } catch (const FileError& error) {
+    fail(location, fmt::format("{} {}", percentDecode(uri), error.problem()));
+  }
+}
+
+std::filesystem::path Document::fileOfUri(std::string_view uri, std::string_view location) const {
   if (hasScheme(uri)) fail(location, "only data URIs and relative file names are supported");
   const std::string name = percentDecode(uri);
   if (name.empty()) fail(location, "the file name is empty");
@@ -347,12 +357,7 @@ FileBytes Document::loadUri(std::string_view uri, std::string_view location) con
   if (!std::filesystem::exists(status)) fail(location, fmt::format("{} does not exist", name));
   // A device or a pipe could be endless.
   if (!std::filesystem::is_regular_file(status)) fail(location, fmt::format("{} is not a regular file", name));
-  takeFile(*budget, path);
-  try {
-    return readLargeFile(path);
-  } catch (const FileError& error) {
-    fail(location, fmt::format("{} {}", name, error.problem()));
-  }
+  return path;
 }
 
 std::filesystem::path Document::pathOfUri(std::string_view uri) const {

@@ -64,6 +64,8 @@ struct Document {
   // Bytes of a data URI (RFC 2397), or of a file named by a relative path (RFC 3986). Throws FileError for any other
   // URI, and for a file outside of the folder unless allowExternal; nothing is fetched.
   FileBytes loadUri(std::string_view uri, std::string_view location) const;
+  // The existing file of a URI that is not a data URI. Throws the FileErrors of loadUri without reading the file.
+  std::filesystem::path fileOfUri(std::string_view uri, std::string_view location) const;
   // Path of a URI that is not a data URI: the decoded one, or if it does not exist the text itself, because some
   // exporters do not encode '%' in file names.
   std::filesystem::path pathOfUri(std::string_view uri) const;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
+#include <fstream>
 #include <numeric>
 #include <type_traits>
 
@@ -36,6 +38,20 @@ io::Image decode(std::span<const std::byte> bytes, const std::string& location, 
   return io::decodeImage(bytes, location);
 }
 
+// The beginning of an image in a separate file, far more than the header of a KTX2 file, so that the file is not read twice.
+// The whole image for a data URI, and for a file in another format.
+FileBytes headerOf(const Document& document, const std::string& uri, const std::string& location) {
+  constexpr std::streamsize kHeader = 65536;
+  constexpr std::string_view kKtx = "\xABKTX";
+  if (isDataUri(uri)) return document.loadUri(uri, location);
+  FileBytes bytes(kHeader);
+  std::ifstream file(document.fileOfUri(uri, location), std::ios::binary);
+  file.read(reinterpret_cast<char*>(bytes.data()), kHeader);
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  const bool isKtx = bytes.size() >= kKtx.size() && std::memcmp(bytes.data(), kKtx.data(), kKtx.size()) == 0;
+  return isKtx ? bytes : document.loadUri(uri, location);
+}
+
 // Why an image cannot be used, from its header.
 struct HeaderProblem {
   std::string text;             // empty if there is no problem
@@ -47,7 +63,7 @@ HeaderProblem headerProblem(const Document& document, int index) {
   FileBytes loaded;
   std::span<const std::byte> bytes;
   try {
-    if (source.bufferView == kNone) loaded = document.loadUri(source.uri, location + "/uri");
+    if (source.bufferView == kNone) loaded = headerOf(document, source.uri, location + "/uri");
     bytes = source.bufferView == kNone ? std::span<const std::byte>(loaded) : document.view(source.bufferView);
     io::probeImage(bytes, location);
   } catch (const FileError& error) {

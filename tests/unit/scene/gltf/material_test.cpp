@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "io/codec.h"
+#include "io/ktx2_builder.h"
 #include "scene/error_matcher.h"
 #include "scene/gltf/gltf.h"
 #include "scene/gltf_builder.h"
@@ -510,6 +511,27 @@ TEST(GltfTexture, UsesTheFallbackOfBasisUniversal) {
   builder.root["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 1;
   builder.binary[builder.root["bufferViews"][1]["byteOffset"].get<std::size_t>()] = std::byte{0};
   EXPECT_THAT(errorOf(builder), IsErrorAt("/images/1", "not a supported image"));
+}
+
+// The memory limit is enough for the file and its pixels, but not for the file twice.
+TEST(GltfTexture, ReadsSeparateKtx2FilesOnce) {
+  io::test::Ktx2 image{.width = 512, .height = 512, .level = std::vector<std::byte>(1 << 20)};
+  TextureBuilder builder;
+  builder.use();
+  builder.root["images"][0] = {{"uri", "a.ktx2"}};
+  builder.root["textures"][0] = {{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+  const TempFolder folder;
+  writeFile(folder / "a.ktx2", image.build());
+  writeFile(folder / "scene.glb", builder.glb());
+  const scene::LoadOptions options{.maxMemory = 5u << 19};
+  EXPECT_EQ(scene::loadGltf(folder / "scene.glb", options).images.at(0).image.width, 512u);
+  // Its header decides whether the fallback is used.
+  image.format = 0, image.scheme = 1;
+  writeFile(folder / "a.ktx2", image.build());
+  EXPECT_THAT(scene::loadGltf(folder / "scene.glb", options).report.ignored,
+              ElementsAre(IsErrorAt("/materials/0/baseColorTexture", "ETC1S")));
+  std::filesystem::remove(folder / "a.ktx2");
+  EXPECT_THROW(scene::loadGltf(folder / "scene.glb", options), FileError);
 }
 
 TEST(GltfTexture, IgnoresTexturesWithoutASupportedImage) {
