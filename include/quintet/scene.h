@@ -213,7 +213,7 @@ struct Feature {
   FeatureUse use = FeatureUse::used;
   std::size_t count = 0;   // number of occurrences
   std::string location{};  // JSON pointer of the first one
-  std::string reason{};    // why it is unused or ignored, or how it is repaired; empty if it is used
+  std::string reason{};    // why it is unused or ignored, how it is repaired or converted; else empty
 };
 
 // A property of the metadata of a file (KHR_xmp_json_ld).

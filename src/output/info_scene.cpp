@@ -218,6 +218,15 @@ std::string joined(const std::vector<std::string>& names) {
   return names.empty() ? "none" : printable(fmt::format("{}", fmt::join(names, ", ")));
 }
 
+// "LOCATION: NAME CONVERSION" for each extension whose values are stored in a different form.
+std::vector<std::string> convertedLines(const scene::Report& report) {
+  std::vector<std::string> lines;
+  for (const scene::Feature& feature : report.features)
+    if (feature.use == scene::FeatureUse::used && !feature.reason.empty())
+      lines.push_back(fmt::format("{}: {} {}", feature.location, feature.name, feature.reason));
+  return lines;
+}
+
 // Lines such as "attributes  used: NORMAL (2), POSITION (2)" and "textures  used: 5" for each kind.
 std::string featuresText(const scene::Report& report) {
   // Kinds whose names are defined by glTF; the names of other objects are arbitrary, and only counted.
@@ -291,6 +300,8 @@ std::string toText(const scene::Scene& scene, const std::string& file) {
   addList(text, "cameras", fmt::format("{}", scene.cameras.size()), scene.cameras, describeAny);
   addList(text, "animations", fmt::format("{}", scene.report.animations.size()), scene.report.animations, describeAny);
   text += featuresText(scene.report);
+  const std::vector<std::string> converted = convertedLines(scene.report);
+  if (!converted.empty()) addList(text, "converted", fmt::format("{}", converted.size()), converted, itself);
   const std::vector<std::string> unused = unusedLines(scene.report);
   addList(text, "unused", fmt::format("{}", unused.size()), unused, itself);
   addList(text, "ignored", fmt::format("{}", scene.report.ignored.size()), scene.report.ignored, itself);

@@ -15,6 +15,19 @@
 namespace quintet::scene {
 namespace {
 
+// Extensions whose values are stored in a different form without loss.
+struct Conversion {
+  std::string_view extension;
+  const char* text;
+};
+constexpr Conversion kConversions[] = {
+    {"KHR_materials_pbrSpecularGlossiness", "converted to a dielectric whose reflectance is the specular color"}};
+
+const char* conversionOf(std::string_view extension) {
+  const auto found = std::ranges::find(kConversions, extension, &Conversion::extension);
+  return found == std::end(kConversions) ? "" : found->text;
+}
+
 constexpr const char* kNotInScene = "no visible node of the scene has it";
 constexpr const char* kModeNames[] = {"POINTS",    "LINES",          "LINE_LOOP",   "LINE_STRIP",
                                       "TRIANGLES", "TRIANGLE_STRIP", "TRIANGLE_FAN"};
@@ -218,7 +231,7 @@ class Inventory {
       table_.add("extension", name, unsupported->second.location, FeatureUse::ignored,
                  *ignored_->at(unsupported->second.location), unsupported->second.count);
     if (used != document_.extensionUses.end())
-      table_.add("extension", name, used->second.location, FeatureUse::used, {}, used->second.count);
+      table_.add("extension", name, used->second.location, FeatureUse::used, conversionOf(name), used->second.count);
     else if (hasNoEffect(name))
       table_.add("extension", name, location, FeatureUse::unused, "metadata");
     else if (isSupportedExtension(name) && name != kQuantization)

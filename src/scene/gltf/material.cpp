@@ -96,7 +96,6 @@ class MaterialReader {
           textures_.use(indexOf(extension.Get("specularGlossinessTexture"), "index"),
                         location_ + "/specularGlossinessTexture", glossiness);
     }
-    repair("KHR_materials_pbrSpecularGlossiness converted to a dielectric with the specular color as its reflectance");
   }
 
   void readCore() {

@@ -15,7 +15,7 @@
 namespace quintet::scene {
 
 enum class FeatureUse {
-  used,
+  used,      // as the file states it, or after a conversion without loss, which `reason` names
   unused,    // cannot change the image: not referenced by the scene, or without meaning for a path tracer
   repaired,  // used with a change
   ignored,   // can change the image, but is not supported or not valid
@@ -28,7 +28,7 @@ struct Feature {
   FeatureUse use = FeatureUse::used;
   std::size_t count = 0;  // number of occurrences
   std::string location;   // of the first one: a JSON pointer, after "NAME: " for a [[file]] of a scene file
-  std::string reason;     // why it is unused or ignored, or how it is repaired; empty if it is used
+  std::string reason;     // why it is unused or ignored, how it is repaired or converted; else empty
 };
 
 // Counts equal features: the same kind, name, use and reason.

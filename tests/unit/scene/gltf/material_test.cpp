@@ -191,7 +191,12 @@ TEST(GltfMaterial, ConvertsSpecularGlossiness) {
   EXPECT_EQ(m.ior, 0.0f);
   EXPECT_EQ(m.specular, 1.0f);
   EXPECT_EQ(m.specularColor, vec3(0.5f, 0.25f, 1));
-  EXPECT_THAT(scene.report.repaired, ElementsAre(IsErrorAt("/materials/0", "KHR_materials_pbrSpecularGlossiness")));
+  EXPECT_TRUE(scene.report.isExact());
+  const auto listed =
+      std::ranges::find(scene.report.features, "KHR_materials_pbrSpecularGlossiness", &scene::Feature::name);
+  ASSERT_NE(listed, scene.report.features.end());
+  EXPECT_EQ(listed->use, scene::FeatureUse::used);
+  EXPECT_THAT(listed->reason, testing::HasSubstr("converted"));
   const Material defaults = loadMaterial(extension("KHR_materials_pbrSpecularGlossiness", Json::object()));
   EXPECT_EQ(defaults.baseColor, vec4(1));
   EXPECT_EQ(defaults.specularColor, vec3(1));
