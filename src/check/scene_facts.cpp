@@ -48,7 +48,7 @@ program::SceneFacts sceneFacts(const scene::Scene& scene) {
     facts.instances.push_back(
         {instance.name, first[mesh], static_cast<std::uint32_t>(scene.meshes[mesh].geometryCount()), instance.mask,
          (instance.flags & scene::kInstanceForceOpaque) != 0, (instance.flags & scene::kInstanceForceNoOpaque) != 0,
-         instance.customIndex, instance.worldFromObject != mat4(1.0f) || !instance.keyframes.empty()});
+         instance.customIndex, instance.worldFromObject != mat4(1.0f) || instance.animated()});
   }
   return facts;
 }

@@ -170,7 +170,7 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   prepared->files = loaded.scene.report.files;
   prepared->ignoredAnimations = loaded.scene.report.ignoredAnimations;
   prepared->nodeAnimation = loaded.scene.nodeAnimation;
-  if (std::ranges::any_of(loaded.scene.cameras, [](const scene::Camera& c) { return c.node != scene::kNone; })) {
+  if (std::ranges::any_of(loaded.scene.cameras, &scene::Camera::animated)) {
     prepared->movingCameras = loaded.scene.cameras;
     prepared->bounds = job_.request.bounds ? *job_.request.bounds : scene::animatedBounds(loaded.scene);
   }
@@ -182,8 +182,9 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   const scene::ImportSeconds import = loaded.scene.seconds;
   prepared->onDevice = std::make_unique<render::DeviceScene>(
       engine_.context(), std::move(loaded.scene), loaded.environment.environment,
-      render::DeviceSceneOptions{
-          .singleAnyHit = prepared->singleAnyHit, .editable = job_.request.editable, .compiler = &engine_.compiler()});
+      render::DeviceSceneOptions{.singleAnyHit = prepared->singleAnyHit,
+                                 .editable = job_.request.editable,
+                                 .compiler = &engine_.compiler()});
   if (!job_.request.editable) loaded.environment.environment.image = {};
   prepared->environmentInUse = std::move(loaded.environment);
   prepared->seconds.build = building.seconds();

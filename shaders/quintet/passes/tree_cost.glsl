@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes boxes and summed surface areas of the tree that halves a list of triangles (rt::halvingTreeCost), a level of
-// subtrees with kPassGroupSize leaves per dispatch. A compute shader with one invocation per leaf.
+// subtrees with kTreeCostLeaves leaves per dispatch. A compute shader with one invocation per
+// 2^kTreeCostSerialDepth leaves.
 #extension GL_EXT_scalar_block_layout : require
 #include <quintet/passes/pass_index.glsl>
 #include <quintet/shared/deform.h>
@@ -74,18 +75,20 @@ TreeCostNode leafOf(uint k) {
   return count == 0u ? emptyNode() : triangleNode(list, TreeCostOrder(list.order).at[first]);
 }
 
+TreeCostNode inputOf(uint leaf) {
+  if (leaf >= pass.leafCount) return emptyNode();
+  if (pass.leaves == 0ul) return leafOf(leaf);
+  return TreeCostNodeArray(pass.leaves).at[leaf];
+}
+
+TreeCostNode pairAt(uint leaf) { return parentOf(inputOf(leaf), inputOf(leaf + 1u)); }
+
 void main() {
-  const uint i = passIndex(), own = gl_LocalInvocationIndex;
-  nodes[own] = emptyNode();
-  if (i < pass.leafCount) {
-    if (pass.leaves == 0ul)
-      nodes[own] = leafOf(i);
-    else
-      nodes[own] = TreeCostNodeArray(pass.leaves).at[i];
-  }
+  const uint own = gl_LocalInvocationIndex, first = passIndex() << kTreeCostSerialDepth;
+  nodes[own] = parentOf(parentOf(pairAt(first), pairAt(first + 2u)), parentOf(pairAt(first + 4u), pairAt(first + 6u)));
   for (uint stride = 1u; stride < kPassGroupSize; stride *= 2u) {
     barrier();
     if (own % (2u * stride) == 0u) nodes[own] = parentOf(nodes[own], nodes[own + stride]);
   }
-  if (own == 0u && i < pass.leafCount) TreeCostNodeArray(pass.roots).at[i / kPassGroupSize] = nodes[0];
+  if (own == 0u && first < pass.leafCount) TreeCostNodeArray(pass.roots).at[first / kTreeCostLeaves] = nodes[0];
 }

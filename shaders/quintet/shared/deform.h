@@ -77,6 +77,10 @@ struct TreeCostGeometry {
 };
 QT_SHARED_SIZE(TreeCostGeometry, 24);
 
+// An invocation reduces this many leaves, 2^kTreeCostSerialDepth, before the invocations of its workgroup combine theirs.
+QT_CONSTANT kTreeCostSerialDepth = 3;
+QT_CONSTANT kTreeCostLeaves = kPassGroupSize << kTreeCostSerialDepth;  // per workgroup
+
 // The triangles of a BLAS in the order of its tree.
 struct TreeCostList {
   Address order;       // uint[triangleCount]: indices of triangles; those of a geometry follow those of the one before
@@ -88,7 +92,7 @@ struct TreeCostList {
 };
 QT_SHARED_SIZE(TreeCostList, 32);
 
-// Push constants of the pass that computes the roots of subtrees with kPassGroupSize leaves.
+// Push constants of the pass that computes the roots of subtrees with kTreeCostLeaves leaves.
 struct TreeCostPass {
   Address leaves;  // TreeCostNode[leafCount]; 0: the triangles of the list
   Address roots;   // TreeCostNode[]: written, one per workgroup

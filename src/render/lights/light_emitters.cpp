@@ -275,6 +275,15 @@ void addSolids(Emitter& emitter, const scene::PrimitiveSet& set, int material, c
   emitter.black = emitter.black && mean <= 0.0f;
 }
 
+// The material with its largest emission during the animation, so that each triangle that can emit is a light.
+scene::Material brightestState(const scene::Scene& scene, std::size_t material) {
+  scene::Material brightest = scene.materials[material];
+  if (material < scene.materialStates.size())
+    for (const scene::Material& state : scene.materialStates[material])
+      brightest.emissive = glm::max(brightest.emissive, state.emissive);
+  return brightest;
+}
+
 // An emitter that must be computed, and its geometry or set of solids.
 struct Pending {
   Emitter* emitter;
@@ -339,7 +348,7 @@ bool Emitters::update(const scene::Scene& scene) {
   emissions_.resize(scene.materials.size());
   std::vector<bool> changed;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    const scene::Material& material = scene.materials[m];
+    const scene::Material material = brightestState(scene, m);
     const bool emits = !material.unlit && lightLuminance(material.emissive) > 0.0f;
     const Emission emission = emits ? Emission{material.emissive, material.emissiveTexture} : Emission{};
     changed.push_back(emission != emissions_[m]);
@@ -353,7 +362,7 @@ bool Emitters::update(const scene::Scene& scene) {
     std::optional<EmissionMap> map;
     for (const Pending& p : pending) {
       if (p.set ? !uses(*p.set, static_cast<int>(m)) : p.geometry->material != static_cast<int>(m)) continue;
-      if (!map) map.emplace(scene, scene.materials[m]);
+      if (!map) map.emplace(scene, brightestState(scene, m));
       if (p.set)
         addSolids(*p.emitter, *p.set, static_cast<int>(m), *map);
       else

@@ -47,6 +47,7 @@ DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scen
       animated_(scene::isAnimated(scene)),
       facts_(check::sceneFacts(scene)) {
   const Stopwatch watch;
+  keepAnimatedMaterials(scene);
   defines_ = shaderDefines(sceneFeatures(scene, environment), context.info().quirks);
   uploadLights(scene, environment);  // first, because it reads images and attributes that the other uploads free
   statistics_.lightSeconds = watch.seconds();
@@ -67,17 +68,23 @@ DeviceScene::DeviceScene(gpu::Context& context, scene::Scene&& scene, const scen
   statistics_.textureBytes = textures_->bytes();
 }
 
+void DeviceScene::keepAnimatedMaterials(const scene::Scene& scene) {
+  if (!nodeAnimation_) return;
+  for (const scene::AnimatedMaterial& animated : nodeAnimation_->materials)
+    animatedMaterials_.push_back({animated, scene.materials[static_cast<std::size_t>(animated.material)]});
+}
+
 void DeviceScene::uploadLights(const scene::Scene& scene, const scene::Environment& environment) {
   LightTableBuilder builder(scene, environment);
+  const scene::Pose pose = scene::poseAt(nodeAnimation_.get(), 0.0);
   std::vector<mat4> worldFromObject;
   for (const scene::Instance& instance : scene.instances)
-    worldFromObject.push_back(scene::worldFromObjectAt(instance, 0.0f));
+    worldFromObject.push_back(scene::shownTransformAt(instance, pose));
   LightTable table;
   builder.build(worldFromObject, table);
   EnvironmentTable environmentTable = std::move(builder.environment());
   firstLightSlots_ = table.firstSlots;
-  if (std::ranges::any_of(scene.lights, [](const scene::Light& light) { return light.node != scene::kNone; }))
-    punctual_ = scene.lights;
+  if (std::ranges::any_of(scene.lights, &scene::Light::animated)) punctual_ = scene.lights;
   if (builder.hasMovingLights() || options_.editable) {
     builder.copyGeometry();
     lightBuilder_ = std::move(builder);
@@ -283,6 +290,7 @@ void DeviceScene::showFrame(double frame, bool withPrevious) {
     previousPositions_->copyFrom(geometry_);
     previousPositionsOf_ = frame;
   }
+  changeMaterials(pose);
   if (deformed_) showDeformation(pose);
   watch.lap();
   if (deformed_ || topLevel_->animated()) topLevel_->setPose(pose, before);
@@ -291,6 +299,12 @@ void DeviceScene::showFrame(double frame, bool withPrevious) {
   moveEmitters();
   if (!punctual_.empty()) movePunctualLights(pose);
   lightsOutdated_ = true;
+}
+
+void DeviceScene::changeMaterials(const scene::Pose& pose) {
+  for (const AnimatedMaterial& changed : animatedMaterials_)
+    storeMaterial(static_cast<std::size_t>(changed.animated.material),
+                  scene::materialAt(changed.material, changed.animated.values, pose));
 }
 
 void DeviceScene::movePunctualLights(const scene::Pose& pose) {
@@ -392,6 +406,16 @@ bool DeviceScene::setEnvironment(const scene::Environment& environment) {
 }
 
 bool DeviceScene::setMaterial(std::size_t index, const scene::Material& material) {
+  for (AnimatedMaterial& changed : animatedMaterials_) {
+    if (static_cast<std::size_t>(changed.animated.material) != index) continue;
+    changed.material = material;
+    const scene::Pose pose = scene::poseAt(nodeAnimation_.get(), shownFrame_);
+    return storeMaterial(index, scene::materialAt(material, changed.animated.values, pose));
+  }
+  return storeMaterial(index, material);
+}
+
+bool DeviceScene::storeMaterial(std::size_t index, const scene::Material& material) {
   bool complete = true;
   const TextureIndex textureIndex = [&](int texture, bool sRgb) {
     const std::optional<std::uint32_t> found = textures_->find(texture, sRgb);

@@ -141,7 +141,10 @@ class DeviceScene {
   void showFrame(double frame, bool withPrevious);
   void showDeformation(const scene::Pose& pose);
   void movePunctualLights(const scene::Pose& pose);  // in the builder
-  void moveEmitters();                               // in the builder, to the deformed vertices
+  void keepAnimatedMaterials(const scene::Scene& scene);
+  bool storeMaterial(std::size_t index, const scene::Material& material);  // as setMaterial()
+  void changeMaterials(const scene::Pose& pose);
+  void moveEmitters();  // in the builder, to the deformed vertices
   void uploadLightTable(LightTable& table);
   void uploadMaterials(scene::Scene& scene, const scene::Environment& environment, gpu::Uploader& uploader);
   MeshArrays downloadMesh(std::size_t mesh, std::size_t geometry) const;
@@ -179,7 +182,13 @@ class DeviceScene {
   std::optional<PreviousPositions> previousPositions_;
   double previousPositionsOf_ = 0;  // frame one after that of the positions
   CameraMedia cameraMedia_;
-  std::vector<scene::Light> punctual_;                         // at frame 0, if one follows a node
+  std::vector<scene::Light> punctual_;  // at frame 0, if one is animated
+  // The materials that the animation changes, with the values that do not change.
+  struct AnimatedMaterial {
+    scene::AnimatedMaterial animated;
+    scene::Material material;
+  };
+  std::vector<AnimatedMaterial> animatedMaterials_;
   bool animated_ = false;
   double shownFrame_ = 0;
   FrameStatistics frameStatistics_;

@@ -24,6 +24,14 @@ struct ProceduralFeatures {
 
 bool emits(const scene::Material& m) { return glm::any(glm::greaterThan(m.emissive, vec3(0.0f))); }
 
+// At any time of the animation.
+bool everEmits(const scene::Scene& scene, int material) {
+  if (material == scene::kNone) return false;
+  const auto m = static_cast<std::size_t>(material);
+  return emits(scene.materials[m]) ||
+         (m < scene.materialStates.size() && std::ranges::any_of(scene.materialStates[m], emits));
+}
+
 ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
   ProceduralFeatures features;
   for (const scene::Mesh& mesh : scene.meshes) {
@@ -33,9 +41,7 @@ ProceduralFeatures proceduralFeatures(const scene::Scene& scene) {
       features.torus |= std::ranges::count(set.primitives, scene::PrimitiveType::torus, &scene::Primitive::type) > 0;
       features.lights |=
           set.kind == scene::PrimitiveSetKind::solids &&
-          std::ranges::any_of(set.primitives, [&](const scene::Primitive& p) {
-            return p.material != scene::kNone && emits(scene.materials[static_cast<std::size_t>(p.material)]);
-          });
+          std::ranges::any_of(set.primitives, [&](const scene::Primitive& p) { return everEmits(scene, p.material); });
       features.panes |= scene::isPane(scene, set);
       features.alpha |= set.kind != scene::PrimitiveSetKind::custom && scene::needsAlphaTest(scene, set);
     }
@@ -75,7 +81,9 @@ bool anyTintsShadows(const scene::Scene& scene) {
 
 SceneFeatures sceneFeatures(const scene::Scene& scene, const scene::Environment& environment) {
   const auto any = [&](auto predicate) {
-    return std::any_of(scene.materials.begin(), scene.materials.end(), predicate);
+    return std::ranges::any_of(scene.materials, predicate) ||
+           std::ranges::any_of(scene.materialStates,
+                               [&](const auto& states) { return std::ranges::any_of(states, predicate); });
   };
   const vec3 environmentScale = environment.intensity * (environment.image.empty() ? environment.constant : vec3(1.0f));
 

@@ -23,12 +23,13 @@ void storeTransform(shared::InstanceData& data, const mat4& worldFromObject) {
 
 TopLevel::TopLevel(gpu::Context& context, const scene::Scene& scene, std::span<const InstanceReferences> references)
     : context_(context) {
+  const scene::Pose pose = scene::poseAt(scene.nodeAnimation.get(), 0.0);
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Instance& instance = scene.instances[i];
-    const mat4 worldFromObject = scene::worldFromObjectAt(instance, 0.0f);
+    const mat4 worldFromObject = scene::shownTransformAt(instance, pose);
     if (instance.animated()) {
       moving_.push_back(instance);
-      before_.push_back(worldFromObject);
+      before_.push_back(scene::worldFromObjectAt(instance, pose));
       movingIndex_.push_back(static_cast<std::uint32_t>(i));
     }
     shared::InstanceData& data = data_.emplace_back();
@@ -59,7 +60,7 @@ bool TopLevel::prepareFor(std::uint32_t rayTypeCount, bool keepOrder, bool anyHi
 
 void TopLevel::setPose(const scene::Pose& pose, const scene::Pose& before) {
   for (std::size_t k = 0; k < moving_.size(); ++k) {
-    setTransform(movingIndex_[k], scene::worldFromObjectAt(moving_[k], pose));
+    setTransform(movingIndex_[k], scene::shownTransformAt(moving_[k], pose));
     before_[k] = scene::worldFromObjectAt(moving_[k], before);
   }
   update();

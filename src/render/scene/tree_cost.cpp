@@ -35,7 +35,7 @@ TreeCost::TreeCost(gpu::Context& context, const rt::BlasInput& built,
     pass.leafCount = static_cast<std::uint32_t>(leaves);
     levels_.push_back(pass);
     firstRoots.push_back(nodes);
-    leaves = (leaves + shared::kPassGroupSize - 1) / shared::kPassGroupSize;
+    leaves = (leaves + shared::kTreeCostLeaves - 1) / shared::kTreeCostLeaves;
     nodes += leaves;
   } while (leaves > 1);
   nodes_ = gpu::Buffer(context, {.size = nodes * sizeof(shared::TreeCostNode), .name = "tree nodes"});
@@ -49,7 +49,8 @@ void TreeCost::record(gpu::Commands& commands, const gpu::ComputePipeline& pass,
                       shared::Address result) const {
   shared::TreeCostPass constants = levels_[level];
   if (level + 1 == levels_.size()) constants.roots = result;
-  dispatchPass(pass, commands, std::as_bytes(std::span(&constants, 1)), constants.leafCount);
+  dispatchPass(pass, commands, std::as_bytes(std::span(&constants, 1)),
+               (constants.leafCount + (1u << shared::kTreeCostSerialDepth) - 1) >> shared::kTreeCostSerialDepth);
 }
 
 double TreeCost::growth(const shared::TreeCostNode& root) const {

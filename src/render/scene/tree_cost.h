@@ -12,7 +12,7 @@
 
 namespace quintet::render {
 
-// Of one BLAS of triangles. A dispatch reduces subtrees with shared::kPassGroupSize leaves to one node, so that a few
+// Of one BLAS of triangles. A dispatch reduces subtrees with shared::kTreeCostLeaves leaves to one node, so that a few
 // levels reach the root.
 class TreeCost {
  public:

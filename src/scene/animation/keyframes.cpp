@@ -12,19 +12,21 @@ mat4 matrixOf(const Keyframe& key) {
   return m;
 }
 
-mat4 worldFromObjectAt(const Instance& instance, float frame) {
-  const std::vector<Keyframe>& keys = instance.keyframes;
-  if (keys.empty()) return instance.worldFromObject;
+mat4 keyframeMatrixAt(const std::vector<Keyframe>& keys, float frame) {
   const auto next = std::ranges::upper_bound(keys, frame, {}, &Keyframe::frame);
-  if (next == keys.begin()) return matrixOf(keys.front()) * instance.animatedFromObject;
-  if (next == keys.end()) return matrixOf(keys.back()) * instance.animatedFromObject;
+  if (next == keys.begin()) return matrixOf(keys.front());
+  if (next == keys.end()) return matrixOf(keys.back());
   const Keyframe& a = *(next - 1);
   const Keyframe& b = *next;
   const float t = (frame - a.frame) / (b.frame - a.frame);
-  const Keyframe between{frame, glm::mix(a.translation, b.translation, t),
-                         glm::slerp(glm::normalize(a.rotation), glm::normalize(b.rotation), t),
-                         glm::mix(a.scale, b.scale, t)};
-  return matrixOf(between) * instance.animatedFromObject;
+  return matrixOf({frame, glm::mix(a.translation, b.translation, t),
+                   glm::slerp(glm::normalize(a.rotation), glm::normalize(b.rotation), t),
+                   glm::mix(a.scale, b.scale, t)});
+}
+
+mat4 worldFromObjectAt(const Instance& instance, float frame) {
+  if (instance.keyframes.empty()) return instance.worldFromObject;
+  return keyframeMatrixAt(instance.keyframes, frame) * instance.animatedFromObject;
 }
 
 }  // namespace quintet::scene

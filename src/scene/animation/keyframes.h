@@ -10,8 +10,11 @@ namespace quintet::scene {
 // translate · rotate · scale.
 mat4 matrixOf(const Keyframe&);
 
-// Interpolated keyframe · animatedFromObject: linear for translation and scale, spherical along the shorter arc for the
-// rotation. Constant before the first and after the last keyframe. Without keyframes, worldFromObject.
+// The interpolated keyframe: linear for translation and scale, spherical along the shorter arc for the rotation.
+// Constant before the first and after the last keyframe. At least one keyframe.
+mat4 keyframeMatrixAt(const std::vector<Keyframe>&, float frame);
+
+// Interpolated keyframe · animatedFromObject, of an instance that follows no node. Without keyframes, worldFromObject.
 mat4 worldFromObjectAt(const Instance&, float frame);
 
 }  // namespace quintet::scene

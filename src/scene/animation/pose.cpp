@@ -2,11 +2,14 @@
 #include "scene/animation/pose.h"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "base/parallel.h"
 #include "scene/animation/deform.h"
 #include "scene/animation/interpolate.h"
 #include "scene/animation/keyframes.h"
+#include "scene/animation/properties.h"
 #include "scene/geometry/repair.h"
 
 namespace quintet::scene {
@@ -37,6 +40,15 @@ dmat4 localTransform(const AnimationNode& node, const MovedNode& moved) {
   return matrix;
 }
 
+vec4 valueOf(const AnimationSampler& sampler, double seconds) {
+  vec4 value(0.0f);
+  interpolate(sampler, seconds, {&value.x, sampler.valueSize});
+  return value;
+}
+
+// `node` can be kNone.
+bool isVisible(int node, const Pose& pose) { return node == kNone || pose.visible[static_cast<std::size_t>(node)]; }
+
 void restoreNonFinite(std::vector<vec3>& positions, const std::vector<vec3>& undeformed) {
   for (std::size_t i = 0; i < positions.size(); ++i)
     if (!isFinite(positions[i])) positions[i] = undeformed[i];
@@ -55,6 +67,7 @@ Pose poseAt(const NodeAnimation* animation, double frame) {
   for (const AnimationNode& node : animation->nodes) {
     moved.push_back({node.translation, node.rotation, node.scale});
     pose.weights.push_back(node.weights);
+    pose.visible.push_back(node.visible);
   }
   for (const AnimationChannel& channel : animation->animation.channels) {
     const auto node = static_cast<std::size_t>(channel.node);
@@ -67,8 +80,11 @@ Pose poseAt(const NodeAnimation* animation, double frame) {
         pose.weights[node].resize(sampler.valueSize);
         interpolate(sampler, seconds, pose.weights[node]);
         break;
+      case AnimatedProperty::visibility: pose.visible[node] = valueOf(sampler, seconds).x != 0.0f; break;
     }
   }
+  for (const std::size_t sampler : animation->values)
+    pose.values.push_back(valueOf(animation->animation.samplers[sampler], seconds));
   std::vector<dmat4> world(animation->nodes.size());
   pose.worldFromNode.resize(world.size());
   for (const int index : animation->order) {
@@ -77,29 +93,74 @@ Pose poseAt(const NodeAnimation* animation, double frame) {
     const dmat4 local = localTransform(node, moved[i]);
     world[i] = node.parent == kNone ? local : world[static_cast<std::size_t>(node.parent)] * local;
     pose.worldFromNode[i] = mat4(world[i]);
+    if (node.parent != kNone && !pose.visible[static_cast<std::size_t>(node.parent)]) pose.visible[i] = false;
   }
   return pose;
 }
 
 mat4 worldFromObjectAt(const Instance& instance, const Pose& pose) {
-  if (instance.node == kNone) return worldFromObjectAt(instance, static_cast<float>(pose.frame));
-  return pose.worldFromNode[static_cast<std::size_t>(instance.node)] * instance.animatedFromObject;
+  const auto frame = static_cast<float>(pose.frame);
+  if (instance.node == kNone) return worldFromObjectAt(instance, frame);
+  const mat4 placed = instance.placedFromRoot * pose.worldFromNode[static_cast<std::size_t>(instance.node)] *
+                      instance.animatedFromObject;
+  return instance.keyframes.empty() ? placed : keyframeMatrixAt(instance.keyframes, frame) * placed;
+}
+
+mat4 shownTransformAt(const Instance& instance, const Pose& pose) {
+  mat4 transform = worldFromObjectAt(instance, pose);
+  if (!isVisible(instance.visibleNode, pose)) transform[0] = transform[1] = transform[2] = vec4(0.0f);
+  return transform;
 }
 
 Camera cameraAt(const Camera& camera, const Pose& pose) {
   Camera moved = camera;
   if (camera.node != kNone)
-    moved.worldFromCamera = rigidFrame(pose.worldFromNode[static_cast<std::size_t>(camera.node)]);
+    moved.worldFromCamera =
+        rigidFrame(camera.placedFromRoot * pose.worldFromNode[static_cast<std::size_t>(camera.node)]);
+  for (const AnimatedValue& value : camera.values) setCameraValue(moved, value.property, pose.values[value.value]);
   return moved;
 }
 
 Light lightAt(const Light& light, const Pose& pose) {
   Light moved = light;
-  if (light.node == kNone) return moved;
-  const mat4& worldFromNode = pose.worldFromNode[static_cast<std::size_t>(light.node)];
-  moved.position = vec3(worldFromNode[3]);
-  moved.direction = directionOr(-vec3(worldFromNode[2]), vec3(0, 0, -1));
+  if (light.node != kNone) {
+    const mat4 worldFromNode = light.placedFromRoot * pose.worldFromNode[static_cast<std::size_t>(light.node)];
+    moved.position = vec3(worldFromNode[3]);
+    moved.direction = directionOr(-vec3(worldFromNode[2]), vec3(0, 0, -1));
+  }
+  for (const AnimatedValue& value : light.values) setLightValue(moved, value.property, pose.values[value.value]);
+  if (!isVisible(light.visibleNode, pose)) moved.intensity = vec3(0.0f);
   return moved;
+}
+
+Material materialAt(const Material& material, std::span<const AnimatedValue> values, const Pose& pose) {
+  Material changed = material;
+  for (const AnimatedValue& value : values) setMaterialValue(changed, value.property, pose.values[value.value]);
+  return changed;
+}
+
+std::vector<Material> materialStates(const Material& material, std::span<const AnimatedValue> values,
+                                     const NodeAnimation& animation) {
+  constexpr int kBetween = 4;  // states from one time to the next
+  std::set<float> times;
+  for (const AnimatedValue& value : values) {
+    const AnimationSampler& sampler = animation.animation.samplers[animation.values[value.value]];
+    times.insert(sampler.times.begin(), sampler.times.end());
+  }
+  std::vector<Material> states;
+  Pose pose;
+  pose.values.resize(animation.values.size());
+  const auto add = [&](double seconds) {
+    for (const AnimatedValue& value : values)
+      pose.values[value.value] = valueOf(animation.animation.samplers[animation.values[value.value]], seconds);
+    states.push_back(materialAt(material, values, pose));
+  };
+  for (auto next = times.begin(); next != times.end();) {
+    const double start = *next++;
+    const double length = next == times.end() ? 0.0 : double{*next} - start;
+    for (int i = 0; i < (length > 0.0 ? kBetween : 1); ++i) add(start + length * i / kBetween);
+  }
+  return states;
 }
 
 float lastFrame(const Scene& scene) {
@@ -141,10 +202,21 @@ void deformGeometry(const MeshDeformation& mesh, std::size_t index, const NodeAn
   repairTangents(out);
 }
 
-void applyPose(Scene& scene, const Pose& pose) {
-  for (Instance& instance : scene.instances) instance.worldFromObject = worldFromObjectAt(instance, pose);
+void applyPose(Scene& scene, const Pose& pose, Hidden hidden) {
+  const bool hide = hidden == Hidden::hide;
+  for (Instance& instance : scene.instances)
+    instance.worldFromObject = hide ? shownTransformAt(instance, pose) : worldFromObjectAt(instance, pose);
   for (Camera& camera : scene.cameras) camera = cameraAt(camera, pose);
-  for (Light& light : scene.lights) light = lightAt(light, pose);
+  for (Light& light : scene.lights) {
+    const int visibleNode = std::exchange(light.visibleNode, hide ? light.visibleNode : kNone);
+    light = lightAt(light, pose);
+    light.visibleNode = visibleNode;
+  }
+  if (scene.nodeAnimation)
+    for (const AnimatedMaterial& animated : scene.nodeAnimation->materials) {
+      Material& material = scene.materials[static_cast<std::size_t>(animated.material)];
+      material = materialAt(material, animated.values, pose);
+    }
   for (Mesh& mesh : scene.meshes) {
     if (!mesh.deformation) continue;
     for (std::size_t g = 0; g < mesh.geometries.size(); ++g)

@@ -4,6 +4,7 @@
 #ifndef QUINTET_SCENE_ANIMATION_POSE_H
 #define QUINTET_SCENE_ANIMATION_POSE_H
 
+#include <span>
 #include <vector>
 
 #include "scene/model/scene.h"
@@ -14,17 +15,27 @@ struct Pose {
   double frame = 0;
   std::vector<mat4> worldFromNode;          // per node; empty without NodeAnimation
   std::vector<std::vector<float>> weights;  // of morph targets, per node; empty without NodeAnimation
+  std::vector<bool> visible;                // per node; empty without NodeAnimation
+  std::vector<vec4> values;                 // of NodeAnimation::values, padded with 0
 };
 
 // `animation` can be null. The time is frame / framesPerSecond; before the first time of a channel and after its last
 // one, its value is constant.
 Pose poseAt(const NodeAnimation* animation, double frame);
 
-// Interpolated keyframe · animatedFromObject, or the transform of the node · animatedFromObject, or worldFromObject.
+// Interpolated keyframe · transform of the node · animatedFromObject, as far as the instance has them; else
+// worldFromObject. Visible or not.
 mat4 worldFromObjectAt(const Instance&, const Pose&);
-// The camera or light at its node; unchanged without one. The frame of a camera stays rigid.
+// The same for what rays hit: an instance that is not visible has a singular transform, which keeps the position.
+mat4 shownTransformAt(const Instance&, const Pose&);
+// The camera or light at its node, with its animated properties; unchanged without them. The frame of a camera stays
+// rigid. A light that is not visible has the intensity 0.
 Camera cameraAt(const Camera&, const Pose&);
 Light lightAt(const Light&, const Pose&);
+Material materialAt(const Material&, std::span<const AnimatedValue>, const Pose&);
+
+// Some states of a material during the animation, at and between all its times, for Scene::materialStates.
+std::vector<Material> materialStates(const Material&, std::span<const AnimatedValue>, const NodeAnimation&);
 
 // Last frame at which something changes, of keyframes and of the glTF animation; 0 without animation.
 float lastFrame(const Scene&);
@@ -37,8 +48,11 @@ std::vector<mat4> jointMatrices(const Skin&, const Pose&);
 // is not finite is that of the undeformed vertex.
 void deformGeometry(const MeshDeformation&, std::size_t index, const NodeAnimation&, const Pose&, Geometry& out);
 
-// Moves instances, cameras and lights, and deforms meshes. Keyframes stay, and so do the deformations.
-void applyPose(Scene&, const Pose&);
+// Moves instances, cameras and lights, changes materials, and deforms meshes. Keyframes stay, and so do the
+// deformations. With Hidden::hide, instances and lights that are not visible disappear (shownTransformAt, lightAt), and
+// another pose does not show them again.
+enum class Hidden { keep, hide };
+void applyPose(Scene&, const Pose&, Hidden = Hidden::hide);
 
 }  // namespace quintet::scene
 #endif

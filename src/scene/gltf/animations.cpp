@@ -8,7 +8,6 @@
 #include <charconv>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -16,7 +15,10 @@
 #include "base/plural.h"
 #include "base/suggestion.h"
 #include "base/text.h"
+#include "scene/animation/properties.h"
 #include "scene/gltf/accessor.h"
+#include "scene/gltf/channel_targets.h"
+#include "scene/gltf/extensions.h"
 
 namespace quintet::scene {
 namespace {
@@ -27,50 +29,29 @@ const tinygltf::Node& nodeAt(const Document& document, int index) {
   return document.model.nodes[static_cast<std::size_t>(index)];
 }
 
-std::size_t morphTargetCount(const Document& document, const tinygltf::Node& node) {
-  if (node.mesh == kNone) return 0;
-  const auto& primitives = document.model.meshes[static_cast<std::size_t>(node.mesh)].primitives;
-  return primitives.empty() ? 0 : primitives[0].targets.size();
-}
-
 // ---- Channels ----
 
-std::optional<AnimatedProperty> propertyOf(const std::string& path) {
-  if (path == "translation") return AnimatedProperty::translation;
-  if (path == "rotation") return AnimatedProperty::rotation;
-  if (path == "scale") return AnimatedProperty::scale;
-  if (path == "weights") return AnimatedProperty::weights;
-  return std::nullopt;
-}
-
-// Why a channel cannot play; empty if it can.
-std::string channelProblem(const Document& document, const tinygltf::AnimationChannel& channel) {
-  const std::optional<AnimatedProperty> property = propertyOf(channel.target_path);
-  if (!property) return fmt::format("path \"{}\" is not supported", channel.target_path.substr(0, 40));
-  if (channel.target_node == kNone) return "no target node";
-  const tinygltf::Node& node = nodeAt(document, channel.target_node);
-  if (*property != AnimatedProperty::weights)
-    return node.matrix.empty() ? ""
-                               : fmt::format("node {} has a matrix, which cannot be animated", channel.target_node);
-  if (morphTargetCount(document, node) == 0) return fmt::format("node {} has no morph targets", channel.target_node);
-  return "";
-}
+struct PlayingChannel {
+  std::size_t index;  // in the animation
+  std::vector<ChannelTarget> targets;
+};
 
 // The channels of an animation that play; reports the others.
-std::vector<std::size_t> playingChannels(const Document& document, std::size_t index,
-                                         std::vector<std::string>* ignored) {
+std::vector<PlayingChannel> playingChannels(const Document& document, const std::vector<Material>& materials,
+                                            std::size_t index, std::vector<std::string>* ignored) {
   const tinygltf::Animation& animation = document.model.animations[index];
-  std::vector<std::size_t> playing;
-  std::set<std::pair<int, std::string>> targets;
+  std::vector<PlayingChannel> playing;
+  std::set<ChannelTarget> known;
   for (std::size_t i = 0; i < animation.channels.size(); ++i) {
-    const tinygltf::AnimationChannel& channel = animation.channels[i];
-    std::string problem = channelProblem(document, channel);
-    if (problem.empty() && !targets.insert({channel.target_node, channel.target_path}).second)
-      problem = fmt::format("the {} of node {} is already animated", channel.target_path, channel.target_node);
-    if (problem.empty())
-      playing.push_back(i);
+    ResolvedChannel resolved = resolveChannel(document, materials, animation.channels[i]);
+    for (const ChannelTarget& target : resolved.targets)
+      if (!known.insert(target).second)
+        resolved.problem = fmt::format("{} is already animated", describeTarget(animation.channels[i]));
+    if (resolved.problem.empty())
+      playing.push_back({i, std::move(resolved.targets)});
     else if (ignored)
-      ignored->push_back(fmt::format("{}/channels/{}/target: {}", locationOf(index), i, problem));
+      ignored->push_back(
+          fmt::format("{}/channels/{}/target{}: {}", locationOf(index), i, resolved.location, resolved.problem));
   }
   return playing;
 }
@@ -106,24 +87,29 @@ std::vector<float> flattened(const std::vector<Vector>& values) {
   return floats;
 }
 
+std::vector<float> readValues(const Document& document, int accessor, const std::string& location,
+                              const ChannelTarget& target) {
+  if (target.object == ChannelTarget::Object::node && target.nodeProperty() == AnimatedProperty::weights)
+    return readFloats(document, accessor, location, Integers::unit);
+  if (target.object == ChannelTarget::Object::node && target.nodeProperty() == AnimatedProperty::rotation)
+    return flattened(readVec4(document, accessor, location, Integers::unit));
+  switch (target.size) {
+    case 2: return flattened(readVec2(document, accessor, location, Integers::asStated));
+    case 3: return flattened(readVec3(document, accessor, location, Integers::asStated));
+    case 4: return flattened(readVec4(document, accessor, location, Integers::asStated));
+    default: return readFloats(document, accessor, location);
+  }
+}
+
 AnimationSampler readSampler(const Document& document, const tinygltf::AnimationSampler& from,
-                             const std::string& location, AnimatedProperty property, std::size_t targetCount) {
+                             const std::string& location, const ChannelTarget& target) {
   AnimationSampler sampler;
   if (from.interpolation == "STEP") sampler.interpolation = Interpolation::step;
   if (from.interpolation == "CUBICSPLINE") sampler.interpolation = Interpolation::cubicSpline;
   sampler.times = readTimes(document, from.input, location + "/input");
   const std::string output = location + "/output";
-  switch (property) {
-    case AnimatedProperty::rotation:
-      sampler.values = flattened(readVec4(document, from.output, output, Integers::unit));
-      sampler.valueSize = 4;
-      break;
-    case AnimatedProperty::weights:
-      sampler.values = readFloats(document, from.output, output, Integers::unit);
-      sampler.valueSize = targetCount;
-      break;
-    default: sampler.values = flattened(readVec3(document, from.output, output)); sampler.valueSize = 3;
-  }
+  sampler.valueSize = target.size;
+  sampler.values = readValues(document, from.output, output, target);
   const std::size_t perTime = sampler.valueSize * (sampler.interpolation == Interpolation::cubicSpline ? 3 : 1);
   if (sampler.values.size() != sampler.times.size() * perTime)
     document.fail(output, fmt::format("{} for {} with {} each", counted(sampler.values.size(), "number"),
@@ -137,32 +123,102 @@ std::string samplerLocation(std::size_t animation, int sampler) {
   return fmt::format("{}/samplers/{}", locationOf(animation), sampler);
 }
 
-Animation readAnimation(const Document& document, std::size_t index) {
-  const tinygltf::Animation& from = document.model.animations[index];
-  Animation animation;
-  animation.name = from.name;
-  std::map<std::pair<int, AnimatedProperty>, std::size_t> known;  // samplers that several channels share
-  for (const std::size_t i : playingChannels(document, index, nullptr)) {
-    const tinygltf::AnimationChannel& channel = from.channels[i];
-    const tinygltf::AnimationSampler& sampler = samplerOf(document, index, i);
-    const AnimatedProperty property = *propertyOf(channel.target_path);
-    const std::size_t targets = morphTargetCount(document, nodeAt(document, channel.target_node));
-    const auto read = [&] {
-      animation.samplers.push_back(
-          readSampler(document, sampler, samplerLocation(index, channel.sampler), property, targets));
-      return animation.samplers.size() - 1;
-    };
-    std::size_t at = 0;
-    if (property == AnimatedProperty::weights) {  // the size of the value depends on the node
-      at = read();
-    } else {
-      const auto found = known.find({channel.sampler, property});
-      at = found != known.end() ? found->second : (known[{channel.sampler, property}] = read());
-    }
-    animation.channels.push_back({channel.target_node, property, at});
+// Reads the samplers and channels of one animation.
+class AnimationReader {
+ public:
+  AnimationReader(const Document& document, std::size_t index, PlayedAnimation& played, NodeAnimation& data)
+      : document_(document), index_(index), played_(played), data_(data) {}
+
+  void read(const std::vector<Material>& materials) {
+    const tinygltf::Animation& from = document_.model.animations[index_];
+    data_.animation.name = from.name;
+    for (const PlayingChannel& channel : playingChannels(document_, materials, index_, nullptr))
+      for (const ChannelTarget& target : channel.targets) add(target, samplerFor(channel.index, target));
+    for (auto& [material, values] : played_.materials) completeEmission(material, values);
+    for (auto& [light, values] : played_.lights) completeIntensity(light, values);
   }
-  return animation;
-}
+
+ private:
+  // Several channels can share a sampler of the file. The size of morph weights depends on the node.
+  std::size_t samplerFor(std::size_t channel, const ChannelTarget& target) {
+    const tinygltf::AnimationSampler& from = samplerOf(document_, index_, channel);
+    const int number = document_.model.animations[index_].channels[channel].sampler;
+    const bool rotation =
+        target.object == ChannelTarget::Object::node && target.nodeProperty() == AnimatedProperty::rotation;
+    const bool weights =
+        target.object == ChannelTarget::Object::node && target.nodeProperty() == AnimatedProperty::weights;
+    const std::pair<int, std::size_t> key{number, rotation ? 0 : target.size};
+    if (const auto found = known_.find(key); found != known_.end() && !weights) return found->second;
+    data_.animation.samplers.push_back(readSampler(document_, from, samplerLocation(index_, number), target));
+    const std::size_t sampler = data_.animation.samplers.size() - 1;
+    if (!weights) known_[key] = sampler;
+    return sampler;
+  }
+
+  void add(const ChannelTarget& target, std::size_t sampler) {
+    switch (target.object) {
+      case ChannelTarget::Object::node:
+        data_.animation.channels.push_back({target.index, target.nodeProperty(), sampler});
+        break;
+      case ChannelTarget::Object::material: addValue(played_.materials[target.index], target.property, sampler); break;
+      case ChannelTarget::Object::light: addValue(played_.lights[target.index], target.property, sampler); break;
+      case ChannelTarget::Object::camera: addValue(played_.cameras[target.index], target.property, sampler); break;
+    }
+  }
+
+  // Sorted by property, which is the order in which values are set.
+  void addValue(std::vector<AnimatedValue>& values, std::size_t property, std::size_t sampler) {
+    data_.values.push_back(sampler);
+    const auto after = std::ranges::upper_bound(values, property, {}, &AnimatedValue::property);
+    values.insert(after, {property, data_.values.size() - 1});
+  }
+
+  // A scene has the product of a color and a factor. If one of them is animated, the other one must be known.
+  void completeProduct(std::vector<AnimatedValue>& values, std::size_t color, std::size_t factor, const vec3& fileColor,
+                       float fileFactor) {
+    const auto find = [&](std::size_t property) {
+      return std::ranges::find(values, property, &AnimatedValue::property);
+    };
+    const bool hasColor = find(color) != values.end(), hasFactor = find(factor) != values.end();
+    if (hasColor == hasFactor) return;
+    AnimationSampler sampler;
+    if (hasColor) {
+      sampler = data_.animation.samplers[data_.values[find(color)->value]];
+      for (float& value : sampler.values) value *= fileFactor;
+      data_.animation.samplers.push_back(std::move(sampler));
+      data_.values[find(color)->value] = data_.animation.samplers.size() - 1;
+      return;
+    }
+    sampler.times = {0.0f};
+    sampler.values = {fileColor.x, fileColor.y, fileColor.z};
+    sampler.valueSize = 3;
+    data_.animation.samplers.push_back(std::move(sampler));
+    addValue(values, color, data_.animation.samplers.size() - 1);
+  }
+
+  void completeEmission(int material, std::vector<AnimatedValue>& values) {
+    const tinygltf::Material& from = document_.model.materials[static_cast<std::size_t>(material)];
+    const std::string extension = "KHR_materials_emissive_strength";
+    const tinygltf::Value* strength = findExtension(from.extensions, extension);
+    completeProduct(values, findMaterialProperty("emissiveFactor")->index,
+                    findMaterialProperty("extensions/" + extension + "/emissiveStrength")->index,
+                    vec3(from.emissiveFactor[0], from.emissiveFactor[1], from.emissiveFactor[2]),
+                    strength ? static_cast<float>(numberOf(*strength, "emissiveStrength", 1.0)) : 1.0f);
+  }
+
+  void completeIntensity(int light, std::vector<AnimatedValue>& values) {
+    const tinygltf::Light& from = document_.model.lights[static_cast<std::size_t>(light)];
+    const vec3 color = from.color.empty() ? vec3(1.0f) : vec3(from.color[0], from.color[1], from.color[2]);
+    completeProduct(values, findLightProperty("color")->index, findLightProperty("intensity")->index, color,
+                    static_cast<float>(from.intensity));
+  }
+
+  const Document& document_;
+  std::size_t index_;
+  PlayedAnimation& played_;
+  NodeAnimation& data_;
+  std::map<std::pair<int, std::size_t>, std::size_t> known_;
+};
 
 // ---- The node tree ----
 
@@ -180,6 +236,7 @@ AnimationNode readNode(const Document& document, std::size_t index, int parent) 
     const glm::dquat q(r[3], r[0], r[1], r[2]);
     if (const double length = glm::length(q); length > 0.0) node.rotation = q / length;
   }
+  node.visible = isVisible(document, index);
   const std::size_t targets = morphTargetCount(document, from);
   if (targets == 0) return node;
   const std::vector<double>& weights =
@@ -213,33 +270,39 @@ std::size_t findAnimation(const Document& document, const std::string& name) {
                                          suggestion(name, names), fmt::join(names, ", "))));
 }
 
-// A node moves with its ancestors.
-std::vector<bool> findMovingNodes(const NodeAnimation& data) {
-  std::vector<bool> moves(data.nodes.size(), false);
+bool changesTransform(AnimatedProperty property) {
+  return property != AnimatedProperty::weights && property != AnimatedProperty::visibility;
+}
+
+// The nodes with a channel whose property satisfies the condition, and their descendants.
+template <class Condition>
+std::vector<bool> findNodes(const NodeAnimation& data, const Condition& condition) {
+  std::vector<bool> found(data.nodes.size(), false);
   for (const AnimationChannel& channel : data.animation.channels)
-    if (channel.property != AnimatedProperty::weights) moves[static_cast<std::size_t>(channel.node)] = true;
+    if (condition(channel.property)) found[static_cast<std::size_t>(channel.node)] = true;
   for (const int node : data.order) {
     const int parent = data.nodes[static_cast<std::size_t>(node)].parent;
-    if (parent != kNone && moves[static_cast<std::size_t>(parent)]) moves[static_cast<std::size_t>(node)] = true;
+    if (parent != kNone && found[static_cast<std::size_t>(parent)]) found[static_cast<std::size_t>(node)] = true;
   }
-  return moves;
+  return found;
 }
 
 }  // namespace
 
-std::vector<AnimationSummary> summarizeAnimations(const Document& document, Report& report) {
+std::vector<AnimationSummary> summarizeAnimations(const Document& document, const std::vector<Material>& materials,
+                                                  Report& report) {
   std::vector<AnimationSummary> summaries;
   for (std::size_t a = 0; a < document.model.animations.size(); ++a) {
     const tinygltf::Animation& from = document.model.animations[a];
     AnimationSummary& summary = summaries.emplace_back();
     summary.name = printable(from.name);
     summary.channels = from.channels.size();
-    const std::vector<std::size_t> playing = playingChannels(document, a, &report.ignored);
+    const std::vector<PlayingChannel> playing = playingChannels(document, materials, a, &report.ignored);
     summary.ignored = summary.channels - playing.size();
     try {
-      for (const std::size_t i : playing) {
-        const tinygltf::AnimationSampler& sampler = samplerOf(document, a, i);
-        const std::string location = samplerLocation(a, from.channels[i].sampler) + "/input";
+      for (const PlayingChannel& channel : playing) {
+        const tinygltf::AnimationSampler& sampler = samplerOf(document, a, channel.index);
+        const std::string location = samplerLocation(a, from.channels[channel.index].sampler) + "/input";
         summary.seconds = std::max(summary.seconds, double{readTimes(document, sampler.input, location).back()});
       }
     } catch (const FileError& error) {  // the rest pose does not depend on it
@@ -257,21 +320,28 @@ bool PlayedAnimation::movesSkin(const Document& document, int node) const {
   return morphsNode(node) || movesNode(node) || std::ranges::any_of(skin.joints, [&](int j) { return movesNode(j); });
 }
 
-PlayedAnimation playAnimation(const Document& document, const NodeTree& tree, const std::string& name,
-                              double framesPerSecond) {
+std::vector<AnimatedValue> PlayedAnimation::valuesOf(const std::map<int, std::vector<AnimatedValue>>& all, int object) {
+  const auto found = all.find(object);
+  return found == all.end() ? std::vector<AnimatedValue>() : found->second;
+}
+
+PlayedAnimation playAnimation(const Document& document, const NodeTree& tree, const std::vector<Material>& materials,
+                              const std::string& name, double framesPerSecond) {
   if (document.model.animations.empty() && name.empty()) return {};
   const std::size_t index = findAnimation(document, name);
   auto data = std::make_shared<NodeAnimation>();
+  PlayedAnimation played;
   data->framesPerSecond = framesPerSecond;
-  data->animation = readAnimation(document, index);
-  if (data->animation.channels.empty()) return {};
+  AnimationReader(document, index, played, *data).read(materials);
+  if (data->animation.channels.empty() && data->values.empty()) return {};
   for (std::size_t i = 0; i < document.model.nodes.size(); ++i)
     data->nodes.push_back(readNode(document, i, tree.parents[i]));
   data->order = tree.order;
   for (std::size_t i = 0; i < document.model.skins.size(); ++i) data->skins.push_back(readSkin(document, i));
+  for (const auto& [material, values] : played.materials) data->materials.push_back({material, values});
 
-  PlayedAnimation played;
-  played.moves = findMovingNodes(*data);
+  played.moves = findNodes(*data, changesTransform);
+  played.toggles = findNodes(*data, [](AnimatedProperty property) { return property == AnimatedProperty::visibility; });
   played.morphs.assign(data->nodes.size(), false);
   for (const AnimationChannel& channel : data->animation.channels)
     if (channel.property == AnimatedProperty::weights) played.morphs[static_cast<std::size_t>(channel.node)] = true;

@@ -34,6 +34,7 @@ constexpr auto kSupported = std::to_array<std::string_view>({
     "KHR_lights_punctual",
     "EXT_lights_image_based",
     "KHR_node_visibility",
+    "KHR_animation_pointer",
     "KHR_xmp_json_ld",
     "KHR_texture_transform",
     "KHR_mesh_quantization",

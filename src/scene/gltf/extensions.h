@@ -24,6 +24,7 @@ inline constexpr const char* kVariants = "KHR_materials_variants";
 
 inline constexpr const char* kImageBasedLights = "EXT_lights_image_based";
 inline constexpr const char* kVisibility = "KHR_node_visibility";
+inline constexpr const char* kAnimationPointer = "KHR_animation_pointer";
 inline constexpr const char* kXmp = "KHR_xmp_json_ld";
 inline constexpr const char* kQuantization = "KHR_mesh_quantization";
 

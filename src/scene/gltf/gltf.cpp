@@ -43,7 +43,6 @@ void readHeader(const Document& document, Scene& scene) {
   reportExtensions(document.model.extensionsUsed, scene.report);
   scene.report.variants = variantNames(document);
   scene.report.metadata = document.metadata;
-  scene.report.animations = summarizeAnimations(document, scene.report);
 }
 
 // Adds the instances and the light of each visible node, and the camera of each node.
@@ -53,14 +52,32 @@ void readSceneNodes(const Document& document, const NodeTree& tree, const Played
     const auto i = static_cast<std::size_t>(index);
     const tinygltf::Node& node = document.model.nodes[i];
     const std::size_t firstCamera = scene.cameras.size(), firstLight = scene.lights.size();
-    if (tree.visible[i]) instances.addNode(index);
+    const bool visible = tree.visible[i] || animation.togglesNode(index);  // at any time
+    if (visible) instances.addNode(index);
     if (node.camera != kNone) scene.cameras.push_back(readCamera(document, node.camera, node, tree.worldFromNode[i]));
     const tinygltf::Value* light = findExtension(node.extensions, kPunctualLights);
-    if (light && tree.visible[i]) readLight(document, indexOf(*light, "light"), node, tree.worldFromNode[i], scene);
-    if (!animation.movesNode(index)) continue;
-    for (std::size_t k = firstCamera; k < scene.cameras.size(); ++k) scene.cameras[k].node = index;
-    for (std::size_t k = firstLight; k < scene.lights.size(); ++k) scene.lights[k].node = index;
+    if (light && visible) readLight(document, indexOf(*light, "light"), node, tree.worldFromNode[i], scene);
+    for (std::size_t k = firstCamera; k < scene.cameras.size(); ++k) {
+      if (animation.movesNode(index)) scene.cameras[k].node = index;
+      scene.cameras[k].values = animation.cameraValues(node.camera);
+    }
+    for (std::size_t k = firstLight; k < scene.lights.size(); ++k) {
+      if (animation.movesNode(index)) scene.lights[k].node = index;
+      if (animation.togglesNode(index)) scene.lights[k].visibleNode = index;
+      scene.lights[k].values = animation.lightValues(indexOf(*light, "light"));
+    }
   }
+}
+
+// Frame 0.
+void startAnimation(Scene& scene) {
+  const NodeAnimation& animation = *scene.nodeAnimation;
+  if (!animation.materials.empty()) scene.materialStates.resize(scene.materials.size());
+  for (const AnimatedMaterial& animated : animation.materials) {
+    const auto m = static_cast<std::size_t>(animated.material);
+    scene.materialStates[m] = materialStates(scene.materials[m], animated.values, animation);
+  }
+  applyPose(scene, poseAt(&animation, 0.0), Hidden::keep);
 }
 
 // Materials use their factors instead of the textures whose images could not be read.
@@ -101,15 +118,17 @@ PendingScene begin(const std::filesystem::path& path, const LoadOptions& options
   const NodeTree tree = readNodes(document, findScene(document, options.scene), scene.report);
   TextureTable textures(document, scene.report);
   scene.materials = readMaterials(document, textures, scene.report);
+  scene.report.animations = summarizeAnimations(document, scene.materials, scene.report);
   PlayedAnimation animation;
-  if (options.animation) animation = playAnimation(document, tree, *options.animation, options.framesPerSecond);
+  if (options.animation)
+    animation = playAnimation(document, tree, scene.materials, *options.animation, options.framesPerSecond);
   scene.nodeAnimation = animation.data;
   if (!animation.data) scene.report.ignoredAnimations = scene.report.animations.size();
   InstanceBuilder instances(document, tree, animation, scene.report);
   readSceneNodes(document, tree, animation, instances, scene);
   scene.seconds.document = watch.lap();
   instances.finish(scene, *document.budget);
-  if (scene.nodeAnimation) applyPose(scene, poseAt(scene.nodeAnimation.get(), 0.0));
+  if (scene.nodeAnimation) startAnimation(scene);
   scene.seconds.meshes = watch.lap();
 
   scene.textures = textures.textures();

@@ -106,6 +106,7 @@ Instance& InstanceBuilder::addInstance(int index, int pose, const mat4& worldFro
   instance.name = document_.model.nodes[static_cast<std::size_t>(index)].name;
   instance.mesh = pose;
   instance.worldFromObject = worldFromObject;
+  if (animation_.togglesNode(index)) instance.visibleNode = index;
   return instance;
 }
 

@@ -111,7 +111,7 @@ class Inventory {
       const tinygltf::Node& node = model_.nodes[static_cast<std::size_t>(index)];
       nodes_.insert(index);
       cameras_.insert(node.camera);
-      if (!tree_.visible[static_cast<std::size_t>(index)]) continue;
+      if (!isShown(index)) continue;
       meshes_.insert(node.mesh);
       skins_.insert(node.skin);
       if (node.mesh != kNone && node.skin != kNone) skinnedMeshes_.insert(node.mesh);
@@ -141,7 +141,7 @@ class Inventory {
       for (std::size_t k = 0; k < model_.meshes[i].primitives.size(); ++k)
         addPrimitiveLines(model_.meshes[i].primitives[k], fmt::format("/meshes/{}/primitives/{}", i, k));
     for (const int index : tree_.sceneNodes)
-      if (tree_.visible[static_cast<std::size_t>(index)]) addInstancingLines(index);
+      if (isShown(index)) addInstancingLines(index);
   }
 
   // One line for each extension that is not supported.
@@ -254,7 +254,7 @@ class Inventory {
         continue;
       }
       const auto part = [&](bool exists, const char* name, const std::string& inside) {
-        const bool shown = tree_.visible[i] || std::string_view(name) == "camera" || inside.empty();
+        const bool shown = isShown(static_cast<int>(i)) || std::string_view(name) == "camera" || inside.empty();
         if (exists) add("node", name, location + inside, shown ? "" : "the node is hidden");
       };
       part(true, "transform", "");
@@ -330,6 +330,9 @@ class Inventory {
                                                                   : "no texture that a material uses has it");
   }
 
+  // At any time.
+  bool isShown(int node) const { return tree_.visible[static_cast<std::size_t>(node)] || played_.togglesNode(node); }
+
   void listAnimations() {
     const char* const unusedReason = played_.data ? "another animation plays" : "no animation plays";
     for (std::size_t i = 0; i < model_.animations.size(); ++i) {
@@ -337,7 +340,7 @@ class Inventory {
       add("animation", model_.animations[i].name, location, static_cast<int>(i) == played_.index ? "" : unusedReason);
       for (std::size_t k = 0; k < model_.animations[i].channels.size(); ++k) {
         const std::string target = fmt::format("{}/channels/{}/target", location, k);
-        if (const std::string* text = ignored_->at(target))
+        if (const std::string* text = ignored_->within(target))
           table_.add("animation channel", model_.animations[i].channels[k].target_path, target, FeatureUse::ignored,
                      *text);
       }

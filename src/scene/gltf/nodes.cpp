@@ -109,6 +109,11 @@ void readSpot(const tinygltf::Light& from, const std::string& location, Light& l
 
 }  // namespace
 
+bool isVisible(const Document& document, std::size_t node) {
+  const tinygltf::Value* visibility = findExtension(document.model.nodes[node].extensions, kVisibility);
+  return !visibility || !visibility->Has("visible") || visibility->Get("visible").Get<bool>();
+}
+
 dmat4 localTransform(const Document& document, std::size_t index) {
   const tinygltf::Node& node = document.model.nodes[index];
   if (node.matrix.empty()) {
@@ -186,9 +191,7 @@ NodeTree readNodes(const Document& document, int sceneIndex, Report& report) {
   tree.visible.resize(count, true);
   for (const int node : order) {
     const auto i = static_cast<std::size_t>(node);
-    const tinygltf::Value* visibility = findExtension(document.model.nodes[i].extensions, kVisibility);
-    const bool shown = !visibility || !visibility->Has("visible") || visibility->Get("visible").Get<bool>();
-    tree.visible[i] = shown && (parents[i] == kNone || tree.visible[static_cast<std::size_t>(parents[i])]);
+    tree.visible[i] = isVisible(document, i) && (parents[i] == kNone || tree.visible[static_cast<std::size_t>(parents[i])]);
     const dmat4 local = localTransform(document, i);
     world[i] = parents[i] == kNone ? local : world[static_cast<std::size_t>(parents[i])] * local;
     tree.worldFromNode[i] = mat4(world[i]);

@@ -26,6 +26,9 @@ int findScene(const Document&, const std::string& nameOrIndex);
 // cycles, second parents and transforms that are not finite or not affine.
 NodeTree readNodes(const Document&, int sceneIndex, Report&);
 
+// Whether KHR_node_visibility shows the node itself, without regard to its ancestors.
+bool isVisible(const Document&, std::size_t node);
+
 // The transform of a node to its parent. Throws FileError if its matrix is not affine.
 glm::dmat4 localTransform(const Document&, std::size_t node);
 

@@ -355,7 +355,10 @@ constexpr Property kRootExtensions[] = {
     object("KHR_xmp_json_ld", kRootMetadata), object("KHR_materials_variants", kRootVariants)};
 
 constexpr std::string_view kInterpolations[] = {"LINEAR", "STEP", "CUBICSPLINE"};
-constexpr Property kAnimationTarget[] = {index("node", kNodes), required(string("path"))};
+constexpr Property kPointer[] = {required(string("pointer"))};
+constexpr Property kTargetExtensions[] = {object("KHR_animation_pointer", kPointer)};
+constexpr Property kAnimationTarget[] = {index("node", kNodes), required(string("path")),
+                                         object("extensions", kTargetExtensions)};
 constexpr Property kAnimationChannel[] = {required(integer("sampler")), required(object("target", kAnimationTarget))};
 constexpr Property kAnimationSampler[] = {required(index("input", kAccessors)),
                                           choice("interpolation", kInterpolations),

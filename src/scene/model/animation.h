@@ -26,7 +26,8 @@ struct AnimationSampler {
   std::size_t valueSize = 1;  // number of floats of one value: 3, 4, or the number of morph weights
 };
 
-enum class AnimatedProperty { translation, rotation, scale, weights };
+// Of a node. The visibility is one number, 0 if the node is hidden.
+enum class AnimatedProperty { translation, rotation, scale, weights, visibility };
 
 struct AnimationChannel {
   int node = -1;  // index in NodeAnimation::nodes
@@ -40,6 +41,17 @@ struct Animation {
   std::vector<AnimationChannel> channels;  // at most one per node and property
 };
 
+// A property of a material, light or camera that follows a sampler (KHR_animation_pointer).
+struct AnimatedValue {
+  std::size_t property = 0;  // index in the table of the kind of object (animation/properties.h)
+  std::size_t value = 0;     // index in NodeAnimation::values
+};
+
+struct AnimatedMaterial {
+  int material = -1;                  // index in Scene::materials
+  std::vector<AnimatedValue> values;  // sorted by property
+};
+
 struct AnimationNode {
   int parent = -1;  // index in NodeAnimation::nodes; -1 for a root
   // Local transform without channels: translation · rotation · scale.
@@ -49,6 +61,7 @@ struct AnimationNode {
   glm::dmat4 matrix{1.0};  // instead, if hasMatrix
   bool hasMatrix = false;
   std::vector<float> weights;  // of the morph targets of its mesh, without channels
+  bool visible = true;         // without channels; a hidden node hides its descendants
 };
 
 struct Skin {
@@ -56,12 +69,15 @@ struct Skin {
   std::vector<mat4> inverseBindMatrices;  // one per joint
 };
 
-// All nodes of a file, by their index in the file, and the animation that plays.
+// All nodes of a file, by their index in the file, and the animation that plays. A scene file has the nodes and the
+// animations of all its glTF files, one after the other.
 struct NodeAnimation {
   std::vector<AnimationNode> nodes;
   std::vector<int> order;  // of `nodes`, parents before children
   std::vector<Skin> skins;
   Animation animation;
+  std::vector<std::size_t> values;                   // samplers (Animation::samplers) that AnimatedValue refers to
+  std::vector<AnimatedMaterial> materials;           // that change; each at most once
   double framesPerSecond = kDefaultFramesPerSecond;  // > 0; time in seconds = frame / framesPerSecond
 };
 

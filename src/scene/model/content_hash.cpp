@@ -10,6 +10,7 @@ namespace {
 static_assert(sizeof(Primitive) == 3 * 4 + sizeof(mat4) && sizeof(CsgNode) == 8 && sizeof(CsgTree) == 8);
 static_assert(sizeof(Bounds3) == 24 && sizeof(Keyframe) == 44);
 static_assert(sizeof(AnimationChannel) == 8 + sizeof(std::size_t));
+static_assert(sizeof(AnimatedValue) == 2 * sizeof(std::size_t));
 
 // Hashes values field by field, because most structs have padding. The length of a vector precedes its elements.
 class Feeder {
@@ -80,15 +81,22 @@ class Feeder {
   void add(const Instance& i) {
     (*this)(i.name, i.mesh, i.worldFromObject, i.mask, i.flags, i.customIndex, i.keyframes, i.animatedFromObject);
     addNode(i.node);
+    addNode(i.visibleNode);
+    if (i.node != kNone) add(i.placedFromRoot);
   }
   void add(const Camera& c) {
     (*this)(c.name, c.orthographic, c.verticalFov, c.aspect, c.orthographicHalfSize, c.worldFromCamera,
             c.apertureRadius, c.focusDistance);
     addNode(c.node);
+    if (c.node != kNone) add(c.placedFromRoot);
+    if (!c.values.empty()) add(c.values);
   }
   void add(const Light& l) {
     (*this)(l.name, l.type, l.intensity, l.position, l.direction, l.innerConeAngle, l.outerConeAngle, l.range);
     addNode(l.node);
+    addNode(l.visibleNode);
+    if (l.node != kNone) add(l.placedFromRoot);
+    if (!l.values.empty()) add(l.values);
   }
   // Without an animation, the hash is that of the file without its animations.
   void addNode(int node) {
@@ -100,13 +108,16 @@ class Feeder {
   }
   void add(const glm::dquat& q) { (*this)(q.w, q.x, q.y, q.z); }
   void add(const AnimationNode& n) {
-    (*this)(n.parent, n.translation, n.rotation, n.scale, n.matrix, n.hasMatrix, n.weights);
+    (*this)(n.parent, n.translation, n.rotation, n.scale, n.matrix, n.hasMatrix, n.weights, n.visible);
   }
   void add(const Skin& s) { (*this)(s.joints, s.inverseBindMatrices); }
   void add(const AnimationSampler& s) { (*this)(s.interpolation, s.times, s.values, s.valueSize); }
   void add(const AnimationChannel& c) { (*this)(c.node, c.property, c.sampler); }
+  void add(const AnimatedMaterial& m) { (*this)(m.material, m.values); }
   void add(const std::shared_ptr<const NodeAnimation>& a) {
-    if (a) (*this)(a->nodes, a->skins, a->animation.samplers, a->animation.channels, a->framesPerSecond);
+    if (!a) return;
+    (*this)(a->nodes, a->skins, a->animation.samplers, a->animation.channels, a->framesPerSecond);
+    (*this)(a->values, a->materials);
   }
   void add(const Environment& e) { (*this)(e.image, e.constant, e.intensity, e.rotation, e.present); }
 

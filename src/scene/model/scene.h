@@ -162,10 +162,12 @@ struct Instance {
   std::uint32_t customIndex = 0;    // 24 bits, for the program
   std::vector<Keyframe> keyframes;  // ascending frames; if not empty, worldFromObject is the transform at frame 0
   // Index in NodeAnimation::nodes of the node that the instance follows, or kNone. worldFromObject is then the
-  // transform at frame 0. An instance with a node has no keyframes.
+  // transform at frame 0.
   int node = kNone;
+  int visibleNode = kNone;        // in NodeAnimation::nodes: the instance is visible whenever this node is
   mat4 animatedFromObject{1.0f};  // applied before the keyframe or the node's transform (animation/pose.h)
-  bool animated() const { return node != kNone || !keyframes.empty(); }
+  mat4 placedFromRoot{1.0f};      // applied after the node's transform, before the keyframe
+  bool animated() const { return node != kNone || visibleNode != kNone || !keyframes.empty(); }
 };
 
 struct Camera {
@@ -177,7 +179,10 @@ struct Camera {
   mat4 worldFromCamera{1.0f};               // rigid; the camera looks along -z, y up
   float apertureRadius = 0.0f;              // meters; 0 means a pinhole
   float focusDistance = 1.0f;               // meters along the optical axis, > 0
-  int node = kNone;  // in NodeAnimation::nodes: the camera follows it, and worldFromCamera is that of frame 0
+  int node = kNone;           // in NodeAnimation::nodes: the camera follows it, and worldFromCamera is that of frame 0
+  mat4 placedFromRoot{1.0f};  // applied after the node's transform
+  std::vector<AnimatedValue> values;  // sorted by property; the camera is that of frame 0
+  bool animated() const { return node != kNone || !values.empty(); }
 };
 
 enum class LightType : std::uint32_t { point, spot, directional };
@@ -193,6 +198,10 @@ struct Light {
   float outerConeAngle = kPi / 4.0f;  // radians, at most π/2
   float range = std::numeric_limits<float>::infinity();  // meters, > 0; point, spot: no light arrives beyond it
   int node = kNone;  // in NodeAnimation::nodes: the light follows it; position and direction are those of frame 0
+  int visibleNode = kNone;            // in NodeAnimation::nodes: the light shines whenever this node is visible
+  mat4 placedFromRoot{1.0f};          // applied after the node's transform
+  std::vector<AnimatedValue> values;  // sorted by property; the light is that of frame 0
+  bool animated() const { return node != kNone || visibleNode != kNone || !values.empty(); }
 };
 
 // Equirectangular radiance. Texture coordinates of direction d: u = atan2(d.z, d.x)/2π + 0.5, v = acos(d.y)/π from the
@@ -231,6 +240,9 @@ struct Scene {
   // Moves instances, cameras and lights with a node, and deforms meshes. Null if no glTF animation plays. The scene is
   // that of frame 0.
   std::shared_ptr<const NodeAnimation> nodeAnimation;
+  // Of each material, some of its states during the animation: each feature that it has at any time, one of them has.
+  // Empty without animated materials; else parallel to `materials`, and empty for those that do not change.
+  std::vector<std::vector<Material>> materialStates;
   Report report;
   ImportSeconds seconds;
 };

@@ -15,8 +15,13 @@ bool canHaveAlpha(const Scene& scene, const Material& m) {
   return image != kNone && scene.images[static_cast<std::size_t>(image)].image.hasAlpha();
 }
 
-const Material* find(const Scene& scene, int material) {
-  return material == kNone ? nullptr : &scene.materials[static_cast<std::size_t>(material)];
+// Whether the material satisfies the condition, at any time of the animation.
+template <typename Condition>
+bool everFits(const Scene& scene, int material, Condition condition) {
+  if (material == kNone) return false;
+  const auto m = static_cast<std::size_t>(material);
+  if (condition(scene.materials[m])) return true;
+  return m < scene.materialStates.size() && std::ranges::any_of(scene.materialStates[m], condition);
 }
 
 bool anyColorAlpha(const Geometry& geometry) {
@@ -26,19 +31,16 @@ bool anyColorAlpha(const Geometry& geometry) {
 // Whether any material of the set satisfies the condition. A custom set has one material; solids have their own.
 template <typename Condition>
 bool anyMaterial(const Scene& scene, const PrimitiveSet& set, Condition condition) {
-  const auto fits = [&](int material) {
-    const Material* m = find(scene, material);
-    return m && condition(*m);
-  };
+  const auto fits = [&](int material) { return everFits(scene, material, condition); };
   return fits(set.material) || std::ranges::any_of(set.primitives, fits, &Primitive::material);
 }
 
 }  // namespace
 
 bool needsAlphaTest(const Scene& scene, const Geometry& geometry) {
-  const Material* m = find(scene, geometry.material);
-  if (!m || m->alphaMode == AlphaMode::opaque) return false;
-  return anyColorAlpha(geometry) || canHaveAlpha(scene, *m);
+  return everFits(scene, geometry.material, [&](const Material& m) {
+    return canHaveAlpha(scene, m) || (m.alphaMode != AlphaMode::opaque && anyColorAlpha(geometry));
+  });
 }
 
 bool needsAlphaTest(const Scene& scene, const PrimitiveSet& set) {
@@ -63,8 +65,7 @@ bool scatters(const Material& m) {
 }
 
 bool isPane(const Scene& scene, const Geometry& geometry) {
-  const Material* m = find(scene, geometry.material);
-  return m && isPane(*m);
+  return everFits(scene, geometry.material, [](const Material& m) { return isPane(m); });
 }
 
 bool isPane(const Scene& scene, const PrimitiveSet& set) {
@@ -72,8 +73,9 @@ bool isPane(const Scene& scene, const PrimitiveSet& set) {
 }
 
 bool tintsShadows(const Scene& scene, const Geometry& geometry) {
-  const Material* m = find(scene, geometry.material);
-  return m && (isPane(*m) || (m->alphaMode == AlphaMode::blend && needsAlphaTest(scene, geometry)));
+  if (isPane(scene, geometry)) return true;
+  return everFits(scene, geometry.material, [](const Material& m) { return m.alphaMode == AlphaMode::blend; }) &&
+         needsAlphaTest(scene, geometry);
 }
 
 bool tintsShadows(const Scene& scene, const PrimitiveSet& set) {

@@ -5,7 +5,8 @@
 //                    straight through, such as window glass
 //   medium           the boundary of a closed solid that light enters, such as glass or water
 //   shadow-tinting   a shadow ray can pass and keep a part of its light: panes and alpha mode blend
-// A surface that is neither alpha-tested nor a pane nor shadow-tinting needs no any-hit shader.
+// A surface that is neither alpha-tested nor a pane nor shadow-tinting needs no any-hit shader. A surface whose material
+// is animated is in the classes to which it belongs at any time.
 #ifndef QUINTET_SCENE_MODEL_SURFACE_CLASS_H
 #define QUINTET_SCENE_MODEL_SURFACE_CLASS_H
 

@@ -127,7 +127,8 @@ void checkKeyframes(const std::vector<Keyframe>& keys, const std::string& name) 
 void checkInstance(const Scene& scene, const Instance& instance, const std::string& name) {
   if (!inRange(instance.mesh, scene.meshes.size())) fail("{}.mesh: {} of {}", name, instance.mesh, scene.meshes.size());
   if (!isFinite(instance.worldFromObject)) fail("{}.worldFromObject: not finite", name);
-  if (glm::determinant(glm::dmat3(glm::mat3(instance.worldFromObject))) == 0.0)
+  // A moving instance that is flattened or hidden is not visible at that frame.
+  if (!instance.animated() && glm::determinant(glm::dmat3(glm::mat3(instance.worldFromObject))) == 0.0)
     fail("{}.worldFromObject: singular", name);
   if (instance.mask > 0xFF) fail("{}.mask: {} has more than 8 bits", name, instance.mask);
   if (instance.flags > 0xF) fail("{}.flags: {} is unknown", name, instance.flags);

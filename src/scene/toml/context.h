@@ -47,6 +47,7 @@ struct SceneTomlContext {
   const std::shared_ptr<MemoryBudget> sharedBudget;  // also of the glTF files
   MemoryBudget& budget;
   Scene scene;
+  NodeAnimation animation;  // of the glTF files; of the scene if it has samplers
   std::map<std::string, int> materials;           // "name" or "file/name"
   std::map<std::string, InstanceTarget> targets;  // "name" or "file/mesh"
   std::map<std::string, NamedTree> trees;
@@ -93,6 +94,7 @@ void readMeshes(SceneTomlContext&, TomlReader& root);      // [[mesh]]
 void readPrimitives(SceneTomlContext&, TomlReader& root);  // [[spheres]] … [[tori]], [[csg]], [[custom]]
 void readInstances(SceneTomlContext&, TomlReader& root);   // [[instance]], and objects without one
 void readView(SceneTomlContext&, TomlReader& root);        // [[light]], [[camera]], [environment]
+void finishAnimation(SceneTomlContext&);                   // of the glTF files; it is in files.cpp
 
 }  // namespace quintet::scene
 #endif

@@ -37,10 +37,68 @@ void appendResources(Scene& scene, Scene& part) {
   for (Material& material : part.materials) shiftTextures(material, scene.textures.size());
   for (Mesh& mesh : part.meshes)
     for (Geometry& geometry : mesh.geometries) shift(geometry.material, scene.materials.size());
+  if (!part.materialStates.empty() || !scene.materialStates.empty()) {
+    scene.materialStates.resize(scene.materials.size());
+    part.materialStates.resize(part.materials.size());
+    for (std::vector<Material>& states : part.materialStates)
+      for (Material& state : states) shiftTextures(state, scene.textures.size());
+    append(scene.materialStates, std::move(part.materialStates));
+  }
   append(scene.images, std::move(part.images));
   append(scene.textures, std::move(part.textures));
   append(scene.materials, std::move(part.materials));
   append(scene.meshes, std::move(part.meshes));
+}
+
+// ---- Animations ----
+
+void shiftValues(std::vector<AnimatedValue>& values, std::size_t by) {
+  for (AnimatedValue& value : values) value.value += by;
+}
+
+// Appends the nodes, skins and samplers of a file, and adjusts the indices of what they animate. `firstMaterial`: index in
+// the scene of the first material of the file.
+void appendAnimation(NodeAnimation& all, Scene& part, std::size_t firstMaterial) {
+  if (!part.nodeAnimation) return;
+  NodeAnimation from = *part.nodeAnimation;
+  const std::size_t nodes = all.nodes.size(), skins = all.skins.size(), samplers = all.animation.samplers.size();
+  const std::size_t values = all.values.size();
+  all.framesPerSecond = from.framesPerSecond;
+  for (AnimationNode& node : from.nodes) shift(node.parent, nodes);
+  for (int& node : from.order) shift(node, nodes);
+  for (Skin& skin : from.skins)
+    for (int& joint : skin.joints) shift(joint, nodes);
+  for (AnimationChannel& channel : from.animation.channels) {
+    shift(channel.node, nodes);
+    channel.sampler += samplers;
+  }
+  for (std::size_t& sampler : from.values) sampler += samplers;
+  for (AnimatedMaterial& material : from.materials) {
+    shift(material.material, firstMaterial);
+    shiftValues(material.values, values);
+  }
+  append(all.nodes, std::move(from.nodes));
+  append(all.order, std::move(from.order));
+  append(all.skins, std::move(from.skins));
+  append(all.animation.samplers, std::move(from.animation.samplers));
+  append(all.animation.channels, std::move(from.animation.channels));
+  append(all.values, std::move(from.values));
+  append(all.materials, std::move(from.materials));
+
+  for (Mesh& mesh : part.meshes) {
+    if (!mesh.deformation) continue;
+    // The file was just loaded, so that no other scene shares its deformations.
+    const auto deformation = std::const_pointer_cast<MeshDeformation>(mesh.deformation);
+    shift(deformation->node, nodes);
+    shift(deformation->skin, skins);
+  }
+  for (Instance& instance : part.instances) shift(instance.node, nodes), shift(instance.visibleNode, nodes);
+  for (Camera& camera : part.cameras) shift(camera.node, nodes), shiftValues(camera.values, values);
+  for (Light& light : part.lights) {
+    shift(light.node, nodes);
+    shift(light.visibleNode, nodes);
+    shiftValues(light.values, values);
+  }
 }
 
 void appendReport(Report& report, const Report& part, const std::string& name) {
@@ -56,10 +114,10 @@ void appendReport(Report& report, const Report& part, const std::string& name) {
   for (const std::string& line : part.ignored) report.ignored.push_back(name + ": " + line);
   for (const MetadataEntry& entry : part.metadata)
     report.metadata.push_back({name + ": " + entry.object, entry.name, entry.value});
-  if (!part.animations.empty()) {
+  if (part.ignoredAnimations > 0) {
     report.ignoredAnimations += part.ignoredAnimations;
     report.ignored.push_back(
-        fmt::format("{}: /animations: {} not played; the rest pose is used", name, part.animations.size()));
+        fmt::format("{}: /animations: {} not played; the rest pose is used", name, part.ignoredAnimations));
   }
   for (const std::string& variant : part.variants) report.variants.push_back(name + "/" + variant);
   for (const std::string& line : part.repaired) report.repaired.push_back(name + ": " + line);
@@ -108,18 +166,25 @@ void readFile(SceneTomlContext& context, const TomlValue& table) {
   InstanceTarget target;
   target.placedByDefault = reader.boolean("place", true);
   LoadOptions options = context.options;
-  options.animation.reset();  // animations of [[file]] do not play
   const TomlValue *const variant = reader.find("variant"), *const sceneName = reader.find("scene");
+  const TomlValue* const animation = reader.find("animation");
+  const std::string played = animation ? reader.toText(*animation, "animation") : std::string();
+  if (played == "none") options.animation.reset();
+  if (options.animation) options.animation = played;
   options.variant = variant ? reader.toText(*variant, "variant") : std::string();
   options.scene = sceneName ? reader.toText(*sceneName, "scene") : std::string();
   reader.rejectUnknownKeys();
 
-  const TomlValue* const named = variant && sceneName ? &pathValue : variant ? variant : sceneName;
+  // The key of an unknown name, if it is the only one.
+  const TomlValue* named = nullptr;
+  for (const TomlValue* const key : {variant, sceneName, animation})
+    if (key) named = named ? &pathValue : key;
   Scene part = loadPart(context, reader, path, options, named ? *named : pathValue);
   std::ranges::copy(part.report.files, std::back_inserter(context.scene.report.files));
   Scene& scene = context.scene;
   const std::size_t firstMaterial = scene.materials.size(), firstMesh = scene.meshes.size();
   for (Instance& instance : part.instances) shift(instance.mesh, firstMesh);
+  appendAnimation(context.animation, part, firstMaterial);
   target.instances = std::move(part.instances);
   if (lights) target.lights = std::move(part.lights);
   if (cameras) target.cameras = std::move(part.cameras);
@@ -132,6 +197,12 @@ void readFile(SceneTomlContext& context, const TomlValue& table) {
 }
 
 }  // namespace
+
+void finishAnimation(SceneTomlContext& context) {
+  if (!context.animation.nodes.empty())
+    context.scene.nodeAnimation = std::make_shared<NodeAnimation>(std::move(context.animation));
+  if (!context.scene.materialStates.empty()) context.scene.materialStates.resize(context.scene.materials.size());
+}
 
 void readFiles(SceneTomlContext& context, TomlReader& root) {
   for (const TomlValue& table : root.tables("file")) readFile(context, table);

@@ -82,12 +82,14 @@ InstanceTarget& findTarget(SceneTomlContext& context, TomlReader& reader) {
 void addView(SceneTomlContext& context, const InstanceTarget& target, const mat4& world, const std::string& name,
              bool cameras) {
   for (Light light : target.lights) {
+    light.placedFromRoot = world;
     light.position = vec3(world * vec4(light.position, 1.0f));
     light.direction = glm::normalize(mat3(world) * light.direction);
     context.scene.lights.push_back(std::move(light));
   }
   if (!cameras) return;
   for (Camera camera : target.cameras) {
+    camera.placedFromRoot = world;
     camera.worldFromCamera = rigidFrame(world * camera.worldFromCamera);
     camera.name = name + "/" + camera.name;
     context.scene.cameras.push_back(std::move(camera));
@@ -100,14 +102,20 @@ void addInstances(SceneTomlContext& context, const TomlReader& reader, const Ins
   for (const Instance& part : target.instances) {
     Instance instance = pattern;
     instance.mesh = part.mesh;
+    instance.node = part.node;
+    instance.visibleNode = part.visibleNode;
     if (target.instances.size() > 1) instance.name += "/" + part.name;
-    instance.animatedFromObject = inner * part.worldFromObject;
-    instance.worldFromObject = outer * instance.animatedFromObject;
-    if (instance.keyframes.empty())
-      instance.animatedFromObject = mat4(1.0f);
-    else
-      instance.worldFromObject = worldFromObjectAt(instance, 0.0f);
-    checkInvertible(reader, reader.table(), instance.worldFromObject);
+    const bool keyed = !instance.keyframes.empty();
+    const mat4 start = keyed ? keyframeMatrixAt(instance.keyframes, 0.0f) : outer;
+    instance.worldFromObject = start * inner * part.worldFromObject;
+    if (part.node != kNone) {
+      instance.animatedFromObject = part.animatedFromObject;
+      instance.placedFromRoot = keyed ? inner : outer * inner;
+    } else if (keyed) {
+      instance.animatedFromObject = inner * part.worldFromObject;
+    }
+    // A moving part can be flattened at frame 0.
+    checkInvertible(reader, reader.table(), part.node != kNone ? start * inner : instance.worldFromObject);
     context.scene.instances.push_back(std::move(instance));
   }
 }

@@ -36,6 +36,7 @@ Scene read(std::string_view text, const std::filesystem::path& file, const LoadO
   readInstances(context, root);
   readView(context, root);
   root.rejectUnknownKeys();
+  finishAnimation(context);
   makePrintable(context.scene.report);
   if (options.strict) requireExact(file, context.scene.report);
   // The readers have checked everything, with line numbers. This finds errors that they miss.

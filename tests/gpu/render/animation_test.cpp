@@ -15,9 +15,16 @@ namespace {
 scene::Scene posedByHost(scene::Scene scene, double frame) {
   scene::applyPose(scene, scene::poseAt(scene.nodeAnimation.get(), frame));
   scene.nodeAnimation = nullptr;
+  scene.materialStates.clear();
+  std::erase_if(scene.instances, [](const scene::Instance& instance) {  // hidden
+    return glm::determinant(mat3(instance.worldFromObject)) == 0.0f;
+  });
   for (scene::Mesh& mesh : scene.meshes) mesh.deformation = nullptr;
-  for (scene::Instance& instance : scene.instances) instance.node = scene::kNone;
-  for (scene::Light& light : scene.lights) light.node = scene::kNone;
+  for (scene::Instance& instance : scene.instances) instance.node = instance.visibleNode = scene::kNone;
+  for (scene::Light& light : scene.lights) {
+    light.node = light.visibleNode = scene::kNone;
+    light.values.clear();
+  }
   return scene;
 }
 
@@ -153,6 +160,52 @@ TEST(Animation, PunctualLightsFollowTheirNodes) {
             .set = {"bounces=1"},
             .batches = 1};
   expectHostPoses(builder.loadAnimated(), {6, 24}, view);
+}
+
+// KHR_animation_pointer: a material that emits only later, and lights a floor.
+TEST(Animation, PointersChangeMaterials) {
+  AnimationBuilder builder;
+  builder.addTriangle();
+  const int floor =
+      builder.addAccessor<float>({-4, -1, 4, 4, -1, 4, 4, -1, -4, -4, -1, 4, 4, -1, -4, -4, -1, -4}, "VEC3");
+  builder.addMesh({{"attributes", {{"POSITION", floor}}}, {"material", 1}});
+  builder.add("materials", {{"doubleSided", true}});
+  builder.add("materials", {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
+  builder.primitive()["material"] = 0;
+  builder.addPointer("/materials/0/emissiveFactor", {0, 1}, {0, 0, 0, 8, 4, 2}, "VEC3");
+  builder.addPointer("/materials/0/pbrMetallicRoughness/baseColorFactor", {0, 1}, {0, 0, 0, 1, 0, 0, 0, 1}, "VEC4");
+  builder.addPointer("/materials/1/pbrMetallicRoughness/baseColorFactor", {0, 1}, {0, 0, 0, 1, 1, 1, 1, 1}, "VEC4");
+  View view{
+      .program = "pathtracer", .camera = perspective({0, 6, 6}, {0, -1, 0}, 50), .set = {"bounces=1"}, .batches = 2};
+  const scene::Scene scene = builder.loadAnimated();
+  render::DeviceScene device(testContext(), scene::Scene(scene), scene::Environment{});
+  for (const double frame : {12.0, 24.0, 6.0}) {
+    device.setFrame(frame);
+    const std::vector<vec4> shown = renderView(device, view);
+    EXPECT_TRUE(hasImage(shown));
+    EXPECT_LT(largestDifference(shown, renderPosed(scene, frame, view)), 1e-3) << frame;
+  }
+}
+
+TEST(Animation, PointersChangeLightsAndVisibility) {
+  AnimationBuilder builder = movingTriangle();
+  builder.root["extensionsUsed"] = {"KHR_lights_punctual"};
+  builder.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 20.0}}};
+  builder.add("nodes", {{"translation", {1.5f, 0.5f, 2}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  builder.addPointer("/extensions/KHR_lights_punctual/lights/0/color", {0, 1}, {0, 0, 1, 1, 1, 0}, "VEC3");
+  View view{.program = "pathtracer",
+            .camera = orthographic({1.5f, 0.5f, 5}, {1.5f, 0.5f, 0}, 1.0f),
+            .set = {"bounces=1"},
+            .batches = 1};
+  expectHostPoses(builder.loadAnimated(), {6, 24}, view);
+  // Two more triangles, of which one is shown in each half.
+  const std::size_t first = builder.root["nodes"].size();
+  for (int i = 0; i < 2; ++i)
+    builder.add("nodes", {{"mesh", 0}, {"translation", {0, 0.5f + static_cast<float>(i), 0}}});
+  for (std::size_t i = 0; i < 2; ++i)
+    builder.addPointer("/nodes/" + std::to_string(first + i) + "/extensions/KHR_node_visibility/visible", {0, 0.5f},
+                       {i == 0 ? 1.0f : 0.0f, i == 0 ? 0.0f : 1.0f}, "SCALAR", "STEP");
+  expectHostPoses(builder.loadAnimated(), {6, 18, 3});
 }
 
 }  // namespace

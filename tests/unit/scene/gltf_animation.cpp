@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/gltf_animation.h"
 
+#include <algorithm>
+
 #include "base/file.h"
 #include "scene/load.h"
 
@@ -19,6 +21,20 @@ void AnimationBuilder::addChannel(int node, const std::string& path, const std::
   animation["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", interpolation}});
   animation["channels"].push_back(
       {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
+}
+
+void AnimationBuilder::addPointer(const std::string& pointer, const std::vector<float>& times,
+                                  const std::vector<float>& values, const std::string& type,
+                                  const std::string& interpolation) {
+  if (!root.contains("animations")) addAnimation("Move");
+  Json& used = root["extensionsUsed"];
+  if (std::ranges::find(used, Json("KHR_animation_pointer")) == used.end()) used.push_back("KHR_animation_pointer");
+  Json& animation = root["animations"].back();
+  const int input = addAccessor(times, "SCALAR"), output = addAccessor(values, type);
+  animation["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", interpolation}});
+  animation["channels"].push_back(
+      {{"sampler", animation["samplers"].size() - 1},
+       {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}});
 }
 
 scene::Scene AnimationBuilder::loadAnimated(const std::optional<std::string>& animation, double framesPerSecond) const {

@@ -17,6 +17,9 @@ class AnimationBuilder : public GltfBuilder {
   // or "VEC4".
   void addChannel(int node, const std::string& path, const std::vector<float>& times, const std::vector<float>& values,
                   const std::string& interpolation = "LINEAR");
+  // The same for a target of KHR_animation_pointer. `type` is that of the values.
+  void addPointer(const std::string& pointer, const std::vector<float>& times, const std::vector<float>& values,
+                  const std::string& type, const std::string& interpolation = "LINEAR");
   void addAnimation(const std::string& name);
   // Writes a temporary .glb and loads it with the animation. Unset: rest pose.
   scene::Scene loadAnimated(const std::optional<std::string>& animation = "", double framesPerSecond = 24.0) const;

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/animation/properties.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+
+#include "scene/model/material_textures.h"
+
+namespace quintet::scene {
+namespace {
+
+constexpr float kHuge = std::numeric_limits<float>::max();
+constexpr float kSmallest = std::numeric_limits<float>::min();
+
+template <class Object>
+struct Row {
+  std::string_view pointer;
+  std::size_t size;
+  void (*set)(Object&, const vec4& value);
+};
+
+// Setters of members with a range.
+template <auto member, int low, int high>
+void setNumber(Material& material, const vec4& value) {
+  material.*member = std::clamp(value.x, static_cast<float>(low), high < 0 ? kHuge : static_cast<float>(high));
+}
+template <auto member, int high>
+void setColor(Material& material, const vec4& value) {
+  material.*member = glm::clamp(vec3(value), 0.0f, high < 0 ? kHuge : static_cast<float>(high));
+}
+constexpr int kUnlimited = -1;
+
+constexpr auto kMaterialRows = std::to_array<Row<Material>>({
+    {"pbrMetallicRoughness/baseColorFactor", 4,
+     [](Material& m, const vec4& v) { m.baseColor = glm::clamp(v, 0.0f, 1.0f); }},
+    {"pbrMetallicRoughness/metallicFactor", 1, setNumber<&Material::metallic, 0, 1>},
+    {"pbrMetallicRoughness/roughnessFactor", 1, setNumber<&Material::roughness, 0, 1>},
+    {"normalTexture/scale", 1, [](Material& m, const vec4& v) { m.normalScale = v.x; }},
+    {"alphaCutoff", 1, setNumber<&Material::alphaCutoff, 0, kUnlimited>},
+    {"emissiveFactor", 3, setColor<&Material::emissive, kUnlimited>},
+    {"extensions/KHR_materials_emissive_strength/emissiveStrength", 1,
+     [](Material& m, const vec4& v) { m.emissive *= std::clamp(v.x, 0.0f, kHuge); }},
+    {"extensions/KHR_materials_ior/ior", 1,
+     [](Material& m, const vec4& v) { m.ior = v.x == 0.0f ? 0.0f : std::clamp(v.x, 1.0f, kHuge); }},
+    {"extensions/KHR_materials_transmission/transmissionFactor", 1, setNumber<&Material::transmission, 0, 1>},
+    {"extensions/KHR_materials_volume/thicknessFactor", 1, setNumber<&Material::thickness, 0, kUnlimited>},
+    {"extensions/KHR_materials_volume/attenuationDistance", 1,
+     [](Material& m, const vec4& v) { m.attenuationDistance = std::max(v.x, kSmallest); }},
+    {"extensions/KHR_materials_volume/attenuationColor", 3,
+     [](Material& m, const vec4& v) { m.attenuationColor = glm::clamp(vec3(v), 1e-6f, 1.0f); }},
+    {"extensions/KHR_materials_volume_scatter/multiscatterColor", 3, setColor<&Material::multiscatterColor, 1>},
+    {"extensions/KHR_materials_volume_scatter/scatterAnisotropy", 1,
+     [](Material& m, const vec4& v) { m.scatterAnisotropy = std::clamp(v.x, -0.999f, 0.999f); }},
+    {"extensions/KHR_materials_specular/specularFactor", 1, setNumber<&Material::specular, 0, 1>},
+    {"extensions/KHR_materials_specular/specularColorFactor", 3, setColor<&Material::specularColor, kUnlimited>},
+    {"extensions/KHR_materials_clearcoat/clearcoatFactor", 1, setNumber<&Material::clearcoat, 0, 1>},
+    {"extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", 1, setNumber<&Material::clearcoatRoughness, 0, 1>},
+    {"extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale", 1,
+     [](Material& m, const vec4& v) { m.clearcoatNormalScale = v.x; }},
+    {"extensions/KHR_materials_sheen/sheenColorFactor", 3, setColor<&Material::sheenColor, 1>},
+    {"extensions/KHR_materials_sheen/sheenRoughnessFactor", 1, setNumber<&Material::sheenRoughness, 0, 1>},
+    {"extensions/KHR_materials_diffuse_transmission/diffuseTransmissionFactor", 1,
+     setNumber<&Material::diffuseTransmission, 0, 1>},
+    {"extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorFactor", 3,
+     setColor<&Material::diffuseTransmissionColor, 1>},
+    {"extensions/KHR_materials_anisotropy/anisotropyStrength", 1, setNumber<&Material::anisotropy, 0, 1>},
+    {"extensions/KHR_materials_anisotropy/anisotropyRotation", 1,
+     [](Material& m, const vec4& v) { m.anisotropyRotation = v.x; }},
+    {"extensions/KHR_materials_iridescence/iridescenceFactor", 1, setNumber<&Material::iridescence, 0, 1>},
+    {"extensions/KHR_materials_iridescence/iridescenceIor", 1, setNumber<&Material::iridescenceIor, 1, kUnlimited>},
+    {"extensions/KHR_materials_iridescence/iridescenceThicknessMinimum", 1,
+     setNumber<&Material::iridescenceThicknessMinimum, 0, kUnlimited>},
+    {"extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", 1,
+     setNumber<&Material::iridescenceThicknessMaximum, 0, kUnlimited>},
+    {"extensions/KHR_materials_dispersion/dispersion", 1, setNumber<&Material::dispersion, 0, kUnlimited>},
+});
+
+// The textures of kMaterialTextures without the occlusion texture, which no shader reads.
+constexpr auto kTexturePointers = std::to_array<std::string_view>({
+    "pbrMetallicRoughness/baseColorTexture",
+    "pbrMetallicRoughness/metallicRoughnessTexture",
+    "normalTexture",
+    "emissiveTexture",
+    "extensions/KHR_materials_transmission/transmissionTexture",
+    "extensions/KHR_materials_specular/specularTexture",
+    "extensions/KHR_materials_specular/specularColorTexture",
+    "extensions/KHR_materials_clearcoat/clearcoatTexture",
+    "extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture",
+    "extensions/KHR_materials_clearcoat/clearcoatNormalTexture",
+    "extensions/KHR_materials_sheen/sheenColorTexture",
+    "extensions/KHR_materials_sheen/sheenRoughnessTexture",
+    "extensions/KHR_materials_diffuse_transmission/diffuseTransmissionTexture",
+    "extensions/KHR_materials_diffuse_transmission/diffuseTransmissionColorTexture",
+    "extensions/KHR_materials_anisotropy/anisotropyTexture",
+    "extensions/KHR_materials_iridescence/iridescenceTexture",
+    "extensions/KHR_materials_iridescence/iridescenceThicknessTexture",
+});
+static_assert(kTexturePointers.size() + 1 == kMaterialTextures.size());
+
+constexpr std::string_view kTransform = "/extensions/KHR_texture_transform/";
+constexpr auto kTransformRows = std::to_array<Row<TextureUse>>({
+    {"offset", 2, [](TextureUse& t, const vec4& v) { t.offset = vec2(v); }},
+    {"rotation", 1, [](TextureUse& t, const vec4& v) { t.rotation = v.x; }},
+    {"scale", 2, [](TextureUse& t, const vec4& v) { t.scale = vec2(v); }},
+});
+
+constexpr auto kLightRows = std::to_array<Row<Light>>({
+    {"color", 3, [](Light& l, const vec4& v) { l.intensity = glm::clamp(vec3(v), 0.0f, kHuge); }},
+    {"intensity", 1, [](Light& l, const vec4& v) { l.intensity *= std::clamp(v.x, 0.0f, kHuge); }},
+    {"range", 1,
+     [](Light& l, const vec4& v) {
+       if (l.type != LightType::directional) l.range = v.x > 0.0f ? v.x : Light().range;
+     }},
+    {"spot/outerConeAngle", 1,
+     [](Light& l, const vec4& v) {
+       l.outerConeAngle = std::clamp(v.x, 1e-4f, kPi / 2.0f);
+       l.innerConeAngle = std::min(l.innerConeAngle, l.outerConeAngle);
+     }},
+    {"spot/innerConeAngle", 1,
+     [](Light& l, const vec4& v) { l.innerConeAngle = std::clamp(v.x, 0.0f, l.outerConeAngle); }},
+});
+
+constexpr float kSmallestAngle = 1e-4f;
+constexpr auto kCameraRows = std::to_array<Row<Camera>>({
+    {"perspective/yfov", 1,
+     [](Camera& c, const vec4& v) { c.verticalFov = std::clamp(v.x, kSmallestAngle, kPi - kSmallestAngle); }},
+    {"orthographic/xmag", 1,
+     [](Camera& c, const vec4& v) { c.orthographicHalfSize.x = std::max(std::abs(v.x), kSmallest); }},
+    {"orthographic/ymag", 1,
+     [](Camera& c, const vec4& v) { c.orthographicHalfSize.y = std::max(std::abs(v.x), kSmallest); }},
+});
+
+template <class Object>
+std::optional<PropertyInfo> find(std::span<const Row<Object>> rows, std::string_view pointer) {
+  const auto found = std::ranges::find(rows, pointer, &Row<Object>::pointer);
+  if (found == rows.end()) return std::nullopt;
+  return PropertyInfo{static_cast<std::size_t>(found - rows.begin()), found->size};
+}
+
+}  // namespace
+
+std::optional<PropertyInfo> findMaterialProperty(std::string_view pointer) {
+  const std::size_t at = pointer.find(kTransform);
+  if (at == std::string_view::npos) return find<Material>(kMaterialRows, pointer);
+  const auto texture = std::ranges::find(kTexturePointers, pointer.substr(0, at));
+  const std::optional<PropertyInfo> row = find<TextureUse>(kTransformRows, pointer.substr(at + kTransform.size()));
+  if (texture == kTexturePointers.end() || !row) return std::nullopt;
+  const auto k = static_cast<std::size_t>(texture - kTexturePointers.begin());
+  return PropertyInfo{kMaterialRows.size() + k * kTransformRows.size() + row->index, row->size,
+                      kMaterialTextures[k].use};
+}
+
+std::optional<PropertyInfo> findLightProperty(std::string_view pointer) { return find<Light>(kLightRows, pointer); }
+std::optional<PropertyInfo> findCameraProperty(std::string_view pointer) { return find<Camera>(kCameraRows, pointer); }
+
+void setMaterialValue(Material& material, std::size_t property, const vec4& value) {
+  if (property < kMaterialRows.size()) return kMaterialRows[property].set(material, value);
+  const std::size_t transform = property - kMaterialRows.size();
+  kTransformRows[transform % kTransformRows.size()].set(
+      material.*kMaterialTextures[transform / kTransformRows.size()].use, value);
+}
+
+void setLightValue(Light& light, std::size_t property, const vec4& value) { kLightRows[property].set(light, value); }
+void setCameraValue(Camera& camera, std::size_t property, const vec4& value) {
+  kCameraRows[property].set(camera, value);
+}
+
+}  // namespace quintet::scene

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The properties of materials, lights and cameras that an animation can change (KHR_animation_pointer).
+#ifndef QUINTET_SCENE_ANIMATION_PROPERTIES_H
+#define QUINTET_SCENE_ANIMATION_PROPERTIES_H
+
+#include <optional>
+#include <string_view>
+
+#include "scene/model/scene.h"
+
+namespace quintet::scene {
+
+// A property by its index in the table of its kind of object.
+struct PropertyInfo {
+  std::size_t index = 0;
+  std::size_t size = 1;  // number of floats
+  // The member of a material whose texture the property transforms; null for other properties.
+  TextureUse Material::*texture = nullptr;
+};
+
+// `pointer`: the JSON pointer in the glTF object, without a leading slash: "pbrMetallicRoughness/roughnessFactor". No
+// value for a property that is unknown or that cannot change the image.
+std::optional<PropertyInfo> findMaterialProperty(std::string_view pointer);
+std::optional<PropertyInfo> findLightProperty(std::string_view pointer);
+std::optional<PropertyInfo> findCameraProperty(std::string_view pointer);
+
+// Set a property; a value outside the range of the property is clamped. The emissive strength and the intensity of a
+// light multiply the color, which must be set before.
+void setMaterialValue(Material&, std::size_t property, const vec4& value);
+void setLightValue(Light&, std::size_t property, const vec4& value);
+void setCameraValue(Camera&, std::size_t property, const vec4& value);
+
+}  // namespace quintet::scene
+#endif
