@@ -182,9 +182,8 @@ void RenderJob::prepareScene(LoadedScene loaded, Observer& observer) {
   const scene::ImportSeconds import = loaded.scene.seconds;
   prepared->onDevice = std::make_unique<render::DeviceScene>(
       engine_.context(), std::move(loaded.scene), loaded.environment.environment,
-      render::DeviceSceneOptions{.singleAnyHit = prepared->singleAnyHit,
-                                 .editable = job_.request.editable,
-                                 .compiler = &engine_.compiler()});
+      render::DeviceSceneOptions{
+          .singleAnyHit = prepared->singleAnyHit, .editable = job_.request.editable, .compiler = &engine_.compiler()});
   if (!job_.request.editable) loaded.environment.environment.image = {};
   prepared->environmentInUse = std::move(loaded.environment);
   prepared->seconds.build = building.seconds();

@@ -27,8 +27,8 @@ void append(std::vector<std::string>& to, std::initializer_list<std::string> wor
 // The colors are those of sRGB.
 void addColors(std::vector<std::string>& arguments) {
   append(arguments,
-         {"-vf", "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd", "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1",
-          "-color_range", "tv"});
+         {"-vf", "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd", "-pix_fmt", "yuv420p", "-colorspace",
+          "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1", "-color_range", "tv"});
 }
 
 // MP4 and WebM store colors at half the resolution, so both sides must be even: the last column and row are repeated.

@@ -207,8 +207,7 @@ void LightTableBuilder::addParts(const scene::Scene& scene) {
   const auto moves = [&](const Part& part) {
     return scene.instances[part.instance].animated() || scene.meshes[part.mesh].deformation;
   };
-  hasMovingLights_ = std::ranges::any_of(parts_, moves) ||
-                     std::ranges::any_of(scene.lights, &scene::Light::animated);
+  hasMovingLights_ = std::ranges::any_of(parts_, moves) || std::ranges::any_of(scene.lights, &scene::Light::animated);
 }
 
 void LightTableBuilder::build(std::span<const mat4> worldFromObject, LightTable& table) {

@@ -191,7 +191,8 @@ NodeTree readNodes(const Document& document, int sceneIndex, Report& report) {
   tree.visible.resize(count, true);
   for (const int node : order) {
     const auto i = static_cast<std::size_t>(node);
-    tree.visible[i] = isVisible(document, i) && (parents[i] == kNone || tree.visible[static_cast<std::size_t>(parents[i])]);
+    tree.visible[i] =
+        isVisible(document, i) && (parents[i] == kNone || tree.visible[static_cast<std::size_t>(parents[i])]);
     const dmat4 local = localTransform(document, i);
     world[i] = parents[i] == kNone ? local : world[static_cast<std::size_t>(parents[i])] * local;
     tree.worldFromNode[i] = mat4(world[i]);

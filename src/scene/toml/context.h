@@ -47,7 +47,7 @@ struct SceneTomlContext {
   const std::shared_ptr<MemoryBudget> sharedBudget;  // also of the glTF files
   MemoryBudget& budget;
   Scene scene;
-  NodeAnimation animation;  // of the glTF files; of the scene if it has samplers
+  NodeAnimation animation;                        // of the glTF files; of the scene if it has samplers
   std::map<std::string, int> materials;           // "name" or "file/name"
   std::map<std::string, InstanceTarget> targets;  // "name" or "file/mesh"
   std::map<std::string, NamedTree> trees;

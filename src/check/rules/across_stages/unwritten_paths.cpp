@@ -244,9 +244,9 @@ class UnwrittenPaths {
   const spirv::StageFacts& shader_;
   const Id received_;
   const std::uint32_t leaf_;
-  std::size_t start_ = 0, function_ = 0;                // of the shader's entry function
-  std::vector<std::size_t> writers_;                    // of the leaf in the shader
-  std::map<std::uint32_t, std::vector<Store>> stores_;  // to other leaves
+  std::size_t start_ = 0, function_ = 0;                                   // of the shader's entry function
+  std::vector<std::size_t> writers_;                                       // of the leaf in the shader
+  std::map<std::uint32_t, std::vector<Store>> stores_;                     // to other leaves
   mutable std::map<Id, std::optional<std::set<std::uint32_t>>> leavesOf_;  // cache, by condition
 };
 
