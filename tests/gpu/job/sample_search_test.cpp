@@ -19,15 +19,15 @@
 namespace quintet::job {
 namespace {
 
-Engine& engine() {
+Engine& searchEngine() {
   static Engine engine({});
   return engine;
 }
 
 SearchResult search(const char* program, RenderRequest request, const SearchOptions& options) {
   Observer observer;
-  RenderJob job(engine(), resolve(std::move(request), program::loadProgram(program)), observer);
-  return searchSamples(engine(), job, options, observer);
+  RenderJob job(searchEngine(), resolve(std::move(request), program::loadProgram(program)), observer);
+  return searchSamples(searchEngine(), job, options, observer);
 }
 
 // A floor under a small lamp: paths without light sampling seldom hit it.
@@ -137,8 +137,8 @@ TEST(SampleSearch, FirefliesRequireSamples) {
               testing::StartsWith("fireflies: the program 'lessons/09_progressive' accumulates its frames"));
   for (const auto& [program, request] : {std::pair("normals", few), {"09_progressive", frames}}) {
     Recorder observer;
-    RenderJob job(engine(), resolve(request, program::loadProgram(program)), observer);
-    const SearchResult found = searchSamples(engine(), job, {}, observer);
+    RenderJob job(searchEngine(), resolve(request, program::loadProgram(program)), observer);
+    const SearchResult found = searchSamples(searchEngine(), job, {}, observer);
     EXPECT_EQ(found.samples, program == std::string("normals") ? 3u : 2u);
     EXPECT_EQ(found.frames, program != std::string("normals"));
     EXPECT_THAT(observer.notes, testing::Contains(testing::StartsWith("fireflies are not searched: ")));
@@ -154,8 +154,8 @@ TEST(SampleSearch, StopsBetweenExplanations) {
   const auto searched = [&](std::size_t stopAfter, std::vector<double>& samples) {
     Recorder observer;
     observer.stopAfter = stopAfter;
-    RenderJob job(engine(), resolve(request, program::loadProgram("naive")), observer);
-    const SearchResult found = searchSamples(engine(), job, {.fireflies = false, .limit = 3}, observer);
+    RenderJob job(searchEngine(), resolve(request, program::loadProgram("naive")), observer);
+    const SearchResult found = searchSamples(searchEngine(), job, {.fireflies = false, .limit = 3}, observer);
     samples = observer.samples;
     return found;
   };

@@ -16,9 +16,9 @@ namespace {
 using glm::dvec3;
 constexpr std::size_t kTreeSamples = 400'000;
 
-class Random {
+class RandomNumbers {
  public:
-  explicit Random(std::uint32_t seed) : engine_(seed) {}
+  explicit RandomNumbers(std::uint32_t seed) : engine_(seed) {}
   float operator()(float low, float high) {
     return low + (high - low) * static_cast<float>(static_cast<double>(engine_()) * 0x1p-32);
   }
@@ -36,7 +36,7 @@ class Random {
 
 // Clusters of triangles in three instances, points, spots, a sun and a sky: all kinds in one decision.
 scene::Scene manyLights(std::uint32_t seed, int triangles = 240, int punctual = 60) {
-  Random random(seed);
+  RandomNumbers random(seed);
   scene::Scene scene;
   for (int m = 0; m < 3; ++m) {
     scene.materials.emplace_back().emissive = vec3(std::pow(10.0f, static_cast<float>(m) - 1.0f));
@@ -82,7 +82,7 @@ scene::Environment sky() {
 
 // Far away, between the clusters, on a light's plane, behind spots; opaque, transmitting and without a surface.
 std::vector<Receiver> receivers(const scene::Scene& scene) {
-  Random random(9);
+  RandomNumbers random(9);
   std::vector<Receiver> result{{vec3(0.0f)}, {vec3(200, 30, -70), vec3(0, 1, 0), 1}};
   for (const scene::Instance& instance : scene.instances) {
     const scene::Geometry& g = scene.meshes[instance.mesh].geometries[0];
@@ -199,7 +199,7 @@ TEST(LightTreeDevice, NoLightThatGivesIsNeverDrawn) {
     for (scene::Instance& instance : source.instances) instance.worldFromObject[3] += vec4(vec3(offset), 0.0f);
     for (scene::Light& light : source.lights) light.position += offset;
     const LightScene scene(source, sky());
-    Random random(4);
+    RandomNumbers random(4);
     std::vector<Receiver> inputs;
     for (int i = 0; i < 30'000; ++i)
       inputs.push_back(
