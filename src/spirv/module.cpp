@@ -83,6 +83,8 @@ int valueCount(const Instruction& instruction) {
     case Op::OpLoopMerge:
     case Op::OpFunction:
     case Op::OpFunctionParameter:
+    case Op::OpConstant:
+    case Op::OpSpecConstant:
     case Op::OpUndef:
     case Op::OpLine:
     case Op::OpNoLine:
@@ -380,7 +382,8 @@ std::vector<Id> valueOperands(const Instruction& instruction) {
     for (std::size_t i = 2; i < operands.size(); ++i) ids.push_back(operands[i]);
   } else if (instruction.op == spv::Op::OpVariable) {  // storage class, initial value
     if (operands.size() > 1) ids.push_back(operands[1]);
-  } else if (instruction.op == spv::Op::OpFunctionCall) {  // function, values
+  } else if (instruction.op == spv::Op::OpFunctionCall || instruction.op == spv::Op::OpSpecConstantOp) {
+    // function or literal operation, values
     for (std::size_t i = 1; i < operands.size(); ++i) ids.push_back(operands[i]);
   } else {
     const int count = valueCount(instruction);

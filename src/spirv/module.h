@@ -146,7 +146,8 @@ class Module {
 // Returns the GLSL name of a ray tracing built-in: "gl_PrimitiveID", "gl_RayTmaxEXT" (also for gl_HitTEXT).
 std::string_view glslName(spv::BuiltIn builtIn);
 
-// Returns the operands of an instruction that are ids of values (neither types nor literals), in order.
+// Returns the operands of an instruction that are ids of values (neither types nor literals), in order. Constants have
+// none, except those that other constants make up.
 std::vector<Id> valueOperands(const Instruction& instruction);
 
 // Returns a copy without sources, lines, names and non-semantic instructions (debugPrintfEXT): the module that the driver

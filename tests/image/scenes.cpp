@@ -410,7 +410,7 @@ std::span<const ImageScene> imageScenes() {
       {"translucent", translucent, 32, 20, 4, 128, 256, false},
       {"optical_effects", opticalEffects, 32, 20, 4, 128, 256, false},
       {"rough_glass", roughGlass, 32, 20, 4, 128, 256, false},
-      {"milk", milk, 32, 20, 4, 128, 256, false},
+      {"milk", milk, 32, 20, 4, 1024, 2048, false},
       {"nested_solids", nestedSolids, 32, 20, 4, 128, 256, false},
       {"sun_and_sky", sunAndSky, 32, 20, 4, 256, 1024, true},
       {"solids", solids, 32, 20, 4, 128, 512, false},

@@ -2,6 +2,8 @@
 // Reads compiled shaders, analyzes their data flow and types, and rejects malformed modules safely.
 #include "spirv/module.h"
 
+#include <gmock/gmock.h>
+
 #include <random>
 
 #include "shader/shader_test_support.h"
@@ -78,6 +80,21 @@ TEST(Module, ReadsATrace) {
   EXPECT_EQ(payload->storage, spv::StorageClass::RayPayloadKHR);
   EXPECT_EQ(module.types().describe(payload->type), "struct RayPayload { vec3 color; bool hit; float[3] d; }");
   EXPECT_EQ(module.types().get(payload->type).bytes, 12u + 4u + 12u);
+}
+
+// Every number is also the id of an instruction.
+TEST(Module, NumbersOfConstantsAreNoOperands) {
+  std::string text = "layout(location = 0) rayPayloadEXT uint p;\nvoid main() { uvec4 sum = uvec4(p);\n";
+  for (int i = 1; i < 60; ++i) text += "  sum += uvec4(" + std::to_string(i) + "u, 2u, sum.zw);\n";
+  const Module module = readText(Stage::rayGeneration, text + "  p = sum.x; }\n");
+  std::size_t constants = 0;
+  for (const Instruction& i : module.instructions()) {
+    if (i.op != spv::Op::OpConstant) continue;
+    ++constants;
+    EXPECT_THAT(valueOperands(i), testing::IsEmpty()) << i.result;
+    EXPECT_FALSE(dependsOn(module, i.result, [](const Instruction& other) { return other.op == spv::Op::OpLoad; }));
+  }
+  EXPECT_GE(constants, 50u);
 }
 
 TEST(Module, LocatesACallThatSpansLines) {
