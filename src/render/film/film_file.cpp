@@ -19,6 +19,7 @@
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "base/plural.h"
+#include "base/text.h"
 #include "io/codec.h"
 
 namespace quintet::render {
@@ -266,7 +267,7 @@ class HeaderReader {
   auto valueByName(const std::string& plane, const char* key, const std::string& name, const Values& all,
                    NameOf nameOf) const {
     const auto found = std::ranges::find(all, name, nameOf);
-    if (found == all.end()) fail(fmt::format("{}/{} '{}' is unknown", plane, key, name));
+    if (found == all.end()) fail(printable(fmt::format("{}/{} '{}' is unknown", plane, key, name)));
     return *found;
   }
 

@@ -235,6 +235,12 @@ TEST(ExrLayersTest, FindsLayers) {
     } catch (const UsageError& error) {
       EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("a.exr: "), HasSubstr("'nornal' (did you mean 'normal'?)")));
     }
+    try {
+      decodeExrLayer(bytes, "a.exr", "\x01");
+      FAIL();
+    } catch (const UsageError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("'?'"));
+    }
   }
 }
 

@@ -229,6 +229,7 @@ TEST(FilmFile, ChecksHeadersAgainstThePayload) {
       EXPECT_TRUE(problem.starts_with("part.qfilm: header: ") || problem.starts_with("part.qfilm: payload: "))
           << from << " → " << to << ": " << problem;
   }
+  EXPECT_THAT(problemOf(withHeader(bytes, "\"center\"", "\"\\u0007\"")), HasSubstr("'?' is unknown"));
   expectSame(decodeFilm(withHeader(bytes, "\"seed\"", "\"seed\""), "x"), sample(9, 5));
 }
 
