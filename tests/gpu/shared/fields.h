@@ -45,6 +45,7 @@ void put(uint v) { words[wordCount++] = v; }
 void put(float v) { put(floatBitsToUint(v)); }
 void put(uint64_t v) { put(uint(v)); put(uint(v >> 32)); }
 void put(uvec2 v) { put(v.x); put(v.y); }
+void put(uvec4 v) { put(v.x); put(v.y); put(v.z); put(v.w); }
 void put(vec2 v) { put(v.x); put(v.y); }
 void put(vec3 v) { put(v.xy); put(v.z); }
 void put(vec4 v) { put(v.xyz); put(v.w); }
@@ -61,6 +62,7 @@ void take(out uint v) { v = nextWord(); }
 void take(out float v) { v = uintBitsToFloat(nextWord()); }
 void take(out uint64_t v) { const uint low = nextWord(); v = uint64_t(low) | uint64_t(nextWord()) << 32; }
 void take(out uvec2 v) { take(v.x); take(v.y); }
+void take(out uvec4 v) { take(v.x); take(v.y); take(v.z); take(v.w); }
 void take(out vec2 v) { take(v.x); take(v.y); }
 void take(out vec3 v) { take(v.x); take(v.y); take(v.z); }
 void take(out vec4 v) { take(v.x); take(v.y); take(v.z); take(v.w); }
