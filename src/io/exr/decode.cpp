@@ -172,9 +172,9 @@ PartChannels findLayer(const Source& source, Imf::MultiPartInputFile& file, cons
   PartChannels found = collectLayer(file, wanted, layers);
   if (found.channels.empty() && wanted == kBeauty) found = collectLayer(file, "", layers);
   if (found.channels.empty()) {
-    throw UsageError(printable(fmt::format("{}: no layer '{}'{}; available: {}", source.name,
-                                           wanted.empty() ? kBeauty : wanted, suggestion(wanted, layers),
-                                           fmt::join(layers, ", "))));
+    throw UsageError(
+        printable(fmt::format("{}: no layer '{}'{}; available: {}", source.name, wanted.empty() ? kBeauty : wanted,
+                              suggestion(wanted, layers), fmt::join(layers, ", "))));
   }
   std::ranges::stable_sort(found.channels, {}, rankOf);
   return found;
