@@ -257,13 +257,16 @@ double ReferenceBsdf::filmExtra(const BsdfCase& c, double cosine) const {
 // Averages of the film's reflectance: four times the integral of t^3 F(t^2) for t from 0 to 1, F linear between nodes.
 dvec3 ReferenceBsdf::filmAverage(const BsdfCase& c, const dvec3& baseF0) const {
   constexpr int kCells = static_cast<int>(shared::kFilmNodes) - 1;
-  dvec3 sum(0.0);
-  for (int k = 0; k < kCells; ++k)
+  const auto node = [&](int k) { return film(c, std::pow(static_cast<double>(k) / kCells, 2.0), baseF0); };
+  dvec3 sum(0.0), left = node(0);
+  for (int k = 0; k < kCells; ++k) {
+    const dvec3 right = node(k + 1);
     for (int i = 0; i < 200; ++i) {
       const double part = (i + 0.5) / 200.0, t = (k + part) / kCells;
-      const auto node = [&](int j) { return film(c, std::pow(static_cast<double>(j) / kCells, 2.0), baseF0); };
-      sum += 4.0 * t * t * t * glm::mix(node(k), node(k + 1), part) / (200.0 * kCells);
+      sum += 4.0 * t * t * t * glm::mix(left, right, part) / (200.0 * kCells);
     }
+    left = right;
+  }
   return sum;
 }
 
